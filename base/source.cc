@@ -1,0 +1,43 @@
+#include "base/source.h"
+
+#include <algorithm>
+
+namespace base {
+
+SourcePos SourceMap::add(std::string name, std::string text) {
+  SourcePos begin{next_base_};
+  // One byte between files, so that an end position is never the next file's begin.
+  next_base_ += static_cast<uint32_t>(text.size()) + 1;
+  files_.push_back({std::move(name), std::move(text), begin.offset, {}});
+  return begin;
+}
+
+uint32_t SourceMap::file_of(SourcePos pos) const {
+  if (!pos.valid() || pos.offset >= next_base_) return file_count();
+  auto after = std::upper_bound(files_.begin(), files_.end(), pos.offset,
+                                [](uint32_t offset, const File& f) { return offset < f.base; });
+  return static_cast<uint32_t>(after - files_.begin()) - 1;
+}
+
+SourceLocation SourceMap::locate(SourcePos pos) const {
+  uint32_t index = file_of(pos);
+  if (index == file_count()) return {};
+  const File& file = files_[index];
+  if (file.line_starts.empty()) {
+    file.line_starts.push_back(0);
+    for (uint32_t i = 0; i < file.text.size(); ++i) {
+      if (file.text[i] == '\n') file.line_starts.push_back(i + 1);
+    }
+  }
+  uint32_t offset = pos.offset - file.base;
+  auto after = std::upper_bound(file.line_starts.begin(), file.line_starts.end(), offset);
+  uint32_t start = *(after - 1);
+  size_t end = file.text.find('\n', start);
+  std::string_view line = std::string_view(file.text).substr(
+      start, end == std::string::npos ? std::string::npos : end - start);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return {file.name, static_cast<uint32_t>(after - file.line_starts.begin()), offset - start + 1,
+          line};
+}
+
+}  // namespace base

@@ -1,0 +1,57 @@
+// Source texts and positions. A SourceMap owns every text of one compilation;
+// a SourcePos is a 32-bit offset into their concatenation, so that tokens and
+// nodes carry four bytes and line numbers are computed only for messages.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace base {
+
+struct SourcePos {
+  uint32_t offset = 0xffffffffu;  // none
+  bool valid() const { return offset != 0xffffffffu; }
+  friend auto operator<=>(SourcePos, SourcePos) = default;
+};
+
+// Half open: [begin, end).
+struct SourceSpan {
+  SourcePos begin;
+  SourcePos end;
+};
+
+struct SourceLocation {
+  std::string_view file;  // name as given to add(); "" when unknown
+  uint32_t line = 0;      // 1-based; 0 when unknown
+  uint32_t column = 0;    // 1-based, in bytes
+  std::string_view line_text;
+};
+
+class SourceMap {
+ public:
+  // Takes the text; returns the position of its first byte. Texts over 2^31
+  // bytes in all are refused by the caller (limits.def).
+  SourcePos add(std::string name, std::string text);
+
+  uint32_t file_count() const { return static_cast<uint32_t>(files_.size()); }
+  std::string_view file_name(uint32_t file) const { return files_[file].name; }
+  std::string_view text(uint32_t file) const { return files_[file].text; }
+  SourcePos begin(uint32_t file) const { return {files_[file].base}; }
+  // The file that holds `pos`; file_count() when none.
+  uint32_t file_of(SourcePos pos) const;
+  SourceLocation locate(SourcePos pos) const;
+
+ private:
+  struct File {
+    std::string name;
+    std::string text;
+    uint32_t base;
+    mutable std::vector<uint32_t> line_starts;  // filled by the first locate()
+  };
+  std::vector<File> files_;
+  uint32_t next_base_ = 0;
+};
+
+}  // namespace base

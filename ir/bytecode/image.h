@@ -1,0 +1,147 @@
+// An image: everything a controller needs to run one version of a program, and
+// everything a later version needs to be planned against it (types, layouts,
+// instance tree), so a lost build folder never forces a stop.
+//
+// Data memory is one range of 32-bit offsets (memory map below). Offset 0..63 is
+// never used. Areas (globals, program and FB instances) lie in
+// [kDataBegin, data_capacity); what no area owns is in `free`. Constant pools of
+// the two generations and the stack lie beyond, at fixed places.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/hash.h"
+#include "base/result.h"
+#include "ir/bytecode/code.h"
+#include "ir/bytecode/object.h"
+#include "ir/program/ir.h"
+#include "ir/types/constants.h"
+#include "ir/types/layout.h"
+#include "ir/types/types.h"
+
+namespace ir {
+
+inline constexpr uint32_t kDataBegin = 64;
+inline constexpr uint32_t kConstPoolA = 0xf0000000u;  // even generations
+inline constexpr uint32_t kConstPoolB = 0xf4000000u;  // odd generations
+inline constexpr uint32_t kConstPoolLimit = 0x04000000u;
+inline constexpr uint32_t kStackBegin = 0xf8000000u;
+inline constexpr uint32_t kStackLimit = 0x04000000u;
+
+// Frame slot of linked code.
+struct FrameSlot {
+  uint32_t offset = 0;
+  SlotKind kind = SlotKind::kTemp;   // kParam, kLocal or kTemp
+  LocalKind local = LocalKind::kTemp;
+  bool aggregate = false;
+  Class cls = Class::kB;
+  Region region;
+  std::string name;
+};
+
+struct LinkedPou {
+  std::string name;
+  PouKind kind = PouKind::kFunction;
+  TypeId self;
+  std::string file;
+  base::Digest identity{};     // of the object (E1)
+  uint32_t frame_size = 0;     // multiple of 8
+  uint32_t first_unit = 0;     // in Image::code
+  uint32_t unit_count = 0;
+  std::vector<FrameSlot> slots;  // sorted by offset; params first
+  std::vector<Merge> merges;     // units relative to first_unit; `slots` index FrameSlots
+  std::vector<LineEntry> lines;
+};
+
+struct LinkedBound {
+  int64_t low = 0;
+  uint64_t count = 0;
+  uint32_t stride = 0;
+  Region from;       // region that is indexed; `to` follows: dim + 1, or the element type
+  std::string name;
+};
+
+// Row of the instance information table (A9). Row 0 is the globals area.
+struct Instance {
+  TypeId type;
+  uint32_t data = 0;        // offset of its area
+  uint32_t pou = 0;         // index into Image::pous; unused for row 0
+  uint32_t parent = 0;      // instance that holds the slot; 0: a program, or in globals
+  uint32_t generation = 0;  // counts the reuses of this ID
+  bool live = false;        // false: the ID is free
+  std::string name;         // "Prog1", "inst2", "arr[3]", "s.fb": path from the parent
+};
+
+struct Extent {
+  uint32_t offset = 0;
+  uint32_t size = 0;
+  friend bool operator==(const Extent&, const Extent&) = default;
+};
+
+struct DataRun {  // initial bytes; whatever no run covers is zero
+  uint32_t offset = 0;
+  base::Bytes bytes;
+};
+
+struct ImageTask {
+  std::string name;
+  int64_t period_ns = 0;
+  int64_t watchdog_ns = 0;
+  uint32_t priority = 0;
+  std::vector<uint32_t> programs;  // instance IDs, in order of execution
+};
+
+// Binds a located variable to the process image (A BOOL takes one bit there).
+struct IoBinding {
+  DirectAddress address;
+  uint32_t data = 0;  // offset of the variable
+  TypeId type;
+};
+
+struct RetainRange {
+  uint32_t data = 0;
+  uint32_t size = 0;
+};
+
+struct Image {
+  std::string name;
+  TypeTable types;
+  ConstTable constants;  // initial values, for planning later versions
+  Layouts layouts;
+  TypeId globals;
+  std::vector<LinkedPou> pous;
+  std::vector<Unit> code;
+  base::Bytes pool;                // constant pool
+  std::vector<LinkedBound> bounds;
+  std::vector<Range> ranges;
+  std::vector<Instance> instances;
+  std::vector<Extent> free;        // sorted, disjoint, never adjacent
+  std::vector<ImageTask> tasks;
+  std::vector<IoBinding> io;
+  std::vector<RetainRange> retain;
+  std::vector<DataRun> data;       // sorted by offset
+  uint32_t data_capacity = 0;
+  uint32_t stack_bytes = 0;        // for the deepest chain, over all priorities
+  uint32_t call_depth = 0;
+  uint32_t input_bytes = 0;        // process image sizes
+  uint32_t output_bytes = 0;
+
+  // Live program instances in declaration order.
+  std::vector<uint32_t> program_ids() const;
+  // "Main.fb.arr[3]"; "" for row 0.
+  std::string instance_path(uint32_t id) const;
+};
+
+// The stored form: magic, version, length, SHA-256 of the rest, sections.
+base::Bytes encode(const Image& image);
+// Checks form only (V1, V2); what runs must go through verify().
+base::Result<Image> decode(base::ByteSpan bytes);
+// The digest in the header: the name of this version everywhere.
+base::Digest digest(base::ByteSpan encoded);
+
+std::string disassemble(const Image& image, const LinkedPou& pou);
+
+}  // namespace ir

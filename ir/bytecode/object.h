@@ -1,0 +1,116 @@
+// A relocatable object: the code of one POU, free of every offset. The same POU
+// gives the same object whatever happens to the types, globals and POUs that it
+// uses, as long as it uses them in the same way; relinking follows moved offsets
+// (A12), and the object's digest is the POU's identity on controllers (E1).
+//
+// Code holds ordinary units whose fields are table indices instead of offsets:
+//   near operand, base frame   slot, or slots.size() + place (a part of a slot)
+//   near operand, base self, global            place
+//   near operand, base const                   constant
+//   BC32, P32, OFF, OFF32                      place (base must agree; const: constant)
+//   CODE callee, RANGE range, BOUNDS bound, TYPE region, CAP and TRAP literal
+//   FRAME, SIZE filled by the linker (zero)
+// Jumps are final: distances in units of the object (the linker adjusts them when
+// it has to insert far loads and stores).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/hash.h"
+#include "base/result.h"
+#include "ir/bytecode/code.h"
+#include "ir/program/ir.h"
+
+namespace ir {
+
+enum class SlotKind : uint8_t {
+  kParam,      // parameter or result of this function; written by the caller if kInput/kInOut
+  kLocal,      // named local or aggregate temporary
+  kTemp,       // scalar temporary
+  kArg,        // slot `param` of callee number `callee`, in the next frame
+  kNativeArg,  // 8-byte slot number `param` of the next frame
+};
+
+struct Slot {
+  SlotKind kind = SlotKind::kTemp;
+  LocalKind local = LocalKind::kTemp;  // of kParam
+  bool aggregate = false;  // holds a value of region.type (struct, array, string)
+  Class cls = Class::kB;   // else: class of the scalar
+  Region region;           // kA: what it points to; aggregates and named scalars: their type
+  uint32_t callee = 0;     // kArg
+  uint32_t param = 0;      // kArg, kNativeArg
+  std::string name;        // of named locals, for the debugger
+};
+
+enum class PlaceRoot : uint8_t { kSelf, kGlobal, kSlot, kRegion };
+
+// A constant byte offset, still symbolic: root and steps. kMember steps count by
+// member number, kIndex steps by constant index (one per dimension). No other steps.
+struct ObjectPlace {
+  PlaceRoot root = PlaceRoot::kSelf;
+  uint32_t slot = 0;     // kSlot
+  Region region;         // kRegion: what the addr points to
+  std::vector<Step> steps;
+  Region result;         // what is at the place
+  friend bool operator==(const ObjectPlace&, const ObjectPlace&) = default;
+};
+
+// An entry of the constant pool: raw scalar bytes, or an initial value of a type.
+struct ObjectConstant {
+  base::Bytes bytes;  // scalars: 1, 2, 4 or 8 bytes
+  Class cls = Class::kB;
+  TypeId type;        // valid: `value` (or the type's default) laid out by the linker
+  ConstId value;
+};
+
+struct Bound {
+  TypeId array;
+  uint8_t dim = 0;
+  std::string name;  // of the variable, for the trap's text
+};
+
+struct Range {
+  int64_t low = 0;
+  int64_t high = 0;
+  std::string name;
+  friend bool operator==(const Range&, const Range&) = default;
+};
+
+// At a jump target: the slots that hold a value there, whichever way was taken.
+struct Merge {
+  uint32_t unit = 0;
+  std::vector<uint16_t> slots;  // sorted; scalars and addrs (aggregates always count as written)
+};
+
+struct LineEntry {
+  uint32_t unit = 0;  // from this unit on
+  uint32_t line = 0;
+};
+
+struct Object {
+  std::string name;
+  PouKind kind = PouKind::kFunction;
+  TypeId self;
+  std::string file;
+  std::vector<Slot> slots;  // kParam first, in declaration order
+  std::vector<ObjectPlace> places;
+  std::vector<ObjectConstant> constants;
+  std::vector<Region> regions;
+  std::vector<Bound> bounds;
+  std::vector<Range> ranges;
+  std::vector<std::string> callees;  // functions called by CALL
+  std::vector<Unit> code;
+  std::vector<Merge> merges;     // sorted by unit
+  std::vector<LineEntry> lines;  // sorted by unit
+};
+
+// Canonical bytes: types, members, globals and callees by name and text, so equal
+// objects of different compilations are equal bytes.
+base::Bytes canonical_bytes(const Object& object, const Program& program);
+base::Digest identity(const Object& object, const Program& program);
+// For `stc dump --object`.
+std::string disassemble(const Object& object, const Program& program);
+
+}  // namespace ir

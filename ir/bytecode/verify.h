@@ -1,0 +1,32 @@
+// The gate: only a VerifiedImage can be loaded, and only verify() makes one.
+// Rules V1 to V20 of reliability.md in one linear pass over code and tables.
+// Invariant: interpreting a VerifiedImage cannot read or write outside the areas,
+// frames and pools that it declares, whatever the data says.
+#pragma once
+
+#include <memory>
+
+#include "base/hash.h"
+#include "base/result.h"
+#include "ir/bytecode/image.h"
+
+namespace ir {
+
+class VerifiedImage {
+ public:
+  const Image& image() const { return *image_; }
+  const base::Digest& digest() const { return digest_; }
+  const base::Bytes& encoded() const { return *encoded_; }
+
+ private:
+  friend base::Result<VerifiedImage> verify(base::ByteSpan encoded);
+  VerifiedImage() = default;
+  std::shared_ptr<const Image> image_;
+  std::shared_ptr<const base::Bytes> encoded_;
+  base::Digest digest_{};
+};
+
+// Copies `encoded`. Cost: linear in its size.
+base::Result<VerifiedImage> verify(base::ByteSpan encoded);
+
+}  // namespace ir

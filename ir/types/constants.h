@@ -1,0 +1,41 @@
+// Initial values as trees that know nothing of layout. A ConstTable owns them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ir/types/types.h"
+
+namespace ir {
+
+struct ConstElement {
+  uint32_t first = 0;  // member index, or flat element index (last dimension fastest)
+  uint32_t count = 1;  // how many consecutive elements take this value
+  ConstId value;
+};
+
+// Which field counts follows from the type that the value is for.
+struct ConstValue {
+  uint64_t bits = 0;                   // scalars: low bytes, sign-extended; REAL as f32 bits
+  std::string text;                    // STRING: its bytes; WSTRING: UTF-16LE bytes
+  std::vector<ConstElement> elements;  // aggregates and function block instances; what
+                                       // is not named takes the type's default
+};
+
+class ConstTable {
+ public:
+  ConstId add(ConstValue value) {
+    values_.push_back(std::move(value));
+    return ConstId(static_cast<uint32_t>(values_.size() - 1));
+  }
+  ConstId scalar(uint64_t bits) { return add({bits, {}, {}}); }
+  const ConstValue& operator[](ConstId id) const { return values_[id.index]; }
+  uint32_t size() const { return static_cast<uint32_t>(values_.size()); }
+  bool contains(ConstId id) const { return id.index < values_.size(); }
+
+ private:
+  std::vector<ConstValue> values_;
+};
+
+}  // namespace ir

@@ -1,0 +1,154 @@
+// The IEC type system as compiler, linker, VM and online change share it.
+//
+// A TypeTable owns and interns all types of one program; TypeIds are stable for
+// its lifetime. Function blocks and programs are types too: their members are
+// their variables. The global variables of a program are the members of one
+// pseudo type (Kind::kGlobals). So layout, diff and planning treat globals,
+// program areas and instance areas alike (systems.md A3, A4).
+//
+// Storage (all layouts, little endian): BOOL one byte; STRING[n] n+1 bytes, NUL-
+// terminated; WSTRING[n] 2*(n+1) bytes; structures and arrays embedded; a
+// function block inside something is a 4-byte instance ID slot (0 = none), its
+// data lives in an area of its own; an in-out member is a 4-byte Addr slot.
+// Sizes and member offsets are not part of a type: see layout.h.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "base/ids.h"
+
+namespace ir {
+
+enum class Scalar : uint8_t {
+#define SCALAR(id, text, bytes) id,
+#include "ir/types/scalars.def"
+#undef SCALAR
+};
+inline constexpr uint32_t kScalarCount = 14;
+std::string_view scalar_name(Scalar scalar);
+uint32_t scalar_size(Scalar scalar);
+bool is_signed(Scalar scalar);   // kI8..kI64
+bool is_integer(Scalar scalar);  // kI8..kU64
+bool is_float(Scalar scalar);
+
+enum class Kind : uint8_t {
+#define ELEMENTARY(id, name, scalar, group) id,
+#include "ir/types/elementary.def"
+#undef ELEMENTARY
+  kString,         // capacity
+  kWstring,        // capacity
+  kEnum,           // base, literals
+  kSubrange,       // base, low, high
+  kArray,          // base = element type, dims
+  kStruct,         // members
+  kFunctionBlock,  // members
+  kProgram,        // members
+  kGlobals,        // members; exactly one per program
+};
+inline constexpr uint32_t kElementaryCount = 25;
+inline constexpr uint32_t kKindCount = 34;
+
+enum class Group : uint8_t { kBit, kSigned, kUnsigned, kReal, kDuration, kDate, kChar, kNone };
+bool is_elementary(Kind kind);
+std::string_view elementary_name(Kind kind);
+Group elementary_group(Kind kind);  // kNone for other kinds
+
+struct TypeTag;
+struct ConstTag;
+using TypeId = base::Id<TypeTag>;
+// An initial value in the program's ConstTable (constants.h).
+using ConstId = base::Id<ConstTag>;
+
+enum class Section : uint8_t { kLocal, kInput, kOutput, kInOut, kGlobal };
+
+// What direct address an AT declaration names (I/O and marker memory).
+enum class DirectArea : uint8_t { kNone, kInput, kOutput, kMarker };
+struct DirectAddress {
+  DirectArea area = DirectArea::kNone;
+  uint32_t bit_offset = 0;  // %IX2.3 -> 19; %QW4 -> 64 (word number times 16)
+  uint32_t bit_size = 0;    // 1, 8, 16, 32, 64
+  friend bool operator==(const DirectAddress&, const DirectAddress&) = default;
+};
+
+struct Member {
+  std::string name;  // as first written; compared without case
+  TypeId type;
+  Section section = Section::kLocal;
+  bool constant = false;
+  bool retain = false;
+  ConstId init;            // invalid: the type's default
+  DirectAddress address;   // for AT declarations
+};
+
+struct Dimension {
+  int64_t low = 0;
+  int64_t high = 0;
+  uint64_t count() const { return static_cast<uint64_t>(high - low) + 1; }
+  friend bool operator==(const Dimension&, const Dimension&) = default;
+};
+
+struct EnumLiteral {
+  std::string name;
+  int64_t value = 0;
+};
+
+struct Type {
+  Kind kind = Kind::kBool;
+  std::string name;  // declared name; "" for anonymous ones
+  TypeId base;       // see Kind
+  int64_t low = 0;   // subrange
+  int64_t high = 0;
+  uint32_t capacity = 0;  // strings, in characters
+  std::vector<Dimension> dims;
+  std::vector<Member> members;
+  std::vector<EnumLiteral> literals;
+  ConstId init;  // default initial value when it is not all zero
+};
+
+class TypeTable {
+ public:
+  TypeTable();  // holds the elementary types from the start
+
+  TypeId elementary(Kind kind) const { return TypeId(static_cast<uint32_t>(kind)); }
+  TypeId string(uint32_t capacity);
+  TypeId wstring(uint32_t capacity);
+  // Anonymous arrays and subranges are interned by content.
+  TypeId array(TypeId element, std::vector<Dimension> dims);
+  TypeId subrange(TypeId base, int64_t low, int64_t high);
+  // A named type, or an anonymous structure or enumeration. Its content may be
+  // filled in later through edit(), which is how recursive declarations resolve.
+  TypeId declare(Type type);
+  Type& edit(TypeId id) { return types_[id.index]; }
+
+  const Type& operator[](TypeId id) const { return types_[id.index]; }
+  uint32_t size() const { return static_cast<uint32_t>(types_.size()); }
+  bool contains(TypeId id) const { return id.index < types_.size(); }
+
+  // Derived from a scalar type, at any depth of subrange or enumeration?
+  bool is_scalar(TypeId id) const;
+  // The machine scalar of a scalar type.
+  Scalar scalar(TypeId id) const;
+  // Elementary kind below subranges and enumerations; the kind itself otherwise.
+  Kind root_kind(TypeId id) const;
+  bool has_members(TypeId id) const;
+  bool is_instance(TypeId id) const;  // function block or program
+  // Index of the member with that name (without case); -1 when there is none.
+  int32_t find_member(TypeId id, std::string_view name) const;
+  // "INT", "ARRAY[1..3,0..9] OF Motor", "STRING[20]", "Recipe": what people read.
+  // Two structurally equal anonymous types have the same text.
+  std::string text(TypeId id) const;
+
+ private:
+  std::vector<Type> types_;
+  std::unordered_map<std::string, TypeId> interned_;
+};
+
+// Comparison and folding of IEC identifiers: ASCII without case, other bytes as they are.
+bool same_name(std::string_view a, std::string_view b);
+std::string fold_name(std::string_view name);
+
+}  // namespace ir

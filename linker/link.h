@@ -1,0 +1,25 @@
+// Objects -> image: layout, instance tree and IDs, areas, relocation, initial data,
+// call graph and stack depth. With a base image, everything that lives on keeps
+// its place: areas, instance IDs, POU numbers (A1, A5, A9).
+#pragma once
+
+#include <vector>
+
+#include "base/result.h"
+#include "ir/bytecode/image.h"
+#include "ir/bytecode/object.h"
+#include "ir/program/ir.h"
+#include "linker/layout.h"
+
+namespace linker {
+
+struct Options {
+  Slack slack;
+  const ir::Image* base = nullptr;  // the running version, or null
+  bool move_all = false;            // hard mode: give every instance a new area
+};
+
+base::Result<ir::Image> link(const ir::Program& program, const std::vector<ir::Object>& objects,
+                             const Options& options);
+
+}  // namespace linker

@@ -1,0 +1,64 @@
+// One change on a running controller, as a state machine (architecture.md section
+// 10). Everything up to kArmed happens while version 1 runs; the switch is one
+// call at a boundary; any failure before it leaves version 1 as it was.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "online_change/package/package.h"
+#include "vm/runtime/controller.h"
+
+namespace online_change {
+
+enum class State : uint8_t { kIdle, kStaged, kVerified, kPlanned, kPrepared, kArmed, kTrial };
+const char* state_name(State state);
+
+struct LiveLoss {      // a value that the change would not carry over exactly
+  std::string path;
+  std::string old_value;
+  std::string new_value;
+  std::string what;    // "saturates", "truncates", "inexact"
+};
+
+struct SwitchReport {
+  uint64_t cycle_before = 0;   // last cycle of the old version
+  uint64_t cycle_after = 0;    // first cycle of the new version
+  int64_t pause_ns = 0;        // measured, boundary work only
+  uint64_t missed = 0;         // task releases missed because of it
+  FateCounts counts;           // what was done
+};
+
+class Change {
+ public:
+  explicit Change(vm::Controller& controller) : controller_(controller) {}
+
+  State state() const { return state_; }
+  // Idle -> Prepared, in steps; may be called while version 1 runs (between cycles).
+  base::Status stage(base::ByteSpan package);
+  // Values that would be lost if the switch came now; by kPrepared.
+  std::vector<LiveLoss> live_losses() const;
+  const Plan& plan() const;
+  // Prepared -> Armed. Losses are refused unless allowed (kWouldLose).
+  base::Status arm(bool allow_loss);
+  // At a boundary: Armed -> Trial. Re-checks losses; on failure -> Idle, version 1 untouched.
+  base::Result<SwitchReport> switch_now();
+  // Trial -> Idle with version 2 for good.
+  base::Status accept();
+  // Trial -> Idle with version 1 again; at a boundary. Inverse plan on the current state; values that the
+  // change dropped or narrowed come back as they were, if nobody wrote them since.
+  base::Result<SwitchReport> undo();
+  // Any state before the switch -> Idle.
+  void cancel();
+
+ private:
+  vm::Controller& controller_;
+  State state_ = State::kIdle;
+  struct Pending;
+  std::shared_ptr<Pending> pending_;
+};
+
+}  // namespace online_change

@@ -1,0 +1,29 @@
+// The change package: the one file or message by which a change reaches a
+// controller. Made for one exact base version (its digest); carries the new
+// image, the plan and the inverse plan. The controller checks all of it (V17).
+#pragma once
+
+#include "base/hash.h"
+#include "base/result.h"
+#include "ir/bytecode/image.h"
+#include "online_change/plan/plan.h"
+
+namespace online_change {
+
+struct Package {
+  base::Digest base{};   // digest of the image it applies to
+  base::Bytes image;     // encoded new image
+  Plan forward;
+  Plan inverse;
+};
+
+base::Bytes encode(const Package& package);
+// Checks form and checksum; consistency with the images is check_package().
+base::Result<Package> decode(base::ByteSpan bytes);
+// V17: copies in range and inside areas of their own version, types right, no target twice, every
+// variable of the new version kept, written or initialised.
+base::Status check_package(const Package& package, const ir::Image& old_image,
+                           const ir::Image& new_image);
+base::Result<Package> make_package(base::ByteSpan old_image, base::ByteSpan new_image);
+
+}  // namespace online_change

@@ -1,0 +1,45 @@
+// plan(old image, new image) -> what is done to data memory, and every variable's
+// fate. A pure function of the two images: their layouts are fixed (the linker laid the
+// new one out against the old one), so the inverse plan for undo is plan(new, old).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/result.h"
+#include "ir/bytecode/image.h"
+#include "online_change/diff/fates.h"
+
+namespace online_change {
+
+// Update record (A3, A13). Offsets are in data memory.
+enum class StepKind : uint8_t {
+  kInitialise,  // bytes -> to
+  kCopy,        // size bytes: from -> to
+  kConvert,     // one scalar or string value by A14
+};
+
+struct UpdateStep {
+  StepKind kind = StepKind::kCopy;
+  uint32_t from = 0;
+  uint32_t to = 0;
+  uint32_t size = 0;
+  ir::TypeId old_type;   // kConvert, in the old image
+  ir::TypeId new_type;   // kConvert, in the new image
+  uint32_t fate = 0;     // row of Plan::fates
+  bool early = false;    // kInitialise into bytes that version 1 does not own: done while it runs (A19)
+  base::Bytes bytes;     // kInitialise
+};
+
+struct Plan {
+  std::vector<FateRow> fates;      // kept ones are counted, not listed
+  FateCounts counts;
+  std::vector<UpdateStep> steps;   // no two boundary steps overlap in `to`
+  uint64_t boundary_bytes = 0;     // bytes that the switch writes
+  // Cost model of the pause: fixed + per step + per byte.
+  int64_t predicted_pause_ns = 0;
+};
+
+base::Result<Plan> plan(const ir::Image& old_image, const ir::Image& new_image);
+
+}  // namespace online_change

@@ -1,0 +1,75 @@
+// Execution: one activation of a program instance on the stack. It runs until it
+// is done, traps, or its fuel is used up at a safe point; then it can be resumed
+// exactly there, also after other executions ran on top of it (B1).
+// During run(): no heap allocation, no lock, no system call (invariant 2).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ir/program/ir.h"
+#include "vm/load/generation.h"
+
+namespace vm {
+
+enum class Exit : uint8_t { kDone, kSuspended, kTrap };
+
+// A trap as a value; describe() turns it into words outside the scan.
+struct Trap {
+  ir::TrapKind kind = ir::TrapKind::kAssert;
+  uint32_t pou = 0;       // index into Image::pous
+  uint32_t unit = 0;      // unit inside the POU
+  uint32_t instance = 0;  // ID, 0 for a function
+  int64_t operand[2] = {0, 0};  // kIndex: index and bound number; kSubrange, kConversion: the value
+};
+struct TrapText {
+  std::string pou;
+  std::string file;
+  uint32_t line = 0;
+  std::string text;  // "array index outside its bounds: Speeds[12], bounds 0..9"
+};
+TrapText describe(const ir::Image& image, const Trap& trap);
+
+struct CallRecord {
+  const ir::Unit* resume = nullptr;
+  uint32_t frame = 0;
+  uint32_t self = 0;
+  uint32_t pou = 0;
+  uint32_t instance = 0;
+};
+
+class Execution {
+ public:
+  // `depth` calls at most (Image::call_depth); allocated here, not in run().
+  explicit Execution(uint32_t depth);
+
+  // Prepares a call of program instance `id`. `stack` is where its frames begin.
+  void start(const Generation& generation, uint8_t* memory, uint32_t id, uint32_t stack,
+             int64_t task_time_ns);
+  // Runs at most `fuel` safe points (calls and back edges; 0 is taken as 1).
+  Exit run(uint64_t fuel);
+
+  const Trap& trap() const { return trap_; }
+  // First stack offset that this activation does not use: where a higher-priority
+  // one may start while this one is suspended.
+  uint32_t stack_top() const;
+  uint64_t fuel_used() const { return fuel_used_; }
+
+ private:
+  friend struct Interpreter;
+  const Generation* generation_ = nullptr;
+  uint8_t* memory_ = nullptr;
+  std::vector<CallRecord> calls_;
+  uint32_t depth_ = 0;
+  const ir::Unit* pc_ = nullptr;
+  uint32_t frame_ = 0;
+  uint32_t self_ = 0;
+  uint32_t pou_ = 0;
+  uint32_t instance_ = 0;
+  int64_t task_time_ns_ = 0;
+  uint64_t fuel_used_ = 0;
+  Trap trap_;
+};
+
+}  // namespace vm

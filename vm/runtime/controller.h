@@ -1,0 +1,107 @@
+// The soft PLC: tasks, process image, forces and watches over one Machine. One control thread
+// owns a Controller; other threads talk to it through mailbox.h only.
+//
+// A control cycle (base period = greatest common divisor of all task periods):
+// outputs sent, inputs received, due tasks run by priority with safe-point
+// suspension of lower ones, then service at the boundary (D6): commands, watches,
+// and whatever online change has armed. A boundary is an instant at which no
+// execution exists; a long low-priority task postpones it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "ir/bytecode/symbols.h"
+#include "ir/bytecode/verify.h"
+#include "vm/exec/execution.h"
+#include "vm/exec/memory.h"
+#include "vm/load/generation.h"
+#include "vm/runtime/ports.h"
+
+namespace vm {
+
+enum class TrapPolicy : uint8_t { kStopTask, kStopAll };
+
+struct ControllerOptions {
+  TrapPolicy on_trap = TrapPolicy::kStopAll;
+  uint64_t fuel_slice = 1000;       // safe points between two looks at the clock; hard mode: 1
+  uint64_t fuel_budget = 50'000'000;  // safe points of one scan of one task before kFuel
+};
+
+struct TaskStatus {
+  std::string name;
+  int64_t period_ns = 0;
+  uint32_t priority = 0;
+  uint64_t scans = 0;          // completed
+  uint64_t missed = 0;         // releases that found the task still running
+  int64_t last_ns = 0;         // run time of the last scan
+  int64_t max_ns = 0;
+  bool stopped = false;        // by a trap
+};
+
+struct TrapRecord {
+  uint64_t cycle = 0;
+  std::string task;
+  Trap trap;
+  TrapText text;
+};
+
+struct Force {
+  std::string path;
+  ir::Symbol symbol;
+  base::Bytes value;
+};
+
+class Controller {
+ public:
+  // Cold start: all variables hold their initial values. `clock` and `io` must outlive it.
+  static base::Result<std::unique_ptr<Controller>> start(const ir::VerifiedImage& image,
+                                                         ControllerOptions options, Clock& clock,
+                                                         IoPort& io);
+  ~Controller();
+
+  // Runs one control cycle, waiting for its start first; nothing when faulted.
+  void cycle();
+  uint64_t cycles() const;
+  bool at_boundary() const;
+  bool faulted() const;
+  // Next instant at which a task is released.
+  int64_t next_release_ns() const;
+  int64_t base_period_ns() const;
+
+  const ir::Image& image() const;
+  const ir::VerifiedImage& verified() const;
+  const Generation& generation() const;
+  Memory& memory();
+  std::vector<TaskStatus> tasks() const;
+  const std::vector<TrapRecord>& traps() const;  // the last 32
+
+  // Values, at a boundary. Paths as in symbols.h.
+  base::Result<std::string> get(std::string_view path) const;
+  base::Status set(std::string_view path, std::string_view value);
+  // A force is imposed when inputs are copied in and before outputs are copied out, and on other
+  // variables before and after every scan.
+  base::Status force(std::string_view path, std::string_view value);
+  base::Status unforce(std::string_view path);
+  const std::vector<Force>& forces() const;
+
+  // --- for online change (online_change/apply) --------------------------------
+  // Builds a second generation beside the running one. Touches nothing that runs.
+  std::unique_ptr<Generation> prepare(ir::VerifiedImage image);
+  // At a boundary only: one pointer store makes `next` the running generation, and
+  // re-derives task, I/O and force tables that were prepared by prepare(). Tasks keep scan
+  // counts and phase by name. Returns the generation that ran until now.
+  std::unique_ptr<Generation> publish(std::unique_ptr<Generation> next);
+
+ private:
+  Controller();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vm
