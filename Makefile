@@ -1,0 +1,68 @@
+# The front door. Every target works on a fresh Debian 12 with git and make only:
+# scripts/setup.sh installs compiler and libraries when they are missing.
+#
+#   make          build/release/bin/stc and stvm
+#   make demo     a bottling line, changed while it runs
+#   make test     everything that has to hold, some minutes
+#   make bench    ST against C
+#   make asan     tests under AddressSanitizer and UBSan (also: ubsan, tsan)
+#   make fuzz     long runs of the fuzz targets
+#   make minimal  build and test with every adapter off
+#   make format   clang-format over the whole tree
+
+BUILD := build/release
+JOBS := $(shell nproc)
+
+.PHONY: all build setup demo test test-minimal minimal bench format asan ubsan tsan fuzz soak coverage docs clean
+
+all: build
+
+setup:
+	@scripts/setup.sh
+
+build: setup
+	@cmake --preset release >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS)
+
+demo: setup
+	@cmake --preset release >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS) --target stc stvm
+	@scripts/demo.sh $(BUILD)/bin
+
+test: build
+	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+minimal: setup
+	@cmake --preset minimal >/dev/null
+	@cmake --build build/minimal -j $(JOBS)
+	@ctest --test-dir build/minimal --output-on-failure -j $(JOBS)
+
+asan ubsan tsan: setup
+	@cmake --preset $@ >/dev/null
+	@cmake --build build/$@ -j $(JOBS)
+	@ctest --test-dir build/$@ --output-on-failure -j $(JOBS)
+
+coverage: setup
+	@cmake --preset coverage >/dev/null
+	@cmake --build build/coverage -j $(JOBS)
+	@ctest --test-dir build/coverage --output-on-failure -j $(JOBS)
+
+bench: setup
+	@cmake --preset release >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS) --target bench
+
+fuzz: setup
+	@cmake --preset asan >/dev/null
+	@cmake --build build/asan -j $(JOBS)
+	@ctest --test-dir build/asan -C Long -L fuzz --output-on-failure
+
+# Rewrites what is generated from the tables (docs/*.md) and the golden files.
+docs: build
+	@scripts/generate_docs.sh $(BUILD)/bin
+
+format: setup
+	@scripts/setup.sh clang-format-16
+	@git ls-files '*.cc' '*.h' | xargs clang-format-16 -i
+
+clean:
+	@rm -rf build

@@ -1,0 +1,32 @@
+#!/bin/sh
+# Installs what building and testing need and what this machine lacks. Debian 12
+# package names. Says what it installs; does nothing when all is there.
+set -eu
+
+missing=""
+need() {  # need COMMAND PACKAGE
+  command -v "$1" >/dev/null 2>&1 || missing="$missing $2"
+}
+need g++ g++
+need cmake cmake
+need ninja ninja-build
+need ccache ccache
+[ -e /usr/include/gtest/gtest.h ] || missing="$missing libgtest-dev"
+for package in "$@"; do  # extra packages of one make target
+  dpkg -s "$package" >/dev/null 2>&1 || missing="$missing $package"
+done
+[ -z "$missing" ] && exit 0
+
+echo "setup: installing$missing (apt-get)"
+sudo=""
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null 2>&1 || {
+    echo "setup: not root and no sudo; as root run: apt-get install$missing" >&2
+    exit 1
+  }
+  sudo=sudo
+fi
+export DEBIAN_FRONTEND=noninteractive
+$sudo apt-get update -qq
+# shellcheck disable=SC2086
+$sudo apt-get install -y -qq --no-install-recommends $missing >/dev/null

@@ -1,0 +1,100 @@
+#include "tools/common/files.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace tools {
+namespace {
+
+base::Error file_error(base::Refusal refusal, const std::string& path, int code) {
+  return {refusal, path + ": " + std::strerror(code)};
+}
+
+// Closes a descriptor on every way out.
+struct Descriptor {
+  int fd;
+  ~Descriptor() {
+    if (fd >= 0) ::close(fd);
+  }
+};
+
+base::Status write_all(int fd, const std::string& path, base::ByteSpan bytes) {
+  size_t done = 0;
+  while (done < bytes.size()) {
+    ssize_t n = ::write(fd, bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return file_error(base::Refusal::kFileUnwritable, path, errno);
+    done += static_cast<size_t>(n);
+  }
+  return base::Ok{};
+}
+
+bool replaceable(const std::string& path) {
+  struct stat info;
+  return ::lstat(path.c_str(), &info) != 0 || S_ISREG(info.st_mode);
+}
+
+base::Status write_through(const std::string& path, base::ByteSpan bytes) {
+  Descriptor file{::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
+  if (file.fd < 0) return file_error(base::Refusal::kFileUnwritable, path, errno);
+  return write_all(file.fd, path, bytes);
+}
+
+}  // namespace
+
+base::Result<base::Bytes> read_bytes(const std::string& path, uint64_t limit) {
+  Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (file.fd < 0) {
+    auto refusal =
+        errno == ENOENT ? base::Refusal::kFileNotFound : base::Refusal::kFileUnreadable;
+    return file_error(refusal, path, errno);
+  }
+  base::Bytes bytes;
+  uint8_t buffer[65536];
+  for (;;) {
+    ssize_t n = ::read(file.fd, buffer, sizeof buffer);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return file_error(base::Refusal::kFileUnreadable, path, errno);
+    if (n == 0) return bytes;
+    bytes.insert(bytes.end(), buffer, buffer + n);
+    if (bytes.size() > limit) {
+      return base::Error{base::Refusal::kFileUnreadable,
+                         path + ": larger than " + std::to_string(limit) + " bytes"};
+    }
+  }
+}
+
+base::Result<std::string> read_text(const std::string& path, uint64_t limit) {
+  base::Result<base::Bytes> bytes = read_bytes(path, limit);
+  if (!bytes.ok()) return bytes.error();
+  return std::string(bytes->begin(), bytes->end());
+}
+
+base::Status write_file(const std::string& path, base::ByteSpan bytes) {
+  if (!replaceable(path)) return write_through(path, bytes);
+  std::string temporary = path + ".tmp" + std::to_string(::getpid());
+  base::Status status = base::Ok{};
+  {
+    Descriptor file{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
+    if (file.fd < 0) return file_error(base::Refusal::kFileUnwritable, path, errno);
+    status = write_all(file.fd, path, bytes);
+  }
+  if (status.ok() && ::rename(temporary.c_str(), path.c_str()) != 0) {
+    status = file_error(base::Refusal::kFileUnwritable, path, errno);
+  }
+  if (!status.ok()) ::unlink(temporary.c_str());
+  return status;
+}
+
+std::string own_folder() {
+  std::error_code error;
+  std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? "." : self.parent_path().string();
+}
+
+}  // namespace tools

@@ -1,0 +1,20 @@
+// Whole files for the tools. Writing is all or nothing: the old content stays until the new one is complete.
+#pragma once
+
+#include <string>
+
+#include "base/bytes.h"
+#include "base/result.h"
+
+namespace tools {
+
+// Errors: kFileNotFound, kFileUnreadable (also for folders, devices and files over `limit`).
+base::Result<base::Bytes> read_bytes(const std::string& path, uint64_t limit = 1u << 30);
+base::Result<std::string> read_text(const std::string& path, uint64_t limit = 1u << 30);
+// Errors: kFileUnwritable. Symbolic links and devices such as /dev/stdout are written through.
+base::Status write_file(const std::string& path, base::ByteSpan bytes);
+
+// Folder of the running program, for `stc` beside `stvm`.
+std::string own_folder();
+
+}  // namespace tools

@@ -1,0 +1,166 @@
+#include "tools/stc/project.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/limits.h"
+#include "tools/common/files.h"
+#include "tools/stc/toml.h"
+
+namespace stc {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_source(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".st" || extension == ".iecst" || extension == ".exp";
+}
+
+base::Result<std::vector<std::string>> sources_below(const std::string& folder) {
+  std::vector<std::string> found;
+  std::error_code error;
+  fs::recursive_directory_iterator walk(folder, error);
+  for (; !error && walk != fs::recursive_directory_iterator(); walk.increment(error)) {
+    if (walk->is_regular_file() && is_source(walk->path())) found.push_back(walk->path().string());
+  }
+  if (error) {
+    return base::Error{base::Refusal::kFileUnreadable, folder + ": " + error.message()};
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+// One known key of stc.toml.
+struct Key {
+  const char* name;
+  uint32_t linker::Slack::*slack;
+};
+constexpr Key kSlackKeys[] = {
+    {"slack.globals_percent", &linker::Slack::globals_percent},
+    {"slack.globals_bytes", &linker::Slack::globals_bytes},
+    {"slack.instance_percent", &linker::Slack::instance_percent},
+    {"slack.instance_bytes", &linker::Slack::instance_bytes},
+    {"slack.program_percent", &linker::Slack::program_percent},
+    {"slack.program_bytes", &linker::Slack::program_bytes},
+    {"slack.free_bytes", &linker::Slack::free_bytes},
+    {"slack.free_percent", &linker::Slack::free_percent},
+};
+
+template <class T>
+base::Result<T> typed(const std::string& file, const std::string& key, const TomlValue& value,
+                      const char* what) {
+  if (const T* data = std::get_if<T>(&value.data)) return *data;
+  return toml_error(file, value.line, value.column, "`" + key + "` must be " + what);
+}
+
+base::Status apply_slack(const std::string& file, const std::string& key, const TomlValue& value,
+                         linker::Slack& slack) {
+  for (const Key& known : kSlackKeys) {
+    if (key != known.name) continue;
+    base::Result<int64_t> number = typed<int64_t>(file, key, value, "a whole number");
+    if (!number.ok()) return number.error();
+    if (*number < 0 || *number > base::kMaxTypeBytes) {
+      return toml_error(file, value.line, value.column,
+                        "`" + key + "` must be between 0 and " + std::to_string(base::kMaxTypeBytes));
+    }
+    slack.*known.slack = static_cast<uint32_t>(*number);
+    return base::Ok{};
+  }
+  return toml_error(file, value.line, value.column,
+                    "unknown key `" + key + "`; known are name, dialect, sources and the table [slack]");
+}
+
+base::Result<frontend::Dialect> dialect_named(const std::string& file, const TomlValue& value,
+                                              const std::string& name) {
+  if (name == "iec") return frontend::Dialect::kIec;
+  if (name == "codesys") return frontend::Dialect::kCodesys;
+  if (name == "twincat") return frontend::Dialect::kTwincat;
+  return toml_error(file, value.line, value.column,
+                    "unknown dialect `" + name + "`; known are iec, codesys, twincat");
+}
+
+// Applies stc.toml of `folder`; `sources` is replaced when the file lists its own.
+base::Status apply_project_file(const std::string& folder, Project& project,
+                                std::vector<std::string>& sources) {
+  std::string file = (fs::path(folder) / "stc.toml").string();
+  if (!fs::exists(file)) return base::Ok{};
+  base::Result<std::string> text = tools::read_text(file);
+  if (!text.ok()) return text.error();
+  base::Result<TomlTable> table = parse_toml(file, *text);
+  if (!table.ok()) return table.error();
+  for (const auto& [key, value] : *table) {
+    if (key == "name") {
+      base::Result<std::string> name = typed<std::string>(file, key, value, "a text");
+      if (!name.ok()) return name.error();
+      project.name = *name;
+    } else if (key == "dialect") {
+      base::Result<std::string> name = typed<std::string>(file, key, value, "a text");
+      if (!name.ok()) return name.error();
+      base::Result<frontend::Dialect> dialect = dialect_named(file, value, *name);
+      if (!dialect.ok()) return dialect.error();
+      project.compile.dialect = *dialect;
+    } else if (key == "sources") {
+      auto list = typed<std::vector<std::string>>(file, key, value, "a list of texts");
+      if (!list.ok()) return list.error();
+      sources.clear();
+      for (const std::string& entry : *list) sources.push_back((fs::path(folder) / entry).string());
+    } else if (base::Status status = apply_slack(file, key, value, project.slack); !status.ok()) {
+      return status;
+    }
+  }
+  return base::Ok{};
+}
+
+std::string project_name(const std::string& path) {
+  fs::path normal = fs::path(path).lexically_normal();
+  if (normal.filename().empty()) normal = normal.parent_path();
+  std::string name = normal.stem().string();
+  return name.empty() || name == "." ? "project" : name;
+}
+
+base::Result<std::vector<std::string>> expand(const std::string& path, Project& project) {
+  if (!fs::exists(path)) {
+    return base::Error{base::Refusal::kFileNotFound, path + ": no such file or directory"};
+  }
+  if (!fs::is_directory(path)) return std::vector<std::string>{path};
+  base::Result<std::vector<std::string>> found = sources_below(path);
+  if (!found.ok()) return found;
+  base::Status status = apply_project_file(path, project, *found);
+  if (!status.ok()) return status.error();
+  if (found->empty()) {
+    return base::Error{base::Refusal::kFileNotFound,
+                       path + ": no sources (*.st) in this folder or below it"};
+  }
+  return found;
+}
+
+}  // namespace
+
+base::Result<Project> load_project(const std::vector<std::string>& paths,
+                                   std::optional<frontend::Dialect> dialect) {
+  Project project;
+  project.name = project_name(paths.front());
+  uint64_t bytes = 0;
+  for (const std::string& path : paths) {
+    base::Result<std::vector<std::string>> files = expand(path, project);
+    if (!files.ok()) return files.error();
+    for (const std::string& file : *files) {
+      base::Result<std::string> text = tools::read_text(file);
+      if (!text.ok()) return text.error();
+      bytes += text->size();
+      if (bytes > base::kMaxSourceBytes) {
+        return base::Error{base::Refusal::kTooMany,
+                           file + ": the sources are larger than " +
+                               std::to_string(base::kMaxSourceBytes) + " bytes in all"};
+      }
+      project.sources.add(file, std::move(*text));
+    }
+  }
+  if (dialect) project.compile.dialect = *dialect;
+  project.compile.name = project.name;
+  return project;
+}
+
+}  // namespace stc

@@ -1,0 +1,29 @@
+// A project: a folder or a list of files, with an optional stc.toml at the
+// folder's root (docs/PROJECT.md). Everything works without it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "base/source.h"
+#include "frontend/compile.h"
+#include "linker/layout.h"
+
+namespace stc {
+
+struct Project {
+  std::string name;
+  base::SourceMap sources;
+  frontend::CompileOptions compile;
+  linker::Slack slack;
+};
+
+// Reads every source: files as given, folders recursively (*.st, sorted by path).
+// File names in messages are the paths as typed. Errors: kFileNotFound,
+// kFileUnreadable, kBadProject, kTooMany (kMaxSourceBytes).
+base::Result<Project> load_project(const std::vector<std::string>& paths,
+                                   std::optional<frontend::Dialect> dialect);
+
+}  // namespace stc

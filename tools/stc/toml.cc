@@ -1,0 +1,193 @@
+#include "tools/stc/toml.h"
+
+#include <charconv>
+
+namespace stc {
+namespace {
+
+bool is_key_char(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         c == '-';
+}
+
+class Parser {
+ public:
+  Parser(std::string_view file, std::string_view text) : file_(file), text_(text) {}
+
+  base::Result<TomlTable> run() {
+    while (at_ < text_.size() && !failed_) line();
+    if (failed_) return error_;
+    return std::move(table_);
+  }
+
+ private:
+  char peek() const { return at_ < text_.size() ? text_[at_] : '\n'; }
+  uint32_t column() const { return static_cast<uint32_t>(at_ - line_start_) + 1; }
+  void fail(std::string what) {
+    if (!failed_) error_ = toml_error(file_, line_, column(), std::move(what));
+    failed_ = true;
+  }
+  void blanks() {
+    while (peek() == ' ' || peek() == '\t') ++at_;
+  }
+  // Blanks, comments and line ends, as allowed between the elements of an array.
+  void white_space() {
+    for (;;) {
+      blanks();
+      if (at_ >= text_.size()) return;
+      if (peek() == '#') {
+        while (peek() != '\n') ++at_;
+      }
+      if (peek() == '\r') ++at_;
+      if (at_ >= text_.size() || peek() != '\n') return;
+      next_line();
+    }
+  }
+  void next_line() {
+    ++at_;
+    ++line_;
+    line_start_ = at_;
+  }
+  void end_of_line() {
+    blanks();
+    if (peek() == '#') {
+      while (peek() != '\n') ++at_;
+    }
+    if (peek() == '\r') ++at_;
+    if (peek() != '\n') return fail("expected the end of the line");
+    next_line();
+  }
+
+  void line() {
+    blanks();
+    if (peek() == '[') {
+      ++at_;
+      prefix_ = key() + ".";
+      if (!failed_ && peek() != ']') fail("expected `]` after the table's name");
+      ++at_;
+    } else if (is_key_char(peek())) {
+      entry();
+    }
+    if (!failed_) end_of_line();
+  }
+
+  std::string key() {
+    size_t begin = at_;
+    while (is_key_char(peek())) ++at_;
+    if (at_ == begin) fail("expected a key");
+    return std::string(text_.substr(begin, at_ - begin));
+  }
+
+  void entry() {
+    TomlValue value;
+    value.line = line_;
+    value.column = column();
+    std::string name = prefix_ + key();
+    blanks();
+    if (peek() != '=') return fail("expected `=` after `" + name + "`");
+    ++at_;
+    blanks();
+    parse_value(value);
+    if (failed_) return;
+    if (!table_.emplace(name, std::move(value)).second) fail("`" + name + "` is given twice");
+  }
+
+  void parse_value(TomlValue& value) {
+    char c = peek();
+    if (c == '"') {
+      value.data = string();
+    } else if (c == '[') {
+      value.data = array();
+    } else if (text_.substr(at_, 4) == "true") {
+      at_ += 4;
+      value.data = true;
+    } else if (text_.substr(at_, 5) == "false") {
+      at_ += 5;
+      value.data = false;
+    } else if ((c >= '0' && c <= '9') || c == '-') {
+      value.data = integer();
+    } else {
+      fail("expected a value: \"text\", a number, true, false or [\"a\", \"b\"]");
+    }
+  }
+
+  std::string string() {
+    std::string out;
+    for (++at_; peek() != '"'; ++at_) {
+      if (peek() == '\n') {
+        fail("text without closing quote");
+        return out;
+      }
+      if (peek() != '\\') {
+        out += peek();
+        continue;
+      }
+      ++at_;
+      switch (peek()) {
+        case '"': out += '"'; break;
+        case '\\': out += '\\'; break;
+        case 'n': out += '\n'; break;
+        case 't': out += '\t'; break;
+        default: fail("unknown escape; known are \\\" \\\\ \\n \\t"); return out;
+      }
+    }
+    ++at_;
+    return out;
+  }
+
+  int64_t integer() {
+    std::string digits;
+    for (; is_key_char(peek()); ++at_) {
+      if (peek() != '_') digits += peek();
+    }
+    int64_t value = 0;
+    auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (code != std::errc() || end != digits.data() + digits.size()) fail("not a whole number");
+    return value;
+  }
+
+  std::vector<std::string> array() {
+    std::vector<std::string> out;
+    ++at_;
+    white_space();
+    while (peek() != ']' && !failed_) {
+      if (peek() != '"') {
+        fail("expected \"text\" or `]`");
+        return out;
+      }
+      out.push_back(string());
+      white_space();
+      if (peek() == ',') {
+        ++at_;
+        white_space();
+      } else if (peek() != ']') {
+        fail("expected `,` or `]`");
+      }
+    }
+    ++at_;
+    return out;
+  }
+
+  std::string_view file_;
+  std::string_view text_;
+  size_t at_ = 0;
+  size_t line_start_ = 0;
+  uint32_t line_ = 1;
+  std::string prefix_;
+  TomlTable table_;
+  bool failed_ = false;
+  base::Error error_{base::Refusal::kBadProject, {}};
+};
+
+}  // namespace
+
+base::Error toml_error(std::string_view file, uint32_t line, uint32_t column, std::string what) {
+  return {base::Refusal::kBadProject, std::string(file) + ":" + std::to_string(line) + ":" +
+                                          std::to_string(column) + ": " + std::move(what)};
+}
+
+base::Result<TomlTable> parse_toml(std::string_view file, std::string_view text) {
+  return Parser(file, text).run();
+}
+
+}  // namespace stc

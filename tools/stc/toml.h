@@ -1,0 +1,30 @@
+// The subset of TOML that stc.toml uses: comments, [tables], `key = value` with
+// strings ("..." with \" \\ \n \t), decimal integers with `_`, true/false, and
+// arrays of strings. Anything else is an error with line and column (kBadProject).
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/result.h"
+
+namespace stc {
+
+struct TomlValue {
+  std::variant<std::string, int64_t, bool, std::vector<std::string>> data;
+  uint32_t line = 0;
+  uint32_t column = 0;
+};
+
+// By full key: "name", "slack.globals_percent". A key given twice is an error.
+using TomlTable = std::map<std::string, TomlValue>;
+
+// `file` is named in errors: "stc.toml:3:7: ...".
+base::Result<TomlTable> parse_toml(std::string_view file, std::string_view text);
+base::Error toml_error(std::string_view file, uint32_t line, uint32_t column, std::string what);
+
+}  // namespace stc
