@@ -1,0 +1,94 @@
+#include "tests/golden/runner/compile.h"
+
+#include "frontend/compile.h"
+#include "frontend/lex/lexer.h"
+#include "frontend/parse/parse.h"
+#include "ir/lower/lower.h"
+#include "ir/program/verify.h"
+#include "linker/link.h"
+
+namespace golden {
+namespace {
+
+const char* severity_text(base::Severity severity) {
+  switch (severity) {
+    case base::Severity::kError: return "error";
+    case base::Severity::kWarning: return "warning";
+    case base::Severity::kNote: return "note";
+  }
+  return "?";
+}
+
+void collect(const base::SourceMap& sources, base::Diagnostics& diagnostics, Outcome& outcome) {
+  diagnostics.sort();
+  outcome.errors = diagnostics.has_errors();
+  for (const base::Diagnostic& message : diagnostics.all()) {
+    const base::DiagnosticRow& row = base::diagnostic_row(message.code);
+    base::SourceLocation at = sources.locate(message.span.begin);
+    outcome.messages.push_back(std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
+                               severity_text(row.severity) + "[" + std::string(row.code) +
+                               "]: " + message.text);
+  }
+}
+
+frontend::CompileOptions options_of(const TestFile& test) {
+  frontend::CompileOptions options;
+  options.name = "golden";
+  std::string dialect = test.option("--dialect", "codesys");
+  if (dialect == "iec") options.dialect = frontend::Dialect::kIec;
+  if (dialect == "twincat") options.dialect = frontend::Dialect::kTwincat;
+  return options;
+}
+
+}  // namespace
+
+base::Result<Program> compile(const TestFile& test, size_t version, Outcome& outcome) {
+  base::SourceMap sources;
+  sources.add(test.name, test.versions[version]);
+  base::Diagnostics diagnostics;
+  std::optional<ir::Program> program = frontend::compile(sources, options_of(test), diagnostics);
+  collect(sources, diagnostics, outcome);
+  if (!program) {
+    std::string all;
+    for (const std::string& message : outcome.messages) all += message + "\n";
+    return base::Error{base::Refusal::kSourceErrors, all};
+  }
+  // The runner checks the IR of every golden file, whatever its mode.
+  base::Status sound = ir::verify(*program);
+  if (!sound.ok()) return sound.error();
+  Program out{std::move(*program), {}};
+  for (uint32_t i = 0; i < out.program.pous.size(); ++i) {
+    base::Result<ir::Object> object = ir::lower(out.program, ir::PouId(i));
+    if (!object.ok()) return object.error();
+    out.objects.push_back(std::move(*object));
+  }
+  return out;
+}
+
+base::Result<ir::VerifiedImage> link(const Program& program, const ir::Image* base_image,
+                                     bool move_all) {
+  linker::Options options;
+  options.base = base_image;
+  options.move_all = move_all;
+  base::Result<ir::Image> image = linker::link(program.program, program.objects, options);
+  if (!image.ok()) return image.error();
+  return ir::verify(ir::encode(*image));
+}
+
+std::string tokens_of(const TestFile& test) {
+  base::SourceMap sources;
+  sources.add(test.name, test.versions[0]);
+  return frontend::print_tokens(sources, 0);
+}
+
+std::string tree_of(const TestFile& test, Outcome& outcome) {
+  base::SourceMap sources;
+  sources.add(test.name, test.versions[0]);
+  base::Diagnostics diagnostics;
+  frontend::Tree tree;
+  frontend::parse(sources, 0, tree, diagnostics);
+  collect(sources, diagnostics, outcome);
+  return frontend::print(tree);
+}
+
+}  // namespace golden

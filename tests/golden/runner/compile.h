@@ -1,0 +1,35 @@
+// Compiling one version of a golden file, in process.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/result.h"
+#include "base/source.h"
+#include "ir/bytecode/image.h"
+#include "ir/bytecode/object.h"
+#include "ir/bytecode/verify.h"
+#include "ir/program/ir.h"
+#include "tests/golden/runner/test_file.h"
+
+namespace golden {
+
+struct Program {
+  ir::Program program;
+  std::vector<ir::Object> objects;
+};
+
+// Diagnostics as "line:column: error[E3001]: text", sorted.
+struct Outcome {
+  std::vector<std::string> messages;
+  bool errors = false;
+};
+
+base::Result<Program> compile(const TestFile& test, size_t version, Outcome& outcome);
+base::Result<ir::VerifiedImage> link(const Program& program, const ir::Image* base, bool move_all);
+// Tokens or tree of version 1, as text.
+std::string tokens_of(const TestFile& test);
+std::string tree_of(const TestFile& test, Outcome& outcome);
+
+}  // namespace golden

@@ -1,0 +1,44 @@
+// What runs a program under test. Every tier and every hard mode must give the
+// same states and traps (style.md, "Hard modes").
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "tests/golden/runner/compile.h"
+
+namespace golden {
+
+enum class Tier : uint8_t {
+  kEvaluator,
+  kInterpreter,
+  kFuelOne,      // suspended at every safe point
+  kIdentity,     // an identity change after every scan
+  kMoveAll,      // every instance moved after every scan
+};
+inline constexpr Tier kTiers[] = {Tier::kEvaluator, Tier::kInterpreter, Tier::kFuelOne,
+                                  Tier::kIdentity, Tier::kMoveAll};
+const char* tier_name(Tier tier);
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  // One control cycle. A trap is returned as text, "" without one.
+  virtual base::Result<std::string> scan() = 0;
+  // "path=value" lines of every variable.
+  virtual std::string state() const = 0;
+  virtual base::Status set(const std::string& path, const std::string& value) = 0;
+  virtual base::Status force(const std::string& path, const std::string& value);
+  virtual base::Status unforce(const std::string& path);
+  // Online change; the lines of its report.
+  virtual base::Result<std::vector<std::string>> change(const Program& next, bool allow_loss);
+  virtual base::Status undo();
+  virtual base::Status accept();
+};
+
+base::Result<std::unique_ptr<Engine>> make_engine(Tier tier, const Program& program);
+
+}  // namespace golden

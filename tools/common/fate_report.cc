@@ -1,0 +1,98 @@
+#include "tools/common/fate_report.h"
+
+#include <cstdio>
+
+#include "tools/common/table.h"
+
+namespace tools {
+namespace {
+
+using online_change::Fate;
+using online_change::FateRow;
+
+struct CountColumn {
+  const char* name;
+  uint64_t online_change::FateCounts::*field;
+};
+constexpr CountColumn kCounts[] = {
+    {"kept", &online_change::FateCounts::kept},
+    {"moved", &online_change::FateCounts::moved},
+    {"converted", &online_change::FateCounts::converted},
+    {"initialised", &online_change::FateCounts::initialised},
+    {"dropped", &online_change::FateCounts::dropped},
+};
+
+std::string type_change(const FateRow& row) {
+  if (row.old_type == row.new_type) return row.new_type;
+  if (row.old_type.empty()) return row.new_type;
+  if (row.new_type.empty()) return row.old_type;
+  return row.old_type + " -> " + row.new_type;
+}
+
+std::string value_change(const FateRow& row, const LiveValues& live) {
+  auto found = live.find(row.path);
+  if (found == live.end()) return row.may_lose ? "may lose" : "";
+  const LiveValue& value = found->second;
+  std::string text = value.now;
+  if (!value.after.empty() && value.after != value.now) text += " -> " + value.after;
+  if (!value.loss.empty()) text += " LOSS: " + value.loss;
+  return text;
+}
+
+}  // namespace
+
+std::string duration(int64_t ns) {
+  static constexpr struct {
+    int64_t unit;
+    const char* name;
+  } kUnits[] = {{1'000'000'000, "s"}, {1'000'000, "ms"}, {1'000, "us"}};
+  char text[32];
+  for (auto [unit, name] : kUnits) {
+    if (ns < unit) continue;
+    std::snprintf(text, sizeof text, "%.3g %s", static_cast<double>(ns) / static_cast<double>(unit),
+                  name);
+    return text;
+  }
+  std::snprintf(text, sizeof text, "%lld ns", static_cast<long long>(ns));
+  return text;
+}
+
+std::string fate_report(const online_change::Plan& plan, const LiveValues& live) {
+  std::string out;
+  Table counts({"fate", "> variables"});
+  for (auto [name, field] : kCounts) counts.row({name, std::to_string(plan.counts.*field)});
+  out += counts.text();
+  Table rows({"variable", "fate", "> n", "type", "value", "reason"});
+  for (const FateRow& row : plan.fates) {
+    if (row.fate == Fate::kKept && row.reason.empty()) continue;
+    rows.row({row.path, online_change::fate_name(row.fate), std::to_string(row.count),
+              type_change(row), value_change(row, live), row.reason});
+  }
+  if (!rows.empty()) out += "\n" + rows.text();
+  out += "\npredicted pause " + duration(plan.predicted_pause_ns) + " (" +
+         std::to_string(plan.boundary_bytes) + " bytes written at the boundary)\n";
+  return out;
+}
+
+void fate_report(const online_change::Plan& plan, const LiveValues& live, JsonWriter& json) {
+  json.key("counts").begin_object();
+  for (auto [name, field] : kCounts) json.field(name, plan.counts.*field);
+  json.end_object();
+  json.field("predicted_pause_ns", plan.predicted_pause_ns);
+  json.field("boundary_bytes", plan.boundary_bytes);
+  json.key("fates").begin_array();
+  for (const FateRow& row : plan.fates) {
+    json.begin_object();
+    json.field("variable", row.path).field("fate", online_change::fate_name(row.fate));
+    json.field("count", row.count).field("old_type", row.old_type).field("new_type", row.new_type);
+    json.field("may_lose", row.may_lose).field("reason", row.reason);
+    if (auto found = live.find(row.path); found != live.end()) {
+      json.field("live", found->second.now).field("after", found->second.after);
+      json.field("loss", found->second.loss);
+    }
+    json.end_object();
+  }
+  json.end_array();
+}
+
+}  // namespace tools

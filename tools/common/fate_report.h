@@ -1,0 +1,28 @@
+// The fate report (X1) as people and scripts read it; the same for `stc diff` and `stvm change`.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "online_change/plan/plan.h"
+#include "tools/common/json.h"
+
+namespace tools {
+
+// What a controller adds: the live value of a variable, and what becomes of it.
+struct LiveValue {
+  std::string now;
+  std::string after;
+  std::string loss;  // "saturates"; empty when nothing is lost
+};
+using LiveValues = std::map<std::string, LiveValue>;  // by path
+
+// Counts, then one row for each group of variables that is not kept.
+std::string fate_report(const online_change::Plan& plan, const LiveValues& live);
+// "fates", "counts", "predicted_pause_ns" into an open object.
+void fate_report(const online_change::Plan& plan, const LiveValues& live, JsonWriter& json);
+
+// "12.5 us", "3 ms": three digits at most.
+std::string duration(int64_t ns);
+
+}  // namespace tools

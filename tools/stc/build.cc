@@ -1,0 +1,60 @@
+#include "tools/stc/build.h"
+
+#include "frontend/compile.h"
+#include "ir/lower/lower.h"
+#include "ir/program/verify.h"
+#include "linker/link.h"
+#include "tools/common/files.h"
+
+namespace stc {
+
+base::Result<Compiled> compile(const Project& project, base::Diagnostics& diagnostics) {
+  std::optional<ir::Program> program =
+      frontend::compile(project.sources, project.compile, diagnostics);
+  if (!program) {
+    return base::Error{base::Refusal::kSourceErrors,
+                       std::to_string(diagnostics.error_count()) + " error(s)"};
+  }
+#ifndef NDEBUG
+  base::Status sound = ir::verify(*program);
+  if (!sound.ok()) return sound.error();
+#endif
+  Compiled out{std::move(*program), {}};
+  out.objects.reserve(out.program.pous.size());
+  for (uint32_t i = 0; i < out.program.pous.size(); ++i) {
+    base::Result<ir::Object> object = ir::lower(out.program, ir::PouId(i));
+    if (!object.ok()) return object.error();
+    out.objects.push_back(std::move(*object));
+  }
+  return out;
+}
+
+base::Result<Version> build(const Project& project, const BuildOptions& options,
+                            base::Diagnostics& diagnostics) {
+  base::Result<Compiled> compiled = compile(project, diagnostics);
+  if (!compiled.ok()) return compiled.error();
+  linker::Options link_options{project.slack, options.base, options.move_all};
+  base::Result<ir::Image> image = linker::link(compiled->program, compiled->objects, link_options);
+  if (!image.ok()) return image.error();
+  Version out{std::move(*image), {}};
+  out.bytes = ir::encode(out.image);
+  return out;
+}
+
+base::Result<Version> read_image(const std::string& path) {
+  base::Result<base::Bytes> bytes = tools::read_bytes(path);
+  if (!bytes.ok()) return bytes.error();
+  base::Result<ir::Image> image = ir::decode(*bytes);
+  if (!image.ok()) {
+    return base::Error{image.error().refusal, path + ": " + image.error().text};
+  }
+  return Version{std::move(*image), std::move(*bytes)};
+}
+
+bool is_image(const std::string& path) {
+  base::Result<base::Bytes> bytes = tools::read_bytes(path);
+  // Sources are text; an image begins with a magic that holds a byte no text has.
+  return bytes.ok() && bytes->size() >= 8 && ir::has_image_magic(*bytes);
+}
+
+}  // namespace stc

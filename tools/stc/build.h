@@ -1,0 +1,42 @@
+// The compiler as a straight line: sources -> program -> objects -> image. Every
+// command of stc that needs a program comes through here.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/result.h"
+#include "ir/bytecode/image.h"
+#include "ir/bytecode/object.h"
+#include "ir/program/ir.h"
+#include "tools/stc/project.h"
+
+namespace stc {
+
+struct Compiled {
+  ir::Program program;
+  std::vector<ir::Object> objects;  // parallel to program.pous
+};
+
+// kSourceErrors when `diagnostics` got errors; they are the message.
+base::Result<Compiled> compile(const Project& project, base::Diagnostics& diagnostics);
+
+struct Version {
+  ir::Image image;
+  base::Bytes bytes;  // encoded
+};
+
+struct BuildOptions {
+  const ir::Image* base = nullptr;
+  bool move_all = false;
+};
+base::Result<Version> build(const Project& project, const BuildOptions& options,
+                            base::Diagnostics& diagnostics);
+
+base::Result<Version> read_image(const std::string& path);
+// Is this file an image (by its magic)?
+bool is_image(const std::string& path);
+
+}  // namespace stc

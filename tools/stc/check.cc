@@ -1,0 +1,30 @@
+// stc check: diagnostics only.
+#include "ir/lower/lower.h"
+#include "linker/link.h"
+#include "tools/stc/commands.h"
+#include "tools/stc/session.h"
+
+namespace stc {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {STC_SOURCE_OPTIONS};
+constexpr tools::Command kCommand{"check", "PATHS...", "Reports errors and warnings.", kOptions, 1};
+
+int run(const tools::Options& options) {
+  auto format = diagnostic_format(options);
+  if (!format.ok()) return tools::refuse("stc", format.error());
+  base::Result<Project> project = open_project(options, options.arguments());
+  if (!project.ok()) return tools::refuse("stc", project.error());
+  base::Diagnostics diagnostics;
+  // Linking too: recursion and memory limits are findings of a check.
+  base::Result<Version> version = build(*project, {}, diagnostics);
+  report(*project, diagnostics, *format);
+  if (!version.ok()) return tools::refuse("stc", version.error());
+  return tools::kOk;
+}
+
+}  // namespace
+
+const Entry kCheck{&kCommand, run};
+
+}  // namespace stc

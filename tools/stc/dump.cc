@@ -1,0 +1,100 @@
+// stc dump: what each phase made, as text.
+#include <cstdio>
+
+#include "frontend/lex/lexer.h"
+#include "frontend/parse/parse.h"
+#include "ir/bytecode/symbols.h"
+#include "ir/program/text.h"
+#include "tools/stc/commands.h"
+#include "tools/stc/session.h"
+#include "tools/stc/image_text.h"
+
+namespace stc {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {
+    STC_SOURCE_OPTIONS,
+    {"--tokens", nullptr, "tokens of the sources"},
+    {"--tree", nullptr, "syntax tree"},
+    {"--ir", nullptr, "intermediate representation (default for sources)"},
+    {"--object", nullptr, "relocatable objects"},
+    {"--code", nullptr, "linked code"},
+    {"--image", nullptr, "tables of the image (default for images)"},
+    {"--symbols", nullptr, "every variable with type and offset"},
+};
+constexpr tools::Command kCommand{"dump", "PATHS...", "Prints what a phase of the compiler made.",
+                                  kOptions, 1};
+
+std::string tokens_text(const Project& project) {
+  std::string out;
+  for (uint32_t file = 0; file < project.sources.file_count(); ++file) {
+    out += frontend::print_tokens(project.sources, file);
+  }
+  return out;
+}
+
+std::string tree_text(const Project& project, base::Diagnostics& diagnostics) {
+  frontend::Tree tree;
+  for (uint32_t file = 0; file < project.sources.file_count(); ++file) {
+    frontend::parse(project.sources, file, tree, diagnostics);
+  }
+  return frontend::print(tree);
+}
+
+// Dumps that need sources: tokens, tree, ir, object.
+base::Result<std::string> dump_sources(const tools::Options& options) {
+  base::Result<Project> project = open_project(options, options.arguments());
+  if (!project.ok()) return project.error();
+  if (options.has("--tokens")) return tokens_text(*project);
+  base::Diagnostics diagnostics;
+  if (options.has("--tree")) {
+    std::string out = tree_text(*project, diagnostics);
+    report(*project, diagnostics, base::DiagnosticFormat::kText);
+    return out;
+  }
+  base::Result<Compiled> compiled = compile(*project, diagnostics);
+  report(*project, diagnostics, base::DiagnosticFormat::kText);
+  if (!compiled.ok()) return compiled.error();
+  if (!options.has("--object")) return ir::print(compiled->program);
+  std::string out;
+  for (const ir::Object& object : compiled->objects) {
+    out += ir::disassemble(object, compiled->program) + "\n";
+  }
+  return out;
+}
+
+base::Result<std::string> dump_image(const tools::Options& options) {
+  base::Result<Version> version = open_version(options, options.arguments(), {});
+  if (!version.ok()) return version.error();
+  if (options.has("--code")) {
+    std::string out;
+    for (const ir::LinkedPou& pou : version->image.pous) {
+      if (pou.unit_count != 0) out += ir::disassemble(version->image, pou) + "\n";
+    }
+    return out;
+  }
+  if (options.has("--symbols")) return symbols_text(version->image);
+  return image_text(version->image, ir::digest(version->bytes));
+}
+
+int run(const tools::Options& options) {
+  bool image_given = options.arguments().size() == 1 && is_image(options.arguments()[0]);
+  bool wants_source_phase = options.has("--tokens") || options.has("--tree") ||
+                            options.has("--ir") || options.has("--object");
+  if (image_given && wants_source_phase) {
+    return tools::refuse("stc", {base::Refusal::kUsage,
+                                 "dump: an image has no tokens, tree, ir or objects any more"});
+  }
+  bool wants_image =
+      image_given || options.has("--code") || options.has("--image") || options.has("--symbols");
+  base::Result<std::string> out = wants_image ? dump_image(options) : dump_sources(options);
+  if (!out.ok()) return tools::refuse("stc", out.error());
+  std::fputs(out->c_str(), stdout);
+  return tools::kOk;
+}
+
+}  // namespace
+
+const Entry kDump{&kCommand, run};
+
+}  // namespace stc

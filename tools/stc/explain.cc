@@ -1,0 +1,129 @@
+// stc explain: the page of a code, or a whole table.
+#include <cstdio>
+#include <cstring>
+
+#include "base/diagnostics.h"
+#include "base/limits.h"
+#include "base/result.h"
+#include "ir/bytecode/code.h"
+#include "ir/program/ir.h"
+#include "tools/common/table.h"
+#include "tools/stc/commands.h"
+#include "tools/stc/session.h"
+
+namespace stc {
+namespace {
+
+constexpr tools::Command kCommand{
+    "explain", "[CODE|TRAP|limits|opcodes|refusals|diagnostics|traps]",
+    "Explains a code such as E3001 or R0303, a trap, or prints a table.", {}, 0, 1};
+
+std::string limits_page() {
+  tools::Table table({"> limit", "what", "name"});
+#define LIMIT(id, value, what) table.row({std::to_string(static_cast<uint64_t>(value)), what, #id});
+#include "base/limits.def"
+#undef LIMIT
+  return table.text();
+}
+
+std::string opcodes_page() {
+  tools::Table table({"> n", "opcode", "meaning"});
+  for (uint32_t i = 0; i < ir::kOpcodeCount; ++i) {
+    const ir::OpcodeRow& row = ir::opcode_row(static_cast<ir::Opcode>(i));
+    table.row({std::to_string(i), std::string(row.name), std::string(row.meaning)});
+  }
+  return table.text();
+}
+
+std::string refusals_page() {
+  tools::Table table({"code", "title"});
+#define REFUSAL(id, code, title, help) table.row({code, title});
+#include "base/refusals.def"
+#undef REFUSAL
+  return table.text();
+}
+
+std::string traps_page() {
+  tools::Table table({"trap", "title"});
+#define TRAP(id, text, title, help) table.row({text, title});
+#include "ir/program/traps.def"
+#undef TRAP
+  return table.text();
+}
+
+const char* severity_name(base::Severity severity) {
+  switch (severity) {
+    case base::Severity::kError: return "error";
+    case base::Severity::kWarning: return "warning";
+    case base::Severity::kNote: return "note";
+  }
+  return "";
+}
+
+std::string diagnostics_page() {
+  tools::Table table({"code", "severity", "title"});
+  for (uint32_t i = 0; i < base::diagnostic_count(); ++i) {
+    const auto& row = base::diagnostic_row(static_cast<base::DiagnosticCode>(i));
+    table.row({std::string(row.code), severity_name(row.severity), std::string(row.title)});
+  }
+  return table.text();
+}
+
+std::string overview_page() {
+  return "stc explain CODE     E.... and W.... of the compiler, R.... of everything else\n"
+         "stc explain TRAP     a run-time trap by name\n"
+         "stc explain TABLE    limits, opcodes, refusals, diagnostics, traps\n";
+}
+
+struct Page {
+  const char* name;
+  std::string (*text)();
+};
+constexpr Page kPages[] = {{"limits", limits_page},
+                           {"opcodes", opcodes_page},
+                           {"refusals", refusals_page},
+                           {"traps", traps_page},
+                           {"diagnostics", diagnostics_page}};
+
+std::optional<std::string> page_of(const std::string& what) {
+  for (const Page& page : kPages) {
+    if (what == page.name) return page.text();
+  }
+  if (auto refusal = base::refusal_from_code(what)) {
+    return what + ": " + base::refusal_title(*refusal) + "\n\n" + base::refusal_help(*refusal) + "\n";
+  }
+  for (uint32_t i = 0; i < base::diagnostic_count(); ++i) {
+    const auto& row = base::diagnostic_row(static_cast<base::DiagnosticCode>(i));
+    if (what == row.code) {
+      return what + ": " + std::string(row.title) + " (" + severity_name(row.severity) + ")\n\n" +
+             std::string(row.help) + "\n";
+    }
+  }
+  for (uint32_t i = 0; i < ir::kTrapCount; ++i) {
+    auto kind = static_cast<ir::TrapKind>(i);
+    if (what == ir::trap_name(kind)) {
+      return what + ": " + ir::trap_title(kind) + "\n\n" + ir::trap_help(kind) + "\n";
+    }
+  }
+  return std::nullopt;
+}
+
+int run(const tools::Options& options) {
+  if (options.arguments().empty()) {
+    std::fputs(overview_page().c_str(), stdout);
+    return tools::kOk;
+  }
+  std::optional<std::string> page = page_of(options.arguments()[0]);
+  if (!page) {
+    return tools::refuse("stc", {base::Refusal::kUsage,
+                                 "explain: nothing is called `" + options.arguments()[0] + "`"});
+  }
+  std::fputs(page->c_str(), stdout);
+  return tools::kOk;
+}
+
+}  // namespace
+
+const Entry kExplain{&kCommand, run};
+
+}  // namespace stc

@@ -1,0 +1,73 @@
+#include "tools/stc/image_text.h"
+
+#include "ir/bytecode/symbols.h"
+#include "tools/common/table.h"
+
+namespace stc {
+namespace {
+
+std::string number(uint64_t value) { return std::to_string(value); }
+
+std::string instances_text(const ir::Image& image) {
+  tools::Table table({"> id", "instance", "type", "> data", "> used", "> area"});
+  for (uint32_t id = 0; id < image.instances.size(); ++id) {
+    const ir::Instance& row = image.instances[id];
+    if (!row.live) {
+      table.row({number(id), "(free)"});
+      continue;
+    }
+    const ir::TypeLayout& layout = image.layouts[row.type];
+    table.row({number(id), id == 0 ? "(globals)" : image.instance_path(id),
+               image.types.text(row.type), number(row.data), number(layout.used),
+               number(layout.area_capacity)});
+  }
+  return table.text();
+}
+
+std::string pous_text(const ir::Image& image) {
+  tools::Table table({"POU", "> units", "> frame", "identity"});
+  for (const ir::LinkedPou& pou : image.pous) {
+    table.row({pou.name, number(pou.unit_count), number(pou.frame_size),
+               base::short_hex(pou.identity)});
+  }
+  return table.text();
+}
+
+std::string tasks_text(const ir::Image& image) {
+  tools::Table table({"task", "> period us", "> priority", "programs"});
+  for (const ir::ImageTask& task : image.tasks) {
+    std::string programs;
+    for (uint32_t id : task.programs) {
+      programs += (programs.empty() ? "" : ", ") + image.instance_path(id);
+    }
+    table.row({task.name, number(static_cast<uint64_t>(task.period_ns / 1000)),
+               number(task.priority), programs});
+  }
+  return table.text();
+}
+
+std::string memory_text(const ir::Image& image) {
+  uint64_t free_bytes = 0;
+  for (const ir::Extent& extent : image.free) free_bytes += extent.size;
+  return "data memory " + number(image.data_capacity) + " bytes, free " + number(free_bytes) +
+         " in " + number(image.free.size()) + " piece(s); constants " + number(image.pool.size()) +
+         "; stack " + number(image.stack_bytes) + " bytes, " + number(image.call_depth) +
+         " calls deep\n";
+}
+
+}  // namespace
+
+std::string image_text(const ir::Image& image, const base::Digest& digest) {
+  return image.name + " " + base::to_hex(digest) + "\n" + memory_text(image) + "\n" +
+         tasks_text(image) + "\n" + instances_text(image) + "\n" + pous_text(image);
+}
+
+std::string symbols_text(const ir::Image& image) {
+  std::string out;
+  ir::for_each_leaf(image, [&](const std::string& path, const ir::Symbol& symbol) {
+    out += path + " : " + image.types.text(symbol.type) + " @ " + number(symbol.data) + "\n";
+  });
+  return out;
+}
+
+}  // namespace stc

@@ -1,0 +1,43 @@
+// stc package: a running image and a new version -> change package.
+#include "online_change/package/package.h"
+#include "tools/common/files.h"
+#include "tools/stc/commands.h"
+#include "tools/stc/session.h"
+
+namespace stc {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {
+    STC_SOURCE_OPTIONS,
+    {"--base", "IMAGE", "the running version (required)"},
+    {"--output|-o", "FILE", "package to write (required)"},
+    {"--move-all", nullptr, "give every instance a new place (a test of changes)"},
+};
+constexpr tools::Command kCommand{"package", "NEW...",
+                                  "Makes the change package from a running version to a new one.",
+                                  kOptions, 1};
+
+base::Status make(const tools::Options& options) {
+  if (!options.has("--base") || !options.has("--output")) {
+    return base::Error{base::Refusal::kUsage, "package: --base and --output are required"};
+  }
+  base::Result<Version> old_version = read_image(options.text("--base"));
+  if (!old_version.ok()) return old_version.error();
+  BuildOptions build_options{&old_version->image, options.has("--move-all")};
+  base::Result<Version> next = open_version(options, options.arguments(), build_options);
+  if (!next.ok()) return next.error();
+  auto package = online_change::make_package(old_version->bytes, next->bytes);
+  if (!package.ok()) return package.error();
+  return tools::write_file(options.text("--output"), online_change::encode(*package));
+}
+
+int run(const tools::Options& options) {
+  base::Status made = make(options);
+  return made.ok() ? tools::kOk : tools::refuse("stc", made.error());
+}
+
+}  // namespace
+
+const Entry kPackage{&kCommand, run};
+
+}  // namespace stc

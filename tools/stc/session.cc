@@ -1,0 +1,64 @@
+#include "tools/stc/session.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace stc {
+namespace {
+
+base::Result<std::optional<frontend::Dialect>> dialect_option(const tools::Options& options) {
+  if (!options.has("--dialect")) return std::optional<frontend::Dialect>();
+  std::string name = options.text("--dialect");
+  if (name == "iec") return std::optional(frontend::Dialect::kIec);
+  if (name == "codesys") return std::optional(frontend::Dialect::kCodesys);
+  if (name == "twincat") return std::optional(frontend::Dialect::kTwincat);
+  return base::Error{base::Refusal::kUsage,
+                     "unknown dialect `" + name + "`; known are iec, codesys, twincat"};
+}
+
+}  // namespace
+
+base::Result<Project> open_project(const tools::Options& options,
+                                   const std::vector<std::string>& paths) {
+  auto dialect = dialect_option(options);
+  if (!dialect.ok()) return dialect.error();
+  base::Result<Project> project = load_project(paths, *dialect);
+  if (project.ok() && options.has("--name")) {
+    project->name = options.text("--name");
+    project->compile.name = project->name;
+  }
+  return project;
+}
+
+base::Result<base::DiagnosticFormat> diagnostic_format(const tools::Options& options) {
+  std::string name = options.text("--format", "text");
+  if (name == "text") return base::DiagnosticFormat::kText;
+  if (name == "json") return base::DiagnosticFormat::kJson;
+  if (name == "sarif") return base::DiagnosticFormat::kSarif;
+  if (name == "github") return base::DiagnosticFormat::kGithub;
+  return base::Error{base::Refusal::kUsage,
+                     "unknown format `" + name + "`; known are text, json, sarif, github"};
+}
+
+void report(const Project& project, base::Diagnostics& diagnostics, base::DiagnosticFormat format) {
+  diagnostics.sort();
+  bool text = format == base::DiagnosticFormat::kText;
+  bool colour = text && ::isatty(2) != 0 && ::getenv("NO_COLOR") == nullptr;
+  std::string out = base::render(diagnostics, project.sources, format, colour);
+  std::fputs(out.c_str(), text ? stderr : stdout);
+}
+
+base::Result<Version> open_version(const tools::Options& options,
+                                   const std::vector<std::string>& paths,
+                                   const BuildOptions& build_options) {
+  if (paths.size() == 1 && is_image(paths[0])) return read_image(paths[0]);
+  base::Result<Project> project = open_project(options, paths);
+  if (!project.ok()) return project.error();
+  base::Diagnostics diagnostics;
+  base::Result<Version> version = build(*project, build_options, diagnostics);
+  report(*project, diagnostics, base::DiagnosticFormat::kText);
+  return version;
+}
+
+}  // namespace stc

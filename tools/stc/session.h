@@ -1,0 +1,28 @@
+// What the commands share: options for sources, and how diagnostics reach people.
+#pragma once
+
+#include "base/diagnostics.h"
+#include "tools/common/exit.h"
+#include "tools/common/options.h"
+#include "tools/stc/build.h"
+
+namespace stc {
+
+#define STC_SOURCE_OPTIONS                                                               \
+  {"--dialect", "NAME", "iec, codesys (default) or twincat"},                            \
+      {"--format", "FORM", "text (default), json, sarif or github"},                     \
+      {"--name", "NAME", "name of the program, instead of the folder's or file's"}
+
+// Loads the project named by `paths` with the options above.
+base::Result<Project> open_project(const tools::Options& options,
+                                   const std::vector<std::string>& paths);
+base::Result<base::DiagnosticFormat> diagnostic_format(const tools::Options& options);
+// Text goes to stderr, machine formats to stdout.
+void report(const Project& project, base::Diagnostics& diagnostics, base::DiagnosticFormat format);
+
+// Builds from sources or reads an image, whatever `paths` name. Reports diagnostics to stderr.
+base::Result<Version> open_version(const tools::Options& options,
+                                   const std::vector<std::string>& paths,
+                                   const BuildOptions& build_options);
+
+}  // namespace stc
