@@ -143,6 +143,8 @@ class TypeTable {
   std::string text(TypeId id) const;
 
  private:
+  TypeId intern(std::string key, Type type);
+
   std::vector<Type> types_;
   std::unordered_map<std::string, TypeId> interned_;
 };
