@@ -57,6 +57,10 @@ std::string memory_text(const ir::Image& image) {
 
 }  // namespace
 
+std::string layout_text(const ir::Image& image) {
+  return memory_text(image) + tasks_text(image) + instances_text(image) + symbols_text(image);
+}
+
 std::string image_text(const ir::Image& image, const base::Digest& digest) {
   return image.name + " " + base::to_hex(digest) + "\n" + memory_text(image) + "\n" +
          tasks_text(image) + "\n" + instances_text(image) + "\n" + pous_text(image);

@@ -1,0 +1,28 @@
+#include "tests/golden/runner/engine.h"
+
+namespace golden {
+
+base::Error unsupported(const char* what) {
+  return {base::Refusal::kUsage, std::string(what) + " is not for this tier"};
+}
+
+const char* tier_name(Tier tier) {
+  switch (tier) {
+    case Tier::kEvaluator: return "evaluator";
+    case Tier::kInterpreter: return "interpreter";
+    case Tier::kFuelOne: return "fuel 1";
+    case Tier::kIdentity: return "identity change at every scan";
+    case Tier::kMoveAll: return "every instance moved at every scan";
+  }
+  return "?";
+}
+
+base::Status Engine::force(const std::string&, const std::string&) { return unsupported("force"); }
+base::Status Engine::unforce(const std::string&) { return unsupported("unforce"); }
+base::Result<std::vector<std::string>> Engine::change(const Program&, bool) {
+  return unsupported("change");
+}
+base::Status Engine::undo() { return unsupported("undo"); }
+base::Status Engine::accept() { return unsupported("accept"); }
+
+}  // namespace golden

@@ -1,0 +1,160 @@
+#include "tests/golden/runner/machine_engine.h"
+
+#include "ir/bytecode/symbols.h"
+#include "online_change/apply/change.h"
+#include "vm/runtime/controller.h"
+
+namespace golden {
+namespace {
+
+class JumpingClock : public vm::Clock {
+ public:
+  int64_t now_ns() override { return now_ns_; }
+  void wait_until(int64_t deadline_ns) override { now_ns_ = std::max(now_ns_, deadline_ns); }
+  void consumed(uint64_t) override {}
+
+ private:
+  int64_t now_ns_ = 0;
+};
+
+class NoDevices : public vm::IoPort {
+ public:
+  void receive(std::span<uint8_t>) override {}
+  void send(std::span<const uint8_t>) override {}
+};
+
+std::string count_text(const online_change::FateCounts& counts) {
+  return "kept " + std::to_string(counts.kept) + ", moved " + std::to_string(counts.moved) +
+         ", converted " + std::to_string(counts.converted) + ", initialised " +
+         std::to_string(counts.initialised) + ", dropped " + std::to_string(counts.dropped);
+}
+
+// "Main.x: converted INT -> DINT (retyped)"
+std::string fate_text(const online_change::FateRow& row) {
+  std::string text = row.path + ": " + online_change::fate_name(row.fate);
+  if (row.count != 1) text += " x" + std::to_string(row.count);
+  if (row.old_type.empty() || row.new_type.empty() || row.old_type == row.new_type) {
+    text += " " + (row.new_type.empty() ? row.old_type : row.new_type);
+  } else {
+    text += " " + row.old_type + " -> " + row.new_type;
+  }
+  return row.reason.empty() ? text : text + " (" + row.reason + ")";
+}
+
+class MachineEngine : public Engine {
+ public:
+  MachineEngine(Tier tier, const Program& program) : tier_(tier), program_(&program) {}
+
+  base::Status start() {
+    base::Result<ir::VerifiedImage> image = link(*program_, nullptr, false);
+    if (!image.ok()) return image.error();
+    vm::ControllerOptions options;
+    options.fuel_budget = 20'000'000;
+    if (tier_ == Tier::kFuelOne) options.fuel_slice = 1;
+    auto controller = vm::Controller::start(*image, options, clock_, devices_);
+    if (!controller.ok()) return controller.error();
+    controller_ = std::move(*controller);
+    change_ = std::make_unique<online_change::Change>(*controller_);
+    return base::Ok{};
+  }
+
+  base::Result<std::string> scan() override {
+    size_t traps_before = controller_->traps().size();
+    controller_->cycle();
+    const std::vector<vm::TrapRecord>& traps = controller_->traps();
+    if (traps.size() > traps_before) {
+      const vm::TrapRecord& last = traps.back();
+      return std::string(ir::trap_name(last.trap.kind)) + " " + last.text.pou + ":" +
+             std::to_string(last.text.line);
+    }
+    bool hard = tier_ == Tier::kIdentity || tier_ == Tier::kMoveAll;
+    if (!hard || change_->state() != online_change::State::kIdle) return std::string();
+    base::Status switched = hard_change();
+    if (!switched.ok()) return switched.error();
+    return std::string();
+  }
+
+  std::string state() const override {
+    return ir::state_text(controller_->image(), controller_->memory().view());
+  }
+  base::Status set(const std::string& path, const std::string& value) override {
+    return controller_->set(path, value);
+  }
+  base::Status force(const std::string& path, const std::string& value) override {
+    return controller_->force(path, value);
+  }
+  base::Status unforce(const std::string& path) override { return controller_->unforce(path); }
+
+  base::Result<std::vector<std::string>> change(const Program& next, bool allow_loss) override {
+    base::Status staged = stage(next, tier_ == Tier::kMoveAll);
+    if (!staged.ok()) return staged.error();
+    std::vector<std::string> lines = {count_text(change_->plan().counts)};
+    for (const online_change::FateRow& row : change_->plan().fates) {
+      // Moving everything is this tier's doing, not the edit's.
+      if (row.fate != online_change::Fate::kMoved) lines.push_back(fate_text(row));
+    }
+    for (const online_change::LiveLoss& loss : change_->live_losses()) {
+      lines.push_back("loss " + loss.path + ": " + loss.old_value + " -> " + loss.new_value + " " +
+                      loss.what);
+    }
+    base::Status armed = change_->arm(allow_loss);
+    if (!armed.ok()) {
+      change_->cancel();
+      return armed.error();
+    }
+    base::Result<online_change::SwitchReport> report = change_->switch_now();
+    if (!report.ok()) return report.error();
+    previous_ = program_;
+    program_ = &next;
+    return lines;
+  }
+  base::Status undo() override {
+    base::Result<online_change::SwitchReport> report = change_->undo();
+    if (!report.ok()) return report.error();
+    if (previous_ != nullptr) program_ = previous_;
+    return base::Ok{};
+  }
+  base::Status accept() override { return change_->accept(); }
+
+ private:
+  base::Status stage(const Program& next, bool move_all) {
+    base::Result<ir::VerifiedImage> image = link(next, &controller_->image(), move_all);
+    if (!image.ok()) return image.error();
+    auto package = online_change::make_package(controller_->verified().encoded(), image->encoded());
+    if (!package.ok()) return package.error();
+    return change_->stage(online_change::encode(*package));
+  }
+
+  // An identity change, with or without moving everything; nothing may differ after it.
+  base::Status hard_change() {
+    base::Status staged = stage(*program_, tier_ == Tier::kMoveAll);
+    // Relinked against itself, a program without instances to move is the same image.
+    if (!staged.ok()) {
+      return staged.error().refusal == base::Refusal::kNoChange ? base::Status(base::Ok{}) : staged;
+    }
+    base::Status armed = change_->arm(false);
+    if (!armed.ok()) return armed;
+    base::Result<online_change::SwitchReport> report = change_->switch_now();
+    if (!report.ok()) return report.error();
+    return change_->accept();
+  }
+
+  Tier tier_;
+  const Program* program_;
+  const Program* previous_ = nullptr;
+  JumpingClock clock_;
+  NoDevices devices_;
+  std::unique_ptr<vm::Controller> controller_;
+  std::unique_ptr<online_change::Change> change_;
+};
+
+}  // namespace
+
+base::Result<std::unique_ptr<Engine>> make_machine_engine(Tier tier, const Program& program) {
+  auto engine = std::make_unique<MachineEngine>(tier, program);
+  base::Status started = engine->start();
+  if (!started.ok()) return started.error();
+  return std::unique_ptr<Engine>(std::move(engine));
+}
+
+}  // namespace golden
