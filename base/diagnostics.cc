@@ -1,0 +1,58 @@
+#include "base/diagnostics.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "base/check.h"
+
+namespace base {
+
+namespace {
+
+constexpr Severity kError = Severity::kError;
+constexpr Severity kWarning = Severity::kWarning;
+
+constexpr DiagnosticRow kRows[] = {
+#define DIAGNOSTIC(id, code, severity, title, help) {code, severity, title, help},
+#include "base/diagnostics.def"
+#undef DIAGNOSTIC
+};
+constexpr uint32_t kRowCount = sizeof kRows / sizeof kRows[0];
+
+auto sort_key(const Diagnostic& d) {
+  return std::make_tuple(d.span.begin.offset, static_cast<uint16_t>(d.code), d.span.end.offset);
+}
+
+bool same_message(const Diagnostic& a, const Diagnostic& b) {
+  return a.code == b.code && a.span.begin == b.span.begin;
+}
+
+}  // namespace
+
+const DiagnosticRow& diagnostic_row(DiagnosticCode code) {
+  auto index = static_cast<uint32_t>(code);
+  check(index < kRowCount, "diagnostic code within the registry");
+  return kRows[index];
+}
+
+uint32_t diagnostic_count() { return kRowCount; }
+
+void Diagnostics::add(Diagnostic diagnostic) {
+  uint32_t& count =
+      diagnostic_row(diagnostic.code).severity == Severity::kError ? error_count_ : warning_count_;
+  ++count;
+  if (count <= limit_) all_.push_back(std::move(diagnostic));
+}
+
+void Diagnostics::add(DiagnosticCode code, SourceSpan span, std::string text, std::string fix) {
+  add(Diagnostic{code, span, std::move(text), std::move(fix), {}});
+}
+
+void Diagnostics::sort() {
+  std::stable_sort(all_.begin(), all_.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return sort_key(a) < sort_key(b);
+  });
+  all_.erase(std::unique(all_.begin(), all_.end(), same_message), all_.end());
+}
+
+}  // namespace base
