@@ -1,10 +1,8 @@
-// Durations and the proleptic Gregorian calendar in int64 nanoseconds since
+// The proleptic Gregorian calendar in int64 nanoseconds since
 // 1970-01-01, by arithmetic alone: no time zone, no leap seconds, no tables.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <string_view>
 
 namespace stdlib {
 
@@ -12,22 +10,6 @@ inline constexpr uint64_t kNsPerSecond = 1'000'000'000;
 inline constexpr uint64_t kNsPerMinute = 60 * kNsPerSecond;
 inline constexpr uint64_t kNsPerHour = 60 * kNsPerMinute;
 inline constexpr int64_t kNsPerDay = 24 * static_cast<int64_t>(kNsPerHour);
-
-struct DurationUnit {
-  std::string_view text;
-  uint64_t ns;
-};
-
-// In the order in which a duration literal names them (IEC 61131-3 table 8).
-inline constexpr std::array<DurationUnit, 7> kDurationUnits = {{
-    {"d", static_cast<uint64_t>(kNsPerDay)},
-    {"h", kNsPerHour},
-    {"m", kNsPerMinute},
-    {"s", kNsPerSecond},
-    {"ms", 1'000'000},
-    {"us", 1'000},
-    {"ns", 1},
-}};
 
 struct DayTime {
   int64_t days;       // since 1970-01-01

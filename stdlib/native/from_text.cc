@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "stdlib/native/calendar.h"
+#include "ir/types/time_units.h"
 #include "stdlib/native/implementation.h"
 #include "stdlib/native/text.h"
 
@@ -133,8 +133,8 @@ uint64_t fraction_ns(std::string_view fraction, uint64_t unit_ns) {
 std::optional<size_t> take_unit(std::string_view& text, size_t first) {
   const std::string_view name =
       text.substr(0, std::min(text.find_first_of("0123456789_"), text.size()));
-  for (size_t i = first; i < kDurationUnits.size(); ++i) {
-    const std::string_view unit = kDurationUnits[i].text;
+  for (size_t i = first; i < ir::kTimeUnits.size(); ++i) {
+    const std::string_view unit = ir::kTimeUnits[i].text;
     if (name.size() == unit.size() && starts_with_folded(name, unit)) {
       text.remove_prefix(name.size());
       return i;
@@ -153,7 +153,7 @@ std::optional<uint64_t> unsigned_duration(std::string_view text) {
     if (!unit || (!amount->fraction.empty() && !text.empty())) {
       return std::nullopt;  // only the last part may have a fraction
     }
-    const uint64_t unit_ns = kDurationUnits[*unit].ns;
+    const uint64_t unit_ns = ir::kTimeUnits[*unit].ns;
     uint64_t part = 0;
     if (__builtin_mul_overflow(amount->whole, unit_ns, &part) ||
         __builtin_add_overflow(total, part, &total) ||

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "ir/types/time_units.h"
 #include "stdlib/native/calendar.h"
 #include "stdlib/native/implementation.h"
 #include "stdlib/native/text.h"
@@ -28,9 +29,10 @@ class Line {
     used_ = static_cast<size_t>(end.ptr - buffer_.data());
     return *this;
   }
+  // At least `width` digits, with zeros in front.
   Line& digits(uint64_t value, int width) {
     uint64_t power = 1;
-    for (int i = 1; i < width; ++i) {
+    for (int i = 1; i < width || value / power >= 10; ++i) {
       power *= 10;
     }
     for (; power != 0; power /= 10) {
@@ -79,8 +81,7 @@ uint64_t put_float(const NativeArg& destination, Float value) {
   return 0;
 }
 
-void put_clock(Line& line, int64_t ns_of_day) {
-  const uint64_t ns = static_cast<uint64_t>(ns_of_day);
+void put_clock(Line& line, uint64_t ns) {
   line.digits(ns / kNsPerHour, 2) << ":";
   line.digits(ns / kNsPerMinute % 60, 2) << ":";
   line.digits(ns / kNsPerSecond % 60, 2);
@@ -134,8 +135,8 @@ uint64_t native<NativeId::kTimeToString>(NativeArg* args) {
   if (rest == 0) {
     line << "0s";
   }
-  for (const DurationUnit& unit : kDurationUnits) {
-    if (unit.ns <= kNsPerHour && rest >= unit.ns) {
+  for (const ir::TimeUnit& unit : ir::kTimeUnits) {
+    if (rest >= unit.ns) {
       line.number(rest / unit.ns) << unit.text;
       rest %= unit.ns;
     }
@@ -155,7 +156,7 @@ uint64_t native<NativeId::kDateToString>(NativeArg* args) {
 template <>
 uint64_t native<NativeId::kTodToString>(NativeArg* args) {
   Line line;
-  put_clock(line << "TOD#", split_days(int_of(args[1])).ns_of_day);
+  put_clock(line << (int_of(args[1]) < 0 ? "TOD#-" : "TOD#"), magnitude(int_of(args[1])));
   put_text(args[0], line.text());
   return 0;
 }
@@ -165,7 +166,7 @@ uint64_t native<NativeId::kDtToString>(NativeArg* args) {
   const DayTime moment = split_days(int_of(args[1]));
   Line line;
   put_day(line << "DT#", moment.days);
-  put_clock(line << "-", moment.ns_of_day);
+  put_clock(line << "-", static_cast<uint64_t>(moment.ns_of_day));
   put_text(args[0], line.text());
   return 0;
 }
