@@ -1,0 +1,56 @@
+#!/bin/sh
+# Who may include whom (docs/ARCHITECTURE.md, "Layers"): checked from the #include lines.
+# usage: include_table.sh SOURCE_DIR [BUILD_DIR]
+set -eu
+cd "$1"
+
+# folder-prefix: allowed prefixes. The longest matching folder counts; every
+# folder may include itself and base.
+table='
+base:
+ir/types:
+stdlib/native: ir/types
+stdlib: ir/types
+ir/program: ir/types stdlib/native
+ir/opt: ir/types ir/program
+ir/bytecode: ir/types ir/program/ir.h stdlib/native
+ir/lower: ir/types ir/program ir/bytecode
+frontend: ir/types ir/program stdlib
+linker: ir/types ir/program ir/bytecode stdlib/native
+vm: ir/types ir/program/ir.h ir/bytecode stdlib/native
+online_change/diff: ir linker
+online_change/plan: ir linker online_change/diff
+online_change/package: ir linker online_change/diff online_change/plan
+online_change/apply: ir/types ir/program/ir.h ir/bytecode online_change vm
+online_change/store: ir/types ir/bytecode online_change/package vm
+tools/common: ir online_change/diff online_change/plan
+tools/stc: ir frontend linker online_change/diff online_change/plan online_change/package stdlib tools/common
+tools/stvm: ir/types ir/program/ir.h ir/bytecode vm online_change tools/common
+'
+
+find base ir frontend linker vm online_change stdlib tools -name '*.cc' -o -name '*.h' |
+  xargs grep -n '^#include "' | sed 's/^\([^:]*\):\([0-9]*\):#include "\([^"]*\)".*/\1 \2 \3/' |
+  TABLE="$table" awk '
+    BEGIN {
+      n = split(ENVIRON["TABLE"], rows, "\n")
+      for (i = 1; i <= n; i++) {
+        if (rows[i] == "") continue
+        colon = index(rows[i], ":")
+        allowed[substr(rows[i], 1, colon - 1)] = substr(rows[i], colon + 1)
+      }
+    }
+    function under(path, prefix) {
+      return path == prefix || index(path, prefix "/") == 1
+    }
+    {
+      if ($3 !~ /\.h$/) next   # .def tables belong to the header beside them
+      folder = ""
+      for (f in allowed) if (under($1, f) && length(f) > length(folder)) folder = f
+      ok = under($3, "base") || under($3, folder)
+      m = split(allowed[folder], list, " ")
+      for (i = 1; i <= m; i++) if (under($3, list[i])) ok = 1
+      checked++
+      if (!ok) { print $1 ":" $2 ": " folder " may not include " $3; bad++ }
+    }
+    END { print checked " includes checked, " bad + 0 " against the table"; exit bad > 0 || checked == 0 }
+  '
