@@ -1,0 +1,13 @@
+#!/bin/sh
+# The bottling line has the same state hash in every run and in every hard mode.
+. "$(dirname "$0")/lib.sh"
+stc build "$source_dir/examples/bottling_line" -o line.img 2>/dev/null
+hash_of() { stvm run "$@" --virtual-time --hash 2>/dev/null | tail -1; }
+first=$(hash_of line.img --scans 100000)
+[ ${#first} -ge 64 ] || fail "no hash: $first"
+[ "$first" = "$(hash_of line.img --scans 100000)" ] || fail "second run differs"
+[ "$first" = "$(hash_of line.img --scans 100000 --hard-mode fuel1)" ] || fail "fuel 1 differs"
+short=$(hash_of line.img --scans 3000)
+[ "$short" != "$first" ] || fail "the line does not move"
+[ "$short" = "$(hash_of line.img --scans 3000 --hard-mode identity)" ] || fail "identity changes differ"
+[ "$short" = "$(hash_of line.img --scans 3000 --hard-mode move)" ] || fail "moving differs"

@@ -1,0 +1,50 @@
+# For the scripts of this folder: `. "$(dirname "$0")/lib.sh"`. Each is called with
+# SOURCE_DIR BUILD_DIR, works in a folder of its own, and fails at the first broken expectation.
+set -eu
+source_dir=$1
+bin=$2/bin
+work=$(mktemp -d)
+cd "$work"
+cleanup() {
+  for pid_file in "$work"/*.pid; do
+    [ -e "$pid_file" ] && kill "$(cat "$pid_file")" 2>/dev/null || true
+  done
+  rm -rf "$work"
+}
+trap cleanup EXIT INT TERM
+
+fail() {
+  echo "FAILED: $*"
+  [ -e out ] && sed 's/^/  out: /' out
+  [ -e err ] && sed 's/^/  err: /' err
+  exit 1
+}
+
+# expect CODE COMMAND...: runs it, output in ./out and ./err, and checks the exit code.
+expect() {
+  wanted=$1
+  shift
+  code=0
+  "$@" >out 2>err </dev/null || code=$?
+  [ "$code" -eq "$wanted" ] || fail "exit code $code instead of $wanted: $*"
+}
+# said REGEX: the last command printed it, on either stream.
+said() { cat out err | grep -qE -- "$1" || fail "not said: $1"; }
+silent_on() { [ ! -s "$1" ] || fail "nothing expected on $1"; }
+
+stc() { "$bin/stc" "$@"; }
+stvm() { "$bin/stvm" "$@"; }
+
+# serve DIR [OPTIONS] [IMAGE]: starts a controller and waits until it answers.
+serve() {
+  dir=$1
+  shift
+  "$bin/stvm" serve --dir "$dir" "$@" >"$dir.log" 2>&1 &
+  echo $! >"$work/$(basename "$dir").pid"
+  for _ in $(seq 100); do
+    "$bin/stvm" status --dir "$dir" >/dev/null 2>&1 && return 0
+    sleep 0.05
+  done
+  cat "$dir.log"
+  fail "controller in $dir does not answer"
+}
