@@ -1,0 +1,86 @@
+// Text of a literal token -> its value. Pure functions over bounded text. What is
+// wrong with a literal comes back as a LiteralProblem with a place inside the
+// text; the value is then a usable stand-in, so that one mistake gives one message.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/diagnostics.h"
+#include "ir/types/types.h"
+
+namespace frontend {
+
+struct LiteralProblem {
+  base::DiagnosticCode code;
+  uint32_t at = 0;      // within the literal's text
+  uint32_t length = 0;  // 0: the whole literal
+  std::string text;
+  std::string fix;
+};
+using MaybeProblem = std::optional<LiteralProblem>;
+
+struct DecodedInteger {
+  uint64_t value = 0;
+  bool based = false;
+  bool too_large = false;
+  MaybeProblem problem;
+};
+// 12, 1_000, 2#1010, 8#17, 16#FF
+DecodedInteger decode_integer(std::string_view text);
+
+struct DecodedReal {
+  double value = 0;
+  MaybeProblem problem;
+};
+// 1.5, 1_000.5, 1E6, 2.5e-3
+DecodedReal decode_real(std::string_view text);
+
+struct DecodedTime {
+  uint64_t ns = 0;  // magnitude
+  bool negative = false;
+  bool is_long = false;
+  MaybeProblem problem;
+};
+// T#1h30m, TIME#-1.5s, LT#3us_20ns. Digits below one nanosecond are dropped.
+DecodedTime decode_duration(std::string_view text);
+
+enum class DateForm : uint8_t { kDate, kTimeOfDay, kDateAndTime };
+struct DecodedDate {
+  DateForm form = DateForm::kDate;
+  DecodedTime time;  // since 1970-01-01 or midnight
+};
+// D#2024-02-29, TOD#12:30:15.25, DT#2024-02-29-12:30:15, and their long forms
+DecodedDate decode_date(std::string_view text);
+
+struct DecodedString {
+  std::string bytes;
+  MaybeProblem problem;
+};
+// '...' with its quotes; the bytes are those of the source, escapes resolved.
+// $N and $L are LF, $R is CR, $P is FF, $T is TAB.
+DecodedString decode_string(std::string_view text);
+// "..." -> UTF-16LE. `latin1` tells how the source's bytes above 0x7F are read.
+DecodedString decode_wide_string(std::string_view text, bool latin1);
+
+// Is a source text Latin-1, that is, not valid UTF-8?
+bool is_latin1(std::string_view source);
+
+struct DecodedAddress {
+  ir::DirectAddress address;
+  MaybeProblem problem;
+};
+// %IX0.3, %QW4, %MD8, %I2.0, two-level %QW1.2 is refused for sizes other than X.
+DecodedAddress decode_address(std::string_view text);
+
+struct DecodedPart {
+  uint32_t number = 0;
+  uint8_t bit_size = 1;
+  MaybeProblem problem;
+};
+// %X3 %B1 %W1 %D0 behind a dot
+DecodedPart decode_part(std::string_view text);
+
+}  // namespace frontend
