@@ -1,4 +1,6 @@
 // stc explain: the page of a code, or a whole table.
+#include <unistd.h>
+
 #include <cstdio>
 #include <cstring>
 
@@ -14,6 +16,9 @@
 namespace stc {
 namespace {
 
+// Terminals get 80 columns; files (the generated reference) get every word.
+std::string fitted(const tools::Table& table) { return table.text(::isatty(1) != 0 ? 80 : 400); }
+
 constexpr tools::Command kCommand{
     "explain", "[CODE|TRAP|limits|opcodes|refusals|diagnostics|traps]",
     "Explains a code such as E3001 or R0303, a trap, or prints a table.", {}, 0, 1};
@@ -23,7 +28,7 @@ std::string limits_page() {
 #define LIMIT(id, value, what) table.row({std::to_string(static_cast<uint64_t>(value)), what, #id});
 #include "base/limits.def"
 #undef LIMIT
-  return table.text();
+  return fitted(table);
 }
 
 std::string opcodes_page() {
@@ -32,7 +37,7 @@ std::string opcodes_page() {
     const ir::OpcodeRow& row = ir::opcode_row(static_cast<ir::Opcode>(i));
     table.row({std::to_string(i), std::string(row.name), std::string(row.meaning)});
   }
-  return table.text();
+  return fitted(table);
 }
 
 std::string refusals_page() {
@@ -40,7 +45,7 @@ std::string refusals_page() {
 #define REFUSAL(id, code, title, help) table.row({code, title});
 #include "base/refusals.def"
 #undef REFUSAL
-  return table.text();
+  return fitted(table);
 }
 
 std::string traps_page() {
@@ -48,7 +53,7 @@ std::string traps_page() {
 #define TRAP(id, text, title, help) table.row({text, title});
 #include "ir/program/traps.def"
 #undef TRAP
-  return table.text();
+  return fitted(table);
 }
 
 const char* severity_name(base::Severity severity) {
@@ -66,7 +71,7 @@ std::string diagnostics_page() {
     const auto& row = base::diagnostic_row(static_cast<base::DiagnosticCode>(i));
     table.row({std::string(row.code), severity_name(row.severity), std::string(row.title)});
   }
-  return table.text();
+  return fitted(table);
 }
 
 std::string overview_page() {
