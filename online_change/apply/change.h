@@ -17,19 +17,19 @@ namespace online_change {
 enum class State : uint8_t { kIdle, kStaged, kVerified, kPlanned, kPrepared, kArmed, kTrial };
 const char* state_name(State state);
 
-struct LiveLoss {      // a value that the change would not carry over exactly
+struct LiveLoss {  // a value that the change would not carry over exactly
   std::string path;
   std::string old_value;
   std::string new_value;
-  std::string what;    // "saturates", "truncates", "inexact"
+  std::string what;  // "saturates", "truncates", "inexact"
 };
 
 struct SwitchReport {
-  uint64_t cycle_before = 0;   // last cycle of the old version
-  uint64_t cycle_after = 0;    // first cycle of the new version
-  int64_t pause_ns = 0;        // measured, boundary work only
-  uint64_t missed = 0;         // task releases missed because of it
-  FateCounts counts;           // what was done
+  uint64_t cycle_before = 0;  // last cycle of the old version
+  uint64_t cycle_after = 0;   // first cycle of the new version
+  int64_t pause_ns = 0;       // measured, boundary work only
+  uint64_t missed = 0;        // task releases missed because of it
+  FateCounts counts;          // what was done
 };
 
 class Change {
@@ -48,8 +48,8 @@ class Change {
   base::Result<SwitchReport> switch_now();
   // Trial -> Idle with version 2 for good.
   base::Status accept();
-  // Trial -> Idle with version 1 again; at a boundary. Inverse plan on the current state; values that the
-  // change dropped or narrowed come back as they were, if nobody wrote them since.
+  // Trial -> Idle with version 1 again; at a boundary. Inverse plan on the current state; values
+  // that the change dropped or narrowed come back as they were, if nobody wrote them since.
   base::Result<SwitchReport> undo();
   // Any state before the switch -> Idle.
   void cancel();

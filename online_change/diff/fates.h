@@ -19,12 +19,12 @@ const char* fate_name(Fate fate);
 
 struct FateRow {
   Fate fate = Fate::kKept;
-  std::string path;      // in the new version; of kDropped: in the old one
-  std::string old_type;  // "" for added ones
-  std::string new_type;  // "" for dropped ones
-  bool may_lose = false; // a value of the old type can be impossible in the new one
-  std::string reason;    // "retyped", "new", "no conversion from REAL to STRING[10]", "area outgrown"
-  uint64_t count = 1;    // leaf variables that this row stands for (arrays, identical instances)
+  std::string path;       // in the new version; of kDropped: in the old one
+  std::string old_type;   // "" for added ones
+  std::string new_type;   // "" for dropped ones
+  bool may_lose = false;  // a value of the old type can be impossible in the new one
+  std::string reason;  // "retyped", "new", "no conversion from REAL to STRING[10]", "area outgrown"
+  uint64_t count = 1;  // leaf variables that this row stands for (arrays, identical instances)
 };
 
 struct FateCounts {

@@ -11,8 +11,8 @@
 namespace online_change {
 
 struct Package {
-  base::Digest base{};   // digest of the image it applies to
-  base::Bytes image;     // encoded new image
+  base::Digest base{};  // digest of the image it applies to
+  base::Bytes image;    // encoded new image
   Plan forward;
   Plan inverse;
 };

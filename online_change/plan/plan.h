@@ -12,7 +12,10 @@
 
 namespace online_change {
 
-// Update record (A3, A13). Offsets are in data memory.
+inline constexpr uint32_t kNoFate = 0xffffffffu;  // UpdateStep::fate: no variable, an instance slot
+
+// Update record (A3, A13). Offsets are in data memory. A step stands for `count` values:
+// from + i * from_stride -> to + i * to_stride, `size` bytes each.
 enum class StepKind : uint8_t {
   kInitialise,  // bytes -> to
   kCopy,        // size bytes: from -> to
@@ -23,23 +26,30 @@ struct UpdateStep {
   StepKind kind = StepKind::kCopy;
   uint32_t from = 0;
   uint32_t to = 0;
-  uint32_t size = 0;
-  ir::TypeId old_type;   // kConvert, in the old image
-  ir::TypeId new_type;   // kConvert, in the new image
-  uint32_t fate = 0;     // row of Plan::fates
-  bool early = false;    // kInitialise into bytes that version 1 does not own: done while it runs (A19)
-  base::Bytes bytes;     // kInitialise
+  uint32_t size = 0;  // of one value in the new version
+  uint32_t count = 1;
+  uint32_t from_stride = 0;
+  uint32_t to_stride = 0;
+  ir::TypeId old_type;      // kConvert, in the old image
+  ir::TypeId new_type;      // kConvert, in the new image
+  uint32_t fate = kNoFate;  // row of Plan::fates
+  bool early =
+      false;  // kInitialise into bytes that version 1 does not own: done while it runs (A19)
+  base::Bytes bytes;  // kInitialise, of all values; empty: zeros
+  uint64_t total() const { return uint64_t{size} * count; }
 };
 
 struct Plan {
-  std::vector<FateRow> fates;      // kept ones are counted, not listed
+  std::vector<FateRow> fates;  // kept ones are counted, and listed only with something to say
   FateCounts counts;
-  std::vector<UpdateStep> steps;   // no two boundary steps overlap in `to`
-  uint64_t boundary_bytes = 0;     // bytes that the switch writes
+  std::vector<UpdateStep> steps;  // no two boundary steps overlap in `to`
+  uint64_t boundary_bytes = 0;    // bytes that the switch writes
   // Cost model of the pause: fixed + per step + per byte.
   int64_t predicted_pause_ns = 0;
 };
 
+// Both images must have passed verify(), or come from the linker. Refuses (kTooMany) a change of
+// more pieces than a controller takes.
 base::Result<Plan> plan(const ir::Image& old_image, const ir::Image& new_image);
 
 }  // namespace online_change

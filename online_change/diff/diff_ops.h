@@ -1,0 +1,22 @@
+// Building blocks of a TypeDiff: moving, repeating and joining operations.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "online_change/diff/type_diff.h"
+
+namespace online_change {
+
+// More pieces than this in one pair of types is refused.
+inline constexpr size_t kMaxDiffOps = 4'000'000;
+
+// The same operations for `count` neighbours. False: too many pieces.
+bool repeat(std::vector<DiffOp>& ops, uint64_t count, uint32_t from_stride, uint32_t to_stride);
+void shift(std::vector<DiffOp>& ops, uint32_t from, uint32_t to);
+// Sorts by target and joins unchanged neighbours that move by the same distance.
+void join(std::vector<DiffOp>& ops);
+// Does nothing move, change, come or go?
+bool is_identity(const std::vector<DiffOp>& ops);
+
+}  // namespace online_change

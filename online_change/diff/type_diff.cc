@@ -1,0 +1,261 @@
+#include "online_change/diff/type_diff.h"
+
+#include "online_change/diff/areas.h"
+#include "online_change/diff/diff_ops.h"
+
+namespace online_change {
+namespace {
+
+using ir::Kind;
+using ir::Member;
+using ir::Section;
+using ir::TypeId;
+
+constexpr uint32_t kMaxDepth = 64;
+
+FateRow make_row(Fate fate, std::string path, std::string old_type, std::string new_type,
+                 std::string reason, uint64_t count) {
+  FateRow row;
+  row.fate = fate;
+  row.path = std::move(path);
+  row.old_type = std::move(old_type);
+  row.new_type = std::move(new_type);
+  row.reason = std::move(reason);
+  row.count = count;
+  return row;
+}
+
+DiffOp make_op(DiffKind kind, uint32_t from, uint32_t to, uint32_t size, uint64_t leaves) {
+  DiffOp op;
+  op.kind = kind;
+  op.from = from;
+  op.to = to;
+  op.size = size;
+  op.leaves = leaves;
+  return op;
+}
+
+// The whole value is initialised: nothing of the old one can be used.
+TypeDiff without_rule(std::string old_text, std::string new_text, uint32_t size, uint64_t leaves) {
+  TypeDiff diff;
+  diff.has_rule = false;
+  diff.leaves = leaves;
+  std::string reason = "no conversion from " + old_text + " to " + new_text;
+  diff.rows.push_back(make_row(Fate::kInitialised, "", std::move(old_text), std::move(new_text),
+                               std::move(reason), leaves));
+  diff.rows.back().may_lose = true;
+  diff.ops.push_back(make_op(DiffKind::kInitialise, 0, 0, size, leaves));
+  diff.ops.back().row = 0;
+  return diff;
+}
+
+}  // namespace
+
+bool same_instance_type(const ir::Image& old_image, TypeId old_type, const ir::Image& new_image,
+                        TypeId new_type) {
+  const ir::Type& from = old_image.types[old_type];
+  const ir::Type& to = new_image.types[new_type];
+  return from.kind == to.kind && ir::same_name(from.name, to.name);
+}
+
+const TypeDiff& TypeDiffer::area(TypeId old_type, TypeId new_type) {
+  std::unique_ptr<TypeDiff>& diff = areas_[{old_type, new_type}];
+  if (!diff) {
+    diff = std::make_unique<TypeDiff>(compare_members(old_type, new_type, true));
+  }
+  return *diff;
+}
+
+const TypeDiff& TypeDiffer::value(TypeId old_type, TypeId new_type) {
+  auto found = values_.find({old_type, new_type});
+  if (found != values_.end()) return *found->second;
+  if (depth_ >= kMaxDepth) failed_ = true;
+  ++depth_;
+  auto diff = std::make_unique<TypeDiff>(failed_ ? TypeDiff{} : compare_values(old_type, new_type));
+  --depth_;
+  return *(values_[{old_type, new_type}] = std::move(diff));
+}
+
+uint64_t TypeDiffer::leaves(const ir::Image& image, TypeId type) {
+  auto found = leaves_.find({&image, type});
+  if (found != leaves_.end()) return found->second;
+  if (depth_ >= kMaxDepth) {
+    failed_ = true;
+    return 0;
+  }
+  ++depth_;
+  uint64_t count = count_leaves(image, type);
+  --depth_;
+  return leaves_[{&image, type}] = count;
+}
+
+uint64_t TypeDiffer::count_leaves(const ir::Image& image, TypeId id) {
+  const ir::Type& type = image.types[id];
+  if (type.kind == Kind::kArray) {
+    if (image.types.is_instance(type.base)) return 0;
+    uint64_t count = leaves(image, type.base);
+    for (const ir::Dimension& dim : type.dims) count *= dim.count();
+    return count;
+  }
+  if (!image.types.has_members(id)) return 1;
+  uint64_t count = 0;
+  for (const Member& member : type.members) {
+    if (member.section == Section::kInOut || image.types.is_instance(member.type)) continue;
+    count += leaves(image, member.type);
+  }
+  return count;
+}
+
+TypeDiff TypeDiffer::compare_values(TypeId old_type, TypeId new_type) {
+  const ir::Type& from = old_.types[old_type];
+  const ir::Type& to = new_.types[new_type];
+  if (from.kind == Kind::kStruct && to.kind == Kind::kStruct) {
+    return compare_members(old_type, new_type, false);
+  }
+  if (from.kind == Kind::kArray && to.kind == Kind::kArray && from.dims.size() == to.dims.size()) {
+    return compare_arrays(old_type, new_type);
+  }
+  if (old_.types.is_instance(old_type) && new_.types.is_instance(new_type)) {
+    TypeDiff slot;
+    slot.ops.push_back(make_op(DiffKind::kSlot, 0, 0, 4, 0));
+    slot.same = true;
+    return slot;
+  }
+  return compare_leaves(old_type, new_type);
+}
+
+TypeDiff TypeDiffer::compare_leaves(TypeId old_type, TypeId new_type) {
+  Conversion conversion = classify(old_.types, old_type, new_.types, new_type);
+  uint32_t size = new_.layouts[new_type].size;
+  std::string old_text = old_.types.text(old_type);
+  std::string new_text = new_.types.text(new_type);
+  if (conversion == Conversion::kNone) {
+    uint64_t count = new_.types.is_instance(new_type) ? 0 : leaves(new_, new_type);
+    return without_rule(std::move(old_text), std::move(new_text), size, count);
+  }
+  TypeDiff diff;
+  diff.leaves = 1;
+  diff.same = conversion == Conversion::kSame;
+  diff.ops.push_back(make_op(diff.same ? DiffKind::kSame : DiffKind::kConvert, 0, 0, size, 1));
+  if (diff.same) return diff;
+  diff.ops[0].old_type = old_type;
+  diff.ops[0].new_type = new_type;
+  diff.ops[0].row = 0;
+  diff.rows.push_back(
+      make_row(Fate::kConverted, "", std::move(old_text), std::move(new_text), "retyped", 1));
+  diff.rows[0].may_lose = conversion == Conversion::kMayLose;
+  return diff;
+}
+
+TypeDiff TypeDiffer::compare_members(TypeId old_type, TypeId new_type, bool is_area) {
+  const ir::Type& from = old_.types[old_type];
+  const ir::Type& to = new_.types[new_type];
+  const ir::TypeLayout& old_layout = old_.layouts[old_type];
+  const ir::TypeLayout& new_layout = new_.layouts[new_type];
+  TypeDiff diff;
+  for (uint32_t i = 0; i < to.members.size() && !failed_; ++i) {
+    const Member& member = to.members[i];
+    int32_t twin = old_.types.find_member(old_type, member.name);
+    const Member* old_member = twin < 0 ? nullptr : &from.members[static_cast<uint32_t>(twin)];
+    uint32_t old_offset = twin < 0 ? 0 : old_layout.member_offsets[static_cast<uint32_t>(twin)];
+    if (member.section == Section::kInOut) {
+      add_in_out(diff, old_member, old_offset, member, new_layout.member_offsets[i]);
+    } else if (old_member == nullptr || old_member->section == Section::kInOut) {
+      add_new_member(diff, member, new_layout.member_offsets[i], "new");
+    } else {
+      add_member(diff, *old_member, old_offset, member, new_layout.member_offsets[i], is_area);
+    }
+  }
+  for (const Member& member : from.members) {
+    int32_t twin = new_.types.find_member(new_type, member.name);
+    bool gone = twin < 0 || to.members[static_cast<uint32_t>(twin)].section == Section::kInOut;
+    if (gone && member.section != Section::kInOut) add_dropped_member(diff, member);
+  }
+  join(diff.ops);
+  uint32_t old_size = is_area ? old_layout.used : old_layout.size;
+  uint32_t new_size = is_area ? new_layout.used : new_layout.size;
+  bool all_kept = from.members.size() == to.members.size() && old_size == new_size;
+  diff.same = all_kept && is_identity(diff.ops);
+  diff.leaves = leaves(new_, new_type);
+  return diff;
+}
+
+void TypeDiffer::add_in_out(TypeDiff& diff, const Member* old_member, uint32_t from,
+                            const Member& new_member, uint32_t to) {
+  DiffOp op = make_op(DiffKind::kInOut, from, to, 4, 0);
+  op.has_source = old_member != nullptr && old_member->section == Section::kInOut &&
+                  value(old_member->type, new_member.type).same;
+  diff.ops.push_back(op);
+}
+
+void TypeDiffer::add_new_member(TypeDiff& diff, const Member& member, uint32_t to,
+                                const char* reason) {
+  DiffOp op = make_op(DiffKind::kInitialise, 0, to, member_size(new_, member), 0);
+  if (new_.types.is_instance(member.type)) {
+    op.kind = DiffKind::kSlot;
+    op.has_source = false;
+    diff.ops.push_back(op);
+    return;
+  }
+  op.leaves = leaves(new_, member.type);
+  op.row = static_cast<uint32_t>(diff.rows.size());
+  diff.ops.push_back(op);
+  diff.rows.push_back(make_row(Fate::kInitialised, "." + member.name, "",
+                               new_.types.text(member.type), reason, op.leaves));
+}
+
+void TypeDiffer::add_dropped_member(TypeDiff& diff, const Member& member) {
+  if (old_.types.is_instance(member.type)) return;  // a row of its own, with its area
+  diff.rows.push_back(make_row(Fate::kDropped, "." + member.name, old_.types.text(member.type), "",
+                               "removed", leaves(old_, member.type)));
+}
+
+void TypeDiffer::add_member(TypeDiff& diff, const Member& old_member, uint32_t from,
+                            const Member& new_member, uint32_t to, bool is_area) {
+  bool old_is_instance = old_.types.is_instance(old_member.type);
+  bool new_is_instance = new_.types.is_instance(new_member.type);
+  if (old_is_instance != new_is_instance) {
+    add_new_member(diff, new_member, to, old_is_instance ? "was a function block" : "new");
+    if (new_is_instance) add_dropped_member(diff, old_member);
+    return;
+  }
+  const TypeDiff& inner = value(old_member.type, new_member.type);
+  bool constant_follows = new_member.constant && !(old_member.constant && inner.same);
+  if (constant_follows) {
+    add_new_member(diff, new_member, to, "constant");
+    diff.rows.back().old_type = old_.types.text(old_member.type);
+    return;
+  }
+  append_value(diff, inner, old_member, from, new_member, to, is_area);
+}
+
+void TypeDiffer::append_value(TypeDiff& diff, const TypeDiff& inner, const Member& old_member,
+                              uint32_t from, const Member& new_member, uint32_t to, bool is_area) {
+  auto first_row = static_cast<uint32_t>(diff.rows.size());
+  for (const FateRow& row : inner.rows) {
+    diff.rows.push_back(row);
+    diff.rows.back().path =
+        "." + (row.fate == Fate::kDropped ? old_member : new_member).name + row.path;
+  }
+  // One row for what may move with the variable; a row that stays empty is left out.
+  uint32_t own_row = kWholeVariable;
+  if (is_area) {
+    own_row = static_cast<uint32_t>(diff.rows.size());
+    diff.rows.push_back(make_row(Fate::kMoved, "." + new_member.name,
+                                 old_.types.text(old_member.type), new_.types.text(new_member.type),
+                                 "moved", 0));
+  }
+  if (diff.ops.size() + inner.ops.size() > kMaxDiffOps) {
+    failed_ = true;
+    return;
+  }
+  for (DiffOp op : inner.ops) {
+    op.from += from;
+    op.to += to;
+    op.row = op.row == kWholeVariable ? own_row : first_row + op.row;
+    op.constant = op.constant || (new_member.constant && op.kind == DiffKind::kSame);
+    diff.ops.push_back(op);
+  }
+}
+
+}  // namespace online_change

@@ -1,0 +1,234 @@
+#include "online_change/plan/planner.h"
+
+#include <algorithm>
+
+#include "online_change/plan/area_steps.h"
+#include "online_change/plan/pause.h"
+
+namespace online_change {
+namespace {
+
+// More steps than this are refused: a package must fit into a controller's memory.
+constexpr size_t kMaxSteps = 8'000'000;
+
+constexpr uint32_t kReplaced = FateRows::kNoRow - 1;  // row_of_old_: counted with its successor
+
+}  // namespace
+
+Planner::Planner(const ir::Image& old_image, const ir::Image& new_image)
+    : old_(old_image),
+      new_(new_image),
+      old_data_(old_image),
+      new_data_(new_image),
+      old_areas_(old_image),
+      match_(match_instances(old_image, new_image)),
+      differ_(old_image, new_image),
+      row_of_new_(new_image.instances.size(), FateRows::kNoRow),
+      row_of_old_(old_image.instances.size(), FateRows::kNoRow) {}
+
+base::Result<Plan> Planner::run() {
+  for (uint32_t id : match_.new_order) {
+    uint32_t twin = match_.old_of_new[id];
+    if (twin == kNoInstance) {
+      add_instance(id);
+    } else {
+      carry(twin, id);
+    }
+    if (differ_.failed() || plan_.steps.size() > kMaxSteps) {
+      return base::Error{base::Refusal::kTooMany,
+                         "the change of `" + new_.instance_path(id) +
+                             "` takes more single steps than a change may have (" +
+                             std::to_string(kMaxSteps) + "); split it"};
+    }
+  }
+  for (uint32_t id : match_.old_order) {
+    if (match_.new_of_old[id] == kNoInstance) drop_instance(id);
+  }
+  plan_.fates = fates_.take();
+  for (const UpdateStep& step : plan_.steps) {
+    if (!step.early) plan_.boundary_bytes += step.total();
+  }
+  plan_.predicted_pause_ns = predicted_pause_ns(plan_);
+  return std::move(plan_);
+}
+
+void Planner::carry(uint32_t old_id, uint32_t new_id) {
+  const ir::Instance& from = old_.instances[old_id];
+  const ir::Instance& to = new_.instances[new_id];
+  Carried instance{old_id, new_id, from.data, to.data, &differ_.area(from.type, to.type), ""};
+  if (stays_whole(instance)) {
+    plan_.counts.kept += instance.diff->leaves;
+    return;
+  }
+  instance.key = std::to_string(from.type.index) + "," + std::to_string(to.type.index);
+  used_here_.clear();
+  if (moves_whole(instance)) return;
+  for (const DiffOp& op : instance.diff->ops) apply(instance, op);
+  add_dropped_rows(instance);
+  finish_area();
+}
+
+bool Planner::nothing_differs(const Carried& instance) const {
+  return instance.diff->same &&
+         old_data_.equal(instance.from, new_data_, instance.to, old_areas_.used(instance.old_id));
+}
+
+bool Planner::stays_whole(const Carried& instance) const {
+  return !instance.moved() && nothing_differs(instance);
+}
+
+// One copy for the whole area.
+bool Planner::moves_whole(const Carried& instance) {
+  if (!instance.moved() || !nothing_differs(instance)) return false;
+  DiffOp whole;
+  whole.size = old_areas_.used(instance.old_id);
+  whole.leaves = instance.diff->leaves;
+  if (whole.size == 0) return true;
+  plan_.counts.moved += whole.leaves;
+  put(step_for(whole, StepKind::kCopy, instance.from, instance.to, moved_row(instance, whole)));
+  finish_area();
+  return true;
+}
+
+void Planner::apply(const Carried& instance, const DiffOp& op) {
+  switch (op.kind) {
+    case DiffKind::kSame:
+      return apply_same(instance, op);
+    case DiffKind::kSlot:
+      return apply_slots(instance, op);
+    case DiffKind::kInOut:
+      return apply_in_outs(instance, op);
+    case DiffKind::kInitialise:
+      plan_.counts.initialised += op.leaves;
+      return initialise(instance, op,
+                        op.leaves == 0 ? kNoFate : row_of(instance, op.row, op.leaves));
+    case DiffKind::kConvert:
+      plan_.counts.converted += op.leaves;
+      return put(step_for(op, StepKind::kConvert, instance.from, instance.to,
+                          row_of(instance, op.row, op.leaves)));
+  }
+}
+
+bool Planner::initial_equal(const Carried& instance, const DiffOp& op) const {
+  for (uint32_t i = 0; i < op.count; ++i) {
+    if (!old_data_.equal(instance.from + op.from + i * op.from_stride, new_data_,
+                         instance.to + op.to + i * op.to_stride, op.size)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void Planner::apply_same(const Carried& instance, const DiffOp& op) {
+  bool in_place = instance.from + op.from == instance.to + op.to &&
+                  (op.count == 1 || op.from_stride == op.to_stride);
+  if (op.constant && !initial_equal(instance, op)) {
+    plan_.counts.initialised += op.leaves;
+    return initialise(instance, op, constant_row(instance, op));
+  }
+  if (!in_place) {
+    plan_.counts.moved += op.leaves;
+    return put(step_for(op, StepKind::kCopy, instance.from, instance.to, moved_row(instance, op)));
+  }
+  plan_.counts.kept += op.leaves;
+  if (!initial_equal(instance, op)) note_row(instance, op);
+}
+
+void Planner::initialise(const Carried& instance, const DiffOp& op, uint32_t fate) {
+  UpdateStep step = step_for(op, StepKind::kInitialise, instance.from, instance.to, fate);
+  step.bytes = initial_bytes(new_data_, step);
+  put(std::move(step));
+}
+
+void Planner::apply_slots(const Carried& instance, const DiffOp& op) {
+  for (uint32_t i = 0; i < op.count; ++i) {
+    DiffOp slot = op;
+    slot.count = 1;
+    slot.from += i * op.from_stride;
+    slot.to += i * op.to_stride;
+    uint32_t from = instance.from + slot.from;
+    uint32_t to = instance.to + slot.to;
+    bool same_id = op.has_source && old_data_.word(from) == new_data_.word(to);
+    if (same_id && from == to) continue;
+    if (same_id) {
+      uint32_t fate = instance.moved() ? moved_row(instance, slot) : kNoFate;
+      put(step_for(slot, StepKind::kCopy, instance.from, instance.to, fate));
+    } else {
+      initialise(instance, slot, kNoFate);
+    }
+  }
+}
+
+// Addresses are bound again by every call; one that would be of another place or type is cleared.
+void Planner::apply_in_outs(const Carried& instance, const DiffOp& op) {
+  bool in_place = op.has_source && instance.from + op.from == instance.to + op.to;
+  if (in_place) return;
+  put(step_for(op, StepKind::kInitialise, instance.from, instance.to, kNoFate));
+}
+
+void Planner::add_dropped_rows(const Carried& instance) {
+  const std::vector<FateRow>& rows = instance.diff->rows;
+  for (uint32_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].fate != Fate::kDropped || rows[i].count == 0) continue;
+    plan_.counts.dropped += rows[i].count;
+    row_of(instance, i, rows[i].count);
+  }
+}
+
+void Planner::add_instance(uint32_t new_id) {
+  const ir::Instance& instance = new_.instances[new_id];
+  uint64_t leaves = differ_.leaves(new_, instance.type);
+  used_here_.clear();
+  uint32_t row = added_row(new_id, leaves);
+  row_of_new_[new_id] = row;
+  plan_.counts.initialised += leaves;
+  if (match_.retyped_from[new_id] != kNoInstance) {
+    row_of_old_[match_.retyped_from[new_id]] = kReplaced;
+  }
+  DiffOp whole;
+  whole.size = new_.layouts[instance.type].used;
+  if (whole.size == 0) return;
+  UpdateStep step = step_for(whole, StepKind::kInitialise, 0, instance.data, row);
+  step.bytes = initial_bytes(new_data_, step);
+  put(std::move(step));
+  finish_area();
+}
+
+void Planner::drop_instance(uint32_t old_id) {
+  const ir::Instance& instance = old_.instances[old_id];
+  if (row_of_old_[old_id] == kReplaced) return;
+  uint32_t parent_row = instance.parent == 0 ? FateRows::kNoRow : row_of_old_[instance.parent];
+  if (parent_row == kReplaced) {
+    row_of_old_[old_id] = kReplaced;
+    return;
+  }
+  uint64_t leaves = differ_.leaves(old_, instance.type);
+  used_here_.clear();
+  plan_.counts.dropped += leaves;
+  if (parent_row != FateRows::kNoRow) {
+    fates_.add_count(parent_row, leaves);
+    row_of_old_[old_id] = parent_row;
+    return;
+  }
+  row_of_old_[old_id] = dropped_row(old_id, leaves);
+}
+
+void Planner::put(UpdateStep step) {
+  if (step.kind == StepKind::kInitialise) {
+    uint64_t hull = uint64_t{step.to_stride} * (step.count - 1) + step.size;
+    step.early = !old_areas_.owns(step.to, static_cast<uint32_t>(hull));
+  }
+  area_.push_back(std::move(step));
+}
+
+void Planner::finish_area() {
+  join_steps(area_);
+  for (UpdateStep& step : area_) plan_.steps.push_back(std::move(step));
+  area_.clear();
+}
+
+base::Result<Plan> plan(const ir::Image& old_image, const ir::Image& new_image) {
+  return Planner(old_image, new_image).run();
+}
+
+}  // namespace online_change

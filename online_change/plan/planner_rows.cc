@@ -1,0 +1,125 @@
+// The fate rows of a plan: what people read, as few rows as say everything.
+#include "online_change/plan/planner.h"
+
+namespace online_change {
+namespace {
+
+std::string base_name(const std::string& name) { return name.substr(0, name.find('[')); }
+
+std::string join_path(const std::string& instance, const std::string& relative) {
+  return instance.empty() && !relative.empty() ? relative.substr(1) : instance + relative;
+}
+
+}  // namespace
+
+template <class MakeRow>
+uint32_t Planner::share(const std::string& key, uint64_t leaves, MakeRow make) {
+  uint32_t number = fates_.find(key);
+  if (number == FateRows::kNoRow) {
+    FateRow row = make();
+    row.count = leaves;
+    number = fates_.add(key, row);
+    used_here_.insert(number);
+  } else if (used_here_.insert(number).second) {
+    fates_.repeat(number, leaves);
+  } else {
+    fates_.add_count(number, leaves);
+  }
+  return number;
+}
+
+uint32_t Planner::row_of(const Carried& instance, uint32_t diff_row, uint64_t leaves) {
+  return share("r" + instance.key + ":" + std::to_string(diff_row), leaves, [&] {
+    FateRow row = instance.diff->rows[diff_row];
+    row.path = join_path(row.fate == Fate::kDropped ? old_.instance_path(instance.old_id)
+                                                    : new_.instance_path(instance.new_id),
+                         row.path);
+    return row;
+  });
+}
+
+uint32_t Planner::constant_row(const Carried& instance, const DiffOp& op) {
+  return share("c" + instance.key + ":" + std::to_string(op.row), op.leaves, [&] {
+    FateRow row = instance.diff->rows[op.row];
+    row.fate = Fate::kInitialised;
+    row.path = join_path(new_.instance_path(instance.new_id), row.path);
+    row.reason = "constant changed";
+    return row;
+  });
+}
+
+// The live value stays; the new initial value will show after a cold start only.
+uint32_t Planner::note_row(const Carried& instance, const DiffOp& op) {
+  return share("i" + instance.key + ":" + std::to_string(op.row), op.leaves, [&] {
+    FateRow row = instance.diff->rows[op.row];
+    row.fate = Fate::kKept;
+    row.path = join_path(new_.instance_path(instance.new_id), row.path);
+    row.reason = "initial value changed, the live value stays";
+    return row;
+  });
+}
+
+// An instance whose area moved has one row for all that moved with it.
+uint32_t Planner::moved_row(const Carried& instance, const DiffOp& op) {
+  std::string part = instance.moved() ? "" : std::to_string(op.row);
+  return share("m" + instance.key + ":" + part, op.leaves, [&] {
+    FateRow row;
+    row.fate = Fate::kMoved;
+    row.path = new_.instance_path(instance.new_id);
+    if (!instance.moved()) {
+      const FateRow& member = instance.diff->rows[op.row];
+      row.path = join_path(row.path, member.path);
+      row.old_type = member.old_type;
+      row.new_type = member.new_type;
+      row.reason = "moved inside its area";
+      return row;
+    }
+    row.old_type = old_.types.text(old_.instances[instance.old_id].type);
+    row.new_type = new_.types.text(new_.instances[instance.new_id].type);
+    row.reason = "area moved";
+    if (row.path.empty()) row.path = "global variables";
+    return row;
+  });
+}
+
+// Instances inside a new instance are counted with it; equal ones share a row.
+uint32_t Planner::added_row(uint32_t new_id, uint64_t leaves) {
+  const ir::Instance& instance = new_.instances[new_id];
+  uint32_t parent_row = row_of_new_[instance.parent];
+  if (instance.parent != 0 && parent_row != FateRows::kNoRow) {
+    fates_.add_count(parent_row, leaves);
+    return parent_row;
+  }
+  uint32_t replaced = match_.retyped_from[new_id];
+  uint32_t parent_type = new_.instances[instance.parent].type.index;
+  std::string key = (replaced == kNoInstance ? "n" : "t") + std::to_string(parent_type) + "." +
+                    base_name(instance.name) + ":" + std::to_string(instance.type.index);
+  return share(key, leaves, [&] {
+    FateRow row;
+    row.fate = Fate::kInitialised;
+    row.path = new_.instance_path(new_id);
+    row.new_type = new_.types.text(instance.type);
+    row.reason = "new";
+    if (replaced != kNoInstance) {
+      row.old_type = old_.types.text(old_.instances[replaced].type);
+      row.reason = "another function block type";
+    }
+    return row;
+  });
+}
+
+uint32_t Planner::dropped_row(uint32_t old_id, uint64_t leaves) {
+  const ir::Instance& instance = old_.instances[old_id];
+  std::string key = "d" + std::to_string(old_.instances[instance.parent].type.index) + "." +
+                    base_name(instance.name) + ":" + std::to_string(instance.type.index);
+  return share(key, leaves, [&] {
+    FateRow row;
+    row.fate = Fate::kDropped;
+    row.path = old_.instance_path(old_id);
+    row.old_type = old_.types.text(instance.type);
+    row.reason = "removed";
+    return row;
+  });
+}
+
+}  // namespace online_change
