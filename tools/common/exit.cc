@@ -6,10 +6,14 @@ namespace tools {
 
 int exit_code(const base::Error& error) {
   switch (error.refusal) {
-    case base::Refusal::kUsage: return kUsage;
-    case base::Refusal::kSourceErrors: return kFindings;
-    case base::Refusal::kInternal: return kInternal;
-    default: return kRefused;
+    case base::Refusal::kUsage:
+      return kUsage;
+    case base::Refusal::kSourceErrors:
+      return kFindings;
+    case base::Refusal::kInternal:
+      return kInternal;
+    default:
+      return kRefused;
   }
 }
 

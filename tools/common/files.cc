@@ -50,8 +50,7 @@ base::Status write_through(const std::string& path, base::ByteSpan bytes) {
 base::Result<base::Bytes> read_bytes(const std::string& path, uint64_t limit) {
   Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
   if (file.fd < 0) {
-    auto refusal =
-        errno == ENOENT ? base::Refusal::kFileNotFound : base::Refusal::kFileUnreadable;
+    auto refusal = errno == ENOENT ? base::Refusal::kFileNotFound : base::Refusal::kFileUnreadable;
     return file_error(refusal, path, errno);
   }
   base::Bytes bytes;

@@ -1,4 +1,5 @@
-// Whole files for the tools. Writing is all or nothing: the old content stays until the new one is complete.
+// Whole files for the tools. Writing is all or nothing: the old content stays until the new one is
+// complete.
 #pragma once
 
 #include <string>

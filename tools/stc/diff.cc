@@ -10,7 +10,8 @@ namespace {
 
 constexpr tools::OptionRow kOptions[] = {STC_SOURCE_OPTIONS};
 constexpr tools::Command kCommand{
-    "diff", "OLD NEW", "Shows the fate of every variable when OLD is changed to NEW.", kOptions, 2, 2};
+    "diff",   "OLD NEW", "Shows the fate of every variable when OLD is changed to NEW.",
+    kOptions, 2,         2};
 
 base::Result<online_change::Plan> plan_between(const tools::Options& options) {
   base::Result<Version> before = open_version(options, {options.arguments()[0]}, {});

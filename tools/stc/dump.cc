@@ -6,8 +6,8 @@
 #include "ir/bytecode/symbols.h"
 #include "ir/program/text.h"
 #include "tools/stc/commands.h"
-#include "tools/stc/session.h"
 #include "tools/stc/image_text.h"
+#include "tools/stc/session.h"
 
 namespace stc {
 namespace {

@@ -20,8 +20,12 @@ namespace {
 std::string fitted(const tools::Table& table) { return table.text(::isatty(1) != 0 ? 80 : 400); }
 
 constexpr tools::Command kCommand{
-    "explain", "[CODE|TRAP|limits|opcodes|refusals|diagnostics|traps]",
-    "Explains a code such as E3001 or R0303, a trap, or prints a table.", {}, 0, 1};
+    "explain",
+    "[CODE|TRAP|limits|opcodes|refusals|diagnostics|traps]",
+    "Explains a code such as E3001 or R0303, a trap, or prints a table.",
+    {},
+    0,
+    1};
 
 std::string limits_page() {
   tools::Table table({"> limit", "what", "name"});
@@ -58,9 +62,12 @@ std::string traps_page() {
 
 const char* severity_name(base::Severity severity) {
   switch (severity) {
-    case base::Severity::kError: return "error";
-    case base::Severity::kWarning: return "warning";
-    case base::Severity::kNote: return "note";
+    case base::Severity::kError:
+      return "error";
+    case base::Severity::kWarning:
+      return "warning";
+    case base::Severity::kNote:
+      return "note";
   }
   return "";
 }
@@ -95,7 +102,8 @@ std::optional<std::string> page_of(const std::string& what) {
     if (what == page.name) return page.text();
   }
   if (auto refusal = base::refusal_from_code(what)) {
-    return what + ": " + base::refusal_title(*refusal) + "\n\n" + base::refusal_help(*refusal) + "\n";
+    return what + ": " + base::refusal_title(*refusal) + "\n\n" + base::refusal_help(*refusal) +
+           "\n";
   }
   for (uint32_t i = 0; i < base::diagnostic_count(); ++i) {
     const auto& row = base::diagnostic_row(static_cast<base::DiagnosticCode>(i));

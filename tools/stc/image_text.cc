@@ -27,8 +27,8 @@ std::string instances_text(const ir::Image& image) {
 std::string pous_text(const ir::Image& image) {
   tools::Table table({"POU", "> units", "> frame", "identity"});
   for (const ir::LinkedPou& pou : image.pous) {
-    table.row({pou.name, number(pou.unit_count), number(pou.frame_size),
-               base::short_hex(pou.identity)});
+    table.row(
+        {pou.name, number(pou.unit_count), number(pou.frame_size), base::short_hex(pou.identity)});
   }
   return table.text();
 }

@@ -7,8 +7,8 @@
 
 namespace {
 
-const stc::Entry* const kEntries[] = {&stc::kCheck, &stc::kBuild, &stc::kDiff,
-                                      &stc::kPackage, &stc::kDump, &stc::kExplain};
+const stc::Entry* const kEntries[] = {&stc::kCheck,   &stc::kBuild, &stc::kDiff,
+                                      &stc::kPackage, &stc::kDump,  &stc::kExplain};
 
 std::string overview() {
   std::vector<const tools::Command*> commands;

@@ -62,14 +62,16 @@ base::Status apply_slack(const std::string& file, const std::string& key, const 
     base::Result<int64_t> number = typed<int64_t>(file, key, value, "a whole number");
     if (!number.ok()) return number.error();
     if (*number < 0 || *number > base::kMaxTypeBytes) {
-      return toml_error(file, value.line, value.column,
-                        "`" + key + "` must be between 0 and " + std::to_string(base::kMaxTypeBytes));
+      return toml_error(
+          file, value.line, value.column,
+          "`" + key + "` must be between 0 and " + std::to_string(base::kMaxTypeBytes));
     }
     slack.*known.slack = static_cast<uint32_t>(*number);
     return base::Ok{};
   }
-  return toml_error(file, value.line, value.column,
-                    "unknown key `" + key + "`; known are name, dialect, sources and the table [slack]");
+  return toml_error(
+      file, value.line, value.column,
+      "unknown key `" + key + "`; known are name, dialect, sources and the table [slack]");
 }
 
 base::Result<frontend::Dialect> dialect_named(const std::string& file, const TomlValue& value,
@@ -151,9 +153,9 @@ base::Result<Project> load_project(const std::vector<std::string>& paths,
       if (!text.ok()) return text.error();
       bytes += text->size();
       if (bytes > base::kMaxSourceBytes) {
-        return base::Error{base::Refusal::kTooMany,
-                           file + ": the sources are larger than " +
-                               std::to_string(base::kMaxSourceBytes) + " bytes in all"};
+        return base::Error{base::Refusal::kTooMany, file + ": the sources are larger than " +
+                                                        std::to_string(base::kMaxSourceBytes) +
+                                                        " bytes in all"};
       }
       project.sources.add(file, std::move(*text));
     }

@@ -8,10 +8,11 @@
 
 namespace stc {
 
-#define STC_SOURCE_OPTIONS                                                               \
-  {"--dialect", "NAME", "iec, codesys (default) or twincat"},                            \
-      {"--format", "FORM", "text (default), json, sarif or github"},                     \
-      {"--name", "NAME", "name of the program, instead of the folder's or file's"}
+#define STC_SOURCE_OPTIONS                                                     \
+  {"--dialect", "NAME", "iec, codesys (default) or twincat"},                  \
+      {"--format", "FORM", "text (default), json, sarif or github"}, {         \
+    "--name", "NAME", "name of the program, instead of the folder's or file's" \
+  }
 
 // Loads the project named by `paths` with the options above.
 base::Result<Project> open_project(const tools::Options& options,

@@ -124,11 +124,21 @@ class Parser {
       }
       ++at_;
       switch (peek()) {
-        case '"': out += '"'; break;
-        case '\\': out += '\\'; break;
-        case 'n': out += '\n'; break;
-        case 't': out += '\t'; break;
-        default: fail("unknown escape; known are \\\" \\\\ \\n \\t"); return out;
+        case '"':
+          out += '"';
+          break;
+        case '\\':
+          out += '\\';
+          break;
+        case 'n':
+          out += '\n';
+          break;
+        case 't':
+          out += '\t';
+          break;
+        default:
+          fail("unknown escape; known are \\\" \\\\ \\n \\t");
+          return out;
       }
     }
     ++at_;

@@ -12,9 +12,12 @@ namespace {
 
 const char* severity_text(base::Severity severity) {
   switch (severity) {
-    case base::Severity::kError: return "error";
-    case base::Severity::kWarning: return "warning";
-    case base::Severity::kNote: return "note";
+    case base::Severity::kError:
+      return "error";
+    case base::Severity::kWarning:
+      return "warning";
+    case base::Severity::kNote:
+      return "note";
   }
   return "?";
 }

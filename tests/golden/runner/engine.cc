@@ -8,11 +8,16 @@ base::Error unsupported(const char* what) {
 
 const char* tier_name(Tier tier) {
   switch (tier) {
-    case Tier::kEvaluator: return "evaluator";
-    case Tier::kInterpreter: return "interpreter";
-    case Tier::kFuelOne: return "fuel 1";
-    case Tier::kIdentity: return "identity change at every scan";
-    case Tier::kMoveAll: return "every instance moved at every scan";
+    case Tier::kEvaluator:
+      return "evaluator";
+    case Tier::kInterpreter:
+      return "interpreter";
+    case Tier::kFuelOne:
+      return "fuel 1";
+    case Tier::kIdentity:
+      return "identity change at every scan";
+    case Tier::kMoveAll:
+      return "every instance moved at every scan";
   }
   return "?";
 }

@@ -15,9 +15,9 @@ namespace golden {
 enum class Tier : uint8_t {
   kEvaluator,
   kInterpreter,
-  kFuelOne,      // suspended at every safe point
-  kIdentity,     // an identity change after every scan
-  kMoveAll,      // every instance moved after every scan
+  kFuelOne,   // suspended at every safe point
+  kIdentity,  // an identity change after every scan
+  kMoveAll,   // every instance moved after every scan
 };
 inline constexpr Tier kTiers[] = {Tier::kEvaluator, Tier::kInterpreter, Tier::kFuelOne,
                                   Tier::kIdentity, Tier::kMoveAll};

@@ -78,7 +78,8 @@ bool is_output(std::string_view line) {
 }
 
 void append_outputs(std::string& text, const std::vector<std::string>& output) {
-  for (const std::string& line : output) text += line.empty() ? "// CHECK:\n" : "// CHECK: " + line + "\n";
+  for (const std::string& line : output)
+    text += line.empty() ? "// CHECK:\n" : "// CHECK: " + line + "\n";
 }
 
 }  // namespace
@@ -126,7 +127,8 @@ std::string updated(const TestFile& test, const std::vector<std::vector<std::str
       continue;
     }
     text += test.lines[i] + "\n";
-    if (step < test.steps.size() && test.steps[step].line == i) append_outputs(text, outputs[step++]);
+    if (step < test.steps.size() && test.steps[step].line == i)
+      append_outputs(text, outputs[step++]);
   }
   append_outputs(text, outputs[0]);
   return text;
