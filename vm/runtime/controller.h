@@ -29,7 +29,7 @@ enum class TrapPolicy : uint8_t { kStopTask, kStopAll };
 
 struct ControllerOptions {
   TrapPolicy on_trap = TrapPolicy::kStopAll;
-  uint64_t fuel_slice = 1000;       // safe points between two looks at the clock; hard mode: 1
+  uint64_t fuel_slice = 1000;         // safe points between two looks at the clock; hard mode: 1
   uint64_t fuel_budget = 50'000'000;  // safe points of one scan of one task before kFuel
 };
 
@@ -37,11 +37,11 @@ struct TaskStatus {
   std::string name;
   int64_t period_ns = 0;
   uint32_t priority = 0;
-  uint64_t scans = 0;          // completed
-  uint64_t missed = 0;         // releases that found the task still running
-  int64_t last_ns = 0;         // run time of the last scan
+  uint64_t scans = 0;   // completed
+  uint64_t missed = 0;  // releases that found the task still running
+  int64_t last_ns = 0;  // run time of the last scan
   int64_t max_ns = 0;
-  bool stopped = false;        // by a trap
+  bool stopped = false;  // by a trap
 };
 
 struct TrapRecord {
@@ -72,6 +72,8 @@ class Controller {
   bool faulted() const;
   // Next instant at which a task is released.
   int64_t next_release_ns() const;
+  // Start of the next control cycle, with or without a release: idle time ends here.
+  int64_t next_cycle_ns() const;
   int64_t base_period_ns() const;
 
   const ir::Image& image() const;

@@ -1,0 +1,30 @@
+#include "vm/runtime/clocks.h"
+
+#include <cerrno>
+#include <ctime>
+
+namespace vm {
+namespace {
+
+constexpr int64_t kNsPerSecond = 1'000'000'000;
+
+int64_t monotonic_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<int64_t>(now.tv_sec) * kNsPerSecond + now.tv_nsec;
+}
+
+}  // namespace
+
+RealClock::RealClock() : origin_ns_(monotonic_ns()) {}
+
+int64_t RealClock::now_ns() { return monotonic_ns() - origin_ns_; }
+
+void RealClock::wait_until(int64_t deadline_ns) {
+  int64_t absolute = deadline_ns + origin_ns_;
+  timespec until{absolute / kNsPerSecond, absolute % kNsPerSecond};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  }
+}
+
+}  // namespace vm

@@ -1,0 +1,40 @@
+// The two clocks: real time, and virtual time that runs the same code as fast as it can and
+// always the same way.
+#pragma once
+
+#include "vm/runtime/ports.h"
+
+namespace vm {
+
+// CLOCK_MONOTONIC, counted from construction; sleeps on absolute times, so nothing drifts.
+class RealClock : public Clock {
+ public:
+  RealClock();
+  int64_t now_ns() override;
+  void wait_until(int64_t deadline_ns) override;
+  void consumed(uint64_t) override {}
+
+ private:
+  int64_t origin_ns_ = 0;
+};
+
+// Waiting jumps to the deadline. Execution takes `ns_per_safe_point` for each safe point, so a
+// test decides how long a scan lasts by its loops.
+class VirtualClock : public Clock {
+ public:
+  explicit VirtualClock(int64_t ns_per_safe_point = 0) : ns_per_safe_point_(ns_per_safe_point) {}
+  int64_t now_ns() override { return now_ns_; }
+  void wait_until(int64_t deadline_ns) override {
+    if (deadline_ns > now_ns_) now_ns_ = deadline_ns;
+  }
+  void consumed(uint64_t safe_points) override {
+    now_ns_ += static_cast<int64_t>(safe_points) * ns_per_safe_point_;
+  }
+  void advance(int64_t ns) { now_ns_ += ns; }
+
+ private:
+  int64_t now_ns_ = 0;
+  int64_t ns_per_safe_point_;
+};
+
+}  // namespace vm

@@ -1,0 +1,164 @@
+#include "vm/runtime/controller.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include "base/check.h"
+#include "vm/runtime/scheduler.h"
+#include "vm/runtime/task_tables.h"
+
+namespace vm {
+namespace {
+
+using TablesByGeneration = std::map<const Generation*, std::unique_ptr<TaskTables>>;
+
+void write_initial_data(const ir::Image& image, uint8_t* memory) {
+  for (const ir::DataRun& run : image.data) {
+    std::memcpy(memory + run.offset, run.bytes.data(), run.bytes.size());
+  }
+}
+
+base::Error read_only(std::string_view path, const char* what) {
+  return {base::Refusal::kReadOnly, "`" + std::string(path) + "` is " + what};
+}
+
+}  // namespace
+
+struct Controller::Impl {
+  Impl(const ControllerOptions& options, Clock& clock, IoPort& io, Memory reserved)
+      : memory(std::move(reserved)), scheduler(options, clock, io, memory.data()) {}
+
+  const ir::Image& image() const { return running->image(); }
+  base::Result<ir::Symbol> writable(std::string_view path) const;
+  void forces_changed();
+
+  Memory memory;
+  Scheduler scheduler;
+  std::unique_ptr<Generation> running;
+  // Of the running generation, and of one that is prepared or can come back by undo.
+  TablesByGeneration tables;
+};
+
+Controller::Controller() = default;
+Controller::~Controller() = default;
+
+base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedImage& image,
+                                                            ControllerOptions options, Clock& clock,
+                                                            IoPort& io) {
+  base::Result<Memory> memory = Memory::reserve();
+  if (!memory.ok()) return memory.error();
+  std::unique_ptr<Controller> controller(new Controller());
+  controller->impl_ = std::make_unique<Impl>(options, clock, io, std::move(*memory));
+  Impl& impl = *controller->impl_;
+  write_initial_data(image.image(), impl.memory.data());
+  impl.running = Generation::build(image, 0, impl.memory.data());
+  auto tables = std::make_unique<TaskTables>(*impl.running, impl.scheduler.next_cycle_ns());
+  impl.scheduler.use(*tables);
+  impl.tables[impl.running.get()] = std::move(tables);
+  return controller;
+}
+
+void Controller::cycle() { impl_->scheduler.run_cycle(); }
+uint64_t Controller::cycles() const { return impl_->scheduler.cycles(); }
+bool Controller::at_boundary() const { return impl_->scheduler.at_boundary(); }
+bool Controller::faulted() const { return impl_->scheduler.faulted(); }
+
+int64_t Controller::next_release_ns() const { return impl_->scheduler.tables().next_release_ns(); }
+int64_t Controller::next_cycle_ns() const { return impl_->scheduler.next_cycle_ns(); }
+int64_t Controller::base_period_ns() const { return impl_->scheduler.tables().base_period_ns; }
+
+const ir::Image& Controller::image() const { return impl_->image(); }
+const ir::VerifiedImage& Controller::verified() const { return impl_->running->verified(); }
+const Generation& Controller::generation() const { return *impl_->running; }
+Memory& Controller::memory() { return impl_->memory; }
+
+std::vector<TaskStatus> Controller::tasks() const {
+  std::vector<TaskStatus> rows;
+  for (const TaskSlot& task : impl_->scheduler.tables().tasks) rows.push_back(task.status);
+  return rows;
+}
+
+const std::vector<TrapRecord>& Controller::traps() const { return impl_->scheduler.traps(); }
+
+base::Result<std::string> Controller::get(std::string_view path) const {
+  base::Result<ir::Symbol> symbol = ir::find_symbol(image(), path);
+  if (!symbol.ok()) return symbol.error();
+  return ir::format_value(image(), *symbol, impl_->memory.view());
+}
+
+base::Status Controller::set(std::string_view path, std::string_view value) {
+  base::check(at_boundary(), "a value is set while a task is inside a scan");
+  base::Result<ir::Symbol> symbol = impl_->writable(path);
+  if (!symbol.ok()) return symbol.error();
+  if (symbol->input) return read_only(path, "an input; force it instead");
+  base::Result<base::Bytes> bytes = ir::parse_value(image(), symbol->type, value);
+  if (!bytes.ok()) return bytes.error();
+  std::memcpy(impl_->memory.data() + symbol->data, bytes->data(), bytes->size());
+  return base::Ok{};
+}
+
+base::Status Controller::force(std::string_view path, std::string_view value) {
+  base::check(at_boundary(), "a variable is forced while a task is inside a scan");
+  base::Result<ir::Symbol> symbol = impl_->writable(path);
+  if (!symbol.ok()) return symbol.error();
+  base::Result<base::Bytes> bytes = ir::parse_value(image(), symbol->type, value);
+  if (!bytes.ok()) return bytes.error();
+  std::vector<Force>& forces = impl_->scheduler.tables().forces;
+  auto same_place = [&](const Force& force) { return force.symbol.data == symbol->data; };
+  std::erase_if(forces, same_place);
+  forces.push_back({std::string(path), *symbol, std::move(*bytes)});
+  impl_->forces_changed();
+  return base::Ok{};
+}
+
+base::Status Controller::unforce(std::string_view path) {
+  base::Result<ir::Symbol> symbol = ir::find_symbol(image(), path);
+  if (!symbol.ok()) return symbol.error();
+  std::vector<Force>& forces = impl_->scheduler.tables().forces;
+  auto same_place = [&](const Force& force) { return force.symbol.data == symbol->data; };
+  if (std::erase_if(forces, same_place) == 0) {
+    return base::Error{base::Refusal::kNoSuchVariable, "`" + std::string(path) + "` is not forced"};
+  }
+  impl_->forces_changed();
+  return base::Ok{};
+}
+
+const std::vector<Force>& Controller::forces() const { return impl_->scheduler.tables().forces; }
+
+std::unique_ptr<Generation> Controller::prepare(ir::VerifiedImage next_image) {
+  auto next =
+      Generation::build(std::move(next_image), impl_->running->number() + 1, impl_->memory.data());
+  const Generation* running = impl_->running.get();
+  std::erase_if(impl_->tables, [&](const auto& row) { return row.first != running; });
+  auto tables = std::make_unique<TaskTables>(*next, impl_->scheduler.next_cycle_ns());
+  tables->adopt_forces(image(), forces());
+  impl_->tables[next.get()] = std::move(tables);
+  return next;
+}
+
+std::unique_ptr<Generation> Controller::publish(std::unique_ptr<Generation> next) {
+  base::check(at_boundary(), "a program is replaced while a task is inside a scan");
+  auto prepared = impl_->tables.find(next.get());
+  base::check(prepared != impl_->tables.end(), "a generation is published that was not prepared");
+  TaskTables& tables = *prepared->second;
+  tables.adopt(impl_->scheduler.tables(), impl_->scheduler.cycle_start_ns());
+  impl_->scheduler.use(tables);
+  std::swap(impl_->running, next);
+  return next;
+}
+
+base::Result<ir::Symbol> Controller::Impl::writable(std::string_view path) const {
+  base::Result<ir::Symbol> symbol = ir::find_symbol(image(), path);
+  if (symbol.ok() && symbol->constant) return read_only(path, "a constant");
+  return symbol;
+}
+
+// Prepared tables carry the forces too, so that a switch need not look them up.
+void Controller::Impl::forces_changed() {
+  for (auto& [generation, other] : tables) {
+    if (generation != running.get()) other->adopt_forces(image(), scheduler.tables().forces);
+  }
+}
+
+}  // namespace vm

@@ -1,0 +1,46 @@
+// Between the process image (%I and %Q as the devices see them: bits packed, little endian) and
+// the located variables (a BOOL is one byte). A table made once for each image; copying needs no
+// allocation.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/bytes.h"
+#include "ir/bytecode/image.h"
+
+namespace vm {
+
+class ProcessImage {
+ public:
+  // Bindings that lie outside the image's own process image are left out.
+  explicit ProcessImage(const ir::Image& image);
+
+  uint32_t input_bytes() const { return input_bytes_; }
+  uint32_t output_bytes() const { return output_bytes_; }
+
+  // `inputs` has input_bytes(), `outputs` output_bytes().
+  void inputs_to_variables(std::span<const uint8_t> inputs, uint8_t* memory) const;
+  void variables_to_outputs(const uint8_t* memory, std::span<uint8_t> outputs) const;
+  void outputs_to_variables(std::span<const uint8_t> outputs, uint8_t* memory) const;
+
+ private:
+  struct Point {
+    uint32_t data = 0;  // offset of the variable
+    uint32_t byte = 0;  // in the process image
+    uint32_t size = 0;  // 0: one bit
+    uint8_t mask = 0;
+  };
+  using Points = std::vector<Point>;
+  static void add(Points& points, const ir::Image& image, const ir::IoBinding& binding,
+                  uint32_t limit);
+  static void unpack(const Points& points, std::span<const uint8_t> from, uint8_t* memory);
+
+  Points inputs_;
+  Points outputs_;
+  uint32_t input_bytes_;
+  uint32_t output_bytes_;
+};
+
+}  // namespace vm

@@ -1,0 +1,67 @@
+// The control cycle: I/O refresh, release of due tasks, execution by priority with suspension at
+// safe points (B1, D6). Tasks are activations on one stack of one thread, so nothing is locked.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "vm/runtime/task_tables.h"
+
+namespace vm {
+
+class Scheduler {
+ public:
+  Scheduler(const ControllerOptions& options, Clock& clock, IoPort& io, uint8_t* memory);
+
+  void run_cycle();
+  bool at_boundary() const { return active_.empty(); }
+  bool faulted() const { return faulted_; }
+  uint64_t cycles() const { return cycles_; }
+  int64_t cycle_start_ns() const { return cycle_start_ns_; }
+  int64_t next_cycle_ns() const { return next_cycle_ns_; }
+  const std::vector<TrapRecord>& traps() const { return traps_; }
+
+  // At a boundary: these tables from now on. They must live as long as they are used.
+  void use(TaskTables& tables);
+  TaskTables& tables() { return *tables_; }
+  const TaskTables& tables() const { return *tables_; }
+
+ private:
+  enum class Look : uint8_t { kGoOn, kCycleOver };
+
+  void begin_cycle();
+  void release_due_tasks();
+  TaskSlot* next_released();
+  // The activation that has the processor now: a newly begun one or the topmost; nullptr when idle.
+  TaskSlot* choose();
+  void begin_task(TaskSlot& task);
+  void begin_program(TaskSlot& task);
+  void run_slice(TaskSlot& task);
+  void end_program(TaskSlot& task);
+  void end_task(TaskSlot& task);
+  void trap_in(TaskSlot& task, const Trap& trap);
+  void roll_back_outputs(const TaskSlot& task);
+  void leave(TaskSlot& task);
+  void fault();
+
+  void copy_inputs(const TaskSlot& task);
+  void copy_outputs(const TaskSlot& task);
+  void impose(bool inputs_only);
+  uint64_t fuel_left(const TaskSlot& task) const;
+
+  ControllerOptions options_;
+  Clock& clock_;
+  IoPort& io_;
+  uint8_t* memory_;
+  TaskTables* tables_ = nullptr;
+  std::vector<TaskSlot*> active_;  // suspended ones, the running one last
+  std::vector<TrapRecord> traps_;
+  uint64_t cycles_ = 0;
+  int64_t cycle_start_ns_ = 0;
+  int64_t next_cycle_ns_ = 0;
+  int64_t looked_ns_ = 0;       // when the clock was read last
+  bool outputs_stale_ = false;  // new tables: pack before the next refresh
+  bool faulted_ = false;
+};
+
+}  // namespace vm

@@ -1,0 +1,119 @@
+#include "vm/runtime/task_tables.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace vm {
+namespace {
+
+// An image without tasks still refreshes its process image.
+constexpr int64_t kIdlePeriodNs = 10'000'000;
+
+TaskSlot make_slot(const ir::Image& image, const ir::ImageTask& task, int64_t first_release_ns) {
+  TaskSlot slot;
+  slot.status.name = task.name;
+  slot.status.period_ns = std::max<int64_t>(task.period_ns, 1);
+  slot.status.priority = task.priority;
+  slot.watchdog_ns = task.watchdog_ns;
+  slot.programs = task.programs;
+  slot.execution = std::make_unique<Execution>(image.call_depth);
+  slot.inputs.resize(image.input_bytes);
+  slot.outputs_at_start.resize(image.output_bytes);
+  slot.next_release_ns = first_release_ns;
+  return slot;
+}
+
+void keep_phase(TaskSlot& slot, const TaskSlot& old, int64_t cycle_start_ns) {
+  int64_t last_release = old.next_release_ns - old.status.period_ns;
+  int64_t period = slot.status.period_ns;
+  slot.next_release_ns = last_release + period;
+  if (slot.next_release_ns <= cycle_start_ns) {
+    int64_t behind = cycle_start_ns - slot.next_release_ns;
+    slot.next_release_ns += (behind / period + 1) * period;
+  }
+}
+
+// Bytes that stand for the same value in the other image; empty when there are none.
+base::Bytes carry_over(const ir::Image& from, const Force& force, const ir::Image& to,
+                       const ir::Symbol& symbol) {
+  bool same_type = from.types.text(force.symbol.type) == to.types.text(symbol.type);
+  if (same_type && from.types[force.symbol.type].kind != ir::Kind::kEnum) return force.value;
+  ir::Symbol alone = force.symbol;
+  alone.data = 0;
+  std::string text = ir::format_value(from, alone, force.value);
+  base::Result<base::Bytes> value = ir::parse_value(to, symbol.type, text);
+  return value.ok() ? *value : base::Bytes{};
+}
+
+}  // namespace
+
+TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
+    : generation(&made_for), process_image(made_for.image()) {
+  const ir::Image& image = made_for.image();
+  for (const ir::ImageTask& task : image.tasks) {
+    by_priority.push_back(static_cast<uint32_t>(tasks.size()));
+    tasks.push_back(make_slot(image, task, first_release_ns));
+  }
+  std::stable_sort(by_priority.begin(), by_priority.end(), [&](uint32_t a, uint32_t b) {
+    return tasks[a].status.priority < tasks[b].status.priority;
+  });
+  inputs.resize(image.input_bytes);
+  outputs.resize(image.output_bytes);
+  scratch.resize(image.output_bytes);
+  set_base_period();
+}
+
+void TaskTables::adopt(const TaskTables& previous, int64_t cycle_start_ns) {
+  for (TaskSlot& slot : tasks) {
+    slot.released = false;
+    slot.next_release_ns = previous.next_cycle_ns(cycle_start_ns);
+    for (const TaskSlot& old : previous.tasks) {
+      if (!ir::same_name(slot.status.name, old.status.name)) continue;
+      TaskStatus status = old.status;
+      status.period_ns = slot.status.period_ns;
+      status.priority = slot.status.priority;
+      slot.status = std::move(status);
+      slot.released = old.released;
+      keep_phase(slot, old, cycle_start_ns);
+    }
+  }
+  std::copy_n(previous.inputs.begin(), std::min(inputs.size(), previous.inputs.size()),
+              inputs.begin());
+  set_base_period();
+}
+
+void TaskTables::set_base_period() {
+  base_period_ns = 0;
+  for (const TaskSlot& slot : tasks) {
+    base_period_ns = std::gcd(base_period_ns, slot.status.period_ns);
+    base_period_ns = std::gcd(base_period_ns, slot.next_release_ns - tasks.front().next_release_ns);
+  }
+  if (base_period_ns == 0) base_period_ns = kIdlePeriodNs;
+}
+
+int64_t TaskTables::next_release_ns() const {
+  int64_t next = INT64_MAX;
+  for (const TaskSlot& slot : tasks) {
+    if (!slot.status.stopped) next = std::min(next, slot.next_release_ns);
+  }
+  return next;
+}
+
+int64_t TaskTables::next_cycle_ns(int64_t cycle_start_ns) const {
+  if (tasks.empty()) return cycle_start_ns + base_period_ns;
+  int64_t distance = (tasks.front().next_release_ns - cycle_start_ns) % base_period_ns;
+  return cycle_start_ns + (distance > 0 ? distance : base_period_ns + distance);
+}
+
+void TaskTables::adopt_forces(const ir::Image& from, const std::vector<Force>& rows) {
+  const ir::Image& to = generation->image();
+  forces.clear();
+  for (const Force& force : rows) {
+    base::Result<ir::Symbol> symbol = ir::find_symbol(to, force.path);
+    if (!symbol.ok() || symbol->constant) continue;
+    base::Bytes value = carry_over(from, force, to, *symbol);
+    if (!value.empty()) forces.push_back({force.path, *symbol, std::move(value)});
+  }
+}
+
+}  // namespace vm

@@ -1,0 +1,57 @@
+// What the controller derives from one image: tasks with everything they need to run, the
+// process image, forces. Built beside the running program, so that a change only has to
+// store a pointer; a scan allocates nothing.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vm/runtime/controller.h"
+#include "vm/runtime/process_image.h"
+
+namespace vm {
+
+// A task, and its activation while it has one. At most one activation exists for each task.
+struct TaskSlot {
+  TaskStatus status;
+  int64_t watchdog_ns = 0;
+  std::vector<uint32_t> programs;  // instance IDs
+  std::unique_ptr<Execution> execution;
+  base::Bytes inputs;            // what this activation sees of %I, from start to end (B3)
+  base::Bytes outputs_at_start;  // %Q variables when it began, to know what it wrote
+  int64_t next_release_ns = 0;
+  bool released = false;  // due, not yet begun
+
+  size_t program = 0;  // position in `programs`
+  uint32_t stack = 0;
+  int64_t time_ns = 0;  // the one timestamp of the scan
+  int64_t run_ns = 0;
+  uint64_t fuel_used = 0;  // by the programs that are done
+};
+
+struct TaskTables {
+  TaskTables(const Generation& made_for, int64_t first_release_ns);
+
+  // Scans, statistics and phase of tasks of the same name go on (change case 42).
+  void adopt(const TaskTables& previous, int64_t cycle_start_ns);
+  // Greatest common divisor of periods and phases: every release falls on a cycle (B1).
+  void set_base_period();
+  // The first cycle after `cycle_start_ns`.
+  int64_t next_cycle_ns(int64_t cycle_start_ns) const;
+  int64_t next_release_ns() const;
+  // Forces of another image by path; what has no place of its kind here is left out.
+  void adopt_forces(const ir::Image& from, const std::vector<Force>& forces);
+
+  const Generation* generation;
+  std::vector<TaskSlot> tasks;        // as in the image
+  std::vector<uint32_t> by_priority;  // highest first, then as declared
+  int64_t base_period_ns = 0;
+  ProcessImage process_image;
+  base::Bytes inputs;   // as received last
+  base::Bytes outputs;  // as sent next: complete results only (B5)
+  base::Bytes scratch;
+  std::vector<Force> forces;
+};
+
+}  // namespace vm
