@@ -31,10 +31,18 @@ inline constexpr uint32_t kConstPoolLimit = 0x04000000u;
 inline constexpr uint32_t kStackBegin = 0xf8000000u;
 inline constexpr uint32_t kStackLimit = 0x04000000u;
 
+// The TYPE field of linked code: type number in bits 0-27, dim in bits 28-31.
+constexpr uint32_t region_field(Region region) {
+  return region.type.index | static_cast<uint32_t>(region.dim) << 28;
+}
+constexpr Region region_of_field(uint32_t field) {
+  return {TypeId(field & 0x0fffffffu), static_cast<uint8_t>(field >> 28)};
+}
+
 // Frame slot of linked code.
 struct FrameSlot {
   uint32_t offset = 0;
-  SlotKind kind = SlotKind::kTemp;   // kParam, kLocal or kTemp
+  SlotKind kind = SlotKind::kTemp;  // kParam, kLocal or kTemp
   LocalKind local = LocalKind::kTemp;
   bool aggregate = false;
   Class cls = Class::kB;
@@ -47,9 +55,9 @@ struct LinkedPou {
   PouKind kind = PouKind::kFunction;
   TypeId self;
   std::string file;
-  base::Digest identity{};     // of the object (E1)
-  uint32_t frame_size = 0;     // multiple of 8
-  uint32_t first_unit = 0;     // in Image::code
+  base::Digest identity{};  // of the object (E1)
+  uint32_t frame_size = 0;  // multiple of 8
+  uint32_t first_unit = 0;  // in Image::code
   uint32_t unit_count = 0;
   std::vector<FrameSlot> slots;  // sorted by offset; params first
   std::vector<Merge> merges;     // units relative to first_unit; `slots` index FrameSlots
@@ -60,7 +68,7 @@ struct LinkedBound {
   int64_t low = 0;
   uint64_t count = 0;
   uint32_t stride = 0;
-  Region from;       // region that is indexed; `to` follows: dim + 1, or the element type
+  Region from;  // region that is indexed; `to` follows: dim + 1, or the element type
   std::string name;
 };
 
@@ -114,19 +122,19 @@ struct Image {
   TypeId globals;
   std::vector<LinkedPou> pous;
   std::vector<Unit> code;
-  base::Bytes pool;                // constant pool
+  base::Bytes pool;  // constant pool
   std::vector<LinkedBound> bounds;
   std::vector<Range> ranges;
   std::vector<Instance> instances;
-  std::vector<Extent> free;        // sorted, disjoint, never adjacent
+  std::vector<Extent> free;  // sorted, disjoint, never adjacent
   std::vector<ImageTask> tasks;
   std::vector<IoBinding> io;
   std::vector<RetainRange> retain;
-  std::vector<DataRun> data;       // sorted by offset
+  std::vector<DataRun> data;  // sorted by offset
   uint32_t data_capacity = 0;
-  uint32_t stack_bytes = 0;        // for the deepest chain, over all priorities
+  uint32_t stack_bytes = 0;  // for the deepest chain, over all priorities
   uint32_t call_depth = 0;
-  uint32_t input_bytes = 0;        // process image sizes
+  uint32_t input_bytes = 0;  // process image sizes
   uint32_t output_bytes = 0;
 
   // Live program instances in declaration order.

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "ir/bytecode/code.h"
 #include "ir/types/layout.h"
@@ -16,11 +17,11 @@ uint32_t region_size(const TypeTable& types, const Layouts& layouts, Region regi
 enum class LeafKind : uint8_t { kScalar, kStringByte, kInstanceSlot, kInOutSlot };
 struct Leaf {
   LeafKind kind = LeafKind::kScalar;
-  TypeId type;               // of the scalar, of the slot's instance, of the in-out's target
-  uint32_t begin = 0;        // offset of the leaf in the region
-  bool constant = false;     // some member on the way is CONSTANT
-  bool input = false;        // some member on the way is a %I variable
-  bool output = false;       // some member on the way is a %Q variable
+  TypeId type;            // of the scalar, of the slot's instance, of the in-out's target
+  uint32_t begin = 0;     // offset of the leaf in the region
+  bool constant = false;  // some member on the way is CONSTANT
+  bool input = false;     // some member on the way is a %I variable
+  bool output = false;    // some member on the way is a %Q variable
 };
 // The leaf that covers `offset`; nullopt in padding, holes and beyond the end.
 std::optional<Leaf> leaf_at(const TypeTable& types, const Layouts& layouts, Region region,
@@ -28,5 +29,38 @@ std::optional<Leaf> leaf_at(const TypeTable& types, const Layouts& layouts, Regi
 // Is there a value of exactly `wanted` at `offset`? Strings: capacity at least wanted's.
 bool has_region_at(const TypeTable& types, const Layouts& layouts, Region region, uint32_t offset,
                    Region wanted);
+
+// What indexing the next dimension of the array region `from` leads to: `from` with
+// dim + 1, or the element. The element of an array of instances is an ID slot, not an
+// area: it stays {array, number of dimensions}.
+Region indexed_region(const TypeTable& types, Region from);
+// Bytes from one index to the next in the first open dimension of `from`.
+uint64_t index_stride(const TypeTable& types, const Layouts& layouts, Region from);
+
+// How a place may be used, from the members on the way to it.
+struct PlaceFlags {
+  bool constant = false;
+  bool input = false;
+  bool output = false;
+};
+
+// The same lookups with an index over the members, for whoever does many: a lookup costs
+// O(log members) per level. Borrows both tables, which must be consistent (verify.h).
+class RegionMap {
+ public:
+  RegionMap(const TypeTable& types, const Layouts& layouts);
+
+  uint32_t size(Region region) const { return region_size(types_, layouts_, region); }
+  std::optional<Leaf> leaf_at(Region region, uint32_t offset) const;
+  // As has_region_at, with what the way to the place allows.
+  std::optional<PlaceFlags> find(Region region, uint32_t offset, Region wanted) const;
+  // Do both name the same kind of place? Strings: `have` holds at least `wanted`'s capacity.
+  bool same(Region have, Region wanted) const;
+
+ private:
+  const TypeTable& types_;
+  const Layouts& layouts_;
+  std::vector<std::vector<uint32_t>> order_;  // by type: members by offset
+};
 
 }  // namespace ir

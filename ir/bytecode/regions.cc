@@ -1,0 +1,224 @@
+#include "ir/bytecode/regions.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ir {
+namespace {
+
+constexpr uint32_t kSlotBytes = 4;     // an ID slot or an in-out slot
+constexpr uint32_t kMaxLevels = 1024;  // types nest far less; ends every descent
+
+// A place on the way down: `offset` is what remains inside it.
+struct Spot {
+  Region region;
+  uint32_t offset = 0;
+  uint32_t begin = 0;   // from the start of the whole region
+  bool area = false;    // the own variables of an instance or of the globals, not an ID slot
+  bool in_out = false;  // the slot of an in-out of region.type
+  PlaceFlags flags;
+};
+
+bool has_area(Kind kind) {
+  return kind == Kind::kFunctionBlock || kind == Kind::kProgram || kind == Kind::kGlobals;
+}
+
+Spot spot_of(const TypeTable& types, Region region, uint32_t offset) {
+  const Type& type = types[region.type];
+  Spot spot{region, offset, 0, has_area(type.kind), false, {}};
+  if (type.kind == Kind::kArray && region.dim >= type.dims.size()) {
+    spot.region = {type.base, 0};
+    spot.area = false;
+  }
+  return spot;
+}
+
+uint32_t embedded_size(const Layouts& layouts, const Member& member) {
+  return member.section == Section::kInOut ? kSlotBytes : layouts[member.type].size;
+}
+
+struct LinearSearch {
+  const TypeTable& types;
+  const Layouts& layouts;
+  // Number of the member that covers `offset`; -1 when none does.
+  int64_t operator()(TypeId id, uint32_t offset) const {
+    const Type& type = types[id];
+    const TypeLayout& layout = layouts[id];
+    for (size_t i = 0; i < type.members.size() && i < layout.member_offsets.size(); ++i) {
+      const uint32_t begin = layout.member_offsets[i];
+      if (offset >= begin && offset - begin < embedded_size(layouts, type.members[i])) {
+        return static_cast<int64_t>(i);
+      }
+    }
+    return -1;
+  }
+};
+
+struct IndexedSearch {
+  const TypeTable& types;
+  const Layouts& layouts;
+  const std::vector<std::vector<uint32_t>>& order;
+  int64_t operator()(TypeId id, uint32_t offset) const {
+    const std::vector<uint32_t>& sorted = order[id.index];
+    const std::vector<uint32_t>& offsets = layouts[id].member_offsets;
+    const auto behind =
+        std::upper_bound(sorted.begin(), sorted.end(), offset,
+                         [&](uint32_t at, uint32_t number) { return at < offsets[number]; });
+    if (behind == sorted.begin()) return -1;
+    const uint32_t number = *(behind - 1);
+    const uint32_t size = embedded_size(layouts, types[id].members[number]);
+    return offset - offsets[number] < size ? static_cast<int64_t>(number) : -1;
+  }
+};
+
+// Moves `spot` to its part that covers the offset; false when there is none, or no parts.
+template <class Search>
+bool descend(const TypeTable& types, const Layouts& layouts, const Search& search, Spot& spot) {
+  const Type& type = types[spot.region.type];
+  if (spot.in_out) return false;
+  if (type.kind == Kind::kArray) {
+    const uint64_t stride = index_stride(types, layouts, spot.region);
+    if (stride == 0 || spot.offset >= region_size(types, layouts, spot.region)) return false;
+    const uint32_t inside = static_cast<uint32_t>(spot.offset % stride);
+    const bool last = spot.region.dim + 1u >= type.dims.size();
+    spot.begin += spot.offset - inside;
+    spot.offset = inside;
+    spot.region = last ? Region{type.base, 0}
+                       : Region{spot.region.type, static_cast<uint8_t>(spot.region.dim + 1)};
+    return true;
+  }
+  if (type.kind != Kind::kStruct && !spot.area) return false;
+  const int64_t number = search(spot.region.type, spot.offset);
+  if (number < 0) return false;
+  const Member& member = type.members[static_cast<size_t>(number)];
+  const uint32_t begin = layouts[spot.region.type].member_offsets[static_cast<size_t>(number)];
+  spot.begin += begin;
+  spot.offset -= begin;
+  spot.region = {member.type, 0};
+  spot.area = false;
+  spot.in_out = member.section == Section::kInOut;
+  spot.flags.constant |= member.constant;
+  spot.flags.input |= member.address.area == DirectArea::kInput;
+  spot.flags.output |= member.address.area == DirectArea::kOutput;
+  return true;
+}
+
+std::optional<LeafKind> leaf_kind(const TypeTable& types, const Layouts& layouts,
+                                  const Spot& spot) {
+  const Type& type = types[spot.region.type];
+  const bool inside = spot.offset < (spot.in_out ? kSlotBytes : layouts[spot.region.type].size);
+  if (spot.in_out && inside) return LeafKind::kInOutSlot;
+  if (spot.area || !inside) return std::nullopt;
+  if (type.kind == Kind::kString || type.kind == Kind::kWstring) return LeafKind::kStringByte;
+  if (types.is_instance(spot.region.type)) return LeafKind::kInstanceSlot;
+  if (types.is_scalar(spot.region.type)) return LeafKind::kScalar;
+  return std::nullopt;
+}
+
+template <class Search>
+std::optional<Leaf> find_leaf(const TypeTable& types, const Layouts& layouts, const Search& search,
+                              Region region, uint32_t offset) {
+  Spot spot = spot_of(types, region, offset);
+  for (uint32_t level = 0; level < kMaxLevels; ++level) {
+    if (const auto kind = leaf_kind(types, layouts, spot)) {
+      return Leaf{*kind,
+                  spot.region.type,
+                  spot.begin,
+                  spot.flags.constant,
+                  spot.flags.input,
+                  spot.flags.output};
+    }
+    if (!descend(types, layouts, search, spot)) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+bool matches(const TypeTable& types, const Spot& have, const Spot& wanted) {
+  if (have.in_out || have.area != wanted.area) return false;
+  if (have.region == wanted.region) return true;
+  const Type& a = types[have.region.type];
+  const Type& b = types[wanted.region.type];
+  const bool strings = a.kind == Kind::kString || a.kind == Kind::kWstring;
+  return strings && a.kind == b.kind && a.capacity >= b.capacity;
+}
+
+template <class Search>
+std::optional<PlaceFlags> find_place(const TypeTable& types, const Layouts& layouts,
+                                     const Search& search, Region region, uint32_t offset,
+                                     Region wanted) {
+  const Spot goal = spot_of(types, wanted, 0);
+  Spot spot = spot_of(types, region, offset);
+  for (uint32_t level = 0; level < kMaxLevels; ++level) {
+    if (spot.offset == 0 && matches(types, spot, goal)) return spot.flags;
+    if (!descend(types, layouts, search, spot)) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+uint64_t index_stride(const TypeTable& types, const Layouts& layouts, Region from) {
+  const Type& type = types[from.type];
+  uint64_t stride = layouts[type.base].size;
+  for (size_t dim = from.dim + size_t{1}; dim < type.dims.size(); ++dim) {
+    stride *= type.dims[dim].count();
+  }
+  return stride;
+}
+
+uint32_t region_size(const TypeTable& types, const Layouts& layouts, Region region) {
+  const Type& type = types[region.type];
+  if (has_area(type.kind)) return layouts[region.type].area_capacity;
+  if (type.kind != Kind::kArray || region.dim == 0) return layouts[region.type].size;
+  if (region.dim >= type.dims.size()) return layouts[type.base].size;
+  return static_cast<uint32_t>(index_stride(types, layouts, region) *
+                               type.dims[region.dim].count());
+}
+
+Region indexed_region(const TypeTable& types, Region from) {
+  const Type& type = types[from.type];
+  const Region next{from.type, static_cast<uint8_t>(from.dim + 1)};
+  if (next.dim < type.dims.size() || types.is_instance(type.base)) return next;
+  return {type.base, 0};
+}
+
+std::optional<Leaf> leaf_at(const TypeTable& types, const Layouts& layouts, Region region,
+                            uint32_t offset) {
+  return find_leaf(types, layouts, LinearSearch{types, layouts}, region, offset);
+}
+
+bool has_region_at(const TypeTable& types, const Layouts& layouts, Region region, uint32_t offset,
+                   Region wanted) {
+  return find_place(types, layouts, LinearSearch{types, layouts}, region, offset, wanted)
+      .has_value();
+}
+
+RegionMap::RegionMap(const TypeTable& types, const Layouts& layouts)
+    : types_(types), layouts_(layouts), order_(types.size()) {
+  for (uint32_t i = 0; i < types.size(); ++i) {
+    const std::vector<uint32_t>& offsets = layouts.of[i].member_offsets;
+    std::vector<uint32_t>& order = order_[i];
+    order.resize(std::min(types[TypeId(i)].members.size(), offsets.size()));
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+      if (offsets[a] != offsets[b]) return offsets[a] < offsets[b];
+      const auto& members = types[TypeId(i)].members;  // empty ones first: they cover nothing
+      return embedded_size(layouts, members[a]) < embedded_size(layouts, members[b]);
+    });
+  }
+}
+
+std::optional<Leaf> RegionMap::leaf_at(Region region, uint32_t offset) const {
+  return find_leaf(types_, layouts_, IndexedSearch{types_, layouts_, order_}, region, offset);
+}
+
+std::optional<PlaceFlags> RegionMap::find(Region region, uint32_t offset, Region wanted) const {
+  return find_place(types_, layouts_, IndexedSearch{types_, layouts_, order_}, region, offset,
+                    wanted);
+}
+
+bool RegionMap::same(Region have, Region wanted) const {
+  return matches(types_, spot_of(types_, have, 0), spot_of(types_, wanted, 0));
+}
+
+}  // namespace ir
