@@ -93,7 +93,7 @@ std::optional<Node> Areas::child_at(Node node, uint32_t offset, std::string* pat
     uint32_t stride = image_.layouts[type.base].size;
     if (stride == 0 || relative / stride >= element_count(type)) return std::nullopt;
     if (path != nullptr) *path += index_text(type.dims, relative / stride);
-    return Node{type.base, node.begin + relative / stride * stride};
+    return Node{type.base, node.begin + relative / stride * stride, false};
   }
   if (!image_.types.has_members(node.type)) return std::nullopt;
   const std::vector<Place>& list = places(node.type);
@@ -103,17 +103,19 @@ std::optional<Node> Areas::child_at(Node node, uint32_t offset, std::string* pat
   if (found == list.end() || found->begin > relative) return std::nullopt;
   const ir::Member& member = type.members[found->member];
   if (path != nullptr) *path += (path->empty() ? "" : ".") + member.name;
-  return Node{member.type, node.begin + found->begin};
+  return Node{member.type, node.begin + found->begin, member.section == ir::Section::kInOut};
 }
 
 std::optional<Node> Areas::descend(uint32_t offset, std::string* path) const {
   std::optional<uint32_t> id = instance_at(offset);
   if (!id) return std::nullopt;
   if (path != nullptr) *path = image_.instance_path(*id);
-  std::optional<Node> node = child_at({image_.instances[*id].type, begin(*id)}, offset, path);
+  std::optional<Node> node =
+      child_at({image_.instances[*id].type, begin(*id), false}, offset, path);
   for (uint32_t depth = 0; node && depth < kMaxDepth; ++depth) {
     ir::Kind kind = image_.types[node->type].kind;
-    if (kind != ir::Kind::kArray && kind != ir::Kind::kStruct) return node;
+    bool has_parts = kind == ir::Kind::kArray || kind == ir::Kind::kStruct;
+    if (!has_parts || node->in_out) return node;
     node = child_at(*node, offset, path);
   }
   return std::nullopt;

@@ -15,7 +15,8 @@ namespace online_change {
 // A part of the memory map that one type describes: an area, or a value in it.
 struct Node {
   ir::TypeId type;
-  uint32_t begin = 0;  // in data memory
+  uint32_t begin = 0;   // in data memory
+  bool in_out = false;  // the address slot of an in-out of that type
 };
 
 class Areas {

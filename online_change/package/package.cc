@@ -1,0 +1,173 @@
+#include "online_change/package/package.h"
+
+#include "base/limits.h"
+#include "ir/bytecode/verify.h"
+
+namespace online_change {
+namespace {
+
+using base::ByteReader;
+using base::ByteWriter;
+
+// Header: magic, version, bytes that follow the header, their SHA-256.
+constexpr uint32_t kMagic = 0x47504353;  // "SCPG"
+constexpr uint32_t kVersion = 1;
+constexpr size_t kHeaderBytes = 4 + 4 + 4 + 32;
+constexpr size_t kMinRowBytes = 1 + 3 * 4 + 1 + 4 + 8;
+constexpr size_t kMinStepBytes = 2 + 9 * 4 + 4;
+constexpr uint32_t kFateKinds = 5;
+constexpr uint32_t kStepKinds = 3;
+
+void write_row(ByteWriter& out, const FateRow& row) {
+  out.u8(static_cast<uint8_t>(row.fate));
+  out.text(row.path);
+  out.text(row.old_type);
+  out.text(row.new_type);
+  out.boolean(row.may_lose);
+  out.text(row.reason);
+  out.u64(row.count);
+}
+
+FateRow read_row(ByteReader& in) {
+  FateRow row;
+  row.fate = in.enumerator<Fate>(kFateKinds);
+  row.path = in.text();
+  row.old_type = in.text();
+  row.new_type = in.text();
+  row.may_lose = in.boolean();
+  row.reason = in.text();
+  row.count = in.u64();
+  return row;
+}
+
+void write_step(ByteWriter& out, const UpdateStep& step) {
+  out.u8(static_cast<uint8_t>(step.kind));
+  out.boolean(step.early);
+  for (uint32_t field : {step.from, step.to, step.size, step.count, step.from_stride,
+                         step.to_stride, step.old_type.index, step.new_type.index, step.fate}) {
+    out.u32(field);
+  }
+  out.blob(step.bytes);
+}
+
+UpdateStep read_step(ByteReader& in) {
+  UpdateStep step;
+  step.kind = in.enumerator<StepKind>(kStepKinds);
+  step.early = in.boolean();
+  step.from = in.u32();
+  step.to = in.u32();
+  step.size = in.u32();
+  step.count = in.u32();
+  step.from_stride = in.u32();
+  step.to_stride = in.u32();
+  step.old_type = ir::TypeId(in.u32());
+  step.new_type = ir::TypeId(in.u32());
+  step.fate = in.u32();
+  base::ByteSpan bytes = in.blob();
+  step.bytes.assign(bytes.begin(), bytes.end());
+  return step;
+}
+
+void write_plan(ByteWriter& out, const Plan& plan) {
+  out.u32(static_cast<uint32_t>(plan.fates.size()));
+  for (const FateRow& row : plan.fates) write_row(out, row);
+  const FateCounts& counts = plan.counts;
+  for (uint64_t count :
+       {counts.kept, counts.moved, counts.converted, counts.initialised, counts.dropped}) {
+    out.u64(count);
+  }
+  out.u32(static_cast<uint32_t>(plan.steps.size()));
+  for (const UpdateStep& step : plan.steps) write_step(out, step);
+  out.u64(plan.boundary_bytes);
+  out.i64(plan.predicted_pause_ns);
+}
+
+Plan read_plan(ByteReader& in) {
+  Plan plan;
+  uint32_t rows = in.count(kMinRowBytes);
+  for (uint32_t i = 0; i < rows && !in.failed(); ++i) plan.fates.push_back(read_row(in));
+  FateCounts& counts = plan.counts;
+  for (uint64_t* count :
+       {&counts.kept, &counts.moved, &counts.converted, &counts.initialised, &counts.dropped}) {
+    *count = in.u64();
+  }
+  uint32_t steps = in.count(kMinStepBytes);
+  for (uint32_t i = 0; i < steps && !in.failed(); ++i) plan.steps.push_back(read_step(in));
+  plan.boundary_bytes = in.u64();
+  plan.predicted_pause_ns = in.i64();
+  return plan;
+}
+
+base::Digest read_digest(ByteReader& in) {
+  base::Digest digest{};
+  base::ByteSpan raw = in.raw(digest.size());
+  std::copy(raw.begin(), raw.end(), digest.begin());
+  return digest;
+}
+
+base::Error bad_format(const std::string& what) {
+  return {base::Refusal::kBadFormat, "change package: " + what};
+}
+
+}  // namespace
+
+base::Bytes encode(const Package& package) {
+  ByteWriter body;
+  body.raw(package.base);
+  body.blob(package.image);
+  write_plan(body, package.forward);
+  write_plan(body, package.inverse);
+  ByteWriter out;
+  out.u32(kMagic);
+  out.u32(kVersion);
+  out.u32(static_cast<uint32_t>(body.size()));
+  out.raw(base::sha256(body.bytes()));
+  out.raw(body.bytes());
+  return out.take();
+}
+
+base::Result<Package> decode(base::ByteSpan bytes) {
+  if (bytes.size() > uint64_t{base::kMaxImageBytes} + kHeaderBytes) {
+    return base::Error{base::Refusal::kTooLarge,
+                       "change package of " + std::to_string(bytes.size()) + " bytes"};
+  }
+  ByteReader in(bytes);
+  if (in.u32() != kMagic) return bad_format("does not begin like one");
+  uint32_t version = in.u32();
+  if (version != kVersion) return bad_format("has version " + std::to_string(version));
+  uint32_t length = in.u32();
+  base::Digest stored = read_digest(in);
+  if (in.failed() || length != in.left()) return bad_format("has another length than it says");
+  if (base::sha256(bytes.subspan(kHeaderBytes)) != stored) {
+    return base::Error{base::Refusal::kBadHash, "change package: content hash does not match"};
+  }
+  Package package;
+  package.base = read_digest(in);
+  base::ByteSpan image = in.blob();
+  package.image.assign(image.begin(), image.end());
+  package.forward = read_plan(in);
+  package.inverse = read_plan(in);
+  if (!in.done()) return bad_format("has a damaged plan");
+  return package;
+}
+
+base::Result<Package> make_package(base::ByteSpan old_image, base::ByteSpan new_image) {
+  base::Result<ir::VerifiedImage> from = ir::verify(old_image);
+  if (!from) return from.error();
+  base::Result<ir::VerifiedImage> to = ir::verify(new_image);
+  if (!to) return to.error();
+  base::Result<Plan> forward = plan(from->image(), to->image());
+  if (!forward) return forward.error();
+  base::Result<Plan> inverse = plan(to->image(), from->image());
+  if (!inverse) return inverse.error();
+  Package package;
+  package.base = from->digest();
+  package.image.assign(new_image.begin(), new_image.end());
+  package.forward = std::move(forward).value();
+  package.inverse = std::move(inverse).value();
+  base::Status sound = check_package(package, from->image(), to->image());
+  if (!sound) return sound.error();
+  return package;
+}
+
+}  // namespace online_change

@@ -1,0 +1,259 @@
+#include "online_change/package/plan_check.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "online_change/diff/value_conversion.h"
+#include "online_change/package/package.h"
+
+namespace online_change {
+namespace {
+
+constexpr uint32_t kMaxDepth = 64;
+
+bool is_area(const ir::Image& image, Node node) {
+  ir::Kind kind = image.types[node.type].kind;
+  return kind == ir::Kind::kGlobals || kind == ir::Kind::kProgram;
+}
+
+}  // namespace
+
+PlanCheck::PlanCheck(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image)
+    : plan_(plan),
+      old_(old_image),
+      new_(new_image),
+      old_areas_(old_image),
+      new_areas_(new_image),
+      old_data_(old_image),
+      new_data_(new_image),
+      fit_(old_areas_, new_image) {}
+
+base::Status PlanCheck::run() {
+  bool good = check_forms();
+  if (good) expand();
+  good = good && check_targets();
+  for (uint32_t id = 0; good && id < new_.instances.size(); ++id) {
+    if (new_.instances[id].live) good = check_area(id);
+  }
+  if (good) return base::Ok{};
+  return base::Error{base::Refusal::kBadPackage, "change package: " + why_};
+}
+
+bool PlanCheck::fail(uint32_t at, const char* what) {
+  std::string path = new_areas_.path_at(at);
+  why_ = (path.empty() ? "offset " + std::to_string(at) : "`" + path + "`") + " " + what;
+  return false;
+}
+
+bool PlanCheck::check_forms() {
+  uint64_t bytes = 0;
+  for (const UpdateStep& step : plan_.steps) {
+    if (!check_form(step)) return false;
+    bytes += step.total();
+  }
+  // Each byte of data memory is written at most once, so more is a double target for certain.
+  if (bytes <= new_.data_capacity) return true;
+  why_ = "writes more bytes than there are";
+  return false;
+}
+
+bool PlanCheck::check_form(const UpdateStep& step) {
+  if (step.size == 0 || step.count == 0) return fail(step.to, "is written by an empty step");
+  if (step.count > 1 && step.to_stride < step.size) {
+    return fail(step.to, "is written twice");
+  }
+  uint64_t hull = uint64_t{step.to_stride} * (step.count - 1) + step.size;
+  if (uint64_t{step.to} + hull > new_.data_capacity) return fail(step.to, "ends outside of memory");
+  if (step.fate != kNoFate && step.fate >= plan_.fates.size()) {
+    return fail(step.to, "has no row in the fate report");
+  }
+  if (step.kind == StepKind::kInitialise) {
+    if (!step.bytes.empty() && step.bytes.size() != step.total()) {
+      return fail(step.to, "is initialised with too few or too many bytes");
+    }
+  } else if (step.early || !step.bytes.empty()) {
+    return fail(step.to, "has a step that mixes copying and initialising");
+  }
+  bool types_known = old_.types.contains(step.old_type) && new_.types.contains(step.new_type);
+  if (step.kind == StepKind::kConvert && !types_known) return fail(step.to, "has no known type");
+  return true;
+}
+
+void PlanCheck::expand() {
+  for (uint32_t number = 0; number < plan_.steps.size(); ++number) {
+    const UpdateStep& step = plan_.steps[number];
+    for (uint32_t i = 0; i < step.count; ++i) {
+      targets_.push_back({step.to + i * step.to_stride, step.size, number, i});
+    }
+  }
+  std::sort(targets_.begin(), targets_.end(),
+            [](const Target& a, const Target& b) { return a.to < b.to; });
+}
+
+bool PlanCheck::check_targets() {
+  uint64_t end = 0;
+  for (const Target& target : targets_) {
+    if (target.to < end) return fail(target.to, "is written twice");
+    end = target.end();
+    if (!check_target(target)) return false;
+  }
+  return true;
+}
+
+bool PlanCheck::check_target(const Target& target) {
+  const UpdateStep& step = step_of(target);
+  std::optional<uint32_t> id = new_areas_.instance_at(target.to);
+  if (!id || target.end() > uint64_t{new_areas_.begin(*id)} + new_areas_.capacity(*id)) {
+    return fail(target.to, "is written outside of any area");
+  }
+  if (step.kind == StepKind::kInitialise) {
+    if (step.early && old_areas_.owns(target.to, target.size)) {
+      return fail(target.to, "is initialised early, but the running version uses these bytes");
+    }
+    return true;
+  }
+  uint64_t source = uint64_t{step.from} + uint64_t{step.from_stride} * target.index;
+  uint64_t size = step.kind == StepKind::kCopy ? step.size : old_.layouts[step.old_type].size;
+  if (source + size > old_.data_capacity) return fail(target.to, "is read outside of memory");
+  id = old_areas_.instance_at(static_cast<uint32_t>(source));
+  if (!id || source + size > uint64_t{old_areas_.begin(*id)} + old_areas_.capacity(*id)) {
+    return fail(target.to, "is read from outside of any area");
+  }
+  return true;
+}
+
+uint32_t PlanCheck::source_of(const Target& target) const {
+  const UpdateStep& step = step_of(target);
+  return step.from + step.from_stride * target.index;
+}
+
+uint32_t PlanCheck::size_of(Node node) const {
+  if (node.in_out) return 4;
+  return new_.layouts[node.type].size;
+}
+
+bool PlanCheck::has_parts(Node node) const {
+  ir::Kind kind = new_.types[node.type].kind;
+  return !node.in_out && (kind == ir::Kind::kArray || kind == ir::Kind::kStruct);
+}
+
+template <class Visit>
+bool PlanCheck::for_each_part(Node node, Visit visit) const {
+  const ir::Type& type = new_.types[node.type];
+  const ir::TypeLayout& layout = new_.layouts[node.type];
+  if (type.kind != ir::Kind::kArray) {
+    for (uint32_t i = 0; i < type.members.size(); ++i) {
+      bool in_out = type.members[i].section == ir::Section::kInOut;
+      if (!visit(Node{type.members[i].type, node.begin + layout.member_offsets[i], in_out})) {
+        return false;
+      }
+    }
+    return true;
+  }
+  uint32_t stride = new_.layouts[type.base].size;
+  for (uint32_t done = 0; stride != 0 && done + stride <= layout.size; done += stride) {
+    if (!visit(Node{type.base, node.begin + done, false})) return false;
+  }
+  return true;
+}
+
+bool PlanCheck::check_area(uint32_t id) {
+  Node area{new_.instances[id].type, new_areas_.begin(id), false};
+  uint32_t used = new_areas_.used(id);
+  auto first = std::partition_point(targets_.begin(), targets_.end(), [&](const Target& target) {
+    return target.end() <= area.begin;
+  });
+  bool touched = first != targets_.end() && first->to < uint64_t{area.begin} + used;
+  uint32_t from = area.begin;
+  if (touched && step_of(*first).kind == StepKind::kCopy && first->to == area.begin &&
+      first->size >= used) {
+    touched = false;  // moved as a whole
+    from = source_of(*first);
+  }
+  if (!touched) {
+    Fit fit = fit_.area_at(from, area.type);
+    if (fit == Fit::kYes) return true;
+    if (fit == Fit::kYesButSlots && old_data_.equal(from, new_data_, area.begin, used)) return true;
+  }
+  return for_each_part(area, [&](Node part) { return check_node(part, 0); });
+}
+
+bool PlanCheck::check_node(Node node, uint32_t depth) {
+  if (depth > kMaxDepth || is_area(new_, node)) return fail(node.begin, "is nested too deeply");
+  uint64_t end = uint64_t{node.begin} + size_of(node);
+  auto first = std::partition_point(targets_.begin(), targets_.end(), [&](const Target& target) {
+    return target.end() <= node.begin;
+  });
+  if (first == targets_.end() || first->to >= end) return check_carried(node, node.begin, depth);
+  if (first->to <= node.begin && first->end() >= end) return check_written(node, *first, depth);
+  if (!has_parts(node)) return fail(node.begin, "is written in part only");
+  return for_each_part(node, [&](Node part) { return check_node(part, depth + 1); });
+}
+
+bool PlanCheck::check_written(Node node, const Target& target, uint32_t depth) {
+  switch (step_of(target).kind) {
+    case StepKind::kInitialise:
+      return check_initial(node, target);
+    case StepKind::kConvert:
+      return check_conversion(node, target, depth);
+    case StepKind::kCopy:
+      return check_carried(node, source_of(target) + (node.begin - target.to), depth);
+  }
+  return fail(node.begin, "has a step of unknown kind");
+}
+
+bool PlanCheck::check_initial(Node node, const Target& target) {
+  const UpdateStep& step = step_of(target);
+  uint32_t size = size_of(node);
+  bool right = false;
+  if (step.bytes.empty()) {
+    right = new_data_.is_zero(node.begin, size);
+  } else {
+    base::Bytes wanted(size);
+    new_data_.read(node.begin, wanted);
+    size_t at = size_t{target.index} * step.size + (node.begin - target.to);
+    right = std::memcmp(wanted.data(), step.bytes.data() + at, size) == 0;
+  }
+  return right || fail(node.begin, "is initialised with something else than its initial value");
+}
+
+bool PlanCheck::check_conversion(Node node, const Target& target, uint32_t depth) {
+  if (has_parts(node)) {
+    return for_each_part(node, [&](Node part) { return check_node(part, depth + 1); });
+  }
+  const UpdateStep& step = step_of(target);
+  uint32_t from = source_of(target);
+  std::optional<Node> source = old_areas_.leaf_at(from);
+  bool right = source && !source->in_out && source->begin == from &&
+               source->type == step.old_type && !node.in_out && node.type == step.new_type &&
+               node.begin == target.to && size_of(node) == target.size &&
+               classify(old_.types, step.old_type, new_.types, step.new_type) != Conversion::kNone;
+  return right || fail(node.begin, "is converted between other types than its own");
+}
+
+bool PlanCheck::check_carried(Node node, uint32_t from, uint32_t depth) {
+  if (depth > kMaxDepth) return fail(node.begin, "is nested too deeply");
+  Fit fit = fit_.value_at(from, node);
+  if (fit == Fit::kYes) return true;
+  if (fit == Fit::kYesButSlots && old_data_.equal(from, new_data_, node.begin, size_of(node))) {
+    return true;
+  }
+  if (!has_parts(node)) {
+    return fail(node.begin, fit == Fit::kNo ? "is neither kept nor written"
+                                            : "would keep the ID of another instance");
+  }
+  return for_each_part(node, [&](Node part) {
+    return check_carried(part, from + (part.begin - node.begin), depth + 1);
+  });
+}
+
+base::Status check_package(const Package& package, const ir::Image& old_image,
+                           const ir::Image& new_image) {
+  base::Status forward = PlanCheck(package.forward, old_image, new_image).run();
+  if (!forward) return forward;
+  base::Status inverse = PlanCheck(package.inverse, new_image, old_image).run();
+  if (inverse) return inverse;
+  return base::Error{inverse.error().refusal, inverse.error().text + " (on the way back)"};
+}
+
+}  // namespace online_change

@@ -1,0 +1,64 @@
+// V17 for one plan, independent of how it was made: every byte that a step
+// writes belongs to an area of the new version and takes a value of its type; every
+// variable of the new version is written by exactly one step, or stays where the
+// old version has a variable that can serve as it. So nothing is reinterpreted,
+// whatever the package says.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "online_change/diff/initial_data.h"
+#include "online_change/package/type_fit.h"
+#include "online_change/plan/plan.h"
+
+namespace online_change {
+
+class PlanCheck {
+ public:
+  PlanCheck(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image);
+  base::Status run();
+
+ private:
+  struct Target {  // one value of a step
+    uint32_t to = 0;
+    uint32_t size = 0;
+    uint32_t step = 0;
+    uint32_t index = 0;  // of the value in its step
+    uint64_t end() const { return uint64_t{to} + size; }
+  };
+
+  bool check_forms();
+  bool check_form(const UpdateStep& step);
+  void expand();
+  bool check_targets();
+  bool check_target(const Target& target);
+  bool check_area(uint32_t id);
+  bool check_node(Node node, uint32_t depth);
+  bool check_written(Node node, const Target& target, uint32_t depth);
+  bool check_initial(Node node, const Target& target);
+  bool check_conversion(Node node, const Target& target, uint32_t depth);
+  // `node` keeps bytes that the old version has at `from`.
+  bool check_carried(Node node, uint32_t from, uint32_t depth);
+  template <class Visit>
+  bool for_each_part(Node node, Visit visit) const;
+  bool has_parts(Node node) const;
+  uint32_t size_of(Node node) const;
+  uint32_t source_of(const Target& target) const;
+  const UpdateStep& step_of(const Target& target) const { return plan_.steps[target.step]; }
+  bool fail(uint32_t at, const char* what);
+
+  const Plan& plan_;
+  const ir::Image& old_;
+  const ir::Image& new_;
+  Areas old_areas_;
+  Areas new_areas_;
+  InitialData old_data_;
+  InitialData new_data_;
+  TypeFit fit_;
+  std::vector<Target> targets_;  // sorted, disjoint after check_targets()
+  std::string why_;
+};
+
+}  // namespace online_change

@@ -1,0 +1,120 @@
+#include "online_change/package/type_fit.h"
+
+#include <algorithm>
+
+#include "online_change/diff/type_diff.h"
+#include "online_change/diff/value_conversion.h"
+
+namespace online_change {
+namespace {
+
+using ir::Kind;
+using ir::TypeId;
+
+constexpr uint32_t kMaxDepth = 64;
+
+uint64_t element_count(const ir::Type& array) {
+  uint64_t count = 1;
+  for (const ir::Dimension& dim : array.dims) count *= dim.count();
+  return count;
+}
+
+Fit both(Fit a, Fit b) {
+  if (a == Fit::kNo || b == Fit::kNo) return Fit::kNo;
+  return std::max(a, b);
+}
+
+}  // namespace
+
+Fit TypeFit::value_at(uint32_t from, Node node) {
+  std::optional<uint32_t> id = areas_.instance_at(from);
+  if (!id) return Fit::kNo;
+  std::optional<Node> at =
+      areas_.child_at({old_.instances[*id].type, areas_.begin(*id), false}, from);
+  for (uint32_t depth = 0; at && depth < kMaxDepth; ++depth) {
+    if (at->in_out || node.in_out) {
+      bool alike = at->in_out && node.in_out && at->begin == from;
+      if (alike && values(at->type, node.type) != Fit::kNo) return Fit::kYes;
+      if (at->in_out) return Fit::kNo;
+    } else if (at->begin == from) {
+      Fit fit = values(at->type, node.type);
+      if (fit != Fit::kNo) return fit;
+    }
+    const ir::Type& type = old_.types[at->type];
+    if (type.kind == Kind::kArray && new_.types[node.type].kind == Kind::kArray && !node.in_out) {
+      uint32_t stride = old_.layouts[type.base].size;
+      uint32_t relative = from - at->begin;
+      if (stride != 0 && relative % stride == 0) {
+        Fit fit = elements(at->type, relative / stride, node.type);
+        if (fit != Fit::kNo) return fit;
+      }
+    }
+    if (type.kind != Kind::kArray && type.kind != Kind::kStruct) return Fit::kNo;
+    at = areas_.child_at(*at, from);
+  }
+  return Fit::kNo;
+}
+
+Fit TypeFit::area_at(uint32_t from, TypeId type) {
+  std::optional<uint32_t> id = areas_.instance_at(from);
+  if (!id || areas_.begin(*id) != from) return Fit::kNo;
+  return members(old_.instances[*id].type, type);
+}
+
+Fit TypeFit::values(TypeId old_type, TypeId new_type) {
+  auto found = values_.find({old_type, new_type});
+  if (found != values_.end()) return found->second;
+  if (depth_ >= kMaxDepth) return Fit::kNo;
+  ++depth_;
+  Fit fit = compare_values(old_type, new_type);
+  --depth_;
+  values_[{old_type, new_type}] = fit;
+  return fit;
+}
+
+Fit TypeFit::compare_values(TypeId old_type, TypeId new_type) {
+  if (old_.types.is_instance(old_type) || new_.types.is_instance(new_type)) {
+    bool alike = old_.types.is_instance(old_type) && new_.types.is_instance(new_type) &&
+                 same_instance_type(old_, old_type, new_, new_type);
+    return alike ? Fit::kYesButSlots : Fit::kNo;
+  }
+  const ir::Type& from = old_.types[old_type];
+  const ir::Type& to = new_.types[new_type];
+  if (from.kind == Kind::kStruct && to.kind == Kind::kStruct) return members(old_type, new_type);
+  if (from.kind == Kind::kArray && to.kind == Kind::kArray) {
+    return elements(old_type, 0, new_type);
+  }
+  Conversion conversion = classify(old_.types, old_type, new_.types, new_type);
+  return conversion == Conversion::kSame ? Fit::kYes : Fit::kNo;
+}
+
+Fit TypeFit::elements(TypeId old_type, uint64_t skipped, TypeId new_type) {
+  const ir::Type& from = old_.types[old_type];
+  const ir::Type& to = new_.types[new_type];
+  uint64_t available = element_count(from);
+  if (skipped > available || available - skipped < element_count(to)) return Fit::kNo;
+  if (old_.layouts[from.base].size != new_.layouts[to.base].size) return Fit::kNo;
+  return values(from.base, to.base);
+}
+
+Fit TypeFit::members(TypeId old_type, TypeId new_type) {
+  auto [found, added] = members_.try_emplace({old_type, new_type}, Fit::kNo);
+  if (!added) return found->second;
+  const ir::Type& to = new_.types[new_type];
+  const ir::TypeLayout& layout = new_.layouts[new_type];
+  Fit fit = Fit::kYes;
+  for (uint32_t i = 0; i < to.members.size() && fit != Fit::kNo; ++i) {
+    bool in_out = to.members[i].section == ir::Section::kInOut;
+    std::optional<Node> twin = areas_.child_at({old_type, 0, false}, layout.member_offsets[i]);
+    if (!twin || twin->begin != layout.member_offsets[i] || twin->in_out != in_out) {
+      fit = Fit::kNo;
+      break;
+    }
+    Fit part = values(twin->type, to.members[i].type);
+    fit = both(fit, in_out && part != Fit::kNo ? Fit::kYes : part);
+  }
+  members_[{old_type, new_type}] = fit;
+  return fit;
+}
+
+}  // namespace online_change
