@@ -143,6 +143,11 @@ struct Image {
   std::string instance_path(uint32_t id) const;
 };
 
+// Initial bytes of data memory at `offset`; what no run covers is zero. O(log runs).
+void read_initial(const Image& image, uint32_t offset, std::span<uint8_t> out);
+// Of an ID slot: the instance that it names from the start and for as long as it lives.
+uint32_t initial_id(const Image& image, uint32_t slot);
+
 // The stored form: magic, version, length, SHA-256 of the rest, sections.
 base::Bytes encode(const Image& image);
 // Checks form only (V1, V2); what runs must go through verify().

@@ -1,0 +1,252 @@
+// The stored form of an image:
+//   8 bytes magic, u32 version, u32 length of the whole, SHA-256 of all that follows,
+//   then the sections in the order of Section, each {u32 number, u32 length, content}.
+#include "ir/bytecode/image.h"
+
+#include <algorithm>
+
+#include "base/limits.h"
+#include "ir/bytecode/image_fields.h"
+
+namespace ir {
+namespace {
+
+constexpr std::string_view kMagic = "STCIMAGE";
+constexpr uint32_t kVersion = 1;
+constexpr size_t kDigestAt = 16;
+constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
+
+constexpr const char* kSectionNames[] = {"program", "types", "constants", "layouts",
+                                         "pous",    "code",  "tables",    "data"};
+constexpr uint32_t kSectionCount = 8;
+
+base::Error bad_format(std::string text) {
+  return {base::Refusal::kBadFormat, "image: " + std::move(text)};
+}
+
+void types_section(ImageWriter& a, const TypeTable& types) {
+  a(types.size() - kElementaryCount);
+  for (uint32_t i = kElementaryCount; i < types.size(); ++i) type_fields(a, types[TypeId(i)]);
+}
+
+bool is_interned(const Type& type) {
+  return type.name.empty() && !type.init.valid() &&
+         (type.kind == Kind::kString || type.kind == Kind::kWstring || type.kind == Kind::kArray ||
+          type.kind == Kind::kSubrange);
+}
+
+TypeId intern(TypeTable& types, const Type& type) {
+  switch (type.kind) {
+    case Kind::kString:
+      return types.string(type.capacity);
+    case Kind::kWstring:
+      return types.wstring(type.capacity);
+    case Kind::kArray:
+      return types.array(type.base, type.dims);
+    default:
+      return types.subrange(type.base, type.low, type.high);
+  }
+}
+
+// Type numbers stay as they are stored; anonymous types are found by content again.
+void add_type(TypeTable& types, Type type) {
+  const TypeId expected(types.size());
+  if (is_interned(type) && intern(types, type) == expected) return;
+  types.declare(std::move(type));
+}
+
+void types_section(ImageReader& a, TypeTable& types) {
+  std::vector<Type> stored;
+  a.list(stored, 54, [&](Type& type) { type_fields(a, type); });
+  for (Type& type : stored) add_type(types, std::move(type));
+}
+
+void constants_section(ImageWriter& a, const ConstTable& constants) {
+  a(constants.size());
+  for (uint32_t i = 0; i < constants.size(); ++i) constant_fields(a, constants[ConstId(i)]);
+}
+
+void constants_section(ImageReader& a, ConstTable& constants) {
+  std::vector<ConstValue> stored;
+  a.list(stored, 16, [&](ConstValue& value) { constant_fields(a, value); });
+  for (ConstValue& value : stored) constants.add(std::move(value));
+}
+
+template <class Archive, class I>
+void program_section(Archive& a, I& image) {
+  a(image.name);
+  a(image.globals);
+  a(image.data_capacity);
+  a(image.stack_bytes);
+  a(image.call_depth);
+  a(image.input_bytes);
+  a(image.output_bytes);
+}
+
+template <class Archive, class I>
+void tables_section(Archive& a, I& image) {
+  a(image.pool);
+  a.list(image.bounds, 29, [&](auto& bound) { bound_fields(a, bound); });
+  a.list(image.ranges, 20, [&](auto& range) {
+    a(range.low);
+    a(range.high);
+    a(range.name);
+  });
+  a.list(image.instances, 25, [&](auto& instance) { instance_fields(a, instance); });
+  a.list(image.free, 8, [&](auto& extent) {
+    a(extent.offset);
+    a(extent.size);
+  });
+  a.list(image.tasks, 28, [&](auto& task) { task_fields(a, task); });
+  a.list(image.io, 17, [&](auto& binding) {
+    address_fields(a, binding.address);
+    a(binding.data);
+    a(binding.type);
+  });
+  a.list(image.retain, 8, [&](auto& range) {
+    a(range.data);
+    a(range.size);
+  });
+}
+
+template <class Archive, class I>
+void section(Archive& a, I& image, uint32_t number) {
+  switch (number) {
+    case 0:
+      return program_section(a, image);
+    case 1:
+      return types_section(a, image.types);
+    case 2:
+      return constants_section(a, image.constants);
+    case 3:
+      return a.list(image.layouts.of, 20, [&](auto& layout) { layout_fields(a, layout); });
+    case 4:
+      return a.list(image.pous, 69, [&](auto& pou) { pou_fields(a, pou); });
+    case 5:
+      return a(image.code);
+    case 6:
+      return tables_section(a, image);
+    default:
+      return a.list(image.data, 8, [&](auto& run) {
+        a(run.offset);
+        a(run.bytes);
+      });
+  }
+}
+
+base::Status check_header(base::ByteSpan bytes) {
+  base::ByteReader in(bytes);
+  const base::ByteSpan magic = in.raw(kMagic.size());
+  const uint32_t version = in.u32();
+  const uint32_t length = in.u32();
+  const base::ByteSpan stored = in.raw(sizeof(base::Digest));
+  if (in.failed()) return bad_format("only " + std::to_string(bytes.size()) + " bytes");
+  if (!std::equal(magic.begin(), magic.end(), kMagic.begin())) return bad_format("no magic number");
+  if (version != kVersion) {
+    return bad_format("version " + std::to_string(version) + ", this program reads " +
+                      std::to_string(kVersion));
+  }
+  if (length != bytes.size() || length > base::kMaxImageBytes) {
+    return bad_format("header says " + std::to_string(length) + " bytes, there are " +
+                      std::to_string(bytes.size()));
+  }
+  const base::Digest actual = base::sha256(bytes.subspan(kHeaderBytes));
+  if (!std::equal(stored.begin(), stored.end(), actual.begin())) {
+    return base::Error{base::Refusal::kBadHash, "image: content hash is " +
+                                                    base::short_hex(actual) + ", header says " +
+                                                    base::short_hex(digest(bytes))};
+  }
+  return base::Ok{};
+}
+
+}  // namespace
+
+base::Bytes encode(const Image& image) {
+  base::ByteWriter out;
+  out.raw(base::as_bytes(kMagic));
+  out.u32(kVersion);
+  out.u32(0);
+  out.raw(base::Digest{});
+  ImageWriter archive(out);
+  for (uint32_t number = 0; number < kSectionCount; ++number) {
+    out.u32(number);
+    const size_t length_at = out.size();
+    out.u32(0);
+    section(archive, image, number);
+    out.patch_u32(length_at, static_cast<uint32_t>(out.size() - length_at - 4));
+  }
+  out.patch_u32(kMagic.size() + 4, static_cast<uint32_t>(out.size()));
+  base::Bytes bytes = out.take();
+  const base::Digest sum = base::sha256(base::ByteSpan(bytes).subspan(kHeaderBytes));
+  std::copy(sum.begin(), sum.end(), bytes.begin() + kDigestAt);
+  return bytes;
+}
+
+base::Result<Image> decode(base::ByteSpan bytes) {
+  if (base::Status header = check_header(bytes); !header) return header.error();
+  base::ByteReader in(bytes.subspan(kHeaderBytes));
+  Image image;
+  for (uint32_t number = 0; number < kSectionCount; ++number) {
+    const std::string name = std::string("section `") + kSectionNames[number] + "`";
+    if (in.u32() != number) return bad_format(name + " is missing");
+    base::ByteReader content(in.blob());
+    if (in.failed()) return bad_format(name + " is cut off");
+    ImageReader archive(content);
+    section(archive, image, number);
+    if (!content.done()) {
+      return bad_format(name + " is damaged at its byte " + std::to_string(content.at()));
+    }
+  }
+  if (!in.done()) return bad_format("bytes behind the last section");
+  return image;
+}
+
+base::Digest digest(base::ByteSpan encoded) {
+  base::Digest sum{};
+  if (encoded.size() >= kHeaderBytes) {
+    std::copy_n(encoded.begin() + kDigestAt, sum.size(), sum.begin());
+  }
+  return sum;
+}
+
+std::vector<uint32_t> Image::program_ids() const {
+  std::vector<uint32_t> ids;
+  for (uint32_t id = 1; id < instances.size(); ++id) {
+    const Instance& row = instances[id];
+    if (row.live && types.contains(row.type) && types[row.type].kind == Kind::kProgram) {
+      ids.push_back(id);
+    }
+  }
+  return ids;
+}
+
+std::string Image::instance_path(uint32_t id) const {
+  std::string path;
+  for (uint32_t depth = 0; id != 0 && id < instances.size() && depth < base::kMaxCallDepth;
+       ++depth) {
+    path = path.empty() ? instances[id].name : instances[id].name + "." + path;
+    id = instances[id].parent;
+  }
+  return path;
+}
+
+void read_initial(const Image& image, uint32_t offset, std::span<uint8_t> out) {
+  std::fill(out.begin(), out.end(), uint8_t{0});
+  const uint64_t end = uint64_t{offset} + out.size();
+  auto run = std::upper_bound(image.data.begin(), image.data.end(), offset,
+                              [](uint32_t at, const DataRun& r) { return at < r.offset; });
+  if (run != image.data.begin()) --run;
+  for (; run != image.data.end() && run->offset < end; ++run) {
+    const uint64_t from = std::max<uint64_t>(offset, run->offset);
+    const uint64_t to = std::min<uint64_t>(end, uint64_t{run->offset} + run->bytes.size());
+    if (from < to) std::memcpy(&out[from - offset], &run->bytes[from - run->offset], to - from);
+  }
+}
+
+uint32_t initial_id(const Image& image, uint32_t slot) {
+  uint8_t bytes[4];
+  read_initial(image, slot, bytes);
+  return bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<uint32_t>(bytes[3]) << 24;
+}
+
+}  // namespace ir

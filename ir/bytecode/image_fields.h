@@ -1,0 +1,216 @@
+// The fields of an image in stored order, once for both directions: an Archive is
+// ImageWriter or ImageReader, so what is written is what is read.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+#include "ir/bytecode/image.h"
+
+namespace ir {
+
+class ImageWriter {
+ public:
+  explicit ImageWriter(base::ByteWriter& out) : out_(out) {}
+  void operator()(const bool& v) { out_.boolean(v); }
+  void operator()(const uint8_t& v) { out_.u8(v); }
+  void operator()(const uint16_t& v) { out_.u16(v); }
+  void operator()(const uint32_t& v) { out_.u32(v); }
+  void operator()(const uint64_t& v) { out_.u64(v); }
+  void operator()(const int64_t& v) { out_.i64(v); }
+  void operator()(const std::string& v) { out_.text(v); }
+  void operator()(const base::Bytes& v) { out_.blob(v); }
+  void operator()(const base::Digest& v) { out_.raw(v); }
+  void operator()(const std::vector<Unit>& v) {
+    out_.u32(static_cast<uint32_t>(v.size()));
+    out_.raw({reinterpret_cast<const uint8_t*>(v.data()), v.size() * sizeof(Unit)});
+  }
+  template <class Tag>
+  void operator()(const base::Id<Tag>& v) {
+    out_.u32(v.index);
+  }
+  template <class E>
+  void enumerator(const E& v, uint32_t) {
+    out_.u8(static_cast<uint8_t>(v));
+  }
+  // `min_size`: bytes of the smallest record.
+  template <class T, class Each>
+  void list(const std::vector<T>& v, size_t, Each each) {
+    out_.u32(static_cast<uint32_t>(v.size()));
+    for (const T& item : v) each(item);
+  }
+
+ private:
+  base::ByteWriter& out_;
+};
+
+class ImageReader {
+ public:
+  explicit ImageReader(base::ByteReader& in) : in_(in) {}
+  void operator()(bool& v) { v = in_.boolean(); }
+  void operator()(uint8_t& v) { v = in_.u8(); }
+  void operator()(uint16_t& v) { v = in_.u16(); }
+  void operator()(uint32_t& v) { v = in_.u32(); }
+  void operator()(uint64_t& v) { v = in_.u64(); }
+  void operator()(int64_t& v) { v = in_.i64(); }
+  void operator()(std::string& v) { v = in_.text(); }
+  void operator()(base::Bytes& v) {
+    const base::ByteSpan bytes = in_.blob();
+    v.assign(bytes.begin(), bytes.end());
+  }
+  void operator()(base::Digest& v) {
+    const base::ByteSpan bytes = in_.raw(v.size());
+    std::copy(bytes.begin(), bytes.end(), v.begin());
+  }
+  void operator()(std::vector<Unit>& v) {
+    const base::ByteSpan bytes = in_.raw(size_t{in_.count(sizeof(Unit))} * sizeof(Unit));
+    v.resize(bytes.size() / sizeof(Unit));
+    if (!bytes.empty()) std::memcpy(v.data(), bytes.data(), bytes.size());
+  }
+  template <class Tag>
+  void operator()(base::Id<Tag>& v) {
+    v = base::Id<Tag>(in_.u32());
+  }
+  template <class E>
+  void enumerator(E& v, uint32_t limit) {
+    v = in_.enumerator<E>(limit);
+  }
+  template <class T, class Each>
+  void list(std::vector<T>& v, size_t min_size, Each each) {
+    v.resize(in_.count(min_size));
+    for (T& item : v) {
+      if (in_.failed()) return;
+      each(item);
+    }
+  }
+
+ private:
+  base::ByteReader& in_;
+};
+
+// Each `record` below takes `T` or `const T`, as the archive needs.
+
+template <class Archive, class Address>
+void address_fields(Archive& a, Address& v) {
+  a.enumerator(v.area, 4);
+  a(v.bit_offset);
+  a(v.bit_size);
+}
+
+template <class Archive, class T>
+void type_fields(Archive& a, T& v) {
+  a.enumerator(v.kind, kKindCount);
+  a(v.name);
+  a(v.base);
+  a(v.low);
+  a(v.high);
+  a(v.capacity);
+  a.list(v.dims, 16, [&](auto& dim) {
+    a(dim.low);
+    a(dim.high);
+  });
+  a.list(v.members, 24, [&](auto& member) {
+    a(member.name);
+    a(member.type);
+    a.enumerator(member.section, 5);
+    a(member.constant);
+    a(member.retain);
+    a(member.init);
+    address_fields(a, member.address);
+  });
+  a.list(v.literals, 12, [&](auto& literal) {
+    a(literal.name);
+    a(literal.value);
+  });
+  a(v.init);
+}
+
+template <class Archive, class T>
+void constant_fields(Archive& a, T& v) {
+  a(v.bits);
+  a(v.text);
+  a.list(v.elements, 12, [&](auto& element) {
+    a(element.first);
+    a(element.count);
+    a(element.value);
+  });
+}
+
+template <class Archive, class T>
+void layout_fields(Archive& a, T& v) {
+  a(v.size);
+  a(v.align);
+  a.list(v.member_offsets, 4, a);
+  a(v.used);
+  a(v.area_capacity);
+}
+
+template <class Archive, class R>
+void region_fields(Archive& a, R& v) {
+  a(v.type);
+  a(v.dim);
+}
+
+template <class Archive, class T>
+void slot_fields(Archive& a, T& v) {
+  a(v.offset);
+  a.enumerator(v.kind, 3);
+  a.enumerator(v.local, 5);
+  a(v.aggregate);
+  a.enumerator(v.cls, kClassCount);
+  region_fields(a, v.region);
+  a(v.name);
+}
+
+template <class Archive, class T>
+void pou_fields(Archive& a, T& v) {
+  a(v.name);
+  a.enumerator(v.kind, 3);
+  a(v.self);
+  a(v.file);
+  a(v.identity);
+  a(v.frame_size);
+  a(v.first_unit);
+  a(v.unit_count);
+  a.list(v.slots, 17, [&](auto& slot) { slot_fields(a, slot); });
+  a.list(v.merges, 8, [&](auto& merge) {
+    a(merge.unit);
+    a.list(merge.slots, 2, a);
+  });
+  a.list(v.lines, 8, [&](auto& line) {
+    a(line.unit);
+    a(line.line);
+  });
+}
+
+template <class Archive, class T>
+void bound_fields(Archive& a, T& v) {
+  a(v.low);
+  a(v.count);
+  a(v.stride);
+  region_fields(a, v.from);
+  a(v.name);
+}
+
+template <class Archive, class T>
+void instance_fields(Archive& a, T& v) {
+  a(v.type);
+  a(v.data);
+  a(v.pou);
+  a(v.parent);
+  a(v.generation);
+  a(v.live);
+  a(v.name);
+}
+
+template <class Archive, class T>
+void task_fields(Archive& a, T& v) {
+  a(v.name);
+  a(v.period_ns);
+  a(v.watchdog_ns);
+  a(v.priority);
+  a.list(v.programs, 4, a);
+}
+
+}  // namespace ir

@@ -1,0 +1,258 @@
+// Finding variables by path and walking all of them. The child of an instance is
+// found through the ID in the slot's initial data, which never changes while the
+// slot lives, so no search over the instance table is needed.
+#include "ir/bytecode/symbols.h"
+
+#include "base/limits.h"
+#include "ir/bytecode/regions.h"
+
+namespace ir {
+namespace {
+
+base::Error no_such(std::string_view path, const std::string& why) {
+  return {base::Refusal::kNoSuchVariable, "`" + std::string(path) + "`: " + why};
+}
+
+// Steps into the instance whose ID is in the slot at symbol.data; false when there is none.
+bool enter(const Image& image, Symbol& symbol) {
+  const uint32_t id = initial_id(image, symbol.data);
+  if (id == 0 || id >= image.instances.size() || !image.instances[id].live) return false;
+  if (image.instances[id].type != symbol.type) return false;
+  symbol.data = image.instances[id].data;
+  return true;
+}
+
+Symbol member_of(const Image& image, const Symbol& owner, size_t number) {
+  const Member& member = image.types[owner.type].members[number];
+  Symbol symbol = owner;
+  symbol.data += image.layouts[owner.type].member_offsets[number];
+  symbol.type = member.type;
+  symbol.constant |= member.constant;
+  symbol.retain |= member.retain;
+  symbol.input |= member.address.area == DirectArea::kInput;
+  symbol.output |= member.address.area == DirectArea::kOutput;
+  return symbol;
+}
+
+// Reads a path from left to right.
+class PathReader {
+ public:
+  PathReader(const Image& image, std::string_view path) : image_(image), path_(path) {}
+
+  base::Result<Symbol> run() {
+    Symbol symbol;
+    if (base::Status root = read_root(symbol); !root) return root.error();
+    while (at_ < path_.size()) {
+      const char next = path_[at_++];
+      base::Status step = next == '.'   ? read_member(symbol)
+                          : next == '[' ? read_index(symbol)
+                                        : fail("expected `.` or `[`");
+      if (!step) return step.error();
+    }
+    return symbol;
+  }
+
+ private:
+  base::Error fail(const std::string& why) const { return no_such(path_, why); }
+
+  std::string_view name() {
+    const size_t end = std::min(path_.find_first_of(".[", at_), path_.size());
+    const std::string_view text = path_.substr(at_, end - at_);
+    at_ = end;
+    return text;
+  }
+
+  base::Status read_root(Symbol& symbol) {
+    const std::string_view text = name();
+    for (uint32_t id = 1; id < image_.instances.size(); ++id) {
+      const Instance& row = image_.instances[id];
+      const bool program = row.live && image_.types.is_instance(row.type) &&
+                           image_.types[row.type].kind == Kind::kProgram;
+      if (program && same_name(row.name, text)) {
+        symbol.data = row.data;
+        symbol.type = row.type;
+        return base::Ok{};
+      }
+    }
+    symbol.type = image_.globals;
+    symbol.data = image_.instances.empty() ? 0 : image_.instances[0].data;
+    return step_to(symbol, text, "is neither a program nor a global variable");
+  }
+
+  base::Status read_member(Symbol& symbol) {
+    const std::string_view text = name();
+    if (!image_.types.has_members(symbol.type)) {
+      return fail("`" + image_.types.text(symbol.type) + "` has no members");
+    }
+    return step_to(symbol, text, "is no member of `" + image_.types.text(symbol.type) + "`");
+  }
+
+  base::Status step_to(Symbol& symbol, std::string_view text, const std::string& why) {
+    const int32_t number = image_.types.find_member(symbol.type, text);
+    if (number < 0) return fail("`" + std::string(text) + "` " + why);
+    const Member& member = image_.types[symbol.type].members[static_cast<size_t>(number)];
+    if (member.section == Section::kInOut) {
+      return fail("`" + std::string(text) + "` is an in-out; name the variable that is bound");
+    }
+    symbol = member_of(image_, symbol, static_cast<size_t>(number));
+    return enter_if_instance(symbol);
+  }
+
+  base::Status enter_if_instance(Symbol& symbol) {
+    if (image_.types.is_instance(symbol.type) && !enter(image_, symbol)) {
+      return fail("there is no such instance");
+    }
+    return base::Ok{};
+  }
+
+  base::Status read_index(Symbol& symbol) {
+    const Type& array = image_.types[symbol.type];
+    if (array.kind != Kind::kArray) return fail("only arrays have an index");
+    uint64_t flat = 0;
+    for (size_t dim = 0; dim < array.dims.size(); ++dim) {
+      int64_t index = 0;
+      if (!read_number(index)) return fail("an index is a whole number");
+      const Dimension& d = array.dims[dim];
+      if (index < d.low || index > d.high) {
+        return fail("index " + std::to_string(index) + " is outside " + std::to_string(d.low) +
+                    ".." + std::to_string(d.high));
+      }
+      flat = flat * d.count() + (static_cast<uint64_t>(index) - static_cast<uint64_t>(d.low));
+      const char wanted = dim + 1 == array.dims.size() ? ']' : ',';
+      if (at_ >= path_.size() || path_[at_] != wanted) {
+        return fail("the array has " + std::to_string(array.dims.size()) + " dimensions");
+      }
+      ++at_;
+    }
+    symbol.data += static_cast<uint32_t>(flat * image_.layouts[array.base].size);
+    symbol.type = array.base;
+    return enter_if_instance(symbol);
+  }
+
+  void skip_spaces() {
+    while (at_ < path_.size() && path_[at_] == ' ') ++at_;
+  }
+
+  bool read_number(int64_t& number) {
+    skip_spaces();
+    const bool negative = at_ < path_.size() && path_[at_] == '-';
+    if (negative) ++at_;
+    uint64_t magnitude = 0;
+    const size_t begin = at_;
+    while (at_ < path_.size() && path_[at_] >= '0' && path_[at_] <= '9' && at_ - begin < 18) {
+      magnitude = magnitude * 10 + static_cast<uint64_t>(path_[at_++] - '0');
+    }
+    if (at_ == begin) return false;
+    skip_spaces();
+    number = negative ? -static_cast<int64_t>(magnitude) : static_cast<int64_t>(magnitude);
+    return true;
+  }
+
+  const Image& image_;
+  std::string_view path_;
+  size_t at_ = 0;
+};
+
+// Visits leaves in declaration order. Depth is bounded because an image that was
+// not verified may hold instances that contain themselves.
+class LeafWalk {
+ public:
+  using Visit = std::function<void(const std::string&, const Symbol&)>;
+  LeafWalk(const Image& image, const Visit& visit) : image_(image), visit_(visit) {}
+
+  void walk(const Symbol& symbol, uint32_t depth) {
+    const Type& type = image_.types[symbol.type];
+    if (depth > base::kMaxNesting) return;
+    if (type.kind == Kind::kArray) return elements(symbol, depth);
+    if (image_.types.has_members(symbol.type)) return members(symbol, depth);
+    visit_(path_, symbol);
+  }
+
+  void root(const Symbol& symbol, std::string_view name) {
+    path_ = name;
+    walk(symbol, 0);
+  }
+
+ private:
+  void part(Symbol symbol, uint32_t depth) {
+    if (!image_.types.is_instance(symbol.type) || enter(image_, symbol)) walk(symbol, depth + 1);
+  }
+
+  void members(const Symbol& symbol, uint32_t depth) {
+    const size_t length = path_.size();
+    const Type& type = image_.types[symbol.type];
+    for (size_t i = 0; i < type.members.size(); ++i) {
+      if (type.members[i].section == Section::kInOut) continue;
+      if (length != 0) path_ += '.';
+      path_ += type.members[i].name;
+      part(member_of(image_, symbol, i), depth);
+      path_.resize(length);
+    }
+  }
+
+  void elements(const Symbol& symbol, uint32_t depth) {
+    const size_t length = path_.size();
+    const Type& type = image_.types[symbol.type];
+    const uint32_t stride = image_.layouts[type.base].size;
+    std::vector<int64_t> index;
+    uint64_t count = 1;
+    for (const Dimension& dim : type.dims) {
+      index.push_back(dim.low);
+      count *= dim.count();
+    }
+    Symbol element = symbol;
+    element.type = type.base;
+    for (uint64_t flat = 0; flat < count; ++flat, element.data += stride) {
+      append_index(index);
+      part(element, depth);
+      path_.resize(length);
+      advance(type, index);
+    }
+  }
+
+  void append_index(const std::vector<int64_t>& index) {
+    char separator = '[';
+    for (int64_t i : index) {
+      path_ += separator + std::to_string(i);
+      separator = ',';
+    }
+    path_ += ']';
+  }
+
+  static void advance(const Type& type, std::vector<int64_t>& index) {
+    for (size_t dim = index.size(); dim-- > 0;) {
+      if (index[dim] != type.dims[dim].high) {
+        ++index[dim];
+        return;
+      }
+      index[dim] = type.dims[dim].low;
+    }
+  }
+
+  const Image& image_;
+  const Visit& visit_;
+  std::string path_;
+};
+
+}  // namespace
+
+base::Result<Symbol> find_symbol(const Image& image, std::string_view path) {
+  return PathReader(image, path).run();
+}
+
+void for_each_leaf(const Image& image,
+                   const std::function<void(const std::string& path, const Symbol&)>& visit) {
+  LeafWalk walk(image, visit);
+  Symbol globals;
+  globals.type = image.globals;
+  globals.data = image.instances.empty() ? 0 : image.instances[0].data;
+  walk.root(globals, "");
+  for (uint32_t id : image.program_ids()) {
+    Symbol program;
+    program.type = image.instances[id].type;
+    program.data = image.instances[id].data;
+    walk.root(program, image.instances[id].name);
+  }
+}
+
+}  // namespace ir
