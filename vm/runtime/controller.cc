@@ -131,7 +131,7 @@ std::unique_ptr<Generation> Controller::prepare(ir::VerifiedImage next_image) {
       Generation::build(std::move(next_image), impl_->running->number() + 1, impl_->memory.data());
   const Generation* running = impl_->running.get();
   std::erase_if(impl_->tables, [&](const auto& row) { return row.first != running; });
-  auto tables = std::make_unique<TaskTables>(*next, impl_->scheduler.next_cycle_ns());
+  auto tables = std::make_unique<TaskTables>(*next, 0);
   tables->adopt_forces(image(), forces());
   impl_->tables[next.get()] = std::move(tables);
   return next;

@@ -14,7 +14,7 @@ TaskSlot make_slot(const ir::Image& image, const ir::ImageTask& task, int64_t fi
   slot.status.name = task.name;
   slot.status.period_ns = std::max<int64_t>(task.period_ns, 1);
   slot.status.priority = task.priority;
-  slot.watchdog_ns = task.watchdog_ns;
+  slot.watchdog_ns = task.watchdog_ns > 0 ? task.watchdog_ns : 10 * slot.status.period_ns;
   slot.programs = task.programs;
   slot.execution = std::make_unique<Execution>(image.call_depth);
   slot.inputs.resize(image.input_bytes);

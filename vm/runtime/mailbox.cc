@@ -1,0 +1,58 @@
+#include "vm/runtime/mailbox.h"
+
+#include <chrono>
+#include <thread>
+
+namespace vm {
+namespace {
+
+// Short enough that a command feels immediate, long enough to cost nothing.
+constexpr auto kPoll = std::chrono::microseconds(100);
+
+}  // namespace
+
+Mailbox::Outcome Mailbox::run(const std::function<void()>& job, int64_t timeout_ns) {
+  auto deadline = std::chrono::steady_clock::now() + std::chrono::nanoseconds(timeout_ns);
+  job_ = &job;
+  uint32_t expected = kEmpty;
+  if (!state_.compare_exchange_strong(expected, kPosted, std::memory_order_acq_rel)) {
+    return Outcome::kClosed;
+  }
+  for (;;) {
+    uint32_t state = state_.load(std::memory_order_acquire);
+    if (state == kDone) {
+      expected = kDone;
+      state_.compare_exchange_strong(expected, kEmpty, std::memory_order_acq_rel);
+      return Outcome::kDone;
+    }
+    if (state == kClosed) return Outcome::kClosed;
+    if (state == kPosted && std::chrono::steady_clock::now() >= deadline) {
+      expected = kPosted;
+      if (state_.compare_exchange_strong(expected, kEmpty, std::memory_order_acq_rel)) {
+        return Outcome::kTimeout;
+      }
+      continue;  // it was taken just now
+    }
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+void Mailbox::serve() {
+  uint32_t expected = kPosted;
+  if (!state_.compare_exchange_strong(expected, kRunning, std::memory_order_acq_rel)) return;
+  (*job_)();
+  state_.store(kDone, std::memory_order_release);
+}
+
+void Mailbox::close() {
+  uint32_t state = state_.load(std::memory_order_acquire);
+  // The answer of the last job must still be seen; the channel thread empties the box first.
+  while (state == kDone || !state_.compare_exchange_weak(state, kClosed)) {
+    if (state == kDone) {
+      std::this_thread::sleep_for(kPoll);
+      state = state_.load(std::memory_order_acquire);
+    }
+  }
+}
+
+}  // namespace vm

@@ -1,0 +1,31 @@
+// Hand-over of commands from one channel thread to the control thread. The control thread runs a
+// waiting job at a boundary and never waits itself: without a job, serve() is one load.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+
+namespace vm {
+
+class Mailbox {
+ public:
+  enum class Outcome : uint8_t { kDone, kTimeout, kClosed };
+
+  // Channel thread: runs `job` on the control thread, waits for its end. After kTimeout and
+  // kClosed it has not run and will not.
+  Outcome run(const std::function<void()>& job, int64_t timeout_ns);
+
+  // Control thread, at a boundary.
+  void serve();
+  // Control thread, when it ends: no job is taken any more.
+  void close();
+
+ private:
+  enum State : uint32_t { kEmpty, kPosted, kRunning, kDone, kClosed };
+
+  std::atomic<uint32_t> state_{kEmpty};
+  const std::function<void()>* job_ = nullptr;  // belongs to whoever the state says
+};
+
+}  // namespace vm

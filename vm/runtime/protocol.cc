@@ -1,0 +1,215 @@
+#include "vm/runtime/protocol.h"
+
+#include "vm/runtime/fields.h"
+
+namespace vm {
+namespace {
+
+enum class Body : uint8_t { kNone, kNames, kAssignments, kPage, kData, kDigest, kFlags };
+
+struct CommandRow {
+  const char* name;
+  Body body;
+  bool changes_state;
+};
+constexpr CommandRow kCommands[] = {
+#define COMMAND(id, name, body, changes_state, meaning) {name, Body::body, changes_state},
+#include "vm/runtime/commands.def"
+#undef COMMAND
+};
+
+const CommandRow& row(Command command) { return kCommands[static_cast<size_t>(command)]; }
+
+constexpr uint32_t kTextBytes = 4;  // of an empty one
+
+// `R` is a Request for reading, a const one for writing.
+template <class A, class R>
+void request_fields(A& a, R& request) {
+  if (row(request.command).changes_state) {
+    a(request.expected);
+    a(request.edition);
+  }
+  switch (row(request.command).body) {
+    case Body::kNone:
+      break;
+    case Body::kNames:
+      a.list(request.names, kTextBytes);
+      break;
+    case Body::kAssignments:
+      a.list(request.names, kTextBytes);
+      a.list(request.values, kTextBytes);
+      break;
+    case Body::kPage:
+      a(request.offset);
+      a.list(request.names, kTextBytes);
+      break;
+    case Body::kData:
+      a(request.offset);
+      a(request.data);
+      break;
+    case Body::kDigest:
+      a(request.digest);
+      break;
+    case Body::kFlags:
+      a(request.flags);
+      break;
+  }
+}
+
+template <class A, class T>
+void task_fields(A& a, T& task) {
+  a(task.name);
+  a(task.period_ns);
+  a(task.priority);
+  a(task.scans);
+  a(task.missed);
+  a(task.last_ns);
+  a(task.max_ns);
+  a(task.stopped);
+}
+
+template <class A, class T>
+void trap_fields(A& a, T& trap) {
+  a(trap.cycle);
+  a(trap.task);
+  a(trap.text.pou);
+  a(trap.text.file);
+  a(trap.text.line);
+  a(trap.text.text);
+}
+
+template <class A, class T>
+void value_fields(A& a, T& value) {
+  a(value.path);
+  a(value.type);
+  a(value.value);
+}
+
+template <class A, class T>
+void status_fields(A& a, T& report) {
+  a(report.name);
+  a(report.running);
+  a(report.edition);
+  a(report.change);
+  a(report.previous);
+  a(report.boots_next);
+  a(report.cycles);
+  a(report.uptime_ns);
+  a(report.base_period_ns);
+  a(report.faulted);
+  a(report.forces);
+  a.list(report.tasks, 49);
+  a.list(report.traps, 28);
+}
+
+template <class A, class T>
+void values_fields(A& a, T& values) {
+  a(values.cycle);
+  a(values.next);
+  a.list(values.rows, 3 * kTextBytes);
+}
+
+template <class A, class T>
+void image_fields(A& a, T& part) {
+  a(part.digest);
+  a(part.total);
+  a(part.bytes);
+}
+
+}  // namespace
+
+#define FIELDS(type, list)                                          \
+  static void fields(FieldWriter& a, const type& v) { list(a, v); } \
+  static void fields(FieldReader& a, type& v) { list(a, v); }
+FIELDS(TaskStatus, task_fields)
+FIELDS(TrapRow, trap_fields)
+FIELDS(ValueRow, value_fields)
+FIELDS(StatusReport, status_fields)
+FIELDS(Values, values_fields)
+FIELDS(ImagePart, image_fields)
+#undef FIELDS
+
+base::Error not_understood(const char* what) {
+  return {base::Refusal::kProtocol, std::string("message not understood: ") + what};
+}
+
+const char* command_name(Command command) { return row(command).name; }
+bool changes_state(Command command) { return row(command).changes_state; }
+
+base::Bytes encode(const Request& request) {
+  FieldWriter writer;
+  writer(kProtocolVersion);
+  writer(static_cast<uint8_t>(request.command));
+  request_fields(writer, request);
+  return writer.take();
+}
+
+base::Result<Request> decode_request(base::ByteSpan bytes) {
+  FieldReader reader(bytes);
+  uint8_t version = 0;
+  uint8_t command = 0;
+  reader(version);
+  reader(command);
+  if (version != kProtocolVersion) return not_understood("another version of the protocol");
+  if (command >= std::size(kCommands)) return not_understood("unknown command");
+  Request request;
+  request.command = static_cast<Command>(command);
+  request_fields(reader, request);
+  if (!reader.done()) return not_understood("damaged request");
+  if (request.names.size() > kMaxNames) return not_understood("too many names");
+  if (row(request.command).body == Body::kAssignments &&
+      request.names.size() != request.values.size()) {
+    return not_understood("names without values");
+  }
+  return request;
+}
+
+base::Bytes encode_answer(base::ByteSpan body) {
+  FieldWriter writer;
+  writer(kProtocolVersion);
+  writer(true);
+  base::Bytes answer = writer.take();
+  answer.insert(answer.end(), body.begin(), body.end());
+  return answer;
+}
+
+base::Bytes encode_answer(const base::Error& error) {
+  FieldWriter writer;
+  writer(kProtocolVersion);
+  writer(false);
+  writer(std::string(base::refusal_code(error.refusal)));
+  writer(error.text.substr(0, kMaxNameBytes));
+  return writer.take();
+}
+
+base::Result<base::Bytes> decode_answer(base::ByteSpan bytes) {
+  if (bytes.size() < 2 || bytes[0] != kProtocolVersion || bytes[1] > 1) {
+    return not_understood("damaged answer");
+  }
+  base::ByteSpan rest = bytes.subspan(2);
+  if (bytes[1] == 1) return base::Bytes(rest.begin(), rest.end());
+  FieldReader reader(rest);
+  std::string code;
+  std::string text;
+  reader(code);
+  reader(text);
+  auto refusal = base::refusal_from_code(code);
+  if (!reader.done() || !refusal) return not_understood("damaged answer");
+  return base::Error{*refusal, text};
+}
+
+base::Bytes encode(const StatusReport& report) { return write_fields(report); }
+base::Bytes encode(const Values& values) { return write_fields(values); }
+base::Bytes encode(const ImagePart& part) { return write_fields(part); }
+
+base::Result<StatusReport> decode_status(base::ByteSpan body) {
+  return read_fields<StatusReport>(body, "status");
+}
+base::Result<Values> decode_values(base::ByteSpan body) {
+  return read_fields<Values>(body, "values");
+}
+base::Result<ImagePart> decode_image_part(base::ByteSpan body) {
+  return read_fields<ImagePart>(body, "image");
+}
+
+}  // namespace vm

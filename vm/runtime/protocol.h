@@ -1,0 +1,105 @@
+// The control channel's messages (architecture.md section 12): binary, little endian, each of one
+// version byte, one command or result byte, and a body. Framing: frames.h. Both directions are
+// decoded by the bounded reader, and neither side believes the other.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/hash.h"
+#include "base/result.h"
+#include "vm/runtime/controller.h"
+
+namespace vm {
+
+inline constexpr uint8_t kProtocolVersion = 1;
+inline constexpr uint32_t kMaxMessageBytes = 1u << 20;
+inline constexpr uint32_t kMaxNames = 4096;          // in one request
+inline constexpr uint32_t kMaxNameBytes = 65536;     // of a path or a value
+inline constexpr uint32_t kChunkBytes = 512u << 10;  // of an image, a package, a page of rows
+
+enum class Command : uint8_t {
+#define COMMAND(id, name, body, changes_state, meaning) id,
+#include "vm/runtime/commands.def"
+#undef COMMAND
+};
+const char* command_name(Command command);
+bool changes_state(Command command);
+
+enum SwitchFlags : uint32_t {
+  kAllowLoss = 1,
+  kPermanent = 2,     // accept at once
+  kAllowOverrun = 4,  // even if the predicted pause does not fit the tightest task
+};
+
+struct Request {
+  Command command = Command::kStatus;
+  // Of commands that change state: what the sender believes to run.
+  base::Digest expected{};
+  uint64_t edition = 0;
+  // Bodies. Assignments: names and values in parallel. Page: offset and names (a pattern).
+  std::vector<std::string> names;
+  std::vector<std::string> values;
+  uint64_t offset = 0;
+  base::Bytes data;
+  base::Digest digest{};
+  uint32_t flags = 0;
+};
+base::Bytes encode(const Request& request);
+base::Result<Request> decode_request(base::ByteSpan bytes);
+
+// An answer is a body or an Error.
+base::Bytes encode_answer(base::ByteSpan body);
+base::Bytes encode_answer(const base::Error& error);
+// The body; the other side's Error as it was; kProtocol for anything else.
+base::Result<base::Bytes> decode_answer(base::ByteSpan bytes);
+
+struct TrapRow {
+  uint64_t cycle = 0;
+  std::string task;
+  TrapText text;
+};
+
+struct StatusReport {
+  std::string name;
+  base::Digest running{};
+  uint64_t edition = 0;     // counts switches, undos and accepts
+  std::string change;       // state of the change; "idle"
+  base::Digest previous{};  // during a trial: what undo brings back
+  base::Digest boots_next{};
+  uint64_t cycles = 0;
+  int64_t uptime_ns = 0;
+  int64_t base_period_ns = 0;
+  bool faulted = false;
+  uint64_t forces = 0;
+  std::vector<TaskStatus> tasks;
+  std::vector<TrapRow> traps;
+};
+
+struct ValueRow {
+  std::string path;
+  std::string type;
+  std::string value;  // empty in lists
+};
+struct Values {
+  uint64_t cycle = 0;  // of the boundary at which they were taken
+  uint64_t next = 0;   // of lists: where the next page begins; 0: this was the last
+  std::vector<ValueRow> rows;
+};
+
+struct ImagePart {
+  base::Digest digest{};
+  uint64_t total = 0;
+  base::Bytes bytes;
+};
+
+base::Bytes encode(const StatusReport& report);
+base::Bytes encode(const Values& values);
+base::Bytes encode(const ImagePart& part);
+base::Result<StatusReport> decode_status(base::ByteSpan body);
+base::Result<Values> decode_values(base::ByteSpan body);
+base::Result<ImagePart> decode_image_part(base::ByteSpan body);
+
+}  // namespace vm

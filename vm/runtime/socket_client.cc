@@ -1,0 +1,66 @@
+#include "vm/runtime/socket_client.h"
+
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <sys/un.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "vm/runtime/frames.h"
+#include "vm/runtime/socket_server.h"
+
+namespace vm {
+namespace {
+
+constexpr time_t kPatienceSeconds = 60;
+
+}  // namespace
+
+base::Error SocketClient::lost(const char* what) const {
+  return {base::Refusal::kNotRunning, "the controller in " + directory_ + " " + what};
+}
+
+base::Result<std::unique_ptr<SocketClient>> SocketClient::connect(const std::string& directory) {
+  Descriptor holder;
+  base::Result<std::string> path = socket_path(directory, holder);
+  if (!path.ok()) return path.error();
+  Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  timeval patience{kPatienceSeconds, 0};
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::memcpy(address.sun_path, path->data(), path->size());
+  if (::connect(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
+    return base::Error{base::Refusal::kNotRunning,
+                       "no controller runs in " + directory + ": " + std::strerror(errno)};
+  }
+  return std::unique_ptr<SocketClient>(new SocketClient(directory, std::move(socket)));
+}
+
+base::Result<base::Bytes> SocketClient::exchange(base::ByteSpan request) {
+  base::Bytes out = frame(request);
+  for (size_t sent = 0; sent < out.size();) {
+    ssize_t n = ::send(socket_.get(), out.data() + sent, out.size() - sent, MSG_NOSIGNAL);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return lost("closed the connection");
+    sent += static_cast<size_t>(n);
+  }
+  FrameReader reader;
+  uint8_t buffer[65536];
+  for (;;) {
+    if (std::optional<base::Bytes> answer = reader.next()) return std::move(*answer);
+    if (reader.broken()) {
+      return base::Error{base::Refusal::kProtocol, "answer not understood: too long"};
+    }
+    ssize_t n = ::recv(socket_.get(), buffer, std::min(sizeof buffer, reader.room()), 0);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && errno == EAGAIN) return lost("does not answer");
+    if (n <= 0) return lost("closed the connection");
+    reader.add({buffer, static_cast<size_t>(n)});
+  }
+}
+
+}  // namespace vm

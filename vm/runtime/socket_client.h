@@ -1,0 +1,29 @@
+// The client side of the control channel.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "vm/runtime/descriptor.h"
+#include "vm/runtime/ports.h"
+
+namespace vm {
+
+class SocketClient : public Transport {
+ public:
+  // kNotRunning when nobody listens in `directory`.
+  static base::Result<std::unique_ptr<SocketClient>> connect(const std::string& directory);
+  // One framed message each way; kNotRunning when the other side goes away or says nothing for
+  // 60 s.
+  base::Result<base::Bytes> exchange(base::ByteSpan request) override;
+
+ private:
+  SocketClient(std::string directory, Descriptor socket)
+      : directory_(std::move(directory)), socket_(std::move(socket)) {}
+  base::Error lost(const char* what) const;
+
+  std::string directory_;
+  Descriptor socket_;
+};
+
+}  // namespace vm

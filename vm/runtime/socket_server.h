@@ -1,0 +1,50 @@
+// The server side of the control channel: a Unix socket in the state directory, owner only, one
+// thread for all connections, fixed memory for each. It hands every message to a Service and
+// sends what that answers.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "base/bytes.h"
+#include "base/result.h"
+#include "vm/runtime/descriptor.h"
+
+namespace vm {
+
+class Service {
+ public:
+  virtual ~Service() = default;
+  // On the server's thread. `keep_open` false closes the connection after the answer.
+  virtual base::Bytes answer(base::ByteSpan request, bool& keep_open) = 0;
+};
+
+class SocketServer {
+ public:
+  // `directory` must exist; a socket left by a dead controller there is replaced, so the caller
+  // holds the directory's lock. `service` must outlive the server.
+  static base::Result<std::unique_ptr<SocketServer>> open(const std::string& directory,
+                                                          Service& service);
+  // Ends the thread after the request at hand; removes the socket.
+  ~SocketServer();
+
+ private:
+  SocketServer(std::string path, Descriptor listener, Descriptor wake, Service& service);
+  void serve();
+
+  std::string path_;
+  Descriptor listener_;
+  Descriptor wake_;  // eventfd: the thread shall end
+  Service& service_;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+inline constexpr const char* kSocketName = "control";
+// Absolute path of the socket as it fits into a socket address, however long `directory` is.
+// `holder` keeps it valid.
+base::Result<std::string> socket_path(const std::string& directory, Descriptor& holder);
+
+}  // namespace vm
