@@ -191,7 +191,7 @@ class TypeText {
         break;
       case Kind::kSubrange:
         append(type.base, depth);
-        text_ += "(" + bounds_text(type.low, type.high) + ")";
+        text_ += "(" + range_text(type) + ")";
         break;
       case Kind::kArray:
         text_ += "ARRAY[" + dimensions_text(type.dims) + "] OF ";
@@ -203,6 +203,15 @@ class TypeText {
       default:
         append_members(type, depth);
     }
+  }
+
+  // Bounds of ULINT and LWORD are bit patterns.
+  std::string range_text(const Type& type) const {
+    const Kind root = types_.contains(type.base) ? types_.root_kind(type.base) : Kind::kLint;
+    return root == Kind::kUlint || root == Kind::kLword
+               ? std::to_string(static_cast<uint64_t>(type.low)) + ".." +
+                     std::to_string(static_cast<uint64_t>(type.high))
+               : bounds_text(type.low, type.high);
   }
 
   void append_enum(const Type& type, uint32_t depth) {

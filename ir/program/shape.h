@@ -1,0 +1,16 @@
+// Questions about types that the verifier of the IR asks.
+#pragma once
+
+#include "ir/types/types.h"
+
+namespace ir {
+
+// The same bytes under any layout: an addr of one may stand for the other.
+// Aliases and subranges of one elementary type are one shape.
+bool same_shape(const TypeTable& types, TypeId a, TypeId b);
+// What kCopy may copy: one shape, or two strings of one kind.
+bool can_copy(const TypeTable& types, TypeId to, TypeId from);
+// Is it an instance slot, or does it embed one?
+bool holds_instance(const TypeTable& types, TypeId type);
+
+}  // namespace ir

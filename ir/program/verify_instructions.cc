@@ -1,0 +1,454 @@
+// Rules of single instructions: what each operation takes and gives, and that
+// everything that it refers to exists.
+#include <optional>
+#include <string>
+
+#include "ir/program/ops.h"
+#include "ir/program/place.h"
+#include "ir/program/shape.h"
+#include "ir/program/text_names.h"
+#include "ir/program/verify_parts.h"
+#include "stdlib/native/natives.h"
+
+namespace ir {
+namespace {
+
+bool is_numeric(Scalar s) { return is_integer(s) || is_float(s); }
+bool is_bits(Scalar s) { return is_integer(s) || s == Scalar::kBool; }
+bool is_plain(Scalar s) { return is_numeric(s) || s == Scalar::kBool; }
+
+class InstVerifier {
+ public:
+  InstVerifier(const Program& program, const Pou& pou) : program_(program), pou_(pou) {}
+
+  // The first reason found; empty when the instruction is right.
+  std::string check(const Inst& inst) {
+    reason_.clear();
+    check_form(inst);
+    if (reason_.empty()) {
+      check_operation(inst);
+    }
+    return reason_;
+  }
+
+  void set_values_defined_by(const std::vector<const Inst*>& definitions) {
+    definitions_ = &definitions;
+  }
+
+ private:
+  void fail(const std::string& why) {
+    if (reason_.empty()) {
+      reason_ = why;
+    }
+  }
+  void require(bool holds, const char* why) {
+    if (!holds) {
+      fail(why);
+    }
+  }
+
+  Scalar scalar_of(ValueId value) const { return pou_.values[value.index].scalar; }
+  Scalar operand(const Inst& inst, size_t i) const { return scalar_of(inst.operands[i]); }
+
+  // Numbers of operands, targets and results, and ids in range.
+  void check_form(const Inst& inst) {
+    const int operands = op_operand_count(inst.op);
+    require(operands < 0 || inst.operands.size() == static_cast<size_t>(operands),
+            "number of operands");
+    for (const ValueId value : inst.operands) {
+      require(value.index < pou_.values.size(), "an operand is no value");
+    }
+    require(op_has_result(inst.op) || !inst.result.valid(), "it has no result");
+    require(inst.result.valid() || !op_has_result(inst.op) || inst.op == Op::kCallNative,
+            "it needs a result");
+    if (inst.result.valid() && reason_.empty()) {
+      require(scalar_of(inst.result) == result_scalar(inst), "its result has another type");
+    }
+    const size_t targets = inst.op == Op::kJump ? 1 : inst.op == Op::kBranch ? 2 : 0;
+    require(inst.targets.size() == targets, "number of targets");
+    for (const Target& target : inst.targets) {
+      check_target(target);
+    }
+  }
+
+  void check_target(const Target& target) {
+    if (target.block.index >= pou_.blocks.size()) {
+      return fail("jump to a block that does not exist");
+    }
+    const std::vector<ValueId>& params = pou_.blocks[target.block.index].params;
+    require(params.size() == target.args.size(), "number of block arguments");
+    for (size_t i = 0; i < target.args.size() && reason_.empty(); ++i) {
+      require(target.args[i].index < pou_.values.size(), "a block argument is no value");
+      if (reason_.empty()) {
+        require(scalar_of(target.args[i]) == scalar_of(params[i]),
+                "a block argument has another type than the parameter");
+      }
+    }
+  }
+
+  void require_operands(const Inst& inst, bool fits) {
+    require(fits, "the operation is not defined for its type");
+    for (const ValueId value : inst.operands) {
+      require(scalar_of(value) == inst.scalar, "operand of another type");
+    }
+  }
+
+  void check_operation(const Inst& inst) {
+    switch (inst.op) {
+      case Op::kConst:
+        require(is_plain(inst.scalar), "constant of an address or string");
+        break;
+      case Op::kLoad:
+      case Op::kStore:
+      case Op::kCopy:
+      case Op::kInit:
+      case Op::kAddress:
+      case Op::kString:
+      case Op::kCallInstance:
+        check_memory(inst);
+        break;
+      case Op::kShl:
+      case Op::kShr:
+      case Op::kRol:
+      case Op::kRor:
+        require(is_integer(inst.scalar) && operand(inst, 0) == inst.scalar &&
+                    operand(inst, 1) == Scalar::kU32,
+                "a shift takes an integer of its type and a u32");
+        break;
+      case Op::kSelect:
+        require(is_plain(inst.scalar) && operand(inst, 0) == Scalar::kBool &&
+                    operand(inst, 1) == inst.scalar && operand(inst, 2) == inst.scalar,
+                "select takes a bool and two values of its type");
+        break;
+      case Op::kWrap:
+      case Op::kToFloat:
+      case Op::kRound:
+      case Op::kTrunc:
+      case Op::kToBool:
+      case Op::kBits:
+        require(conversion_fits(inst.op, operand(inst, 0), inst.scalar),
+                "there is no such conversion");
+        break;
+      case Op::kCallFunction:
+        require(inst.pou.index < program_.pous.size() &&
+                    program_.pous[inst.pou.index].kind == PouKind::kFunction,
+                "call of something that is no function");
+        break;
+      case Op::kCallNative:
+        check_native(inst);
+        break;
+      case Op::kTaskTime:
+        require(inst.scalar == Scalar::kI64, "the task's time is i64");
+        break;
+      case Op::kBranch:
+        require(operand(inst, 0) == Scalar::kBool, "a branch takes a bool");
+        break;
+      case Op::kTrap:
+        require(static_cast<uint32_t>(inst.trap) < kTrapCount, "unknown trap");
+        break;
+      default:
+        check_arithmetic(inst);
+    }
+  }
+
+  static bool conversion_fits(Op op, Scalar from, Scalar to) {
+    switch (op) {
+      case Op::kWrap:
+        return is_bits(from) && is_integer(to);
+      case Op::kToFloat:
+        return is_numeric(from) && is_float(to);
+      case Op::kRound:
+      case Op::kTrunc:
+        return is_float(from) && is_integer(to);
+      case Op::kToBool:
+        return is_integer(from) && to == Scalar::kBool;
+      default:
+        return is_plain(from) && is_plain(to) && scalar_size(from) == scalar_size(to) &&
+               from != Scalar::kBool && to != Scalar::kBool;
+    }
+  }
+
+  void check_arithmetic(const Inst& inst) {
+    switch (inst.op) {
+      case Op::kAdd:
+      case Op::kSub:
+      case Op::kMul:
+      case Op::kDiv:
+      case Op::kNeg:
+      case Op::kAbs:
+      case Op::kMin:
+      case Op::kMax:
+      case Op::kLt:
+      case Op::kLe:
+        require_operands(inst, is_numeric(inst.scalar));
+        break;
+      case Op::kMod:
+      case Op::kCheckRange:
+      case Op::kCheckStep:
+        require_operands(inst, is_integer(inst.scalar));
+        break;
+      case Op::kSqrt:
+        require_operands(inst, is_float(inst.scalar));
+        break;
+      case Op::kAnd:
+      case Op::kOr:
+      case Op::kXor:
+      case Op::kNot:
+        require_operands(inst, is_bits(inst.scalar));
+        break;
+      case Op::kEq:
+      case Op::kNe:
+        require_operands(inst, is_plain(inst.scalar));
+        break;
+      default:
+        break;
+    }
+  }
+
+  void check_native(const Inst& inst) {
+    if (inst.native >= stdlib::native_count()) {
+      return fail("there is no such native function");
+    }
+    const stdlib::NativeRow& row = stdlib::native_row(inst.native);
+    require(row.arguments.size() == inst.operands.size(), "number of arguments");
+    for (size_t i = 0; i < inst.operands.size() && reason_.empty(); ++i) {
+      require(operand(inst, i) == stdlib::native_scalar(row.arguments[i]),
+              "argument of another type");
+    }
+    if (row.result == 'v') {
+      require(!inst.result.valid(), "the native function has no result");
+      require(reason_.empty() && !inst.operands.empty() && writable(inst.operands[0]),
+              "the result would be written into a constant");
+    } else {
+      require(inst.scalar == stdlib::native_scalar(row.result), "result of another type");
+    }
+  }
+
+  // What `value` points to, where the instruction that made it is known.
+  const Place* pointee(ValueId value) const {
+    const Inst* definition = (*definitions_)[value.index];
+    const bool points = definition != nullptr &&
+                        (definition->op == Op::kAddress || definition->op == Op::kString) &&
+                        definition->place.index < pou_.places.size();
+    return points ? &pou_.places[definition->place.index] : nullptr;
+  }
+
+  bool writable(ValueId value) const {
+    const Place* place = pointee(value);
+    return place == nullptr || place->base != PlaceBase::kConst;
+  }
+
+  void check_memory(const Inst& inst) {
+    const std::optional<PlaceState> state = check_one_place(inst.place);
+    if (!state) {
+      return;
+    }
+    const bool reads = inst.op == Op::kLoad || inst.op == Op::kString || inst.op == Op::kAddress;
+    require(reads || pou_.places[inst.place.index].base != PlaceBase::kConst,
+            "a constant is written");
+    require(!state->slot || inst.op == Op::kStore, "in-out slot is used without following it");
+    if (reason_.empty()) {
+      check_access(inst, *state);
+    }
+  }
+
+  void check_access(const Inst& inst, const PlaceState& state) {
+    const TypeTable& types = program_.types;
+    const Kind kind = types[state.type].kind;
+    switch (inst.op) {
+      case Op::kLoad:
+        require(types.is_scalar(state.type) && types.scalar(state.type) == inst.scalar,
+                "load of another type than the place has");
+        break;
+      case Op::kStore:
+        check_store(inst, state);
+        break;
+      case Op::kCopy:
+        check_copy(inst, state);
+        break;
+      case Op::kInit:
+        require(!holds_instance(types, state.type), "instances are not initialised by code");
+        break;
+      case Op::kAddress:
+        require(inst.scalar == Scalar::kAddr, "an address is addr");
+        break;
+      case Op::kString:
+        require((kind == Kind::kString && inst.scalar == Scalar::kStr) ||
+                    (kind == Kind::kWstring && inst.scalar == Scalar::kWstr),
+                "the place is no string of that kind");
+        break;
+      default:
+        require(kind == Kind::kFunctionBlock, "the place is no function block instance");
+    }
+  }
+
+  void check_store(const Inst& inst, const PlaceState& state) {
+    const TypeTable& types = program_.types;
+    require(operand(inst, 0) == inst.scalar, "operand of another type");
+    if (!state.slot) {
+      require(types.is_scalar(state.type) && types.scalar(state.type) == inst.scalar,
+              "store of another type than the place has");
+      return;
+    }
+    require(inst.scalar == Scalar::kAddr, "an in-out slot takes an address");
+    const Place* target = pointee(inst.operands[0]);
+    if (target != nullptr && types.contains(target->type)) {
+      require(same_shape(types, target->type, state.type),
+              "the in-out is bound to a place of another type");
+    }
+  }
+
+  void check_copy(const Inst& inst, const PlaceState& to) {
+    const std::optional<PlaceState> from = check_one_place(inst.place2);
+    if (!from) {
+      return;
+    }
+    require(!from->slot, "in-out slot is used without following it");
+    require(can_copy(program_.types, to.type, from->type), "copy between different types");
+  }
+
+  std::optional<PlaceState> check_one_place(PlaceId id) {
+    if (id.index >= pou_.places.size()) {
+      fail("it needs a place");
+      return std::nullopt;
+    }
+    const Place& place = pou_.places[id.index];
+    check_place_values(place);
+    if (!reason_.empty()) {
+      return std::nullopt;
+    }
+    base::Result<PlaceState> state = check_place(program_, pou_, place);
+    if (!state.ok()) {
+      fail(state.error().text);
+      return std::nullopt;
+    }
+    require(state->complete(), "the place ends inside an array or an instance");
+    return *state;
+  }
+
+  void check_place_values(const Place& place) {
+    for (const Step& step : place.steps) {
+      const bool known = !step.value.valid() || (step.value.index < pou_.values.size() &&
+                                                 is_integer(scalar_of(step.value)));
+      require(known, "an index is no integer value");
+    }
+    const TypeTable& types = program_.types;
+    if (place.base == PlaceBase::kConst || place.base == PlaceBase::kPointee) {
+      require(types.contains(place.base_type), "place of a type that does not exist");
+    }
+    if (place.base == PlaceBase::kConst && reason_.empty()) {
+      require(!holds_instance(types, place.base_type), "constant of an instance type");
+    }
+    if (place.base == PlaceBase::kPointee && reason_.empty()) {
+      check_pointee(place);
+    }
+  }
+
+  void check_pointee(const Place& place) {
+    if (place.value.index >= pou_.values.size() || scalar_of(place.value) != Scalar::kAddr) {
+      return fail("the base is no address value");
+    }
+    const Place* target = pointee(place.value);
+    if (target != nullptr && program_.types.contains(target->type)) {
+      require(same_shape(program_.types, target->type, place.base_type),
+              "the address is of another type than the place says");
+    }
+  }
+
+  const Program& program_;
+  const Pou& pou_;
+  const std::vector<const Inst*>* definitions_ = nullptr;  // by value; null for parameters
+  std::string reason_;
+};
+
+class PouVerifier {
+ public:
+  PouVerifier(const Program& program, const Pou& pou)
+      : pou_(pou),
+        insts_(program, pou),
+        definitions_(pou.values.size()),
+        defined_(pou.values.size()) {}
+
+  base::Status verify() {
+    if (pou_.blocks.empty() || !pou_.blocks[0].params.empty()) {
+      return not_verified("POU " + pou_.name + ": the entry block is missing or has parameters");
+    }
+    if (base::Status status = collect_definitions(); !status.ok()) {
+      return status;
+    }
+    insts_.set_values_defined_by(definitions_);
+    for (size_t b = 0; b < pou_.blocks.size(); ++b) {
+      if (base::Status status = check_block(b); !status.ok()) {
+        return status;
+      }
+    }
+    return base::Ok{};
+  }
+
+ private:
+  bool define(ValueId value) {
+    if (value.index >= defined_.size() || defined_[value.index]) {
+      return false;
+    }
+    defined_[value.index] = true;
+    return true;
+  }
+
+  base::Status collect_definitions() {
+    for (size_t b = 0; b < pou_.blocks.size(); ++b) {
+      for (const ValueId param : pou_.blocks[b].params) {
+        if (!define(param)) {
+          return not_verified("POU " + pou_.name + ", b" + std::to_string(b) +
+                              ": a parameter is no value, or defined twice");
+        }
+      }
+      const std::vector<Inst>& insts = pou_.blocks[b].insts;
+      for (size_t i = 0; i < insts.size(); ++i) {
+        if (insts[i].result.valid() && !define(insts[i].result)) {
+          return not_verified(inst_place(pou_, b, i) + "its result is no value, or defined twice");
+        }
+        if (insts[i].result.valid()) {
+          definitions_[insts[i].result.index] = &insts[i];
+        }
+      }
+    }
+    return base::Ok{};
+  }
+
+  base::Status check_block(size_t b) {
+    const std::vector<Inst>& insts = pou_.blocks[b].insts;
+    if (insts.empty()) {
+      return not_verified("POU " + pou_.name + ", b" + std::to_string(b) + " is empty");
+    }
+    for (size_t i = 0; i < insts.size(); ++i) {
+      if (is_terminator(insts[i].op) != (i + 1 == insts.size())) {
+        return not_verified(inst_place(pou_, b, i) +
+                            "a block has exactly one terminator, at its end");
+      }
+      if (const std::string reason = insts_.check(insts[i]); !reason.empty()) {
+        return not_verified(inst_place(pou_, b, i) + reason);
+      }
+    }
+    return base::Ok{};
+  }
+
+  const Pou& pou_;
+  InstVerifier insts_;
+  std::vector<const Inst*> definitions_;
+  std::vector<bool> defined_;
+};
+
+}  // namespace
+
+base::Status verify_instructions(const Program& program, const Pou& pou) {
+  return PouVerifier(program, pou).verify();
+}
+
+std::string inst_place(const Pou& pou, size_t block, size_t inst) {
+  const Inst& at = pou.blocks[block].insts[inst];
+  return "POU " + pou.name + ", b" + std::to_string(block) + ", instruction " +
+         std::to_string(inst) + " (" + std::string(op_name(at.op)) + ", line " +
+         std::to_string(at.line) + "): ";
+}
+
+}  // namespace ir
