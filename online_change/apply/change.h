@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,7 +35,8 @@ struct SwitchReport {
 
 class Change {
  public:
-  explicit Change(vm::Controller& controller) : controller_(controller) {}
+  explicit Change(vm::Controller& controller);
+  ~Change();
 
   State state() const { return state_; }
   // Idle -> Prepared, in steps; may be called while version 1 runs (between cycles).
@@ -42,8 +44,10 @@ class Change {
   // Values that would be lost if the switch came now; by kPrepared.
   std::vector<LiveLoss> live_losses() const;
   const Plan& plan() const;
-  // Prepared -> Armed. Losses are refused unless allowed (kWouldLose).
-  base::Status arm(bool allow_loss);
+  // Prepared -> Armed. Losses are refused unless allowed (kWouldLose), and so is a predicted pause
+  // longer than the free time of the tightest task (kPauseTooLong). New variables in bytes that
+  // version 1 does not use get their initial values here (A19).
+  base::Status arm(bool allow_loss, bool allow_overrun = false);
   // At a boundary: Armed -> Trial. Re-checks losses; on failure -> Idle, version 1 untouched.
   base::Result<SwitchReport> switch_now();
   // Trial -> Idle with version 2 for good.
@@ -51,14 +55,35 @@ class Change {
   // Trial -> Idle with version 1 again; at a boundary. Inverse plan on the current state; values
   // that the change dropped or narrowed come back as they were, if nobody wrote them since.
   base::Result<SwitchReport> undo();
-  // Any state before the switch -> Idle.
+  // Any state before the switch -> Idle. Nothing in trial: that takes accept() or undo().
   void cancel();
 
+  // Asked before every single step from stage() to the publishing store; true abandons the change
+  // there (kDeadline): a deadline that comes too near, or a test.
+  void set_interruption(std::function<bool()> interrupted) {
+    interrupted_ = std::move(interrupted);
+  }
+
  private:
+  struct Pending;
+
+  base::Status stage_steps(base::ByteSpan package);
+  base::Status check_pause(bool allow_overrun) const;
+  base::Status check_losses(bool allow_loss) const;
+  bool write_early();
+  base::Status carry_over();
+  bool interrupted() const { return interrupted_ && interrupted_(); }
+  base::Error abandoned(const char* where) const;
+  SwitchReport report_begin() const;
+  uint64_t missed_releases() const;
+
   vm::Controller& controller_;
   State state_ = State::kIdle;
-  struct Pending;
-  std::shared_ptr<Pending> pending_;
+  std::unique_ptr<Pending> pending_;
+  // A generation that was published or prepared and is no longer used; it lives until the next
+  // prepare(), because the controller's tables may still refer to it.
+  std::unique_ptr<vm::Generation> retired_;
+  std::function<bool()> interrupted_;
 };
 
 }  // namespace online_change

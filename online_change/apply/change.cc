@@ -1,0 +1,292 @@
+#include "online_change/apply/change.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+#include "online_change/apply/losses.h"
+#include "online_change/apply/transfer.h"
+
+namespace online_change {
+namespace {
+
+// Only measures; nothing that runs depends on it.
+int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+base::Error not_in(State state, const char* wanted) {
+  return {base::Refusal::kBusy,
+          std::string("the change is ") + state_name(state) + ", not " + wanted};
+}
+
+base::Error no_boundary() {
+  return {base::Refusal::kBusy, "a task is inside a scan; the switch waits for a boundary"};
+}
+
+}  // namespace
+
+struct Change::Pending {
+  Pending(Package received, ir::VerifiedImage running, ir::VerifiedImage next)
+      : package(std::move(received)),
+        old_image(std::move(running)),
+        new_image(std::move(next)),
+        forward(package.forward, old_image.image(), new_image.image(), Transfer::Steps::kBoundary),
+        backward(package.inverse, new_image.image(), old_image.image(), Transfer::Steps::kAll) {}
+
+  Package package;
+  ir::VerifiedImage old_image;
+  ir::VerifiedImage new_image;
+  Transfer forward;
+  Transfer backward;
+  // Version 2 until the switch, version 1 in trial.
+  std::unique_ptr<vm::Generation> waiting;
+  bool allow_loss = false;
+};
+
+const char* state_name(State state) {
+  switch (state) {
+    case State::kIdle:
+      return "idle";
+    case State::kStaged:
+      return "staged";
+    case State::kVerified:
+      return "verified";
+    case State::kPlanned:
+      return "planned";
+    case State::kPrepared:
+      return "prepared";
+    case State::kArmed:
+      return "armed";
+    case State::kTrial:
+      return "trial";
+  }
+  base::check(false, "a state that state_name() knows");
+  return "";
+}
+
+Change::Change(vm::Controller& controller) : controller_(controller) {}
+Change::~Change() = default;
+
+base::Error Change::abandoned(const char* where) const {
+  return {base::Refusal::kDeadline,
+          std::string("the change was abandoned ") + where + "; the old program runs on"};
+}
+
+base::Status Change::stage(base::ByteSpan package) {
+  if (state_ != State::kIdle) {
+    return base::Error{base::Refusal::kChangePending, std::string("another change is ") +
+                                                          state_name(state_) +
+                                                          "; accept, undo or cancel it first"};
+  }
+  base::Status status = stage_steps(package);
+  if (!status.ok()) cancel();
+  return status;
+}
+
+base::Status Change::stage_steps(base::ByteSpan bytes) {
+  base::Result<Package> package = decode(bytes);
+  if (!package.ok()) return package.error();
+  const base::Digest& running = controller_.verified().digest();
+  if (package->image == controller_.verified().encoded()) {
+    return base::Error{base::Refusal::kNoChange,
+                       "version " + base::short_hex(running) + " is running already"};
+  }
+  if (package->base != running) {
+    return base::Error{base::Refusal::kStaleBase,
+                       "made for version " + base::short_hex(package->base) + ", but " +
+                           base::short_hex(running) + " is running; make the change again"};
+  }
+  state_ = State::kStaged;
+  if (interrupted()) return abandoned("when it was received");
+  base::Result<ir::VerifiedImage> image = ir::verify(package->image);
+  if (!image.ok()) return image.error();
+  state_ = State::kVerified;
+  if (interrupted()) return abandoned("when it was verified");
+  base::Status sound = check_package(*package, controller_.image(), image->image());
+  if (!sound.ok()) return sound;
+  pending_ = std::make_unique<Pending>(std::move(*package), controller_.verified(), *image);
+  state_ = State::kPlanned;
+  if (interrupted()) return abandoned("when its plan was checked");
+  pending_->waiting = controller_.prepare(*image);
+  retired_.reset();  // prepare() has just forgotten it
+  state_ = State::kPrepared;
+  if (interrupted()) return abandoned("when it was prepared");
+  return base::Ok{};
+}
+
+const Plan& Change::plan() const {
+  static const Plan kNothing;
+  return pending_ ? pending_->package.forward : kNothing;
+}
+
+std::vector<LiveLoss> Change::live_losses() const {
+  std::vector<LiveLoss> rows;
+  if (!pending_ || state_ == State::kTrial) return rows;
+  const uint8_t* memory = controller_.memory().data();
+  Areas areas(pending_->new_image.image());
+  auto collect = [&](const Loss& loss) {
+    rows.push_back(describe(loss, pending_->forward, areas, memory));
+    return true;
+  };
+  pending_->forward.read(memory, collect, nullptr);
+  std::vector<LiveLoss> others =
+      values_without_rule(plan(), pending_->old_image.image(), controller_.memory().view());
+  rows.insert(rows.end(), others.begin(), others.end());
+  return rows;
+}
+
+base::Status Change::check_losses(bool allow_loss) const {
+  if (allow_loss) return base::Ok{};
+  std::vector<LiveLoss> losses = live_losses();
+  if (losses.empty()) return base::Ok{};
+  return would_lose(losses.front(), losses.size() - 1);
+}
+
+// Free time of a task: its period without its longest scan.
+base::Status Change::check_pause(bool allow_overrun) const {
+  if (allow_overrun) return base::Ok{};
+  for (const vm::TaskStatus& task : controller_.tasks()) {
+    if (task.stopped) continue;
+    int64_t free_ns = task.period_ns - task.max_ns;
+    if (plan().predicted_pause_ns <= free_ns) continue;
+    return base::Error{base::Refusal::kPauseTooLong,
+                       "the switch is expected to take " +
+                           std::to_string(plan().predicted_pause_ns) + " ns; task `" + task.name +
+                           "` leaves " + std::to_string(free_ns) +
+                           " ns; split the change, or allow it with --allow-overrun"};
+  }
+  return base::Ok{};
+}
+
+base::Status Change::arm(bool allow_loss, bool allow_overrun) {
+  if (state_ != State::kPrepared) return not_in(state_, "prepared");
+  base::Status fits = check_pause(allow_overrun);
+  if (!fits.ok()) return fits;
+  base::Status lossless = check_losses(allow_loss);
+  if (!lossless.ok()) return lossless;
+  if (interrupted() || !write_early()) {
+    cancel();
+    return abandoned("while it was armed");
+  }
+  pending_->allow_loss = allow_loss;
+  state_ = State::kArmed;
+  return base::Ok{};
+}
+
+// A19. Version 1 owns none of these bytes, so there is nothing to take back.
+bool Change::write_early() {
+  uint8_t* memory = controller_.memory().data();
+  for (const UpdateStep& step : plan().steps) {
+    if (!step.early) continue;
+    if (interrupted()) return false;
+    for (uint32_t i = 0; i < step.count; ++i) {
+      uint8_t* to = memory + step.to + size_t{i} * step.to_stride;
+      if (step.bytes.empty()) {
+        std::memset(to, 0, step.size);
+      } else {
+        std::memcpy(to, step.bytes.data() + size_t{i} * step.size, step.size);
+      }
+    }
+  }
+  return true;
+}
+
+uint64_t Change::missed_releases() const {
+  uint64_t missed = 0;
+  for (const vm::TaskStatus& task : controller_.tasks()) missed += task.missed;
+  return missed;
+}
+
+SwitchReport Change::report_begin() const {
+  SwitchReport report;
+  report.cycle_before = controller_.cycles();
+  report.cycle_after = report.cycle_before + 1;
+  report.missed = missed_releases();
+  return report;
+}
+
+// Nothing is visible before the last line of it, and a failure leaves version 1's state.
+base::Status Change::carry_over() {
+  uint8_t* memory = controller_.memory().data();
+  Transfer& transfer = pending_->forward;
+  Loss lost;
+  auto on_loss = [&](const Loss& loss) {
+    lost = loss;
+    return pending_->allow_loss;
+  };
+  if (!transfer.read(memory, on_loss, interrupted_)) {
+    if (lost.what == nullptr || pending_->allow_loss) return abandoned("at the boundary");
+    Areas areas(pending_->new_image.image());
+    return would_lose(describe(lost, transfer, areas, memory), 0);
+  }
+  if (!transfer.save(memory, interrupted_)) return abandoned("at the boundary");
+  if (!transfer.write(memory, interrupted_)) return abandoned("at the boundary");
+  if (interrupted()) {
+    transfer.restore(memory);
+    return abandoned("before its last step");
+  }
+  return base::Ok{};
+}
+
+base::Result<SwitchReport> Change::switch_now() {
+  if (state_ != State::kArmed) return not_in(state_, "armed");
+  if (!controller_.at_boundary()) return no_boundary();
+  SwitchReport report = report_begin();
+  int64_t begin_ns = monotonic_ns();
+  base::Status carried = carry_over();
+  if (!carried.ok()) {
+    cancel();
+    return carried.error();
+  }
+  pending_->waiting = controller_.publish(std::move(pending_->waiting));
+  report.pause_ns = monotonic_ns() - begin_ns;
+  state_ = State::kTrial;
+  report.missed = missed_releases() - report.missed;
+  report.counts = plan().counts;
+  return report;
+}
+
+base::Status Change::accept() {
+  if (state_ != State::kTrial) {
+    return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to accept"};
+  }
+  retired_ = std::move(pending_->waiting);
+  pending_.reset();
+  state_ = State::kIdle;
+  return base::Ok{};
+}
+
+base::Result<SwitchReport> Change::undo() {
+  if (state_ != State::kTrial) {
+    return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"};
+  }
+  if (!controller_.at_boundary()) return no_boundary();
+  SwitchReport report = report_begin();
+  uint8_t* memory = controller_.memory().data();
+  int64_t begin_ns = monotonic_ns();
+  Transfer& back = pending_->backward;
+  bool done = back.read_back(memory, pending_->forward, interrupted_) &&
+              back.save(memory, interrupted_) && back.write(memory, interrupted_);
+  if (!done) {
+    return base::Error{base::Refusal::kDeadline, "the undo was abandoned; the trial goes on"};
+  }
+  retired_ = controller_.publish(std::move(pending_->waiting));
+  report.pause_ns = monotonic_ns() - begin_ns;
+  report.missed = missed_releases() - report.missed;
+  report.counts = pending_->package.inverse.counts;
+  pending_.reset();
+  state_ = State::kIdle;
+  return report;
+}
+
+void Change::cancel() {
+  if (state_ == State::kTrial) return;
+  if (pending_ && pending_->waiting) retired_ = std::move(pending_->waiting);
+  pending_.reset();
+  state_ = State::kIdle;
+}
+
+}  // namespace online_change

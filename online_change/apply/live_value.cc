@@ -1,0 +1,74 @@
+#include "online_change/apply/live_value.h"
+
+#include <cstring>
+
+#include "ir/types/value_text.h"
+#include "online_change/diff/value_conversion.h"
+
+namespace online_change {
+namespace {
+
+using ir::Kind;
+using ir::TypeId;
+
+// As in ConstValue: sign-extended, REAL as its 32 bits.
+uint64_t load(const ir::Image& image, TypeId type, const uint8_t* at) {
+  ir::Scalar scalar = image.types.scalar(type);
+  uint32_t size = ir::scalar_size(scalar);
+  uint64_t bits = 0;
+  std::memcpy(&bits, at, size);
+  if (!ir::is_signed(scalar) || size == 8) return bits;
+  uint32_t unused = 64 - size * 8;
+  return static_cast<uint64_t>(static_cast<int64_t>(bits << unused) >> unused);
+}
+
+bool is_string(const ir::Image& image, TypeId type) {
+  Kind kind = image.types[type].kind;
+  return kind == Kind::kString || kind == Kind::kWstring;
+}
+
+uint32_t unit_of(const ir::Image& image, TypeId type) {
+  return image.types[type].kind == Kind::kWstring ? 2 : 1;
+}
+
+std::string value_text(const ir::Image& image, TypeId type, const uint8_t* at) {
+  if (!is_string(image, type)) {
+    return ir::scalar_text(image.types, type, load(image, type, at));
+  }
+  uint32_t unit = unit_of(image, type);
+  uint32_t size = image.layouts[type].size;
+  uint32_t length = 0;
+  for (; length + unit <= size; length += unit) {
+    if (at[length] == 0 && (unit == 1 || at[length + 1] == 0)) break;
+  }
+  std::string_view units(reinterpret_cast<const char*>(at), length);
+  return unit == 2 ? ir::wstring_text(units) : ir::string_text(units);
+}
+
+}  // namespace
+
+const char* Conversions::convert(const UpdateStep& step, uint32_t index, const uint8_t* source,
+                                 std::span<uint8_t> out) const {
+  if (is_string(from_, step.old_type)) {
+    return convert_string({source, source_size(step)}, unit_of(from_, step.old_type), out,
+                          unit_of(to_, step.new_type));
+  }
+  Converted value = convert_scalar(from_.types, step.old_type, to_.types, step.new_type,
+                                   load(from_, step.old_type, source));
+  if (value.initialise) {
+    to_initial_.read(step.to + index * step.to_stride, out);
+  } else {
+    std::memcpy(out.data(), &value.bits, out.size());
+  }
+  return value.loss;
+}
+
+std::string Conversions::old_text(const UpdateStep& step, const uint8_t* value) const {
+  return value_text(from_, step.old_type, value);
+}
+
+std::string Conversions::new_text(const UpdateStep& step, const uint8_t* value) const {
+  return value_text(to_, step.new_type, value);
+}
+
+}  // namespace online_change

@@ -1,0 +1,32 @@
+// One value of a kConvert step, read from data memory and carried over by A14.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "ir/bytecode/image.h"
+#include "online_change/diff/initial_data.h"
+#include "online_change/plan/plan.h"
+
+namespace online_change {
+
+class Conversions {
+ public:
+  Conversions(const ir::Image& from, const ir::Image& to) : from_(from), to_(to), to_initial_(to) {}
+
+  uint32_t source_size(const UpdateStep& step) const { return from_.layouts[step.old_type].size; }
+  // Converts the value at `source` for value number `index` of `step`; fills `out`. Returns what
+  // is lost, or null.
+  const char* convert(const UpdateStep& step, uint32_t index, const uint8_t* source,
+                      std::span<uint8_t> out) const;
+  std::string old_text(const UpdateStep& step, const uint8_t* value) const;
+  std::string new_text(const UpdateStep& step, const uint8_t* value) const;
+
+ private:
+  const ir::Image& from_;
+  const ir::Image& to_;
+  InitialData to_initial_;
+};
+
+}  // namespace online_change

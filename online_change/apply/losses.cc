@@ -1,0 +1,41 @@
+#include "online_change/apply/losses.h"
+
+#include "ir/bytecode/symbols.h"
+
+namespace online_change {
+
+LiveLoss describe(const Loss& loss, const Transfer& transfer, const Areas& new_areas,
+                  const uint8_t* memory) {
+  const UpdateStep& step = transfer.plan().steps[loss.step];
+  const uint8_t* source = memory + step.from + size_t{loss.index} * step.from_stride;
+  base::Bytes converted(step.size);
+  transfer.conversions().convert(step, loss.index, source, converted);
+  LiveLoss row;
+  row.path = new_areas.path_at(step.to + loss.index * step.to_stride);
+  row.old_value = transfer.conversions().old_text(step, source);
+  row.new_value = transfer.conversions().new_text(step, converted.data());
+  row.what = loss.what;
+  return row;
+}
+
+std::vector<LiveLoss> values_without_rule(const Plan& plan, const ir::Image& old_image,
+                                          std::span<const uint8_t> memory) {
+  std::vector<LiveLoss> losses;
+  for (const FateRow& row : plan.fates) {
+    if (row.fate != Fate::kInitialised || !row.may_lose) continue;
+    base::Result<ir::Symbol> symbol = ir::find_symbol(old_image, row.path);
+    std::string value = row.old_type;
+    if (symbol.ok()) value = ir::format_value(old_image, *symbol, memory);
+    losses.push_back({row.path, value, "its initial value", "has no conversion, initialised"});
+  }
+  return losses;
+}
+
+base::Error would_lose(const LiveLoss& first, uint64_t more) {
+  std::string text = "`" + first.path + "` is " + first.old_value + "; it " + first.what +
+                     " and would become " + first.new_value;
+  if (more != 0) text += " (and " + std::to_string(more) + " more)";
+  return {base::Refusal::kWouldLose, text + "; allow it with --allow-loss, or change the program"};
+}
+
+}  // namespace online_change
