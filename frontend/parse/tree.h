@@ -33,26 +33,41 @@ struct Name {
 // --- expressions -------------------------------------------------------------
 enum class ExprKind : uint8_t {
   kError,
-  kLiteral,    // literal
-  kName,       // name
-  kQualified,  // prefix#name : typed enumeration literal; name, prefix
-  kMember,     // operand . name
-  kBit,        // operand . number, operand.%X3 %B1 %W1 %D0: bit_size, number
-  kIndex,      // operand [ list ]
-  kDeref,      // operand ^
-  kCall,       // operand ( args )
-  kUnary,      // op operand
-  kBinary,     // operand op right
-  kDirect,     // %IX0.0 : address; "" text kept in name
-  kArrayInit,  // [ list ] of values and kRepeat
-  kRepeat,     // operand ( list ) : operand = count
-  kStructInit, // ( args ) with names
+  kLiteral,     // literal
+  kName,        // name
+  kQualified,   // prefix#name : typed enumeration literal; name, prefix
+  kMember,      // operand . name
+  kBit,         // operand . number, operand.%X3 %B1 %W1 %D0: bit_size, number
+  kIndex,       // operand [ list ]
+  kDeref,       // operand ^
+  kCall,        // operand ( args )
+  kUnary,       // op operand
+  kBinary,      // operand op right
+  kDirect,      // %IX0.0 : address; "" text kept in name
+  kArrayInit,   // [ list ] of values and kRepeat
+  kRepeat,      // operand ( list ) : operand = count
+  kStructInit,  // ( args ) with names
 };
 
 enum class UnaryOp : uint8_t { kNegate, kPlus, kNot };
 enum class BinaryOp : uint8_t {
-  kOr, kOrElse, kXor, kAnd, kAndThen, kEq, kNe, kLt, kLe, kGt, kGe,
-  kAdd, kSub, kMul, kDiv, kMod, kPower,
+  kOr,
+  kOrElse,
+  kXor,
+  kAnd,
+  kAndThen,
+  kEq,
+  kNe,
+  kLt,
+  kLe,
+  kGt,
+  kGe,
+  kAdd,
+  kSub,
+  kMul,
+  kDiv,
+  kMod,
+  kPower,
 };
 
 enum class LiteralKind : uint8_t {
@@ -62,26 +77,28 @@ enum class LiteralKind : uint8_t {
   kString,    // text, escapes resolved
   kWstring,   // text, UTF-16LE bytes
   kDuration,  // integer = ns
-  kDate, kTimeOfDay, kDateAndTime,  // integer = ns
+  kDate,
+  kTimeOfDay,
+  kDateAndTime,  // integer = ns
 };
 
 struct Literal {
   LiteralKind kind = LiteralKind::kInteger;
   bool based = false;
-  bool too_large = false;     // does not fit 64 bits (already reported)
-  bool is_long = false;       // LT# LD# LTOD# LDT#
-  Name prefix;                // "INT" of INT#5, "WORD" of WORD#16#AF; empty when untyped
-  uint64_t integer = 0;       // magnitude; a sign inside a typed literal sets `negative`
+  bool too_large = false;  // does not fit 64 bits (already reported)
+  bool is_long = false;    // LT# LD# LTOD# LDT#
+  Name prefix;             // "INT" of INT#5, "WORD" of WORD#16#AF; empty when untyped
+  uint64_t integer = 0;    // magnitude; a sign inside a typed literal sets `negative`
   bool negative = false;
   double real = 0;
   std::string text;
 };
 
 struct Arg {
-  Name name;            // empty: positional
-  bool output = false;  // name => expr
-  bool negated = false; // NOT name => expr
-  ExprId value;         // invalid: `name :=` or `name =>` with nothing behind it
+  Name name;             // empty: positional
+  bool output = false;   // name => expr
+  bool negated = false;  // NOT name => expr
+  ExprId value;          // invalid: `name :=` or `name =>` with nothing behind it
   base::SourceSpan span;
 };
 
@@ -92,6 +109,8 @@ struct Range32 {  // slice of one of the Tree's lists
 
 struct Expr {
   ExprKind kind = ExprKind::kError;
+  uint16_t height =
+      1;  // of the tree below, at most kMaxExpressionHeight: recursion over it is safe
   base::SourceSpan span;
   UnaryOp unary = UnaryOp::kNegate;
   BinaryOp binary = BinaryOp::kOr;
@@ -100,51 +119,54 @@ struct Expr {
   ExprId right;
   Name name;
   Name prefix;
-  uint32_t literal = 0;    // Tree::literals
-  Range32 list;            // Tree::expr_lists
-  Range32 args;            // Tree::args
-  uint32_t number = 0;     // kBit
-  uint8_t bit_size = 1;    // kBit: 1, 8, 16, 32
+  uint32_t literal = 0;  // Tree::literals
+  Range32 list;          // Tree::expr_lists
+  Range32 args;          // Tree::args
+  uint32_t number = 0;   // kBit
+  uint8_t bit_size = 1;  // kBit: 1, 8, 16, 32
   ir::DirectAddress address;
   bool parenthesised = false;
 };
 
 // --- statements --------------------------------------------------------------
 enum class StmtKind : uint8_t {
-  kError, kEmpty,
-  kAssign,   // target := value
-  kCall,     // value is the kCall expression
-  kIf,       // branches; else_body
-  kCase,     // value, cases, else_body
-  kFor,      // target, from, to, by (may be invalid), body
-  kWhile,    // value, body
-  kRepeat,   // body, value
-  kExit, kContinue, kReturn,
+  kError,
+  kEmpty,
+  kAssign,  // target := value
+  kCall,    // value is the kCall expression
+  kIf,      // branches; else_body
+  kCase,    // value, cases, else_body
+  kFor,     // target, from, to, by (may be invalid), body
+  kWhile,   // value, body
+  kRepeat,  // body, value
+  kExit,
+  kContinue,
+  kReturn,
 };
 
-struct Branch {       // IF / ELSIF
+struct Branch {  // IF / ELSIF
   ExprId condition;
-  Range32 body;       // Tree::stmt_lists
+  Range32 body;  // Tree::stmt_lists
 };
 struct CaseLabel {
   ExprId low;
-  ExprId high;        // invalid: single value
+  ExprId high;  // invalid: single value
 };
 struct CaseArm {
-  Range32 labels;     // Tree::labels
+  Range32 labels;  // Tree::labels
   Range32 body;
   base::SourceSpan span;
 };
 
 struct Stmt {
   StmtKind kind = StmtKind::kEmpty;
-  base::SourceSpan span;     // kFor..kIf: of the head line
+  base::SourceSpan span;  // kFor..kIf: of the head line
   ExprId target;
   ExprId value;
   ExprId from, to, by;
-  Range32 branches;          // Tree::branches
-  Range32 cases;             // Tree::cases
-  Range32 body;              // Tree::stmt_lists
+  Range32 branches;  // Tree::branches
+  Range32 cases;     // Tree::cases
+  Range32 body;      // Tree::stmt_lists
   Range32 else_body;
   bool has_else = false;
 };
@@ -170,11 +192,11 @@ struct Enumerator {
 };
 
 struct VarDecl {
-  std::vector<Name> names;   // several share one spec
+  std::vector<Name> names;  // several share one spec
   SpecId spec;
-  ExprId init;               // may be invalid
+  ExprId init;  // may be invalid
   bool has_address = false;
-  ir::DirectAddress address; // AT %QX0.0
+  ir::DirectAddress address;  // AT %QX0.0
   base::SourceSpan span;
 };
 
@@ -192,13 +214,19 @@ struct Spec {
 };
 
 enum class VarSection : uint8_t {
-  kLocal, kInput, kOutput, kInOut, kTemp, kExternal, kGlobal,
+  kLocal,
+  kInput,
+  kOutput,
+  kInOut,
+  kTemp,
+  kExternal,
+  kGlobal,
 };
 
 struct VarBlock {
   VarSection section = VarSection::kLocal;
   bool constant = false;
-  bool retain = false;       // RETAIN or PERSISTENT
+  bool retain = false;  // RETAIN or PERSISTENT
   base::SourceSpan span;
   std::vector<VarDecl> vars;
 };
@@ -215,23 +243,23 @@ enum class PouKind : uint8_t { kFunction, kFunctionBlock, kProgram };
 struct PouDecl {
   PouKind kind = PouKind::kFunction;
   Name name;
-  SpecId result;               // functions; may be invalid
+  SpecId result;  // functions; may be invalid
   std::vector<VarBlock> blocks;
-  Range32 body;                // Tree::stmt_lists
-  base::SourceSpan span;       // PROGRAM ... END_PROGRAM
+  Range32 body;           // Tree::stmt_lists
+  base::SourceSpan span;  // PROGRAM ... END_PROGRAM
 };
 
 struct TaskDecl {
   Name name;
-  ExprId interval;   // may be invalid
+  ExprId interval;  // may be invalid
   ExprId priority;
   ExprId single;
   base::SourceSpan span;
 };
 
-struct ProgramDecl {           // PROGRAM p WITH t : T(...)
+struct ProgramDecl {  // PROGRAM p WITH t : T(...)
   Name name;
-  Name task;                   // may be empty
+  Name task;  // may be empty
   Name type;
   Range32 args;
   base::SourceSpan span;

@@ -1,0 +1,198 @@
+// Operators by precedence (IEC 61131-3 ed. 3, table 71): unary - + NOT bind
+// tighter than **, and every binary operator groups from the left.
+#include <algorithm>
+
+#include "base/limits.h"
+#include "frontend/parse/parser.h"
+
+namespace frontend {
+
+namespace {
+
+struct Operator {
+  uint8_t precedence = 0;  // 0: not a binary operator
+  BinaryOp op = BinaryOp::kOr;
+};
+
+constexpr std::array<Operator, 256> make_operators() {
+  std::array<Operator, 256> table{};
+  auto set = [&table](TokenKind kind, uint8_t precedence, BinaryOp op) {
+    table[static_cast<uint8_t>(kind)] = {precedence, op};
+  };
+  set(TokenKind::kOr, 1, BinaryOp::kOr);
+  set(TokenKind::kOrElse, 1, BinaryOp::kOrElse);
+  set(TokenKind::kXor, 2, BinaryOp::kXor);
+  set(TokenKind::kAnd, 3, BinaryOp::kAnd);
+  set(TokenKind::kAmpersand, 3, BinaryOp::kAnd);
+  set(TokenKind::kAndThen, 3, BinaryOp::kAndThen);
+  set(TokenKind::kEqual, 4, BinaryOp::kEq);
+  set(TokenKind::kNotEqual, 4, BinaryOp::kNe);
+  set(TokenKind::kLess, 5, BinaryOp::kLt);
+  set(TokenKind::kLessEqual, 5, BinaryOp::kLe);
+  set(TokenKind::kGreater, 5, BinaryOp::kGt);
+  set(TokenKind::kGreaterEqual, 5, BinaryOp::kGe);
+  set(TokenKind::kPlus, 6, BinaryOp::kAdd);
+  set(TokenKind::kMinus, 6, BinaryOp::kSub);
+  set(TokenKind::kStar, 7, BinaryOp::kMul);
+  set(TokenKind::kSlash, 7, BinaryOp::kDiv);
+  set(TokenKind::kMod, 7, BinaryOp::kMod);
+  set(TokenKind::kPower, 8, BinaryOp::kPower);
+  return table;
+}
+constexpr std::array<Operator, 256> kOperators = make_operators();
+
+const Operator& operator_of(TokenKind kind) { return kOperators[static_cast<uint8_t>(kind)]; }
+
+}  // namespace
+
+ExprId Parser::parse_expression() {
+  Nesting nesting(*this);
+  if (!nesting.entered()) return error_expression();
+  return parse_binary(0);
+}
+
+ExprId Parser::parse_condition() {
+  ExprId left = parse_expression();
+  if (kind() != TokenKind::kAssign || panic_) return left;
+  const Token op = take();
+  note_only(Code::kAssignInExpression, op.span(), "`:=` assigns; a comparison is needed here",
+            "write `=` to compare");
+  ExprId right = parse_expression();
+  return add_binary(left, op, right);
+}
+
+ExprId Parser::parse_binary(uint32_t above) {
+  ExprId left = parse_unary();
+  while (operator_of(kind()).precedence > above) {
+    const Token op = take();
+    ExprId right = parse_binary(operator_of(op.kind).precedence);
+    left = add_binary(left, op, right);
+  }
+  return left;
+}
+
+ExprId Parser::add_binary(ExprId left, const Token& op, ExprId right) {
+  Expr expr;
+  expr.kind = ExprKind::kBinary;
+  expr.binary = op.kind == TokenKind::kAssign ? BinaryOp::kEq : operator_of(op.kind).op;
+  expr.op_span = op.span();
+  expr.span = {tree_[left].span.begin, tree_[right].span.end};
+  expr.operand = left;
+  expr.right = right;
+  return add_expression(std::move(expr));
+}
+
+ExprId Parser::parse_unary() {
+  TokenKind op = kind();
+  if (op != TokenKind::kMinus && op != TokenKind::kPlus && op != TokenKind::kNot) {
+    return parse_primary();
+  }
+  Nesting nesting(*this);
+  if (!nesting.entered()) return error_expression();
+  Expr expr;
+  expr.kind = ExprKind::kUnary;
+  expr.unary = op == TokenKind::kMinus  ? UnaryOp::kNegate
+               : op == TokenKind::kPlus ? UnaryOp::kPlus
+                                        : UnaryOp::kNot;
+  expr.op_span = take().span();
+  expr.operand = parse_unary();
+  expr.span = {expr.op_span.begin, tree_[expr.operand].span.end};
+  return add_expression(std::move(expr));
+}
+
+ExprId Parser::parse_primary() {
+  switch (kind()) {
+    case TokenKind::kInteger:
+    case TokenKind::kReal:
+    case TokenKind::kString:
+    case TokenKind::kWideString:
+    case TokenKind::kDuration:
+    case TokenKind::kDate:
+    case TokenKind::kTrue:
+    case TokenKind::kFalse:
+      return parse_literal({}, here(), false);
+    case TokenKind::kTypePrefix:
+      return parse_typed_literal();
+    case TokenKind::kLeftParen:
+      return parse_parenthesised();
+    case TokenKind::kLeftBracket:
+      return parse_array_initializer();
+    case TokenKind::kDirect:
+      return parse_variable();
+    case TokenKind::kAnd:
+    case TokenKind::kOr:
+    case TokenKind::kXor:
+    case TokenKind::kMod:
+      return parse_operator_call();
+    case TokenKind::kDot:
+      not_supported(take().span(), "the global namespace operator `.x` is",
+                    "write the name without the dot");
+      return is_name(kind()) ? parse_variable() : error_expression();
+    default:
+      break;
+  }
+  if (is_name(kind())) return parse_variable();
+  if (is_keyword(kind())) {
+    report_here(Code::kExpectedExpression,
+                "a value belongs here, but " + describe(*current_) + " is a reserved word");
+  } else {
+    report_here(Code::kExpectedExpression, "a value belongs here, found " + describe(*current_));
+  }
+  return error_expression();
+}
+
+// `AND(a, b)`: the operators are functions too (IEC 61131-3 6.6.2.5).
+ExprId Parser::parse_operator_call() {
+  if (next_kind() != TokenKind::kLeftParen) {
+    report_here(Code::kExpectedExpression,
+                "a value belongs here, found the operator " + describe(*current_));
+    return error_expression();
+  }
+  Expr expr;
+  expr.kind = ExprKind::kName;
+  expr.name = name_of(take());
+  expr.span = expr.name.span;
+  return parse_postfix(add_expression(std::move(expr)));
+}
+
+ExprId Parser::parse_parenthesised() {
+  if (is_name(next_kind()) && peek(2).kind == TokenKind::kAssign) return parse_struct_initializer();
+  const Token open = take();
+  ExprId inner = parse_condition();
+  close_bracket(TokenKind::kRightParen, open);
+  Expr& expr = tree_.exprs[inner.index];
+  expr.parenthesised = true;
+  expr.span = span_from({open.begin});
+  return inner;
+}
+
+ExprId Parser::error_expression() {
+  Expr expr;
+  expr.span = current_->span();
+  return add_expression(std::move(expr));
+}
+
+ExprId Parser::add_expression(Expr expr) {
+  uint32_t below = std::max(height(expr.operand), height(expr.right));
+  for (uint32_t i = 0; i < expr.list.count; ++i) {
+    below = std::max(below, height(tree_.expr_lists[expr.list.first + i]));
+  }
+  for (uint32_t i = 0; i < expr.args.count; ++i) {
+    below = std::max(below, height(tree_.args[expr.args.first + i].value));
+  }
+  if (below >= base::kMaxExpressionHeight) {
+    report(Code::kTooComplex, expr.span,
+           "this expression applies more than " + std::to_string(base::kMaxExpressionHeight) +
+               " operators to each other's results",
+           "compute parts of it into variables first");
+    base::SourceSpan span = expr.span;
+    expr = Expr();
+    expr.span = span;
+    below = 0;
+  }
+  expr.height = static_cast<uint16_t>(below + 1);
+  tree_.exprs.push_back(std::move(expr));
+  return ExprId(static_cast<uint32_t>(tree_.exprs.size() - 1));
+}
+
+}  // namespace frontend

@@ -1,0 +1,99 @@
+#include "frontend/parse/parser.h"
+
+#include "base/diagnostics_render.h"
+#include "base/limits.h"
+#include "frontend/parse/parse.h"
+#include "ir/types/types.h"
+
+namespace frontend {
+
+namespace {
+
+// Room for the nodes of one more file, without losing geometric growth.
+template <class T>
+void make_room(std::vector<T>& store, size_t more) {
+  size_t needed = store.size() + more;
+  if (needed > store.capacity()) store.reserve(std::max(needed, store.capacity() * 2));
+}
+
+}  // namespace
+
+void parse(const base::SourceMap& sources, uint32_t file, Tree& tree,
+           base::Diagnostics& diagnostics) {
+  TokenList tokens = lex(sources, file, diagnostics);
+  make_room(tree.exprs, tokens.tokens.size() * 2 / 5);
+  make_room(tree.stmts, tokens.tokens.size() / 10);
+  Parser(sources, file, tokens, tree, diagnostics).parse_file();
+}
+
+Parser::Parser(const base::SourceMap& sources, uint32_t file, const TokenList& tokens, Tree& tree,
+               base::Diagnostics& diagnostics)
+    : text_(sources.text(file)),
+      base_(sources.begin(file).offset),
+      first_(tokens.tokens.data()),
+      current_(first_),
+      last_(first_ + tokens.tokens.size() - 1),
+      tree_(tree),
+      diagnostics_(diagnostics),
+      latin1_(is_latin1(text_)) {}
+
+bool Parser::accept(TokenKind wanted) {
+  if (kind() != wanted) return false;
+  take();
+  return true;
+}
+
+bool Parser::expect(TokenKind wanted, const char* where) {
+  if (accept(wanted)) return true;
+  std::string what(token_text(wanted));
+  report_here(Code::kExpected,
+              "expected `" + what + "` " + where + ", found " + describe(*current_));
+  return false;
+}
+
+bool Parser::is_word(const Token& token, std::string_view word) const {
+  return is_name(token.kind) && ir::same_name(text(token), word);
+}
+
+Name Parser::parse_name(const char* what) {
+  if (is_name(kind())) return name_of(take());
+  if (is_keyword(kind())) {
+    report_here(Code::kReservedWord,
+                describe(*current_) + " is a reserved word and cannot name a " + what,
+                "choose another name");
+  } else {
+    report_here(Code::kExpectedName,
+                std::string("expected the name of a ") + what + ", found " + describe(*current_));
+  }
+  return {};
+}
+
+base::SourcePos Parser::last_end() const {
+  if (current_ == first_) return here();
+  const Token& before = current_[-1];
+  return {before.begin + before.length};
+}
+
+bool Parser::on_new_line() const {
+  if (current_ == first_) return true;
+  uint32_t from = last_end().offset - base_;
+  return text_.substr(from, current_->begin - base_ - from).find('\n') != std::string_view::npos;
+}
+
+std::string Parser::describe(const Token& token) const {
+  static constexpr size_t kShown = 40;
+  if (token.kind == TokenKind::kEnd) return "the end of the file";
+  std::string_view shown = text(token);
+  if (shown.size() > kShown) return '`' + base::printable(shown.substr(0, kShown)) + "...`";
+  return '`' + base::printable(shown) + '`';
+}
+
+bool Parser::enter() {
+  if (++depth_ <= base::kMaxNesting) return true;
+  report_here(Code::kTooDeep,
+              "this is nested more than " + std::to_string(base::kMaxNesting) + " levels deep",
+              "move a part into a function or a variable of its own");
+  return false;
+}
+
+}  // namespace frontend

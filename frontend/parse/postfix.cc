@@ -1,0 +1,147 @@
+// Variables and what follows them: members, bits, indices, calls.
+#include "frontend/parse/parser.h"
+
+namespace frontend {
+
+ExprId Parser::parse_variable() {
+  Expr expr;
+  const Token token = take();
+  expr.name = name_of(token);
+  expr.span = token.span();
+  if (token.kind == TokenKind::kDirect) {
+    expr.kind = ExprKind::kDirect;
+    expr.address = parse_direct_address(token);
+  } else {
+    expr.kind = ExprKind::kName;
+  }
+  return parse_postfix(add_expression(std::move(expr)));
+}
+
+ExprId Parser::parse_postfix(ExprId operand) {
+  for (;;) {
+    switch (kind()) {
+      case TokenKind::kDot:
+        operand = parse_member(operand);
+        break;
+      case TokenKind::kLeftBracket:
+        operand = parse_index(operand);
+        break;
+      case TokenKind::kLeftParen:
+        operand = parse_call(operand);
+        break;
+      case TokenKind::kCaret: {
+        Expr expr;
+        expr.kind = ExprKind::kDeref;
+        expr.operand = operand;
+        expr.op_span = take().span();
+        expr.span = span_from(tree_[operand].span.begin);
+        operand = add_expression(std::move(expr));
+        break;
+      }
+      default:
+        return operand;
+    }
+    if (panic_) return operand;
+  }
+}
+
+// `.name`, `.3`, `.%X3`
+ExprId Parser::parse_member(ExprId operand) {
+  Expr expr;
+  expr.op_span = take().span();
+  expr.operand = operand;
+  const Token token = *current_;
+  if (is_name(token.kind)) {
+    expr.kind = ExprKind::kMember;
+    expr.name = name_of(take());
+  } else if (token.kind == TokenKind::kInteger) {
+    expr.kind = ExprKind::kBit;
+    DecodedInteger number = decode_integer(text(take()));
+    if (number.problem) report_problem(*number.problem, token);
+    expr.number = static_cast<uint32_t>(std::min<uint64_t>(number.value, 0xffff'ffff));
+  } else if (token.kind == TokenKind::kDirect) {
+    expr.kind = ExprKind::kBit;
+    DecodedPart part = decode_part(text(take()));
+    if (part.problem) report_problem(*part.problem, token);
+    expr.number = part.number;
+    expr.bit_size = part.bit_size;
+  } else {
+    parse_name("member");  // reports
+    return operand;
+  }
+  expr.span = span_from(tree_[operand].span.begin);
+  return add_expression(std::move(expr));
+}
+
+ExprId Parser::parse_index(ExprId operand) {
+  const Token open = take();
+  size_t mark = expr_stack_.size();
+  do {
+    expr_stack_.push_back(parse_expression());
+  } while (!panic_ && accept(TokenKind::kComma));
+  close_bracket(TokenKind::kRightBracket, open);
+  Expr expr;
+  expr.kind = ExprKind::kIndex;
+  expr.operand = operand;
+  expr.op_span = open.span();
+  expr.list = move_tail(expr_stack_, mark, tree_.expr_lists);
+  expr.span = span_from(tree_[operand].span.begin);
+  return add_expression(std::move(expr));
+}
+
+ExprId Parser::parse_call(ExprId operand) {
+  Expr expr;
+  expr.kind = ExprKind::kCall;
+  expr.operand = operand;
+  expr.op_span = current_->span();
+  expr.args = parse_arguments();
+  expr.span = span_from(tree_[operand].span.begin);
+  return add_expression(std::move(expr));
+}
+
+Range32 Parser::parse_arguments() {
+  const Token open = take();
+  size_t mark = arg_stack_.size();
+  if (kind() != TokenKind::kRightParen) {
+    do {
+      arg_stack_.push_back(parse_argument());
+    } while (!panic_ && accept(TokenKind::kComma));
+  }
+  close_bracket(TokenKind::kRightParen, open);
+  return move_tail(arg_stack_, mark, tree_.args);
+}
+
+// `value`, `in := value`, `out => variable`, `NOT out => variable`
+Arg Parser::parse_argument() {
+  Arg arg;
+  base::SourcePos begin = here();
+  if (kind() == TokenKind::kNot && is_name(next_kind()) && peek(2).kind == TokenKind::kArrow) {
+    take();
+    arg.negated = true;
+  }
+  if (is_name(kind()) && (next_kind() == TokenKind::kAssign || next_kind() == TokenKind::kArrow)) {
+    arg.name = name_of(take());
+    arg.output = take().kind == TokenKind::kArrow;
+    bool empty = kind() == TokenKind::kComma || kind() == TokenKind::kRightParen;
+    if (!empty) arg.value = parse_expression();
+  } else {
+    arg.value = parse_expression();
+  }
+  arg.span = span_from(begin);
+  return arg;
+}
+
+void Parser::close_bracket(TokenKind close, const Token& open) {
+  if (accept(close) || panic_) return;
+  base::Diagnostic diagnostic{
+      Code::kUnclosedBracket,
+      current_->span(),
+      "expected `" + std::string(token_text(close)) + "`, found " + describe(*current_),
+      {},
+      {}};
+  diagnostic.notes.push_back({open.span(), "for the bracket that opens here"});
+  diagnostics_.add(std::move(diagnostic));
+  panic_ = true;
+}
+
+}  // namespace frontend

@@ -1,0 +1,77 @@
+#include "frontend/parse/printer.h"
+
+namespace frontend {
+
+void Printer::body(Range32 statements) {
+  for (uint32_t i = 0; i < statements.count; ++i) {
+    statement(tree_[tree_.stmt_lists[statements.first + i]]);
+  }
+}
+
+void Printer::nested(const std::string& head, Range32 statements) {
+  line(head);
+  ++depth_;
+  body(statements);
+  --depth_;
+}
+
+void Printer::statement(const Stmt& stmt) {
+  switch (stmt.kind) {
+    case StmtKind::kError:
+      return line("ERROR");
+    case StmtKind::kEmpty:
+      return line("EMPTY");
+    case StmtKind::kAssign:
+      return line(expression(stmt.target) + " := " + expression(stmt.value));
+    case StmtKind::kCall:
+      return line("CALL " + expression(stmt.value));
+    case StmtKind::kIf:
+      return branches(stmt);
+    case StmtKind::kCase:
+      return cases(stmt);
+    case StmtKind::kFor: {
+      std::string head = "FOR " + expression(stmt.target) + " := " + expression(stmt.from) +
+                         " TO " + expression(stmt.to);
+      if (stmt.by.valid()) head += " BY " + expression(stmt.by);
+      return nested(head, stmt.body);
+    }
+    case StmtKind::kWhile:
+      return nested("WHILE " + expression(stmt.value), stmt.body);
+    case StmtKind::kRepeat:
+      nested("REPEAT", stmt.body);
+      return line("UNTIL " + expression(stmt.value));
+    case StmtKind::kExit:
+      return line("EXIT");
+    case StmtKind::kContinue:
+      return line("CONTINUE");
+    case StmtKind::kReturn:
+      return line("RETURN");
+  }
+}
+
+void Printer::branches(const Stmt& stmt) {
+  for (uint32_t i = 0; i < stmt.branches.count; ++i) {
+    const Branch& branch = tree_.branches[stmt.branches.first + i];
+    nested((i == 0 ? "IF " : "ELSIF ") + expression(branch.condition), branch.body);
+  }
+  if (stmt.has_else) nested("ELSE", stmt.else_body);
+}
+
+void Printer::cases(const Stmt& stmt) {
+  line("CASE " + expression(stmt.value));
+  ++depth_;
+  for (uint32_t i = 0; i < stmt.cases.count; ++i) {
+    const CaseArm& arm = tree_.cases[stmt.cases.first + i];
+    std::string head;
+    for (uint32_t j = 0; j < arm.labels.count; ++j) {
+      const CaseLabel& label = tree_.labels[arm.labels.first + j];
+      head += (head.empty() ? "" : ", ") + expression(label.low);
+      if (label.high.valid()) head += ".." + expression(label.high);
+    }
+    nested(head + ':', arm.body);
+  }
+  if (stmt.has_else) nested("ELSE", stmt.else_body);
+  --depth_;
+}
+
+}  // namespace frontend

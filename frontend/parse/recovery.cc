@@ -1,0 +1,116 @@
+#include "frontend/parse/parser.h"
+#include "frontend/parse/token_sets.h"
+
+namespace frontend {
+
+void Parser::report(Code code, base::SourceSpan span, std::string text, std::string fix) {
+  if (!panic_) diagnostics_.add(code, span, std::move(text), std::move(fix));
+  panic_ = true;
+}
+
+void Parser::note_only(Code code, base::SourceSpan span, std::string text, std::string fix) {
+  if (!panic_) diagnostics_.add(code, span, std::move(text), std::move(fix));
+}
+
+void Parser::report_here(Code code, std::string text, std::string fix) {
+  report(code, current_->span(), std::move(text), std::move(fix));
+}
+
+// At the opening keyword, whose place is certain; where the end was missed is a note.
+void Parser::report_missing_end(const Token& opening, TokenKind end) {
+  std::string closing(token_text(end));
+  base::Diagnostic diagnostic{Code::kMissingEnd,
+                              opening.span(),
+                              describe(opening) + " has no `" + closing + '`',
+                              "write `" + closing + "` behind the last line that belongs to it",
+                              {}};
+  diagnostic.notes.push_back(
+      {current_->span(), '`' + closing + "` was expected before " + describe(*current_)});
+  if (!panic_) diagnostics_.add(std::move(diagnostic));
+}
+
+void Parser::report_problem(const LiteralProblem& problem, const Token& token) {
+  base::SourceSpan span = token.span();
+  if (problem.length != 0) {
+    span.begin.offset += std::min(problem.at, token.length);
+    span.end.offset = std::min(span.begin.offset + problem.length, span.end.offset);
+  }
+  note_only(problem.code, span, problem.text, problem.fix);
+}
+
+// Behind the last token, not at the next one, which may be many lines below.
+void Parser::report_missing_semicolon(const char* what) {
+  base::SourcePos end = last_end();
+  note_only(Code::kMissingSemicolon, {end, {end.offset + 1}},
+            std::string("`;` is missing behind this ") + what, "write `;` here");
+}
+
+void Parser::not_supported(base::SourceSpan span, const std::string& what, std::string fix) {
+  note_only(Code::kNotSupported, span, what + " not supported yet", std::move(fix));
+}
+
+void Parser::skip_to_statement_end() {
+  while (kind() != TokenKind::kSemicolon && !is_statement_boundary(kind())) take();
+  accept(TokenKind::kSemicolon);
+  panic_ = false;
+}
+
+void Parser::skip_to_declaration_end() { skip_to_statement_end(); }
+
+void Parser::skip_to(TokenKind wanted) {
+  while (kind() != wanted && kind() != TokenKind::kSemicolon && !is_statement_boundary(kind())) {
+    take();
+  }
+}
+
+void Parser::skip_past(TokenKind end) {
+  while (kind() != end && kind() != TokenKind::kEnd) take();
+  accept(end);
+  accept(TokenKind::kSemicolon);
+}
+
+bool Parser::skip_block(TokenKind end) {
+  while (kind() != end && kind() != TokenKind::kEnd && !is_pou_end(kind())) take();
+  bool found = accept(end);
+  accept(TokenKind::kSemicolon);
+  return found;
+}
+
+// Blocks of later languages and of object orientation: one message, skipped to
+// their end. They begin with soft keywords, so what follows decides.
+bool Parser::skip_unsupported_block() {
+  struct Block {
+    TokenKind begin;
+    TokenKind end;
+    const char* what;
+    bool spans_pous;
+  };
+  static constexpr Block kBlocks[] = {
+      {TokenKind::kMethod, TokenKind::kEndMethod, "methods are", false},
+      {TokenKind::kProperty, TokenKind::kEndProperty, "properties are", false},
+      {TokenKind::kAction, TokenKind::kEndAction, "actions are", false},
+      {TokenKind::kTransition, TokenKind::kEndTransition, "sequential function charts are", false},
+      {TokenKind::kInitialStep, TokenKind::kEndStep, "sequential function charts are", false},
+      {TokenKind::kStep, TokenKind::kEndStep, "sequential function charts are", false},
+      {TokenKind::kInterface, TokenKind::kEndInterface, "interfaces are", true},
+      {TokenKind::kClass, TokenKind::kEndClass, "classes are", true},
+      {TokenKind::kNamespace, TokenKind::kEndNamespace, "namespaces are", true},
+      {TokenKind::kTest, TokenKind::kEndTest, "tests in the language are", false},
+      {TokenKind::kLadder, TokenKind::kEndLadder, "ladder networks are", false},
+  };
+  for (const Block& block : kBlocks) {
+    if (kind() != block.begin) continue;
+    bool named = is_name(next_kind()) || next_kind() == TokenKind::kString;
+    if (!named && next_kind() != block.end) return false;
+    not_supported(take().span(), block.what);
+    if (block.spans_pous) {
+      skip_past(block.end);
+    } else {
+      skip_block(block.end);
+    }
+    return true;
+  }
+  return false;
+}
+
+}  // namespace frontend

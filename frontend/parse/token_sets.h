@@ -1,0 +1,46 @@
+// Sets of token kinds on which parsing of a list ends or recovery stops.
+#pragma once
+
+#include "frontend/lex/token.h"
+
+namespace frontend {
+
+// END_IF, ELSE, UNTIL, ...: closes or continues something that was opened.
+constexpr bool is_closing(TokenKind kind) {
+  return (kind >= TokenKind::kEndAction && kind <= TokenKind::kEndWhile) ||
+         kind == TokenKind::kElse || kind == TokenKind::kElsif || kind == TokenKind::kUntil;
+}
+
+constexpr bool is_pou_start(TokenKind kind) {
+  return kind == TokenKind::kFunction || kind == TokenKind::kFunctionBlock ||
+         kind == TokenKind::kProgram;
+}
+
+constexpr bool is_pou_end(TokenKind kind) {
+  return kind == TokenKind::kEndFunction || kind == TokenKind::kEndFunctionBlock ||
+         kind == TokenKind::kEndProgram;
+}
+
+constexpr bool is_var_start(TokenKind kind) {
+  return kind >= TokenKind::kVar && kind <= TokenKind::kVarTemp;
+}
+
+// Keywords that begin a declaration at file level and cannot stand in a body.
+constexpr bool is_file_level_start(TokenKind kind) {
+  return is_pou_start(kind) || kind == TokenKind::kType || kind == TokenKind::kConfiguration ||
+         kind == TokenKind::kVarGlobal;
+}
+
+constexpr bool is_statement_keyword(TokenKind kind) {
+  return kind == TokenKind::kIf || kind == TokenKind::kCase || kind == TokenKind::kFor ||
+         kind == TokenKind::kWhile || kind == TokenKind::kRepeat || kind == TokenKind::kExit ||
+         kind == TokenKind::kReturn;
+}
+
+// Where skipping inside a statement stops, besides its semicolon.
+constexpr bool is_statement_boundary(TokenKind kind) {
+  return kind == TokenKind::kEnd || is_closing(kind) || is_statement_keyword(kind) ||
+         is_var_start(kind) || is_file_level_start(kind);
+}
+
+}  // namespace frontend

@@ -1,0 +1,187 @@
+// VAR blocks and the declarations inside them.
+#include "frontend/parse/parser.h"
+#include "frontend/parse/token_sets.h"
+
+namespace frontend {
+
+namespace {
+
+VarSection section_of(TokenKind kind) {
+  switch (kind) {
+    case TokenKind::kVarInput:
+      return VarSection::kInput;
+    case TokenKind::kVarOutput:
+      return VarSection::kOutput;
+    case TokenKind::kVarInOut:
+      return VarSection::kInOut;
+    case TokenKind::kVarTemp:
+      return VarSection::kTemp;
+    case TokenKind::kVarExternal:
+      return VarSection::kExternal;
+    case TokenKind::kVarGlobal:
+      return VarSection::kGlobal;
+    default:
+      return VarSection::kLocal;
+  }
+}
+
+bool is_supported_section(TokenKind kind) {
+  return kind == TokenKind::kVar || section_of(kind) != VarSection::kLocal;
+}
+
+}  // namespace
+
+bool Parser::at_var_block() const { return is_var_start(kind()); }
+
+void Parser::parse_var_block(std::vector<VarBlock>& blocks) {
+  const Token opening = take();
+  if (!is_supported_section(opening.kind)) {
+    not_supported(opening.span(), std::string(token_text(opening.kind)) + " is");
+    skip_block(TokenKind::kEndVar);
+    return;
+  }
+  VarBlock block;
+  block.section = section_of(opening.kind);
+  parse_qualifiers(block);
+  block.span = span_from({opening.begin});
+  parse_variables(block, opening);
+  blocks.push_back(std::move(block));
+}
+
+// CONSTANT, RETAIN, ... are qualifiers unless they are the first variable's name.
+void Parser::parse_qualifiers(VarBlock& block) {
+  bool non_retain = false;
+  for (;; take()) {
+    TokenKind next = next_kind();
+    if (next == TokenKind::kColon || next == TokenKind::kComma || next == TokenKind::kAt) return;
+    switch (kind()) {
+      case TokenKind::kConstant:
+        block.constant = true;
+        break;
+      case TokenKind::kRetain:
+      case TokenKind::kPersistent:
+        block.retain = true;
+        break;
+      case TokenKind::kNonRetain:
+        non_retain = true;
+        break;
+      case TokenKind::kPublic:
+      case TokenKind::kPrivate:
+      case TokenKind::kProtected:
+      case TokenKind::kInternal:
+        not_supported(current_->span(), "access specifiers are", "leave it out");
+        break;
+      default:
+        return;
+    }
+    int kinds = (block.constant ? 1 : 0) + (block.retain ? 1 : 0) + (non_retain ? 1 : 0);
+    if (kinds > 1) {
+      note_only(Code::kBadQualifier, current_->span(),
+                describe(*current_) + " contradicts a qualifier in front of it",
+                "keep one of CONSTANT, RETAIN and NON_RETAIN");
+    }
+  }
+}
+
+void Parser::parse_variables(VarBlock& block, const Token& opening) {
+  while (kind() != TokenKind::kEndVar) {
+    if (accept(TokenKind::kSemicolon)) continue;
+    if (variables_end()) return report_missing_end(opening, TokenKind::kEndVar);
+    parse_variable_declaration(block.vars);
+  }
+  take();
+  accept(TokenKind::kSemicolon);
+}
+
+// Is END_VAR missing here? Keywords tell; what looks like a statement tells when
+// no END_VAR follows before the next block or the end of the POU.
+bool Parser::variables_end() {
+  if (kind() == TokenKind::kEnd || is_closing(kind()) || is_var_start(kind()) ||
+      is_file_level_start(kind())) {
+    return true;
+  }
+  TokenKind next = next_kind();
+  bool statement =
+      is_statement_keyword(kind()) ||
+      (is_name(kind()) && (next == TokenKind::kAssign || next == TokenKind::kLeftParen ||
+                           next == TokenKind::kDot || next == TokenKind::kLeftBracket));
+  return statement && !end_var_ahead();
+}
+
+bool Parser::end_var_ahead() const {
+  for (const Token* token = current_; token != last_; ++token) {
+    if (token->kind == TokenKind::kEndVar) return true;
+    if (is_var_start(token->kind) || is_file_level_start(token->kind) || is_pou_end(token->kind)) {
+      return false;
+    }
+  }
+  return false;
+}
+
+void Parser::parse_variable_declaration(std::vector<VarDecl>& out) {
+  VarDecl decl;
+  base::SourcePos begin = here();
+  do {
+    Name name = parse_name("variable");
+    if (panic_) {
+      if (!is_closing(kind())) take();
+      return skip_to_declaration_end();
+    }
+    decl.names.push_back(name);
+  } while (accept(TokenKind::kComma));
+  parse_location(decl);
+  if (!panic_ && kind() == TokenKind::kAssign) {
+    report_here(Code::kExpected, "a declaration needs a type: expected `:` behind the name",
+                "write `name : type := value;`");
+  }
+  if (!panic_) expect(TokenKind::kColon, "behind the name of the variable");
+  if (panic_) return skip_to_declaration_end();
+  decl.spec = parse_spec();
+  parse_edge();
+  parse_default(decl.init);
+  decl.span = span_from(begin);
+  out.push_back(std::move(decl));
+  finish_declaration("declaration");
+}
+
+// AT %QX0.0
+void Parser::parse_location(VarDecl& decl) {
+  if (!accept(TokenKind::kAt)) return;
+  if (kind() != TokenKind::kDirect) {
+    return report_here(
+        Code::kBadDirectAddress,
+        "a direct address such as %QX0.0 belongs behind AT, found " + describe(*current_));
+  }
+  decl.address = parse_direct_address(take());
+  decl.has_address = decl.address.area != ir::DirectArea::kNone;
+}
+
+void Parser::parse_edge() {
+  if (kind() != TokenKind::kRisingEdge && kind() != TokenKind::kFallingEdge) return;
+  not_supported(take().span(), "edge inputs (R_EDGE, F_EDGE) are",
+                "use an R_TRIG or F_TRIG in the body");
+}
+
+void Parser::parse_default(ExprId& init) {
+  if (panic_) return;
+  if (kind() == TokenKind::kEqual) {
+    note_only(Code::kAssignEquals, current_->span(),
+              "`=` compares; an initial value is given by `:=`", "write `:=`");
+    take();
+    init = parse_initializer();
+  } else if (accept(TokenKind::kAssign)) {
+    init = parse_initializer();
+  }
+}
+
+void Parser::finish_declaration(const char* what) {
+  if (panic_) return skip_to_declaration_end();
+  if (accept(TokenKind::kSemicolon)) return;
+  bool block_end = current_ != first_ && (current_[-1].kind == TokenKind::kEndStruct ||
+                                          current_[-1].kind == TokenKind::kEndUnion);
+  if (block_end) return;  // real sources leave the semicolon out behind END_x
+  report_missing_semicolon(what);
+  if (!on_new_line() && !is_statement_boundary(kind())) skip_to_declaration_end();
+}
+
+}  // namespace frontend
