@@ -1,0 +1,45 @@
+// Calls: function arguments are already in their slots of the next frame.
+#include "ir/lower/opcodes.h"
+#include "ir/lower/select.h"
+
+namespace ir::codegen {
+
+// What an in-out slot points to may change in a call.
+void Selector::forget_references() {
+  std::erase_if(addresses_, [](const auto& entry) { return entry.second.by_reference; });
+}
+
+void Selector::select_call(const Inst& inst) {
+  flush_call(inst);
+  const uint32_t callee = tables_.callee(program_.pous[inst.pou.index].name);
+  emit(Opcode::CALL, {}, {}, Operand::immediate(callee));
+  forget_references();
+}
+
+void Selector::select_call_instance(const Inst& inst) {
+  flush_call(inst);
+  const Location at = locate(pou_.places[inst.place.index]);
+  if (!at.behind_addr) {
+    emit(Opcode::CALL_INST, {}, field_of(at));
+  } else if (at.place.result.dim == 0 && at.place.steps.empty()) {
+    fail(base::Refusal::kTooMany,
+         "a function block passed as in-out cannot be called; call it where it is declared");
+  } else {
+    emit(Opcode::CALL_INST_AT, {}, at.addr, Operand::immediate(offset_of(at)));
+  }
+  forget_references();
+}
+
+void Selector::select_native(const Inst& inst) {
+  flush_native(inst);
+  for (uint32_t i = 0; i < inst.operands.size(); ++i) {
+    const Class cls = class_of_value(inst.operands[i]);
+    assign(Operand::slot(tables_.native_slot(i, cls)), inst.operands[i]);
+  }
+  emit(Opcode::NATIVE, {}, {}, Operand::immediate(inst.native));
+  if (!inst.result.valid() || values_[inst.result].uses == 0) return;
+  const Class cls = class_of(inst.scalar);
+  move(cls, register_for(inst.result), Operand::slot(tables_.native_slot(0, cls)));
+}
+
+}  // namespace ir::codegen

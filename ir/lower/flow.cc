@@ -1,0 +1,100 @@
+#include "ir/lower/flow.h"
+
+#include <algorithm>
+
+namespace ir::codegen {
+namespace {
+
+// Before ordering, successors are node numbers: IR blocks first, then split edges.
+using Graph = std::vector<FlowBlock>;
+
+void split_edge(Graph& graph, uint32_t node, size_t successor, const Target& target) {
+  FlowBlock edge;
+  edge.edge = &target;
+  edge.successors = {graph[node].successors[successor]};
+  graph[node].successors[successor] = static_cast<uint32_t>(graph.size());
+  graph.push_back(std::move(edge));
+}
+
+Graph graph_of(const Pou& pou) {
+  Graph graph(pou.blocks.size());
+  for (uint32_t i = 0; i < pou.blocks.size(); ++i) {
+    graph[i].source = BlockId(i);
+    for (const Target& target : pou.blocks[i].insts.back().targets) {
+      graph[i].successors.push_back(target.block.index);
+    }
+  }
+  for (uint32_t i = 0; i < pou.blocks.size(); ++i) {
+    const Inst& end = pou.blocks[i].insts.back();
+    if (end.op != Op::kBranch) continue;
+    for (size_t t = 0; t < end.targets.size(); ++t) {
+      if (!end.targets[t].args.empty()) split_edge(graph, i, t, end.targets[t]);
+    }
+  }
+  return graph;
+}
+
+// The last successor is visited first, so that the first one follows its branch.
+std::vector<uint32_t> reverse_post_order(const Graph& graph) {
+  std::vector<uint32_t> order;
+  std::vector<bool> seen(graph.size());
+  struct Visit {
+    uint32_t node;
+    size_t left;
+  };
+  std::vector<Visit> stack{{0, graph[0].successors.size()}};
+  seen[0] = true;
+  while (!stack.empty()) {
+    Visit& top = stack.back();
+    if (top.left == 0) {
+      order.push_back(top.node);
+      stack.pop_back();
+      continue;
+    }
+    const uint32_t next = graph[top.node].successors[--top.left];
+    if (seen[next]) continue;
+    seen[next] = true;
+    stack.push_back({next, graph[next].successors.size()});
+  }
+  std::reverse(order.begin(), order.end());
+  return order;
+}
+
+std::vector<uint32_t> positions_of(const std::vector<uint32_t>& order, size_t nodes) {
+  std::vector<uint32_t> positions(nodes, 0);
+  for (uint32_t i = 0; i < order.size(); ++i) positions[order[i]] = i;
+  return positions;
+}
+
+// A conditional jump goes forwards only, so one of two backward edges gets a block.
+bool split_double_backward(Graph& graph, const std::vector<uint32_t>& order, const Pou& pou) {
+  const std::vector<uint32_t> positions = positions_of(order, graph.size());
+  bool changed = false;
+  for (uint32_t node : order) {
+    const std::vector<uint32_t>& next = graph[node].successors;
+    const bool both_backward = next.size() == 2 && positions[next[0]] <= positions[node] &&
+                               positions[next[1]] <= positions[node];
+    if (!both_backward) continue;
+    split_edge(graph, node, 1, pou.blocks[graph[node].source.index].insts.back().targets[1]);
+    changed = true;
+  }
+  return changed;
+}
+
+}  // namespace
+
+Flow order_blocks(const Pou& pou) {
+  Graph graph = graph_of(pou);
+  std::vector<uint32_t> order = reverse_post_order(graph);
+  while (split_double_backward(graph, order, pou)) order = reverse_post_order(graph);
+  const std::vector<uint32_t> positions = positions_of(order, graph.size());
+  Flow flow;
+  for (uint32_t node : order) {
+    FlowBlock block = std::move(graph[node]);
+    for (uint32_t& successor : block.successors) successor = positions[successor];
+    flow.blocks.push_back(std::move(block));
+  }
+  return flow;
+}
+
+}  // namespace ir::codegen

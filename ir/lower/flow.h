@@ -1,0 +1,25 @@
+// Order of emission: the reachable blocks in reverse post order, so that only back
+// edges jump backwards, with blocks of their own for edges that need code.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ir/program/ir.h"
+
+namespace ir::codegen {
+
+struct FlowBlock {
+  BlockId source;                    // invalid: a split edge
+  const Target* edge = nullptr;      // of a split edge: where it goes
+  std::vector<uint32_t> successors;  // positions, parallel to the terminator's targets
+};
+
+struct Flow {
+  std::vector<FlowBlock> blocks;  // in order of emission
+};
+
+// Splits branch edges that pass arguments, and the second of two backward ones.
+Flow order_blocks(const Pou& pou);
+
+}  // namespace ir::codegen

@@ -1,0 +1,42 @@
+#include "ir/lower/lower.h"
+
+#include "ir/lower/allocate.h"
+#include "ir/lower/emit.h"
+#include "ir/lower/select.h"
+
+namespace ir {
+namespace {
+
+codegen::RegisterSet written_by_caller(const codegen::Machine& machine, const Object& object) {
+  codegen::RegisterSet written(machine.registers.size());
+  for (uint32_t r = 0; r < machine.registers.size(); ++r) {
+    const uint32_t slot = machine.registers[r].slot;
+    if (slot == codegen::kNoNumber) continue;
+    const LocalKind kind = object.slots[slot].local;
+    if (kind == LocalKind::kInput || kind == LocalKind::kInOut) written.add(r);
+  }
+  return written;
+}
+
+}  // namespace
+
+base::Result<Object> lower(const Program& program, PouId id) {
+  const Pou& pou = program.pous[id.index];
+  Object object;
+  object.name = pou.name;
+  object.kind = pou.kind;
+  object.self = pou.self;
+  object.file = pou.file;
+  base::Result<codegen::Machine> selected = codegen::Selector(program, pou, object).run();
+  if (!selected.ok()) return selected.error();
+  codegen::Machine& machine = selected.value();
+  const codegen::Liveness liveness =
+      codegen::analyse_liveness(machine, written_by_caller(machine, object));
+  codegen::allocate(machine, liveness, object);
+  if (base::Status emitted = emit_object(machine, liveness, object); !emitted.ok()) {
+    return emitted.error();
+  }
+  return object;
+}
+
+}  // namespace ir

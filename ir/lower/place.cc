@@ -1,0 +1,336 @@
+// Places become symbolic offsets from a fixed root, or from an address that was
+// computed for the steps that no offset can express.
+#include "base/bytes.h"
+#include "ir/lower/opcodes.h"
+#include "ir/lower/select.h"
+
+namespace ir::codegen {
+namespace {
+
+bool needs_address(const Step& step, const Values& values) {
+  return step.kind == StepKind::kEnter || step.kind == StepKind::kDeref ||
+         (step.kind == StepKind::kIndex && step.value.valid() && !values.is_constant(step.value));
+}
+
+void append(ObjectPlace& place, Step step, Region result) {
+  place.steps.push_back(step);
+  place.result = result;
+}
+
+Step constant_step(StepKind kind, uint32_t index, int64_t constant_index) {
+  Step step;
+  step.kind = kind;
+  step.index = index;
+  step.constant_index = constant_index;
+  return step;
+}
+
+// An element of an array of function blocks is an ID slot, not the instance: it
+// stays a region of the array.
+Region element_region(const TypeTable& types, Region array) {
+  const Type& type = types[array.type];
+  const auto dim = static_cast<uint8_t>(array.dim + 1);
+  const bool whole = dim == type.dims.size() && !types.is_instance(type.base);
+  return whole ? Region{type.base, 0} : Region{array.type, dim};
+}
+
+}  // namespace
+
+void Selector::behind(Location& at, Operand addr, Region region) const {
+  at.behind_addr = true;
+  at.addr = addr;
+  at.base = Base::kFrame;
+  at.place = {};
+  at.place.root = PlaceRoot::kRegion;
+  at.place.region = region;
+  at.place.result = region;
+}
+
+Location Selector::root_of(const Place& place) {
+  Location at;
+  at.place.result = {place.base_type, 0};
+  switch (place.base) {
+    case PlaceBase::kSelf:
+      at.base = Base::kSelf;
+      at.place.root = PlaceRoot::kSelf;
+      break;
+    case PlaceBase::kGlobal:
+      at.base = Base::kGlobal;
+      at.place.root = PlaceRoot::kGlobal;
+      break;
+    case PlaceBase::kLocal:
+      at.place.root = PlaceRoot::kSlot;
+      at.place.slot = place.base_index;
+      break;
+    case PlaceBase::kArg: {
+      const Pou& callee = program_.pous[place.pou.index];
+      const Local& param = callee.locals[place.base_index];
+      const bool in_out = param.kind == LocalKind::kInOut;
+      const bool aggregate = !in_out && !types().is_scalar(param.type);
+      Class cls = in_out ? Class::kA : Class::kB;
+      if (!in_out && !aggregate) cls = class_of(types().scalar(param.type));
+      at.place.root = PlaceRoot::kSlot;
+      at.place.slot = tables_.argument_slot(tables_.callee(callee.name), place.base_index, cls,
+                                            aggregate, {param.type, 0});
+      break;
+    }
+    case PlaceBase::kConst:
+      at.base = Base::kConst;
+      at.constant = place.constant;
+      at.constant_type = place.base_type;
+      break;
+    case PlaceBase::kPointee:
+      behind(at, use(place.value), {place.base_type, 0});
+      break;
+  }
+  return at;
+}
+
+// A constant has no places inside: its address comes first.
+static bool is_bare_constant(const Location& at) {
+  return !at.behind_addr && at.base == Base::kConst;
+}
+
+Location Selector::locate(const Place& place) {
+  Location at;
+  size_t next = resume_from_cache(at, place);
+  if (next == 0) at = root_of(place);
+  for (; next < place.steps.size(); ++next) {
+    const Step& step = place.steps[next];
+    if (is_bare_constant(at) && !needs_address(step, values_)) {
+      behind(at, address_of(at), at.place.result);
+    }
+    switch (step.kind) {
+      case StepKind::kMember: {
+        const Type& type = types()[at.place.result.type];
+        append(at.place, constant_step(StepKind::kMember, step.index, 0),
+               {type.members[step.index].type, 0});
+        break;
+      }
+      case StepKind::kIndex:
+        step_index(at, place, next);
+        break;
+      case StepKind::kEnter:
+        step_enter(at);
+        break;
+      case StepKind::kDeref:
+        step_dereference(at);
+        break;
+    }
+    if (needs_address(step, values_)) remember(place, next + 1, at);
+  }
+  return at;
+}
+
+// A constant index outside its bounds is left to the check at run time.
+void Selector::step_index(Location& at, const Place& place, size_t number) {
+  const Step& step = place.steps[number];
+  const Region array = at.place.result;
+  const Dimension& dimension = types()[array.type].dims[array.dim];
+  const bool constant = !step.value.valid() || values_.is_constant(step.value);
+  int64_t index = step.constant_index;
+  if (step.value.valid() && constant)
+    index = static_cast<int64_t>(values_.constant_bits(step.value));
+  if (constant && index >= dimension.low && index <= dimension.high) {
+    append(at.place, constant_step(StepKind::kIndex, 0, index), element_region(types(), array));
+    return;
+  }
+  const std::string name = place_name(place, number);
+  if (constant) {
+    const uint32_t pooled = tables_.scalar(Class::k64, static_cast<uint64_t>(index));
+    step_dynamic_index(at, Operand::constant(pooled), Scalar::kI64, name);
+  } else {
+    step_dynamic_index(at, use(step.value), pou_.values[step.value.index].scalar, name);
+  }
+}
+
+void Selector::step_dynamic_index(Location& at, Operand index, Scalar index_scalar,
+                                  const std::string& name) {
+  const Region array = at.place.result;
+  const Region element = element_region(types(), array);
+  const uint32_t bound = tables_.bound(array.type, array.dim, name);
+  const Operand addr = new_register(Class::kA, element, false);
+  if (at.behind_addr) {
+    emit(index_opcode(index_scalar), addr, index, at.addr, bound, offset_of(at));
+  } else {
+    emit(index_place_opcode(index_scalar), addr, index, field_of(at), bound, extension_of(at));
+  }
+  behind(at, addr, element);
+}
+
+void Selector::step_enter(Location& at) {
+  const Region slot = at.place.result;
+  const TypeId instance = slot.dim != 0 ? types()[slot.type].base : slot.type;
+  // What an in-out of a function block points to is the instance itself.
+  if (at.behind_addr && at.place.steps.empty() && at.place.region == Region{instance, 0}) return;
+  const Operand addr = new_register(Class::kA, {instance, 0}, false);
+  if (at.behind_addr) {
+    emit(Opcode::INST_AT, addr, at.addr, Operand::immediate(offset_of(at)));
+  } else {
+    emit(Opcode::INST, addr, field_of(at));
+  }
+  behind(at, addr, {instance, 0});
+}
+
+void Selector::step_dereference(Location& at) {
+  const Region target = at.place.result;
+  if (!at.behind_addr && at.place.root == PlaceRoot::kSlot && at.place.steps.empty()) {
+    const uint32_t slot = at.place.slot;
+    const bool named = slot < local_registers_.size() && local_registers_[slot] != kNoNumber;
+    behind(at, named ? Operand::reg(local_registers_[slot]) : Operand::slot(slot), target);
+    return;
+  }
+  const Operand addr = new_register(Class::kA, target, false);
+  if (at.behind_addr) {
+    emit(Opcode::LD_REF_AT, addr, at.addr, Operand::immediate(offset_of(at)));
+  } else {
+    emit(Opcode::LD_REF, addr, field_of(at));
+  }
+  behind(at, addr, target);
+}
+
+// --- addresses computed earlier in this block ----------------------------------
+
+std::string Selector::prefix_key(const Place& place, size_t steps) const {
+  base::ByteWriter key;
+  key.u8(static_cast<uint8_t>(place.base));
+  key.u32(place.base_index);
+  key.u32(place.pou.index);
+  key.u32(place.value.valid() ? values_.root(place.value).index : kNoNumber);
+  key.u32(place.constant.index);
+  for (size_t i = 0; i < steps; ++i) {
+    const Step& step = place.steps[i];
+    const bool constant = step.value.valid() && values_.is_constant(step.value);
+    key.u8(static_cast<uint8_t>(step.kind));
+    key.u32(step.index);
+    key.u32(step.value.valid() && !constant ? values_.root(step.value).index : kNoNumber);
+    key.i64(constant ? static_cast<int64_t>(values_.constant_bits(step.value))
+                     : step.constant_index);
+  }
+  const base::Bytes& bytes = key.bytes();
+  return std::string(bytes.begin(), bytes.end());
+}
+
+// Number of steps that an earlier address already covers.
+size_t Selector::resume_from_cache(Location& at, const Place& place) {
+  for (size_t steps = place.steps.size(); steps > 0; --steps) {
+    if (!needs_address(place.steps[steps - 1], values_)) continue;
+    const auto found = addresses_.find(prefix_key(place, steps));
+    if (found == addresses_.end()) continue;
+    if (place.value.valid()) consume(place.value);
+    for (size_t i = 0; i < steps; ++i) {
+      const Step& step = place.steps[i];
+      if (step.value.valid() && !values_.is_constant(step.value)) consume(step.value);
+    }
+    behind(at, found->second.addr, found->second.region);
+    return steps;
+  }
+  return 0;
+}
+
+void Selector::remember(const Place& place, size_t steps, const Location& at) {
+  bool by_reference = false;
+  for (size_t i = 0; i < steps; ++i) by_reference |= place.steps[i].kind == StepKind::kDeref;
+  addresses_[prefix_key(place, steps)] = {at.addr, at.place.region, by_reference};
+}
+
+// --- fields of instructions ------------------------------------------------------
+
+// The operand for a BASE or BC32 field.
+Operand Selector::field_of(const Location& at) {
+  if (at.base == Base::kConst) return Operand::constant(extension_of(at));
+  return Operand::place(at.base, offset_of(at));
+}
+
+uint32_t Selector::extension_of(const Location& at) {
+  if (at.base == Base::kConst) return tables_.initial_value(at.constant_type, at.constant);
+  return offset_of(at);
+}
+
+// A near operand for the scalar at a fixed place.
+Operand Selector::operand_of(const Location& at, Class cls) {
+  base::check(at.base != Base::kConst, "scalar constants are folded");
+  if (at.place.root != PlaceRoot::kSlot || !at.place.steps.empty()) {
+    return Operand::place(at.base, offset_of(at));
+  }
+  const uint32_t slot = at.place.slot;
+  const bool named = slot < local_registers_.size() && local_registers_[slot] != kNoNumber;
+  base::check(object_.slots[slot].cls == cls, "a slot is used by its own class");
+  return named ? Operand::reg(local_registers_[slot]) : Operand::slot(slot);
+}
+
+// --- names and constants ----------------------------------------------------------
+
+std::string Selector::place_name(const Place& place, size_t steps) const {
+  std::string name;
+  TypeId type = place.base_type;
+  if (place.base == PlaceBase::kLocal) name = pou_.locals[place.base_index].name;
+  if (place.base == PlaceBase::kArg) {
+    name = program_.pous[place.pou.index].locals[place.base_index].name;
+  }
+  size_t dims = 0;
+  for (size_t i = 0; i < steps; ++i) {
+    const Step& step = place.steps[i];
+    if (step.kind == StepKind::kMember) {
+      const Member& member = types()[type].members[step.index];
+      name += (name.empty() ? "" : ".") + member.name;
+      type = member.type;
+    } else if (step.kind == StepKind::kIndex) {
+      name += step.value.valid() ? "[..]" : "[" + std::to_string(step.constant_index) + "]";
+      if (++dims == types()[type].dims.size()) {
+        type = types()[type].base;
+        dims = 0;
+      }
+    }
+  }
+  return name;
+}
+
+// nullopt when an index is outside its bounds.
+static std::optional<uint64_t> flat_index(const Type& array, const Place& place, size_t first,
+                                          const Values& values) {
+  uint64_t flat = 0;
+  for (size_t d = 0; d < array.dims.size(); ++d) {
+    const Step& step = place.steps[first + d];
+    const int64_t index = step.value.valid()
+                              ? static_cast<int64_t>(values.constant_bits(step.value))
+                              : step.constant_index;
+    if (index < array.dims[d].low || index > array.dims[d].high) return std::nullopt;
+    flat = flat * array.dims[d].count() + static_cast<uint64_t>(index - array.dims[d].low);
+  }
+  return flat;
+}
+
+static ConstId element_of(const ConstTable& constants, ConstId value, uint64_t index) {
+  ConstId found;
+  for (const ConstElement& element : constants[value].elements) {
+    if (index >= element.first && index - element.first < element.count) found = element.value;
+  }
+  return found;
+}
+
+// The scalar at a fixed place inside a constant; nullopt where a default decides.
+std::optional<uint64_t> Selector::constant_scalar(const Place& place) const {
+  ConstId value = place.constant;
+  TypeId type = place.base_type;
+  if (!value.valid() && place.steps.empty()) return default_bits(type);
+  for (size_t i = 0; i < place.steps.size() && value.valid();) {
+    const Type& at = types()[type];
+    if (place.steps[i].kind == StepKind::kMember) {
+      value = element_of(program_.constants, value, place.steps[i].index);
+      type = at.members[place.steps[i].index].type;
+      ++i;
+      continue;
+    }
+    if (at.dims.empty() || i + at.dims.size() > place.steps.size()) return std::nullopt;
+    const std::optional<uint64_t> flat = flat_index(at, place, i, values_);
+    if (!flat) return std::nullopt;
+    value = element_of(program_.constants, value, *flat);
+    type = at.base;
+    i += at.dims.size();
+  }
+  if (!value.valid()) return std::nullopt;
+  return program_.constants[value].bits;
+}
+
+}  // namespace ir::codegen
