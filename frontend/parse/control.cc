@@ -27,22 +27,36 @@ void Parser::close_statement(const Token& opening, TokenKind end) {
   accept(TokenKind::kSemicolon);
 }
 
+// condition THEN body, of IF and ELSIF; returns where its head ends.
+base::SourcePos Parser::parse_branch() {
+  Branch branch;
+  branch.condition = parse_condition();
+  parse_head(TokenKind::kThen, "behind the condition");
+  base::SourcePos head_end = last_end();
+  branch.body = parse_body(TokenKind::kEndIf);
+  branch_stack_.push_back(branch);
+  return head_end;
+}
+
 void Parser::parse_if() {
   const Token opening = take();
   Stmt stmt;
   stmt.kind = StmtKind::kIf;
   size_t mark = branch_stack_.size();
-  do {
-    Branch branch;
-    branch.condition = parse_condition();
-    parse_head(TokenKind::kThen, "behind the condition");
-    if (branch_stack_.size() == mark) stmt.span = span_from({opening.begin});
-    branch.body = parse_body(TokenKind::kEndIf);
-    branch_stack_.push_back(branch);
-  } while (accept(TokenKind::kElsif));
-  if (accept(TokenKind::kElse)) {
-    stmt.has_else = true;
-    stmt.else_body = parse_body(TokenKind::kEndIf);
+  stmt.span = {{opening.begin}, parse_branch()};
+  while (kind() == TokenKind::kElsif || kind() == TokenKind::kElse) {
+    const Token token = take();
+    if (stmt.has_else) {
+      note_only(Code::kUnexpectedEnd, token.span(),
+                describe(token) + " stands behind the ELSE of the same IF",
+                "put ELSE behind all ELSIF branches, and only one");
+    }
+    if (token.kind == TokenKind::kElsif) {
+      parse_branch();
+    } else {
+      stmt.has_else = true;
+      stmt.else_body = parse_body(TokenKind::kEndIf);
+    }
   }
   stmt.branches = move_tail(branch_stack_, mark, tree_.branches);
   add_statement(stmt);

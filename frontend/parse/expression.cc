@@ -61,8 +61,10 @@ ExprId Parser::parse_condition() {
   return add_binary(left, op, right);
 }
 
-ExprId Parser::parse_binary(uint32_t above) {
-  ExprId left = parse_unary();
+ExprId Parser::parse_binary(uint32_t above) { return parse_operators(parse_unary(), above); }
+
+// The operators behind `left` that bind more tightly than `above`.
+ExprId Parser::parse_operators(ExprId left, uint32_t above) {
   while (operator_of(kind()).precedence > above) {
     const Token op = take();
     ExprId right = parse_binary(operator_of(op.kind).precedence);

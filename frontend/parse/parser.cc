@@ -33,6 +33,7 @@ Parser::Parser(const base::SourceMap& sources, uint32_t file, const TokenList& t
       first_(tokens.tokens.data()),
       current_(first_),
       last_(first_ + tokens.tokens.size() - 1),
+      var_scan_end_(first_),
       tree_(tree),
       diagnostics_(diagnostics),
       latin1_(is_latin1(text_)) {}
@@ -46,8 +47,11 @@ bool Parser::accept(TokenKind wanted) {
 bool Parser::expect(TokenKind wanted, const char* where) {
   if (accept(wanted)) return true;
   std::string what(token_text(wanted));
-  report_here(Code::kExpected,
-              "expected `" + what + "` " + where + ", found " + describe(*current_));
+  // What is missing at a line's end is missed there, not somewhere below.
+  base::SourceSpan span = current_->span();
+  if (on_new_line()) span = {last_end(), {last_end().offset + 1}};
+  report(Code::kExpected, span,
+         "expected `" + what + "` " + where + ", found " + describe(*current_));
   return false;
 }
 

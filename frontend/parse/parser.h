@@ -59,12 +59,13 @@ class Parser {
   void report_missing_end(const Token& opening, TokenKind end);
   void report_problem(const LiteralProblem& problem, const Token& token);
   void report_missing_semicolon(const char* what);
+  bool swallowed_by_string() const;
   void not_supported(base::SourceSpan span, const std::string& what, std::string fix = {});
   void skip_to_statement_end();
   void skip_to_declaration_end();
   void skip_to(TokenKind wanted);  // within the statement
   void skip_past(TokenKind end);   // a construct that is not supported
-  bool skip_block(TokenKind end);  // the same, but not out of the POU
+  void skip_block(TokenKind end);  // the same, but not out of the POU
   bool skip_unsupported_block();
 
   class Nesting;
@@ -83,6 +84,7 @@ class Parser {
   ExprId parse_expression();
   ExprId parse_condition();  // the same; understands `:=` for `=`
   ExprId parse_binary(uint32_t above);
+  ExprId parse_operators(ExprId left, uint32_t above);
   ExprId parse_unary();
   ExprId parse_primary();
   ExprId parse_parenthesised();
@@ -137,6 +139,7 @@ class Parser {
 
   // --- control.cc
   void parse_if();
+  base::SourcePos parse_branch();
   void parse_for();
   void parse_while();
   void parse_repeat_loop();
@@ -174,7 +177,7 @@ class Parser {
   void parse_qualifiers(VarBlock& block);
   void parse_variables(VarBlock& block, const Token& opening);
   bool variables_end();
-  bool end_var_ahead() const;
+  bool end_var_ahead();
   // Declares names : type := value; appends when anything usable was found.
   void parse_variable_declaration(std::vector<VarDecl>& out);
   void parse_location(VarDecl& decl);
@@ -208,6 +211,7 @@ class Parser {
   const Token* first_;
   const Token* current_;
   const Token* last_;
+  const Token* var_scan_end_;  // see end_var_ahead()
   Tree& tree_;
   base::Diagnostics& diagnostics_;
   bool latin1_;

@@ -38,8 +38,19 @@ void Parser::report_problem(const LiteralProblem& problem, const Token& token) {
   note_only(problem.code, span, problem.text, problem.fix);
 }
 
+// Is the token before this one a string without its closing quote? It was reported,
+// and the semicolon that is missing is inside it.
+bool Parser::swallowed_by_string() const {
+  if (current_ == first_) return false;
+  const Token& before = current_[-1];
+  if (before.kind != TokenKind::kString && before.kind != TokenKind::kWideString) return false;
+  std::string_view string = text(before);
+  return string.size() < 2 || string.back() != string.front();
+}
+
 // Behind the last token, not at the next one, which may be many lines below.
 void Parser::report_missing_semicolon(const char* what) {
+  if (swallowed_by_string()) return;
   base::SourcePos end = last_end();
   note_only(Code::kMissingSemicolon, {end, {end.offset + 1}},
             std::string("`;` is missing behind this ") + what, "write `;` here");
@@ -66,14 +77,11 @@ void Parser::skip_to(TokenKind wanted) {
 void Parser::skip_past(TokenKind end) {
   while (kind() != end && kind() != TokenKind::kEnd) take();
   accept(end);
-  accept(TokenKind::kSemicolon);
 }
 
-bool Parser::skip_block(TokenKind end) {
+void Parser::skip_block(TokenKind end) {
   while (kind() != end && kind() != TokenKind::kEnd && !is_pou_end(kind())) take();
-  bool found = accept(end);
-  accept(TokenKind::kSemicolon);
-  return found;
+  accept(end);
 }
 
 // Blocks of later languages and of object orientation: one message, skipped to

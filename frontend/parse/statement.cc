@@ -96,7 +96,10 @@ void Parser::parse_simple_statement() {
     ExprId left = parse_expression();
     return finish_simple(left, begin);
   }
-  finish_simple(parse_primary(), begin);
+  ExprId left = parse_primary();
+  // `a + 1;` is an expression without effect; `a = 1;` most likely an assignment.
+  if (!panic_ && kind() != TokenKind::kEqual) left = parse_operators(left, 0);
+  finish_simple(left, begin);
 }
 
 void Parser::finish_simple(ExprId left, base::SourcePos begin) {

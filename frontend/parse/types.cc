@@ -45,7 +45,9 @@ void Parser::parse_type() {
     not_supported(take().span(), "derived structures (EXTENDS) are");
     parse_name("structure");
   }
-  if (!panic_) expect(TokenKind::kColon, "behind the name of the type");
+  if (!panic_ && !expect(TokenKind::kColon, "behind the name of the type")) {
+    panic_ = kind() != TokenKind::kStruct && kind() != TokenKind::kArray;
+  }
   if (panic_) return skip_to_declaration_end();
   decl.spec = parse_spec();
   parse_default(decl.init);

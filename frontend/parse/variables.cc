@@ -108,14 +108,15 @@ bool Parser::variables_end() {
   return statement && !end_var_ahead();
 }
 
-bool Parser::end_var_ahead() const {
-  for (const Token* token = current_; token != last_; ++token) {
-    if (token->kind == TokenKind::kEndVar) return true;
-    if (is_var_start(token->kind) || is_file_level_start(token->kind) || is_pou_end(token->kind)) {
-      return false;
-    }
-  }
-  return false;
+// Scans once per block: the answer holds up to the place where the scan ended.
+bool Parser::end_var_ahead() {
+  auto ends_scan = [](TokenKind kind) {
+    return kind == TokenKind::kEndVar || is_var_start(kind) || is_file_level_start(kind) ||
+           is_pou_end(kind);
+  };
+  if (var_scan_end_ < current_) var_scan_end_ = current_;
+  while (var_scan_end_ != last_ && !ends_scan(var_scan_end_->kind)) ++var_scan_end_;
+  return var_scan_end_->kind == TokenKind::kEndVar;
 }
 
 void Parser::parse_variable_declaration(std::vector<VarDecl>& out) {
