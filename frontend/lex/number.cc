@@ -28,6 +28,10 @@ bool misplaced_underscore(std::string_view digits, size_t at) {
   return !before || !after;
 }
 
+std::string digit_text(char c) {
+  return static_cast<uint8_t>(c) < 0x80 ? '`' + std::string(1, c) + '`' : "this character";
+}
+
 bool is_base(uint32_t base) { return base == 2 || base == 8 || base == 10 || base == 16; }
 
 void decode_digits(std::string_view digits, size_t offset, uint32_t base, DecodedInteger& out) {
@@ -41,13 +45,9 @@ void decode_digits(std::string_view digits, size_t offset, uint32_t base, Decode
     }
     uint32_t digit = digit_value(digits[i]);
     if (digit >= base) {
-      out.problem =
-          bad_number(offset + i, 1,
-                     std::string("`") +
-                         (is_name_part(digits[i]) && digit == 255 ? std::string("this")
-                                                                  : std::string(1, digits[i])) +
-                         "` is not a digit of base " + std::to_string(base),
-                     base == 10 ? "separate number and name, or write 16# in front" : "");
+      out.problem = bad_number(
+          offset + i, 1, digit_text(digits[i]) + " is not a digit of base " + std::to_string(base),
+          base == 10 ? "separate number and name, or write 16# in front" : "");
       return;
     }
     if (out.value > (kMax - digit) / base) out.too_large = true;
