@@ -108,11 +108,13 @@ bool check_state(const Options& options, Result& result, int64_t& now_ns) {
   c_scans(*result.program, kCheckedScans, now_ns);
   const uint32_t expected = result.program->checksum();
   bool same = expected != 0;
+  bool compared = false;
   for (TierResult& tier : result.tiers) {
     tier.ran = vm_ns(options, *result.program, tier.tier) > 0;
     if (!tier.ran) {
       continue;
     }
+    compared = true;
     const uint32_t found = vm_checksum(options, *result.program, tier.tier);
     if (found != expected) {
       std::fprintf(stderr, "%s: checksum %u on tier %s, %u in C\n", result.program->name, found,
@@ -120,7 +122,7 @@ bool check_state(const Options& options, Result& result, int64_t& now_ns) {
       same = false;
     }
   }
-  return same;
+  return same && compared;
 }
 
 Result measure(const Options& options, const Program& program) {
