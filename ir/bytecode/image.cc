@@ -201,6 +201,10 @@ base::Result<Image> decode(base::ByteSpan bytes) {
   return image;
 }
 
+bool has_image_magic(base::ByteSpan bytes) {
+  return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
+}
+
 base::Digest digest(base::ByteSpan encoded) {
   base::Digest sum{};
   if (encoded.size() >= kHeaderBytes) {

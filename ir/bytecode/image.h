@@ -152,6 +152,8 @@ uint32_t initial_id(const Image& image, uint32_t slot);
 base::Bytes encode(const Image& image);
 // Checks form only (V1, V2); what runs must go through verify().
 base::Result<Image> decode(base::ByteSpan bytes);
+// Does the file begin as an image does? For tools that take images and sources.
+bool has_image_magic(base::ByteSpan bytes);
 // The digest in the header: the name of this version everywhere.
 base::Digest digest(base::ByteSpan encoded);
 

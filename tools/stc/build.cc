@@ -53,8 +53,7 @@ base::Result<Version> read_image(const std::string& path) {
 
 bool is_image(const std::string& path) {
   base::Result<base::Bytes> bytes = tools::read_bytes(path);
-  // Sources are text; an image begins with a magic that holds a byte no text has.
-  return bytes.ok() && bytes->size() >= 8 && ir::has_image_magic(*bytes);
+  return bytes.ok() && ir::has_image_magic(*bytes);
 }
 
 }  // namespace stc

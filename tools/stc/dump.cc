@@ -25,10 +25,11 @@ constexpr tools::OptionRow kOptions[] = {
 constexpr tools::Command kCommand{"dump", "PATHS...", "Prints what a phase of the compiler made.",
                                   kOptions, 1};
 
-std::string tokens_text(const Project& project) {
+std::string tokens_text(const Project& project, base::Diagnostics& diagnostics) {
   std::string out;
   for (uint32_t file = 0; file < project.sources.file_count(); ++file) {
-    out += frontend::print_tokens(project.sources, file);
+    out +=
+        frontend::print_tokens(frontend::lex(project.sources, file, diagnostics), project.sources);
   }
   return out;
 }
@@ -45,10 +46,10 @@ std::string tree_text(const Project& project, base::Diagnostics& diagnostics) {
 base::Result<std::string> dump_sources(const tools::Options& options) {
   base::Result<Project> project = open_project(options, options.arguments());
   if (!project.ok()) return project.error();
-  if (options.has("--tokens")) return tokens_text(*project);
   base::Diagnostics diagnostics;
-  if (options.has("--tree")) {
-    std::string out = tree_text(*project, diagnostics);
+  if (options.has("--tokens") || options.has("--tree")) {
+    std::string out = options.has("--tokens") ? tokens_text(*project, diagnostics)
+                                              : tree_text(*project, diagnostics);
     report(*project, diagnostics, base::DiagnosticFormat::kText);
     return out;
   }

@@ -81,7 +81,8 @@ base::Result<ir::VerifiedImage> link(const Program& program, const ir::Image* ba
 std::string tokens_of(const TestFile& test) {
   base::SourceMap sources;
   sources.add(test.name, test.versions[0]);
-  return frontend::print_tokens(sources, 0);
+  base::Diagnostics diagnostics;
+  return frontend::print_tokens(frontend::lex(sources, 0, diagnostics), sources);
 }
 
 std::string tree_of(const TestFile& test, Outcome& outcome) {

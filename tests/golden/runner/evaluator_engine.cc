@@ -22,8 +22,8 @@ class EvaluatorEngine : public Engine {
            std::to_string(traps[0].line);
   }
   std::string state() const override { return evaluator_.state(); }
-  base::Status set(const std::string& path, const std::string& value) override {
-    return evaluator_.set_text(path, value);
+  base::Status set(const std::string&, const std::string&) override {
+    return base::Error{base::Refusal::kUsage, "a script with `set` needs mode change"};
   }
 
  private:
