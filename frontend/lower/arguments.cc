@@ -1,0 +1,112 @@
+// Arguments of POUs: which goes to which parameter.
+#include "frontend/lower/call.h"
+
+namespace frontend {
+
+std::string quoted_name(const Name& name) { return "`" + std::string(name.text) + "`"; }
+
+bool Body::bind_arguments(const Expr& call, const PouInfo& callee,
+                          std::vector<Binding>& bindings) {
+  bool named = false;
+  bool positional = false;
+  for (uint32_t i = 0; i < call.args.count; ++i) {
+    const Arg& arg = tree_.args[call.args.first + i];
+    (arg.name.empty() ? positional : named) = true;
+  }
+  if (named && positional) {
+    sema_.error(DiagnosticCode::kMixedArguments, call.span,
+                "some arguments have names and some have not", "name all of them");
+    return false;
+  }
+  if (positional) return bind_positional(call, callee, bindings);
+  bool good = true;
+  for (uint32_t i = 0; i < call.args.count; ++i) {
+    good = bind_named(tree_.args[call.args.first + i], callee, bindings) && good;
+  }
+  return good;
+}
+
+bool Body::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding>& bindings) {
+  auto found = callee.names.find(arg.name.text);
+  const Variable* variable =
+      found == callee.names.end() || found->second == callee.result ? nullptr
+                                                                    : &sema_.resolve(found->second);
+  bool parameter = variable != nullptr && (variable->section == VarSection::kInput ||
+                                           variable->section == VarSection::kOutput ||
+                                           variable->section == VarSection::kInOut);
+  if (!parameter) {
+    NearestName nearest(arg.name.text);
+    for (VarId id : callee.variables) {
+      VarSection section = sema_.resolve(id).section;
+      if (section == VarSection::kInput || section == VarSection::kOutput ||
+          section == VarSection::kInOut) {
+        nearest.offer(sema_.resolve(id).name.text);
+      }
+    }
+    sema_.error(DiagnosticCode::kUnknownParameter, arg.name.span,
+                quoted_name(callee.decl->name) + " has no parameter " + quoted_name(arg.name),
+                nearest.fix());
+    return false;
+  }
+  for (const Binding& other : bindings) {
+    if (other.variable != found->second) continue;
+    sema_.error(DiagnosticCode::kDuplicateArgument, arg.span,
+                quoted_name(arg.name) + " is given twice");
+    return false;
+  }
+  if (arg.output != (variable->section == VarSection::kOutput)) {
+    sema_.error(DiagnosticCode::kWrongDirection, arg.span,
+                quoted_name(arg.name) + (arg.output ? " is no output" : " is an output"),
+                arg.output ? "write `:=`" : "write `=>`");
+    return false;
+  }
+  if (!arg.value.valid()) return true;  // `name :=` and `name =>` leave the parameter open
+  bindings.push_back({found->second, &arg, {}, {}, {}});
+  return true;
+}
+
+// Inputs and in-outs in the order of their declaration, then outputs.
+bool Body::bind_positional(const Expr& call, const PouInfo& callee,
+                           std::vector<Binding>& bindings) {
+  std::vector<VarId> parameters;
+  for (bool outputs : {false, true}) {
+    for (VarId id : callee.variables) {
+      if (id == callee.result) continue;
+      VarSection section = sema_.resolve(id).section;
+      bool input = section == VarSection::kInput || section == VarSection::kInOut;
+      if (outputs ? section == VarSection::kOutput : input) parameters.push_back(id);
+    }
+  }
+  if (call.args.count > parameters.size()) {
+    sema_.error(DiagnosticCode::kWrongArgumentCount, call.span,
+                quoted_name(callee.decl->name) + " has " + std::to_string(parameters.size()) +
+                    " parameters, but " + std::to_string(call.args.count) + " arguments are given");
+    return false;
+  }
+  for (uint32_t i = 0; i < call.args.count; ++i) {
+    const Arg& arg = tree_.args[call.args.first + i];
+    if (arg.value.valid()) bindings.push_back({parameters[i], &arg, {}, {}, {}});
+  }
+  return true;
+}
+
+// In-outs have to be connected at every call: their slot keeps no meaning between calls.
+bool Body::check_in_outs(const Expr& call, const PouInfo& callee,
+                         const std::vector<Binding>& bindings) {
+  bool good = true;
+  for (VarId id : callee.variables) {
+    const Variable& variable = sema_.resolve(id);
+    if (variable.section != VarSection::kInOut) continue;
+    bool given = false;
+    for (const Binding& binding : bindings) given = given || binding.variable == id;
+    if (given) continue;
+    sema_.error(DiagnosticCode::kMissingInOut, call.span,
+                "in-out " + quoted_name(variable.name) + " of " +
+                    quoted_name(callee.decl->name) + " is not connected",
+                "add `" + std::string(variable.name.text) + " := variable`");
+    good = false;
+  }
+  return good;
+}
+
+}  // namespace frontend

@@ -1,0 +1,97 @@
+#include "frontend/lower/body.h"
+
+#include <cstring>
+
+#include "base/hash.h"
+
+namespace frontend {
+
+Body::Body(Sema& sema, uint32_t pou)
+    : sema_(sema),
+      tree_(sema.tree),
+      info_(sema.pous[pou]),
+      pou_number_(pou),
+      out_(sema.program.pous[info_.id.index]),
+      build_(out_) {}
+
+void Body::run() {
+  Sema::Within scope(sema_, pou_number_);
+  const PouDecl& decl = *info_.decl;
+  base::SourceLocation head = sema_.sources.locate(decl.span.begin);
+  uint32_t file = sema_.sources.file_of(decl.span.begin);
+  out_.file = head.file;
+  out_.line = head.line;
+  line_offset_ = decl.span.begin.offset;
+  line_ = head.line;
+  uint32_t base = sema_.sources.begin(file).offset;
+  std::string_view text = sema_.sources.text(file).substr(
+      decl.span.begin.offset - base, decl.span.end.offset - decl.span.begin.offset);
+  out_.source_hash = base::sha256(base::as_bytes(text));
+  build_.set_line(head.line);
+  initialise_locals();
+  statements(decl.body);
+  set_line({decl.span.end, decl.span.end});
+  build_.finish();
+  sema_.program.pous[info_.id.index] = std::move(out_);
+}
+
+void Body::set_line(base::SourceSpan span) {
+  if (!span.begin.valid()) return;
+  uint32_t offset = span.begin.offset;
+  if (offset < line_offset_) {
+    line_ = sema_.sources.locate(span.begin).line;
+  } else {
+    uint32_t file = sema_.sources.file_of(span.begin);
+    uint32_t base = sema_.sources.begin(file).offset;
+    std::string_view text = sema_.sources.text(file);
+    const char* at = text.data() + (line_offset_ - base);
+    const char* end = text.data() + (offset - base);
+    while ((at = static_cast<const char*>(
+                std::memchr(at, '\n', static_cast<size_t>(end - at)))) != nullptr) {
+      ++line_;
+      ++at;
+    }
+  }
+  line_offset_ = offset;
+  build_.set_line(line_);
+}
+
+ir::ValueId Body::zero(ir::TypeId type) {
+  bool usable = type.valid() && types().is_scalar(type);
+  return build_.constant(usable ? scalar(type) : ir::Scalar::kI32, 0);
+}
+
+// Everything that the caller does not write starts anew at each call.
+void Body::initialise_locals() {
+  for (uint32_t i = 0; i < info_.locals.size(); ++i) {
+    const Variable& variable = sema_.resolve(info_.locals[i]);
+    bool written_by_caller =
+        variable.section == VarSection::kInput || variable.section == VarSection::kInOut;
+    if (!written_by_caller && variable.type.valid()) initialise_local(i, info_.locals[i]);
+  }
+}
+
+void Body::initialise_local(uint32_t local, VarId id) {
+  const Variable& variable = sema_.resolve(id);
+  set_line(variable.name.span);
+  ir::Place where = local_place(local);
+  if (variable.runtime_init) {
+    Target target{where, variable.type};
+    if (types().is_scalar(variable.type)) {
+      build_.store(where, scalar(variable.type), value(variable.decl->init, variable.type));
+    } else {
+      assign_aggregate(target, variable.decl->init);
+    }
+    return;
+  }
+  if (!types().is_scalar(variable.type)) {
+    build_.init(where, variable.init);
+    return;
+  }
+  ir::ConstId init = variable.init.valid() ? variable.init : types()[variable.type].init;
+  uint64_t bits = init.valid() ? sema_.program.constants[init].bits : 0;
+  ir::Scalar machine = scalar(variable.type);
+  build_.store(where, machine, build_.constant(machine, bits));
+}
+
+}  // namespace frontend

@@ -1,0 +1,194 @@
+// Lowers the body of one POU: checks every statement against the types that sema
+// knows, and writes IR by the contract of ir/program/ir.h. Order of evaluation is
+// source order: a target's indices, then the value; operands and arguments from left
+// to right (language.md, section 2). After an error it goes on with harmless values,
+// so that one run reports all errors; the result is then thrown away.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frontend/lower/builder.h"
+#include "frontend/sema/sema.h"
+#include "stdlib/native/natives.h"
+
+namespace frontend {
+
+struct Typed {
+  ir::ValueId value;
+  ir::TypeId type;
+};
+
+// Something that can be assigned: a place, or some bits of an integer place.
+struct Target {
+  ir::Place place;
+  ir::TypeId type;        // of what is assigned
+  uint32_t bit_size = 0;  // 0: the whole place
+  uint32_t bit_offset = 0;
+};
+
+class Body {
+ public:
+  Body(Sema& sema, uint32_t pou);
+  void run();
+
+ private:
+  // --- statements (statement.cc, loop.cc, case.cc, assignment.cc)
+  void statements(Range32 list);
+  void statement(const Stmt& stmt);
+  void if_statement(const Stmt& stmt);
+  void while_statement(const Stmt& stmt);
+  void repeat_statement(const Stmt& stmt);
+  void for_statement(const Stmt& stmt);
+  void case_statement(const Stmt& stmt);
+  void leave_loop(const Stmt& stmt);
+  void assign(const Stmt& stmt);
+  void assign_aggregate(const Target& target, ExprId value);
+  void call_statement(const Stmt& stmt);
+  ir::ValueId condition(ExprId expr);
+  void loop_body(Range32 body, ir::BlockId again, ir::BlockId exit);
+
+  // --- FOR (for.cc)
+  struct ForLoop;
+  bool for_head(const Stmt& stmt, ForLoop& loop);
+  void for_step(const Stmt& stmt, ForLoop& loop);
+  void for_test(const ForLoop& loop, ir::BlockId body, ir::BlockId exit);
+  void for_advance(const ForLoop& loop, ir::BlockId head, ir::BlockId exit);
+  void for_advance_constant(const ForLoop& loop, ir::BlockId head, ir::BlockId exit);
+  void for_advance_variable(const ForLoop& loop, ir::BlockId head, ir::BlockId exit);
+
+  // --- CASE (case.cc)
+  struct Interval;
+  std::vector<Interval> case_intervals(const Stmt& stmt, ir::TypeId type,
+                                       const std::vector<ir::BlockId>& arms);
+  void case_tree(const std::vector<Interval>& intervals, size_t first, size_t last,
+                 ir::ValueId selector, ir::Scalar scalar, ir::BlockId otherwise);
+  void case_test(const Interval& interval, ir::ValueId selector, ir::Scalar scalar,
+                 ir::BlockId next);
+
+  // --- places (place.cc)
+  ir::Place variable_place(VarId id);
+  ir::Place place(ExprId expr);
+  ir::Place member_place(const Expr& expr);
+  ir::Place index_place(const Expr& expr);
+  ir::Place constant_place(ExprId expr);
+  ir::Place global_place(uint32_t member);
+  ir::Place local_place(uint32_t local);
+  ir::Place temporary_place(ir::TypeId type);
+  bool check_writable(ExprId expr);
+  bool check_writable_name(const Expr& expr);
+  std::optional<Target> target(ExprId expr);
+  void store(const Target& target, ir::ValueId value);
+
+  // --- values (value.cc, operator.cc)
+  // The scalar value of `expr` as `target`, converted and checked.
+  ir::ValueId value(ExprId expr, ir::TypeId target);
+  // In its own type; literals take their default type.
+  Typed natural(ExprId expr);
+  ir::ValueId emit(ExprId expr, ir::TypeId own);
+  ir::TypeId own_type(const Note& note, ir::TypeId target) const;
+  ir::ValueId emit_bit(const Expr& expr);
+  ir::ValueId emit_unary(const Expr& expr, ir::TypeId own);
+  ir::ValueId emit_binary(const Expr& expr, ir::TypeId own);
+  ir::ValueId emit_lazy(const Expr& expr);
+  ir::ValueId emit_comparison(BinaryOp op, ExprId left, ExprId right);
+  ir::ValueId compare_strings(BinaryOp op, ExprId left, ExprId right);
+  ir::ValueId compare_scalars(BinaryOp op, ir::TypeId type, ir::ValueId a, ir::ValueId b);
+  ir::ValueId emit_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own);
+  Typed time_arithmetic(BinaryOp op, Typed left, Typed right);
+  ir::ValueId scale_time(BinaryOp op, ir::ValueId time, Typed factor);
+  ir::ValueId power(Typed base, Typed exponent, ir::TypeId own);
+  ir::ValueId number_op(BinaryOp op, ir::TypeId type, ir::ValueId a, ir::ValueId b);
+
+  // --- conversions (convert.cc)
+  ir::ValueId convert(Typed from, ir::TypeId to, base::SourceSpan span);
+  ir::ValueId check_range(ir::ValueId value, ir::TypeId from, ir::TypeId to);
+  ir::ValueId machine_convert(ir::ValueId value, ir::Scalar from, ir::Scalar to,
+                              bool truncate = false);
+  ir::ValueId explicit_conversion(Typed from, ir::TypeId to, bool truncate);
+  ir::ValueId from_time(Typed from, ir::TypeId to);
+  ir::ValueId to_time(Typed from, ir::TypeId to);
+  ir::ValueId time_to_time(Typed from, ir::TypeId to);
+  ir::ValueId floor_modulo(ir::ValueId value, int64_t divisor);
+  ir::Place to_string(const Expr& call, const Conversion& conversion, ir::TypeId type);
+  ir::ValueId from_string(ExprId source, ir::TypeId to, base::SourceSpan span);
+  ir::Place narrow_string(ir::Place source, bool wide);
+
+  // --- calls (call*.cc, arguments.cc)
+  struct Binding;
+  bool bind_arguments(const Expr& call, const PouInfo& callee, std::vector<Binding>& bindings);
+  bool bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding>& bindings);
+  bool bind_positional(const Expr& call, const PouInfo& callee, std::vector<Binding>& bindings);
+  bool check_in_outs(const Expr& call, const PouInfo& callee,
+                     const std::vector<Binding>& bindings);
+  void evaluate_input(Binding& binding, bool keep);
+  bool evaluate_in_out(Binding& binding);
+  void evaluate_arguments(const Expr& call, std::vector<Binding>& bindings);
+  void pass_input(const Binding& binding, const ir::Place& parameter);
+  void take_outputs(std::vector<Binding>& bindings,
+                    const std::function<ir::Place(const Variable&)>& place_of);
+  void call_instance(const Expr& call, uint32_t pou);
+  // The function's scalar result, or its place in a temporary.
+  struct Result {
+    ir::ValueId value;
+    ir::Place place;
+  };
+  Result call_function(const Expr& call, uint32_t pou, bool wants_result);
+  ir::Place argument_place(const PouInfo& callee, const Variable& variable) const;
+  void pass_defaults(const PouInfo& callee, const std::vector<Binding>& bindings);
+  ir::ValueId emit_call(const Expr& expr, ir::TypeId own);
+  ir::Place call_place(ExprId id, const Expr& expr);
+  ir::ValueId emit_conversion(const Expr& expr, const Conversion& conversion);
+
+  // --- standard functions (standard*.cc)
+  ir::ValueId emit_standard(const Expr& expr, const stdlib::FunctionRow& row, ir::TypeId own);
+  ir::ValueId real_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                            ir::TypeId own);
+  ir::ValueId fold_operator(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId own);
+  ir::ValueId shift(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                    ir::TypeId own);
+  ir::ValueId extreme(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                      ir::TypeId own);
+  ir::ValueId extreme_of(bool largest, ir::TypeId type, ir::ValueId a, ir::ValueId b);
+  ir::ValueId multiplex(const std::vector<ExprId>& args, ir::TypeId own);
+  ir::ValueId compare_chain(const std::vector<ExprId>& args, BinaryOp op);
+  ir::ValueId string_number(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
+  ir::Place string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                            ir::TypeId type);
+  ir::Place concat(const std::vector<ExprId>& args, ir::TypeId type, bool wide);
+  ir::Place choose(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                   ir::TypeId type);
+  ir::ValueId native(stdlib::NativeId id, std::vector<ir::ValueId> operands);
+
+  // --- helpers
+  void initialise_locals();
+  void initialise_local(uint32_t local, VarId id);
+  void set_line(base::SourceSpan span);
+  const ir::TypeTable& types() const { return sema_.program.types; }
+  ir::Scalar scalar(ir::TypeId type) const { return types().scalar(type); }
+  ir::TypeId elementary(ir::Kind kind) const { return types().elementary(kind); }
+  ir::ValueId zero(ir::TypeId type);
+  bool wide(ir::TypeId type) const { return types()[type].kind == ir::Kind::kWstring; }
+  ir::ValueId string_value(const ir::Place& place);
+
+  struct Loop {
+    ir::BlockId again;
+    ir::BlockId exit;
+  };
+
+  Sema& sema_;
+  const Tree& tree_;
+  PouInfo& info_;
+  uint32_t pou_number_;
+  ir::Pou out_;
+  Builder build_;
+  std::vector<Loop> loops_;
+  std::vector<VarId> for_variables_;
+  // Where the last line was found; positions mostly go forward.
+  uint32_t line_offset_ = 0;
+  uint32_t line_ = 0;
+};
+
+}  // namespace frontend

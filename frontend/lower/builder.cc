@@ -1,0 +1,170 @@
+#include "frontend/lower/builder.h"
+
+namespace frontend {
+
+using ir::BlockId;
+using ir::Inst;
+using ir::Op;
+using ir::Place;
+using ir::Scalar;
+using ir::ValueId;
+
+BlockId Builder::new_block() {
+  pou_.blocks.emplace_back();
+  return BlockId(static_cast<uint32_t>(pou_.blocks.size() - 1));
+}
+
+ValueId Builder::new_value(Scalar scalar) {
+  pou_.values.push_back({scalar});
+  return ValueId(static_cast<uint32_t>(pou_.values.size() - 1));
+}
+
+ValueId Builder::add_param(BlockId block, Scalar scalar) {
+  ValueId value = new_value(scalar);
+  pou_.blocks[block.index].params.push_back(value);
+  return value;
+}
+
+Inst& Builder::emit(Op op, Scalar scalar) {
+  if (!current_.valid()) current_ = new_block();
+  Inst& inst = pou_.blocks[current_.index].insts.emplace_back();
+  inst.op = op;
+  inst.scalar = scalar;
+  inst.line = line_;
+  return inst;
+}
+
+ValueId Builder::result(Inst& inst) {
+  inst.result = new_value(inst.scalar);
+  return inst.result;
+}
+
+ir::PlaceId Builder::add(const Place& place) {
+  pou_.places.push_back(place);
+  return ir::PlaceId(static_cast<uint32_t>(pou_.places.size() - 1));
+}
+
+ValueId Builder::constant(Scalar scalar, uint64_t bits) {
+  Inst& inst = emit(Op::kConst, scalar);
+  inst.imm = bits;
+  return result(inst);
+}
+
+ValueId Builder::load(const Place& place, Scalar scalar) {
+  Inst& inst = emit(Op::kLoad, scalar);
+  inst.place = add(place);
+  return result(inst);
+}
+
+void Builder::store(const Place& place, Scalar scalar, ValueId value) {
+  Inst& inst = emit(Op::kStore, scalar);
+  inst.place = add(place);
+  inst.operands = {value};
+}
+
+void Builder::copy(const Place& target, const Place& source) {
+  Inst& inst = emit(Op::kCopy, Scalar::kBool);
+  inst.place = add(target);
+  inst.place2 = add(source);
+}
+
+void Builder::init(const Place& place, ir::ConstId constant) {
+  Inst& inst = emit(Op::kInit, Scalar::kBool);
+  inst.place = add(place);
+  inst.constant = constant;
+}
+
+ValueId Builder::address(const Place& place) {
+  Inst& inst = emit(Op::kAddress, Scalar::kAddr);
+  inst.place = add(place);
+  return result(inst);
+}
+
+ValueId Builder::string(const Place& place, bool wide) {
+  Inst& inst = emit(Op::kString, wide ? Scalar::kWstr : Scalar::kStr);
+  inst.place = add(place);
+  return result(inst);
+}
+
+ValueId Builder::unary(Op op, Scalar scalar, ValueId operand) {
+  Inst& inst = emit(op, scalar);
+  inst.operands = {operand};
+  return result(inst);
+}
+
+ValueId Builder::binary(Op op, Scalar scalar, ValueId a, ValueId b) {
+  Inst& inst = emit(op, scalar);
+  inst.operands = {a, b};
+  return result(inst);
+}
+
+ValueId Builder::compare(Op op, Scalar scalar, ValueId a, ValueId b) {
+  Inst& inst = emit(op, scalar);
+  inst.operands = {a, b};
+  inst.result = new_value(Scalar::kBool);
+  return inst.result;
+}
+
+ValueId Builder::select(Scalar scalar, ValueId condition, ValueId if_false, ValueId if_true) {
+  Inst& inst = emit(Op::kSelect, scalar);
+  inst.operands = {condition, if_false, if_true};
+  return result(inst);
+}
+
+ValueId Builder::check_range(Scalar scalar, ValueId value, int64_t low, int64_t high) {
+  Inst& inst = emit(Op::kCheckRange, scalar);
+  inst.operands = {value};
+  inst.low = low;
+  inst.high = high;
+  return result(inst);
+}
+
+ValueId Builder::check_step(Scalar scalar, ValueId value) {
+  return unary(Op::kCheckStep, scalar, value);
+}
+
+void Builder::call_function(ir::PouId pou) { emit(Op::kCallFunction, Scalar::kBool).pou = pou; }
+
+void Builder::call_instance(const Place& place) {
+  Inst& inst = emit(Op::kCallInstance, Scalar::kBool);
+  inst.place = add(place);
+}
+
+ValueId Builder::call_native(uint32_t native, Scalar scalar, std::vector<ValueId> operands) {
+  Inst& inst = emit(Op::kCallNative, scalar);
+  inst.native = native;
+  inst.operands = std::move(operands);
+  return result(inst);
+}
+
+void Builder::call_native(uint32_t native, std::vector<ValueId> operands) {
+  Inst& inst = emit(Op::kCallNative, Scalar::kBool);
+  inst.native = native;
+  inst.operands = std::move(operands);
+}
+
+ValueId Builder::task_time() { return result(emit(Op::kTaskTime, Scalar::kI64)); }
+
+void Builder::jump(BlockId block, std::vector<ValueId> args) {
+  emit(Op::kJump, Scalar::kBool).targets.push_back({block, std::move(args)});
+  current_ = {};
+}
+
+void Builder::branch(ValueId condition, BlockId if_true, BlockId if_false) {
+  Inst& inst = emit(Op::kBranch, Scalar::kBool);
+  inst.operands = {condition};
+  inst.targets = {{if_true, {}}, {if_false, {}}};
+  current_ = {};
+}
+
+void Builder::ret() {
+  emit(Op::kReturn, Scalar::kBool);
+  current_ = {};
+}
+
+uint32_t Builder::temporary(ir::TypeId type) {
+  pou_.locals.push_back({"$" + std::to_string(temporaries_++), type, ir::LocalKind::kTemp});
+  return static_cast<uint32_t>(pou_.locals.size() - 1);
+}
+
+}  // namespace frontend

@@ -1,0 +1,67 @@
+// Writes the instructions of one POU, block by block. Code behind a terminator goes
+// into blocks that nothing reaches; finish() removes those.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ir/program/ir.h"
+
+namespace frontend {
+
+class Builder {
+ public:
+  explicit Builder(ir::Pou& pou) : pou_(pou) { start(new_block()); }
+
+  void set_line(uint32_t line) { line_ = line; }
+  uint32_t line() const { return line_; }
+
+  ir::BlockId new_block();
+  void start(ir::BlockId block) { current_ = block; }
+  ir::ValueId add_param(ir::BlockId block, ir::Scalar scalar);
+  // False behind a terminator.
+  bool reachable() const { return current_.valid(); }
+
+  ir::ValueId constant(ir::Scalar scalar, uint64_t bits);
+  ir::ValueId load(const ir::Place& place, ir::Scalar scalar);
+  void store(const ir::Place& place, ir::Scalar scalar, ir::ValueId value);
+  void copy(const ir::Place& target, const ir::Place& source);
+  void init(const ir::Place& place, ir::ConstId constant);
+  ir::ValueId address(const ir::Place& place);
+  ir::ValueId string(const ir::Place& place, bool wide);
+  ir::ValueId unary(ir::Op op, ir::Scalar scalar, ir::ValueId operand);
+  ir::ValueId binary(ir::Op op, ir::Scalar scalar, ir::ValueId a, ir::ValueId b);
+  // kEq, kNe, kLt, kLe of two values of `scalar`.
+  ir::ValueId compare(ir::Op op, ir::Scalar scalar, ir::ValueId a, ir::ValueId b);
+  ir::ValueId select(ir::Scalar scalar, ir::ValueId condition, ir::ValueId if_false,
+                     ir::ValueId if_true);
+  ir::ValueId check_range(ir::Scalar scalar, ir::ValueId value, int64_t low, int64_t high);
+  ir::ValueId check_step(ir::Scalar scalar, ir::ValueId value);
+  void call_function(ir::PouId pou);
+  void call_instance(const ir::Place& place);
+  ir::ValueId call_native(uint32_t native, ir::Scalar result, std::vector<ir::ValueId> operands);
+  void call_native(uint32_t native, std::vector<ir::ValueId> operands);
+  ir::ValueId task_time();
+
+  void jump(ir::BlockId block, std::vector<ir::ValueId> args = {});
+  void branch(ir::ValueId condition, ir::BlockId if_true, ir::BlockId if_false);
+  void ret();
+
+  // A variable of the frame that no source name means.
+  uint32_t temporary(ir::TypeId type);
+
+  void finish();
+
+ private:
+  ir::Inst& emit(ir::Op op, ir::Scalar scalar);
+  ir::ValueId result(ir::Inst& inst);
+  ir::PlaceId add(const ir::Place& place);
+  ir::ValueId new_value(ir::Scalar scalar);
+
+  ir::Pou& pou_;
+  ir::BlockId current_;
+  uint32_t line_ = 0;
+  uint32_t temporaries_ = 0;
+};
+
+}  // namespace frontend

@@ -1,0 +1,271 @@
+// Calls of functions and function block instances, by the call discipline of
+// ir/program/ir.h: everything is evaluated first, then passed, then called.
+#include "frontend/lower/call.h"
+
+namespace frontend {
+namespace {
+
+ir::Step member_step(uint32_t index) {
+  ir::Step step;
+  step.kind = ir::StepKind::kMember;
+  step.index = index;
+  return step;
+}
+
+}  // namespace
+
+// `keep`: a later argument calls something that might change this one's source.
+void Body::evaluate_input(Binding& binding, bool keep) {
+  const Variable& parameter = sema_.resolve(binding.variable);
+  if (!parameter.type.valid()) return;
+  ExprId id = binding.arg->value;
+  if (types().is_scalar(parameter.type)) {
+    binding.value = value(id, parameter.type);
+    return;
+  }
+  const Note& note = sema_.infer(id);
+  if (!note.type.valid()) return;
+  bool strings =
+      is_string(types(), parameter.type) && types()[note.type].kind == types()[parameter.type].kind;
+  if (!strings && note.type != parameter.type) {
+    sema_.error(DiagnosticCode::kWrongArgument, binding.arg->span,
+                quoted_name(parameter.name) + " is `" + sema_.type_text(parameter.type) +
+                    "`, the argument is `" + sema_.type_text(note.type) + "`");
+    return;
+  }
+  binding.place = place(id);
+  if (!keep || note.constant) return;
+  ir::Place kept = temporary_place(note.type);
+  build_.copy(kept, *binding.place);
+  binding.place = kept;
+}
+
+bool Body::evaluate_in_out(Binding& binding) {
+  const Variable& parameter = sema_.resolve(binding.variable);
+  ExprId id = binding.arg->value;
+  const Note& note = sema_.infer(id);
+  if (!note.type.valid() || !parameter.type.valid()) return false;
+  bool instance = types().is_instance(note.type);
+  if (!instance && !check_writable(id)) return false;
+  if (note.type != parameter.type || tree_[id].kind == ExprKind::kBit) {
+    sema_.error(DiagnosticCode::kInOutNeedsVariable, binding.arg->span,
+                quoted_name(parameter.name) + " is `" + sema_.type_text(parameter.type) +
+                    "`, the argument is `" + sema_.type_text(note.type) + "`",
+                "pass a variable of exactly this type");
+    return false;
+  }
+  binding.value = build_.address(place(id));
+  return true;
+}
+
+void Body::evaluate_arguments(const Expr& call, std::vector<Binding>& bindings) {
+  for (size_t i = 0; i < bindings.size(); ++i) {
+    Binding& binding = bindings[i];
+    VarSection section = sema_.resolve(binding.variable).section;
+    if (section == VarSection::kInOut) {
+      evaluate_in_out(binding);
+    } else if (section == VarSection::kOutput) {
+      binding.target = target(binding.arg->value);
+    } else {
+      bool keep = false;
+      for (size_t k = i + 1; k < bindings.size(); ++k) {
+        keep = keep || sema_.infer(bindings[k].arg->value).calls;
+      }
+      evaluate_input(binding, keep);
+    }
+  }
+  set_line(call.span);
+}
+
+void Body::pass_input(const Binding& binding, const ir::Place& parameter) {
+  const Variable& variable = sema_.resolve(binding.variable);
+  if (variable.section == VarSection::kInOut) {
+    if (binding.value.valid()) build_.store(parameter, ir::Scalar::kAddr, binding.value);
+  } else if (binding.place) {
+    build_.copy(parameter, *binding.place);
+  } else if (binding.value.valid()) {
+    build_.store(parameter, scalar(variable.type), binding.value);
+  }
+}
+
+// Results are read before anything else can call: first all loads, then all stores.
+void Body::take_outputs(std::vector<Binding>& bindings,
+                        const std::function<ir::Place(const Variable&)>& place_of) {
+  for (Binding& binding : bindings) {
+    const Variable& variable = sema_.resolve(binding.variable);
+    if (variable.section != VarSection::kOutput || !binding.target || !variable.type.valid()) {
+      continue;
+    }
+    if (types().is_scalar(variable.type)) {
+      binding.value = build_.load(place_of(variable), scalar(variable.type));
+      continue;
+    }
+    bool strings = is_string(types(), variable.type) && is_string(types(), binding.target->type) &&
+                   wide(variable.type) == wide(binding.target->type);
+    if (strings || variable.type == binding.target->type) {
+      build_.copy(binding.target->place, place_of(variable));
+      continue;
+    }
+    sema_.error(DiagnosticCode::kWrongArgument, binding.arg->span,
+                quoted_name(variable.name) + " is `" + sema_.type_text(variable.type) +
+                    "`, its target is `" + sema_.type_text(binding.target->type) + "`");
+  }
+  for (Binding& binding : bindings) {
+    const Variable& variable = sema_.resolve(binding.variable);
+    if (variable.section != VarSection::kOutput || !binding.value.valid()) continue;
+    ir::ValueId out = binding.value;
+    if (binding.arg->negated) out = build_.unary(ir::Op::kNot, scalar(variable.type), out);
+    if (!types().is_scalar(binding.target->type)) {
+      sema_.error(DiagnosticCode::kWrongArgument, binding.arg->span,
+                  "the target of " + quoted_name(variable.name) + " is no `" +
+                      sema_.type_text(variable.type) + "`");
+      continue;
+    }
+    store(*binding.target, convert({out, variable.type}, binding.target->type, binding.arg->span));
+  }
+}
+
+void Body::call_instance(const Expr& call, uint32_t pou) {
+  const PouInfo& block = sema_.pous[pou];
+  std::vector<Binding> bindings;
+  bool good = bind_arguments(call, block, bindings) && check_in_outs(call, block, bindings);
+  if (!good) return;
+  ir::Place instance = place(call.operand);
+  auto place_of = [&](const Variable& variable) {
+    ir::Place out = instance;
+    out.steps.push_back({});
+    out.steps.back().kind = ir::StepKind::kEnter;
+    out.steps.push_back(member_step(variable.index));
+    out.type = variable.type;
+    return out;
+  };
+  evaluate_arguments(call, bindings);
+  for (const Binding& binding : bindings) {
+    const Variable& variable = sema_.resolve(binding.variable);
+    if (variable.section != VarSection::kOutput) pass_input(binding, place_of(variable));
+  }
+  build_.call_instance(instance);
+  take_outputs(bindings, place_of);
+}
+
+void Body::pass_defaults(const PouInfo& callee, const std::vector<Binding>& bindings) {
+  for (VarId id : callee.locals) {
+    const Variable& variable = sema_.resolve(id);
+    if (variable.section != VarSection::kInput || !variable.type.valid()) continue;
+    bool given = false;
+    for (const Binding& binding : bindings) given = given || binding.variable == id;
+    if (given) continue;
+    ir::Place parameter = argument_place(callee, variable);
+    if (!types().is_scalar(variable.type)) {
+      build_.init(parameter, variable.init);
+      continue;
+    }
+    ir::ConstId init = variable.init.valid() ? variable.init : types()[variable.type].init;
+    uint64_t bits = init.valid() ? sema_.program.constants[init].bits : 0;
+    ir::Scalar machine = scalar(variable.type);
+    build_.store(parameter, machine, build_.constant(machine, bits));
+  }
+}
+
+ir::Place Body::argument_place(const PouInfo& callee, const Variable& variable) const {
+  ir::Place out;
+  out.base = ir::PlaceBase::kArg;
+  out.base_index = variable.index;
+  out.pou = callee.id;
+  out.base_type = out.type = variable.type;
+  return out;
+}
+
+Body::Result Body::call_function(const Expr& call, uint32_t pou, bool wants_result) {
+  const PouInfo& function = sema_.pous[pou];
+  std::vector<Binding> bindings;
+  Result result;
+  bool good = bind_arguments(call, function, bindings) && check_in_outs(call, function, bindings);
+  if (!good) return result;
+  evaluate_arguments(call, bindings);
+  for (const Binding& binding : bindings) {
+    const Variable& variable = sema_.resolve(binding.variable);
+    if (variable.section != VarSection::kOutput) {
+      pass_input(binding, argument_place(function, variable));
+    }
+  }
+  pass_defaults(function, bindings);
+  build_.call_function(function.id);
+  if (wants_result && function.result.valid()) {
+    const Variable& variable = sema_.resolve(function.result);
+    if (variable.type.valid() && types().is_scalar(variable.type)) {
+      result.value = build_.load(argument_place(function, variable), scalar(variable.type));
+    } else if (variable.type.valid()) {
+      result.place = temporary_place(variable.type);
+      build_.copy(result.place, argument_place(function, variable));
+    }
+  }
+  take_outputs(bindings,
+               [&](const Variable& variable) { return argument_place(function, variable); });
+  return result;
+}
+
+void Body::call_statement(const Stmt& stmt) {
+  const Expr& call = tree_[stmt.value];
+  if (call.kind != ExprKind::kCall) return;
+  Callee callee = sema_.callee(call);
+  switch (callee.kind) {
+    case Callee::Kind::kError:
+      for (uint32_t i = 0; i < call.args.count; ++i) {
+        ExprId value = tree_.args[call.args.first + i].value;
+        if (value.valid()) sema_.infer(value);
+      }
+      return;
+    case Callee::Kind::kInstance: return call_instance(call, callee.pou);
+    case Callee::Kind::kFunction: call_function(call, callee.pou, false); return;
+    case Callee::Kind::kStandard:
+    case Callee::Kind::kConversion: {
+      const Note& note = sema_.infer(stmt.value);
+      if (!note.type.valid()) return;
+      if (types().is_scalar(note.type)) {
+        natural(stmt.value);
+      } else {
+        place(stmt.value);
+      }
+      return;
+    }
+  }
+}
+
+ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
+  Callee callee = sema_.callee(expr);
+  switch (callee.kind) {
+    case Callee::Kind::kFunction: {
+      ir::ValueId result = call_function(expr, callee.pou, true).value;
+      return result.valid() ? result : zero(own);
+    }
+    case Callee::Kind::kStandard: return emit_standard(expr, *callee.row, own);
+    case Callee::Kind::kConversion: return emit_conversion(expr, callee.conversion);
+    default: return zero(own);
+  }
+}
+
+// A result that is no scalar.
+ir::Place Body::call_place(ExprId id, const Expr& expr) {
+  ir::TypeId type = sema_.infer(id).type;
+  Callee callee = sema_.callee(expr);
+  if (callee.kind == Callee::Kind::kFunction) {
+    Result result = call_function(expr, callee.pou, true);
+    return result.place.type.valid() ? result.place : temporary_place(type);
+  }
+  if (callee.kind == Callee::Kind::kConversion) return to_string(expr, callee.conversion, type);
+  if (callee.kind != Callee::Kind::kStandard) return temporary_place(type);
+  std::vector<ExprId> args = sema_.standard_arguments(expr, *callee.row);
+  switch (callee.row->rule) {
+    case stdlib::FunctionRule::kMove: return place(args[0]);
+    case stdlib::FunctionRule::kSelect:
+    case stdlib::FunctionRule::kMux: return choose(args, *callee.row, type);
+    case stdlib::FunctionRule::kString: return string_function(args, *callee.row, type);
+    default:
+      sema_.error(DiagnosticCode::kNotSupported, expr.span,
+                  std::string(callee.row->name) + " of `" + sema_.type_text(type) + "`");
+      return temporary_place(type);
+  }
+}
+
+}  // namespace frontend

@@ -1,0 +1,164 @@
+// Conversions. Implicit ones are lossless or reported; explicit ones follow
+// language.md, section 2: reals round half to even and trap when out of range,
+// integers keep their low bits, times count in the unit of their type.
+#include "frontend/lower/body.h"
+
+namespace frontend {
+namespace {
+
+constexpr int64_t kDayNs = 86'400'000'000'000;
+
+// Nanoseconds per unit in conversions to and from numbers.
+int64_t unit_of(ir::Kind kind) {
+  switch (kind) {
+    case ir::Kind::kTime:
+    case ir::Kind::kTod: return 1'000'000;
+    case ir::Kind::kDate:
+    case ir::Kind::kDt: return 1'000'000'000;
+    default: return 1;
+  }
+}
+
+bool is_time(const ir::TypeTable& types, ir::TypeId type) {
+  Traits traits = traits_of(types, type);
+  return traits.duration || traits.date;
+}
+
+uint64_t double_bits(double value) {
+  uint64_t bits;
+  static_assert(sizeof bits == sizeof value);
+  __builtin_memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+}  // namespace
+
+ir::ValueId Body::machine_convert(ir::ValueId value, ir::Scalar from, ir::Scalar to,
+                                  bool truncate) {
+  if (from == to) return value;
+  if (to == ir::Scalar::kBool) {
+    if (!ir::is_float(from)) return build_.unary(ir::Op::kToBool, to, value);
+    return build_.compare(ir::Op::kNe, from, value, build_.constant(from, 0));
+  }
+  if (ir::is_float(to)) {
+    if (from == ir::Scalar::kBool) value = build_.unary(ir::Op::kWrap, ir::Scalar::kU8, value);
+    return build_.unary(ir::Op::kToFloat, to, value);
+  }
+  if (ir::is_float(from)) {
+    return build_.unary(truncate ? ir::Op::kTrunc : ir::Op::kRound, to, value);
+  }
+  return build_.unary(ir::Op::kWrap, to, value);
+}
+
+// Implicit: what the context needs from what is there.
+ir::ValueId Body::convert(Typed from, ir::TypeId to, base::SourceSpan span) {
+  switch (implicit_fit(types(), from.type, to, sema_.options.dialect)) {
+    case Fit::kNone:
+      sema_.error(DiagnosticCode::kTypeMismatch, span,
+                  "`" + sema_.type_text(from.type) + "` does not go with `" +
+                      sema_.type_text(to) + "`",
+                  "convert it explicitly, for example with TO_" + sema_.type_text(to));
+      return zero(to);
+    case Fit::kNarrowing:
+      if (!sema_.allow_narrowing(from.type, to, span)) return zero(to);
+      break;
+    case Fit::kSame:
+    case Fit::kLossless: break;
+  }
+  ir::ValueId out = machine_convert(from.value, scalar(from.type), scalar(to));
+  return check_range(out, from.type, to);
+}
+
+ir::ValueId Body::check_range(ir::ValueId value, ir::TypeId from, ir::TypeId to) {
+  const ir::Type& range = types()[to];
+  if (range.kind != ir::Kind::kSubrange) return value;
+  const ir::Type& source = types()[from];
+  if (source.kind == ir::Kind::kSubrange && source.low >= range.low && source.high <= range.high) {
+    return value;
+  }
+  return build_.check_range(scalar(to), value, range.low, range.high);
+}
+
+ir::ValueId Body::explicit_conversion(Typed from, ir::TypeId to, bool truncate) {
+  bool time_source = is_time(types(), from.type);
+  bool time_target = is_time(types(), to);
+  if (time_source && time_target) return time_to_time(from, to);
+  if (time_source) return from_time(from, to);
+  if (time_target) return to_time(from, to);
+  return machine_convert(from.value, scalar(from.type), scalar(to), truncate);
+}
+
+ir::ValueId Body::from_time(Typed from, ir::TypeId to) {
+  int64_t unit = unit_of(types().root_kind(from.type));
+  ir::Scalar machine = scalar(to);
+  if (ir::is_float(machine)) {
+    ir::ValueId real = build_.unary(ir::Op::kToFloat, ir::Scalar::kF64, from.value);
+    ir::ValueId divisor =
+        build_.constant(ir::Scalar::kF64, double_bits(static_cast<double>(unit)));
+    real = build_.binary(ir::Op::kDiv, ir::Scalar::kF64, real, divisor);
+    return machine_convert(real, ir::Scalar::kF64, machine);
+  }
+  ir::ValueId count = from.value;
+  if (unit != 1 && machine != ir::Scalar::kBool) {
+    ir::ValueId divisor = build_.constant(ir::Scalar::kI64, static_cast<uint64_t>(unit));
+    count = build_.binary(ir::Op::kDiv, ir::Scalar::kI64, count, divisor);
+  }
+  return machine_convert(count, ir::Scalar::kI64, machine);
+}
+
+ir::ValueId Body::to_time(Typed from, ir::TypeId to) {
+  int64_t unit = unit_of(types().root_kind(to));
+  ir::Scalar machine = scalar(from.type);
+  if (ir::is_float(machine)) {
+    ir::ValueId real = machine_convert(from.value, machine, ir::Scalar::kF64);
+    ir::ValueId factor = build_.constant(ir::Scalar::kF64, double_bits(static_cast<double>(unit)));
+    real = build_.binary(ir::Op::kMul, ir::Scalar::kF64, real, factor);
+    return build_.unary(ir::Op::kRound, ir::Scalar::kI64, real);
+  }
+  ir::ValueId count = machine_convert(from.value, machine, ir::Scalar::kI64);
+  if (unit == 1) return count;
+  ir::ValueId factor = build_.constant(ir::Scalar::kI64, static_cast<uint64_t>(unit));
+  return build_.binary(ir::Op::kMul, ir::Scalar::kI64, count, factor);
+}
+
+// Never negative, so that moments before 1970 belong to their own day.
+ir::ValueId Body::floor_modulo(ir::ValueId value, int64_t divisor) {
+  constexpr ir::Scalar kI64 = ir::Scalar::kI64;
+  ir::ValueId by = build_.constant(kI64, static_cast<uint64_t>(divisor));
+  ir::ValueId rest = build_.binary(ir::Op::kMod, kI64, value, by);
+  ir::ValueId raised = build_.binary(ir::Op::kAdd, kI64, rest, by);
+  ir::ValueId negative = build_.compare(ir::Op::kLt, kI64, rest, build_.constant(kI64, 0));
+  return build_.select(kI64, negative, rest, raised);
+}
+
+ir::ValueId Body::time_to_time(Typed from, ir::TypeId to) {
+  ir::Kind source = types().root_kind(from.type);
+  ir::Kind target = types().root_kind(to);
+  bool to_date = target == ir::Kind::kDate || target == ir::Kind::kLdate;
+  bool to_tod = target == ir::Kind::kTod || target == ir::Kind::kLtod;
+  bool is_tod = source == ir::Kind::kTod || source == ir::Kind::kLtod;
+  bool is_date = source == ir::Kind::kDate || source == ir::Kind::kLdate;
+  if (to_tod && !is_tod) return floor_modulo(from.value, kDayNs);
+  if (to_date && !is_date) {
+    ir::ValueId rest = floor_modulo(from.value, kDayNs);
+    return build_.binary(ir::Op::kSub, ir::Scalar::kI64, from.value, rest);
+  }
+  return from.value;
+}
+
+ir::ValueId Body::emit_conversion(const Expr& expr, const Conversion& conversion) {
+  ExprId argument = tree_.args[expr.args.first].value;
+  ir::TypeId to = elementary(conversion.to);
+  const Note& note = sema_.infer(argument);
+  if (is_string(types(), note.type)) return from_string(argument, to, expr.span);
+  ir::TypeId from = note.type;
+  if (!conversion.any_source && ir::is_elementary(conversion.from)) {
+    from = elementary(conversion.from);
+  }
+  from = without_range(types(), from);
+  ir::ValueId source = value(argument, from);
+  set_line(expr.span);
+  return explicit_conversion({source, from}, to, conversion.truncate);
+}
+
+}  // namespace frontend

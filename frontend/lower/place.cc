@@ -1,0 +1,214 @@
+// Places: where variables, members, elements and constants are, and whether code may
+// write there.
+#include <algorithm>
+
+#include "frontend/lower/body.h"
+
+namespace frontend {
+namespace {
+
+ir::Step step(ir::StepKind kind, uint32_t index = 0) {
+  ir::Step out;
+  out.kind = kind;
+  out.index = index;
+  return out;
+}
+
+}  // namespace
+
+ir::Place Body::local_place(uint32_t local) {
+  ir::Place place;
+  place.base = ir::PlaceBase::kLocal;
+  place.base_index = local;
+  place.base_type = place.type = out_.locals[local].type;
+  return place;
+}
+
+ir::Place Body::temporary_place(ir::TypeId type) { return local_place(build_.temporary(type)); }
+
+ir::Place Body::global_place(uint32_t member) {
+  ir::Place place;
+  place.base = ir::PlaceBase::kGlobal;
+  place.base_type = sema_.program.globals;
+  place.steps.push_back(step(ir::StepKind::kMember, member));
+  place.type = types()[sema_.program.globals].members[member].type;
+  return place;
+}
+
+ir::Place Body::variable_place(VarId id) {
+  const Variable& variable = sema_.resolve(id);
+  ir::Place place;
+  if (variable.storage == Storage::kGlobal) return global_place(variable.index);
+  if (variable.storage == Storage::kLocal) {
+    place = local_place(variable.index);
+  } else {
+    place.base = ir::PlaceBase::kSelf;
+    place.base_type = info_.self;
+    place.steps.push_back(step(ir::StepKind::kMember, variable.index));
+  }
+  if (variable.section == VarSection::kInOut) place.steps.push_back(step(ir::StepKind::kDeref));
+  place.type = variable.type;
+  return place;
+}
+
+// Any expression that is not a scalar, and any scalar that has a place of its own.
+ir::Place Body::place(ExprId id) {
+  const Expr& expr = tree_[id];
+  const Note& note = sema_.infer(id);
+  if (note.constant) return constant_place(id);
+  switch (expr.kind) {
+    case ExprKind::kName: return variable_place(note.variable);
+    case ExprKind::kMember: return member_place(expr);
+    case ExprKind::kIndex: return index_place(expr);
+    case ExprKind::kDirect: return global_place(sema_.direct_member(expr));
+    case ExprKind::kCall: return call_place(id, expr);
+    default: return temporary_place(note.type);
+  }
+}
+
+ir::Place Body::member_place(const Expr& expr) {
+  ir::TypeId outer = sema_.infer(expr.operand).type;
+  ir::Place place = this->place(expr.operand);
+  if (const PouInfo* block = sema_.pou_of(outer)) {
+    const Variable& variable = sema_.resolve(block->names.find(expr.name.text)->second);
+    place.steps.push_back(step(ir::StepKind::kEnter));
+    place.steps.push_back(step(ir::StepKind::kMember, variable.index));
+    place.type = variable.type;
+    return place;
+  }
+  uint32_t member = static_cast<uint32_t>(sema_.find_member(outer, expr.name.text));
+  place.steps.push_back(step(ir::StepKind::kMember, member));
+  place.type = types()[outer].members[member].type;
+  return place;
+}
+
+ir::Place Body::index_place(const Expr& expr) {
+  ir::TypeId array = sema_.infer(expr.operand).type;
+  ir::Place place = this->place(expr.operand);
+  for (uint32_t i = 0; i < expr.list.count; ++i) {
+    ExprId index = tree_.expr_lists[expr.list.first + i];
+    ir::Step at = step(ir::StepKind::kIndex);
+    if (sema_.infer(index).constant) {
+      at.constant_index = sema_.fold_integer(index).value_or(0);
+    } else {
+      at.value = natural(index).value;
+    }
+    place.steps.push_back(at);
+  }
+  place.type = types()[array].base;
+  return place;
+}
+
+// Constants get no variable of the frame: they are read where the image keeps them.
+ir::Place Body::constant_place(ExprId id) {
+  const Note& note = sema_.infer(id);
+  ir::Place place;
+  place.base = ir::PlaceBase::kConst;
+  place.base_type = place.type = note.type;
+  if (types().is_scalar(note.type)) {
+    auto bits = sema_.fold_bits(id, note.type);
+    place.constant = sema_.program.constants.scalar(bits.value_or(0));
+    return place;
+  }
+  auto text = sema_.fold(id, note.type);
+  place.constant = sema_.program.constants.add({0, text ? text->text : std::string(), {}});
+  return place;
+}
+
+bool Body::check_writable(ExprId id) {
+  const Expr& expr = tree_[id];
+  switch (expr.kind) {
+    case ExprKind::kName: return check_writable_name(expr);
+    case ExprKind::kDirect:
+      if (expr.address.area != ir::DirectArea::kInput) return true;
+      sema_.error(DiagnosticCode::kAssignToInput, expr.span,
+                  "`" + std::string(expr.name.text) + "` is an input of the process image");
+      return false;
+    case ExprKind::kMember: {
+      const PouInfo* block = sema_.pou_of(sema_.infer(expr.operand).type);
+      if (block == nullptr) return check_writable(expr.operand);
+      const Variable& variable = sema_.resolve(block->names.find(expr.name.text)->second);
+      if (variable.section == VarSection::kInput) return true;
+      sema_.error(DiagnosticCode::kNotAssignable, expr.span,
+                  "`" + std::string(expr.name.text) + "` is an output of `" +
+                      std::string(block->decl->name.text) + "`; only the block itself writes it");
+      return false;
+    }
+    case ExprKind::kIndex:
+    case ExprKind::kBit: return check_writable(expr.operand);
+    default:
+      sema_.error(DiagnosticCode::kNotAssignable, expr.span, "this is a value, not a variable");
+      return false;
+  }
+}
+
+bool Body::check_writable_name(const Expr& expr) {
+  VarId id = sema_.find_variable(expr.name.text);
+  std::string name = "`" + std::string(expr.name.text) + "`";
+  if (!id.valid()) {
+    sema_.error(DiagnosticCode::kNotAssignable, expr.span, name + " is not a variable");
+    return false;
+  }
+  const Variable* variable = &sema_.resolve(id);
+  bool constant = variable->constant;
+  if (variable->external.valid()) {
+    id = variable->external;
+    variable = &sema_.resolve(id);
+  }
+  if (constant || variable->constant) {
+    sema_.error(DiagnosticCode::kAssignToConstant, expr.span, name + " is a constant");
+    return false;
+  }
+  bool located_input = variable->decl != nullptr && variable->decl->has_address &&
+                       variable->decl->address.area == ir::DirectArea::kInput;
+  bool own_input =
+      variable->section == VarSection::kInput && sema_.options.dialect == Dialect::kIec;
+  if (located_input || own_input) {
+    sema_.error(DiagnosticCode::kAssignToInput, expr.span, name + " is an input",
+                "copy it to a variable of its own");
+    return false;
+  }
+  if (std::find(for_variables_.begin(), for_variables_.end(), id) != for_variables_.end()) {
+    sema_.warning(DiagnosticCode::kForVariableAssigned, expr.span,
+                  name + " counts the surrounding FOR loop");
+  }
+  return true;
+}
+
+// Evaluates the indices of an assignment's left side; reports what cannot be written.
+std::optional<Target> Body::target(ExprId id) {
+  const Expr& expr = tree_[id];
+  const Note& note = sema_.infer(id);
+  if (!note.type.valid() || !check_writable(id)) return std::nullopt;
+  Target out;
+  out.type = note.type;
+  ExprId at = id;
+  if (expr.kind == ExprKind::kBit) out.bit_size = expr.bit_size;
+  while (tree_[at].kind == ExprKind::kBit) {
+    out.bit_offset += tree_[at].number * tree_[at].bit_size;
+    at = tree_[at].operand;
+  }
+  out.place = place(at);
+  return out;
+}
+
+// `value` has the target's type. Bits are put into the word that holds them.
+void Body::store(const Target& target, ir::ValueId value) {
+  ir::Scalar machine = scalar(target.place.type);
+  if (target.bit_size == 0) {
+    build_.store(target.place, machine, value);
+    return;
+  }
+  uint64_t ones = (uint64_t{1} << target.bit_size) - 1;
+  uint64_t keep = ~(ones << target.bit_offset);
+  Wide mask = wrap_to(machine, static_cast<Wide>(keep) & limits_of(ir::Scalar::kU64).high);
+  ir::ValueId old = build_.load(target.place, machine);
+  ir::ValueId rest = build_.binary(ir::Op::kAnd, machine, old,
+                                   build_.constant(machine, static_cast<uint64_t>(mask)));
+  ir::ValueId bits = build_.unary(ir::Op::kWrap, machine, value);
+  ir::ValueId count = build_.constant(ir::Scalar::kU32, target.bit_offset);
+  ir::ValueId placed = build_.binary(ir::Op::kShl, machine, bits, count);
+  build_.store(target.place, machine, build_.binary(ir::Op::kOr, machine, rest, placed));
+}
+
+}  // namespace frontend

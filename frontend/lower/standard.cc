@@ -1,0 +1,164 @@
+// Standard functions with scalar results.
+#include "frontend/lower/body.h"
+
+namespace frontend {
+namespace {
+
+using stdlib::FunctionId;
+using stdlib::FunctionRule;
+using stdlib::NativeId;
+
+NativeId real_native(FunctionId id) {
+  switch (id) {
+    case FunctionId::kLn: return NativeId::kLn;
+    case FunctionId::kLog: return NativeId::kLog;
+    case FunctionId::kExp: return NativeId::kExp;
+    case FunctionId::kSin: return NativeId::kSin;
+    case FunctionId::kCos: return NativeId::kCos;
+    case FunctionId::kTan: return NativeId::kTan;
+    case FunctionId::kAsin: return NativeId::kAsin;
+    case FunctionId::kAcos: return NativeId::kAcos;
+    case FunctionId::kAtan: return NativeId::kAtan;
+    default: return NativeId::kAtan2;
+  }
+}
+
+ir::Op shift_op(FunctionId id) {
+  switch (id) {
+    case FunctionId::kShl: return ir::Op::kShl;
+    case FunctionId::kShr: return ir::Op::kShr;
+    case FunctionId::kRol: return ir::Op::kRol;
+    default: return ir::Op::kRor;
+  }
+}
+
+}  // namespace
+
+ir::ValueId Body::emit_standard(const Expr& expr, const stdlib::FunctionRow& row,
+                                ir::TypeId own) {
+  std::vector<ExprId> args = sema_.standard_arguments(expr, row);
+  switch (row.rule) {
+    case FunctionRule::kClock: return build_.task_time();
+    case FunctionRule::kMove: return value(args[0], own);
+    case FunctionRule::kNumberSame:
+      return build_.unary(ir::Op::kAbs, scalar(own), value(args[0], own));
+    case FunctionRule::kNot: return build_.unary(ir::Op::kNot, scalar(own), value(args[0], own));
+    case FunctionRule::kTrunc: {
+      Typed real = natural(args[0]);
+      return machine_convert(real.value, scalar(real.type), scalar(own), true);
+    }
+    case FunctionRule::kReal: return real_function(args, row, own);
+    case FunctionRule::kArithmetic:
+    case FunctionRule::kBitwise: return fold_operator(args, standard_operator(row.id), own);
+    case FunctionRule::kShift: return shift(args, row, own);
+    case FunctionRule::kSelect: {
+      ir::ValueId condition = value(args[0], elementary(ir::Kind::kBool));
+      ir::ValueId if_false = value(args[1], own);
+      return build_.select(scalar(own), condition, if_false, value(args[2], own));
+    }
+    case FunctionRule::kExtreme: return extreme(args, row, own);
+    case FunctionRule::kMux: return multiplex(args, own);
+    case FunctionRule::kCompare: return compare_chain(args, standard_operator(row.id));
+    case FunctionRule::kStringNumber: return string_number(args, row);
+    case FunctionRule::kString: break;
+  }
+  return zero(own);
+}
+
+ir::ValueId Body::real_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                                ir::TypeId own) {
+  ir::Scalar machine = scalar(own);
+  if (row.id == FunctionId::kSqrt) {
+    return build_.unary(ir::Op::kSqrt, machine, value(args[0], own));
+  }
+  std::vector<ir::ValueId> operands;
+  for (ExprId arg : args) {
+    operands.push_back(machine_convert(value(arg, own), machine, ir::Scalar::kF64));
+  }
+  if (row.id == FunctionId::kAtan2) std::swap(operands[0], operands[1]);  // native: (x, y)
+  return machine_convert(native(real_native(row.id), operands), ir::Scalar::kF64, machine);
+}
+
+// ADD(a, b, c) is a + b + c.
+ir::ValueId Body::fold_operator(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId own) {
+  if (args.size() == 2 && op != BinaryOp::kAnd && op != BinaryOp::kOr && op != BinaryOp::kXor) {
+    return emit_arithmetic(op, args[0], args[1], own);
+  }
+  Traits traits = traits_of(types(), own);
+  if (traits.duration || traits.date) {
+    Typed sum = natural(args[0]);
+    for (size_t i = 1; i < args.size(); ++i) sum = time_arithmetic(op, sum, natural(args[i]));
+    return sum.value;
+  }
+  ir::ValueId result = value(args[0], own);
+  for (size_t i = 1; i < args.size(); ++i) {
+    result = number_op(op, own, result, value(args[i], own));
+  }
+  return result;
+}
+
+// Counts beyond the width are all the same, so they may be cut to what fits a u32.
+ir::ValueId Body::shift(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                        ir::TypeId own) {
+  ir::ValueId in = value(args[0], own);
+  Typed count = natural(args[1]);
+  ir::Scalar machine = scalar(count.type);
+  ir::ValueId number = count.value;
+  if (ir::scalar_size(machine) == 8 && row.id != FunctionId::kRol && row.id != FunctionId::kRor) {
+    number = machine_convert(number, machine, ir::Scalar::kU64);
+    number = build_.binary(ir::Op::kMin, ir::Scalar::kU64, number,
+                           build_.constant(ir::Scalar::kU64, 64));
+    machine = ir::Scalar::kU64;
+  }
+  number = machine_convert(number, machine, ir::Scalar::kU32);
+  return build_.binary(shift_op(row.id), scalar(own), in, number);
+}
+
+ir::ValueId Body::extreme_of(bool largest, ir::TypeId type, ir::ValueId a, ir::ValueId b) {
+  ir::Scalar machine = scalar(type);
+  if (machine == ir::Scalar::kBool) {
+    return build_.binary(largest ? ir::Op::kOr : ir::Op::kAnd, machine, a, b);
+  }
+  return build_.binary(largest ? ir::Op::kMax : ir::Op::kMin, machine, a, b);
+}
+
+ir::ValueId Body::extreme(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                          ir::TypeId own) {
+  if (row.id == FunctionId::kLimit) {
+    ir::ValueId low = value(args[0], own);
+    ir::ValueId in = value(args[1], own);
+    ir::ValueId high = value(args[2], own);
+    return extreme_of(false, own, extreme_of(true, own, in, low), high);
+  }
+  ir::ValueId result = value(args[0], own);
+  for (size_t i = 1; i < args.size(); ++i) {
+    result = extreme_of(row.id == FunctionId::kMax, own, result, value(args[i], own));
+  }
+  return result;
+}
+
+// Out of range takes the nearest argument: the comparisons say so by themselves.
+ir::ValueId Body::multiplex(const std::vector<ExprId>& args, ir::TypeId own) {
+  Typed selector = natural(args[0]);
+  ir::ValueId wide_selector =
+      machine_convert(selector.value, scalar(selector.type), ir::Scalar::kI64);
+  ir::ValueId result = value(args[1], own);
+  for (size_t i = 2; i < args.size(); ++i) {
+    ir::ValueId next = value(args[i], own);
+    ir::ValueId number = build_.constant(ir::Scalar::kI64, i - 1);
+    ir::ValueId reached = build_.compare(ir::Op::kLe, ir::Scalar::kI64, number, wide_selector);
+    result = build_.select(scalar(own), reached, result, next);
+  }
+  return result;
+}
+
+ir::ValueId Body::compare_chain(const std::vector<ExprId>& args, BinaryOp op) {
+  ir::ValueId all = emit_comparison(op, args[0], args[1]);
+  for (size_t i = 1; i + 1 < args.size(); ++i) {
+    ir::ValueId next = emit_comparison(op, args[i], args[i + 1]);
+    all = build_.binary(ir::Op::kAnd, ir::Scalar::kBool, all, next);
+  }
+  return all;
+}
+
+}  // namespace frontend

@@ -1,0 +1,95 @@
+// Standard functions on strings, and choices between values that are no scalars.
+#include "frontend/lower/body.h"
+
+namespace frontend {
+namespace {
+
+using stdlib::FunctionId;
+using stdlib::NativeId;
+
+NativeId string_native(FunctionId id, bool wide) {
+  switch (id) {
+    case FunctionId::kLen: return wide ? NativeId::kLenW : NativeId::kLenS;
+    case FunctionId::kFind: return wide ? NativeId::kFindW : NativeId::kFindS;
+    case FunctionId::kLeft: return wide ? NativeId::kLeftW : NativeId::kLeftS;
+    case FunctionId::kRight: return wide ? NativeId::kRightW : NativeId::kRightS;
+    case FunctionId::kMid: return wide ? NativeId::kMidW : NativeId::kMidS;
+    case FunctionId::kInsert: return wide ? NativeId::kInsertW : NativeId::kInsertS;
+    case FunctionId::kDelete: return wide ? NativeId::kDeleteW : NativeId::kDeleteS;
+    case FunctionId::kReplace: return wide ? NativeId::kReplaceW : NativeId::kReplaceS;
+    default: return wide ? NativeId::kConcatW : NativeId::kConcatS;
+  }
+}
+
+}  // namespace
+
+ir::ValueId Body::string_number(const std::vector<ExprId>& args, const stdlib::FunctionRow& row) {
+  std::vector<ir::ValueId> operands;
+  bool is_wide = false;
+  for (ExprId arg : args) {
+    ir::Place text = place(arg);
+    is_wide = wide(text.type);
+    operands.push_back(string_value(text));
+  }
+  ir::ValueId count = native(string_native(row.id, is_wide), operands);
+  return machine_convert(count, ir::Scalar::kI32, ir::Scalar::kI16);
+}
+
+// The result lies in a temporary of its own, so it never overlaps a source.
+ir::Place Body::string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                                ir::TypeId type) {
+  bool is_wide = wide(type);
+  if (row.id == FunctionId::kConcat) return concat(args, type, is_wide);
+  ir::Place result = temporary_place(type);
+  uint32_t strings = string_arguments(row, static_cast<uint32_t>(args.size()));
+  std::vector<ir::ValueId> operands{string_value(result)};
+  for (uint32_t i = 0; i < args.size(); ++i) {
+    if (i < strings) {
+      operands.push_back(string_value(place(args[i])));
+    } else {
+      Typed number = natural(args[i]);
+      operands.push_back(machine_convert(number.value, scalar(number.type), ir::Scalar::kI64));
+    }
+  }
+  native(string_native(row.id, is_wide), operands);
+  return result;
+}
+
+ir::Place Body::concat(const std::vector<ExprId>& args, ir::TypeId type, bool is_wide) {
+  NativeId id = string_native(FunctionId::kConcat, is_wide);
+  ir::Place sum = place(args[0]);
+  for (size_t i = 1; i < args.size(); ++i) {
+    ir::Place next = place(args[i]);
+    ir::Place result = temporary_place(type);
+    native(id, {string_value(result), string_value(sum), string_value(next)});
+    sum = result;
+  }
+  return sum;
+}
+
+// SEL and MUX of strings, structures and arrays.
+ir::Place Body::choose(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                       ir::TypeId type) {
+  bool select = row.id == FunctionId::kSel;
+  ir::Place result = temporary_place(type);
+  Typed selector = select ? Typed{value(args[0], elementary(ir::Kind::kBool)),
+                                  elementary(ir::Kind::kBool)}
+                          : natural(args[0]);
+  ir::ValueId number = machine_convert(selector.value, scalar(selector.type), ir::Scalar::kI64);
+  std::vector<ir::Place> choices;
+  for (size_t i = 1; i < args.size(); ++i) choices.push_back(place(args[i]));
+  build_.copy(result, choices[0]);
+  for (size_t i = 1; i < choices.size(); ++i) {
+    ir::BlockId take = build_.new_block();
+    ir::BlockId next = build_.new_block();
+    ir::ValueId at = build_.constant(ir::Scalar::kI64, i);
+    build_.branch(build_.compare(ir::Op::kLe, ir::Scalar::kI64, at, number), take, next);
+    build_.start(take);
+    build_.copy(result, choices[i]);
+    build_.jump(next);
+    build_.start(next);
+  }
+  return result;
+}
+
+}  // namespace frontend

@@ -1,0 +1,108 @@
+// Statements without a file of their own.
+#include "frontend/lower/body.h"
+
+namespace frontend {
+
+void Body::statements(Range32 list) {
+  bool warned = false;
+  bool was_reachable = build_.reachable();
+  for (uint32_t i = 0; i < list.count; ++i) {
+    const Stmt& stmt = tree_[tree_.stmt_lists[list.first + i]];
+    bool counts = stmt.kind != StmtKind::kEmpty && stmt.kind != StmtKind::kError;
+    if (i > 0 && counts && was_reachable && !build_.reachable() && !warned) {
+      sema_.warning(DiagnosticCode::kUnreachableCode, stmt.span,
+                    "nothing gets here: the statement before always leaves");
+      warned = true;
+    }
+    statement(stmt);
+  }
+}
+
+void Body::statement(const Stmt& stmt) {
+  set_line(stmt.span);
+  switch (stmt.kind) {
+    case StmtKind::kError:
+    case StmtKind::kEmpty: return;
+    case StmtKind::kAssign: return assign(stmt);
+    case StmtKind::kCall: return call_statement(stmt);
+    case StmtKind::kIf: return if_statement(stmt);
+    case StmtKind::kCase: return case_statement(stmt);
+    case StmtKind::kFor: return for_statement(stmt);
+    case StmtKind::kWhile: return while_statement(stmt);
+    case StmtKind::kRepeat: return repeat_statement(stmt);
+    case StmtKind::kExit:
+    case StmtKind::kContinue: return leave_loop(stmt);
+    case StmtKind::kReturn: return build_.ret();
+  }
+}
+
+ir::ValueId Body::condition(ExprId expr) {
+  const Note& note = sema_.infer(expr);
+  if (note.type.valid() && !traits_of(types(), note.type).boolean) {
+    sema_.error(DiagnosticCode::kConditionNotBool, tree_[expr].span,
+                "the condition is `" + sema_.type_text(note.type) + "`", "compare it: `x <> 0`");
+    return zero(elementary(ir::Kind::kBool));
+  }
+  return value(expr, elementary(ir::Kind::kBool));
+}
+
+void Body::if_statement(const Stmt& stmt) {
+  ir::BlockId done = build_.new_block();
+  for (uint32_t i = 0; i < stmt.branches.count; ++i) {
+    const Branch& branch = tree_.branches[stmt.branches.first + i];
+    ir::BlockId then = build_.new_block();
+    ir::BlockId otherwise = build_.new_block();
+    build_.branch(condition(branch.condition), then, otherwise);
+    build_.start(then);
+    statements(branch.body);
+    if (build_.reachable()) build_.jump(done);
+    build_.start(otherwise);
+  }
+  statements(stmt.else_body);
+  if (build_.reachable()) build_.jump(done);
+  build_.start(done);
+}
+
+void Body::loop_body(Range32 body, ir::BlockId again, ir::BlockId exit) {
+  loops_.push_back({again, exit});
+  statements(body);
+  loops_.pop_back();
+  if (build_.reachable()) build_.jump(again);
+}
+
+void Body::while_statement(const Stmt& stmt) {
+  ir::BlockId head = build_.new_block();
+  ir::BlockId body = build_.new_block();
+  ir::BlockId exit = build_.new_block();
+  build_.jump(head);
+  build_.start(head);
+  build_.branch(condition(stmt.value), body, exit);
+  build_.start(body);
+  loop_body(stmt.body, head, exit);
+  build_.start(exit);
+}
+
+void Body::repeat_statement(const Stmt& stmt) {
+  ir::BlockId body = build_.new_block();
+  ir::BlockId test = build_.new_block();
+  ir::BlockId exit = build_.new_block();
+  build_.jump(body);
+  build_.start(body);
+  loop_body(stmt.body, test, exit);
+  build_.start(test);
+  build_.branch(condition(stmt.value), exit, body);
+  build_.start(exit);
+}
+
+void Body::leave_loop(const Stmt& stmt) {
+  bool exit = stmt.kind == StmtKind::kExit;
+  if (loops_.empty()) {
+    sema_.error(DiagnosticCode::kExitOutsideLoop, stmt.span,
+                std::string(exit ? "EXIT" : "CONTINUE") + " stands in no loop",
+                exit ? "RETURN leaves the POU" : "");
+    return;
+  }
+  build_.jump(exit ? loops_.back().exit : loops_.back().again);
+}
+
+}  // namespace frontend

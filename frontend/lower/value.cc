@@ -1,0 +1,96 @@
+// Scalar values of expressions, in the type that their place asks for.
+#include "frontend/lower/body.h"
+
+namespace frontend {
+
+ir::TypeId Body::own_type(const Note& note, ir::TypeId target) const {
+  if (!target.valid()) return note.type;
+  Traits traits = traits_of(types(), target);
+  ir::TypeId plain = without_range(types(), target);
+  switch (note.flex) {
+    case Flex::kNone: return note.type;
+    case Flex::kInteger: return traits.number() || traits.bits ? plain : note.type;
+    case Flex::kReal: return traits.real ? plain : note.type;
+    case Flex::kEnum: return traits.enumeration ? plain : note.type;
+    case Flex::kText: return note.type;
+  }
+  return note.type;
+}
+
+ir::ValueId Body::value(ExprId id, ir::TypeId target) {
+  const Note& note = sema_.infer(id);
+  const Expr& expr = tree_[id];
+  if (!note.type.valid() || !target.valid()) return zero(target);
+  if (note.constant) {
+    auto bits = sema_.fold_bits(id, target);
+    set_line(expr.span);
+    return bits ? build_.constant(scalar(target), *bits) : zero(target);
+  }
+  ir::TypeId own = own_type(note, target);
+  if (!types().is_scalar(own)) {
+    sema_.error(DiagnosticCode::kTypeMismatch, expr.span,
+                "`" + sema_.type_text(own) + "` does not go with `" + sema_.type_text(target) +
+                    "`");
+    return zero(target);
+  }
+  return convert({emit(id, own), own}, target, expr.span);
+}
+
+Typed Body::natural(ExprId id) {
+  const Note& note = sema_.infer(id);
+  ir::TypeId type = without_range(types(), note.type);
+  if (!type.valid() || !types().is_scalar(type)) {
+    return {zero({}), elementary(ir::Kind::kDint)};
+  }
+  return {value(id, type), type};
+}
+
+ir::ValueId Body::emit(ExprId id, ir::TypeId own) {
+  const Expr& expr = tree_[id];
+  set_line(expr.span);
+  switch (expr.kind) {
+    case ExprKind::kName:
+    case ExprKind::kMember:
+    case ExprKind::kIndex:
+    case ExprKind::kDirect: {
+      ir::Place from = place(id);
+      return build_.load(from, scalar(from.type));
+    }
+    case ExprKind::kBit: return emit_bit(expr);
+    case ExprKind::kUnary: return emit_unary(expr, own);
+    case ExprKind::kBinary: return emit_binary(expr, own);
+    case ExprKind::kCall: return emit_call(expr, own);
+    default: return zero(own);
+  }
+}
+
+ir::ValueId Body::emit_bit(const Expr& expr) {
+  Typed word = natural(expr.operand);
+  ir::Scalar machine = scalar(word.type);
+  uint32_t offset = expr.number * expr.bit_size;
+  ir::ValueId bits = word.value;
+  if (offset != 0) {
+    bits = build_.binary(ir::Op::kShr, machine, bits, build_.constant(ir::Scalar::kU32, offset));
+  }
+  if (expr.bit_size != 1) {
+    ir::DirectAddress size;
+    size.bit_size = expr.bit_size;
+    return machine_convert(bits, machine, scalar(sema_.type_of_direct(size)));
+  }
+  bits = build_.binary(ir::Op::kAnd, machine, bits, build_.constant(machine, 1));
+  return build_.unary(ir::Op::kToBool, ir::Scalar::kBool, bits);
+}
+
+ir::ValueId Body::emit_unary(const Expr& expr, ir::TypeId own) {
+  ir::ValueId operand = value(expr.operand, own);
+  set_line(expr.op_span);
+  if (expr.unary == UnaryOp::kPlus) return operand;
+  return build_.unary(expr.unary == UnaryOp::kNot ? ir::Op::kNot : ir::Op::kNeg, scalar(own),
+                      operand);
+}
+
+ir::ValueId Body::string_value(const ir::Place& place) {
+  return build_.string(place, wide(place.type));
+}
+
+}  // namespace frontend

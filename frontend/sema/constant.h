@@ -1,0 +1,34 @@
+// A compile-time value: exact until its type is known.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "frontend/sema/model.h"
+
+namespace frontend {
+
+using Wide = __int128;
+
+struct Constant {
+  enum class Form : uint8_t { kInteger, kReal, kText, kAggregate };
+  Form form = Form::kInteger;
+  Flex flex = Flex::kNone;
+  ir::TypeId type;        // valid unless `flex` says that the context decides
+  Wide integer = 0;       // also BOOL, bit strings, times, enumerations, characters
+  double real = 0;
+  std::string text;       // STRING: bytes, WSTRING: UTF-16LE
+  ir::ConstId aggregate;  // an initial value in the program's table
+};
+
+// Limits of an integer machine scalar, as exact numbers.
+struct Limits {
+  Wide low = 0;
+  Wide high = 0;
+};
+Limits limits_of(ir::Scalar scalar);
+// Low bits of `value` in `scalar`, extended as ir::ConstValue::bits wants it.
+Wide wrap_to(ir::Scalar scalar, Wide value);
+std::string wide_text(Wide value);
+
+}  // namespace frontend

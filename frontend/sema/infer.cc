@@ -1,0 +1,234 @@
+// The type of every expression from the inside out, before its context has spoken.
+// Each expression is visited once; the note stays.
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+// Operator chains nest without parentheses; this keeps them off the stack.
+constexpr uint32_t kMaxDepth = 900;
+
+ir::Kind literal_kind(const Literal& literal) {
+  switch (literal.kind) {
+    case LiteralKind::kBool: return ir::Kind::kBool;
+    case LiteralKind::kDuration: return literal.is_long ? ir::Kind::kLtime : ir::Kind::kTime;
+    case LiteralKind::kDate: return literal.is_long ? ir::Kind::kLdate : ir::Kind::kDate;
+    case LiteralKind::kTimeOfDay: return literal.is_long ? ir::Kind::kLtod : ir::Kind::kTod;
+    case LiteralKind::kDateAndTime: return literal.is_long ? ir::Kind::kLdt : ir::Kind::kDt;
+    default: return ir::Kind::kLreal;
+  }
+}
+
+ir::Kind integer_kind(const Literal& literal) {
+  if (literal.integer <= 0x7fffffffu) return ir::Kind::kDint;
+  return literal.integer <= 0x7fffffffffffffffu ? ir::Kind::kLint : ir::Kind::kUlint;
+}
+
+}  // namespace
+
+const Note& Sema::infer(ExprId id) {
+  Note& note = notes_[id.index];
+  if (note.progress == Progress::kDone) return note;
+  const Expr& expr = tree[id];
+  if (depth_ > kMaxDepth) {
+    error(DiagnosticCode::kTooDeep, expr.span, "the expression is nested too deeply",
+          "split it with intermediate variables");
+    note.progress = Progress::kDone;
+    return note;
+  }
+  ++depth_;
+  note = infer_kind(id, expr);
+  --depth_;
+  note.progress = Progress::kDone;
+  return note;
+}
+
+Note Sema::infer_kind(ExprId, const Expr& expr) {
+  switch (expr.kind) {
+    case ExprKind::kLiteral: return infer_literal(expr);
+    case ExprKind::kName: return infer_name(expr);
+    case ExprKind::kQualified: return infer_qualified(expr);
+    case ExprKind::kMember: return infer_member(expr);
+    case ExprKind::kBit: return infer_bit(expr);
+    case ExprKind::kIndex: return infer_index(expr);
+    case ExprKind::kUnary: return infer_unary(expr);
+    case ExprKind::kBinary: return infer_binary(expr);
+    case ExprKind::kCall: return infer_call(expr);
+    case ExprKind::kDirect: {
+      Note note;
+      note.type = type_of_direct(expr.address);
+      return note;
+    }
+    case ExprKind::kDeref:
+      if (infer(expr.operand).type.valid()) {
+        error(DiagnosticCode::kNotReference, expr.span,
+              "`" + type_text(infer(expr.operand).type) + "` is not a reference");
+      }
+      return {};
+    case ExprKind::kArrayInit:
+    case ExprKind::kRepeat:
+    case ExprKind::kStructInit:
+      error(DiagnosticCode::kNotAValue, expr.span,
+            "a list of values stands where a single value is needed");
+      return {};
+    case ExprKind::kError: return {};
+  }
+  return {};
+}
+
+Note Sema::infer_literal(const Expr& expr) {
+  const Literal& literal = tree.literals[expr.literal];
+  Note note;
+  note.constant = true;
+  if (literal.too_large) return {};
+  if (!literal.prefix.empty()) {
+    auto use = find_type(literal.prefix.text);
+    if (!use) {
+      error(DiagnosticCode::kUnknownType, literal.prefix.span,
+            "`" + std::string(literal.prefix.text) + "` is not a type");
+      return {};
+    }
+    note.type = use->type;
+    return note;
+  }
+  switch (literal.kind) {
+    case LiteralKind::kInteger:
+      note.flex = Flex::kInteger;
+      note.type = program.types.elementary(integer_kind(literal));
+      return note;
+    case LiteralKind::kReal:
+      note.flex = Flex::kReal;
+      note.type = program.types.elementary(ir::Kind::kLreal);
+      return note;
+    case LiteralKind::kString: {
+      note.flex = Flex::kText;
+      uint32_t length = static_cast<uint32_t>(literal.text.size());
+      note.type = program.types.string(length == 0 ? 1 : length);
+      return note;
+    }
+    case LiteralKind::kWstring: {
+      note.flex = Flex::kText;
+      uint32_t length = static_cast<uint32_t>(literal.text.size() / 2);
+      note.type = program.types.wstring(length == 0 ? 1 : length);
+      return note;
+    }
+    default: note.type = program.types.elementary(literal_kind(literal)); return note;
+  }
+}
+
+Note Sema::infer_name(const Expr& expr) {
+  VarId id = find_variable(expr.name.text);
+  if (!id.valid()) return infer_enum_name(expr);
+  variables_[id.index].used = true;
+  const Variable* variable = &resolve(id);
+  if (variable->external.valid()) {
+    id = variable->external;
+    variables_[id.index].used = true;
+    variable = &resolve(id);
+  }
+  Note note;
+  note.variable = id;
+  note.type = variable->type;
+  note.constant = variable->constant && variable->type.valid() &&
+                  (program.types.is_scalar(variable->type) ||
+                   is_string(program.types, variable->type));
+  return note;
+}
+
+Note Sema::infer_enum_name(const Expr& expr) {
+  auto found = literals_.find(expr.name.text);
+  if (found == literals_.end()) {
+    bool pou = pou_names_.contains(expr.name.text) || types_.contains(expr.name.text);
+    error(pou ? DiagnosticCode::kNotAValue : DiagnosticCode::kUnknownName, expr.span,
+          "`" + std::string(expr.name.text) + (pou ? "` is not a variable" : "` is not declared"),
+          pou ? std::string() : name_suggestion(expr.name.text, false));
+    return {};
+  }
+  Note note;
+  note.constant = true;
+  if (found->second.size() == 1) {
+    note.type = resolve(found->second[0].spec).type;
+    return note;
+  }
+  note.flex = Flex::kEnum;
+  note.type = resolve(found->second[0].spec).type;
+  return note;
+}
+
+// Color#Red
+Note Sema::infer_qualified(const Expr& expr) {
+  auto use = find_type(expr.prefix.text);
+  bool known = use && use->type.valid();
+  if (use && !known) return {};
+  if (!known || !is_enum(program.types, use->type)) {
+    error(known ? DiagnosticCode::kNotEnumeration : DiagnosticCode::kUnknownType, expr.prefix.span,
+          "`" + std::string(expr.prefix.text) + "` is not an enumeration");
+    return {};
+  }
+  for (const ir::EnumLiteral& literal : program.types[use->type].literals) {
+    if (!ir::same_name(literal.name, expr.name.text)) continue;
+    Note note;
+    note.type = use->type;
+    note.constant = true;
+    return note;
+  }
+  NearestName nearest(expr.name.text);
+  for (const ir::EnumLiteral& literal : program.types[use->type].literals) {
+    nearest.offer(literal.name);
+  }
+  error(DiagnosticCode::kNotEnumeration, expr.name.span,
+        "`" + type_text(use->type) + "` has no literal `" + std::string(expr.name.text) + "`",
+        nearest.fix());
+  return {};
+}
+
+Note Sema::infer_bit(const Expr& expr) {
+  const Note& operand = infer(expr.operand);
+  if (!operand.type.valid()) return {};
+  Traits traits = traits_of(program.types, operand.type);
+  if (!traits.bits && !traits.integer) {
+    error(DiagnosticCode::kBadOperand, expr.span,
+          "`" + type_text(operand.type) + "` has no bits to access");
+    return {};
+  }
+  uint32_t width = ir::scalar_size(program.types.scalar(operand.type)) * 8;
+  if ((uint64_t{expr.number} + 1) * expr.bit_size > width) {
+    error(DiagnosticCode::kBitOutOfRange, expr.span,
+          "number " + std::to_string(expr.number) + " in `" + type_text(operand.type) + "`",
+          "the highest is " + std::to_string(width / expr.bit_size - 1));
+    return {};
+  }
+  Note note = operand;
+  note.progress = Progress::kNew;
+  note.flex = Flex::kNone;
+  note.constant = false;
+  note.variable = {};
+  ir::DirectAddress size;
+  size.bit_size = expr.bit_size;
+  note.type = type_of_direct(size);
+  return note;
+}
+
+Note Sema::infer_unary(const Expr& expr) {
+  const Note& operand = infer(expr.operand);
+  if (!operand.type.valid()) return {};
+  Note note = operand;
+  note.variable = {};
+  Traits traits = traits_of(program.types, operand.type);
+  note.type = without_range(program.types, operand.type);
+  bool good = false;
+  if (expr.unary == UnaryOp::kNot) {
+    good = traits.boolean || traits.bits ||
+           (traits.integer && (options.dialect != Dialect::kIec || operand.flex != Flex::kNone));
+  } else {
+    good = traits.number() || traits.duration ||
+           (traits.bits && options.dialect != Dialect::kIec);
+  }
+  if (good) return note;
+  error(DiagnosticCode::kBadOperand, expr.span,
+        std::string(expr.unary == UnaryOp::kNot ? "NOT" : "a sign") + " is not defined for `" +
+            type_text(operand.type) + "`");
+  return {};
+}
+
+}  // namespace frontend

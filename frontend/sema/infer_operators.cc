@@ -1,0 +1,240 @@
+// Operators: what their operands have in common, and what comes out.
+#include "frontend/sema/sema.h"
+#include "frontend/sema/operators.h"
+
+namespace frontend {
+namespace {
+
+Note merged(const Note& a, const Note& b) {
+  Note note;
+  note.constant = a.constant && b.constant;
+  note.calls = a.calls || b.calls;
+  note.can_trap = a.can_trap || b.can_trap;
+  return note;
+}
+
+bool is_flexible_number(const Note& note) {
+  return note.flex == Flex::kInteger || note.flex == Flex::kReal;
+}
+
+}  // namespace
+
+std::string_view operator_text(BinaryOp op) {
+  switch (op) {
+    case BinaryOp::kOr: return "OR";
+    case BinaryOp::kOrElse: return "OR_ELSE";
+    case BinaryOp::kXor: return "XOR";
+    case BinaryOp::kAnd: return "AND";
+    case BinaryOp::kAndThen: return "AND_THEN";
+    case BinaryOp::kEq: return "=";
+    case BinaryOp::kNe: return "<>";
+    case BinaryOp::kLt: return "<";
+    case BinaryOp::kLe: return "<=";
+    case BinaryOp::kGt: return ">";
+    case BinaryOp::kGe: return ">=";
+    case BinaryOp::kAdd: return "+";
+    case BinaryOp::kSub: return "-";
+    case BinaryOp::kMul: return "*";
+    case BinaryOp::kDiv: return "/";
+    case BinaryOp::kMod: return "MOD";
+    case BinaryOp::kPower: return "**";
+  }
+  return "?";
+}
+
+// Literals take the other operand's type and never widen it; a real literal beside
+// an integer leaves the choice of the real type to the context.
+Note Sema::unify(const Note& a, const Note& b, base::SourceSpan span) {
+  Note note = merged(a, b);
+  if (!a.type.valid() || !b.type.valid()) return {};
+  const ir::TypeTable& types = program.types;
+  if (is_flexible_number(a) && is_flexible_number(b)) {
+    note.flex = a.flex == Flex::kReal || b.flex == Flex::kReal ? Flex::kReal : Flex::kInteger;
+    note.type = note.flex == Flex::kReal ? types.elementary(ir::Kind::kLreal)
+                                         : common_type(types, a.type, b.type, options.dialect);
+    return note;
+  }
+  if (is_flexible_number(b)) {
+    Note swapped = unify(b, a, span);
+    return swapped;
+  }
+  if (is_flexible_number(a)) {
+    Traits other = traits_of(types, b.type);
+    if (other.real || (a.flex == Flex::kInteger && (other.integer || other.bits))) {
+      note.type = without_range(types, b.type);
+      return note;
+    }
+    if (a.flex == Flex::kInteger && other.boolean && options.dialect != Dialect::kIec) {
+      note.type = b.type;
+      return note;
+    }
+    if (a.flex == Flex::kReal && other.integer) {
+      note.flex = Flex::kReal;
+      bool small = ir::scalar_size(types.scalar(b.type)) <= 2;
+      note.type = types.elementary(small ? ir::Kind::kReal : ir::Kind::kLreal);
+      return note;
+    }
+    if (a.flex == Flex::kInteger && other.enumeration && options.dialect != Dialect::kIec) {
+      note.type = types[without_range(types, b.type)].base;
+      return note;
+    }
+  } else if (a.flex == Flex::kEnum && is_enum(types, b.type)) {
+    note.type = without_range(types, b.type);
+    note.flex = b.flex;
+    return note;
+  } else if (b.flex == Flex::kEnum && is_enum(types, a.type)) {
+    note.type = without_range(types, a.type);
+    return note;
+  } else if (a.flex == Flex::kText && traits_of(types, b.type).character) {
+    note.type = b.type;
+    return note;
+  } else if (b.flex == Flex::kText && traits_of(types, a.type).character) {
+    note.type = a.type;
+    return note;
+  } else {
+    note.type = common_type(types, a.type, b.type, options.dialect);
+    if (note.type.valid()) return note;
+  }
+  error(DiagnosticCode::kOperandsDiffer, span,
+        "`" + type_text(a.type) + "` and `" + type_text(b.type) + "` have no common type",
+        "convert one of them explicitly");
+  return {};
+}
+
+Note Sema::infer_binary(const Expr& expr) {
+  // Left operands of chains first, so that diagnostics come in source order.
+  const Note left = infer(expr.operand);
+  const Note right = infer(expr.right);
+  if (!left.type.valid() || !right.type.valid()) return {};
+  switch (operator_class(expr.binary)) {
+    case OperatorClass::kLogical: {
+      bool eager = expr.binary == BinaryOp::kAnd || expr.binary == BinaryOp::kOr;
+      bool boolean = traits_of(program.types, right.type).boolean;
+      if (eager && boolean && right.can_trap) {
+        warning(DiagnosticCode::kRightOperandTraps, tree[expr.right].span,
+                "the right operand of " + std::string(operator_text(expr.binary)) +
+                    " is evaluated in any case and can trap",
+                expr.binary == BinaryOp::kAnd ? "use AND_THEN" : "use OR_ELSE");
+      }
+      return infer_bitwise(expr.binary, left, right, expr.span);
+    }
+    case OperatorClass::kComparison:
+      return infer_comparison(expr.binary, left, right, expr.span);
+    case OperatorClass::kArithmetic: {
+      Note note = infer_arithmetic(expr.binary, left, right, expr.span);
+      bool divides = expr.binary == BinaryOp::kDiv || expr.binary == BinaryOp::kMod;
+      if (divides && !right.constant && note.type.valid() &&
+          !traits_of(program.types, note.type).real) {
+        note.can_trap = true;
+      }
+      return note;
+    }
+  }
+  return {};
+}
+
+Note Sema::infer_bitwise(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span) {
+  Note note = unify(left, right, span);
+  if (!note.type.valid()) return {};
+  Traits traits = traits_of(program.types, note.type);
+  bool lazy = op == BinaryOp::kAndThen || op == BinaryOp::kOrElse;
+  bool integers = traits.integer && (options.dialect != Dialect::kIec || note.flex != Flex::kNone);
+  if (traits.boolean || (!lazy && (traits.bits || integers))) return note;
+  error(DiagnosticCode::kBadOperand, span,
+        std::string(operator_text(op)) + " is not defined for `" + type_text(note.type) + "`",
+        lazy ? "both operands have to be BOOL" : "use BOOL or bit strings");
+  return {};
+}
+
+Note Sema::infer_comparison(BinaryOp op, const Note& left, const Note& right,
+                            base::SourceSpan span) {
+  Note note = unify(left, right, span);
+  if (!note.type.valid()) return {};
+  bool scalar = program.types.is_scalar(note.type);
+  if (!scalar && !is_string(program.types, note.type)) {
+    error(DiagnosticCode::kBadOperand, span,
+          std::string(operator_text(op)) + " is not defined for `" + type_text(note.type) + "`",
+          "compare the elements one by one");
+    return {};
+  }
+  note.flex = Flex::kNone;
+  note.type = program.types.elementary(ir::Kind::kBool);
+  return note;
+}
+
+Note Sema::infer_arithmetic(BinaryOp op, const Note& left, const Note& right,
+                            base::SourceSpan span) {
+  Traits a = traits_of(program.types, left.type);
+  Traits b = traits_of(program.types, right.type);
+  if (a.duration || a.date || b.duration || b.date) {
+    return infer_time_arithmetic(op, left, right, span);
+  }
+  if (op == BinaryOp::kPower) {
+    // The base decides; an integer base is raised as a real number.
+    Note note = merged(left, right);
+    note.constant = false;
+    bool real_base = a.real;
+    if ((a.number() || a.bits) && (b.number() || b.bits)) {
+      note.type = real_base ? without_range(program.types, left.type)
+                            : program.types.elementary(ir::Kind::kLreal);
+      note.flex = real_base ? left.flex : Flex::kReal;
+      return note;
+    }
+  } else {
+    Note note = unify(left, right, span);
+    if (!note.type.valid()) return {};
+    Traits traits = traits_of(program.types, note.type);
+    bool number = traits.number() || (traits.bits && options.dialect != Dialect::kIec);
+    if (number && !(op == BinaryOp::kMod && traits.real)) return note;
+    if (traits.enumeration && options.dialect != Dialect::kIec) {
+      note.type = program.types[without_range(program.types, note.type)].base;
+      return note;
+    }
+  }
+  error(DiagnosticCode::kBadOperand, span,
+        std::string(operator_text(op)) + " is not defined for `" + type_text(left.type) +
+            "` and `" + type_text(right.type) + "`");
+  return {};
+}
+
+// IEC table 30: durations with durations and numbers, points in time with durations,
+// and the distance of two points of one kind.
+Note Sema::infer_time_arithmetic(BinaryOp op, const Note& left, const Note& right,
+                                 base::SourceSpan span) {
+  Note note = merged(left, right);
+  const ir::TypeTable& types = program.types;
+  Traits a = traits_of(types, left.type);
+  Traits b = traits_of(types, right.type);
+  bool sum = op == BinaryOp::kAdd || op == BinaryOp::kSub;
+  if (a.duration && b.duration && sum) {
+    note.type = common_type(types, left.type, right.type, options.dialect);
+    return note;
+  }
+  if (a.date && b.duration && sum && types.root_kind(left.type) != ir::Kind::kDate &&
+      types.root_kind(left.type) != ir::Kind::kLdate) {
+    note.type = without_range(types, left.type);
+    return note;
+  }
+  if (a.date && b.date && op == BinaryOp::kSub) {
+    ir::TypeId common = common_type(types, left.type, right.type, options.dialect);
+    if (common.valid()) {
+      note.type = types.elementary(is_long_time(types.root_kind(common)) ? ir::Kind::kLtime
+                                                                        : ir::Kind::kTime);
+      return note;
+    }
+  }
+  if (a.duration && b.number() && (op == BinaryOp::kMul || op == BinaryOp::kDiv)) {
+    note.type = without_range(types, left.type);
+    return note;
+  }
+  if (a.number() && b.duration && op == BinaryOp::kMul) {
+    note.type = without_range(types, right.type);
+    return note;
+  }
+  error(DiagnosticCode::kBadOperand, span,
+        std::string(operator_text(op)) + " is not defined for `" + type_text(left.type) +
+            "` and `" + type_text(right.type) + "`");
+  return {};
+}
+
+}  // namespace frontend

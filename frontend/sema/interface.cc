@@ -1,0 +1,152 @@
+// Interfaces: the members of instances, the locals of frames, the global variables.
+#include <algorithm>
+
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+ir::Section section_of(VarSection section) {
+  switch (section) {
+    case VarSection::kInput: return ir::Section::kInput;
+    case VarSection::kOutput: return ir::Section::kOutput;
+    case VarSection::kInOut: return ir::Section::kInOut;
+    case VarSection::kGlobal: return ir::Section::kGlobal;
+    default: return ir::Section::kLocal;
+  }
+}
+
+ir::LocalKind local_kind(VarSection section) {
+  switch (section) {
+    case VarSection::kInput: return ir::LocalKind::kInput;
+    case VarSection::kOutput: return ir::LocalKind::kOutput;
+    case VarSection::kInOut: return ir::LocalKind::kInOut;
+    default: return ir::LocalKind::kTemp;
+  }
+}
+
+struct Located {
+  uint32_t first_bit;
+  uint32_t bits;
+  base::SourceSpan span;
+  std::string name;
+};
+
+}  // namespace
+
+void Sema::resolve_declarations() {
+  for (const TypeDecl& decl : tree.types) resolve(decl.spec);
+  resolve_globals();
+  // Grows while library blocks are discovered.
+  for (uint32_t i = 0; i < pous.size(); ++i) resolve_interface(i);
+  check_containment();
+  check_direct_addresses();
+}
+
+void Sema::resolve_globals() {
+  for (VarId id : global_order_) {
+    resolve(id);
+    const Variable& variable = variables_[id.index];
+    program.types.edit(program.globals).members.push_back(member_of(variable, ir::Section::kGlobal));
+  }
+}
+
+ir::Member Sema::member_of(const Variable& variable, ir::Section section) const {
+  ir::Member member;
+  member.name = variable.name.text;
+  member.type = variable.type;
+  member.section = section;
+  member.constant = variable.constant;
+  member.retain = variable.retain;
+  member.init = variable.init;
+  if (variable.decl != nullptr && variable.decl->has_address) {
+    member.address = variable.decl->address;
+  }
+  return member;
+}
+
+void Sema::resolve_interface(uint32_t number) {
+  PouInfo& info = pous[number];
+  Within scope(*this, number);
+  for (VarId id : info.variables) resolve(id);
+  std::vector<ir::Member> members;
+  for (VarId id : info.members) {
+    const Variable& variable = variables_[id.index];
+    members.push_back(member_of(variable, section_of(variable.section)));
+  }
+  if (info.self.valid()) program.types.edit(info.self).members = std::move(members);
+  ir::Pou& pou = program.pous[info.id.index];
+  for (VarId id : info.locals) {
+    const Variable& variable = variables_[id.index];
+    ir::LocalKind kind = id == info.result ? ir::LocalKind::kReturn : local_kind(variable.section);
+    pou.locals.push_back({std::string(variable.name.text), variable.type, kind});
+  }
+}
+
+// Each marker variable has storage of its own, so overlapping ones cannot mean the
+// same memory.
+void Sema::check_direct_addresses() {
+  std::vector<Located> markers;
+  for (const Variable& variable : variables_) {
+    if (variable.decl == nullptr || !variable.decl->has_address) continue;
+    const ir::DirectAddress& address = variable.decl->address;
+    if (address.area != ir::DirectArea::kMarker) continue;
+    markers.push_back({address.bit_offset, address.bit_size, variable.name.span,
+                       std::string(variable.name.text)});
+  }
+  std::stable_sort(markers.begin(), markers.end(), [](const Located& a, const Located& b) {
+    return a.first_bit < b.first_bit;
+  });
+  uint64_t end = 0;
+  std::string last;
+  for (const Located& marker : markers) {
+    if (marker.first_bit < end) {
+      error(DiagnosticCode::kBadAddress, marker.span,
+            "`" + marker.name + "` lies on the same marker bits as `" + last + "`",
+            "give each its own address; overlapping markers are not supported");
+    }
+    uint64_t marker_end = uint64_t{marker.first_bit} + marker.bits;
+    if (marker_end > end) {
+      end = marker_end;
+      last = marker.name;
+    }
+  }
+}
+
+ir::TypeId Sema::type_of_direct(const ir::DirectAddress& address) const {
+  switch (address.bit_size) {
+    case 1: return program.types.elementary(ir::Kind::kBool);
+    case 8: return program.types.elementary(ir::Kind::kByte);
+    case 16: return program.types.elementary(ir::Kind::kWord);
+    case 32: return program.types.elementary(ir::Kind::kDword);
+    default: return program.types.elementary(ir::Kind::kLword);
+  }
+}
+
+// A bare %QX0.0 in code is a global variable of that name, one per address. A
+// declared global at exactly this address is the same variable.
+uint32_t Sema::direct_member(const Expr& expr) {
+  std::string name = ir::fold_name(expr.name.text);
+  if (auto known = direct_members_.find(name); known != direct_members_.end()) {
+    return known->second;
+  }
+  ir::Type& globals = program.types.edit(program.globals);
+  ir::TypeId type = type_of_direct(expr.address);
+  uint32_t index = 0;
+  while (index < globals.members.size() &&
+         !(globals.members[index].address == expr.address && globals.members[index].type == type)) {
+    ++index;
+  }
+  if (index == globals.members.size()) {
+    ir::Member member;
+    member.name = expr.name.text;
+    member.type = type;
+    member.section = ir::Section::kGlobal;
+    member.address = expr.address;
+    globals.members.push_back(std::move(member));
+  }
+  direct_members_.emplace(std::move(name), index);
+  return index;
+}
+
+}  // namespace frontend

@@ -1,0 +1,67 @@
+#include "frontend/sema/names.h"
+
+#include <algorithm>
+
+#include "ir/types/types.h"
+
+namespace frontend {
+namespace {
+
+constexpr size_t kLongestCompared = 64;
+
+char fold(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+// Levenshtein distance, given up once it exceeds `limit`.
+uint32_t distance(std::string_view a, std::string_view b, uint32_t limit) {
+  std::vector<uint32_t> row(b.size() + 1);
+  for (uint32_t j = 0; j < row.size(); ++j) row[j] = j;
+  for (uint32_t i = 1; i <= a.size(); ++i) {
+    uint32_t diagonal = row[0];
+    uint32_t smallest = row[0] = i;
+    for (uint32_t j = 1; j < row.size(); ++j) {
+      uint32_t replace = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replace, row[j] + 1, row[j - 1] + 1});
+      smallest = std::min(smallest, row[j]);
+    }
+    if (smallest > limit) return limit + 1;
+  }
+  return row.back();
+}
+
+}  // namespace
+
+size_t FoldHash::operator()(std::string_view name) const noexcept {
+  uint64_t hash = 0xcbf29ce484222325u;
+  for (char c : name) hash = (hash ^ static_cast<uint8_t>(fold(c))) * 0x100000001b3u;
+  return static_cast<size_t>(hash ^ (hash >> 32));
+}
+
+bool FoldEqual::operator()(std::string_view a, std::string_view b) const noexcept {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
+           return fold(x) == fold(y);
+         });
+}
+
+NearestName::NearestName(std::string_view written)
+    : written_(ir::fold_name(written.substr(0, kLongestCompared))),
+      best_distance_(static_cast<uint32_t>(written_.size() + 2) / 3 + 1) {}
+
+void NearestName::offer(std::string_view candidate) {
+  if (candidate.size() > written_.size() + best_distance_ ||
+      written_.size() > candidate.size() + best_distance_) {
+    return;
+  }
+  uint32_t found = distance(written_, ir::fold_name(candidate), best_distance_);
+  if (found > best_distance_ || (found == best_distance_ && (best_.empty() || candidate > best_))) {
+    return;
+  }
+  best_distance_ = found;
+  best_ = candidate;
+}
+
+std::string NearestName::fix() const {
+  return best_.empty() ? std::string() : "did you mean `" + best_ + "`?";
+}
+
+}  // namespace frontend

@@ -1,0 +1,40 @@
+// Tables by IEC identifier: keys are views into the sources, compared without case.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace frontend {
+
+struct FoldHash {
+  size_t operator()(std::string_view name) const noexcept;
+};
+struct FoldEqual {
+  bool operator()(std::string_view a, std::string_view b) const noexcept;
+};
+template <class T>
+using NameMap = std::unordered_map<std::string_view, T, FoldHash, FoldEqual>;
+
+// Keeps the candidate that is nearest to what was written, for "did you mean".
+// Names further away than a third of their letters are no help and stay out.
+class NearestName {
+ public:
+  explicit NearestName(std::string_view written);
+  void offer(std::string_view candidate);
+  template <class T>
+  void offer_all(const NameMap<T>& names) {
+    for (const auto& entry : names) offer(entry.first);
+  }
+  // "did you mean `X`?" or "".
+  std::string fix() const;
+
+ private:
+  std::string written_;
+  std::string best_;
+  uint32_t best_distance_;
+};
+
+}  // namespace frontend

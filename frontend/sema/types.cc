@@ -1,0 +1,241 @@
+// Type expressions -> TypeIds. Aliases, named strings, arrays and subranges stand
+// for their content; structures and enumerations are types of their own.
+#include "base/limits.h"
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+// Chains of declarations that need each other; keeps hostile ones off the stack.
+constexpr uint32_t kMaxChain = 500;
+constexpr uint64_t kMaxElements = base::kMaxTypeBytes;
+
+}  // namespace
+
+TypeUse Sema::resolve(SpecId id) {
+  if (!id.valid()) return {};
+  SpecInfo& info = specs_[id.index];
+  if (info.progress == Progress::kDone) return info.use;
+  const Spec& spec = tree[id];
+  if (info.progress == Progress::kBusy) {
+    error(DiagnosticCode::kRecursiveType, spec.span,
+          "this type is needed to know its own size or bounds",
+          "break the circle; a type cannot contain itself");
+    return {};
+  }
+  if (depth_ >= kMaxChain) {
+    error(DiagnosticCode::kTooDeep, spec.span, "types depend on each other too deeply");
+    return {};
+  }
+  info.progress = Progress::kBusy;
+  ++depth_;
+  info.use = resolve_kind(id, spec);
+  if (info.use.type.valid() && info.default_value.valid()) {
+    info.use.init = initial_value(info.default_value, info.use.type);
+  }
+  --depth_;
+  info.progress = Progress::kDone;
+  return info.use;
+}
+
+TypeUse Sema::resolve_kind(SpecId id, const Spec& spec) {
+  switch (spec.kind) {
+    case SpecKind::kError: return {};
+    case SpecKind::kNamed: return resolve_named(spec);
+    case SpecKind::kString: return resolve_string(spec);
+    case SpecKind::kArray: return resolve_array(spec);
+    case SpecKind::kStruct: return resolve_struct(id, spec);
+    case SpecKind::kEnum: return resolve_enum(id, spec);
+    case SpecKind::kSubrange: return resolve_subrange(spec);
+  }
+  return {};
+}
+
+std::optional<TypeUse> Sema::find_type(std::string_view name) {
+  if (auto kind = kind_of_name(name)) {
+    if (*kind == ir::Kind::kString) return TypeUse{program.types.string(kDefaultStringCapacity), {}};
+    if (*kind == ir::Kind::kWstring) {
+      return TypeUse{program.types.wstring(kDefaultStringCapacity), {}};
+    }
+    return TypeUse{program.types.elementary(*kind), {}};
+  }
+  if (auto declared = types_.find(name); declared != types_.end()) {
+    Within global(*this, kNoPou);
+    return resolve(declared->second);
+  }
+  if (!pou_names_.contains(name) && !use_library(name)) return std::nullopt;
+  const PouInfo& pou = pous[pou_names_.find(name)->second];
+  if (!pou.self.valid()) return std::nullopt;
+  return TypeUse{pou.self, {}};
+}
+
+TypeUse Sema::resolve_named(const Spec& spec) {
+  if (auto use = find_type(spec.name.text)) return *use;
+  NearestName nearest(spec.name.text);
+  nearest.offer_all(types_);
+  nearest.offer_all(pou_names_);
+  nearest.offer_all(library_);
+  for (uint32_t i = 0; i < ir::kElementaryCount; ++i) {
+    nearest.offer(ir::elementary_name(static_cast<ir::Kind>(i)));
+  }
+  error(DiagnosticCode::kUnknownType, spec.name.span,
+        "`" + std::string(spec.name.text) + "` is not a type", nearest.fix());
+  return {};
+}
+
+TypeUse Sema::resolve_string(const Spec& spec) {
+  int64_t capacity = kDefaultStringCapacity;
+  if (spec.length.valid()) {
+    auto length = fold_integer(spec.length);
+    if (!length) return {};
+    capacity = *length;
+  }
+  if (capacity < 1 || capacity > base::kMaxStringCapacity) {
+    error(DiagnosticCode::kStringTooLong, spec.span,
+          "a string of " + std::to_string(capacity) + " characters",
+          "use 1.." + std::to_string(base::kMaxStringCapacity));
+    return {};
+  }
+  uint32_t characters = static_cast<uint32_t>(capacity);
+  return {spec.wide ? program.types.wstring(characters) : program.types.string(characters), {}};
+}
+
+TypeUse Sema::resolve_array(const Spec& spec) {
+  std::vector<ir::Dimension> dims;
+  uint64_t elements = 1;
+  for (const DimSpec& dim : spec.dims) {
+    auto low = fold_integer(dim.low);
+    auto high = fold_integer(dim.high);
+    if (!low || !high) return {};
+    if (*low > *high) {
+      error(DiagnosticCode::kBadBounds, tree[dim.low].span,
+            "bounds " + std::to_string(*low) + ".." + std::to_string(*high),
+            "write the lower bound first");
+      return {};
+    }
+    ir::Dimension dimension{*low, *high};
+    uint64_t count = dimension.count();
+    if (count == 0 || count > kMaxElements || elements * count > kMaxElements) {
+      error(DiagnosticCode::kTypeTooLarge, spec.span,
+            "the array has more than " + std::to_string(kMaxElements) + " elements");
+      return {};
+    }
+    elements *= count;
+    dims.push_back(dimension);
+  }
+  TypeUse element = resolve(spec.element);
+  if (!element.type.valid() || dims.empty()) return {};
+  TypeUse use{program.types.array(element.type, std::move(dims)), {}};
+  if (element.init.valid()) {
+    ir::ConstValue all;
+    all.elements.push_back({0, static_cast<uint32_t>(elements), element.init});
+    use.init = program.constants.add(std::move(all));
+  }
+  return use;
+}
+
+TypeUse Sema::resolve_subrange(const Spec& spec) {
+  TypeUse base = resolve(spec.element);
+  if (!base.type.valid()) return {};
+  Traits traits = traits_of(program.types, base.type);
+  if (!traits.integer && !traits.bits) {
+    error(DiagnosticCode::kTypeMismatch, spec.span,
+          "a subrange of `" + type_text(base.type) + "`", "subranges need an integer type");
+    return {};
+  }
+  auto low = fold_bits(spec.low, base.type);
+  auto high = fold_bits(spec.high, base.type);
+  if (!low || !high) return {};
+  int64_t from = static_cast<int64_t>(*low);
+  int64_t to = static_cast<int64_t>(*high);
+  if (from > to) {
+    error(DiagnosticCode::kBadBounds, spec.span,
+          "subrange " + std::to_string(from) + ".." + std::to_string(to));
+    return {};
+  }
+  // The lowest value is the default where zero is not in the range (IEC table 11).
+  TypeUse use{program.types.subrange(without_range(program.types, base.type), from, to), {}};
+  if (from > 0 || to < 0) use.init = program.constants.scalar(static_cast<uint64_t>(from));
+  return use;
+}
+
+TypeUse Sema::resolve_struct(SpecId id, const Spec& spec) {
+  ir::Type type;
+  type.kind = ir::Kind::kStruct;
+  type.name = specs_[id.index].name.text;
+  NameMap<uint32_t> names;
+  bool good = true;
+  for (const VarDecl& field : spec.fields) good = add_field(type, names, field) && good;
+  if (!good) return {};
+  if (type.members.empty()) {
+    error(DiagnosticCode::kEmptyList, spec.span, "a structure without members");
+    return {};
+  }
+  ir::TypeId made = program.types.declare(std::move(type));
+  structures_.emplace(made, std::move(names));
+  return {made, {}};
+}
+
+bool Sema::add_field(ir::Type& type, NameMap<uint32_t>& names, const VarDecl& field) {
+  TypeUse use = resolve(field.spec);
+  if (!use.type.valid()) return false;
+  ir::Member member;
+  member.type = use.type;
+  member.init = field.init.valid() ? initial_value(field.init, use.type) : use.init;
+  for (const Name& name : field.names) {
+    if (!names.emplace(name.text, static_cast<uint32_t>(type.members.size())).second) {
+      error(DiagnosticCode::kDuplicateName, name.span,
+            "`" + std::string(name.text) + "` is declared twice");
+      return false;
+    }
+    member.name = name.text;
+    type.members.push_back(member);
+  }
+  return true;
+}
+
+TypeUse Sema::resolve_enum(SpecId id, const Spec& spec) {
+  TypeUse base{program.types.elementary(ir::Kind::kInt), {}};
+  if (spec.element.valid()) base = resolve(spec.element);
+  if (!base.type.valid()) return {};
+  Traits traits = traits_of(program.types, base.type);
+  if (!traits.integer && !traits.bits) {
+    error(DiagnosticCode::kTypeMismatch, spec.span,
+          "an enumeration of `" + type_text(base.type) + "`", "enumerations need an integer type");
+    return {};
+  }
+  ir::Type type;
+  type.kind = ir::Kind::kEnum;
+  type.name = specs_[id.index].name.text;
+  type.base = without_range(program.types, base.type);
+  Limits limits = limits_of(program.types.scalar(base.type));
+  NameMap<bool> names;
+  Wide next = 0;
+  for (const Enumerator& enumerator : spec.enumerators) {
+    std::string name(enumerator.name.text);
+    if (!names.emplace(enumerator.name.text, true).second) {
+      error(DiagnosticCode::kDuplicateName, enumerator.name.span, "`" + name + "` stands twice");
+      return {};
+    }
+    if (enumerator.value.valid()) {
+      auto value = fold_integer(enumerator.value);
+      if (!value) return {};
+      next = *value;
+    }
+    if (next < limits.low || next > limits.high) {
+      error(DiagnosticCode::kLiteralOutOfRange, enumerator.name.span,
+            "`" + name + "` is " + wide_text(next) + "; `" + type_text(base.type) + "` ends at " +
+                wide_text(limits.high));
+      return {};
+    }
+    type.literals.push_back({name, static_cast<int64_t>(next)});
+    next += 1;
+  }
+  if (type.literals.empty()) return {};
+  if (int64_t first = type.literals[0].value; first != 0) {
+    type.init = program.constants.scalar(static_cast<uint64_t>(first));
+  }
+  return {program.types.declare(std::move(type)), {}};
+}
+
+}  // namespace frontend

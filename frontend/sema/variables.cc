@@ -1,0 +1,158 @@
+// Variables and members: what a name means, its type and its initial value.
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+constexpr uint32_t kMaxChain = 500;
+
+std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
+
+}  // namespace
+
+VarId Sema::find_variable(std::string_view name) {
+  if (current_pou_ != kNoPou) {
+    const NameMap<VarId>& names = pous[current_pou_].names;
+    if (auto found = names.find(name); found != names.end()) return found->second;
+  }
+  auto found = globals_.find(name);
+  return found == globals_.end() ? VarId() : found->second;
+}
+
+const Variable& Sema::resolve(VarId id) {
+  Variable& variable = variables_[id.index];
+  if (variable.progress == Progress::kDone) return variable;
+  if (variable.progress == Progress::kBusy || depth_ >= kMaxChain) {
+    if (!variable.type.valid() || variable.constant) {
+      error(DiagnosticCode::kRecursiveConstant, variable.name.span,
+            quoted(variable.name) + " is needed to know its own type or value");
+    }
+    return variable;
+  }
+  variable.progress = Progress::kBusy;
+  ++depth_;
+  Within scope(*this, variable.pou);
+  resolve_variable(id);
+  --depth_;
+  variable.progress = Progress::kDone;
+  return variable;
+}
+
+void Sema::resolve_variable(VarId id) {
+  Variable& variable = variables_[id.index];
+  if (variable.decl == nullptr) {  // a function's result
+    TypeUse use = resolve(pous[variable.pou].decl->result);
+    variable.type = use.type;
+    variable.init = use.init;
+    return;
+  }
+  TypeUse use = resolve(variable.decl->spec);
+  variable.type = use.type;
+  variable.init = use.init;
+  if (!variable.type.valid()) return;
+  if (variable.section == VarSection::kExternal) {
+    resolve_external(variable);
+    return;
+  }
+  check_placement(variable);
+  check_address(variable);
+  if (variable.decl->init.valid()) resolve_initial(variable);
+}
+
+void Sema::resolve_external(Variable& variable) {
+  auto found = globals_.find(variable.name.text);
+  if (found == globals_.end()) {
+    NearestName nearest(variable.name.text);
+    nearest.offer_all(globals_);
+    error(DiagnosticCode::kUnknownName, variable.name.span,
+          "there is no global variable " + quoted(variable.name), nearest.fix());
+    variable.type = {};
+    return;
+  }
+  variable.external = found->second;
+  const Variable& global = resolve(found->second);
+  if (global.type.valid() && global.type != variable.type) {
+    error(DiagnosticCode::kExternalMismatch, variable.name.span,
+          quoted(variable.name) + " is `" + type_text(global.type) + "`, declared here as `" +
+              type_text(variable.type) + "`");
+  }
+}
+
+// Functions' own variables are initialised at each call, so any expression will do.
+void Sema::resolve_initial(Variable& variable) {
+  ExprId init = variable.decl->init;
+  const Expr& expr = tree[init];
+  bool list = expr.kind == ExprKind::kArrayInit || expr.kind == ExprKind::kStructInit;
+  bool at_call = variable.storage == Storage::kLocal && (variable.section == VarSection::kLocal ||
+                                                         variable.section == VarSection::kTemp);
+  if (at_call && !variable.constant && !list && !infer(init).constant) {
+    variable.runtime_init = true;
+    return;
+  }
+  variable.init = initial_value(init, variable.type);
+}
+
+void Sema::check_placement(const Variable& variable) {
+  const ir::Type& type = program.types[variable.type];
+  if (type.kind == ir::Kind::kProgram) {
+    error(DiagnosticCode::kTypeMismatch, variable.name.span,
+          "`" + type.name + "` is a program; a variable cannot be one",
+          "make it a FUNCTION_BLOCK, or declare the program in a CONFIGURATION");
+  }
+  bool holds_instance = type.kind == ir::Kind::kFunctionBlock;
+  if (holds_instance && variable.storage == Storage::kLocal &&
+      variable.section != VarSection::kInOut) {
+    error(DiagnosticCode::kSectionNotAllowed, variable.name.span,
+          quoted(variable.name) + " is an instance of `" + type.name +
+              "`, but is made anew at each call",
+          "declare it in VAR of a function block or program, or pass it as VAR_IN_OUT");
+  }
+}
+
+void Sema::check_address(const Variable& variable) {
+  if (!variable.decl->has_address) return;
+  const ir::DirectAddress& address = variable.decl->address;
+  bool scalar = program.types.is_scalar(variable.type);
+  uint32_t bits = 0;
+  if (scalar) {
+    ir::Scalar machine = program.types.scalar(variable.type);
+    bits = machine == ir::Scalar::kBool ? 1 : ir::scalar_size(machine) * 8;
+  }
+  if (bits != address.bit_size) {
+    error(DiagnosticCode::kBadAddress, variable.name.span,
+          quoted(variable.name) + " is `" + type_text(variable.type) + "`, the address has " +
+              std::to_string(address.bit_size) + " bits",
+          "use X for BOOL, B W D L for 8 16 32 64 bits; arrays and structures cannot be located");
+  }
+  if (variable.storage == Storage::kLocal) {
+    error(DiagnosticCode::kBadAddress, variable.name.span,
+          quoted(variable.name) + " lives only during a call and cannot have an address");
+  }
+}
+
+const PouInfo* Sema::pou_of(ir::TypeId instance) const {
+  auto found = pou_by_type_.find(instance);
+  return found == pou_by_type_.end() ? nullptr : &pous[found->second];
+}
+
+int32_t Sema::find_member(ir::TypeId structure, std::string_view name) {
+  auto table = structures_.find(structure);
+  if (table == structures_.end()) return -1;
+  auto found = table->second.find(name);
+  return found == table->second.end() ? -1 : static_cast<int32_t>(found->second);
+}
+
+std::string Sema::name_suggestion(std::string_view name, bool callable) const {
+  NearestName nearest(name);
+  if (current_pou_ != kNoPou) nearest.offer_all(pous[current_pou_].names);
+  nearest.offer_all(globals_);
+  if (callable) {
+    nearest.offer_all(pou_names_);
+    nearest.offer_all(standard_);
+  } else {
+    nearest.offer_all(literals_);
+  }
+  return nearest.fix();
+}
+
+}  // namespace frontend
