@@ -11,6 +11,12 @@
 namespace ir {
 namespace {
 
+constexpr const char* kTrapNames[] = {
+#define TRAP(id, text, title, help) text,
+#include "ir/program/traps.def"
+#undef TRAP
+};
+
 class Disassembler {
  public:
   Disassembler(const Image& image, const LinkedPou& pou) : image_(image), pou_(pou) {}
@@ -96,7 +102,7 @@ class Disassembler {
       case FieldKind::kNative:
         return value < stdlib::native_count() ? std::string(stdlib::native_row(value).name) : "?";
       case FieldKind::kTrap:
-        return value < kTrapCount ? trap_name(static_cast<TrapKind>(value)) : "?";
+        return value < kTrapCount ? kTrapNames[value] : "?";
       case FieldKind::kRange:
         return range(value);
       case FieldKind::kBounds:

@@ -1,0 +1,119 @@
+// The call graph: no circle, stack and depth as declared (V11), one writer task for
+// every output (V14).
+#include <algorithm>
+#include <map>
+
+#include "ir/bytecode/verify_parts.h"
+
+namespace ir::verification {
+namespace {
+
+class CallGraph {
+ public:
+  CallGraph(const Context& context, const std::vector<CodeFacts>& code)
+      : image_(context.image), code_(code), depth_(code.size()), stack_(code.size()) {}
+
+  base::Status run() {
+    if (base::Status s = measure(); !s) return s;
+    if (base::Status s = check_stack(); !s) return s;
+    return check_writers();
+  }
+
+ private:
+  // Callees before callers; what a circle keeps from its turn is left over.
+  base::Status measure() {
+    std::vector<std::vector<uint32_t>> callers(code_.size());
+    std::vector<uint32_t> open(code_.size());
+    std::vector<uint32_t> order;
+    for (uint32_t i = 0; i < code_.size(); ++i) {
+      for (uint32_t callee : code_[i].callees) callers[callee].push_back(i);
+      open[i] = static_cast<uint32_t>(code_[i].callees.size());
+      stack_[i] = code_[i].native_bytes;
+      if (open[i] == 0) order.push_back(i);
+    }
+    for (size_t done = 0; done < order.size(); ++done) {
+      const uint32_t callee = order[done];
+      stack_[callee] += image_.pous[callee].frame_size;
+      for (uint32_t caller : callers[callee]) {
+        depth_[caller] = std::max(depth_[caller], depth_[callee] + 1);
+        stack_[caller] = std::max(stack_[caller], stack_[callee]);
+        if (--open[caller] == 0) order.push_back(caller);
+      }
+    }
+    for (uint32_t i = 0; i < code_.size(); ++i) {
+      if (open[i] == 0) continue;
+      return refuse(Refusal::kStackUnbounded,
+                    "POU `" + image_.pous[i].name + "` is in a circle of calls, or calls into one");
+    }
+    return base::Ok{};
+  }
+
+  // Tasks of different priority may lie on top of each other.
+  base::Status check_stack() const {
+    std::map<uint32_t, uint64_t> by_priority;
+    uint32_t depth = 0;
+    for (const ImageTask& task : image_.tasks) {
+      for (uint32_t id : task.programs) {
+        const uint32_t pou = image_.instances[id].pou;
+        uint64_t& most = by_priority[task.priority];
+        most = std::max(most, stack_[pou]);
+        depth = std::max(depth, depth_[pou]);
+      }
+    }
+    uint64_t sum = 0;
+    for (const auto& [priority, bytes] : by_priority) sum += bytes;
+    if (sum > image_.stack_bytes || depth > image_.call_depth) {
+      return refuse(Refusal::kStackUnbounded, "the calls need " + std::to_string(sum) +
+                                                  " bytes of stack and depth " +
+                                                  std::to_string(depth) + ", declared are " +
+                                                  std::to_string(image_.stack_bytes) + " and " +
+                                                  std::to_string(image_.call_depth));
+    }
+    return base::Ok{};
+  }
+
+  base::Status check_writers() const {
+    std::map<uint32_t, uint32_t> writer;  // data offset of an output -> task
+    for (uint32_t t = 0; t < image_.tasks.size(); ++t) {
+      for (uint32_t pou : reachable(image_.tasks[t])) {
+        for (uint32_t output : code_[pou].written_outputs) {
+          const auto [entry, added] = writer.try_emplace(output, t);
+          if (entry->second == t) continue;
+          return refuse(Refusal::kBadIoAccess,
+                        "the output at data offset " + std::to_string(output) +
+                            " is written by task `" + image_.tasks[entry->second].name +
+                            "` and by task `" + image_.tasks[t].name + "`");
+        }
+      }
+    }
+    return base::Ok{};
+  }
+
+  std::vector<uint32_t> reachable(const ImageTask& task) const {
+    std::vector<bool> seen(code_.size());
+    std::vector<uint32_t> found;
+    const auto add = [&](uint32_t pou) {
+      if (seen[pou]) return;
+      seen[pou] = true;
+      found.push_back(pou);
+    };
+    for (uint32_t id : task.programs) add(image_.instances[id].pou);
+    for (size_t i = 0; i < found.size(); ++i) {
+      for (uint32_t callee : code_[found[i]].callees) add(callee);
+    }
+    return found;
+  }
+
+  const Image& image_;
+  const std::vector<CodeFacts>& code_;
+  std::vector<uint32_t> depth_;
+  std::vector<uint64_t> stack_;
+};
+
+}  // namespace
+
+base::Status verify_calls(const Context& context, const std::vector<CodeFacts>& code) {
+  return CallGraph(context, code).run();
+}
+
+}  // namespace ir::verification

@@ -1,0 +1,145 @@
+// The check of one POU's code: a single pass that keeps, for every scalar slot of
+// the frame, whether it holds a value, and for the next frame, what was put there.
+//
+// At a merge unit the state is what the merge says and nothing else; every jump
+// there must bring it. So nothing is iterated: typing is by slot (its class and
+// region never change), and of an addr only two facts flow: whether what it points to
+// may be written, and whether it points into the next frame (then it is good for the
+// call in preparation only, and never survives a merge).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ir/bytecode/code.h"
+#include "ir/bytecode/verify_parts.h"
+
+namespace ir::verification {
+
+// What an addr or a string reference in a slot points to, as far as it flows.
+struct Pointer {
+  Region region;           // of addrs
+  bool read_only = false;  // %I, CONSTANT or constant pool
+  uint32_t outgoing = 0;   // not 0: into the next frame, entry outgoing - 1 of CodeVerifier::ways
+};
+
+class CodeVerifier {
+ public:
+  CodeVerifier(const Context& context, uint32_t pou);
+  base::Result<CodeFacts> run();
+
+ private:
+  // Something that was put into the next frame, or pointed to there.
+  struct Outgoing {
+    uint32_t offset = 0;     // in the next frame
+    bool aggregate = false;  // `region`, or (capacity not kNone) a string
+    Class cls = Class::kB;
+    Region region;
+    uint32_t capacity = kNone;
+    bool read_only = false;
+    uint32_t size = 0;
+  };
+  enum class ResultsOf : uint8_t { kNobody, kFunction, kNative };
+  struct Results {
+    ResultsOf of = ResultsOf::kNobody;
+    uint32_t number = 0;
+    friend bool operator==(const Results&, const Results&) = default;
+  };
+  struct Arrival {  // at merge number i
+    bool reached = false;
+    bool loop_head = false;
+    bool calls_inside = false;    // a loop head whose loop calls something
+    std::vector<bool> read_only;  // parallel to Merge::slots
+    Results results;
+  };
+  struct Place {  // of a BC32 or P32 field
+    Base base = Base::kFrame;
+    uint32_t offset = 0;
+  };
+
+  // verify_flow.cc
+  bool scan_instructions();
+  bool find_loops(const std::vector<uint32_t>& calls);
+  bool step(uint32_t unit);
+  bool enter_merge(uint32_t unit);
+  bool arrive(uint32_t merge, bool backwards);
+  bool jump(uint32_t next, bool backwards);
+  bool check_return();
+  uint32_t merge_at(uint32_t unit) const;
+  bool fail(Refusal refusal, const std::string& why);
+
+  // verify_operands.cc
+  bool check_unused(const OpcodeRow& row);
+  bool near_operand(const Field& field, Base base, uint32_t offset, bool write);
+  bool scalar_access(Place place, Class cls, bool write);
+  bool frame_scalar(uint32_t offset, Class cls, bool write);
+  bool leaf_access(Region region, uint32_t offset, Class cls, bool write, const char* base);
+  bool pool_scalar(uint32_t offset, Class cls);
+  bool check_access(const Leaf& leaf, Class cls, bool write);
+  uint32_t slot_at(uint32_t offset) const;                 // that covers it; kNone
+  uint32_t scalar_slot(uint32_t offset, Class cls) const;  // that starts there; kNone
+  bool is_written(uint32_t slot) const { return written_[slot] == epoch_; }
+  void mark_written(uint32_t slot, bool read_only, uint32_t outgoing);
+  std::optional<Pointer> read_pointer(uint32_t offset, Class cls);
+  bool write_pointer(uint32_t offset, Class cls, const Pointer& pointer);
+  std::optional<Pointer> point_to(Place place, Region wanted);
+  std::optional<Pointer> point_to_string(Place place, Class cls, uint32_t capacity);
+  bool pool_region(Region region, uint32_t offset, uint32_t depth);
+  bool pool_string(uint32_t offset, Class cls, uint32_t capacity);
+  std::optional<Region> root_region(Place& place);
+
+  // verify_memory.cc: the instructions that compute or follow addresses
+  bool special(const OpcodeRow& row);
+  bool check_lea();
+  bool check_index(bool from_place);
+  bool check_load(const Field& dest);
+  bool check_store(const Field& source);
+  bool check_copy();
+  bool check_string(bool from_place, Class cls);
+  bool check_string_copy(Class cls);
+  bool check_reference_load(bool from_place);
+  bool check_reference_store();
+  TypeId instance_slot(bool from_place);
+  bool use(const Pointer& pointer, bool write);
+
+  // verify_next_frame.cc: arguments and results
+  bool next_scalar(uint32_t offset, Class cls, bool write);
+  bool put_pointer(uint32_t offset, Class cls, const Pointer& pointer);
+  bool put(Outgoing out);
+  bool overlaps_pending(uint64_t begin, uint64_t end) const;
+  const FrameSlot* callee_slot(const LinkedPou& callee, uint32_t offset) const;
+  bool is_result(const Outgoing& wanted) const;
+  bool fits(const Outgoing& out, const FrameSlot& slot) const;
+  bool check_call();
+  bool check_native();
+  bool check_call_instance(bool from_place);
+  bool end_of_arguments(const char* where);
+
+  const Context& context_;
+  const Image& image_;
+  const LinkedPou& pou_;
+  std::span<const Unit> code_;
+  CodeFacts facts_;
+  std::optional<base::Error> error_;
+
+  uint32_t unit_ = 0;  // of the current instruction
+  Unit u_;
+  Unit extension_;
+  bool falls_through_ = true;
+  size_t next_merge_ = 0;
+
+  uint32_t epoch_ = 1;
+  std::vector<uint32_t> written_;   // by slot: == epoch_
+  std::vector<bool> read_only_;     // by slot
+  std::vector<uint32_t> outgoing_;  // by slot
+  std::vector<Outgoing> ways_;      // targets of pointers into the next frame
+  std::vector<Outgoing> pending_;   // arguments of the call in preparation
+  uint64_t pending_begin_ = ~uint64_t{0};
+  uint64_t pending_end_ = 0;
+  Results results_;
+  std::vector<Arrival> arrivals_;  // by merge
+};
+
+}  // namespace ir::verification

@@ -1,0 +1,213 @@
+#include <algorithm>
+
+#include "ir/bytecode/verify_code.h"
+
+namespace ir::verification {
+
+CodeVerifier::CodeVerifier(const Context& context, uint32_t pou)
+    : context_(context),
+      image_(context.image),
+      pou_(image_.pous[pou]),
+      code_(std::span(image_.code).subspan(pou_.first_unit, pou_.unit_count)),
+      written_(pou_.slots.size()),
+      read_only_(pou_.slots.size()),
+      outgoing_(pou_.slots.size()),
+      arrivals_(pou_.merges.size()) {}
+
+bool CodeVerifier::fail(Refusal refusal, const std::string& why) {
+  std::string where = "POU `" + pou_.name + "`, unit " + std::to_string(unit_);
+  if (u_.opcode_number() < kOpcodeCount) where += " " + std::string(opcode_row(u_.opcode()).name);
+  error_ = refuse(refusal, where + ": " + why);
+  return false;
+}
+
+base::Result<CodeFacts> CodeVerifier::run() {
+  if (!scan_instructions()) return *error_;
+  for (uint32_t i = 0; i < pou_.slots.size(); ++i) {
+    const FrameSlot& slot = pou_.slots[i];
+    const bool given = slot.kind == SlotKind::kParam &&
+                       (slot.local == LocalKind::kInput || slot.local == LocalKind::kInOut);
+    if (given && !slot.aggregate) mark_written(i, false, 0);
+  }
+  for (uint32_t unit = 0; unit < code_.size();) {
+    unit_ = unit;
+    if (!step(unit)) return *error_;
+    unit += opcode_row(u_.opcode()).extended ? 2 : 1;
+  }
+  if (falls_through_) {
+    fail(Refusal::kNoReturn, "the code ends without a return");
+    return *error_;
+  }
+  if (next_merge_ != pou_.merges.size()) {
+    fail(Refusal::kBadJump,
+         "merge at unit " + std::to_string(pou_.merges[next_merge_].unit) + " is no instruction");
+    return *error_;
+  }
+  return std::move(facts_);
+}
+
+// Opcodes, extensions and the merge table; where the loops are.
+bool CodeVerifier::scan_instructions() {
+  std::vector<uint32_t> calls;
+  for (unit_ = 0; unit_ < code_.size(); ++unit_) {
+    u_ = code_[unit_];
+    if (u_.opcode_number() >= kOpcodeCount) {
+      return fail(Refusal::kBadOpcode, "opcode " + std::to_string(u_.opcode_number()));
+    }
+    const OpcodeRow& row = opcode_row(u_.opcode());
+    if (row.calls || u_.opcode() == Opcode::NATIVE) calls.push_back(unit_);
+    if (row.extended && ++unit_ == code_.size()) {
+      return fail(Refusal::kBadOpcode, "its second unit is missing");
+    }
+  }
+  for (size_t i = 0; i < pou_.merges.size(); ++i) {
+    const Merge& merge = pou_.merges[i];
+    unit_ = merge.unit;
+    if (i != 0 && pou_.merges[i - 1].unit >= merge.unit) {
+      return fail(Refusal::kBadTyping, "merges are out of order");
+    }
+    for (size_t s = 0; s < merge.slots.size(); ++s) {
+      const bool good = merge.slots[s] < pou_.slots.size() &&
+                        !pou_.slots[merge.slots[s]].aggregate &&
+                        (s == 0 || merge.slots[s - 1] < merge.slots[s]);
+      if (!good) return fail(Refusal::kBadTyping, "merge names a slot that it cannot");
+    }
+    arrivals_[i].read_only.resize(merge.slots.size());
+  }
+  return find_loops(calls);
+}
+
+bool CodeVerifier::find_loops(const std::vector<uint32_t>& calls) {
+  for (unit_ = 0; unit_ < code_.size(); ++unit_) {
+    u_ = code_[unit_];
+    if (u_.opcode() == Opcode::LOOP) {
+      const uint32_t head = merge_at(unit_ + 1 + u_.bc());
+      if (head == kNone || pou_.merges[head].unit > unit_) {
+        return fail(Refusal::kBadJump, "jumps to unit " + std::to_string(unit_ + 1 + u_.bc()));
+      }
+      const auto inside = std::lower_bound(calls.begin(), calls.end(), pou_.merges[head].unit);
+      arrivals_[head].loop_head = true;
+      arrivals_[head].calls_inside |= inside != calls.end() && *inside < unit_;
+    }
+    if (opcode_row(u_.opcode()).extended) ++unit_;
+  }
+  return true;
+}
+
+uint32_t CodeVerifier::merge_at(uint32_t unit) const {
+  const auto found = std::lower_bound(pou_.merges.begin(), pou_.merges.end(), unit,
+                                      [](const Merge& m, uint32_t at) { return m.unit < at; });
+  if (found == pou_.merges.end() || found->unit != unit) return kNone;
+  return static_cast<uint32_t>(found - pou_.merges.begin());
+}
+
+bool CodeVerifier::step(uint32_t unit) {
+  u_ = code_[unit];
+  if (!enter_merge(unit)) return false;
+  if (!falls_through_) return fail(Refusal::kUnreachable, "nothing leads here");
+  const OpcodeRow& row = opcode_row(u_.opcode());
+  const uint32_t next = unit + (row.extended ? 2 : 1);
+  extension_ = row.extended ? code_[unit + 1] : Unit{};
+  if (!check_unused(row)) return false;
+  falls_through_ = !row.ends;
+  switch (u_.opcode()) {
+    case Opcode::JMP:
+      return jump(next, false);
+    case Opcode::LOOP:
+      return jump(next, true);
+    case Opcode::JT:
+    case Opcode::JF:
+      return near_operand(row.a, u_.base_a(), u_.a, false) && jump(next, false);
+    case Opcode::RET:
+      return check_return();
+    default:
+      return special(row);
+  }
+}
+
+// At a merge the state is exactly the merge's, whichever way was taken.
+bool CodeVerifier::enter_merge(uint32_t unit) {
+  if (next_merge_ == pou_.merges.size()) return true;
+  const Merge& merge = pou_.merges[next_merge_];
+  if (merge.unit > unit) return true;
+  if (merge.unit < unit) {
+    return fail(Refusal::kBadJump,
+                "merge at unit " + std::to_string(merge.unit) + " is no instruction");
+  }
+  const uint32_t number = static_cast<uint32_t>(next_merge_++);
+  if (falls_through_ && !arrive(number, false)) return false;
+  const Arrival& arrival = arrivals_[number];
+  if (!arrival.reached) return fail(Refusal::kUnreachable, "nothing leads here");
+  ++epoch_;
+  for (size_t i = 0; i < merge.slots.size(); ++i) {
+    mark_written(merge.slots[i], arrival.read_only[i], 0);
+  }
+  // What a loop calls may not leave results that its start expects.
+  results_ = arrival.loop_head && arrival.calls_inside ? Results{} : arrival.results;
+  arrivals_[number].results = results_;
+  falls_through_ = true;
+  return true;
+}
+
+// The state here must bring what the merge promises.
+bool CodeVerifier::arrive(uint32_t number, bool backwards) {
+  const Merge& merge = pou_.merges[number];
+  Arrival& arrival = arrivals_[number];
+  if (!end_of_arguments("a jump target")) return false;
+  for (size_t i = 0; i < merge.slots.size(); ++i) {
+    const uint16_t slot = merge.slots[i];
+    const std::string name = "slot at " + std::to_string(pou_.slots[slot].offset);
+    if (!is_written(slot) || outgoing_[slot] != 0) {
+      return fail(Refusal::kBadTyping,
+                  name + " holds no value for the merge at unit " + std::to_string(merge.unit));
+    }
+    if (backwards && read_only_[slot] && !arrival.read_only[i]) {
+      return fail(Refusal::kBadTyping, name + " is read-only in a later turn of the loop");
+    }
+    if (!backwards && read_only_[slot]) arrival.read_only[i] = true;
+  }
+  if (backwards) {
+    if (arrival.results.of != ResultsOf::kNobody && arrival.results != results_) {
+      return fail(Refusal::kBadCall, "results differ in a later turn of the loop");
+    }
+    return true;
+  }
+  if (!arrival.reached) arrival.results = results_;
+  if (arrival.results != results_) arrival.results = Results{};
+  arrival.reached = true;
+  return true;
+}
+
+bool CodeVerifier::jump(uint32_t next, bool backwards) {
+  const int64_t target = int64_t{next} + static_cast<int32_t>(u_.bc());
+  if (!backwards && target < next) {
+    return fail(Refusal::kNoFuel,
+                "jumps back to unit " + std::to_string(target) + " without taking fuel");
+  }
+  const uint32_t merge = target >= 0 && target < int64_t{pou_.unit_count}
+                             ? merge_at(static_cast<uint32_t>(target))
+                             : kNone;
+  if (merge == kNone || (backwards && pou_.merges[merge].unit > unit_)) {
+    return fail(Refusal::kBadJump, "jumps to unit " + std::to_string(target));
+  }
+  return arrive(merge, backwards);
+}
+
+bool CodeVerifier::check_return() {
+  if (!end_of_arguments("the return")) return false;
+  for (uint32_t i = 0; i < pou_.slots.size(); ++i) {
+    const FrameSlot& slot = pou_.slots[i];
+    const bool result = slot.kind == SlotKind::kParam && !slot.aggregate &&
+                        (slot.local == LocalKind::kOutput || slot.local == LocalKind::kReturn);
+    if (result && !is_written(i)) {
+      return fail(Refusal::kBadCall, "result `" + slot.name + "` has not been written");
+    }
+  }
+  return true;
+}
+
+base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou) {
+  return CodeVerifier(context, pou).run();
+}
+
+}  // namespace ir::verification

@@ -1,0 +1,300 @@
+#include <algorithm>
+
+#include "base/limits.h"
+#include "ir/bytecode/verify_code.h"
+
+namespace ir::verification {
+namespace {
+
+std::string at_text(uint32_t offset) { return " at offset " + std::to_string(offset); }
+
+}  // namespace
+
+// Fields that an instruction does not use are zero, and no operand has a base that
+// the interpreter lacks (V3).
+bool CodeVerifier::check_unused(const OpcodeRow& row) {
+  const bool wide = row.b.kind == FieldKind::kBc32 || row.b.kind == FieldKind::kRel32;
+  const bool bases =
+      row.a.allows(u_.base_a()) && row.b.allows(u_.base_b()) && row.c.allows(u_.base_c());
+  if (!bases) return fail(Refusal::kBadOpcode, "an operand has a base that it cannot have");
+  const auto unused = [](const Field& f) {
+    return f.kind == FieldKind::kNone || f.kind == FieldKind::kBase;
+  };
+  const bool zero = (!unused(row.a) || u_.a == 0) && (!unused(row.b) || u_.b == 0) &&
+                    (!unused(row.c) || wide || u_.c == 0) &&
+                    (!row.extended || row.x.kind != FieldKind::kNone || extension_.x() == 0) &&
+                    (!row.extended || row.y.kind != FieldKind::kNone || extension_.y() == 0);
+  return zero || fail(Refusal::kBadOpcode, "a field that it does not use is not zero");
+}
+
+bool CodeVerifier::near_operand(const Field& field, Base base, uint32_t offset, bool write) {
+  return scalar_access({base, offset}, field.cls, write);
+}
+
+bool CodeVerifier::scalar_access(Place place, Class cls, bool write) {
+  if (place.base == Base::kFrame) return frame_scalar(place.offset, cls, write);
+  if (place.base == Base::kConst) {
+    return write ? fail(Refusal::kBadTyping, "a constant is written")
+                 : pool_scalar(place.offset, cls);
+  }
+  const uint32_t shown = place.offset;
+  const bool self = place.base == Base::kSelf;
+  const std::optional<Region> root = root_region(place);
+  if (!root) return false;
+  if (!leaf_access(*root, place.offset, cls, write, self ? "self" : "global")) return false;
+  if (write && !self) {
+    const auto leaf = context_.regions.leaf_at(*root, place.offset);
+    if (leaf && leaf->output) facts_.written_outputs.push_back(shown);
+  }
+  return true;
+}
+
+// The region that a self or global place is inside of; makes its offset relative to it.
+std::optional<Region> CodeVerifier::root_region(Place& place) {
+  if (place.base == Base::kSelf) {
+    if (pou_.self.valid()) return Region{pou_.self, 0};
+    fail(Refusal::kBadReference, "a function has no variables of its own");
+    return std::nullopt;
+  }
+  const uint32_t begin = image_.instances[0].data;
+  if (place.offset < begin) {
+    fail(Refusal::kBadReference, "no global" + at_text(place.offset));
+    return std::nullopt;
+  }
+  place.offset -= begin;
+  return Region{image_.globals, 0};
+}
+
+bool CodeVerifier::leaf_access(Region region, uint32_t offset, Class cls, bool write,
+                               const char* base) {
+  const std::optional<Leaf> leaf = context_.regions.leaf_at(region, offset);
+  if (!leaf || leaf->kind != LeafKind::kScalar || leaf->begin != offset) {
+    return fail(Refusal::kBadReference, std::string("no ") + base + " scalar" + at_text(offset));
+  }
+  return check_access(*leaf, cls, write);
+}
+
+bool CodeVerifier::check_access(const Leaf& leaf, Class cls, bool write) {
+  const Class have = class_of(image_.types.scalar(leaf.type));
+  if (have != cls) {
+    return fail(Refusal::kBadTyping, "the variable" + at_text(leaf.begin) + " has class " +
+                                         std::string(class_name(have)) + ", needed is " +
+                                         std::string(class_name(cls)));
+  }
+  if (write && leaf.input) return fail(Refusal::kBadIoAccess, "an input is written");
+  if (write && leaf.constant) return fail(Refusal::kBadReference, "a CONSTANT is written");
+  return true;
+}
+
+bool CodeVerifier::pool_scalar(uint32_t offset, Class cls) {
+  if (uint64_t{offset} + class_size(cls) > image_.pool.size()) {
+    return fail(Refusal::kBadReference, "no constant" + at_text(offset));
+  }
+  if (cls == Class::kB && image_.pool[offset] > 1) {
+    return fail(Refusal::kBadTyping, "a BOOL constant is neither 0 nor 1");
+  }
+  return true;
+}
+
+uint32_t CodeVerifier::slot_at(uint32_t offset) const {
+  const auto behind =
+      std::upper_bound(pou_.slots.begin(), pou_.slots.end(), offset,
+                       [](uint32_t at, const FrameSlot& slot) { return at < slot.offset; });
+  return behind == pou_.slots.begin() ? kNone
+                                      : static_cast<uint32_t>(behind - pou_.slots.begin() - 1);
+}
+
+uint32_t CodeVerifier::scalar_slot(uint32_t offset, Class cls) const {
+  const uint32_t slot = slot_at(offset);
+  if (slot == kNone) return kNone;
+  const FrameSlot& s = pou_.slots[slot];
+  return s.offset == offset && !s.aggregate && s.cls == cls ? slot : kNone;
+}
+
+void CodeVerifier::mark_written(uint32_t slot, bool read_only, uint32_t outgoing) {
+  written_[slot] = epoch_;
+  read_only_[slot] = read_only;
+  outgoing_[slot] = outgoing;
+}
+
+bool CodeVerifier::frame_scalar(uint32_t offset, Class cls, bool write) {
+  if (offset >= pou_.frame_size) return next_scalar(offset - pou_.frame_size, cls, write);
+  const uint32_t slot = slot_at(offset);
+  if (slot != kNone && pou_.slots[slot].aggregate) {
+    const FrameSlot& s = pou_.slots[slot];
+    return leaf_access(s.region, offset - s.offset, cls, write, "frame");
+  }
+  if (scalar_slot(offset, cls) == kNone) {
+    return fail(Refusal::kBadTyping,
+                "the frame has no slot of class " + std::string(class_name(cls)) + at_text(offset));
+  }
+  if (write) {
+    mark_written(slot, false, 0);
+  } else if (!is_written(slot)) {
+    return fail(Refusal::kReadBeforeWrite, "the slot" + at_text(offset) + " holds no value yet");
+  }
+  return true;
+}
+
+std::optional<Pointer> CodeVerifier::read_pointer(uint32_t offset, Class cls) {
+  const uint32_t slot = offset < pou_.frame_size ? scalar_slot(offset, cls) : kNone;
+  if (slot == kNone) {
+    fail(Refusal::kBadReferenceSlot,
+         "the frame has no slot of class " + std::string(class_name(cls)) + at_text(offset));
+    return std::nullopt;
+  }
+  if (!is_written(slot)) {
+    fail(Refusal::kReadBeforeWrite, "the slot" + at_text(offset) + " holds no value yet");
+    return std::nullopt;
+  }
+  return Pointer{pou_.slots[slot].region, read_only_[slot], outgoing_[slot]};
+}
+
+bool CodeVerifier::write_pointer(uint32_t offset, Class cls, const Pointer& pointer) {
+  if (offset >= pou_.frame_size) return put_pointer(offset - pou_.frame_size, cls, pointer);
+  const uint32_t slot = scalar_slot(offset, cls);
+  if (slot == kNone) {
+    return fail(Refusal::kBadReferenceSlot,
+                "the frame has no slot of class " + std::string(class_name(cls)) + at_text(offset));
+  }
+  if (cls == Class::kA && !context_.regions.same(pointer.region, pou_.slots[slot].region)) {
+    return fail(Refusal::kBadTyping, "the slot" + at_text(offset) + " is for addresses of " +
+                                         image_.types.text(pou_.slots[slot].region.type) +
+                                         ", not of " + image_.types.text(pointer.region.type));
+  }
+  mark_written(slot, pointer.read_only, pointer.outgoing);
+  return true;
+}
+
+// The address of `place`, where a region of type `wanted` must be.
+std::optional<Pointer> CodeVerifier::point_to(Place place, Region wanted) {
+  const auto bad = [&]() -> std::optional<Pointer> {
+    fail(Refusal::kBadReference,
+         "there is no " + image_.types.text(wanted.type) + at_text(place.offset));
+    return std::nullopt;
+  };
+  if (place.base == Base::kConst) {
+    if (!pool_region(wanted, place.offset, 0)) return std::nullopt;
+    return Pointer{wanted, true, 0};
+  }
+  if (place.base != Base::kFrame) {
+    const std::optional<Region> root = root_region(place);
+    if (!root) return std::nullopt;
+    const auto flags = context_.regions.find(*root, place.offset, wanted);
+    if (!flags) return bad();
+    return Pointer{wanted, flags->constant || flags->input, 0};
+  }
+  if (place.offset >= pou_.frame_size) {
+    if (context_.facts[wanted.type.index].has_slots || image_.types.is_instance(wanted.type)) {
+      return bad();
+    }
+    ways_.push_back({place.offset - pou_.frame_size, true, Class::kB, wanted, kNone, false,
+                     context_.regions.size(wanted)});
+    return Pointer{wanted, false, static_cast<uint32_t>(ways_.size())};
+  }
+  const uint32_t slot = slot_at(place.offset);
+  if (slot == kNone) return bad();
+  const FrameSlot& s = pou_.slots[slot];
+  if (s.aggregate) {
+    if (!context_.regions.find(s.region, place.offset - s.offset, wanted)) return bad();
+    return Pointer{wanted, false, 0};
+  }
+  const bool same = place.offset == s.offset && image_.types.is_scalar(wanted.type) &&
+                    class_of(image_.types.scalar(wanted.type)) == s.cls;
+  if (!same) return bad();
+  if (!is_written(slot)) {
+    fail(Refusal::kReadBeforeWrite, "the slot" + at_text(place.offset) + " holds no value yet");
+    return std::nullopt;
+  }
+  return Pointer{wanted, false, 0};
+}
+
+std::optional<Pointer> CodeVerifier::point_to_string(Place place, Class cls, uint32_t capacity) {
+  const Kind kind = cls == Class::kS ? Kind::kString : Kind::kWstring;
+  const auto check_leaf = [&](Region region, uint32_t offset) -> std::optional<Pointer> {
+    const std::optional<Leaf> leaf = context_.regions.leaf_at(region, offset);
+    const bool good = leaf && leaf->kind == LeafKind::kStringByte && leaf->begin == offset &&
+                      image_.types[leaf->type].kind == kind &&
+                      image_.types[leaf->type].capacity >= capacity;
+    if (good) return Pointer{{}, leaf->constant || leaf->input, 0};
+    fail(Refusal::kBadReference,
+         "no string of capacity " + std::to_string(capacity) + at_text(place.offset));
+    return std::nullopt;
+  };
+  if (place.base == Base::kConst) {
+    if (!pool_string(place.offset, cls, capacity)) return std::nullopt;
+    return Pointer{{}, true, 0};
+  }
+  if (place.base != Base::kFrame) {
+    const std::optional<Region> root = root_region(place);
+    if (!root) return std::nullopt;
+    return check_leaf(*root, place.offset);
+  }
+  if (place.offset >= pou_.frame_size) {
+    if (capacity > base::kMaxStringCapacity) {
+      fail(Refusal::kBadReference, "a string of capacity " + std::to_string(capacity));
+      return std::nullopt;
+    }
+    const uint32_t unit = cls == Class::kS ? 1 : 2;
+    ways_.push_back(
+        {place.offset - pou_.frame_size, true, cls, {}, capacity, false, (capacity + 1) * unit});
+    return Pointer{{}, false, static_cast<uint32_t>(ways_.size())};
+  }
+  const uint32_t slot = slot_at(place.offset);
+  if (slot != kNone && pou_.slots[slot].aggregate) {
+    return check_leaf(pou_.slots[slot].region, place.offset - pou_.slots[slot].offset);
+  }
+  fail(Refusal::kBadReference, "no string" + at_text(place.offset));
+  return std::nullopt;
+}
+
+// A value of the region's type in the constant pool: inside it, BOOLs 0 or 1, strings
+// ended, nothing that is an ID or an address.
+bool CodeVerifier::pool_region(Region region, uint32_t offset, uint32_t depth) {
+  if (uint64_t{offset} + context_.regions.size(region) > image_.pool.size()) {
+    return fail(Refusal::kBadReference, "no constant of " +
+                                            std::to_string(context_.regions.size(region)) +
+                                            " bytes" + at_text(offset));
+  }
+  const Type& type = image_.types[region.type];
+  if (type.kind == Kind::kGlobals || image_.types.is_instance(region.type) ||
+      context_.facts[region.type.index].has_slots || depth > base::kMaxNesting) {
+    return fail(Refusal::kBadReferenceSlot, "a constant holds an instance or a reference");
+  }
+  if (type.kind == Kind::kString) return pool_string(offset, Class::kS, type.capacity);
+  if (type.kind == Kind::kWstring) return pool_string(offset, Class::kW, type.capacity);
+  if (type.kind == Kind::kStruct) {
+    const std::vector<uint32_t>& offsets = image_.layouts[region.type].member_offsets;
+    for (size_t i = 0; i < type.members.size(); ++i) {
+      if (!pool_region({type.members[i].type, 0}, offset + offsets[i], depth + 1)) return false;
+    }
+    return true;
+  }
+  if (type.kind == Kind::kArray) {
+    const bool plain =
+        image_.types.is_scalar(type.base) && image_.types.scalar(type.base) != Scalar::kBool;
+    const uint32_t stride = image_.layouts[type.base].size;
+    const uint32_t size = context_.regions.size(region);
+    for (uint32_t at = 0; !plain && stride != 0 && at < size; at += stride) {
+      if (!pool_region({type.base, 0}, offset + at, depth + 1)) return false;
+    }
+    return true;
+  }
+  return pool_scalar(offset, class_of(image_.types.scalar(region.type)));
+}
+
+bool CodeVerifier::pool_string(uint32_t offset, Class cls, uint32_t capacity) {
+  const uint32_t unit = cls == Class::kS ? 1 : 2;
+  if (capacity > base::kMaxStringCapacity ||
+      uint64_t{offset} + (uint64_t{capacity} + 1) * unit > image_.pool.size()) {
+    return fail(Refusal::kBadReference,
+                "no constant string of capacity " + std::to_string(capacity) + at_text(offset));
+  }
+  for (uint32_t i = 0; i <= capacity; ++i) {
+    const uint8_t* at = &image_.pool[offset + i * unit];
+    if (at[0] == 0 && at[unit - 1] == 0) return true;
+  }
+  return fail(Refusal::kBadTyping, "the constant string" + at_text(offset) + " has no end");
+}
+
+}  // namespace ir::verification

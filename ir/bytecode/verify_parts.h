@@ -1,0 +1,61 @@
+// The parts of verify(): each checks one thing and reports the first violation.
+// Later parts rely on what earlier ones have proven, in the order of this header.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/result.h"
+#include "ir/bytecode/image.h"
+#include "ir/bytecode/regions.h"
+
+namespace ir::verification {
+
+using base::Refusal;
+
+inline constexpr uint32_t kNone = 0xffffffffu;
+
+inline base::Error refuse(base::Refusal refusal, std::string text) {
+  return {refusal, std::move(text)};
+}
+
+// --- verify_types.cc: types and layouts agree, nothing contains itself ---------
+struct TypeFacts {
+  bool has_slots = false;  // a value contains instance or in-out slots
+  uint32_t depth = 0;      // levels of embedded values
+};
+base::Result<std::vector<TypeFacts>> verify_types(const Image& image);
+base::Status verify_constants(const Image& image);
+
+// What the parts behind it share.
+struct Context {
+  Context(const Image& i, std::vector<TypeFacts> f)
+      : image(i), facts(std::move(f)), regions(i.types, i.layouts) {}
+  const Image& image;
+  std::vector<TypeFacts> facts;
+  RegionMap regions;
+  std::vector<uint32_t> pou_of_type;  // by type number; kNone
+  bool valid(Region region) const;    // names an existing type and dimension
+};
+
+// --- verify_tables.cc: POU table, slots, bounds, ranges, limits -----------------
+base::Status verify_tables(Context& context);
+
+// --- verify_instances.cc: areas and the instance tree (V13) ---------------------
+base::Status verify_instances(const Context& context);
+// --- verify_resources.cc: tasks, I/O, retain, initial data (V14 to V16) ---------
+base::Status verify_resources(const Context& context);
+
+// --- verify_code.cc: one POU in one pass (V3 to V10, V12, V19, V20) -------------
+struct CodeFacts {
+  std::vector<uint32_t> callees;          // POU numbers, each once per call
+  std::vector<uint32_t> written_outputs;  // data offsets of %Q globals
+  uint32_t native_bytes = 0;              // argument area of native calls
+};
+base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou);
+
+// --- verify_calls.cc: call graph, stack, output writers (V11, V14) --------------
+base::Status verify_calls(const Context& context, const std::vector<CodeFacts>& code);
+
+}  // namespace ir::verification

@@ -1,0 +1,124 @@
+#include <algorithm>
+
+#include "base/limits.h"
+#include "ir/bytecode/verify_parts.h"
+
+namespace ir::verification {
+namespace {
+
+class ResourcesVerifier {
+ public:
+  explicit ResourcesVerifier(const Context& context) : context_(context), image_(context.image) {}
+
+  base::Status run() {
+    if (base::Status s = check_initial_data(); !s) return s;
+    if (base::Status s = check_tasks(); !s) return s;
+    collect_areas();
+    for (uint32_t i = 0; i < image_.io.size(); ++i) {
+      if (base::Status s = check_binding(i); !s) return s;
+    }
+    for (uint32_t i = 0; i < image_.retain.size(); ++i) {
+      const RetainRange& range = image_.retain[i];
+      if (inside_one_area(range.data, range.size)) continue;
+      return refuse(Refusal::kBadRetain, "retain range " + std::to_string(i) + ": " +
+                                             std::to_string(range.size) + " bytes at " +
+                                             std::to_string(range.data) + " lie in no area");
+    }
+    return base::Ok{};
+  }
+
+ private:
+  base::Status check_initial_data() const {
+    uint64_t end = kDataBegin;
+    for (const DataRun& run : image_.data) {
+      const uint64_t behind = uint64_t{run.offset} + run.bytes.size();
+      if (run.offset < end || behind > image_.data_capacity) {
+        return refuse(Refusal::kBadFormat, "initial data at " + std::to_string(run.offset) + ".." +
+                                               std::to_string(behind) +
+                                               " is out of order or outside data memory");
+      }
+      end = behind;
+    }
+    return base::Ok{};
+  }
+
+  base::Status check_tasks() const {
+    std::vector<bool> taken(image_.instances.size());
+    if (image_.tasks.empty()) return refuse(Refusal::kBadTask, "there is no task");
+    for (const ImageTask& task : image_.tasks) {
+      const auto bad = [&](const std::string& why) {
+        return refuse(Refusal::kBadTask, "task `" + task.name + "`: " + why);
+      };
+      if (task.period_ns <= 0) return bad("period of " + std::to_string(task.period_ns) + " ns");
+      if (task.watchdog_ns <= 0) {
+        return bad("watchdog of " + std::to_string(task.watchdog_ns) + " ns");
+      }
+      for (uint32_t id : task.programs) {
+        const bool program = id != 0 && id < image_.instances.size() && image_.instances[id].live &&
+                             image_.types[image_.instances[id].type].kind == Kind::kProgram;
+        if (!program) return bad("instance " + std::to_string(id) + " is no program");
+        if (taken[id]) return bad("program `" + image_.instances[id].name + "` runs twice");
+        taken[id] = true;
+      }
+    }
+    return base::Ok{};
+  }
+
+  void collect_areas() {
+    for (uint32_t id = 0; id < image_.instances.size(); ++id) {
+      if (id == 0 || image_.instances[id].live) areas_.push_back(id);
+    }
+    std::sort(areas_.begin(), areas_.end(), [&](uint32_t a, uint32_t b) {
+      return image_.instances[a].data < image_.instances[b].data;
+    });
+  }
+
+  // The instance whose area holds the bytes; kNone.
+  uint32_t area_of(uint32_t data, uint64_t size) const {
+    auto behind =
+        std::upper_bound(areas_.begin(), areas_.end(), data,
+                         [&](uint32_t at, uint32_t id) { return at < image_.instances[id].data; });
+    for (; behind != areas_.begin(); --behind) {  // areas without bytes may share an offset
+      const Instance& row = image_.instances[*(behind - 1)];
+      const uint64_t end = uint64_t{row.data} + image_.layouts[row.type].area_capacity;
+      if (uint64_t{data} + size <= end) return *(behind - 1);
+      if (row.data != end) break;
+    }
+    return kNone;
+  }
+  bool inside_one_area(uint32_t data, uint64_t size) const { return area_of(data, size) != kNone; }
+
+  base::Status check_binding(uint32_t number) const {
+    const IoBinding& io = image_.io[number];
+    const auto bad = [&](const std::string& why) {
+      return refuse(Refusal::kBadIoAccess, "I/O binding " + std::to_string(number) + ": " + why);
+    };
+    if (!image_.types.contains(io.type)) return bad("no such type");
+    const uint32_t area = area_of(io.data, image_.layouts[io.type].size);
+    if (area == kNone) return bad("its variable at " + std::to_string(io.data) + " does not exist");
+    const Instance& row = image_.instances[area];
+    const auto flags = context_.regions.find({row.type, 0}, io.data - row.data, Region{io.type, 0});
+    if (!flags) return bad("there is no " + image_.types.text(io.type) + " at its variable");
+    if (io.address.area == DirectArea::kNone) return bad("no address");
+    if (io.address.area == DirectArea::kMarker) return base::Ok{};
+    const bool input = io.address.area == DirectArea::kInput;
+    if (input ? !flags->input : !flags->output) return bad("its variable is not located there");
+    const uint64_t bits = io.address.bit_size == 1 ? 1 : uint64_t{image_.layouts[io.type].size} * 8;
+    const uint64_t end = (io.address.bit_offset + bits + 7) / 8;
+    const uint32_t limit = input ? image_.input_bytes : image_.output_bytes;
+    if (end > limit) {
+      return bad("ends at byte " + std::to_string(end) + " of " + std::to_string(limit));
+    }
+    return base::Ok{};
+  }
+
+  const Context& context_;
+  const Image& image_;
+  std::vector<uint32_t> areas_;  // by offset
+};
+
+}  // namespace
+
+base::Status verify_resources(const Context& context) { return ResourcesVerifier(context).run(); }
+
+}  // namespace ir::verification
