@@ -118,14 +118,24 @@ TypeDiff TypeDiffer::compare_values(TypeId old_type, TypeId new_type) {
   if (old_.types.is_instance(old_type) && new_.types.is_instance(new_type)) {
     TypeDiff slot;
     slot.ops.push_back(make_op(DiffKind::kSlot, 0, 0, 4, 0));
-    slot.same = true;
+    slot.same = same_instance_type(old_, old_type, new_, new_type);
+    slot.ops[0].has_source = slot.same;
     return slot;
   }
   return compare_leaves(old_type, new_type);
 }
 
-TypeDiff TypeDiffer::compare_leaves(TypeId old_type, TypeId new_type) {
+// On the way back, what the way there converted must be a conversion too, even if every value
+// fits: only so the value from before it can come back.
+Conversion TypeDiffer::conversion_of(TypeId old_type, TypeId new_type) const {
   Conversion conversion = classify(old_.types, old_type, new_.types, new_type);
+  if (!back_ || conversion != Conversion::kSame) return conversion;
+  Conversion there = classify(new_.types, new_type, old_.types, old_type);
+  return there == Conversion::kSame ? Conversion::kSame : Conversion::kExact;
+}
+
+TypeDiff TypeDiffer::compare_leaves(TypeId old_type, TypeId new_type) {
+  Conversion conversion = conversion_of(old_type, new_type);
   uint32_t size = new_.layouts[new_type].size;
   std::string old_text = old_.types.text(old_type);
   std::string new_text = new_.types.text(new_type);
@@ -220,8 +230,9 @@ void TypeDiffer::add_member(TypeDiff& diff, const Member& old_member, uint32_t f
     return;
   }
   const TypeDiff& inner = value(old_member.type, new_member.type);
-  bool constant_follows = new_member.constant && !(old_member.constant && inner.same);
-  if (constant_follows) {
+  bool becomes_constant = new_member.constant && !(old_member.constant && inner.same);
+  bool was_initialised = back_ && old_member.constant && !(new_member.constant && inner.same);
+  if (becomes_constant || was_initialised) {
     add_new_member(diff, new_member, to, "constant");
     diff.rows.back().old_type = old_.types.text(old_member.type);
     return;

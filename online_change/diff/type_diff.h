@@ -56,8 +56,9 @@ struct TypeDiff {
 
 class TypeDiffer {
  public:
-  TypeDiffer(const ir::Image& old_image, const ir::Image& new_image)
-      : old_(old_image), new_(new_image) {}
+  enum class Direction : uint8_t { kForward, kBack };  // kBack: for the undo of new -> old
+  TypeDiffer(const ir::Image& old_image, const ir::Image& new_image, Direction direction)
+      : old_(old_image), new_(new_image), back_(direction == Direction::kBack) {}
 
   // The members of two instance types, two structures or the two globals. Every op of an area
   // that moves has its row in `rows`, one per variable.
@@ -86,9 +87,11 @@ class TypeDiffer {
   void append_value(TypeDiff& diff, const TypeDiff& value, const ir::Member& old_member,
                     uint32_t from, const ir::Member& new_member, uint32_t to, bool is_area);
   uint64_t count_leaves(const ir::Image& image, ir::TypeId type);
+  Conversion conversion_of(ir::TypeId old_type, ir::TypeId new_type) const;
 
   const ir::Image& old_;
   const ir::Image& new_;
+  bool back_;
   std::map<Key, std::unique_ptr<TypeDiff>> areas_;
   std::map<Key, std::unique_ptr<TypeDiff>> values_;
   std::map<std::pair<const ir::Image*, ir::TypeId>, uint64_t> leaves_;

@@ -158,7 +158,7 @@ base::Result<Package> make_package(base::ByteSpan old_image, base::ByteSpan new_
   if (!to) return to.error();
   base::Result<Plan> forward = plan(from->image(), to->image());
   if (!forward) return forward.error();
-  base::Result<Plan> inverse = plan(to->image(), from->image());
+  base::Result<Plan> inverse = inverse_plan(from->image(), to->image());
   if (!inverse) return inverse.error();
   Package package;
   package.base = from->digest();

@@ -1,6 +1,6 @@
 // plan(old image, new image) -> what is done to data memory, and every variable's
 // fate. A pure function of the two images: their layouts are fixed (the linker laid the
-// new one out against the old one), so the inverse plan for undo is plan(new, old).
+// new one out against the old one), so undo has a plan as well.
 #pragma once
 
 #include <cstdint>
@@ -51,5 +51,8 @@ struct Plan {
 // Both images must have passed verify(), or come from the linker. Refuses (kTooMany) a change of
 // more pieces than a controller takes.
 base::Result<Plan> plan(const ir::Image& old_image, const ir::Image& new_image);
+// The way back from new to old. What it initialises or converts gets the value from before the
+// change, unless version 2 wrote it (apply/transfer.h).
+base::Result<Plan> inverse_plan(const ir::Image& old_image, const ir::Image& new_image);
 
 }  // namespace online_change

@@ -15,14 +15,15 @@ constexpr uint32_t kReplaced = FateRows::kNoRow - 1;  // row_of_old_: counted wi
 
 }  // namespace
 
-Planner::Planner(const ir::Image& old_image, const ir::Image& new_image)
+Planner::Planner(const ir::Image& old_image, const ir::Image& new_image,
+                 TypeDiffer::Direction direction)
     : old_(old_image),
       new_(new_image),
       old_data_(old_image),
       new_data_(new_image),
       old_areas_(old_image),
       match_(match_instances(old_image, new_image)),
-      differ_(old_image, new_image),
+      differ_(old_image, new_image, direction),
       row_of_new_(new_image.instances.size(), FateRows::kNoRow),
       row_of_old_(old_image.instances.size(), FateRows::kNoRow) {}
 
@@ -228,7 +229,11 @@ void Planner::finish_area() {
 }
 
 base::Result<Plan> plan(const ir::Image& old_image, const ir::Image& new_image) {
-  return Planner(old_image, new_image).run();
+  return Planner(old_image, new_image, TypeDiffer::Direction::kForward).run();
+}
+
+base::Result<Plan> inverse_plan(const ir::Image& old_image, const ir::Image& new_image) {
+  return Planner(new_image, old_image, TypeDiffer::Direction::kBack).run();
 }
 
 }  // namespace online_change

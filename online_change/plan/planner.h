@@ -17,7 +17,7 @@ namespace online_change {
 
 class Planner {
  public:
-  Planner(const ir::Image& old_image, const ir::Image& new_image);
+  Planner(const ir::Image& old_image, const ir::Image& new_image, TypeDiffer::Direction direction);
   base::Result<Plan> run();
 
  private:
