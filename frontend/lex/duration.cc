@@ -39,7 +39,7 @@ class DurationDecoder {
     size_t fraction_end = fraction_at;
     if (peek() == '.') {
       ++at_;
-      digits();
+      while (is_digit(peek()) || peek() == '_') ++at_;
       fraction_end = at_;
     }
     size_t unit_at = at_;
@@ -60,13 +60,13 @@ class DurationDecoder {
     }
   }
 
+  // Saturates: add() refuses what does not fit.
   uint64_t digits() {
     uint64_t value = 0;
     for (; is_digit(peek()) || (peek() == '_' && at_ + 1 < text_.size()); ++at_) {
       if (peek() == '_') continue;
       uint64_t digit = digit_value(peek());
-      if (value > (kLargest - digit) / 10) too_large_ = true;
-      value = value * 10 + digit;
+      value = value > (kLargest - digit) / 10 ? UINT64_MAX : value * 10 + digit;
     }
     return value;
   }
@@ -79,14 +79,13 @@ class DurationDecoder {
   }
 
   void add(uint64_t count, uint64_t unit_ns) {
-    if (too_large_ || count > (kLargest - out_.ns) / unit_ns) return overflow();
+    if (count > (kLargest - out_.ns) / unit_ns) return overflow();
     out_.ns += count * unit_ns;
   }
 
   // Exact: a unit is divisible by ten until what is left is below one nanosecond.
   void add_fraction(std::string_view fraction, size_t unit) {
     uint64_t place_ns = ir::kTimeUnits[unit].ns;
-    too_large_ = false;  // digits below a nanosecond may be any number
     for (char c : fraction) {
       if (c == '_') continue;
       uint64_t digit_ns = place_ns / 10;
@@ -113,7 +112,6 @@ class DurationDecoder {
   std::string_view text_;
   size_t at_ = 0;
   size_t next_unit_ = 0;
-  bool too_large_ = false;
   DecodedTime out_;
 };
 

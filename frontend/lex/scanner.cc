@@ -11,6 +11,7 @@ using base::DiagnosticCode;
 
 namespace {
 
+constexpr std::string_view kEndLadder = "END_LADDER";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 // Bytes per token in ordinary sources, comments and blanks included, rounded down.
 constexpr size_t kBytesPerToken = 5;
@@ -39,9 +40,18 @@ TokenList Scanner::run() {
     if (kind == TokenKind::kEnd) continue;  // nothing usable, reported
     list_.tokens.push_back(
         {base_ + static_cast<uint32_t>(begin), static_cast<uint32_t>(at_ - begin), kind});
+    if (kind == TokenKind::kLadder) skip_ladder();
   }
   list_.tokens.push_back({base_ + static_cast<uint32_t>(text_.size()), 0, TokenKind::kEnd});
   return std::move(list_);
+}
+
+// The text form of ladder has tokens of its own: behind LADDER, a rung's `|`
+// tells, and everything up to END_LADDER is left out.
+void Scanner::skip_ladder() {
+  skip_trivia();
+  if (peek() != '|') return;
+  while (!at_end() && !ir::same_name(text_.substr(at_, kEndLadder.size()), kEndLadder)) ++at_;
 }
 
 TokenKind Scanner::scan() {

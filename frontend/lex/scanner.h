@@ -29,6 +29,7 @@ class Scanner {
   // scanner.cc
   TokenKind scan();
   TokenKind scan_word();
+  void skip_ladder();
   TokenKind scan_prefixed(std::string_view prefix);
   TokenKind scan_string(char quote, TokenKind kind);
   TokenKind scan_direct();

@@ -63,7 +63,10 @@ SpecId Parser::parse_struct() {
     }
     parse_variable_declaration(spec.fields);
   }
-  if (!accept(TokenKind::kEndStruct)) report_missing_end(opening, TokenKind::kEndStruct);
+  if (!accept(TokenKind::kEndStruct)) {
+    report_missing_end(opening, TokenKind::kEndStruct);
+    panic_ = true;  // the declaration around it has no end either
+  }
   spec.span = span_from({opening.begin});
   return add_spec(std::move(spec));
 }

@@ -82,7 +82,7 @@ TEST(Expression, DeepNestingIsRefused) {
   EXPECT_EQ(expression(nested(base::kMaxNesting - 2)), "1");
   EXPECT_EQ(codes("PROGRAM p x := " + nested(base::kMaxNesting - 1) + "; END_PROGRAM"),
             "1:215 E6001\n");
-  EXPECT_EQ(codes("PROGRAM p x := " + nested(100000) + "; END_PROGRAM"), "1:214 E6001\n");
+  EXPECT_EQ(codes("PROGRAM p x := " + nested(100000) + "; END_PROGRAM"), "1:215 E6001\n");
   EXPECT_EQ(codes("PROGRAM p x := " + std::string(100000, '-') + "1; END_PROGRAM"),
             "1:214 E6001\n");
 }

@@ -57,8 +57,9 @@ TEST(Statement, SoftKeywordsAsVariables) {
 }
 
 TEST(Statement, CommentsAndPragmasVanish) {
-  EXPECT_EQ(statements("a (* x (* nested *) *) := /* y /* z */ */ 1; // rest\n{pragma 'x'} b := 2;"),
-            "  a := 1\n  b := 2\n");
+  EXPECT_EQ(
+      statements("a (* x (* nested *) *) := /* y /* z */ */ 1; // rest\n{pragma 'x'} b := 2;"),
+      "  a := 1\n  b := 2\n");
 }
 
 TEST(Statement, DeepNestingIsRefused) {
