@@ -40,10 +40,10 @@ struct Request {
   base::Digest expected{};
   uint64_t edition = 0;
   // Bodies. Assignments: names and values in parallel. Page: offset and names (a pattern).
-  std::vector<std::string> names;
-  std::vector<std::string> values;
+  std::vector<std::string> names{};
+  std::vector<std::string> values{};
   uint64_t offset = 0;
-  base::Bytes data;
+  base::Bytes data{};
   base::Digest digest{};
   uint32_t flags = 0;
 };

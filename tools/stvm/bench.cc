@@ -1,0 +1,155 @@
+// stvm bench: nanoseconds of each scan of one program, without tasks, I/O and waiting.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "tools/common/exit.h"
+#include "tools/common/json.h"
+#include "tools/stvm/commands.h"
+#include "tools/stvm/compiler.h"
+#include "tools/stvm/trap_text.h"
+#include "vm/runtime/clocks.h"
+#include "vm/runtime/io.h"
+
+namespace stvm {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {
+    {"--program", "P", "program instance (default: the first)"},
+    {"--scans", "N", "scans that are measured (default 10000); a tenth more is run before"},
+    {"--period", "NS", "virtual time between two scans (default 10000000)"},
+    STVM_FORMAT_OPTION,
+};
+constexpr tools::Command kCommand{"bench", "IMAGE|SOURCES...",
+                                  "Measures the scan time of one program.", kOptions, 1};
+
+using SteadyClock = std::chrono::steady_clock;
+
+int64_t since(SteadyClock::time_point begin) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(SteadyClock::now() - begin).count();
+}
+
+// What two looks at the clock cost, to be taken off.
+int64_t clock_cost() {
+  std::vector<int64_t> costs(1001);
+  for (int64_t& cost : costs) cost = since(SteadyClock::now());
+  std::nth_element(costs.begin(), costs.begin() + 500, costs.end());
+  return costs[500];
+}
+
+base::Result<uint32_t> find_program(const ir::Image& image, const std::string& name) {
+  std::string names;
+  for (uint32_t id : image.program_ids()) {
+    if (name.empty() || ir::same_name(name, image.instances[id].name)) return id;
+    names += (names.empty() ? "" : ", ") + image.instances[id].name;
+  }
+  return base::Error{base::Refusal::kNoSuchVariable,
+                     "no program instance `" + name + "`; there are: " + names};
+}
+
+struct Timing {
+  int64_t min = 0;
+  int64_t median = 0;
+  int64_t p99 = 0;
+};
+
+Timing summarise(std::vector<int64_t>& times) {
+  std::sort(times.begin(), times.end());
+  return {times.front(), times[times.size() / 2], times[times.size() * 99 / 100]};
+}
+
+base::Status one_scan(vm::Controller& controller, vm::Execution& execution, uint32_t program,
+                      int64_t time_ns) {
+  constexpr uint64_t kFuel = 1'000'000'000;
+  execution.start(controller.generation(), controller.memory().data(), program, ir::kStackBegin,
+                  time_ns);
+  vm::Exit exit = execution.run(kFuel);
+  if (exit == vm::Exit::kDone) return base::Ok{};
+  if (exit == vm::Exit::kSuspended) {
+    return base::Error{base::Refusal::kFault, "the scan does not end: endless loop?"};
+  }
+  vm::TrapRecord record{0, "bench", execution.trap(),
+                        vm::describe(controller.image(), execution.trap())};
+  return base::Error{base::Refusal::kFault, trap_text(record)};
+}
+
+struct Settings {
+  bool json = false;
+  uint64_t scans = 0;
+  int64_t period_ns = 0;
+};
+
+base::Result<Settings> read_settings(const tools::Options& options) {
+  base::Result<bool> json = wants_json(options);
+  if (!json.ok()) return json.error();
+  base::Result<uint64_t> scans = options.number("--scans", 10'000);
+  if (!scans.ok()) return scans.error();
+  base::Result<uint64_t> period = options.number("--period", 10'000'000);
+  if (!period.ok()) return period.error();
+  constexpr uint64_t kMost = 100'000'000;
+  if (*scans == 0 || *scans > kMost) {
+    return base::Error{base::Refusal::kUsage, "--scans is 1 to 100000000"};
+  }
+  return Settings{*json, *scans, static_cast<int64_t>(*period)};
+}
+
+base::Result<Timing> measure(const Settings& settings, vm::Controller& controller,
+                             uint32_t program) {
+  vm::Execution execution(controller.image().call_depth);
+  std::vector<int64_t> times;
+  times.reserve(settings.scans);
+  int64_t cost = clock_cost();
+  uint64_t warm_up = settings.scans / 10;
+  for (uint64_t i = 0; i < warm_up + settings.scans; ++i) {
+    auto begin = SteadyClock::now();
+    base::Status done =
+        one_scan(controller, execution, program, static_cast<int64_t>(i) * settings.period_ns);
+    int64_t ns = since(begin);
+    if (!done.ok()) return done.error();
+    if (i >= warm_up) times.push_back(std::max<int64_t>(ns - cost, 0));
+  }
+  return summarise(times);
+}
+
+void print(const Settings& settings, const std::string& program, const Timing& timing) {
+  if (!settings.json) {
+    std::printf("%s: %lld ns min, %lld ns median, %lld ns p99 of %llu scans\n", program.c_str(),
+                static_cast<long long>(timing.min), static_cast<long long>(timing.median),
+                static_cast<long long>(timing.p99),
+                static_cast<unsigned long long>(settings.scans));
+    return;
+  }
+  tools::JsonWriter json;
+  json.begin_object().field("program", program).field("scans", settings.scans);
+  json.field("min_ns", timing.min).field("median_ns", timing.median).field("p99_ns", timing.p99);
+  json.field("tier", "interp").end_object();
+  std::fputs(json.finish().c_str(), stdout);
+}
+
+base::Status bench(const tools::Options& options) {
+  base::Result<Settings> settings = read_settings(options);
+  if (!settings.ok()) return settings.error();
+  base::Result<ir::VerifiedImage> image = load_program(options.arguments());
+  if (!image.ok()) return image.error();
+  base::Result<uint32_t> program = find_program(image->image(), options.text("--program"));
+  if (!program.ok()) return program.error();
+  vm::VirtualClock clock;
+  vm::NullIo io;
+  auto controller = vm::Controller::start(*image, {}, clock, io);
+  if (!controller.ok()) return controller.error();
+  base::Result<Timing> timing = measure(*settings, **controller, *program);
+  if (!timing.ok()) return timing.error();
+  print(*settings, image->image().instances[*program].name, *timing);
+  return base::Ok{};
+}
+
+int run(const tools::Options& options) {
+  base::Status done = bench(options);
+  return done.ok() ? tools::kOk : refuse(done.error());
+}
+
+}  // namespace
+
+const Entry kBench{&kCommand, run};
+
+}  // namespace stvm

@@ -1,0 +1,38 @@
+// The commands of stvm, one file each. Each returns the exit code.
+#pragma once
+
+#include "tools/common/options.h"
+
+namespace stvm {
+
+struct Entry {
+  const tools::Command* command;
+  int (*run)(const tools::Options& options);
+};
+
+extern const Entry kRun;
+extern const Entry kBench;
+extern const Entry kServe;
+extern const Entry kStatus;
+extern const Entry kGet;
+extern const Entry kSet;
+extern const Entry kForce;
+extern const Entry kUnforce;
+extern const Entry kWatch;
+extern const Entry kChange;
+extern const Entry kUndo;
+extern const Entry kAccept;
+extern const Entry kStop;
+
+#define STVM_DIR_OPTION \
+  { "--dir", "STATE", "state directory of the controller (default: $STVM_DIR, else .stvm)" }
+#define STVM_FORMAT_OPTION \
+  { "--format", "FORM", "text (default) or json" }
+
+// kUsage for anything but text and json.
+base::Result<bool> wants_json(const tools::Options& options);
+std::string state_directory(const tools::Options& options);
+// Prints the error as this tool does; the exit code.
+int refuse(const base::Error& error);
+
+}  // namespace stvm

@@ -1,0 +1,36 @@
+// The `stc` beside this program: stvm contains no compiler (architecture.md section 13).
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/result.h"
+#include "ir/bytecode/verify.h"
+
+namespace stvm {
+
+// A folder for intermediate files that goes when its owner goes.
+class TemporaryFolder {
+ public:
+  static base::Result<TemporaryFolder> make();
+  TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
+  ~TemporaryFolder();
+  std::string file(const char* name) const { return path_ + "/" + name; }
+
+ private:
+  explicit TemporaryFolder(std::string path) : path_(std::move(path)) {}
+  std::string path_;
+};
+
+// Runs `stc ARGUMENTS...`; its messages go to stderr, its refusal comes back as the error.
+base::Status run_stc(const std::vector<std::string>& arguments);
+
+// An image file, or sources that are compiled first. Verified, so it can run.
+base::Result<ir::VerifiedImage> load_program(const std::vector<std::string>& paths);
+
+// The file begins as an image does.
+bool is_image(const std::string& path);
+
+}  // namespace stvm

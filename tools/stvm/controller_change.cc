@@ -1,0 +1,274 @@
+// The commands of an online change, as the serving controller carries them out.
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "base/limits.h"
+#include "online_change/diff/initial_data.h"
+#include "tools/stvm/controller_service.h"
+
+namespace stvm {
+namespace {
+
+using online_change::Fate;
+using online_change::FateRow;
+
+constexpr uint64_t kLinesPerPage = 1000;
+constexpr size_t kShownLosses = 500;
+// A switch that finds too little time before the next cycle is tried again after it.
+constexpr int kSwitchAttempts = 200;
+constexpr auto kBetweenAttempts = std::chrono::milliseconds(1);
+
+// Initial value of a scalar or string of the new version; "" for anything else.
+std::string initial_text(const ir::Image& image, const std::string& path) {
+  base::Result<ir::Symbol> symbol = ir::find_symbol(image, path);
+  if (!symbol.ok()) return {};
+  ir::Kind kind = image.types[symbol->type].kind;
+  bool leaf = image.types.is_scalar(symbol->type) || kind == ir::Kind::kString ||
+              kind == ir::Kind::kWstring;
+  if (!leaf) return {};
+  base::Bytes value(image.layouts[symbol->type].size);
+  online_change::InitialData(image).read(symbol->data, value);
+  ir::Symbol alone = *symbol;
+  alone.data = 0;
+  return ir::format_value(image, alone, value);
+}
+
+// The text of the old value as a value of the new type; "" where it is none.
+std::string converted_text(const ir::Image& image, const std::string& path,
+                           const std::string& now) {
+  base::Result<ir::Symbol> symbol = ir::find_symbol(image, path);
+  if (!symbol.ok()) return {};
+  base::Result<base::Bytes> value = ir::parse_value(image, symbol->type, now);
+  if (!value.ok()) return {};
+  ir::Symbol alone = *symbol;
+  alone.data = 0;
+  return ir::format_value(image, alone, *value);
+}
+
+// Change has verified it a moment ago.
+std::optional<ir::VerifiedImage> image_of(base::ByteSpan bytes) {
+  base::Result<online_change::Package> package = online_change::decode(bytes);
+  if (!package.ok()) return std::nullopt;
+  base::Result<ir::VerifiedImage> image = ir::verify(package->image);
+  if (!image.ok()) return std::nullopt;
+  return *image;
+}
+
+uint64_t line_bytes(const FateLine& line) {
+  return line.row.path.size() + line.row.old_type.size() + line.row.new_type.size() +
+         line.row.reason.size() + line.live.now.size() + line.live.after.size() +
+         line.live.loss.size() + 64;
+}
+
+}  // namespace
+
+base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) {
+  if (request.offset == 0) upload_.clear();
+  if (request.offset != upload_.size()) {
+    return base::Error{base::Refusal::kProtocol, "parts of the package are missing"};
+  }
+  if (upload_.size() + request.data.size() > base::kMaxImageBytes) {
+    return base::Error{base::Refusal::kTooLarge, "the package is longer than the limit"};
+  }
+  upload_.insert(upload_.end(), request.data.begin(), request.data.end());
+  return base::Bytes{};
+}
+
+// Checks and builds beside the running program; touches nothing of it, so it needs no boundary.
+base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
+  base::Bytes package = std::move(upload_);
+  upload_ = {};
+  if (controller_.faulted()) {
+    return base::Error{base::Refusal::kFault, "the controller is stopped by a fault"};
+  }
+  if (base::sha256(package) != request.digest) {
+    return base::Error{base::Refusal::kBadHash, "the package arrived damaged"};
+  }
+  base::Status staged = change_.stage(package);
+  if (!staged.ok()) return staged.error();
+  staged_ = image_of(package);
+  return base::Bytes{};
+}
+
+base::Result<std::vector<FateLine>> ControllerService::live_lines(uint64_t first, uint64_t count) {
+  const std::vector<FateRow>& rows = change_.plan().fates;
+  std::vector<FateLine> lines;
+  for (uint64_t i = first; i < std::min<uint64_t>(rows.size(), first + count); ++i) {
+    lines.push_back({rows[i], {}});
+  }
+  base::Status taken = at_boundary([&] {
+    for (FateLine& line : lines) {
+      if (line.row.count != 1 || line.row.old_type.empty()) continue;
+      base::Result<std::string> now = controller_.get(line.row.path);
+      if (now.ok()) line.live.now = *now;
+    }
+  });
+  if (!taken.ok()) return taken.error();
+  return lines;
+}
+
+base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
+  if (change_.state() == online_change::State::kIdle) {
+    return base::Error{base::Refusal::kBusy, "no change is staged"};
+  }
+  const online_change::Plan& plan = change_.plan();
+  base::Result<std::vector<FateLine>> lines = live_lines(request.offset, kLinesPerPage);
+  if (!lines.ok()) return lines.error();
+  std::vector<online_change::LiveLoss> losses;
+  base::Status taken = at_boundary([&] { losses = change_.live_losses(); });
+  if (!taken.ok()) return taken.error();
+  FatePage page{plan.counts, plan.predicted_pause_ns, plan.boundary_bytes, 0, {}, losses.size(),
+                {}};
+  uint64_t bytes = 0;
+  for (FateLine& line : *lines) {
+    if (bytes > vm::kChunkBytes) break;
+    complete(line, losses);
+    bytes += line_bytes(line);
+    page.lines.push_back(std::move(line));
+  }
+  uint64_t next = request.offset + page.lines.size();
+  page.next = next < plan.fates.size() ? next : 0;
+  if (request.offset == 0) {
+    losses.resize(std::min(losses.size(), kShownLosses));
+    for (online_change::LiveLoss& loss : losses) page.losses.push_back({std::move(loss)});
+  }
+  return encode(page);
+}
+
+void ControllerService::complete(FateLine& line,
+                                 const std::vector<online_change::LiveLoss>& losses) const {
+  if (line.row.fate == Fate::kMoved || line.row.fate == Fate::kKept) {
+    line.live.after = line.live.now;
+  } else if (line.row.fate == Fate::kInitialised && line.row.count == 1) {
+    if (staged_) line.live.after = initial_text(staged_->image(), line.row.path);
+  } else if (line.row.fate == Fate::kConverted && !line.live.now.empty()) {
+    if (staged_) line.live.after = converted_text(staged_->image(), line.row.path, line.live.now);
+  }
+  for (const online_change::LiveLoss& loss : losses) {
+    if (!ir::same_name(loss.path, line.row.path)) continue;
+    line.live = {loss.old_value, loss.new_value, loss.what};
+    return;
+  }
+}
+
+uint64_t ControllerService::missed_releases() const {
+  uint64_t missed = 0;
+  for (const vm::TaskStatus& task : controller_.tasks()) missed += task.missed;
+  return missed;
+}
+
+bool ControllerService::time_for_switch() const {
+  int64_t left = controller_.next_cycle_ns() - clock_.now_ns();
+  return left > change_.plan().predicted_pause_ns;
+}
+
+base::Result<online_change::SwitchReport> ControllerService::switch_in_time(bool allow_overrun) {
+  std::optional<base::Result<online_change::SwitchReport>> report;
+  auto job = [&] {
+    if (!allow_overrun && !time_for_switch()) return;
+    int64_t deadline_ns = controller_.next_cycle_ns();
+    if (!allow_overrun) {
+      change_.set_interruption([=, this] { return clock_.now_ns() > deadline_ns; });
+    }
+    report.emplace(change_.switch_now());
+    change_.set_interruption(nullptr);
+  };
+  for (int attempt = 0; attempt < kSwitchAttempts && !report; ++attempt) {
+    if (attempt != 0) std::this_thread::sleep_for(kBetweenAttempts);
+    base::Status taken = at_boundary(job);
+    if (!taken.ok()) return taken.error();
+  }
+  if (report) return std::move(*report);
+  change_.cancel();
+  return base::Error{base::Refusal::kDeadline,
+                     "no cycle left time enough for the switch; the old program runs on"};
+}
+
+// Releases that the switch made late are known only when the next cycles have been.
+base::Result<online_change::SwitchReport> ControllerService::finish_report(
+    online_change::SwitchReport report, uint64_t missed_before) {
+  for (int attempt = 0; attempt < kSwitchAttempts; ++attempt) {
+    uint64_t cycles = 0;
+    base::Status taken = at_boundary([&] {
+      cycles = controller_.cycles();
+      report.missed = missed_releases() - missed_before;
+    });
+    if (!taken.ok()) return taken.error();
+    if (cycles > report.cycle_after || controller_.faulted()) break;
+    std::this_thread::sleep_for(kBetweenAttempts);
+  }
+  return report;
+}
+
+base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& request) {
+  bool allow_overrun = (request.flags & vm::kAllowOverrun) != 0;
+  ir::VerifiedImage running = controller_.verified();
+  base::Status armed = base::Ok{};
+  uint64_t missed_before = 0;
+  base::Status taken = at_boundary([&] {
+    armed = change_.arm((request.flags & vm::kAllowLoss) != 0, allow_overrun);
+    missed_before = missed_releases();
+  });
+  if (!taken.ok()) return taken.error();
+  if (!armed.ok()) return armed.error();
+  base::Result<online_change::SwitchReport> report = switch_in_time(allow_overrun);
+  staged_.reset();
+  if (!report.ok()) return report.error();
+  previous_ = std::move(running);
+  ++edition_;
+  if ((request.flags & vm::kPermanent) != 0) {
+    base::Status permanent = make_permanent();
+    if (!permanent.ok()) return permanent.error();
+  }
+  report = finish_report(*report, missed_before);
+  if (!report.ok()) return report.error();
+  return encode(*report);
+}
+
+base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
+  std::optional<base::Result<online_change::SwitchReport>> report;
+  uint64_t missed_before = 0;
+  base::Status taken = at_boundary([&] {
+    missed_before = missed_releases();
+    report.emplace(change_.undo());
+  });
+  if (!taken.ok()) return taken.error();
+  if (!report->ok()) return report->error();
+  previous_.reset();
+  ++edition_;
+  report = finish_report(**report, missed_before);
+  if (!report->ok()) return report->error();
+  return encode(**report);
+}
+
+// Durable first: after a power cut in between, the accepted version boots, as it was asked for.
+base::Status ControllerService::make_permanent() {
+  if (change_.state() != online_change::State::kTrial) return change_.accept();
+  base::Status stored = storage_.write(kBootRecord, controller_.verified().encoded());
+  if (!stored.ok()) {
+    return base::Error{stored.error().refusal,
+                       stored.error().text + "; the change runs, but is still on trial"};
+  }
+  boots_next_ = controller_.verified().digest();
+  base::Status accepted = base::Ok{};
+  base::Status taken = at_boundary([&] { accepted = change_.accept(); });
+  if (!taken.ok()) return taken;
+  previous_.reset();
+  ++edition_;
+  return accepted;
+}
+
+base::Result<base::Bytes> ControllerService::accept(const vm::Request&) {
+  base::Status permanent = make_permanent();
+  if (!permanent.ok()) return permanent.error();
+  return base::Bytes{};
+}
+
+base::Result<base::Bytes> ControllerService::cancel(const vm::Request&) {
+  change_.cancel();
+  staged_.reset();
+  return base::Bytes{};
+}
+
+}  // namespace stvm

@@ -1,0 +1,163 @@
+#include "tools/stvm/controller_client.h"
+
+#include <algorithm>
+
+#include "base/limits.h"
+#include "vm/runtime/socket_client.h"
+
+namespace stvm {
+namespace {
+
+// Rows of all pages together; what a controller may send is bounded.
+constexpr size_t kMaxRows = 20'000'000;
+
+base::Error endless() {
+  return {base::Refusal::kProtocol, "message not understood: pages without end"};
+}
+
+}  // namespace
+
+base::Result<ControllerClient> ControllerClient::connect(const std::string& directory) {
+  auto transport = vm::SocketClient::connect(directory);
+  if (!transport.ok()) return transport.error();
+  return ControllerClient(std::move(*transport));
+}
+
+base::Result<base::Bytes> ControllerClient::call(vm::Request request) {
+  request.expected = expected_;
+  request.edition = edition_;
+  base::Result<base::Bytes> answer = transport_->exchange(vm::encode(request));
+  if (!answer.ok()) return answer;
+  return vm::decode_answer(*answer);
+}
+
+base::Result<vm::StatusReport> ControllerClient::status() {
+  base::Result<base::Bytes> body = call({.command = vm::Command::kStatus});
+  if (!body.ok()) return body.error();
+  base::Result<vm::StatusReport> report = vm::decode_status(*body);
+  if (report.ok()) {
+    expected_ = report->running;
+    edition_ = report->edition;
+  }
+  return report;
+}
+
+base::Result<vm::Values> ControllerClient::get(std::vector<std::string> names) {
+  vm::Request request{.command = vm::Command::kGet};
+  size_t wanted = names.size();
+  request.names = std::move(names);
+  base::Result<base::Bytes> body = call(std::move(request));
+  if (!body.ok()) return body.error();
+  base::Result<vm::Values> values = vm::decode_values(*body);
+  if (values.ok() && values->rows.size() != wanted) {
+    return base::Error{base::Refusal::kProtocol,
+                       "message not understood: another number of values"};
+  }
+  return values;
+}
+
+base::Result<vm::Values> ControllerClient::list(const std::string& pattern) {
+  vm::Values all;
+  vm::Request request{.command = vm::Command::kList};
+  request.names = {pattern};
+  for (;;) {
+    base::Result<base::Bytes> body = call(request);
+    if (!body.ok()) return body.error();
+    base::Result<vm::Values> page = vm::decode_values(*body);
+    if (!page.ok()) return page;
+    std::move(page->rows.begin(), page->rows.end(), std::back_inserter(all.rows));
+    if (page->next == 0) return all;
+    if (page->next <= request.offset || all.rows.size() > kMaxRows) return endless();
+    request.offset = page->next;
+  }
+}
+
+base::Result<vm::Values> ControllerClient::forces() {
+  base::Result<base::Bytes> body = call({.command = vm::Command::kForces});
+  if (!body.ok()) return body.error();
+  return vm::decode_values(*body);
+}
+
+base::Status ControllerClient::assign(vm::Command command, const std::vector<std::string>& names,
+                                      const std::vector<std::string>& values) {
+  vm::Request request{.command = command};
+  request.names = names;
+  request.values = values;
+  base::Result<base::Bytes> body = call(std::move(request));
+  if (!body.ok()) return body.error();
+  return base::Ok{};
+}
+
+base::Result<base::Bytes> ControllerClient::image() {
+  base::Bytes all;
+  vm::Request request{.command = vm::Command::kImage};
+  for (;;) {
+    request.offset = all.size();
+    base::Result<base::Bytes> body = call(request);
+    if (!body.ok()) return body.error();
+    base::Result<vm::ImagePart> part = vm::decode_image_part(*body);
+    if (!part.ok()) return part.error();
+    if (part->digest != expected_) {
+      return base::Error{base::Refusal::kStaleBase, "the running program changed meanwhile"};
+    }
+    all.insert(all.end(), part->bytes.begin(), part->bytes.end());
+    if (part->total > base::kMaxImageBytes || all.size() > part->total) return endless();
+    if (all.size() == part->total) return all;
+    if (part->bytes.empty()) return endless();
+  }
+}
+
+base::Status ControllerClient::stage(base::ByteSpan package) {
+  vm::Request part{.command = vm::Command::kUpload};
+  do {
+    size_t size = std::min<size_t>(vm::kChunkBytes, package.size() - part.offset);
+    base::ByteSpan bytes = package.subspan(part.offset, size);
+    part.data.assign(bytes.begin(), bytes.end());
+    base::Result<base::Bytes> taken = call(part);
+    if (!taken.ok()) return taken.error();
+    part.offset += size;
+  } while (part.offset < package.size());
+  vm::Request stage{.command = vm::Command::kStage};
+  stage.digest = base::sha256(package);
+  base::Result<base::Bytes> staged = call(std::move(stage));
+  if (!staged.ok()) return staged.error();
+  return base::Ok{};
+}
+
+base::Result<FatePage> ControllerClient::fates() {
+  FatePage all;
+  vm::Request request{.command = vm::Command::kFates};
+  for (;;) {
+    base::Result<base::Bytes> body = call(request);
+    if (!body.ok()) return body.error();
+    base::Result<FatePage> page = decode_fate_page(*body);
+    if (!page.ok()) return page;
+    if (request.offset == 0) {
+      all = std::move(*page);
+    } else {
+      std::move(page->lines.begin(), page->lines.end(), std::back_inserter(all.lines));
+      all.next = page->next;
+    }
+    if (all.next == 0) return all;
+    if (all.next <= request.offset || all.lines.size() > kMaxRows) return endless();
+    request.offset = all.next;
+  }
+}
+
+base::Result<online_change::SwitchReport> ControllerClient::switch_report(vm::Request request) {
+  base::Result<base::Bytes> body = call(std::move(request));
+  if (!body.ok()) return body.error();
+  return decode_switch_report(*body);
+}
+
+base::Result<online_change::SwitchReport> ControllerClient::make_switch(uint32_t flags) {
+  vm::Request request{.command = vm::Command::kSwitch};
+  request.flags = flags;
+  return switch_report(std::move(request));
+}
+
+base::Result<online_change::SwitchReport> ControllerClient::undo() {
+  return switch_report({.command = vm::Command::kUndo});
+}
+
+}  // namespace stvm

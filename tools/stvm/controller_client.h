@@ -1,0 +1,44 @@
+// A running controller as the commands see it. Believes nothing that it is sent: every answer is
+// decoded by the bounded reader.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/stvm/fate_message.h"
+#include "vm/runtime/ports.h"
+#include "vm/runtime/protocol.h"
+
+namespace stvm {
+
+class ControllerClient {
+ public:
+  static base::Result<ControllerClient> connect(const std::string& directory);
+  explicit ControllerClient(std::unique_ptr<vm::Transport> transport)
+      : transport_(std::move(transport)) {}
+
+  // Requests that change state name the version that the last status() or image() saw.
+  base::Result<base::Bytes> call(vm::Request request);
+  base::Result<vm::StatusReport> status();
+  base::Result<vm::Values> get(std::vector<std::string> names);
+  base::Result<vm::Values> list(const std::string& pattern);
+  base::Result<vm::Values> forces();
+  base::Status assign(vm::Command command, const std::vector<std::string>& names,
+                      const std::vector<std::string>& values);
+  base::Result<base::Bytes> image();
+
+  base::Status stage(base::ByteSpan package);
+  base::Result<FatePage> fates();
+  base::Result<online_change::SwitchReport> make_switch(uint32_t flags);
+  base::Result<online_change::SwitchReport> undo();
+
+ private:
+  base::Result<online_change::SwitchReport> switch_report(vm::Request request);
+
+  std::unique_ptr<vm::Transport> transport_;
+  base::Digest expected_{};
+  uint64_t edition_ = 0;
+};
+
+}  // namespace stvm

@@ -1,0 +1,247 @@
+#include "tools/stvm/controller_service.h"
+
+#include <algorithm>
+
+#include "base/limits.h"
+
+namespace stvm {
+namespace {
+
+// A long scan of a slow task postpones the boundary; longer than this is an answer of its own.
+constexpr int64_t kBoundaryPatienceNs = 5'000'000'000;
+
+base::Bytes nothing() { return {}; }
+
+vm::ValueRow value_row(const ir::Image& image, const std::string& path, const ir::Symbol& symbol) {
+  return {path, image.types.text(symbol.type), {}};
+}
+
+}  // namespace
+
+ControllerService::ControllerService(vm::Controller& controller, vm::Clock& clock,
+                                     vm::Storage& storage, vm::Mailbox& mailbox)
+    : controller_(controller),
+      clock_(clock),
+      storage_(storage),
+      mailbox_(mailbox),
+      change_(controller),
+      boots_next_(controller.verified().digest()) {}
+
+base::Bytes ControllerService::answer(base::ByteSpan bytes, bool& keep_open) {
+  base::Result<vm::Request> request = vm::decode_request(bytes);
+  if (!request.ok()) {
+    keep_open = false;
+    return vm::encode_answer(request.error());
+  }
+  base::Status expected = check_expected(*request);
+  if (!expected.ok()) return vm::encode_answer(expected.error());
+  Answer body = dispatch(*request);
+  if (!body.ok()) return vm::encode_answer(body.error());
+  if (body->size() + 16 > vm::kMaxMessageBytes) {
+    return vm::encode_answer({base::Refusal::kTooMany, "the answer is too long; ask for less"});
+  }
+  return vm::encode_answer(*body);
+}
+
+base::Result<base::Bytes> ControllerService::dispatch(const vm::Request& request) {
+  switch (request.command) {
+    case vm::Command::kStatus:
+      return status(request);
+    case vm::Command::kGet:
+      return get(request);
+    case vm::Command::kSet:
+      return set(request);
+    case vm::Command::kForce:
+      return force(request);
+    case vm::Command::kUnforce:
+      return unforce(request);
+    case vm::Command::kForces:
+      return forces(request);
+    case vm::Command::kList:
+      return list(request);
+    case vm::Command::kImage:
+      return image(request);
+    case vm::Command::kUpload:
+      return upload(request);
+    case vm::Command::kStage:
+      return stage(request);
+    case vm::Command::kFates:
+      return fates(request);
+    case vm::Command::kSwitch:
+      return make_switch(request);
+    case vm::Command::kUndo:
+      return undo(request);
+    case vm::Command::kAccept:
+      return accept(request);
+    case vm::Command::kCancel:
+      return cancel(request);
+    case vm::Command::kStop:
+      return stop(request);
+  }
+  return base::Error{base::Refusal::kProtocol, "unknown command"};
+}
+
+base::Status ControllerService::check_expected(const vm::Request& request) const {
+  if (!vm::changes_state(request.command)) return base::Ok{};
+  const base::Digest& running = controller_.verified().digest();
+  if (request.expected == running && request.edition == edition_) return base::Ok{};
+  return base::Error{base::Refusal::kStaleBase,
+                     "the request is for version " + base::short_hex(request.expected) +
+                         " edition " + std::to_string(request.edition) + ", but " +
+                         base::short_hex(running) + " edition " + std::to_string(edition_) +
+                         " is running"};
+}
+
+base::Status ControllerService::at_boundary(const std::function<void()>& job) {
+  switch (mailbox_.run(job, kBoundaryPatienceNs)) {
+    case vm::Mailbox::Outcome::kDone:
+      return base::Ok{};
+    case vm::Mailbox::Outcome::kClosed:
+      return base::Error{base::Refusal::kNotRunning, "the controller is stopping"};
+    case vm::Mailbox::Outcome::kTimeout:
+      break;
+  }
+  return base::Error{base::Refusal::kBusy, "no boundary came within 5 s: a task does not end"};
+}
+
+base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
+  vm::StatusReport report;
+  base::Status taken = at_boundary([&] {
+    report.cycles = controller_.cycles();
+    report.faulted = controller_.faulted();
+    report.tasks = controller_.tasks();
+    report.uptime_ns = clock_.now_ns();
+    for (const vm::TrapRecord& trap : controller_.traps()) {
+      report.traps.push_back({trap.cycle, trap.task, trap.text});
+    }
+  });
+  if (!taken.ok()) return taken.error();
+  report.name = controller_.image().name;
+  report.running = controller_.verified().digest();
+  report.edition = edition_;
+  report.change = online_change::state_name(change_.state());
+  if (previous_) report.previous = previous_->digest();
+  report.boots_next = boots_next_;
+  report.base_period_ns = controller_.base_period_ns();
+  report.forces = controller_.forces().size();
+  return vm::encode(report);
+}
+
+base::Result<base::Bytes> ControllerService::get(const vm::Request& request) {
+  const ir::Image& image = controller_.image();
+  vm::Values values;
+  std::vector<ir::Symbol> symbols;
+  for (const std::string& name : request.names) {
+    base::Result<ir::Symbol> symbol = ir::find_symbol(image, name);
+    if (!symbol.ok()) return symbol.error();
+    symbols.push_back(*symbol);
+    values.rows.push_back(value_row(image, name, *symbol));
+  }
+  base::Status taken = at_boundary([&] {
+    values.cycle = controller_.cycles();
+    auto memory = controller_.memory().view();
+    for (size_t i = 0; i < symbols.size(); ++i) {
+      values.rows[i].value = ir::format_value(image, symbols[i], memory);
+    }
+  });
+  if (!taken.ok()) return taken.error();
+  return vm::encode(values);
+}
+
+// All or none: a mistake in the last of several is found before the first is written.
+base::Status ControllerService::check_assignments(const vm::Request& request,
+                                                  bool inputs_too) const {
+  for (size_t i = 0; i < request.names.size(); ++i) {
+    const std::string& name = request.names[i];
+    base::Result<ir::Symbol> symbol = ir::find_symbol(controller_.image(), name);
+    if (!symbol.ok()) return symbol.error();
+    if (symbol->constant) {
+      return base::Error{base::Refusal::kReadOnly, "`" + name + "` is a constant"};
+    }
+    if (symbol->input && !inputs_too) {
+      return base::Error{base::Refusal::kReadOnly, "`" + name + "` is an input; force it instead"};
+    }
+    base::Result<base::Bytes> value =
+        ir::parse_value(controller_.image(), symbol->type, request.values[i]);
+    if (!value.ok()) return base::Error{value.error().refusal, name + ": " + value.error().text};
+  }
+  return base::Ok{};
+}
+
+base::Result<base::Bytes> ControllerService::set(const vm::Request& request) {
+  base::Status checked = check_assignments(request, false);
+  if (!checked.ok()) return checked.error();
+  base::Status done = base::Ok{};
+  base::Status taken = at_boundary([&] {
+    for (size_t i = 0; i < request.names.size() && done.ok(); ++i) {
+      done = controller_.set(request.names[i], request.values[i]);
+    }
+  });
+  if (!taken.ok()) return taken.error();
+  if (!done.ok()) return done.error();
+  return nothing();
+}
+
+base::Result<base::Bytes> ControllerService::force(const vm::Request& request) {
+  base::Status checked = check_assignments(request, true);
+  if (!checked.ok()) return checked.error();
+  base::Status done = base::Ok{};
+  base::Status taken = at_boundary([&] {
+    for (size_t i = 0; i < request.names.size() && done.ok(); ++i) {
+      done = controller_.force(request.names[i], request.values[i]);
+    }
+  });
+  if (!taken.ok()) return taken.error();
+  if (!done.ok()) return done.error();
+  return nothing();
+}
+
+base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request) {
+  std::vector<std::string> names = request.names;
+  if (names.empty()) {
+    for (const vm::Force& force : controller_.forces()) names.push_back(force.path);
+  }
+  base::Status done = base::Ok{};
+  base::Status taken = at_boundary([&] {
+    for (const std::string& name : names) {
+      base::Status one = controller_.unforce(name);
+      if (!one.ok() && done.ok()) done = one;
+    }
+  });
+  if (!taken.ok()) return taken.error();
+  if (!done.ok()) return done.error();
+  return nothing();
+}
+
+base::Result<base::Bytes> ControllerService::forces(const vm::Request&) {
+  vm::Values values;
+  const ir::Image& image = controller_.image();
+  // Only this thread's commands change forces, so they can be read here.
+  for (const vm::Force& force : controller_.forces()) {
+    vm::ValueRow row = value_row(image, force.path, force.symbol);
+    ir::Symbol alone = force.symbol;
+    alone.data = 0;
+    row.value = ir::format_value(image, alone, force.value);
+    values.rows.push_back(std::move(row));
+  }
+  return vm::encode(values);
+}
+
+base::Result<base::Bytes> ControllerService::image(const vm::Request& request) {
+  const base::Bytes& encoded = controller_.verified().encoded();
+  if (request.offset > encoded.size()) {
+    return base::Error{base::Refusal::kProtocol, "the image is not that long"};
+  }
+  vm::ImagePart part{controller_.verified().digest(), encoded.size(), {}};
+  auto begin = encoded.begin() + static_cast<std::ptrdiff_t>(request.offset);
+  auto size = std::min<uint64_t>(vm::kChunkBytes, encoded.size() - request.offset);
+  part.bytes.assign(begin, begin + static_cast<std::ptrdiff_t>(size));
+  return vm::encode(part);
+}
+
+base::Result<base::Bytes> ControllerService::stop(const vm::Request&) {
+  stop_wanted_.store(true, std::memory_order_relaxed);
+  return nothing();
+}
+
+}  // namespace stvm

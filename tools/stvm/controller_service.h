@@ -1,0 +1,75 @@
+// What a serving controller answers. Runs on the channel's thread; whatever reads or writes live
+// data goes to the control thread through the mailbox and is done at one boundary. Everything
+// else (decoding, checking, planning, formatting) stays here, beside the running program.
+#pragma once
+
+#include <atomic>
+#include <optional>
+
+#include "online_change/apply/change.h"
+#include "tools/stvm/fate_message.h"
+#include "vm/runtime/mailbox.h"
+#include "vm/runtime/protocol.h"
+#include "vm/runtime/socket_server.h"
+
+namespace stvm {
+
+inline constexpr const char* kBootRecord = "boot";  // the image that boots next
+
+class ControllerService : public vm::Service {
+ public:
+  ControllerService(vm::Controller& controller, vm::Clock& clock, vm::Storage& storage,
+                    vm::Mailbox& mailbox);
+  base::Bytes answer(base::ByteSpan request, bool& keep_open) override;
+  bool stop_wanted() const { return stop_wanted_.load(std::memory_order_relaxed); }
+
+ private:
+  using Answer = base::Result<base::Bytes>;
+
+  Answer dispatch(const vm::Request& request);
+  Answer status(const vm::Request& request);
+  Answer get(const vm::Request& request);
+  Answer set(const vm::Request& request);
+  Answer force(const vm::Request& request);
+  Answer unforce(const vm::Request& request);
+  Answer forces(const vm::Request& request);
+  Answer list(const vm::Request& request);
+  Answer image(const vm::Request& request);
+  Answer upload(const vm::Request& request);
+  Answer stage(const vm::Request& request);
+  Answer fates(const vm::Request& request);
+  Answer make_switch(const vm::Request& request);
+  Answer undo(const vm::Request& request);
+  Answer accept(const vm::Request& request);
+  Answer cancel(const vm::Request& request);
+  Answer stop(const vm::Request& request);
+
+  base::Status check_expected(const vm::Request& request) const;
+  // Runs `job` on the control thread at a boundary and waits for its end.
+  base::Status at_boundary(const std::function<void()>& job);
+  base::Status check_assignments(const vm::Request& request, bool inputs_too) const;
+  base::Result<std::vector<FateLine>> live_lines(uint64_t first, uint64_t count);
+  // The resulting value of a line, and its loss when there is one.
+  void complete(FateLine& line, const std::vector<online_change::LiveLoss>& losses) const;
+  base::Result<online_change::SwitchReport> switch_in_time(bool allow_overrun);
+  bool time_for_switch() const;
+  base::Result<online_change::SwitchReport> finish_report(online_change::SwitchReport report,
+                                                          uint64_t missed_before);
+  // The running image boots next, and only then the change is final.
+  base::Status make_permanent();
+  uint64_t missed_releases() const;
+
+  vm::Controller& controller_;
+  vm::Clock& clock_;
+  vm::Storage& storage_;
+  vm::Mailbox& mailbox_;
+  online_change::Change change_;
+  base::Bytes upload_;
+  std::optional<ir::VerifiedImage> staged_;
+  std::optional<ir::VerifiedImage> previous_;  // during a trial
+  base::Digest boots_next_{};
+  uint64_t edition_ = 0;
+  std::atomic<bool> stop_wanted_{false};
+};
+
+}  // namespace stvm

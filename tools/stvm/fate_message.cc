@@ -1,0 +1,114 @@
+#include "tools/stvm/fate_message.h"
+
+#include "vm/runtime/fields.h"
+
+namespace stvm {
+namespace {
+
+template <class A, class T>
+void count_fields(A& a, T& counts) {
+  a(counts.kept);
+  a(counts.moved);
+  a(counts.converted);
+  a(counts.initialised);
+  a(counts.dropped);
+}
+
+template <class A, class T>
+void row_fields(A& a, T& row) {
+  a(row.path);
+  a(row.old_type);
+  a(row.new_type);
+  a(row.may_lose);
+  a(row.reason);
+  a(row.count);
+}
+
+template <class A, class T>
+void live_fields(A& a, T& live) {
+  a(live.now);
+  a(live.after);
+  a(live.loss);
+}
+
+template <class A, class T>
+void loss_fields(A& a, T& loss) {
+  a(loss.path);
+  a(loss.old_value);
+  a(loss.new_value);
+  a(loss.what);
+}
+
+template <class A, class T>
+void page_fields(A& a, T& page) {
+  count_fields(a, page.counts);
+  a(page.predicted_pause_ns);
+  a(page.boundary_bytes);
+  a(page.next);
+  a.list(page.lines, 38);
+  a(page.loss_count);
+  a.list(page.losses, 16);
+}
+
+template <class A, class T>
+void report_fields(A& a, T& report) {
+  a(report.cycle_before);
+  a(report.cycle_after);
+  a(report.pause_ns);
+  a(report.missed);
+  count_fields(a, report.counts);
+}
+
+}  // namespace
+
+// Found by list() of fields.h through the row's namespace.
+static void fields(vm::FieldWriter& a, const FateLine& line) {
+  a(static_cast<uint8_t>(line.row.fate));
+  row_fields(a, line.row);
+  live_fields(a, line.live);
+}
+
+static void fields(vm::FieldReader& a, FateLine& line) {
+  uint8_t fate = 0;
+  a(fate);
+  if (fate > static_cast<uint8_t>(online_change::Fate::kDropped)) {
+    a.fail();
+    return;
+  }
+  line.row.fate = static_cast<online_change::Fate>(fate);
+  row_fields(a, line.row);
+  live_fields(a, line.live);
+}
+
+static void fields(vm::FieldWriter& a, const LossLine& line) { loss_fields(a, line.loss); }
+static void fields(vm::FieldReader& a, LossLine& line) { loss_fields(a, line.loss); }
+
+base::Bytes encode(const FatePage& page) {
+  vm::FieldWriter writer;
+  page_fields(writer, page);
+  return writer.take();
+}
+
+base::Result<FatePage> decode_fate_page(base::ByteSpan body) {
+  vm::FieldReader reader(body);
+  FatePage page;
+  page_fields(reader, page);
+  if (!reader.done()) return vm::not_understood("fate report");
+  return page;
+}
+
+base::Bytes encode(const online_change::SwitchReport& report) {
+  vm::FieldWriter writer;
+  report_fields(writer, report);
+  return writer.take();
+}
+
+base::Result<online_change::SwitchReport> decode_switch_report(base::ByteSpan body) {
+  vm::FieldReader reader(body);
+  online_change::SwitchReport report;
+  report_fields(reader, report);
+  if (!reader.done()) return vm::not_understood("report of the switch");
+  return report;
+}
+
+}  // namespace stvm

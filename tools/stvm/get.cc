@@ -1,0 +1,76 @@
+// stvm get: values of variables, all of one boundary; or the list of variables.
+#include <cstdio>
+
+#include "tools/common/exit.h"
+#include "tools/common/json.h"
+#include "tools/stvm/commands.h"
+#include "tools/stvm/controller_client.h"
+#include "tools/stvm/values.h"
+
+namespace stvm {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {
+    {"--list", nullptr, "list variables and their types; NAMES are patterns with * and ?"},
+    {"--forces", nullptr, "list forced variables"},
+    STVM_DIR_OPTION,
+    STVM_FORMAT_OPTION,
+};
+constexpr tools::Command kCommand{"get", "NAMES...", "Shows values of variables.", kOptions};
+
+void print_list(const vm::Values& values, bool json) {
+  if (!json) {
+    for (const vm::ValueRow& row : values.rows) {
+      std::printf("%s : %s\n", row.path.c_str(), row.type.c_str());
+    }
+    return;
+  }
+  tools::JsonWriter out;
+  out.begin_array();
+  for (const vm::ValueRow& row : values.rows) {
+    out.begin_object().field("path", row.path).field("type", row.type).end_object();
+  }
+  out.end_array();
+  std::fputs(out.finish().c_str(), stdout);
+}
+
+base::Status list(const tools::Options& options, ControllerClient& client, bool json) {
+  std::vector<std::string> patterns = options.arguments();
+  if (patterns.empty()) patterns = {"*"};
+  vm::Values all;
+  for (const std::string& pattern : patterns) {
+    base::Result<vm::Values> values = client.list(pattern);
+    if (!values.ok()) return values.error();
+    std::move(values->rows.begin(), values->rows.end(), std::back_inserter(all.rows));
+  }
+  print_list(all, json);
+  return base::Ok{};
+}
+
+base::Status show(const tools::Options& options) {
+  base::Result<bool> json = wants_json(options);
+  if (!json.ok()) return json.error();
+  bool whole = options.has("--list") || options.has("--forces");
+  if (options.arguments().empty() && !whole) {
+    return base::Error{base::Refusal::kUsage, "get: needs NAMES, or --list"};
+  }
+  base::Result<ControllerClient> client = ControllerClient::connect(state_directory(options));
+  if (!client.ok()) return client.error();
+  if (options.has("--list")) return list(options, *client, *json);
+  base::Result<vm::Values> values =
+      options.has("--forces") ? client->forces() : client->get(options.arguments());
+  if (!values.ok()) return values.error();
+  std::fputs((*json ? values_json(*values) : values_text(*values)).c_str(), stdout);
+  return base::Ok{};
+}
+
+int run(const tools::Options& options) {
+  base::Status shown = show(options);
+  return shown.ok() ? tools::kOk : refuse(shown.error());
+}
+
+}  // namespace
+
+const Entry kGet{&kCommand, run};
+
+}  // namespace stvm

@@ -1,0 +1,20 @@
+// Hard modes (docs: style of tests): every program must come out the same when it is suspended
+// at every safe point, exchanged for itself at every boundary, or moved as a whole.
+#pragma once
+
+#include <string>
+
+#include "base/result.h"
+#include "online_change/apply/change.h"
+
+namespace stvm {
+
+enum class HardMode : uint8_t { kNone, kFuel1, kIdentity, kMove };
+base::Result<HardMode> parse_hard_mode(const std::string& text);
+
+// At a boundary: changes the running program to itself (kIdentity), or to itself with every
+// instance at another place (kMove; relinked by stc from `sources`).
+base::Status apply_hard_mode(HardMode mode, const std::vector<std::string>& sources,
+                             vm::Controller& controller);
+
+}  // namespace stvm

@@ -1,0 +1,22 @@
+// The state directory of one controller: its lock, its records, its socket.
+#pragma once
+
+#include <string>
+
+#include "base/result.h"
+#include "vm/runtime/descriptor.h"
+
+namespace stvm {
+
+class StateFolder {
+ public:
+  // Makes the directory (owner only) when it is not there, and locks it until the owner goes.
+  // kAlreadyRunning, kFileUnwritable.
+  static base::Result<StateFolder> open(const std::string& path);
+
+ private:
+  explicit StateFolder(vm::Descriptor lock) : lock_(std::move(lock)) {}
+  vm::Descriptor lock_;
+};
+
+}  // namespace stvm

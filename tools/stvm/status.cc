@@ -1,0 +1,98 @@
+// stvm status: what runs there.
+#include <algorithm>
+#include <cstdio>
+
+#include "tools/common/exit.h"
+#include "tools/common/fate_report.h"
+#include "tools/common/json.h"
+#include "tools/common/table.h"
+#include "tools/stvm/commands.h"
+#include "tools/stvm/controller_client.h"
+#include "tools/stvm/trap_text.h"
+
+namespace stvm {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {STVM_DIR_OPTION, STVM_FORMAT_OPTION};
+constexpr tools::Command kCommand{"status", "", "Shows what a controller runs and how it is.",
+                                  kOptions, 0,  0};
+
+bool on_trial(const vm::StatusReport& report) { return report.change == "trial"; }
+
+void print_versions(const vm::StatusReport& report) {
+  const char* state = report.faulted ? "FAULT" : on_trial(report) ? "running, on trial" : "running";
+  std::printf("%s: %s\n", report.name.c_str(), state);
+  std::printf("  running     %s\n", base::short_hex(report.running).c_str());
+  if (on_trial(report)) {
+    std::printf("  undo brings %s\n", base::short_hex(report.previous).c_str());
+  }
+  std::printf("  boots next  %s\n", base::short_hex(report.boots_next).c_str());
+  std::printf("  change      %s\n", report.change.c_str());
+  std::printf("  cycles      %llu of %s\n", static_cast<unsigned long long>(report.cycles),
+              tools::duration(report.base_period_ns).c_str());
+  std::printf("  forces      %llu\n\n", static_cast<unsigned long long>(report.forces));
+}
+
+void print_text(const vm::StatusReport& report) {
+  print_versions(report);
+  tools::Table tasks(
+      {"task", "> period", "> priority", "> scans", "> missed", "> last", "> longest", "state"});
+  for (const vm::TaskStatus& task : report.tasks) {
+    tasks.row({task.name, tools::duration(task.period_ns), std::to_string(task.priority),
+               std::to_string(task.scans), std::to_string(task.missed),
+               tools::duration(task.last_ns), tools::duration(task.max_ns),
+               task.stopped ? "stopped" : "ok"});
+  }
+  std::fputs(tasks.text().c_str(), stdout);
+  for (const vm::TrapRow& trap : report.traps) std::printf("trap: %s\n", trap_text(trap).c_str());
+}
+
+void task_json(tools::JsonWriter& json, const vm::TaskStatus& task) {
+  json.begin_object().field("name", task.name).field("period_ns", task.period_ns);
+  json.field("priority", task.priority).field("scans", task.scans).field("missed", task.missed);
+  json.field("last_ns", task.last_ns).field("max_ns", task.max_ns);
+  json.field("stopped", task.stopped).end_object();
+}
+
+void print_json(const vm::StatusReport& report) {
+  tools::JsonWriter json;
+  json.begin_object().field("name", report.name);
+  json.field("running", base::to_hex(report.running)).field("edition", report.edition);
+  json.field("change", report.change).field("trial", on_trial(report));
+  if (on_trial(report)) json.field("undo_brings", base::to_hex(report.previous));
+  json.field("boots_next", base::to_hex(report.boots_next)).field("cycles", report.cycles);
+  json.field("uptime_ns", report.uptime_ns).field("base_period_ns", report.base_period_ns);
+  json.field("faulted", report.faulted).field("forces", report.forces);
+  json.key("tasks").begin_array();
+  for (const vm::TaskStatus& task : report.tasks) task_json(json, task);
+  json.end_array().key("traps").begin_array();
+  for (const vm::TrapRow& trap : report.traps) {
+    json.begin_object().field("cycle", trap.cycle).field("task", trap.task);
+    json.field("pou", trap.text.pou).field("file", trap.text.file).field("line", trap.text.line);
+    json.field("text", trap.text.text).end_object();
+  }
+  json.end_array().end_object();
+  std::fputs(json.finish().c_str(), stdout);
+}
+
+base::Status show(const tools::Options& options) {
+  base::Result<bool> json = wants_json(options);
+  if (!json.ok()) return json.error();
+  base::Result<ControllerClient> client = ControllerClient::connect(state_directory(options));
+  if (!client.ok()) return client.error();
+  base::Result<vm::StatusReport> report = client->status();
+  if (!report.ok()) return report.error();
+  (*json ? print_json : print_text)(*report);
+  return base::Ok{};
+}
+
+int run(const tools::Options& options) {
+  base::Status shown = show(options);
+  return shown.ok() ? tools::kOk : refuse(shown.error());
+}
+
+}  // namespace
+
+const Entry kStatus{&kCommand, run};
+
+}  // namespace stvm

@@ -1,0 +1,24 @@
+#include "tools/stvm/stop_signal.h"
+
+#include <csignal>
+
+namespace stvm {
+namespace {
+
+volatile std::sig_atomic_t stop_received = 0;
+
+void on_signal(int) { stop_received = 1; }
+
+}  // namespace
+
+void StopSignal::install() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool StopSignal::received() { return stop_received != 0; }
+
+}  // namespace stvm

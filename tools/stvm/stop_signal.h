@@ -1,0 +1,13 @@
+// SIGINT and SIGTERM end a run at the next boundary instead of killing it.
+#pragma once
+
+namespace stvm {
+
+// A signal handler can reach a static only; this is the one in the tool.
+class StopSignal {
+ public:
+  static void install();
+  static bool received();
+};
+
+}  // namespace stvm

@@ -1,0 +1,84 @@
+// stvm undo, accept, stop: one command, one answer.
+#include <cstdio>
+
+#include "tools/common/exit.h"
+#include "tools/common/json.h"
+#include "tools/stvm/commands.h"
+#include "tools/stvm/controller_client.h"
+#include "tools/stvm/switch_text.h"
+
+namespace stvm {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {STVM_DIR_OPTION, STVM_FORMAT_OPTION};
+constexpr tools::Command kUndoCommand{
+    "undo",   "", "Brings back the program, and the values, from before the last change.",
+    kOptions, 0,  0};
+constexpr tools::Command kAcceptCommand{
+    "accept", "", "Makes the last change final; the new program boots next.", kOptions, 0, 0};
+constexpr tools::Command kStopCommand{"stop", "", "Ends a serving controller.", kOptions, 0, 0};
+
+// Connects and learns which version runs.
+base::Result<ControllerClient> meet(const tools::Options& options) {
+  base::Result<ControllerClient> client = ControllerClient::connect(state_directory(options));
+  if (!client.ok()) return client;
+  base::Result<vm::StatusReport> status = client->status();
+  if (!status.ok()) return status.error();
+  return client;
+}
+
+base::Status undo_change(const tools::Options& options) {
+  base::Result<bool> json = wants_json(options);
+  if (!json.ok()) return json.error();
+  base::Result<ControllerClient> client = meet(options);
+  if (!client.ok()) return client.error();
+  base::Result<online_change::SwitchReport> report = client->undo();
+  if (!report.ok()) return report.error();
+  if (!*json) {
+    std::fputs(switch_text("undone", *report).c_str(), stdout);
+    return base::Ok{};
+  }
+  tools::JsonWriter out;
+  out.begin_object().field("undone", true);
+  switch_json(*report, out);
+  out.end_object();
+  std::fputs(out.finish().c_str(), stdout);
+  return base::Ok{};
+}
+
+base::Status simple(const tools::Options& options, vm::Command command, const char* done) {
+  base::Result<bool> json = wants_json(options);
+  if (!json.ok()) return json.error();
+  base::Result<ControllerClient> client = meet(options);
+  if (!client.ok()) return client.error();
+  base::Result<base::Bytes> answer = client->call({.command = command});
+  if (!answer.ok()) return answer.error();
+  if (!*json) {
+    std::printf("%s\n", done);
+    return base::Ok{};
+  }
+  tools::JsonWriter out;
+  out.begin_object().field(done, true).end_object();
+  std::fputs(out.finish().c_str(), stdout);
+  return base::Ok{};
+}
+
+int code_of(const base::Status& status) {
+  return status.ok() ? tools::kOk : refuse(status.error());
+}
+
+int undo(const tools::Options& options) { return code_of(undo_change(options)); }
+int accept(const tools::Options& options) {
+  return code_of(simple(options, vm::Command::kAccept, "accepted"));
+}
+int stop(const tools::Options& options) {
+  return code_of(simple(options, vm::Command::kStop, "stopped"));
+}
+
+}  // namespace
+
+const Entry kUndo{&kUndoCommand, undo};
+const Entry kAccept{&kAcceptCommand, accept};
+const Entry kStop{&kStopCommand, stop};
+
+}  // namespace stvm
