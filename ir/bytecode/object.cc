@@ -1,0 +1,168 @@
+// Canonical form of objects. What is left out on purpose: source lines and the
+// file, so that moving a POU in its file or a comment before it does not make
+// another POU of it (E1).
+#include "ir/bytecode/object.h"
+
+namespace ir {
+namespace {
+
+constexpr uint32_t kMaxDepth = 1000;
+
+class Canonical {
+ public:
+  Canonical(const Object& object, const Program& program)
+      : object_(object), program_(program), types_(program.types) {}
+
+  base::Bytes bytes() {
+    out_.text(fold_name(object_.name));
+    out_.u8(static_cast<uint8_t>(object_.kind));
+    type(object_.self);
+    table(object_.slots, &Canonical::slot);
+    table(object_.places, &Canonical::place);
+    table(object_.constants, &Canonical::constant);
+    table(object_.regions, &Canonical::region);
+    table(object_.bounds, &Canonical::bound);
+    table(object_.ranges, &Canonical::range);
+    table(object_.callees, &Canonical::name);
+    table(object_.code, &Canonical::unit);
+    table(object_.merges, &Canonical::merge);
+    return out_.take();
+  }
+
+ private:
+  template <class T>
+  void table(const std::vector<T>& entries, void (Canonical::*write)(const T&)) {
+    out_.u32(static_cast<uint32_t>(entries.size()));
+    for (const T& entry : entries) (this->*write)(entry);
+  }
+
+  void name(const std::string& text) { out_.text(fold_name(text)); }
+  void type(TypeId id) { out_.text(id.valid() ? fold_name(types_.text(id)) : ""); }
+  void region(const Region& region) {
+    type(region.type);
+    out_.u8(region.dim);
+  }
+
+  const Pou* callee_of(const Slot& slot) const {
+    for (const Pou& pou : program_.pous) {
+      if (same_name(pou.name, object_.callees[slot.callee])) return &pou;
+    }
+    return nullptr;
+  }
+
+  void slot(const Slot& slot) {
+    out_.u8(static_cast<uint8_t>(slot.kind));
+    out_.u8(static_cast<uint8_t>(slot.local));
+    out_.boolean(slot.aggregate);
+    out_.u8(static_cast<uint8_t>(slot.cls));
+    region(slot.region);
+    name(slot.name);
+    if (slot.kind == SlotKind::kArg) {
+      name(object_.callees[slot.callee]);
+      const Pou* callee = callee_of(slot);
+      const bool known = callee != nullptr && slot.param < callee->locals.size();
+      name(known ? callee->locals[slot.param].name : "");
+    }
+    if (slot.kind == SlotKind::kNativeArg) out_.u32(slot.param);
+  }
+
+  Region root_of(const ObjectPlace& place) const {
+    switch (place.root) {
+      case PlaceRoot::kSelf:
+        return {object_.self, 0};
+      case PlaceRoot::kGlobal:
+        return {program_.globals, 0};
+      case PlaceRoot::kSlot:
+        return object_.slots[place.slot].region;
+      case PlaceRoot::kRegion:
+        return place.region;
+    }
+    return place.region;
+  }
+
+  void place(const ObjectPlace& place) {
+    out_.u8(static_cast<uint8_t>(place.root));
+    out_.u32(place.slot);
+    region(place.region);
+    Region at = root_of(place);
+    out_.u32(static_cast<uint32_t>(place.steps.size()));
+    for (const Step& step : place.steps) {
+      out_.u8(static_cast<uint8_t>(step.kind));
+      if (step.kind == StepKind::kMember) {
+        const Member& member = types_[at.type].members[step.index];
+        name(member.name);
+        at = {member.type, 0};
+        continue;
+      }
+      out_.i64(step.constant_index);
+      const Type& array = types_[at.type];
+      ++at.dim;
+      if (at.dim == array.dims.size() && !types_.is_instance(array.base)) at = {array.base, 0};
+    }
+    region(place.result);
+  }
+
+  void constant(const ObjectConstant& constant) {
+    out_.blob(constant.bytes);
+    out_.u8(static_cast<uint8_t>(constant.cls));
+    type(constant.type);
+    if (constant.type.valid()) value(constant.type, constant.value, 0);
+  }
+
+  // The elements that the constant names; what it leaves to the type is the type's.
+  void value(TypeId id, ConstId constant, uint32_t depth) {
+    out_.boolean(constant.valid());
+    if (!constant.valid() || depth > kMaxDepth) return;
+    const ConstValue& content = program_.constants[constant];
+    const Type& at = types_[id];
+    out_.u64(content.bits);
+    out_.text(content.text);
+    out_.u32(static_cast<uint32_t>(content.elements.size()));
+    for (const ConstElement& element : content.elements) {
+      const bool member = element.first < at.members.size();
+      if (member) {
+        name(at.members[element.first].name);
+      } else {
+        out_.u32(element.first);
+      }
+      out_.u32(element.count);
+      value(member ? at.members[element.first].type : at.base, element.value, depth + 1);
+    }
+  }
+
+  void bound(const Bound& bound) {
+    type(bound.array);
+    out_.u8(bound.dim);
+    name(bound.name);
+  }
+  void range(const Range& range) {
+    out_.i64(range.low);
+    out_.i64(range.high);
+    name(range.name);
+  }
+  void unit(const Unit& unit) {
+    for (uint16_t half : {unit.op, unit.a, unit.b, unit.c}) out_.u16(half);
+  }
+  void merge(const Merge& merge) {
+    out_.u32(merge.unit);
+    out_.u32(static_cast<uint32_t>(merge.slots.size()));
+    for (uint16_t slot : merge.slots) out_.u16(slot);
+  }
+
+  const Object& object_;
+  const Program& program_;
+  const TypeTable& types_;
+  base::ByteWriter out_;
+};
+
+}  // namespace
+
+base::Bytes canonical_bytes(const Object& object, const Program& program) {
+  return Canonical(object, program).bytes();
+}
+
+base::Digest identity(const Object& object, const Program& program) {
+  return base::sha256(canonical_bytes(object, program));
+}
+
+}  // namespace ir

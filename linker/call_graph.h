@@ -1,0 +1,23 @@
+// Who calls whom: recursion is refused, and the deepest chain says how much stack
+// a program needs (V11).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/result.h"
+#include "ir/bytecode/image.h"
+#include "ir/bytecode/object.h"
+
+namespace linker {
+
+struct StackNeeds {
+  uint32_t bytes = 0;  // over all priorities
+  uint32_t depth = 0;  // frames of the deepest chain
+};
+
+// `objects` by POU number, null for unused numbers; image.pous have their frame sizes.
+base::Result<StackNeeds> stack_needs(const ir::Image& image,
+                                     const std::vector<const ir::Object*>& objects);
+
+}  // namespace linker

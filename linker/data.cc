@@ -1,0 +1,142 @@
+#include "linker/data.h"
+
+#include <algorithm>
+
+namespace linker {
+namespace {
+
+constexpr size_t kZeroGap = 16;  // a shorter run of zeros stays inside a data run
+
+void store_id(uint32_t id, uint8_t* slot) {
+  for (uint32_t i = 0; i < 4; ++i) slot[i] = static_cast<uint8_t>(id >> (8 * i));
+}
+
+// The parts of an area that are not zero.
+void add_runs(uint32_t offset, const base::Bytes& bytes, std::vector<ir::DataRun>& runs) {
+  size_t at = 0;
+  while (at < bytes.size()) {
+    if (bytes[at] == 0) {
+      ++at;
+      continue;
+    }
+    size_t end = at;
+    for (size_t i = at; i < bytes.size() && i < end + kZeroGap; ++i) {
+      if (bytes[i] != 0) end = i + 1;
+    }
+    runs.push_back({offset + static_cast<uint32_t>(at),
+                    base::Bytes(bytes.begin() + static_cast<ptrdiff_t>(at),
+                                bytes.begin() + static_cast<ptrdiff_t>(end))});
+    at = end;
+  }
+}
+
+class DataTables {
+ public:
+  DataTables(ir::Image& image, const std::vector<InstanceNode>& nodes)
+      : image_(image), nodes_(nodes), initial_(image.types, image.constants, image.layouts) {}
+
+  void run() {
+    std::vector<std::vector<uint32_t>> children(nodes_.size());
+    for (uint32_t i = 1; i < nodes_.size(); ++i) {
+      if (!nodes_[i].program) children[nodes_[i].parent].push_back(i);
+    }
+    for (uint32_t i = 0; i < nodes_.size(); ++i) {
+      add_area(nodes_[i], children[i]);
+      add_members(nodes_[i]);
+    }
+    std::sort(image_.data.begin(), image_.data.end(),
+              [](const ir::DataRun& a, const ir::DataRun& b) { return a.offset < b.offset; });
+    join_retained();
+  }
+
+ private:
+  uint32_t data_of(const InstanceNode& node) const { return image_.instances[node.id].data; }
+
+  void add_area(const InstanceNode& node, const std::vector<uint32_t>& children) {
+    base::Bytes bytes(image_.layouts[node.type].used, 0);
+    initial_.write_area(node.type, node.init, bytes);
+    for (uint32_t child : children) {
+      store_id(nodes_[child].id, bytes.data() + nodes_[child].slot_offset);
+    }
+    add_runs(data_of(node), bytes, image_.data);
+  }
+
+  void add_members(const InstanceNode& node) {
+    const std::vector<ir::Member>& members = image_.types[node.type].members;
+    for (size_t i = 0; i < members.size(); ++i) {
+      const ir::Member& member = members[i];
+      if (member.section == ir::Section::kInOut) continue;
+      const uint32_t at = data_of(node) + image_.layouts[node.type].member_offsets[i];
+      if (member.retain || node.retained) retain(member.type, at, 0);
+      bind(member, at);
+    }
+  }
+
+  // Instance slots are not values: their instances are retained themselves.
+  void retain(ir::TypeId id, uint32_t at, uint32_t depth) {
+    const ir::Type& type = image_.types[id];
+    if (image_.types.is_instance(id) || depth > 200) return;
+    if (!holds_slots(id, 0)) {
+      image_.retain.push_back({at, image_.layouts[id].size});
+    } else if (type.kind == ir::Kind::kStruct) {
+      for (size_t i = 0; i < type.members.size(); ++i) {
+        retain(type.members[i].type, at + image_.layouts[id].member_offsets[i], depth + 1);
+      }
+    } else {
+      const uint32_t size = image_.layouts[type.base].size;
+      for (uint32_t i = 0; i < image_.layouts[id].size; i += size) {
+        retain(type.base, at + i, depth + 1);
+      }
+    }
+  }
+
+  bool holds_slots(ir::TypeId id, uint32_t depth) const {
+    const ir::Type& type = image_.types[id];
+    if (image_.types.is_instance(id) || depth > 200) return true;
+    if (type.kind == ir::Kind::kArray) return holds_slots(type.base, depth + 1);
+    if (type.kind != ir::Kind::kStruct) return false;
+    return std::any_of(type.members.begin(), type.members.end(), [&](const ir::Member& member) {
+      return holds_slots(member.type, depth + 1);
+    });
+  }
+
+  void join_retained() {
+    std::vector<ir::RetainRange>& ranges = image_.retain;
+    std::sort(ranges.begin(), ranges.end(),
+              [](const auto& a, const auto& b) { return a.data < b.data; });
+    std::vector<ir::RetainRange> joined;
+    for (const ir::RetainRange& range : ranges) {
+      if (!joined.empty() && joined.back().data + joined.back().size == range.data) {
+        joined.back().size += range.size;
+      } else {
+        joined.push_back(range);
+      }
+    }
+    ranges = std::move(joined);
+  }
+
+  // Markers (%M) are variables like others; only inputs and outputs are exchanged.
+  void bind(const ir::Member& member, uint32_t at) {
+    const ir::DirectArea area = member.address.area;
+    if (area != ir::DirectArea::kInput && area != ir::DirectArea::kOutput) return;
+    image_.io.push_back({member.address, at, member.type});
+    const bool scalar = image_.types.is_scalar(member.type);
+    const uint64_t bits =
+        scalar ? member.address.bit_size : uint64_t{image_.layouts[member.type].size} * 8;
+    const uint64_t end = (uint64_t{member.address.bit_offset} + bits + 7) / 8;
+    uint32_t& bytes = area == ir::DirectArea::kInput ? image_.input_bytes : image_.output_bytes;
+    bytes = std::max(bytes, static_cast<uint32_t>(end));
+  }
+
+  ir::Image& image_;
+  const std::vector<InstanceNode>& nodes_;
+  InitialValues initial_;
+};
+
+}  // namespace
+
+void fill_data_tables(ir::Image& image, const std::vector<InstanceNode>& nodes) {
+  DataTables(image, nodes).run();
+}
+
+}  // namespace linker

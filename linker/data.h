@@ -1,0 +1,15 @@
+// Tables about data memory: initial bytes, I/O bindings, retained ranges.
+#pragma once
+
+#include <vector>
+
+#include "ir/bytecode/image.h"
+#include "linker/instances.h"
+
+namespace linker {
+
+// Fills image.data, io, input_bytes, output_bytes and retain; instances, layouts
+// and areas are set.
+void fill_data_tables(ir::Image& image, const std::vector<InstanceNode>& nodes);
+
+}  // namespace linker

@@ -1,0 +1,286 @@
+#include "linker/layout.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <unordered_map>
+
+#include "base/limits.h"
+#include "linker/extents.h"
+
+namespace linker {
+namespace {
+
+using ir::Kind;
+using ir::Layouts;
+using ir::Member;
+using ir::Section;
+using ir::Type;
+using ir::TypeId;
+using ir::TypeLayout;
+
+constexpr uint32_t kSlotBytes = 4;        // an instance ID or an address
+constexpr uint32_t kMaxEmbedding = 1000;  // structures inside structures
+// Larger members of an area go behind the small ones, which 16-bit offsets reach.
+constexpr uint64_t kLargeMember = 256;
+
+uint64_t align_up(uint64_t value, uint64_t align) { return (value + align - 1) / align * align; }
+
+bool has_area(Kind kind) {
+  return kind == Kind::kFunctionBlock || kind == Kind::kProgram || kind == Kind::kGlobals;
+}
+
+struct Extent64 {
+  uint64_t begin = 0;
+  uint64_t size = 0;
+};
+
+class Builder {
+ public:
+  Builder(const ir::TypeTable& types, const Slack& slack, const ir::Image* base)
+      : types_(types), slack_(slack), base_(base) {
+    layouts_.of.resize(types.size());
+    done_.resize(types.size(), false);
+    if (base_ != nullptr) index_base();
+  }
+
+  base::Result<Layouts> run() {
+    for (uint32_t i = 0; i < types_.size() && !error_; ++i) value_layout(TypeId(i), 0);
+    for (uint32_t i = 0; i < types_.size() && !error_; ++i) {
+      if (has_area(types_[TypeId(i)].kind)) area_layout(TypeId(i));
+    }
+    if (error_) return *error_;
+    return std::move(layouts_);
+  }
+
+ private:
+  std::string key_of(const ir::TypeTable& types, TypeId id) const {
+    const Kind kind = types[id].kind;
+    const std::string name = kind == Kind::kGlobals ? "" : ir::fold_name(types.text(id));
+    return std::to_string(static_cast<uint32_t>(kind)) + ":" + name;
+  }
+
+  void index_base() {
+    for (uint32_t i = 0; i < base_->types.size(); ++i) {
+      if (!base_->types.has_members(TypeId(i))) continue;
+      old_types_.emplace(key_of(base_->types, TypeId(i)), TypeId(i));
+    }
+  }
+
+  // The running version's type of the same name and kind; invalid: none.
+  TypeId old_of(TypeId id) const {
+    if (base_ == nullptr) return {};
+    const auto found = old_types_.find(key_of(types_, id));
+    return found == old_types_.end() ? TypeId() : found->second;
+  }
+
+  void too_large(TypeId id, uint64_t size, uint64_t limit) {
+    error_ = base::Error{base::Refusal::kTooLarge,
+                         "`" + types_.text(id) + "` needs " + std::to_string(size) +
+                             " bytes; the limit is " + std::to_string(limit) + "."};
+  }
+
+  void value_layout(TypeId id, uint32_t depth) {
+    if (done_[id.index] || error_) return;
+    if (depth > kMaxEmbedding) {
+      error_ =
+          base::Error{base::Refusal::kTooMany, "`" + types_.text(id) + "` is embedded more than " +
+                                                   std::to_string(kMaxEmbedding) + " levels deep."};
+      return;
+    }
+    done_[id.index] = true;
+    const Type& type = types_[id];
+    TypeLayout& layout = layouts_.of[id.index];
+    if (has_area(type.kind)) {
+      layout.size = layout.align = kSlotBytes;
+    } else if (type.kind == Kind::kString) {
+      layout.size = type.capacity + 1;
+    } else if (type.kind == Kind::kWstring) {
+      layout.size = 2 * (type.capacity + 1);
+      layout.align = 2;
+    } else if (type.kind == Kind::kArray) {
+      array_layout(id, depth);
+    } else if (type.kind == Kind::kStruct) {
+      struct_layout(id, depth);
+    } else {
+      layout.size = layout.align = ir::scalar_size(types_.scalar(id));
+    }
+  }
+
+  void array_layout(TypeId id, uint32_t depth) {
+    const Type& type = types_[id];
+    value_layout(type.base, depth + 1);
+    const TypeLayout& element = layouts_[type.base];
+    uint64_t size = element.size;
+    for (const ir::Dimension& dim : type.dims) {
+      const uint64_t count = dim.count();
+      if (count == 0 || count > base::kMaxTypeBytes || size > base::kMaxTypeBytes) {
+        return too_large(id, std::max(size, count), base::kMaxTypeBytes);
+      }
+      size *= count;
+    }
+    if (size > base::kMaxTypeBytes) return too_large(id, size, base::kMaxTypeBytes);
+    layouts_.of[id.index].size = static_cast<uint32_t>(size);
+    layouts_.of[id.index].align = element.align;
+  }
+
+  void struct_layout(TypeId id, uint32_t depth) {
+    for (const Member& member : types_[id].members) value_layout(member.type, depth + 1);
+    if (error_) return;
+    place_members(id, 0);
+    TypeLayout& layout = layouts_.of[id.index];
+    for (const Member& member : types_[id].members) {
+      layout.align = std::max(layout.align, align_of(member));
+    }
+    layout.size = static_cast<uint32_t>(align_up(std::max(layout.used, 1u), layout.align));
+  }
+
+  uint32_t size_of(const Member& member) const {
+    return member.section == Section::kInOut ? kSlotBytes : layouts_[member.type].size;
+  }
+  uint32_t align_of(const Member& member) const {
+    return member.section == Section::kInOut ? kSlotBytes : layouts_[member.type].align;
+  }
+
+  void area_layout(TypeId id) {
+    const TypeId old = old_of(id);
+    const uint32_t old_capacity = old.valid() ? base_->layouts[old].area_capacity : 0;
+    place_members(id, old_capacity);
+    if (error_) return;
+    TypeLayout& layout = layouts_.of[id.index];
+    if (old.valid() && layout.used <= old_capacity) {
+      layout.area_capacity = old_capacity;
+      return;
+    }
+    const uint64_t capacity = align_up(std::max<uint64_t>(layout.used + slack_of(id), 8), 8);
+    if (capacity > base::kMaxDataBytes) return too_large(id, capacity, base::kMaxDataBytes);
+    layout.area_capacity = static_cast<uint32_t>(capacity);
+  }
+
+  uint64_t slack_of(TypeId id) const {
+    const uint64_t used = layouts_[id].used;
+    const auto slack = [used](uint64_t percent, uint64_t bytes) {
+      return std::max(used * percent / 100, bytes);
+    };
+    switch (types_[id].kind) {
+      case Kind::kGlobals:
+        return slack(slack_.globals_percent, slack_.globals_bytes);
+      case Kind::kProgram:
+        return slack(slack_.program_percent, slack_.program_bytes);
+      default:
+        return slack(slack_.instance_percent, slack_.instance_bytes);
+    }
+  }
+
+  // Offset of the member in the running version when it can stay there (A1, A4).
+  std::optional<uint32_t> kept_offset(TypeId old, const Member& member) const {
+    if (!old.valid()) return std::nullopt;
+    const int32_t number = base_->types.find_member(old, member.name);
+    if (number < 0) return std::nullopt;
+    const Member& before = base_->types[old].members[static_cast<size_t>(number)];
+    const bool in_out = member.section == Section::kInOut;
+    if ((before.section == Section::kInOut) != in_out) return std::nullopt;
+    if (!in_out && !same_value_type(base_->types, base_->layouts, before.type, types_, layouts_,
+                                    member.type)) {
+      return std::nullopt;
+    }
+    return base_->layouts[old].member_offsets[static_cast<size_t>(number)];
+  }
+
+  // Byte ranges of all members of the running version's type.
+  std::vector<Extent64> old_ranges(TypeId old) const {
+    std::vector<Extent64> ranges;
+    const Type& type = base_->types[old];
+    for (size_t i = 0; i < type.members.size(); ++i) {
+      const bool in_out = type.members[i].section == Section::kInOut;
+      ranges.push_back({base_->layouts[old].member_offsets[i],
+                        in_out ? kSlotBytes : base_->layouts[type.members[i].type].size});
+    }
+    return ranges;
+  }
+
+  void place_members(TypeId id, uint32_t capacity) {
+    const Type& type = types_[id];
+    const TypeId old = old_of(id);
+    std::vector<uint32_t>& offsets = layouts_.of[id.index].member_offsets;
+    offsets.assign(type.members.size(), 0);
+    std::vector<size_t> added;
+    Extents taken;  // what lives on
+    for (size_t i = 0; i < type.members.size(); ++i) {
+      if (const auto offset = kept_offset(old, type.members[i])) {
+        offsets[i] = *offset;
+        taken.add(*offset, size_of(type.members[i]));
+      } else {
+        added.push_back(i);
+      }
+    }
+    if (has_area(type.kind)) {
+      std::stable_partition(added.begin(), added.end(),
+                            [&](size_t i) { return size_of(type.members[i]) <= kLargeMember; });
+    }
+    place_added(id, old, capacity, added, taken, offsets);
+    finish_members(id);
+  }
+
+  // In order of preference: holes of the running version, the space behind it, what
+  // this change frees, and beyond the capacity.
+  void place_added(TypeId id, TypeId old, uint32_t capacity, const std::vector<size_t>& added,
+                   Extents& taken, std::vector<uint32_t>& offsets) {
+    Extents before = taken;
+    uint64_t old_used = 0;
+    if (old.valid()) {
+      old_used = base_->layouts[old].used;
+      for (const Extent64& range : old_ranges(old)) before.add(range.begin, range.size);
+    }
+    const uint64_t unlimited = uint64_t{1} << 40;
+    const uint64_t end = capacity != 0 ? capacity : unlimited;
+    std::map<std::pair<uint64_t, uint64_t>, uint64_t> hints;
+    for (size_t i : added) {
+      const Member& member = types_[id].members[i];
+      const uint64_t size = size_of(member);
+      const uint64_t align = align_of(member);
+      // Gaps only shrink, so a search for the same size goes on where the last one ended.
+      uint64_t& hint = hints[{size, align}];
+      std::optional<uint64_t> at =
+          before.first_gap(std::min(hint, old_used), old_used, size, align);
+      if (!at) at = before.first_gap(std::max(hint, old_used), end, size, align);
+      if (!at) at = taken.first_gap(0, end, size, align);
+      if (!at) at = before.first_gap(std::max(hint, old_used), unlimited, size, align);
+      if (*at >= hint) hint = *at;
+      if (*at + size > base::kMaxDataBytes) return too_large(id, *at + size, base::kMaxDataBytes);
+      offsets[i] = static_cast<uint32_t>(*at);
+      before.add(*at, size);
+      taken.add(*at, size);
+    }
+  }
+
+  void finish_members(TypeId id) {
+    TypeLayout& layout = layouts_.of[id.index];
+    uint64_t used = 0;
+    for (size_t i = 0; i < types_[id].members.size(); ++i) {
+      used = std::max<uint64_t>(
+          used, uint64_t{layout.member_offsets[i]} + size_of(types_[id].members[i]));
+    }
+    const uint64_t limit =
+        has_area(types_[id].kind) ? uint64_t{base::kMaxDataBytes} : uint64_t{base::kMaxTypeBytes};
+    if (used > limit && !error_) return too_large(id, used, limit);
+    layout.used = static_cast<uint32_t>(used);
+  }
+
+  const ir::TypeTable& types_;
+  const Slack& slack_;
+  const ir::Image* base_;
+  Layouts layouts_;
+  std::vector<bool> done_;
+  std::unordered_map<std::string, TypeId> old_types_;
+  std::optional<base::Error> error_;
+};
+
+}  // namespace
+
+base::Result<Layouts> lay_out(const ir::TypeTable& types, const Slack& slack,
+                              const ir::Image* base) {
+  return Builder(types, slack, base).run();
+}
+
+}  // namespace linker

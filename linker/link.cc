@@ -1,0 +1,231 @@
+#include "linker/link.h"
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "base/limits.h"
+#include "linker/areas.h"
+#include "linker/call_graph.h"
+#include "linker/data.h"
+#include "linker/instances.h"
+#include "linker/relocate.h"
+
+namespace linker {
+namespace {
+
+class Linker {
+ public:
+  Linker(const ir::Program& program, const std::vector<ir::Object>& objects, const Options& options)
+      : program_(program),
+        objects_(objects),
+        options_(options),
+        context_{program, image_, pool_, {}, {}, {}, {}} {}
+
+  base::Result<ir::Image> run() {
+    base::Status (Linker::*const steps[])() = {
+        &Linker::lay_out_types, &Linker::number_pous, &Linker::place_instances, &Linker::fill_pool,
+        &Linker::link_code,     &Linker::link_tasks,  &Linker::measure_stack,
+    };
+    copy_declarations();
+    for (const auto step : steps) {
+      if (base::Status status = (this->*step)(); !status.ok()) return status.error();
+    }
+    fill_data_tables(image_, nodes_);
+    return std::move(image_);
+  }
+
+ private:
+  void copy_declarations() {
+    image_.name = program_.name;
+    image_.types = program_.types;
+    image_.constants = program_.constants;
+    image_.globals = program_.globals;
+  }
+
+  base::Status lay_out_types() {
+    base::Result<ir::Layouts> layouts = lay_out(program_.types, options_.slack, options_.base);
+    if (!layouts.ok()) return layouts.error();
+    image_.layouts = std::move(layouts).value();
+    return base::Ok{};
+  }
+
+  // A POU keeps its number while it lives; new ones take those of dead ones first.
+  base::Status number_pous() {
+    std::unordered_map<std::string, uint32_t> old_numbers;
+    size_t count = 0;
+    if (options_.base != nullptr) {
+      count = options_.base->pous.size();
+      for (uint32_t i = 0; i < count; ++i) {
+        old_numbers.emplace(ir::fold_name(options_.base->pous[i].name), i);
+      }
+    }
+    context_.objects.assign(count, nullptr);
+    std::vector<const ir::Object*> added;
+    for (const ir::Object& object : objects_) {
+      const auto old = old_numbers.find(ir::fold_name(object.name));
+      if (old == old_numbers.end()) {
+        added.push_back(&object);
+      } else {
+        context_.objects[old->second] = &object;
+      }
+    }
+    size_t next = 0;
+    for (const ir::Object* object : added) {
+      while (next < context_.objects.size() && context_.objects[next] != nullptr) ++next;
+      if (next == context_.objects.size()) context_.objects.push_back(nullptr);
+      context_.objects[next] = object;
+    }
+    while (!context_.objects.empty() && context_.objects.back() == nullptr) {
+      context_.objects.pop_back();
+    }
+    return name_pous();
+  }
+
+  base::Status name_pous() {
+    if (context_.objects.size() > base::kMaxPous) {
+      return base::Error{base::Refusal::kTooMany, std::to_string(context_.objects.size()) +
+                                                      " POUs; the limit is " +
+                                                      std::to_string(base::kMaxPous)};
+    }
+    for (uint32_t i = 0; i < context_.objects.size(); ++i) {
+      const ir::Object* object = context_.objects[i];
+      if (object == nullptr) continue;
+      context_.pou_numbers.emplace(ir::fold_name(object->name), i);
+      if (object->self.valid()) pou_of_type_.emplace(object->self.index, i);
+    }
+    for (const ir::Object& object : objects_) {
+      for (const std::string& callee : object.callees) {
+        if (context_.pou_numbers.contains(ir::fold_name(callee))) continue;
+        return base::Error{base::Refusal::kUndefinedSymbol,
+                           "`" + object.name + "` calls `" + callee + "`, which is not defined."};
+      }
+    }
+    return base::Ok{};
+  }
+
+  base::Status place_instances() {
+    base::Result<std::vector<InstanceNode>> nodes = walk_instances(program_, image_.layouts);
+    if (!nodes.ok()) return nodes.error();
+    nodes_ = std::move(nodes).value();
+    base::Result<std::vector<ir::Instance>> rows =
+        number_instances(program_, nodes_, options_.base);
+    if (!rows.ok()) return rows.error();
+    image_.instances = std::move(rows).value();
+    for (size_t i = 1; i < nodes_.size(); ++i) {
+      const auto pou = pou_of_type_.find(nodes_[i].type.index);
+      if (pou == pou_of_type_.end()) {
+        return base::Error{base::Refusal::kUndefinedSymbol,
+                           "`" + program_.types[nodes_[i].type].name +
+                               "` has instances but no body: its object is missing."};
+      }
+      image_.instances[nodes_[i].id].pou = pou->second;
+    }
+    base::Result<AreaPlan> areas =
+        place_areas(image_, options_.slack, options_.base, options_.move_all);
+    if (!areas.ok()) return areas.error();
+    image_.free = std::move(areas->free);
+    image_.data_capacity = areas->data_capacity;
+    return base::Ok{};
+  }
+
+  base::Status fill_pool() {
+    const InitialValues initial(image_.types, image_.constants, image_.layouts);
+    for (const ir::Object* object : context_.objects) {
+      if (object != nullptr) pool_.add_scalars(*object);
+    }
+    for (const ir::Object* object : context_.objects) {
+      if (object != nullptr) pool_.add_values(*object, initial, image_.layouts);
+    }
+    image_.pool = pool_.bytes();
+    if (image_.pool.size() > ir::kConstPoolLimit) {
+      return base::Error{base::Refusal::kTooLarge,
+                         "the constants need " + std::to_string(image_.pool.size()) +
+                             " bytes; the limit is " + std::to_string(ir::kConstPoolLimit)};
+    }
+    return base::Ok{};
+  }
+
+  base::Status link_code() {
+    for (const ir::Object* object : context_.objects) {
+      context_.parameter_offsets.emplace_back();
+      if (object == nullptr) continue;
+      base::Result<FrameLayout> frame = lay_out_frame(*object, image_.layouts, {});
+      if (!frame.ok()) return frame.error();
+      context_.parameter_offsets.back() = std::move(frame->offsets);
+    }
+    for (const ir::Object* object : context_.objects) {
+      if (object == nullptr) {
+        add_pou(unused_pou());
+        continue;
+      }
+      base::Result<LinkedCode> linked = relocate(context_, *object);
+      if (!linked.ok()) return linked.error();
+      linked->pou.identity = ir::identity(*object, program_);
+      add_pou(std::move(linked).value());
+    }
+    if (image_.code.size() > base::kMaxCodeUnits) {
+      return base::Error{base::Refusal::kTooMany, std::to_string(image_.code.size()) +
+                                                      " instructions; the limit is " +
+                                                      std::to_string(base::kMaxCodeUnits)};
+    }
+    return base::Ok{};
+  }
+
+  // Keeps the numbers behind a removed POU: a function that nobody calls.
+  static LinkedCode unused_pou() {
+    LinkedCode unused;
+    unused.code.push_back(ir::Unit::make(ir::Opcode::RET));
+    unused.pou.unit_count = 1;
+    return unused;
+  }
+
+  void add_pou(LinkedCode linked) {
+    linked.pou.first_unit = static_cast<uint32_t>(image_.code.size());
+    image_.code.insert(image_.code.end(), linked.code.begin(), linked.code.end());
+    image_.pous.push_back(std::move(linked.pou));
+  }
+
+  base::Status link_tasks() {
+    for (const ir::Task& task : program_.tasks) {
+      const int64_t watchdog = task.watchdog_ns != 0             ? task.watchdog_ns
+                               : task.period_ns > INT64_MAX / 10 ? INT64_MAX
+                                                                 : task.period_ns * 10;
+      image_.tasks.push_back({task.name, task.period_ns, watchdog, task.priority, {}});
+    }
+    for (size_t i = 0; i < program_.instances.size(); ++i) {
+      const ir::ProgramInstance& instance = program_.instances[i];
+      if (instance.task >= image_.tasks.size()) {
+        return base::Error{base::Refusal::kUndefinedSymbol,
+                           "program `" + instance.name + "` has no task"};
+      }
+      image_.tasks[instance.task].programs.push_back(nodes_[i + 1].id);
+    }
+    return base::Ok{};
+  }
+
+  base::Status measure_stack() {
+    const base::Result<StackNeeds> needs = stack_needs(image_, context_.objects);
+    if (!needs.ok()) return needs.error();
+    image_.stack_bytes = needs->bytes;
+    image_.call_depth = needs->depth;
+    return base::Ok{};
+  }
+
+  const ir::Program& program_;
+  const std::vector<ir::Object>& objects_;
+  const Options& options_;
+  ir::Image image_;
+  ConstantPool pool_;
+  LinkContext context_;
+  std::unordered_map<uint32_t, uint32_t> pou_of_type_;
+  std::vector<InstanceNode> nodes_;
+};
+
+}  // namespace
+
+base::Result<ir::Image> link(const ir::Program& program, const std::vector<ir::Object>& objects,
+                             const Options& options) {
+  return Linker(program, objects, options).run();
+}
+
+}  // namespace linker
