@@ -1,0 +1,228 @@
+// Change as a state machine (C1, D1..D3): what each call does in each state, and
+// that any failure before the switch leaves version 1 as it was.
+#include <gtest/gtest.h>
+
+#include "tests/unit/online_change/plant.h"
+
+namespace online_change {
+namespace {
+
+using base::Refusal;
+using plant::Plant;
+
+// A conversion, a copy inside an area that moves, early and late initialisations, slots.
+const char* const kFirst = R"(
+FUNCTION_BLOCK Motor VAR hours : DINT; speed : INT := 5; END_VAR
+  hours := hours + 1;
+END_FUNCTION_BLOCK
+PROGRAM Main VAR m : ARRAY[1..3] OF Motor; x : INT := 20; gone : INT := 4; name : STRING[20]; END_VAR
+  m[1](); m[2](); m[3](); x := x + 1; name := 'abc';
+END_PROGRAM)";
+const char* const kSecond = R"(
+FUNCTION_BLOCK Motor VAR hours : DINT; speed : LREAL := 5; log : ARRAY[0..99] OF LINT; END_VAR
+  hours := hours + 1;
+END_FUNCTION_BLOCK
+PROGRAM Main VAR m : ARRAY[1..4] OF Motor; x : DINT; added : INT := 6; name : STRING[40]; END_VAR
+  m[1](); m[2](); m[3](); m[4](); x := x + 10;
+END_PROGRAM)";
+
+TEST(Change, C1_states_in_order) {
+  Plant plant(kFirst);
+  plant.run(3);
+  Change& change = plant.driver();
+  EXPECT_EQ(change.state(), State::kIdle);
+  EXPECT_FALSE(change.arm(true).ok());
+  EXPECT_FALSE(change.switch_now().ok());
+  ASSERT_TRUE(change.stage(plant.package(kSecond)).ok());
+  EXPECT_EQ(change.state(), State::kPrepared);
+  EXPECT_FALSE(change.switch_now().ok());
+  plant.run(2);  // version 1 runs on
+  EXPECT_EQ(plant.get("Main.x"), "25");
+  ASSERT_TRUE(change.arm(false).ok());
+  EXPECT_EQ(change.state(), State::kArmed);
+  plant.run(1);
+  ASSERT_TRUE(change.switch_now().ok());
+  EXPECT_EQ(change.state(), State::kTrial);
+  EXPECT_EQ(plant.get("Main.x"), "26");
+  plant.run(1);
+  EXPECT_EQ(plant.get("Main.x"), "36");
+  EXPECT_EQ(plant.get("Main.m[2].hours"), "7");
+  EXPECT_EQ(plant.get("Main.m[4].hours"), "1");
+  EXPECT_EQ(plant.get("Main.m[1].speed"), "5.0");
+  EXPECT_EQ(plant.get("Main.name"), "'abc'");
+  plant.accept();
+  EXPECT_EQ(change.state(), State::kIdle);
+  EXPECT_EQ(change.undo().error().refusal, Refusal::kNothingToUndo);
+}
+
+TEST(Change, D3_X4_undo_at_once_restores_every_bit) {
+  Plant plant(kFirst);
+  plant.run(3);
+  base::Digest before = plant.hash();
+  base::Digest version = plant.controller().verified().digest();
+  plant.change(kSecond);
+  plant.undo();
+  EXPECT_EQ(plant.hash(), before);
+  EXPECT_EQ(plant.controller().verified().digest(), version);
+  plant.run(1);
+  EXPECT_EQ(plant.get("Main.x"), "24");
+  EXPECT_EQ(plant.driver().undo().error().refusal, Refusal::kNothingToUndo);  // undo twice
+}
+
+TEST(Change, D3_case59_undo_after_1000_scans) {
+  Plant plant(kFirst);
+  plant.run(3);
+  plant.change(kSecond);
+  plant.run(1000);
+  plant.undo();
+  EXPECT_EQ(plant.get("Main.x"), "10023");
+  EXPECT_EQ(plant.get("Main.m[1].hours"), "1003");
+  EXPECT_EQ(plant.get("Main.gone"), "4");
+  plant.run(1);
+  EXPECT_EQ(plant.get("Main.x"), "10024");
+}
+
+TEST(Change, C1_every_step_can_fail) {
+  Plant steady(kFirst);  // what the plant would be without any change
+  steady.run(3);
+  int points = 0;
+  for (int fail_at = 0;; ++fail_at) {
+    Plant plant(kFirst);
+    plant.run(3);
+    base::Digest before = plant.hash();
+    int passed = 0;
+    plant.driver().set_interruption([&] { return passed++ == fail_at; });
+    Change& change = plant.driver();
+    base::Bytes package = plant.package(kSecond);
+    bool done = change.stage(package).ok() && change.arm(true).ok() && change.switch_now().ok();
+    if (done) break;
+    ++points;
+    EXPECT_EQ(change.state(), State::kIdle) << fail_at;
+    EXPECT_EQ(plant.hash(), before) << fail_at;
+    plant.run(2);
+    Plant reference(kFirst);
+    reference.run(5);
+    EXPECT_EQ(plant.hash(), reference.hash()) << fail_at;
+    plant.driver().set_interruption(nullptr);
+    plant.change(kSecond);  // and the next attempt succeeds
+    plant.run(1);
+    EXPECT_EQ(plant.get("Main.x"), "35") << fail_at;
+  }
+  EXPECT_GT(points, 15);
+}
+
+TEST(Change, C1_interrupted_undo_leaves_the_trial) {
+  Plant plant(kFirst);
+  plant.run(3);
+  base::Digest before = plant.hash();
+  plant.change(kSecond);
+  base::Digest trial = plant.hash();
+  for (int fail_at = 0;; ++fail_at) {
+    int passed = 0;
+    plant.driver().set_interruption([&] { return passed++ == fail_at; });
+    if (plant.driver().undo().ok()) break;
+    EXPECT_EQ(plant.driver().state(), State::kTrial);
+    EXPECT_EQ(plant.hash(), trial) << fail_at;
+  }
+  EXPECT_EQ(plant.hash(), before);
+}
+
+TEST(Change, case58_wrong_base_same_change_two_tools) {
+  Plant plant(kFirst);
+  base::Bytes package = plant.package(kSecond);
+  base::Bytes other = plant.package(std::string(kFirst) + "FUNCTION f : INT f := 1; END_FUNCTION");
+  Change& change = plant.driver();
+  ASSERT_TRUE(change.stage(package).ok());
+  EXPECT_EQ(change.stage(other).error().refusal, Refusal::kChangePending);
+  ASSERT_TRUE(change.arm(false).ok());
+  ASSERT_TRUE(change.switch_now().ok());
+  EXPECT_EQ(change.stage(other).error().refusal, Refusal::kChangePending);
+  plant.accept();
+  EXPECT_EQ(change.stage(other).error().refusal, Refusal::kStaleBase);
+  EXPECT_EQ(change.stage(package).error().refusal, Refusal::kNoChange);
+  EXPECT_EQ(change.state(), State::kIdle);
+}
+
+TEST(Change, C4_damaged_package_is_refused) {
+  Plant plant(kFirst);
+  base::Digest before = plant.hash();
+  base::Bytes package = plant.package(kSecond);
+  package[package.size() / 2] ^= 1;
+  EXPECT_EQ(plant.driver().stage(package).error().refusal, Refusal::kBadHash);
+  EXPECT_EQ(plant.driver().stage({}).error().refusal, Refusal::kBadFormat);
+  EXPECT_EQ(plant.hash(), before);
+  EXPECT_EQ(plant.driver().state(), State::kIdle);
+}
+
+TEST(Change, case53_same_program_is_no_change) {
+  Plant plant(kFirst);
+  EXPECT_EQ(plant.refused(kFirst), Refusal::kNoChange);
+}
+
+TEST(Change, cancel_before_the_switch) {
+  Plant plant(kFirst);
+  plant.run(2);
+  base::Digest before = plant.hash();
+  Change& change = plant.driver();
+  ASSERT_TRUE(change.stage(plant.package(kSecond)).ok());
+  change.cancel();
+  EXPECT_EQ(plant.hash(), before);
+  ASSERT_TRUE(change.stage(plant.package(kSecond)).ok());
+  ASSERT_TRUE(change.arm(false).ok());
+  change.cancel();
+  EXPECT_EQ(plant.hash(), before);
+  EXPECT_EQ(change.state(), State::kIdle);
+  plant.change(kSecond);
+  change.cancel();  // not in trial
+  EXPECT_EQ(change.state(), State::kTrial);
+}
+
+const char* const kInt = "PROGRAM Main VAR x : INT := 100; END_VAR END_PROGRAM";
+const char* const kSint = "PROGRAM Main VAR x : SINT; END_VAR END_PROGRAM";
+
+TEST(Change, case1_exact_and_loss) {
+  Plant plant(kInt);
+  plant.change(kSint);
+  EXPECT_EQ(plant.get("Main.x"), "100");
+  plant.undo();
+  plant.set("Main.x", "300");
+  base::Digest before = plant.hash();
+  EXPECT_EQ(plant.refused(kSint), Refusal::kWouldLose);
+  EXPECT_EQ(plant.hash(), before);
+  plant.change(kSint, true);
+  EXPECT_EQ(plant.get("Main.x"), "127");
+}
+
+TEST(Change, case2_loss_appears_between_preview_and_switch) {
+  Plant plant(kInt);
+  Change& change = plant.driver();
+  ASSERT_TRUE(change.stage(plant.package(kSint)).ok());
+  EXPECT_TRUE(change.live_losses().empty());
+  ASSERT_TRUE(change.arm(false).ok());
+  plant.set("Main.x", "300");
+  base::Digest before = plant.hash();
+  auto report = change.switch_now();
+  ASSERT_FALSE(report.ok());
+  EXPECT_EQ(report.error().refusal, Refusal::kWouldLose);
+  EXPECT_NE(report.error().text.find("`Main.x` is 300"), std::string::npos) << report.error().text;
+  EXPECT_EQ(plant.hash(), before);
+  EXPECT_EQ(change.state(), State::kIdle);
+}
+
+TEST(Change, case45_too_long_a_pause_is_refused_before) {
+  std::string big = "PROGRAM Main VAR a : ARRAY[0..999999] OF INT; END_VAR END_PROGRAM";
+  std::string converted = "PROGRAM Main VAR a : ARRAY[0..999999] OF LREAL; END_VAR END_PROGRAM";
+  linker::Slack slack;
+  slack.free_bytes = 16u << 20;
+  Plant plant(big, slack);
+  plant.run(1);
+  base::Digest before = plant.hash();
+  EXPECT_EQ(plant.refused(converted), Refusal::kPauseTooLong);
+  EXPECT_EQ(plant.hash(), before);
+  ASSERT_TRUE(plant.driver().stage(plant.package(converted)).ok());
+  EXPECT_TRUE(plant.driver().arm(false, true).ok());
+  EXPECT_TRUE(plant.driver().switch_now().ok());
+}
+
+}  // namespace
+}  // namespace online_change

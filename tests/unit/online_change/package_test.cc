@@ -1,0 +1,178 @@
+// The change package: its form (C4), and V17: a plan that does not fit the two
+// images is refused, whatever is wrong with it.
+#include "online_change/package/package.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/online_change/hand_made.h"
+
+namespace online_change {
+namespace {
+
+using hand_made::Version;
+using ir::Kind;
+
+struct Pair {
+  Version a;
+  Version b;
+  Package package;
+};
+
+// Every kind of step: conversion of an array, copy, early and late initialisation.
+std::unique_ptr<Pair> make_pair() {
+  auto pair = std::make_unique<Pair>();
+  auto make = [](Version& v, bool edited) {
+    ir::TypeId integer = v.elementary(Kind::kInt);
+    ir::TypeId inner = v.block("Inner", {{"n", integer, 2}});
+    std::vector<hand_made::Var> vars = {
+        {"i", inner}, {"k", integer}, {"s", v.image.types.string(8)}};
+    if (edited) vars.push_back({"big", v.array(integer, {{0, 99}})});
+    ir::TypeId outer = v.block("Outer", vars);
+    ir::TypeId element = edited ? v.elementary(Kind::kLint) : integer;
+    v.program("Main", {{"o", outer},
+                       {"v", v.array(element, {{0, 4}})},
+                       {"w", edited ? v.image.types.string(4) : integer},
+                       {"x", integer},
+                       {"c", integer, edited ? 2u : 1u, true}});
+  };
+  make(pair->a, false);
+  pair->a.link(nullptr, 64);  // Main stays in its area, Outer outgrows it
+  make(pair->b, true);
+  pair->b.link(&pair->a, 64);
+  pair->package.forward = *plan(pair->a.image, pair->b.image);
+  pair->package.inverse = *inverse_plan(pair->a.image, pair->b.image);
+  pair->package.image = {1, 2, 3};
+  return pair;
+}
+
+base::Status check(const Pair& pair) {
+  return check_package(pair.package, pair.a.image, pair.b.image);
+}
+
+UpdateStep& first_step(Package& package, StepKind kind) {
+  for (UpdateStep& step : package.forward.steps) {
+    if (step.kind == kind) return step;
+  }
+  ADD_FAILURE() << "no such step";
+  return package.forward.steps[0];
+}
+
+TEST(Package, C4_survives_encoding) {
+  auto pair = make_pair();
+  base::Bytes bytes = encode(pair->package);
+  base::Result<Package> again = decode(bytes);
+  ASSERT_TRUE(again.ok());
+  EXPECT_EQ(encode(*again), bytes);
+  EXPECT_EQ(again->forward.steps.size(), pair->package.forward.steps.size());
+  EXPECT_EQ(again->forward.counts.total(), pair->package.forward.counts.total());
+  EXPECT_TRUE(check_package(*again, pair->a.image, pair->b.image).ok());
+}
+
+TEST(Package, C4_every_truncation_and_bit_flip_is_refused) {
+  auto pair = make_pair();
+  base::Bytes bytes = encode(pair->package);
+  for (size_t length = 0; length < bytes.size(); ++length) {
+    EXPECT_FALSE(decode(base::ByteSpan(bytes).first(length)).ok()) << length;
+  }
+  for (size_t bit = 0; bit < bytes.size() * 8; ++bit) {
+    bytes[bit / 8] ^= static_cast<uint8_t>(1u << (bit % 8));
+    EXPECT_FALSE(decode(bytes).ok()) << bit;
+    bytes[bit / 8] ^= static_cast<uint8_t>(1u << (bit % 8));
+  }
+}
+
+void expect_refused(const Pair& pair, const char* what) {
+  base::Status status = check(pair);
+  ASSERT_FALSE(status.ok()) << what;
+  EXPECT_EQ(status.error().refusal, base::Refusal::kBadPackage);
+  EXPECT_NE(status.error().text.find(what), std::string::npos) << status.error().text;
+}
+
+TEST(Package, V17_sound_plan_passes) { EXPECT_TRUE(check(*make_pair()).ok()); }
+
+TEST(Package, V17_missing_step) {
+  size_t steps = make_pair()->package.forward.steps.size();
+  for (size_t i = 0; i < steps; ++i) {
+    auto pair = make_pair();
+    // A step that only clears what nothing will read may be missing; none of these does.
+    pair->package.forward.steps.erase(pair->package.forward.steps.begin() +
+                                      static_cast<ptrdiff_t>(i));
+    EXPECT_FALSE(check(*pair).ok()) << i;
+  }
+}
+
+TEST(Package, V17_double_target) {
+  auto pair = make_pair();
+  pair->package.forward.steps.push_back(pair->package.forward.steps[0]);
+  expect_refused(*pair, "is written twice");
+}
+
+TEST(Package, V17_copy_from_elsewhere) {
+  auto pair = make_pair();
+  first_step(pair->package, StepKind::kCopy).from += 2;
+  EXPECT_FALSE(check(*pair).ok());
+  first_step(pair->package, StepKind::kCopy).from = 1u << 19;
+  expect_refused(*pair, "is read from outside of any area");
+  first_step(pair->package, StepKind::kCopy).from = 0xfffffff0u;
+  expect_refused(*pair, "is read outside of memory");
+}
+
+TEST(Package, V17_target_elsewhere) {
+  auto pair = make_pair();
+  first_step(pair->package, StepKind::kCopy).to = 1u << 19;
+  expect_refused(*pair, "is written outside of any area");
+  first_step(pair->package, StepKind::kCopy).to = 0xfffffff0u;
+  expect_refused(*pair, "ends outside of memory");
+}
+
+TEST(Package, V17_wrong_types) {
+  auto pair = make_pair();
+  UpdateStep& step = first_step(pair->package, StepKind::kConvert);
+  step.old_type = pair->a.elementary(Kind::kUint);
+  expect_refused(*pair, "is converted between other types than its own");
+  step.old_type = ir::TypeId(100000);
+  expect_refused(*pair, "has no known type");
+}
+
+TEST(Package, V17_wrong_initial_value_or_slot) {
+  auto pair = make_pair();
+  for (UpdateStep& step : pair->package.forward.steps) {
+    if (step.kind != StepKind::kInitialise) continue;
+    step.bytes.assign(step.total(), 0x55);
+  }
+  expect_refused(*pair, "is initialised with something else than its initial value");
+}
+
+TEST(Package, V17_early_step_on_bytes_in_use) {
+  auto pair = make_pair();
+  bool changed = false;
+  for (UpdateStep& step : pair->package.forward.steps) {
+    if (step.kind != StepKind::kInitialise || step.early) continue;
+    step.early = true;  // the constant, which version 1 still reads
+    changed = true;
+  }
+  ASSERT_TRUE(changed);
+  expect_refused(*pair, "is initialised early, but the running version uses these bytes");
+}
+
+TEST(Package, V17_absurd_counts) {
+  auto pair = make_pair();
+  UpdateStep& step = first_step(pair->package, StepKind::kCopy);
+  step.count = 0xffffffffu;
+  step.to_stride = 0xffffffffu;
+  EXPECT_FALSE(check(*pair).ok());
+  step.count = 0;
+  expect_refused(*pair, "is written by an empty step");
+  step.count = 2;
+  step.to_stride = 1;
+  expect_refused(*pair, "is written twice");
+}
+
+TEST(Package, V17_fate_without_row) {
+  auto pair = make_pair();
+  pair->package.forward.steps[0].fate = 12345;
+  expect_refused(*pair, "has no row in the fate report");
+}
+
+}  // namespace
+}  // namespace online_change

@@ -1,0 +1,129 @@
+#include "tests/unit/online_change/plant.h"
+
+#include "base/diagnostics.h"
+#include "frontend/compile.h"
+#include "ir/bytecode/symbols.h"
+#include "ir/lower/lower.h"
+
+namespace plant {
+
+Compiled compile(const std::string& source) {
+  base::SourceMap sources;
+  sources.add("test.st", source);
+  base::Diagnostics diagnostics;
+  std::optional<ir::Program> program = frontend::compile(sources, {}, diagnostics);
+  base::check(program.has_value(),
+              base::render(diagnostics, sources, base::DiagnosticFormat::kText, false).c_str());
+  Compiled out{std::move(*program), {}};
+  for (uint32_t i = 0; i < out.program.pous.size(); ++i) {
+    out.objects.push_back(*ir::lower(out.program, ir::PouId(i)));
+  }
+  return out;
+}
+
+namespace {
+
+ir::VerifiedImage link_sources(const std::string& source, const linker::Options& options) {
+  Compiled compiled = compile(source);
+  base::Result<ir::Image> image = linker::link(compiled.program, compiled.objects, options);
+  if (!image.ok()) base::check(false, base::to_string(image.error()).c_str());
+  base::Result<ir::VerifiedImage> verified = ir::verify(ir::encode(*image));
+  if (!verified.ok()) base::check(false, base::to_string(verified.error()).c_str());
+  return *verified;
+}
+
+}  // namespace
+
+Plant::Plant(const std::string& source, linker::Slack slack) : slack_(slack) {
+  linker::Options options;
+  options.slack = slack_;
+  auto controller = vm::Controller::start(link_sources(source, options), vm::ControllerOptions(),
+                                          clock_, devices_);
+  base::check(controller.ok(), "the controller starts");
+  controller_ = std::move(*controller);
+  change_ = std::make_unique<online_change::Change>(*controller_);
+}
+
+ir::VerifiedImage Plant::link(const std::string& source, bool move_all) const {
+  linker::Options options;
+  options.slack = slack_;
+  options.base = &controller_->image();
+  options.move_all = move_all;
+  return link_sources(source, options);
+}
+
+void Plant::run(int scans) {
+  for (int i = 0; i < scans; ++i) controller_->cycle();
+  for (const vm::TrapRecord& trap : controller_->traps()) ADD_FAILURE() << trap.text.text;
+}
+
+std::string Plant::get(const std::string& path) const {
+  base::Result<std::string> value = controller_->get(path);
+  return value.ok() ? *value : "no " + path;
+}
+
+void Plant::set(const std::string& path, const std::string& value) {
+  base::Status status = controller_->set(path, value);
+  EXPECT_TRUE(status.ok()) << base::to_string(status.error());
+}
+
+base::Digest Plant::hash() const {
+  return ir::state_hash(controller_->image(), controller_->memory().view());
+}
+
+base::Bytes Plant::package(const std::string& source, bool move_all) {
+  ir::VerifiedImage next = link(source, move_all);
+  auto package = online_change::make_package(controller_->verified().encoded(), next.encoded());
+  if (!package.ok()) base::check(false, base::to_string(package.error()).c_str());
+  return online_change::encode(*package);
+}
+
+online_change::SwitchReport Plant::change(const std::string& source, bool allow_loss,
+                                          bool move_all) {
+  base::Status staged = change_->stage(package(source, move_all));
+  EXPECT_TRUE(staged.ok()) << base::to_string(staged.error());
+  if (!staged.ok()) return {};
+  plan_ = change_->plan();
+  base::Status armed = change_->arm(allow_loss);
+  EXPECT_TRUE(armed.ok()) << base::to_string(armed.error());
+  if (!armed.ok()) return {};
+  auto report = change_->switch_now();
+  EXPECT_TRUE(report.ok()) << base::to_string(report.error());
+  return report.ok() ? *report : online_change::SwitchReport();
+}
+
+base::Refusal Plant::refused(const std::string& source, bool allow_loss) {
+  base::Status status = change_->stage(package(source));
+  if (status.ok()) {
+    plan_ = change_->plan();
+    status = change_->arm(allow_loss);
+  }
+  change_->cancel();
+  return status.ok() ? base::Refusal::kInternal : status.error().refusal;
+}
+
+void Plant::undo() {
+  auto report = change_->undo();
+  EXPECT_TRUE(report.ok()) << base::to_string(report.error());
+}
+
+void Plant::accept() { EXPECT_TRUE(change_->accept().ok()); }
+
+const online_change::FateRow* Plant::row(const std::string& path) const {
+  for (const online_change::FateRow& row : plan_.fates) {
+    if (ir::same_name(row.path, path)) return &row;
+  }
+  ADD_FAILURE() << "no fate row for " << path;
+  static const online_change::FateRow kNone;
+  return &kNone;
+}
+
+uint32_t Plant::id_of(const std::string& path) const {
+  const ir::Image& image = controller_->image();
+  for (uint32_t id = 1; id < image.instances.size(); ++id) {
+    if (image.instances[id].live && ir::same_name(image.instance_path(id), path)) return id;
+  }
+  return 0;
+}
+
+}  // namespace plant

@@ -1,0 +1,67 @@
+// A plant under test: Structured Text versions compiled, linked against what runs,
+// run on virtual time, changed and undone through Change as a controller does it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "linker/link.h"
+#include "online_change/apply/change.h"
+#include "vm/runtime/clocks.h"
+#include "vm/runtime/controller.h"
+
+namespace plant {
+
+class NoDevices : public vm::IoPort {
+ public:
+  void receive(std::span<uint8_t>) override {}
+  void send(std::span<const uint8_t>) override {}
+};
+
+// Objects of one source text.
+struct Compiled {
+  ir::Program program;
+  std::vector<ir::Object> objects;
+};
+Compiled compile(const std::string& source);
+
+class Plant {
+ public:
+  explicit Plant(const std::string& source, linker::Slack slack = {});
+
+  void run(int scans);
+  std::string get(const std::string& path) const;
+  void set(const std::string& path, const std::string& value);
+  base::Digest hash() const;
+
+  // Compiles and links against the running version; the encoded package.
+  base::Bytes package(const std::string& source, bool move_all = false);
+  // Stages, arms and switches. Fails the test when anything is refused.
+  online_change::SwitchReport change(const std::string& source, bool allow_loss = false,
+                                     bool move_all = false);
+  // The code with which the change is refused; kInternal when it is not.
+  base::Refusal refused(const std::string& source, bool allow_loss = false);
+  void undo();
+  void accept();
+
+  const online_change::Plan& plan() const { return plan_; }
+  const online_change::FateRow* row(const std::string& path) const;
+  vm::Controller& controller() { return *controller_; }
+  online_change::Change& driver() { return *change_; }
+  uint32_t id_of(const std::string& path) const;  // of a live instance; 0 when there is none
+
+ private:
+  ir::VerifiedImage link(const std::string& source, bool move_all) const;
+
+  linker::Slack slack_;
+  vm::VirtualClock clock_;
+  NoDevices devices_;
+  std::unique_ptr<vm::Controller> controller_;
+  std::unique_ptr<online_change::Change> change_;
+  online_change::Plan plan_;
+};
+
+}  // namespace plant
