@@ -18,9 +18,9 @@ enum class Exit : uint8_t { kDone, kSuspended, kTrap };
 // A trap as a value; describe() turns it into words outside the scan.
 struct Trap {
   ir::TrapKind kind = ir::TrapKind::kAssert;
-  uint32_t pou = 0;       // index into Image::pous
-  uint32_t unit = 0;      // unit inside the POU
-  uint32_t instance = 0;  // ID, 0 for a function
+  uint32_t pou = 0;             // index into Image::pous
+  uint32_t unit = 0;            // unit inside the POU
+  uint32_t instance = 0;        // ID, 0 for a function
   int64_t operand[2] = {0, 0};  // kIndex: index and bound number; kSubrange, kConversion: the value
 };
 struct TrapText {

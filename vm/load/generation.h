@@ -17,8 +17,19 @@ struct PouEntry {
 };
 
 struct InstanceEntry {
-  uint32_t data = 0;
+  uint32_t data = 0;  // 0: the ID is free
   uint32_t pou = 0;
+};
+
+// Of Image::bounds and Image::ranges, without their names.
+struct BoundEntry {
+  int64_t low = 0;
+  uint64_t count = 0;
+  uint32_t stride = 0;
+};
+struct RangeEntry {
+  int64_t low = 0;
+  int64_t high = 0;
 };
 
 class Generation {
@@ -35,6 +46,8 @@ class Generation {
   const std::vector<PouEntry>& pous() const { return pous_; }
   const std::vector<InstanceEntry>& instances() const { return instances_; }
   const std::vector<ir::Unit>& code() const { return code_; }
+  const std::vector<BoundEntry>& bounds() const { return bounds_; }
+  const std::vector<RangeEntry>& ranges() const { return ranges_; }
 
  private:
   explicit Generation(ir::VerifiedImage image) : image_(std::move(image)) {}
@@ -43,6 +56,8 @@ class Generation {
   std::vector<ir::Unit> code_;
   std::vector<PouEntry> pous_;
   std::vector<InstanceEntry> instances_;
+  std::vector<BoundEntry> bounds_;
+  std::vector<RangeEntry> ranges_;
 };
 
 }  // namespace vm

@@ -1,0 +1,123 @@
+// What handlers share while an execution runs, and how one handler goes on to the next.
+//
+// A handler is one opcode with one base for each operand. It ends by calling the next
+// one as a sibling call with the same six arguments, which stay in registers; the
+// compiler makes that a jump (docs/adr/0001-tail-call-interpreter.md). Where it would
+// not (sanitizers, no optimiser), handlers return instead and a loop calls the next one.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "ir/bytecode/code.h"
+#include "vm/exec/execution.h"
+#include "vm/exec/handler_numbers.h"
+
+#ifndef STC_TAIL_CALLS
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || \
+    __has_feature(memory_sanitizer) || __has_feature(undefined_behavior_sanitizer)
+#define STC_TAIL_CALLS 0
+#endif
+#endif
+#endif
+#ifndef STC_TAIL_CALLS
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define STC_TAIL_CALLS 1
+#else
+#define STC_TAIL_CALLS 0
+#endif
+#endif
+
+#if defined(__clang__)
+#define STC_MUST_TAIL [[clang::musttail]]
+#else
+#define STC_MUST_TAIL
+#endif
+#define STC_INLINE [[gnu::always_inline]] static inline
+#define STC_COLD [[gnu::noinline, gnu::cold]]
+
+namespace vm {
+
+struct Context {
+  uint64_t fuel = 0;
+  CallRecord* call = nullptr;  // next free record
+  CallRecord* calls_begin = nullptr;
+  CallRecord* calls_end = nullptr;
+  const PouEntry* pous = nullptr;
+  const InstanceEntry* instances = nullptr;
+  uint32_t instance_count = 0;
+  uint32_t pou = 0;
+  uint32_t instance = 0;
+  const BoundEntry* bounds = nullptr;
+  const RangeEntry* ranges = nullptr;
+  int64_t task_time_ns = 0;
+  // Where it stopped; without tail calls: where it is.
+  bool running = true;
+  Exit exit = Exit::kDone;
+  const ir::Unit* pc = nullptr;
+  uint8_t* frame = nullptr;
+  uint8_t* self = nullptr;
+  Trap trap;
+};
+
+#define STC_HANDLER_ARGS                                                \
+  [[maybe_unused]] const ir::Unit *pc, [[maybe_unused]] uint8_t *frame, \
+      [[maybe_unused]] uint8_t *self, [[maybe_unused]] uint8_t *mem,    \
+      [[maybe_unused]] const uint8_t *consts, [[maybe_unused]] vm::Context *ctx
+
+using Handler = void (*)(const ir::Unit*, uint8_t*, uint8_t*, uint8_t*, const uint8_t*, Context*);
+
+// By handler number; Generation::build puts these numbers into the op fields.
+struct HandlerTable {
+  Handler of[kHandlerCount];
+};
+extern const HandlerTable kHandlers __attribute__((visibility("hidden")));
+
+#if STC_TAIL_CALLS
+#define STC_GO(next, next_frame, next_self)                                                     \
+  do {                                                                                          \
+    const ir::Unit* const go = (next);                                                          \
+    STC_MUST_TAIL return vm::kHandlers.of[go->op](go, next_frame, next_self, mem, consts, ctx); \
+  } while (false)
+#else
+#define STC_GO(next, next_frame, next_self) \
+  do {                                      \
+    ctx->pc = (next);                       \
+    ctx->frame = (next_frame);              \
+    ctx->self = (next_self);                \
+    return;                                 \
+  } while (false)
+#endif
+#define STC_NEXT(units) STC_GO(pc + (units), frame, self)
+
+STC_COLD inline void stop(Context* ctx, Exit exit, const ir::Unit* pc, uint8_t* frame,
+                          uint8_t* self) {
+  ctx->running = false;
+  ctx->exit = exit;
+  ctx->pc = pc;
+  ctx->frame = frame;
+  ctx->self = self;
+}
+
+STC_COLD inline void raise(Context* ctx, ir::TrapKind kind, const ir::Unit* pc, uint8_t* frame,
+                           uint8_t* self, int64_t operand0 = 0, int64_t operand1 = 0) {
+  ctx->trap.kind = kind;
+  ctx->trap.operand[0] = operand0;
+  ctx->trap.operand[1] = operand1;
+  stop(ctx, Exit::kTrap, pc, frame, self);
+}
+
+// Values lie at any address; these compile to plain loads and stores.
+template <class T>
+STC_INLINE T load(const uint8_t* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  return value;
+}
+template <class T>
+STC_INLINE void store(uint8_t* at, T value) {
+  std::memcpy(at, &value, sizeof value);
+}
+
+}  // namespace vm

@@ -1,0 +1,88 @@
+#include "vm/exec/execution.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "vm/exec/context.h"
+
+namespace vm {
+
+// Moves the state of an execution into a Context and back.
+struct Interpreter {
+  static Context context_of(Execution& e, uint64_t fuel) {
+    const Generation& generation = *e.generation_;
+    Context ctx;
+    ctx.fuel = fuel;
+    ctx.calls_begin = e.calls_.data();
+    ctx.calls_end = e.calls_.data() + e.calls_.size();
+    ctx.call = e.calls_.data() + e.depth_;
+    ctx.pous = generation.pous().data();
+    ctx.instances = generation.instances().data();
+    ctx.instance_count = static_cast<uint32_t>(generation.instances().size());
+    ctx.pou = e.pou_;
+    ctx.instance = e.instance_;
+    ctx.bounds = generation.bounds().data();
+    ctx.ranges = generation.ranges().data();
+    ctx.task_time_ns = e.task_time_ns_;
+    ctx.pc = e.pc_;
+    ctx.frame = e.memory_ + e.frame_;
+    ctx.self = e.memory_ + e.self_;
+    return ctx;
+  }
+
+  static void dispatch(Context& ctx, uint8_t* mem, const uint8_t* consts) {
+#if STC_TAIL_CALLS
+    kHandlers.of[ctx.pc->op](ctx.pc, ctx.frame, ctx.self, mem, consts, &ctx);
+#else
+    while (ctx.running) {
+      kHandlers.of[ctx.pc->op](ctx.pc, ctx.frame, ctx.self, mem, consts, &ctx);
+    }
+#endif
+  }
+
+  static void keep(Execution& e, const Context& ctx, uint64_t fuel) {
+    e.depth_ = static_cast<uint32_t>(ctx.call - ctx.calls_begin);
+    e.pc_ = ctx.pc;
+    e.frame_ = static_cast<uint32_t>(ctx.frame - e.memory_);
+    e.self_ = static_cast<uint32_t>(ctx.self - e.memory_);
+    e.pou_ = ctx.pou;
+    e.instance_ = ctx.instance;
+    e.fuel_used_ += fuel - ctx.fuel;
+    if (ctx.exit != Exit::kTrap) return;
+    e.trap_ = ctx.trap;
+    e.trap_.pou = ctx.pou;
+    e.trap_.instance = ctx.instance;
+    e.trap_.unit = static_cast<uint32_t>(ctx.pc - e.generation_->pous()[ctx.pou].code);
+  }
+};
+
+Execution::Execution(uint32_t depth) : calls_(size_t{depth} + 1) {}
+
+void Execution::start(const Generation& generation, uint8_t* memory, uint32_t id, uint32_t stack,
+                      int64_t task_time_ns) {
+  const InstanceEntry& instance = generation.instances()[id];
+  base::check(instance.data != 0, "an execution starts with a live program instance");
+  generation_ = &generation;
+  memory_ = memory;
+  depth_ = 0;
+  instance_ = id;
+  pou_ = instance.pou;
+  pc_ = generation.pous()[pou_].code;
+  frame_ = stack;
+  self_ = instance.data;
+  task_time_ns_ = task_time_ns;
+  fuel_used_ = 0;
+  trap_ = {};
+}
+
+Exit Execution::run(uint64_t fuel) {
+  fuel = std::max<uint64_t>(fuel, 1);
+  Context ctx = Interpreter::context_of(*this, fuel);
+  Interpreter::dispatch(ctx, memory_, memory_ + generation_->pool_offset());
+  Interpreter::keep(*this, ctx, fuel);
+  return ctx.exit;
+}
+
+uint32_t Execution::stack_top() const { return frame_ + generation_->pous()[pou_].frame_size; }
+
+}  // namespace vm

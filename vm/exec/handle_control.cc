@@ -1,0 +1,204 @@
+// Jumps, calls, instances, native functions. Safe points are the back edge and the
+// entry of a called POU: there the frame memory is all there is to know.
+#include <algorithm>
+
+#include "base/limits.h"
+#include "stdlib/native/natives.h"
+#include "vm/exec/handle.h"
+
+namespace vm {
+namespace {
+
+constexpr size_t kMaxNativeArguments = 8;
+
+void read_argument(char letter, const uint8_t* slot, uint8_t* mem, stdlib::NativeArg& argument) {
+  switch (letter) {
+    case 'b':
+      argument.bits = load<uint8_t>(slot);
+      return;
+    case 'i':
+      argument.bits = static_cast<uint64_t>(int64_t{load<int32_t>(slot)});
+      return;
+    case 'f':
+      argument.bits = load<uint32_t>(slot);
+      return;
+    case 'S':
+    case 'W': {
+      const auto reference = load<uint64_t>(slot);
+      argument.data = mem + static_cast<uint32_t>(reference);
+      argument.capacity =
+          std::min(static_cast<uint32_t>(reference >> 32), base::kMaxStringCapacity);
+      return;
+    }
+    default:
+      argument.bits = load<uint64_t>(slot);
+      return;
+  }
+}
+
+void write_result(char letter, uint64_t bits, uint8_t* slot) {
+  switch (letter) {
+    case 'v':
+      return;
+    case 'b':
+      return store<uint8_t>(slot, bits != 0);
+    case 'i':
+    case 'f':
+      return store<uint32_t>(slot, static_cast<uint32_t>(bits));
+    default:
+      return store<uint64_t>(slot, bits);
+  }
+}
+
+// Arguments in 8-byte slots from `slots` on, the result in the first of them. Apart from
+// its handler, whose frame must not outlive the jump to the next one.
+[[gnu::noinline]] void call_native(uint32_t number, uint8_t* slots, uint8_t* mem) {
+  const stdlib::NativeRow& row = stdlib::native_row(number);
+  stdlib::NativeArg arguments[kMaxNativeArguments];
+  for (size_t i = 0; i < row.arguments.size() && i < kMaxNativeArguments; ++i) {
+    read_argument(row.arguments[i], slots + 8 * i, mem, arguments[i]);
+  }
+  write_result(row.result, row.function(arguments), slots);
+}
+
+}  // namespace
+
+template <>
+struct Semantics<ir::Opcode::JMP> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    STC_NEXT(1 + static_cast<int32_t>(pc->bc()));
+  }
+};
+template <>
+struct Semantics<ir::Opcode::LOOP> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    const ir::Unit* const head = pc + 1 + static_cast<int32_t>(pc->bc());
+    if (--ctx->fuel == 0) [[unlikely]]
+      return stop(ctx, Exit::kSuspended, head, frame, self);
+    STC_GO(head, frame, self);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::JT> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    if (load<uint8_t>(STC_AT(A, pc->a)) != 0) STC_NEXT(1 + static_cast<int32_t>(pc->bc()));
+    STC_NEXT(1);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::JF> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    if (load<uint8_t>(STC_AT(A, pc->a)) == 0) STC_NEXT(1 + static_cast<int32_t>(pc->bc()));
+    STC_NEXT(1);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::TRAP> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    return raise(ctx, static_cast<ir::TrapKind>(pc->a), pc, frame, self);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::TASK_TIME> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    store<int64_t>(frame + pc->a, ctx->task_time_ns);
+    STC_NEXT(1);
+  }
+};
+
+// Enters a POU; the record says where and as what the caller goes on. The verifier
+// has bounded the depth; the test costs nothing beside the record.
+#define STC_CALL(number, callee_instance, callee_self)                                           \
+  if (ctx->call == ctx->calls_end) [[unlikely]] {                                                \
+    return raise(ctx, ir::TrapKind::kStack, pc, frame, self);                                    \
+  }                                                                                              \
+  const PouEntry& callee = ctx->pous[number];                                                    \
+  *ctx->call++ = {pc + 1, static_cast<uint32_t>(frame - mem), static_cast<uint32_t>(self - mem), \
+                  ctx->pou, ctx->instance};                                                      \
+  ctx->pou = (number);                                                                           \
+  ctx->instance = (callee_instance);                                                             \
+  uint8_t* const callee_frame = frame + pc->a * 8u;                                              \
+  if (--ctx->fuel == 0) [[unlikely]] {                                                           \
+    return stop(ctx, Exit::kSuspended, callee.code, callee_frame, callee_self);                  \
+  }                                                                                              \
+  STC_GO(callee.code, callee_frame, callee_self)
+
+template <>
+struct Semantics<ir::Opcode::CALL> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    STC_CALL(pc->c, 0, self);
+  }
+};
+
+// A row without data is free; the globals' row is made so as well.
+#define STC_FIND_INSTANCE(slot)                                                 \
+  const auto id = load<uint32_t>(slot);                                         \
+  if (id >= ctx->instance_count || ctx->instances[id].data == 0) [[unlikely]] { \
+    return raise(ctx, ir::TrapKind::kInstance, pc, frame, self, id);            \
+  }                                                                             \
+  const InstanceEntry& entry = ctx->instances[id]
+
+template <>
+struct Semantics<ir::Opcode::INST> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    STC_FIND_INSTANCE(STC_AT(B, pc->bc()));
+    store<uint32_t>(frame + pc->a, entry.data);
+    STC_NEXT(1);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::INST_AT> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    STC_FIND_INSTANCE(mem + load<uint32_t>(frame + pc->b) + pc->c);
+    store<uint32_t>(frame + pc->a, entry.data);
+    STC_NEXT(1);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::CALL_INST> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    STC_FIND_INSTANCE(STC_AT(B, pc->bc()));
+    STC_CALL(entry.pou, id, mem + entry.data);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::CALL_INST_AT> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    STC_FIND_INSTANCE(mem + load<uint32_t>(frame + pc->b) + pc->c);
+    STC_CALL(entry.pou, id, mem + entry.data);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::RET> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    if (ctx->call == ctx->calls_begin) return stop(ctx, Exit::kDone, pc, frame, self);
+    const CallRecord& caller = *--ctx->call;
+    ctx->pou = caller.pou;
+    ctx->instance = caller.instance;
+    STC_GO(caller.resume, mem + caller.frame, mem + caller.self);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::NATIVE> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    call_native(pc->c, frame + pc->a * 8u, mem);
+    STC_NEXT(1);
+  }
+};
+
+STC_INSTANTIATE_GROUP(kControlHandlers);
+
+}  // namespace vm

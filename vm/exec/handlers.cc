@@ -1,0 +1,36 @@
+// The table of all handlers. They are instantiated in handle_*.cc; an opcode that
+// none of those gives a meaning fails to link.
+#include <utility>
+
+#include "vm/exec/context.h"
+#include "vm/exec/handler_numbers.h"
+
+namespace vm {
+
+template <ir::Opcode op, ir::Base A, ir::Base B, ir::Base C>
+void handle(STC_HANDLER_ARGS);
+
+namespace {
+
+template <ir::Opcode op, uint32_t... i>
+constexpr void fill_opcode(HandlerTable& table, std::integer_sequence<uint32_t, i...>) {
+  ((table.of[kFirstHandler[static_cast<uint32_t>(op)] + i] =
+        &handle<op, base_of_a(op, i), base_of_b(op, i), base_of_c(op, i)>),
+   ...);
+}
+
+template <uint32_t... op>
+constexpr HandlerTable all_handlers(std::integer_sequence<uint32_t, op...>) {
+  HandlerTable table{};
+  (fill_opcode<static_cast<ir::Opcode>(op)>(
+       table, std::make_integer_sequence<uint32_t, kBaseCounts[op].product()>()),
+   ...);
+  return table;
+}
+
+}  // namespace
+
+constinit const HandlerTable kHandlers =
+    all_handlers(std::make_integer_sequence<uint32_t, ir::kOpcodeCount>());
+
+}  // namespace vm

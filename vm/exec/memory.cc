@@ -1,0 +1,44 @@
+#include "vm/exec/memory.h"
+
+#include <sys/mman.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace vm {
+namespace {
+
+constexpr size_t kBytes = size_t{1} << 32;
+// Behind the last offset: the longest value (kMaxTypeBytes) and any displacement.
+constexpr size_t kGuard = size_t{3} << 30;
+
+}  // namespace
+
+base::Result<Memory> Memory::reserve() {
+  void* range =
+      mmap(nullptr, kBytes + kGuard, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (range == MAP_FAILED || mprotect(range, kBytes, PROT_READ | PROT_WRITE) != 0) {
+    const int reason = errno;
+    if (range != MAP_FAILED) munmap(range, kBytes + kGuard);
+    return base::Error{base::Refusal::kTooLarge,
+                       std::string("cannot reserve 7 GiB of address space for data memory: ") +
+                           std::strerror(reason) + "; look at `ulimit -v`"};
+  }
+  return Memory(static_cast<uint8_t*>(range));
+}
+
+Memory::Memory(Memory&& other) noexcept : base_(std::exchange(other.base_, nullptr)) {}
+
+Memory& Memory::operator=(Memory&& other) noexcept {
+  std::swap(base_, other.base_);
+  return *this;
+}
+
+Memory::~Memory() {
+  if (base_ != nullptr) munmap(base_, kBytes + kGuard);
+}
+
+std::span<const uint8_t> Memory::view() const { return {base_, kBytes}; }
+
+}  // namespace vm
