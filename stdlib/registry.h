@@ -44,7 +44,7 @@ struct FunctionRow {
   std::string_view name;
   FunctionRule rule;
   uint32_t fewest;
-  uint32_t most;  // 0: any number, unless fewest is 0 too
+  uint32_t most;                // 0: any number, unless fewest is 0 too
   std::string_view parameters;  // names, separated by blanks; "IN1+": IN1, IN2, ...
   std::string_view signature;
   std::string_view meaning;

@@ -5,8 +5,7 @@ namespace frontend {
 
 std::string quoted_name(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
-bool Body::bind_arguments(const Expr& call, const PouInfo& callee,
-                          std::vector<Binding>& bindings) {
+bool Body::bind_arguments(const Expr& call, const PouInfo& callee, std::vector<Binding>& bindings) {
   bool named = false;
   bool positional = false;
   for (uint32_t i = 0; i < call.args.count; ++i) {
@@ -28,9 +27,9 @@ bool Body::bind_arguments(const Expr& call, const PouInfo& callee,
 
 bool Body::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding>& bindings) {
   auto found = callee.names.find(arg.name.text);
-  const Variable* variable =
-      found == callee.names.end() || found->second == callee.result ? nullptr
-                                                                    : &sema_.resolve(found->second);
+  const Variable* variable = found == callee.names.end() || found->second == callee.result
+                                 ? nullptr
+                                 : &sema_.resolve(found->second);
   bool parameter = variable != nullptr && (variable->section == VarSection::kInput ||
                                            variable->section == VarSection::kOutput ||
                                            variable->section == VarSection::kInOut);
@@ -101,8 +100,8 @@ bool Body::check_in_outs(const Expr& call, const PouInfo& callee,
     for (const Binding& binding : bindings) given = given || binding.variable == id;
     if (given) continue;
     sema_.error(DiagnosticCode::kMissingInOut, call.span,
-                "in-out " + quoted_name(variable.name) + " of " +
-                    quoted_name(callee.decl->name) + " is not connected",
+                "in-out " + quoted_name(variable.name) + " of " + quoted_name(callee.decl->name) +
+                    " is not connected",
                 "add `" + std::string(variable.name.text) + " := variable`");
     good = false;
   }

@@ -37,9 +37,9 @@ void Body::assign_aggregate(const Target& to, ExprId value) {
   if (!note.type.valid()) return;
   bool strings = is_string(types(), to.type) && types()[note.type].kind == types()[to.type].kind;
   if (!strings && note.type != to.type) {
-    sema_.error(DiagnosticCode::kTypeMismatch, expr.span,
-                "`" + sema_.type_text(note.type) + "` does not go with `" +
-                    sema_.type_text(to.type) + "`");
+    sema_.error(
+        DiagnosticCode::kTypeMismatch, expr.span,
+        "`" + sema_.type_text(note.type) + "` does not go with `" + sema_.type_text(to.type) + "`");
     return;
   }
   if (strings && note.constant) {  // says so when the text is too long

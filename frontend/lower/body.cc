@@ -46,8 +46,8 @@ void Body::set_line(base::SourceSpan span) {
     std::string_view text = sema_.sources.text(file);
     const char* at = text.data() + (line_offset_ - base);
     const char* end = text.data() + (offset - base);
-    while ((at = static_cast<const char*>(
-                std::memchr(at, '\n', static_cast<size_t>(end - at)))) != nullptr) {
+    while ((at = static_cast<const char*>(std::memchr(at, '\n', static_cast<size_t>(end - at)))) !=
+           nullptr) {
       ++line_;
       ++at;
     }

@@ -14,6 +14,11 @@ BlockId Builder::new_block() {
   return BlockId(static_cast<uint32_t>(pou_.blocks.size() - 1));
 }
 
+void Builder::start(BlockId block) {
+  current_ = block;
+  order_.push_back(block);
+}
+
 ValueId Builder::new_value(Scalar scalar) {
   pou_.values.push_back({scalar});
   return ValueId(static_cast<uint32_t>(pou_.values.size() - 1));
@@ -26,7 +31,7 @@ ValueId Builder::add_param(BlockId block, Scalar scalar) {
 }
 
 Inst& Builder::emit(Op op, Scalar scalar) {
-  if (!current_.valid()) current_ = new_block();
+  if (!current_.valid()) start(new_block());
   Inst& inst = pou_.blocks[current_.index].insts.emplace_back();
   inst.op = op;
   inst.scalar = scalar;
@@ -163,7 +168,7 @@ void Builder::ret() {
 }
 
 uint32_t Builder::temporary(ir::TypeId type) {
-  pou_.locals.push_back({"$" + std::to_string(temporaries_++), type, ir::LocalKind::kTemp});
+  pou_.locals.push_back({"#" + std::to_string(temporaries_++), type, ir::LocalKind::kTemp});
   return static_cast<uint32_t>(pou_.locals.size() - 1);
 }
 

@@ -17,7 +17,7 @@ class Builder {
   uint32_t line() const { return line_; }
 
   ir::BlockId new_block();
-  void start(ir::BlockId block) { current_ = block; }
+  void start(ir::BlockId block);
   ir::ValueId add_param(ir::BlockId block, ir::Scalar scalar);
   // False behind a terminator.
   bool reachable() const { return current_.valid(); }
@@ -60,6 +60,7 @@ class Builder {
 
   ir::Pou& pou_;
   ir::BlockId current_;
+  std::vector<ir::BlockId> order_;  // in which blocks were started: the final order
   uint32_t line_ = 0;
   uint32_t temporaries_ = 0;
 };

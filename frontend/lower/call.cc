@@ -216,8 +216,11 @@ void Body::call_statement(const Stmt& stmt) {
         if (value.valid()) sema_.infer(value);
       }
       return;
-    case Callee::Kind::kInstance: return call_instance(call, callee.pou);
-    case Callee::Kind::kFunction: call_function(call, callee.pou, false); return;
+    case Callee::Kind::kInstance:
+      return call_instance(call, callee.pou);
+    case Callee::Kind::kFunction:
+      call_function(call, callee.pou, false);
+      return;
     case Callee::Kind::kStandard:
     case Callee::Kind::kConversion: {
       const Note& note = sema_.infer(stmt.value);
@@ -239,9 +242,12 @@ ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
       ir::ValueId result = call_function(expr, callee.pou, true).value;
       return result.valid() ? result : zero(own);
     }
-    case Callee::Kind::kStandard: return emit_standard(expr, *callee.row, own);
-    case Callee::Kind::kConversion: return emit_conversion(expr, callee.conversion);
-    default: return zero(own);
+    case Callee::Kind::kStandard:
+      return emit_standard(expr, *callee.row, own);
+    case Callee::Kind::kConversion:
+      return emit_conversion(expr, callee.conversion);
+    default:
+      return zero(own);
   }
 }
 
@@ -257,10 +263,13 @@ ir::Place Body::call_place(ExprId id, const Expr& expr) {
   if (callee.kind != Callee::Kind::kStandard) return temporary_place(type);
   std::vector<ExprId> args = sema_.standard_arguments(expr, *callee.row);
   switch (callee.row->rule) {
-    case stdlib::FunctionRule::kMove: return place(args[0]);
+    case stdlib::FunctionRule::kMove:
+      return place(args[0]);
     case stdlib::FunctionRule::kSelect:
-    case stdlib::FunctionRule::kMux: return choose(args, *callee.row, type);
-    case stdlib::FunctionRule::kString: return string_function(args, *callee.row, type);
+    case stdlib::FunctionRule::kMux:
+      return choose(args, *callee.row, type);
+    case stdlib::FunctionRule::kString:
+      return string_function(args, *callee.row, type);
     default:
       sema_.error(DiagnosticCode::kNotSupported, expr.span,
                   std::string(callee.row->name) + " of `" + sema_.type_text(type) + "`");

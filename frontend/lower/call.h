@@ -8,9 +8,9 @@ namespace frontend {
 struct Body::Binding {
   VarId variable;
   const Arg* arg;
-  ir::ValueId value;             // input: scalar; in-out: address
+  ir::ValueId value;               // input: scalar; in-out: address
   std::optional<ir::Place> place;  // input: string or aggregate
-  std::optional<Target> target;  // output
+  std::optional<Target> target;    // output
 };
 
 std::string quoted_name(const Name& name);

@@ -94,8 +94,7 @@ void Body::case_tree(const std::vector<Interval>& intervals, size_t first, size_
     size_t middle = first + (last - first) / 2;
     ir::BlockId below = build_.new_block();
     ir::BlockId above = build_.new_block();
-    ir::ValueId edge =
-        build_.constant(machine, static_cast<uint64_t>(intervals[middle].low));
+    ir::ValueId edge = build_.constant(machine, static_cast<uint64_t>(intervals[middle].low));
     build_.branch(build_.compare(ir::Op::kLt, machine, selector, edge), below, above);
     build_.start(below);
     case_tree(intervals, first, middle, selector, machine, otherwise);

@@ -12,10 +12,13 @@ constexpr int64_t kDayNs = 86'400'000'000'000;
 int64_t unit_of(ir::Kind kind) {
   switch (kind) {
     case ir::Kind::kTime:
-    case ir::Kind::kTod: return 1'000'000;
+    case ir::Kind::kTod:
+      return 1'000'000;
     case ir::Kind::kDate:
-    case ir::Kind::kDt: return 1'000'000'000;
-    default: return 1;
+    case ir::Kind::kDt:
+      return 1'000'000'000;
+    default:
+      return 1;
   }
 }
 
@@ -54,16 +57,17 @@ ir::ValueId Body::machine_convert(ir::ValueId value, ir::Scalar from, ir::Scalar
 ir::ValueId Body::convert(Typed from, ir::TypeId to, base::SourceSpan span) {
   switch (implicit_fit(types(), from.type, to, sema_.options.dialect)) {
     case Fit::kNone:
-      sema_.error(DiagnosticCode::kTypeMismatch, span,
-                  "`" + sema_.type_text(from.type) + "` does not go with `" +
-                      sema_.type_text(to) + "`",
-                  "convert it explicitly, for example with TO_" + sema_.type_text(to));
+      sema_.error(
+          DiagnosticCode::kTypeMismatch, span,
+          "`" + sema_.type_text(from.type) + "` does not go with `" + sema_.type_text(to) + "`",
+          "convert it explicitly, for example with TO_" + sema_.type_text(to));
       return zero(to);
     case Fit::kNarrowing:
       if (!sema_.allow_narrowing(from.type, to, span)) return zero(to);
       break;
     case Fit::kSame:
-    case Fit::kLossless: break;
+    case Fit::kLossless:
+      break;
   }
   ir::ValueId out = machine_convert(from.value, scalar(from.type), scalar(to));
   return check_range(out, from.type, to);
@@ -93,8 +97,7 @@ ir::ValueId Body::from_time(Typed from, ir::TypeId to) {
   ir::Scalar machine = scalar(to);
   if (ir::is_float(machine)) {
     ir::ValueId real = build_.unary(ir::Op::kToFloat, ir::Scalar::kF64, from.value);
-    ir::ValueId divisor =
-        build_.constant(ir::Scalar::kF64, double_bits(static_cast<double>(unit)));
+    ir::ValueId divisor = build_.constant(ir::Scalar::kF64, double_bits(static_cast<double>(unit)));
     real = build_.binary(ir::Op::kDiv, ir::Scalar::kF64, real, divisor);
     return machine_convert(real, ir::Scalar::kF64, machine);
   }

@@ -7,13 +7,13 @@ namespace frontend {
 
 struct Body::ForLoop {
   ir::Place variable;
-  ir::TypeId type;       // without subrange
+  ir::TypeId type;  // without subrange
   ir::Scalar machine = ir::Scalar::kI16;
   Limits limits;
   ir::ValueId to;
   std::optional<Wide> constant_to;
   std::optional<Wide> constant_step;
-  ir::ValueId step;      // otherwise; signed, as wide as the variable
+  ir::ValueId step;  // otherwise; signed, as wide as the variable
   ir::ValueId upwards;
 };
 
@@ -21,10 +21,14 @@ namespace {
 
 ir::Kind signed_kind(ir::Scalar machine) {
   switch (ir::scalar_size(machine)) {
-    case 1: return ir::Kind::kSint;
-    case 2: return ir::Kind::kInt;
-    case 4: return ir::Kind::kDint;
-    default: return ir::Kind::kLint;
+    case 1:
+      return ir::Kind::kSint;
+    case 2:
+      return ir::Kind::kInt;
+    case 4:
+      return ir::Kind::kDint;
+    default:
+      return ir::Kind::kLint;
   }
 }
 
@@ -61,8 +65,7 @@ bool Body::for_head(const Stmt& stmt, ForLoop& loop) {
   bool bits = traits.bits && sema_.options.dialect != Dialect::kIec;
   if (to->bit_size != 0 || (!traits.integer && !bits)) {
     sema_.error(DiagnosticCode::kBadLoopVariable, tree_[stmt.target].span,
-                "a FOR variable of `" + sema_.type_text(to->type) + "`",
-                "use an integer variable");
+                "a FOR variable of `" + sema_.type_text(to->type) + "`", "use an integer variable");
     return false;
   }
   loop.variable = to->place;
@@ -148,8 +151,7 @@ void Body::for_advance_constant(const ForLoop& loop, ir::BlockId head, ir::Block
   }
   uint64_t bits = static_cast<uint64_t>(up ? step : -step);
   ir::ValueId amount = build_.constant(loop.machine, bits);
-  ir::ValueId next =
-      build_.binary(up ? ir::Op::kAdd : ir::Op::kSub, loop.machine, now, amount);
+  ir::ValueId next = build_.binary(up ? ir::Op::kAdd : ir::Op::kSub, loop.machine, now, amount);
   build_.store(loop.variable, loop.machine, next);
   build_.jump(head);
 }

@@ -8,14 +8,22 @@ namespace {
 
 ir::Op machine_op(BinaryOp op) {
   switch (op) {
-    case BinaryOp::kAdd: return ir::Op::kAdd;
-    case BinaryOp::kSub: return ir::Op::kSub;
-    case BinaryOp::kMul: return ir::Op::kMul;
-    case BinaryOp::kDiv: return ir::Op::kDiv;
-    case BinaryOp::kMod: return ir::Op::kMod;
-    case BinaryOp::kAnd: return ir::Op::kAnd;
-    case BinaryOp::kOr: return ir::Op::kOr;
-    default: return ir::Op::kXor;
+    case BinaryOp::kAdd:
+      return ir::Op::kAdd;
+    case BinaryOp::kSub:
+      return ir::Op::kSub;
+    case BinaryOp::kMul:
+      return ir::Op::kMul;
+    case BinaryOp::kDiv:
+      return ir::Op::kDiv;
+    case BinaryOp::kMod:
+      return ir::Op::kMod;
+    case BinaryOp::kAnd:
+      return ir::Op::kAnd;
+    case BinaryOp::kOr:
+      return ir::Op::kOr;
+    default:
+      return ir::Op::kXor;
   }
 }
 
@@ -38,7 +46,8 @@ ir::ValueId Body::emit_binary(const Expr& expr, ir::TypeId own) {
     }
     case OperatorClass::kArithmetic:
       return emit_arithmetic(expr.binary, expr.operand, expr.right, own);
-    case OperatorClass::kLogical: break;
+    case OperatorClass::kLogical:
+      break;
   }
   if (expr.binary == BinaryOp::kAndThen || expr.binary == BinaryOp::kOrElse) {
     return emit_lazy(expr);
@@ -86,12 +95,18 @@ ir::ValueId Body::compare_scalars(BinaryOp op, ir::TypeId type, ir::ValueId a, i
     machine = ir::Scalar::kU8;
   }
   switch (op) {
-    case BinaryOp::kEq: return build_.compare(ir::Op::kEq, machine, a, b);
-    case BinaryOp::kNe: return build_.compare(ir::Op::kNe, machine, a, b);
-    case BinaryOp::kLt: return build_.compare(ir::Op::kLt, machine, a, b);
-    case BinaryOp::kLe: return build_.compare(ir::Op::kLe, machine, a, b);
-    case BinaryOp::kGt: return build_.compare(ir::Op::kLt, machine, b, a);
-    default: return build_.compare(ir::Op::kLe, machine, b, a);
+    case BinaryOp::kEq:
+      return build_.compare(ir::Op::kEq, machine, a, b);
+    case BinaryOp::kNe:
+      return build_.compare(ir::Op::kNe, machine, a, b);
+    case BinaryOp::kLt:
+      return build_.compare(ir::Op::kLt, machine, a, b);
+    case BinaryOp::kLe:
+      return build_.compare(ir::Op::kLe, machine, a, b);
+    case BinaryOp::kGt:
+      return build_.compare(ir::Op::kLt, machine, b, a);
+    default:
+      return build_.compare(ir::Op::kLe, machine, b, a);
   }
 }
 
@@ -99,9 +114,8 @@ ir::ValueId Body::compare_strings(BinaryOp op, ExprId left, ExprId right) {
   ir::Place a = place(left);
   ir::Place b = place(right);
   bool is_wide = wide(a.type);
-  ir::ValueId order =
-      native(is_wide ? stdlib::NativeId::kCompareW : stdlib::NativeId::kCompareS,
-             {string_value(a), string_value(b)});
+  ir::ValueId order = native(is_wide ? stdlib::NativeId::kCompareW : stdlib::NativeId::kCompareS,
+                             {string_value(a), string_value(b)});
   ir::ValueId none = build_.constant(ir::Scalar::kI32, 0);
   return compare_scalars(op, elementary(ir::Kind::kDint), order, none);
 }

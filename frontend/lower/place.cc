@@ -57,12 +57,18 @@ ir::Place Body::place(ExprId id) {
   const Note& note = sema_.infer(id);
   if (note.constant) return constant_place(id);
   switch (expr.kind) {
-    case ExprKind::kName: return variable_place(note.variable);
-    case ExprKind::kMember: return member_place(expr);
-    case ExprKind::kIndex: return index_place(expr);
-    case ExprKind::kDirect: return global_place(sema_.direct_member(expr));
-    case ExprKind::kCall: return call_place(id, expr);
-    default: return temporary_place(note.type);
+    case ExprKind::kName:
+      return variable_place(note.variable);
+    case ExprKind::kMember:
+      return member_place(expr);
+    case ExprKind::kIndex:
+      return index_place(expr);
+    case ExprKind::kDirect:
+      return global_place(sema_.direct_member(expr));
+    case ExprKind::kCall:
+      return call_place(id, expr);
+    default:
+      return temporary_place(note.type);
   }
 }
 
@@ -118,7 +124,8 @@ ir::Place Body::constant_place(ExprId id) {
 bool Body::check_writable(ExprId id) {
   const Expr& expr = tree_[id];
   switch (expr.kind) {
-    case ExprKind::kName: return check_writable_name(expr);
+    case ExprKind::kName:
+      return check_writable_name(expr);
     case ExprKind::kDirect:
       if (expr.address.area != ir::DirectArea::kInput) return true;
       sema_.error(DiagnosticCode::kAssignToInput, expr.span,
@@ -135,7 +142,8 @@ bool Body::check_writable(ExprId id) {
       return false;
     }
     case ExprKind::kIndex:
-    case ExprKind::kBit: return check_writable(expr.operand);
+    case ExprKind::kBit:
+      return check_writable(expr.operand);
     default:
       sema_.error(DiagnosticCode::kNotAssignable, expr.span, "this is a value, not a variable");
       return false;

@@ -1,5 +1,6 @@
-// What nothing reaches is removed: blocks, and the values and places only they used.
-// Later phases refuse unreachable code.
+// Blocks are put into the order in which they were written, which is source order.
+// What nothing reaches is removed, with the values and places only it used: later
+// phases refuse unreachable code.
 #include "frontend/lower/builder.h"
 
 namespace frontend {
@@ -88,15 +89,17 @@ void Builder::finish() {
   if (current_.valid()) ret();
   std::vector<bool> live = reachable_blocks(pou_);
   std::vector<BlockId> renamed(live.size());
-  uint32_t count = 0;
-  for (uint32_t i = 0; i < live.size(); ++i) {
-    if (!live[i]) continue;
-    renamed[i] = BlockId(count);
-    if (i != count) pou_.blocks[count] = std::move(pou_.blocks[i]);
-    ++count;
+  std::vector<ir::Block> blocks;
+  bool in_order = true;
+  for (BlockId id : order_) {
+    if (!live[id.index]) continue;
+    in_order = in_order && id.index == blocks.size();
+    renamed[id.index] = BlockId(static_cast<uint32_t>(blocks.size()));
+    blocks.push_back(std::move(pou_.blocks[id.index]));
   }
-  if (count == live.size()) return;
-  pou_.blocks.resize(count);
+  in_order = in_order && blocks.size() == live.size();
+  pou_.blocks = std::move(blocks);
+  if (in_order) return;
   for (ir::Block& block : pou_.blocks) {
     for (ir::Target& target : block.insts.back().targets) {
       target.block = renamed[target.block.index];

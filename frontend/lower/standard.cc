@@ -10,57 +10,81 @@ using stdlib::NativeId;
 
 NativeId real_native(FunctionId id) {
   switch (id) {
-    case FunctionId::kLn: return NativeId::kLn;
-    case FunctionId::kLog: return NativeId::kLog;
-    case FunctionId::kExp: return NativeId::kExp;
-    case FunctionId::kSin: return NativeId::kSin;
-    case FunctionId::kCos: return NativeId::kCos;
-    case FunctionId::kTan: return NativeId::kTan;
-    case FunctionId::kAsin: return NativeId::kAsin;
-    case FunctionId::kAcos: return NativeId::kAcos;
-    case FunctionId::kAtan: return NativeId::kAtan;
-    default: return NativeId::kAtan2;
+    case FunctionId::kLn:
+      return NativeId::kLn;
+    case FunctionId::kLog:
+      return NativeId::kLog;
+    case FunctionId::kExp:
+      return NativeId::kExp;
+    case FunctionId::kSin:
+      return NativeId::kSin;
+    case FunctionId::kCos:
+      return NativeId::kCos;
+    case FunctionId::kTan:
+      return NativeId::kTan;
+    case FunctionId::kAsin:
+      return NativeId::kAsin;
+    case FunctionId::kAcos:
+      return NativeId::kAcos;
+    case FunctionId::kAtan:
+      return NativeId::kAtan;
+    default:
+      return NativeId::kAtan2;
   }
 }
 
 ir::Op shift_op(FunctionId id) {
   switch (id) {
-    case FunctionId::kShl: return ir::Op::kShl;
-    case FunctionId::kShr: return ir::Op::kShr;
-    case FunctionId::kRol: return ir::Op::kRol;
-    default: return ir::Op::kRor;
+    case FunctionId::kShl:
+      return ir::Op::kShl;
+    case FunctionId::kShr:
+      return ir::Op::kShr;
+    case FunctionId::kRol:
+      return ir::Op::kRol;
+    default:
+      return ir::Op::kRor;
   }
 }
 
 }  // namespace
 
-ir::ValueId Body::emit_standard(const Expr& expr, const stdlib::FunctionRow& row,
-                                ir::TypeId own) {
+ir::ValueId Body::emit_standard(const Expr& expr, const stdlib::FunctionRow& row, ir::TypeId own) {
   std::vector<ExprId> args = sema_.standard_arguments(expr, row);
   switch (row.rule) {
-    case FunctionRule::kClock: return build_.task_time();
-    case FunctionRule::kMove: return value(args[0], own);
+    case FunctionRule::kClock:
+      return build_.task_time();
+    case FunctionRule::kMove:
+      return value(args[0], own);
     case FunctionRule::kNumberSame:
       return build_.unary(ir::Op::kAbs, scalar(own), value(args[0], own));
-    case FunctionRule::kNot: return build_.unary(ir::Op::kNot, scalar(own), value(args[0], own));
+    case FunctionRule::kNot:
+      return build_.unary(ir::Op::kNot, scalar(own), value(args[0], own));
     case FunctionRule::kTrunc: {
       Typed real = natural(args[0]);
       return machine_convert(real.value, scalar(real.type), scalar(own), true);
     }
-    case FunctionRule::kReal: return real_function(args, row, own);
+    case FunctionRule::kReal:
+      return real_function(args, row, own);
     case FunctionRule::kArithmetic:
-    case FunctionRule::kBitwise: return fold_operator(args, standard_operator(row.id), own);
-    case FunctionRule::kShift: return shift(args, row, own);
+    case FunctionRule::kBitwise:
+      return fold_operator(args, standard_operator(row.id), own);
+    case FunctionRule::kShift:
+      return shift(args, row, own);
     case FunctionRule::kSelect: {
       ir::ValueId condition = value(args[0], elementary(ir::Kind::kBool));
       ir::ValueId if_false = value(args[1], own);
       return build_.select(scalar(own), condition, if_false, value(args[2], own));
     }
-    case FunctionRule::kExtreme: return extreme(args, row, own);
-    case FunctionRule::kMux: return multiplex(args, own);
-    case FunctionRule::kCompare: return compare_chain(args, standard_operator(row.id));
-    case FunctionRule::kStringNumber: return string_number(args, row);
-    case FunctionRule::kString: break;
+    case FunctionRule::kExtreme:
+      return extreme(args, row, own);
+    case FunctionRule::kMux:
+      return multiplex(args, own);
+    case FunctionRule::kCompare:
+      return compare_chain(args, standard_operator(row.id));
+    case FunctionRule::kStringNumber:
+      return string_number(args, row);
+    case FunctionRule::kString:
+      break;
   }
   return zero(own);
 }

@@ -9,15 +9,24 @@ using stdlib::NativeId;
 
 NativeId string_native(FunctionId id, bool wide) {
   switch (id) {
-    case FunctionId::kLen: return wide ? NativeId::kLenW : NativeId::kLenS;
-    case FunctionId::kFind: return wide ? NativeId::kFindW : NativeId::kFindS;
-    case FunctionId::kLeft: return wide ? NativeId::kLeftW : NativeId::kLeftS;
-    case FunctionId::kRight: return wide ? NativeId::kRightW : NativeId::kRightS;
-    case FunctionId::kMid: return wide ? NativeId::kMidW : NativeId::kMidS;
-    case FunctionId::kInsert: return wide ? NativeId::kInsertW : NativeId::kInsertS;
-    case FunctionId::kDelete: return wide ? NativeId::kDeleteW : NativeId::kDeleteS;
-    case FunctionId::kReplace: return wide ? NativeId::kReplaceW : NativeId::kReplaceS;
-    default: return wide ? NativeId::kConcatW : NativeId::kConcatS;
+    case FunctionId::kLen:
+      return wide ? NativeId::kLenW : NativeId::kLenS;
+    case FunctionId::kFind:
+      return wide ? NativeId::kFindW : NativeId::kFindS;
+    case FunctionId::kLeft:
+      return wide ? NativeId::kLeftW : NativeId::kLeftS;
+    case FunctionId::kRight:
+      return wide ? NativeId::kRightW : NativeId::kRightS;
+    case FunctionId::kMid:
+      return wide ? NativeId::kMidW : NativeId::kMidS;
+    case FunctionId::kInsert:
+      return wide ? NativeId::kInsertW : NativeId::kInsertS;
+    case FunctionId::kDelete:
+      return wide ? NativeId::kDeleteW : NativeId::kDeleteS;
+    case FunctionId::kReplace:
+      return wide ? NativeId::kReplaceW : NativeId::kReplaceS;
+    default:
+      return wide ? NativeId::kConcatW : NativeId::kConcatS;
   }
 }
 
@@ -72,9 +81,9 @@ ir::Place Body::choose(const std::vector<ExprId>& args, const stdlib::FunctionRo
                        ir::TypeId type) {
   bool select = row.id == FunctionId::kSel;
   ir::Place result = temporary_place(type);
-  Typed selector = select ? Typed{value(args[0], elementary(ir::Kind::kBool)),
-                                  elementary(ir::Kind::kBool)}
-                          : natural(args[0]);
+  Typed selector =
+      select ? Typed{value(args[0], elementary(ir::Kind::kBool)), elementary(ir::Kind::kBool)}
+             : natural(args[0]);
   ir::ValueId number = machine_convert(selector.value, scalar(selector.type), ir::Scalar::kI64);
   std::vector<ir::Place> choices;
   for (size_t i = 1; i < args.size(); ++i) choices.push_back(place(args[i]));

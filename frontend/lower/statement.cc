@@ -22,17 +22,27 @@ void Body::statement(const Stmt& stmt) {
   set_line(stmt.span);
   switch (stmt.kind) {
     case StmtKind::kError:
-    case StmtKind::kEmpty: return;
-    case StmtKind::kAssign: return assign(stmt);
-    case StmtKind::kCall: return call_statement(stmt);
-    case StmtKind::kIf: return if_statement(stmt);
-    case StmtKind::kCase: return case_statement(stmt);
-    case StmtKind::kFor: return for_statement(stmt);
-    case StmtKind::kWhile: return while_statement(stmt);
-    case StmtKind::kRepeat: return repeat_statement(stmt);
+    case StmtKind::kEmpty:
+      return;
+    case StmtKind::kAssign:
+      return assign(stmt);
+    case StmtKind::kCall:
+      return call_statement(stmt);
+    case StmtKind::kIf:
+      return if_statement(stmt);
+    case StmtKind::kCase:
+      return case_statement(stmt);
+    case StmtKind::kFor:
+      return for_statement(stmt);
+    case StmtKind::kWhile:
+      return while_statement(stmt);
+    case StmtKind::kRepeat:
+      return repeat_statement(stmt);
     case StmtKind::kExit:
-    case StmtKind::kContinue: return leave_loop(stmt);
-    case StmtKind::kReturn: return build_.ret();
+    case StmtKind::kContinue:
+      return leave_loop(stmt);
+    case StmtKind::kReturn:
+      return build_.ret();
   }
 }
 
@@ -48,18 +58,21 @@ ir::ValueId Body::condition(ExprId expr) {
 
 void Body::if_statement(const Stmt& stmt) {
   ir::BlockId done = build_.new_block();
+  bool open = false;  // the way past the last condition is still without a target
   for (uint32_t i = 0; i < stmt.branches.count; ++i) {
     const Branch& branch = tree_.branches[stmt.branches.first + i];
+    bool last = i + 1 == stmt.branches.count && stmt.else_body.count == 0;
     ir::BlockId then = build_.new_block();
-    ir::BlockId otherwise = build_.new_block();
+    ir::BlockId otherwise = last ? done : build_.new_block();
     build_.branch(condition(branch.condition), then, otherwise);
     build_.start(then);
     statements(branch.body);
     if (build_.reachable()) build_.jump(done);
-    build_.start(otherwise);
+    if (!last) build_.start(otherwise);
+    open = !last;
   }
   statements(stmt.else_body);
-  if (build_.reachable()) build_.jump(done);
+  if (open && build_.reachable()) build_.jump(done);
   build_.start(done);
 }
 

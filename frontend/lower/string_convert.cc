@@ -15,19 +15,27 @@ struct TextForm {
 
 std::optional<TextForm> text_form(ir::Kind kind, ir::Scalar machine) {
   switch (kind) {
-    case ir::Kind::kBool: return TextForm{NativeId::kBoolToString, ir::Scalar::kBool};
-    case ir::Kind::kReal: return TextForm{NativeId::kF32ToString, ir::Scalar::kF32};
-    case ir::Kind::kLreal: return TextForm{NativeId::kF64ToString, ir::Scalar::kF64};
+    case ir::Kind::kBool:
+      return TextForm{NativeId::kBoolToString, ir::Scalar::kBool};
+    case ir::Kind::kReal:
+      return TextForm{NativeId::kF32ToString, ir::Scalar::kF32};
+    case ir::Kind::kLreal:
+      return TextForm{NativeId::kF64ToString, ir::Scalar::kF64};
     case ir::Kind::kTime:
-    case ir::Kind::kLtime: return TextForm{NativeId::kTimeToString, ir::Scalar::kI64};
+    case ir::Kind::kLtime:
+      return TextForm{NativeId::kTimeToString, ir::Scalar::kI64};
     case ir::Kind::kDate:
-    case ir::Kind::kLdate: return TextForm{NativeId::kDateToString, ir::Scalar::kI64};
+    case ir::Kind::kLdate:
+      return TextForm{NativeId::kDateToString, ir::Scalar::kI64};
     case ir::Kind::kTod:
-    case ir::Kind::kLtod: return TextForm{NativeId::kTodToString, ir::Scalar::kI64};
+    case ir::Kind::kLtod:
+      return TextForm{NativeId::kTodToString, ir::Scalar::kI64};
     case ir::Kind::kDt:
-    case ir::Kind::kLdt: return TextForm{NativeId::kDtToString, ir::Scalar::kI64};
+    case ir::Kind::kLdt:
+      return TextForm{NativeId::kDtToString, ir::Scalar::kI64};
     case ir::Kind::kChar:
-    case ir::Kind::kWchar: return std::nullopt;
+    case ir::Kind::kWchar:
+      return std::nullopt;
     default:
       if (ir::is_signed(machine)) return TextForm{NativeId::kI64ToString, ir::Scalar::kI64};
       return TextForm{NativeId::kU64ToString, ir::Scalar::kU64};
@@ -36,11 +44,14 @@ std::optional<TextForm> text_form(ir::Kind kind, ir::Scalar machine) {
 
 std::optional<TextForm> value_form(ir::Kind kind, ir::Scalar machine) {
   switch (kind) {
-    case ir::Kind::kBool: return TextForm{NativeId::kStringToBool, ir::Scalar::kBool};
+    case ir::Kind::kBool:
+      return TextForm{NativeId::kStringToBool, ir::Scalar::kBool};
     case ir::Kind::kReal:
-    case ir::Kind::kLreal: return TextForm{NativeId::kStringToF64, ir::Scalar::kF64};
+    case ir::Kind::kLreal:
+      return TextForm{NativeId::kStringToF64, ir::Scalar::kF64};
     case ir::Kind::kTime:
-    case ir::Kind::kLtime: return TextForm{NativeId::kStringToTime, ir::Scalar::kI64};
+    case ir::Kind::kLtime:
+      return TextForm{NativeId::kStringToTime, ir::Scalar::kI64};
     default:
       if (kind > ir::Kind::kLreal) return std::nullopt;
       if (ir::is_signed(machine)) return TextForm{NativeId::kStringToI64, ir::Scalar::kI64};

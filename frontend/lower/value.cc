@@ -8,11 +8,16 @@ ir::TypeId Body::own_type(const Note& note, ir::TypeId target) const {
   Traits traits = traits_of(types(), target);
   ir::TypeId plain = without_range(types(), target);
   switch (note.flex) {
-    case Flex::kNone: return note.type;
-    case Flex::kInteger: return traits.number() || traits.bits ? plain : note.type;
-    case Flex::kReal: return traits.real ? plain : note.type;
-    case Flex::kEnum: return traits.enumeration ? plain : note.type;
-    case Flex::kText: return note.type;
+    case Flex::kNone:
+      return note.type;
+    case Flex::kInteger:
+      return traits.number() || traits.bits ? plain : note.type;
+    case Flex::kReal:
+      return traits.real ? plain : note.type;
+    case Flex::kEnum:
+      return traits.enumeration ? plain : note.type;
+    case Flex::kText:
+      return note.type;
   }
   return note.type;
 }
@@ -28,9 +33,9 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
   }
   ir::TypeId own = own_type(note, target);
   if (!types().is_scalar(own)) {
-    sema_.error(DiagnosticCode::kTypeMismatch, expr.span,
-                "`" + sema_.type_text(own) + "` does not go with `" + sema_.type_text(target) +
-                    "`");
+    sema_.error(
+        DiagnosticCode::kTypeMismatch, expr.span,
+        "`" + sema_.type_text(own) + "` does not go with `" + sema_.type_text(target) + "`");
     return zero(target);
   }
   return convert({emit(id, own), own}, target, expr.span);
@@ -56,11 +61,16 @@ ir::ValueId Body::emit(ExprId id, ir::TypeId own) {
       ir::Place from = place(id);
       return build_.load(from, scalar(from.type));
     }
-    case ExprKind::kBit: return emit_bit(expr);
-    case ExprKind::kUnary: return emit_unary(expr, own);
-    case ExprKind::kBinary: return emit_binary(expr, own);
-    case ExprKind::kCall: return emit_call(expr, own);
-    default: return zero(own);
+    case ExprKind::kBit:
+      return emit_bit(expr);
+    case ExprKind::kUnary:
+      return emit_unary(expr, own);
+    case ExprKind::kBinary:
+      return emit_binary(expr, own);
+    case ExprKind::kCall:
+      return emit_call(expr, own);
+    default:
+      return zero(own);
   }
 }
 

@@ -90,8 +90,8 @@ void Sema::add_instance(const ProgramDecl& decl) {
     for (const PouInfo& pou : pous) {
       if (pou.decl->kind == PouKind::kProgram) nearest.offer(pou.decl->name.text);
     }
-    error(DiagnosticCode::kUnknownProgram, decl.type.span,
-          quoted(decl.type) + " is not a PROGRAM", nearest.fix());
+    error(DiagnosticCode::kUnknownProgram, decl.type.span, quoted(decl.type) + " is not a PROGRAM",
+          nearest.fix());
     return;
   }
   for (const ir::ProgramInstance& other : program.instances) {

@@ -14,8 +14,8 @@ struct Constant {
   enum class Form : uint8_t { kInteger, kReal, kText, kAggregate };
   Form form = Form::kInteger;
   Flex flex = Flex::kNone;
-  ir::TypeId type;        // valid unless `flex` says that the context decides
-  Wide integer = 0;       // also BOOL, bit strings, times, enumerations, characters
+  ir::TypeId type;   // valid unless `flex` says that the context decides
+  Wide integer = 0;  // also BOOL, bit strings, times, enumerations, characters
   double real = 0;
   std::string text;       // STRING: bytes, WSTRING: UTF-16LE
   ir::ConstId aggregate;  // an initial value in the program's table

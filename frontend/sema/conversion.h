@@ -25,7 +25,7 @@ struct Conversion {
 std::optional<Conversion> conversion_of_name(std::string_view name);
 
 enum class Fit : uint8_t {
-  kSame,       // one machine representation, no code
+  kSame,  // one machine representation, no code
   kLossless,
   kNarrowing,  // possible, but can lose: warning or error, by dialect
   kNone,
@@ -47,7 +47,7 @@ struct Traits {
   bool integer = false;  // SINT..ULINT
   bool real = false;
   bool duration = false;
-  bool date = false;     // DATE, TOD, DT and long forms
+  bool date = false;  // DATE, TOD, DT and long forms
   bool character = false;
   bool enumeration = false;
   bool number() const { return integer || real; }

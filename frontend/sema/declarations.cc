@@ -6,9 +6,12 @@ namespace {
 
 ir::PouKind ir_kind(PouKind kind) {
   switch (kind) {
-    case PouKind::kFunction: return ir::PouKind::kFunction;
-    case PouKind::kFunctionBlock: return ir::PouKind::kFunctionBlock;
-    case PouKind::kProgram: return ir::PouKind::kProgram;
+    case PouKind::kFunction:
+      return ir::PouKind::kFunction;
+    case PouKind::kFunctionBlock:
+      return ir::PouKind::kFunctionBlock;
+    case PouKind::kProgram:
+      return ir::PouKind::kProgram;
   }
   return ir::PouKind::kFunction;
 }
@@ -56,11 +59,10 @@ VarId Sema::add_variable(Variable variable, NameMap<VarId>& scope) {
   VarId id(static_cast<uint32_t>(variables_.size()));
   if (!scope.emplace(variable.name.text, id).second) {
     const Variable& first = variables_[scope[variable.name.text].index];
-    std::string where =
-        first.decl == nullptr
-            ? "the function's result has the function's name"
-            : "first declared in line " +
-                  std::to_string(sources.locate(first.name.span.begin).line);
+    std::string where = first.decl == nullptr
+                            ? "the function's result has the function's name"
+                            : "first declared in line " +
+                                  std::to_string(sources.locate(first.name.span.begin).line);
     error(DiagnosticCode::kDuplicateName, variable.name.span,
           "`" + std::string(variable.name.text) + "` is declared twice; " + where);
     return {};

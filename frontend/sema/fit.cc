@@ -23,8 +23,7 @@ uint64_t real_bits(ir::Scalar scalar, double value) {
 
 }  // namespace
 
-std::optional<uint64_t> Sema::fit(const Constant& value, ir::TypeId target,
-                                  base::SourceSpan span) {
+std::optional<uint64_t> Sema::fit(const Constant& value, ir::TypeId target, base::SourceSpan span) {
   const ir::TypeTable& types = program.types;
   Traits to = traits_of(types, target);
   auto mismatch = [&]() -> std::optional<uint64_t> {
@@ -45,8 +44,7 @@ std::optional<uint64_t> Sema::fit(const Constant& value, ir::TypeId target,
   }
   bool typed = value.flex == Flex::kNone;
   bool same = typed && without_range(types, value.type) == without_range(types, target);
-  if (typed && !same &&
-      implicit_fit(types, value.type, target, options.dialect) == Fit::kNone) {
+  if (typed && !same && implicit_fit(types, value.type, target, options.dialect) == Fit::kNone) {
     return mismatch();
   }
   if (value.flex == Flex::kEnum && !is_enum(types, target)) return mismatch();
@@ -60,8 +58,8 @@ std::optional<uint64_t> Sema::fit(const Constant& value, ir::TypeId target,
     }
   }
   if (to.real) {
-    double real = value.form == Constant::Form::kReal ? value.real
-                                                      : static_cast<double>(value.integer);
+    double real =
+        value.form == Constant::Form::kReal ? value.real : static_cast<double>(value.integer);
     bool overflow = scalar == ir::Scalar::kF32 && std::isfinite(real) &&
                     !std::isfinite(static_cast<float>(real));
     if (!overflow) return real_bits(scalar, real);
@@ -95,7 +93,8 @@ std::optional<std::string> Sema::fit_text(const Constant& value, ir::TypeId targ
   if (!text) {
     error(DiagnosticCode::kTypeMismatch, span,
           value_text(value) + " does not go with `" + type_text(target) + "`",
-          wide ? "write WSTRING literals in double quotes" : "write STRING literals in single quotes");
+          wide ? "write WSTRING literals in double quotes"
+               : "write STRING literals in single quotes");
     return std::nullopt;
   }
   size_t room = size_t{type.capacity} * (wide ? 2 : 1);

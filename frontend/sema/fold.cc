@@ -83,13 +83,19 @@ std::optional<Constant> Folder::fold(ExprId id) {
     return std::nullopt;
   }
   switch (expr.kind) {
-    case ExprKind::kLiteral: return literal(expr);
-    case ExprKind::kName: return name(id, expr);
+    case ExprKind::kLiteral:
+      return literal(expr);
+    case ExprKind::kName:
+      return name(id, expr);
     case ExprKind::kQualified:
-    case ExprKind::kMember: return enumerator(note.type, expr.name.text);
-    case ExprKind::kUnary: return unary(id, expr);
-    case ExprKind::kBinary: return binary(id, expr);
-    default: return std::nullopt;
+    case ExprKind::kMember:
+      return enumerator(note.type, expr.name.text);
+    case ExprKind::kUnary:
+      return unary(id, expr);
+    case ExprKind::kBinary:
+      return binary(id, expr);
+    default:
+      return std::nullopt;
   }
 }
 
@@ -112,8 +118,10 @@ std::optional<Constant> Folder::literal(const Expr& expr) {
       break;
     default:
       value.integer = literal.integer;
-      if (literal.kind == LiteralKind::kInteger) value.flex = Flex::kInteger;
-      else value.integer = static_cast<int64_t>(literal.integer);
+      if (literal.kind == LiteralKind::kInteger)
+        value.flex = Flex::kInteger;
+      else
+        value.integer = static_cast<int64_t>(literal.integer);
       if (literal.negative) value.integer = -value.integer;
       if (literal.kind != LiteralKind::kInteger) {
         value.type = without_range(sema_.program.types, sema_.infer_literal(expr).type);
@@ -133,7 +141,8 @@ std::optional<Constant> Folder::literal(const Expr& expr) {
   if (based && ir::is_signed(sema_.program.types.scalar(type))) {
     // INT#16#FFFF names a bit pattern.
     Wide span = static_cast<Wide>(1) << (ir::scalar_size(sema_.program.types.scalar(type)) * 8);
-    if (value.integer < span) value.integer = wrap_to(sema_.program.types.scalar(type), value.integer);
+    if (value.integer < span)
+      value.integer = wrap_to(sema_.program.types.scalar(type), value.integer);
   }
   auto bits = sema_.fit(value, type, expr.span);
   if (!bits) return std::nullopt;
@@ -285,12 +294,24 @@ std::optional<Constant> Folder::compare(const Expr& expr, const Constant& a, con
   }
   bool holds = false;
   switch (expr.binary) {
-    case BinaryOp::kEq: holds = order == 0; break;
-    case BinaryOp::kNe: holds = order != 0; break;
-    case BinaryOp::kLt: holds = order < 0; break;
-    case BinaryOp::kLe: holds = order <= 0; break;
-    case BinaryOp::kGt: holds = order > 0; break;
-    default: holds = order >= 0; break;
+    case BinaryOp::kEq:
+      holds = order == 0;
+      break;
+    case BinaryOp::kNe:
+      holds = order != 0;
+      break;
+    case BinaryOp::kLt:
+      holds = order < 0;
+      break;
+    case BinaryOp::kLe:
+      holds = order <= 0;
+      break;
+    case BinaryOp::kGt:
+      holds = order > 0;
+      break;
+    default:
+      holds = order >= 0;
+      break;
   }
   if (unordered) holds = expr.binary == BinaryOp::kNe;
   Constant result;
@@ -299,14 +320,21 @@ std::optional<Constant> Folder::compare(const Expr& expr, const Constant& a, con
   return result;
 }
 
-std::optional<Constant> Folder::real_binary(const Expr& expr, double a, double b,
-                                            Constant result) {
+std::optional<Constant> Folder::real_binary(const Expr& expr, double a, double b, Constant result) {
   double value = 0;
   switch (expr.binary) {
-    case BinaryOp::kAdd: value = a + b; break;
-    case BinaryOp::kSub: value = a - b; break;
-    case BinaryOp::kMul: value = a * b; break;
-    case BinaryOp::kDiv: value = a / b; break;
+    case BinaryOp::kAdd:
+      value = a + b;
+      break;
+    case BinaryOp::kSub:
+      value = a - b;
+      break;
+    case BinaryOp::kMul:
+      value = a * b;
+      break;
+    case BinaryOp::kDiv:
+      value = a / b;
+      break;
     default:
       sema_.error(DiagnosticCode::kBadOperand, expr.span,
                   std::string(operator_text(expr.binary)) + " is not defined for reals");
@@ -322,17 +350,18 @@ std::optional<Constant> Folder::real_binary(const Expr& expr, double a, double b
     return result;
   }
   result.form = Constant::Form::kReal;
-  bool single = result.flex == Flex::kNone &&
-                sema_.program.types.scalar(result.type) == ir::Scalar::kF32;
+  bool single =
+      result.flex == Flex::kNone && sema_.program.types.scalar(result.type) == ir::Scalar::kF32;
   result.real = single ? static_cast<double>(static_cast<float>(value)) : value;
   return result;
 }
 
-std::optional<Constant> Folder::integer_binary(const Expr& expr, Wide a, Wide b,
-                                               Constant result) {
+std::optional<Constant> Folder::integer_binary(const Expr& expr, Wide a, Wide b, Constant result) {
   switch (expr.binary) {
-    case BinaryOp::kAdd: return exact(result, a + b, expr);
-    case BinaryOp::kSub: return exact(result, a - b, expr);
+    case BinaryOp::kAdd:
+      return exact(result, a + b, expr);
+    case BinaryOp::kSub:
+      return exact(result, a - b, expr);
     case BinaryOp::kMul: {
       Wide product = 0;
       if (__builtin_mul_overflow(a, b, &product)) product = kMaxExact * kMaxExact;
@@ -346,11 +375,15 @@ std::optional<Constant> Folder::integer_binary(const Expr& expr, Wide a, Wide b,
       }
       return exact(result, expr.binary == BinaryOp::kDiv ? a / b : a % b, expr);
     case BinaryOp::kAnd:
-    case BinaryOp::kAndThen: return exact(result, a & b, expr);
+    case BinaryOp::kAndThen:
+      return exact(result, a & b, expr);
     case BinaryOp::kOr:
-    case BinaryOp::kOrElse: return exact(result, a | b, expr);
-    case BinaryOp::kXor: return exact(result, a ^ b, expr);
-    default: return std::nullopt;
+    case BinaryOp::kOrElse:
+      return exact(result, a | b, expr);
+    case BinaryOp::kXor:
+      return exact(result, a ^ b, expr);
+    default:
+      return std::nullopt;
   }
 }
 

@@ -10,12 +10,18 @@ constexpr uint32_t kMaxDepth = 900;
 
 ir::Kind literal_kind(const Literal& literal) {
   switch (literal.kind) {
-    case LiteralKind::kBool: return ir::Kind::kBool;
-    case LiteralKind::kDuration: return literal.is_long ? ir::Kind::kLtime : ir::Kind::kTime;
-    case LiteralKind::kDate: return literal.is_long ? ir::Kind::kLdate : ir::Kind::kDate;
-    case LiteralKind::kTimeOfDay: return literal.is_long ? ir::Kind::kLtod : ir::Kind::kTod;
-    case LiteralKind::kDateAndTime: return literal.is_long ? ir::Kind::kLdt : ir::Kind::kDt;
-    default: return ir::Kind::kLreal;
+    case LiteralKind::kBool:
+      return ir::Kind::kBool;
+    case LiteralKind::kDuration:
+      return literal.is_long ? ir::Kind::kLtime : ir::Kind::kTime;
+    case LiteralKind::kDate:
+      return literal.is_long ? ir::Kind::kLdate : ir::Kind::kDate;
+    case LiteralKind::kTimeOfDay:
+      return literal.is_long ? ir::Kind::kLtod : ir::Kind::kTod;
+    case LiteralKind::kDateAndTime:
+      return literal.is_long ? ir::Kind::kLdt : ir::Kind::kDt;
+    default:
+      return ir::Kind::kLreal;
   }
 }
 
@@ -45,15 +51,24 @@ const Note& Sema::infer(ExprId id) {
 
 Note Sema::infer_kind(ExprId, const Expr& expr) {
   switch (expr.kind) {
-    case ExprKind::kLiteral: return infer_literal(expr);
-    case ExprKind::kName: return infer_name(expr);
-    case ExprKind::kQualified: return infer_qualified(expr);
-    case ExprKind::kMember: return infer_member(expr);
-    case ExprKind::kBit: return infer_bit(expr);
-    case ExprKind::kIndex: return infer_index(expr);
-    case ExprKind::kUnary: return infer_unary(expr);
-    case ExprKind::kBinary: return infer_binary(expr);
-    case ExprKind::kCall: return infer_call(expr);
+    case ExprKind::kLiteral:
+      return infer_literal(expr);
+    case ExprKind::kName:
+      return infer_name(expr);
+    case ExprKind::kQualified:
+      return infer_qualified(expr);
+    case ExprKind::kMember:
+      return infer_member(expr);
+    case ExprKind::kBit:
+      return infer_bit(expr);
+    case ExprKind::kIndex:
+      return infer_index(expr);
+    case ExprKind::kUnary:
+      return infer_unary(expr);
+    case ExprKind::kBinary:
+      return infer_binary(expr);
+    case ExprKind::kCall:
+      return infer_call(expr);
     case ExprKind::kDirect: {
       Note note;
       note.type = type_of_direct(expr.address);
@@ -71,7 +86,8 @@ Note Sema::infer_kind(ExprId, const Expr& expr) {
       error(DiagnosticCode::kNotAValue, expr.span,
             "a list of values stands where a single value is needed");
       return {};
-    case ExprKind::kError: return {};
+    case ExprKind::kError:
+      return {};
   }
   return {};
 }
@@ -112,7 +128,9 @@ Note Sema::infer_literal(const Expr& expr) {
       note.type = program.types.wstring(length == 0 ? 1 : length);
       return note;
     }
-    default: note.type = program.types.elementary(literal_kind(literal)); return note;
+    default:
+      note.type = program.types.elementary(literal_kind(literal));
+      return note;
   }
 }
 
@@ -129,9 +147,9 @@ Note Sema::infer_name(const Expr& expr) {
   Note note;
   note.variable = id;
   note.type = variable->type;
-  note.constant = variable->constant && variable->type.valid() &&
-                  (program.types.is_scalar(variable->type) ||
-                   is_string(program.types, variable->type));
+  note.constant =
+      variable->constant && variable->type.valid() &&
+      (program.types.is_scalar(variable->type) || is_string(program.types, variable->type));
   return note;
 }
 
@@ -221,8 +239,7 @@ Note Sema::infer_unary(const Expr& expr) {
     good = traits.boolean || traits.bits ||
            (traits.integer && (options.dialect != Dialect::kIec || operand.flex != Flex::kNone));
   } else {
-    good = traits.number() || traits.duration ||
-           (traits.bits && options.dialect != Dialect::kIec);
+    good = traits.number() || traits.duration || (traits.bits && options.dialect != Dialect::kIec);
   }
   if (good) return note;
   error(DiagnosticCode::kBadOperand, expr.span,

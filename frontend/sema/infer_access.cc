@@ -41,7 +41,8 @@ Note Sema::infer_member(const Expr& expr) {
   }
   const PouInfo* block = pou_of(operand.type);
   if (block == nullptr) {
-    error(DiagnosticCode::kNoMembers, expr.span, "`" + type_text(operand.type) + "` has no members");
+    error(DiagnosticCode::kNoMembers, expr.span,
+          "`" + type_text(operand.type) + "` has no members");
     return {};
   }
   auto found = block->names.find(expr.name.text);

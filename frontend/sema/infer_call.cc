@@ -11,21 +11,36 @@ using stdlib::FunctionRule;
 
 BinaryOp operator_of(stdlib::FunctionId id) {
   switch (id) {
-    case stdlib::FunctionId::kAdd: return BinaryOp::kAdd;
-    case stdlib::FunctionId::kSub: return BinaryOp::kSub;
-    case stdlib::FunctionId::kMul: return BinaryOp::kMul;
-    case stdlib::FunctionId::kDiv: return BinaryOp::kDiv;
-    case stdlib::FunctionId::kMod: return BinaryOp::kMod;
-    case stdlib::FunctionId::kExpt: return BinaryOp::kPower;
-    case stdlib::FunctionId::kAnd: return BinaryOp::kAnd;
-    case stdlib::FunctionId::kOr: return BinaryOp::kOr;
-    case stdlib::FunctionId::kXor: return BinaryOp::kXor;
-    case stdlib::FunctionId::kGt: return BinaryOp::kGt;
-    case stdlib::FunctionId::kGe: return BinaryOp::kGe;
-    case stdlib::FunctionId::kLt: return BinaryOp::kLt;
-    case stdlib::FunctionId::kLe: return BinaryOp::kLe;
-    case stdlib::FunctionId::kNe: return BinaryOp::kNe;
-    default: return BinaryOp::kEq;
+    case stdlib::FunctionId::kAdd:
+      return BinaryOp::kAdd;
+    case stdlib::FunctionId::kSub:
+      return BinaryOp::kSub;
+    case stdlib::FunctionId::kMul:
+      return BinaryOp::kMul;
+    case stdlib::FunctionId::kDiv:
+      return BinaryOp::kDiv;
+    case stdlib::FunctionId::kMod:
+      return BinaryOp::kMod;
+    case stdlib::FunctionId::kExpt:
+      return BinaryOp::kPower;
+    case stdlib::FunctionId::kAnd:
+      return BinaryOp::kAnd;
+    case stdlib::FunctionId::kOr:
+      return BinaryOp::kOr;
+    case stdlib::FunctionId::kXor:
+      return BinaryOp::kXor;
+    case stdlib::FunctionId::kGt:
+      return BinaryOp::kGt;
+    case stdlib::FunctionId::kGe:
+      return BinaryOp::kGe;
+    case stdlib::FunctionId::kLt:
+      return BinaryOp::kLt;
+    case stdlib::FunctionId::kLe:
+      return BinaryOp::kLe;
+    case stdlib::FunctionId::kNe:
+      return BinaryOp::kNe;
+    default:
+      return BinaryOp::kEq;
   }
 }
 
@@ -101,20 +116,23 @@ Note Sema::infer_call(const Expr& expr) {
   Callee target = callee(expr);
   Note note;
   switch (target.kind) {
-    case Callee::Kind::kError: return {};
-    case Callee::Kind::kStandard: return infer_standard(expr, *target.row);
-    case Callee::Kind::kConversion: return infer_conversion(expr, target.conversion);
+    case Callee::Kind::kError:
+      return {};
+    case Callee::Kind::kStandard:
+      return infer_standard(expr, *target.row);
+    case Callee::Kind::kConversion:
+      return infer_conversion(expr, target.conversion);
     case Callee::Kind::kInstance:
       error(DiagnosticCode::kNoResult, expr.span, "a function block has no result",
             "call it in a statement of its own and read its outputs");
       return {};
-    case Callee::Kind::kFunction: break;
+    case Callee::Kind::kFunction:
+      break;
   }
   const PouInfo& function = pous[target.pou];
   note.calls = true;
   if (!function.result.valid()) {
-    error(DiagnosticCode::kNoResult, expr.span,
-          quoted(function.decl->name) + " has no result",
+    error(DiagnosticCode::kNoResult, expr.span, quoted(function.decl->name) + " has no result",
           "call it in a statement of its own, or give it a result type");
     return {};
   }
@@ -181,9 +199,7 @@ Note Sema::infer_standard(const Expr& expr, const stdlib::FunctionRow& row) {
 
 Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
                       const std::vector<ExprId>& args) {
-  auto argument = [&](uint32_t i) -> const Note& {
-    return infer(args[i]);
-  };
+  auto argument = [&](uint32_t i) -> const Note& { return infer(args[i]); };
   auto elementary = [&](ir::Kind kind) {
     Note note;
     note.type = program.types.elementary(kind);
@@ -198,7 +214,8 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
   switch (row.rule) {
     case FunctionRule::kClock:
       return elementary(row.id == stdlib::FunctionId::kTime ? ir::Kind::kTime : ir::Kind::kLtime);
-    case FunctionRule::kMove: return argument(0);
+    case FunctionRule::kMove:
+      return argument(0);
     case FunctionRule::kNumberSame: {
       Note note = argument(0);
       Traits traits = traits_of(program.types, note.type);
@@ -246,7 +263,8 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
       return count.integer || count.bits ? note : refuse(argument(1));
     }
     case FunctionRule::kSelect:
-    case FunctionRule::kMux: return unify_arguments(args, 1);
+    case FunctionRule::kMux:
+      return unify_arguments(args, 1);
     case FunctionRule::kExtreme: {
       Note note = unify_arguments(args, 0);
       bool ordered = program.types.is_scalar(note.type) || is_string(program.types, note.type);
@@ -259,7 +277,8 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
       }
       return elementary(ir::Kind::kBool);
     }
-    case FunctionRule::kString: return infer_string_function(args, row);
+    case FunctionRule::kString:
+      return infer_string_function(args, row);
     case FunctionRule::kStringNumber:
       if (!infer_string_function(args, row).type.valid()) return {};
       return elementary(ir::Kind::kInt);
@@ -299,11 +318,14 @@ Note Sema::infer_string_function(const std::vector<ExprId>& args, const stdlib::
 
 uint32_t string_arguments(const stdlib::FunctionRow& row, uint32_t count) {
   switch (row.id) {
-    case stdlib::FunctionId::kConcat: return count;
+    case stdlib::FunctionId::kConcat:
+      return count;
     case stdlib::FunctionId::kInsert:
     case stdlib::FunctionId::kReplace:
-    case stdlib::FunctionId::kFind: return 2;
-    default: return 1;
+    case stdlib::FunctionId::kFind:
+      return 2;
+    default:
+      return 1;
   }
 }
 

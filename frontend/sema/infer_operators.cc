@@ -1,6 +1,6 @@
 // Operators: what their operands have in common, and what comes out.
-#include "frontend/sema/sema.h"
 #include "frontend/sema/operators.h"
+#include "frontend/sema/sema.h"
 
 namespace frontend {
 namespace {
@@ -21,23 +21,40 @@ bool is_flexible_number(const Note& note) {
 
 std::string_view operator_text(BinaryOp op) {
   switch (op) {
-    case BinaryOp::kOr: return "OR";
-    case BinaryOp::kOrElse: return "OR_ELSE";
-    case BinaryOp::kXor: return "XOR";
-    case BinaryOp::kAnd: return "AND";
-    case BinaryOp::kAndThen: return "AND_THEN";
-    case BinaryOp::kEq: return "=";
-    case BinaryOp::kNe: return "<>";
-    case BinaryOp::kLt: return "<";
-    case BinaryOp::kLe: return "<=";
-    case BinaryOp::kGt: return ">";
-    case BinaryOp::kGe: return ">=";
-    case BinaryOp::kAdd: return "+";
-    case BinaryOp::kSub: return "-";
-    case BinaryOp::kMul: return "*";
-    case BinaryOp::kDiv: return "/";
-    case BinaryOp::kMod: return "MOD";
-    case BinaryOp::kPower: return "**";
+    case BinaryOp::kOr:
+      return "OR";
+    case BinaryOp::kOrElse:
+      return "OR_ELSE";
+    case BinaryOp::kXor:
+      return "XOR";
+    case BinaryOp::kAnd:
+      return "AND";
+    case BinaryOp::kAndThen:
+      return "AND_THEN";
+    case BinaryOp::kEq:
+      return "=";
+    case BinaryOp::kNe:
+      return "<>";
+    case BinaryOp::kLt:
+      return "<";
+    case BinaryOp::kLe:
+      return "<=";
+    case BinaryOp::kGt:
+      return ">";
+    case BinaryOp::kGe:
+      return ">=";
+    case BinaryOp::kAdd:
+      return "+";
+    case BinaryOp::kSub:
+      return "-";
+    case BinaryOp::kMul:
+      return "*";
+    case BinaryOp::kDiv:
+      return "/";
+    case BinaryOp::kMod:
+      return "MOD";
+    case BinaryOp::kPower:
+      return "**";
   }
   return "?";
 }
@@ -219,7 +236,7 @@ Note Sema::infer_time_arithmetic(BinaryOp op, const Note& left, const Note& righ
     ir::TypeId common = common_type(types, left.type, right.type, options.dialect);
     if (common.valid()) {
       note.type = types.elementary(is_long_time(types.root_kind(common)) ? ir::Kind::kLtime
-                                                                        : ir::Kind::kTime);
+                                                                         : ir::Kind::kTime);
       return note;
     }
   }

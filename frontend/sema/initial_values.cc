@@ -31,10 +31,10 @@ ir::ConstId Sema::initial_value(ExprId id, ir::TypeId type) {
     const Variable* constant = note.variable.valid() ? &resolve(note.variable) : nullptr;
     if (constant != nullptr && constant->constant && constant->type == type) return constant->init;
   }
-  error(DiagnosticCode::kBadInitializer, expr.span,
-        "this is no initial value of `" + type_text(type) + "`",
-        kind == ir::Kind::kArray ? "write [value, value, 3(value)]"
-                                        : "write (member := value, ...)");
+  error(
+      DiagnosticCode::kBadInitializer, expr.span,
+      "this is no initial value of `" + type_text(type) + "`",
+      kind == ir::Kind::kArray ? "write [value, value, 3(value)]" : "write (member := value, ...)");
   return {};
 }
 
@@ -77,8 +77,7 @@ bool Sema::array_elements(const Expr& list, ir::TypeId type, uint64_t total,
     }
     std::vector<ir::ConstId> values;
     for (uint32_t k = 0; k < width; ++k) {
-      ExprId value =
-          item.kind == ExprKind::kRepeat ? tree.expr_lists[item.list.first + k] : id;
+      ExprId value = item.kind == ExprKind::kRepeat ? tree.expr_lists[item.list.first + k] : id;
       values.push_back(initial_value(value, element));
       if (!values.back().valid()) return false;
     }
@@ -116,7 +115,8 @@ ir::ConstId Sema::struct_value(const Expr& expr, ir::TypeId type) {
       }
     } else {
       member = find_member(type, arg.name.text);
-      if (member >= 0) member_type = program.types[type].members[static_cast<uint32_t>(member)].type;
+      if (member >= 0)
+        member_type = program.types[type].members[static_cast<uint32_t>(member)].type;
     }
     if (member < 0 || arg.output || !arg.value.valid()) {
       error(DiagnosticCode::kUnknownMember, arg.span,

@@ -8,20 +8,29 @@ namespace {
 
 ir::Section section_of(VarSection section) {
   switch (section) {
-    case VarSection::kInput: return ir::Section::kInput;
-    case VarSection::kOutput: return ir::Section::kOutput;
-    case VarSection::kInOut: return ir::Section::kInOut;
-    case VarSection::kGlobal: return ir::Section::kGlobal;
-    default: return ir::Section::kLocal;
+    case VarSection::kInput:
+      return ir::Section::kInput;
+    case VarSection::kOutput:
+      return ir::Section::kOutput;
+    case VarSection::kInOut:
+      return ir::Section::kInOut;
+    case VarSection::kGlobal:
+      return ir::Section::kGlobal;
+    default:
+      return ir::Section::kLocal;
   }
 }
 
 ir::LocalKind local_kind(VarSection section) {
   switch (section) {
-    case VarSection::kInput: return ir::LocalKind::kInput;
-    case VarSection::kOutput: return ir::LocalKind::kOutput;
-    case VarSection::kInOut: return ir::LocalKind::kInOut;
-    default: return ir::LocalKind::kTemp;
+    case VarSection::kInput:
+      return ir::LocalKind::kInput;
+    case VarSection::kOutput:
+      return ir::LocalKind::kOutput;
+    case VarSection::kInOut:
+      return ir::LocalKind::kInOut;
+    default:
+      return ir::LocalKind::kTemp;
   }
 }
 
@@ -47,7 +56,8 @@ void Sema::resolve_globals() {
   for (VarId id : global_order_) {
     resolve(id);
     const Variable& variable = variables_[id.index];
-    program.types.edit(program.globals).members.push_back(member_of(variable, ir::Section::kGlobal));
+    program.types.edit(program.globals)
+        .members.push_back(member_of(variable, ir::Section::kGlobal));
   }
 }
 
@@ -94,9 +104,8 @@ void Sema::check_direct_addresses() {
     markers.push_back({address.bit_offset, address.bit_size, variable.name.span,
                        std::string(variable.name.text)});
   }
-  std::stable_sort(markers.begin(), markers.end(), [](const Located& a, const Located& b) {
-    return a.first_bit < b.first_bit;
-  });
+  std::stable_sort(markers.begin(), markers.end(),
+                   [](const Located& a, const Located& b) { return a.first_bit < b.first_bit; });
   uint64_t end = 0;
   std::string last;
   for (const Located& marker : markers) {
@@ -115,11 +124,16 @@ void Sema::check_direct_addresses() {
 
 ir::TypeId Sema::type_of_direct(const ir::DirectAddress& address) const {
   switch (address.bit_size) {
-    case 1: return program.types.elementary(ir::Kind::kBool);
-    case 8: return program.types.elementary(ir::Kind::kByte);
-    case 16: return program.types.elementary(ir::Kind::kWord);
-    case 32: return program.types.elementary(ir::Kind::kDword);
-    default: return program.types.elementary(ir::Kind::kLword);
+    case 1:
+      return program.types.elementary(ir::Kind::kBool);
+    case 8:
+      return program.types.elementary(ir::Kind::kByte);
+    case 16:
+      return program.types.elementary(ir::Kind::kWord);
+    case 32:
+      return program.types.elementary(ir::Kind::kDword);
+    default:
+      return program.types.elementary(ir::Kind::kLword);
   }
 }
 

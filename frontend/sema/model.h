@@ -34,9 +34,9 @@ struct Variable {
   Storage storage = Storage::kMember;
   uint32_t index = 0;  // member or local number
   uint32_t pou = kNoPou;
-  VarId external;      // the global that a VAR_EXTERNAL means
-  ir::TypeId type;     // invalid: could not be resolved (already reported)
-  ir::ConstId init;    // invalid: the type's default
+  VarId external;    // the global that a VAR_EXTERNAL means
+  ir::TypeId type;   // invalid: could not be resolved (already reported)
+  ir::ConstId init;  // invalid: the type's default
 };
 
 struct PouInfo {
@@ -83,9 +83,9 @@ struct Note {
   Flex flex = Flex::kNone;
   Progress progress = Progress::kNew;
   bool constant = false;
-  bool calls = false;      // contains a call of a POU
+  bool calls = false;  // contains a call of a POU
   bool can_trap = false;
-  VarId variable;          // kName: the variable meant
+  VarId variable;  // kName: the variable meant
 };
 
 }  // namespace frontend

@@ -38,9 +38,8 @@ size_t FoldHash::operator()(std::string_view name) const noexcept {
 }
 
 bool FoldEqual::operator()(std::string_view a, std::string_view b) const noexcept {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
-           return fold(x) == fold(y);
-         });
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
+                                            [](char x, char y) { return fold(x) == fold(y); });
 }
 
 NearestName::NearestName(std::string_view written)

@@ -13,8 +13,8 @@
 #include "base/diagnostics.h"
 #include "base/source.h"
 #include "frontend/compile.h"
-#include "frontend/sema/conversion.h"
 #include "frontend/sema/constant.h"
+#include "frontend/sema/conversion.h"
 #include "frontend/sema/model.h"
 #include "stdlib/registry.h"
 
@@ -86,8 +86,7 @@ class Sema {
 
   // --- messages
   void error(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix = {});
-  void warning(DiagnosticCode code, base::SourceSpan span, std::string text,
-               std::string fix = {});
+  void warning(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix = {});
   // Reports an implicit conversion that may lose; false when the dialect forbids it.
   bool allow_narrowing(ir::TypeId from, ir::TypeId to, base::SourceSpan span);
   std::string type_text(ir::TypeId type) const { return program.types.text(type); }

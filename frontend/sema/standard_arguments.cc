@@ -54,8 +54,8 @@ std::vector<ExprId> Sema::standard_arguments(const Expr& call, const stdlib::Fun
       error(DiagnosticCode::kWrongDirection, arg.span, "this function has inputs only");
       return {};
     }
-    int32_t at = arg.name.empty() ? static_cast<int32_t>(i)
-                                  : position_of(row.parameters, arg.name.text);
+    int32_t at =
+        arg.name.empty() ? static_cast<int32_t>(i) : position_of(row.parameters, arg.name.text);
     if (at < 0 || at >= static_cast<int32_t>(ordered.size())) {
       error(DiagnosticCode::kUnknownParameter, arg.span,
             std::string(row.name) + " has no parameter `" + std::string(arg.name.text) + "` here",

@@ -40,20 +40,28 @@ TypeUse Sema::resolve(SpecId id) {
 
 TypeUse Sema::resolve_kind(SpecId id, const Spec& spec) {
   switch (spec.kind) {
-    case SpecKind::kError: return {};
-    case SpecKind::kNamed: return resolve_named(spec);
-    case SpecKind::kString: return resolve_string(spec);
-    case SpecKind::kArray: return resolve_array(spec);
-    case SpecKind::kStruct: return resolve_struct(id, spec);
-    case SpecKind::kEnum: return resolve_enum(id, spec);
-    case SpecKind::kSubrange: return resolve_subrange(spec);
+    case SpecKind::kError:
+      return {};
+    case SpecKind::kNamed:
+      return resolve_named(spec);
+    case SpecKind::kString:
+      return resolve_string(spec);
+    case SpecKind::kArray:
+      return resolve_array(spec);
+    case SpecKind::kStruct:
+      return resolve_struct(id, spec);
+    case SpecKind::kEnum:
+      return resolve_enum(id, spec);
+    case SpecKind::kSubrange:
+      return resolve_subrange(spec);
   }
   return {};
 }
 
 std::optional<TypeUse> Sema::find_type(std::string_view name) {
   if (auto kind = kind_of_name(name)) {
-    if (*kind == ir::Kind::kString) return TypeUse{program.types.string(kDefaultStringCapacity), {}};
+    if (*kind == ir::Kind::kString)
+      return TypeUse{program.types.string(kDefaultStringCapacity), {}};
     if (*kind == ir::Kind::kWstring) {
       return TypeUse{program.types.wstring(kDefaultStringCapacity), {}};
     }
@@ -139,8 +147,8 @@ TypeUse Sema::resolve_subrange(const Spec& spec) {
   if (!base.type.valid()) return {};
   Traits traits = traits_of(program.types, base.type);
   if (!traits.integer && !traits.bits) {
-    error(DiagnosticCode::kTypeMismatch, spec.span,
-          "a subrange of `" + type_text(base.type) + "`", "subranges need an integer type");
+    error(DiagnosticCode::kTypeMismatch, spec.span, "a subrange of `" + type_text(base.type) + "`",
+          "subranges need an integer type");
     return {};
   }
   auto low = fold_bits(spec.low, base.type);

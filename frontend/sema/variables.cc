@@ -83,8 +83,8 @@ void Sema::resolve_initial(Variable& variable) {
   ExprId init = variable.decl->init;
   const Expr& expr = tree[init];
   bool list = expr.kind == ExprKind::kArrayInit || expr.kind == ExprKind::kStructInit;
-  bool at_call = variable.storage == Storage::kLocal && (variable.section == VarSection::kLocal ||
-                                                         variable.section == VarSection::kTemp);
+  bool at_call = variable.storage == Storage::kLocal &&
+                 (variable.section == VarSection::kLocal || variable.section == VarSection::kTemp);
   if (at_call && !variable.constant && !list && !infer(init).constant) {
     variable.runtime_init = true;
     return;
