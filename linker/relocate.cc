@@ -144,7 +144,7 @@ class Pass {
       case FieldKind::kBounds:
         return bound_number(number);
       case FieldKind::kType:
-        return object_.regions[number].type.index;
+        return ir::region_field(object_.regions[number]);
       default:
         return number;
     }
@@ -264,7 +264,7 @@ class Pass {
     lea.a = slot;
     lea.b = fields[addr];
     before_.push_back(lea);
-    before_.push_back(Unit::extension(static_cast<uint32_t>(offset), leaf.type.index));
+    before_.push_back(Unit::extension(static_cast<uint32_t>(offset), ir::region_field(leaf)));
     bases[addr] = Base::kFrame;
     fields[addr] = slot;
     fields[2] = 0;

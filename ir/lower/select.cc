@@ -105,27 +105,20 @@ void Selector::select_inst(const Inst& inst) {
 
 void Selector::select_value(const Inst& inst) {
   const ValueFacts& facts = values_[inst.result];
-  if (facts.same_as.valid()) return;
-  if (deferrable(inst)) {
-    if (facts.uses != 0) defer(inst);
-    return;
-  }
+  if (facts.same_as.valid() || values_.is_dead(inst)) return;
+  const bool names_place = inst.op == Op::kAddress || inst.op == Op::kString;
+  if (facts.uses == 0 && names_place && is_static(pou_.places[inst.place.index], values_)) return;
+  if (deferrable(inst)) return defer(inst);
   compute(inst, register_for(inst.result));
 }
 
 bool Selector::deferrable(const Inst& inst) const {
   const ValueFacts& facts = values_[inst.result];
-  if (facts.escapes || facts.uses > 1 || pending_.size() >= kMaxPending) return false;
-  const bool integer_division =
-      (inst.op == Op::kDiv || inst.op == Op::kMod) && is_integer(inst.scalar);
-  if (integer_division &&
-      !(values_.is_constant(inst.operands[1]) && values_.constant_bits(inst.operands[1]) != 0)) {
-    return false;
-  }
-  if (inst.op == Op::kRound || inst.op == Op::kTrunc || inst.op == Op::kTaskTime) return false;
+  if (facts.escapes || facts.uses != 1 || pending_.size() >= kMaxPending) return false;
   if (inst.op == Op::kAddress || inst.op == Op::kString) {
     return is_static(pou_.places[inst.place.index], values_);
   }
+  if (!values_.is_pure(inst)) return false;
   for (ValueId operand : inst.operands) {
     if (states_[values_.root(operand).index].depth >= kMaxTreeDepth) return false;
   }

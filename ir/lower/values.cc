@@ -26,6 +26,42 @@ Values::Values(const Pou& pou, const Flow& flow)
     : facts_(pou.values.size()), local_escapes_(pou.locals.size()) {
   define(pou, flow);
   count_uses(pou, flow);
+  drop_dead(pou, flow);
+}
+
+bool Values::is_pure(const Inst& inst) const {
+  if (!inst.result.valid() || inst.place.valid()) return false;
+  switch (inst.op) {
+    case Op::kCheckRange:
+    case Op::kCheckStep:
+    case Op::kRound:
+    case Op::kTrunc:
+    case Op::kCallNative:
+    case Op::kTaskTime:
+      return false;
+    case Op::kDiv:
+    case Op::kMod:
+      return is_float(inst.scalar) ||
+             (is_constant(inst.operands[1]) && constant_bits(inst.operands[1]) != 0);
+    default:
+      return true;
+  }
+}
+
+bool Values::is_dead(const Inst& inst) const {
+  return is_pure(inst) && facts_[inst.result.index].uses == 0;
+}
+
+// Uses by dead values do not count. Backwards, so that whole chains go.
+void Values::drop_dead(const Pou& pou, const Flow& flow) {
+  for (size_t position = flow.blocks.size(); position-- > 0;) {
+    if (!flow.blocks[position].source.valid()) continue;
+    const std::vector<Inst>& insts = pou.blocks[flow.blocks[position].source.index].insts;
+    for (size_t i = insts.size(); i-- > 0;) {
+      if (!is_dead(insts[i]) || facts_[insts[i].result.index].same_as.valid()) continue;
+      for (ValueId operand : insts[i].operands) --facts_[root(operand).index].uses;
+    }
+  }
 }
 
 ValueId Values::root(ValueId id) const {

@@ -28,12 +28,17 @@ class Values {
   const ValueFacts& operator[](ValueId id) const { return facts_[id.index]; }
   bool is_constant(ValueId id) const;
   uint64_t constant_bits(ValueId id) const;
+  // Computes a value from values, without effect, and cannot trap.
+  bool is_pure(const Inst& inst) const;
+  // A pure value that nothing live uses.
+  bool is_dead(const Inst& inst) const;
   // Was the address of local number `local` taken?
   bool local_escapes(uint32_t local) const { return local_escapes_[local]; }
 
  private:
   void define(const Pou& pou, const Flow& flow);
   void count_uses(const Pou& pou, const Flow& flow);
+  void drop_dead(const Pou& pou, const Flow& flow);
   void use(ValueId id, uint32_t block);
   void use_place(const Pou& pou, PlaceId place, uint32_t block);
 
