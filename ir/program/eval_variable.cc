@@ -35,9 +35,58 @@ Variable Variables::make_slot(TypeId type) const {
   return variable;
 }
 
-Variable Variables::make_member(const Member& member) const {
-  return member.section == Section::kInOut ? make_slot(member.type)
-                                           : make(member.type, member.init);
+// What `list` says about a member or element; the last mention counts.
+ConstId Variables::listed(ConstId list, uint32_t index) const {
+  ConstId found;
+  if (list.valid()) {
+    for (const ConstElement& element : program_.constants[list].elements) {
+      if (index >= element.first && index - element.first < element.count) {
+        found = element.value;
+      }
+    }
+  }
+  return found;
+}
+
+// An initial value replaces what the declarations below it say: the instance's or
+// variable's first, then the type's, then the member's (language.md, "Initial values").
+Variable Variables::make_member(const Type& owner, uint32_t index, ConstId init) const {
+  const Member& member = owner.members[index];
+  if (member.section == Section::kInOut) {
+    return make_slot(member.type);
+  }
+  if (const ConstId own = listed(init, index); own.valid()) {
+    return make(member.type, own);
+  }
+  const ConstId of_type = listed(owner.init, index);
+  return make(member.type, of_type.valid() ? of_type : member.init);
+}
+
+void Variables::make_elements(const Type& array, ConstId init, Variable& variable) const {
+  variable.parts.assign(element_count(array), make(array.base));
+  for (const ConstId list : {array.init, init}) {
+    if (!list.valid()) {
+      continue;
+    }
+    for (const ConstElement& element : program_.constants[list].elements) {
+      const Variable value = make(array.base, element.value);
+      std::fill_n(variable.parts.begin() + element.first, element.count, value);
+    }
+  }
+}
+
+// A scalar or string without an initial value of its own takes its type's, then its base type's.
+void Variables::make_leaf(const Type& type, ConstId init, Variable& variable) const {
+  const ConstId value = init.valid() ? init : type.init;
+  if (value.valid() && is_string(type.kind)) {
+    set_text(variable, program_.constants[value].text);
+  } else if (value.valid()) {
+    variable.bits = canonical(program_.types.scalar(variable.type), program_.constants[value].bits);
+  } else if (type.kind == Kind::kSubrange) {
+    variable.bits = make(type.base).bits;
+  } else if (type.kind == Kind::kEnum && !type.literals.empty()) {
+    variable.bits = static_cast<uint64_t>(type.literals[0].value);
+  }
 }
 
 Variable Variables::make(TypeId type_id, ConstId init) const {
@@ -45,36 +94,16 @@ Variable Variables::make(TypeId type_id, ConstId init) const {
   Variable variable;
   variable.type = type_id;
   if (type.kind == Kind::kArray) {
-    variable.parts.assign(element_count(type), make(type.base));
-  } else if (type.kind == Kind::kSubrange) {
-    variable.bits = make(type.base).bits;
-  } else if (type.kind == Kind::kEnum && !type.literals.empty()) {
-    variable.bits = static_cast<uint64_t>(type.literals[0].value);
-  }
-  variable.parts.reserve(variable.parts.size() + type.members.size());
-  for (const Member& member : type.members) {
-    variable.parts.push_back(make_member(member));
-  }
-  overlay(variable, type.init);
-  overlay(variable, init);
-  return variable;
-}
-
-void Variables::overlay(Variable& variable, ConstId init) const {
-  if (!init.valid()) {
-    return;
-  }
-  const ConstValue& value = program_.constants[init];
-  if (program_.types.is_scalar(variable.type)) {
-    variable.bits = canonical(program_.types.scalar(variable.type), value.bits);
-  } else if (is_string(program_.types[variable.type].kind)) {
-    set_text(variable, value.text);
-  }
-  for (const ConstElement& element : value.elements) {
-    for (uint32_t i = 0; i < element.count; ++i) {
-      overlay(variable.parts[element.first + i], element.value);
+    make_elements(type, init, variable);
+  } else if (program_.types.has_members(type_id)) {
+    variable.parts.reserve(type.members.size());
+    for (uint32_t i = 0; i < type.members.size(); ++i) {
+      variable.parts.push_back(make_member(type, i, init));
     }
+  } else {
+    make_leaf(type, init, variable);
   }
+  return variable;
 }
 
 void Variables::reset(Variable& variable, ConstId init) const {

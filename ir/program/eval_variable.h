@@ -46,8 +46,10 @@ class Variables {
   void set_text(Variable& variable, std::string_view text) const;
 
  private:
-  Variable make_member(const Member& member) const;
-  void overlay(Variable& variable, ConstId init) const;
+  ConstId listed(ConstId list, uint32_t index) const;
+  Variable make_member(const Type& owner, uint32_t index, ConstId init) const;
+  void make_elements(const Type& array, ConstId init, Variable& variable) const;
+  void make_leaf(const Type& type, ConstId init, Variable& variable) const;
 
   const Program& program_;
 };

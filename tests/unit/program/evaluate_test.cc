@@ -44,6 +44,35 @@ TEST(Evaluate, StartsWithInitialValues) {
   EXPECT_EQ(state.find("in_out"), std::string::npos);
 }
 
+// What a constant does not name takes the type's default, not that of the member
+// whose initial value the constant replaces.
+TEST(Evaluate, InitialValuesReplaceEachOther) {
+  const Program program = verified(small_program(R"(  member global plain : Outer
+  member global named : Outer init #4
+  member global list : Filled init #6
+  member global colour : Colour
+type Inner = struct
+  member local x : INT init #0
+  member local y : INT init #0
+type Outer = struct
+  member local inner : Inner init #2
+  member local z : INT
+type Filled = array INT [0..3] init #5
+type Colour = enum INT (Red = 3, Green = 4)
+const #0 = 7
+const #1 = 9
+const #2 = {1 = #1}
+const #3 = {0 = #1}
+const #4 = {0 = #3}
+const #5 = {0 * 3 = #0}
+const #6 = {1 = #1}
+)",
+                                                 "b0:\n return\n"));
+  EXPECT_EQ(Evaluator(program).state(),
+            "plain.inner.x=7\nplain.inner.y=9\nplain.z=0\nnamed.inner.x=9\nnamed.inner.y=7\n"
+            "named.z=0\nlist[0]=7\nlist[1]=9\nlist[2]=7\nlist[3]=0\ncolour=Red\n");
+}
+
 TEST(Evaluate, RunsTheSample) {
   const Program program = verified(kSample);
   Evaluator evaluator(program);
