@@ -5,22 +5,24 @@ namespace frontend {
 
 std::string quoted_name(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
-bool Body::bind_arguments(const Expr& call, const PouInfo& callee, std::vector<Binding>& bindings) {
-  bool named = false;
-  bool positional = false;
-  for (uint32_t i = 0; i < call.args.count; ++i) {
-    const Arg& arg = tree_.args[call.args.first + i];
-    (arg.name.empty() ? positional : named) = true;
+// Arguments without names come first and go to parameters in order; names may follow.
+bool Body::bind_arguments(const Expr& call, const PouInfo& callee,
+                          std::vector<Binding>& bindings) {
+  uint32_t positional = 0;
+  while (positional < call.args.count &&
+         tree_.args[call.args.first + positional].name.empty()) {
+    ++positional;
   }
-  if (named && positional) {
-    sema_.error(DiagnosticCode::kMixedArguments, call.span,
-                "some arguments have names and some have not", "name all of them");
-    return false;
-  }
-  if (positional) return bind_positional(call, callee, bindings);
+  if (positional != 0 && !bind_positional(call, positional, callee, bindings)) return false;
   bool good = true;
-  for (uint32_t i = 0; i < call.args.count; ++i) {
-    good = bind_named(tree_.args[call.args.first + i], callee, bindings) && good;
+  for (uint32_t i = positional; i < call.args.count; ++i) {
+    const Arg& arg = tree_.args[call.args.first + i];
+    if (arg.name.empty()) {
+      sema_.error(DiagnosticCode::kMixedArguments, arg.span,
+                  "an argument without a name behind one with a name", "name it too");
+      return false;
+    }
+    good = bind_named(arg, callee, bindings) && good;
   }
   return good;
 }
@@ -65,7 +67,7 @@ bool Body::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding
 }
 
 // Inputs and in-outs in the order of their declaration, then outputs.
-bool Body::bind_positional(const Expr& call, const PouInfo& callee,
+bool Body::bind_positional(const Expr& call, uint32_t count, const PouInfo& callee,
                            std::vector<Binding>& bindings) {
   std::vector<VarId> parameters;
   for (bool outputs : {false, true}) {
@@ -76,13 +78,13 @@ bool Body::bind_positional(const Expr& call, const PouInfo& callee,
       if (outputs ? section == VarSection::kOutput : input) parameters.push_back(id);
     }
   }
-  if (call.args.count > parameters.size()) {
+  if (count > parameters.size()) {
     sema_.error(DiagnosticCode::kWrongArgumentCount, call.span,
                 quoted_name(callee.decl->name) + " has " + std::to_string(parameters.size()) +
-                    " parameters, but " + std::to_string(call.args.count) + " arguments are given");
+                    " parameters, but " + std::to_string(count) + " arguments are given");
     return false;
   }
-  for (uint32_t i = 0; i < call.args.count; ++i) {
+  for (uint32_t i = 0; i < count; ++i) {
     const Arg& arg = tree_.args[call.args.first + i];
     if (arg.value.valid()) bindings.push_back({parameters[i], &arg, {}, {}, {}});
   }

@@ -120,7 +120,8 @@ class Body {
   struct Binding;
   bool bind_arguments(const Expr& call, const PouInfo& callee, std::vector<Binding>& bindings);
   bool bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding>& bindings);
-  bool bind_positional(const Expr& call, const PouInfo& callee, std::vector<Binding>& bindings);
+  bool bind_positional(const Expr& call, uint32_t count, const PouInfo& callee,
+                       std::vector<Binding>& bindings);
   bool check_in_outs(const Expr& call, const PouInfo& callee, const std::vector<Binding>& bindings);
   void evaluate_input(Binding& binding, bool keep);
   bool evaluate_in_out(Binding& binding);

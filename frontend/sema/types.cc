@@ -29,12 +29,15 @@ TypeUse Sema::resolve(SpecId id) {
   }
   info.progress = Progress::kBusy;
   ++depth_;
-  info.use = resolve_kind(id, spec);
-  if (info.use.type.valid() && info.default_value.valid()) {
-    info.use.init = initial_value(info.default_value, info.use.type);
+  TypeUse use = resolve_kind(id, spec);
+  info.use = use;
+  // The default may name the type itself: Colour : (Red, Green) := Green.
+  info.progress = Progress::kDone;
+  if (use.type.valid() && info.default_value.valid()) {
+    info.use.init = initial_value(info.default_value, use.type);
+    if (spec.kind == SpecKind::kEnum) program.types.edit(use.type).init = info.use.init;
   }
   --depth_;
-  info.progress = Progress::kDone;
   return info.use;
 }
 
