@@ -43,6 +43,16 @@ constexpr std::array<uint8_t, kSlots> make_slots() {
 }
 constexpr std::array<uint8_t, kSlots> kSlotKinds = make_slots();
 
+// Bit n: some keyword begins with that letter and has n characters. Most names fail here.
+constexpr std::array<uint32_t, 32> make_lengths() {
+  std::array<uint32_t, 32> lengths{};
+  for (uint32_t kind = static_cast<uint32_t>(kFirstKeyword); kind < kKindCount; ++kind) {
+    lengths[kTexts[kind][0] % 32] |= 1u << kTexts[kind].size();
+  }
+  return lengths;
+}
+constexpr std::array<uint32_t, 32> kLengths = make_lengths();
+
 bool equals(std::string_view name, std::string_view upper) {
   if (name.size() != upper.size()) return false;
   for (size_t i = 0; i < name.size(); ++i) {
@@ -57,6 +67,10 @@ std::string_view token_text(TokenKind kind) { return kTexts[static_cast<uint8_t>
 
 TokenKind keyword(std::string_view name) {
   if (name.size() < kShortest || name.size() > kLongest) return TokenKind::kName;
+  // Letters without case are their low five bits; so is `_` (31) for __TRY.
+  if ((kLengths[static_cast<uint8_t>(name[0]) % 32] >> name.size() & 1) == 0) {
+    return TokenKind::kName;
+  }
   uint32_t slot = slot_of(name);
   while (kSlotKinds[slot] != 0) {
     if (equals(name, kTexts[kSlotKinds[slot]])) return static_cast<TokenKind>(kSlotKinds[slot]);

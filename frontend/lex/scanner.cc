@@ -65,11 +65,13 @@ TokenKind Scanner::scan() {
 }
 
 TokenKind Scanner::scan_word() {
-  size_t begin = at_;
-  while (at_ < text_.size() && is_name_part(text_[at_])) ++at_;
-  std::string_view word = text_.substr(begin, at_ - begin);
+  const char* begin = text_.data() + at_;
+  const char* end = begin + 1;
+  while (end != text_.data() + text_.size() && is_name_part(*end)) ++end;
+  std::string_view word(begin, static_cast<size_t>(end - begin));
+  at_ += word.size();
   if (word.size() > base::kMaxIdentifier) {
-    report(DiagnosticCode::kNameTooLong, begin, at_,
+    report(DiagnosticCode::kNameTooLong, at_ - word.size(), at_,
            "this name has " + std::to_string(word.size()) + " bytes, the limit is " +
                std::to_string(base::kMaxIdentifier));
   }

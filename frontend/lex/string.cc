@@ -1,3 +1,5 @@
+#include <cstring>
+
 #include "frontend/lex/characters.h"
 #include "frontend/lex/literals.h"
 #include "ir/types/utf.h"
@@ -121,8 +123,11 @@ DecodedString decode_wide_string(std::string_view text, bool latin1) {
 
 bool is_latin1(std::string_view source) {
   for (size_t at = 0; at < source.size();) {
-    if (static_cast<uint8_t>(source[at]) < 0x80) {
-      ++at;
+    uint64_t eight = 0;
+    if (source.size() - at >= sizeof eight) std::memcpy(&eight, source.data() + at, sizeof eight);
+    bool ascii = source.size() - at >= sizeof eight && (eight & 0x8080'8080'8080'8080u) == 0;
+    if (ascii || static_cast<uint8_t>(source[at]) < 0x80) {
+      at += ascii ? sizeof eight : 1;
       continue;
     }
     uint32_t length = ir::read_utf8(source.substr(at)).bytes;

@@ -81,7 +81,7 @@ ExprId Parser::add_binary(ExprId left, const Token& op, ExprId right) {
   expr.span = {tree_[left].span.begin, tree_[right].span.end};
   expr.operand = left;
   expr.right = right;
-  return add_expression(std::move(expr));
+  return add_expression(expr);
 }
 
 ExprId Parser::parse_unary() {
@@ -99,7 +99,7 @@ ExprId Parser::parse_unary() {
   expr.op_span = take().span();
   expr.operand = parse_unary();
   expr.span = {expr.op_span.begin, tree_[expr.operand].span.end};
-  return add_expression(std::move(expr));
+  return add_expression(expr);
 }
 
 ExprId Parser::parse_primary() {
@@ -154,7 +154,7 @@ ExprId Parser::parse_operator_call() {
   expr.kind = ExprKind::kName;
   expr.name = name_of(take());
   expr.span = expr.name.span;
-  return parse_postfix(add_expression(std::move(expr)));
+  return parse_postfix(add_expression(expr));
 }
 
 ExprId Parser::parse_parenthesised() {
@@ -171,10 +171,25 @@ ExprId Parser::parse_parenthesised() {
 ExprId Parser::error_expression() {
   Expr expr;
   expr.span = current_->span();
-  return add_expression(std::move(expr));
+  return add_expression(expr);
 }
 
-ExprId Parser::add_expression(Expr expr) {
+ExprId Parser::add_expression(const Expr& expr) {
+  uint32_t below = height_below(expr);
+  if (below >= base::kMaxExpressionHeight) {
+    report(Code::kTooComplex, expr.span,
+           "this expression applies more than " + std::to_string(base::kMaxExpressionHeight) +
+               " operators to each other's results",
+           "compute parts of it into variables first");
+    tree_.exprs.emplace_back().span = expr.span;
+  } else {
+    tree_.exprs.push_back(expr);
+    tree_.exprs.back().height = static_cast<uint16_t>(below + 1);
+  }
+  return ExprId(static_cast<uint32_t>(tree_.exprs.size() - 1));
+}
+
+uint32_t Parser::height_below(const Expr& expr) const {
   uint32_t below = std::max(height(expr.operand), height(expr.right));
   for (uint32_t i = 0; i < expr.list.count; ++i) {
     below = std::max(below, height(tree_.expr_lists[expr.list.first + i]));
@@ -182,19 +197,7 @@ ExprId Parser::add_expression(Expr expr) {
   for (uint32_t i = 0; i < expr.args.count; ++i) {
     below = std::max(below, height(tree_.args[expr.args.first + i].value));
   }
-  if (below >= base::kMaxExpressionHeight) {
-    report(Code::kTooComplex, expr.span,
-           "this expression applies more than " + std::to_string(base::kMaxExpressionHeight) +
-               " operators to each other's results",
-           "compute parts of it into variables first");
-    base::SourceSpan span = expr.span;
-    expr = Expr();
-    expr.span = span;
-    below = 0;
-  }
-  expr.height = static_cast<uint16_t>(below + 1);
-  tree_.exprs.push_back(std::move(expr));
-  return ExprId(static_cast<uint32_t>(tree_.exprs.size() - 1));
+  return below;
 }
 
 }  // namespace frontend

@@ -32,7 +32,7 @@ ExprId Parser::parse_array_initializer() {
   expr.kind = ExprKind::kArrayInit;
   expr.list = move_tail(expr_stack_, mark, tree_.expr_lists);
   expr.span = span_from({open.begin});
-  return add_expression(std::move(expr));
+  return add_expression(expr);
 }
 
 ExprId Parser::parse_open_array_initializer(ExprId first, base::SourcePos begin) {
@@ -43,7 +43,7 @@ ExprId Parser::parse_open_array_initializer(ExprId first, base::SourcePos begin)
   expr.kind = ExprKind::kArrayInit;
   expr.list = move_tail(expr_stack_, mark, tree_.expr_lists);
   expr.span = span_from(begin);
-  return add_expression(std::move(expr));
+  return add_expression(expr);
 }
 
 // `3(7)`, `2(1, 2, 3)`, `4()`
@@ -64,7 +64,7 @@ ExprId Parser::parse_repeat() {
   close_bracket(TokenKind::kRightParen, open);
   expr.list = move_tail(expr_stack_, mark, tree_.expr_lists);
   expr.span = span_from(begin);
-  return add_expression(std::move(expr));
+  return add_expression(expr);
 }
 
 ExprId Parser::parse_struct_initializer() {
@@ -73,7 +73,7 @@ ExprId Parser::parse_struct_initializer() {
   base::SourcePos begin = here();
   expr.args = parse_arguments();
   expr.span = span_from(begin);
-  return add_expression(std::move(expr));
+  return add_expression(expr);
 }
 
 }  // namespace frontend

@@ -8,7 +8,7 @@ ExprId Parser::add_literal(Literal literal, base::SourceSpan span) {
   expr.span = span;
   expr.literal = static_cast<uint32_t>(tree_.literals.size());
   tree_.literals.push_back(std::move(literal));
-  return add_expression(std::move(expr));
+  return add_expression(expr);
 }
 
 ExprId Parser::parse_literal(const Name& prefix, base::SourcePos begin, bool negative) {
@@ -102,7 +102,7 @@ ExprId Parser::parse_typed_literal() {
   expr.prefix = prefix;
   expr.name = name_of(take());
   expr.span = span_from(begin);
-  return add_expression(std::move(expr));
+  return add_expression(expr);
 }
 
 ir::DirectAddress Parser::parse_direct_address(const Token& token) {

@@ -21,7 +21,7 @@ void make_room(std::vector<T>& store, size_t more) {
 void parse(const base::SourceMap& sources, uint32_t file, Tree& tree,
            base::Diagnostics& diagnostics) {
   TokenList tokens = lex(sources, file, diagnostics);
-  make_room(tree.exprs, tokens.tokens.size() * 2 / 5);
+  make_room(tree.exprs, tokens.tokens.size() * 5 / 9);
   make_room(tree.stmts, tokens.tokens.size() / 10);
   Parser(sources, file, tokens, tree, diagnostics).parse_file();
 }

@@ -90,8 +90,9 @@ class Parser {
   ExprId parse_parenthesised();
   ExprId parse_operator_call();
   ExprId error_expression();
-  ExprId add_expression(Expr expr);
+  ExprId add_expression(const Expr& expr);
   ExprId add_binary(ExprId left, const Token& op, ExprId right);
+  uint32_t height_below(const Expr& expr) const;
   uint32_t height(ExprId id) const { return id.valid() ? tree_[id].height : 0; }
 
   // --- postfix.cc

@@ -14,7 +14,7 @@ ExprId Parser::parse_variable() {
   } else {
     expr.kind = ExprKind::kName;
   }
-  return parse_postfix(add_expression(std::move(expr)));
+  return parse_postfix(add_expression(expr));
 }
 
 ExprId Parser::parse_postfix(ExprId operand) {
@@ -35,7 +35,7 @@ ExprId Parser::parse_postfix(ExprId operand) {
         expr.operand = operand;
         expr.op_span = take().span();
         expr.span = span_from(tree_[operand].span.begin);
-        operand = add_expression(std::move(expr));
+        operand = add_expression(expr);
         break;
       }
       default:
@@ -70,7 +70,7 @@ ExprId Parser::parse_member(ExprId operand) {
     return operand;
   }
   expr.span = span_from(tree_[operand].span.begin);
-  return add_expression(std::move(expr));
+  return add_expression(expr);
 }
 
 ExprId Parser::parse_index(ExprId operand) {
@@ -86,7 +86,7 @@ ExprId Parser::parse_index(ExprId operand) {
   expr.op_span = open.span();
   expr.list = move_tail(expr_stack_, mark, tree_.expr_lists);
   expr.span = span_from(tree_[operand].span.begin);
-  return add_expression(std::move(expr));
+  return add_expression(expr);
 }
 
 ExprId Parser::parse_call(ExprId operand) {
@@ -96,7 +96,7 @@ ExprId Parser::parse_call(ExprId operand) {
   expr.op_span = current_->span();
   expr.args = parse_arguments();
   expr.span = span_from(tree_[operand].span.begin);
-  return add_expression(std::move(expr));
+  return add_expression(expr);
 }
 
 Range32 Parser::parse_arguments() {
