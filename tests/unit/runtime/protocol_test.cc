@@ -1,0 +1,171 @@
+// Messages: round trips, and hostile bytes.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "vm/runtime/frames.h"
+#include "vm/runtime/protocol.h"
+
+namespace vm {
+namespace {
+
+std::vector<Request> samples() {
+  std::vector<Request> out;
+  for (uint8_t i = 0; i <= static_cast<uint8_t>(Command::kStop); ++i) {
+    Request request{.command = static_cast<Command>(i)};
+    request.expected[3] = 7;
+    request.edition = 42;
+    request.names = {"Main.x", "Line.Filler[3].Count"};
+    request.values = {"TRUE", "T#5s"};
+    request.offset = 12345;
+    request.data = {1, 2, 3, 250};
+    request.digest[31] = 9;
+    request.flags = kAllowLoss | kPermanent;
+    out.push_back(request);
+  }
+  return out;
+}
+
+TEST(Protocol, EveryRequestRoundTrips) {
+  for (const Request& request : samples()) {
+    base::Bytes bytes = encode(request);
+    base::Result<Request> back = decode_request(bytes);
+    ASSERT_TRUE(back.ok()) << command_name(request.command);
+    EXPECT_EQ(encode(*back), bytes) << command_name(request.command);
+    if (changes_state(request.command)) {
+      EXPECT_EQ(back->expected, request.expected);
+      EXPECT_EQ(back->edition, 42u);
+    }
+  }
+}
+
+TEST(Protocol, TruncatedAndExtendedRequestsAreRefused) {
+  for (const Request& request : samples()) {
+    base::Bytes bytes = encode(request);
+    for (size_t size = 0; size < bytes.size(); ++size) {
+      EXPECT_FALSE(decode_request({bytes.data(), size}).ok()) << command_name(request.command);
+    }
+    bytes.push_back(0);
+    EXPECT_FALSE(decode_request(bytes).ok()) << command_name(request.command);
+  }
+}
+
+// Whatever arrives is either refused or a request that encodes to the same bytes: nothing is read
+// beyond the end, nothing is ignored.
+TEST(Protocol, MutatedRequestsAreRefusedOrExact) {
+  std::mt19937 random(1);
+  uint32_t accepted = 0;
+  for (int round = 0; round < 4000; ++round) {
+    std::vector<Request> all = samples();
+    base::Bytes bytes = encode(all[random() % all.size()]);
+    for (uint32_t i = 0; i <= random() % 4; ++i) {
+      bytes[random() % bytes.size()] = static_cast<uint8_t>(random());
+    }
+    base::Result<Request> request = decode_request(bytes);
+    if (!request.ok()) {
+      EXPECT_EQ(request.error().refusal, base::Refusal::kProtocol);
+      continue;
+    }
+    ++accepted;
+    EXPECT_EQ(encode(*request), bytes);
+  }
+  EXPECT_GT(accepted, 0u);
+}
+
+TEST(Protocol, HostileCountsAllocateNothing) {
+  base::ByteWriter writer;
+  writer.u8(kProtocolVersion);
+  writer.u8(static_cast<uint8_t>(Command::kGet));
+  writer.u32(0xffffffff);
+  EXPECT_FALSE(decode_request(writer.bytes()).ok());
+}
+
+TEST(Protocol, MoreNamesThanTheLimitAreRefused) {
+  Request request{.command = Command::kGet};
+  request.names.assign(kMaxNames, "a");
+  EXPECT_TRUE(decode_request(encode(request)).ok());
+  request.names.push_back("a");
+  EXPECT_FALSE(decode_request(encode(request)).ok());
+  request.names = {std::string(kMaxNameBytes, 'a')};
+  EXPECT_TRUE(decode_request(encode(request)).ok());
+  request.names = {std::string(kMaxNameBytes + 1, 'a')};
+  EXPECT_FALSE(decode_request(encode(request)).ok());
+}
+
+TEST(Protocol, AnswersCarryBodiesAndErrors) {
+  base::Result<base::Bytes> body = decode_answer(encode_answer(base::Bytes{1, 2}));
+  ASSERT_TRUE(body.ok());
+  EXPECT_EQ(*body, (base::Bytes{1, 2}));
+  base::Result<base::Bytes> error =
+      decode_answer(encode_answer(base::Error{base::Refusal::kStaleBase, "other version"}));
+  ASSERT_FALSE(error.ok());
+  EXPECT_EQ(error.error().refusal, base::Refusal::kStaleBase);
+  EXPECT_EQ(error.error().text, "other version");
+  EXPECT_EQ(decode_answer(base::Bytes{}).error().refusal, base::Refusal::kProtocol);
+  EXPECT_EQ(decode_answer(base::Bytes{kProtocolVersion, 0, 9}).error().refusal,
+            base::Refusal::kProtocol);
+}
+
+StatusReport sample_status() {
+  StatusReport report;
+  report.name = "plant";
+  report.running[0] = 1;
+  report.change = "trial";
+  report.cycles = 77;
+  TaskStatus task;
+  task.name = "Fast";
+  task.scans = 12;
+  report.tasks = {task, task};
+  report.traps.push_back({5, "Fast", {"P", "p.st", 3, "division"}});
+  return report;
+}
+
+TEST(Protocol, ReportsRoundTripAndSurviveMutation) {
+  base::Bytes bytes = encode(sample_status());
+  base::Result<StatusReport> back = decode_status(bytes);
+  ASSERT_TRUE(back.ok());
+  EXPECT_EQ(back->tasks.size(), 2u);
+  EXPECT_EQ(back->traps[0].text.line, 3u);
+  std::mt19937 random(2);
+  for (int round = 0; round < 4000; ++round) {
+    base::Bytes mutant = bytes;
+    mutant[random() % mutant.size()] = static_cast<uint8_t>(random());
+    mutant.resize(random() % 4 == 0 ? random() % mutant.size() : mutant.size());
+    base::Result<StatusReport> report = decode_status(mutant);
+    if (!report.ok()) continue;
+    EXPECT_EQ(encode(*report), mutant);
+  }
+}
+
+TEST(Frames, ComeTogetherFromAnyPieces) {
+  base::Bytes stream;
+  for (const char* text : {"", "a", "hello"}) {
+    base::Bytes one = frame(base::as_bytes(text));
+    stream.insert(stream.end(), one.begin(), one.end());
+  }
+  for (size_t step = 1; step <= stream.size(); ++step) {
+    FrameReader reader;
+    std::vector<base::Bytes> got;
+    for (size_t at = 0; at < stream.size(); at += step) {
+      reader.add({stream.data() + at, std::min(step, stream.size() - at)});
+      while (auto message = reader.next()) got.push_back(*message);
+    }
+    ASSERT_EQ(got.size(), 3u) << step;
+    EXPECT_EQ(got[2].size(), 5u);
+    EXPECT_TRUE(reader.empty());
+  }
+}
+
+TEST(Frames, LengthAboveTheLimitBreaksTheStream) {
+  for (uint32_t length : {kMaxMessageBytes, kMaxMessageBytes + 1, 0xffffffffu}) {
+    base::ByteWriter writer;
+    writer.u32(length);
+    FrameReader reader;
+    reader.add(writer.bytes());
+    EXPECT_FALSE(reader.next().has_value());
+    EXPECT_EQ(reader.broken(), length > kMaxMessageBytes);
+  }
+}
+
+}  // namespace
+}  // namespace vm

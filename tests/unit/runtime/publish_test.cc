@@ -1,0 +1,85 @@
+// What a new generation takes over from the old one.
+#include "tests/unit/runtime/plant.h"
+
+namespace runtime_test {
+namespace {
+
+std::string tasks(const char* fast_period, const char* third) {
+  return std::string(R"(
+PROGRAM P VAR n : DINT; END_VAR n := n + 1; END_PROGRAM
+CONFIGURATION c RESOURCE r ON cpu
+  TASK Fast (INTERVAL := )") +
+         fast_period + R"(, PRIORITY := 0);
+  TASK Slow (INTERVAL := T#20ms, PRIORITY := 1);
+  PROGRAM A WITH Fast : P;
+  PROGRAM B WITH Slow : P;)" +
+         third + R"(
+END_RESOURCE END_CONFIGURATION)";
+}
+
+TEST(Publish, IdentityKeepsCountsPhaseAndForces) {
+  Plant plant(tasks("T#10ms", ""));
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(3);
+  ASSERT_TRUE(plant->force("B.n", "100").ok());
+  auto next = plant->prepare(plant->verified());
+  ASSERT_TRUE(plant->force("A.n", "200").ok());  // after prepare()
+  auto old = plant->publish(std::move(next));
+  ASSERT_NE(old, nullptr);
+  EXPECT_EQ(plant->next_release_ns(), 30 * kMs);
+  EXPECT_EQ(plant->next_cycle_ns(), 30 * kMs);
+  EXPECT_EQ(plant.task("Fast").scans, 3u);
+  EXPECT_EQ(plant->forces().size(), 2u);
+  plant.cycles(2);
+  EXPECT_EQ(plant.task("Fast").scans, 5u);
+  EXPECT_EQ(plant.task("Slow").scans, 3u);
+  EXPECT_EQ(plant.get("A.n"), "200");
+  EXPECT_EQ(plant.get("B.n"), "100");
+  // And back, as undo does.
+  auto second = plant->publish(std::move(old));
+  ASSERT_NE(second, nullptr);
+  plant.cycles(2);
+  EXPECT_EQ(plant.task("Fast").scans, 7u);
+  EXPECT_EQ(plant.task("Fast").missed, 0u);
+  EXPECT_EQ(plant.task("Slow").scans, 4u);
+}
+
+// Change case 42: period changed, task added.
+TEST(Publish, PeriodChangeAndNewTaskKeepTheOthersOnTime) {
+  Plant plant(tasks("T#10ms", ""));
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(3);  // last cycle began at 20 ms
+  auto image = build(tasks("T#5ms",
+                           " TASK Third (INTERVAL := T#15ms, PRIORITY := 2); "
+                           "PROGRAM C WITH Third : P;"),
+                     &plant->image());
+  ASSERT_TRUE(image.has_value());
+  auto old = plant->publish(plant->prepare(*image));
+  EXPECT_EQ(plant->base_period_ns(), 5 * kMs);
+  EXPECT_EQ(plant->next_cycle_ns(), 25 * kMs);
+  plant.cycles(4);  // 25, 30, 35, 40 ms
+  EXPECT_EQ(plant.clock.now_ns(), 40 * kMs);
+  EXPECT_EQ(plant.task("Fast").scans, 7u);
+  EXPECT_EQ(plant.task("Slow").scans, 3u);
+  EXPECT_GE(plant.task("Third").scans, 1u);
+  for (const vm::TaskStatus& row : plant->tasks()) EXPECT_EQ(row.missed, 0u) << row.name;
+}
+
+// Change case 47: a forced variable that is retyped or removed.
+TEST(Publish, ForcesFollowByNameAndValue) {
+  Plant plant(
+      "PROGRAM P VAR a : INT; b : INT; c : INT; END_VAR a := 1; b := 1; c := 1; END_PROGRAM");
+  ASSERT_TRUE(plant.ok());
+  for (const char* name : {"P.a", "P.b", "P.c"}) ASSERT_TRUE(plant->force(name, "300").ok());
+  auto image = build("PROGRAM P VAR b : DINT; a : SINT; END_VAR a := 1; b := 1; END_PROGRAM",
+                     &plant->image());
+  ASSERT_TRUE(image.has_value());
+  auto old = plant->publish(plant->prepare(*image));
+  ASSERT_EQ(plant->forces().size(), 1u);
+  plant.cycles(1);
+  EXPECT_EQ(plant.get("P.b"), "300");
+  EXPECT_EQ(plant.get("P.a"), "1");
+}
+
+}  // namespace
+}  // namespace runtime_test
