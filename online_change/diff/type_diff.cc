@@ -1,5 +1,7 @@
 #include "online_change/diff/type_diff.h"
 
+#include <unordered_map>
+
 #include "online_change/diff/areas.h"
 #include "online_change/diff/diff_ops.h"
 
@@ -34,6 +36,24 @@ DiffOp make_op(DiffKind kind, uint32_t from, uint32_t to, uint32_t size, uint64_
   op.leaves = leaves;
   return op;
 }
+
+// Members by name; a program may have very many.
+class MemberNames {
+ public:
+  static constexpr uint32_t kNone = 0xffffffffu;
+  explicit MemberNames(const ir::Type& type) {
+    for (uint32_t i = 0; i < type.members.size(); ++i) {
+      numbers_.emplace(ir::fold_name(type.members[i].name), i);
+    }
+  }
+  uint32_t find(const Member& member) const {
+    auto found = numbers_.find(ir::fold_name(member.name));
+    return found == numbers_.end() ? kNone : found->second;
+  }
+
+ private:
+  std::unordered_map<std::string, uint32_t> numbers_;
+};
 
 // The whole value is initialised: nothing of the old one can be used.
 TypeDiff without_rule(std::string old_text, std::string new_text, uint32_t size, uint64_t leaves) {
@@ -162,12 +182,14 @@ TypeDiff TypeDiffer::compare_members(TypeId old_type, TypeId new_type, bool is_a
   const ir::Type& to = new_.types[new_type];
   const ir::TypeLayout& old_layout = old_.layouts[old_type];
   const ir::TypeLayout& new_layout = new_.layouts[new_type];
+  MemberNames old_names(from);
+  MemberNames new_names(to);
   TypeDiff diff;
   for (uint32_t i = 0; i < to.members.size() && !failed_; ++i) {
     const Member& member = to.members[i];
-    int32_t twin = old_.types.find_member(old_type, member.name);
-    const Member* old_member = twin < 0 ? nullptr : &from.members[static_cast<uint32_t>(twin)];
-    uint32_t old_offset = twin < 0 ? 0 : old_layout.member_offsets[static_cast<uint32_t>(twin)];
+    uint32_t twin = old_names.find(member);
+    const Member* old_member = twin == MemberNames::kNone ? nullptr : &from.members[twin];
+    uint32_t old_offset = old_member == nullptr ? 0 : old_layout.member_offsets[twin];
     if (member.section == Section::kInOut) {
       add_in_out(diff, old_member, old_offset, member, new_layout.member_offsets[i]);
     } else if (old_member == nullptr || old_member->section == Section::kInOut) {
@@ -177,8 +199,8 @@ TypeDiff TypeDiffer::compare_members(TypeId old_type, TypeId new_type, bool is_a
     }
   }
   for (const Member& member : from.members) {
-    int32_t twin = new_.types.find_member(new_type, member.name);
-    bool gone = twin < 0 || to.members[static_cast<uint32_t>(twin)].section == Section::kInOut;
+    uint32_t twin = new_names.find(member);
+    bool gone = twin == MemberNames::kNone || to.members[twin].section == Section::kInOut;
     if (gone && member.section != Section::kInOut) add_dropped_member(diff, member);
   }
   join(diff.ops);
