@@ -1,0 +1,93 @@
+// The stored form of images: what is written is read, and nothing else is.
+#include <gtest/gtest.h>
+
+#include "ir/bytecode/verify.h"
+#include "tests/unit/bytecode/sample_image.h"
+
+namespace {
+
+using base::Refusal;
+
+TEST(Image, IsTheSameAfterDecoding) {
+  const base::Bytes bytes = ir::encode(sample::busy_image());
+  const auto decoded = ir::decode(bytes);
+  ASSERT_TRUE(decoded.ok()) << decoded.error().text;
+  EXPECT_EQ(ir::encode(*decoded), bytes);
+  EXPECT_EQ(decoded->pous[sample::kMainPou].file, "main.st");
+  EXPECT_EQ(decoded->instances[3].name, "fbs[0]");
+}
+
+TEST(Image, AnonymousTypesAreFoundByContentAfterDecoding) {
+  auto decoded = ir::decode(ir::encode(sample::busy_image()));
+  ASSERT_TRUE(decoded.ok());
+  const uint32_t before = decoded->types.size();
+  decoded->types.string(10);
+  decoded->types.array(decoded->types.elementary(ir::Kind::kInt), {{1, 4}});
+  EXPECT_EQ(decoded->types.size(), before);
+}
+
+TEST(Image, DigestIsTheOneInTheHeader) {
+  const base::Bytes bytes = ir::encode(sample::busy_image());
+  const base::Digest digest = ir::digest(bytes);
+  EXPECT_EQ(digest, base::sha256(base::ByteSpan(bytes).subspan(48)));
+  EXPECT_EQ(ir::verify(bytes)->digest(), digest);
+}
+
+TEST(Image, EveryTruncationIsRefused) {
+  const base::Bytes bytes = ir::encode(sample::busy_image());
+  for (size_t length = 0; length < bytes.size(); ++length) {
+    ASSERT_FALSE(ir::decode(base::ByteSpan(bytes).first(length)).ok()) << length;
+  }
+}
+
+TEST(Image, EverySingleBitFlipIsRefused) {
+  base::Bytes bytes = ir::encode(sample::busy_image());
+#ifdef NDEBUG
+  constexpr size_t kStep = 1;
+#else
+  constexpr size_t kStep = 13;  // hashing without optimiser is slow; odd, so every bit of a byte
+#endif
+  for (size_t bit = 0; bit < bytes.size() * 8; bit += kStep) {
+    bytes[bit / 8] ^= static_cast<uint8_t>(1u << (bit % 8));
+    ASSERT_FALSE(ir::decode(bytes).ok()) << "bit " << bit;
+    bytes[bit / 8] ^= static_cast<uint8_t>(1u << (bit % 8));
+  }
+  EXPECT_TRUE(ir::decode(bytes).ok());
+}
+
+TEST(Image, RefusalsOfTheForm) {
+  base::Bytes bytes = ir::encode(sample::busy_image());
+  base::Bytes longer = bytes;
+  longer.push_back(0);
+  EXPECT_EQ(ir::decode(longer).error().refusal, Refusal::kBadFormat);
+  bytes.back() ^= 1;
+  EXPECT_EQ(ir::decode(bytes).error().refusal, Refusal::kBadHash);
+  EXPECT_EQ(ir::decode({}).error().refusal, Refusal::kBadFormat);
+}
+
+TEST(Image, InitialBytesBetweenRunsAreZero) {
+  ir::Image image;
+  image.data = {{100, {1, 2}}, {104, {3}}};
+  uint8_t bytes[8];
+  ir::read_initial(image, 99, bytes);
+  const uint8_t expected[8] = {0, 1, 2, 0, 0, 3, 0, 0};
+  EXPECT_EQ(std::memcmp(bytes, expected, 8), 0);
+}
+
+TEST(Image, PathsOfInstances) {
+  const ir::Image image = sample::busy_image();
+  EXPECT_EQ(image.instance_path(0), "");
+  EXPECT_EQ(image.instance_path(3), "Main.fbs[0]");
+  EXPECT_EQ(image.program_ids(), std::vector<uint32_t>{1});
+}
+
+TEST(Image, DisassemblyNamesWhatItShows) {
+  const ir::Image image = sample::busy_image();
+  const std::string text = ir::disassemble(image, image.pous[sample::kMainPou]);
+  EXPECT_NE(text.find("CALL"), std::string::npos);
+  EXPECT_NE(text.find("Add"), std::string::npos);
+  EXPECT_NE(text.find("numbers[1..+4 by 2]"), std::string::npos);
+  EXPECT_NE(text.find("; line 7"), std::string::npos);
+}
+
+}  // namespace
