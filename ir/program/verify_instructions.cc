@@ -1,12 +1,10 @@
 // Rules of single instructions: what each operation takes and gives, and that
 // everything that it refers to exists.
-#include <optional>
 #include <string>
 
 #include "ir/program/ops.h"
-#include "ir/program/place.h"
-#include "ir/program/shape.h"
 #include "ir/program/text_names.h"
+#include "ir/program/verify_memory.h"
 #include "ir/program/verify_parts.h"
 #include "stdlib/native/natives.h"
 
@@ -19,7 +17,8 @@ bool is_plain(Scalar s) { return is_numeric(s) || s == Scalar::kBool; }
 
 class InstVerifier {
  public:
-  InstVerifier(const Program& program, const Pou& pou) : program_(program), pou_(pou) {}
+  InstVerifier(const Program& program, const Pou& pou, const Definitions& definitions)
+      : program_(program), pou_(pou), memory_(program, pou, definitions) {}
 
   // The first reason found; empty when the instruction is right.
   std::string check(const Inst& inst) {
@@ -29,10 +28,6 @@ class InstVerifier {
       check_operation(inst);
     }
     return reason_;
-  }
-
-  void set_values_defined_by(const std::vector<const Inst*>& definitions) {
-    definitions_ = &definitions;
   }
 
  private:
@@ -105,7 +100,7 @@ class InstVerifier {
       case Op::kAddress:
       case Op::kString:
       case Op::kCallInstance:
-        check_memory(inst);
+        fail(memory_.check(inst));
         break;
       case Op::kShl:
       case Op::kShr:
@@ -217,147 +212,16 @@ class InstVerifier {
     }
     if (row.result == 'v') {
       require(!inst.result.valid(), "the native function has no result");
-      require(reason_.empty() && !inst.operands.empty() && writable(inst.operands[0]),
+      require(reason_.empty() && !inst.operands.empty() && memory_.writable(inst.operands[0]),
               "the result would be written into a constant");
     } else {
       require(inst.scalar == stdlib::native_scalar(row.result), "result of another type");
     }
   }
 
-  // What `value` points to, where the instruction that made it is known.
-  const Place* pointee(ValueId value) const {
-    const Inst* definition = (*definitions_)[value.index];
-    const bool points = definition != nullptr &&
-                        (definition->op == Op::kAddress || definition->op == Op::kString) &&
-                        definition->place.index < pou_.places.size();
-    return points ? &pou_.places[definition->place.index] : nullptr;
-  }
-
-  bool writable(ValueId value) const {
-    const Place* place = pointee(value);
-    return place == nullptr || place->base != PlaceBase::kConst;
-  }
-
-  void check_memory(const Inst& inst) {
-    const std::optional<PlaceState> state = check_one_place(inst.place);
-    if (!state) {
-      return;
-    }
-    const bool reads = inst.op == Op::kLoad || inst.op == Op::kString || inst.op == Op::kAddress;
-    require(reads || pou_.places[inst.place.index].base != PlaceBase::kConst,
-            "a constant is written");
-    require(!state->slot || inst.op == Op::kStore, "in-out slot is used without following it");
-    if (reason_.empty()) {
-      check_access(inst, *state);
-    }
-  }
-
-  void check_access(const Inst& inst, const PlaceState& state) {
-    const TypeTable& types = program_.types;
-    const Kind kind = types[state.type].kind;
-    switch (inst.op) {
-      case Op::kLoad:
-        require(types.is_scalar(state.type) && types.scalar(state.type) == inst.scalar,
-                "load of another type than the place has");
-        break;
-      case Op::kStore:
-        check_store(inst, state);
-        break;
-      case Op::kCopy:
-        check_copy(inst, state);
-        break;
-      case Op::kInit:
-        require(!holds_instance(types, state.type), "instances are not initialised by code");
-        break;
-      case Op::kAddress:
-        require(inst.scalar == Scalar::kAddr, "an address is addr");
-        break;
-      case Op::kString:
-        require((kind == Kind::kString && inst.scalar == Scalar::kStr) ||
-                    (kind == Kind::kWstring && inst.scalar == Scalar::kWstr),
-                "the place is no string of that kind");
-        break;
-      default:
-        require(kind == Kind::kFunctionBlock, "the place is no function block instance");
-    }
-  }
-
-  void check_store(const Inst& inst, const PlaceState& state) {
-    const TypeTable& types = program_.types;
-    require(operand(inst, 0) == inst.scalar, "operand of another type");
-    if (!state.slot) {
-      require(types.is_scalar(state.type) && types.scalar(state.type) == inst.scalar,
-              "store of another type than the place has");
-      return;
-    }
-    require(inst.scalar == Scalar::kAddr, "an in-out slot takes an address");
-    const Place* target = pointee(inst.operands[0]);
-    if (target != nullptr && types.contains(target->type)) {
-      require(same_shape(types, target->type, state.type),
-              "the in-out is bound to a place of another type");
-    }
-  }
-
-  void check_copy(const Inst& inst, const PlaceState& to) {
-    const std::optional<PlaceState> from = check_one_place(inst.place2);
-    if (!from) {
-      return;
-    }
-    require(!from->slot, "in-out slot is used without following it");
-    require(can_copy(program_.types, to.type, from->type), "copy between different types");
-  }
-
-  std::optional<PlaceState> check_one_place(PlaceId id) {
-    if (id.index >= pou_.places.size()) {
-      fail("it needs a place");
-      return std::nullopt;
-    }
-    const Place& place = pou_.places[id.index];
-    check_place_values(place);
-    if (!reason_.empty()) {
-      return std::nullopt;
-    }
-    base::Result<PlaceState> state = check_place(program_, pou_, place);
-    if (!state.ok()) {
-      fail(state.error().text);
-      return std::nullopt;
-    }
-    require(state->complete(), "the place ends inside an array or an instance");
-    return *state;
-  }
-
-  void check_place_values(const Place& place) {
-    for (const Step& step : place.steps) {
-      const bool known = !step.value.valid() || (step.value.index < pou_.values.size() &&
-                                                 is_integer(scalar_of(step.value)));
-      require(known, "an index is no integer value");
-    }
-    const TypeTable& types = program_.types;
-    if (place.base == PlaceBase::kConst || place.base == PlaceBase::kPointee) {
-      require(types.contains(place.base_type), "place of a type that does not exist");
-    }
-    if (place.base == PlaceBase::kConst && reason_.empty()) {
-      require(!holds_instance(types, place.base_type), "constant of an instance type");
-    }
-    if (place.base == PlaceBase::kPointee && reason_.empty()) {
-      check_pointee(place);
-    }
-  }
-
-  void check_pointee(const Place& place) {
-    if (place.value.index >= pou_.values.size() || scalar_of(place.value) != Scalar::kAddr) {
-      return fail("the base is no address value");
-    }
-    const Place* target = pointee(place.value);
-    if (target != nullptr && program_.types.contains(target->type)) {
-      require(same_shape(program_.types, target->type, place.base_type),
-              "the address is of another type than the place says");
-    }
-  }
-
   const Program& program_;
   const Pou& pou_;
-  const std::vector<const Inst*>* definitions_ = nullptr;  // by value; null for parameters
+  MemoryVerifier memory_;
   std::string reason_;
 };
 
@@ -365,9 +229,9 @@ class PouVerifier {
  public:
   PouVerifier(const Program& program, const Pou& pou)
       : pou_(pou),
-        insts_(program, pou),
         definitions_(pou.values.size()),
-        defined_(pou.values.size()) {}
+        defined_(pou.values.size()),
+        insts_(program, pou, definitions_) {}
 
   base::Status verify() {
     if (pou_.blocks.empty() || !pou_.blocks[0].params.empty()) {
@@ -376,7 +240,6 @@ class PouVerifier {
     if (base::Status status = collect_definitions(); !status.ok()) {
       return status;
     }
-    insts_.set_values_defined_by(definitions_);
     for (size_t b = 0; b < pou_.blocks.size(); ++b) {
       if (base::Status status = check_block(b); !status.ok()) {
         return status;
@@ -433,9 +296,9 @@ class PouVerifier {
   }
 
   const Pou& pou_;
-  InstVerifier insts_;
-  std::vector<const Inst*> definitions_;
+  Definitions definitions_;
   std::vector<bool> defined_;
+  InstVerifier insts_;
 };
 
 }  // namespace
