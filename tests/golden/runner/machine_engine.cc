@@ -86,12 +86,11 @@ class MachineEngine : public Engine {
   base::Status unforce(const std::string& path) override { return controller_->unforce(path); }
 
   base::Result<std::vector<std::string>> change(const Program& next, bool allow_loss) override {
-    base::Status staged = stage(next, tier_ == Tier::kMoveAll);
+    base::Status staged = stage(next, false);
     if (!staged.ok()) return staged.error();
     std::vector<std::string> lines = {count_text(change_->plan().counts)};
     for (const online_change::FateRow& row : change_->plan().fates) {
-      // Moving everything is this tier's doing, not the edit's.
-      if (row.fate != online_change::Fate::kMoved) lines.push_back(fate_text(row));
+      lines.push_back(fate_text(row));
     }
     for (const online_change::LiveLoss& loss : change_->live_losses()) {
       lines.push_back("loss " + loss.path + ": " + loss.old_value + " -> " + loss.new_value + " " +
