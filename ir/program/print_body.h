@@ -1,3 +1,4 @@
+// One POU as text: declarations of its frame, blocks, instructions.
 #pragma once
 
 #include <string>

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/limits.h"
 #include "tests/unit/program/sample.h"
 
 namespace ir {
@@ -155,10 +156,28 @@ TEST(Evaluate, FuelEndsAnEndlessLoop) {
   EXPECT_EQ(bits(evaluator, "n"), 20u);
 }
 
+// F calls itself as often as `n` says.
 TEST(Evaluate, RecursionEndsAtTheCallDepth) {
-  const Program program = verified(
-      small_program("", "b0:\n call F\n return\n", "pou function F\nb0:\n call F @4\n return\n"));
+  const Program program =
+      verified(small_program("  member global n : UDINT\n", "b0:\n call F\n return\n",
+                             R"(pou function F
+  b0:
+    v0 = load u32 global.n
+    v1 = const u32 1
+    v2 = sub u32 v0, v1
+    store u32 global.n, v2
+    v3 = eq u32 v2, v1
+    branch v3, b2, b1
+  b1:
+    call F @4
+    return
+  b2:
+    return
+)"));
   Evaluator evaluator(program);
+  ASSERT_TRUE(evaluator.set_bits("n", base::kMaxCallDepth).ok());
+  expect_no_trap(evaluator.scan(0, kBudget));
+  ASSERT_TRUE(evaluator.set_bits("n", base::kMaxCallDepth + 1).ok());
   EXPECT_EQ(only_trap(evaluator.scan(0, kBudget)), "stack in F line 4: F");
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/limits.h"
 #include "tests/unit/program/sample.h"
 
 namespace ir {
@@ -171,6 +172,27 @@ TEST(Verify, ReadsResultsInLaterBlocks) {
 )",
                                                           function)));
   EXPECT_NE(text.find("its call is not the last one"), std::string::npos) << text;
+}
+
+std::string verdict_on_type(const std::string& definition) {
+  return verdict(parse_ok(small_program("type Odd = " + definition + "\n", "b0:\n return\n")));
+}
+
+TEST(Verify, KeepsTheLimitsOfTypes) {
+  std::string dims = "[0..0";
+  for (uint32_t i = 1; i < base::kMaxDimensions; ++i) {
+    dims += ", 0..0";
+  }
+  EXPECT_EQ(verdict_on_type("array INT " + dims + "]"), "ok");
+  EXPECT_NE(verdict_on_type("array INT " + dims + ", 0..0]"), "ok");
+  const std::string elements = std::to_string(base::kMaxTypeBytes);
+  EXPECT_EQ(verdict_on_type("array BOOL [1.." + elements + "]"), "ok");
+  EXPECT_NE(verdict_on_type("array BOOL [0.." + elements + "]"), "ok");
+  const std::string capacity = std::to_string(base::kMaxStringCapacity);
+  EXPECT_EQ(verdict_on_type("string " + capacity), "ok");
+  Program program = parse_ok(small_program("", "b0:\n return\n"));
+  program.types.string(base::kMaxStringCapacity + 1);
+  EXPECT_NE(verdict(program), "ok");
 }
 
 TEST(Verify, FollowsLoops) {
