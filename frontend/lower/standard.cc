@@ -99,7 +99,6 @@ ir::ValueId Body::real_function(const std::vector<ExprId>& args, const stdlib::F
   for (ExprId arg : args) {
     operands.push_back(machine_convert(value(arg, own), machine, ir::Scalar::kF64));
   }
-  if (row.id == FunctionId::kAtan2) std::swap(operands[0], operands[1]);  // native: (x, y)
   return machine_convert(native(real_native(row.id), operands), ir::Scalar::kF64, machine);
 }
 

@@ -156,7 +156,8 @@ Note Sema::infer_name(const Expr& expr) {
 Note Sema::infer_enum_name(const Expr& expr) {
   auto found = literals_.find(expr.name.text);
   if (found == literals_.end()) {
-    bool pou = pou_names_.contains(expr.name.text) || types_.contains(expr.name.text);
+    bool pou = pou_names_.contains(expr.name.text) || types_.contains(expr.name.text) ||
+               library_.contains(expr.name.text) || standard_.contains(expr.name.text);
     error(pou ? DiagnosticCode::kNotAValue : DiagnosticCode::kUnknownName, expr.span,
           "`" + std::string(expr.name.text) + (pou ? "` is not a variable" : "` is not declared"),
           pou ? std::string() : name_suggestion(expr.name.text, false));

@@ -52,18 +52,18 @@ BinaryOp standard_operator(stdlib::FunctionId id) { return operator_of(id); }
 
 Callee Sema::callee(const Expr& call) {
   const Expr& head = tree[call.operand];
-  if (head.kind == ExprKind::kName && !find_variable(head.name.text).valid()) {
-    return named_callee(head);
-  }
   if (head.kind == ExprKind::kName) {
-    // The function's own name is its result inside; calling it would be recursion.
     VarId id = find_variable(head.name.text);
-    const Variable& variable = variables_[id.index];
-    if (variable.decl == nullptr) {
+    if (!id.valid()) return named_callee(head);
+    // The function's own name is its result inside; calling it would be recursion.
+    if (variables_[id.index].decl == nullptr) {
       error(DiagnosticCode::kRecursiveCall, head.span, quoted(head.name) + " calls itself",
             "use a loop");
       return {};
     }
+    // A variable may have a function's name; calls then still mean the function.
+    bool instance = pou_of(resolve(id).type) != nullptr;
+    if (!instance && standard_.contains(head.name.text)) return named_callee(head);
   }
   const Note& note = infer(call.operand);
   if (!note.type.valid()) return {};

@@ -75,6 +75,8 @@ void Sema::resolve_external(Variable& variable) {
     error(DiagnosticCode::kExternalMismatch, variable.name.span,
           quoted(variable.name) + " is `" + type_text(global.type) + "`, declared here as `" +
               type_text(variable.type) + "`");
+    variable.external = {};
+    variable.type = {};
   }
 }
 
