@@ -17,14 +17,15 @@ uint64_t allocations = 0;
 
 }  // namespace
 
-void* operator new(size_t size) {
+// Not inlined, or the compiler takes malloc and delete for a mismatched pair.
+[[gnu::noinline]] void* operator new(size_t size) {
   ++allocations;
   void* block = std::malloc(size == 0 ? 1 : size);
   if (block == nullptr) throw std::bad_alloc();
   return block;
 }
-void operator delete(void* block) noexcept { std::free(block); }
-void operator delete(void* block, size_t) noexcept { std::free(block); }
+[[gnu::noinline]] void operator delete(void* block) noexcept { std::free(block); }
+[[gnu::noinline]] void operator delete(void* block, size_t) noexcept { std::free(block); }
 
 namespace {
 
