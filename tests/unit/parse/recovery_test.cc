@@ -112,6 +112,10 @@ TEST(Recovery, CaseWithoutLabels) {
   EXPECT_EQ(in_program("CASE a OF 1 b := 1; 2: c := 2; END_CASE d := 1;"), "2:13 E1001\n");
 }
 
+TEST(Recovery, TypedLiterals) {
+  EXPECT_EQ(in_program("a := INT#;\nb := INT#-x;\nc := INT#5;"), "2:6 E0012\n3:6 E0012\n");
+}
+
 TEST(Recovery, FileLevel) {
   EXPECT_EQ(codes("a := 1;\nPROGRAM p END_PROGRAM"), "1:1 E1012\n");
   EXPECT_EQ(codes("VAR_INPUT a : INT; END_VAR PROGRAM p END_PROGRAM"), "1:1 E1018\n");

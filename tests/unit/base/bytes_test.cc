@@ -1,0 +1,83 @@
+#include "base/bytes.h"
+
+#include <gtest/gtest.h>
+
+#include "base/hash.h"
+
+namespace base {
+namespace {
+
+TEST(Bytes, WrittenValuesComeBack) {
+  ByteWriter writer;
+  writer.u8(1);
+  writer.u16(0x0203);
+  writer.u32(0x04050607);
+  writer.u64(0x08090A0B0C0D0E0F);
+  writer.i64(-2);
+  writer.boolean(true);
+  writer.text("abc");
+  ByteReader reader(writer.bytes());
+  EXPECT_EQ(reader.u8(), 1);
+  EXPECT_EQ(reader.u16(), 0x0203);
+  EXPECT_EQ(reader.u32(), 0x04050607u);
+  EXPECT_EQ(reader.u64(), 0x08090A0B0C0D0E0Fu);
+  EXPECT_EQ(reader.i64(), -2);
+  EXPECT_TRUE(reader.boolean());
+  EXPECT_EQ(reader.text(), "abc");
+  EXPECT_TRUE(reader.done());
+}
+
+TEST(Bytes, LittleEndian) {
+  ByteWriter writer;
+  writer.u32(0x04030201);
+  EXPECT_EQ(writer.bytes(), (Bytes{1, 2, 3, 4}));
+}
+
+TEST(Bytes, ReadingPastTheEndLatches) {
+  Bytes bytes{1, 2, 3};
+  ByteReader reader(bytes);
+  EXPECT_EQ(reader.u32(), 0u);
+  EXPECT_TRUE(reader.failed());
+  EXPECT_EQ(reader.u8(), 0);
+  EXPECT_EQ(reader.left(), 0u);
+  EXPECT_FALSE(reader.done());
+}
+
+TEST(Bytes, HostileCountsAndLengths) {
+  ByteWriter writer;
+  writer.u32(0xffffffff);
+  ByteReader as_count(writer.bytes());
+  EXPECT_EQ(as_count.count(8), 0u);
+  EXPECT_TRUE(as_count.failed());
+  ByteReader as_text(writer.bytes());
+  EXPECT_EQ(as_text.text(), "");
+  EXPECT_TRUE(as_text.failed());
+  Bytes two{2};
+  ByteReader as_bool(two);
+  as_bool.boolean();
+  EXPECT_TRUE(as_bool.failed());
+}
+
+TEST(Hash, Sha256KnownAnswers) {
+  EXPECT_EQ(to_hex(sha256({})), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(to_hex(sha256(as_bytes("abc"))),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(to_hex(sha256(as_bytes("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"))),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  std::string million(1'000'000, 'a');
+  EXPECT_EQ(to_hex(sha256(as_bytes(million))),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST(Hash, HexRoundTrip) {
+  Digest digest = sha256(as_bytes("abc"));
+  Digest back{};
+  EXPECT_TRUE(digest_from_hex(to_hex(digest), back));
+  EXPECT_EQ(back, digest);
+  EXPECT_EQ(short_hex(digest), "ba7816bf8f01");
+  EXPECT_FALSE(digest_from_hex("ba78", back));
+  EXPECT_FALSE(digest_from_hex(std::string(64, 'g'), back));
+}
+
+}  // namespace
+}  // namespace base
