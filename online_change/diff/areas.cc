@@ -121,6 +121,26 @@ std::optional<Node> Areas::descend(uint32_t offset, std::string* path) const {
   return std::nullopt;
 }
 
+bool Areas::is_array_of(uint32_t offset, ir::TypeId element, uint32_t count) const {
+  std::optional<uint32_t> id = instance_at(offset);
+  if (!id) return false;
+  std::optional<Node> node = Node{image_.instances[*id].type, begin(*id), false};
+  for (uint32_t depth = 0; node && !node->in_out && depth < kMaxDepth; ++depth) {
+    const ir::Type& type = image_.types[node->type];
+    if (type.kind == ir::Kind::kArray && type.base == element) {
+      uint32_t stride = image_.layouts[element].size;
+      uint32_t relative = offset - node->begin;
+      return stride != 0 && relative % stride == 0 &&
+             element_count(type) - std::min<uint64_t>(element_count(type), relative / stride) >=
+                 count;
+    }
+    // Another instance's slot ends the walk: its variables lie in an area of their own.
+    if (depth > 0 && image_.types.is_instance(node->type)) return false;
+    node = child_at(*node, offset);
+  }
+  return false;
+}
+
 std::string Areas::path_at(uint32_t offset) const {
   std::string path;
   return descend(offset, &path) ? path : "";

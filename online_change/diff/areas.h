@@ -38,6 +38,8 @@ class Areas {
   // Path of the scalar or string at `offset`; "" when there is none.
   std::string path_at(uint32_t offset) const;
   std::optional<Node> leaf_at(uint32_t offset) const;
+  // Are there `count` neighbouring elements of exactly that type in one array?
+  bool is_array_of(uint32_t offset, ir::TypeId element, uint32_t count) const;
 
  private:
   struct Place {  // of a member, by offset

@@ -91,33 +91,36 @@ void PlanCheck::expand() {
 }
 
 bool PlanCheck::check_targets() {
+  for (const UpdateStep& step : plan_.steps) {
+    if (!check_places(step)) return false;
+  }
   uint64_t end = 0;
   for (const Target& target : targets_) {
     if (target.to < end) return fail(target.to, "is written twice");
     end = target.end();
-    if (!check_target(target)) return false;
   }
   return true;
 }
 
-bool PlanCheck::check_target(const Target& target) {
-  const UpdateStep& step = step_of(target);
-  std::optional<uint32_t> id = new_areas_.instance_at(target.to);
-  if (!id || target.end() > uint64_t{new_areas_.begin(*id)} + new_areas_.capacity(*id)) {
-    return fail(target.to, "is written outside of any area");
+// All values of a step lie in one area, and come from one area.
+bool PlanCheck::check_places(const UpdateStep& step) {
+  uint64_t hull = uint64_t{step.to_stride} * (step.count - 1) + step.size;
+  std::optional<uint32_t> id = new_areas_.instance_at(step.to);
+  if (!id || step.to + hull > uint64_t{new_areas_.begin(*id)} + new_areas_.capacity(*id)) {
+    return fail(step.to, "is written outside of any area");
   }
   if (step.kind == StepKind::kInitialise) {
-    if (step.early && old_areas_.owns(target.to, target.size)) {
-      return fail(target.to, "is initialised early, but the running version uses these bytes");
+    if (step.early && old_areas_.owns(step.to, static_cast<uint32_t>(hull))) {
+      return fail(step.to, "is initialised early, but the running version uses these bytes");
     }
     return true;
   }
-  uint64_t source = uint64_t{step.from} + uint64_t{step.from_stride} * target.index;
   uint64_t size = step.kind == StepKind::kCopy ? step.size : old_.layouts[step.old_type].size;
-  if (source + size > old_.data_capacity) return fail(target.to, "is read outside of memory");
-  id = old_areas_.instance_at(static_cast<uint32_t>(source));
-  if (!id || source + size > uint64_t{old_areas_.begin(*id)} + old_areas_.capacity(*id)) {
-    return fail(target.to, "is read from outside of any area");
+  uint64_t end = step.from + uint64_t{step.from_stride} * (step.count - 1) + size;
+  if (end > old_.data_capacity) return fail(step.to, "is read outside of memory");
+  id = old_areas_.instance_at(step.from);
+  if (!id || end > uint64_t{old_areas_.begin(*id)} + old_areas_.capacity(*id)) {
+    return fail(step.to, "is read from outside of any area");
   }
   return true;
 }
@@ -187,7 +190,35 @@ bool PlanCheck::check_node(Node node, uint32_t depth) {
   if (first == targets_.end() || first->to >= end) return check_carried(node, node.begin, depth);
   if (first->to <= node.begin && first->end() >= end) return check_written(node, *first, depth);
   if (!has_parts(node)) return fail(node.begin, "is written in part only");
+  if (new_.types[node.type].kind == ir::Kind::kArray) return check_elements(node, depth);
   return for_each_part(node, [&](Node part) { return check_node(part, depth + 1); });
+}
+
+bool PlanCheck::check_elements(Node array, uint32_t depth) {
+  ir::TypeId element = new_.types[array.type].base;
+  uint32_t stride = new_.layouts[element].size;
+  uint32_t count = stride == 0 ? 0 : size_of(array) / stride;
+  for (uint32_t i = 0; i < count;) {
+    Node node{element, array.begin + i * stride, false};
+    uint32_t run = converted_run(node, count - i);
+    if (run == 0 && !check_node(node, depth + 1)) return false;
+    i += std::max(run, 1u);
+  }
+  return true;
+}
+
+uint32_t PlanCheck::converted_run(Node first, uint32_t most) const {
+  auto found = std::partition_point(targets_.begin(), targets_.end(), [&](const Target& target) {
+    return target.end() <= first.begin;
+  });
+  if (found == targets_.end() || found->to != first.begin || has_parts(first)) return 0;
+  const UpdateStep& step = step_of(*found);
+  uint32_t run = std::min(most, step.count - found->index);
+  bool right = step.kind == StepKind::kConvert && step.new_type == first.type &&
+               step.size == size_of(first) && (run == 1 || step.to_stride == step.size) &&
+               step.from_stride == old_.layouts[step.old_type].size &&
+               classify(old_.types, step.old_type, new_.types, step.new_type) != Conversion::kNone;
+  return right && old_areas_.is_array_of(source_of(*found), step.old_type, run) ? run : 0;
 }
 
 bool PlanCheck::check_written(Node node, const Target& target, uint32_t depth) {

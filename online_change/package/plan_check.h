@@ -33,8 +33,11 @@ class PlanCheck {
   bool check_form(const UpdateStep& step);
   void expand();
   bool check_targets();
-  bool check_target(const Target& target);
+  bool check_places(const UpdateStep& step);
   bool check_area(uint32_t id);
+  bool check_elements(Node array, uint32_t depth);
+  // Elements from `first` on, `most` at most, that one step converts from neighbours in an array.
+  uint32_t converted_run(Node first, uint32_t most) const;
   bool check_node(Node node, uint32_t depth);
   bool check_written(Node node, const Target& target, uint32_t depth);
   bool check_initial(Node node, const Target& target);

@@ -130,7 +130,8 @@ TEST(Change, C1_interrupted_undo_leaves_the_trial) {
 TEST(Change, case58_wrong_base_same_change_two_tools) {
   Plant plant(kFirst);
   base::Bytes package = plant.package(kSecond);
-  base::Bytes other = plant.package(std::string(kFirst) + "FUNCTION f : INT f := 1; END_FUNCTION");
+  base::Bytes other =
+      plant.package(std::string(kFirst) + "\nFUNCTION f : INT f := 1; END_FUNCTION");
   Change& change = plant.driver();
   ASSERT_TRUE(change.stage(package).ok());
   EXPECT_EQ(change.stage(other).error().refusal, Refusal::kChangePending);
@@ -210,8 +211,8 @@ TEST(Change, case2_loss_appears_between_preview_and_switch) {
 }
 
 TEST(Change, case45_too_long_a_pause_is_refused_before) {
-  std::string big = "PROGRAM Main VAR a : ARRAY[0..999999] OF INT; END_VAR END_PROGRAM";
-  std::string converted = "PROGRAM Main VAR a : ARRAY[0..999999] OF LREAL; END_VAR END_PROGRAM";
+  std::string big = "PROGRAM Main VAR a : ARRAY[0..199999] OF INT; END_VAR END_PROGRAM";
+  std::string converted = "PROGRAM Main VAR a : ARRAY[0..199999] OF LREAL; END_VAR END_PROGRAM";
   linker::Slack slack;
   slack.free_bytes = 16u << 20;
   Plant plant(big, slack);
