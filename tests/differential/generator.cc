@@ -30,6 +30,7 @@ constexpr int kTypeCount = std::size(kTypes);
 constexpr int kBool = 0;
 constexpr int kInt = 2;
 constexpr int kDint = 3;
+constexpr int kLword = 12;
 constexpr int kTime = 15;
 constexpr int kString = 16;
 
@@ -307,7 +308,7 @@ class Generator {
 
   // An index that is nearly always in range.
   std::string index(int low, int high) {
-    if (random_.one_in(60)) return expression(kInt, 1);
+    if (random_.one_in(60)) return variable(kInt);
     if (random_.one_in(3))
       return std::to_string(low + static_cast<int>(random_.below(high - low + 1)));
     return "LIMIT(" + std::to_string(low) + ", " + expression(kInt, 1) + ", " +
@@ -354,6 +355,9 @@ class Generator {
       const Variable& candidate = scope_[random_.below(static_cast<uint32_t>(scope_.size()))];
       if (candidate.type == type) return candidate.name;
     }
+    if (type == kDint) return "guard";
+    if (type > kBool && type <= kLword)
+      return "DINT_TO_" + std::string(kTypes[type].name) + "(guard)";
     return literal(type);
   }
 
@@ -427,6 +431,8 @@ class Generator {
     }
   }
 
+  // The left operand is a variable: what is constant is computed by the compiler, which
+  // refuses results outside the type.
   std::string integer_operation(int type, int depth) {
     static constexpr const char* kArithmetic[] = {"+", "-", "*"};
     static constexpr const char* kDivision[] = {"/", "MOD"};
@@ -435,10 +441,14 @@ class Generator {
       case 0:
       case 1:
       case 2:
-        return binary(kArithmetic[random_.below(3)], type, depth);
+        return "(" + variable(type) + " " + kArithmetic[random_.below(3)] + " " +
+               expression(type, depth - 1) + ")";
       case 3:
-        if (random_.one_in(12)) return binary(kDivision[random_.below(2)], type, depth);
-        return "(" + expression(type, depth - 1) + " " + kDivision[random_.below(2)] + " " +
+        if (random_.one_in(12)) {
+          return "(" + variable(type) + " " + kDivision[random_.below(2)] + " " + variable(type) +
+                 ")";
+        }
+        return "(" + variable(type) + " " + kDivision[random_.below(2)] + " " +
                number(1 + random_.below(99)) + ")";
       case 4:
         return "MIN(" + expression(type, depth - 1) + ", " + expression(type, depth - 1) + ")";
@@ -447,10 +457,9 @@ class Generator {
       case 6:
         return conversion(type, depth);
       case 7:
-        return kTypes[type].cls == Class::kSigned ? "(-" + expression(type, depth - 1) + ")"
-                                                  : variable(type);
+        return kTypes[type].cls == Class::kSigned ? "(-" + variable(type) + ")" : variable(type);
       default:
-        return kTypes[type].cls == Class::kSigned ? "ABS(" + expression(type, depth - 1) + ")"
+        return kTypes[type].cls == Class::kSigned ? "ABS(" + variable(type) + ")"
                                                   : conversion(type, depth);
     }
   }

@@ -53,7 +53,9 @@ base::Result<Program> compile(const TestFile& test, size_t version, Outcome& out
   collect(sources, diagnostics, outcome);
   if (!program) {
     std::string all;
-    for (const std::string& message : outcome.messages) all += message + "\n";
+    for (const std::string& message : outcome.messages) {
+      if (message.find(": error[") != std::string::npos) all += message + "\n";
+    }
     return base::Error{base::Refusal::kSourceErrors, all};
   }
   // The runner checks the IR of every golden file, whatever its mode.
