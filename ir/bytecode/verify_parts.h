@@ -45,6 +45,7 @@ base::Status verify_tables(Context& context);
 // --- verify_instances.cc: areas and the instance tree (V13) ---------------------
 base::Status verify_instances(const Context& context);
 // --- verify_resources.cc: tasks, I/O, retain, initial data (V14 to V16) ---------
+base::Status verify_initial_data(const Image& image);
 base::Status verify_resources(const Context& context);
 
 // --- verify_code.cc: one POU in one pass (V3 to V10, V12, V19, V20) -------------

@@ -11,7 +11,6 @@ class ResourcesVerifier {
   explicit ResourcesVerifier(const Context& context) : context_(context), image_(context.image) {}
 
   base::Status run() {
-    if (base::Status s = check_initial_data(); !s) return s;
     if (base::Status s = check_tasks(); !s) return s;
     collect_areas();
     for (uint32_t i = 0; i < image_.io.size(); ++i) {
@@ -28,20 +27,6 @@ class ResourcesVerifier {
   }
 
  private:
-  base::Status check_initial_data() const {
-    uint64_t end = kDataBegin;
-    for (const DataRun& run : image_.data) {
-      const uint64_t behind = uint64_t{run.offset} + run.bytes.size();
-      if (run.offset < end || behind > image_.data_capacity) {
-        return refuse(Refusal::kBadFormat, "initial data at " + std::to_string(run.offset) + ".." +
-                                               std::to_string(behind) +
-                                               " is out of order or outside data memory");
-      }
-      end = behind;
-    }
-    return base::Ok{};
-  }
-
   base::Status check_tasks() const {
     std::vector<bool> taken(image_.instances.size());
     if (image_.tasks.empty()) return refuse(Refusal::kBadTask, "there is no task");
@@ -118,6 +103,21 @@ class ResourcesVerifier {
 };
 
 }  // namespace
+
+// In order, disjoint and inside data memory: what follows looks initial bytes up.
+base::Status verify_initial_data(const Image& image) {
+  uint64_t end = kDataBegin;
+  for (const DataRun& run : image.data) {
+    const uint64_t behind = uint64_t{run.offset} + run.bytes.size();
+    if (run.offset < end || behind > image.data_capacity) {
+      return refuse(Refusal::kBadFormat, "initial data at " + std::to_string(run.offset) + ".." +
+                                             std::to_string(behind) +
+                                             " is out of order or outside data memory");
+    }
+    end = behind;
+  }
+  return base::Ok{};
+}
 
 base::Status verify_resources(const Context& context) { return ResourcesVerifier(context).run(); }
 
