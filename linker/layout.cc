@@ -172,19 +172,28 @@ class Builder {
     }
   }
 
+  using Names = std::unordered_map<std::string, size_t>;
+
   // Offset of the member in the running version when it can stay there (A1, A4).
-  std::optional<uint32_t> kept_offset(TypeId old, const Member& member) const {
-    if (!old.valid()) return std::nullopt;
-    const int32_t number = base_->types.find_member(old, member.name);
-    if (number < 0) return std::nullopt;
-    const Member& before = base_->types[old].members[static_cast<size_t>(number)];
+  std::optional<uint32_t> kept_offset(TypeId old, const Names& names, const Member& member) const {
+    const auto found = names.find(ir::fold_name(member.name));
+    if (found == names.end()) return std::nullopt;
+    const Member& before = base_->types[old].members[found->second];
     const bool in_out = member.section == Section::kInOut;
     if ((before.section == Section::kInOut) != in_out) return std::nullopt;
     if (!in_out && !same_value_type(base_->types, base_->layouts, before.type, types_, layouts_,
                                     member.type)) {
       return std::nullopt;
     }
-    return base_->layouts[old].member_offsets[static_cast<size_t>(number)];
+    return base_->layouts[old].member_offsets[found->second];
+  }
+
+  Names old_names(TypeId old) const {
+    Names names;
+    if (!old.valid()) return names;
+    const std::vector<Member>& members = base_->types[old].members;
+    for (size_t i = 0; i < members.size(); ++i) names.emplace(ir::fold_name(members[i].name), i);
+    return names;
   }
 
   // Byte ranges of all members of the running version's type.
@@ -204,10 +213,11 @@ class Builder {
     const TypeId old = old_of(id);
     std::vector<uint32_t>& offsets = layouts_.of[id.index].member_offsets;
     offsets.assign(type.members.size(), 0);
+    const Names names = old_names(old);
     std::vector<size_t> added;
     Extents taken;  // what lives on
     for (size_t i = 0; i < type.members.size(); ++i) {
-      if (const auto offset = kept_offset(old, type.members[i])) {
+      if (const auto offset = kept_offset(old, names, type.members[i])) {
         offsets[i] = *offset;
         taken.add(*offset, size_of(type.members[i]));
       } else {

@@ -1,10 +1,10 @@
 // The stable layout database: offsets for every type of a new version, given the
-// layouts of the running one. A member with the same name (without case) and the same type keeps its
-// offset (A1, A4); deleted members become holes; changed and added ones go first
-// fit into holes that were free before, then behind, and into holes that this very
-// change frees only when nothing else is left inside the capacity (so that their initial value can be written before
-// the switch, A19). Areas get slack when they are first laid out and keep
-// their capacity while the contents fit (A5 iii, A8).
+// layouts of the running one. A member with the same name (without case) and the same type keeps
+// its offset (A1, A4); deleted members become holes; changed and added ones go first fit into holes
+// that were free before, then behind, and into holes that this very change frees only when nothing
+// else is left inside the capacity (so that their initial value can be written before the switch,
+// A19). Areas get slack when they are first laid out and keep their capacity while the contents fit
+// (A5 iii, A8).
 #pragma once
 
 #include "base/result.h"
@@ -16,7 +16,7 @@ namespace linker {
 // Slack sizes of a project (A6), from stc.toml.
 struct Slack {
   uint32_t globals_percent = 25;
-  uint32_t globals_bytes = 256;     // at least
+  uint32_t globals_bytes = 256;  // at least
   uint32_t instance_percent = 25;
   uint32_t instance_bytes = 16;
   uint32_t program_percent = 25;

@@ -27,7 +27,7 @@ std::vector<Interval> intervals_of(const Machine& machine, const Liveness& liven
   uint64_t at = 0;
   for (size_t b = 0; b < machine.blocks.size(); ++b) {
     const MachineBlock& block = machine.blocks[b];
-    liveness.live_in[b].for_each([&](uint32_t r) { intervals[r].cover(at); });
+    liveness.live_in[b].for_each([&](uint32_t i) { intervals[liveness.registers[i]].cover(at); });
     for (const MachineInst& inst : block.insts) {
       at += 2;
       for_each_register(inst, [&](uint32_t r, bool reads, bool writes) {
@@ -37,7 +37,8 @@ std::vector<Interval> intervals_of(const Machine& machine, const Liveness& liven
     }
     at += 2;
     if (block.end.condition.is_register()) intervals[block.end.condition.index].cover(at);
-    liveness.live_out[b].for_each([&](uint32_t r) { intervals[r].cover(at + 1); });
+    liveness.live_out[b].for_each(
+        [&](uint32_t i) { intervals[liveness.registers[i]].cover(at + 1); });
     at += 2;
   }
   return intervals;

@@ -153,11 +153,12 @@ class Emitter {
     Merge merge;
     merge.unit = starts_[position];
     RegisterSet held = liveness_.live_in[position];
-    for (uint32_t r = 0; r < machine_.registers.size(); ++r) {
-      if (machine_.registers[r].pinned) held.add(r);
+    for (uint32_t i = 0; i < liveness_.registers.size(); ++i) {
+      if (machine_.registers[liveness_.registers[i]].pinned) held.add(i);
     }
     held.intersect(liveness_.assigned_in[position]);
-    held.for_each([&](uint32_t r) {
+    held.for_each([&](uint32_t i) {
+      const uint32_t r = liveness_.registers[i];
       merge.slots.push_back(static_cast<uint16_t>(machine_.registers[r].slot));
     });
     std::sort(merge.slots.begin(), merge.slots.end());

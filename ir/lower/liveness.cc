@@ -8,40 +8,119 @@ struct Effects {
   RegisterSet writes;
 };
 
-void add_results(const Machine& machine, RegisterSet& set) {
-  for (uint32_t r = 0; r < machine.registers.size(); ++r) {
-    if (machine.registers[r].result) set.add(r);
-  }
-}
-
-Effects effects_of(const Machine& machine, const MachineBlock& block) {
-  Effects effects{RegisterSet(machine.registers.size()), RegisterSet(machine.registers.size())};
-  const auto read = [&](uint32_t r) {
-    if (!effects.writes.has(r)) effects.reads.add(r);
-  };
+template <class Visit>
+void for_each_access(const MachineBlock& block, Visit visit) {
   for (const MachineInst& inst : block.insts) {
     for_each_register(inst, [&](uint32_t r, bool reads, bool) {
-      if (reads) read(r);
+      if (reads) visit(r, false);
     });
     for_each_register(inst, [&](uint32_t r, bool, bool writes) {
-      if (writes) effects.writes.add(r);
+      if (writes) visit(r, true);
     });
   }
-  if (block.end.condition.is_register()) read(block.end.condition.index);
-  return effects;
+  if (block.end.condition.is_register()) visit(block.end.condition.index, false);
 }
 
-// live_in = reads or (live_out and not writes)
-bool update_live(const Machine& machine, const Effects& effects, uint32_t position,
-                 Liveness& liveness) {
-  RegisterSet& out = liveness.live_out[position];
-  for_each_successor(machine.blocks[position].end,
-                     [&](uint32_t next) { out.unite(liveness.live_in[next]); });
-  RegisterSet in = out;
-  in.subtract(effects.writes);
-  in.unite(effects.reads);
-  return liveness.live_in[position].unite(in);
-}
+class Analysis {
+ public:
+  explicit Analysis(const Machine& machine) : machine_(machine), blocks_(machine.blocks.size()) {
+    find_tracked();
+    for (const MachineBlock& block : machine.blocks) effects_.push_back(effects_of(block));
+  }
+
+  Liveness run(const std::vector<uint32_t>& written_at_entry) {
+    liveness_.live_in.assign(blocks_, empty_set());
+    liveness_.live_out.assign(blocks_, empty_set());
+    liveness_.assigned_in.assign(blocks_, RegisterSet(liveness_.registers.size(), true));
+    find_live();
+    RegisterSet at_entry = empty_set();
+    for (uint32_t r : written_at_entry) at_entry.add(number_[r]);
+    find_assigned(std::move(at_entry));
+    return std::move(liveness_);
+  }
+
+ private:
+  RegisterSet empty_set() const { return RegisterSet(liveness_.registers.size()); }
+
+  // A temporary that one block writes before it reads is nobody else's business.
+  void find_tracked() {
+    std::vector<uint32_t> home(machine_.registers.size(), kNoNumber);
+    std::vector<bool> tracked(machine_.registers.size());
+    for (uint32_t r = 0; r < tracked.size(); ++r) {
+      tracked[r] = machine_.registers[r].slot != kNoNumber;
+    }
+    for (uint32_t b = 0; b < blocks_; ++b) {
+      for_each_access(machine_.blocks[b], [&](uint32_t r, bool write) {
+        if (home[r] == kNoNumber && write) home[r] = b;
+        if (home[r] != b) tracked[r] = true;
+      });
+    }
+    number_.assign(tracked.size(), kNoNumber);
+    for (uint32_t r = 0; r < tracked.size(); ++r) {
+      if (!tracked[r]) continue;
+      number_[r] = static_cast<uint32_t>(liveness_.registers.size());
+      liveness_.registers.push_back(r);
+    }
+  }
+
+  Effects effects_of(const MachineBlock& block) const {
+    Effects effects{empty_set(), empty_set()};
+    for_each_access(block, [&](uint32_t r, bool write) {
+      const uint32_t number = number_[r];
+      if (number == kNoNumber) return;
+      if (write) {
+        effects.writes.add(number);
+      } else if (!effects.writes.has(number)) {
+        effects.reads.add(number);
+      }
+    });
+    return effects;
+  }
+
+  void find_live() {
+    for (size_t b = 0; b < blocks_; ++b) {
+      if (machine_.blocks[b].end.kind != EndKind::kReturn) continue;
+      for (uint32_t i = 0; i < liveness_.registers.size(); ++i) {
+        if (machine_.registers[liveness_.registers[i]].result) liveness_.live_out[b].add(i);
+      }
+    }
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (size_t b = blocks_; b-- > 0;) changed |= update_live(b);
+    }
+  }
+
+  // live_in = reads or (live_out and not writes)
+  bool update_live(size_t b) {
+    RegisterSet& out = liveness_.live_out[b];
+    for_each_successor(machine_.blocks[b].end,
+                       [&](uint32_t next) { out.unite(liveness_.live_in[next]); });
+    RegisterSet in = out;
+    in.subtract(effects_[b].writes);
+    in.unite(effects_[b].reads);
+    return liveness_.live_in[b].unite(in);
+  }
+
+  void find_assigned(RegisterSet at_entry) {
+    liveness_.assigned_in[0] = std::move(at_entry);
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (size_t b = 0; b < blocks_; ++b) {
+        RegisterSet out = liveness_.assigned_in[b];
+        out.unite(effects_[b].writes);
+        for_each_successor(machine_.blocks[b].end, [&](uint32_t next) {
+          changed |= liveness_.assigned_in[next].intersect(out);
+        });
+      }
+    }
+  }
+
+  const Machine& machine_;
+  size_t blocks_;
+  std::vector<uint32_t> number_;  // register -> element of the sets
+  std::vector<Effects> effects_;
+  Liveness liveness_;
+};
 
 }  // namespace
 
@@ -69,38 +148,8 @@ void RegisterSet::subtract(const RegisterSet& other) {
   for (size_t i = 0; i < words_.size(); ++i) words_[i] &= ~other.words_[i];
 }
 
-Liveness analyse_liveness(const Machine& machine, const RegisterSet& written_at_entry) {
-  const size_t registers = machine.registers.size();
-  const size_t blocks = machine.blocks.size();
-  Liveness liveness;
-  liveness.live_in.assign(blocks, RegisterSet(registers));
-  liveness.live_out.assign(blocks, RegisterSet(registers));
-  liveness.assigned_in.assign(blocks, RegisterSet(registers, true));
-  std::vector<Effects> effects;
-  for (const MachineBlock& block : machine.blocks) effects.push_back(effects_of(machine, block));
-  for (size_t i = 0; i < blocks; ++i) {
-    if (machine.blocks[i].end.kind == EndKind::kReturn) {
-      add_results(machine, liveness.live_out[i]);
-    }
-  }
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (size_t i = blocks; i-- > 0;) {
-      changed |= update_live(machine, effects[i], static_cast<uint32_t>(i), liveness);
-    }
-  }
-  liveness.assigned_in[0] = written_at_entry;
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (size_t i = 0; i < blocks; ++i) {
-      RegisterSet out = liveness.assigned_in[i];
-      out.unite(effects[i].writes);
-      for_each_successor(machine.blocks[i].end, [&](uint32_t next) {
-        changed |= liveness.assigned_in[next].intersect(out);
-      });
-    }
-  }
-  return liveness;
+Liveness analyse_liveness(const Machine& machine, const std::vector<uint32_t>& written_at_entry) {
+  return Analysis(machine).run(written_at_entry);
 }
 
 }  // namespace ir::codegen

@@ -34,13 +34,15 @@ class RegisterSet {
   std::vector<uint64_t> words_;
 };
 
+// Sets over the registers that matter beyond one block; most temporaries do not,
+// so sets stay small in large POUs.
 struct Liveness {
+  std::vector<uint32_t> registers;  // element of the sets -> register
   std::vector<RegisterSet> live_in;
   std::vector<RegisterSet> live_out;
   std::vector<RegisterSet> assigned_in;
 };
 
-// `written_at_entry`: registers that the caller has written.
-Liveness analyse_liveness(const Machine& machine, const RegisterSet& written_at_entry);
+Liveness analyse_liveness(const Machine& machine, const std::vector<uint32_t>& written_at_entry);
 
 }  // namespace ir::codegen

@@ -7,13 +7,13 @@
 namespace ir {
 namespace {
 
-codegen::RegisterSet written_by_caller(const codegen::Machine& machine, const Object& object) {
-  codegen::RegisterSet written(machine.registers.size());
+std::vector<uint32_t> written_by_caller(const codegen::Machine& machine, const Object& object) {
+  std::vector<uint32_t> written;
   for (uint32_t r = 0; r < machine.registers.size(); ++r) {
     const uint32_t slot = machine.registers[r].slot;
     if (slot == codegen::kNoNumber) continue;
     const LocalKind kind = object.slots[slot].local;
-    if (kind == LocalKind::kInput || kind == LocalKind::kInOut) written.add(r);
+    if (kind == LocalKind::kInput || kind == LocalKind::kInOut) written.push_back(r);
   }
   return written;
 }
