@@ -51,4 +51,4 @@ said 'stc.toml:1:1: `name` must be a text'
 printf 'colour = "red"\n' >empty/stc.toml
 expect 7 stc check empty
 said 'unknown key `colour`'
-ls | grep -q tmp && fail "temporary files left" || true
+if ls | grep -q tmp; then fail "temporary files left"; fi

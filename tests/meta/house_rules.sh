@@ -20,8 +20,8 @@ rule() {  # rule NAME COUNT
 lines_matching() { cat $sources | grep -cE "$1" || true; }
 
 rule long_lines "$(lines_matching '^.{101,}$')"
-rule unfinished_marks "$(lines_matching '(TODO|FIXME|XXX|HACK)')"
-rule exceptions "$(lines_matching '^[^/]*\b(throw|catch \()')"
+rule unfinished_marks "$(lines_matching '\b(TODO|FIXME|XXX|HACK)\b')"
+rule exceptions "$(lines_matching '^[^/]*\b(throw|catch) ')"
 rule using_namespace "$(lines_matching '^ *using namespace')"
 rule naked_new "$(lines_matching '^[^/"]*[=(] *new [A-Z]')"
 rule long_files "$(wc -l $sources | awk '$2 != "total" && $1 > 400' | wc -l)"

@@ -13,8 +13,8 @@ for i in $(seq 20); do all="$all V$i"; done
 status=0
 tested=0
 for id in $all; do
-  if grep -rqwE "${id}_?" tests/unit tests/golden tests/sim tests/fuzz --include='*.cc' --include='*.st' ||
-    grep -rqE "TEST[A-Z_]*\([A-Za-z0-9]+, ${id}_" tests/unit --include='*.cc'; then
+  if grep -rqE "(^|[^A-Za-z0-9])${id}([^0-9]|$)" tests/unit tests/golden tests/fuzz \
+    --include='*.cc' --include='*.h' --include='*.st'; then
     tested=$((tested + 1))
     if grep -qw "$id" tests/meta/not_yet_tested.txt; then
       echo "$id has a test now: take it out of tests/meta/not_yet_tested.txt"

@@ -39,6 +39,23 @@ std::string value_change(const FateRow& row, const LiveValues& live) {
   return text;
 }
 
+// "converted      LineStops : INT -> DINT", and behind it or below, whatever fits in
+// 80 columns, live value and reason.
+std::string row_text(const FateRow& row, const LiveValues& live) {
+  constexpr size_t kWidth = 80;
+  std::string text = online_change::fate_name(row.fate);
+  text.resize(12, ' ');
+  if (row.count != 1) text += "x" + std::to_string(row.count);
+  text.resize(std::max<size_t>(text.size() + 1, 19), ' ');
+  text += row.path;
+  if (std::string type = type_change(row); !type.empty()) text += " : " + type;
+  std::string rest = value_change(row, live);
+  if (!row.reason.empty()) rest += (rest.empty() ? "(" : "  (") + row.reason + ")";
+  if (rest.empty()) return text + "\n";
+  if (text.size() + 2 + rest.size() <= kWidth) return text + "  " + rest + "\n";
+  return text + "\n" + std::string(21, ' ') + rest + "\n";
+}
+
 }  // namespace
 
 std::string duration(int64_t ns) {
@@ -61,14 +78,10 @@ std::string fate_report(const online_change::Plan& plan, const LiveValues& live)
   std::string out;
   Table counts({"fate", "> variables"});
   for (auto [name, field] : kCounts) counts.row({name, std::to_string(plan.counts.*field)});
-  out += counts.text();
-  Table rows({"variable", "fate", "> n", "type", "value", "reason"});
+  out += counts.text() + "\n";
   for (const FateRow& row : plan.fates) {
-    if (row.fate == Fate::kKept && row.reason.empty()) continue;
-    rows.row({row.path, online_change::fate_name(row.fate), std::to_string(row.count),
-              type_change(row), value_change(row, live), row.reason});
+    if (row.fate != Fate::kKept || !row.reason.empty()) out += row_text(row, live);
   }
-  if (!rows.empty()) out += "\n" + rows.text();
   out += "\npredicted pause " + duration(plan.predicted_pause_ns) + " (" +
          std::to_string(plan.boundary_bytes) + " bytes written at the boundary)\n";
   return out;

@@ -13,6 +13,7 @@ constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
     {"--output|-o", "FILE", "image to write (default: NAME.img in this folder)"},
     {"--base", "IMAGE", "running version: what lives on keeps its place"},
+    {"--quiet|-q", nullptr, "no line about the image"},
     {"--move-all", nullptr, "with --base: give every instance a new place (a test of changes)"},
 };
 constexpr tools::Command kCommand{"build", "PATHS...", "Compiles and links sources to an image.",
@@ -38,7 +39,7 @@ int run(const tools::Options& options) {
   std::string output = options.text("--output", project->name + ".img");
   base::Status written = tools::write_file(output, version->bytes);
   if (!written.ok()) return tools::refuse("stc", written.error());
-  if (*format == base::DiagnosticFormat::kText) {
+  if (*format == base::DiagnosticFormat::kText && !options.has("--quiet")) {
     std::fprintf(stderr, "%s: %zu POUs, %zu bytes, hash %s\n", output.c_str(),
                  version->image.pous.size(), version->bytes.size(),
                  base::short_hex(ir::digest(version->bytes)).c_str());

@@ -151,6 +151,10 @@ base::Result<Project> load_project(const std::vector<std::string>& paths,
     for (const std::string& file : *files) {
       base::Result<std::string> text = tools::read_text(file);
       if (!text.ok()) return text.error();
+      if (text->find('\0') != std::string::npos) {
+        return base::Error{base::Refusal::kFileUnreadable,
+                           file + ": neither a source text nor an image of this version"};
+      }
       bytes += text->size();
       if (bytes > base::kMaxSourceBytes) {
         return base::Error{base::Refusal::kTooMany, file + ": the sources are larger than " +

@@ -58,26 +58,35 @@ std::string read_all(int fd) {
   }
 }
 
-// Passes stc's messages on. Its refusal ("stc: R0202: text" and a line of help) is not passed on
-// but returned, so that this tool says it once, with the same code.
-std::optional<base::Error> forward(const std::string& text) {
-  constexpr std::string_view kMark = "stc: ";
+struct Output {
+  std::string messages;
   std::optional<base::Error> refusal;
+};
+
+// A refusal of stc ("stc: R0202: text" and a line of help) is not a message but comes back as the
+// error, so that this tool says it once, with the same code. What stc says about the file that it
+// wrote ("FILE: 3 POUs, ..") is of no interest: the file is an intermediate one.
+Output sort_out(const std::string& text, const std::vector<std::string>& arguments) {
+  constexpr std::string_view kMark = "stc: ";
+  Output out;
+  auto about_output = [&](std::string_view line) {
+    return std::any_of(arguments.begin(), arguments.end(), [&](const std::string& argument) {
+      return argument.size() > 4 && argument.ends_with(".img") && line.starts_with(argument + ": ");
+    });
+  };
   for (size_t at = 0; at < text.size();) {
     size_t end = std::min(text.find('\n', at), text.size());
     std::string_view line = std::string_view(text).substr(at, end - at);
     at = end + 1;
-    if (refusal && line.starts_with("  help: ")) continue;
-    if (line.starts_with(kMark) && line.size() > kMark.size() + 7) {
-      auto code = base::refusal_from_code(line.substr(kMark.size(), 5));
-      if (code) {
-        refusal = base::Error{*code, std::string(line.substr(kMark.size() + 7))};
-        continue;
-      }
+    bool marked = line.starts_with(kMark) && line.size() > kMark.size() + 7;
+    auto code = marked ? base::refusal_from_code(line.substr(kMark.size(), 5)) : std::nullopt;
+    if (code) {
+      out.refusal = base::Error{*code, std::string(line.substr(kMark.size() + 7))};
+    } else if (!(out.refusal && line.starts_with("  help: ")) && !about_output(line)) {
+      out.messages += std::string(line) + "\n";
     }
-    std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());
   }
-  return refusal;
+  return out;
 }
 
 }  // namespace
@@ -98,17 +107,33 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-base::Status run_stc(const std::vector<std::string>& arguments) {
+base::Status run_stc(const std::vector<std::string>& arguments, Messages messages) {
   base::Result<Child> child = start(tools::own_folder() + "/stc", arguments);
   if (!child.ok()) return child.error();
-  std::optional<base::Error> refusal = forward(read_all(child->output.get()));
+  Output output = sort_out(read_all(child->output.get()), arguments);
   int status = 0;
   while (::waitpid(child->pid, &status, 0) < 0) {
     if (errno != EINTR) return base::Error{base::Refusal::kInternal, "stc was lost"};
   }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return base::Ok{};
-  if (refusal) return *refusal;
+  bool good = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  if (!good || messages == Messages::kShown) std::fputs(output.messages.c_str(), stderr);
+  if (good) return base::Ok{};
+  if (output.refusal) return *output.refusal;
   return base::Error{base::Refusal::kInternal, "stc failed without a reason"};
+}
+
+Sources sources_of(const tools::Options& options) {
+  return {options.arguments(), options.text("--dialect")};
+}
+
+std::vector<std::string> stc_arguments(std::vector<std::string> command, const Sources& sources) {
+  if (!sources.dialect.empty()) {
+    command.push_back("--dialect");
+    command.push_back(sources.dialect);
+  }
+  command.push_back("--");
+  command.insert(command.end(), sources.paths.begin(), sources.paths.end());
+  return command;
 }
 
 bool is_image(const std::string& path) {
@@ -123,15 +148,13 @@ bool is_image(const std::string& path) {
          std::equal(kMagic.begin(), kMagic.end(), bytes->begin());
 }
 
-base::Result<ir::VerifiedImage> load_program(const std::vector<std::string>& paths) {
-  std::string path = paths.front();
+base::Result<ir::VerifiedImage> load_program(const Sources& sources) {
+  std::string path = sources.paths.front();
   base::Result<TemporaryFolder> folder = TemporaryFolder::make();
   if (!folder.ok()) return folder.error();
-  if (paths.size() != 1 || !is_image(path)) {
+  if (sources.paths.size() != 1 || !is_image(path)) {
     path = folder->file("program.img");
-    std::vector<std::string> arguments = {"build", "-o", path, "--"};
-    arguments.insert(arguments.end(), paths.begin(), paths.end());
-    base::Status built = run_stc(arguments);
+    base::Status built = run_stc(stc_arguments({"build", "--quiet", "-o", path}, sources));
     if (!built.ok()) return built.error();
   }
   base::Result<base::Bytes> bytes = tools::read_bytes(path);

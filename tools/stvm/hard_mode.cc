@@ -6,20 +6,29 @@
 namespace stvm {
 namespace {
 
-base::Result<base::Bytes> relinked(const std::vector<std::string>& sources,
-                                   base::ByteSpan running) {
+base::Result<base::Bytes> relinked(const Sources& sources, base::ByteSpan running) {
   base::Result<TemporaryFolder> folder = TemporaryFolder::make();
   if (!folder.ok()) return folder.error();
   std::string base_file = folder->file("base.img");
   std::string next_file = folder->file("next.img");
   base::Status written = tools::write_file(base_file, running);
   if (!written.ok()) return written.error();
-  std::vector<std::string> arguments = {"build", "--base",  base_file, "--move-all",
-                                        "-o",    next_file, "--"};
-  arguments.insert(arguments.end(), sources.begin(), sources.end());
-  base::Status built = run_stc(arguments);
+  base::Status built =
+      run_stc(stc_arguments({"build", "--quiet", "--base", base_file, "--move-all", "-o", next_file}, sources),
+              Messages::kOnlyOfFailure);
   if (!built.ok()) return built.error();
   return tools::read_bytes(next_file);
+}
+
+// The same program, but another version: without that, a change to itself does nothing at all.
+base::Bytes renamed(const ir::Image& running) {
+  ir::Image image = running;
+  if (image.name.ends_with('\'')) {
+    image.name.pop_back();
+  } else {
+    image.name += '\'';
+  }
+  return ir::encode(image);
 }
 
 base::Status switch_to(base::ByteSpan next, vm::Controller& controller) {
@@ -46,16 +55,19 @@ base::Result<HardMode> parse_hard_mode(const std::string& text) {
                      "--hard-mode is fuel1, identity or move, not `" + text + "`"};
 }
 
-base::Status apply_hard_mode(HardMode mode, const std::vector<std::string>& sources,
-                             vm::Controller& controller) {
-  if (mode != HardMode::kIdentity && mode != HardMode::kMove) return base::Ok{};
-  base::Bytes next = controller.verified().encoded();
-  if (mode == HardMode::kMove) {
-    base::Result<base::Bytes> moved = relinked(sources, next);
-    if (!moved.ok()) return moved.error();
-    next = std::move(*moved);
+base::Status check_hard_mode(HardMode mode, const Sources& sources) {
+  if (mode != HardMode::kMove || sources.paths.size() != 1 || !is_image(sources.paths.front())) {
+    return base::Ok{};
   }
-  base::Status changed = switch_to(next, controller);
+  return base::Error{base::Refusal::kUsage, "--hard-mode move relinks: it needs sources"};
+}
+
+base::Status apply_hard_mode(HardMode mode, const Sources& sources, vm::Controller& controller) {
+  if (mode == HardMode::kIdentity) return switch_to(renamed(controller.image()), controller);
+  if (mode != HardMode::kMove) return base::Ok{};
+  base::Result<base::Bytes> next = relinked(sources, controller.verified().encoded());
+  if (!next.ok()) return next.error();
+  base::Status changed = switch_to(*next, controller);
   // Where nothing can move, the relinked program is the running one.
   bool same = !changed.ok() && changed.error().refusal == base::Refusal::kNoChange;
   return same ? base::Status(base::Ok{}) : changed;

@@ -44,6 +44,26 @@ TEST(Publish, IdentityKeepsCountsPhaseAndForces) {
   EXPECT_EQ(plant.task("Slow").scans, 4u);
 }
 
+// A11: version 2 is built in the other area while version 1 runs; the switch only changes
+// which one the record names.
+TEST(Publish, A11TwoAreasAndOneRecordThatSaysWhichRuns) {
+  Plant plant(tasks("T#10ms", ""));
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(1);
+  const vm::Generation* first = &plant->generation();
+  auto next = plant->prepare(plant->verified());
+  const vm::Generation* second = next.get();
+  EXPECT_NE(first->code().data(), second->code().data());
+  EXPECT_NE(first->pool_offset(), second->pool_offset());
+  plant.cycles(1);
+  EXPECT_EQ(&plant->generation(), first) << "prepared, not yet running";
+  auto old = plant->publish(std::move(next));
+  EXPECT_EQ(old.get(), first);
+  EXPECT_EQ(&plant->generation(), second);
+  plant.cycles(1);
+  EXPECT_EQ(plant.get("A.n"), "3");
+}
+
 // Change case 42: period changed, task added.
 TEST(Publish, PeriodChangeAndNewTaskKeepTheOthersOnTime) {
   Plant plant(tasks("T#10ms", ""));
