@@ -34,7 +34,11 @@ std::string value_change(const FateRow& row, const LiveValues& live) {
   if (found == live.end()) return row.may_lose ? "may lose" : "";
   const LiveValue& value = found->second;
   std::string text = value.now;
-  if (!value.after.empty() && value.after != value.now) text += " -> " + value.after;
+  if (text.empty()) {
+    text = ":= " + value.after;
+  } else if (!value.after.empty() && value.after != value.now) {
+    text += " -> " + value.after;
+  }
   if (!value.loss.empty()) text += " LOSS: " + value.loss;
   return text;
 }
