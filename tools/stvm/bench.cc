@@ -18,6 +18,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--program", "P", "program instance (default: the first)"},
     {"--scans", "N", "scans that are measured (default 10000); a tenth more is run before"},
     {"--period", "NS", "virtual time between two scans (default 10000000)"},
+    STVM_DIALECT_OPTION,
     STVM_FORMAT_OPTION,
 };
 constexpr tools::Command kCommand{"bench", "IMAGE|SOURCES...",
@@ -129,7 +130,7 @@ void print(const Settings& settings, const std::string& program, const Timing& t
 base::Status bench(const tools::Options& options) {
   base::Result<Settings> settings = read_settings(options);
   if (!settings.ok()) return settings.error();
-  base::Result<ir::VerifiedImage> image = load_program(options.arguments());
+  base::Result<ir::VerifiedImage> image = load_program(sources_of(options));
   if (!image.ok()) return image.error();
   base::Result<uint32_t> program = find_program(image->image(), options.text("--program"));
   if (!program.ok()) return program.error();

@@ -25,22 +25,21 @@ constexpr tools::OptionRow kOptions[] = {
     {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},
     {"--allow-overrun", nullptr, "switch even if a task may be delayed"},
     {"--permanent", nullptr, "accept at once: no undo, the new program boots next"},
+    STVM_DIALECT_OPTION,
     STVM_FORMAT_OPTION,
 };
 constexpr tools::Command kCommand{"change", "SOURCES...|IMAGE",
                                   "Changes the running program without stopping it.", kOptions, 1};
 
-base::Result<base::Bytes> make_package(const std::vector<std::string>& sources,
-                                       base::ByteSpan running) {
+base::Result<base::Bytes> make_package(const Sources& sources, base::ByteSpan running) {
   base::Result<TemporaryFolder> folder = TemporaryFolder::make();
   if (!folder.ok()) return folder.error();
   std::string base_file = folder->file("running.img");
   std::string package_file = folder->file("change.pkg");
   base::Status written = tools::write_file(base_file, running);
   if (!written.ok()) return written.error();
-  std::vector<std::string> arguments = {"package", "--base", base_file, "-o", package_file, "--"};
-  arguments.insert(arguments.end(), sources.begin(), sources.end());
-  base::Status made = run_stc(arguments);
+  base::Status made =
+      run_stc(stc_arguments({"package", "--base", base_file, "-o", package_file}, sources));
   if (!made.ok()) return made.error();
   return tools::read_bytes(package_file);
 }
@@ -137,9 +136,13 @@ void print_json(const Outcome& outcome) {
 base::Result<Outcome> change(const tools::Options& options, ControllerClient& client, bool json) {
   base::Result<vm::StatusReport> status = client.status();
   if (!status.ok()) return status.error();
+  if (status->change == "trial") {
+    return base::Error{base::Refusal::kChangePending,
+                       "the last change is still on trial; `stvm accept` or `stvm undo` ends that"};
+  }
   base::Result<base::Bytes> running = client.image();
   if (!running.ok()) return running.error();
-  base::Result<base::Bytes> package = make_package(options.arguments(), *running);
+  base::Result<base::Bytes> package = make_package(sources_of(options), *running);
   if (!package.ok()) return package.error();
   base::Status staged = client.stage(*package);
   if (!staged.ok()) return staged.error();

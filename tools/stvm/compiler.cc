@@ -64,16 +64,10 @@ struct Output {
 };
 
 // A refusal of stc ("stc: R0202: text" and a line of help) is not a message but comes back as the
-// error, so that this tool says it once, with the same code. What stc says about the file that it
-// wrote ("FILE: 3 POUs, ..") is of no interest: the file is an intermediate one.
-Output sort_out(const std::string& text, const std::vector<std::string>& arguments) {
+// error, so that this tool says it once, with the same code.
+Output sort_out(const std::string& text) {
   constexpr std::string_view kMark = "stc: ";
   Output out;
-  auto about_output = [&](std::string_view line) {
-    return std::any_of(arguments.begin(), arguments.end(), [&](const std::string& argument) {
-      return argument.size() > 4 && argument.ends_with(".img") && line.starts_with(argument + ": ");
-    });
-  };
   for (size_t at = 0; at < text.size();) {
     size_t end = std::min(text.find('\n', at), text.size());
     std::string_view line = std::string_view(text).substr(at, end - at);
@@ -82,7 +76,7 @@ Output sort_out(const std::string& text, const std::vector<std::string>& argumen
     auto code = marked ? base::refusal_from_code(line.substr(kMark.size(), 5)) : std::nullopt;
     if (code) {
       out.refusal = base::Error{*code, std::string(line.substr(kMark.size() + 7))};
-    } else if (!(out.refusal && line.starts_with("  help: ")) && !about_output(line)) {
+    } else if (!(out.refusal && line.starts_with("  help: "))) {
       out.messages += std::string(line) + "\n";
     }
   }
@@ -110,7 +104,7 @@ TemporaryFolder::~TemporaryFolder() {
 base::Status run_stc(const std::vector<std::string>& arguments, Messages messages) {
   base::Result<Child> child = start(tools::own_folder() + "/stc", arguments);
   if (!child.ok()) return child.error();
-  Output output = sort_out(read_all(child->output.get()), arguments);
+  Output output = sort_out(read_all(child->output.get()));
   int status = 0;
   while (::waitpid(child->pid, &status, 0) < 0) {
     if (errno != EINTR) return base::Error{base::Refusal::kInternal, "stc was lost"};

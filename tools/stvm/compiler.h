@@ -7,6 +7,7 @@
 
 #include "base/result.h"
 #include "ir/bytecode/verify.h"
+#include "tools/common/options.h"
 
 namespace stvm {
 
@@ -24,11 +25,24 @@ class TemporaryFolder {
   std::string path_;
 };
 
+enum class Messages : uint8_t { kShown, kOnlyOfFailure };
 // Runs `stc ARGUMENTS...`; its messages go to stderr, its refusal comes back as the error.
-base::Status run_stc(const std::vector<std::string>& arguments);
+base::Status run_stc(const std::vector<std::string>& arguments,
+                     Messages messages = Messages::kShown);
+
+// Sources as a command line names them.
+struct Sources {
+  std::vector<std::string> paths;
+  std::string dialect;  // "": stc's own choice
+};
+#define STVM_DIALECT_OPTION \
+  { "--dialect", "NAME", "of sources: iec, codesys (default) or twincat" }
+Sources sources_of(const tools::Options& options);
+// `stc COMMAND OPTIONS... SOURCES...`
+std::vector<std::string> stc_arguments(std::vector<std::string> command, const Sources& sources);
 
 // An image file, or sources that are compiled first. Verified, so it can run.
-base::Result<ir::VerifiedImage> load_program(const std::vector<std::string>& paths);
+base::Result<ir::VerifiedImage> load_program(const Sources& sources);
 
 // The file begins as an image does.
 bool is_image(const std::string& path);

@@ -79,9 +79,10 @@ base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) 
 base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   base::Bytes package = std::move(upload_);
   upload_ = {};
-  if (controller_.faulted()) {
-    return base::Error{base::Refusal::kFault, "the controller is stopped by a fault"};
-  }
+  bool faulted = false;
+  base::Status taken = at_boundary([&] { faulted = controller_.faulted(); });
+  if (!taken.ok()) return taken.error();
+  if (faulted) return base::Error{base::Refusal::kFault, "the controller is stopped by a fault"};
   if (base::sha256(package) != request.digest) {
     return base::Error{base::Refusal::kBadHash, "the package arrived damaged"};
   }

@@ -13,9 +13,10 @@ base::Result<base::Bytes> relinked(const Sources& sources, base::ByteSpan runnin
   std::string next_file = folder->file("next.img");
   base::Status written = tools::write_file(base_file, running);
   if (!written.ok()) return written.error();
-  base::Status built =
-      run_stc(stc_arguments({"build", "--quiet", "--base", base_file, "--move-all", "-o", next_file}, sources),
-              Messages::kOnlyOfFailure);
+  base::Status built = run_stc(
+      stc_arguments({"build", "--quiet", "--base", base_file, "--move-all", "-o", next_file},
+                    sources),
+      Messages::kOnlyOfFailure);
   if (!built.ok()) return built.error();
   return tools::read_bytes(next_file);
 }

@@ -6,15 +6,18 @@
 
 #include "base/result.h"
 #include "online_change/apply/change.h"
+#include "tools/stvm/compiler.h"
 
 namespace stvm {
 
 enum class HardMode : uint8_t { kNone, kFuel1, kIdentity, kMove };
 base::Result<HardMode> parse_hard_mode(const std::string& text);
 
-// At a boundary: changes the running program to itself (kIdentity), or to itself with every
-// instance at another place (kMove; relinked by stc from `sources`).
-base::Status apply_hard_mode(HardMode mode, const std::vector<std::string>& sources,
-                             vm::Controller& controller);
+// kMove relinks, so it needs sources.
+base::Status check_hard_mode(HardMode mode, const Sources& sources);
+
+// At a boundary: changes the running program to itself under another name (kIdentity), or to itself
+// with every instance at another place (kMove; relinked by stc from `sources`).
+base::Status apply_hard_mode(HardMode mode, const Sources& sources, vm::Controller& controller);
 
 }  // namespace stvm

@@ -29,6 +29,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--hash", nullptr, "print the hash of the state at the end"},
     {"--hard-mode", "MODE", "fuel1, identity or move: nothing may come out differently"},
     {"--every", "K", "identity, move: change after every K-th scan (default 1)"},
+    STVM_DIALECT_OPTION,
     STVM_FORMAT_OPTION,
 };
 constexpr tools::Command kCommand{"run", "IMAGE|SOURCES...", "Runs a program scan by scan.",
@@ -101,7 +102,7 @@ base::Status run_scans(const Settings& settings, const tools::Options& options,
       if (!written.ok()) return written;
     }
     if (controller.faulted() || controller.cycles() % settings.every != 0) continue;
-    base::Status changed = apply_hard_mode(settings.hard_mode, options.arguments(), controller);
+    base::Status changed = apply_hard_mode(settings.hard_mode, sources_of(options), controller);
     if (!changed.ok()) return changed;
   }
   return trace ? trace->close() : base::Status(base::Ok{});
@@ -156,7 +157,9 @@ void print_json(const Settings& settings, const tools::Options& options,
 base::Result<int> run_program(const tools::Options& options) {
   base::Result<Settings> settings = read_settings(options);
   if (!settings.ok()) return settings.error();
-  base::Result<ir::VerifiedImage> image = load_program(options.arguments());
+  base::Status possible = check_hard_mode(settings->hard_mode, sources_of(options));
+  if (!possible.ok()) return possible.error();
+  base::Result<ir::VerifiedImage> image = load_program(sources_of(options));
   if (!image.ok()) return image.error();
   vm::ControllerOptions controller_options;
   if (settings->hard_mode == HardMode::kFuel1) controller_options.fuel_slice = 1;

@@ -18,6 +18,7 @@ namespace {
 constexpr tools::OptionRow kOptions[] = {
     STVM_DIR_OPTION,
     {"--virtual-time", nullptr, "cycles as fast as they can run, instead of real time"},
+    STVM_DIALECT_OPTION,
 };
 constexpr tools::Command kCommand{
     "serve", "[IMAGE|SOURCES...]",
@@ -28,16 +29,23 @@ constexpr tools::Command kCommand{
 constexpr int64_t kLookNs = 2'000'000;
 constexpr int64_t kFaultLookNs = 10'000'000;
 
+base::Result<ir::VerifiedImage> verify_stored(base::ByteSpan bytes, const tools::Options& options) {
+  base::Result<ir::VerifiedImage> image = ir::verify(bytes);
+  if (image.ok()) return image;
+  return base::Error{image.error().refusal, "the program stored in " + state_directory(options) +
+                                                " cannot be used: " + image.error().text};
+}
+
 base::Result<ir::VerifiedImage> boot_image(const tools::Options& options, vm::Storage& storage) {
   if (options.arguments().empty()) {
     base::Result<base::Bytes> stored = storage.read(kBootRecord);
-    if (stored.ok()) return ir::verify(*stored);
+    if (stored.ok()) return verify_stored(*stored, options);
     if (stored.error().refusal != base::Refusal::kFileNotFound) return stored.error();
     return base::Error{
         base::Refusal::kFileNotFound,
         state_directory(options) + " holds no program yet; name an image or sources"};
   }
-  base::Result<ir::VerifiedImage> image = load_program(options.arguments());
+  base::Result<ir::VerifiedImage> image = load_program(sources_of(options));
   if (!image.ok()) return image;
   base::Status stored = storage.write(kBootRecord, image->encoded());
   if (!stored.ok()) return stored.error();

@@ -1,4 +1,5 @@
-// SIGINT and SIGTERM end a run at the next boundary instead of killing it.
+// SIGINT and SIGTERM end a run at the next boundary instead of killing it; nor does a
+// file size limit kill it.
 #pragma once
 
 namespace stvm {

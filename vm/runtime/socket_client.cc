@@ -25,7 +25,10 @@ base::Error SocketClient::lost(const char* what) const {
 base::Result<std::unique_ptr<SocketClient>> SocketClient::connect(const std::string& directory) {
   Descriptor holder;
   base::Result<std::string> path = socket_path(directory, holder);
-  if (!path.ok()) return path.error();
+  if (!path.ok()) {
+    return base::Error{base::Refusal::kNotRunning,
+                       "no controller runs there: " + path.error().text};
+  }
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   timeval patience{kPatienceSeconds, 0};
   ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);

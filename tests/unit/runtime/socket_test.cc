@@ -87,7 +87,7 @@ TEST_F(SocketTest, NobodyThereIsOneClearError) {
   ASSERT_FALSE(client.ok());
   EXPECT_EQ(client.error().refusal, base::Refusal::kNotRunning);
   EXPECT_EQ(SocketClient::connect(directory_ + "/none").error().refusal,
-            base::Refusal::kFileNotFound);
+            base::Refusal::kNotRunning);
 }
 
 TEST_F(SocketTest, WorksInADirectoryWithAVeryLongName) {
