@@ -7,6 +7,7 @@
 
 #include "base/limits.h"
 #include "linker/extents.h"
+#include "linker/member_finder.h"
 
 namespace linker {
 namespace {
@@ -172,28 +173,19 @@ class Builder {
     }
   }
 
-  using Names = std::unordered_map<std::string, size_t>;
-
   // Offset of the member in the running version when it can stay there (A1, A4).
-  std::optional<uint32_t> kept_offset(TypeId old, const Names& names, const Member& member) const {
-    const auto found = names.find(ir::fold_name(member.name));
-    if (found == names.end()) return std::nullopt;
-    const Member& before = base_->types[old].members[found->second];
+  std::optional<uint32_t> kept_offset(TypeId old, MemberFinder& old_members,
+                                      const Member& member) const {
+    const std::optional<size_t> number = old_members.find(member.name);
+    if (!number) return std::nullopt;
+    const Member& before = base_->types[old].members[*number];
     const bool in_out = member.section == Section::kInOut;
     if ((before.section == Section::kInOut) != in_out) return std::nullopt;
     if (!in_out && !same_value_type(base_->types, base_->layouts, before.type, types_, layouts_,
                                     member.type)) {
       return std::nullopt;
     }
-    return base_->layouts[old].member_offsets[found->second];
-  }
-
-  Names old_names(TypeId old) const {
-    Names names;
-    if (!old.valid()) return names;
-    const std::vector<Member>& members = base_->types[old].members;
-    for (size_t i = 0; i < members.size(); ++i) names.emplace(ir::fold_name(members[i].name), i);
-    return names;
+    return base_->layouts[old].member_offsets[*number];
   }
 
   // Byte ranges of all members of the running version's type.
@@ -213,11 +205,11 @@ class Builder {
     const TypeId old = old_of(id);
     std::vector<uint32_t>& offsets = layouts_.of[id.index].member_offsets;
     offsets.assign(type.members.size(), 0);
-    const Names names = old_names(old);
+    MemberFinder old_members(base_ != nullptr ? base_->types : types_, old);
     std::vector<size_t> added;
     Extents taken;  // what lives on
     for (size_t i = 0; i < type.members.size(); ++i) {
-      if (const auto offset = kept_offset(old, names, type.members[i])) {
+      if (const auto offset = kept_offset(old, old_members, type.members[i])) {
         offsets[i] = *offset;
         taken.add(*offset, size_of(type.members[i]));
       } else {

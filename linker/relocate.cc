@@ -2,9 +2,6 @@
 
 #include <algorithm>
 
-#include "base/bytes.h"
-#include "linker/offsets.h"
-
 namespace linker {
 namespace {
 
@@ -29,7 +26,11 @@ class Pass {
  public:
   Pass(LinkContext& context, const ir::Object& object, const FrameLayout& frame,
        const std::vector<Scratch>& scratch)
-      : context_(context), object_(object), frame_(frame), scratch_(scratch) {}
+      : context_(context),
+        object_(object),
+        frame_(frame),
+        scratch_(scratch),
+        numbers_(context, object, frame) {}
 
   void run() {
     starts_.resize(object_.code.size() + 1);
@@ -62,95 +63,11 @@ class Pass {
     }
   }
 
-  // --- numbers of the object -> offsets and numbers of the image ------------------
-
-  uint64_t slot_offset(uint32_t number) const {
-    const ir::Slot& slot = object_.slots[number];
-    if (slot.kind == ir::SlotKind::kNativeArg) return uint64_t{frame_.size} + 8 * slot.param;
-    if (slot.kind != ir::SlotKind::kArg) return frame_.offsets[number];
-    const uint32_t callee = pou_number(slot.callee);
-    return frame_.size + context_.parameter_offsets[callee][slot.param];
-  }
-
-  uint32_t pou_number(uint32_t callee) const {
-    return context_.pou_numbers.at(ir::fold_name(object_.callees[callee]));
-  }
-
-  uint64_t offset_of_place(uint32_t number) const {
-    const ir::ObjectPlace& place = object_.places[number];
-    uint64_t offset = place_offset(place, object_, context_.program, context_.image.layouts);
-    if (place.root == ir::PlaceRoot::kSlot) offset += slot_offset(place.slot);
-    if (place.root == ir::PlaceRoot::kGlobal) offset += context_.image.instances[0].data;
-    return offset;
-  }
-
-  uint64_t near_offset(Base base, uint32_t number) const {
-    if (base == Base::kConst) return context_.pool.offset(object_, number);
-    if (base != Base::kFrame) return offset_of_place(number);
-    const auto slots = static_cast<uint32_t>(object_.slots.size());
-    return number < slots ? slot_offset(number) : offset_of_place(number - slots);
-  }
-
-  uint32_t wide_offset(Base base, uint32_t number) const {
-    return static_cast<uint32_t>(base == Base::kConst ? context_.pool.offset(object_, number)
-                                                      : offset_of_place(number));
-  }
-
-  uint32_t bound_number(uint32_t number) {
-    const ir::Bound& bound = object_.bounds[number];
-    const ir::Dimension& dim = context_.program.types[bound.array].dims[bound.dim];
-    base::ByteWriter key;
-    key.u8('b');
-    key.u32(bound.array.index);
-    key.u8(bound.dim);
-    key.text(bound.name);
-    const uint64_t stride =
-        stride_of(context_.program.types, context_.image.layouts, bound.array, bound.dim);
-    return intern(key, context_.image.bounds,
-                  ir::LinkedBound{dim.low,
-                                  dim.count(),
-                                  static_cast<uint32_t>(stride),
-                                  {bound.array, bound.dim},
-                                  bound.name});
-  }
-
-  uint32_t range_number(uint32_t number) {
-    const ir::Range& range = object_.ranges[number];
-    base::ByteWriter key;
-    key.u8('r');
-    key.i64(range.low);
-    key.i64(range.high);
-    key.text(range.name);
-    const uint32_t linked = intern(key, context_.image.ranges, range);
+  uint16_t link_range(uint32_t number) {
+    const uint32_t linked = numbers_.range_number(number);
     if (linked > kNearLimit) fail("more than 65,536 different subranges in the program");
-    return linked;
+    return static_cast<uint16_t>(linked);
   }
-
-  template <class T>
-  uint32_t intern(const base::ByteWriter& key, std::vector<T>& table, T value) {
-    const base::Bytes& bytes = key.bytes();
-    const auto [found, added] = context_.table_numbers.try_emplace(
-        std::string(bytes.begin(), bytes.end()), static_cast<uint32_t>(table.size()));
-    if (added) table.push_back(std::move(value));
-    return found->second;
-  }
-
-  uint32_t extension_field(const Field& field, uint32_t number, Base base) {
-    switch (field.kind) {
-      case FieldKind::kPlace32:
-        return wide_offset(base, number);
-      case FieldKind::kOffset32:
-        return static_cast<uint32_t>(offset_of_place(number));
-      case FieldKind::kBounds:
-        return bound_number(number);
-      case FieldKind::kType:
-        return ir::region_field(object_.regions[number]);
-      default:
-        return number;
-    }
-  }
-
-  // --- instructions ----------------------------------------------------------------
 
   uint32_t link_inst(uint32_t at) {
     const Unit& unit = object_.code[at];
@@ -166,7 +83,7 @@ class Pass {
     linked.a = fields[0];
     linked.b = fields[1];
     linked.c = fields[2];
-    if (row.b.kind == FieldKind::kBc32) linked.set_bc(wide_offset(bases[1], unit.bc()));
+    if (row.b.kind == FieldKind::kBc32) linked.set_bc(numbers_.wide_offset(bases[1], unit.bc()));
     append(before_);
     if (row.b.kind == FieldKind::kRel32) {
       const auto distance = static_cast<int32_t>(unit.bc());
@@ -177,8 +94,8 @@ class Pass {
     if (row.extended) {
       const Unit& extension = object_.code[at + 1];
       const Base base = row.c.kind == FieldKind::kBase ? bases[2] : bases[1];
-      const uint32_t x = extension_field(row.x, extension.x(), base);
-      code_.push_back(Unit::extension(x, extension_field(row.y, extension.y(), base)));
+      const uint32_t x = numbers_.extension_field(row.x, extension.x(), base);
+      code_.push_back(Unit::extension(x, numbers_.extension_field(row.y, extension.y(), base)));
     }
     append(after_);
     return row.extended ? 2 : 1;
@@ -190,16 +107,16 @@ class Pass {
         value = static_cast<uint16_t>(frame_.size / 8);
         return;
       case FieldKind::kCode:
-        value = static_cast<uint16_t>(pou_number(value));
+        value = static_cast<uint16_t>(numbers_.pou_number(value));
         return;
       case FieldKind::kRange:
-        value = static_cast<uint16_t>(range_number(value));
+        value = link_range(value);
         return;
       default:
         break;
     }
     if (!field.is_near()) return;
-    const uint64_t offset = near_offset(base, value);
+    const uint64_t offset = numbers_.near_offset(base, value);
     if (offset <= kNearLimit) {
       value = static_cast<uint16_t>(offset);
       return;
@@ -244,7 +161,7 @@ class Pass {
   void link_offset(const Unit& unit, const OpcodeRow& row, Base (&bases)[3],
                    uint16_t (&fields)[3]) {
     const uint32_t number = unit.c;
-    const uint64_t offset = offset_of_place(number);
+    const uint64_t offset = numbers_.offset_of_place(number);
     if (offset <= kNearLimit) {
       fields[2] = static_cast<uint16_t>(offset);
       return;
@@ -278,6 +195,7 @@ class Pass {
   const ir::Object& object_;
   const FrameLayout& frame_;
   const std::vector<Scratch>& scratch_;
+  Numbers numbers_;
   std::vector<Scratch> missing_;
   std::vector<Unit> code_;
   std::vector<Unit> before_;

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "linker/layout.h"
+#include "linker/member_finder.h"
 
 namespace linker {
 namespace {
@@ -34,15 +35,15 @@ bool same_members(const Side& old_side, TypeId old_type, const Side& new_side, T
   const std::vector<Member>& old_members = old_side.types[old_type].members;
   const std::vector<Member>& new_members = new_side.types[new_type].members;
   if (old_members.size() != new_members.size()) return false;
+  MemberFinder finder(old_side.types, old_type);
   for (size_t i = 0; i < new_members.size(); ++i) {
-    const int32_t found = old_side.types.find_member(old_type, new_members[i].name);
-    if (found < 0) return false;
-    const auto number = static_cast<size_t>(found);
-    if (old_side.layouts[old_type].member_offsets[number] !=
+    const std::optional<size_t> number = finder.find(new_members[i].name);
+    if (!number) return false;
+    if (old_side.layouts[old_type].member_offsets[*number] !=
         new_side.layouts[new_type].member_offsets[i]) {
       return false;
     }
-    if (!same(old_side, old_members[number].type, new_side, new_members[i].type, depth + 1)) {
+    if (!same(old_side, old_members[*number].type, new_side, new_members[i].type, depth + 1)) {
       return false;
     }
   }

@@ -119,12 +119,14 @@ class Selector {
   void remember(const Place& place, size_t steps, const Location& at);
   std::string prefix_key(const Place& place, size_t steps) const;
   void behind(Location& at, Operand addr, Region region) const;
-  std::string place_name(const Place& place, size_t steps) const;
   uint32_t offset_of(const Location& at) { return tables_.place(at.place); }
   Operand field_of(const Location& at);
   uint32_t extension_of(const Location& at);
   bool is_scalar_leaf(const Location& at) const;
   Operand operand_of(const Location& at, Class cls);
+
+  // place_facts.cc
+  std::string place_name(const Place& place, size_t steps) const;
   std::optional<uint64_t> constant_scalar(const Place& place) const;
 
   // memory.cc

@@ -1,0 +1,51 @@
+// Numbers that an object uses -> offsets, numbers and indices of the image.
+#pragma once
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "base/bytes.h"
+#include "ir/bytecode/image.h"
+#include "ir/bytecode/object.h"
+#include "linker/frame.h"
+#include "linker/pool.h"
+
+namespace linker {
+
+// What relocation needs of the whole program, and the tables that it fills.
+struct LinkContext {
+  const ir::Program& program;
+  ir::Image& image;  // types, layouts, instances are set; bounds and ranges are added to
+  const ConstantPool& pool;
+  std::unordered_map<std::string, uint32_t> pou_numbers;    // by folded name
+  std::vector<const ir::Object*> objects;                   // by POU number
+  std::vector<std::vector<uint64_t>> parameter_offsets;     // by POU number, then slot
+  std::unordered_map<std::string, uint32_t> table_numbers;  // of bounds and ranges
+};
+
+class Numbers {
+ public:
+  Numbers(LinkContext& context, const ir::Object& object, const FrameLayout& frame)
+      : context_(context), object_(object), frame_(frame) {}
+
+  uint32_t pou_number(uint32_t callee) const;
+  uint64_t offset_of_place(uint32_t number) const;
+  uint64_t near_offset(ir::Base base, uint32_t number) const;
+  uint32_t wide_offset(ir::Base base, uint32_t number) const;
+  uint32_t range_number(uint32_t number);
+  // Of a field x or y; `base` is that of the instruction's BASE field.
+  uint32_t extension_field(const ir::Field& field, uint32_t number, ir::Base base);
+
+ private:
+  uint64_t slot_offset(uint32_t number) const;
+  uint32_t bound_number(uint32_t number);
+  template <class T>
+  uint32_t intern(const base::ByteWriter& key, std::vector<T>& table, T value);
+
+  LinkContext& context_;
+  const ir::Object& object_;
+  const FrameLayout& frame_;
+};
+
+}  // namespace linker
