@@ -116,8 +116,63 @@ TEST(Linking, ReachesFarOperandsThroughScratchSlots) {
   for (const ir::Unit& unit : code_of(image, "Main")) {
     text += std::string(ir::opcode_row(unit.opcode()).name) + " ";
   }
-  EXPECT_EQ(text,
-            "LDFAR_64 LDFAR_64 ADD_64 MOV_64 STFAR_64 LDFAR_B JF MOV_64 MOV_64 RET ");
+  EXPECT_EQ(text, "LDFAR_64 LDFAR_64 ADD_64 MOV_64 STFAR_64 LDFAR_B JF MOV_64 MOV_64 RET ");
+}
+
+TEST(Linking, ReachesFarMembersBehindAnAddress) {
+  std::string members = "  member local near : LINT\n";
+  for (int i = 0; i < 300; ++i) members += "  member local b" + std::to_string(i) + " : %25\n";
+  members += "  member local far : LINT\n";
+  const ir::Image image =
+      linked(simple("", "  member local f : F\n  member local x : LINT\n",
+                    "type %25 = array LREAL [0..31]\ntype F = function_block\n" + members,
+                    empty_pou("function_block", "F"), R"(  b0:
+    v0 = load i64 self.f!.far
+    store i64 self.f!.near, v0
+    store i64 self.f!.far, v0
+    return
+)"));
+  std::string text;
+  const std::vector<ir::Unit> code = code_of(image, "Main");
+  for (size_t i = 0; i < code.size(); ++i) {
+    const ir::OpcodeRow& row = ir::opcode_row(code[i].opcode());
+    text += std::string(row.name) + " ";
+    i += row.extended ? 1 : 0;
+  }
+  EXPECT_EQ(text, "INST LEA_AT LD_64 ST_64 LEA_AT ST_64 RET ");
+}
+
+std::string caller_with_local(uint32_t bytes, std::string_view arguments) {
+  return simple("  member global g : DINT\n  member global h : LREAL\n", "",
+                "type %25 = array BYTE [1.." + std::to_string(bytes) + "]\n",
+                "pou function Callee\n  local input low : INT\n  local in_out target : DINT\n"
+                "  b0:\n    return\n"
+                "pou function Plain\n  local input low : INT\n  local return Plain : INT\n"
+                "  b0:\n    v0 = load i16 local.low\n    store i16 local.Plain, v0\n    return\n"
+                "pou function Caller\n  local temp big : %25\n  local temp k : INT\n  b0:\n"
+                "    init local.big\n    init local.k\n    v0 = load i16 local.k\n" +
+                    std::string(arguments) + "    return\n",
+                "  b0:\n    call Caller\n    return\n");
+}
+
+TEST(Linking, PassesScalarsBehindALargeFrame) {
+  const ir::Image image =
+      linked(caller_with_local(100'000,
+                               "    store i16 arg(Plain).low, v0\n    call Plain\n"
+                               "    v1 = load i16 arg(Plain).Plain\n    store i16 local.k, v1\n"));
+  EXPECT_GE(pou_named(image, "Caller").frame_size, 100'000u);
+}
+
+TEST(Linking, RefusesReferencesBehindALargeFrameAndFramesThatAreTooLarge) {
+  const std::string references =
+      "    v1 = address addr global.g\n    store i16 arg(Callee).low, v0\n"
+      "    store addr arg(Callee).target, v1\n    call Callee\n";
+  linked(caller_with_local(60'000, references));
+  for (uint32_t bytes : {100'000u, 2'000'000u}) {
+    const base::Result<ir::Image> image = try_link(caller_with_local(bytes, references));
+    ASSERT_FALSE(image.ok()) << bytes;
+    EXPECT_EQ(image.error().refusal, base::Refusal::kTooMany);
+  }
 }
 
 TEST(Linking, NumbersOfPousAreKeptAndReused) {
@@ -169,12 +224,13 @@ TEST(Linking, StackIsTheDeepestChainOfEveryPriority) {
                            "pou program P1 self P1\n  b0:\n    call A\n    call C\n    return\n"
                            "pou program P2 self P2\n  b0:\n    call C\n    return\n"
                            "pou program P3 self P3\n  b0:\n    call B\n    return\n";
-  const ir::Image image = linked(
-      "program P\ntype G = globals\n" + std::string(kSome) + "type P1 = program\ntype P2 = program\ntype P3 = program\n"
-      "globals G\ntask Fast period 1000 priority 0\ntask Slow period 1000 priority 7\n"
-      "task Slow2 period 1000 priority 7\ninstance a : P1 task 0\ninstance b : P2 task 1\n"
-      "instance c : P3 task 2\n" +
-      pous);
+  const ir::Image image =
+      linked("program P\ntype G = globals\n" + std::string(kSome) +
+             "type P1 = program\ntype P2 = program\ntype P3 = program\n"
+             "globals G\ntask Fast period 1000 priority 0\ntask Slow period 1000 priority 7\n"
+             "task Slow2 period 1000 priority 7\ninstance a : P1 task 0\ninstance b : P2 task 1\n"
+             "instance c : P3 task 2\n" +
+             pous);
   EXPECT_EQ(image.stack_bytes, 16u + 8u);
   EXPECT_EQ(image.call_depth, 3u);
 }

@@ -176,6 +176,31 @@ TEST(Places, PassesArgumentsAndReadsResults) {
             "MOV_16 s:i, arg:Limit.2\nRET\n");
 }
 
+constexpr std::string_view kWithBlock = R"(pou function Use
+  local in_out fb : Counter
+  local return Use : INT
+  b0:
+    v0 = load i16 local.fb^!.count
+    store i16 local.Use, v0
+    return
+)";
+
+// The address of a function block is that of its area.
+TEST(Places, ReachesAFunctionBlockPassedAsInOut) {
+  EXPECT_EQ(code(R"(  b0:
+    v0 = address addr self.first
+    store addr arg(Use).fb, v0
+    call Use
+    return
+)",
+                 kWithBlock),
+            "INST f1, s:first\nMOV_A arg:Use.0, f1\nCALL Use\nRET\n");
+  EXPECT_EQ(instructions(main_with(kMembers, "  b0:\n    return\n", kTypes,
+                                   std::string(kCounter) + std::string(kWithBlock)),
+                         "Use"),
+            "LD_16 f:Use, f:fb, +count\nRET\n");
+}
+
 TEST(Places, UsesNamedLocalsAsOperands) {
   const std::string text = instructions(main_with(kMembers, "  b0:\n    return\n", kTypes,
                                                   std::string(kCounter) + std::string(kLimit)),

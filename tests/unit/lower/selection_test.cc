@@ -227,6 +227,78 @@ TEST(Selection, DropsUnreachableBlocksAndUnusedValues) {
             "RET\n");
 }
 
+TEST(Selection, MergesNameTheLocalsThatAreReadLater) {
+  const Program program = parsed(main_with(kBools, "  b0:\n    return\n", "", R"(pou function Pick
+  local input up : BOOL
+  local return Pick : INT
+  local temp unread : INT
+  local temp k : INT
+  b0:
+    init local.Pick
+    init local.unread
+    init local.k
+    v0 = load bool local.up
+    branch v0, b1, b2
+  b1:
+    v1 = const i16 4
+    store i16 local.k, v1
+    jump b2
+  b2:
+    v2 = load i16 local.k
+    store i16 local.Pick, v2
+    return
+)"));
+  EXPECT_EQ(disassemble(lowered(program, "Pick"), program),
+            "Pick:\n"
+            "  0: MOV_16 f:Pick, #0\n  1: MOV_16 f:unread, #0\n  2: MOV_16 f:k, #0\n"
+            "  3: JF f:up, -> 5\n  4: MOV_16 f:k, #4\n"
+            "@5 has f:k\n"
+            "  5: MOV_16 f:Pick, f:k\n  6: RET\n");
+}
+
+TEST(Selection, MergesNameLocalsWhoseAddressWasTaken) {
+  const Program program = parsed(main_with(kBools, "  b0:\n    return\n", "", R"(pou function Far
+  local input up : BOOL
+  local temp k : INT
+  b0:
+    init local.k
+    v0 = address addr local.k
+    v1 = load bool local.up
+    branch v1, b1, b2
+  b1:
+    v2 = const i16 4
+    store i16 pointee(v0 : INT), v2
+    jump b2
+  b2:
+    return
+)"));
+  const Object object = lowered(program, "Far");
+  ASSERT_EQ(object.merges.size(), 1u);
+  EXPECT_EQ(object.merges[0].slots, std::vector<uint16_t>{1});
+}
+
+TEST(Selection, RefusesMoreConstantsThanAFieldCanName) {
+  std::string body = "  b0:\n";
+  for (int i = 0; i < 66'000; ++i) {
+    const std::string v = "v" + std::to_string(i);
+    body +=
+        "    " + v + " = const i32 " + std::to_string(i) + "\n    store i32 self.d, " + v + "\n";
+  }
+  const Program program = parsed(main_with("  member local d : DINT\n", body + "    return\n"));
+  const base::Result<Object> object = lower(program, program.find_pou("Main"));
+  ASSERT_FALSE(object.ok());
+  EXPECT_EQ(object.error().refusal, base::Refusal::kTooMany);
+}
+
+TEST(Selection, LimitsTheDepthOfATree) {
+  std::string body = "  b0:\n    v0 = load bool self.a\n";
+  for (int i = 1; i < 50'000; ++i) {
+    body += "    v" + std::to_string(i) + " = not bool v" + std::to_string(i - 1) + "\n";
+  }
+  body += "    store bool self.x, v49999\n    return\n";
+  EXPECT_TRUE(lower(parsed(main_with(kBools, body)), PouId(0)).ok());
+}
+
 TEST(Selection, IsDeterministic) {
   const std::string text = main_with(kBools, R"(  b0:
     v0 = load i16 self.i
