@@ -9,6 +9,7 @@
 #include "base/result.h"
 #include "ir/bytecode/code.h"
 #include "ir/program/ir.h"
+#include "stdlib/registry.h"
 #include "tools/common/table.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/session.h"
@@ -21,7 +22,7 @@ std::string fitted(const tools::Table& table) { return table.text(::isatty(1) !=
 
 constexpr tools::Command kCommand{
     "explain",
-    "[CODE|TRAP|limits|opcodes|refusals|diagnostics|traps]",
+    "[CODE|TRAP|TABLE]",
     "Explains a code such as E3001 or R0303, a trap, or prints a table.",
     {},
     0,
@@ -84,18 +85,26 @@ std::string diagnostics_page() {
 std::string overview_page() {
   return "stc explain CODE     E.... and W.... of the compiler, R.... of everything else\n"
          "stc explain TRAP     a run-time trap by name\n"
-         "stc explain TABLE    limits, opcodes, refusals, diagnostics, traps\n";
+         "stc explain TABLE    limits, opcodes, functions, refusals, diagnostics, traps\n";
+}
+
+std::string functions_page() {
+  tools::Table table({"function", "signature", "meaning"});
+  for (const stdlib::FunctionRow& row : stdlib::function_rows()) {
+    table.row({std::string(row.name), std::string(row.signature), std::string(row.meaning)});
+  }
+  table.row({"X_TO_Y, TO_Y", "any elementary type -> Y", "conversion; reals round half to even"});
+  table.row({"TRUNC_Y", "ANY_REAL -> integer type Y", "towards zero; traps when out of range"});
+  return fitted(table);
 }
 
 struct Page {
   const char* name;
   std::string (*text)();
 };
-constexpr Page kPages[] = {{"limits", limits_page},
-                           {"opcodes", opcodes_page},
-                           {"refusals", refusals_page},
-                           {"traps", traps_page},
-                           {"diagnostics", diagnostics_page}};
+constexpr Page kPages[] = {{"limits", limits_page},   {"functions", functions_page},
+                           {"opcodes", opcodes_page}, {"refusals", refusals_page},
+                           {"traps", traps_page},     {"diagnostics", diagnostics_page}};
 
 std::optional<std::string> page_of(const std::string& what) {
   for (const Page& page : kPages) {
