@@ -1,7 +1,10 @@
 // The gate: only a VerifiedImage can be loaded, and only verify() makes one.
 // Rules V1 to V20 of reliability.md in one linear pass over code and tables.
 // Invariant: interpreting a VerifiedImage cannot read or write outside the areas,
-// frames and pools that it declares, whatever the data says.
+// frames and pools that it declares, whatever the data says. One thing is left to the
+// compiler: that in-outs of a function block are bound anew before each call. An image
+// which leaves one bound to a frame that is gone may damage its own data and frames,
+// but nothing outside the reserved range (docs/adr/0003, vm/exec/memory.h).
 #pragma once
 
 #include <memory>

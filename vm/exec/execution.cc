@@ -30,14 +30,11 @@ struct Interpreter {
     return ctx;
   }
 
+  // With tail calls the first handler returns when the execution stops; without, each does.
   static void dispatch(Context& ctx, uint8_t* mem, const uint8_t* consts) {
-#if STC_TAIL_CALLS
-    kHandlers.of[ctx.pc->op](ctx.pc, ctx.frame, ctx.self, mem, consts, &ctx);
-#else
     while (ctx.running) {
       kHandlers.of[ctx.pc->op](ctx.pc, ctx.frame, ctx.self, mem, consts, &ctx);
     }
-#endif
   }
 
   static void keep(Execution& e, const Context& ctx, uint64_t fuel) {

@@ -31,7 +31,7 @@ uint32_t Generation::pool_offset() const {
 
 std::unique_ptr<Generation> Generation::build(ir::VerifiedImage verified, uint32_t number,
                                               uint8_t* memory) {
-  std::unique_ptr<Generation> made(new Generation(std::move(verified)));
+  auto made = std::unique_ptr<Generation>(new Generation(std::move(verified)));
   const ir::Image& image = made->image();
   made->number_ = number;
   made->code_ = image.code;
