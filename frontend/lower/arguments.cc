@@ -6,11 +6,9 @@ namespace frontend {
 std::string quoted_name(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
 // Arguments without names come first and go to parameters in order; names may follow.
-bool Body::bind_arguments(const Expr& call, const PouInfo& callee,
-                          std::vector<Binding>& bindings) {
+bool Body::bind_arguments(const Expr& call, const PouInfo& callee, std::vector<Binding>& bindings) {
   uint32_t positional = 0;
-  while (positional < call.args.count &&
-         tree_.args[call.args.first + positional].name.empty()) {
+  while (positional < call.args.count && tree_.args[call.args.first + positional].name.empty()) {
     ++positional;
   }
   if (positional != 0 && !bind_positional(call, positional, callee, bindings)) return false;

@@ -63,6 +63,8 @@ class Body {
   struct Interval;
   std::vector<Interval> case_intervals(const Stmt& stmt, ir::TypeId type,
                                        const std::vector<ir::BlockId>& arms);
+  void report_missing_labels(const Stmt& stmt, ir::TypeId type,
+                             const std::vector<Interval>& intervals);
   void case_tree(const std::vector<Interval>& intervals, size_t first, size_t last,
                  ir::ValueId selector, ir::Scalar scalar, ir::BlockId otherwise);
   void case_test(const Interval& interval, ir::ValueId selector, ir::Scalar scalar,
@@ -79,6 +81,7 @@ class Body {
   ir::Place temporary_place(ir::TypeId type);
   bool check_writable(ExprId expr);
   bool check_writable_name(const Expr& expr);
+  void note_output(const ir::DirectAddress& address, base::SourceSpan span);
   std::optional<Target> target(ExprId expr);
   void store(const Target& target, ir::ValueId value);
 

@@ -1,6 +1,25 @@
 #include "frontend/lower/builder.h"
 
+#include <algorithm>
+
 namespace frontend {
+namespace {
+
+size_t hash_of(const ir::Place& place) {
+  uint64_t hash = static_cast<uint64_t>(place.base);
+  auto mix = [&hash](uint64_t part) { hash = (hash ^ part) * 0x9e3779b97f4a7c15u; };
+  mix(place.base_index);
+  mix(place.constant.index);
+  mix(place.pou.index);
+  for (const ir::Step& step : place.steps) {
+    mix(static_cast<uint64_t>(step.kind) << 32 | step.index);
+    mix(step.value.index);
+    mix(static_cast<uint64_t>(step.constant_index));
+  }
+  return static_cast<size_t>(hash ^ (hash >> 29));
+}
+
+}  // namespace
 
 using ir::BlockId;
 using ir::Inst;
@@ -44,9 +63,27 @@ ValueId Builder::result(Inst& inst) {
   return inst.result;
 }
 
-ir::PlaceId Builder::add(const Place& place) {
+// Most places are named again and again: equal ones share a number.
+ir::PlaceId Builder::intern(const Place& place) {
+  if (pou_.places.size() * 2 >= place_table_.size()) grow_place_table();
+  size_t mask = place_table_.size() - 1;
+  size_t slot = hash_of(place) & mask;
+  for (; place_table_[slot] != 0; slot = (slot + 1) & mask) {
+    if (pou_.places[place_table_[slot] - 1] == place) return ir::PlaceId(place_table_[slot] - 1);
+  }
   pou_.places.push_back(place);
-  return ir::PlaceId(static_cast<uint32_t>(pou_.places.size() - 1));
+  place_table_[slot] = static_cast<uint32_t>(pou_.places.size());
+  return ir::PlaceId(place_table_[slot] - 1);
+}
+
+void Builder::grow_place_table() {
+  place_table_.assign(std::max<size_t>(32, place_table_.size() * 2), 0);
+  size_t mask = place_table_.size() - 1;
+  for (uint32_t i = 0; i < pou_.places.size(); ++i) {
+    size_t slot = hash_of(pou_.places[i]) & mask;
+    while (place_table_[slot] != 0) slot = (slot + 1) & mask;
+    place_table_[slot] = i + 1;
+  }
 }
 
 ValueId Builder::constant(Scalar scalar, uint64_t bits) {
@@ -57,37 +94,37 @@ ValueId Builder::constant(Scalar scalar, uint64_t bits) {
 
 ValueId Builder::load(const Place& place, Scalar scalar) {
   Inst& inst = emit(Op::kLoad, scalar);
-  inst.place = add(place);
+  inst.place = intern(place);
   return result(inst);
 }
 
 void Builder::store(const Place& place, Scalar scalar, ValueId value) {
   Inst& inst = emit(Op::kStore, scalar);
-  inst.place = add(place);
+  inst.place = intern(place);
   inst.operands = {value};
 }
 
 void Builder::copy(const Place& target, const Place& source) {
   Inst& inst = emit(Op::kCopy, Scalar::kBool);
-  inst.place = add(target);
-  inst.place2 = add(source);
+  inst.place = intern(target);
+  inst.place2 = intern(source);
 }
 
 void Builder::init(const Place& place, ir::ConstId constant) {
   Inst& inst = emit(Op::kInit, Scalar::kBool);
-  inst.place = add(place);
+  inst.place = intern(place);
   inst.constant = constant;
 }
 
 ValueId Builder::address(const Place& place) {
   Inst& inst = emit(Op::kAddress, Scalar::kAddr);
-  inst.place = add(place);
+  inst.place = intern(place);
   return result(inst);
 }
 
 ValueId Builder::string(const Place& place, bool wide) {
   Inst& inst = emit(Op::kString, wide ? Scalar::kWstr : Scalar::kStr);
-  inst.place = add(place);
+  inst.place = intern(place);
   return result(inst);
 }
 
@@ -132,7 +169,7 @@ void Builder::call_function(ir::PouId pou) { emit(Op::kCallFunction, Scalar::kBo
 
 void Builder::call_instance(const Place& place) {
   Inst& inst = emit(Op::kCallInstance, Scalar::kBool);
-  inst.place = add(place);
+  inst.place = intern(place);
 }
 
 ValueId Builder::call_native(uint32_t native, Scalar scalar, std::vector<ValueId> operands) {

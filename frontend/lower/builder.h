@@ -55,12 +55,14 @@ class Builder {
  private:
   ir::Inst& emit(ir::Op op, ir::Scalar scalar);
   ir::ValueId result(ir::Inst& inst);
-  ir::PlaceId add(const ir::Place& place);
+  ir::PlaceId intern(const ir::Place& place);
+  void grow_place_table();
   ir::ValueId new_value(ir::Scalar scalar);
 
   ir::Pou& pou_;
   ir::BlockId current_;
-  std::vector<ir::BlockId> order_;  // in which blocks were started: the final order
+  std::vector<ir::BlockId> order_;     // in which blocks were started: the final order
+  std::vector<uint32_t> place_table_;  // open addressing; place number + 1, 0: free
   uint32_t line_ = 0;
   uint32_t temporaries_ = 0;
 };

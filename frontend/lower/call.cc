@@ -127,6 +127,7 @@ void Body::take_outputs(std::vector<Binding>& bindings,
 
 void Body::call_instance(const Expr& call, uint32_t pou) {
   const PouInfo& block = sema_.pous[pou];
+  info_.callees.push_back(pou);
   std::vector<Binding> bindings;
   bool good = bind_arguments(call, block, bindings) && check_in_outs(call, block, bindings);
   if (!good) return;
@@ -178,6 +179,7 @@ ir::Place Body::argument_place(const PouInfo& callee, const Variable& variable) 
 
 Body::Result Body::call_function(const Expr& call, uint32_t pou, bool wants_result) {
   const PouInfo& function = sema_.pous[pou];
+  info_.callees.push_back(pou);
   std::vector<Binding> bindings;
   Result result;
   bool good = bind_arguments(call, function, bindings) && check_in_outs(call, function, bindings);

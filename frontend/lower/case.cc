@@ -37,6 +37,7 @@ void Body::case_statement(const Stmt& stmt) {
   ir::BlockId done = build_.new_block();
   std::vector<Interval> intervals;
   if (usable) intervals = case_intervals(stmt, type, arms);
+  if (!stmt.has_else && traits.enumeration) report_missing_labels(stmt, type, intervals);
   case_tree(intervals, 0, intervals.size(), selector, scalar(type), otherwise);
   for (uint32_t i = 0; i < stmt.cases.count; ++i) {
     build_.start(arms[i]);
@@ -47,6 +48,21 @@ void Body::case_statement(const Stmt& stmt) {
   statements(stmt.else_body);
   if (build_.reachable()) build_.jump(done);
   build_.start(done);
+}
+
+void Body::report_missing_labels(const Stmt& stmt, ir::TypeId type,
+                                 const std::vector<Interval>& intervals) {
+  std::string missing;
+  for (const ir::EnumLiteral& literal : types()[type].literals) {
+    auto after = std::upper_bound(
+        intervals.begin(), intervals.end(), literal.value,
+        [](int64_t value, const Interval& interval) { return value < interval.low; });
+    if (after != intervals.begin() && literal.value <= std::prev(after)->high) continue;
+    missing += (missing.empty() ? "`" : ", `") + literal.name + "`";
+  }
+  if (missing.empty()) return;
+  sema_.warning(DiagnosticCode::kMissingCaseLabels, stmt.span, "no label for " + missing,
+                "add it, or an ELSE");
 }
 
 std::vector<Body::Interval> Body::case_intervals(const Stmt& stmt, ir::TypeId type,

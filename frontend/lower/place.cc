@@ -127,6 +127,7 @@ bool Body::check_writable(ExprId id) {
     case ExprKind::kName:
       return check_writable_name(expr);
     case ExprKind::kDirect:
+      note_output(expr.address, expr.span);
       if (expr.address.area != ir::DirectArea::kInput) return true;
       sema_.error(DiagnosticCode::kAssignToInput, expr.span,
                   "`" + std::string(expr.name.text) + "` is an input of the process image");
@@ -148,6 +149,10 @@ bool Body::check_writable(ExprId id) {
       sema_.error(DiagnosticCode::kNotAssignable, expr.span, "this is a value, not a variable");
       return false;
   }
+}
+
+void Body::note_output(const ir::DirectAddress& address, base::SourceSpan span) {
+  if (address.area == ir::DirectArea::kOutput) info_.writes.push_back({address, span});
 }
 
 bool Body::check_writable_name(const Expr& expr) {
@@ -175,6 +180,9 @@ bool Body::check_writable_name(const Expr& expr) {
     sema_.error(DiagnosticCode::kAssignToInput, expr.span, name + " is an input",
                 "copy it to a variable of its own");
     return false;
+  }
+  if (variable->decl != nullptr && variable->decl->has_address) {
+    note_output(variable->decl->address, expr.span);
   }
   if (std::find(for_variables_.begin(), for_variables_.end(), id) != for_variables_.end()) {
     sema_.warning(DiagnosticCode::kForVariableAssigned, expr.span,

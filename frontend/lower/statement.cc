@@ -64,6 +64,11 @@ void Body::if_statement(const Stmt& stmt) {
     bool last = i + 1 == stmt.branches.count && stmt.else_body.count == 0;
     ir::BlockId then = build_.new_block();
     ir::BlockId otherwise = last ? done : build_.new_block();
+    const Note& note = sema_.infer(branch.condition);
+    if (note.constant && note.type.valid()) {
+      sema_.warning(DiagnosticCode::kConditionConstant, tree_[branch.condition].span,
+                    "this condition is always the same");
+    }
     build_.branch(condition(branch.condition), then, otherwise);
     build_.start(then);
     statements(branch.body);

@@ -24,11 +24,17 @@ void Sema::configure() {
   const ConfigDecl& config = tree.configs[0];
   program.name = config.name.text;
   if (config.resources.size() > 1) {
-    error(DiagnosticCode::kNotSupported, config.resources[1].name.span,
+    error(DiagnosticCode::kTwoConfigurations, config.resources[1].name.span,
           "a second RESOURCE " + quoted(config.resources[1].name),
           "put its tasks into the first; one controller runs one resource");
   }
   if (!config.resources.empty()) configure_resource(config.resources[0]);
+  bool named = false;
+  for (const ResourceDecl& resource : config.resources) named = named || !resource.programs.empty();
+  if (!named) {
+    error(DiagnosticCode::kNoPrograms, config.span, "the CONFIGURATION names no program to run",
+          "add PROGRAM name WITH task : Type;");
+  }
   if (program.tasks.empty()) program.tasks.push_back({"Main", kDefaultPeriodNs, 0, 0});
 }
 

@@ -119,7 +119,6 @@ Note Sema::unify(const Note& a, const Note& b, base::SourceSpan span) {
 }
 
 Note Sema::infer_binary(const Expr& expr) {
-  // Left operands of chains first, so that diagnostics come in source order.
   const Note left = infer(expr.operand);
   const Note right = infer(expr.right);
   if (!left.type.valid() || !right.type.valid()) return {};
@@ -136,6 +135,7 @@ Note Sema::infer_binary(const Expr& expr) {
       return infer_bitwise(expr.binary, left, right, expr.span);
     }
     case OperatorClass::kComparison:
+      check_real_equality(expr);
       return infer_comparison(expr.binary, left, right, expr.span);
     case OperatorClass::kArithmetic: {
       Note note = infer_arithmetic(expr.binary, left, right, expr.span);
@@ -148,6 +148,27 @@ Note Sema::infer_binary(const Expr& expr) {
     }
   }
   return {};
+}
+
+// Zero is exact, and comparing with it is how divisors are tested.
+void Sema::check_real_equality(const Expr& expr) {
+  if (expr.binary != BinaryOp::kEq && expr.binary != BinaryOp::kNe) return;
+  bool real = false;
+  bool constant = true;
+  for (ExprId side : {expr.operand, expr.right}) {
+    const Note& note = infer(side);
+    constant = constant && note.constant;
+    real = real || (traits_of(program.types, note.type).real && note.flex == Flex::kNone);
+    if (!note.constant || !note.type.valid()) continue;
+    const Expr& literal = tree[side];
+    if (literal.kind != ExprKind::kLiteral) continue;
+    const Literal& value = tree.literals[literal.literal];
+    if (value.integer == 0 && value.real == 0) return;
+  }
+  if (!real || constant) return;
+  warning(DiagnosticCode::kRealEquality, expr.span,
+          "reals are compared with " + std::string(operator_text(expr.binary)),
+          "compare the distance: ABS(a - b) < limit");
 }
 
 Note Sema::infer_bitwise(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span) {

@@ -39,6 +39,12 @@ struct Variable {
   ir::ConstId init;  // invalid: the type's default
 };
 
+// A write to the output image, found in a body.
+struct OutputWrite {
+  ir::DirectAddress address;
+  base::SourceSpan span;
+};
+
 struct PouInfo {
   const PouDecl* decl = nullptr;
   bool library = false;
@@ -49,6 +55,8 @@ struct PouInfo {
   std::vector<VarId> locals;     // by local number
   std::vector<VarId> members;    // by member number
   VarId result;
+  std::vector<OutputWrite> writes;  // filled by lowering, like callees
+  std::vector<uint32_t> callees;
 };
 
 // A type expression after resolution. `init` is the default of a derived type.

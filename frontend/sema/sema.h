@@ -47,6 +47,7 @@ class Sema {
   void resolve_declarations();
   void configure();
   void report_unused();
+  void check_output_tasks();  // after all bodies
 
   // --- types (types.cc, enumeration.cc, containment.cc)
   TypeUse resolve(SpecId spec);
@@ -168,6 +169,7 @@ class Sema {
                   const std::vector<ExprId>& args);
   Note infer_string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
   Note infer_conversion(const Expr& expr, const Conversion& conversion);
+  void check_real_equality(const Expr& expr);
   Note infer_arithmetic(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span);
   Note infer_time_arithmetic(BinaryOp op, const Note& left, const Note& right,
                              base::SourceSpan span);
@@ -182,6 +184,10 @@ class Sema {
   ir::ConstId struct_value(const Expr& expr, ir::TypeId type);
   bool array_elements(const Expr& list, ir::TypeId type, uint64_t total,
                       std::vector<ir::ConstElement>& out, uint64_t& at);
+
+  // output_tasks.cc
+  void check_instance_outputs(const ir::ProgramInstance& instance,
+                              std::unordered_map<uint32_t, uint32_t>& owner);
 
   // configuration.cc
   void default_configuration();

@@ -112,6 +112,12 @@ TypeUse Sema::resolve_string(const Spec& spec) {
 }
 
 TypeUse Sema::resolve_array(const Spec& spec) {
+  if (spec.dims.size() > base::kMaxDimensions) {
+    error(DiagnosticCode::kTooManyDimensions, spec.span,
+          std::to_string(spec.dims.size()) + " dimensions",
+          "use at most " + std::to_string(base::kMaxDimensions));
+    return {};
+  }
   std::vector<ir::Dimension> dims;
   uint64_t elements = 1;
   for (const DimSpec& dim : spec.dims) {

@@ -52,6 +52,16 @@ const Wrong kWhole[] = {
     {"E3001", "PROGRAM Q END_PROGRAM PROGRAM P VAR q : Q; END_VAR END_PROGRAM"},
     {"E3002", "TYPE E : BYTE (a := 255, b); END_TYPE"},
     {"E6005", "VAR_GLOBAL a : ARRAY[0..1000000, 0..1000000] OF INT; END_VAR"},
+    {"E6006", "VAR_GLOBAL a : ARRAY[0..1,0..1,0..1,0..1,0..1,0..1,0..1,0..1,0..1] OF INT; END_VAR"},
+    {"E5005",
+     "CONFIGURATION C RESOURCE R ON X TASK t(INTERVAL := T#1ms, PRIORITY := 1); END_RESOURCE "
+     "END_CONFIGURATION PROGRAM Q END_PROGRAM"},
+    {"E5003",
+     "CONFIGURATION C RESOURCE R ON X TASK t(INTERVAL := T#1ms, PRIORITY := 1); TASK u(INTERVAL := "
+     "T#1ms, PRIORITY := 2); PROGRAM p WITH t : A; PROGRAM q WITH u : B; END_RESOURCE "
+     "END_CONFIGURATION PROGRAM A %QX0.0 := TRUE; END_PROGRAM PROGRAM B VAR f : F; END_VAR f(); "
+     "END_PROGRAM FUNCTION_BLOCK F VAR_EXTERNAL lamp : BOOL; END_VAR lamp := TRUE; "
+     "END_FUNCTION_BLOCK VAR_GLOBAL lamp AT %QX0.7 : BOOL; END_VAR"},
     {"E6007", "VAR_GLOBAL a : STRING[0]; END_VAR"},
     {"E4001",
      "FUNCTION_BLOCK F VAR_OUTPUT q : INT; END_VAR END_FUNCTION_BLOCK "
@@ -182,6 +192,15 @@ TEST(Warnings, EachHasItsCause) {
   EXPECT_EQ(
       compile(program("x : INT;", "IF x <> 0 AND_THEN 10 / x > 1 THEN x := 1; END_IF")).warnings(),
       "");
+  EXPECT_EQ(compile(program("r : REAL; b : BOOL;", "b := r = 0.3 OR r <> 0.0;")).warnings(),
+            "W0006");
+  EXPECT_EQ(
+      compile(program("x : INT;", "IF TRUE THEN x := 1; END_IF WHILE TRUE DO EXIT; END_WHILE"))
+          .warnings(),
+      "W0008");
+  Compiled labels = compile(program("e : (a, b, c);", "CASE e OF a: e := b; c: e := a; END_CASE"));
+  EXPECT_EQ(labels.warnings(), "W0009");
+  EXPECT_NE(labels.text.find("no label for `b`"), std::string::npos) << labels.text;
   EXPECT_EQ(compile(program("s : STRING[2] := 'abc';", "s := 'x';")).warnings(), "W0007");
 }
 

@@ -1,0 +1,47 @@
+// Exactly one task writes each byte of the output image: otherwise the order of two
+// tasks would decide what the plant sees (reliability.md, verifier rule on I/O).
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+
+void Sema::check_output_tasks() {
+  if (program.tasks.size() < 2) return;
+  std::unordered_map<uint32_t, uint32_t> owner;  // output byte -> task
+  for (const ir::ProgramInstance& instance : program.instances) {
+    check_instance_outputs(instance, owner);
+  }
+}
+
+// Everything that the program's body can reach through calls.
+void Sema::check_instance_outputs(const ir::ProgramInstance& instance,
+                                  std::unordered_map<uint32_t, uint32_t>& owner) {
+  auto start = pou_by_type_.find(instance.type);
+  if (start == pou_by_type_.end()) return;
+  std::vector<bool> seen(pous.size());
+  std::vector<uint32_t> work{start->second};
+  seen[start->second] = true;
+  while (!work.empty()) {
+    const PouInfo& pou = pous[work.back()];
+    work.pop_back();
+    for (uint32_t callee : pou.callees) {
+      if (seen[callee]) continue;
+      seen[callee] = true;
+      work.push_back(callee);
+    }
+    for (const OutputWrite& write : pou.writes) {
+      uint32_t last = (write.address.bit_offset + write.address.bit_size - 1) / 8;
+      for (uint32_t byte = write.address.bit_offset / 8; byte <= last; ++byte) {
+        uint32_t first_task = owner.emplace(byte, instance.task).first->second;
+        if (first_task == instance.task) continue;
+        error(DiagnosticCode::kOutputTwoTasks, write.span,
+              "output byte %QB" + std::to_string(byte) + " is written by task `" +
+                  program.tasks[first_task].name + "` and by task `" +
+                  program.tasks[instance.task].name + "`",
+              "let one task write it; the other sets a global variable that the first reads");
+        return;
+      }
+    }
+  }
+}
+
+}  // namespace frontend
