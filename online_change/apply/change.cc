@@ -171,6 +171,7 @@ base::Status Change::arm(bool allow_loss, bool allow_overrun) {
     cancel();
     return abandoned("while it was armed");
   }
+  pending_->forward.touch(controller_.memory().data());
   pending_->allow_loss = allow_loss;
   state_ = State::kArmed;
   return base::Ok{};

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ir/bytecode/image.h"
+#include "online_change/diff/fast_conversion.h"
 #include "online_change/diff/initial_data.h"
 #include "online_change/plan/plan.h"
 
@@ -15,6 +16,10 @@ class Conversions {
  public:
   Conversions(const ir::Image& from, const ir::Image& to) : from_(from), to_(to), to_initial_(to) {}
 
+  // For a step of that conversion; null: value by value.
+  FastConverter fast(const UpdateStep& step) const {
+    return fast_converter(from_.types, step.old_type, to_.types, step.new_type);
+  }
   uint32_t source_size(const UpdateStep& step) const { return from_.layouts[step.old_type].size; }
   // Converts the value at `source` for value number `index` of `step`; fills `out`. Returns what
   // is lost, or null.

@@ -4,6 +4,31 @@
 #include <cstring>
 
 namespace online_change {
+namespace {
+
+// `count` values of `size` bytes, `stride` apart, to or from a place without gaps.
+void gather(const uint8_t* from, const UpdateStep& step, uint32_t stride, uint8_t* out) {
+  if (step.count == 1 || stride == step.size) {
+    std::memcpy(out, from, step.total());
+    return;
+  }
+  for (uint32_t i = 0; i < step.count; ++i) {
+    std::memcpy(out + size_t{i} * step.size, from + size_t{i} * stride, step.size);
+  }
+}
+
+void scatter(const uint8_t* from, const UpdateStep& step, uint8_t* memory) {
+  uint8_t* to = memory + step.to;
+  if (step.count == 1 || step.to_stride == step.size) {
+    std::memcpy(to, from, step.total());
+    return;
+  }
+  for (uint32_t i = 0; i < step.count; ++i) {
+    std::memcpy(to + size_t{i} * step.to_stride, from + size_t{i} * step.size, step.size);
+  }
+}
+
+}  // namespace
 
 Transfer::Transfer(const Plan& plan, const ir::Image& from, const ir::Image& to, Steps which)
     : plan_(plan), conversions_(from, to) {
@@ -11,17 +36,33 @@ Transfer::Transfer(const Plan& plan, const ir::Image& from, const ir::Image& to,
   for (uint32_t number = 0; number < plan.steps.size(); ++number) {
     const UpdateStep& step = plan.steps[number];
     if (which == Steps::kBoundary && step.early) continue;
-    work_.push_back({number, bytes});
+    bool converts = step.kind == StepKind::kConvert;
+    work_.push_back({number, bytes, converts ? conversions_.fast(step) : nullptr});
     for (uint32_t i = 0; i < step.count; ++i) {
-      targets_.push_back({step.to + i * step.to_stride, step.size, bytes + size_t{i} * step.size,
-                          step.kind == StepKind::kConvert});
+      targets_.push_back(
+          {step.to + i * step.to_stride, step.size, bytes + size_t{i} * step.size, converts});
     }
     bytes += step.total();
   }
-  std::sort(targets_.begin(), targets_.end(),
-            [](const Target& a, const Target& b) { return a.to < b.to; });
+  auto by_place = [](const Target& a, const Target& b) { return a.to < b.to; };
+  if (!std::is_sorted(targets_.begin(), targets_.end(), by_place)) {
+    std::sort(targets_.begin(), targets_.end(), by_place);
+  }
   staged_.resize(bytes);
   saved_.resize(bytes);
+}
+
+void Transfer::touch(uint8_t* memory) const {
+  constexpr uint64_t kPage = 4096;
+  uint64_t next = 0;
+  for (const Target& target : targets_) {
+    for (uint64_t at = std::max<uint64_t>(target.to, next); at < target.end();) {
+      volatile uint8_t* byte = memory + at;
+      *byte = *byte;
+      next = (at / kPage + 1) * kPage;
+      at = next;
+    }
+  }
 }
 
 void Transfer::read_values(const UpdateStep& step, const uint8_t* memory, uint8_t* out) const {
@@ -33,19 +74,22 @@ void Transfer::read_values(const UpdateStep& step, const uint8_t* memory, uint8_
     }
     return;
   }
-  for (uint32_t i = 0; i < step.count; ++i) {
-    std::memcpy(out + size_t{i} * step.size, memory + step.from + size_t{i} * step.from_stride,
-                step.size);
-  }
+  gather(memory + step.from, step, step.from_stride, out);
 }
 
 bool Transfer::read_converted(const Work& work, const uint8_t* memory,
                               const std::function<bool(const Loss&)>& on_loss) {
   const UpdateStep& step = step_of(work);
   for (uint32_t i = 0; i < step.count; ++i) {
-    std::span<uint8_t> out(staged_.data() + work.at + size_t{i} * step.size, step.size);
     const uint8_t* source = memory + step.from + size_t{i} * step.from_stride;
-    const char* what = conversions_.convert(step, i, source, out);
+    uint8_t* to = staged_.data() + work.at + size_t{i} * step.size;
+    if (work.fast != nullptr) {
+      i += static_cast<uint32_t>(work.fast({source, step.from_stride, to, step.count - i}));
+      if (i == step.count) return true;
+      source = memory + step.from + size_t{i} * step.from_stride;
+      to = staged_.data() + work.at + size_t{i} * step.size;
+    }
+    const char* what = conversions_.convert(step, i, source, {to, step.size});
     if (what != nullptr && !on_loss({work.step, i, what})) return false;
   }
   return true;
@@ -107,10 +151,7 @@ bool Transfer::save(const uint8_t* memory, const Interrupted& interrupted) {
   for (const Work& work : work_) {
     if (interrupted && interrupted()) return false;
     const UpdateStep& step = step_of(work);
-    for (uint32_t i = 0; i < step.count; ++i) {
-      std::memcpy(saved_.data() + work.at + size_t{i} * step.size,
-                  memory + step.to + size_t{i} * step.to_stride, step.size);
-    }
+    gather(memory + step.to, step, step.to_stride, saved_.data() + work.at);
   }
   return true;
 }
@@ -121,35 +162,34 @@ bool Transfer::write(uint8_t* memory, const Interrupted& interrupted) {
       restore_first(memory, done);
       return false;
     }
-    const UpdateStep& step = step_of(work_[done]);
-    for (uint32_t i = 0; i < step.count; ++i) {
-      std::memcpy(memory + step.to + size_t{i} * step.to_stride,
-                  staged_.data() + work_[done].at + size_t{i} * step.size, step.size);
-    }
+    scatter(staged_.data() + work_[done].at, step_of(work_[done]), memory);
   }
   return true;
 }
 
 void Transfer::restore_first(uint8_t* memory, size_t count) const {
   for (size_t done = 0; done < count; ++done) {
-    const UpdateStep& step = step_of(work_[done]);
-    for (uint32_t i = 0; i < step.count; ++i) {
-      std::memcpy(memory + step.to + size_t{i} * step.to_stride,
-                  saved_.data() + work_[done].at + size_t{i} * step.size, step.size);
-    }
+    scatter(saved_.data() + work_[done].at, step_of(work_[done]), memory);
   }
 }
 
-size_t Transfer::first_target(uint32_t offset) const {
+size_t Transfer::first_target(uint32_t offset, size_t& hint) const {
+  auto is_first = [&](size_t i) {
+    return i < targets_.size() && targets_[i].end() > offset &&
+           (i == 0 || targets_[i - 1].end() <= offset);
+  };
+  if (is_first(hint)) return hint;
+  if (is_first(hint + 1)) return ++hint;
   auto found = std::partition_point(targets_.begin(), targets_.end(),
                                     [&](const Target& target) { return target.end() <= offset; });
-  return static_cast<size_t>(found - targets_.begin());
+  return hint = static_cast<size_t>(found - targets_.begin());
 }
 
 void Transfer::earlier(uint32_t offset, std::span<uint8_t> out, const uint8_t* memory) const {
   std::memcpy(out.data(), memory + offset, out.size());
   uint64_t end = uint64_t{offset} + out.size();
-  for (size_t i = first_target(offset); i < targets_.size() && targets_[i].to < end; ++i) {
+  for (size_t i = first_target(offset, earlier_hint_); i < targets_.size() && targets_[i].to < end;
+       ++i) {
     const Target& target = targets_[i];
     uint64_t from = std::max<uint64_t>(target.to, offset);
     uint64_t until = std::min(target.end(), end);
@@ -159,7 +199,7 @@ void Transfer::earlier(uint32_t offset, std::span<uint8_t> out, const uint8_t* m
 }
 
 bool Transfer::still_as_converted(uint32_t offset, uint32_t size, const uint8_t* memory) const {
-  size_t at = first_target(offset);
+  size_t at = first_target(offset, converted_hint_);
   if (at == targets_.size() || targets_[at].to != offset) return false;
   const Target& target = targets_[at];
   return target.converted && target.size == size &&

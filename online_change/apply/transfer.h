@@ -28,6 +28,9 @@ class Transfer {
   enum class Steps : uint8_t { kBoundary, kAll };
   Transfer(const Plan& plan, const ir::Image& from, const ir::Image& to, Steps which);
 
+  // Makes every page that write() needs present, so that the operating system has nothing to do at
+  // the boundary. Changes no byte.
+  void touch(uint8_t* memory) const;
   // First pass. Losses are handed to `on_loss`; false from it ends the pass. False: ended early.
   bool read(const uint8_t* memory, const std::function<bool(const Loss&)>& on_loss,
             const Interrupted& interrupted);
@@ -46,6 +49,7 @@ class Transfer {
   struct Work {
     uint32_t step = 0;
     size_t at = 0;  // in staged_ and saved_
+    FastConverter fast = nullptr;
   };
   struct Target {  // one value that was written
     uint32_t to = 0;
@@ -65,12 +69,15 @@ class Transfer {
   void earlier(uint32_t offset, std::span<uint8_t> out, const uint8_t* memory) const;
   // Does memory still hold what this transfer converted to `offset`?
   bool still_as_converted(uint32_t offset, uint32_t size, const uint8_t* memory) const;
-  size_t first_target(uint32_t offset) const;
+  size_t first_target(uint32_t offset, size_t& hint) const;
 
   const Plan& plan_;
   Conversions conversions_;
   std::vector<Work> work_;
   std::vector<Target> targets_;  // sorted
+  // Where the searches before ended: offsets go upwards.
+  mutable size_t earlier_hint_ = 0;
+  mutable size_t converted_hint_ = 0;
   base::Bytes staged_;
   base::Bytes saved_;
 };

@@ -86,8 +86,10 @@ void PlanCheck::expand() {
       targets_.push_back({step.to + i * step.to_stride, step.size, number, i});
     }
   }
-  std::sort(targets_.begin(), targets_.end(),
-            [](const Target& a, const Target& b) { return a.to < b.to; });
+  auto by_place = [](const Target& a, const Target& b) { return a.to < b.to; };
+  if (!std::is_sorted(targets_.begin(), targets_.end(), by_place)) {
+    std::sort(targets_.begin(), targets_.end(), by_place);
+  }
 }
 
 bool PlanCheck::check_targets() {

@@ -1,13 +1,18 @@
 #include "online_change/plan/pause.h"
 
+#include "online_change/diff/fast_conversion.h"
+
 namespace online_change {
 
-int64_t predicted_pause_ns(const Plan& plan) {
+int64_t predicted_pause_ns(const Plan& plan, const ir::Image& old_image,
+                           const ir::Image& new_image) {
   int64_t ns = kPauseFixedNs;
   for (const UpdateStep& step : plan.steps) {
     if (step.early) continue;
-    int64_t per_value = step.kind == StepKind::kConvert ? kPauseConversionNs : kPauseValueNs;
-    ns += kPauseStepNs + per_value * step.count;
+    bool slow =
+        step.kind == StepKind::kConvert &&
+        fast_converter(old_image.types, step.old_type, new_image.types, step.new_type) == nullptr;
+    ns += kPauseStepNs + (slow ? kPauseSlowConversionNs : kPauseValueNs) * int64_t{step.count};
     ns += static_cast<int64_t>(step.total()) / kPauseBytesPerNs;
   }
   return ns;

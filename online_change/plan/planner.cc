@@ -49,7 +49,7 @@ base::Result<Plan> Planner::run() {
   for (const UpdateStep& step : plan_.steps) {
     if (!step.early) plan_.boundary_bytes += step.total();
   }
-  plan_.predicted_pause_ns = predicted_pause_ns(plan_);
+  plan_.predicted_pause_ns = predicted_pause_ns(plan_, old_, new_);
   return std::move(plan_);
 }
 

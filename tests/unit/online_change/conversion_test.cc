@@ -3,8 +3,10 @@
 
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
+#include "online_change/diff/fast_conversion.h"
 #include "online_change/diff/value_conversion.h"
 
 namespace online_change {
@@ -111,6 +113,63 @@ TEST(Conversion, classify_agrees_with_convert) {
       }
     }
   }
+}
+
+// The fast way does exactly what is exact, and leaves the rest to the rules.
+TEST(Conversion, fast_runs_agree_with_the_rules) {
+  ir::TypeTable types;
+  std::vector<uint64_t> samples = {0,
+                                   1,
+                                   2,
+                                   ~uint64_t{0},
+                                   lreal(0.5),
+                                   lreal(-1),
+                                   lreal(1e300),
+                                   lreal(std::nan("")),
+                                   lreal(0x1p63),
+                                   lreal(-0x1p63),
+                                   real(2.5f),
+                                   real(-3.0f),
+                                   real(HUGE_VALF),
+                                   real(0x1p31f)};
+  for (int bit = 0; bit < 64; ++bit) {
+    samples.push_back(uint64_t{1} << bit);
+    samples.push_back((uint64_t{1} << bit) - 1);
+    samples.push_back(~uint64_t{0} << bit);
+  }
+  uint32_t pairs = 0;
+  for (uint32_t f = 0; f < ir::kElementaryCount; ++f) {
+    for (uint32_t t = 0; t < ir::kElementaryCount; ++t) {
+      ir::TypeId from(f);
+      ir::TypeId to(t);
+      FastConverter fast = fast_converter(types, from, types, to);
+      Conversion rule = classify(types, from, types, to);
+      if (fast == nullptr || rule == Conversion::kNone || rule == Conversion::kSame) continue;
+      ++pairs;
+      ir::Scalar scalar = types.scalar(from);
+      for (uint64_t sample : samples) {
+        if (types[from].kind == Kind::kBool && sample > 1) continue;
+        uint32_t unused = 64 - 8 * ir::scalar_size(scalar);
+        uint64_t bits = ir::is_signed(scalar)
+                            ? integer(static_cast<int64_t>(sample << unused) >> unused)
+                            : sample << unused >> unused;
+        Converted slow = convert(types[from].kind, types[to].kind, bits);
+        uint64_t out = 0;
+        uint8_t source[8];
+        std::memcpy(source, &bits, 8);
+        size_t done = fast({source, 8, reinterpret_cast<uint8_t*>(&out), 1});
+        std::string what = types.text(from) + " -> " + types.text(to) + " " + std::to_string(bits);
+        if (done == 0) {
+          bool nan = std::strstr(types.text(from).c_str(), "REAL") != nullptr;
+          EXPECT_TRUE(slow.loss != nullptr || nan) << what;
+          continue;
+        }
+        EXPECT_EQ(slow.loss, nullptr) << what;
+        EXPECT_EQ(std::memcmp(&out, &slow.bits, ir::scalar_size(types.scalar(to))), 0) << what;
+      }
+    }
+  }
+  EXPECT_GT(pairs, 100u);
 }
 
 TEST(Conversion, no_rule_between_unlike_groups) {
