@@ -88,7 +88,7 @@ void handle(STC_HANDLER_ARGS) {
 
 // --- instantiation -------------------------------------------------------------
 
-template <ir::Opcode op, uint32_t... i>
+template <class Group, ir::Opcode op, uint32_t... i>
 constexpr void add_handlers(HandlerTable& table, uint32_t& count,
                             std::integer_sequence<uint32_t, i...>) {
   if constexpr (requires { sizeof(Semantics<op>); }) {
@@ -96,21 +96,27 @@ constexpr void add_handlers(HandlerTable& table, uint32_t& count,
   }
 }
 
-template <uint32_t... op>
-constexpr HandlerTable handlers_of_group(std::integer_sequence<uint32_t, op...>) {
+// Depends on `Group`, a type of the group's own, so that the Semantics are looked for where
+// the group ends and not here.
+template <class Group>
+constexpr HandlerTable handlers_of_group() {
   HandlerTable table{};
   uint32_t count = 0;
-  (add_handlers<static_cast<ir::Opcode>(op)>(
-       table, count, std::make_integer_sequence<uint32_t, kBaseCounts[op].product()>()),
-   ...);
+#define OP(name, a, b, c, x, y, flags, meaning) \
+  add_handlers<Group, ir::Opcode::name>(        \
+      table, count,                             \
+      std::make_integer_sequence<               \
+          uint32_t, kBaseCounts[static_cast<uint32_t>(ir::Opcode::name)].product()>());
+#include "ir/bytecode/opcodes.def"
+#undef OP
   return table;
 }
 
 // At the end of a group: emits the handlers of every opcode that has Semantics there.
-#define STC_INSTANTIATE_GROUP(name)   \
-  extern const HandlerTable name;     \
-  constinit const HandlerTable name = \
-      handlers_of_group(std::make_integer_sequence<uint32_t, ir::kOpcodeCount>())
+#define STC_INSTANTIATE_GROUP(name) \
+  struct name##Group;               \
+  extern const HandlerTable name;   \
+  constinit const HandlerTable name = handlers_of_group<name##Group>()
 
 // --- families of opcodes ---------------------------------------------------------
 

@@ -19,18 +19,19 @@ constexpr void fill_opcode(HandlerTable& table, std::integer_sequence<uint32_t, 
    ...);
 }
 
-template <uint32_t... op>
-constexpr HandlerTable all_handlers(std::integer_sequence<uint32_t, op...>) {
+constexpr HandlerTable all_handlers() {
   HandlerTable table{};
-  (fill_opcode<static_cast<ir::Opcode>(op)>(
-       table, std::make_integer_sequence<uint32_t, kBaseCounts[op].product()>()),
-   ...);
+#define OP(name, a, b, c, x, y, flags, meaning) \
+  fill_opcode<ir::Opcode::name>(                \
+      table, std::make_integer_sequence<        \
+                 uint32_t, kBaseCounts[static_cast<uint32_t>(ir::Opcode::name)].product()>());
+#include "ir/bytecode/opcodes.def"
+#undef OP
   return table;
 }
 
 }  // namespace
 
-constinit const HandlerTable kHandlers =
-    all_handlers(std::make_integer_sequence<uint32_t, ir::kOpcodeCount>());
+constinit const HandlerTable kHandlers = all_handlers();
 
 }  // namespace vm
