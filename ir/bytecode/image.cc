@@ -57,7 +57,7 @@ void add_type(TypeTable& types, Type type) {
 
 void types_section(ImageReader& a, TypeTable& types) {
   std::vector<Type> stored;
-  a.list(stored, 54, [&](Type& type) { type_fields(a, type); });
+  a.list(stored, 45, [&](Type& type) { type_fields(a, type); });
   for (Type& type : stored) add_type(types, std::move(type));
 }
 

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Every example compiles without a diagnostic and runs.
+# Every example compiles without error or warning, and runs.
 . "$(dirname "$0")/lib.sh"
 for example in "$source_dir"/examples/small/*.st "$source_dir"/examples/bottling_line "$source_dir"/examples/bottling_line_v2; do
   expect 0 stc check "$example"
-  silent_on err
+  if grep -qE '(error|warning)\[' err; then fail "diagnostics for $example"; fi
   expect 0 stvm run "$example" --virtual-time --scans 1000 --hash
 done

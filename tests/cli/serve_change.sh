@@ -12,7 +12,7 @@ PROGRAM Main VAR m : ARRAY[1..3] OF Motor; count : DINT; added : BOOL := TRUE; E
 ST
 stc build v1.st -o v1.img 2>/dev/null
 expect 7 stvm status --dir nowhere
-said 'R0501.*nowhere'
+said 'R0404.*nowhere'
 mkdir quiet
 expect 7 stvm status --dir quiet
 said 'R0404'
