@@ -164,7 +164,8 @@ bool ControllerService::time_for_switch() const {
   return left > change_.plan().predicted_pause_ns;
 }
 
-base::Result<online_change::SwitchReport> ControllerService::switch_in_time(bool allow_overrun) {
+base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
+    bool allow_overrun, uint64_t& missed_before) {
   std::optional<base::Result<online_change::SwitchReport>> report;
   auto job = [&] {
     if (!allow_overrun && !time_for_switch()) return;
@@ -172,6 +173,7 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(bool
     if (!allow_overrun) {
       change_.set_interruption([=, this] { return clock_.now_ns() > deadline_ns; });
     }
+    missed_before = missed_releases();
     report.emplace(change_.switch_now());
     change_.set_interruption(nullptr);
   };
@@ -207,13 +209,11 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   ir::VerifiedImage running = controller_.verified();
   base::Status armed = base::Ok{};
   uint64_t missed_before = 0;
-  base::Status taken = at_boundary([&] {
-    armed = change_.arm((request.flags & vm::kAllowLoss) != 0, allow_overrun);
-    missed_before = missed_releases();
-  });
+  base::Status taken = at_boundary(
+      [&] { armed = change_.arm((request.flags & vm::kAllowLoss) != 0, allow_overrun); });
   if (!taken.ok()) return taken.error();
   if (!armed.ok()) return armed.error();
-  base::Result<online_change::SwitchReport> report = switch_in_time(allow_overrun);
+  base::Result<online_change::SwitchReport> report = switch_in_time(allow_overrun, missed_before);
   staged_.reset();
   if (!report.ok()) return report.error();
   previous_ = std::move(running);

@@ -51,7 +51,8 @@ class ControllerService : public vm::Service {
   base::Result<std::vector<FateLine>> live_lines(uint64_t first, uint64_t count);
   // The resulting value of a line, and its loss when there is one.
   void complete(FateLine& line, const std::vector<online_change::LiveLoss>& losses) const;
-  base::Result<online_change::SwitchReport> switch_in_time(bool allow_overrun);
+  base::Result<online_change::SwitchReport> switch_in_time(bool allow_overrun,
+                                                           uint64_t& missed_before);
   bool time_for_switch() const;
   base::Result<online_change::SwitchReport> finish_report(online_change::SwitchReport report,
                                                           uint64_t missed_before);

@@ -1,5 +1,8 @@
 #include "vm/runtime/frames.h"
 
+#include <algorithm>
+#include <cstring>
+
 namespace vm {
 namespace {
 
@@ -8,9 +11,11 @@ constexpr size_t kLengthBytes = 4;
 }  // namespace
 
 base::Bytes frame(base::ByteSpan message) {
-  base::ByteWriter writer;
-  writer.blob(message);
-  return writer.take();
+  base::Bytes out(kLengthBytes + message.size());
+  auto length = static_cast<uint32_t>(message.size());
+  std::memcpy(out.data(), &length, sizeof length);
+  std::copy(message.begin(), message.end(), out.begin() + kLengthBytes);
+  return out;
 }
 
 size_t FrameReader::room() const { return kLengthBytes + kMaxMessageBytes - buffer_.size(); }

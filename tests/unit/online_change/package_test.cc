@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <random>
+
+#include "ir/bytecode/symbols.h"
+
 #include "tests/unit/online_change/hand_made.h"
 
 namespace online_change {
@@ -158,6 +163,70 @@ TEST(Package, V17_early_step_on_bytes_in_use) {
   }
   ASSERT_TRUE(changed);
   expect_refused(*pair, "is initialised early, but the running version uses these bytes");
+}
+
+void mutate(UpdateStep& step, std::mt19937& random) {
+  uint32_t* const kFields[] = {
+      &step.from,        &step.to,        &step.size,           &step.count,
+      &step.from_stride, &step.to_stride, &step.old_type.index, &step.new_type.index};
+  uint32_t& field = *kFields[random() % std::size(kFields)];
+  switch (random() % 5) {
+    case 0:
+      field += static_cast<uint32_t>(random() % 9) - 4;
+      break;
+    case 1:
+      field = static_cast<uint32_t>(random() % 400);
+      break;
+    case 2:
+      field ^= 1u << (random() % 32);
+      break;
+    case 3:
+      step.kind = static_cast<StepKind>(random() % 3);
+      break;
+    default:
+      step.early = !step.early;
+      if (!step.bytes.empty()) step.bytes[random() % step.bytes.size()] ^= 1;
+  }
+}
+
+// Whatever passes the check keeps every instance slot right and stays inside memory (the latter is
+// what the sanitizers watch here).
+TEST(Package, V17_what_passes_is_harmless) {
+  auto pair = make_pair();
+  std::mt19937 random(1);
+  uint32_t passed = 0;
+  for (int round = 0; round < 3000; ++round) {
+    Package package = pair->package;
+    std::vector<UpdateStep>& steps = package.forward.steps;
+    uint32_t changes = 1 + random() % 2;
+    for (uint32_t i = 0; i < changes; ++i) mutate(steps[random() % steps.size()], random);
+    if (!check_package(package, pair->a.image, pair->b.image).ok()) continue;
+    ++passed;
+    hand_made::Running running(pair->a);
+    std::vector<uint8_t>& memory = running.memory();
+    Transfer transfer(package.forward, pair->a.image, pair->b.image, Transfer::Steps::kAll);
+    auto ignore = [](const Loss&) { return true; };
+    ASSERT_TRUE(transfer.read(memory.data(), ignore, nullptr));
+    ASSERT_TRUE(transfer.save(memory.data(), nullptr));
+    ASSERT_TRUE(transfer.write(memory.data(), nullptr));
+    const ir::Image& image = pair->b.image;
+    for (uint32_t id = 1; id < image.instances.size(); ++id) {
+      if (image.instances[id].parent == 0) continue;
+      auto symbol = ir::find_symbol(image, image.instance_path(id));
+      ASSERT_TRUE(symbol.ok());
+      // The owner's slot names this instance.
+      const ir::Instance& owner = image.instances[image.instances[id].parent];
+      auto member = image.types.find_member(owner.type, image.instances[id].name);
+      uint32_t slot = 0;
+      std::memcpy(&slot,
+                  &memory[owner.data +
+                          image.layouts[owner.type].member_offsets[static_cast<size_t>(member)]],
+                  4);
+      EXPECT_EQ(slot, id) << round;
+    }
+  }
+  EXPECT_GT(passed, 0u);
+  EXPECT_LT(passed, 1500u);
 }
 
 TEST(Package, V17_absurd_counts) {
