@@ -11,6 +11,7 @@ namespace {
 
 constexpr Severity kError = Severity::kError;
 constexpr Severity kWarning = Severity::kWarning;
+constexpr Severity kNote = Severity::kNote;
 
 constexpr DiagnosticRow kRows[] = {
 #define DIAGNOSTIC(id, code, severity, title, help) {code, severity, title, help},
