@@ -128,6 +128,7 @@ class Body {
   bool check_in_outs(const Expr& call, const PouInfo& callee, const std::vector<Binding>& bindings);
   void evaluate_input(Binding& binding, bool keep);
   bool evaluate_in_out(Binding& binding);
+  bool may_call(ExprId expr);
   void evaluate_arguments(const Expr& call, std::vector<Binding>& bindings);
   void pass_input(const Binding& binding, const ir::Place& parameter);
   void take_outputs(std::vector<Binding>& bindings,

@@ -23,6 +23,15 @@ void Body::evaluate_input(Binding& binding, bool keep) {
     binding.value = value(id, parameter.type);
     return;
   }
+  ExprKind kind = tree_[id].kind;
+  if (kind == ExprKind::kArrayInit || kind == ExprKind::kStructInit) {
+    ir::Place list;
+    list.base = ir::PlaceBase::kConst;
+    list.base_type = list.type = parameter.type;
+    list.constant = sema_.initial_value(id, parameter.type);
+    if (list.constant.valid()) binding.place = list;
+    return;
+  }
   const Note& note = sema_.infer(id);
   if (!note.type.valid()) return;
   bool strings =
@@ -58,6 +67,13 @@ bool Body::evaluate_in_out(Binding& binding) {
   return true;
 }
 
+// Lists are constants.
+bool Body::may_call(ExprId id) {
+  ExprKind kind = tree_[id].kind;
+  bool list = kind == ExprKind::kArrayInit || kind == ExprKind::kStructInit;
+  return !list && sema_.infer(id).calls;
+}
+
 void Body::evaluate_arguments(const Expr& call, std::vector<Binding>& bindings) {
   for (size_t i = 0; i < bindings.size(); ++i) {
     Binding& binding = bindings[i];
@@ -69,7 +85,7 @@ void Body::evaluate_arguments(const Expr& call, std::vector<Binding>& bindings) 
     } else {
       bool keep = false;
       for (size_t k = i + 1; k < bindings.size(); ++k) {
-        keep = keep || sema_.infer(bindings[k].arg->value).calls;
+        keep = keep || may_call(bindings[k].arg->value);
       }
       evaluate_input(binding, keep);
     }

@@ -49,40 +49,56 @@ ir::ConstId Sema::array_value(const Expr& expr, ir::TypeId type) {
   return program.constants.add(std::move(value));
 }
 
+// `3(7)` and `N(7)`: how often, and which values; other items stand once.
+bool Sema::array_item(ExprId id, uint64_t& rounds, std::vector<ExprId>& values) {
+  const Expr& item = tree[id];
+  rounds = 1;
+  if (item.kind == ExprKind::kRepeat) {
+    for (uint32_t k = 0; k < item.list.count; ++k) {
+      values.push_back(tree.expr_lists[item.list.first + k]);
+    }
+  } else if (item.kind == ExprKind::kCall && tree[item.operand].kind == ExprKind::kName &&
+             find_variable(tree[item.operand].name.text).valid()) {
+    for (uint32_t k = 0; k < item.args.count; ++k) {
+      values.push_back(tree.args[item.args.first + k].value);
+      if (!values.back().valid()) return false;
+    }
+  } else {
+    values.push_back(id);
+    return true;
+  }
+  auto count = fold_integer(item.operand);
+  if (!count) return false;
+  if (*count < 0) {
+    error(DiagnosticCode::kBadInitializer, item.span, "a negative number of values");
+    return false;
+  }
+  rounds = static_cast<uint64_t>(*count);
+  return true;
+}
+
 // `at` is the flat number of the next element. Runs of one value stay one entry.
 bool Sema::array_elements(const Expr& list, ir::TypeId type, uint64_t total,
                           std::vector<ir::ConstElement>& out, uint64_t& at) {
   ir::TypeId element = program.types[type].base;
   for (uint32_t i = 0; i < list.list.count; ++i) {
     ExprId id = tree.expr_lists[list.list.first + i];
-    const Expr& item = tree[id];
     uint64_t rounds = 1;
-    if (item.kind == ExprKind::kRepeat) {
-      auto count = fold_integer(item.operand);
-      if (!count) return false;
-      if (*count < 0) {
-        error(DiagnosticCode::kBadInitializer, item.span, "a negative number of values");
-        return false;
-      }
-      rounds = static_cast<uint64_t>(*count);
-    }
-    uint32_t width = item.kind == ExprKind::kRepeat ? item.list.count : 1;
-    if (width == 0) {  // n(): elements that keep their default
-      at += rounds;
-    }
+    std::vector<ExprId> items;
+    if (!array_item(id, rounds, items)) return false;
+    uint64_t width = items.empty() ? 1 : items.size();  // n(): elements keep their default
     if (rounds > total || at + rounds * width > total) {
-      error(DiagnosticCode::kTooManyInitializers, item.span,
+      error(DiagnosticCode::kTooManyInitializers, tree[id].span,
             "`" + type_text(type) + "` has " + std::to_string(total) + " elements");
       return false;
     }
     std::vector<ir::ConstId> values;
-    for (uint32_t k = 0; k < width; ++k) {
-      ExprId value = item.kind == ExprKind::kRepeat ? tree.expr_lists[item.list.first + k] : id;
-      values.push_back(initial_value(value, element));
+    for (ExprId item : items) {
+      values.push_back(initial_value(item, element));
       if (!values.back().valid()) return false;
     }
-    if (values.size() == 1) {
-      if (rounds != 0) {
+    if (values.size() <= 1) {
+      if (rounds != 0 && !values.empty()) {
         out.push_back({static_cast<uint32_t>(at), static_cast<uint32_t>(rounds), values[0]});
       }
       at += rounds;

@@ -182,6 +182,7 @@ class Sema {
   // initial_values.cc
   ir::ConstId array_value(const Expr& expr, ir::TypeId type);
   ir::ConstId struct_value(const Expr& expr, ir::TypeId type);
+  bool array_item(ExprId id, uint64_t& rounds, std::vector<ExprId>& values);
   bool array_elements(const Expr& list, ir::TypeId type, uint64_t total,
                       std::vector<ir::ConstElement>& out, uint64_t& at);
 

@@ -105,6 +105,16 @@ TEST(Arrays, IndexOutsideTraps) {
   EXPECT_EQ(run.number("P.a[3]"), 1);
 }
 
+TEST(Blocks, ListsAsArguments) {
+  Controlled run(
+      "FUNCTION_BLOCK Acc VAR_INPUT arr : ARRAY[0..2] OF INT; END_VAR VAR_OUTPUT o : INT; END_VAR\n"
+      "VAR CONSTANT k : INT := 3; tab : ARRAY[0..2] OF INT := [k(4)]; END_VAR\n"
+      "o := arr[1] + tab[2]; END_FUNCTION_BLOCK\n"
+      "PROGRAM P VAR a : Acc; END_VAR a(arr := [1, 2, 3]); END_PROGRAM");
+  EXPECT_EQ(run.scan(), "");
+  EXPECT_EQ(run.number("P.a.o"), 6);
+}
+
 TEST(Arrays, OfArraysAndStructures) {
   Controlled run(
       "TYPE Cell : STRUCT v : ARRAY[0..1] OF INT; END_STRUCT END_TYPE\n"
