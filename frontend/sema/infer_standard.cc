@@ -1,0 +1,198 @@
+// Standard functions: the rules of stdlib/registry.h, one case each.
+#include <algorithm>
+
+#include "base/limits.h"
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+
+using stdlib::FunctionRule;
+
+BinaryOp standard_operator(stdlib::FunctionId id) {
+  switch (id) {
+    case stdlib::FunctionId::kAdd:
+      return BinaryOp::kAdd;
+    case stdlib::FunctionId::kSub:
+      return BinaryOp::kSub;
+    case stdlib::FunctionId::kMul:
+      return BinaryOp::kMul;
+    case stdlib::FunctionId::kDiv:
+      return BinaryOp::kDiv;
+    case stdlib::FunctionId::kMod:
+      return BinaryOp::kMod;
+    case stdlib::FunctionId::kExpt:
+      return BinaryOp::kPower;
+    case stdlib::FunctionId::kAnd:
+      return BinaryOp::kAnd;
+    case stdlib::FunctionId::kOr:
+      return BinaryOp::kOr;
+    case stdlib::FunctionId::kXor:
+      return BinaryOp::kXor;
+    case stdlib::FunctionId::kGt:
+      return BinaryOp::kGt;
+    case stdlib::FunctionId::kGe:
+      return BinaryOp::kGe;
+    case stdlib::FunctionId::kLt:
+      return BinaryOp::kLt;
+    case stdlib::FunctionId::kLe:
+      return BinaryOp::kLe;
+    case stdlib::FunctionId::kNe:
+      return BinaryOp::kNe;
+    default:
+      return BinaryOp::kEq;
+  }
+}
+
+Note Sema::infer_standard(const Expr& expr, const stdlib::FunctionRow& row) {
+  std::vector<ExprId> args = standard_arguments(expr, row);
+  if (args.empty() && expr.args.count + row.fewest != 0) return {};
+  Note all;
+  for (ExprId arg : args) {
+    const Note& note = infer(arg);
+    if (!note.type.valid()) return {};
+    all.calls = all.calls || note.calls;
+    all.can_trap = all.can_trap || note.can_trap;
+  }
+  Note note = infer_rule(expr, row, args);
+  note.calls = all.calls;
+  note.can_trap = note.can_trap || all.can_trap;
+  note.constant = false;
+  note.variable = {};
+  note.progress = Progress::kNew;
+  return note;
+}
+
+Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
+                      const std::vector<ExprId>& args) {
+  auto argument = [&](uint32_t i) -> const Note& { return infer(args[i]); };
+  auto elementary = [&](ir::Kind kind) {
+    Note note;
+    note.type = program.types.elementary(kind);
+    return note;
+  };
+  auto refuse = [&](const Note& note) {
+    error(DiagnosticCode::kWrongArgument, expr.span,
+          std::string(row.name) + " is not defined for `" + type_text(note.type) + "`",
+          "it takes " + std::string(row.signature));
+    return Note();
+  };
+  switch (row.rule) {
+    case FunctionRule::kClock:
+      return elementary(row.id == stdlib::FunctionId::kTime ? ir::Kind::kTime : ir::Kind::kLtime);
+    case FunctionRule::kMove:
+      return argument(0);
+    case FunctionRule::kNumberSame: {
+      Note note = argument(0);
+      Traits traits = traits_of(program.types, note.type);
+      note.type = without_range(program.types, note.type);
+      return traits.number() || traits.duration || traits.bits ? note : refuse(note);
+    }
+    case FunctionRule::kReal: {
+      Note note = unify_arguments(args, 0);
+      Traits traits = traits_of(program.types, note.type);
+      if (traits.real) return note;
+      if (!traits.integer && !traits.bits) return note.type.valid() ? refuse(note) : note;
+      if (options.dialect == Dialect::kIec && note.flex == Flex::kNone) return refuse(note);
+      Note real = elementary(ir::Kind::kLreal);
+      real.flex = Flex::kReal;
+      return real;
+    }
+    case FunctionRule::kTrunc: {
+      if (!traits_of(program.types, argument(0).type).real) return refuse(argument(0));
+      Note note = elementary(ir::Kind::kDint);
+      note.can_trap = true;
+      return note;
+    }
+    case FunctionRule::kArithmetic:
+    case FunctionRule::kBitwise: {
+      Note note = argument(0);
+      for (uint32_t i = 1; i < args.size() && note.type.valid(); ++i) {
+        note = row.rule == FunctionRule::kArithmetic
+                   ? infer_arithmetic(standard_operator(row.id), note, argument(i), expr.span)
+                   : infer_bitwise(standard_operator(row.id), note, argument(i), expr.span);
+      }
+      return note;
+    }
+    case FunctionRule::kNot: {
+      Note note = argument(0);
+      Traits traits = traits_of(program.types, note.type);
+      note.type = without_range(program.types, note.type);
+      return traits.boolean || traits.bits || traits.integer ? note : refuse(note);
+    }
+    case FunctionRule::kShift: {
+      Note note = argument(0);
+      Traits traits = traits_of(program.types, note.type);
+      Traits count = traits_of(program.types, argument(1).type);
+      note.type = without_range(program.types, note.type);
+      if (!traits.bits && !traits.integer) return refuse(note);
+      return count.integer || count.bits ? note : refuse(argument(1));
+    }
+    case FunctionRule::kSelect:
+    case FunctionRule::kMux:
+      return unify_arguments(args, 1);
+    case FunctionRule::kExtreme: {
+      Note note = unify_arguments(args, 0);
+      bool ordered = program.types.is_scalar(note.type) || is_string(program.types, note.type);
+      return !note.type.valid() || ordered ? note : refuse(note);
+    }
+    case FunctionRule::kCompare: {
+      for (uint32_t i = 0; i + 1 < args.size(); ++i) {
+        Note note =
+            infer_comparison(standard_operator(row.id), argument(i), argument(i + 1), expr.span);
+        if (!note.type.valid()) return note;
+      }
+      return elementary(ir::Kind::kBool);
+    }
+    case FunctionRule::kString:
+      return infer_string_function(args, row);
+    case FunctionRule::kStringNumber:
+      if (!infer_string_function(args, row).type.valid()) return {};
+      return elementary(ir::Kind::kInt);
+  }
+  return {};
+}
+
+// The leading arguments are strings of one kind. The result has room for whatever
+// can come out, so nothing is cut before it is assigned.
+Note Sema::infer_string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row) {
+  uint32_t strings = string_arguments(row, static_cast<uint32_t>(args.size()));
+  uint64_t room = 0;
+  bool wide = false;
+  for (uint32_t i = 0; i < args.size(); ++i) {
+    const Note& note = infer(args[i]);
+    Traits traits = traits_of(program.types, note.type);
+    bool string = is_string(program.types, note.type);
+    bool fits = i < strings ? string : traits.integer || traits.bits;
+    bool is_wide = string && program.types[note.type].kind == ir::Kind::kWstring;
+    if (!fits || (string && i > 0 && i < strings && is_wide != wide)) {
+      error(DiagnosticCode::kWrongArgument, tree[args[i]].span,
+            "argument " + std::to_string(i + 1) + " of " + std::string(row.name) + " is `" +
+                type_text(note.type) + "`",
+            "it takes " + std::string(row.signature));
+      return {};
+    }
+    if (i < strings) {
+      room += program.types[note.type].capacity;
+      wide = is_wide;
+    }
+  }
+  uint32_t capacity = static_cast<uint32_t>(std::min<uint64_t>(room, base::kMaxStringCapacity));
+  Note note;
+  note.type = wide ? program.types.wstring(capacity) : program.types.string(capacity);
+  return note;
+}
+
+uint32_t string_arguments(const stdlib::FunctionRow& row, uint32_t count) {
+  switch (row.id) {
+    case stdlib::FunctionId::kConcat:
+      return count;
+    case stdlib::FunctionId::kInsert:
+    case stdlib::FunctionId::kReplace:
+    case stdlib::FunctionId::kFind:
+      return 2;
+    default:
+      return 1;
+  }
+}
+
+}  // namespace frontend
