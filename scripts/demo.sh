@@ -6,7 +6,7 @@ bin=$(cd "$1" && pwd)
 cd "$(dirname "$0")/.."
 state=$(mktemp -d)
 cleanup() {
-  "$bin/stvm" stop --dir "$state" >/dev/null 2>&1 || true
+  "$bin/stvm" stop --dir "$state/plc" >/dev/null 2>&1 || true
   rm -rf "$state"
 }
 trap cleanup EXIT INT TERM

@@ -133,7 +133,7 @@ std::vector<LiveLoss> Change::live_losses() const {
   };
   pending_->forward.read(memory, collect, nullptr);
   std::vector<LiveLoss> others =
-      values_without_rule(plan(), pending_->old_image.image(), controller_.memory().view());
+      values_without_place(plan(), pending_->old_image.image(), controller_.memory().view());
   rows.insert(rows.end(), others.begin(), others.end());
   return rows;
 }

@@ -18,22 +18,27 @@ LiveLoss describe(const Loss& loss, const Transfer& transfer, const Areas& new_a
   return row;
 }
 
-std::vector<LiveLoss> values_without_rule(const Plan& plan, const ir::Image& old_image,
-                                          std::span<const uint8_t> memory) {
+std::vector<LiveLoss> values_without_place(const Plan& plan, const ir::Image& old_image,
+                                           std::span<const uint8_t> memory) {
   std::vector<LiveLoss> losses;
   for (const FateRow& row : plan.fates) {
-    if (row.fate != Fate::kInitialised || !row.may_lose) continue;
+    bool dropped = row.fate == Fate::kDropped;
+    if (!dropped && (row.fate != Fate::kInitialised || !row.may_lose)) continue;
     base::Result<ir::Symbol> symbol = ir::find_symbol(old_image, row.path);
     std::string value = row.old_type;
     if (symbol.ok()) value = ir::format_value(old_image, *symbol, memory);
-    losses.push_back({row.path, value, "its initial value", "has no conversion, initialised"});
+    if (dropped) {
+      losses.push_back({row.path, value, "", "is dropped"});
+    } else {
+      losses.push_back({row.path, value, "its initial value", "has no conversion"});
+    }
   }
   return losses;
 }
 
 base::Error would_lose(const LiveLoss& first, uint64_t more) {
-  std::string text = "`" + first.path + "` is " + first.old_value + "; it " + first.what +
-                     " and would become " + first.new_value;
+  std::string text = "`" + first.path + "` is " + first.old_value + "; it " + first.what;
+  if (!first.new_value.empty()) text += " and would become " + first.new_value;
   if (more != 0) text += " (and " + std::to_string(more) + " more)";
   return {base::Refusal::kWouldLose, text + "; allow it with --allow-loss, or change the program"};
 }

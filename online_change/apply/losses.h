@@ -11,9 +11,10 @@ namespace online_change {
 
 LiveLoss describe(const Loss& loss, const Transfer& transfer, const Areas& new_areas,
                   const uint8_t* memory);
-// Values of variables that keep their name but get a type without a rule from the old one.
-std::vector<LiveLoss> values_without_rule(const Plan& plan, const ir::Image& old_image,
-                                          std::span<const uint8_t> memory);
+// Values that go (dropped), and values of variables that keep their name but get a type
+// without a rule from the old one.
+std::vector<LiveLoss> values_without_place(const Plan& plan, const ir::Image& old_image,
+                                           std::span<const uint8_t> memory);
 // "`Main.x` is 300; as the new type it saturates to 127", and how many more.
 base::Error would_lose(const LiveLoss& first, uint64_t more);
 

@@ -72,6 +72,15 @@ void Execution::start(const Generation& generation, uint8_t* memory, uint32_t id
   trap_ = {};
 }
 
+Trap Execution::interrupted(ir::TrapKind kind) const {
+  Trap trap;
+  trap.kind = kind;
+  trap.pou = pou_;
+  trap.unit = static_cast<uint32_t>(pc_ - generation_->pous()[pou_].code);
+  trap.instance = instance_;
+  return trap;
+}
+
 Exit Execution::run(uint64_t fuel) {
   fuel = std::max<uint64_t>(fuel, 1);
   Context ctx = Interpreter::context_of(*this, fuel);

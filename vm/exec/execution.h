@@ -51,6 +51,8 @@ class Execution {
   Exit run(uint64_t fuel);
 
   const Trap& trap() const { return trap_; }
+  // A trap from outside (fuel, watchdog) at the safe point where this one is suspended.
+  Trap interrupted(ir::TrapKind kind) const;
   // First stack offset that this activation does not use: where a higher-priority
   // one may start while this one is suspended.
   uint32_t stack_top() const;

@@ -128,21 +128,15 @@ void Scheduler::run_slice(TaskSlot& task) {
   task.run_ns += now - looked_ns_;
   looked_ns_ = now;
 
-  Trap trap{ir::TrapKind::kWatchdog,
-            tables_->generation->instances()[task.programs[task.program]].pou,
-            0,
-            task.programs[task.program],
-            {0, 0}};
   bool too_long = task.watchdog_ns > 0 && task.run_ns > task.watchdog_ns;
   if (exit == Exit::kTrap) {
     trap_in(task, task.execution->trap());
   } else if (too_long) {
-    trap_in(task, trap);
+    trap_in(task, task.execution->interrupted(ir::TrapKind::kWatchdog));
   } else if (exit == Exit::kDone) {
     end_program(task);
   } else if (fuel_left(task) == 0) {
-    trap.kind = ir::TrapKind::kFuel;
-    trap_in(task, trap);
+    trap_in(task, task.execution->interrupted(ir::TrapKind::kFuel));
   }
 }
 

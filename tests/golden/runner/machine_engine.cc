@@ -93,8 +93,8 @@ class MachineEngine : public Engine {
       lines.push_back(fate_text(row));
     }
     for (const online_change::LiveLoss& loss : change_->live_losses()) {
-      lines.push_back("loss " + loss.path + ": " + loss.old_value + " -> " + loss.new_value + " " +
-                      loss.what);
+      std::string becomes = loss.new_value.empty() ? "" : " -> " + loss.new_value;
+      lines.push_back("loss " + loss.path + ": " + loss.old_value + becomes + " " + loss.what);
     }
     base::Status armed = change_->arm(allow_loss);
     if (!armed.ok()) {

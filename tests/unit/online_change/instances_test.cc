@@ -35,7 +35,7 @@ TEST(Instances, A9_A10_to_the_letter) {
   EXPECT_EQ(plant.id_of("Prog2.inst1"), 10u);
   plant.run(5);
   base::Digest before = plant.hash();
-  plant.change(source("", "inst2 : FBDef3;", "", "inst2();"));
+  plant.change(source("", "inst2 : FBDef3;", "", "inst2();"), true);
   EXPECT_EQ(plant.id_of("Prog1.inst3"), 8u);
   EXPECT_EQ(plant.id_of("Prog1.inst3.inst1"), 9u);
   uint32_t child = plant.id_of("Prog1.inst3.inst2");
@@ -44,7 +44,7 @@ TEST(Instances, A9_A10_to_the_letter) {
   EXPECT_EQ(plant.row("Prog1.inst3.inst2")->fate, Fate::kInitialised);
   plant.undo();
   EXPECT_EQ(plant.hash(), before);
-  plant.change(source("", "inst2 : FBDef3;", "", "inst2();"));
+  plant.change(source("", "inst2 : FBDef3;", "", "inst2();"), true);
   plant.run(2);
   EXPECT_EQ(plant.get("Prog1.inst3.inst1.n"), "7");
   EXPECT_EQ(plant.get("Prog1.inst3.inst2.n"), "2");
@@ -96,15 +96,15 @@ TEST(Instances, D2_case28_interface_changes_while_unedited_pous_call_it) {
   Plant plant(source("x : INT;", "y := x;"));
   plant.run(2);
   EXPECT_EQ(plant.get("Main.r"), "6");
-  plant.change(source("gain : INT := 10; x : INT;", "y := x * gain;"));
+  plant.change(source("gain : INT := 10; x : INT;", "y := x * gain;"), true);
   plant.run(1);
   EXPECT_EQ(plant.get("Main.r"), "36");
   plant.accept();
-  plant.change(source("gain : INT := 10; x : DINT;", "y := x * gain + 1;"));
+  plant.change(source("gain : INT := 10; x : DINT;", "y := x * gain + 1;"), true);
   plant.run(1);
   EXPECT_EQ(plant.get("Main.r"), "67");
   plant.accept();
-  plant.change(source("x : DINT;", "y := x;"));
+  plant.change(source("x : DINT;", "y := x;"), true);
   plant.run(1);
   EXPECT_EQ(plant.get("Main.r"), "70");
 }
@@ -241,12 +241,12 @@ TEST(Instances, program_and_task_added_and_removed) {
       "PROGRAM Second VAR n : INT := 5; END_VAR n := n + 1; END_PROGRAM";
   Plant plant(kOne);
   plant.run(3);
-  plant.change(kTwo);
+  plant.change(kTwo, true);
   plant.run(2);
   EXPECT_EQ(plant.get("Main.n"), "5");
   EXPECT_EQ(plant.get("Second.n"), "7");
   plant.accept();
-  plant.change(kOne);
+  plant.change(kOne, true);
   plant.run(1);
   EXPECT_EQ(plant.get("Main.n"), "6");
   plant.undo();

@@ -151,7 +151,8 @@ TEST(Values, A2_A3_case14_renamed_without_a_rule) {
   plant.set("other", "55");
   base::Digest before = plant.hash();
   plant.change("VAR_GLOBAL new_name : INT := 6; other : DINT := 5; END_VAR " +
-               main_with("k : INT;", "k := k + 1;"));
+                   main_with("k : INT;", "k := k + 1;"),
+               true);
   EXPECT_EQ(plant.get("new_name"), "6");
   EXPECT_EQ(plant.get("other"), "55");
   EXPECT_EQ(plant.row("old_name")->fate, Fate::kDropped);
@@ -202,7 +203,7 @@ TEST(Values, case18_shifted_bounds_other_dimensions) {
 
 TEST(Values, case19_index_that_became_invalid_is_kept) {
   Plant plant(main_with("v : ARRAY[0..9] OF INT; i : INT := 8;"));
-  plant.change(main_with("v : ARRAY[0..4] OF INT; i : INT := 8;"));
+  plant.change(main_with("v : ARRAY[0..4] OF INT; i : INT := 8;"), true);
   EXPECT_EQ(plant.get("Main.i"), "8");
   EXPECT_EQ(plant.plan().counts.dropped, 5u);
 }
@@ -210,7 +211,7 @@ TEST(Values, case19_index_that_became_invalid_is_kept) {
 TEST(Values, case20_element_type_and_bounds) {
   Plant plant(main_with("v : ARRAY[0..4] OF INT := [1, 2, 3, 4, 5];"));
   base::Digest before = plant.hash();
-  plant.change(main_with("v : ARRAY[2..6] OF LREAL;"));
+  plant.change(main_with("v : ARRAY[2..6] OF LREAL;"), true);
   EXPECT_EQ(plant.get("Main.v"), "[3.0, 4.0, 5.0, 0.0, 0.0]");
   plant.undo();
   EXPECT_EQ(plant.hash(), before);
@@ -226,7 +227,7 @@ TEST(Values, case21_case22_structures_by_name) {
   };
   Plant plant(source("a : INT; b : REAL := 1.5;"));
   plant.run(3);
-  plant.change(source("first : BOOL := TRUE; a : DINT; renamed : REAL := 2.5;"));
+  plant.change(source("first : BOOL := TRUE; a : DINT; renamed : REAL := 2.5;"), true);
   EXPECT_EQ(plant.get("Main.b[2].r[2].a"), "3");
   EXPECT_EQ(plant.get("Main.b[1].r[1].first"), "TRUE");
   EXPECT_EQ(plant.get("Main.b[1].r[1].renamed"), "2.5");
