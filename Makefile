@@ -6,7 +6,8 @@
 #   make test     everything that has to hold, some minutes
 #   make bench    ST against C
 #   make asan     tests under AddressSanitizer and UBSan (also: ubsan, tsan)
-#   make fuzz     long runs of the fuzz targets
+#   make fuzz     a million executions of each fuzz target under sanitizers
+#   make soak     long differential and hard mode runs
 #   make minimal  build and test with every adapter off
 #   make format   clang-format over the whole tree
 
@@ -51,10 +52,18 @@ bench: setup
 	@cmake --preset release >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target bench
 
+FUZZ_RUNS := 1000000
 fuzz: setup
 	@cmake --preset asan >/dev/null
-	@cmake --build build/asan -j $(JOBS)
-	@ctest --test-dir build/asan -C Long -L fuzz --output-on-failure
+	@cmake --build build/asan -j $(JOBS) --target fuzz_parse fuzz_image
+	@for target in parse image; do \
+	  build/asan/tests/fuzz/fuzz_$$target tests/fuzz/corpus/$$target $(FUZZ_RUNS) 2 || exit 1; \
+	done
+
+# Hours, not minutes: 5,000 random programs on every tier; the bottling line in every hard mode.
+soak: build
+	@$(BUILD)/tests/differential 1 5000
+	@tests/cli/determinism.sh $(CURDIR) $(CURDIR)/$(BUILD) 100000
 
 # Rewrites what is generated from the tables (docs/*.md) and the golden files.
 docs: build
