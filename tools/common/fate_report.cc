@@ -39,7 +39,7 @@ std::string value_change(const FateRow& row, const LiveValues& live) {
   } else if (!value.after.empty() && value.after != value.now) {
     text += " -> " + value.after;
   }
-  if (!value.loss.empty()) text += " LOSS: " + value.loss;
+  if (!value.loss.empty() && row.fate != Fate::kDropped) text += " LOSS: " + value.loss;
   return text;
 }
 
