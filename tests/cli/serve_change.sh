@@ -22,12 +22,12 @@ expect 0 stvm get --dir plc Main.count Main.m[1].turns
 said 'Main.count'
 expect 7 stvm get --dir plc Main.cuont
 said 'R0401'
-expect 7 stvm set --dir plc Main.count hello
+expect 7 stvm set --dir plc Main.count=hello
 said 'R0402'
-expect 0 stvm set --dir plc Main.gone 77
+expect 0 stvm set --dir plc Main.gone=77
 expect 0 stvm get --dir plc Main.gone
 said '77'
-expect 7 stvm force --dir plc Main.nope 1
+expect 7 stvm force --dir plc Main.nope=1
 said 'R0401'
 
 expect 0 stvm change v2.st --dir plc --dry-run

@@ -1,10 +1,13 @@
 // stvm undo, accept, stop: one command, one answer.
+#include <chrono>
 #include <cstdio>
+#include <thread>
 
 #include "tools/common/exit.h"
 #include "tools/common/json.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
+#include "tools/stvm/state_folder.h"
 #include "tools/stvm/switch_text.h"
 
 namespace stvm {
@@ -71,8 +74,21 @@ int undo(const tools::Options& options) { return code_of(undo_change(options)); 
 int accept(const tools::Options& options) {
   return code_of(simple(options, vm::Command::kAccept, "accepted"));
 }
+// The controller answers, ends its scan and goes; its folder is free when it has gone.
+base::Status wait_until_gone(const std::string& directory) {
+  constexpr auto kPatience = std::chrono::seconds(10);
+  auto give_up = std::chrono::steady_clock::now() + kPatience;
+  for (;;) {
+    base::Result<StateFolder> folder = StateFolder::open(directory);
+    if (folder.ok()) return base::Ok{};
+    if (std::chrono::steady_clock::now() > give_up) return folder.error();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
 int stop(const tools::Options& options) {
-  return code_of(simple(options, vm::Command::kStop, "stopped"));
+  base::Status stopped = simple(options, vm::Command::kStop, "stopped");
+  return code_of(stopped.ok() ? wait_until_gone(state_directory(options)) : stopped);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ base::Bytes carry_over(const ir::Image& from, const Force& force, const ir::Imag
 }  // namespace
 
 TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
-    : generation(&made_for), process_image(made_for.image()) {
+    : generation(&made_for), version(made_for.verified()), process_image(made_for.image()) {
   const ir::Image& image = made_for.image();
   for (const ir::ImageTask& task : image.tasks) {
     by_priority.push_back(static_cast<uint32_t>(tasks.size()));
@@ -106,7 +106,7 @@ int64_t TaskTables::next_cycle_ns(int64_t cycle_start_ns) const {
 }
 
 void TaskTables::adopt_forces(const ir::Image& from, const std::vector<Force>& rows) {
-  const ir::Image& to = generation->image();
+  const ir::Image& to = version.image();
   forces.clear();
   for (const Force& force : rows) {
     base::Result<ir::Symbol> symbol = ir::find_symbol(to, force.path);

@@ -44,7 +44,8 @@ struct TaskTables {
   void adopt_forces(const ir::Image& from, const std::vector<Force>& forces);
 
   const Generation* generation;
-  std::vector<TaskSlot> tasks;        // as in the image
+  ir::VerifiedImage version;      // outlives the generation, which its owner may drop at any time
+  std::vector<TaskSlot> tasks;  // as in the image
   std::vector<uint32_t> by_priority;  // highest first, then as declared
   int64_t base_period_ns = 0;
   ProcessImage process_image;
