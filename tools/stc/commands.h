@@ -1,16 +1,11 @@
 // The commands of stc, one file each. Each returns the exit code.
 #pragma once
 
-#include <span>
-
-#include "tools/common/options.h"
+#include "tools/common/dispatch.h"
 
 namespace stc {
 
-struct Entry {
-  const tools::Command* command;
-  int (*run)(const tools::Options& options);
-};
+using tools::Entry;
 
 extern const Entry kCheck;
 extern const Entry kBuild;

@@ -1,14 +1,11 @@
 // The commands of stvm, one file each. Each returns the exit code.
 #pragma once
 
-#include "tools/common/options.h"
+#include "tools/common/dispatch.h"
 
 namespace stvm {
 
-struct Entry {
-  const tools::Command* command;
-  int (*run)(const tools::Options& options);
-};
+using tools::Entry;
 
 extern const Entry kRun;
 extern const Entry kBench;

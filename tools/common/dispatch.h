@@ -1,0 +1,18 @@
+// A tool's main: find the command, parse its options, run it; help and usage errors on the way.
+#pragma once
+
+#include <span>
+
+#include "tools/common/options.h"
+
+namespace tools {
+
+struct Entry {
+  const Command* command;
+  int (*run)(const Options& options);  // the exit code
+};
+
+int dispatch(const char* tool, const char* purpose, std::span<const Entry* const> entries, int argc,
+             char** argv);
+
+}  // namespace tools
