@@ -60,7 +60,7 @@ fuzz: setup
 	  build/asan/tests/fuzz/fuzz_$$target tests/fuzz/corpus/$$target $(FUZZ_RUNS) 2 || exit 1; \
 	done
 
-# Hours, not minutes: 5,000 random programs on every tier; the bottling line in every hard mode.
+# Hours, not minutes: 5,000 random programs on every tier; identity changes at 100,000 scans of the line.
 soak: build
 	@$(BUILD)/tests/differential 1 5000
 	@tests/cli/determinism.sh $(CURDIR) $(CURDIR)/$(BUILD) 100000
