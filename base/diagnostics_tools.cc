@@ -1,5 +1,6 @@
 // The forms for other programs: JSON, SARIF 2.1.0, GitHub workflow commands.
 // Lines and columns are 1-based, columns count characters, ends are exclusive.
+#include <algorithm>
 #include <set>
 
 #include "base/diagnostics_render.h"
@@ -38,11 +39,12 @@ std::string sarif_message(std::string_view text) {
   return "\"message\":{\"text\":" + json_string(text) + '}';
 }
 
-// A URI reference: everything but unreserved characters and `/` is percent-encoded.
+// A URI reference: everything but unreserved characters and `/` is percent-encoded, so that no
+// colon of a relative path looks like a scheme. An absolute path becomes a file URI.
 std::string uri(std::string_view path) {
   static constexpr char kHex[] = "0123456789ABCDEF";
   static constexpr std::string_view kPlain = "-._~/";
-  std::string out;
+  std::string out = path.starts_with('/') ? "file://" : "";
   for (char c : path) {
     auto byte = static_cast<uint8_t>(c);
     bool letter = (byte | 0x20) >= 'a' && (byte | 0x20) <= 'z';
@@ -63,11 +65,26 @@ std::string sarif_location(const SourceMap& sources, SourceSpan span) {
          number_field("endColumn", region.end_column) + "}}";
 }
 
-std::string sarif_result(const Diagnostic& diagnostic, const SourceMap& sources) {
+// The rules that occur, in the registry's order.
+using Rules = std::vector<DiagnosticCode>;
+
+Rules rules_of(const Diagnostics& diagnostics) {
+  std::set<DiagnosticCode> used;
+  for (const Diagnostic& diagnostic : diagnostics.all()) used.insert(diagnostic.code);
+  return {used.begin(), used.end()};
+}
+
+size_t rule_index(const Rules& rules, DiagnosticCode code) {
+  return static_cast<size_t>(std::lower_bound(rules.begin(), rules.end(), code) - rules.begin());
+}
+
+std::string sarif_result(const Diagnostic& diagnostic, const SourceMap& sources,
+                         const Rules& rules) {
   const DiagnosticRow& row = diagnostic_row(diagnostic.code);
   std::string text = diagnostic.text;
   if (!diagnostic.fix.empty()) text += " (" + diagnostic.fix + ')';
   std::string out = "{\"ruleId\":" + json_string(row.code) +
+                    ",\"ruleIndex\":" + std::to_string(rule_index(rules, diagnostic.code)) +
                     ",\"level\":" + json_string(severity_name(row.severity)) + ',' +
                     sarif_message(text);
   if (region_of(sources, diagnostic.span).line != 0) {
@@ -83,12 +100,9 @@ std::string sarif_result(const Diagnostic& diagnostic, const SourceMap& sources)
   return out + '}';
 }
 
-// Rules that occur, in the registry's order.
-std::string sarif_rules(const Diagnostics& diagnostics) {
-  std::set<DiagnosticCode> used;
-  for (const Diagnostic& diagnostic : diagnostics.all()) used.insert(diagnostic.code);
+std::string sarif_rules(const Rules& rules) {
   std::string out;
-  for (DiagnosticCode code : used) {
+  for (DiagnosticCode code : rules) {
     const DiagnosticRow& row = diagnostic_row(code);
     out += (out.empty() ? "{" : ",{") + std::string("\"id\":") + json_string(row.code) +
            ",\"shortDescription\":{\"text\":" + json_string(row.title) +
@@ -137,13 +151,14 @@ std::string render_json(const Diagnostics& diagnostics, const SourceMap& sources
 }
 
 std::string render_sarif(const Diagnostics& diagnostics, const SourceMap& sources) {
+  Rules rules = rules_of(diagnostics);
   std::string out =
       "{\"$schema\":\"https://json.schemastore.org/sarif-2.1.0.json\",\"version\":\"2.1.0\","
       "\"runs\":[{\"tool\":{\"driver\":{\"name\":\"stc\",\"rules\":[" +
-      sarif_rules(diagnostics) + "]}},\"columnKind\":\"unicodeCodePoints\",\"results\":[";
+      sarif_rules(rules) + "]}},\"columnKind\":\"unicodeCodePoints\",\"results\":[";
   const char* separator = "\n";
   for (const Diagnostic& diagnostic : diagnostics.all()) {
-    out += separator + sarif_result(diagnostic, sources);
+    out += separator + sarif_result(diagnostic, sources, rules);
     separator = ",\n";
   }
   return out + "\n]}]}\n";

@@ -1,0 +1,21 @@
+// The block function of SHA-256: in portable C++, and with the instructions that most x86
+// processors have for it. Both give the same state; sha256_blocks() takes the faster one that
+// this processor can run.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace base {
+
+using Sha256State = std::array<uint32_t, 8>;
+
+alignas(16) extern const uint32_t kSha256Round[64];
+
+void sha256_blocks(Sha256State& state, const uint8_t* data, size_t blocks);
+void sha256_blocks_portable(Sha256State& state, const uint8_t* data, size_t blocks);
+// False, and nothing done, when this processor has no such instructions.
+bool sha256_blocks_x86(Sha256State& state, const uint8_t* data, size_t blocks);
+
+}  // namespace base
