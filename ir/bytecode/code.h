@@ -32,21 +32,37 @@ uint32_t class_size(Class cls);
 std::string_view class_name(Class cls);
 
 enum class FieldKind : uint8_t {
-  kNone, kDst, kSrc, kRead, kTemp, kFrameRead, kUpdate,   // - D S R T F U
-  kBase,     // only the base bits of this field count; offset in x or y
-  kOffset16, kBc32, kFrameSize, kCode, kNative, kRange, kTrap, kRel32,
-  kPlace32, kBounds, kType, kSize, kCapacity, kOffset32,
+  kNone,
+  kDst,
+  kSrc,
+  kRead,
+  kTemp,
+  kFrameRead,
+  kUpdate,  // - D S R T F U
+  kBase,    // only the base bits of this field count; offset in x or y
+  kOffset16,
+  kBc32,
+  kFrameSize,
+  kCode,
+  kNative,
+  kRange,
+  kTrap,
+  kRel32,
+  kPlace32,
+  kBounds,
+  kType,
+  kSize,
+  kCapacity,
+  kOffset32,
 };
 
 struct Field {
   FieldKind kind = FieldKind::kNone;
   Class cls = Class::kB;  // for kDst..kUpdate
-  constexpr bool is_near() const {
-    return kind >= FieldKind::kDst && kind <= FieldKind::kUpdate;
-  }
+  constexpr bool is_near() const { return kind >= FieldKind::kDst && kind <= FieldKind::kUpdate; }
   constexpr bool reads() const {
-    return kind == FieldKind::kSrc || kind == FieldKind::kRead ||
-           kind == FieldKind::kFrameRead || kind == FieldKind::kUpdate;
+    return kind == FieldKind::kSrc || kind == FieldKind::kRead || kind == FieldKind::kFrameRead ||
+           kind == FieldKind::kUpdate;
   }
   constexpr bool writes() const {
     return kind == FieldKind::kDst || kind == FieldKind::kTemp || kind == FieldKind::kUpdate;
@@ -55,11 +71,14 @@ struct Field {
   constexpr bool allows(Base base) const {
     switch (kind) {
       case FieldKind::kDst:
-      case FieldKind::kRead: return base != Base::kConst;
+      case FieldKind::kRead:
+        return base != Base::kConst;
       case FieldKind::kSrc:
       case FieldKind::kBase:
-      case FieldKind::kBc32: return true;
-      default: return base == Base::kFrame;
+      case FieldKind::kBc32:
+        return true;
+      default:
+        return base == Base::kFrame;
     }
   }
 };
@@ -86,10 +105,9 @@ struct Unit {
 
   static constexpr Unit make(Opcode opcode, Base base_a = Base::kFrame, Base base_b = Base::kFrame,
                              Base base_c = Base::kFrame) {
-    return {static_cast<uint16_t>(static_cast<uint32_t>(opcode) |
-                                  static_cast<uint32_t>(base_a) << 10 |
-                                  static_cast<uint32_t>(base_b) << 12 |
-                                  static_cast<uint32_t>(base_c) << 14),
+    return {static_cast<uint16_t>(
+                static_cast<uint32_t>(opcode) | static_cast<uint32_t>(base_a) << 10 |
+                static_cast<uint32_t>(base_b) << 12 | static_cast<uint32_t>(base_c) << 14),
             0, 0, 0};
   }
   static constexpr Unit extension(uint32_t x, uint32_t y) {

@@ -110,6 +110,7 @@ class Disassembler {
       case FieldKind::kType:
         return image_.types.text(region_of_field(value).type);
       case FieldKind::kSize:
+        return std::to_string(value);
       case FieldKind::kCapacity:
         return "cap " + std::to_string(value);
       default:

@@ -135,6 +135,8 @@ class Disassembler {
         return wide_text(base, value);
       case FieldKind::kOffset32:
         return place_text(value);
+      case FieldKind::kSize:
+        return "size of " + types_.text(object_.regions[value].type);
       case FieldKind::kType:
         return types_.text(object_.regions[value].type);
       case FieldKind::kBounds:

@@ -32,7 +32,7 @@ void types_section(ImageWriter& a, const TypeTable& types) {
 bool is_interned(const Type& type) {
   return type.name.empty() && !type.init.valid() &&
          (type.kind == Kind::kString || type.kind == Kind::kWstring || type.kind == Kind::kArray ||
-          type.kind == Kind::kSubrange);
+          type.kind == Kind::kSubrange || is_reference(type.kind));
 }
 
 TypeId intern(TypeTable& types, const Type& type) {
@@ -43,6 +43,10 @@ TypeId intern(TypeTable& types, const Type& type) {
       return types.wstring(type.capacity);
     case Kind::kArray:
       return types.array(type.base, type.dims);
+    case Kind::kPointer:
+    case Kind::kRefTo:
+    case Kind::kReferenceTo:
+      return types.reference(type.kind, type.base);
     default:
       return types.subrange(type.base, type.low, type.high);
   }
@@ -57,7 +61,7 @@ void add_type(TypeTable& types, Type type) {
 
 void types_section(ImageReader& a, TypeTable& types) {
   std::vector<Type> stored;
-  a.list(stored, 45, [&](Type& type) { type_fields(a, type); });
+  a.list(stored, 46, [&](Type& type) { type_fields(a, type); });
   for (Type& type : stored) add_type(types, std::move(type));
 }
 
@@ -97,7 +101,8 @@ void tables_section(Archive& a, I& image) {
     a(extent.offset);
     a(extent.size);
   });
-  a.list(image.tasks, 28, [&](auto& task) { task_fields(a, task); });
+  a.list(image.tasks, 32, [&](auto& task) { task_fields(a, task); });
+  a.list(image.access, 9, [&](auto& access) { access_fields(a, access); });
   a.list(image.io, 17, [&](auto& binding) {
     address_fields(a, binding.address);
     a(binding.data);

@@ -54,6 +54,7 @@ struct LinkedPou {
   std::string name;
   PouKind kind = PouKind::kFunction;
   TypeId self;
+  uint32_t recursion_depth = 0;  // activations at once; 0: it is in no circle of calls
   std::string file;
   base::Digest identity{};  // of the object (E1)
   uint32_t frame_size = 0;  // multiple of 8
@@ -99,7 +100,8 @@ struct ImageTask {
   int64_t period_ns = 0;
   int64_t watchdog_ns = 0;
   uint32_t priority = 0;
-  std::vector<uint32_t> programs;  // instance IDs, in order of execution
+  uint32_t event = 0;  // data offset of the BOOL whose edges release it; 0: none (ir::Task)
+  std::vector<uint32_t> programs = {};  // instance IDs, in order of execution
 };
 
 // Binds a located variable to the process image (A BOOL takes one bit there).
@@ -128,6 +130,7 @@ struct Image {
   std::vector<Instance> instances;
   std::vector<Extent> free;  // sorted, disjoint, never adjacent
   std::vector<ImageTask> tasks;
+  std::vector<AccessPath> access;
   std::vector<IoBinding> io;
   std::vector<RetainRange> retain;
   std::vector<DataRun> data;  // sorted by offset

@@ -119,6 +119,7 @@ void type_fields(Archive& a, T& v) {
     a(member.init);
     address_fields(a, member.address);
   });
+  a(v.overlap);
   a.list(v.literals, 12, [&](auto& literal) {
     a(literal.name);
     a(literal.value);
@@ -168,6 +169,7 @@ void pou_fields(Archive& a, T& v) {
   a(v.name);
   a.enumerator(v.kind, 3);
   a(v.self);
+  a(v.recursion_depth);
   a(v.file);
   a(v.identity);
   a(v.frame_size);
@@ -210,7 +212,15 @@ void task_fields(Archive& a, T& v) {
   a(v.period_ns);
   a(v.watchdog_ns);
   a(v.priority);
+  a(v.event);
   a.list(v.programs, 4, a);
+}
+
+template <class Archive, class T>
+void access_fields(Archive& a, T& v) {
+  a(v.name);
+  a(v.path);
+  a(v.writable);
 }
 
 }  // namespace ir

@@ -17,6 +17,7 @@ class Canonical {
     out_.text(fold_name(object_.name));
     out_.u8(static_cast<uint8_t>(object_.kind));
     type(object_.self);
+    out_.u32(object_.recursion_depth);
     table(object_.slots, &Canonical::slot);
     table(object_.places, &Canonical::place);
     table(object_.constants, &Canonical::constant);

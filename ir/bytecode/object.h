@@ -8,8 +8,8 @@
 //   near operand, base self, global            place
 //   near operand, base const                   constant
 //   BC32, P32, OFF, OFF32                      place (base must agree; const: constant)
-//   CODE callee, RANGE range, BOUNDS bound, TYPE region, CAP and TRAP literal
-//   FRAME, SIZE filled by the linker (zero)
+//   CODE callee, RANGE range, BOUNDS bound, TYPE and SIZE region, CAP and TRAP literal
+//   FRAME filled by the linker (zero)
 // Jumps are final: distances in units of the object (the linker adjusts them when
 // it has to insert far loads and stores).
 #pragma once
@@ -36,12 +36,12 @@ enum class SlotKind : uint8_t {
 struct Slot {
   SlotKind kind = SlotKind::kTemp;
   LocalKind local = LocalKind::kTemp;  // of kParam
-  bool aggregate = false;  // holds a value of region.type (struct, array, string)
-  Class cls = Class::kB;   // else: class of the scalar
-  Region region;           // kA: what it points to; aggregates and named scalars: their type
-  uint32_t callee = 0;     // kArg
-  uint32_t param = 0;      // kArg, kNativeArg
-  std::string name;        // of named locals, for the debugger
+  bool aggregate = false;              // holds a value of region.type (struct, array, string)
+  Class cls = Class::kB;               // else: class of the scalar
+  Region region;        // kA: what it points to; aggregates and named scalars: their type
+  uint32_t callee = 0;  // kArg
+  uint32_t param = 0;   // kArg, kNativeArg
+  std::string name;     // of named locals, for the debugger
 };
 
 enum class PlaceRoot : uint8_t { kSelf, kGlobal, kSlot, kRegion };
@@ -50,10 +50,10 @@ enum class PlaceRoot : uint8_t { kSelf, kGlobal, kSlot, kRegion };
 // member number, kIndex steps by constant index (one per dimension). No other steps.
 struct ObjectPlace {
   PlaceRoot root = PlaceRoot::kSelf;
-  uint32_t slot = 0;     // kSlot
-  Region region;         // kRegion: what the addr points to
+  uint32_t slot = 0;  // kSlot
+  Region region;      // kRegion: what the addr points to
   std::vector<Step> steps;
-  Region result;         // what is at the place
+  Region result;  // what is at the place
   friend bool operator==(const ObjectPlace&, const ObjectPlace&) = default;
 };
 
@@ -61,7 +61,7 @@ struct ObjectPlace {
 struct ObjectConstant {
   base::Bytes bytes;  // scalars: 1, 2, 4 or 8 bytes
   Class cls = Class::kB;
-  TypeId type;        // valid: `value` (or the type's default) laid out by the linker
+  TypeId type;  // valid: `value` (or the type's default) laid out by the linker
   ConstId value;
 };
 
@@ -93,6 +93,7 @@ struct Object {
   std::string name;
   PouKind kind = PouKind::kFunction;
   TypeId self;
+  uint32_t recursion_depth = 0;  // as ir::Pou's
   std::string file;
   std::vector<Slot> slots;  // kParam first, in declaration order
   std::vector<ObjectPlace> places;

@@ -6,8 +6,8 @@
 namespace ir {
 namespace {
 
-constexpr uint32_t kSlotBytes = 4;     // an ID slot or an in-out slot
-constexpr uint32_t kMaxLevels = 1024;  // types nest far less; ends every descent
+constexpr uint32_t kSlotBytes = 4;    // an ID slot or an in-out slot
+constexpr uint32_t kMaxSteps = 4096;  // types nest far less; ends every descent
 
 // A place on the way down: `offset` is what remains inside it.
 struct Spot {
@@ -71,27 +71,9 @@ struct IndexedSearch {
   }
 };
 
-// Moves `spot` to its part that covers the offset; false when there is none, or no parts.
-template <class Search>
-bool descend(const TypeTable& types, const Layouts& layouts, const Search& search, Spot& spot) {
-  const Type& type = types[spot.region.type];
-  if (spot.in_out) return false;
-  if (type.kind == Kind::kArray) {
-    const uint64_t stride = index_stride(types, layouts, spot.region);
-    if (stride == 0 || spot.offset >= region_size(types, layouts, spot.region)) return false;
-    const uint32_t inside = static_cast<uint32_t>(spot.offset % stride);
-    const bool last = spot.region.dim + 1u >= type.dims.size();
-    spot.begin += spot.offset - inside;
-    spot.offset = inside;
-    spot.region = last ? Region{type.base, 0}
-                       : Region{spot.region.type, static_cast<uint8_t>(spot.region.dim + 1)};
-    return true;
-  }
-  if (type.kind != Kind::kStruct && !spot.area) return false;
-  const int64_t number = search(spot.region.type, spot.offset);
-  if (number < 0) return false;
-  const Member& member = type.members[static_cast<size_t>(number)];
-  const uint32_t begin = layouts[spot.region.type].member_offsets[static_cast<size_t>(number)];
+void enter_member(const TypeTable& types, const Layouts& layouts, size_t number, Spot& spot) {
+  const Member& member = types[spot.region.type].members[number];
+  const uint32_t begin = layouts[spot.region.type].member_offsets[number];
   spot.begin += begin;
   spot.offset -= begin;
   spot.region = {member.type, 0};
@@ -100,7 +82,57 @@ bool descend(const TypeTable& types, const Layouts& layouts, const Search& searc
   spot.flags.constant |= member.constant;
   spot.flags.input |= member.address.area == DirectArea::kInput;
   spot.flags.output |= member.address.area == DirectArea::kOutput;
+}
+
+bool enter_element(const TypeTable& types, const Layouts& layouts, Spot& spot) {
+  const Type& type = types[spot.region.type];
+  const uint64_t stride = index_stride(types, layouts, spot.region);
+  if (stride == 0 || spot.offset >= region_size(types, layouts, spot.region)) return false;
+  const uint32_t inside = static_cast<uint32_t>(spot.offset % stride);
+  const bool last = spot.region.dim + 1u >= type.dims.size();
+  spot.begin += spot.offset - inside;
+  spot.offset = inside;
+  spot.region = last ? Region{type.base, 0}
+                     : Region{spot.region.type, static_cast<uint8_t>(spot.region.dim + 1)};
   return true;
+}
+
+// Moves `spot` to its part that covers the offset; false when there is none, or no parts.
+template <class Search>
+bool descend(const TypeTable& types, const Layouts& layouts, const Search& search, Spot& spot) {
+  const Type& type = types[spot.region.type];
+  if (spot.in_out) return false;
+  if (type.kind == Kind::kArray) return enter_element(types, layouts, spot);
+  if (!is_structure(type.kind) && !spot.area) return false;
+  const int64_t number = search(spot.region.type, spot.offset);
+  if (number < 0) return false;
+  enter_member(types, layouts, static_cast<size_t>(number), spot);
+  return true;
+}
+
+// Goes down from `spot` until found(spot) holds. Where members overlap, every one that covers
+// the offset is tried, in order of declaration; `budget` bounds what a hostile table can cost.
+template <class Search, class Found>
+bool go_down(const TypeTable& types, const Layouts& layouts, const Search& search, Spot spot,
+             uint32_t& budget, const Found& found) {
+  for (; budget > 0; --budget) {
+    if (found(spot)) return true;
+    if (spot.in_out || !types.overlaps(spot.region.type)) {
+      if (!descend(types, layouts, search, spot)) return false;
+      continue;
+    }
+    const std::vector<Member>& members = types[spot.region.type].members;
+    const std::vector<uint32_t>& offsets = layouts[spot.region.type].member_offsets;
+    for (size_t i = 0; i < members.size() && i < offsets.size() && budget > 0; ++i, --budget) {
+      if (spot.offset < offsets[i]) continue;
+      if (spot.offset - offsets[i] >= embedded_size(layouts, members[i])) continue;
+      Spot part = spot;
+      enter_member(types, layouts, i, part);
+      if (go_down(types, layouts, search, part, budget, found)) return true;
+    }
+    return false;
+  }
+  return false;
 }
 
 std::optional<LeafKind> leaf_kind(const TypeTable& types, const Layouts& layouts,
@@ -117,20 +149,18 @@ std::optional<LeafKind> leaf_kind(const TypeTable& types, const Layouts& layouts
 
 template <class Search>
 std::optional<Leaf> find_leaf(const TypeTable& types, const Layouts& layouts, const Search& search,
-                              Region region, uint32_t offset) {
-  Spot spot = spot_of(types, region, offset);
-  for (uint32_t level = 0; level < kMaxLevels; ++level) {
-    if (const auto kind = leaf_kind(types, layouts, spot)) {
-      return Leaf{*kind,
-                  spot.region.type,
-                  spot.begin,
-                  spot.flags.constant,
-                  spot.flags.input,
-                  spot.flags.output};
-    }
-    if (!descend(types, layouts, search, spot)) return std::nullopt;
-  }
-  return std::nullopt;
+                              Region region, uint32_t offset, const LeafTest& accept) {
+  std::optional<Leaf> leaf;
+  uint32_t budget = kMaxSteps;
+  const bool found = go_down(
+      types, layouts, search, spot_of(types, region, offset), budget, [&](const Spot& spot) {
+        const auto kind = leaf_kind(types, layouts, spot);
+        if (!kind) return false;
+        const PlaceFlags& flags = spot.flags;
+        leaf = Leaf{*kind, spot.region.type, spot.begin, flags.constant, flags.input, flags.output};
+        return accept(*leaf);
+      });
+  return found ? leaf : std::nullopt;
 }
 
 bool matches(const TypeTable& types, const Spot& have, const Spot& wanted) {
@@ -147,12 +177,13 @@ std::optional<PlaceFlags> find_place(const TypeTable& types, const Layouts& layo
                                      const Search& search, Region region, uint32_t offset,
                                      Region wanted) {
   const Spot goal = spot_of(types, wanted, 0);
-  Spot spot = spot_of(types, region, offset);
-  for (uint32_t level = 0; level < kMaxLevels; ++level) {
-    if (spot.offset == 0 && matches(types, spot, goal)) return spot.flags;
-    if (!descend(types, layouts, search, spot)) return std::nullopt;
-  }
-  return std::nullopt;
+  std::optional<PlaceFlags> flags;
+  uint32_t budget = kMaxSteps;
+  go_down(types, layouts, search, spot_of(types, region, offset), budget, [&](const Spot& spot) {
+    if (spot.offset == 0 && matches(types, spot, goal)) flags = spot.flags;
+    return flags.has_value();
+  });
+  return flags;
 }
 
 }  // namespace
@@ -184,7 +215,7 @@ Region indexed_region(const TypeTable& types, Region from) {
 
 std::optional<Leaf> leaf_at(const TypeTable& types, const Layouts& layouts, Region region,
                             uint32_t offset) {
-  return find_leaf(types, layouts, LinearSearch{types, layouts}, region, offset);
+  return find_leaf(types, layouts, LinearSearch{types, layouts}, region, offset, LeafTest());
 }
 
 bool has_region_at(const TypeTable& types, const Layouts& layouts, Region region, uint32_t offset,
@@ -208,8 +239,10 @@ RegionMap::RegionMap(const TypeTable& types, const Layouts& layouts)
   }
 }
 
-std::optional<Leaf> RegionMap::leaf_at(Region region, uint32_t offset) const {
-  return find_leaf(types_, layouts_, IndexedSearch{types_, layouts_, order_}, region, offset);
+std::optional<Leaf> RegionMap::leaf_at(Region region, uint32_t offset,
+                                       const LeafTest& accept) const {
+  return find_leaf(types_, layouts_, IndexedSearch{types_, layouts_, order_}, region, offset,
+                   accept);
 }
 
 std::optional<PlaceFlags> RegionMap::find(Region region, uint32_t offset, Region wanted) const {

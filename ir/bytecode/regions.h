@@ -23,7 +23,23 @@ struct Leaf {
   bool input = false;     // some member on the way is a %I variable
   bool output = false;    // some member on the way is a %Q variable
 };
-// The leaf that covers `offset`; nullopt in padding, holes and beyond the end.
+// A test of leaves, borrowed for one call; empty: every leaf will do.
+class LeafTest {
+ public:
+  LeafTest() = default;
+  template <class Test>
+  LeafTest(const Test& test)  // NOLINT: lambdas are passed as they are
+      : test_(&test), call_([](const void* t, const Leaf& leaf) {
+          return (*static_cast<const Test*>(t))(leaf);
+        }) {}
+  bool operator()(const Leaf& leaf) const { return call_ == nullptr || call_(test_, leaf); }
+
+ private:
+  const void* test_ = nullptr;
+  bool (*call_)(const void*, const Leaf&) = nullptr;
+};
+// The leaf that covers `offset`; nullopt in padding, holes and beyond the end. In a union the
+// first of its members that covers it.
 std::optional<Leaf> leaf_at(const TypeTable& types, const Layouts& layouts, Region region,
                             uint32_t offset);
 // Is there a value of exactly `wanted` at `offset`? Strings: capacity at least wanted's.
@@ -51,7 +67,9 @@ class RegionMap {
   RegionMap(const TypeTable& types, const Layouts& layouts);
 
   uint32_t size(Region region) const { return region_size(types_, layouts_, region); }
-  std::optional<Leaf> leaf_at(Region region, uint32_t offset) const;
+  // The first one that `accept` takes, where several lie on top of each other.
+  std::optional<Leaf> leaf_at(Region region, uint32_t offset,
+                              const LeafTest& accept = LeafTest()) const;
   // As has_region_at, with what the way to the place allows.
   std::optional<PlaceFlags> find(Region region, uint32_t offset, Region wanted) const;
   // Do both name the same kind of place? Strings: `have` holds at least `wanted`'s capacity.

@@ -76,6 +76,14 @@ class PathReader {
     }
     symbol.type = image_.globals;
     symbol.data = image_.instances.empty() ? 0 : image_.instances[0].data;
+    // Globals that are visible as `List.x` only have that name.
+    const bool known = image_.types.find_member(symbol.type, text) >= 0;
+    if (!known && at_ < path_.size() && path_[at_] == '.') {
+      const size_t list = at_++;
+      const std::string both = std::string(text) + "." + std::string(name());
+      if (image_.types.find_member(symbol.type, both) >= 0) return step_to(symbol, both, "");
+      at_ = list;
+    }
     return step_to(symbol, text, "is neither a program nor a global variable");
   }
 
@@ -236,7 +244,22 @@ class LeafWalk {
 
 }  // namespace
 
+// VAR_ACCESS: another name for a variable, or for what its members begin with.
+const AccessPath* access_path(const Image& image, std::string_view path) {
+  const std::string_view name = path.substr(0, path.find_first_of(".["));
+  for (const AccessPath& access : image.access) {
+    if (same_name(access.name, name)) return &access;
+  }
+  return nullptr;
+}
+
 base::Result<Symbol> find_symbol(const Image& image, std::string_view path) {
+  if (const AccessPath* access = access_path(image, path)) {
+    const std::string whole = access->path + std::string(path.substr(access->name.size()));
+    base::Result<Symbol> symbol = PathReader(image, whole).run();
+    if (symbol.ok()) symbol->constant |= !access->writable;
+    return symbol;
+  }
   return PathReader(image, path).run();
 }
 

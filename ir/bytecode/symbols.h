@@ -33,7 +33,8 @@ void for_each_leaf(const Image& image,
                    const std::function<void(const std::string& path, const Symbol&)>& visit);
 
 // Value of `symbol` as an IEC literal ("TRUE", "-5", "16#00FF", "2.5", "T#1s500ms",
-// "'ab$'c'", "Color#Red" is printed "Red"); aggregates as "(a := 1, b := 2)" and
+// "'ab$'c'", "Color#Red" is printed "Red", a reference as the path of its target, "NULL" or "ref");
+// aggregates as "(a := 1, b := 2)" and
 // "[1, 2, 3]". `memory` is the whole data memory, indexed by offset.
 std::string format_value(const Image& image, const Symbol& symbol, std::span<const uint8_t> memory);
 // Bytes of a scalar or string from a literal as people type it.

@@ -4,6 +4,8 @@
 
 #include "base/limits.h"
 #include "ir/bytecode/symbols.h"
+#include "ir/types/handle.h"
+#include "ir/types/inside.h"
 #include "ir/types/value_text.h"
 
 namespace ir {
@@ -42,10 +44,25 @@ class Formatter {
     if (type.kind == Kind::kWstring) return wstring_text(string_bytes(type, &memory_[data]));
     if (type.kind == Kind::kArray) return array(type, data, depth);
     if (image_.types.has_members(id)) return members(id, data, depth);
-    return scalar_text(image_.types, id, load_bits(image_.types, id, &memory_[data]));
+    const uint64_t bits = load_bits(image_.types, id, &memory_[data]);
+    if (is_reference(type.kind)) return reference(bits, type.base);
+    return scalar_text(image_.types, id, bits);
   }
 
  private:
+  // By the variable that it names, so that the text stays when that moves.
+  std::string reference(uint64_t handle, TypeId target) const {
+    const uint32_t segment = handle_segment(handle);
+    const uint32_t id = segment_id(segment);
+    if (handle == 0) return "NULL";
+    if (id >= image_.instances.size()) return "ref";
+    const Instance& row = image_.instances[id];
+    if (!row.live || area_segment(id, row.generation) != segment) return "ref";
+    return reference_text(
+        image_.instance_path(id),
+        path_inside(image_.types, image_.layouts, row.type, handle_offset(handle), target));
+  }
+
   bool inside(TypeId id, uint32_t data) const {
     return uint64_t{data} + image_.layouts[id].size <= memory_.size();
   }

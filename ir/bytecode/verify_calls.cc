@@ -1,8 +1,9 @@
-// The call graph: no circle, stack and depth as declared (V11), one writer task for
+// The call graph: no circle without a depth, stack and depth as declared (V11), one writer task for
 // every output (V14).
 #include <algorithm>
 #include <map>
 
+#include "ir/bytecode/call_needs.h"
 #include "ir/bytecode/verify_parts.h"
 
 namespace ir::verification {
@@ -11,7 +12,7 @@ namespace {
 class CallGraph {
  public:
   CallGraph(const Context& context, const std::vector<CodeFacts>& code)
-      : image_(context.image), code_(code), depth_(code.size()), stack_(code.size()) {}
+      : image_(context.image), code_(code) {}
 
   base::Status run() {
     if (base::Status s = measure(); !s) return s;
@@ -20,44 +21,28 @@ class CallGraph {
   }
 
  private:
-  // Callees before callers; what a circle keeps from its turn is left over.
   base::Status measure() {
-    std::vector<std::vector<uint32_t>> callers(code_.size());
-    std::vector<uint32_t> open(code_.size());
-    std::vector<uint32_t> order;
+    std::vector<CallNode> nodes(code_.size());
     for (uint32_t i = 0; i < code_.size(); ++i) {
-      for (uint32_t callee : code_[i].callees) callers[callee].push_back(i);
-      open[i] = static_cast<uint32_t>(code_[i].callees.size());
-      stack_[i] = code_[i].native_bytes;
-      if (open[i] == 0) order.push_back(i);
+      const LinkedPou& pou = image_.pous[i];
+      nodes[i] = {code_[i].callees, pou.frame_size, code_[i].native_bytes, pou.recursion_depth};
     }
-    for (size_t done = 0; done < order.size(); ++done) {
-      const uint32_t callee = order[done];
-      stack_[callee] += image_.pous[callee].frame_size;
-      for (uint32_t caller : callers[callee]) {
-        depth_[caller] = std::max(depth_[caller], depth_[callee] + 1);
-        stack_[caller] = std::max(stack_[caller], stack_[callee]);
-        if (--open[caller] == 0) order.push_back(caller);
-      }
-    }
-    for (uint32_t i = 0; i < code_.size(); ++i) {
-      if (open[i] == 0) continue;
-      return refuse(Refusal::kStackUnbounded,
-                    "POU `" + image_.pous[i].name + "` is in a circle of calls, or calls into one");
-    }
-    return base::Ok{};
+    needs_ = measure_calls(nodes);
+    if (needs_.circle.empty()) return base::Ok{};
+    return refuse(Refusal::kStackUnbounded, "POU `" + image_.pous[needs_.circle[0]].name +
+                                                "` is in a circle of calls that has no depth");
   }
 
   // Tasks of different priority may lie on top of each other.
   base::Status check_stack() const {
     std::map<uint32_t, uint64_t> by_priority;
-    uint32_t depth = 0;
+    uint64_t depth = 0;
     for (const ImageTask& task : image_.tasks) {
       for (uint32_t id : task.programs) {
         const uint32_t pou = image_.instances[id].pou;
         uint64_t& most = by_priority[task.priority];
-        most = std::max(most, stack_[pou]);
-        depth = std::max(depth, depth_[pou]);
+        most = std::max(most, needs_.of[pou].bytes);
+        depth = std::max(depth, needs_.of[pou].depth - 1);
       }
     }
     uint64_t sum = 0;
@@ -106,8 +91,7 @@ class CallGraph {
 
   const Image& image_;
   const std::vector<CodeFacts>& code_;
-  std::vector<uint32_t> depth_;
-  std::vector<uint64_t> stack_;
+  CallMeasure needs_;
 };
 
 }  // namespace

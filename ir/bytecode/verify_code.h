@@ -85,6 +85,7 @@ class CodeVerifier {
   std::optional<Pointer> read_pointer(uint32_t offset, Class cls);
   bool write_pointer(uint32_t offset, Class cls, const Pointer& pointer);
   std::optional<Pointer> point_to(Place place, Region wanted);
+  std::optional<Leaf> string_at(Region region, uint32_t offset, Class cls, uint32_t capacity) const;
   std::optional<Pointer> point_to_string(Place place, Class cls, uint32_t capacity);
   bool pool_region(Region region, uint32_t offset, uint32_t depth);
   bool pool_string(uint32_t offset, Class cls, uint32_t capacity);
@@ -97,6 +98,9 @@ class CodeVerifier {
   bool check_load(const Field& dest);
   bool check_store(const Field& source);
   bool check_copy();
+  bool check_handle();
+  bool check_resolve();
+  bool next_has_no_handle();
   bool check_string(bool from_place, Class cls);
   bool check_string_copy(Class cls);
   bool check_reference_load(bool from_place);
@@ -115,6 +119,9 @@ class CodeVerifier {
   bool check_call();
   bool check_native();
   bool check_call_instance(bool from_place);
+  bool check_call_reference();
+  bool check_instance_frame();
+  bool add_instance_call(TypeId type);
   bool end_of_arguments(const char* where);
 
   const Context& context_;

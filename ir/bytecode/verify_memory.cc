@@ -39,18 +39,42 @@ bool CodeVerifier::special(const OpcodeRow& row) {
       const TypeId type = instance_slot(u_.opcode() == Opcode::INST);
       return type.valid() && write_pointer(u_.a, Class::kA, {{type, 0}, false, 0});
     }
+    case Opcode::HANDLE:
+      return check_handle() && near_operand(row.a, u_.base_a(), u_.a, true);
+    case Opcode::HANDLE_AT: {
+      const auto base = read_pointer(u_.b, Class::kA);
+      return base && (base->outgoing == 0 || next_has_no_handle()) &&
+             near_operand(row.a, u_.base_a(), u_.a, true);
+    }
+    case Opcode::HANDLE_INST:
+    case Opcode::HANDLE_INST_AT:
+      return instance_slot(u_.opcode() == Opcode::HANDLE_INST).valid() &&
+             near_operand(row.a, u_.base_a(), u_.a, true);
+    case Opcode::RESOLVE:
+      return check_resolve();
+    case Opcode::RESOLVE_S:
+    case Opcode::RESOLVE_W:
+      return near_operand(row.b, u_.base_b(), u_.b, false) &&
+             write_pointer(u_.a, row.a.cls, {{}, false, 0});
     case Opcode::CALL:
       return check_call();
     case Opcode::CALL_INST:
       return check_call_instance(true);
     case Opcode::CALL_INST_AT:
       return check_call_instance(false);
+    case Opcode::CALL_REF:
+      return check_call_reference();
     case Opcode::NATIVE:
       return check_native();
     default:
       break;
   }
-  if (row.x.kind == FieldKind::kBounds) return check_index(row.y.kind == FieldKind::kPlace32);
+  const bool of_handle = row.a.cls == Class::k64;
+  if (row.x.kind == FieldKind::kBounds && of_handle && extension_.x() >= image_.bounds.size()) {
+    return fail(Refusal::kBadReference, "there are no bounds " + std::to_string(extension_.x()));
+  }
+  if (row.x.kind == FieldKind::kBounds && !of_handle)
+    return check_index(row.y.kind == FieldKind::kPlace32);
   if (row.b.kind == FieldKind::kBc32) {
     const bool store = row.a.kind == FieldKind::kFrameRead;
     return near_operand(row.a, u_.base_a(), u_.a, !store) &&
@@ -141,6 +165,44 @@ bool CodeVerifier::check_store(const Field& source) {
          leaf_access(base->region, u_.c, source.cls, true, "such");
 }
 
+bool CodeVerifier::next_has_no_handle() {
+  return fail(Refusal::kBadReference, "a handle of something in the next frame");
+}
+
+// A local that gets a handle can be written as bytes from anywhere, so it holds neither an
+// address nor a string reference, and it has a value.
+bool CodeVerifier::check_handle() {
+  const uint32_t offset = extension_.x();
+  if (u_.base_b() == Base::kConst) return fail(Refusal::kBadReference, "a constant has no handle");
+  if (u_.base_b() == Base::kFrame) {
+    if (offset >= pou_.frame_size) return next_has_no_handle();
+    const uint32_t slot = slot_at(offset);
+    const bool good =
+        slot != kNone && (pou_.slots[slot].aggregate || pou_.slots[slot].cls < Class::kA);
+    if (!good) return fail(Refusal::kBadReferenceSlot, "no variable at " + std::to_string(offset));
+    if (!pou_.slots[slot].aggregate && !is_written(slot)) {
+      return fail(Refusal::kReadBeforeWrite, "the local has no value yet");
+    }
+    return true;
+  }
+  Place place{u_.base_b(), offset};
+  const std::optional<Region> root = root_region(place);
+  if (!root) return false;
+  return place.offset <= context_.regions.size(*root) ||
+         fail(Refusal::kBadReference, "no variable at " + std::to_string(offset));
+}
+
+// What is behind a handle is checked when the instruction runs; here only that the type exists.
+bool CodeVerifier::check_resolve() {
+  const Region region = region_of_field(extension_.x());
+  if (!context_.valid(region) || region.dim != 0 ||
+      image_.types[region.type].kind == Kind::kGlobals) {
+    return fail(Refusal::kBadReference, "there is no such type");
+  }
+  return near_operand(opcode_row(u_.opcode()).b, u_.base_b(), u_.b, false) &&
+         write_pointer(u_.a, Class::kA, {region, false, 0});
+}
+
 bool CodeVerifier::check_copy() {
   const Region region = region_of_field(extension_.x());
   const auto to = read_pointer(u_.a, Class::kA);
@@ -149,8 +211,8 @@ bool CodeVerifier::check_copy() {
   if (!context_.valid(region)) return fail(Refusal::kBadReference, "there is no such type");
   const bool plain =
       !context_.facts[region.type.index].has_slots && !image_.types.has_members(region.type);
-  const bool structure = image_.types[region.type].kind == Kind::kStruct &&
-                         !context_.facts[region.type.index].has_slots;
+  const bool structure =
+      is_structure(image_.types[region.type].kind) && !context_.facts[region.type.index].has_slots;
   if (!plain && !structure) return fail(Refusal::kBadReferenceSlot, "an instance is copied");
   if (!context_.regions.same(to->region, region) || !context_.regions.same(from->region, region)) {
     return fail(Refusal::kBadTyping, "both are not of type " + image_.types.text(region.type));
@@ -166,12 +228,8 @@ bool CodeVerifier::check_string(bool from_place, Class cls) {
   }
   const auto base = read_pointer(u_.b, Class::kA);
   if (!base) return false;
-  const auto leaf = context_.regions.leaf_at(base->region, extension_.x());
-  const Kind kind = cls == Class::kS ? Kind::kString : Kind::kWstring;
-  const bool good = leaf && leaf->kind == LeafKind::kStringByte && leaf->begin == extension_.x() &&
-                    image_.types[leaf->type].kind == kind &&
-                    image_.types[leaf->type].capacity >= capacity;
-  if (!good) {
+  const auto leaf = string_at(base->region, extension_.x(), cls, capacity);
+  if (!leaf) {
     return fail(Refusal::kBadReference, "no string of capacity " + std::to_string(capacity) +
                                             " at offset " + std::to_string(extension_.x()));
   }

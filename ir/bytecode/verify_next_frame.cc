@@ -76,14 +76,12 @@ bool CodeVerifier::fits(const Outgoing& out, const FrameSlot& slot) const {
   if (out.aggregate && out.capacity == kNone) {
     return context_.regions.find(slot.region, offset, out.region).has_value();
   }
-  const auto leaf = context_.regions.leaf_at(slot.region, offset);
-  if (!leaf || leaf->begin != offset) return false;
-  const Type& type = image_.types[leaf->type];
-  if (!out.aggregate) {
-    return leaf->kind == LeafKind::kScalar && class_of(image_.types.scalar(leaf->type)) == out.cls;
-  }
-  const Kind kind = out.cls == Class::kS ? Kind::kString : Kind::kWstring;
-  return leaf->kind == LeafKind::kStringByte && type.kind == kind && type.capacity >= out.capacity;
+  if (out.aggregate) return string_at(slot.region, offset, out.cls, out.capacity).has_value();
+  const auto same_class = [&](const Leaf& leaf) {
+    return leaf.begin == offset && leaf.kind == LeafKind::kScalar &&
+           class_of(image_.types.scalar(leaf.type)) == out.cls;
+  };
+  return context_.regions.leaf_at(slot.region, offset, same_class).has_value();
 }
 
 bool CodeVerifier::is_result(const Outgoing& wanted) const {
@@ -180,15 +178,14 @@ bool CodeVerifier::check_native() {
   return true;
 }
 
-bool CodeVerifier::check_call_instance(bool from_place) {
+bool CodeVerifier::check_instance_frame() {
   if (!end_of_arguments("the call of an instance")) return false;
-  if (u_.a != pou_.frame_size / 8) {
-    return fail(Refusal::kBadFrame, "the callee's frame would begin at " +
-                                        std::to_string(u_.a * 8u) + ", this one ends at " +
-                                        std::to_string(pou_.frame_size));
-  }
-  const TypeId type = instance_slot(from_place);
-  if (!type.valid()) return false;
+  if (u_.a == pou_.frame_size / 8) return true;
+  return fail(Refusal::kBadFrame, "the callee's frame would begin at " + std::to_string(u_.a * 8u) +
+                                      ", this one ends at " + std::to_string(pou_.frame_size));
+}
+
+bool CodeVerifier::add_instance_call(TypeId type) {
   const uint32_t callee = context_.pou_of_type[type.index];
   if (callee == kNone) {
     return fail(Refusal::kBadCall, "`" + image_.types.text(type) + "` has no code");
@@ -196,6 +193,29 @@ bool CodeVerifier::check_call_instance(bool from_place) {
   facts_.callees.push_back(callee);
   results_ = {};
   return true;
+}
+
+bool CodeVerifier::check_call_instance(bool from_place) {
+  if (!check_instance_frame()) return false;
+  const TypeId type = instance_slot(from_place);
+  return type.valid() && add_instance_call(type);
+}
+
+bool CodeVerifier::check_call_reference() {
+  const Region region = region_of_field(extension_.x());
+  if (!check_instance_frame()) return false;
+  if (!near_operand(opcode_row(u_.opcode()).b, u_.base_b(), u_.b, false)) return false;
+  const bool instance = context_.valid(region) && region.dim == 0 &&
+                        image_.types[region.type].kind == Kind::kFunctionBlock;
+  if (!instance) return fail(Refusal::kBadReference, "there is no such function block");
+  // The instance may be of any type that extends the named one; each runs its own body.
+  for (uint32_t i = 0; i < image_.types.size(); ++i) {
+    const bool other = TypeId(i) != region.type && context_.pou_of_type[i] != kNone;
+    if (other && image_.types.is_a(TypeId(i), region.type)) {
+      facts_.callees.push_back(context_.pou_of_type[i]);
+    }
+  }
+  return add_instance_call(region.type);
 }
 
 }  // namespace ir::verification

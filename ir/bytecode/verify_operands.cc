@@ -67,7 +67,12 @@ std::optional<Region> CodeVerifier::root_region(Place& place) {
 
 bool CodeVerifier::leaf_access(Region region, uint32_t offset, Class cls, bool write,
                                const char* base) {
-  const std::optional<Leaf> leaf = context_.regions.leaf_at(region, offset);
+  const auto fits = [&](const Leaf& leaf) {
+    return leaf.kind == LeafKind::kScalar && leaf.begin == offset &&
+           class_of(image_.types.scalar(leaf.type)) == cls;
+  };
+  std::optional<Leaf> leaf = context_.regions.leaf_at(region, offset, fits);
+  if (!leaf) leaf = context_.regions.leaf_at(region, offset);  // to say what is there
   if (!leaf || leaf->kind != LeafKind::kScalar || leaf->begin != offset) {
     return fail(Refusal::kBadReference, std::string("no ") + base + " scalar" + at_text(offset));
   }
@@ -209,14 +214,20 @@ std::optional<Pointer> CodeVerifier::point_to(Place place, Region wanted) {
   return Pointer{wanted, false, 0};
 }
 
-std::optional<Pointer> CodeVerifier::point_to_string(Place place, Class cls, uint32_t capacity) {
+// A string of at least that capacity that begins at `offset`.
+std::optional<Leaf> CodeVerifier::string_at(Region region, uint32_t offset, Class cls,
+                                            uint32_t capacity) const {
   const Kind kind = cls == Class::kS ? Kind::kString : Kind::kWstring;
+  return context_.regions.leaf_at(region, offset, [&](const Leaf& leaf) {
+    return leaf.kind == LeafKind::kStringByte && leaf.begin == offset &&
+           image_.types[leaf.type].kind == kind && image_.types[leaf.type].capacity >= capacity;
+  });
+}
+
+std::optional<Pointer> CodeVerifier::point_to_string(Place place, Class cls, uint32_t capacity) {
   const auto check_leaf = [&](Region region, uint32_t offset) -> std::optional<Pointer> {
-    const std::optional<Leaf> leaf = context_.regions.leaf_at(region, offset);
-    const bool good = leaf && leaf->kind == LeafKind::kStringByte && leaf->begin == offset &&
-                      image_.types[leaf->type].kind == kind &&
-                      image_.types[leaf->type].capacity >= capacity;
-    if (good) return Pointer{{}, leaf->constant || leaf->input, 0};
+    const std::optional<Leaf> leaf = string_at(region, offset, cls, capacity);
+    if (leaf) return Pointer{{}, leaf->constant || leaf->input, 0};
     fail(Refusal::kBadReference,
          "no string of capacity " + std::to_string(capacity) + at_text(place.offset));
     return std::nullopt;
@@ -263,6 +274,7 @@ bool CodeVerifier::pool_region(Region region, uint32_t offset, uint32_t depth) {
   }
   if (type.kind == Kind::kString) return pool_string(offset, Class::kS, type.capacity);
   if (type.kind == Kind::kWstring) return pool_string(offset, Class::kW, type.capacity);
+  if (context_.image.types.overlaps(region.type)) return true;
   if (type.kind == Kind::kStruct) {
     const std::vector<uint32_t>& offsets = image_.layouts[region.type].member_offsets;
     for (size_t i = 0; i < type.members.size(); ++i) {

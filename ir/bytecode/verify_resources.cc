@@ -34,19 +34,32 @@ class ResourcesVerifier {
       const auto bad = [&](const std::string& why) {
         return refuse(Refusal::kBadTask, "task `" + task.name + "`: " + why);
       };
-      if (task.period_ns <= 0) return bad("period of " + std::to_string(task.period_ns) + " ns");
+      const bool period = task.period_ns > 0 || (task.period_ns == 0 && task.event != 0);
+      if (!period) return bad("period of " + std::to_string(task.period_ns) + " ns");
+      if (task.event != 0 && !is_event(task.event)) return bad("its event is no BOOL global");
       if (task.watchdog_ns <= 0) {
         return bad("watchdog of " + std::to_string(task.watchdog_ns) + " ns");
       }
       for (uint32_t id : task.programs) {
-        const bool program = id != 0 && id < image_.instances.size() && image_.instances[id].live &&
-                             image_.types[image_.instances[id].type].kind == Kind::kProgram;
-        if (!program) return bad("instance " + std::to_string(id) + " is no program");
+        const bool live = id != 0 && id < image_.instances.size() && image_.instances[id].live;
+        if (!live || !image_.types.is_instance(image_.instances[id].type)) {
+          return bad("instance " + std::to_string(id) + " is no program");
+        }
         if (taken[id]) return bad("program `" + image_.instances[id].name + "` runs twice");
         taken[id] = true;
       }
     }
     return base::Ok{};
+  }
+
+  bool is_event(uint32_t data) const {
+    const Type& globals = image_.types[image_.globals];
+    const auto& layout = image_.layouts[image_.globals];
+    for (size_t i = 0; i < globals.members.size(); ++i) {
+      if (image_.instances[0].data + layout.member_offsets[i] != data) continue;
+      if (image_.types.root_kind(globals.members[i].type) == Kind::kBool) return true;
+    }
+    return false;
   }
 
   void collect_areas() {

@@ -85,6 +85,9 @@ class TablesVerifier {
     if (pou.frame_size % 8 != 0 || pou.frame_size > base::kMaxFrameBytes) {
       return bad_frame(pou, "frame of " + std::to_string(pou.frame_size) + " bytes");
     }
+    if (pou.recursion_depth > base::kMaxCallDepth) {
+      return bad_frame(pou, "recursion depth " + std::to_string(pou.recursion_depth));
+    }
     if (base::Status s = check_self(pou, number); !s) return s;
     return check_slots(pou);
   }

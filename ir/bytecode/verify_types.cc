@@ -56,8 +56,8 @@ class TypesVerifier {
 
   base::Status check_references(uint32_t i) const {
     const Type& type = types_[TypeId(i)];
-    const bool needs_base =
-        type.kind == Kind::kArray || type.kind == Kind::kEnum || type.kind == Kind::kSubrange;
+    const bool needs_base = type.kind == Kind::kArray || type.kind == Kind::kEnum ||
+                            type.kind == Kind::kSubrange || is_reference(type.kind);
     if (needs_base && !types_.contains(type.base)) return bad(i, "its base does not exist");
     if (needs_base && types_[type.base].kind == Kind::kGlobals) {
       return bad(i, "is made of the globals");
@@ -151,11 +151,29 @@ class TypesVerifier {
     if (is_area(type.kind) && type.kind != Kind::kGlobals && layout.size != 4) {
       return bad(i, "its slot takes " + std::to_string(layout.size) + " bytes, not 4");
     }
+    if (types_.overlaps(TypeId(i))) return check_overlapping(i, limit);
     for (const Member& member : type.members) {
       const bool slot = member.section == Section::kInOut || types_.is_instance(member.type);
       facts_[i].has_slots |= slot || facts_[member.type.index].has_slots;
     }
     return check_disjoint(i, limit);
+  }
+
+  // No slot may lie where something else can be written.
+  base::Status check_overlapping(uint32_t i, uint32_t limit) const {
+    const Type& type = types_[TypeId(i)];
+    for (size_t m = 0; m < type.members.size(); ++m) {
+      const Member& member = type.members[m];
+      if (member.section == Section::kInOut || types_.is_instance(member.type) ||
+          facts_[member.type.index].has_slots) {
+        return bad(i, "member `" + member.name + "` overlaps others and holds an instance");
+      }
+      if (uint64_t{image_.layouts.of[i].member_offsets[m]} + image_.layouts[member.type].size >
+          limit) {
+        return bad(i, "member `" + member.name + "` ends behind its end");
+      }
+    }
+    return base::Ok{};
   }
 
   base::Status check_disjoint(uint32_t i, uint32_t limit) const {

@@ -6,7 +6,7 @@ namespace ir::codegen {
 namespace {
 
 bool follows_reference(const Place& place) {
-  if (place.base == PlaceBase::kPointee) return true;
+  if (place.base == PlaceBase::kPointee || place.base == PlaceBase::kTarget) return true;
   return std::any_of(place.steps.begin(), place.steps.end(),
                      [](const Step& step) { return step.kind == StepKind::kDeref; });
 }
@@ -37,16 +37,25 @@ int64_t index_of(const Step& step, const Values& values) {
 }
 
 // From one root: apart as soon as members or constant indices differ.
+// Members of a union always meet.
 bool steps_may_meet(const Place& a, const Place& b, const Values& values) {
+  const TypeTable& types = values.types();
+  TypeId at = a.base_type;
+  uint32_t dims = 0;
   const size_t common = std::min(a.steps.size(), b.steps.size());
   for (size_t i = 0; i < common; ++i) {
     const Step& left = a.steps[i];
     const Step& right = b.steps[i];
-    if (left.kind != right.kind) return true;
+    if (left.kind != right.kind || types.overlaps(at)) return true;
     if (left.kind == StepKind::kMember && left.index != right.index) return false;
     if (left.kind == StepKind::kIndex && is_constant_step(left, values) &&
         is_constant_step(right, values) && index_of(left, values) != index_of(right, values)) {
       return false;
+    }
+    if (left.kind == StepKind::kMember) at = types[at].members[left.index].type;
+    if (left.kind == StepKind::kIndex && ++dims == types[at].dims.size()) {
+      at = types[at].base;
+      dims = 0;
     }
   }
   return true;
@@ -73,7 +82,7 @@ bool calls_may_change(const Place& place, const Values& values) {
 }
 
 bool is_static(const Place& place, const Values& values) {
-  if (place.base == PlaceBase::kPointee) return false;
+  if (place.base == PlaceBase::kPointee || place.base == PlaceBase::kTarget) return false;
   return std::all_of(place.steps.begin(), place.steps.end(), [&](const Step& step) {
     return step.kind == StepKind::kMember ||
            (step.kind == StepKind::kIndex && is_constant_step(step, values));

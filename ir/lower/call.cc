@@ -18,7 +18,12 @@ void Selector::select_call(const Inst& inst) {
 
 void Selector::select_call_instance(const Inst& inst) {
   flush_call(inst);
-  const Location at = locate(pou_.places[inst.place.index]);
+  const Place& place = pou_.places[inst.place.index];
+  if (place.base == PlaceBase::kTarget && place.steps.empty()) {
+    emit(Opcode::CALL_REF, {}, use(place.value), {}, tables_.region({place.base_type, 0}));
+    return forget_references();
+  }
+  const Location at = locate(place);
   if (!at.behind_addr) {
     emit(Opcode::CALL_INST, {}, field_of(at));
   } else if (at.place.result.dim == 0 && at.place.steps.empty()) {

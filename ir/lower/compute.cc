@@ -61,6 +61,18 @@ void Selector::compute(const Inst& inst, Operand dest) {
       return compute_conversion(inst, dest);
     case Op::kTaskTime:
       return emit(Opcode::TASK_TIME, dest);
+    case Op::kHandle:
+      return compute_handle(inst, dest);
+    case Op::kMoveHandle: {
+      const Operand handle = use(inst.operands[0]);
+      return emit(Opcode::HANDLE_ADD, dest, handle, use(inst.operands[1]));
+    }
+    case Op::kFlat:
+      return emit(Opcode::FLAT, dest, use(inst.operands[0]));
+    case Op::kUnflat:
+      return emit(Opcode::UNFLAT, dest, use(inst.operands[0]));
+    case Op::kSizeOf:
+      return emit(Opcode::SIZE_OF, dest, {}, {}, tables_.region({inst.type, 0}));
     case Op::kAddress:
       return compute_address(inst, dest);
     case Op::kString:

@@ -26,6 +26,7 @@ base::Result<Object> lower(const Program& program, PouId id) {
   object.name = pou.name;
   object.kind = pou.kind;
   object.self = pou.self;
+  object.recursion_depth = pou.recursion_depth;
   object.file = pou.file;
   base::Result<codegen::Machine> selected = codegen::Selector(program, pou, object).run();
   if (!selected.ok()) return selected.error();

@@ -46,6 +46,10 @@ void Selector::address_into(const Location& at, Operand dest) {
     step_enter(inside);
     return move(Class::kA, dest, inside.addr);
   }
+  if (at.behind_handle) {
+    Location resolved = at;
+    return resolve(resolved, dest);
+  }
   const uint32_t type = tables_.region(region);
   if (!at.behind_addr) return emit(Opcode::LEA, dest, field_of(at), {}, extension_of(at), type);
   if (at.place.steps.empty()) return move(Class::kA, dest, at.addr);
@@ -69,6 +73,10 @@ void Selector::compute_address(const Inst& inst, Operand dest) {
 void Selector::string_into(const Location& at, TypeId type, Operand dest) {
   const bool wide = types()[type].kind == Kind::kWstring;
   const uint32_t capacity = types()[type].capacity;
+  if (at.behind_handle) {
+    return emit(wide ? Opcode::RESOLVE_W : Opcode::RESOLVE_S, dest, at.handle, {}, capacity,
+                offset_of(at));
+  }
   if (at.behind_addr) {
     return emit(wide ? Opcode::WSTR_AT : Opcode::STR_AT, dest, at.addr, {}, offset_of(at),
                 capacity);

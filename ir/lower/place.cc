@@ -38,6 +38,7 @@ Region element_region(const TypeTable& types, Region array) {
 
 void Selector::behind(Location& at, Operand addr, Region region) const {
   at.behind_addr = true;
+  at.behind_handle = false;
   at.addr = addr;
   at.base = Base::kFrame;
   at.place = {};
@@ -79,6 +80,12 @@ Location Selector::root_of(const Place& place) {
       at.constant = place.constant;
       at.constant_type = place.base_type;
       break;
+    case PlaceBase::kTarget:
+      at.behind_handle = true;
+      at.handle = use(place.value);
+      at.place.root = PlaceRoot::kRegion;
+      at.place.region = at.place.result;
+      break;
     case PlaceBase::kPointee:
       behind(at, use(place.value), {place.base_type, 0});
       break;
@@ -92,9 +99,15 @@ static bool is_bare_constant(const Location& at) {
 }
 
 Location Selector::locate(const Place& place) {
+  if (place.base == PlaceBase::kTarget) return locate_target(place);
   Location at;
   size_t next = resume_from_cache(at, place);
   if (next == 0) at = root_of(place);
+  walk(at, place, next);
+  return at;
+}
+
+void Selector::walk(Location& at, const Place& place, size_t next) {
   for (; next < place.steps.size(); ++next) {
     const Step& step = place.steps[next];
     if (is_bare_constant(at) && !needs_address(step, values_)) {
@@ -117,9 +130,8 @@ Location Selector::locate(const Place& place) {
         step_dereference(at);
         break;
     }
-    if (needs_address(step, values_)) remember(place, next + 1, at);
+    if (needs_address(step, values_) && !at.behind_handle) remember(place, next + 1, at);
   }
-  return at;
 }
 
 // A constant index outside its bounds is left to the check at run time.
@@ -149,6 +161,7 @@ void Selector::step_dynamic_index(Location& at, Operand index, Scalar index_scal
   const Region array = at.place.result;
   const Region element = element_region(types(), array);
   const uint32_t bound = tables_.bound(array.type, array.dim, name);
+  if (at.behind_handle) return index_handle(at, index, index_scalar, bound, element);
   const Operand addr = new_register(Class::kA, element, false);
   if (at.behind_addr) {
     emit(index_opcode(index_scalar), addr, index, at.addr, bound, offset_of(at));

@@ -16,7 +16,7 @@ Selector::Selector(const Program& program, const Pou& pou, Object& object)
       object_(object),
       tables_(object),
       flow_(order_blocks(pou)),
-      values_(pou, flow_),
+      values_(program.types, pou, flow_),
       states_(pou.values.size()) {
   for (uint32_t i = 0; i < states_.size(); ++i) states_[i].remaining = values_[ValueId(i)].uses;
 }
@@ -98,6 +98,8 @@ void Selector::select_inst(const Inst& inst) {
       return select_call_instance(inst);
     case Op::kCallNative:
       return select_native(inst);
+    case Op::kAdvanceTime:
+      return emit(Opcode::ADVANCE_TIME, {}, use(inst.operands[0]));
     default:
       return select_value(inst);
   }

@@ -28,6 +28,9 @@ namespace ir::codegen {
 struct Location {
   bool behind_addr = false;
   Operand addr;  // register, when behind_addr
+  // Of a path behind a handle that is not resolved yet: `place` counts from there.
+  bool behind_handle = false;
+  Operand handle;
   Base base = Base::kFrame;
   ObjectPlace place;
   ConstId constant;  // base kConst; place is then the whole constant
@@ -109,6 +112,7 @@ class Selector {
 
   // place.cc
   Location locate(const Place& place);
+  void walk(Location& at, const Place& place, size_t next);
   Location root_of(const Place& place);
   void step_index(Location& at, const Place& place, size_t number);
   void step_dynamic_index(Location& at, Operand index, Scalar index_scalar,
@@ -124,6 +128,15 @@ class Selector {
   uint32_t extension_of(const Location& at);
   bool is_scalar_leaf(const Location& at) const;
   Operand operand_of(const Location& at, Class cls);
+
+  // reference.cc
+  Location locate_target(const Place& place);
+  Location unresolved(const Place& place);
+  void index_handle(Location& at, Operand index, Scalar scalar, uint32_t bound, Region element);
+  void resolve(Location& at, Operand dest);
+  void compute_handle(const Inst& inst, Operand dest);
+  void handle_into(const Location& at, Operand dest);
+  void instance_handle_into(const Location& at, Operand dest);
 
   // place_facts.cc
   std::string place_name(const Place& place, size_t steps) const;

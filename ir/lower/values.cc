@@ -22,8 +22,8 @@ bool changes_nothing(const Inst& inst, Scalar operand) {
   }
 }
 
-Values::Values(const Pou& pou, const Flow& flow)
-    : facts_(pou.values.size()), local_escapes_(pou.locals.size()) {
+Values::Values(const TypeTable& types, const Pou& pou, const Flow& flow)
+    : types_(types), facts_(pou.values.size()), local_escapes_(pou.locals.size()) {
   define(pou, flow);
   count_uses(pou, flow);
   drop_dead(pou, flow);
@@ -38,6 +38,8 @@ bool Values::is_pure(const Inst& inst) const {
     case Op::kTrunc:
     case Op::kCallNative:
     case Op::kTaskTime:
+    case Op::kFlat:  // what is exposed changes from one instruction to the next
+    case Op::kUnflat:
       return false;
     case Op::kDiv:
     case Op::kMod:
@@ -129,7 +131,7 @@ void Values::count_uses(const Pou& pou, const Flow& flow) {
       if (inst.op == Op::kJump) {
         for (ValueId arg : inst.targets[0].args) use(arg, position);
       }
-      if (inst.op != Op::kAddress) continue;
+      if (inst.op != Op::kAddress && inst.op != Op::kHandle) continue;
       const Place& place = pou.places[inst.place.index];
       const bool behind = !place.steps.empty() && place.steps[0].kind == StepKind::kDeref;
       if (place.base == PlaceBase::kLocal && !behind) local_escapes_[place.base_index] = true;

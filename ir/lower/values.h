@@ -21,7 +21,7 @@ struct ValueFacts {
 
 class Values {
  public:
-  Values(const Pou& pou, const Flow& flow);
+  Values(const TypeTable& types, const Pou& pou, const Flow& flow);
 
   // The value that `id` stands for.
   ValueId root(ValueId id) const;
@@ -33,6 +33,7 @@ class Values {
   // A pure value that nothing live uses.
   bool is_dead(const Inst& inst) const;
   // Was the address of local number `local` taken?
+  const TypeTable& types() const { return types_; }
   bool local_escapes(uint32_t local) const { return local_escapes_[local]; }
 
  private:
@@ -42,6 +43,7 @@ class Values {
   void use(ValueId id, uint32_t block);
   void use_place(const Pou& pou, PlaceId place, uint32_t block);
 
+  const TypeTable& types_;
   std::vector<ValueFacts> facts_;
   std::vector<bool> local_escapes_;
 };

@@ -1,18 +1,32 @@
 #include "ir/program/eval_machine.h"
 
+#include <algorithm>
+
 #include "base/limits.h"
 #include "ir/program/ops.h"
+#include "ir/types/handle.h"
 
 namespace ir {
 
-std::optional<EvalTrap> EvalMachine::run(Variable& instance, int64_t now_ns, uint64_t& budget) {
+std::optional<EvalTrap> EvalMachine::run(Variable& instance, uint32_t task, int64_t now_ns,
+                                         uint64_t& budget) {
   now_ns_ = now_ns;
+  task_ = task;
   budget_ = &budget;
   trap_.reset();
   const PouId pou = program_.pou_of_instance_type(instance.type);
   const std::unique_ptr<Frame> frame = make_frame(program_.pous[pou.index], &instance);
   run_frame(*frame);
   return trap_;
+}
+
+EvalResult EvalMachine::run_alone(const Pou& pou, uint32_t local, uint64_t& budget) {
+  budget_ = &budget;
+  trap_.reset();
+  const std::unique_ptr<Frame> frame = make_frame(pou, nullptr);
+  run_frame(*frame);
+  const Variable& result = frame->locals[local];
+  return {trap_, result.bits, std::string(variables_.text(result))};
 }
 
 std::unique_ptr<Frame> EvalMachine::make_frame(const Pou& pou, Variable* self) {
@@ -36,8 +50,8 @@ void EvalMachine::trap(const Inst& inst, TrapKind kind, std::string text) {
 }
 
 bool EvalMachine::alive(const Address& address) const {
-  if (address.variable == nullptr || address.frame == 0) {
-    return address.variable != nullptr;
+  if (address.root == nullptr || address.frame == 0) {
+    return address.root != nullptr;
   }
   for (const Frame* frame : stack_) {
     if (frame->serial == address.frame) {
@@ -51,9 +65,27 @@ void EvalMachine::run_frame(Frame& frame) {
   frame.ran = true;
   stack_.push_back(&frame);
   for (BlockId block(0); block.valid();) {
+    const BlockId ran = block;
     block = run_block(frame, block);
+    if (trap_) {
+      block = caught_by(frame, ran);
+    }
   }
   stack_.pop_back();
+  if (references_ != nullptr) {
+    references_->leave(frame.serial);
+  }
+}
+
+BlockId EvalMachine::caught_by(Frame& frame, BlockId block) {
+  const BlockId handler = frame.pou->blocks[block.index].handler;
+  if (!handler.valid() || !can_be_caught(trap_->kind)) {
+    return BlockId();
+  }
+  caught_ = trap_->kind;
+  trap_.reset();
+  frame.callee.reset();
+  return handler;
 }
 
 BlockId EvalMachine::run_block(Frame& frame, BlockId block) {
@@ -79,6 +111,8 @@ BlockId EvalMachine::run_block(Frame& frame, BlockId block) {
 BlockId EvalMachine::run_terminator(Frame& frame, const Inst& inst) {
   switch (inst.op) {
     case Op::kJump:
+    case Op::kTry:
+    case Op::kEndTry:
       return take(frame, inst.targets[0]);
     case Op::kBranch:
       return take(frame, inst.targets[bits(frame, inst.operands[0]) != 0 ? 0 : 1]);
@@ -114,12 +148,28 @@ void EvalMachine::run_inst(Frame& frame, const Inst& inst) {
     case Op::kAddress:
     case Op::kString:
       return run_string_or_address(frame, inst);
+    case Op::kHandle:
+    case Op::kFlat:
+    case Op::kUnflat:
+      return run_handle(frame, inst);
     case Op::kCallFunction:
       return run_call_function(frame, inst);
     case Op::kCallInstance:
       return run_call_instance(frame, inst);
     case Op::kCallNative:
       return run_native(frame, inst);
+    case Op::kThis:
+    case Op::kIsType:
+    case Op::kTrapKind:
+    case Op::kCallMethod:
+    case Op::kCallBody:
+    case Op::kCallVirtual:
+    case Op::kCallReference:
+      return run_object(frame, inst);
+    case Op::kAdvanceTime:
+      now_ns_ = static_cast<int64_t>(static_cast<uint64_t>(now_ns_) +
+                                     bits(frame, inst.operands[0]));
+      return;
     default:
       break;
   }
@@ -138,6 +188,13 @@ Outcome EvalMachine::compute(const Frame& frame, const Inst& inst) const {
       return {canonical(inst.scalar, inst.imm), {}, {}};
     case Op::kTaskTime:
       return {static_cast<uint64_t>(now_ns_), {}, {}};
+    case Op::kMoveHandle:
+      return {move_handle(operand(0), operand(1)), {}, {}};
+    case Op::kSizeOf: {
+      const TypeLayout& layout = (*layouts_)[inst.type];
+      const bool area = program_.types.is_instance(inst.type);
+      return {area ? layout.used : layout.size, {}, {}};
+    }
     case Op::kNeg:
     case Op::kAbs:
     case Op::kSqrt:
@@ -168,9 +225,16 @@ Outcome EvalMachine::compute(const Frame& frame, const Inst& inst) const {
   }
 }
 
+bool EvalMachine::too_deep(const Pou& pou) const {
+  const auto active = std::count_if(stack_.begin(), stack_.end(),
+                                    [&pou](const Frame* frame) { return frame->pou == &pou; });
+  return stack_.size() >= base::kMaxCallDepth ||
+         (pou.recursion_depth != 0 && active >= static_cast<int64_t>(pou.recursion_depth));
+}
+
 void EvalMachine::run_call_function(Frame& frame, const Inst& inst) {
   Frame& callee = next_callee(frame, inst.pou);
-  if (stack_.size() >= base::kMaxCallDepth) {
+  if (too_deep(*callee.pou)) {
     return trap(inst, TrapKind::kStack, callee.pou->name);
   }
   run_frame(callee);
@@ -181,19 +245,9 @@ void EvalMachine::run_call_instance(Frame& frame, const Inst& inst) {
   if (trap_) {
     return;
   }
-  frame.callee.reset();
-  const auto [known, is_new] = pou_of_type_.try_emplace(instance.variable->type);
-  if (is_new) {
-    known->second = program_.pou_of_instance_type(instance.variable->type);
-  }
-  if (!known->second.valid()) {
-    return trap(inst, TrapKind::kInstance, program_.types.text(instance.variable->type));
-  }
-  const Pou& pou = program_.pous[known->second.index];
-  if (stack_.size() >= base::kMaxCallDepth) {
-    return trap(inst, TrapKind::kStack, pou.name);
-  }
-  run_frame(*make_frame(pou, instance.variable));
+  Variable* const entered =
+      instance.variable->slot ? instance.variable->target.variable : instance.variable;
+  call_body(frame, inst, entered->type, entered);
 }
 
 }  // namespace ir

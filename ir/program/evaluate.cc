@@ -2,72 +2,149 @@
 #include "ir/program/evaluate.h"
 
 #include <algorithm>
-#include <charconv>
 #include <functional>
 #include <numeric>
+#include <utility>
 
+#include "ir/program/eval_inspect.h"
 #include "ir/program/eval_machine.h"
-#include "ir/types/value_text.h"
+#include "ir/types/inside.h"
+#include "ir/types/natural_layout.h"
 
 namespace ir {
 namespace {
 
-base::Error no_such_variable(std::string_view path) {
-  return {base::Refusal::kNoSuchVariable, "there is no variable `" + std::string(path) + "`"};
-}
-
-// "1,-2" as the element number of an array; nullopt when out of bounds.
-std::optional<uint64_t> flat_index(const Type& array, std::string_view text) {
-  uint64_t flat = 0;
-  for (size_t i = 0; i < array.dims.size(); ++i) {
-    const size_t comma = std::min(text.find(','), text.size());
-    int64_t index = 0;
-    const auto read = std::from_chars(text.data(), text.data() + comma, index);
-    const Dimension& dim = array.dims[i];
-    const bool last = i + 1 == array.dims.size();
-    if (read.ec != std::errc() || read.ptr != text.data() + comma || index < dim.low ||
-        index > dim.high || last != (comma == text.size())) {
-      return std::nullopt;
-    }
-    flat = flat * dim.count() + (static_cast<uint64_t>(index) - static_cast<uint64_t>(dim.low));
-    text.remove_prefix(last ? comma : comma + 1);
-  }
-  return flat;
-}
-
-// The inverse of flat_index, for paths.
-std::string index_text(const Type& array, uint64_t flat) {
-  std::string text;
-  for (size_t i = array.dims.size(); i-- > 0;) {
-    const uint64_t count = array.dims[i].count();
-    const int64_t index =
-        static_cast<int64_t>(static_cast<uint64_t>(array.dims[i].low) + flat % count);
-    text = std::to_string(index) + (text.empty() ? "" : ",") + text;
-    flat /= count;
-  }
-  return "[" + text + "]";
-}
+constexpr uint64_t kStartBudget = 100'000'000;  // instructions of a task that runs once
 
 }  // namespace
 
 struct Evaluator::Impl {
   const Program& program;
+  EvalMemory memory;
   Variable globals;
-  std::vector<Variable> instances;  // parallel to Program::instances
+  std::vector<Variable> instances;  // parallel to Program::instances; never moved
+  std::vector<Variable*> outputs;   // at %Q; scalars
+  std::vector<uint64_t> published;  // their values after the last complete scan
+  References references;
   EvalMachine machine;
+  EvalInspector inspector;
+  std::vector<EvalTrap> start_traps;  // of what ran before the first scan
+  std::vector<bool> released;         // by task
+  std::vector<bool> level;            // of its event, when it was looked at last
 
-  explicit Impl(const Program& p)
-      : program(p), globals(Variables(p).make(p.globals)), machine(p, globals) {
-    for (const ProgramInstance& instance : program.instances) {
-      instances.push_back(Variables(program).make(instance.type, instance.init));
+  Impl(const Program& p, EvalMemory m)
+      : program(p),
+        memory(std::move(m)),
+        globals(Variables(p, &memory.layouts).make(p.globals)),
+        instances(make_instances(p, memory.layouts)),
+        references(p, memory.layouts),
+        machine(p, globals, &memory.layouts, &references),
+        inspector(p, memory.layouts, references, globals, instances) {
+    link_programs();
+    place_areas();
+    collect_outputs(globals);
+    for (Variable& instance : instances) collect_outputs(instance);
+    published.resize(outputs.size());
+    released.resize(program.tasks.size());
+    level.resize(program.tasks.size());
+    for (const uint32_t task : by_priority([](const Task& each) { return each.once; })) {
+      add_trap(start_traps, run_task(task, 0, kStartBudget));
     }
   }
 
-  // Numbers of the tasks due at `now_ns`: by priority, then declaration.
-  std::vector<uint32_t> due_tasks(int64_t now_ns) const {
+  void collect_outputs(Variable& owner) {
+    const std::vector<Member>& members = program.types[owner.type].members;
+    for (size_t i = 0; i < owner.parts.size() && i < members.size(); ++i) {
+      if (members[i].address.area == DirectArea::kOutput) outputs.push_back(&owner.parts[i]);
+    }
+  }
+
+  static std::vector<Variable> make_instances(const Program& program, const Layouts& layouts) {
+    std::vector<Variable> made;
+    for (const ProgramInstance& instance : program.instances) {
+      made.push_back(Variables(program, &layouts).make(instance.type, instance.init));
+    }
+    return made;
+  }
+
+  // A global of program type is another way to the program instance of that name.
+  void link_programs() {
+    const std::vector<Member>& members = program.types[program.globals].members;
+    for (size_t i = 0; i < globals.parts.size(); ++i) {
+      for (size_t p = 0; p < instances.size() && globals.parts[i].slot; ++p) {
+        if (same_name(program.instances[p].name, members[i].name)) {
+          globals.parts[i].target = {&instances[p],     0, &instances[p], 0,
+                                     instances[p].type, 0, false};
+        }
+      }
+    }
+  }
+
+  // Every instance gets the ID and place that `memory` says; otherwise IDs are those that the
+  // linker gives a first version: programs, the instances in each, those among the globals.
+  void place_areas() {
+    std::unordered_map<std::string, const EvalArea*> known;
+    uint32_t next_id = 0;
+    uint32_t next_data = 64;
+    for (const EvalArea& area : memory.areas) {
+      known.emplace(fold_name(area.path), &area);
+      next_id = std::max(next_id, area.id + 1);
+    }
+    for_each_area([&](Variable& root, const std::string& path) {
+      EvalArea area{path, next_id, 0, next_data};
+      if (const auto found = known.find(fold_name(path)); found != known.end()) {
+        area = *found->second;
+      } else {
+        ++next_id;
+      }
+      next_data += (memory.layouts[root.type].used + 15) / 8 * 8;
+      references.add_area(root, area.id, area.generation, area.data);
+      references.name_area(root, path);
+    });
+  }
+
+  using VisitArea = std::function<void(Variable&, const std::string&)>;
+
+  void for_each_area(const VisitArea& visit) {
+    visit(globals, "");
+    for (size_t i = 0; i < instances.size(); ++i) {
+      visit(instances[i], program.instances[i].name);
+    }
+    for (size_t i = 0; i < instances.size(); ++i) {
+      inner_areas(instances[i], program.instances[i].name, visit);
+    }
+    inner_areas(globals, "", visit);
+  }
+
+  void inner_areas(Variable& variable, const std::string& path, const VisitArea& visit) {
+    const Type& type = program.types[variable.type];
+    for (size_t i = 0; i < variable.parts.size(); ++i) {
+      Variable& part = variable.parts[i];
+      if (part.slot || (part.parts.empty() && !program.types.is_instance(part.type))) {
+        continue;
+      }
+      const std::string name = type.kind == Kind::kArray
+                                   ? path + index_text(type, i)
+                                   : path + (path.empty() ? "" : ".") + type.members[i].name;
+      if (program.types.is_instance(part.type)) {
+        visit(part, name);
+      }
+      inner_areas(part, name, visit);
+    }
+  }
+
+  static void add_trap(std::vector<EvalTrap>& traps, std::optional<EvalTrap> trap) {
+    if (trap) {
+      traps.push_back(*std::move(trap));
+    }
+  }
+
+  // Numbers of the wanted tasks: by priority, then declaration.
+  template <class Wanted>
+  std::vector<uint32_t> by_priority(Wanted wanted) const {
     std::vector<uint32_t> due;
     for (uint32_t i = 0; i < program.tasks.size(); ++i) {
-      if (now_ns % program.tasks[i].period_ns == 0) {
+      if (wanted(program.tasks[i])) {
         due.push_back(i);
       }
     }
@@ -77,162 +154,134 @@ struct Evaluator::Impl {
     return due;
   }
 
+  // What a task that traps has written to outputs goes back to what the last complete scan left
+  // (vm/runtime/scheduler.cc); before that, to zero.
   std::optional<EvalTrap> run_task(uint32_t task, int64_t now_ns, uint64_t budget) {
+    std::vector<uint64_t> before;
+    for (const Variable* output : outputs) before.push_back(output->bits);
+    std::optional<EvalTrap> trap = run_programs(task, now_ns, budget);
+    for (size_t i = 0; i < outputs.size(); ++i) {
+      uint64_t& now = outputs[i]->bits;
+      const uint64_t written = now ^ before[i];
+      if (trap) now = (now & ~written) | (published[i] & written);
+      if (!trap) published[i] = now;
+    }
+    return trap;
+  }
+
+  // Edges of events release tasks.
+  void look_at_events() {
+    for (uint32_t i = 0; i < program.tasks.size(); ++i) {
+      const uint32_t event = program.tasks[i].event;
+      if (event == kNoEvent) continue;
+      const bool now = globals.parts[event].bits != 0;
+      if (now && !level[i]) released[i] = true;
+      level[i] = now;
+    }
+  }
+
+  void release_due(int64_t now_ns) {
+    for (uint32_t i = 0; i < program.tasks.size(); ++i) {
+      const Task& task = program.tasks[i];
+      const bool due = task.period_ns > 0 && now_ns % task.period_ns == 0;
+      if (due && !(task.event != kNoEvent && level[i])) released[i] = true;
+    }
+  }
+
+  // The most urgent task that is released and has not begun in this cycle.
+  std::optional<uint32_t> next_task(const std::vector<bool>& begun) const {
+    for (const uint32_t task : by_priority([](const Task& each) { return !each.once; })) {
+      if (released[task] && !begun[task]) return task;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<EvalTrap> run_programs(uint32_t task, int64_t now_ns, uint64_t budget) {
     for (size_t i = 0; i < instances.size(); ++i) {
       if (program.instances[i].task != task) {
         continue;
       }
-      if (auto trap = machine.run(instances[i], now_ns, budget)) {
+      if (auto trap = machine.run(instances[i], task, now_ns, budget)) {
+        return trap;
+      }
+    }
+    for (const BlockTask& block : program.block_tasks) {
+      if (block.task != task) continue;
+      if (auto trap =
+              machine.run(instances[block.program].parts[block.member], task, now_ns, budget)) {
         return trap;
       }
     }
     return std::nullopt;
   }
-
-  Variable* find_first(std::string_view name) {
-    for (size_t i = 0; i < instances.size(); ++i) {
-      if (same_name(program.instances[i].name, name)) {
-        return &instances[i];
-      }
-    }
-    return find_member(globals, name);
-  }
-
-  Variable* find_member(Variable& variable, std::string_view name) {
-    const int32_t member = program.types.find_member(variable.type, name);
-    if (member < 0 || variable.slot || variable.parts.empty()) {
-      return nullptr;
-    }
-    return &variable.parts[static_cast<size_t>(member)];
-  }
-
-  Variable* find_element(Variable& variable, std::string_view& rest) {
-    const size_t close = rest.find(']');
-    const Type& type = program.types[variable.type];
-    if (close == std::string_view::npos || type.kind != Kind::kArray || variable.slot) {
-      return nullptr;
-    }
-    const std::optional<uint64_t> flat = flat_index(type, rest.substr(1, close - 1));
-    rest.remove_prefix(close + 1);
-    return flat ? &variable.parts[*flat] : nullptr;
-  }
-
-  // Path grammar of ir/bytecode/symbols.h.
-  Variable* find(std::string_view path) {
-    size_t end = std::min(path.find_first_of(".["), path.size());
-    Variable* variable = find_first(path.substr(0, end));
-    std::string_view rest = path.substr(end);
-    while (variable != nullptr && !rest.empty()) {
-      if (rest[0] == '[') {
-        variable = find_element(*variable, rest);
-      } else if (rest[0] == '.') {
-        end = std::min(rest.find_first_of(".[", 1), rest.size());
-        variable = find_member(*variable, rest.substr(1, end - 1));
-        rest.remove_prefix(end);
-      } else {
-        return nullptr;
-      }
-    }
-    return variable;
-  }
-
-  base::Result<Variable*> find_scalar(std::string_view path) {
-    Variable* variable = find(path);
-    if (variable == nullptr) {
-      return no_such_variable(path);
-    }
-    if (variable->slot || !program.types.is_scalar(variable->type)) {
-      return base::Error{base::Refusal::kBadValue, "`" + std::string(path) + "` is " +
-                                                       program.types.text(variable->type) +
-                                                       ", which is no scalar"};
-    }
-    return variable;
-  }
-
-  std::string leaf_text(const Variable& variable) const {
-    switch (program.types[variable.type].kind) {
-      case Kind::kString:
-        return string_text(variable.text);
-      case Kind::kWstring:
-        return wstring_text(variable.text);
-      default:
-        return scalar_text(program.types, variable.type, variable.bits);
-    }
-  }
-
-  void append_state(const std::string& path, const Variable& variable, std::string& out) const {
-    const Type& type = program.types[variable.type];
-    if (variable.slot) {
-      return;
-    }
-    if (type.kind == Kind::kArray) {
-      for (size_t i = 0; i < variable.parts.size(); ++i) {
-        append_state(path + index_text(type, i), variable.parts[i], out);
-      }
-    } else if (program.types.has_members(variable.type)) {
-      append_members(path.empty() ? path : path + ".", variable, out);
-    } else {
-      out += path + "=" + leaf_text(variable) + "\n";
-    }
-  }
-
-  void append_members(const std::string& prefix, const Variable& variable, std::string& out) const {
-    const std::vector<Member>& members = program.types[variable.type].members;
-    for (size_t i = 0; i < members.size(); ++i) {
-      append_state(prefix + members[i].name, variable.parts[i], out);
-    }
-  }
 };
 
-Evaluator::Evaluator(const Program& program) : impl_(std::make_unique<Impl>(program)) {}
+EvalResult evaluate_alone(const Program& program, const Pou& pou, uint32_t local, uint64_t budget) {
+  Variable no_globals;
+  return EvalMachine(program, no_globals).run_alone(pou, local, budget);
+}
+
+Evaluator::Evaluator(const Program& program)
+    : Evaluator(program, {natural_layouts(program.types), {}}) {}
+Evaluator::Evaluator(const Program& program, EvalMemory memory)
+    : impl_(std::make_unique<Impl>(program, std::move(memory))) {}
 Evaluator::~Evaluator() = default;
 
 std::vector<EvalTrap> Evaluator::scan(int64_t now_ns, uint64_t budget) {
-  std::vector<EvalTrap> traps;
-  for (const uint32_t task : impl_->due_tasks(now_ns)) {
-    if (auto trap = impl_->run_task(task, now_ns, budget)) {
-      traps.push_back(*std::move(trap));
-    }
+  std::vector<EvalTrap> traps = std::exchange(impl_->start_traps, {});
+  impl_->look_at_events();
+  impl_->release_due(now_ns);
+  std::vector<bool> begun(impl_->program.tasks.size());
+  while (const std::optional<uint32_t> task = impl_->next_task(begun)) {
+    begun[*task] = true;
+    impl_->released[*task] = false;
+    Impl::add_trap(traps, impl_->run_task(*task, now_ns, budget));
+    impl_->look_at_events();
   }
   return traps;
 }
 
 base::Result<uint64_t> Evaluator::bits(std::string_view path) const {
-  const base::Result<Variable*> variable = impl_->find_scalar(path);
-  if (!variable.ok()) {
-    return variable.error();
+  const base::Result<Address> at = impl_->inspector.find_scalar(path);
+  if (!at.ok()) {
+    return at.error();
   }
-  return (*variable)->bits;
+  return impl_->inspector.bits_of(*at);
 }
 
 base::Result<std::string> Evaluator::string(std::string_view path) const {
-  const Variable* variable = impl_->find(path);
-  if (variable == nullptr) {
-    return no_such_variable(path);
+  const base::Result<Address> at = impl_->inspector.find_string(path);
+  if (!at.ok()) {
+    return at.error();
   }
-  const Kind kind = impl_->program.types[variable->type].kind;
-  if (variable->slot || (kind != Kind::kString && kind != Kind::kWstring)) {
-    return base::Error{base::Refusal::kBadValue, "`" + std::string(path) + "` is no string"};
-  }
-  return variable->text;
+  return impl_->inspector.text_of(*at);
 }
 
-base::Status Evaluator::set_bits(std::string_view path, uint64_t bits) {
-  const base::Result<Variable*> variable = impl_->find_scalar(path);
-  if (!variable.ok()) {
-    return variable.error();
+base::Status Evaluator::set_string(std::string_view path, std::string_view text) {
+  const base::Result<Address> at = impl_->inspector.find_string(path);
+  if (!at.ok()) {
+    return at.error();
   }
-  (*variable)->bits = canonical(impl_->program.types.scalar((*variable)->type), bits);
+  Variable value = Variables(impl_->program).make(at->type);
+  Variables(impl_->program).set_text(value, text);
+  const auto* units = reinterpret_cast<const uint8_t*>(value.bytes.data());
+  impl_->references.bytes().write(*at->root, at->offset, {units, value.bytes.size()});
   return base::Ok{};
 }
 
-std::string Evaluator::state() const {
-  std::string text;
-  impl_->append_state("", impl_->globals, text);
-  for (size_t i = 0; i < impl_->instances.size(); ++i) {
-    impl_->append_state(impl_->program.instances[i].name, impl_->instances[i], text);
+base::Status Evaluator::set_bits(std::string_view path, uint64_t bits) {
+  const base::Result<Address> at = impl_->inspector.find_scalar(path);
+  if (!at.ok()) {
+    return at.error();
   }
-  return text;
+  std::vector<uint8_t> raw(scalar_size(impl_->program.types.scalar(at->type)));
+  for (size_t i = 0; i < raw.size(); ++i) {
+    raw[i] = static_cast<uint8_t>(bits >> (8 * i));
+  }
+  impl_->references.bytes().write(*at->root, at->offset, raw);
+  return base::Ok{};
 }
+
+std::string Evaluator::state() const { return impl_->inspector.state(); }
 
 }  // namespace ir

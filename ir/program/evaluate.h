@@ -1,15 +1,18 @@
-// The oracle: a small, slow, obviously correct evaluator. It knows no layout, no
-// addresses and no bytecode: variables are trees of values. Interpreter and native
-// tier must give the same state after every scan, traps included.
+// The oracle: a small, slow, obviously correct evaluator. It knows no addresses and no
+// bytecode: variables are trees of values. A layout only says what they are as bytes, for unions
+// and for references that name something else than a whole variable. Interpreter and native tier
+// must give the same state after every scan, traps included.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
 #include "ir/program/ir.h"
+#include "ir/types/layout.h"
 
 namespace ir {
 
@@ -20,11 +23,35 @@ struct EvalTrap {
   std::string text;  // operands, for people
 };
 
+// What one local of a function holds at its end.
+struct EvalResult {
+  std::optional<EvalTrap> trap;
+  uint64_t bits = 0;
+  std::string text;
+};
+// Runs `pou`, which has no parameters, names neither globals nor instances and calls
+// native functions only: how the compiler knows the value of a constant expression.
+EvalResult evaluate_alone(const Program& program, const Pou& pou, uint32_t local, uint64_t budget);
+
+// Where variables lie in the memory that the evaluator is compared with.
+struct EvalArea {
+  std::string path;  // of an instance, as ir::Image::instance_path; "" for the globals
+  uint32_t id = 0;
+  uint32_t generation = 0;
+  uint32_t data = 0;
+};
+struct EvalMemory {
+  Layouts layouts;  // of the program's types
+  std::vector<EvalArea> areas;
+};
+
 class Evaluator {
  public:
   // `program` must be verified and outlive the evaluator. All variables hold
-  // their initial values.
-  explicit Evaluator(const Program& program);
+  // their initial values, and the tasks that run once have run; their traps come with the
+  // first scan's.
+  explicit Evaluator(const Program& program);  // laid out naturally
+  Evaluator(const Program& program, EvalMemory memory);
   ~Evaluator();
 
   // Runs one scan: every task whose period divides now_ns, by priority, each to its
@@ -37,6 +64,8 @@ class Evaluator {
   base::Result<uint64_t> bits(std::string_view path) const;
   base::Result<std::string> string(std::string_view path) const;
   base::Status set_bits(std::string_view path, uint64_t bits);
+  // Cut to the capacity; WSTRING: UTF-16LE.
+  base::Status set_string(std::string_view path, std::string_view text);
 
   // Every leaf variable, "path=value" sorted by declaration; the format of
   // ir/bytecode/symbols.h so that tiers can be compared as text.

@@ -67,7 +67,7 @@ class ProgramParser {
       std::string_view word;
       void (ProgramParser::*parse)(LineReader&);
     };
-    constexpr std::array<Declaration, 9> kDeclarations = {{
+    constexpr std::array<Declaration, 10> kDeclarations = {{
         {"program", &ProgramParser::parse_name},
         {"type", &ProgramParser::parse_type},
         {"member", &ProgramParser::parse_member},
@@ -75,6 +75,7 @@ class ProgramParser {
         {"globals", &ProgramParser::parse_globals},
         {"task", &ProgramParser::parse_task},
         {"instance", &ProgramParser::parse_instance},
+        {"override", &ProgramParser::parse_override},
         {"pou", &ProgramParser::parse_pou},
         {"local", &ProgramParser::parse_local},
     }};
@@ -127,12 +128,35 @@ class ProgramParser {
         type.base = scope_.type(line);
         parse_range(line, type.low, type.high);
         break;
+      case Kind::kPointer:
+      case Kind::kRefTo:
+      case Kind::kReferenceTo:
+        type.base = scope_.type(line);
+        break;
+      case Kind::kStruct:
+        type.overlap = line.take("overlap");
+        break;
       case Kind::kArray:
         type.base = scope_.type(line);
         parse_dimensions(line, type);
         break;
+      case Kind::kFunctionBlock:
+      case Kind::kInterface:
+        parse_ancestors(line, type);
+        break;
       default:
         break;
+    }
+  }
+
+  void parse_ancestors(LineReader& line, Type& type) {
+    if (line.take("extends")) {
+      type.base = scope_.type(line);
+    }
+    if (line.take("implements")) {
+      do {
+        type.interfaces.push_back(scope_.type(line));
+      } while (line.take(","));
     }
   }
 
@@ -186,6 +210,10 @@ class ProgramParser {
         return program_.types.array(type.base, type.dims);
       case Kind::kSubrange:
         return program_.types.subrange(type.base, type.low, type.high);
+      case Kind::kPointer:
+      case Kind::kRefTo:
+      case Kind::kReferenceTo:
+        return program_.types.reference(type.kind, type.base);
       default:
         return TypeId();
     }
@@ -250,8 +278,17 @@ class ProgramParser {
   void parse_task(LineReader& line) {
     Task task;
     task.name = line.name();
-    line.expect("period");
-    task.period_ns = line.signed_number();
+    task.once = line.take("once");
+    task.period_ns = 0;
+    if (!task.once) {
+      line.expect("period");
+      task.period_ns = line.signed_number();
+    }
+    if (line.take("event")) {
+      const int32_t member = program_.types.find_member(program_.globals, line.name());
+      if (member < 0) line.fail("the event is no global");
+      task.event = static_cast<uint32_t>(member);
+    }
     task.watchdog_ns = line.take("watchdog") ? line.signed_number() : 0;
     line.expect("priority");
     task.priority = line.index();
@@ -269,11 +306,22 @@ class ProgramParser {
     program_.instances.push_back(std::move(instance));
   }
 
+  void parse_override(LineReader& line) {
+    Override row;
+    row.type = scope_.type(line);
+    line.expect(":");
+    row.prototype = scope_.pou(line);
+    line.expect("=");
+    row.target = scope_.pou(line);
+    program_.overrides.push_back(row);
+  }
+
   void parse_pou(LineReader& line) {
     Pou pou;
     pou.kind = static_cast<PouKind>(line.choice(kPouWords));
     pou.name = line.name();
     pou.self = line.take("self") ? scope_.type(line) : TypeId();
+    pou.recursion_depth = line.take("recursion") ? line.index() : 0;
     if (line.take("file")) {
       pou.file = line.string();
       line.expect("line");

@@ -57,6 +57,9 @@ class BodyParser {
       } while (line.take(","));
       line.expect(")");
     }
+    if (line.take("handler")) {
+      block.handler = BlockId(line.numbered('b'));
+    }
     line.expect(":");
     pou_.blocks.push_back(std::move(block));
   }
@@ -110,6 +113,7 @@ class BodyParser {
       case Op::kLoad:
       case Op::kAddress:
       case Op::kString:
+      case Op::kHandle:
       case Op::kCallInstance:
         inst.place = place(line);
         break;
@@ -130,8 +134,20 @@ class BodyParser {
       case Op::kCheckRange:
         parse_check_range(line, inst);
         break;
+      case Op::kSizeOf:
+        inst.type = scope_.type(line);
+        break;
       case Op::kCallFunction:
-        inst.pou = scope_.pou(line);
+      case Op::kCallMethod:
+      case Op::kCallBody:
+      case Op::kCallVirtual:
+        parse_call(line, inst);
+        break;
+      case Op::kIsType:
+      case Op::kCallReference:
+        inst.operands.push_back(ValueId(line.numbered('v')));
+        line.expect(",");
+        inst.type = scope_.type(line);
         break;
       case Op::kCallNative:
         inst.native = parse_native(line);
@@ -161,6 +177,19 @@ class BodyParser {
     do {
       values.push_back(ValueId(line.numbered('v')));
     } while (line.take(","));
+  }
+
+  // "POU", "POU, v1" or "POU, PLACE".
+  void parse_call(LineReader& line, Inst& inst) {
+    inst.pou = scope_.pou(line);
+    if (!line.take(",")) {
+      return;
+    }
+    if (at_value(line)) {
+      parse_values(line, inst.operands);
+    } else {
+      inst.place = place(line);
+    }
   }
 
   static void parse_check_range(LineReader& line, Inst& inst) {

@@ -51,8 +51,8 @@ void parse_typed_base(const ParseScope& scope, LineReader& line, Place& place) {
 
 void parse_base(const Program& program, const ParseScope& scope, const Pou& pou, LineReader& line,
                 Place& place) {
-  constexpr std::array<std::string_view, 6> kBases = {"local", "self", "global",
-                                                      "const", "arg",  "pointee"};
+  constexpr std::array<std::string_view, 7> kBases = {"local", "self",    "global", "const",
+                                                      "arg",   "pointee", "target"};
   place.base = static_cast<PlaceBase>(line.choice(kBases));
   if (line.failed()) {
     return;
@@ -66,6 +66,7 @@ void parse_base(const Program& program, const ParseScope& scope, const Pou& pou,
       break;
     case PlaceBase::kConst:
     case PlaceBase::kPointee:
+    case PlaceBase::kTarget:
       parse_typed_base(scope, line, place);
       break;
     default:

@@ -15,7 +15,7 @@ base::Result<PlaceState> local_base(const Pou& pou, uint32_t index) {
 
 base::Result<PlaceState> member_step(const TypeTable& types, const PlaceState& from,
                                      uint32_t index) {
-  const bool is_struct = types[from.type].kind == Kind::kStruct;
+  const bool is_struct = is_structure(types[from.type].kind);
   if (!types.has_members(from.type) || (!is_struct && !from.entered)) {
     return bad("member of " + types.text(from.type) + ", which has none or was not entered");
   }
@@ -59,7 +59,7 @@ base::Result<PlaceState> place_base(const Program& program, const Pou& pou, cons
       return PlaceState{program.globals, true, false, 0};
     case PlaceBase::kArg:
       if (place.pou.index >= program.pous.size() ||
-          program.pous[place.pou.index].kind != PouKind::kFunction) {
+          !has_parameters(program.pous[place.pou.index].kind)) {
         return bad("argument of something that is no function");
       }
       return local_base(program.pous[place.pou.index], place.base_index);
@@ -69,6 +69,7 @@ base::Result<PlaceState> place_base(const Program& program, const Pou& pou, cons
       }
       return PlaceState{place.base_type, false, false, 0};
     case PlaceBase::kPointee:
+    case PlaceBase::kTarget:
       return PlaceState{place.base_type, false, false, 0};
   }
   return bad("place without a base");

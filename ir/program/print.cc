@@ -46,6 +46,10 @@ class ProgramPrinter {
     text_ += "globals " + names_.type(program_.globals) + "\n";
     print_tasks();
     print_instances();
+    for (const Override& row : program_.overrides) {
+      text_ += "override " + names_.type(row.type) + " : " + names_.pou(row.prototype) + " = " +
+               names_.pou(row.target) + "\n";
+    }
     for (const Pou& pou : program_.pous) {
       print_pou(program_, names_, pou, text_);
     }
@@ -81,11 +85,28 @@ class ProgramPrinter {
       case Kind::kSubrange:
         return word + " " + names_.type(type.base) + " " + std::to_string(type.low) + ".." +
                std::to_string(type.high);
+      case Kind::kPointer:
+      case Kind::kRefTo:
+      case Kind::kReferenceTo:
+        return word + " " + names_.type(type.base);
+      case Kind::kStruct:
+        return word + (type.overlap ? " overlap" : "");
       case Kind::kArray:
         return word + " " + names_.type(type.base) + " [" + dimensions(type) + "]";
+      case Kind::kFunctionBlock:
+      case Kind::kInterface:
+        return word + ancestors(type);
       default:
         return word;
     }
+  }
+
+  std::string ancestors(const Type& type) const {
+    std::string text = type.base.valid() ? " extends " + names_.type(type.base) : "";
+    for (const TypeId parent : type.interfaces) {
+      text += (parent == type.interfaces[0] ? " implements " : ", ") + names_.type(parent);
+    }
+    return text;
   }
 
   static std::string literals(const Type& type) {
@@ -122,7 +143,10 @@ class ProgramPrinter {
 
   void print_tasks() {
     for (const Task& task : program_.tasks) {
-      text_ += "task " + name_text(task.name) + " period " + std::to_string(task.period_ns);
+      text_ += "task " + name_text(task.name) +
+               (task.once ? " once" : " period " + std::to_string(task.period_ns));
+      const std::vector<Member>& globals = program_.types[program_.globals].members;
+      text_ += task.event < globals.size() ? " event " + name_text(globals[task.event].name) : "";
       text_ += task.watchdog_ns != 0 ? " watchdog " + std::to_string(task.watchdog_ns) : "";
       text_ += " priority " + std::to_string(task.priority) + "\n";
     }

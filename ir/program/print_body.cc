@@ -38,6 +38,9 @@ class PouPrinter {
     text_ += "pou " + std::string(kPouWords[static_cast<size_t>(pou_.kind)]) + " " +
              name_text(pou_.name);
     text_ += pou_.self.valid() ? " self " + names_.type(pou_.self) : "";
+    if (pou_.recursion_depth != 0) {
+      text_ += " recursion " + std::to_string(pou_.recursion_depth);
+    }
     if (!pou_.file.empty() || pou_.line != 0) {
       text_ += " file " + string_text(pou_.file) + " line " + std::to_string(pou_.line);
     }
@@ -53,7 +56,9 @@ class PouPrinter {
       const ValueId param = block.params[i];
       text_ += (i == 0 ? "(" : ", ") + value_name(param) + ":" + scalar_of(param);
     }
-    text_ += block.params.empty() ? ":\n" : "):\n";
+    text_ += block.params.empty() ? "" : ")";
+    text_ += block.handler.valid() ? " handler b" + std::to_string(block.handler.index) : "";
+    text_ += ":\n";
     for (const Inst& inst : block.insts) {
       print_inst(inst);
     }
@@ -83,6 +88,7 @@ class PouPrinter {
       case Op::kLoad:
       case Op::kAddress:
       case Op::kString:
+      case Op::kHandle:
       case Op::kCallInstance:
         return place(inst.place);
       case Op::kStore:
@@ -95,11 +101,22 @@ class PouPrinter {
       case Op::kCheckRange:
         return list(inst.operands) + ", " + std::to_string(inst.low) + ".." +
                std::to_string(inst.high);
+      case Op::kSizeOf:
+        return names_.type(inst.type);
       case Op::kCallFunction:
-        return names_.pou(inst.pou);
+      case Op::kCallMethod:
+      case Op::kCallBody:
+      case Op::kCallVirtual:
+        return names_.pou(inst.pou) + (inst.place.valid() ? ", " + place(inst.place) : "") +
+               (inst.operands.empty() ? "" : ", " + list(inst.operands));
+      case Op::kIsType:
+      case Op::kCallReference:
+        return list(inst.operands) + ", " + names_.type(inst.type);
       case Op::kCallNative:
         return native_text(inst.native) + (inst.operands.empty() ? "" : " " + list(inst.operands));
       case Op::kJump:
+      case Op::kTry:
+      case Op::kEndTry:
         return targets(inst);
       case Op::kBranch:
         return list(inst.operands) + ", " + targets(inst);

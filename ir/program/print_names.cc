@@ -38,6 +38,9 @@ std::string base_text(const PrintNames& names, const Pou& pou, const Place& plac
     case PlaceBase::kPointee:
       return "pointee(v" + std::to_string(place.value.index) + " : " + names.type(place.base_type) +
              ")";
+    case PlaceBase::kTarget:
+      return "target(v" + std::to_string(place.value.index) + " : " + names.type(place.base_type) +
+             ")";
   }
   return "?";
 }

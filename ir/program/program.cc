@@ -20,8 +20,7 @@ PouId Program::find_pou(std::string_view wanted) const {
 }
 
 PouId Program::pou_of_instance_type(TypeId type) const {
-  return find_if(
-      pous, [type](const Pou& pou) { return pou.kind != PouKind::kFunction && pou.self == type; });
+  return find_if(pous, [type](const Pou& pou) { return is_body(pou.kind) && pou.self == type; });
 }
 
 }  // namespace ir

@@ -35,7 +35,7 @@ bool holds_instance(const TypeTable& types, TypeId type) {
   while (types[type].kind == Kind::kArray) {
     type = types[type].base;
   }
-  if (types[type].kind != Kind::kStruct) {
+  if (!is_structure(types[type].kind)) {
     return types.is_instance(type);
   }
   const std::vector<Member>& members = types[type].members;

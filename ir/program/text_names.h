@@ -14,12 +14,12 @@ inline constexpr std::array<std::string_view, 5> kSectionWords = {"local", "inpu
 inline constexpr std::array<std::string_view, 4> kAreaWords = {"none", "input", "output", "marker"};
 inline constexpr std::array<std::string_view, 5> kLocalWords = {"input", "output", "in_out",
                                                                 "return", "temp"};
-inline constexpr std::array<std::string_view, 3> kPouWords = {"function", "function_block",
-                                                              "program"};
+inline constexpr std::array<std::string_view, 4> kPouWords = {"function", "function_block",
+                                                              "program", "method"};
 // Kinds from kString on.
-inline constexpr std::array<std::string_view, 9> kKindWords = {
-    "string", "wstring",        "enum",    "subrange", "array",
-    "struct", "function_block", "program", "globals"};
+inline constexpr std::array<std::string_view, 14> kKindWords = {
+    "string",       "wstring", "enum",  "subrange",       "array",   "pointer", "ref_to",
+    "reference_to", "struct",  "union", "function_block", "program", "globals", "interface"};
 
 // Does the scalar stand behind the operation?
 bool shows_scalar(Op op);

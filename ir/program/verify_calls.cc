@@ -14,8 +14,14 @@ namespace {
 constexpr uint32_t kNobody = 0xfffffffeu;
 constexpr uint32_t kUnknown = 0xffffffffu;
 
+// In kArg places of its `pou`.
+bool takes_arguments(Op op) {
+  return op == Op::kCallFunction || op == Op::kCallMethod || op == Op::kCallVirtual;
+}
+
 bool is_call(Op op) {
-  return op == Op::kCallFunction || op == Op::kCallInstance || op == Op::kCallNative;
+  return op == Op::kCallInstance || op == Op::kCallNative || op == Op::kCallBody ||
+         op == Op::kCallReference || takes_arguments(op);
 }
 
 class CallsVerifier {
@@ -44,7 +50,7 @@ class CallsVerifier {
   uint32_t results_after(const Block& block, uint32_t results) const {
     for (const Inst& inst : block.insts) {
       if (is_call(inst.op)) {
-        results = inst.op == Op::kCallFunction ? inst.pou.index : kNobody;
+        results = takes_arguments(inst.op) ? inst.pou.index : kNobody;
       }
     }
     return results;
@@ -59,7 +65,10 @@ class CallsVerifier {
       work.pop_back();
       for (const Target& target : block.insts.back().targets) {
         uint32_t& entry = results_at_entry_[target.block.index];
-        const uint32_t merged = entry == kUnknown || entry == results ? results : kNobody;
+        const bool handler =
+            &target != &block.insts.back().targets[0] && block.insts.back().op == Op::kTry;
+        const bool agrees = !handler && (entry == kUnknown || entry == results);
+        const uint32_t merged = agrees ? results : kNobody;
         if (merged != entry) {
           entry = merged;
           work.push_back(target.block.index);
@@ -94,8 +103,14 @@ class CallsVerifier {
         break;
       case Op::kAddress:
       case Op::kString:
+      case Op::kHandle:
       case Op::kCallInstance:
         check_no_argument(inst.place);
+        break;
+      case Op::kCallMethod:
+        if (inst.place.valid()) {
+          check_no_argument(inst.place);
+        }
         break;
       case Op::kStore:
       case Op::kCopy:
@@ -160,14 +175,14 @@ class CallsVerifier {
   }
 
   void check_call(const Inst& inst) {
-    if (pending_.valid() && (inst.op != Op::kCallFunction || inst.pou != pending_)) {
+    if (pending_.valid() && (!takes_arguments(inst.op) || inst.pou != pending_)) {
       fail("another call between an argument and its call");
     }
-    if (inst.op == Op::kCallFunction) {
+    if (takes_arguments(inst.op)) {
       check_all_written(program_.pous[inst.pou.index]);
     }
     pending_ = PouId();
-    results_ = inst.op == Op::kCallFunction ? inst.pou.index : kNobody;
+    results_ = takes_arguments(inst.op) ? inst.pou.index : kNobody;
   }
 
   void check_all_written(const Pou& callee) {

@@ -150,7 +150,7 @@ void add_place_values(const Pou& pou, PlaceId id, std::vector<ValueId>& values) 
     return;
   }
   const Place& place = pou.places[id.index];
-  if (place.base == PlaceBase::kPointee) {
+  if (place.base == PlaceBase::kPointee || place.base == PlaceBase::kTarget) {
     values.push_back(place.value);
   }
   for (const Step& step : place.steps) {

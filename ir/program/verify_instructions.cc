@@ -59,11 +59,15 @@ class InstVerifier {
     if (inst.result.valid() && reason_.empty()) {
       require(scalar_of(inst.result) == result_scalar(inst), "its result has another type");
     }
-    const size_t targets = inst.op == Op::kJump ? 1 : inst.op == Op::kBranch ? 2 : 0;
-    require(inst.targets.size() == targets, "number of targets");
+    require(inst.targets.size() == target_count(inst.op), "number of targets");
     for (const Target& target : inst.targets) {
       check_target(target);
     }
+  }
+
+  static size_t target_count(Op op) {
+    const bool two = op == Op::kBranch || op == Op::kTry;
+    return two ? 2 : op == Op::kJump || op == Op::kEndTry ? 1 : 0;
   }
 
   void check_target(const Target& target) {
@@ -99,6 +103,7 @@ class InstVerifier {
       case Op::kInit:
       case Op::kAddress:
       case Op::kString:
+      case Op::kHandle:
       case Op::kCallInstance:
         fail(memory_.check(inst));
         break;
@@ -132,8 +137,50 @@ class InstVerifier {
       case Op::kCallNative:
         check_native(inst);
         break;
+      case Op::kThis:
+        require(inst.scalar == Scalar::kU64 && types().is_instance(pou_.self),
+                "there is no own instance, or its reference is not u64");
+        break;
+      case Op::kTrapKind:
+        require(inst.scalar == Scalar::kU32, "the kind of a trap is u32");
+        break;
+      case Op::kIsType:
+        check_reference(inst);
+        require(types().contains(inst.type) &&
+                    (types()[inst.type].kind == Kind::kInterface || types().is_instance(inst.type)),
+                "the type is no block and no interface");
+        break;
+      case Op::kCallReference:
+        check_reference(inst);
+        require(types().is_instance(inst.type), "the type is no block");
+        break;
+      case Op::kCallMethod:
+      case Op::kCallVirtual:
+      case Op::kCallBody:
+        check_method_call(inst);
+        break;
+      case Op::kMoveHandle:
+        require(inst.scalar == Scalar::kU64 && operand(inst, 0) == Scalar::kU64 &&
+                    (operand(inst, 1) == Scalar::kU64 || operand(inst, 1) == Scalar::kI64),
+                "a handle is u64 and moves by a u64 or i64");
+        break;
+      case Op::kFlat:
+        require(inst.scalar == Scalar::kU32 && operand(inst, 0) == Scalar::kU64,
+                "flat takes a u64 and gives a u32");
+        break;
+      case Op::kUnflat:
+        require(inst.scalar == Scalar::kU64 && operand(inst, 0) == Scalar::kU32,
+                "unflat takes a u32 and gives a u64");
+        break;
+      case Op::kSizeOf:
+        require(inst.scalar == Scalar::kU32 && program_.types.contains(inst.type),
+                "size_of gives a u32 and needs a type");
+        break;
       case Op::kTaskTime:
         require(inst.scalar == Scalar::kI64, "the task's time is i64");
+        break;
+      case Op::kAdvanceTime:
+        require(operand(inst, 0) == Scalar::kI64, "time advances by an i64");
         break;
       case Op::kBranch:
         require(operand(inst, 0) == Scalar::kBool, "a branch takes a bool");
@@ -144,6 +191,37 @@ class InstVerifier {
       default:
         check_arithmetic(inst);
     }
+  }
+
+  const TypeTable& types() const { return program_.types; }
+
+  void check_reference(const Inst& inst) {
+    require(operand(inst, 0) == Scalar::kU64, "a reference is u64");
+  }
+
+  void check_method_call(const Inst& inst) {
+    if (inst.pou.index >= program_.pous.size()) {
+      return fail("call of a POU that does not exist");
+    }
+    const Pou& callee = program_.pous[inst.pou.index];
+    if (inst.op == Op::kCallBody) {
+      require(callee.kind == PouKind::kFunctionBlock && pou_.self.valid() &&
+                  callee.self != pou_.self && types().is_a(pou_.self, callee.self),
+              "the POU is no base of this one");
+      return;
+    }
+    require(callee.kind == PouKind::kMethod, "call of something that is no method");
+    require(inst.op == Op::kCallVirtual || types().is_instance(callee.self),
+            "methods of interfaces are called as virtual ones");
+    require(inst.operands.size() + inst.place.valid() <= 1, "number of operands");
+    if (!inst.operands.empty()) {
+      return check_reference(inst);
+    }
+    if (inst.place.valid() && reason_.empty()) {
+      return fail(memory_.check(inst));
+    }
+    require(pou_.self.valid() && types().is_a(pou_.self, callee.self),
+            "the own instance has no such method");
   }
 
   static bool conversion_fits(Op op, Scalar from, Scalar to) {

@@ -25,9 +25,13 @@ const Place* MemoryVerifier::pointee(ValueId value) const {
 }
 
 void MemoryVerifier::check_memory_inst(const Inst& inst) {
-  const std::optional<PlaceState> state = check_one_place(inst.place);
+  const bool is_handle = inst.op == Op::kHandle;
+  const std::optional<PlaceState> state = check_one_place(inst.place, is_handle);
   if (!state) {
     return;
+  }
+  if (is_handle) {
+    return check_handle(inst, *state);
   }
   const bool reads = inst.op == Op::kLoad || inst.op == Op::kString || inst.op == Op::kAddress;
   require(reads || pou_.places[inst.place.index].base != PlaceBase::kConst,
@@ -36,6 +40,15 @@ void MemoryVerifier::check_memory_inst(const Inst& inst) {
   if (reason_.empty()) {
     check_access(inst, *state);
   }
+}
+
+void MemoryVerifier::check_handle(const Inst& inst, const PlaceState& state) {
+  const Place& place = pou_.places[inst.place.index];
+  require(inst.scalar == Scalar::kU64, "a handle is u64");
+  require(!state.slot, "in-out slot is used without following it");
+  require(place.base != PlaceBase::kConst && place.base != PlaceBase::kArg,
+          "a constant or an argument has no handle");
+  require(!state.entered || program_.types.is_instance(state.type), "the globals have no handle");
 }
 
 void MemoryVerifier::check_access(const Inst& inst, const PlaceState& state) {
@@ -63,8 +76,12 @@ void MemoryVerifier::check_access(const Inst& inst, const PlaceState& state) {
                   (kind == Kind::kWstring && inst.scalar == Scalar::kWstr),
               "the place is no string of that kind");
       break;
+    case Op::kCallMethod:
+      require(types.is_a(state.type, program_.pous[inst.pou.index].self),
+              "the instance has no such method");
+      break;
     default:
-      require(kind == Kind::kFunctionBlock, "the place is no function block instance");
+      require(types.is_instance(state.type), "the place is no function block instance");
   }
 }
 
@@ -85,7 +102,7 @@ void MemoryVerifier::check_store(const Inst& inst, const PlaceState& state) {
 }
 
 void MemoryVerifier::check_copy(const Inst& inst, const PlaceState& to) {
-  const std::optional<PlaceState> from = check_one_place(inst.place2);
+  const std::optional<PlaceState> from = check_one_place(inst.place2, false);
   if (!from) {
     return;
   }
@@ -93,7 +110,7 @@ void MemoryVerifier::check_copy(const Inst& inst, const PlaceState& to) {
   require(can_copy(program_.types, to.type, from->type), "copy between different types");
 }
 
-std::optional<PlaceState> MemoryVerifier::check_one_place(PlaceId id) {
+std::optional<PlaceState> MemoryVerifier::check_one_place(PlaceId id, bool may_be_entered) {
   if (id.index >= pou_.places.size()) {
     fail("it needs a place");
     return std::nullopt;
@@ -108,7 +125,8 @@ std::optional<PlaceState> MemoryVerifier::check_one_place(PlaceId id) {
     fail(state.error().text);
     return std::nullopt;
   }
-  require(state->complete(), "the place ends inside an array or an instance");
+  require(state->dimensions == 0 && (may_be_entered || !state->entered),
+          "the place ends inside an array or an instance");
   return *state;
 }
 
@@ -119,11 +137,18 @@ void MemoryVerifier::check_place_values(const Place& place) {
     require(known, "an index is no integer value");
   }
   const TypeTable& types = program_.types;
-  if (place.base == PlaceBase::kConst || place.base == PlaceBase::kPointee) {
+  if (place.base == PlaceBase::kConst || place.base == PlaceBase::kPointee ||
+      place.base == PlaceBase::kTarget) {
     require(types.contains(place.base_type), "place of a type that does not exist");
   }
   if (place.base == PlaceBase::kConst && reason_.empty()) {
     require(!holds_instance(types, place.base_type), "constant of an instance type");
+  }
+  if (place.base == PlaceBase::kTarget && reason_.empty()) {
+    require(place.value.index < pou_.values.size() &&
+                pou_.values[place.value.index].scalar == Scalar::kU64 &&
+                types[place.base_type].kind != Kind::kGlobals,
+            "the base is no handle of a variable");
   }
   if (place.base == PlaceBase::kPointee && reason_.empty()) {
     check_pointee(place);

@@ -37,10 +37,11 @@ class MemoryVerifier {
   }
   const Place* pointee(ValueId value) const;
   void check_memory_inst(const Inst& inst);
+  void check_handle(const Inst& inst, const PlaceState& state);
   void check_access(const Inst& inst, const PlaceState& state);
   void check_store(const Inst& inst, const PlaceState& state);
   void check_copy(const Inst& inst, const PlaceState& to);
-  std::optional<PlaceState> check_one_place(PlaceId id);
+  std::optional<PlaceState> check_one_place(PlaceId id, bool may_be_entered);
   void check_place_values(const Place& place);
   void check_pointee(const Place& place);
 

@@ -41,7 +41,9 @@ class ConstantCheck {
 base::Status verify_instructions(const Program& program, const Pou& pou);
 // Every use is dominated by its definition.
 base::Status verify_dominance(const Pou& pou);
-// Calls of functions, see "Calls" in ir.h.
+// Blocks and the handlers that they name, see "Caught traps" in ir.h.
+base::Status verify_tries(const Pou& pou);
+// Calls of functions and methods, see "Calls" in ir.h.
 base::Status verify_calls(const Program& program, const Pou& pou);
 
 // "POU Main, b2, instruction 3 (add, line 17): "

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <optional>
 
 #include "base/limits.h"
+#include "ir/program/shape.h"
 #include "ir/program/verify_parts.h"
 
 namespace ir {
@@ -17,6 +19,10 @@ class TypesVerifier {
     }
     for (uint32_t i = 0; i < types_.size() && reason_.empty(); ++i) {
       count_leaves(TypeId(i), 0);
+    }
+    for (uint32_t i = 0; i < types_.size() && reason_.empty(); ++i) {
+      require(!types_.overlaps(TypeId(i)) || !holds_instance(types_, TypeId(i)), TypeId(i),
+              "a union holds an instance");
     }
     if (!reason_.empty()) {
       return not_verified("type " + reason_);
@@ -41,6 +47,7 @@ class TypesVerifier {
 
   void check_type(TypeId id) {
     const Type& type = types_[id];
+    check_ancestors(id, type);
     require(is_elementary(type.kind) || type.kind > Kind::kChar, id, "unknown kind");
     switch (type.kind) {
       case Kind::kString:
@@ -53,6 +60,12 @@ class TypesVerifier {
         break;
       case Kind::kArray:
         check_array(id, type);
+        break;
+      case Kind::kPointer:
+      case Kind::kRefTo:
+      case Kind::kReferenceTo:
+        require(types_.contains(type.base) && types_[type.base].kind != Kind::kGlobals, id,
+                "target type does not exist");
         break;
       default:
         check_members(id, type);
@@ -88,14 +101,69 @@ class TypesVerifier {
     require(type.members.empty() || types_.has_members(id), id, "members of a scalar type");
     for (const Member& member : type.members) {
       require(types_.contains(member.type), id, "type of a member does not exist");
+      require(!types_.overlaps(id) || member.address.area == DirectArea::kNone, id,
+              "a member of a union has an I/O address");
       require(member.section != Section::kInOut || types_.is_instance(id), id,
               "in-out outside of an instance");
       if (types_.contains(member.type)) {
         const Kind kind = types_[member.type].kind;
-        require(kind != Kind::kProgram && kind != Kind::kGlobals, id,
-                "a program cannot be a member");
+        require((kind != Kind::kProgram || type.kind == Kind::kGlobals) && kind != Kind::kGlobals,
+                id, "a program cannot be a member");
+        require(kind != Kind::kInterface, id, "an interface cannot be a member");
       }
     }
+  }
+
+  void check_ancestors(TypeId id, const Type& type) {
+    const bool block = type.kind == Kind::kFunctionBlock;
+    require(type.interfaces.empty() || block || type.kind == Kind::kInterface, id,
+            "interfaces of something that is no block");
+    for (const TypeId parent : type.interfaces) {
+      require(types_.contains(parent) && types_[parent].kind == Kind::kInterface, id,
+              "it implements what is no interface");
+      check_inherits_interfaces(id, type, parent);
+    }
+    if (block && type.base.valid()) {
+      check_base(id, type);
+      check_inherits_interfaces(id, type, type.base);
+    }
+  }
+
+  void check_inherits_interfaces(TypeId id, const Type& type, TypeId from) {
+    if (!reason_.empty()) {
+      return;
+    }
+    for (const TypeId parent : types_[from].interfaces) {
+      const auto& own = type.interfaces;
+      require(parent != id && std::find(own.begin(), own.end(), parent) != own.end(), id,
+              "its interfaces leave out an inherited one");
+    }
+  }
+
+  void check_base(TypeId id, const Type& type) {
+    const bool exists =
+        types_.contains(type.base) && types_[type.base].kind == Kind::kFunctionBlock;
+    require(exists, id, "the base is no function block");
+    uint32_t depth = 0;
+    for (TypeId base = type.base; types_.contains(base) && depth <= base::kMaxNesting; ++depth) {
+      base = types_[base].base;
+    }
+    require(depth <= base::kMaxNesting, id, "it extends itself, or too many others");
+    if (!reason_.empty()) {
+      return;
+    }
+    const std::vector<Member>& inherited = types_[type.base].members;
+    require(inherited.size() <= type.members.size(), id, "members of the base are missing");
+    for (size_t i = 0; i < inherited.size() && reason_.empty(); ++i) {
+      require(inherits(type.members[i], inherited[i]), id,
+              "its first members are not those of its base");
+    }
+  }
+
+  static bool inherits(const Member& member, const Member& of_base) {
+    return same_name(member.name, of_base.name) && member.type == of_base.type &&
+           member.section == of_base.section && member.constant == of_base.constant &&
+           member.address == of_base.address;
   }
 
   // Scalars and strings in a value of the type, instances included: bounds both
@@ -111,7 +179,10 @@ class TypesVerifier {
     state_[id.index] = State::kOpen;
     leaves_[id.index] = sum_leaves(types_[id], depth);
     state_[id.index] = State::kDone;
-    require(leaves_[id.index] <= base::kMaxTypeBytes, id, "larger than the limit");
+    // What has an area of its own may hold several of the largest variables.
+    bool area = types_.is_instance(id) || types_[id].kind == Kind::kGlobals;
+    uint64_t limit = area ? uint64_t{base::kMaxDataBytes} : uint64_t{base::kMaxTypeBytes};
+    require(leaves_[id.index] <= limit, id, "larger than the limit");
     return leaves_[id.index];
   }
 
@@ -128,8 +199,11 @@ class TypesVerifier {
     }
     uint64_t sum = 1;
     for (const Member& member : type.members) {
-      // An in-out is an address, so its type is visited for itself only.
-      sum += member.section == Section::kInOut ? 1 : count_leaves(member.type, depth + 1);
+      // An in-out is an address and a program in the globals another's ID, so their types
+      // are visited for themselves only.
+      const bool elsewhere =
+          member.section == Section::kInOut || types_[member.type].kind == Kind::kProgram;
+      sum += elsewhere ? 1 : count_leaves(member.type, depth + 1);
     }
     return sum;
   }

@@ -38,4 +38,15 @@ class ConstTable {
   std::vector<ConstValue> values_;
 };
 
+// The initial value of a type whose members overlap (TypeTable::overlaps): what is written to
+// which member, each time over all of its bytes, one after the other. First members that say
+// nothing, the last one first; then those declared with an initial value; then what the type's
+// own list names, then what `value` names.
+struct MemberInit {
+  size_t member = 0;
+  ConstId value;  // invalid: the default of the member's type
+};
+std::vector<MemberInit> overlap_inits(const TypeTable& types, const ConstTable& constants,
+                                      TypeId type, ConstId value);
+
 }  // namespace ir

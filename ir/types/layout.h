@@ -12,7 +12,7 @@
 namespace ir {
 
 struct TypeLayout {
-  uint32_t size = 0;   // bytes of a value embedded in something (instances: 4, the ID slot)
+  uint32_t size = 0;  // bytes of a value embedded in something (instances: 4, the ID slot)
   uint32_t align = 1;
   // For types with members:
   std::vector<uint32_t> member_offsets;  // parallel to Type::members
@@ -25,5 +25,10 @@ struct Layouts {
   std::vector<TypeLayout> of;  // by TypeId index
   const TypeLayout& operator[](TypeId id) const { return of[id.index]; }
 };
+
+// The same type in both versions, including the layout of everything embedded:
+// a value can stay where it is, byte for byte.
+bool same_value_type(const TypeTable& old_types, const Layouts& old_layouts, TypeId old_type,
+                     const TypeTable& new_types, const Layouts& new_layouts, TypeId new_type);
 
 }  // namespace ir

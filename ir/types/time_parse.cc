@@ -9,9 +9,6 @@
 namespace ir {
 namespace {
 
-constexpr int64_t kNsPerSecond = 1'000'000'000;
-constexpr int64_t kNsPerDay = 86'400 * kNsPerSecond;
-
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // A cursor over the literal; every reader moves it only when it succeeds.

@@ -1,5 +1,6 @@
 #include "ir/types/types.h"
 
+#include <algorithm>
 #include <array>
 
 #include "base/check.h"
@@ -59,6 +60,8 @@ bool is_elementary(Kind kind) { return static_cast<uint32_t>(kind) < kElementary
 std::string_view elementary_name(Kind kind) {
   return is_elementary(kind) ? row(kind).name : std::string_view();
 }
+bool is_reference(Kind kind) { return kind >= Kind::kPointer && kind <= Kind::kReferenceTo; }
+bool is_structure(Kind kind) { return kind == Kind::kStruct || kind == Kind::kUnion; }
 Group elementary_group(Kind kind) { return is_elementary(kind) ? row(kind).group : Group::kNone; }
 
 TypeTable::TypeTable() {
@@ -116,6 +119,16 @@ TypeId TypeTable::subrange(TypeId base, int64_t low, int64_t high) {
   return intern(std::move(key), std::move(type));
 }
 
+TypeId TypeTable::reference(Kind kind, TypeId target) {
+  base::check(ir::is_reference(kind), "reference() of another kind");
+  Type type;
+  type.kind = kind;
+  type.base = target;
+  return intern(
+      "P" + std::to_string(static_cast<uint32_t>(kind)) + "," + std::to_string(target.index),
+      std::move(type));
+}
+
 // The table may come from a damaged image, so the chain of bases may be endless.
 Kind TypeTable::root_kind(TypeId id) const {
   Kind kind = Kind::kStruct;
@@ -129,21 +142,51 @@ Kind TypeTable::root_kind(TypeId id) const {
   return kind;
 }
 
-bool TypeTable::is_scalar(TypeId id) const { return is_elementary(root_kind(id)); }
+bool TypeTable::is_scalar(TypeId id) const {
+  const Kind root = root_kind(id);
+  return is_elementary(root) || ir::is_reference(root);
+}
 
 Scalar TypeTable::scalar(TypeId id) const {
   const Kind root = root_kind(id);
+  if (ir::is_reference(root)) {
+    return Scalar::kU64;
+  }
   base::check(is_elementary(root), "scalar() of a type that is not scalar");
   return row(root).scalar;
 }
 
 bool TypeTable::has_members(TypeId id) const {
-  return contains(id) && types_[id.index].kind >= Kind::kStruct;
+  return contains(id) && types_[id.index].kind >= Kind::kStruct &&
+         types_[id.index].kind <= Kind::kGlobals;
+}
+
+bool TypeTable::is_reference(TypeId id) const {
+  return contains(id) && ir::is_reference(types_[id.index].kind);
+}
+
+bool TypeTable::overlaps(TypeId id) const {
+  return contains(id) && (types_[id.index].kind == Kind::kUnion ||
+                          (types_[id.index].kind == Kind::kStruct && types_[id.index].overlap));
 }
 
 bool TypeTable::is_instance(TypeId id) const {
   return contains(id) &&
          (types_[id.index].kind == Kind::kFunctionBlock || types_[id.index].kind == Kind::kProgram);
+}
+
+// The table may come from a damaged image, so the chain of bases may be endless.
+bool TypeTable::is_a(TypeId id, TypeId wanted) const {
+  if (contains(id) && id != wanted) {
+    const std::vector<TypeId>& interfaces = types_[id.index].interfaces;
+    if (std::find(interfaces.begin(), interfaces.end(), wanted) != interfaces.end()) {
+      return true;
+    }
+  }
+  for (uint32_t depth = 0; depth < base::kMaxNesting && contains(id) && id != wanted; ++depth) {
+    id = types_[id.index].kind == Kind::kFunctionBlock ? types_[id.index].base : TypeId();
+  }
+  return id.valid() && id == wanted;
 }
 
 int32_t TypeTable::find_member(TypeId id, std::string_view name) const {
@@ -197,8 +240,17 @@ class TypeText {
         text_ += "ARRAY[" + dimensions_text(type.dims) + "] OF ";
         append(type.base, depth);
         break;
+      case Kind::kPointer:
+      case Kind::kRefTo:
+      case Kind::kReferenceTo:
+        text_ += reference_word(type.kind);
+        append(type.base, depth);
+        break;
       case Kind::kEnum:
         append_enum(type, depth);
+        break;
+      case Kind::kInterface:
+        text_ += "INTERFACE";
         break;
       default:
         append_members(type, depth);
@@ -224,14 +276,21 @@ class TypeText {
     text_ += ")";
   }
 
+  static std::string_view reference_word(Kind kind) {
+    return kind == Kind::kPointer ? "POINTER TO "
+           : kind == Kind::kRefTo ? "REF_TO "
+                                  : "REFERENCE TO ";
+  }
+
   void append_members(const Type& type, uint32_t depth) {
-    text_ += "STRUCT ";
+    const bool is_union = type.kind == Kind::kUnion;
+    text_ += is_union ? "UNION " : type.overlap ? "STRUCT OVERLAP " : "STRUCT ";
     for (const Member& member : type.members) {
       text_ += member.name + " : ";
       append(member.type, depth);
       text_ += "; ";
     }
-    text_ += "END_STRUCT";
+    text_ += is_union ? "END_UNION" : "END_STRUCT";
   }
 
   const TypeTable& types_;

@@ -9,7 +9,17 @@
 // Storage (all layouts, little endian): BOOL one byte; STRING[n] n+1 bytes, NUL-
 // terminated; WSTRING[n] 2*(n+1) bytes; structures and arrays embedded; a
 // function block inside something is a 4-byte instance ID slot (0 = none), its
-// data lives in an area of its own; an in-out member is a 4-byte Addr slot.
+// data lives in an area of its own; an in-out member is a 4-byte Addr slot. A member
+// of the globals that is a program is such a slot too: it names the program instance
+// of that name, which exists anyway. References
+// (POINTER TO, REF_TO, REFERENCE TO) are 8-byte handles, scalars like any LWORD: they
+// name an area or a local and an offset in it (docs/adr/0005-references-are-handles.md).
+// The members of a UNION, or of a STRUCT declared OVERLAP, lie on top of each other.
+//
+// A function block that extends another (`base`) begins with all members of its base,
+// in the same order, and has them at the same offsets: what works on an instance
+// of the base works on one of the derived type. To everything that goes by members
+// (paths, layouts, changes) they are members like others.
 // Sizes and member offsets are not part of a type: see layout.h.
 #pragma once
 
@@ -44,16 +54,24 @@ enum class Kind : uint8_t {
   kEnum,           // base, literals
   kSubrange,       // base, low, high
   kArray,          // base = element type, dims
+  kPointer,        // base = target; POINTER TO
+  kRefTo,          // base = target; REF_TO
+  kReferenceTo,    // base = target; REFERENCE TO
   kStruct,         // members
+  kUnion,          // members, which overlap
   kFunctionBlock,  // members
   kProgram,        // members
   kGlobals,        // members; exactly one per program
+  kInterface,      // interfaces = its parents; never the type of a variable, only what a reference
+                   // names
 };
 inline constexpr uint32_t kElementaryCount = 25;
-inline constexpr uint32_t kKindCount = 34;
+inline constexpr uint32_t kKindCount = 39;
 
 enum class Group : uint8_t { kBit, kSigned, kUnsigned, kReal, kDuration, kDate, kChar, kNone };
 bool is_elementary(Kind kind);
+bool is_reference(Kind kind);  // kPointer, kRefTo, kReferenceTo
+bool is_structure(Kind kind);  // kStruct, kUnion
 std::string_view elementary_name(Kind kind);
 Group elementary_group(Kind kind);  // kNone for other kinds
 
@@ -74,14 +92,17 @@ struct DirectAddress {
   friend bool operator==(const DirectAddress&, const DirectAddress&) = default;
 };
 
+// As bit_offset: the instance says where, in VAR_CONFIG (AT %I*).
+inline constexpr uint32_t kOpenAddress = 0xffffffff;
+
 struct Member {
   std::string name;  // as first written; compared without case
   TypeId type;
   Section section = Section::kLocal;
   bool constant = false;
   bool retain = false;
-  ConstId init;            // invalid: the type's default
-  DirectAddress address;   // for AT declarations
+  ConstId init;           // invalid: the type's default
+  DirectAddress address;  // for AT declarations
 };
 
 struct Dimension {
@@ -105,7 +126,13 @@ struct Type {
   uint32_t capacity = 0;  // strings, in characters
   std::vector<Dimension> dims;
   std::vector<Member> members;
+  // The members overlap: all at offset 0, or where `address` (no area, only a bit offset)
+  // of a member says. Always so for kUnion; of a kStruct: OVERLAP, or members AT %Bn.
+  bool overlap = false;
   std::vector<EnumLiteral> literals;
+  // Of a function block: all that it implements, those of its base and parents of
+  // interfaces included. Of an interface: all its parents.
+  std::vector<TypeId> interfaces;
   ConstId init;  // default initial value when it is not all zero
 };
 
@@ -119,6 +146,12 @@ class TypeTable {
   // Anonymous arrays and subranges are interned by content.
   TypeId array(TypeId element, std::vector<Dimension> dims);
   TypeId subrange(TypeId base, int64_t low, int64_t high);
+  // References are interned by target, which may be declared before its content is known
+  // and may lead back to the reference.
+  TypeId pointer(TypeId target) { return reference(Kind::kPointer, target); }
+  TypeId ref_to(TypeId target) { return reference(Kind::kRefTo, target); }
+  TypeId reference_to(TypeId target) { return reference(Kind::kReferenceTo, target); }
+  TypeId reference(Kind kind, TypeId target);
   // A named type, or an anonymous structure or enumeration. Its content may be
   // filled in later through edit(), which is how recursive declarations resolve.
   TypeId declare(Type type);
@@ -128,14 +161,19 @@ class TypeTable {
   uint32_t size() const { return static_cast<uint32_t>(types_.size()); }
   bool contains(TypeId id) const { return id.index < types_.size(); }
 
-  // Derived from a scalar type, at any depth of subrange or enumeration?
+  // Elementary or a reference, at any depth of subrange or enumeration?
   bool is_scalar(TypeId id) const;
   // The machine scalar of a scalar type.
   Scalar scalar(TypeId id) const;
   // Elementary kind below subranges and enumerations; the kind itself otherwise.
   Kind root_kind(TypeId id) const;
   bool has_members(TypeId id) const;
+  bool is_reference(TypeId id) const;
+  // Do members lie on top of each other (Type::overlap)?
+  bool overlaps(TypeId id) const;
   bool is_instance(TypeId id) const;  // function block or program
+  // Is `id` the type `wanted`, or does it extend or implement it?
+  bool is_a(TypeId id, TypeId wanted) const;
   // Index of the member with that name (without case); -1 when there is none.
   int32_t find_member(TypeId id, std::string_view name) const;
   // "INT", "ARRAY[1..3,0..9] OF Motor", "STRING[20]", "Recipe": what people read.

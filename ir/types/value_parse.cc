@@ -209,6 +209,10 @@ std::optional<uint64_t> parse_any(const TypeTable& types, TypeId id, std::string
     const std::optional<uint64_t> bits = parse_any(types, type.base, bare, depth - 1);
     return bits && in_subrange(type, types.scalar(id), *bits) ? bits : std::nullopt;
   }
+  // A handle means something only where it came from, so people can only clear it.
+  if (is_reference(types.root_kind(id))) {
+    return same_name(bare, "NULL") || bare == "0" ? std::optional<uint64_t>(0) : std::nullopt;
+  }
   return parse_elementary(types.root_kind(id), types.scalar(id), bare);
 }
 

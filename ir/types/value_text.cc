@@ -13,9 +13,6 @@
 namespace ir {
 namespace {
 
-constexpr int64_t kNsPerSecond = 1'000'000'000;
-constexpr int64_t kNsPerDay = 86'400 * kNsPerSecond;
-
 uint64_t magnitude(int64_t value) {
   return value < 0 ? 0 - static_cast<uint64_t>(value) : static_cast<uint64_t>(value);
 }
@@ -169,6 +166,9 @@ std::string scalar_text(const TypeTable& types, TypeId type, uint64_t bits) {
   if (declared.kind == Kind::kSubrange && types.contains(declared.base) &&
       types[declared.base].kind == Kind::kEnum) {
     return scalar_text(types, declared.base, bits);
+  }
+  if (is_reference(types.root_kind(type))) {
+    return bits == 0 ? "NULL" : "ref";
   }
   return elementary_text(types.root_kind(type), types.scalar(type), bits);
 }

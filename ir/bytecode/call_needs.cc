@@ -1,0 +1,183 @@
+#include "ir/bytecode/call_needs.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace ir {
+namespace {
+
+constexpr uint32_t kNone = 0xffffffffu;
+
+// A node on the way down and its next callee.
+struct Visit {
+  uint32_t node;
+  size_t next = 0;
+};
+
+// A circle among the nodes without a recursion depth; empty when there is none.
+std::vector<uint32_t> undeclared_circle(const std::vector<CallNode>& nodes) {
+  enum class State : uint8_t { kNew, kOpen, kDone };
+  std::vector<State> states(nodes.size(), State::kNew);
+  for (uint32_t start = 0; start < nodes.size(); ++start) {
+    std::vector<Visit> path;
+    if (states[start] == State::kNew && nodes[start].recursion_depth == 0) path.push_back({start});
+    while (!path.empty()) {
+      Visit& top = path.back();
+      states[top.node] = State::kOpen;
+      if (top.next == nodes[top.node].callees.size()) {
+        states[top.node] = State::kDone;
+        path.pop_back();
+        continue;
+      }
+      const uint32_t callee = nodes[top.node].callees[top.next++];
+      if (nodes[callee].recursion_depth != 0 || states[callee] == State::kDone) continue;
+      if (states[callee] == State::kNew) {
+        path.push_back({callee});
+        continue;
+      }
+      std::vector<uint32_t> circle;
+      for (const Visit& visit : path) {
+        if (visit.node == callee || !circle.empty()) circle.push_back(visit.node);
+      }
+      return circle;
+    }
+  }
+  return {};
+}
+
+class Measurer {
+ public:
+  explicit Measurer(const std::vector<CallNode>& nodes)
+      : nodes_(nodes),
+        needs_(nodes.size()),
+        group_(nodes.size(), kNone),
+        number_(nodes.size(), kNone),
+        low_(nodes.size()) {}
+
+  std::vector<CallNeeds> run() {
+    for (uint32_t node = 0; node < nodes_.size(); ++node) {
+      if (number_[node] == kNone) visit(node);
+    }
+    return std::move(needs_);
+  }
+
+ private:
+  // Tarjan: groups are complete callees first.
+  void visit(uint32_t start) {
+    std::vector<Visit> path;
+    open(start, path);
+    while (!path.empty()) {
+      Visit& top = path.back();
+      const uint32_t node = top.node;
+      if (top.next < nodes_[node].callees.size()) {
+        const uint32_t callee = nodes_[node].callees[top.next++];
+        if (number_[callee] == kNone) {
+          open(callee, path);
+        } else if (group_[callee] == kNone) {
+          low_[node] = std::min(low_[node], number_[callee]);
+        }
+        continue;
+      }
+      path.pop_back();
+      if (!path.empty()) low_[path.back().node] = std::min(low_[path.back().node], low_[node]);
+      if (low_[node] == number_[node]) close(node);
+    }
+  }
+
+  void open(uint32_t node, std::vector<Visit>& path) {
+    number_[node] = low_[node] = count_++;
+    stack_.push_back(node);
+    path.push_back({node});
+  }
+
+  void close(uint32_t root) {
+    std::vector<uint32_t> members;
+    do {
+      members.push_back(stack_.back());
+      group_[stack_.back()] = root;
+      stack_.pop_back();
+    } while (members.back() != root);
+    measure(members);
+  }
+
+  // A group of one that does not call itself needs its own frame once.
+  void measure(const std::vector<uint32_t>& members) {
+    CallNeeds outside;
+    uint64_t activations = 0;
+    uint64_t declared_bytes = 0;
+    for (uint32_t member : members) {
+      const CallNode& node = nodes_[member];
+      outside.bytes = std::max(outside.bytes, node.native_bytes);
+      activations += node.recursion_depth;
+      declared_bytes += node.recursion_depth * node.frame_bytes;
+      for (uint32_t callee : node.callees) {
+        if (group_[callee] == group_[member]) continue;
+        outside.bytes = std::max(outside.bytes, needs_[callee].bytes);
+        outside.depth = std::max(outside.depth, needs_[callee].depth);
+      }
+    }
+    CallNeeds chain;
+    for (uint32_t member : members) {
+      const CallNeeds own = longest_chain(member);
+      chain.bytes = std::max(chain.bytes, own.bytes);
+      chain.depth = std::max(chain.depth, own.depth);
+    }
+    const uint64_t chains = members.size() == 1 && activations != 0 ? 0 : activations + 1;
+    for (uint32_t member : members) {
+      needs_[member].bytes = declared_bytes + chains * chain.bytes + outside.bytes;
+      needs_[member].depth = activations + chains * chain.depth + outside.depth;
+    }
+  }
+
+  // Through nodes of the same group without a recursion depth; these have no circle.
+  CallNeeds longest_chain(uint32_t start) {
+    if (nodes_[start].recursion_depth != 0) return {};
+    std::vector<Visit> path{{start}};
+    while (!path.empty()) {
+      Visit& top = path.back();
+      const uint32_t node = top.node;
+      if (chains_.contains(node)) {
+        path.pop_back();
+        continue;
+      }
+      if (top.next < nodes_[node].callees.size()) {
+        const uint32_t callee = nodes_[node].callees[top.next++];
+        if (in_chain(node, callee) && !chains_.contains(callee)) path.push_back({callee});
+        continue;
+      }
+      CallNeeds longest;
+      for (uint32_t callee : nodes_[node].callees) {
+        if (!in_chain(node, callee)) continue;
+        longest.bytes = std::max(longest.bytes, chains_.at(callee).bytes);
+        longest.depth = std::max(longest.depth, chains_.at(callee).depth);
+      }
+      chains_[node] = {longest.bytes + nodes_[node].frame_bytes, longest.depth + 1};
+      path.pop_back();
+    }
+    return chains_.at(start);
+  }
+
+  bool in_chain(uint32_t node, uint32_t callee) const {
+    return group_[callee] == group_[node] && nodes_[callee].recursion_depth == 0;
+  }
+
+  const std::vector<CallNode>& nodes_;
+  std::vector<CallNeeds> needs_;
+  std::vector<uint32_t> group_;   // number of a member; kNone: not complete
+  std::vector<uint32_t> number_;  // in order of the first visit
+  std::vector<uint32_t> low_;
+  std::vector<uint32_t> stack_;
+  std::unordered_map<uint32_t, CallNeeds> chains_;
+  uint32_t count_ = 0;
+};
+
+}  // namespace
+
+CallMeasure measure_calls(const std::vector<CallNode>& nodes) {
+  CallMeasure measure;
+  measure.circle = undeclared_circle(nodes);
+  if (measure.circle.empty()) measure.of = Measurer(nodes).run();
+  return measure;
+}
+
+}  // namespace ir

@@ -1,0 +1,164 @@
+#include "ir/types/inside.h"
+
+#include <algorithm>
+
+#include "base/limits.h"
+
+namespace ir {
+namespace {
+
+constexpr uint32_t kSlotBytes = 4;
+
+uint32_t member_size(const Layouts& layouts, const Member& member) {
+  return member.section == Section::kInOut ? kSlotBytes : layouts[member.type].size;
+}
+
+// A part on the way down and what remains of the offset in it.
+struct Part {
+  TypeId type;
+  uint32_t rest = 0;
+  bool slot = false;
+};
+
+// The member or element that covers the offset; false in holes and at leaves.
+bool step_down(const TypeTable& types, const Layouts& layouts, Part& part, std::string& path) {
+  const Type& type = types[part.type];
+  if (part.slot) {
+    return false;
+  }
+  if (type.kind == Kind::kArray) {
+    const uint32_t stride = layouts[type.base].size;
+    if (stride == 0 || part.rest >= layouts[part.type].size) {
+      return false;
+    }
+    path += index_text(type, part.rest / stride);
+    part = {type.base, part.rest % stride, types.is_instance(type.base)};
+    return true;
+  }
+  const std::vector<uint32_t>& offsets = layouts[part.type].member_offsets;
+  for (size_t i = 0; i < type.members.size() && i < offsets.size(); ++i) {
+    const Member& member = type.members[i];
+    if (part.rest < offsets[i] || part.rest - offsets[i] >= member_size(layouts, member)) {
+      continue;
+    }
+    path += "." + member.name;
+    const bool slot = member.section == Section::kInOut || types.is_instance(member.type);
+    part = {member.type, part.rest - offsets[i], slot};
+    return true;
+  }
+  return false;
+}
+
+class SlotWalk {
+ public:
+  SlotWalk(const TypeTable& types, const Layouts& layouts)
+      : types_(types), layouts_(layouts), holds_(types.size(), Holds::kUnknown) {}
+
+  void members(TypeId id, uint32_t begin, uint32_t depth) {
+    const std::vector<Member>& members = types_[id].members;
+    for (size_t i = 0; i < members.size(); ++i) {
+      const uint32_t at = begin + layouts_[id].member_offsets[i];
+      if (members[i].section == Section::kInOut) {
+        slots_.push_back(at);
+      } else {
+        value(members[i].type, at, depth + 1);
+      }
+    }
+  }
+
+  std::vector<uint32_t> take() {
+    std::sort(slots_.begin(), slots_.end());
+    return std::move(slots_);
+  }
+
+ private:
+  enum class Holds : uint8_t { kUnknown, kNo, kYes };
+
+  bool holds(TypeId id, uint32_t depth) {
+    if (types_.is_instance(id)) {
+      return true;
+    }
+    Holds& known = holds_[id.index];
+    if (known == Holds::kUnknown) {
+      known = Holds::kNo;
+      bool found = false;
+      const Type& type = types_[id];
+      if (depth < base::kMaxNesting && type.kind == Kind::kArray) {
+        found = holds(type.base, depth + 1);
+      }
+      for (size_t i = 0; i < type.members.size() && depth < base::kMaxNesting; ++i) {
+        found = found || holds(type.members[i].type, depth + 1);
+      }
+      holds_[id.index] = found ? Holds::kYes : Holds::kNo;
+    }
+    return holds_[id.index] == Holds::kYes;
+  }
+
+  void value(TypeId id, uint32_t at, uint32_t depth) {
+    if (types_.is_instance(id)) {
+      slots_.push_back(at);
+    } else if (holds(id, 0) && depth < base::kMaxNesting) {
+      if (types_[id].kind == Kind::kArray) {
+        return elements(id, at, depth);
+      }
+      members(id, at, depth);
+    }
+  }
+
+  void elements(TypeId id, uint32_t at, uint32_t depth) {
+    const TypeId element = types_[id].base;
+    const uint32_t stride = layouts_[element].size;
+    for (uint32_t done = 0; stride != 0 && done < layouts_[id].size; done += stride) {
+      value(element, at + done, depth + 1);
+    }
+  }
+
+  const TypeTable& types_;
+  const Layouts& layouts_;
+  std::vector<Holds> holds_;
+  std::vector<uint32_t> slots_;
+};
+
+}  // namespace
+
+std::string index_text(const Type& array, uint64_t flat) {
+  std::string text;
+  for (size_t i = array.dims.size(); i-- > 0;) {
+    const uint64_t count = array.dims[i].count();
+    const auto index =
+        static_cast<int64_t>(static_cast<uint64_t>(array.dims[i].low) + flat % count);
+    text = std::to_string(index) + (text.empty() ? "" : ",") + text;
+    flat /= count;
+  }
+  return "[" + text + "]";
+}
+
+std::string path_inside(const TypeTable& types, const Layouts& layouts, TypeId root,
+                        uint32_t offset, TypeId target) {
+  std::string path;
+  Part part{root, offset, false};
+  for (uint32_t depth = 0; depth < base::kMaxNesting; ++depth) {
+    if (part.rest == 0 && part.type == target) {
+      break;
+    }
+    if (!step_down(types, layouts, part, path)) {
+      break;
+    }
+  }
+  return part.rest == 0 ? path : path + "+" + std::to_string(part.rest);
+}
+
+std::string reference_text(const std::string& area, std::string inside) {
+  if (area.empty() && inside.starts_with('.')) {
+    return inside.substr(1);
+  }
+  return area.empty() ? "ref" : area + inside;
+}
+
+std::vector<uint32_t> slots_inside(const TypeTable& types, const Layouts& layouts, TypeId root) {
+  SlotWalk walk(types, layouts);
+  walk.members(root, 0, 0);
+  return walk.take();
+}
+
+}  // namespace ir

@@ -1,0 +1,92 @@
+#include "ir/types/natural_layout.h"
+
+#include <algorithm>
+
+namespace ir {
+namespace {
+
+constexpr uint32_t kSlotBytes = 4;
+
+uint32_t align_up(uint32_t value, uint32_t align) { return (value + align - 1) / align * align; }
+
+class Builder {
+ public:
+  explicit Builder(const TypeTable& types) : types_(types), done_(types.size()) {
+    layouts_.of.resize(types.size());
+  }
+
+  Layouts build() {
+    for (uint32_t i = 0; i < types_.size(); ++i) {
+      of(TypeId(i));
+    }
+    return std::move(layouts_);
+  }
+
+ private:
+  const TypeLayout& of(TypeId id) {
+    if (!done_[id.index]) {
+      done_[id.index] = true;
+      make(types_[id], id, layouts_.of[id.index]);
+    }
+    return layouts_[id];
+  }
+
+  void make(const Type& type, TypeId id, TypeLayout& layout) {
+    switch (type.kind) {
+      case Kind::kString:
+        layout.size = type.capacity + 1;
+        return;
+      case Kind::kWstring:
+        layout.size = 2 * (type.capacity + 1);
+        layout.align = 2;
+        return;
+      case Kind::kArray:
+        layout.size = of(type.base).size;
+        layout.align = layouts_[type.base].align;
+        for (const Dimension& dim : type.dims) {
+          layout.size *= static_cast<uint32_t>(dim.count());
+        }
+        return;
+      default:
+        break;
+    }
+    if (types_.has_members(id)) {
+      return add_members(id, layout);
+    }
+    if (types_.is_scalar(id)) {  // no variable is of an interface type
+      layout.size = layout.align = scalar_size(types_.scalar(id));
+    }
+  }
+
+  // An instance inside is a slot, so areas may be asked for before they are complete.
+  void add_members(TypeId id, TypeLayout& layout) {
+    const bool area = !is_structure(types_[id].kind);
+    if (area) {
+      layout.size = layout.align = kSlotBytes;
+    }
+    for (const Member& member : types_[id].members) {
+      const bool slot = member.section == Section::kInOut || types_.is_instance(member.type);
+      const uint32_t size = slot ? kSlotBytes : of(member.type).size;
+      const uint32_t align = slot ? kSlotBytes : layouts_[member.type].align;
+      const uint32_t at =
+          types_.overlaps(id) ? member.address.bit_offset / 8 : align_up(layout.used, align);
+      layout.member_offsets.push_back(at);
+      layout.used = std::max(layout.used, at + size);
+      layout.align = std::max(layout.align, area ? kSlotBytes : align);
+    }
+    if (!area) {
+      layout.size = align_up(std::max(layout.used, 1u), layout.align);
+    }
+    layout.area_capacity = align_up(layout.used, 8);
+  }
+
+  const TypeTable& types_;
+  std::vector<bool> done_;
+  Layouts layouts_;
+};
+
+}  // namespace
+
+Layouts natural_layouts(const TypeTable& types) { return Builder(types).build(); }
+
+}  // namespace ir
