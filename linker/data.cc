@@ -78,7 +78,7 @@ class DataTables {
     if (image_.types.is_instance(id) || depth > 200) return;
     if (!holds_slots(id, 0)) {
       image_.retain.push_back({at, image_.layouts[id].size});
-    } else if (type.kind == ir::Kind::kStruct) {
+    } else if (ir::is_structure(type.kind)) {
       for (size_t i = 0; i < type.members.size(); ++i) {
         retain(type.members[i].type, at + image_.layouts[id].member_offsets[i], depth + 1);
       }
@@ -94,19 +94,24 @@ class DataTables {
     const ir::Type& type = image_.types[id];
     if (image_.types.is_instance(id) || depth > 200) return true;
     if (type.kind == ir::Kind::kArray) return holds_slots(type.base, depth + 1);
-    if (type.kind != ir::Kind::kStruct) return false;
+    if (!ir::is_structure(type.kind)) return false;
     return std::any_of(type.members.begin(), type.members.end(), [&](const ir::Member& member) {
       return holds_slots(member.type, depth + 1);
     });
   }
 
+  // Neighbours of one area; each range lies in one.
   void join_retained() {
+    std::vector<uint32_t> begins;
+    for (const InstanceNode& node : nodes_) begins.push_back(data_of(node));
+    std::sort(begins.begin(), begins.end());
     std::vector<ir::RetainRange>& ranges = image_.retain;
     std::sort(ranges.begin(), ranges.end(),
               [](const auto& a, const auto& b) { return a.data < b.data; });
     std::vector<ir::RetainRange> joined;
     for (const ir::RetainRange& range : ranges) {
-      if (!joined.empty() && joined.back().data + joined.back().size == range.data) {
+      bool next = !joined.empty() && joined.back().data + joined.back().size == range.data;
+      if (next && !std::binary_search(begins.begin(), begins.end(), range.data)) {
         joined.back().size += range.size;
       } else {
         joined.push_back(range);
@@ -115,17 +120,10 @@ class DataTables {
     ranges = std::move(joined);
   }
 
-  // Markers (%M) are variables like others; only inputs and outputs are exchanged.
   void bind(const ir::Member& member, uint32_t at) {
-    const ir::DirectArea area = member.address.area;
-    if (area != ir::DirectArea::kInput && area != ir::DirectArea::kOutput) return;
-    image_.io.push_back({member.address, at, member.type});
-    const bool scalar = image_.types.is_scalar(member.type);
-    const uint64_t bits =
-        scalar ? member.address.bit_size : uint64_t{image_.layouts[member.type].size} * 8;
-    const uint64_t end = (uint64_t{member.address.bit_offset} + bits + 7) / 8;
-    uint32_t& bytes = area == ir::DirectArea::kInput ? image_.input_bytes : image_.output_bytes;
-    bytes = std::max(bytes, static_cast<uint32_t>(end));
+    if (member.address.bit_offset != ir::kOpenAddress) {
+      bind_address(image_, member.address, at, member.type);
+    }
   }
 
   ir::Image& image_;
@@ -134,6 +132,19 @@ class DataTables {
 };
 
 }  // namespace
+
+// Markers (%M) are variables like others; only inputs and outputs are exchanged.
+void bind_address(ir::Image& image, const ir::DirectAddress& address, uint32_t data,
+                  ir::TypeId type) {
+  const ir::DirectArea area = address.area;
+  if (area != ir::DirectArea::kInput && area != ir::DirectArea::kOutput) return;
+  image.io.push_back({address, data, type});
+  const bool scalar = image.types.is_scalar(type);
+  const uint64_t bits = scalar ? address.bit_size : uint64_t{image.layouts[type].size} * 8;
+  const uint64_t end = (uint64_t{address.bit_offset} + bits + 7) / 8;
+  uint32_t& bytes = area == ir::DirectArea::kInput ? image.input_bytes : image.output_bytes;
+  bytes = std::max(bytes, static_cast<uint32_t>(end));
+}
 
 void fill_data_tables(ir::Image& image, const std::vector<InstanceNode>& nodes) {
   DataTables(image, nodes).run();

@@ -58,7 +58,7 @@ ConstId InitialValues::element_value(TypeId type, ConstId value, uint64_t flat) 
 void InitialValues::write(TypeId id, ConstId value, std::span<uint8_t> out, uint32_t depth) const {
   const Type& type = types_[id];
   if (depth > kMaxDepth || types_.is_instance(id)) return;
-  if (type.kind == Kind::kStruct) return write_members(id, value, out, depth);
+  if (ir::is_structure(type.kind)) return write_members(id, value, out, depth);
   if (type.kind == Kind::kArray) return write_array(id, value, out, depth);
   if (!value.valid()) value = type.init;
   if (!value.valid() && (type.kind == Kind::kEnum || type.kind == Kind::kSubrange)) {
@@ -73,11 +73,23 @@ void InitialValues::write(TypeId id, ConstId value, std::span<uint8_t> out, uint
 void InitialValues::write_members(TypeId id, ConstId value, std::span<uint8_t> out,
                                   uint32_t depth) const {
   const Type& type = types_[id];
+  if (types_.overlaps(id)) return write_overlapping(id, value, out, depth);
   for (size_t i = 0; i < type.members.size(); ++i) {
     const ir::Member& member = type.members[i];
     if (member.section == ir::Section::kInOut) continue;
     write(member.type, member_value(id, value, i),
           out.subspan(layouts_[id].member_offsets[i], layouts_[member.type].size), depth + 1);
+  }
+}
+
+void InitialValues::write_overlapping(TypeId id, ConstId value, std::span<uint8_t> out,
+                                      uint32_t depth) const {
+  for (const ir::MemberInit& init : ir::overlap_inits(types_, constants_, id, value)) {
+    const TypeId type = types_[id].members[init.member].type;
+    const std::span<uint8_t> part =
+        out.subspan(layouts_[id].member_offsets[init.member], layouts_[type].size);
+    std::fill(part.begin(), part.end(), uint8_t{0});
+    write(type, init.value, part, depth + 1);
   }
 }
 

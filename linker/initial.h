@@ -29,6 +29,8 @@ class InitialValues {
   void write(ir::TypeId type, ir::ConstId value, std::span<uint8_t> out, uint32_t depth) const;
   void write_members(ir::TypeId type, ir::ConstId value, std::span<uint8_t> out,
                      uint32_t depth) const;
+  void write_overlapping(ir::TypeId id, ir::ConstId value, std::span<uint8_t> out,
+                         uint32_t depth) const;
   void write_array(ir::TypeId type, ir::ConstId value, std::span<uint8_t> out,
                    uint32_t depth) const;
   ir::ConstId listed(ir::ConstId value, uint64_t index) const;

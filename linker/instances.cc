@@ -49,7 +49,7 @@ class Walker {
     if (depth < base::kMaxNesting && types_[id].kind == Kind::kArray) {
       found = holds_instances(types_[id].base, depth + 1);
     }
-    if (depth < base::kMaxNesting && types_[id].kind == Kind::kStruct) {
+    if (depth < base::kMaxNesting && ir::is_structure(types_[id].kind)) {
       for (const ir::Member& member : types_[id].members) {
         found = found || holds_instances(member.type, depth + 1);
       }
@@ -93,7 +93,7 @@ class Walker {
   void walk_value(TypeId type, ir::ConstId value, const Spot& spot) {
     if (error_ || !holds_instances(type, 0)) return;
     if (types_.is_instance(type)) return add_instance(type, value, spot);
-    if (types_[type].kind == Kind::kStruct) return walk_members(type, value, spot);
+    if (ir::is_structure(types_[type].kind)) return walk_members(type, value, spot);
     walk_array(type, value, spot);
   }
 

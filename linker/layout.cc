@@ -6,8 +6,8 @@
 #include <unordered_map>
 
 #include "base/limits.h"
+#include "ir/types/member_finder.h"
 #include "linker/extents.h"
-#include "linker/member_finder.h"
 
 namespace linker {
 namespace {
@@ -101,7 +101,7 @@ class Builder {
       layout.align = 2;
     } else if (type.kind == Kind::kArray) {
       array_layout(id, depth);
-    } else if (type.kind == Kind::kStruct) {
+    } else if (ir::is_structure(type.kind)) {
       struct_layout(id, depth);
     } else {
       layout.size = layout.align = ir::scalar_size(types_.scalar(id));
@@ -128,12 +128,26 @@ class Builder {
   void struct_layout(TypeId id, uint32_t depth) {
     for (const Member& member : types_[id].members) value_layout(member.type, depth + 1);
     if (error_) return;
-    place_members(id, 0);
+    if (types_.overlaps(id)) {
+      overlap_members(id);
+    } else {
+      place_members(id, 0);
+    }
+    if (error_) return;
     TypeLayout& layout = layouts_.of[id.index];
     for (const Member& member : types_[id].members) {
       layout.align = std::max(layout.align, align_of(member));
     }
     layout.size = static_cast<uint32_t>(align_up(std::max(layout.used, 1u), layout.align));
+  }
+
+  // All at the beginning, or where the declaration says; never where they were before.
+  void overlap_members(TypeId id) {
+    std::vector<uint32_t>& offsets = layouts_.of[id.index].member_offsets;
+    for (const Member& member : types_[id].members) {
+      offsets.push_back(member.address.bit_offset / 8);
+    }
+    finish_members(id);
   }
 
   uint32_t size_of(const Member& member) const {
@@ -174,15 +188,15 @@ class Builder {
   }
 
   // Offset of the member in the running version when it can stay there (A1, A4).
-  std::optional<uint32_t> kept_offset(TypeId old, MemberFinder& old_members,
+  std::optional<uint32_t> kept_offset(TypeId old, ir::MemberFinder& old_members,
                                       const Member& member) const {
     const std::optional<size_t> number = old_members.find(member.name);
     if (!number) return std::nullopt;
     const Member& before = base_->types[old].members[*number];
     const bool in_out = member.section == Section::kInOut;
     if ((before.section == Section::kInOut) != in_out) return std::nullopt;
-    if (!in_out && !same_value_type(base_->types, base_->layouts, before.type, types_, layouts_,
-                                    member.type)) {
+    if (!in_out && !ir::same_value_type(base_->types, base_->layouts, before.type, types_, layouts_,
+                                        member.type)) {
       return std::nullopt;
     }
     return base_->layouts[old].member_offsets[*number];
@@ -205,7 +219,7 @@ class Builder {
     const TypeId old = old_of(id);
     std::vector<uint32_t>& offsets = layouts_.of[id.index].member_offsets;
     offsets.assign(type.members.size(), 0);
-    MemberFinder old_members(base_ != nullptr ? base_->types : types_, old);
+    ir::MemberFinder old_members(base_ != nullptr ? base_->types : types_, old);
     std::vector<size_t> added;
     Extents taken;  // what lives on
     for (size_t i = 0; i < type.members.size(); ++i) {

@@ -30,10 +30,4 @@ struct Slack {
 base::Result<ir::Layouts> lay_out(const ir::TypeTable& types, const Slack& slack,
                                   const ir::Image* base);
 
-// The same type in both versions, including the layout of everything embedded:
-// a value can stay where it is, byte for byte.
-bool same_value_type(const ir::TypeTable& old_types, const ir::Layouts& old_layouts,
-                     ir::TypeId old_type, const ir::TypeTable& new_types,
-                     const ir::Layouts& new_layouts, ir::TypeId new_type);
-
 }  // namespace linker

@@ -4,6 +4,7 @@
 #include <unordered_set>
 
 #include "base/limits.h"
+#include "ir/bytecode/symbols.h"
 #include "linker/areas.h"
 #include "linker/call_graph.h"
 #include "linker/data.h"
@@ -12,6 +13,8 @@
 
 namespace linker {
 namespace {
+
+constexpr int64_t kEventWatchdogNs = 100'000'000;  // of a task without a period
 
 class Linker {
  public:
@@ -31,6 +34,7 @@ class Linker {
       if (base::Status status = (this->*step)(); !status.ok()) return status.error();
     }
     fill_data_tables(image_, nodes_);
+    if (base::Status status = bind_located(); !status.ok()) return status.error();
     return std::move(image_);
   }
 
@@ -190,16 +194,51 @@ class Linker {
       const int64_t watchdog = task.watchdog_ns != 0             ? task.watchdog_ns
                                : task.period_ns > INT64_MAX / 10 ? INT64_MAX
                                                                  : task.period_ns * 10;
-      image_.tasks.push_back({task.name, task.period_ns, watchdog, task.priority, {}});
+      image_.tasks.push_back({task.name,
+                              task.period_ns,
+                              watchdog != 0 ? watchdog : kEventWatchdogNs,
+                              task.priority,
+                              event_of(task),
+                              {}});
     }
     for (size_t i = 0; i < program_.instances.size(); ++i) {
       const ir::ProgramInstance& instance = program_.instances[i];
+      if (instance.task == ir::kNoTask) continue;
       if (instance.task >= image_.tasks.size()) {
         return base::Error{base::Refusal::kUndefinedSymbol,
                            "program `" + instance.name + "` has no task"};
       }
       image_.tasks[instance.task].programs.push_back(nodes_[i + 1].id);
     }
+    for (const ir::BlockTask& block : program_.block_tasks) {
+      image_.tasks[block.task].programs.push_back(block_id(block));
+    }
+    return base::Ok{};
+  }
+
+  uint32_t event_of(const ir::Task& task) const {
+    if (task.event == ir::kNoEvent) return 0;
+    return image_.instances[0].data + image_.layouts[program_.globals].member_offsets[task.event];
+  }
+
+  // The instance in variable `member` of a program.
+  uint32_t block_id(const ir::BlockTask& block) const {
+    const uint32_t program = block.program + 1;
+    const uint32_t slot = image_.layouts[nodes_[program].type].member_offsets[block.member];
+    for (const InstanceNode& node : nodes_) {
+      if (!node.program && node.parent == program && node.slot_offset == slot) return node.id;
+    }
+    return 0;
+  }
+
+  // Addresses that VAR_CONFIG gives to variables of single instances.
+  base::Status bind_located() {
+    for (const ir::LocatedPath& located : program_.located) {
+      const base::Result<ir::Symbol> symbol = ir::find_symbol(image_, located.path);
+      if (!symbol.ok()) return symbol.error();
+      bind_address(image_, located.address, symbol->data, symbol->type);
+    }
+    image_.access = program_.access;
     return base::Ok{};
   }
 

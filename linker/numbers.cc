@@ -77,6 +77,12 @@ uint32_t Numbers::range_number(uint32_t number) {
   return intern(key, context_.image.ranges, range);
 }
 
+// Of an instance: what its variables take.
+uint32_t Numbers::size_of(ir::TypeId type) const {
+  const ir::TypeLayout& layout = context_.image.layouts[type];
+  return context_.program.types.is_instance(type) ? layout.used : layout.size;
+}
+
 uint32_t Numbers::extension_field(const Field& field, uint32_t number, Base base) {
   switch (field.kind) {
     case FieldKind::kPlace32:
@@ -87,6 +93,8 @@ uint32_t Numbers::extension_field(const Field& field, uint32_t number, Base base
       return bound_number(number);
     case FieldKind::kType:
       return ir::region_field(object_.regions[number]);
+    case FieldKind::kSize:
+      return size_of(object_.regions[number].type);
     default:
       return number;
   }

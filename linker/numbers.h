@@ -39,6 +39,7 @@ class Numbers {
 
  private:
   uint64_t slot_offset(uint32_t number) const;
+  uint32_t size_of(ir::TypeId type) const;
   uint32_t bound_number(uint32_t number);
   template <class T>
   uint32_t intern(const base::ByteWriter& key, std::vector<T>& table, T value);

@@ -211,6 +211,7 @@ LinkedCode linked_code(Pass& pass, const ir::Object& object, FrameLayout frame) 
   pou.name = object.name;
   pou.kind = object.kind;
   pou.self = object.self;
+  pou.recursion_depth = object.recursion_depth;
   pou.file = object.file;
   pou.frame_size = frame.size;
   pou.slots = std::move(frame.slots);

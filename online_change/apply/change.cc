@@ -149,7 +149,7 @@ base::Status Change::check_losses(bool allow_loss) const {
 base::Status Change::check_pause(bool allow_overrun) const {
   if (allow_overrun) return base::Ok{};
   for (const vm::TaskStatus& task : controller_.tasks()) {
-    if (task.stopped) continue;
+    if (task.stopped || task.period_ns == 0) continue;  // events leave as much time as there is
     int64_t free_ns = task.period_ns - task.max_ns;
     if (plan().predicted_pause_ns <= free_ns) continue;
     return base::Error{base::Refusal::kPauseTooLong,
@@ -224,6 +224,7 @@ base::Status Change::carry_over() {
     return would_lose(describe(lost, transfer, areas, memory), 0);
   }
   if (!transfer.save(memory, interrupted_)) return abandoned("at the boundary");
+  if (!pending_->backward.remember(memory, interrupted_)) return abandoned("at the boundary");
   if (!transfer.write(memory, interrupted_)) return abandoned("at the boundary");
   if (interrupted()) {
     transfer.restore(memory);

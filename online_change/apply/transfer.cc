@@ -50,6 +50,7 @@ Transfer::Transfer(const Plan& plan, const ir::Image& from, const ir::Image& to,
   }
   staged_.resize(bytes);
   saved_.resize(bytes);
+  if (which == Steps::kAll) remembered_.resize(bytes);
 }
 
 void Transfer::touch(uint8_t* memory) const {
@@ -109,6 +110,16 @@ bool Transfer::read(const uint8_t* memory, const std::function<bool(const Loss&)
   return true;
 }
 
+bool Transfer::remember(const uint8_t* memory, const Interrupted& interrupted) {
+  for (const Work& work : work_) {
+    const UpdateStep& step = step_of(work);
+    if (step.kind == StepKind::kCopy) continue;
+    if (interrupted && interrupted()) return false;
+    gather(memory + step.to, step, step.to_stride, remembered_.data() + work.at);
+  }
+  return true;
+}
+
 bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
                          const Interrupted& interrupted) {
   for (const Work& work : work_) {
@@ -123,10 +134,7 @@ bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
         read_back_converted(work, memory, forward);
         break;
       case StepKind::kInitialise:
-        for (uint32_t i = 0; i < step.count; ++i) {
-          forward.earlier(step.to + i * step.to_stride, {out + size_t{i} * step.size, step.size},
-                          memory);
-        }
+        std::memcpy(out, remembered_.data() + work.at, step.total());
         break;
     }
   }
@@ -140,7 +148,7 @@ void Transfer::read_back_converted(const Work& work, const uint8_t* memory,
     std::span<uint8_t> out(staged_.data() + work.at + size_t{i} * step.size, step.size);
     uint32_t from = step.from + i * step.from_stride;
     if (forward.still_as_converted(from, conversions_.source_size(step), memory)) {
-      forward.earlier(step.to + i * step.to_stride, out, memory);
+      std::memcpy(out.data(), remembered_.data() + work.at + size_t{i} * step.size, step.size);
     } else {
       conversions_.convert(step, i, memory + from, out);
     }
@@ -183,19 +191,6 @@ size_t Transfer::first_target(uint32_t offset, size_t& hint) const {
   auto found = std::partition_point(targets_.begin(), targets_.end(),
                                     [&](const Target& target) { return target.end() <= offset; });
   return hint = static_cast<size_t>(found - targets_.begin());
-}
-
-void Transfer::earlier(uint32_t offset, std::span<uint8_t> out, const uint8_t* memory) const {
-  std::memcpy(out.data(), memory + offset, out.size());
-  uint64_t end = uint64_t{offset} + out.size();
-  for (size_t i = first_target(offset, earlier_hint_); i < targets_.size() && targets_[i].to < end;
-       ++i) {
-    const Target& target = targets_[i];
-    uint64_t from = std::max<uint64_t>(target.to, offset);
-    uint64_t until = std::min(target.end(), end);
-    std::memcpy(out.data() + (from - offset), saved_.data() + target.at + (from - target.to),
-                until - from);
-  }
 }
 
 bool Transfer::still_as_converted(uint32_t offset, uint32_t size, const uint8_t* memory) const {

@@ -34,8 +34,12 @@ class Transfer {
   // First pass. Losses are handed to `on_loss`; false from it ends the pass. False: ended early.
   bool read(const uint8_t* memory, const std::function<bool(const Loss&)>& on_loss,
             const Interrupted& interrupted);
+  // On the way back, before `forward` writes: keeps what this plan will initialise or convert.
+  // Memory cannot keep it: version 2 copies whole structures, with the gaps that it has in the
+  // place of dropped members. False: interrupted.
+  bool remember(const uint8_t* memory, const Interrupted& interrupted);
   // The way back: like read(), but what this plan initialises, and what nobody wrote since
-  // `forward` converted it, comes from before `forward`.
+  // `forward` converted it, is what was remembered.
   bool read_back(const uint8_t* memory, const Transfer& forward, const Interrupted& interrupted);
   bool save(const uint8_t* memory, const Interrupted& interrupted);
   // False: interrupted and restored.
@@ -65,8 +69,6 @@ class Transfer {
                       const std::function<bool(const Loss&)>& on_loss);
   void read_back_converted(const Work& work, const uint8_t* memory, const Transfer& forward);
   void restore_first(uint8_t* memory, size_t count) const;
-  // Bytes as they were before this transfer: saved ones, and untouched ones from memory.
-  void earlier(uint32_t offset, std::span<uint8_t> out, const uint8_t* memory) const;
   // Does memory still hold what this transfer converted to `offset`?
   bool still_as_converted(uint32_t offset, uint32_t size, const uint8_t* memory) const;
   size_t first_target(uint32_t offset, size_t& hint) const;
@@ -75,11 +77,11 @@ class Transfer {
   Conversions conversions_;
   std::vector<Work> work_;
   std::vector<Target> targets_;  // sorted
-  // Where the searches before ended: offsets go upwards.
-  mutable size_t earlier_hint_ = 0;
+  // Where the search before ended: offsets go upwards.
   mutable size_t converted_hint_ = 0;
   base::Bytes staged_;
   base::Bytes saved_;
+  base::Bytes remembered_;  // of the way back
 };
 
 }  // namespace online_change

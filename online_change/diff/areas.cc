@@ -25,6 +25,10 @@ uint64_t element_count(const ir::Type& type) {
 
 }  // namespace
 
+bool has_own_parts(const ir::TypeTable& types, ir::TypeId type) {
+  return ir::is_structure(types[type].kind) && !types.overlaps(type);
+}
+
 uint32_t member_size(const ir::Image& image, const ir::Member& member) {
   if (member.section == ir::Section::kInOut) return 4;
   return image.layouts[member.type].size;
@@ -114,7 +118,7 @@ std::optional<Node> Areas::descend(uint32_t offset, std::string* path) const {
       child_at({image_.instances[*id].type, begin(*id), false}, offset, path);
   for (uint32_t depth = 0; node && depth < kMaxDepth; ++depth) {
     ir::Kind kind = image_.types[node->type].kind;
-    bool has_parts = kind == ir::Kind::kArray || kind == ir::Kind::kStruct;
+    bool has_parts = kind == ir::Kind::kArray || has_own_parts(image_.types, node->type);
     if (!has_parts || node->in_out) return node;
     node = child_at(*node, offset, path);
   }
@@ -136,6 +140,7 @@ bool Areas::is_array_of(uint32_t offset, ir::TypeId element, uint32_t count) con
     }
     // Another instance's slot ends the walk: its variables lie in an area of their own.
     if (depth > 0 && image_.types.is_instance(node->type)) return false;
+    if (image_.types.overlaps(node->type)) return false;
     node = child_at(*node, offset);
   }
   return false;

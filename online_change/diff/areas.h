@@ -55,6 +55,10 @@ class Areas {
   mutable std::unordered_map<ir::TypeId, std::vector<Place>> places_;
 };
 
+// A structure whose members can be looked at one by one. What lies on top of each other (a
+// union) is one value as far as changes are concerned.
+bool has_own_parts(const ir::TypeTable& types, ir::TypeId type);
+
 // Bytes of a member inside its owner: the slot for in-outs and function blocks.
 uint32_t member_size(const ir::Image& image, const ir::Member& member);
 

@@ -1,5 +1,6 @@
 #include "online_change/diff/type_diff.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "online_change/diff/areas.h"
@@ -117,7 +118,7 @@ uint64_t TypeDiffer::count_leaves(const ir::Image& image, TypeId id) {
     for (const ir::Dimension& dim : type.dims) count *= dim.count();
     return count;
   }
-  if (!image.types.has_members(id)) return 1;
+  if (!image.types.has_members(id) || image.types.overlaps(id)) return 1;
   uint64_t count = 0;
   for (const Member& member : type.members) {
     if (member.section == Section::kInOut || image.types.is_instance(member.type)) continue;
@@ -129,6 +130,9 @@ uint64_t TypeDiffer::count_leaves(const ir::Image& image, TypeId id) {
 TypeDiff TypeDiffer::compare_values(TypeId old_type, TypeId new_type) {
   const ir::Type& from = old_.types[old_type];
   const ir::Type& to = new_.types[new_type];
+  if (old_.types.overlaps(old_type) || new_.types.overlaps(new_type)) {
+    return compare_overlapping(old_type, new_type);
+  }
   if (from.kind == Kind::kStruct && to.kind == Kind::kStruct) {
     return compare_members(old_type, new_type, false);
   }
@@ -143,6 +147,22 @@ TypeDiff TypeDiffer::compare_values(TypeId old_type, TypeId new_type) {
     return slot;
   }
   return compare_leaves(old_type, new_type);
+}
+
+// What lies on top of each other has no members that could be carried over one by one.
+TypeDiff TypeDiffer::compare_overlapping(TypeId old_type, TypeId new_type) {
+  uint32_t size = new_.layouts[new_type].size;
+  bool alike =
+      ir::same_value_type(old_.types, old_.layouts, old_type, new_.types, new_.layouts, new_type);
+  if (!alike) {
+    return without_rule(old_.types.text(old_type), new_.types.text(new_type), size,
+                        leaves(new_, new_type));
+  }
+  TypeDiff diff;
+  diff.leaves = leaves(new_, new_type);
+  diff.same = true;
+  diff.ops.push_back(make_op(DiffKind::kSame, 0, 0, size, diff.leaves));
+  return diff;
 }
 
 // On the way back, what the way there converted must be a conversion too, even if every value
@@ -206,7 +226,10 @@ TypeDiff TypeDiffer::compare_members(TypeId old_type, TypeId new_type, bool is_a
   join(diff.ops);
   uint32_t old_size = is_area ? old_layout.used : old_layout.size;
   uint32_t new_size = is_area ? new_layout.used : new_layout.size;
-  bool all_kept = from.members.size() == to.members.size() && old_size == new_size;
+  // What is left of a structure may lie where it lay: no operation tells that the rest is gone.
+  bool dropped = std::any_of(diff.rows.begin(), diff.rows.end(),
+                             [](const FateRow& row) { return row.fate == Fate::kDropped; });
+  bool all_kept = from.members.size() == to.members.size() && old_size == new_size && !dropped;
   diff.same = all_kept && is_identity(diff.ops);
   diff.leaves = leaves(new_, new_type);
   return diff;

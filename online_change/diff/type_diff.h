@@ -77,6 +77,7 @@ class TypeDiffer {
   TypeDiff compare_values(ir::TypeId old_type, ir::TypeId new_type);
   TypeDiff compare_members(ir::TypeId old_type, ir::TypeId new_type, bool is_area);
   TypeDiff compare_arrays(ir::TypeId old_type, ir::TypeId new_type);
+  TypeDiff compare_overlapping(ir::TypeId old_type, ir::TypeId new_type);
   TypeDiff compare_leaves(ir::TypeId old_type, ir::TypeId new_type);
   void add_member(TypeDiff& diff, const ir::Member& old_member, uint32_t from,
                   const ir::Member& new_member, uint32_t to, bool is_area);

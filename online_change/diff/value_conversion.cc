@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ir/types/time_units.h"
+
 namespace online_change {
 namespace {
 
@@ -12,8 +14,6 @@ using ir::Kind;
 using ir::TypeId;
 using ir::TypeTable;
 using Wide = __int128;
-
-constexpr int64_t kDayNs = 86'400'000'000'000;
 
 // BOOL and bit strings count as unsigned integers.
 bool is_integral(Kind kind) {
@@ -129,7 +129,7 @@ Converted real_to_real(Kind from, Kind to, uint64_t bits) {
 Converted point_in_time(Kind from, Kind to, uint64_t bits) {
   if (!is_day(to) || is_day(from)) return {bits, nullptr, false};
   auto ns = static_cast<int64_t>(bits);
-  int64_t rest = ((ns % kDayNs) + kDayNs) % kDayNs;
+  int64_t rest = ((ns % ir::kNsPerDay) + ir::kNsPerDay) % ir::kNsPerDay;
   return {static_cast<uint64_t>(ns - rest), rest == 0 ? nullptr : "truncates", false};
 }
 
@@ -218,6 +218,15 @@ Conversion classify_into_subrange(const TypeTable& old_types, TypeId old_type,
   return from == to ? Conversion::kSame : Conversion::kExact;
 }
 
+// A handle stays what it is while its target keeps its type; to another type it would be a lie.
+Conversion classify_references(const TypeTable& old_types, TypeId old_type,
+                               const TypeTable& new_types, TypeId new_type) {
+  bool both = old_types.is_reference(old_type) && new_types.is_reference(new_type);
+  bool alike = both && ir::same_name(old_types.text(old_types[old_type].base),
+                                     new_types.text(new_types[new_type].base));
+  return alike ? Conversion::kSame : Conversion::kNone;
+}
+
 uint32_t read_unit(std::span<const uint8_t> bytes, size_t index, uint32_t unit) {
   if (unit == 1) return bytes[index];
   return bytes[index * 2] | static_cast<uint32_t>(bytes[index * 2 + 1]) << 8;
@@ -236,6 +245,9 @@ Conversion classify(const TypeTable& old_types, TypeId old_type, const TypeTable
   const ir::Type& to = new_types[new_type];
   if (is_string(from.kind) && is_string(to.kind)) return classify_strings(from, to);
   if (!old_types.is_scalar(old_type) || !new_types.is_scalar(new_type)) return Conversion::kNone;
+  if (old_types.is_reference(old_type) || new_types.is_reference(new_type)) {
+    return classify_references(old_types, old_type, new_types, new_type);
+  }
   Kind from_kind = old_types.root_kind(old_type);
   Kind to_kind = new_types.root_kind(new_type);
   if (from.kind == Kind::kEnum && to.kind == Kind::kEnum) {

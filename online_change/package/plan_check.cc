@@ -138,8 +138,8 @@ uint32_t PlanCheck::size_of(Node node) const {
 }
 
 bool PlanCheck::has_parts(Node node) const {
-  ir::Kind kind = new_.types[node.type].kind;
-  return !node.in_out && (kind == ir::Kind::kArray || kind == ir::Kind::kStruct);
+  bool array = new_.types[node.type].kind == ir::Kind::kArray;
+  return !node.in_out && (array || has_own_parts(new_.types, node.type));
 }
 
 template <class Visit>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "online_change/diff/areas.h"
 #include "online_change/diff/type_diff.h"
 #include "online_change/diff/value_conversion.h"
 
@@ -49,7 +50,7 @@ Fit TypeFit::value_at(uint32_t from, Node node) {
         if (fit != Fit::kNo) return fit;
       }
     }
-    if (type.kind != Kind::kArray && type.kind != Kind::kStruct) return Fit::kNo;
+    if (type.kind != Kind::kArray && !has_own_parts(old_.types, at->type)) return Fit::kNo;
     at = areas_.child_at(*at, from);
   }
   return Fit::kNo;
@@ -80,7 +81,14 @@ Fit TypeFit::compare_values(TypeId old_type, TypeId new_type) {
   }
   const ir::Type& from = old_.types[old_type];
   const ir::Type& to = new_.types[new_type];
-  if (from.kind == Kind::kStruct && to.kind == Kind::kStruct) return members(old_type, new_type);
+  if (has_own_parts(old_.types, old_type) && has_own_parts(new_.types, new_type)) {
+    return members(old_type, new_type);
+  }
+  if (old_.types.overlaps(old_type) || new_.types.overlaps(new_type)) {
+    bool alike =
+        ir::same_value_type(old_.types, old_.layouts, old_type, new_.types, new_.layouts, new_type);
+    return alike ? Fit::kYes : Fit::kNo;
+  }
   if (from.kind == Kind::kArray && to.kind == Kind::kArray) {
     return elements(old_type, 0, new_type);
   }

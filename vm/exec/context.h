@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "ir/bytecode/code.h"
 #include "vm/exec/execution.h"
@@ -39,6 +40,9 @@
 
 namespace vm {
 
+// A BOOL in memory. Bytes that came in as another type may be anything; not zero is TRUE.
+enum class Bool : uint8_t {};
+
 struct Context {
   uint64_t fuel = 0;
   CallRecord* call = nullptr;  // next free record
@@ -49,6 +53,14 @@ struct Context {
   uint32_t instance_count = 0;
   uint32_t pou = 0;
   uint32_t instance = 0;
+  // Exposed locals (references.h), by depth; `exposed` is the call record of the deepest POU that
+  // has some, and null when none has.
+  const CallRecord* exposed = nullptr;
+  Exposure* exposures = nullptr;
+  uint32_t exposure_count = 0;
+  uint32_t exposures_made = 0;
+  uint32_t task = 0;
+  const Generation* generation = nullptr;
   const BoundEntry* bounds = nullptr;
   const RangeEntry* ranges = nullptr;
   int64_t task_time_ns = 0;
@@ -111,6 +123,7 @@ STC_COLD inline void raise(Context* ctx, ir::TrapKind kind, const ir::Unit* pc, 
 // Values lie at any address; these compile to plain loads and stores.
 template <class T>
 STC_INLINE T load(const uint8_t* at) {
+  if constexpr (std::is_same_v<T, Bool>) return static_cast<Bool>(*at != 0);
   T value;
   std::memcpy(&value, at, sizeof value);
   return value;

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "base/limits.h"
 #include "vm/exec/context.h"
+#include "vm/exec/references.h"
 
 namespace vm {
 
@@ -21,6 +23,12 @@ struct Interpreter {
     ctx.instance_count = static_cast<uint32_t>(generation.instances().size());
     ctx.pou = e.pou_;
     ctx.instance = e.instance_;
+    ctx.exposures = e.exposures_.data();
+    ctx.exposure_count = e.exposure_count_;
+    ctx.exposures_made = e.exposures_made_;
+    find_deepest_exposed(ctx);
+    ctx.task = e.task_;
+    ctx.generation = &generation;
     ctx.bounds = generation.bounds().data();
     ctx.ranges = generation.ranges().data();
     ctx.task_time_ns = e.task_time_ns_;
@@ -39,11 +47,14 @@ struct Interpreter {
 
   static void keep(Execution& e, const Context& ctx, uint64_t fuel) {
     e.depth_ = static_cast<uint32_t>(ctx.call - ctx.calls_begin);
+    e.exposure_count_ = ctx.exposure_count;
+    e.exposures_made_ = ctx.exposures_made;
     e.pc_ = ctx.pc;
     e.frame_ = static_cast<uint32_t>(ctx.frame - e.memory_);
     e.self_ = static_cast<uint32_t>(ctx.self - e.memory_);
     e.pou_ = ctx.pou;
     e.instance_ = ctx.instance;
+    e.task_time_ns_ = ctx.task_time_ns;
     e.fuel_used_ += fuel - ctx.fuel;
     if (ctx.exit != Exit::kTrap) return;
     e.trap_ = ctx.trap;
@@ -53,7 +64,8 @@ struct Interpreter {
   }
 };
 
-Execution::Execution(uint32_t depth) : calls_(size_t{depth} + 1) {}
+Execution::Execution(uint32_t depth, uint32_t task)
+    : calls_(size_t{depth} + 1), exposures_(base::kMaxExposures), task_(task) {}
 
 void Execution::start(const Generation& generation, uint8_t* memory, uint32_t id, uint32_t stack,
                       int64_t task_time_ns) {
@@ -62,6 +74,7 @@ void Execution::start(const Generation& generation, uint8_t* memory, uint32_t id
   generation_ = &generation;
   memory_ = memory;
   depth_ = 0;
+  exposure_count_ = 0;
   instance_ = id;
   pou_ = instance.pou;
   pc_ = generation.pous()[pou_].code;

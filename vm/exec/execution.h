@@ -4,6 +4,7 @@
 // During run(): no heap allocation, no lock, no system call (invariant 2).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -39,10 +40,23 @@ struct CallRecord {
   uint32_t instance = 0;
 };
 
+// A local whose address was taken, for as long as its POU is active.
+struct Exposure {
+  uint32_t segment = 0;  // ir::exposed_segment
+  uint32_t begin = 0;    // in data memory
+  uint32_t size = 0;
+  uint32_t depth = 0;  // calls below its POU
+};
+
 class Execution {
  public:
-  // `depth` calls at most (Image::call_depth); allocated here, not in run().
-  explicit Execution(uint32_t depth);
+  // `depth` calls at most (Image::call_depth); allocated here, not in run(). `task` tells the
+  // exposed locals of one task from those of others.
+  explicit Execution(uint32_t depth, uint32_t task = 0);
+  // Numbers its exposed locals behind those of `earlier`, so that no stale reference finds one.
+  void count_on(const Execution& earlier) {
+    exposures_made_ = std::max(exposures_made_, earlier.exposures_made_);
+  }
 
   // Prepares a call of program instance `id`. `stack` is where its frames begin.
   void start(const Generation& generation, uint8_t* memory, uint32_t id, uint32_t stack,
@@ -64,6 +78,10 @@ class Execution {
   uint8_t* memory_ = nullptr;
   std::vector<CallRecord> calls_;
   uint32_t depth_ = 0;
+  std::vector<Exposure> exposures_;
+  uint32_t exposure_count_ = 0;
+  uint32_t exposures_made_ = 0;
+  uint32_t task_ = 0;
   const ir::Unit* pc_ = nullptr;
   uint32_t frame_ = 0;
   uint32_t self_ = 0;

@@ -86,6 +86,17 @@ void handle(STC_HANDLER_ARGS) {
   }
 }
 
+// Position of an index in its dimension; the caller compares it with the count. An
+// index beyond int64 is outside whatever the lower bound is.
+template <class T>
+STC_INLINE uint64_t position(T index, const BoundEntry& bound) {
+  if constexpr (std::is_same_v<T, uint64_t>) {
+    if (index > static_cast<uint64_t>(INT64_MAX)) [[unlikely]]
+      return UINT64_MAX;
+  }
+  return static_cast<uint64_t>(static_cast<int64_t>(index)) - static_cast<uint64_t>(bound.low);
+}
+
 // --- instantiation -------------------------------------------------------------
 
 template <class Group, ir::Opcode op, uint32_t... i>
@@ -124,7 +135,7 @@ constexpr HandlerTable handlers_of_group() {
 #define STC_FLOATS(M) M(F32, float) M(F64, double)
 #define STC_SIGNED(M) M(I8, int8_t) M(I16, int16_t) M(I32, int32_t) M(I64, int64_t)
 #define STC_UNSIGNED(M) M(U8, uint8_t) M(U16, uint16_t) M(U32, uint32_t) M(U64, uint64_t)
-#define STC_VALUES(M) M(B, uint8_t) STC_WORDS(M) STC_FLOATS(M)
+#define STC_VALUES(M) M(B, Bool) STC_WORDS(M) STC_FLOATS(M)
 
 #define STC_UNARY(name, From, To, expression)                       \
   template <>                                                       \

@@ -5,6 +5,7 @@
 #include "base/limits.h"
 #include "stdlib/native/natives.h"
 #include "vm/exec/handle.h"
+#include "vm/exec/references.h"
 
 namespace vm {
 namespace {
@@ -14,7 +15,7 @@ constexpr size_t kMaxNativeArguments = 8;
 void read_argument(char letter, const uint8_t* slot, uint8_t* mem, stdlib::NativeArg& argument) {
   switch (letter) {
     case 'b':
-      argument.bits = load<uint8_t>(slot);
+      argument.bits = load<uint8_t>(slot) != 0;
       return;
     case 'i':
       argument.bits = static_cast<uint64_t>(int64_t{load<int32_t>(slot)});
@@ -111,29 +112,50 @@ struct Semantics<ir::Opcode::TASK_TIME> : Special {
     STC_NEXT(1);
   }
 };
+template <>
+struct Semantics<ir::Opcode::ADVANCE_TIME> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    ctx->task_time_ns = static_cast<int64_t>(static_cast<uint64_t>(ctx->task_time_ns) +
+                                             load<uint64_t>(STC_AT(B, pc->b)));
+    STC_NEXT(1);
+  }
+};
+
+// A declared recursion that is as deep as it may be.
+[[gnu::noinline]] static bool is_too_deep(const Context* ctx, uint32_t pou) {
+  uint32_t active = ctx->pou == pou ? 1 : 0;
+  for (const CallRecord* record = ctx->calls_begin; record != ctx->call; ++record) {
+    active += record->pou == pou ? 1 : 0;
+  }
+  return active >= ctx->pous[pou].recursion_depth;
+}
 
 // Enters a POU; the record says where and as what the caller goes on. The verifier
 // has bounded the depth; the test costs nothing beside the record.
-#define STC_CALL(number, callee_instance, callee_self)                                           \
-  if (ctx->call == ctx->calls_end) [[unlikely]] {                                                \
-    return raise(ctx, ir::TrapKind::kStack, pc, frame, self);                                    \
-  }                                                                                              \
-  const PouEntry& callee = ctx->pous[number];                                                    \
-  *ctx->call++ = {pc + 1, static_cast<uint32_t>(frame - mem), static_cast<uint32_t>(self - mem), \
-                  ctx->pou, ctx->instance};                                                      \
-  ctx->pou = (number);                                                                           \
-  ctx->instance = (callee_instance);                                                             \
-  uint8_t* const callee_frame = frame + pc->a * 8u;                                              \
-  if (--ctx->fuel == 0) [[unlikely]] {                                                           \
-    return stop(ctx, Exit::kSuspended, callee.code, callee_frame, callee_self);                  \
-  }                                                                                              \
+#define STC_CALL(number, callee_instance, callee_self, units)                   \
+  if (ctx->call == ctx->calls_end) [[unlikely]] {                               \
+    return raise(ctx, ir::TrapKind::kStack, pc, frame, self);                   \
+  }                                                                             \
+  const PouEntry& callee = ctx->pous[number];                                   \
+  if (callee.recursion_depth != 0 && is_too_deep(ctx, number)) [[unlikely]] {   \
+    return raise(ctx, ir::TrapKind::kStack, pc, frame, self);                   \
+  }                                                                             \
+  *ctx->call++ = {pc + (units), static_cast<uint32_t>(frame - mem),             \
+                  static_cast<uint32_t>(self - mem), ctx->pou, ctx->instance};  \
+  ctx->pou = (number);                                                          \
+  ctx->instance = (callee_instance);                                            \
+  uint8_t* const callee_frame = frame + pc->a * 8u;                             \
+  if (--ctx->fuel == 0) [[unlikely]] {                                          \
+    return stop(ctx, Exit::kSuspended, callee.code, callee_frame, callee_self); \
+  }                                                                             \
   STC_GO(callee.code, callee_frame, callee_self)
 
 template <>
 struct Semantics<ir::Opcode::CALL> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
-    STC_CALL(pc->c, 0, self);
+    STC_CALL(pc->c, 0, self, 1);
   }
 };
 
@@ -168,7 +190,7 @@ struct Semantics<ir::Opcode::CALL_INST> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
     STC_FIND_INSTANCE(STC_AT(B, pc->bc()));
-    STC_CALL(entry.pou, id, mem + entry.data);
+    STC_CALL(entry.pou, id, mem + entry.data, 1);
   }
 };
 template <>
@@ -176,13 +198,27 @@ struct Semantics<ir::Opcode::CALL_INST_AT> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
     STC_FIND_INSTANCE(mem + load<uint32_t>(frame + pc->b) + pc->c);
-    STC_CALL(entry.pou, id, mem + entry.data);
+    STC_CALL(entry.pou, id, mem + entry.data, 1);
+  }
+};
+// x is a type number: Generation::build has put it there.
+template <>
+struct Semantics<ir::Opcode::CALL_REF> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    const uint32_t id = find_instance(ctx, load<uint64_t>(STC_AT(B, pc->b)), pc[1].x());
+    if (id == 0) [[unlikely]]
+      return raise(ctx, ir::TrapKind::kReference, pc, frame, self);
+    const InstanceEntry& entry = ctx->instances[id];
+    STC_CALL(entry.pou, id, mem + entry.data, 2);
   }
 };
 template <>
 struct Semantics<ir::Opcode::RET> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
+    if (ctx->call == ctx->exposed) [[unlikely]]
+      drop_exposed(*ctx, static_cast<uint32_t>(ctx->call - ctx->calls_begin));
     if (ctx->call == ctx->calls_begin) return stop(ctx, Exit::kDone, pc, frame, self);
     const CallRecord& caller = *--ctx->call;
     ctx->pou = caller.pou;

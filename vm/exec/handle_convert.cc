@@ -25,7 +25,7 @@ NARROW(64, 8)
 NARROW(64, 16)
 NARROW(64, 32)
 
-STC_UNARY(B_TO_8, uint8_t, uint8_t, b)
+STC_UNARY(B_TO_8, Bool, uint8_t, b)
 #define TO_BOOL(suffix, T) STC_UNARY(TOBOOL_##suffix, T, uint8_t, b != 0)
 STC_WORDS(TO_BOOL)
 

@@ -12,12 +12,13 @@ STC_UNARY(MOV_A, uint32_t, uint32_t, b)
 STC_UNARY(MOV_S, uint64_t, uint64_t, b)
 STC_UNARY(MOV_W, uint64_t, uint64_t, b)
 
-STC_BINARY(AND_B, uint8_t, uint8_t, uint8_t, b& c)
-STC_BINARY(OR_B, uint8_t, uint8_t, uint8_t, b | c)
-STC_BINARY(XOR_B, uint8_t, uint8_t, uint8_t, b ^ c)
-STC_BINARY(ANDN_B, uint8_t, uint8_t, uint8_t, b&(c ^ 1))
-STC_BINARY(ORN_B, uint8_t, uint8_t, uint8_t, b | (c ^ 1))
-STC_UNARY(NOT_B, uint8_t, uint8_t, b ^ 1)
+STC_INLINE uint32_t bit(Bool value) { return static_cast<uint32_t>(value); }
+STC_BINARY(AND_B, Bool, Bool, uint8_t, bit(b) & bit(c))
+STC_BINARY(OR_B, Bool, Bool, uint8_t, bit(b) | bit(c))
+STC_BINARY(XOR_B, Bool, Bool, uint8_t, bit(b) ^ bit(c))
+STC_BINARY(ANDN_B, Bool, Bool, uint8_t, bit(b) & (bit(c) ^ 1))
+STC_BINARY(ORN_B, Bool, Bool, uint8_t, bit(b) | (bit(c) ^ 1))
+STC_UNARY(NOT_B, Bool, uint8_t, bit(b) ^ 1)
 
 #define BITS(suffix, T)                                                                       \
   STC_BINARY(AND_##suffix, T, T, T, b& c)                                                     \

@@ -103,17 +103,6 @@ struct Semantics<ir::Opcode::ST_REF_AT> : Special {
   }
 };
 
-// Position of an index in its dimension; the caller compares it with the count. An
-// index beyond int64 is outside whatever the lower bound is.
-template <class T>
-STC_INLINE uint64_t position(T index, const BoundEntry& bound) {
-  if constexpr (std::is_same_v<T, uint64_t>) {
-    if (index > static_cast<uint64_t>(INT64_MAX)) [[unlikely]]
-      return UINT64_MAX;
-  }
-  return static_cast<uint64_t>(static_cast<int64_t>(index)) - static_cast<uint64_t>(bound.low);
-}
-
 #define STC_INDEX(T, array)                                                                        \
   const T index = load<T>(STC_AT(B, pc->b));                                                       \
   const uint32_t number = pc[1].x();                                                               \

@@ -1,15 +1,47 @@
 #include "vm/load/generation.h"
 
+#include <algorithm>
 #include <cstring>
+#include <unordered_map>
 
 #include "ir/bytecode/regions.h"
+#include "ir/types/handle.h"
+#include "ir/types/inside.h"
 #include "vm/exec/handler_numbers.h"
 
 namespace vm {
 namespace {
 
+// What a RESOLVE checks follows from its type alone: so many bytes without a slot (c is 0, x the
+// bytes), or exactly such a value or instance (c is 1, x the type).
+void prepare_resolve(const ir::Image& image, const std::vector<bool>& has_slots, ir::Unit& unit,
+                     ir::Unit& extension) {
+  const ir::TypeId type = ir::region_of_field(extension.x()).type;
+  const bool exact = has_slots[type.index];
+  unit.c = exact ? 1 : 0;
+  extension = ir::Unit::extension(exact ? type.index : image.layouts[type].size, extension.y());
+}
+
+// Types whose values hold ID or in-out slots; instance types themselves included.
+std::vector<bool> types_with_slots(const ir::Image& image) {
+  std::vector<bool> with(image.types.size());
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (uint32_t i = 0; i < with.size(); ++i) {
+      const ir::Type& type = image.types[ir::TypeId(i)];
+      bool found = image.types.is_instance(ir::TypeId(i)) ||
+                   (type.kind == ir::Kind::kArray && with[type.base.index]);
+      for (const ir::Member& member : type.members) found = found || with[member.type.index];
+      changed |= found && !with[i];
+      if (found) with[i] = true;
+    }
+  }
+  return with;
+}
+
 // Handler numbers into the op fields; the bytes of a COPY in the place of its type.
-void prepare_code(const ir::Image& image, const ir::LinkedPou& pou, ir::Unit* code) {
+void prepare_code(const ir::Image& image, const std::vector<bool>& has_slots,
+                  const ir::LinkedPou& pou, ir::Unit* code) {
   for (uint32_t i = 0; i < pou.unit_count; ++i) {
     ir::Unit& unit = code[i];
     const ir::Opcode op = unit.opcode();
@@ -17,6 +49,10 @@ void prepare_code(const ir::Image& image, const ir::LinkedPou& pou, ir::Unit* co
         static_cast<uint16_t>(handler_number(op, unit.base_a(), unit.base_b(), unit.base_c()));
     if (!ir::opcode_row(op).extended) continue;
     ir::Unit& extension = code[++i];
+    if (op == ir::Opcode::RESOLVE) prepare_resolve(image, has_slots, unit, extension);
+    if (op == ir::Opcode::CALL_REF) {
+      extension = ir::Unit::extension(ir::region_of_field(extension.x()).type.index, 0);
+    }
     if (op != ir::Opcode::COPY) continue;
     const ir::Region region = ir::region_of_field(extension.x());
     extension = ir::Unit::extension(ir::region_size(image.types, image.layouts, region), 0);
@@ -25,8 +61,43 @@ void prepare_code(const ir::Image& image, const ir::LinkedPou& pou, ir::Unit* co
 
 }  // namespace
 
+void write_initial_data(const ir::Image& image, uint8_t* memory) {
+  for (const ir::DataRun& run : image.data) {
+    std::memcpy(memory + run.offset, run.bytes.data(), run.bytes.size());
+  }
+}
+
 uint32_t Generation::pool_offset() const {
   return number_ % 2 == 0 ? ir::kConstPoolA : ir::kConstPoolB;
+}
+
+// Slots are listed once per type.
+void Generation::build_areas() {
+  const ir::Image& image = image_.image();
+  std::unordered_map<ir::TypeId, std::pair<uint32_t, uint32_t>> known;
+  areas_.resize(image.instances.size());
+  for (uint32_t id = 0; id < areas_.size(); ++id) {
+    const ir::Instance& row = image.instances[id];
+    if (!row.live) continue;
+    const ir::TypeLayout& layout = image.layouts[row.type];
+    const auto [slots, added] = known.try_emplace(row.type);
+    if (added) {
+      const std::vector<uint32_t> found = ir::slots_inside(image.types, image.layouts, row.type);
+      slots->second = {static_cast<uint32_t>(area_slots_.size()),
+                       static_cast<uint32_t>(found.size())};
+      area_slots_.insert(area_slots_.end(), found.begin(), found.end());
+    }
+    areas_[id] = {ir::area_segment(id, row.generation),
+                  row.data,
+                  layout.used,
+                  std::max(layout.used, layout.area_capacity),
+                  slots->second.first,
+                  slots->second.second,
+                  row.type.index};
+    areas_by_data_.push_back(id);
+  }
+  std::sort(areas_by_data_.begin(), areas_by_data_.end(),
+            [this](uint32_t a, uint32_t b) { return areas_[a].data < areas_[b].data; });
 }
 
 std::unique_ptr<Generation> Generation::build(ir::VerifiedImage verified, uint32_t number,
@@ -35,15 +106,17 @@ std::unique_ptr<Generation> Generation::build(ir::VerifiedImage verified, uint32
   const ir::Image& image = made->image();
   made->number_ = number;
   made->code_ = image.code;
+  const std::vector<bool> has_slots = types_with_slots(image);
   for (const ir::LinkedPou& pou : image.pous) {
     ir::Unit* const first = made->code_.data() + pou.first_unit;
-    prepare_code(image, pou, first);
-    made->pous_.push_back({first, pou.frame_size});
+    prepare_code(image, has_slots, pou, first);
+    made->pous_.push_back({first, pou.frame_size, pou.recursion_depth});
   }
   for (const ir::Instance& row : image.instances) {
     const bool callable = row.live && row.type != image.globals;
     made->instances_.push_back(callable ? InstanceEntry{row.data, row.pou} : InstanceEntry{});
   }
+  made->build_areas();
   for (const ir::LinkedBound& bound : image.bounds) {
     made->bounds_.push_back({bound.low, bound.count, bound.stride});
   }

@@ -14,11 +14,23 @@ namespace vm {
 struct PouEntry {
   const ir::Unit* code = nullptr;  // first unit, decoded
   uint32_t frame_size = 0;
+  uint32_t recursion_depth = 0;  // 0: never in a circle of calls
 };
 
 struct InstanceEntry {
   uint32_t data = 0;  // 0: the ID is free
   uint32_t pou = 0;
+};
+
+// What references check of an area, by instance ID; segment 0: the ID is free.
+struct AreaEntry {
+  uint32_t segment = 0;  // ir::area_segment
+  uint32_t data = 0;
+  uint32_t used = 0;        // bytes that variables take
+  uint32_t capacity = 0;    // with slack
+  uint32_t first_slot = 0;  // in area_slots(): offsets of ID and in-out slots, sorted
+  uint32_t slot_count = 0;
+  uint32_t type = 0;
 };
 
 // Of Image::bounds and Image::ranges, without their names.
@@ -31,6 +43,9 @@ struct RangeEntry {
   int64_t low = 0;
   int64_t high = 0;
 };
+
+// A cold start's data: `memory` is all zero before.
+void write_initial_data(const ir::Image& image, uint8_t* memory);
 
 class Generation {
  public:
@@ -45,13 +60,21 @@ class Generation {
   uint32_t pool_offset() const;
   const std::vector<PouEntry>& pous() const { return pous_; }
   const std::vector<InstanceEntry>& instances() const { return instances_; }
+  const std::vector<AreaEntry>& areas() const { return areas_; }
+  const std::vector<uint32_t>& area_slots() const { return area_slots_; }
+  // IDs of all areas by their place in data memory.
+  const std::vector<uint32_t>& areas_by_data() const { return areas_by_data_; }
   const std::vector<ir::Unit>& code() const { return code_; }
   const std::vector<BoundEntry>& bounds() const { return bounds_; }
   const std::vector<RangeEntry>& ranges() const { return ranges_; }
 
  private:
   explicit Generation(ir::VerifiedImage image) : image_(std::move(image)) {}
+  void build_areas();
   ir::VerifiedImage image_;
+  std::vector<AreaEntry> areas_;
+  std::vector<uint32_t> area_slots_;
+  std::vector<uint32_t> areas_by_data_;
   uint32_t number_ = 0;
   std::vector<ir::Unit> code_;
   std::vector<PouEntry> pous_;

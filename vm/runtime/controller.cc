@@ -13,12 +13,6 @@ namespace {
 
 using TablesByGeneration = std::map<const Generation*, std::unique_ptr<TaskTables>>;
 
-void write_initial_data(const ir::Image& image, uint8_t* memory) {
-  for (const ir::DataRun& run : image.data) {
-    std::memcpy(memory + run.offset, run.bytes.data(), run.bytes.size());
-  }
-}
-
 base::Error read_only(std::string_view path, const char* what) {
   return {base::Refusal::kReadOnly, "`" + std::string(path) + "` is " + what};
 }

@@ -55,28 +55,56 @@ void Scheduler::begin_cycle() {
   }
   io_.send(tables_->outputs);
   io_.receive(tables_->inputs);
+  look_at_events();
   release_due_tasks();
+}
+
+// Forced, else as it came in just now, else as the programs left it.
+bool Scheduler::event_level(const TaskSlot& task) const {
+  for (const Force& force : tables_->forces) {
+    if (force.symbol.data == task.event) return force.value[0] != 0;
+  }
+  if (task.event_mask != 0) return (tables_->inputs[task.event_byte] & task.event_mask) != 0;
+  return memory_[task.event] != 0;
+}
+
+void Scheduler::look_at_events() {
+  for (TaskSlot& task : tables_->tasks) {
+    if (task.event == 0 || task.status.stopped) continue;
+    bool level = event_level(task);
+    if (level && !task.event_level) release(task);
+    task.event_level = level;
+  }
+}
+
+void Scheduler::release(TaskSlot& task) {
+  bool still_running = std::find(active_.begin(), active_.end(), &task) != active_.end();
+  if (task.released || still_running) {
+    ++task.status.missed;
+  } else {
+    task.released = true;
+  }
 }
 
 void Scheduler::release_due_tasks() {
   for (TaskSlot& task : tables_->tasks) {
-    if (task.status.stopped || task.next_release_ns > cycle_start_ns_) continue;
     int64_t period = task.status.period_ns;
+    if (task.status.stopped || period == 0 || task.next_release_ns > cycle_start_ns_) continue;
+    if (task.event != 0 && task.event_level) {  // the period rests
+      task.next_release_ns += period;
+      continue;
+    }
     int64_t passed_by = (cycle_start_ns_ - task.next_release_ns) / period;
     task.status.missed += static_cast<uint64_t>(passed_by);
     task.next_release_ns += (passed_by + 1) * period;
-    bool still_running = std::find(active_.begin(), active_.end(), &task) != active_.end();
-    if (task.released || still_running) {
-      ++task.status.missed;
-    } else {
-      task.released = true;
-    }
+    release(task);
   }
 }
 
 TaskSlot* Scheduler::next_released() {
   for (uint32_t index : tables_->by_priority) {
-    if (tables_->tasks[index].released) return &tables_->tasks[index];
+    TaskSlot& task = tables_->tasks[index];
+    if (task.released && task.begun_in_cycle != cycles_ + 1) return &task;
   }
   return nullptr;
 }
@@ -92,6 +120,7 @@ TaskSlot* Scheduler::choose() {
 
 void Scheduler::begin_task(TaskSlot& task) {
   task.released = false;
+  task.begun_in_cycle = cycles_ + 1;
   if (task.programs.empty()) {
     ++task.status.scans;
     return;
@@ -162,6 +191,7 @@ void Scheduler::leave(TaskSlot& task) {
   base::check(active_.back() == &task, "only the topmost activation can end");
   active_.pop_back();
   if (!active_.empty()) copy_inputs(*active_.back());
+  look_at_events();
 }
 
 void Scheduler::trap_in(TaskSlot& task, const Trap& trap) {

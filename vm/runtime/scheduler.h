@@ -31,6 +31,10 @@ class Scheduler {
 
   void begin_cycle();
   void release_due_tasks();
+  void release(TaskSlot& task);
+  // Edges of events (ir::Task) release their tasks.
+  void look_at_events();
+  bool event_level(const TaskSlot& task) const;
   TaskSlot* next_released();
   // The activation that has the processor now: a newly begun one or the topmost; nullptr when idle.
   TaskSlot* choose();

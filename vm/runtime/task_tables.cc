@@ -9,21 +9,30 @@ namespace {
 // An image without tasks still refreshes its process image.
 constexpr int64_t kIdlePeriodNs = 10'000'000;
 
-TaskSlot make_slot(const ir::Image& image, const ir::ImageTask& task, int64_t first_release_ns) {
+TaskSlot make_slot(const ir::Image& image, uint32_t number, int64_t first_release_ns) {
+  const ir::ImageTask& task = image.tasks[number];
   TaskSlot slot;
   slot.status.name = task.name;
-  slot.status.period_ns = std::max<int64_t>(task.period_ns, 1);
+  slot.status.period_ns = std::max<int64_t>(task.period_ns, task.event != 0 ? 0 : 1);
   slot.status.priority = task.priority;
   slot.watchdog_ns = task.watchdog_ns > 0 ? task.watchdog_ns : 10 * slot.status.period_ns;
   slot.programs = task.programs;
-  slot.execution = std::make_unique<Execution>(image.call_depth);
+  slot.execution = std::make_unique<Execution>(image.call_depth, number);
   slot.inputs.resize(image.input_bytes);
   slot.outputs_at_start.resize(image.output_bytes);
   slot.next_release_ns = first_release_ns;
+  slot.event = task.event;
+  for (const ir::IoBinding& binding : image.io) {
+    bool input = binding.address.area == ir::DirectArea::kInput && binding.data == task.event;
+    if (!input || task.event == 0) continue;
+    slot.event_byte = binding.address.bit_offset / 8;
+    slot.event_mask = static_cast<uint8_t>(1u << (binding.address.bit_offset % 8));
+  }
   return slot;
 }
 
 void keep_phase(TaskSlot& slot, const TaskSlot& old, int64_t cycle_start_ns) {
+  if (slot.status.period_ns == 0 || old.status.period_ns == 0) return;
   int64_t last_release = old.next_release_ns - old.status.period_ns;
   int64_t period = slot.status.period_ns;
   slot.next_release_ns = last_release + period;
@@ -50,9 +59,9 @@ base::Bytes carry_over(const ir::Image& from, const Force& force, const ir::Imag
 TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
     : generation(&made_for), version(made_for.verified()), process_image(made_for.image()) {
   const ir::Image& image = made_for.image();
-  for (const ir::ImageTask& task : image.tasks) {
-    by_priority.push_back(static_cast<uint32_t>(tasks.size()));
-    tasks.push_back(make_slot(image, task, first_release_ns));
+  for (uint32_t number = 0; number < image.tasks.size(); ++number) {
+    by_priority.push_back(number);
+    tasks.push_back(make_slot(image, number, first_release_ns));
   }
   std::stable_sort(by_priority.begin(), by_priority.end(), [&](uint32_t a, uint32_t b) {
     return tasks[a].status.priority < tasks[b].status.priority;
@@ -68,12 +77,14 @@ void TaskTables::adopt(const TaskTables& previous, int64_t cycle_start_ns) {
     slot.released = false;
     slot.next_release_ns = previous.next_cycle_ns(cycle_start_ns);
     for (const TaskSlot& old : previous.tasks) {
+      slot.execution->count_on(*old.execution);
       if (!ir::same_name(slot.status.name, old.status.name)) continue;
       TaskStatus status = old.status;
       status.period_ns = slot.status.period_ns;
       status.priority = slot.status.priority;
       slot.status = std::move(status);
       slot.released = old.released;
+      slot.event_level = old.event_level;
       keep_phase(slot, old, cycle_start_ns);
     }
   }
@@ -85,6 +96,7 @@ void TaskTables::adopt(const TaskTables& previous, int64_t cycle_start_ns) {
 void TaskTables::set_base_period() {
   base_period_ns = 0;
   for (const TaskSlot& slot : tasks) {
+    if (slot.status.period_ns == 0) continue;
     base_period_ns = std::gcd(base_period_ns, slot.status.period_ns);
     base_period_ns = std::gcd(base_period_ns, slot.next_release_ns - tasks.front().next_release_ns);
   }
@@ -94,7 +106,8 @@ void TaskTables::set_base_period() {
 int64_t TaskTables::next_release_ns() const {
   int64_t next = INT64_MAX;
   for (const TaskSlot& slot : tasks) {
-    if (!slot.status.stopped) next = std::min(next, slot.next_release_ns);
+    bool periodic = slot.status.period_ns != 0;
+    if (periodic && !slot.status.stopped) next = std::min(next, slot.next_release_ns);
   }
   return next;
 }

@@ -21,7 +21,13 @@ struct TaskSlot {
   base::Bytes inputs;            // what this activation sees of %I, from start to end (B3)
   base::Bytes outputs_at_start;  // %Q variables when it began, to know what it wrote
   int64_t next_release_ns = 0;
-  bool released = false;  // due, not yet begun
+  bool released = false;        // due, not yet begun
+  uint64_t begun_in_cycle = 0;  // number of the cycle, from 1: once in each at most
+
+  uint32_t event = 0;        // data offset of the BOOL whose edges release it; 0: none
+  bool event_level = false;  // when it was looked at last
+  uint32_t event_byte = 0;   // in the inputs, when the event is one
+  uint8_t event_mask = 0;    // 0: it is none
 
   size_t program = 0;  // position in `programs`
   uint32_t stack = 0;
@@ -44,7 +50,7 @@ struct TaskTables {
   void adopt_forces(const ir::Image& from, const std::vector<Force>& forces);
 
   const Generation* generation;
-  ir::VerifiedImage version;      // outlives the generation, which its owner may drop at any time
+  ir::VerifiedImage version;    // outlives the generation, which its owner may drop at any time
   std::vector<TaskSlot> tasks;  // as in the image
   std::vector<uint32_t> by_priority;  // highest first, then as declared
   int64_t base_period_ns = 0;

@@ -1,0 +1,186 @@
+#include "vm/exec/references.h"
+
+#include <algorithm>
+
+#include "base/limits.h"
+#include "ir/bytecode/regions.h"
+
+namespace vm {
+namespace {
+
+constexpr uint32_t kSlotBytes = 4;
+
+// Does a slot have a byte in [begin, end)?
+bool touches_slot(const Home& home, uint64_t begin, uint64_t end) {
+  const uint32_t* const last = home.slots + home.slot_count;
+  const uint32_t* const next = std::partition_point(
+      home.slots, last, [begin](uint64_t at) { return at + kSlotBytes <= begin; });
+  return next != last && *next < end;
+}
+
+const AreaEntry* area_at(const Context& ctx, uint32_t address) {
+  const std::vector<uint32_t>& order = ctx.generation->areas_by_data();
+  const std::vector<AreaEntry>& areas = ctx.generation->areas();
+  auto behind = std::partition_point(order.begin(), order.end(),
+                                     [&](uint32_t id) { return areas[id].data <= address; });
+  while (behind != order.begin()) {  // areas without bytes may share an offset
+    const AreaEntry& area = areas[*--behind];
+    if (address - area.data < area.capacity) return &area;
+    if (area.capacity != 0) return nullptr;
+  }
+  return nullptr;
+}
+
+// Of the variable in the frame of `pou` that covers `offset`; nullptr when none can be exposed.
+const ir::FrameSlot* slot_at(const ir::Image& image, uint32_t pou, uint32_t offset,
+                             uint32_t& size) {
+  const std::vector<ir::FrameSlot>& slots = image.pous[pou].slots;
+  const auto behind = std::partition_point(slots.begin(), slots.end(),
+                                           [&](const auto& slot) { return slot.offset <= offset; });
+  if (behind == slots.begin()) return nullptr;
+  const ir::FrameSlot& slot = *(behind - 1);
+  if (!slot.aggregate && slot.cls >= ir::Class::kA) return nullptr;
+  size = slot.aggregate ? ir::region_size(image.types, image.layouts, slot.region)
+                        : ir::class_size(slot.cls);
+  return offset - slot.offset < size ? &slot : nullptr;
+}
+
+// The one with that begin; where a new one belongs otherwise. Sorted by depth.
+Exposure* find_exposure(Context& ctx, uint32_t depth, uint32_t begin) {
+  Exposure* at = ctx.exposures + ctx.exposure_count;
+  while (at != ctx.exposures && (at - 1)->depth > depth) --at;
+  Exposure* const behind = at;
+  for (; at != ctx.exposures && (at - 1)->depth == depth; --at) {
+    if ((at - 1)->begin == begin) return at - 1;
+  }
+  return behind;
+}
+
+std::optional<uint64_t> expose(Context& ctx, uint32_t depth, uint32_t pou, uint32_t frame,
+                               uint32_t address) {
+  uint32_t size = 0;
+  const ir::FrameSlot* slot = slot_at(ctx.generation->image(), pou, address - frame, size);
+  if (slot == nullptr) return ir::make_handle(0, address);
+  const uint32_t begin = frame + slot->offset;
+  Exposure* const end = ctx.exposures + ctx.exposure_count;
+  Exposure* const at = find_exposure(ctx, depth, begin);
+  if (at == end || at->depth != depth || at->begin != begin) {
+    if (ctx.exposure_count == base::kMaxExposures) return std::nullopt;
+    std::move_backward(at, end, end + 1);
+    *at = {ir::exposed_segment(ctx.task, ++ctx.exposures_made), begin, size, depth};
+    ++ctx.exposure_count;
+    find_deepest_exposed(ctx);
+  }
+  return ir::make_handle(at->segment, address - begin);
+}
+
+}  // namespace
+
+std::optional<Home> find_home(const Context& ctx, uint64_t handle) {
+  const uint32_t segment = ir::handle_segment(handle);
+  const uint32_t id = ir::segment_id(segment);
+  const std::vector<AreaEntry>& areas = ctx.generation->areas();
+  if (id < areas.size() && areas[id].segment == segment) {
+    const AreaEntry& area = areas[id];
+    return Home{area.data, area.used, ctx.generation->area_slots().data() + area.first_slot,
+                area.slot_count, id};
+  }
+  if ((segment & ir::kExposedBit) == 0) return std::nullopt;
+  for (uint32_t i = 0; i < ctx.exposure_count; ++i) {
+    const Exposure& local = ctx.exposures[i];
+    if (local.segment == segment) return Home{local.begin, local.size, nullptr, 0, 0xffffffffu};
+  }
+  return std::nullopt;
+}
+
+uint32_t resolve_bytes(const Context& ctx, uint64_t handle, uint32_t size) {
+  const std::optional<Home> home = find_home(ctx, handle);
+  const uint32_t offset = ir::handle_offset(handle);
+  const uint64_t end = uint64_t{offset} + size;
+  if (!home || end > home->used || touches_slot(*home, offset, end)) return 0;
+  return home->data + offset;
+}
+
+uint32_t find_instance(const Context* ctx, uint64_t handle, uint32_t type) {
+  const std::optional<Home> home = find_home(*ctx, handle);
+  const bool right = home && home->id < ctx->generation->areas().size() &&
+                     ir::handle_offset(handle) == 0 &&
+                     ctx->generation->image().types.is_a(
+                         ir::TypeId(ctx->generation->areas()[home->id].type), ir::TypeId(type));
+  return right ? home->id : 0;
+}
+
+uint32_t resolve_exactly(const Context& ctx, uint64_t handle, uint32_t type) {
+  const ir::Image& image = ctx.generation->image();
+  if (image.types.is_instance(ir::TypeId(type))) {
+    const uint32_t id = find_instance(&ctx, handle, type);
+    return id == 0 ? 0 : ctx.generation->areas()[id].data;
+  }
+  const std::optional<Home> home = find_home(ctx, handle);
+  const std::vector<AreaEntry>& areas = ctx.generation->areas();
+  if (!home || home->id >= areas.size()) return 0;  // locals hold no slots
+  const ir::Region area{ir::TypeId(areas[home->id].type), 0};
+  const uint32_t offset = ir::handle_offset(handle);
+  const bool found =
+      ir::has_region_at(image.types, image.layouts, area, offset, {ir::TypeId(type), 0});
+  return found ? home->data + offset : 0;
+}
+
+uint64_t resolve_string(const Context& ctx, uint64_t handle, uint32_t capacity, uint32_t unit) {
+  const std::optional<Home> home = find_home(ctx, handle);
+  const uint32_t offset = ir::handle_offset(handle);
+  if (!home || offset >= home->used || touches_slot(*home, offset, uint64_t{offset} + 1)) return 0;
+  const uint32_t* const last = home->slots + home->slot_count;
+  const uint32_t* const next = std::lower_bound(home->slots, last, offset);
+  const uint32_t units = ((next == last ? home->used : *next) - offset) / unit;
+  if (units == 0) return 0;
+  return (home->data + offset) | uint64_t{std::min(capacity, units - 1)} << 32;
+}
+
+std::optional<uint64_t> handle_of(Context& ctx, uint32_t frame, uint32_t address) {
+  if (const AreaEntry* area = area_at(ctx, address)) {
+    return ir::make_handle(area->segment, address - area->data);
+  }
+  auto depth = static_cast<uint32_t>(ctx.call - ctx.calls_begin);
+  uint32_t pou = ctx.pou;
+  while (address < frame && depth > 0) {
+    const CallRecord& record = ctx.calls_begin[--depth];
+    frame = record.frame;
+    pou = record.pou;
+  }
+  if (address < frame) return ir::make_handle(0, address);
+  return expose(ctx, depth, pou, frame, address);
+}
+
+uint32_t flat_of(const Context& ctx, uint64_t handle) {
+  if (ir::handle_segment(handle) == 0) return ir::handle_offset(handle);
+  const std::optional<Home> home = find_home(ctx, handle);
+  return home ? home->data + ir::handle_offset(handle) : 0;
+}
+
+uint64_t unflat(const Context& ctx, uint32_t address) {
+  if (const AreaEntry* area = area_at(ctx, address)) {
+    return ir::make_handle(area->segment, address - area->data);
+  }
+  for (uint32_t i = 0; i < ctx.exposure_count; ++i) {
+    const Exposure& local = ctx.exposures[i];
+    if (address - local.begin < local.size) {
+      return ir::make_handle(local.segment, address - local.begin);
+    }
+  }
+  return ir::make_handle(0, address);
+}
+
+void find_deepest_exposed(Context& ctx) {
+  const bool any = ctx.exposure_count != 0;
+  ctx.exposed = any ? ctx.calls_begin + ctx.exposures[ctx.exposure_count - 1].depth : nullptr;
+}
+
+void drop_exposed(Context& ctx, uint32_t depth) {
+  while (ctx.exposure_count != 0 && ctx.exposures[ctx.exposure_count - 1].depth >= depth) {
+    --ctx.exposure_count;
+  }
+  find_deepest_exposed(ctx);
+}
+
+}  // namespace vm

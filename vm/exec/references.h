@@ -1,0 +1,42 @@
+// Handles at run time: what they name now, and locals that are exposed to them
+// (docs/adr/0005-references-are-handles.md). Nothing here allocates.
+#pragma once
+
+#include <optional>
+
+#include "ir/types/handle.h"
+#include "vm/exec/context.h"
+
+namespace vm {
+
+// Bytes that a handle names: an area or an exposed local, from its beginning.
+struct Home {
+  uint32_t data = 0;
+  uint32_t used = 0;
+  const uint32_t* slots = nullptr;  // offsets that nothing may touch, sorted
+  uint32_t slot_count = 0;
+  uint32_t id = 0xffffffffu;  // of the instance; none for a local
+};
+
+// What the handle's segment names; nullopt when it is gone or never was.
+std::optional<Home> find_home(const Context& ctx, uint64_t handle);
+// Data offset of `size` bytes that hold no slot; 0 when they are not there.
+uint32_t resolve_bytes(const Context& ctx, uint64_t handle, uint32_t size);
+// Data offset of exactly a value of a type with slots, or of the area of an instance; 0: none.
+uint32_t resolve_exactly(const Context& ctx, uint64_t handle, uint32_t type);
+// {offset, capacity} of a string with units of `unit` bytes; 0: not even an empty one is there.
+uint64_t resolve_string(const Context& ctx, uint64_t handle, uint32_t capacity, uint32_t unit);
+// ID of the instance of that type; 0: none.
+uint32_t find_instance(const Context* ctx, uint64_t handle, uint32_t type);
+
+// Of data offset `address`, which may lie in a frame of this execution: then the local there is
+// exposed. nullopt: there is no room for one more.
+std::optional<uint64_t> handle_of(Context& ctx, uint32_t frame, uint32_t address);
+uint32_t flat_of(const Context& ctx, uint64_t handle);
+uint64_t unflat(const Context& ctx, uint32_t address);
+
+// The locals of POUs at that depth and above are gone.
+void drop_exposed(Context& ctx, uint32_t depth);
+void find_deepest_exposed(Context& ctx);
+
+}  // namespace vm
