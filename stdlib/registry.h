@@ -1,11 +1,5 @@
-// The standard functions by name: what the front end resolves when no declaration
-// of the project has that name, and what the reference page lists.
-//
-// Conversions have no row each. `X_TO_Y` and `TO_Y` exist for all elementary types
-// X and Y (strings included) under all their names; `TRUNC_Y`, `REAL_TRUNC_Y` and
-// `LREAL_TRUNC_Y` for integer types Y. Reals round half to even and trap when the
-// target cannot hold the result; integers keep their low bits; TIME counts in ms
-// and LTIME in ns, DATE and DT in seconds, TOD in ms, their long forms in ns.
+// The standard library by name: what the front end resolves when no declaration of the project
+// has that name, and what the reference page lists (registry.def).
 #pragma once
 
 #include <cstdint>
@@ -17,7 +11,6 @@ namespace stdlib {
 enum class FunctionId : uint8_t {
 #define FUNCTION(id, name, rule, fewest, most, parameters, signature, meaning) id,
 #include "stdlib/registry.def"
-#undef FUNCTION
 };
 
 // How arguments and result of a standard function are typed.
@@ -37,6 +30,16 @@ enum class FunctionRule : uint8_t {
   kString,        // strings of one kind, then integers -> string
   kStringNumber,  // strings of one kind -> INT
   kClock,         // nothing -> TIME or LTIME
+  // The operands have the types of the signature.
+  kTimeSum,
+  kTimeDifference,
+  kTimeProduct,
+  kTimeQuotient,
+  kMoment,     // parts of a date or time -> that
+  kSplit,      // a date or time => its parts
+  kWeekday,    // a date or moment -> INT
+  kByteOrder,  // elementary; the result has its type
+  kValid,      // real or bit string -> BOOL
 };
 
 struct FunctionRow {
@@ -54,9 +57,31 @@ inline constexpr FunctionRow kFunctionRows[] = {
 #define FUNCTION(id, name, rule, fewest, most, parameters, signature, meaning) \
   {FunctionId::id, name, FunctionRule::rule, fewest, most, parameters, signature, meaning},
 #include "stdlib/registry.def"
-#undef FUNCTION
 };
 
 inline constexpr std::span<const FunctionRow> function_rows() { return kFunctionRows; }
+
+// "TIME, ANY_NUM -> TIME": the types of a signature, for the rules that go by them. Empty when
+// there is no such operand.
+std::string_view operand_type(const FunctionRow& row, uint32_t number);
+std::string_view result_type(const FunctionRow& row);
+
+// Another name of a parameter of a library block: CODESYS has RESET where the standard has R.
+struct AliasRow {
+  std::string_view block;
+  std::string_view name;
+  std::string_view parameter;
+};
+std::span<const AliasRow> alias_rows();
+
+// The whole table as the reference page shows it. A row without an interface is a heading.
+struct PageRow {
+  std::string_view name;
+  std::string_view interface;
+  std::string_view meaning;
+};
+std::span<const PageRow> page_rows();
+// What is written in ST, without variants.
+std::span<const std::string_view> library_names();
 
 }  // namespace stdlib

@@ -3,22 +3,20 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+
+#include "ir/types/time_units.h"
 
 namespace stdlib {
 
-inline constexpr uint64_t kNsPerSecond = 1'000'000'000;
-inline constexpr uint64_t kNsPerMinute = 60 * kNsPerSecond;
-inline constexpr uint64_t kNsPerHour = 60 * kNsPerMinute;
-inline constexpr int64_t kNsPerDay = 24 * static_cast<int64_t>(kNsPerHour);
-
 struct DayTime {
   int64_t days;       // since 1970-01-01
-  int64_t ns_of_day;  // 0 .. kNsPerDay - 1
+  int64_t ns_of_day;  // 0 .. ir::kNsPerDay - 1
 };
 
 constexpr DayTime split_days(int64_t ns) {
-  const int64_t below = ns % kNsPerDay < 0 ? 1 : 0;
-  return {ns / kNsPerDay - below, ns % kNsPerDay + below * kNsPerDay};
+  const int64_t below = ns % ir::kNsPerDay < 0 ? 1 : 0;
+  return {ns / ir::kNsPerDay - below, ns % ir::kNsPerDay + below * ir::kNsPerDay};
 }
 
 struct CivilDate {
@@ -41,6 +39,20 @@ constexpr CivilDate civil_from_days(int64_t days) {
   const auto day = static_cast<uint32_t>(day_of_year - (153 * month + 2) / 5 + 1);
   const auto civil_month = static_cast<uint32_t>(month < 10 ? month + 3 : month - 9);
   return {year_of_era + era * 400 + (civil_month <= 2 ? 1 : 0), civil_month, day};
+}
+
+// The other way; nullopt when there is no such day.
+constexpr std::optional<int64_t> days_from_civil(int64_t year, int64_t month, int64_t day) {
+  if (year < 1 || year > 9999 || month < 1 || month > 12 || day < 1 || day > 31) {
+    return std::nullopt;
+  }
+  const int64_t march_year = month <= 2 ? year - 1 : year;
+  const int64_t month_from_march = month <= 2 ? month + 9 : month - 3;
+  const int64_t day_of_year = (153 * month_from_march + 2) / 5 + day - 1;
+  const int64_t days = march_year * 365 + march_year / 4 - march_year / 100 + march_year / 400 +
+                       day_of_year - 719'468;
+  const CivilDate back = civil_from_days(days);  // the 30th of February is another day
+  return back.month == month && back.day == day ? std::optional(days) : std::nullopt;
 }
 
 }  // namespace stdlib

@@ -2,9 +2,8 @@
 // or FALSE when it is none, the nearest end of the range when it is too large.
 #include <charconv>
 #include <limits>
-#include <optional>
 
-#include "ir/types/time_units.h"
+#include "ir/types/time_parse.h"
 #include "stdlib/native/implementation.h"
 #include "stdlib/native/text.h"
 
@@ -35,11 +34,33 @@ bool take(std::string_view& text, std::string_view prefix) {
 // A sign in front; a plus is removed, a minus too.
 bool take_minus(std::string_view& text) { return take(text, "-") || (take(text, "+"), false); }
 
-// The digits in front; saturates.
+// The value of a digit; 16 when it is none.
+uint64_t digit_of(char character) {
+  if (is_digit(character)) {
+    return static_cast<uint64_t>(character - '0');
+  }
+  const char letter = upper(character);
+  return letter >= 'A' && letter <= 'F' ? static_cast<uint64_t>(letter - 'A' + 10) : 16;
+}
+
+// The digits in front, of the base that stands before them; saturates.
 uint64_t leading_number(std::string_view text) {
+  const uint64_t base = take(text, "16#") ? 16 : take(text, "8#") ? 8 : take(text, "2#") ? 2 : 10;
   uint64_t value = 0;
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  return end.ec == std::errc::result_out_of_range ? std::numeric_limits<uint64_t>::max() : value;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '_' && i != 0) {
+      continue;
+    }
+    const uint64_t digit = digit_of(text[i]);
+    if (digit >= base) {
+      break;
+    }
+    if (__builtin_mul_overflow(value, base, &value) ||
+        __builtin_add_overflow(value, digit, &value)) {
+      return std::numeric_limits<uint64_t>::max();
+    }
+  }
+  return value;
 }
 
 // 10 to which power is the leading digit of a number that no double can hold?
@@ -82,105 +103,6 @@ double leading_real(std::string_view text) {
   return end.ec == std::errc() ? value : 0;
 }
 
-// One part of a duration: digits with underscores, and perhaps a fraction.
-struct Amount {
-  uint64_t whole = 0;
-  std::string_view fraction;
-};
-
-std::optional<Amount> take_amount(std::string_view& text) {
-  Amount amount;
-  size_t i = 0;
-  for (; i < text.size() && (is_digit(text[i]) || (i > 0 && text[i] == '_')); ++i) {
-    const uint64_t digit = text[i] == '_' ? 0 : static_cast<uint64_t>(text[i] - '0');
-    const uint64_t factor = text[i] == '_' ? 1 : 10;
-    if (__builtin_mul_overflow(amount.whole, factor, &amount.whole) ||
-        __builtin_add_overflow(amount.whole, digit, &amount.whole)) {
-      return std::nullopt;
-    }
-  }
-  if (i == 0) {
-    return std::nullopt;
-  }
-  text.remove_prefix(i);
-  if (take(text, ".")) {
-    const size_t digits = std::min(text.find_first_not_of("0123456789_"), text.size());
-    amount.fraction = text.substr(0, digits);
-    text.remove_prefix(digits);
-    if (digits == 0) {
-      return std::nullopt;
-    }
-  }
-  return amount;
-}
-
-// 0.fraction of a unit; what is below a nanosecond is cut off. Eighteen digits
-// are more than a day has nanoseconds.
-uint64_t fraction_ns(std::string_view fraction, uint64_t unit_ns) {
-  constexpr uint64_t kMost = 1'000'000'000'000'000'000;
-  unsigned __int128 numerator = 0;
-  uint64_t denominator = 1;
-  for (const char character : fraction) {
-    if (character != '_' && denominator < kMost) {
-      numerator = numerator * 10 + static_cast<uint64_t>(character - '0');
-      denominator *= 10;
-    }
-  }
-  return static_cast<uint64_t>(numerator * unit_ns / denominator);
-}
-
-// The unit in front, not before `first` in the order of the table; its index.
-std::optional<size_t> take_unit(std::string_view& text, size_t first) {
-  const std::string_view name =
-      text.substr(0, std::min(text.find_first_of("0123456789_"), text.size()));
-  for (size_t i = first; i < ir::kTimeUnits.size(); ++i) {
-    const std::string_view unit = ir::kTimeUnits[i].text;
-    if (name.size() == unit.size() && starts_with_folded(name, unit)) {
-      text.remove_prefix(name.size());
-      return i;
-    }
-  }
-  return std::nullopt;
-}
-
-std::optional<uint64_t> unsigned_duration(std::string_view text) {
-  uint64_t total = 0;
-  size_t next_unit = 0;
-  while (!text.empty()) {
-    const std::optional<Amount> amount = take_amount(text);
-    const std::optional<size_t> unit =
-        amount ? take_unit(text, next_unit) : std::optional<size_t>();
-    if (!unit || (!amount->fraction.empty() && !text.empty())) {
-      return std::nullopt;  // only the last part may have a fraction
-    }
-    const uint64_t unit_ns = ir::kTimeUnits[*unit].ns;
-    uint64_t part = 0;
-    if (__builtin_mul_overflow(amount->whole, unit_ns, &part) ||
-        __builtin_add_overflow(total, part, &total) ||
-        __builtin_add_overflow(total, fraction_ns(amount->fraction, unit_ns), &total)) {
-      return std::nullopt;
-    }
-    next_unit = *unit + 1;
-    take(text, "_");
-  }
-  return next_unit == 0 ? std::nullopt : std::optional(total);
-}
-
-int64_t duration(std::string_view text) {
-  for (const std::string_view prefix : {"LTIME#", "TIME#", "LT#", "T#"}) {
-    if (take(text, prefix)) {
-      break;
-    }
-  }
-  const bool minus = take_minus(text);
-  const uint64_t limit = uint64_t{1} << 63;
-  const std::optional<uint64_t> size = unsigned_duration(text);
-  if (!size || *size > (minus ? limit : limit - 1)) {
-    return 0;
-  }
-  return static_cast<int64_t>(minus ? 0 - *size : *size);
-}
-
 }  // namespace
 
 template <>
@@ -215,7 +137,25 @@ uint64_t native<NativeId::kStringToBool>(NativeArg* args) {
 
 template <>
 uint64_t native<NativeId::kStringToTime>(NativeArg* args) {
-  return bits_of(duration(trimmed(text_of(args[0]))));
+  return bits_of(ir::parse_duration(trimmed(text_of(args[0]))).value_or(0));
+}
+
+template <>
+uint64_t native<NativeId::kStringToDate>(NativeArg* args) {
+  const auto kind = static_cast<ir::Kind>(args[1].bits & 0xFF);
+  return bits_of(ir::parse_date(kind, trimmed(text_of(args[0]))).value_or(0));
+}
+
+template <>
+uint64_t native<NativeId::kStringToChar>(NativeArg* args) {
+  const Source<uint8_t> text(args[0]);
+  return text.length() == 0 ? 0 : text[0];
+}
+
+template <>
+uint64_t native<NativeId::kWstringToChar>(NativeArg* args) {
+  const Source<uint16_t> text(args[0]);
+  return text.length() == 0 ? 0 : text[0];
 }
 
 }  // namespace stdlib

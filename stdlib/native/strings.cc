@@ -111,6 +111,39 @@ uint64_t find(NativeArg* args) {
   return 0;
 }
 
+template <typename Unit>
+uint64_t character(NativeArg* args) {
+  const Source<Unit> text(args[0]);
+  const int64_t at = int_of(args[1]);
+  return at >= 0 && at < text.length() ? text[static_cast<uint32_t>(at)] : 0;
+}
+
+// Of the units behind the end nothing is known, so those up to the new one get defined here.
+template <typename Unit>
+uint64_t set_character(NativeArg* args) {
+  const Source<Unit> text(args[0]);
+  const int64_t at = int_of(args[1]);
+  const Unit unit = static_cast<Unit>(args[2].bits);
+  if (at < 0 || at >= args[0].capacity) {
+    return 0;
+  }
+  const auto put = [&](uint32_t index, Unit value) {
+    std::memcpy(args[0].data + size_t{index} * sizeof(Unit), &value, sizeof(Unit));
+  };
+  const uint32_t index = static_cast<uint32_t>(at);
+  const uint32_t length = text.length();
+  if (index < length) {
+    put(index, unit);
+  } else if (unit != 0) {
+    for (uint32_t i = length; i < index; ++i) {
+      put(i, Unit{' '});
+    }
+    put(index, unit);
+    put(index + 1, Unit{0});
+  }
+  return 0;
+}
+
 template <typename Number>
 uint64_t order(Number a, Number b) {
   return bits_of(int64_t{a > b} - int64_t{a < b});
@@ -151,6 +184,8 @@ BOTH_KINDS(kDelete, erase)
 BOTH_KINDS(kReplace, replace)
 BOTH_KINDS(kFind, find)
 BOTH_KINDS(kCompare, compare)
+BOTH_KINDS(kCharacter, character)
+BOTH_KINDS(kSetCharacter, set_character)
 
 #undef BOTH_KINDS
 

@@ -81,11 +81,14 @@ uint64_t put_float(const NativeArg& destination, Float value) {
   return 0;
 }
 
+bool is_long(const NativeArg* args) { return (args[2].bits & 0xFF) != 0; }
+
 void put_clock(Line& line, uint64_t ns) {
-  line.digits(ns / kNsPerHour, 2) << ":";
-  line.digits(ns / kNsPerMinute % 60, 2) << ":";
-  line.digits(ns / kNsPerSecond % 60, 2);
-  if (const uint64_t fraction = ns % kNsPerSecond; fraction != 0) {
+  constexpr auto kSecond = static_cast<uint64_t>(ir::kNsPerSecond);
+  line.digits(ns / (3600 * kSecond), 2) << ":";
+  line.digits(ns / (60 * kSecond) % 60, 2) << ":";
+  line.digits(ns / kSecond % 60, 2);
+  if (const uint64_t fraction = ns % kSecond; fraction != 0) {
     (line << ".").digits(fraction, 9).drop_trailing_zeros();
   }
 }
@@ -130,10 +133,10 @@ uint64_t native<NativeId::kBoolToString>(NativeArg* args) {
 template <>
 uint64_t native<NativeId::kTimeToString>(NativeArg* args) {
   Line line;
-  line << (int_of(args[1]) < 0 ? "T#-" : "T#");
+  line << (is_long(args) ? "LT#" : "T#") << (int_of(args[1]) < 0 ? "-" : "");
   uint64_t rest = magnitude(int_of(args[1]));
   if (rest == 0) {
-    line << "0s";
+    line << (is_long(args) ? "0ns" : "0ms");
   }
   for (const ir::TimeUnit& unit : ir::kTimeUnits) {
     if (rest >= unit.ns) {
@@ -148,7 +151,7 @@ uint64_t native<NativeId::kTimeToString>(NativeArg* args) {
 template <>
 uint64_t native<NativeId::kDateToString>(NativeArg* args) {
   Line line;
-  put_day(line << "D#", split_days(int_of(args[1])).days);
+  put_day(line << (is_long(args) ? "LD#" : "D#"), split_days(int_of(args[1])).days);
   put_text(args[0], line.text());
   return 0;
 }
@@ -156,7 +159,8 @@ uint64_t native<NativeId::kDateToString>(NativeArg* args) {
 template <>
 uint64_t native<NativeId::kTodToString>(NativeArg* args) {
   Line line;
-  put_clock(line << (int_of(args[1]) < 0 ? "TOD#-" : "TOD#"), magnitude(int_of(args[1])));
+  line << (is_long(args) ? "LTOD#" : "TOD#") << (int_of(args[1]) < 0 ? "-" : "");
+  put_clock(line, magnitude(int_of(args[1])));
   put_text(args[0], line.text());
   return 0;
 }
@@ -165,9 +169,28 @@ template <>
 uint64_t native<NativeId::kDtToString>(NativeArg* args) {
   const DayTime moment = split_days(int_of(args[1]));
   Line line;
-  put_day(line << "DT#", moment.days);
+  put_day(line << (is_long(args) ? "LDT#" : "DT#"), moment.days);
   put_clock(line << "-", static_cast<uint64_t>(moment.ns_of_day));
   put_text(args[0], line.text());
+  return 0;
+}
+
+template <>
+uint64_t native<NativeId::kCharToString>(NativeArg* args) {
+  Sink<uint8_t> sink(args[0]);
+  const uint64_t code = args[1].bits;
+  if (code != 0) {
+    sink.put(code <= 0xFF ? static_cast<uint8_t>(code) : uint8_t{'?'});
+  }
+  return 0;
+}
+
+template <>
+uint64_t native<NativeId::kCharToWstring>(NativeArg* args) {
+  Sink<uint16_t> sink(args[0]);
+  if (args[1].bits != 0) {
+    sink.put(static_cast<uint16_t>(args[1].bits));
+  }
   return 0;
 }
 

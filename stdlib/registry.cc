@@ -1,0 +1,49 @@
+#include "stdlib/registry.h"
+
+#include <array>
+
+namespace stdlib {
+
+std::string_view operand_type(const FunctionRow& row, uint32_t number) {
+  std::string_view rest = row.signature.substr(0, row.signature.find_first_of("=-") - 1);
+  for (; number != 0 && !rest.empty(); --number) {
+    const size_t comma = rest.find(", ");
+    rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 2);
+  }
+  return rest.substr(0, rest.find(", "));
+}
+
+std::string_view result_type(const FunctionRow& row) {
+  const size_t arrow = row.signature.find("-> ");
+  return arrow == std::string_view::npos ? std::string_view() : row.signature.substr(arrow + 3);
+}
+
+std::span<const AliasRow> alias_rows() {
+#define ALIAS(block, name, parameter) AliasRow{block, name, parameter},
+  static constexpr AliasRow kRows[] = {
+#include "stdlib/registry.def"
+  };
+  return kRows;
+}
+
+std::span<const std::string_view> library_names() {
+#define LIBRARY(name, interface, meaning) name,
+  static constexpr std::string_view kNames[] = {
+#include "stdlib/registry.def"
+  };
+  return kNames;
+}
+
+std::span<const PageRow> page_rows() {
+#define SECTION(title) PageRow{title, "", ""},
+#define FUNCTION(id, name, rule, fewest, most, parameters, signature, meaning) \
+  PageRow{name, signature, meaning},
+#define CONVERSION(form, signature, meaning) PageRow{form, signature, meaning},
+#define LIBRARY(name, interface, meaning) PageRow{name, interface, meaning},
+  static constexpr PageRow kRows[] = {
+#include "stdlib/registry.def"
+  };
+  return kRows;
+}
+
+}  // namespace stdlib
