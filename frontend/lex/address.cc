@@ -1,5 +1,6 @@
 #include <charconv>
 
+#include "base/limits.h"
 #include "frontend/lex/characters.h"
 #include "frontend/lex/literals.h"
 
@@ -55,47 +56,73 @@ bool read_number(std::string_view& text, uint32_t& value) {
 }
 
 // `byte.bit`, or a plain bit number.
-MaybeProblem decode_bit(std::string_view rest, uint32_t first, ir::DirectAddress& address) {
-  uint64_t bit = first;
-  if (!rest.empty()) {
-    uint32_t second = 0;
-    rest.remove_prefix(1);
-    if (!read_number(rest, second) || !rest.empty()) {
-      return bad_address("a bit address has two levels at most: byte.bit");
-    }
-    if (second > 7) return bad_address("the bit of a byte is from 0 to 7");
-    bit = static_cast<uint64_t>(first) * 8 + second;
+MaybeProblem decode_bit(const std::vector<uint32_t>& levels, ir::DirectAddress& address) {
+  uint64_t bit = levels[0];
+  if (levels.size() == 2) {
+    if (levels[1] > 7) return bad_address("the bit of a byte is from 0 to 7");
+    bit = bit * 8 + levels[1];
   }
   if (bit >= kMaxBits) return bad_address("this address is too large");
   address.bit_offset = static_cast<uint32_t>(bit);
   return {};
 }
 
-MaybeProblem decode_address_text(std::string_view text, ir::DirectAddress& address) {
-  address.area = area_of(text[1]);
-  if (address.area == ir::DirectArea::kNone) {
+// `2.5.7.1`, all of `rest`.
+MaybeProblem read_levels(std::string_view rest, std::vector<uint32_t>& levels) {
+  for (;;) {
+    uint32_t level = 0;
+    if (!read_number(rest, level)) {
+      return bad_address("a number that is not too large belongs behind the size",
+                         "write it like %IX0.0 or %QW4");
+    }
+    levels.push_back(level);
+    if (levels.size() > base::kMaxAddressLevels) {
+      return bad_address("an address has at most " + std::to_string(base::kMaxAddressLevels) +
+                         " levels");
+    }
+    if (rest.empty()) return {};
+    if (rest[0] != '.') return bad_address("only digits belong behind the size");
+    rest.remove_prefix(1);
+  }
+}
+
+MaybeProblem decode_size(std::string_view& rest, ir::DirectAddress& address) {
+  bool written = !rest.empty() && !is_digit(rest[0]);
+  address.bit_size = written ? bits_of(rest[0]) : 1;
+  if (address.bit_size == 0) return bad_address("the size of an address is X, B, W, D or L");
+  if (written) rest.remove_prefix(1);
+  return {};
+}
+
+// `text` without the `%`.
+MaybeProblem decode_address_text(std::string_view rest, DecodedAddress& out) {
+  ir::DirectAddress& address = out.address;
+  address.area = area_of(rest[0]);
+  if (address.area != ir::DirectArea::kNone) rest.remove_prefix(1);
+  if (address.area == ir::DirectArea::kNone && bits_of(rest[0]) == 0) {
     return bad_address("a direct address starts with %I, %Q or %M");
   }
-  std::string_view rest = text.substr(2);
-  if (!rest.empty() && rest[0] == '*') {
-    return LiteralProblem{DiagnosticCode::kNotSupported, 0, 0,
-                          "addresses left open with `*` are not supported yet",
-                          "write the address itself, such as %IX0.0"};
+  if (rest == "*") {
+    out.incomplete = true;
+    return {};
   }
-  address.bit_size = rest.empty() || is_digit(rest[0]) ? 1 : bits_of(rest[0]);
-  if (address.bit_size == 0) return bad_address("the size of an address is X, B, W, D or L");
-  if (!rest.empty() && !is_digit(rest[0])) rest.remove_prefix(1);
-  uint32_t first = 0;
-  if (!read_number(rest, first)) {
-    return bad_address("a number that is not too large belongs behind the size",
-                       "write it like %IX0.0 or %QW4");
+  if (MaybeProblem problem = decode_size(rest, address)) return problem;
+  if (rest == "*") {
+    out.incomplete = true;
+    return {};
   }
-  if (!rest.empty() && rest[0] != '.') return bad_address("only digits belong behind the size");
-  if (address.bit_size == 1) return decode_bit(rest, first, address);
-  if (!rest.empty()) return bad_address("only bit addresses (X) have two levels");
-  uint64_t bit = static_cast<uint64_t>(first) * address.bit_size;
-  if (bit + address.bit_size > kMaxBits) return bad_address("this address is too large");
-  address.bit_offset = static_cast<uint32_t>(bit);
+  if (MaybeProblem problem = read_levels(rest, out.levels)) return problem;
+  bool bit = address.bit_size == 1;
+  if (out.levels.size() > (bit ? 2u : 1u)) return {};
+  if (bit) {
+    MaybeProblem problem = decode_bit(out.levels, address);
+    out.levels.clear();
+    return problem;
+  }
+  uint64_t offset = static_cast<uint64_t>(out.levels[0]) * address.bit_size;
+  out.levels.clear();
+  if (offset + address.bit_size > kMaxBits) return bad_address("this address is too large");
+  address.bit_offset = static_cast<uint32_t>(offset);
   return {};
 }
 
@@ -103,7 +130,7 @@ MaybeProblem decode_address_text(std::string_view text, ir::DirectAddress& addre
 
 DecodedAddress decode_address(std::string_view text) {
   DecodedAddress out;
-  out.problem = decode_address_text(text, out.address);
+  out.problem = decode_address_text(text.substr(1), out);
   return out;
 }
 

@@ -30,6 +30,26 @@ constexpr bool is_name_part(char c) { return has_class(c, kNameStart | kDigitByt
 constexpr bool is_digit(char c) { return has_class(c, kDigitByte); }
 constexpr bool is_space(char c) { return has_class(c, kSpaceByte); }
 
+// Which characters above U+007F a name may have: letters and marks of any language, not
+// punctuation, symbols, blanks and private characters, which only look like a mistake.
+constexpr bool is_name_character(uint32_t code) {
+  struct Range {
+    uint32_t first, last;
+  };
+  constexpr Range kNotInNames[] = {
+      {0x80, 0xA9},     {0xAB, 0xB4},     {0xB6, 0xB9},     {0xBB, 0xBF},     {0xD7, 0xD7},
+      {0xF7, 0xF7},     {0x2000, 0x206F}, {0x2190, 0x2BFF}, {0x3000, 0x3004}, {0x3008, 0x3020},
+      {0xE000, 0xF8FF}, {0xFEFF, 0xFEFF}, {0xFF00, 0xFF0F}, {0xFFF0, 0xFFFF}};
+  for (Range range : kNotInNames) {
+    if (code >= range.first && code <= range.last) return false;
+  }
+  return true;
+}
+
+constexpr bool is_dash(uint32_t code) {
+  return (code >= 0x2010 && code <= 0x2015) || code == 0x2212;
+}
+
 constexpr char to_upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; }
 
 // 0..35 for digits and letters, 255 otherwise.

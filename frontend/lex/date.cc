@@ -3,6 +3,7 @@
 
 #include "frontend/lex/characters.h"
 #include "frontend/lex/literals.h"
+#include "ir/types/time_units.h"
 
 namespace frontend {
 
@@ -10,8 +11,6 @@ using base::DiagnosticCode;
 
 namespace {
 
-constexpr int64_t kNsPerSecond = 1'000'000'000;
-constexpr int64_t kSecondsPerDay = 86'400;
 // Years whose days all fit into 64 bits of nanoseconds around 1970.
 constexpr uint64_t kFirstYear = 1678;
 constexpr uint64_t kLastYear = 2261;
@@ -82,7 +81,7 @@ class DateDecoder {
                                       std::chrono::month(static_cast<unsigned>(month)),
                                       std::chrono::day(static_cast<unsigned>(day))};
     if (!civil.ok()) return bad(day_at, "this month has no day " + std::to_string(day));
-    ns_ = std::chrono::sys_days(civil).time_since_epoch().count() * kSecondsPerDay * kNsPerSecond;
+    ns_ = std::chrono::sys_days(civil).time_since_epoch().count() * ir::kNsPerDay;
   }
 
   void time_of_day() {
@@ -94,13 +93,13 @@ class DateDecoder {
       ++at_;
       second = number("the second", 0, 59);
     }
-    ns_ += static_cast<int64_t>((hour * 60 + minute) * 60 + second) * kNsPerSecond;
+    ns_ += static_cast<int64_t>((hour * 60 + minute) * 60 + second) * ir::kNsPerSecond;
     if (peek() == '.') fraction();
   }
 
   void fraction() {
     ++at_;
-    for (int64_t place_ns = kNsPerSecond; is_digit(peek()) || peek() == '_'; ++at_) {
+    for (int64_t place_ns = ir::kNsPerSecond; is_digit(peek()) || peek() == '_'; ++at_) {
       if (peek() == '_') continue;
       place_ns /= 10;
       ns_ += static_cast<int64_t>(digit_value(peek())) * place_ns;

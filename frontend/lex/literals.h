@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "ir/types/types.h"
@@ -59,9 +60,16 @@ struct DecodedString {
   std::string bytes;
   MaybeProblem problem;
 };
-// '...' with its quotes; the bytes are those of the source, escapes resolved.
-// $N and $L are LF, $R is CR, $P is FF, $T is TAB.
-DecodedString decode_string(std::string_view text);
+// How the bytes above 0x7F of a source are read, and what a string makes of its characters.
+enum class StringCharset : uint8_t {
+  kLatin1Source,     // bytes stay as they are
+  kUtf8Source,       // one Latin-1 byte for each character; U+0100 and above is a problem
+  kUtf8SourceBytes,  // USTRING#'...', UTF8#'...': the UTF-8 bytes stay
+  kLatin1ToUtf8,     // the same in a Latin-1 source
+};
+// '...' with its quotes; escapes resolved. $N and $L are LF, $R is CR, $P is FF, $T is TAB.
+// STRING counts characters of the source's charset: 'grün' fits STRING[4] in every file.
+DecodedString decode_string(std::string_view text, StringCharset charset);
 // "..." -> UTF-16LE. `latin1` tells how the source's bytes above 0x7F are read.
 DecodedString decode_wide_string(std::string_view text, bool latin1);
 
@@ -69,10 +77,12 @@ DecodedString decode_wide_string(std::string_view text, bool latin1);
 bool is_latin1(std::string_view source);
 
 struct DecodedAddress {
-  ir::DirectAddress address;
+  ir::DirectAddress address;     // no area: relative to a structure, %B4
+  bool incomplete = false;       // %I*, %QW*
+  std::vector<uint32_t> levels;  // of a hierarchical address, %IW2.5.7.1; else empty
   MaybeProblem problem;
 };
-// %IX0.3, %QW4, %MD8, %I2.0, two-level %QW1.2 is refused for sizes other than X.
+// %IX0.3, %QW4, %MD8, %I2.0
 DecodedAddress decode_address(std::string_view text);
 
 struct DecodedPart {

@@ -50,6 +50,8 @@ TokenKind Scanner::scan_punctuation() {
       return take(1, TokenKind::kAmpersand);
     case '|':
       return foreign(TokenKind::kOr, next == '|' ? 2 : 1, "write OR, or OR_ELSE");
+    case '?':
+      return next == '=' ? take(2, TokenKind::kAttempt) : bad_characters();
     case '!':
       if (next == '=') return foreign(TokenKind::kNotEqual, 2, "write `<>`");
       return foreign(TokenKind::kNot, 1, "write NOT");

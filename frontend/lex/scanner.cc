@@ -1,9 +1,12 @@
 #include "frontend/lex/scanner.h"
 
+#include "base/diagnostics_render.h"
 #include "base/limits.h"
 #include "frontend/lex/characters.h"
 #include "frontend/lex/keywords.h"
+#include "frontend/lex/literals.h"
 #include "ir/types/types.h"
+#include "ir/types/utf.h"
 
 namespace frontend {
 
@@ -25,11 +28,13 @@ bool is_one_of(std::string_view name, std::initializer_list<std::string_view> na
 
 }  // namespace
 
-TokenList lex(const base::SourceMap& sources, uint32_t file, base::Diagnostics& diagnostics) {
-  return Scanner(sources.text(file), sources.begin(file).offset, diagnostics).run();
+TokenList lex(const base::SourceMap& sources, uint32_t file, base::Diagnostics& diagnostics,
+              const LexOptions& options) {
+  return Scanner(sources.text(file), sources.begin(file).offset, diagnostics, options).run();
 }
 
 TokenList Scanner::run() {
+  list_.latin1 = is_latin1(text_);
   list_.tokens.reserve(text_.size() / kBytesPerToken + 16);
   if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
   for (;;) {
@@ -43,6 +48,10 @@ TokenList Scanner::run() {
     if (kind == TokenKind::kLadder) skip_ladder();
   }
   list_.tokens.push_back({base_ + static_cast<uint32_t>(text_.size()), 0, TokenKind::kEnd});
+  for (base::SourceSpan open : conditions_.open_spans()) {
+    diagnostics_.add(DiagnosticCode::kOpenCondition, open, "this {IF ...} has no {END_IF}",
+                     "write {END_IF} behind the last line that depends on it");
+  }
   return std::move(list_);
 }
 
@@ -60,16 +69,23 @@ TokenKind Scanner::scan() {
   if (is_digit(c)) return scan_number();
   if (c == '\'') return scan_string(c, TokenKind::kString);
   if (c == '"') return scan_string(c, TokenKind::kWideString);
-  if (c == '%' && (is_name_start(peek(1)) || peek(1) == '*')) return scan_direct();
+  if (c == '%' && is_name_start(peek(1))) return scan_direct();
   return scan_punctuation();
 }
 
 TokenKind Scanner::scan_word() {
+  size_t start = at_;
   const char* begin = text_.data() + at_;
-  const char* end = begin + 1;
-  while (end != text_.data() + text_.size() && is_name_part(*end)) ++end;
-  std::string_view word(begin, static_cast<size_t>(end - begin));
-  at_ += word.size();
+  const char* end = begin;
+  uint8_t high = 0;
+  while (end != text_.data() + text_.size() && is_name_part(*end)) {
+    high |= static_cast<uint8_t>(*end++);
+  }
+  at_ += static_cast<size_t>(end - begin);
+  if (high >= 0x80) {
+    if (auto other = end_name(start)) return *other;
+  }
+  std::string_view word = text_.substr(start, at_ - start);
   if (word.size() > base::kMaxIdentifier) {
     report(DiagnosticCode::kNameTooLong, at_ - word.size(), at_,
            "this name has " + std::to_string(word.size()) + " bytes, the limit is " +
@@ -77,6 +93,38 @@ TokenKind Scanner::scan_word() {
   }
   if (peek() == '#') return scan_prefixed(word);
   return keyword(word);
+}
+
+// A name ends in front of a character that no name has. Where that character comes first,
+// it is reported, and what is left of it comes back: kEnd for nothing.
+std::optional<TokenKind> Scanner::end_name(size_t begin) {
+  size_t end = at_;
+  for (at_ = begin; at_ < end;) {
+    ir::Utf8Character character{static_cast<uint8_t>(text_[at_]), 1};
+    if (character.code >= 0x80 && !list_.latin1) character = ir::read_utf8(text_.substr(at_));
+    // Files that are not UTF-8 may be Windows-1252 or mixed: only their hard blank is refused.
+    bool in_name = list_.latin1 ? character.code != 0xA0 : is_name_character(character.code);
+    if (character.code >= 0x80 && !in_name) {
+      if (at_ > begin) return std::nullopt;
+      at_ += character.bytes;
+      if (is_dash(character.code)) return dash(begin);
+      report(DiagnosticCode::kBadCharacter, begin, at_,
+             '`' + base::printable(text_.substr(begin, at_ - begin)) +
+                 "` has no meaning in Structured Text outside comments and strings",
+             "remove it");
+      return TokenKind::kEnd;
+    }
+    at_ += character.bytes;
+  }
+  return std::nullopt;
+}
+
+// What word processors make of a minus sign is understood as one.
+TokenKind Scanner::dash(size_t begin) {
+  report(DiagnosticCode::kForeignOperator, begin, at_,
+         '`' + std::string(text_.substr(begin, at_ - begin)) + "` is a dash, not a minus sign",
+         "write `-`");
+  return TokenKind::kMinus;
 }
 
 // `T#5s` is one token, `INT#5` two: the type prefix, and a literal or name behind
@@ -129,7 +177,11 @@ TokenKind Scanner::scan_string(char quote, TokenKind kind) {
 
 TokenKind Scanner::scan_direct() {
   ++at_;
-  while (is_name_part(peek()) || peek() == '*' || (peek() == '.' && is_digit(peek(1)))) ++at_;
+  bool digits = false;
+  for (; is_name_part(peek()) || (peek() == '.' && is_digit(peek(1))); ++at_) {
+    digits = digits || is_digit(peek());
+  }
+  if (!digits && peek() == '*') ++at_;  // %I* is open, %IW0*2 a product
   return TokenKind::kDirect;
 }
 

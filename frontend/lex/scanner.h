@@ -2,10 +2,12 @@
 // the token classes. Every read is bounded by the file's end.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "base/diagnostics.h"
+#include "frontend/lex/conditions.h"
 #include "frontend/lex/lexer.h"
 #include "frontend/lex/token.h"
 
@@ -13,8 +15,13 @@ namespace frontend {
 
 class Scanner {
  public:
-  Scanner(std::string_view text, uint32_t base, base::Diagnostics& diagnostics)
-      : text_(text), base_(base), diagnostics_(diagnostics) {}
+  Scanner(std::string_view text, uint32_t base, base::Diagnostics& diagnostics,
+          const LexOptions& options)
+      : text_(text),
+        base_(base),
+        diagnostics_(diagnostics),
+        options_(options),
+        conditions_(options) {}
 
   TokenList run();
 
@@ -25,11 +32,16 @@ class Scanner {
   void skip_nested(char open, char close, std::string_view opening);
   void skip_line_comment();
   void skip_pragma();
+  void skip_inactive();
+  void skip_string(char quote);
+  void directive(size_t begin);
 
   // scanner.cc
   TokenKind scan();
   TokenKind scan_word();
   void skip_ladder();
+  std::optional<TokenKind> end_name(size_t begin);
+  TokenKind dash(size_t begin);
   TokenKind scan_prefixed(std::string_view prefix);
   TokenKind scan_string(char quote, TokenKind kind);
   TokenKind scan_direct();
@@ -62,6 +74,8 @@ class Scanner {
   std::string_view text_;
   uint32_t base_;
   base::Diagnostics& diagnostics_;
+  const LexOptions& options_;
+  Conditions conditions_;
   TokenList list_;
   size_t at_ = 0;
 };

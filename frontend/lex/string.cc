@@ -66,6 +66,13 @@ LiteralProblem bad_escape(size_t at, size_t hex_digits) {
           "write `$$` for a dollar sign, or " + digits + " hexadecimal digits behind `$`"};
 }
 
+LiteralProblem wide_character(size_t at, std::string_view character) {
+  return {DiagnosticCode::kCharacterTooWide, static_cast<uint32_t>(at),
+          static_cast<uint32_t>(character.size()),
+          "`" + std::string(character) + "` does not fit into one byte of a STRING",
+          "use WSTRING and \"...\", or USTRING#'...' for the bytes of UTF-8"};
+}
+
 void append_unit(std::string& out, uint32_t unit) {
   out += static_cast<char>(unit & 0xFF);
   out += static_cast<char>(unit >> 8);
@@ -79,14 +86,35 @@ Escape read_character(std::string_view inside, size_t at, bool latin1) {
   return {character.code, character.bytes};
 }
 
+// Bytes without escapes, from a source of that charset; `at` is their place in the literal.
+void append_plain(DecodedString& out, std::string_view plain, size_t at, StringCharset charset) {
+  bool utf8 = charset == StringCharset::kUtf8Source;
+  if (!utf8 && charset != StringCharset::kLatin1ToUtf8) {
+    out.bytes += plain;
+    return;
+  }
+  for (size_t i = 0; i < plain.size();) {
+    Escape character = read_character(plain, i, !utf8);
+    if (!utf8) {
+      out.bytes += ir::utf8(character.code);
+    } else if (character.code <= 0xFF) {
+      out.bytes += static_cast<char>(character.code);
+    } else {
+      if (!out.problem) out.problem = wide_character(at + i, plain.substr(i, character.length));
+      out.bytes += '?';
+    }
+    i += character.length;
+  }
+}
+
 }  // namespace
 
-DecodedString decode_string(std::string_view text) {
+DecodedString decode_string(std::string_view text, StringCharset charset) {
   DecodedString out;
   std::string_view inside = content(text);
   for (size_t at = 0; at < inside.size();) {
     size_t plain = std::min(inside.find('$', at), inside.size());
-    out.bytes += inside.substr(at, plain - at);
+    append_plain(out, inside.substr(at, plain - at), at + 1, charset);
     at = plain;
     if (at == inside.size()) break;
     Escape escape = read_escape(inside, at, 2);

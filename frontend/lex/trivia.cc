@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 
 #include "base/limits.h"
@@ -10,6 +11,7 @@ using base::DiagnosticCode;
 
 void Scanner::skip_trivia() {
   for (;;) {
+    if (!conditions_.active()) skip_inactive();
     while (at_ < text_.size() && is_space(text_[at_])) ++at_;
     char c = peek();
     if (c == '{') {
@@ -79,7 +81,36 @@ void Scanner::skip_pragma() {
     return;
   }
   at_ = end + 1;
-  list_.pragmas.push_back(span(begin, at_));
+  bool outer = conditions_.active();
+  if (options_.conditional) directive(begin);
+  if (outer) list_.pragmas.push_back(span(begin, at_));
+}
+
+void Scanner::directive(size_t begin) {
+  std::string_view inside = text_.substr(begin + 1, at_ - begin - 2);
+  auto problem = conditions_.take(inside, span(begin, at_));
+  if (problem) report(problem->code, begin, at_, problem->text, problem->fix);
+}
+
+// Text that a condition leaves out: only comments, strings and pragmas are looked at,
+// so that a `{END_IF}` inside of them does not count.
+void Scanner::skip_inactive() {
+  while (!at_end() && !conditions_.active()) {
+    char c = peek();
+    if (c == '{') {
+      skip_pragma();
+    } else if (c == '\'' || c == '"') {
+      skip_string(c);
+    } else if ((c != '(' && c != '/') || !skip_comment()) {
+      ++at_;
+    }
+  }
+}
+
+void Scanner::skip_string(char quote) {
+  ++at_;
+  while (!at_end() && peek() != quote && peek() != '\n') at_ += peek() == '$' ? 2 : 1;
+  at_ = std::min(at_ + 1, text_.size());
 }
 
 }  // namespace frontend

@@ -27,7 +27,7 @@ SpecId Parser::parse_enum(SpecId base, base::SourcePos begin) {
     } while (!panic_ && accept(TokenKind::kComma));
   }
   close_bracket(TokenKind::kRightParen, open);
-  if (!panic_ && !base.valid() && is_name(kind())) spec.element = parse_named_spec();
+  if (!panic_ && !base.valid() && is_name(kind())) spec.element = parse_type_name();
   if (panic_ && spec.enumerators.empty()) return error_spec(begin);
   spec.span = span_from(begin);
   return add_spec(std::move(spec));
@@ -35,6 +35,7 @@ SpecId Parser::parse_enum(SpecId base, base::SourcePos begin) {
 
 Enumerator Parser::parse_enumerator() {
   Enumerator out;
+  out.attributes = take_attributes();
   out.name = parse_name("enumeration literal");
   if (panic_) return out;
   if (kind() == TokenKind::kEqual) {
@@ -48,14 +49,24 @@ Enumerator Parser::parse_enumerator() {
   return out;
 }
 
+// STRUCT [OVERLAP] ... END_STRUCT, UNION ... END_UNION
 SpecId Parser::parse_struct() {
   const Token opening = take();
+  bool is_union = opening.kind == TokenKind::kUnion;
+  TokenKind end = is_union ? TokenKind::kEndUnion : TokenKind::kEndStruct;
   Spec spec;
-  spec.kind = SpecKind::kStruct;
-  if (kind() == TokenKind::kOverlap) {
-    not_supported(take().span(), "overlapping structures are");
+  spec.kind = is_union ? SpecKind::kUnion : SpecKind::kStruct;
+  bool overlap = kind() == TokenKind::kOverlap && next_kind() != TokenKind::kColon &&
+                 next_kind() != TokenKind::kComma && next_kind() != TokenKind::kAt;
+  if (overlap) {
+    spec.overlap = !is_union;
+    take();
   }
-  while (kind() != TokenKind::kEndStruct) {
+  if (kind() == TokenKind::kExtends && is_name(next_kind())) {
+    take();
+    spec.element = parse_type_name();
+  }
+  while (kind() != end) {
     if (accept(TokenKind::kSemicolon)) continue;
     if (kind() == TokenKind::kEnd || is_closing(kind()) || is_file_level_start(kind()) ||
         is_var_start(kind())) {
@@ -63,8 +74,8 @@ SpecId Parser::parse_struct() {
     }
     parse_variable_declaration(spec.fields);
   }
-  if (!accept(TokenKind::kEndStruct)) {
-    report_missing_end(opening, TokenKind::kEndStruct);
+  if (!accept(end)) {
+    report_missing_end(opening, end);
     panic_ = true;  // the declaration around it has no end either
   }
   spec.span = span_from({opening.begin});

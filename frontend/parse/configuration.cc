@@ -7,6 +7,7 @@ namespace frontend {
 void Parser::parse_configuration() {
   const Token opening = take();
   ConfigDecl config;
+  config.scope = scope_;
   config.name = parse_name("configuration");
   panic_ = false;
   for (;;) {
@@ -29,9 +30,10 @@ void Parser::parse_configuration_item(ConfigDecl& config) {
   if (at_var_block()) {
     if (kind() == TokenKind::kVarGlobal || kind() == TokenKind::kVarAccess ||
         kind() == TokenKind::kVarConfig) {
-      return parse_var_block(config.globals);
+      return parse_var_block(config.globals, take_attributes());
     }
-    report_here(Code::kWrongSection, "a configuration has VAR_GLOBAL blocks only");
+    report_here(Code::kWrongSection,
+                "a configuration has VAR_GLOBAL, VAR_ACCESS and VAR_CONFIG blocks only");
     skip_block(TokenKind::kEndVar);
     panic_ = false;
     return;
@@ -60,7 +62,7 @@ void Parser::parse_resource(ConfigDecl& config) {
   const Token opening = take();
   ResourceDecl resource;
   resource.name = parse_name("resource");
-  if (!panic_ && accept(TokenKind::kOn)) parse_name("resource type");
+  if (!panic_ && accept(TokenKind::kOn)) resource.type = parse_name("resource type");
   panic_ = false;
   while (parse_resource_item(resource)) {
   }
@@ -73,7 +75,9 @@ bool Parser::parse_resource_item(ResourceDecl& resource) {
   if (accept(TokenKind::kSemicolon)) return true;
   switch (kind()) {
     case TokenKind::kVarGlobal:
-      parse_var_block(resource.globals);
+    case TokenKind::kVarAccess:
+    case TokenKind::kVarConfig:
+      parse_var_block(resource.globals, take_attributes());
       return true;
     case TokenKind::kTask:
       resource.tasks.push_back(parse_task());
@@ -95,6 +99,7 @@ bool Parser::parse_resource_item(ResourceDecl& resource) {
 // TASK name (INTERVAL := T#10ms, PRIORITY := 1);
 TaskDecl Parser::parse_task() {
   TaskDecl task;
+  task.attributes = take_attributes();
   base::SourcePos begin = {take().begin};
   task.name = parse_name("task");
   const Token open = *current_;
@@ -126,28 +131,45 @@ void Parser::parse_task_parameter(TaskDecl& task) {
   if (expect(TokenKind::kAssign, "behind the task parameter")) *place = parse_expression();
 }
 
-// PROGRAM name [WITH task] : type [(in := g, out => h)];
+// PROGRAM [RETAIN] name [WITH task] : type [(in := g, out => h, fb WITH task)];
 ProgramDecl Parser::parse_program_instance() {
   ProgramDecl program;
+  program.attributes = take_attributes();
   base::SourcePos begin = {take().begin};
   if ((kind() == TokenKind::kRetain || kind() == TokenKind::kNonRetain) && is_name(next_kind())) {
-    not_supported(take().span(), "RETAIN for a whole program is", "declare VAR RETAIN inside it");
+    program.retain = kind() == TokenKind::kRetain;
+    program.non_retain = !program.retain;
+    take();
   }
   program.name = parse_name("program instance");
   if (!panic_ && accept(TokenKind::kWith)) program.task = parse_name("task");
   if (!panic_) expect(TokenKind::kColon, "in front of the program's type");
-  if (!panic_) program.type = parse_name("program type");
-  if (!panic_ && kind() == TokenKind::kLeftParen) {
-    if (is_name(next_kind()) && peek(2).kind == TokenKind::kWith) {
-      not_supported(peek(2).span(), "function blocks with a task of their own are");
-      panic_ = true;
-    } else {
-      program.args = parse_arguments();
-    }
+  if (!panic_) {
+    const Spec& type = tree_[parse_type_name()];
+    program.qualifiers = type.qualifiers;
+    program.type = type.name;
   }
+  if (!panic_ && kind() == TokenKind::kLeftParen) parse_program_connections(program);
   program.span = span_from(begin);
   finish_declaration("program instance");
   return program;
+}
+
+void Parser::parse_program_connections(ProgramDecl& program) {
+  const Token open = take();
+  size_t mark = arg_stack_.size();
+  while (!panic_ && kind() != TokenKind::kRightParen) {
+    if (is_name(kind()) && next_kind() == TokenKind::kWith) {
+      Name block = name_of(take());
+      take();
+      program.block_tasks.push_back({block, parse_name("task")});
+    } else {
+      arg_stack_.push_back(parse_argument());
+    }
+    if (panic_ || !accept(TokenKind::kComma)) break;
+  }
+  close_bracket(TokenKind::kRightParen, open);
+  program.args = move_tail(arg_stack_, mark, tree_.args);
 }
 
 }  // namespace frontend

@@ -1,39 +1,45 @@
-// The file level.
+// The file level, and namespaces, in which the same declarations stand.
 #include "frontend/parse/parser.h"
 #include "frontend/parse/token_sets.h"
 
 namespace frontend {
 
 void Parser::parse_file() {
+  open_scope({}, false);
   while (kind() != TokenKind::kEnd) {
     parse_declaration();
     panic_ = false;
   }
 }
 
+void Parser::open_scope(const Name& name, bool internal) {
+  Scope scope;
+  scope.name = name;
+  scope.parent = scope_;
+  scope.internal = internal;
+  scope_ = ScopeId(static_cast<uint32_t>(tree_.scopes.size()));
+  tree_.scopes.push_back(std::move(scope));
+}
+
 void Parser::parse_declaration() {
+  if (accept(TokenKind::kSemicolon)) return;
+  Range32 attributes = take_attributes();
   switch (kind()) {
-    case TokenKind::kSemicolon:
-      take();
-      return;
     case TokenKind::kType:
-      return parse_types();
+      return parse_types(attributes);
     case TokenKind::kVarGlobal:
-      return parse_var_block(tree_.globals);
-    case TokenKind::kFunction:
-      return parse_pou(PouKind::kFunction, TokenKind::kEndFunction);
-    case TokenKind::kFunctionBlock:
-      return parse_pou(PouKind::kFunctionBlock, TokenKind::kEndFunctionBlock);
-    case TokenKind::kProgram:
-      return parse_pou(PouKind::kProgram, TokenKind::kEndProgram);
+    case TokenKind::kVarConfig:
+      return parse_var_block(tree_.globals, attributes);
     case TokenKind::kConfiguration:
       return parse_configuration();
     default:
       break;
   }
-  if (kind() == TokenKind::kVarAccess || kind() == TokenKind::kVarConfig) {
-    std::vector<VarBlock> none;
-    return parse_var_block(none);
+  if (auto pou_kind = pou_kind_here()) return parse_file_pou(*pou_kind, attributes);
+  if (at_member()) return parse_outside_member(attributes);
+  if (kind() == TokenKind::kNamespace && is_name(next_kind())) return parse_namespace();
+  if (kind() == TokenKind::kUsing && is_name(next_kind())) {
+    return parse_using(tree_.scopes[scope_.index].usings);
   }
   if (is_var_start(kind())) {
     report_here(Code::kWrongSection,
@@ -42,10 +48,6 @@ void Parser::parse_declaration() {
     return;
   }
   if (skip_unsupported_block()) return;
-  if (kind() == TokenKind::kUsing && is_name(next_kind())) {
-    not_supported(current_->span(), "USING is");
-    return skip_to_statement_end();
-  }
   report_here(is_closing(kind()) ? Code::kUnexpectedEnd : Code::kExpectedDeclaration,
               is_closing(kind())
                   ? describe(*current_) + " stands here, but nothing that it belongs to is open"
@@ -53,10 +55,80 @@ void Parser::parse_declaration() {
   skip_to_next_declaration();
 }
 
+void Parser::parse_file_pou(PouKind pou_kind, Range32 attributes) {
+  PouDecl pou = parse_pou(pou_kind, attributes);
+  if (pou_kind >= PouKind::kTest) {
+    tree_.tests.push_back(std::move(pou));
+  } else if (!pou.name.empty()) {
+    owner_ = static_cast<uint32_t>(tree_.pous.size());
+    tree_.pous.push_back(std::move(pou));
+  }
+}
+
+// Exported sources write methods and actions behind the POU that they belong to.
+void Parser::parse_outside_member(Range32 attributes) {
+  bool owned = owner_ != kNoOwner && takes_members(tree_.pous[owner_].kind);
+  if (owned) return parse_member(tree_.pous[owner_], attributes);
+  note_only(
+      Code::kMisplacedMember, current_->span(),
+      describe(*current_) + " stands outside of a POU, and behind none that it could belong to",
+      "move it into its FUNCTION_BLOCK, CLASS or PROGRAM, or behind it");
+  PouDecl dropped;
+  parse_member(dropped, attributes);
+}
+
+// NAMESPACE [INTERNAL] A.B ... END_NAMESPACE
+void Parser::parse_namespace() {
+  const Token opening = take();
+  ScopeId outer = scope_;
+  Nesting nesting(*this);
+  if (!nesting.entered()) return skip_past(TokenKind::kEndNamespace);
+  bool internal = kind() == TokenKind::kInternal && is_name(next_kind());
+  if (internal) take();
+  do {
+    Name name = parse_name("namespace");
+    if (panic_) break;
+    open_scope(name, internal);
+  } while (accept(TokenKind::kDot));
+  panic_ = false;
+  owner_ = kNoOwner;
+  while (kind() != TokenKind::kEndNamespace && kind() != TokenKind::kEnd) {
+    parse_declaration();
+    panic_ = false;
+  }
+  if (!accept(TokenKind::kEndNamespace)) report_missing_end(opening, TokenKind::kEndNamespace);
+  accept(TokenKind::kSemicolon);
+  scope_ = outer;
+  owner_ = kNoOwner;
+}
+
+// USING A.B, C;
+void Parser::parse_using(std::vector<Range32>& out) {
+  take();
+  do {
+    Range32 path = parse_path("namespace");
+    if (path.count != 0) out.push_back(path);
+  } while (!panic_ && accept(TokenKind::kComma));
+  finish_declaration("USING");
+}
+
+// A.B.C
+Range32 Parser::parse_path(const char* what) {
+  Range32 out{static_cast<uint32_t>(tree_.names.size()), 0};
+  do {
+    Name name = parse_name(what);
+    if (panic_) break;
+    tree_.names.push_back(name);
+    ++out.count;
+  } while (accept(TokenKind::kDot));
+  return out;
+}
+
 void Parser::skip_to_next_declaration() {
   do {
     take();
-  } while (kind() != TokenKind::kEnd && !is_file_level_start(kind()));
+  } while (kind() != TokenKind::kEnd && !is_file_level_start(kind()) && !at_soft_declaration() &&
+           !(kind() == TokenKind::kEndNamespace && tree_.in_namespace(scope_)));
 }
 
 }  // namespace frontend

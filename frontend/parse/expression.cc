@@ -73,6 +73,8 @@ ExprId Parser::parse_operators(ExprId left, uint32_t above) {
   return left;
 }
 
+bool Parser::at_operator() const { return operator_of(kind()).precedence != 0; }
+
 ExprId Parser::add_binary(ExprId left, const Token& op, ExprId right) {
   Expr expr;
   expr.kind = ExprKind::kBinary;
@@ -127,12 +129,11 @@ ExprId Parser::parse_primary() {
     case TokenKind::kMod:
       return parse_operator_call();
     case TokenKind::kDot:
-      not_supported(take().span(), "the global namespace operator `.x` is",
-                    "write the name without the dot");
-      return is_name(kind()) ? parse_variable() : error_expression();
+      return parse_global_name();
     default:
       break;
   }
+  if (at_type_argument()) return parse_type_argument();
   if (is_name(kind())) return parse_variable();
   if (is_keyword(kind())) {
     report_here(Code::kExpectedExpression,
@@ -158,14 +159,55 @@ ExprId Parser::parse_operator_call() {
 }
 
 ExprId Parser::parse_parenthesised() {
-  if (is_name(next_kind()) && peek(2).kind == TokenKind::kAssign) return parse_struct_initializer();
   const Token open = take();
-  ExprId inner = parse_condition();
+  ExprId inner = parse_expression();
+  if (auto op = assign_op_here(); op && !panic_) inner = parse_assign_expression(inner, *op);
   close_bracket(TokenKind::kRightParen, open);
   Expr& expr = tree_.exprs[inner.index];
   expr.parenthesised = true;
   expr.span = span_from({open.begin});
   return inner;
+}
+
+// `.x`: the global variable, even where a local one has the same name.
+ExprId Parser::parse_global_name() {
+  Expr expr;
+  expr.kind = ExprKind::kName;
+  expr.global = true;
+  base::SourcePos begin = {take().begin};
+  expr.name = parse_name("global variable");
+  if (panic_) return error_expression();
+  expr.span = span_from(begin);
+  return parse_postfix(add_expression(expr));
+}
+
+// A type that is no plain name, as an argument: SIZEOF(STRING[20]), __NEW(ARRAY[0..3] OF INT).
+bool Parser::at_type_argument() const {
+  TokenKind next = next_kind();
+  switch (kind()) {
+    case TokenKind::kArray:
+      return true;
+    case TokenKind::kPointer:
+    case TokenKind::kReference:
+      return next == TokenKind::kTo;
+    case TokenKind::kRefTo:
+      return is_name(next) || next == TokenKind::kArray;
+    case TokenKind::kStringType:
+    case TokenKind::kWideStringType:
+    case TokenKind::kUnicodeStringType:
+      return next == TokenKind::kLeftBracket || next == TokenKind::kLeftParen;
+    default:
+      return false;
+  }
+}
+
+ExprId Parser::parse_type_argument() {
+  Expr expr;
+  expr.kind = ExprKind::kType;
+  base::SourcePos begin = here();
+  expr.spec = parse_spec();
+  expr.span = span_from(begin);
+  return add_expression(expr);
 }
 
 ExprId Parser::error_expression() {

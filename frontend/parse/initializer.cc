@@ -14,7 +14,7 @@ ExprId Parser::parse_initializer() {
 
 ExprId Parser::parse_initializer_value() {
   if (kind() == TokenKind::kInteger && next_kind() == TokenKind::kLeftParen) return parse_repeat();
-  return parse_expression();
+  return parse_listed_value();
 }
 
 ExprId Parser::parse_array_initializer() {

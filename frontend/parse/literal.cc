@@ -40,8 +40,8 @@ void Parser::decode_literal(const Token& token, Literal& literal) {
     case TokenKind::kString:
     case TokenKind::kWideString: {
       bool wide = token.kind == TokenKind::kWideString;
-      DecodedString string =
-          wide ? decode_wide_string(text(token), latin1_) : decode_string(text(token));
+      DecodedString string = wide ? decode_wide_string(text(token), list_.latin1)
+                                  : decode_string(text(token), charset_of(literal));
       if (string.problem) report_problem(*string.problem, token);
       literal.kind = wide ? LiteralKind::kWstring : LiteralKind::kString;
       literal.text = std::move(string.bytes);
@@ -60,6 +60,18 @@ void Parser::decode_literal(const Token& token, Literal& literal) {
   }
 }
 
+// USTRING#'...' and UTF8#'...' (CODESYS) are STRING literals that keep the bytes of UTF-8.
+StringCharset Parser::charset_of(Literal& literal) const {
+  bool latin1 = list_.latin1;
+  bool utf8 =
+      ir::same_name(literal.prefix.text, "USTRING") || ir::same_name(literal.prefix.text, "UTF8");
+  if (utf8) {
+    literal.prefix.text = "STRING";
+    return latin1 ? StringCharset::kLatin1ToUtf8 : StringCharset::kUtf8SourceBytes;
+  }
+  return latin1 ? StringCharset::kLatin1Source : StringCharset::kUtf8Source;
+}
+
 void Parser::decode_date_literal(const Token& token, Literal& literal) {
   DecodedDate date = decode_date(text(token));
   literal.kind = date.form == DateForm::kDate        ? LiteralKind::kDate
@@ -75,12 +87,17 @@ void Parser::store_time(const DecodedTime& time, const Token& token, Literal& li
   literal.is_long = time.is_long;
 }
 
+// `INT#` without its `#`
+Name Parser::prefix_of(const Token& token) const {
+  std::string_view prefix = text(token);
+  prefix.remove_suffix(1);
+  return {prefix, {{token.begin}, {token.begin + token.length - 1}}};
+}
+
 // `INT#-5`, `WORD#16#AF`, `BOOL#TRUE`, `STRING#'x'`, `Color#Red`
 ExprId Parser::parse_typed_literal() {
   const Token token = take();
-  std::string_view prefix_text = text(token);
-  prefix_text.remove_suffix(1);  // the `#`
-  Name prefix{prefix_text, {{token.begin}, {token.begin + token.length - 1}}};
+  Name prefix = prefix_of(token);
   base::SourcePos begin{token.begin};
   bool sign = kind() == TokenKind::kMinus || kind() == TokenKind::kPlus;
   TokenKind value = sign ? next_kind() : kind();
@@ -105,10 +122,16 @@ ExprId Parser::parse_typed_literal() {
   return add_expression(expr);
 }
 
-ir::DirectAddress Parser::parse_direct_address(const Token& token) {
+DecodedAddress Parser::parse_direct_address(const Token& token) {
   DecodedAddress decoded = decode_address(text(token));
   if (decoded.problem) report_problem(*decoded.problem, token);
-  return decoded.address;
+  return decoded;
+}
+
+Range32 Parser::add_levels(const std::vector<uint32_t>& levels) {
+  Range32 out{static_cast<uint32_t>(tree_.levels.size()), static_cast<uint32_t>(levels.size())};
+  tree_.levels.insert(tree_.levels.end(), levels.begin(), levels.end());
+  return out;
 }
 
 }  // namespace frontend

@@ -19,8 +19,8 @@ void make_room(std::vector<T>& store, size_t more) {
 }  // namespace
 
 void parse(const base::SourceMap& sources, uint32_t file, Tree& tree,
-           base::Diagnostics& diagnostics) {
-  TokenList tokens = lex(sources, file, diagnostics);
+           base::Diagnostics& diagnostics, const LexOptions& options) {
+  TokenList tokens = lex(sources, file, diagnostics, options);
   make_room(tree.exprs, tokens.tokens.size() * 5 / 9);
   make_room(tree.stmts, tokens.tokens.size() / 10);
   Parser(sources, file, tokens, tree, diagnostics).parse_file();
@@ -30,13 +30,13 @@ Parser::Parser(const base::SourceMap& sources, uint32_t file, const TokenList& t
                base::Diagnostics& diagnostics)
     : text_(sources.text(file)),
       base_(sources.begin(file).offset),
+      list_(tokens),
       first_(tokens.tokens.data()),
       current_(first_),
       last_(first_ + tokens.tokens.size() - 1),
       var_scan_end_(first_),
       tree_(tree),
-      diagnostics_(diagnostics),
-      latin1_(is_latin1(text_)) {}
+      diagnostics_(diagnostics) {}
 
 bool Parser::accept(TokenKind wanted) {
   if (kind() != wanted) return false;
@@ -63,11 +63,11 @@ Name Parser::parse_name(const char* what) {
   if (is_name(kind())) return name_of(take());
   if (is_keyword(kind())) {
     report_here(Code::kReservedWord,
-                describe(*current_) + " is a reserved word and cannot name a " + what,
+                describe(*current_) + " is a reserved word and cannot name " + with_article(what),
                 "choose another name");
   } else {
     report_here(Code::kExpectedName,
-                std::string("expected the name of a ") + what + ", found " + describe(*current_));
+                "expected the name of " + with_article(what) + ", found " + describe(*current_));
   }
   return {};
 }
@@ -90,6 +90,11 @@ std::string Parser::describe(const Token& token) const {
   std::string_view shown = text(token);
   if (shown.size() > kShown) return '`' + base::printable(shown.substr(0, kShown)) + "...`";
   return '`' + base::printable(shown) + '`';
+}
+
+std::string Parser::with_article(const char* noun) {
+  bool vowel = std::string_view("aeiou").find(noun[0]) != std::string_view::npos;
+  return (vowel ? "an " : "a ") + std::string(noun);
 }
 
 bool Parser::enter() {

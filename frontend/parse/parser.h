@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,6 +52,7 @@ class Parser {
   base::SourceSpan span_from(base::SourcePos begin) const { return {begin, last_end()}; }
   bool on_new_line() const;  // is the current token the first of its line?
   std::string describe(const Token& token) const;
+  static std::string with_article(const char* noun);  // "an action"
 
   // --- messages and recovery: recovery.cc
   void report(Code code, base::SourceSpan span, std::string text, std::string fix = {});
@@ -60,6 +62,7 @@ class Parser {
   void report_problem(const LiteralProblem& problem, const Token& token);
   void report_missing_semicolon(const char* what);
   bool swallowed_by_string() const;
+  bool swallowed_by_comment() const;
   void not_supported(base::SourceSpan span, const std::string& what, std::string fix = {});
   void skip_to_statement_end();
   void skip_to_declaration_end();
@@ -67,6 +70,11 @@ class Parser {
   void skip_past(TokenKind end);   // a construct that is not supported
   void skip_block(TokenKind end);  // the same, but not out of the POU
   bool skip_unsupported_block();
+
+  // --- attributes.cc
+  Range32 take_attributes();
+  void add_attribute(base::SourceSpan span);
+  Range32 join_attributes(Range32 a, Range32 b);
 
   class Nesting;
   bool enter();  // false, after a report, when nested too deeply
@@ -87,7 +95,11 @@ class Parser {
   ExprId parse_operators(ExprId left, uint32_t above);
   ExprId parse_unary();
   ExprId parse_primary();
+  bool at_operator() const;  // a binary one
   ExprId parse_parenthesised();
+  ExprId parse_global_name();
+  ExprId parse_type_argument();
+  bool at_type_argument() const;
   ExprId parse_operator_call();
   ExprId error_expression();
   ExprId add_expression(const Expr& expr);
@@ -99,6 +111,8 @@ class Parser {
   ExprId parse_variable();  // name or direct address with everything behind it
   ExprId parse_postfix(ExprId operand);
   ExprId parse_member(ExprId operand);
+  void set_direct(Expr& expr, const Token& token);
+  bool at_process_address() const;
   ExprId parse_index(ExprId operand);
   ExprId parse_call(ExprId operand);
   Range32 parse_arguments();
@@ -108,11 +122,14 @@ class Parser {
   // --- literal.cc
   ExprId parse_literal(const Name& prefix, base::SourcePos begin, bool negative);
   ExprId parse_typed_literal();
+  Name prefix_of(const Token& token) const;
   ExprId add_literal(Literal literal, base::SourceSpan span);
   void decode_literal(const Token& token, Literal& literal);
+  StringCharset charset_of(Literal& literal) const;
   void decode_date_literal(const Token& token, Literal& literal);
   void store_time(const DecodedTime& time, const Token& token, Literal& literal);
-  ir::DirectAddress parse_direct_address(const Token& token);
+  DecodedAddress parse_direct_address(const Token& token);
+  Range32 add_levels(const std::vector<uint32_t>& levels);
 
   // --- initializer.cc
   ExprId parse_initializer();
@@ -127,9 +144,7 @@ class Parser {
   void parse_statement();
   void parse_simple_statement();
   void finish_simple(ExprId left, base::SourcePos begin);
-  void parse_assignment(ExprId target, base::SourcePos begin);
   void parse_jump(StmtKind statement);
-  bool parse_unsupported_statement();
   void finish_statement(const char* what);
   bool list_ends(bool in_case);
   bool report_stray_end();
@@ -137,6 +152,24 @@ class Parser {
     statement_stack_.push_back(StmtId(static_cast<uint32_t>(tree_.stmts.size())));
     tree_.stmts.push_back(stmt);
   }
+
+  // --- assignment.cc
+  std::optional<AssignOp> assign_op_here() const;
+  void take_assign_op();
+  void parse_assignment(ExprId target, AssignOp op, base::SourcePos begin);
+  ExprId parse_assigned();
+  ExprId parse_assign_expression(ExprId target, AssignOp op);
+  ExprId parse_listed_value();
+  bool at_member_list() const;
+
+  // --- jump.cc
+  bool parse_soft_statement();
+  void parse_label();
+  void parse_jump_to_label();
+  void parse_try();
+  ExprId parse_catch_variable();
+  void parse_mock();
+  bool at_mock_function_block() const;
 
   // --- control.cc
   void parse_if();
@@ -155,43 +188,64 @@ class Parser {
   bool at_case_label() const;
 
   // --- types.cc
-  void parse_types();
-  void parse_type();
+  void parse_types(Range32 attributes);
+  void parse_type(Range32 attributes);
   SpecId parse_spec();
-  SpecId parse_named_spec();
+  SpecId parse_type_name();  // A.B.Name
+  SpecId parse_named_spec(bool type_level);
+  bool at_subrange() const;
+  void parse_init_arguments(SpecId named);
+  Range32 parse_element_arguments();
   SpecId parse_string_spec();
   SpecId parse_array_spec();
   SpecId parse_subrange(SpecId base, base::SourcePos begin);
-  SpecId unsupported_reference();
+  bool at_reference() const;
+  SpecId parse_reference(SpecKind reference);
   SpecId add_spec(Spec spec);
   SpecId error_spec(base::SourcePos begin);
 
   // --- aggregates.cc
   SpecId parse_enum(SpecId base, base::SourcePos begin);
   Enumerator parse_enumerator();
-  SpecId parse_struct();
+  SpecId parse_struct();  // also UNION
   bool at_enumerators() const;
 
   // --- variables.cc
   bool at_var_block() const;
-  void parse_var_block(std::vector<VarBlock>& blocks);
+  void parse_var_block(std::vector<VarBlock>& blocks, Range32 attributes);
   void parse_qualifiers(VarBlock& block);
   void parse_variables(VarBlock& block, const Token& opening);
+  void parse_access_path(std::vector<VarDecl>& out);      // VAR_ACCESS
+  void parse_config_variable(std::vector<VarDecl>& out);  // VAR_CONFIG
   bool variables_end();
   bool end_var_ahead();
   // Declares names : type := value; appends when anything usable was found.
   void parse_variable_declaration(std::vector<VarDecl>& out);
   void parse_location(VarDecl& decl);
-  void parse_edge();
+  Edge parse_edge();
   void parse_default(ExprId& init);
   void finish_declaration(const char* what);
 
   // --- pou.cc
-  void parse_pou(PouKind pou_kind, TokenKind end);
+  std::optional<PouKind> pou_kind_here() const;
+  bool at_soft_declaration() const;
+  PouDecl parse_pou(PouKind pou_kind, Range32 attributes);
   void parse_pou_header(PouDecl& pou);
-  void parse_inheritance();
-  void skip_access_specifiers();
-  void close_pou(const Token& opening, TokenKind end);
+  void parse_specifiers(PouDecl& pou);
+  bool at_inheritance() const;
+  void parse_inheritance(PouDecl& pou);
+  void parse_pou_variables(PouDecl& pou);
+  bool parse_inner(PouDecl& pou);
+  void parse_pou_body(PouDecl& pou);
+  void close_pou(const Token& opening, const PouDecl& pou, TokenKind end);
+
+  // --- member.cc
+  static bool takes_members(PouKind kind);
+  bool at_member() const;
+  void parse_member(PouDecl& owner, Range32 attributes);
+  void parse_property(PouDecl& owner, Range32 attributes);
+  bool at_accessor() const;
+  bool parse_accessor(const PouDecl& head, PouDecl& owner, size_t first);
 
   // --- configuration.cc
   void parse_configuration();
@@ -201,23 +255,36 @@ class Parser {
   TaskDecl parse_task();
   void parse_task_parameter(TaskDecl& task);
   ProgramDecl parse_program_instance();
+  void parse_program_connections(ProgramDecl& program);
   ResourceDecl& unnamed_resource(ConfigDecl& config);
 
   // --- declaration.cc
   void parse_declaration();
+  void open_scope(const Name& name, bool internal);
+  void parse_file_pou(PouKind pou_kind, Range32 attributes);
+  void parse_outside_member(Range32 attributes);
+  void parse_namespace();
+  void parse_using(std::vector<Range32>& out);
+  Range32 parse_path(const char* what);
   void skip_to_next_declaration();
 
   std::string_view text_;
   uint32_t base_;
+  const TokenList& list_;
   const Token* first_;
   const Token* current_;
   const Token* last_;
   const Token* var_scan_end_;  // see end_var_ahead()
   Tree& tree_;
   base::Diagnostics& diagnostics_;
-  bool latin1_;
+  static constexpr uint32_t kNoOwner = 0xffffffffu;
   bool panic_ = false;
+  bool type_level_ = false;   // the specification begins that a TYPE declares
+  bool in_property_ = false;  // GET and SET begin accessors
   uint32_t depth_ = 0;
+  size_t next_pragma_ = 0;
+  ScopeId scope_;
+  uint32_t owner_ = kNoOwner;         // the POU that a member behind it belongs to
   std::array<uint16_t, 256> open_{};  // open statements, by the TokenKind of their end
 
   // Lists under construction; nested constructs work above their opener's mark.

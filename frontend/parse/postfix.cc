@@ -9,12 +9,25 @@ ExprId Parser::parse_variable() {
   expr.name = name_of(token);
   expr.span = token.span();
   if (token.kind == TokenKind::kDirect) {
-    expr.kind = ExprKind::kDirect;
-    expr.address = parse_direct_address(token);
+    set_direct(expr, token);
   } else {
-    expr.kind = ExprKind::kName;
+    expr.kind = token.kind == TokenKind::kThis    ? ExprKind::kThis
+                : token.kind == TokenKind::kSuper ? ExprKind::kSuper
+                                                  : ExprKind::kName;
   }
   return parse_postfix(add_expression(expr));
+}
+
+void Parser::set_direct(Expr& expr, const Token& token) {
+  DecodedAddress decoded = parse_direct_address(token);
+  if (!decoded.problem && (decoded.incomplete || decoded.address.area == ir::DirectArea::kNone)) {
+    note_only(Code::kBadDirectAddress, token.span(), "this address is not complete",
+              "write it like %IX0.0 or %QW4");
+    decoded.address = {};
+  }
+  expr.kind = ExprKind::kDirect;
+  expr.address = decoded.address;
+  expr.levels = add_levels(decoded.levels);
 }
 
 ExprId Parser::parse_postfix(ExprId operand) {
@@ -54,11 +67,19 @@ ExprId Parser::parse_member(ExprId operand) {
   if (is_name(token.kind)) {
     expr.kind = ExprKind::kMember;
     expr.name = name_of(take());
+  } else if (token.kind == TokenKind::kTypePrefix && is_name(next_kind())) {
+    take();
+    expr.kind = ExprKind::kQualified;  // Lib.Color#Red
+    expr.prefix = prefix_of(token);
+    expr.name = name_of(take());
   } else if (token.kind == TokenKind::kInteger) {
     expr.kind = ExprKind::kBit;
     DecodedInteger number = decode_integer(text(take()));
     if (number.problem) report_problem(*number.problem, token);
     expr.number = static_cast<uint32_t>(std::min<uint64_t>(number.value, 0xffff'ffff));
+  } else if (token.kind == TokenKind::kDirect && at_process_address()) {
+    expr.name = name_of(take());  // Resource.%IX0.0 of VAR_ACCESS
+    set_direct(expr, token);
   } else if (token.kind == TokenKind::kDirect) {
     expr.kind = ExprKind::kBit;
     DecodedPart part = decode_part(text(take()));
@@ -71,6 +92,11 @@ ExprId Parser::parse_member(ExprId operand) {
   }
   expr.span = span_from(tree_[operand].span.begin);
   return add_expression(expr);
+}
+
+bool Parser::at_process_address() const {
+  char area = text(*current_).size() > 1 ? text(*current_)[1] : '\0';
+  return std::string_view("iIqQmM").find(area) != std::string_view::npos;
 }
 
 ExprId Parser::parse_index(ExprId operand) {
@@ -123,7 +149,7 @@ Arg Parser::parse_argument() {
     arg.name = name_of(take());
     arg.output = take().kind == TokenKind::kArrow;
     bool empty = kind() == TokenKind::kComma || kind() == TokenKind::kRightParen;
-    if (!empty) arg.value = parse_expression();
+    if (!empty) arg.value = parse_listed_value();
   } else {
     arg.value = parse_expression();
   }

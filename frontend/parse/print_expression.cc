@@ -1,6 +1,5 @@
 #include <charconv>
 
-#include "base/diagnostics_render.h"
 #include "frontend/parse/printer.h"
 
 namespace frontend {
@@ -65,6 +64,23 @@ std::string real_text(double value) {
   return std::string(buffer, end);
 }
 
+// Bytes that are no printable ASCII as the language writes them: $0a
+std::string string_text(std::string_view bytes) {
+  static constexpr char kHex[] = "0123456789abcdef";
+  std::string out;
+  for (char c : bytes) {
+    auto byte = static_cast<uint8_t>(c);
+    if (byte >= 0x20 && byte < 0x7F) {
+      out += c;
+    } else {
+      out += '$';
+      out += kHex[byte >> 4];
+      out += kHex[byte & 15];
+    }
+  }
+  return out;
+}
+
 std::string part_text(const Expr& expr) {
   const char* size = expr.bit_size == 8 ? "%B" : expr.bit_size == 16 ? "%W" : "%D";
   return '.' + (expr.bit_size == 1 ? "" : std::string(size)) + std::to_string(expr.number);
@@ -81,9 +97,10 @@ std::string Printer::expression(ExprId id) const {
     case ExprKind::kLiteral:
       return literal(tree_.literals[expr.literal]);
     case ExprKind::kName:
-      return std::string(expr.name.text);
+      return (expr.global ? "." : "") + std::string(expr.name.text);
     case ExprKind::kQualified:
-      return std::string(expr.prefix.text) + '#' + std::string(expr.name.text);
+      return (expr.operand.valid() ? expression(expr.operand) + '.' : "") +
+             std::string(expr.prefix.text) + '#' + std::string(expr.name.text);
     case ExprKind::kMember:
       return expression(expr.operand) + '.' + std::string(expr.name.text);
     case ExprKind::kBit:
@@ -99,13 +116,39 @@ std::string Printer::expression(ExprId id) const {
     case ExprKind::kBinary:
       return binary(expr);
     case ExprKind::kDirect:
-      return address(expr.address);
+      return (expr.operand.valid() ? expression(expr.operand) + '.' : "") +
+             address(expr.address, expr.levels);
     case ExprKind::kArrayInit:
       return '[' + list(expr.list) + ']';
     case ExprKind::kRepeat:
       return expression(expr.operand) + '(' + list(expr.list) + ')';
     case ExprKind::kStructInit:
       return arguments(expr.args);
+    case ExprKind::kThis:
+      return "THIS";
+    case ExprKind::kSuper:
+      return "SUPER";
+    case ExprKind::kType:
+      return "TYPE(" + spec(expr.spec) + ')';
+    case ExprKind::kAssign:
+      return '(' + expression(expr.operand) + assign_text(expr.assign) + expression(expr.right) +
+             ')';
+  }
+  return "";
+}
+
+const char* Printer::assign_text(AssignOp op) {
+  switch (op) {
+    case AssignOp::kAssign:
+      return " := ";
+    case AssignOp::kSet:
+      return " S= ";
+    case AssignOp::kReset:
+      return " R= ";
+    case AssignOp::kReference:
+      return " REF= ";
+    case AssignOp::kAttempt:
+      return " ?= ";
   }
   return "";
 }
@@ -141,7 +184,7 @@ std::string Printer::literal(const Literal& literal) const {
     case LiteralKind::kBool:
       return out + (literal.integer != 0 ? "TRUE" : "FALSE");
     case LiteralKind::kString:
-      return out + '\'' + base::printable(literal.text) + '\'';
+      return out + '\'' + string_text(literal.text) + '\'';
     case LiteralKind::kWstring: {
       std::string units;
       for (size_t i = 0; i + 1 < literal.text.size(); i += 2) {

@@ -22,7 +22,7 @@ void Printer::statement(const Stmt& stmt) {
     case StmtKind::kEmpty:
       return line("EMPTY");
     case StmtKind::kAssign:
-      return line(expression(stmt.target) + " := " + expression(stmt.value));
+      return line(expression(stmt.target) + assign_text(stmt.assign) + expression(stmt.value));
     case StmtKind::kCall:
       return line("CALL " + expression(stmt.value));
     case StmtKind::kIf:
@@ -46,7 +46,28 @@ void Printer::statement(const Stmt& stmt) {
       return line("CONTINUE");
     case StmtKind::kReturn:
       return line("RETURN");
+    case StmtKind::kJump:
+      return line("JMP " + std::string(stmt.name.text));
+    case StmtKind::kLabel:
+      return line("LABEL " + std::string(stmt.name.text));
+    case StmtKind::kTry:
+      return try_statement(stmt);
+    case StmtKind::kMock:
+      return line("MOCK " + expression(stmt.target));
+    case StmtKind::kMockFunction: {
+      std::string text = "MOCK_FUNCTION " + expression(stmt.target);
+      return line(stmt.value.valid() ? text + " RETURNS " + expression(stmt.value) : text);
+    }
   }
+}
+
+void Printer::try_statement(const Stmt& stmt) {
+  nested("TRY", stmt.body);
+  if (stmt.has_catch) {
+    std::string variable = expression(stmt.target);
+    nested(variable.empty() ? "CATCH" : "CATCH " + variable, stmt.catch_body);
+  }
+  if (stmt.has_finally) nested("FINALLY", stmt.finally_body);
 }
 
 void Printer::branches(const Stmt& stmt) {

@@ -3,13 +3,26 @@
 
 namespace frontend {
 
+// At the end of a file whose rest a comment swallowed, everything is missing.
+bool Parser::swallowed_by_comment() const {
+  if (kind() != TokenKind::kEnd) return false;
+  for (const base::Diagnostic& message : diagnostics_.all()) {
+    bool here = message.code == Code::kUnterminatedComment && message.span.begin.offset >= base_;
+    if (here) return true;
+  }
+  return false;
+}
+
 void Parser::report(Code code, base::SourceSpan span, std::string text, std::string fix) {
-  if (!panic_) diagnostics_.add(code, span, std::move(text), std::move(fix));
+  if (!panic_ && !swallowed_by_comment()) {
+    diagnostics_.add(code, span, std::move(text), std::move(fix));
+  }
   panic_ = true;
 }
 
 void Parser::note_only(Code code, base::SourceSpan span, std::string text, std::string fix) {
-  if (!panic_) diagnostics_.add(code, span, std::move(text), std::move(fix));
+  if (panic_ || swallowed_by_comment()) return;
+  diagnostics_.add(code, span, std::move(text), std::move(fix));
 }
 
 void Parser::report_here(Code code, std::string text, std::string fix) {
@@ -26,7 +39,7 @@ void Parser::report_missing_end(const Token& opening, TokenKind end) {
                               {}};
   diagnostic.notes.push_back(
       {current_->span(), '`' + closing + "` was expected before " + describe(*current_)});
-  if (!panic_) diagnostics_.add(std::move(diagnostic));
+  if (!panic_ && !swallowed_by_comment()) diagnostics_.add(std::move(diagnostic));
 }
 
 void Parser::report_problem(const LiteralProblem& problem, const Token& token) {
@@ -84,38 +97,25 @@ void Parser::skip_block(TokenKind end) {
   accept(end);
 }
 
-// Blocks of later languages and of object orientation: one message, skipped to
-// their end. They begin with soft keywords, so what follows decides.
+// Blocks of later languages: one message, skipped to their end. They begin with soft
+// keywords, so what follows decides.
 bool Parser::skip_unsupported_block() {
   struct Block {
     TokenKind begin;
     TokenKind end;
     const char* what;
-    bool spans_pous;
   };
   static constexpr Block kBlocks[] = {
-      {TokenKind::kMethod, TokenKind::kEndMethod, "methods are", false},
-      {TokenKind::kProperty, TokenKind::kEndProperty, "properties are", false},
-      {TokenKind::kAction, TokenKind::kEndAction, "actions are", false},
-      {TokenKind::kTransition, TokenKind::kEndTransition, "sequential function charts are", false},
-      {TokenKind::kInitialStep, TokenKind::kEndStep, "sequential function charts are", false},
-      {TokenKind::kStep, TokenKind::kEndStep, "sequential function charts are", false},
-      {TokenKind::kInterface, TokenKind::kEndInterface, "interfaces are", true},
-      {TokenKind::kClass, TokenKind::kEndClass, "classes are", true},
-      {TokenKind::kNamespace, TokenKind::kEndNamespace, "namespaces are", true},
-      {TokenKind::kTest, TokenKind::kEndTest, "tests in the language are", false},
-      {TokenKind::kLadder, TokenKind::kEndLadder, "ladder networks are", false},
+      {TokenKind::kTransition, TokenKind::kEndTransition, "sequential function charts are"},
+      {TokenKind::kInitialStep, TokenKind::kEndStep, "sequential function charts are"},
+      {TokenKind::kStep, TokenKind::kEndStep, "sequential function charts are"},
+      {TokenKind::kLadder, TokenKind::kEndLadder, "ladder networks are"},
   };
   for (const Block& block : kBlocks) {
     if (kind() != block.begin) continue;
-    bool named = is_name(next_kind()) || next_kind() == TokenKind::kString;
-    if (!named && next_kind() != block.end) return false;
+    if (!is_name(next_kind()) && next_kind() != block.end) return false;
     not_supported(take().span(), block.what);
-    if (block.spans_pous) {
-      skip_past(block.end);
-    } else {
-      skip_block(block.end);
-    }
+    skip_block(block.end);
     return true;
   }
   return false;

@@ -13,6 +13,8 @@ Range32 Parser::parse_statements(bool in_case) {
 bool Parser::list_ends(bool in_case) {
   for (;;) {
     if (kind() == TokenKind::kEnd || is_file_level_start(kind()) || is_pou_end(kind())) return true;
+    if (at_member() || at_soft_declaration() || at_mock_function_block()) return true;
+    if (in_property_ && at_accessor()) return true;
     if (in_case && at_case_label()) return true;
     if (!is_closing(kind())) return false;
     if (!report_stray_end()) return true;
@@ -26,6 +28,13 @@ bool Parser::report_stray_end() {
   if (kind() == TokenKind::kElse) expected = open(TokenKind::kEndIf) || open(TokenKind::kEndCase);
   if (kind() == TokenKind::kElsif) expected = open(TokenKind::kEndIf);
   if (kind() == TokenKind::kUntil) expected = open(TokenKind::kEndRepeat);
+  if (kind() == TokenKind::kCatch || kind() == TokenKind::kFinally) {
+    expected = open(TokenKind::kEndTry);
+  }
+  // A wrong end inside a member is that member's: close_pou() says so.
+  bool in_member = open(TokenKind::kEndMethod) || open(TokenKind::kEndAction);
+  if (is_member_end(kind())) expected = expected || in_member;
+  if (kind() == TokenKind::kEndNamespace) expected = tree_.in_namespace(scope_);
   if (expected) return false;
   const Token token = take();
   note_only(Code::kUnexpectedEnd, token.span(),
@@ -35,6 +44,10 @@ bool Parser::report_stray_end() {
     panic_ = true;  // its condition is skipped with it
     skip_to(TokenKind::kThen);
     accept(TokenKind::kThen);
+  } else if (token.kind == TokenKind::kCatch && accept(TokenKind::kLeftParen)) {
+    panic_ = true;
+    skip_to(TokenKind::kRightParen);
+    accept(TokenKind::kRightParen);
   }
   accept(TokenKind::kSemicolon);
   panic_ = false;
@@ -73,7 +86,7 @@ void Parser::parse_statement() {
     panic_ = false;
     return;
   }
-  if (!parse_unsupported_statement()) parse_simple_statement();
+  if (!parse_soft_statement()) parse_simple_statement();
 }
 
 // Assignment, call, CONTINUE, or nothing that could be understood.
@@ -81,7 +94,8 @@ void Parser::parse_simple_statement() {
   TokenKind next = next_kind();
   bool variable = next == TokenKind::kAssign || next == TokenKind::kDot ||
                   next == TokenKind::kLeftBracket || next == TokenKind::kEqual ||
-                  next == TokenKind::kLeftParen;
+                  next == TokenKind::kLeftParen || next == TokenKind::kAttempt ||
+                  next == TokenKind::kCaret;
   if (kind() == TokenKind::kContinue && !variable) return parse_jump(StmtKind::kContinue);
   base::SourcePos begin = here();
   if (!is_name(kind()) && kind() != TokenKind::kDirect && kind() != TokenKind::kDot) {
@@ -104,14 +118,13 @@ void Parser::parse_simple_statement() {
 
 void Parser::finish_simple(ExprId left, base::SourcePos begin) {
   bool call = tree_[left].kind == ExprKind::kCall;
-  if (kind() == TokenKind::kAssign && !panic_) {
-    take();
-    parse_assignment(left, begin);
+  auto op = assign_op_here();
+  if (op && !panic_) {
+    parse_assignment(left, *op, begin);
   } else if (kind() == TokenKind::kEqual && !panic_) {
     note_only(Code::kAssignEquals, current_->span(), "`=` compares; an assignment is needed here",
               "write `:=` to assign");
-    take();
-    parse_assignment(left, begin);
+    parse_assignment(left, AssignOp::kAssign, begin);
   } else if (call && !panic_) {
     Stmt stmt;
     stmt.kind = StmtKind::kCall;
@@ -136,53 +149,12 @@ void Parser::finish_simple(ExprId left, base::SourcePos begin) {
   finish_statement("statement");
 }
 
-void Parser::parse_assignment(ExprId target, base::SourcePos begin) {
-  Stmt stmt;
-  stmt.kind = StmtKind::kAssign;
-  stmt.target = target;
-  stmt.value = parse_expression();
-  stmt.span = span_from(begin);
-  add_statement(stmt);
-  if (kind() != TokenKind::kAssign || panic_) return;
-  not_supported(current_->span(), "assignments in a chain are",
-                "write one assignment per variable");
-  panic_ = true;
-}
-
 void Parser::parse_jump(StmtKind statement) {
   Stmt stmt;
   stmt.kind = statement;
   stmt.span = take().span();
   add_statement(stmt);
   finish_statement("statement");
-}
-
-// Constructs with a message of their own; false when the statement is none of them.
-bool Parser::parse_unsupported_statement() {
-  if (!is_name(kind())) return false;
-  TokenKind next = next_kind();
-  if (skip_unsupported_block()) return true;
-  if (next == TokenKind::kColon) {
-    not_supported({here(), {peek(1).begin + 1}}, "jump labels are");
-    take();
-    take();
-    return true;
-  }
-  if (!is_name(next)) return false;
-  if (kind() == TokenKind::kJump || is_word(*current_, "GOTO")) {
-    not_supported(current_->span(), "jumps are", "use IF, WHILE, EXIT or RETURN");
-  } else if (kind() == TokenKind::kTry) {
-    not_supported(current_->span(), "__TRY is");
-  } else if (peek(2).kind == TokenKind::kEqual &&
-             (is_word(peek(1), "S") || is_word(peek(1), "R") || is_word(peek(1), "REF"))) {
-    not_supported(peek(1).span(), "the assignments S=, R= and REF= are",
-                  "write IF condition THEN variable := TRUE; END_IF");
-  } else {
-    return false;
-  }
-  take();
-  skip_to_statement_end();
-  return true;
 }
 
 void Parser::finish_statement(const char* what) {

@@ -4,199 +4,60 @@
 // Immutable once parsing ends. Later languages (ladder, FBD, SFC, IL) lower to
 // the same nodes. Damaged input still gives a tree: kError nodes stand where
 // nothing could be understood, and a diagnostic was reported for each.
+//
+// Attributes (`{attribute 'name' := 'value'}`) stay with the declaration that they
+// stand before. Namespaces do not nest in the tree: each declaration names its scope.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "base/ids.h"
-#include "base/source.h"
-#include "ir/types/types.h"
+#include "frontend/parse/code_nodes.h"
 
 namespace frontend {
-
-struct ExprTag;
-struct StmtTag;
-struct SpecTag;
-using ExprId = base::Id<ExprTag>;
-using StmtId = base::Id<StmtTag>;
-using SpecId = base::Id<SpecTag>;
-
-struct Name {
-  std::string_view text;
-  base::SourceSpan span;
-  bool empty() const { return text.empty(); }
-};
-
-// --- expressions -------------------------------------------------------------
-enum class ExprKind : uint8_t {
-  kError,
-  kLiteral,     // literal
-  kName,        // name
-  kQualified,   // prefix#name : typed enumeration literal; name, prefix
-  kMember,      // operand . name
-  kBit,         // operand . number, operand.%X3 %B1 %W1 %D0: bit_size, number
-  kIndex,       // operand [ list ]
-  kDeref,       // operand ^
-  kCall,        // operand ( args )
-  kUnary,       // op operand
-  kBinary,      // operand op right
-  kDirect,      // %IX0.0 : address; "" text kept in name
-  kArrayInit,   // [ list ] of values and kRepeat
-  kRepeat,      // operand ( list ) : operand = count
-  kStructInit,  // ( args ) with names
-};
-
-enum class UnaryOp : uint8_t { kNegate, kPlus, kNot };
-enum class BinaryOp : uint8_t {
-  kOr,
-  kOrElse,
-  kXor,
-  kAnd,
-  kAndThen,
-  kEq,
-  kNe,
-  kLt,
-  kLe,
-  kGt,
-  kGe,
-  kAdd,
-  kSub,
-  kMul,
-  kDiv,
-  kMod,
-  kPower,
-};
-
-enum class LiteralKind : uint8_t {
-  kInteger,   // integer; based: written 2# 8# 16#
-  kReal,      // real
-  kBool,      // integer 0/1 (TRUE, FALSE)
-  kString,    // text, escapes resolved
-  kWstring,   // text, UTF-16LE bytes
-  kDuration,  // integer = ns
-  kDate,
-  kTimeOfDay,
-  kDateAndTime,  // integer = ns
-};
-
-struct Literal {
-  LiteralKind kind = LiteralKind::kInteger;
-  bool based = false;
-  bool too_large = false;  // does not fit 64 bits (already reported)
-  bool is_long = false;    // LT# LD# LTOD# LDT#
-  Name prefix;             // "INT" of INT#5, "WORD" of WORD#16#AF; empty when untyped
-  uint64_t integer = 0;    // magnitude; a sign inside a typed literal sets `negative`
-  bool negative = false;
-  double real = 0;
-  std::string text;
-};
-
-struct Arg {
-  Name name;             // empty: positional
-  bool output = false;   // name => expr
-  bool negated = false;  // NOT name => expr
-  ExprId value;          // invalid: `name :=` or `name =>` with nothing behind it
-  base::SourceSpan span;
-};
-
-struct Range32 {  // slice of one of the Tree's lists
-  uint32_t first = 0;
-  uint32_t count = 0;
-};
-
-struct Expr {
-  ExprKind kind = ExprKind::kError;
-  uint16_t height =
-      1;  // of the tree below, at most kMaxExpressionHeight: recursion over it is safe
-  base::SourceSpan span;
-  UnaryOp unary = UnaryOp::kNegate;
-  BinaryOp binary = BinaryOp::kOr;
-  base::SourceSpan op_span;
-  ExprId operand;
-  ExprId right;
-  Name name;
-  Name prefix;
-  uint32_t literal = 0;  // Tree::literals
-  Range32 list;          // Tree::expr_lists
-  Range32 args;          // Tree::args
-  uint32_t number = 0;   // kBit
-  uint8_t bit_size = 1;  // kBit: 1, 8, 16, 32
-  ir::DirectAddress address;
-  bool parenthesised = false;
-};
-
-// --- statements --------------------------------------------------------------
-enum class StmtKind : uint8_t {
-  kError,
-  kEmpty,
-  kAssign,  // target := value
-  kCall,    // value is the kCall expression
-  kIf,      // branches; else_body
-  kCase,    // value, cases, else_body
-  kFor,     // target, from, to, by (may be invalid), body
-  kWhile,   // value, body
-  kRepeat,  // body, value
-  kExit,
-  kContinue,
-  kReturn,
-};
-
-struct Branch {  // IF / ELSIF
-  ExprId condition;
-  Range32 body;  // Tree::stmt_lists
-};
-struct CaseLabel {
-  ExprId low;
-  ExprId high;  // invalid: single value
-};
-struct CaseArm {
-  Range32 labels;  // Tree::labels
-  Range32 body;
-  base::SourceSpan span;
-};
-
-struct Stmt {
-  StmtKind kind = StmtKind::kEmpty;
-  base::SourceSpan span;  // kFor..kIf: of the head line
-  ExprId target;
-  ExprId value;
-  ExprId from, to, by;
-  Range32 branches;  // Tree::branches
-  Range32 cases;     // Tree::cases
-  Range32 body;      // Tree::stmt_lists
-  Range32 else_body;
-  bool has_else = false;
-};
 
 // --- types and variables -----------------------------------------------------
 enum class SpecKind : uint8_t {
   kError,
-  kNamed,     // name (elementary or declared)
-  kString,    // length (may be invalid); wide
-  kArray,     // dims, element
-  kStruct,    // fields
-  kEnum,      // enumerators; element = base type (may be invalid)
-  kSubrange,  // element, low, high
+  kNamed,        // [qualifiers .] name (elementary or declared); args when has_args
+  kString,       // length (may be invalid); wide
+  kArray,        // dims, element, element_args; open_bounds: ARRAY[*, *]
+  kStruct,       // fields; overlap; element = its base (EXTENDS), may be invalid
+  kUnion,        // fields
+  kEnum,         // enumerators; element = base type (may be invalid)
+  kSubrange,     // element, low, high
+  kPointer,      // POINTER TO element
+  kRefTo,        // REF_TO element
+  kReferenceTo,  // REFERENCE TO element
 };
 
 struct DimSpec {
-  ExprId low;
+  ExprId low;  // both invalid: `*`
   ExprId high;
 };
 struct Enumerator {
   Name name;
   ExprId value;  // may be invalid
+  Range32 attributes;
 };
 
+enum class Edge : uint8_t { kNone, kRising, kFalling };
+
+// An address without an area (AT %B4 in a structure) is relative to the structure; `%I*`
+// has an area and `incomplete`, and a size when one is written (%IW*).
 struct VarDecl {
-  std::vector<Name> names;  // several share one spec
+  std::vector<Name> names;  // several share one spec; none in VAR_CONFIG
   SpecId spec;
   ExprId init;  // may be invalid
   bool has_address = false;
+  bool incomplete = false;    // AT %I*
   ir::DirectAddress address;  // AT %QX0.0
+  Range32 levels;             // as in Expr
+  Edge edge = Edge::kNone;
+  ExprId path;            // VAR_ACCESS: what the name opens; VAR_CONFIG: what is completed
+  bool writable = false;  // VAR_ACCESS: READ_WRITE
+  Range32 attributes;     // Tree::attributes
   base::SourceSpan span;
 };
 
@@ -204,7 +65,13 @@ struct Spec {
   SpecKind kind = SpecKind::kError;
   base::SourceSpan span;
   Name name;
+  Range32 qualifiers;  // kNamed: A, B of A.B.Name; Tree::names
   bool wide = false;
+  bool overlap = false;
+  bool open_bounds = false;
+  bool has_args = false;
+  Range32 args;          // kNamed: Pump(5), the arguments of FB_Init; Tree::args
+  Range32 element_args;  // kArray: Pump[(1), (2)], a kStructInit per element; Tree::expr_lists
   ExprId length;
   SpecId element;
   ExprId low, high;
@@ -221,32 +88,80 @@ enum class VarSection : uint8_t {
   kTemp,
   kExternal,
   kGlobal,
+  kStatic,    // VAR_STAT: one for all instances and calls
+  kInstance,  // VAR_INST: of a method, lives in its instance
+  kAccess,    // VAR_ACCESS
+  kConfig,    // VAR_CONFIG
 };
+
+enum class Access : uint8_t { kDefault, kPublic, kPrivate, kProtected, kInternal };
 
 struct VarBlock {
   VarSection section = VarSection::kLocal;
   bool constant = false;
-  bool retain = false;  // RETAIN or PERSISTENT
+  bool retain = false;      // RETAIN or PERSISTENT
+  bool non_retain = false;  // NON_RETAIN, written out
+  Access access = Access::kDefault;
+  Range32 attributes;  // of the block: {attribute 'qualified_only'} in front of VAR_GLOBAL
+  ScopeId scope;
   base::SourceSpan span;
   std::vector<VarDecl> vars;
 };
 
 // --- declarations ------------------------------------------------------------
+// A file (no name, no parent) or a namespace: `NAMESPACE A.B` is two scopes. Several may have the
+// same path; what they declare belongs together.
+struct Scope {
+  Name name;
+  ScopeId parent;
+  bool internal = false;
+  std::vector<Range32> usings;  // USING A.B; a path in Tree::names each
+};
+
 struct TypeDecl {
   Name name;
   SpecId spec;
   ExprId init;  // default of a derived type
+  Access access = Access::kDefault;
+  Range32 attributes;
+  ScopeId scope;
 };
 
-enum class PouKind : uint8_t { kFunction, kFunctionBlock, kProgram };
+enum class PouKind : uint8_t {
+  kFunction,
+  kFunctionBlock,
+  kProgram,
+  kClass,
+  kInterface,
+  // Members of the above, in PouDecl::members:
+  kMethod,
+  kAction,
+  kGetter,  // PROPERTY name : result, its GET; reads as a function of that name
+  kSetter,  // its SET: `result` is the type of the value, which has the property's name
+  // In Tree::tests:
+  kTest,          // TEST 'name': the text without quotes is the name
+  kSetup,         // no name
+  kTeardown,      // no name
+  kMockFunction,  // also a member of a kTest
+};
 
 struct PouDecl {
   PouKind kind = PouKind::kFunction;
   Name name;
-  SpecId result;  // functions; may be invalid
+  SpecId result;  // functions, methods, properties; may be invalid
   std::vector<VarBlock> blocks;
   Range32 body;           // Tree::stmt_lists
   base::SourceSpan span;  // PROGRAM ... END_PROGRAM
+  Access access = Access::kDefault;
+  bool is_abstract = false;
+  bool is_final = false;
+  bool is_override = false;
+  std::vector<SpecId> extends;     // kNamed; several for interfaces only
+  std::vector<SpecId> implements;  // kNamed
+  std::vector<PouDecl> members;    // in source order
+  std::vector<Range32> usings;     // as in Scope
+  Range32 attributes;
+  ScopeId scope;  // of members too
 };
 
 struct TaskDecl {
@@ -254,28 +169,41 @@ struct TaskDecl {
   ExprId interval;  // may be invalid
   ExprId priority;
   ExprId single;
+  Range32 attributes;
   base::SourceSpan span;
+};
+
+struct BlockTask {  // fb WITH task
+  Name block;
+  Name task;
 };
 
 struct ProgramDecl {  // PROGRAM p WITH t : T(...)
   Name name;
   Name task;  // may be empty
+  Range32 qualifiers;
   Name type;
+  bool retain = false;
+  bool non_retain = false;
   Range32 args;
+  std::vector<BlockTask> block_tasks;
+  Range32 attributes;
   base::SourceSpan span;
 };
 
 struct ResourceDecl {
   Name name;
-  std::vector<VarBlock> globals;
+  Name type;                      // ON type; may be empty
+  std::vector<VarBlock> globals;  // also VAR_ACCESS and VAR_CONFIG, as in ConfigDecl
   std::vector<TaskDecl> tasks;
   std::vector<ProgramDecl> programs;
 };
 
 struct ConfigDecl {
   Name name;
-  std::vector<VarBlock> globals;
+  std::vector<VarBlock> globals;        // VAR_GLOBAL, VAR_ACCESS, VAR_CONFIG
   std::vector<ResourceDecl> resources;  // a single unnamed one when RESOURCE is left out
+  ScopeId scope;
   base::SourceSpan span;
 };
 
@@ -290,15 +218,25 @@ struct Tree {
   std::vector<CaseLabel> labels;
   std::vector<ExprId> expr_lists;
   std::vector<StmtId> stmt_lists;
+  std::vector<Attribute> attributes;
+  std::vector<Name> names;
+  std::vector<uint32_t> levels;
+  std::vector<Scope> scopes;
 
   std::vector<TypeDecl> types;
   std::vector<PouDecl> pous;
-  std::vector<VarBlock> globals;  // VAR_GLOBAL outside CONFIGURATION
+  std::vector<VarBlock> globals;  // VAR_GLOBAL and VAR_CONFIG outside CONFIGURATION
   std::vector<ConfigDecl> configs;
+  std::vector<PouDecl> tests;
 
   const Expr& operator[](ExprId id) const { return exprs[id.index]; }
   const Stmt& operator[](StmtId id) const { return stmts[id.index]; }
   const Spec& operator[](SpecId id) const { return specs[id.index]; }
+  const Scope& operator[](ScopeId id) const { return scopes[id.index]; }
+  // The attribute of that name, or null.
+  const Attribute* find_attribute(Range32 of, std::string_view name) const;
+  // Is `scope` inside a namespace?
+  bool in_namespace(ScopeId scope) const { return scope.valid() && !(*this)[scope].name.empty(); }
 };
 
 // For `stc dump --tree` and golden tests.

@@ -1,4 +1,6 @@
 // TYPE blocks and type specifications other than enumerations and structures.
+#include <utility>
+
 #include "frontend/parse/parser.h"
 #include "frontend/parse/token_sets.h"
 
@@ -15,7 +17,7 @@ bool is_elementary_name(std::string_view name) {
 
 }  // namespace
 
-void Parser::parse_types() {
+void Parser::parse_types(Range32 attributes) {
   const Token opening = take();
   while (kind() != TokenKind::kEndType) {
     if (accept(TokenKind::kSemicolon)) continue;
@@ -31,25 +33,38 @@ void Parser::parse_types() {
       skip_to_declaration_end();
       continue;
     }
-    parse_type();
+    parse_type(join_attributes(attributes, take_attributes()));
   }
   take();
   accept(TokenKind::kSemicolon);
 }
 
-void Parser::parse_type() {
+// name [EXTENDS base] : specification [:= value];
+void Parser::parse_type(Range32 attributes) {
   TypeDecl decl;
+  decl.attributes = attributes;
+  decl.scope = scope_;
+  if (is_access(kind()) && is_name(next_kind())) decl.access = access_of(take().kind);
   decl.name = parse_name("type");
   if (panic_ && !is_name(kind())) take();
-  if (!panic_ && kind() == TokenKind::kExtends) {
-    not_supported(take().span(), "derived structures (EXTENDS) are");
-    parse_name("structure");
-  }
+  SpecId base;
+  Token extends = *current_;
+  if (!panic_ && accept(TokenKind::kExtends)) base = parse_type_name();
   if (!panic_ && !expect(TokenKind::kColon, "behind the name of the type")) {
     panic_ = kind() != TokenKind::kStruct && kind() != TokenKind::kArray;
   }
   if (panic_) return skip_to_declaration_end();
+  type_level_ = true;
   decl.spec = parse_spec();
+  type_level_ = false;
+  if (base.valid()) {
+    if (tree_[decl.spec].kind == SpecKind::kStruct) {
+      tree_.specs[decl.spec.index].element = base;
+    } else {
+      note_only(Code::kBadInheritance, extends.span(), "only a STRUCT extends another type",
+                "write `name : type;`");
+    }
+  }
   parse_default(decl.init);
   tree_.types.push_back(decl);
   finish_declaration("type");
@@ -67,6 +82,7 @@ SpecId Parser::error_spec(base::SourcePos begin) {
 }
 
 SpecId Parser::parse_spec() {
+  bool type_level = std::exchange(type_level_, false);
   Nesting nesting(*this);
   if (!nesting.entered()) return error_spec(here());
   switch (kind()) {
@@ -78,49 +94,93 @@ SpecId Parser::parse_spec() {
       return parse_enum({}, here());
     case TokenKind::kStringType:
     case TokenKind::kWideStringType:
+    case TokenKind::kUnicodeStringType:
       return parse_string_spec();
+    case TokenKind::kUnion:
+      return parse_struct();
     case TokenKind::kRefTo:
-      return unsupported_reference();
+      return parse_reference(SpecKind::kRefTo);
     case TokenKind::kPointer:
-    case TokenKind::kReference:
-      if (next_kind() == TokenKind::kTo) return unsupported_reference();
+      if (at_reference()) return parse_reference(SpecKind::kPointer);
       break;
-    case TokenKind::kUnion: {
-      base::SourcePos begin = here();
-      not_supported(take().span(), "unions are");
-      skip_block(TokenKind::kEndUnion);
-      return error_spec(begin);
-    }
+    case TokenKind::kReference:
+      if (at_reference()) return parse_reference(SpecKind::kReferenceTo);
+      break;
     default:
       break;
   }
-  if (is_name(kind())) return parse_named_spec();
+  if (is_name(kind())) return parse_named_spec(type_level);
   report_here(Code::kExpectedType, "a type belongs here, found " + describe(*current_));
   return error_spec(here());
 }
 
-// `INT`, `INT (0..10)`, `INT (Off, On)`
-SpecId Parser::parse_named_spec() {
+// A.B.Name
+SpecId Parser::parse_type_name() {
   base::SourcePos begin = here();
   Spec spec;
   spec.kind = SpecKind::kNamed;
-  spec.name = name_of(take());
-  while (kind() == TokenKind::kDot && is_name(next_kind())) {
-    not_supported({begin, current_->span().end}, "types of a namespace or library are",
-                  "write the name of the type alone");
+  spec.qualifiers.first = static_cast<uint32_t>(tree_.names.size());
+  spec.name = parse_name("type");
+  while (!panic_ && kind() == TokenKind::kDot && is_name(next_kind())) {
+    tree_.names.push_back(spec.name);
+    ++spec.qualifiers.count;
     take();
     spec.name = name_of(take());
   }
+  if (panic_) spec.kind = SpecKind::kError;
   spec.span = span_from(begin);
-  SpecId id = add_spec(std::move(spec));
-  if (kind() != TokenKind::kLeftParen) return id;
-  bool named = is_name(next_kind()) && peek(2).kind == TokenKind::kAssign;
-  if (named && !is_elementary_name(tree_[id].name.text)) {
-    not_supported(current_->span(), "arguments of FB_Init are");
-    parse_arguments();
-    return id;
+  return add_spec(std::move(spec));
+}
+
+// `INT`, `INT (0..10)`, `INT (Off, On)`, `Pump (5)`. A type other than the elementary ones
+// has literals behind it only where a TYPE is declared.
+SpecId Parser::parse_named_spec(bool type_level) {
+  base::SourcePos begin = here();
+  SpecId id = parse_type_name();
+  if (kind() != TokenKind::kLeftParen || panic_) return id;
+  const Spec& named = tree_[id];
+  bool elementary = named.qualifiers.count == 0 && is_elementary_name(named.name.text);
+  if (elementary || type_level) {
+    return at_enumerators() ? parse_enum(id, begin) : parse_subrange(id, begin);
   }
-  return at_enumerators() ? parse_enum(id, begin) : parse_subrange(id, begin);
+  if (at_subrange()) return parse_subrange(id, begin);
+  parse_init_arguments(id);
+  return id;
+}
+
+// Is there a `..` in the parentheses that open here?
+bool Parser::at_subrange() const {
+  static constexpr size_t kLongestBound = 64;
+  uint32_t depth = 0;
+  for (size_t at = 0; at < kLongestBound; ++at) {
+    TokenKind ahead = peek(at).kind;
+    if (ahead == TokenKind::kLeftParen) ++depth;
+    if (ahead == TokenKind::kRightParen && --depth == 0) return false;
+    if (ahead == TokenKind::kRange && depth == 1) return true;
+    if (ahead == TokenKind::kSemicolon || ahead == TokenKind::kEnd) return false;
+  }
+  return false;
+}
+
+// Pump(5), Pump(speed := 5): arguments of FB_Init
+void Parser::parse_init_arguments(SpecId named) {
+  Range32 args = parse_arguments();
+  Spec& spec = tree_.specs[named.index];
+  spec.has_args = true;
+  spec.args = args;
+  spec.span.end = last_end();
+}
+
+// ARRAY[0..1] OF Pump[(1), (2)]
+Range32 Parser::parse_element_arguments() {
+  const Token open = take();
+  size_t mark = expr_stack_.size();
+  while (kind() == TokenKind::kLeftParen) {
+    expr_stack_.push_back(parse_struct_initializer());
+    if (panic_ || !accept(TokenKind::kComma)) break;
+  }
+  close_bracket(TokenKind::kRightBracket, open);
+  return move_tail(expr_stack_, mark, tree_.expr_lists);
 }
 
 SpecId Parser::parse_subrange(SpecId base, base::SourcePos begin) {
@@ -161,31 +221,45 @@ SpecId Parser::parse_array_spec() {
   spec.kind = SpecKind::kArray;
   const Token open = *current_;
   if (!expect(TokenKind::kLeftBracket, "behind ARRAY")) return error_spec(begin);
-  bool open_bounds = kind() == TokenKind::kStar;
+  spec.open_bounds = kind() == TokenKind::kStar;
   do {
     DimSpec dim;
-    if (open_bounds && accept(TokenKind::kStar)) continue;
-    dim.low = parse_expression();
-    if (!panic_) expect(TokenKind::kRange, "between the bounds");
-    if (!panic_) dim.high = parse_expression();
+    if (!spec.open_bounds || !accept(TokenKind::kStar)) {
+      dim.low = parse_expression();
+      if (!panic_) expect(TokenKind::kRange, "between the bounds");
+      if (!panic_) dim.high = parse_expression();
+    }
     spec.dims.push_back(dim);
   } while (!panic_ && accept(TokenKind::kComma));
   close_bracket(TokenKind::kRightBracket, open);
   if (!panic_) expect(TokenKind::kOf, "behind the bounds");
   if (panic_) return error_spec(begin);
-  if (open_bounds) not_supported(open.span(), "arrays with open bounds `[*]` are");
   spec.element = parse_spec();
-  if (open_bounds) return error_spec(begin);
+  if (kind() == TokenKind::kLeftBracket && next_kind() == TokenKind::kLeftParen) {
+    spec.element_args = parse_element_arguments();
+  }
   spec.span = span_from(begin);
   return add_spec(std::move(spec));
 }
 
-SpecId Parser::unsupported_reference() {
-  base::SourcePos begin = here();
-  not_supported(take().span(), "pointers and references are");
-  accept(TokenKind::kTo);
-  parse_spec();
-  return error_spec(begin);
+// Behind POINTER or REFERENCE: TO, or the type itself when TO is forgotten.
+bool Parser::at_reference() const {
+  TokenKind next = next_kind();
+  return next == TokenKind::kTo || next == TokenKind::kArray || is_name(next);
+}
+
+// POINTER TO T, REF_TO T, REFERENCE TO T
+SpecId Parser::parse_reference(SpecKind reference) {
+  Spec spec;
+  spec.kind = reference;
+  base::SourcePos begin = {take().begin};
+  if (reference != SpecKind::kRefTo && !accept(TokenKind::kTo)) {
+    note_only(Code::kExpected, current_->span(),
+              "expected `TO` behind " + describe(current_[-1]) + ", found " + describe(*current_));
+  }
+  spec.element = parse_spec();
+  spec.span = span_from(begin);
+  return add_spec(std::move(spec));
 }
 
 }  // namespace frontend

@@ -20,28 +20,29 @@ VarSection section_of(TokenKind kind) {
       return VarSection::kExternal;
     case TokenKind::kVarGlobal:
       return VarSection::kGlobal;
+    case TokenKind::kVarStat:
+      return VarSection::kStatic;
+    case TokenKind::kVarInst:
+      return VarSection::kInstance;
+    case TokenKind::kVarAccess:
+      return VarSection::kAccess;
+    case TokenKind::kVarConfig:
+      return VarSection::kConfig;
     default:
       return VarSection::kLocal;
   }
-}
-
-bool is_supported_section(TokenKind kind) {
-  return kind == TokenKind::kVar || section_of(kind) != VarSection::kLocal;
 }
 
 }  // namespace
 
 bool Parser::at_var_block() const { return is_var_start(kind()); }
 
-void Parser::parse_var_block(std::vector<VarBlock>& blocks) {
+void Parser::parse_var_block(std::vector<VarBlock>& blocks, Range32 attributes) {
   const Token opening = take();
-  if (!is_supported_section(opening.kind)) {
-    not_supported(opening.span(), std::string(token_text(opening.kind)) + " is");
-    skip_block(TokenKind::kEndVar);
-    return;
-  }
   VarBlock block;
   block.section = section_of(opening.kind);
+  block.attributes = attributes;
+  block.scope = scope_;
   parse_qualifiers(block);
   block.span = span_from({opening.begin});
   parse_variables(block, opening);
@@ -50,7 +51,6 @@ void Parser::parse_var_block(std::vector<VarBlock>& blocks) {
 
 // CONSTANT, RETAIN, ... are qualifiers unless they are the first variable's name.
 void Parser::parse_qualifiers(VarBlock& block) {
-  bool non_retain = false;
   for (;; take()) {
     TokenKind next = next_kind();
     if (next == TokenKind::kColon || next == TokenKind::kComma || next == TokenKind::kAt) return;
@@ -63,18 +63,23 @@ void Parser::parse_qualifiers(VarBlock& block) {
         block.retain = true;
         break;
       case TokenKind::kNonRetain:
-        non_retain = true;
+        block.non_retain = true;
         break;
       case TokenKind::kPublic:
       case TokenKind::kPrivate:
       case TokenKind::kProtected:
       case TokenKind::kInternal:
-        not_supported(current_->span(), "access specifiers are", "leave it out");
+        if (block.access != Access::kDefault) {
+          note_only(Code::kBadSpecifier, current_->span(),
+                    describe(*current_) + " contradicts or repeats a word in front of it",
+                    "keep one of PUBLIC, PRIVATE, PROTECTED and INTERNAL");
+        }
+        block.access = access_of(kind());
         break;
       default:
         return;
     }
-    int kinds = (block.constant ? 1 : 0) + (block.retain ? 1 : 0) + (non_retain ? 1 : 0);
+    int kinds = (block.constant ? 1 : 0) + (block.retain ? 1 : 0) + (block.non_retain ? 1 : 0);
     if (kinds > 1) {
       note_only(Code::kBadQualifier, current_->span(),
                 describe(*current_) + " contradicts a qualifier in front of it",
@@ -87,7 +92,13 @@ void Parser::parse_variables(VarBlock& block, const Token& opening) {
   while (kind() != TokenKind::kEndVar) {
     if (accept(TokenKind::kSemicolon)) continue;
     if (variables_end()) return report_missing_end(opening, TokenKind::kEndVar);
-    parse_variable_declaration(block.vars);
+    if (block.section == VarSection::kAccess) {
+      parse_access_path(block.vars);
+    } else if (block.section == VarSection::kConfig) {
+      parse_config_variable(block.vars);
+    } else {
+      parse_variable_declaration(block.vars);
+    }
   }
   take();
   accept(TokenKind::kSemicolon);
@@ -100,6 +111,7 @@ bool Parser::variables_end() {
       is_file_level_start(kind())) {
     return true;
   }
+  if (at_member() || at_soft_declaration()) return !end_var_ahead();
   TokenKind next = next_kind();
   bool statement =
       is_statement_keyword(kind()) ||
@@ -121,15 +133,20 @@ bool Parser::end_var_ahead() {
 
 void Parser::parse_variable_declaration(std::vector<VarDecl>& out) {
   VarDecl decl;
+  decl.attributes = take_attributes();
   base::SourcePos begin = here();
-  do {
+  // `AT %IW3 : INT;` declares the address itself (IEC 61131-3 6.5.5): its text is the name.
+  bool unnamed = kind() == TokenKind::kAt && next_kind() == TokenKind::kDirect;
+  if (unnamed) decl.names.push_back(name_of(peek(1)));
+  while (!unnamed) {
     Name name = parse_name("variable");
     if (panic_) {
       if (!is_closing(kind())) take();
       return skip_to_declaration_end();
     }
     decl.names.push_back(name);
-  } while (accept(TokenKind::kComma));
+    if (!accept(TokenKind::kComma)) break;
+  }
   parse_location(decl);
   if (!panic_ && kind() == TokenKind::kAssign) {
     report_here(Code::kExpected, "a declaration needs a type: expected `:` behind the name",
@@ -138,7 +155,7 @@ void Parser::parse_variable_declaration(std::vector<VarDecl>& out) {
   if (!panic_) expect(TokenKind::kColon, "behind the name of the variable");
   if (panic_) return skip_to_declaration_end();
   decl.spec = parse_spec();
-  parse_edge();
+  decl.edge = parse_edge();
   parse_default(decl.init);
   decl.span = span_from(begin);
   out.push_back(std::move(decl));
@@ -153,14 +170,55 @@ void Parser::parse_location(VarDecl& decl) {
         Code::kBadDirectAddress,
         "a direct address such as %QX0.0 belongs behind AT, found " + describe(*current_));
   }
-  decl.address = parse_direct_address(take());
-  decl.has_address = decl.address.area != ir::DirectArea::kNone;
+  DecodedAddress decoded = parse_direct_address(take());
+  decl.has_address = !decoded.problem;
+  decl.incomplete = decoded.incomplete;
+  decl.address = decoded.address;
+  decl.levels = add_levels(decoded.levels);
 }
 
-void Parser::parse_edge() {
-  if (kind() != TokenKind::kRisingEdge && kind() != TokenKind::kFallingEdge) return;
-  not_supported(take().span(), "edge inputs (R_EDGE, F_EDGE) are",
-                "use an R_TRIG or F_TRIG in the body");
+Edge Parser::parse_edge() {
+  if (accept(TokenKind::kRisingEdge)) return Edge::kRising;
+  return accept(TokenKind::kFallingEdge) ? Edge::kFalling : Edge::kNone;
+}
+
+// VAR_ACCESS: name : Resource.Program.x : INT READ_WRITE;
+void Parser::parse_access_path(std::vector<VarDecl>& out) {
+  VarDecl decl;
+  decl.attributes = take_attributes();
+  base::SourcePos begin = here();
+  decl.names.push_back(parse_name("access path"));
+  if (!panic_) expect(TokenKind::kColon, "behind the name of the access path");
+  if (!panic_) decl.path = parse_primary();
+  if (!panic_) expect(TokenKind::kColon, "behind the variable that is opened");
+  if (panic_) {
+    if (!is_closing(kind())) take();
+    return skip_to_declaration_end();
+  }
+  decl.spec = parse_spec();
+  if (!panic_ && !accept(TokenKind::kReadOnly)) decl.writable = accept(TokenKind::kReadWrite);
+  decl.span = span_from(begin);
+  out.push_back(std::move(decl));
+  finish_declaration("declaration");
+}
+
+// VAR_CONFIG: Resource.Program.x AT %IX0.0 : BOOL := value;
+void Parser::parse_config_variable(std::vector<VarDecl>& out) {
+  VarDecl decl;
+  decl.attributes = take_attributes();
+  base::SourcePos begin = here();
+  decl.path = parse_primary();
+  if (!panic_) parse_location(decl);
+  if (!panic_) expect(TokenKind::kColon, "behind the path of the variable");
+  if (panic_) {
+    if (!is_closing(kind())) take();
+    return skip_to_declaration_end();
+  }
+  decl.spec = parse_spec();
+  parse_default(decl.init);
+  decl.span = span_from(begin);
+  out.push_back(std::move(decl));
+  finish_declaration("declaration");
 }
 
 void Parser::parse_default(ExprId& init) {

@@ -1,0 +1,68 @@
+#include "frontend/lex/pragma.h"
+
+#include <algorithm>
+
+#include "frontend/lex/characters.h"
+#include "ir/types/types.h"
+
+namespace frontend {
+
+void PragmaReader::next() {
+  while (at_ < text_.size() && is_space(text_[at_])) ++at_;
+  size_t begin = at_;
+  if (at_ == text_.size()) {
+    kind_ = Kind::kEnd;
+    piece_ = {};
+  } else if (char quote = text_[at_]; quote == '\'' || quote == '"') {
+    size_t end = std::min(text_.find(quote, at_ + 1), text_.size());
+    kind_ = Kind::kText;
+    piece_ = text_.substr(at_ + 1, end - at_ - 1);
+    at_ = std::min(end + 1, text_.size());
+  } else if (is_name_part(text_[at_])) {
+    while (at_ < text_.size() && (is_name_part(text_[at_]) || text_[at_] == '.')) ++at_;
+    kind_ = Kind::kWord;
+    piece_ = text_.substr(begin, at_ - begin);
+  } else {
+    ++at_;
+    kind_ = Kind::kSign;
+    piece_ = text_.substr(begin, 1);
+  }
+}
+
+bool PragmaReader::is_word(std::string_view word) const {
+  return kind_ == Kind::kWord && ir::same_name(piece_, word);
+}
+
+bool PragmaReader::accept_word(std::string_view word) {
+  if (!is_word(word)) return false;
+  next();
+  return true;
+}
+
+bool PragmaReader::accept_sign(char sign) {
+  if (kind_ != Kind::kSign || piece_[0] != sign) return false;
+  next();
+  return true;
+}
+
+std::string_view inside_pragma(std::string_view pragma) {
+  return pragma.size() < 2 ? std::string_view() : pragma.substr(1, pragma.size() - 2);
+}
+
+std::optional<PragmaAttribute> read_attribute(std::string_view pragma) {
+  PragmaReader reader(inside_pragma(pragma));
+  if (!reader.accept_word("attribute")) return std::nullopt;
+  bool named =
+      reader.kind() == PragmaReader::Kind::kText || reader.kind() == PragmaReader::Kind::kWord;
+  if (!named || reader.piece().empty()) return std::nullopt;
+  PragmaAttribute out;
+  out.name = reader.piece();
+  reader.next();
+  if (reader.accept_sign(':') && reader.accept_sign('=')) {
+    out.has_value = true;
+    out.value = reader.piece();
+  }
+  return out;
+}
+
+}  // namespace frontend

@@ -1,0 +1,42 @@
+// What stands in a pragma `{...}`: words, quoted texts and signs, and attributes.
+// Views into the pragma's text; anything may stand there, so nothing is an error here.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace frontend {
+
+// Reads a pragma piece by piece, without its braces.
+class PragmaReader {
+ public:
+  enum class Kind : uint8_t { kEnd, kWord, kText, kSign };
+
+  explicit PragmaReader(std::string_view inside) : text_(inside) { next(); }
+  Kind kind() const { return kind_; }
+  std::string_view piece() const { return piece_; }  // of a kText: without its quotes
+  void next();
+  bool is_word(std::string_view word) const;
+  bool accept_word(std::string_view word);
+  bool accept_sign(char sign);
+
+ private:
+  std::string_view text_;
+  size_t at_ = 0;
+  Kind kind_ = Kind::kEnd;
+  std::string_view piece_;
+};
+
+struct PragmaAttribute {
+  std::string_view name;
+  std::string_view value;
+  bool has_value = false;
+};
+// `{attribute 'name'}`, `{attribute 'name' := 'value'}`; nullopt for all other pragmas.
+std::optional<PragmaAttribute> read_attribute(std::string_view pragma);
+
+// Without the braces.
+std::string_view inside_pragma(std::string_view pragma);
+
+}  // namespace frontend

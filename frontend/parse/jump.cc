@@ -1,0 +1,104 @@
+// Jumps and labels, __TRY, and the mocks of tests.
+#include "frontend/parse/parser.h"
+#include "frontend/parse/token_sets.h"
+
+namespace frontend {
+
+// Statements that begin with words which are names elsewhere; false when it is none of them.
+bool Parser::parse_soft_statement() {
+  if (!is_name(kind())) return false;
+  if (kind() == TokenKind::kTry) {
+    parse_try();
+  } else if (next_kind() == TokenKind::kColon) {
+    parse_label();
+  } else if (kind() == TokenKind::kJump && is_name(next_kind())) {
+    parse_jump_to_label();
+  } else if ((kind() == TokenKind::kMock || kind() == TokenKind::kMockFunction) &&
+             is_name(next_kind())) {
+    parse_mock();
+  } else {
+    return skip_unsupported_block();
+  }
+  return true;
+}
+
+void Parser::parse_label() {
+  Stmt stmt;
+  stmt.kind = StmtKind::kLabel;
+  stmt.name = name_of(take());
+  stmt.span = stmt.name.span;
+  take();
+  add_statement(stmt);
+}
+
+// JMP label;
+void Parser::parse_jump_to_label() {
+  Stmt stmt;
+  stmt.kind = StmtKind::kJump;
+  base::SourcePos begin = {take().begin};
+  stmt.name = name_of(take());
+  stmt.span = span_from(begin);
+  add_statement(stmt);
+  finish_statement("statement");
+}
+
+// __TRY ... __CATCH(e) ... __FINALLY ... __ENDTRY
+void Parser::parse_try() {
+  const Token opening = take();
+  Stmt stmt;
+  stmt.kind = StmtKind::kTry;
+  stmt.span = opening.span();
+  accept(TokenKind::kSemicolon);
+  stmt.body = parse_body(TokenKind::kEndTry);
+  while (kind() == TokenKind::kCatch || kind() == TokenKind::kFinally) {
+    const Token part = take();
+    bool is_catch = part.kind == TokenKind::kCatch;
+    bool& present = is_catch ? stmt.has_catch : stmt.has_finally;
+    if (present || (is_catch && stmt.has_finally)) {
+      note_only(Code::kUnexpectedEnd, part.span(),
+                describe(part) + " stands here a second time, or behind __FINALLY",
+                "write __TRY ... __CATCH(e) ... __FINALLY ... __ENDTRY");
+    }
+    present = true;
+    if (is_catch && kind() == TokenKind::kLeftParen) stmt.target = parse_catch_variable();
+    accept(TokenKind::kSemicolon);
+    (is_catch ? stmt.catch_body : stmt.finally_body) = parse_body(TokenKind::kEndTry);
+  }
+  if (!stmt.has_catch && !stmt.has_finally && kind() == TokenKind::kEndTry) {
+    note_only(Code::kExpected, current_->span(),
+              "expected `__CATCH` or `__FINALLY` before `__ENDTRY`");
+  }
+  add_statement(stmt);
+  close_statement(opening, TokenKind::kEndTry);
+}
+
+ExprId Parser::parse_catch_variable() {
+  const Token open = take();
+  ExprId variable;
+  if (kind() != TokenKind::kRightParen) variable = parse_expression();
+  close_bracket(TokenKind::kRightParen, open);
+  if (panic_) skip_to(TokenKind::kEndTry);
+  panic_ = false;
+  return variable;
+}
+
+// MOCK path;  MOCK_FUNCTION path [RETURNS value];
+void Parser::parse_mock() {
+  Stmt stmt;
+  base::SourcePos begin = here();
+  bool function = take().kind == TokenKind::kMockFunction;
+  stmt.kind = function ? StmtKind::kMockFunction : StmtKind::kMock;
+  stmt.target = parse_variable();
+  if (function && !panic_ && accept(TokenKind::kReturns)) stmt.value = parse_expression();
+  stmt.span = span_from(begin);
+  add_statement(stmt);
+  finish_statement("statement");
+}
+
+// MOCK_FUNCTION Name : T ... END_MOCK_FUNCTION, as opposed to the statement.
+bool Parser::at_mock_function_block() const {
+  if (kind() != TokenKind::kMockFunction || !is_name(next_kind())) return false;
+  return peek(2).kind == TokenKind::kColon || is_var_start(peek(2).kind);
+}
+
+}  // namespace frontend

@@ -1,0 +1,102 @@
+// METHOD, PROPERTY, ACTION.
+#include "frontend/parse/parser.h"
+#include "frontend/parse/token_sets.h"
+
+namespace frontend {
+
+bool Parser::takes_members(PouKind kind) {
+  return kind == PouKind::kFunctionBlock || kind == PouKind::kProgram || kind == PouKind::kClass ||
+         kind == PouKind::kInterface;
+}
+
+// These words are names elsewhere; two names side by side are never part of a statement.
+bool Parser::at_member() const {
+  bool word = kind() == TokenKind::kMethod || kind() == TokenKind::kProperty ||
+              kind() == TokenKind::kAction;
+  return word && is_name(next_kind());
+}
+
+void Parser::parse_member(PouDecl& owner, Range32 attributes) {
+  if (kind() == TokenKind::kProperty) return parse_property(owner, attributes);
+  PouKind member = kind() == TokenKind::kMethod ? PouKind::kMethod : PouKind::kAction;
+  // Open statements of the body around belong to nothing inside the member.
+  auto open = open_;
+  open_.fill(0);
+  open_[static_cast<uint8_t>(TokenKind::kEndInterface)] = owner.kind == PouKind::kInterface ? 1 : 0;
+  PouDecl pou = parse_pou(member, attributes);
+  open_ = open;
+  pou.scope = owner.scope;
+  if (!pou.name.empty()) owner.members.push_back(std::move(pou));
+}
+
+// PROPERTY [PUBLIC ...] name : type GET ... END_GET SET ... END_SET END_PROPERTY. Without GET and
+// SET, statements are those of GET.
+void Parser::parse_property(PouDecl& owner, Range32 attributes) {
+  const Token opening = take();
+  PouDecl head;
+  head.kind = PouKind::kGetter;
+  head.attributes = attributes;
+  head.scope = owner.scope;
+  parse_specifiers(head);
+  head.name = parse_name("property");
+  if (!panic_ && expect(TokenKind::kColon, "behind the name of the property")) {
+    head.result = parse_spec();
+  }
+  if (panic_) {
+    while (!on_new_line() && !is_statement_boundary(kind())) take();
+    panic_ = false;
+  }
+  auto open = open_;
+  open_.fill(0);
+  open_[static_cast<uint8_t>(TokenKind::kEndProperty)] = 1;
+  size_t members = owner.members.size();
+  while (parse_accessor(head, owner, members)) {
+  }
+  open_ = open;
+  if (owner.members.size() == members && kind() == TokenKind::kEndProperty) {
+    note_only(Code::kBadProperty, opening.span(),
+              "the property `" + std::string(head.name.text) + "` has neither GET nor SET",
+              "write GET ... END_GET, SET ... END_SET, or both");
+  }
+  close_pou(opening, head, TokenKind::kEndProperty);
+}
+
+bool Parser::at_accessor() const {
+  if (kind() != TokenKind::kGet && kind() != TokenKind::kSet) return false;
+  TokenKind next = next_kind();
+  return next != TokenKind::kAssign && next != TokenKind::kDot && next != TokenKind::kLeftParen &&
+         next != TokenKind::kLeftBracket && next != TokenKind::kCaret && next != TokenKind::kEqual;
+}
+
+// One GET or SET; false when there is none. Accessors of this property begin at `first`.
+bool Parser::parse_accessor(const PouDecl& head, PouDecl& owner, size_t first) {
+  if (accept(TokenKind::kSemicolon)) return true;
+  Range32 attributes = take_attributes();
+  bool explicit_accessor = at_accessor();
+  if (!explicit_accessor && (owner.members.size() != first || list_ends(false))) return false;
+  PouDecl accessor = head;
+  accessor.attributes = join_attributes(head.attributes, attributes);
+  base::SourcePos begin = here();
+  TokenKind end = kind() == TokenKind::kSet ? TokenKind::kEndSet : TokenKind::kEndGet;
+  if (kind() == TokenKind::kSet) accessor.kind = PouKind::kSetter;
+  const Token opening = *current_;
+  if (explicit_accessor) take();
+  in_property_ = true;
+  ++open_[static_cast<uint8_t>(end)];
+  parse_pou_variables(accessor);
+  parse_pou_body(accessor);
+  --open_[static_cast<uint8_t>(end)];
+  in_property_ = false;
+  accept(end);
+  accept(TokenKind::kSemicolon);
+  accessor.span = span_from(begin);
+  for (size_t i = first; i < owner.members.size(); ++i) {
+    if (owner.members[i].kind != accessor.kind) continue;
+    note_only(Code::kBadProperty, opening.span(),
+              describe(opening) + " of `" + std::string(head.name.text) + "` stands here twice");
+  }
+  owner.members.push_back(std::move(accessor));
+  return true;
+}
+
+}  // namespace frontend
