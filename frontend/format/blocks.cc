@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <string_view>
+
+#include "base/limits.h"
+#include "frontend/format/outliner.h"
+#include "ir/types/types.h"
+
+namespace frontend::formatting {
+
+Outline outline(const Text& text) { return Outliner(text).run(); }
+
+Outline Outliner::run() {
+  blocks_.push_back({});
+  while (kind() != TokenKind::kEnd) {
+    follow_conditions();
+    if (top().kind == BlockKind::kDeclarations) {
+      declaration();
+    } else {
+      statement_level();
+    }
+  }
+  Line& last = add(LineKind::kEnd, at_ + 1, 0);
+  last.comment_level = top().inner;
+  return std::move(out_);
+}
+
+// Branches of conditional compilation begin with the same open blocks, as only one of them counts.
+void Outliner::follow_conditions() {
+  const Gap& gap = text_.gap(at_);
+  for (uint32_t p = gap.first; p < gap.first + gap.count; ++p) {
+    const Piece& piece = text_.piece(p);
+    if (piece.kind != PieceKind::kPragma) continue;
+    std::string_view word = text_.piece_text(piece).substr(1);
+    word.remove_prefix(std::min(word.find_first_not_of(" \t"), word.size()));
+    word = word.substr(0, word.find_first_of(" \t}("));
+    if (ir::same_name(word, "IF")) {
+      if (conditions_.size() < base::kMaxNesting) conditions_.push_back(blocks_);
+    } else if (conditions_.empty()) {
+      continue;
+    } else if (ir::same_name(word, "ELSE") || ir::same_name(word, "ELSIF")) {
+      blocks_ = conditions_.back();
+    } else if (ir::same_name(word, "END_IF")) {
+      conditions_.pop_back();
+    }
+  }
+}
+
+void Outliner::push(TokenKind end, BlockKind kind, uint32_t inner) {
+  const Line& line = out_.lines.back();
+  uint32_t head = static_cast<uint32_t>(out_.lines.size()) - 1;
+  blocks_.push_back({end, kind, line.level, inner, next_id_++, head, false});
+}
+
+// The line of tokens [at_, end), at least one.
+Line& Outliner::add(LineKind kind, uint32_t end, uint32_t level) {
+  Line line;
+  line.first = at_;
+  line.end = end > at_ ? end : at_ + 1;
+  line.level = line.comment_level = level;
+  line.block = top().id;
+  line.kind = kind;
+  at_ = line.end;
+  out_.lines.push_back(line);
+  return out_.lines.back();
+}
+
+// An END_... word; one that closes nothing open stands where it stands.
+void Outliner::close() {
+  TokenKind end = kind();
+  size_t match = blocks_.size() - 1;
+  while (match != 0 && blocks_[match].end != end) --match;
+  uint32_t inner = top().inner;
+  Block closed = match != 0 ? blocks_[match] : Block{};
+  if (match != 0) blocks_.resize(match);
+  uint32_t behind = at_ + 1;
+  // `END_STRUCT := (a := 1);` and the priority of a structure's variable.
+  if (end == TokenKind::kEndStruct && text_.kind(behind) == TokenKind::kAssign) {
+    while (text_.kind(behind) != TokenKind::kSemicolon && !is_structural(text_.kind(behind)) &&
+           text_.kind(behind) != TokenKind::kEnd) {
+      ++behind;
+    }
+  }
+  uint32_t level = match != 0 ? closed.outer : top().inner;
+  bool one_row = match != 0 && closed.kind == BlockKind::kDeclarations &&
+                 text_.row(out_.lines[closed.head].first) == text_.row(at_);
+  Line& line = add(LineKind::kEnd, behind_semicolons(behind), level);
+  line.comment_level = match != 0 ? inner : level;
+  line.closes = true;
+  line.ends_pou = closed.pou;
+  if (one_row) {
+    out_.lines[closed.head].row_end = static_cast<uint32_t>(out_.lines.size()) - 1;
+  }
+}
+
+uint32_t Outliner::behind_semicolons(uint32_t end) const {
+  if (text_.kind(end) == TokenKind::kSemicolon) ++end;
+  while (text_.kind(end) == TokenKind::kSemicolon && text_.gap(end).count == 0 &&
+         text_.row(end) == text_.row(end - 1)) {
+    ++end;
+  }
+  return end;
+}
+
+bool is_block_end(TokenKind kind) {
+  return kind == TokenKind::kEndTry || (is_keyword(kind) && token_text(kind).starts_with("END_"));
+}
+
+bool is_variable_section(TokenKind kind) {
+  return is_keyword(kind) && token_text(kind).starts_with("VAR");
+}
+
+bool is_opening(TokenKind kind) {
+  return kind == TokenKind::kLeftParen || kind == TokenKind::kLeftBracket;
+}
+
+bool is_closing_bracket(TokenKind kind) {
+  return kind == TokenKind::kRightParen || kind == TokenKind::kRightBracket;
+}
+
+bool is_structural(TokenKind kind) {
+  if (!is_keyword(kind)) return false;
+  switch (kind) {
+    case TokenKind::kCase:
+    case TokenKind::kCatch:
+    case TokenKind::kConfiguration:
+    case TokenKind::kElse:
+    case TokenKind::kElsif:
+    case TokenKind::kFinally:
+    case TokenKind::kFor:
+    case TokenKind::kFunction:
+    case TokenKind::kFunctionBlock:
+    case TokenKind::kIf:
+    case TokenKind::kProgram:
+    case TokenKind::kRepeat:
+    case TokenKind::kStruct:
+    case TokenKind::kType:
+    case TokenKind::kUntil:
+    case TokenKind::kWhile:
+      return true;
+    default:
+      return is_block_end(kind) || is_variable_section(kind);
+  }
+}
+
+}  // namespace frontend::formatting

@@ -1,0 +1,64 @@
+#include "frontend/format/format.h"
+
+#include "base/limits.h"
+#include "frontend/format/same_program.h"
+#include "frontend/format/writer.h"
+#include "frontend/parse/parse.h"
+
+namespace frontend {
+
+namespace {
+
+base::Error errors_in(const base::SourceMap& sources, uint32_t file, uint32_t count) {
+  return {base::Refusal::kSourceErrors,
+          std::string(sources.file_name(file)) + ": " + std::to_string(count) + " error(s)"};
+}
+
+// Syntax that is known but not compiled yet is no reason to leave a text alone, nor is `{error}`.
+uint32_t copy_errors(const base::Diagnostics& from, base::Diagnostics& to) {
+  uint32_t errors = 0;
+  for (const base::Diagnostic& diagnostic : from.all()) {
+    if (diagnostic.code == base::DiagnosticCode::kNotSupported) continue;
+    if (diagnostic.code == base::DiagnosticCode::kErrorPragma) continue;
+    if (base::diagnostic_row(diagnostic.code).severity != base::Severity::kError) continue;
+    to.add(diagnostic);
+    ++errors;
+  }
+  return errors;
+}
+
+std::string laid_out(const base::SourceMap& sources, uint32_t file, const TokenList& tokens,
+                     const FormatOptions& options) {
+  formatting::Text text(sources, file, tokens);
+  formatting::Outline outline = formatting::outline(text);
+  formatting::Rows rows = formatting::Writer(text, outline, options).run();
+  return formatting::align(rows, options, text);
+}
+
+}  // namespace
+
+base::Result<std::string> format_tokens(const base::SourceMap& sources, uint32_t file,
+                                        const FormatOptions& options,
+                                        base::Diagnostics& diagnostics) {
+  base::Diagnostics lexical;
+  TokenList tokens = lex(sources, file, lexical, LexOptions::all_text());
+  uint32_t errors = copy_errors(lexical, diagnostics);
+  if (errors != 0) return errors_in(sources, file, errors);
+  base::SourceMap result;
+  result.add(std::string(sources.file_name(file)), laid_out(sources, file, tokens, options));
+  base::Status same = formatting::same_program(sources, file, result, 0);
+  if (!same.ok()) return same.error();
+  return std::string(result.text(0));
+}
+
+base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,
+                                 const FormatOptions& options, base::Diagnostics& diagnostics) {
+  base::Diagnostics found;
+  Tree tree;
+  parse(sources, file, tree, found);
+  uint32_t errors = copy_errors(found, diagnostics);
+  if (errors != 0) return errors_in(sources, file, errors);
+  return format_tokens(sources, file, options, diagnostics);
+}
+
+}  // namespace frontend

@@ -1,0 +1,99 @@
+// Inside of the outline: one pass over the tokens with a stack of open blocks. Members are spread
+// over blocks.cc (the stack, ends), heads.cc (POUs and their like), statements.cc, declarations.cc.
+#pragma once
+
+#include <initializer_list>
+#include <vector>
+
+#include "frontend/format/outline.h"
+
+namespace frontend::formatting {
+
+class Outliner {
+ public:
+  explicit Outliner(const Text& text) : text_(text) {
+    out_.soft_keywords.resize(text.token_count());
+    out_.lines.reserve(text.token_count() / 6 + 8);
+  }
+  Outline run();
+
+ private:
+  enum class BlockKind : uint8_t { kBody, kGroup, kProperty, kDeclarations, kCase, kStatements };
+  struct Block {
+    TokenKind end = TokenKind::kEnd;
+    BlockKind kind = BlockKind::kGroup;
+    uint32_t outer = 0;  // level of its head
+    uint32_t inner = 0;
+    uint32_t id = 0;
+    uint32_t head = 0;  // line
+    bool pou = false;
+  };
+
+  // --- blocks.cc
+  void follow_conditions();
+  TokenKind kind(uint32_t ahead = 0) const { return text_.kind(at_ + ahead); }
+  Block& top() { return blocks_.back(); }
+  void push(TokenKind end, BlockKind kind, uint32_t inner);
+  Line& add(LineKind kind, uint32_t end, uint32_t level);
+  Line& add_head(uint32_t end) {
+    Line& line = add(LineKind::kHead, end, top().inner);
+    line.opens = true;
+    return line;
+  }
+  void close();
+  uint32_t behind_semicolons(uint32_t end) const;
+  void soft_keyword(uint32_t i) { out_.soft_keywords[i] = true; }
+
+  // --- heads.cc
+  bool head();
+  bool soft_head();
+  void pou(TokenKind end, BlockKind kind);
+  void named_group(TokenKind end, BlockKind kind);
+  void property_part(TokenKind end);
+  void step(TokenKind end);
+  void transition();
+  void test();
+  bool mock_function();
+  bool setup(TokenKind end);
+  uint32_t behind_modifiers(uint32_t i);
+  uint32_t behind_name(uint32_t i) const;
+  uint32_t behind_bases(uint32_t i);
+  uint32_t behind_type(uint32_t i);
+  uint32_t behind_group(uint32_t i) const;  // `i` is an opening bracket
+
+  // --- statements.cc
+  void statement_level();
+  bool control();
+  void condition(TokenKind until, TokenKind end, BlockKind kind);
+  void branch(TokenKind until);
+  void repeat();
+  void until();
+  bool exception_handling();
+  bool case_label();
+  bool instruction_list();
+  void simple_statement();
+
+  // --- declarations.cc
+  bool declaration_block();
+  void variables();
+  void types();
+  void declaration();
+  bool opens_structure(uint32_t i) const;
+  void mark_declaration_words(uint32_t from, uint32_t end);
+
+  const Text& text_;
+  Outline out_;
+  std::vector<Block> blocks_;
+  std::vector<std::vector<Block>> conditions_;  // blocks open at each open {IF ...}
+  uint32_t at_ = 0;
+  uint32_t next_id_ = 1;
+};
+
+// A word that begins or ends a construct, so that no statement goes past it.
+bool is_structural(TokenKind kind);
+bool is_variable_section(TokenKind kind);
+bool is_block_end(TokenKind kind);
+bool is_opening(TokenKind kind);
+bool is_closing_bracket(TokenKind kind);
+
+}  // namespace frontend::formatting
