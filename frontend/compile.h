@@ -4,19 +4,28 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "base/source.h"
+#include "frontend/dialect.h"
 #include "ir/program/ir.h"
 
 namespace frontend {
 
-enum class Dialect : uint8_t { kIec, kCodesys, kTwincat };
-
 struct CompileOptions {
   Dialect dialect = Dialect::kCodesys;
   std::string name = "project";  // used when there is no CONFIGURATION
+  // Conditional compilation: NAME or NAME=VALUE, as if {define NAME 'VALUE'} headed each file.
+  std::string resource;  // of several; empty: the first
+  std::vector<std::string> defines;
 };
+
+struct Tree;
+// Every file of `sources`; conditions see the declarations of all of them.
+void parse_all(const base::SourceMap& sources, const CompileOptions& options, Tree& tree,
+               base::Diagnostics& diagnostics);
 
 // All files of `sources` are one project; the standard function blocks (ST, from
 // stdlib) that it uses are compiled along. nullopt when any error was reported.
@@ -24,5 +33,23 @@ struct CompileOptions {
 // under its own name, in source order.
 std::optional<ir::Program> compile(const base::SourceMap& sources, const CompileOptions& options,
                                    base::Diagnostics& diagnostics);
+
+// TEST blocks (language.md, "Unit tests in the language"), made into one program each; the
+// project's own tasks and programs do not run.
+struct TestCase {
+  std::string name;      // as written, without quotes
+  std::string file;
+  uint32_t line = 0;
+  std::string instance;  // the program instance that is this test
+};
+struct TestProgram {
+  ir::Program program;
+  std::vector<TestCase> cases;  // in source order
+};
+// The STRING global that a failed assertion leaves its message in.
+inline constexpr const char* kTestMessage = "__TEST_MESSAGE";
+std::optional<TestProgram> compile_tests(const base::SourceMap& sources,
+                                         const CompileOptions& options,
+                                         base::Diagnostics& diagnostics);
 
 }  // namespace frontend

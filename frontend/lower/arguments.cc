@@ -26,6 +26,7 @@ bool Body::bind_arguments(const Expr& call, const PouInfo& callee, std::vector<B
 }
 
 bool Body::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding>& bindings) {
+  if (sema_.is_enable(arg, &callee)) return true;
   auto found = callee.names.find(arg.name.text);
   const Variable* variable = found == callee.names.end() || found->second == callee.result
                                  ? nullptr

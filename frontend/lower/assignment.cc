@@ -1,23 +1,74 @@
-// Assignments. The indices of the left side are evaluated first, then the value.
+// Assignments, also as expressions: `a := b := 3`, `x S= y`. The indices of the left side
+// are evaluated first, then the value.
 #include "frontend/lower/body.h"
 
 namespace frontend {
 
 void Body::assign(const Stmt& stmt) {
-  const Expr& right = tree_[stmt.value];
-  bool list = right.kind == ExprKind::kArrayInit || right.kind == ExprKind::kStructInit;
-  auto to = target(stmt.target);
+  if (stmt.assign == AssignOp::kReference) return bind_reference(stmt);
+  if (stmt.assign == AssignOp::kSet || stmt.assign == AssignOp::kReset) {
+    set_or_reset(stmt.assign, stmt.target, stmt.value, stmt.span);
+  } else if (stmt.assign == AssignOp::kAssign) {
+    assign_value(stmt.target, stmt.value, stmt.span);
+  }
+}
+
+std::optional<Target> Body::assign_value(ExprId left, ExprId right, base::SourceSpan span) {
+  const Expr& source = tree_[right];
+  bool list = source.kind == ExprKind::kArrayInit || source.kind == ExprKind::kStructInit;
+  auto to = target(left);
   if (!to) {
-    if (!list) sema_.infer(stmt.value);  // its errors count too
-    return;
+    if (!list) sema_.infer(right);  // its errors count too
+    return std::nullopt;
   }
   if (!types().is_scalar(to->type)) {
-    assign_aggregate(*to, stmt.value);
-    return;
+    assign_aggregate(*to, right);
+    return to;
   }
-  ir::ValueId from = value(stmt.value, to->type);
-  set_line(stmt.span);
+  ir::ValueId from = value(right, to->type);
+  set_line(span);
   store(*to, from);
+  return to;
+}
+
+// The value of `x S= y` is y: in `a S= b R= y` both follow the same y.
+ir::ValueId Body::set_or_reset(AssignOp op, ExprId left, ExprId right, base::SourceSpan span) {
+  sema_.allow_extension("an assignment with S= or R=", span,
+                        "write IF condition THEN x := TRUE; END_IF");
+  ir::TypeId boolean = elementary(ir::Kind::kBool);
+  auto to = target(left);
+  ir::ValueId condition = value(right, boolean);
+  if (!to) return condition;
+  if (!traits_of(types(), to->type).boolean) {
+    sema_.error(DiagnosticCode::kTypeMismatch, tree_[left].span,
+                std::string(op == AssignOp::kSet ? "S=" : "R=") + " of a `" +
+                    sema_.type_text(to->type) + "`",
+                "only BOOL variables can be set and reset");
+    return condition;
+  }
+  set_line(span);
+  ir::BlockId change = build_.new_block();
+  ir::BlockId done = build_.new_block();
+  build_.branch(condition, change, done);
+  build_.start(change);
+  store(*to, build_.constant(ir::Scalar::kBool, op == AssignOp::kSet ? 1 : 0));
+  build_.jump(done);
+  build_.start(done);
+  return condition;
+}
+
+// The value of an assignment is what its variable holds then.
+ir::ValueId Body::emit_assignment(const Expr& expr) {
+  if (expr.assign == AssignOp::kSet || expr.assign == AssignOp::kReset) {
+    return set_or_reset(expr.assign, expr.operand, expr.right, expr.span);
+  }
+  auto to = assign_value(expr.operand, expr.right, expr.span);
+  return to ? load(*to) : zero(sema_.infer(expr.operand).type);
+}
+
+ir::Place Body::assignment_place(ExprId id, const Expr& expr) {
+  auto to = assign_value(expr.operand, expr.right, expr.span);
+  return to ? to->place : temporary_place(sema_.infer(id).type);
 }
 
 void Body::assign_aggregate(const Target& to, ExprId value) {
@@ -29,7 +80,7 @@ void Body::assign_aggregate(const Target& to, ExprId value) {
     return;
   }
   if (expr.kind == ExprKind::kArrayInit || expr.kind == ExprKind::kStructInit) {
-    ir::ConstId init = sema_.initial_value(value, to.type);
+    ir::ConstId init = sema_.initial_value(value, to.type, {}, Known::kByCall);
     if (init.valid()) build_.init(to.place, init);
     return;
   }

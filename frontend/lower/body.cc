@@ -7,11 +7,14 @@
 namespace frontend {
 
 Body::Body(Sema& sema, uint32_t pou)
+    : Body(sema, sema.pous[pou], pou, sema.program.pous[sema.pous[pou].id.index]) {}
+
+Body::Body(Sema& sema, PouInfo& info, uint32_t number, ir::Pou pou)
     : sema_(sema),
       tree_(sema.tree),
-      info_(sema.pous[pou]),
-      pou_number_(pou),
-      out_(sema.program.pous[info_.id.index]),
+      info_(info),
+      pou_number_(number),
+      out_(std::move(pou)),
       build_(out_) {}
 
 void Body::run() {
@@ -29,10 +32,30 @@ void Body::run() {
   out_.source_hash = base::sha256(base::as_bytes(text));
   build_.set_line(head.line);
   initialise_locals();
+  connect_inputs();
+  detect_edges();
+  mock_prologue();
+  if (sema_.for_tests() && decl.kind == PouKind::kProgram) activate_mock_bodies();
+  if (info_.setup != nullptr) statements(info_.setup->body);
+  if (!info_.connections.empty()) exit_ = build_.new_block();
   statements(decl.body);
+  if (info_.teardown != nullptr) statements(info_.teardown->body);
   set_line({decl.span.end, decl.span.end});
+  if (exit_.valid()) {
+    if (build_.reachable()) build_.jump(exit_);
+    build_.start(exit_);
+    connect_outputs();
+  }
   build_.finish();
   sema_.program.pous[info_.id.index] = std::move(out_);
+}
+
+void Body::leave() {
+  if (exit_.valid()) {
+    build_.jump(exit_);
+  } else {
+    build_.ret();
+  }
 }
 
 void Body::set_line(base::SourceSpan span) {
@@ -76,7 +99,9 @@ void Body::initialise_local(uint32_t local, VarId id) {
   set_line(variable.name.span);
   ir::Place where = local_place(local);
   if (variable.runtime_init) {
-    Target target{where, variable.type};
+    Target target;
+    target.place = where;
+    target.type = variable.type;
     if (types().is_scalar(variable.type)) {
       build_.store(where, scalar(variable.type), value(variable.decl->init, variable.type));
     } else {

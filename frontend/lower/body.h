@@ -5,6 +5,7 @@
 // so that one run reports all errors; the result is then thrown away.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -21,10 +22,11 @@ struct Typed {
   ir::TypeId type;
 };
 
-// Something that can be assigned: a place, or some bits of an integer place.
+// Something that can be assigned: a place, a character of a string place, or some bits of either.
 struct Target {
   ir::Place place;
   ir::TypeId type;        // of what is assigned
+  ir::ValueId character;  // valid: the one at this position of a string
   uint32_t bit_size = 0;  // 0: the whole place
   uint32_t bit_offset = 0;
 };
@@ -34,7 +36,18 @@ class Body {
   Body(Sema& sema, uint32_t pou);
   void run();
 
+  // The value of `expr`, which is known, by running its code here and now.
+  static std::optional<Constant> evaluate(Sema& sema, ExprId expr, ir::TypeId context);
+
  private:
+  Body(Sema& sema, PouInfo& info, uint32_t number, ir::Pou pou);
+
+  // --- known values (constant_evaluation.cc)
+  bool is_known(const Note& note) const {
+    return note.constant || (evaluating_ && note.known != Known::kNo);
+  }
+  std::optional<Constant> run_alone(uint32_t local, base::SourceSpan span);
+
   // --- statements (statement.cc, loop.cc, case.cc, assignment.cc)
   void statements(Range32 list);
   void statement(const Stmt& stmt);
@@ -45,10 +58,20 @@ class Body {
   void case_statement(const Stmt& stmt);
   void leave_loop(const Stmt& stmt);
   void assign(const Stmt& stmt);
+  std::optional<Target> assign_value(ExprId left, ExprId right, base::SourceSpan span);
+  ir::ValueId set_or_reset(AssignOp op, ExprId left, ExprId right, base::SourceSpan span);
+  ir::ValueId emit_assignment(const Expr& expr);
+  ir::Place assignment_place(ExprId id, const Expr& expr);
   void assign_aggregate(const Target& target, ExprId value);
   void call_statement(const Stmt& stmt);
   ir::ValueId condition(ExprId expr);
   void loop_body(Range32 body, ir::BlockId again, ir::BlockId exit);
+
+  // --- JMP (jump.cc)
+  using Labels = NameMap<ir::BlockId>;
+  Labels labels_of(Range32 list);
+  void jump(const Stmt& stmt);
+  void label(const Stmt& stmt);
 
   // --- FOR (for.cc)
   struct ForLoop;
@@ -72,18 +95,47 @@ class Body {
 
   // --- places (place.cc)
   ir::Place variable_place(VarId id);
+  ir::Place member_variable_place(const Variable& variable);
   ir::Place place(ExprId expr);
+  ir::Place raw_place(ExprId expr);
   ir::Place member_place(const Expr& expr);
   ir::Place index_place(const Expr& expr);
+  ir::Place bit_word_place(ExprId structure, const Note& part);
   ir::Place constant_place(ExprId expr);
   ir::Place global_place(uint32_t member);
   ir::Place local_place(uint32_t local);
   ir::Place temporary_place(ir::TypeId type);
   bool check_writable(ExprId expr);
   bool check_writable_name(const Expr& expr);
+  bool check_writable_variable(const Expr& expr, VarId variable);
   void note_output(const ir::DirectAddress& address, base::SourceSpan span);
   std::optional<Target> target(ExprId expr);
   void store(const Target& target, ir::ValueId value);
+  ir::Scalar base_scalar(const Target& target) const;
+  ir::ValueId load(const Target& target);
+  ir::ValueId load_base(const Target& target);
+  void store_base(const Target& target, ir::ValueId value);
+
+  // --- characters of strings (character.cc)
+  bool is_character(ExprId expr);
+  ir::ValueId character_position(const Expr& expr);
+  ir::ValueId emit_character(const Expr& expr);
+  ir::ValueId load_character(const ir::Place& string, ir::ValueId position);
+  void store_character(const ir::Place& string, ir::ValueId position, ir::ValueId value);
+
+  // --- pointers and references (reference.cc)
+  ir::Place target_place(ir::ValueId handle, ir::TypeId type) const;
+  ir::Place dereferenced_place(const Expr& expr);
+  ir::ValueId moved(ir::ValueId handle, ir::ValueId count, ir::TypeId element);
+  ir::Place addressable_place(ExprId id);
+  ir::ValueId handle_of(ExprId id);
+  ir::ValueId raw_reference(ExprId id);
+  ir::ValueId reference_value(ExprId id, ir::TypeId target);
+  void bind_reference(const Stmt& stmt);
+  ir::ValueId emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own);
+  ir::ValueId emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own);
+  ir::ValueId convert_reference(Typed from, ir::TypeId to, base::SourceSpan span);
+  ir::ValueId constant_reference(ExprId id);
 
   // --- values (value.cc, operator.cc)
   // The scalar value of `expr` as `target`, converted and checked.
@@ -92,12 +144,14 @@ class Body {
   Typed natural(ExprId expr);
   ir::ValueId emit(ExprId expr, ir::TypeId own);
   ir::TypeId own_type(const Note& note, ir::TypeId target) const;
-  ir::ValueId emit_bit(const Expr& expr);
+  ir::ValueId emit_bit(ExprId id);
+  ir::ValueId part_of(ir::ValueId word, ir::Scalar machine, uint32_t offset, uint32_t size);
   ir::ValueId emit_unary(const Expr& expr, ir::TypeId own);
   ir::ValueId emit_binary(const Expr& expr, ir::TypeId own);
   ir::ValueId emit_lazy(const Expr& expr);
   ir::ValueId emit_comparison(BinaryOp op, ExprId left, ExprId right);
   ir::ValueId compare_strings(BinaryOp op, ExprId left, ExprId right);
+  ir::ValueId compare_places(BinaryOp op, const ir::Place& a, const ir::Place& b);
   ir::ValueId compare_scalars(BinaryOp op, ir::TypeId type, ir::ValueId a, ir::ValueId b);
   ir::ValueId emit_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own);
   Typed time_arithmetic(BinaryOp op, Typed left, Typed right);
@@ -115,9 +169,30 @@ class Body {
   ir::ValueId to_time(Typed from, ir::TypeId to);
   ir::ValueId time_to_time(Typed from, ir::TypeId to);
   ir::ValueId floor_modulo(ir::ValueId value, int64_t divisor);
+  ir::ValueId narrow_character(ir::ValueId wide_character);
+  // Binary coded decimals (convert_bcd.cc).
+  ir::ValueId from_bcd(Typed from, ir::TypeId to);
+  ir::ValueId to_bcd(Typed from, ir::TypeId to);
+  // Traps (conversion) unless it holds.
+  void require(ir::ValueId condition);
+  // Strings (string_convert.cc).
   ir::Place to_string(const Expr& call, const Conversion& conversion, ir::TypeId type);
-  ir::ValueId from_string(ExprId source, ir::TypeId to, base::SourceSpan span);
+  ir::Place string_to_string(ExprId source, ir::TypeId type);
+  void write_text(const ir::Place& text, Typed source);
+  void write_enumerator_name(const ir::Place& text, Typed source);
+  ir::ValueId from_string(ExprId source, ir::TypeId to);
+  ir::ValueId character_of(const ir::Place& text, ir::TypeId to);
+  ir::ValueId clamp(ir::ValueId number, ir::Scalar wide, ir::Scalar narrow);
   ir::Place narrow_string(ir::Place source, bool wide);
+
+  // --- EN and ENO (enable.cc)
+  struct Enable;
+  std::optional<Enable> enable_of(const Expr& call, const Callee& callee);
+  void open_enable(Enable& enable);
+  // `type` is that of the result, invalid when there is none.
+  void close_enable(Enable& enable, std::vector<ir::ValueId> result, ir::TypeId type);
+  void store_eno(const Enable& enable, bool good);
+  uint64_t default_bits(ir::TypeId type) const;
 
   // --- calls (call*.cc, arguments.cc)
   struct Binding;
@@ -143,8 +218,26 @@ class Body {
   ir::Place argument_place(const PouInfo& callee, const Variable& variable) const;
   void pass_defaults(const PouInfo& callee, const std::vector<Binding>& bindings);
   ir::ValueId emit_call(const Expr& expr, ir::TypeId own);
+  ir::ValueId emit_call(const Expr& expr, const Callee& callee, ir::TypeId own);
+  void call_statement(ExprId id, const Callee& callee);
   ir::Place call_place(ExprId id, const Expr& expr);
+  ir::Place call_place(const Expr& expr, const Callee& callee, ir::TypeId type);
   ir::ValueId emit_conversion(const Expr& expr, const Conversion& conversion);
+
+  // --- tests (test_call.cc, mock.cc)
+  void test_call(const Expr& call, const TestCallRow& row);
+  void assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message);
+  void assert_near(const std::vector<ExprId>& args, ExprId message);
+  void verify_calls(const std::vector<ExprId>& args, bool exact, ExprId message);
+  void fail_unless(ir::ValueId holds, ExprId message, const std::function<ir::Place()>& what);
+  ir::Place constant_text(std::string text);
+  ir::Place text_of(Typed value);
+  ir::Place joined(const ir::Place& first, const ir::Place& second);
+  std::optional<ir::Place> mock_slot(ExprId target, uint32_t MockSlots::*slot);
+  void mock_statement(const Stmt& stmt);
+  void mock_prologue();
+  void activate_mock_bodies();
+  void forward_to_mock(const PouInfo& mock);
 
   // --- standard functions (standard*.cc)
   ir::ValueId emit_standard(const Expr& expr, const stdlib::FunctionRow& row, ir::TypeId own);
@@ -162,12 +255,25 @@ class Body {
   ir::Place string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
                             ir::TypeId type);
   ir::Place concat(const std::vector<ExprId>& args, ir::TypeId type, bool wide);
+  ir::Place extreme_string(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                           ir::TypeId type);
+  ir::ValueId time_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
+  ir::ValueId moment(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
+  ir::ValueId moment_part(ir::ValueId ns, uint32_t part);
+  ir::ValueId day_of_week(ExprId moment);
+  void split(const Expr& call, const stdlib::FunctionRow& row);
+  ir::ValueId byte_order(ExprId argument, const stdlib::FunctionRow& row, ir::TypeId own);
+  ir::ValueId is_valid(ExprId argument, const stdlib::FunctionRow& row);
   ir::Place choose(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
                    ir::TypeId type);
   ir::ValueId native(stdlib::NativeId id, std::vector<ir::ValueId> operands);
 
   // --- helpers
   void initialise_locals();
+  void detect_edges();
+  void connect_inputs();
+  void connect_outputs();
+  void leave();
   void initialise_local(uint32_t local, VarId id);
   void set_line(base::SourceSpan span);
   const ir::TypeTable& types() const { return sema_.program.types; }
@@ -189,7 +295,12 @@ class Body {
   ir::Pou out_;
   Builder build_;
   std::vector<Loop> loops_;
+  ir::BlockId exit_;            // what RETURN goes to; invalid: out of the POU
+  std::vector<Labels> labels_;  // of the statement lists around the current statement
   std::vector<VarId> for_variables_;
+  bool evaluating_ = false;  // inside evaluate(): names stand for their initial values
+  static constexpr uint32_t kNoLocal = 0xffffffffu;
+  std::array<uint32_t, 3> message_buffers_{kNoLocal, kNoLocal, kNoLocal};
   // Where the last line was found; positions mostly go forward.
   uint32_t line_offset_ = 0;
   uint32_t line_ = 0;

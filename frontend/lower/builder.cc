@@ -38,6 +38,10 @@ void Builder::start(BlockId block) {
   order_.push_back(block);
 }
 
+bool Builder::started(BlockId block) const {
+  return std::find(order_.begin(), order_.end(), block) != order_.end();
+}
+
 ValueId Builder::new_value(Scalar scalar) {
   pou_.values.push_back({scalar});
   return ValueId(static_cast<uint32_t>(pou_.values.size() - 1));
@@ -122,6 +126,26 @@ ValueId Builder::address(const Place& place) {
   return result(inst);
 }
 
+ValueId Builder::handle(const Place& place) {
+  Inst& inst = emit(Op::kHandle, Scalar::kU64);
+  inst.place = intern(place);
+  return result(inst);
+}
+
+ValueId Builder::move_handle(ValueId handle, ValueId bytes) {
+  return binary(Op::kMoveHandle, Scalar::kU64, handle, bytes);
+}
+
+ValueId Builder::flat(ValueId handle) { return unary(Op::kFlat, Scalar::kU32, handle); }
+
+ValueId Builder::unflat(ValueId address) { return unary(Op::kUnflat, Scalar::kU64, address); }
+
+ValueId Builder::size_of(ir::TypeId type) {
+  Inst& inst = emit(Op::kSizeOf, Scalar::kU32);
+  inst.type = type;
+  return result(inst);
+}
+
 ValueId Builder::string(const Place& place, bool wide) {
   Inst& inst = emit(Op::kString, wide ? Scalar::kWstr : Scalar::kStr);
   inst.place = intern(place);
@@ -187,6 +211,10 @@ void Builder::call_native(uint32_t native, std::vector<ValueId> operands) {
 
 ValueId Builder::task_time() { return result(emit(Op::kTaskTime, Scalar::kI64)); }
 
+void Builder::advance_time(ValueId ns) {
+  emit(Op::kAdvanceTime, Scalar::kI64).operands.push_back(ns);
+}
+
 void Builder::jump(BlockId block, std::vector<ValueId> args) {
   emit(Op::kJump, Scalar::kBool).targets.push_back({block, std::move(args)});
   current_ = {};
@@ -201,6 +229,11 @@ void Builder::branch(ValueId condition, BlockId if_true, BlockId if_false) {
 
 void Builder::ret() {
   emit(Op::kReturn, Scalar::kBool);
+  current_ = {};
+}
+
+void Builder::trap(ir::TrapKind kind) {
+  emit(Op::kTrap, Scalar::kBool).trap = kind;
   current_ = {};
 }
 

@@ -18,6 +18,7 @@ class Builder {
 
   ir::BlockId new_block();
   void start(ir::BlockId block);
+  bool started(ir::BlockId block) const;
   ir::ValueId add_param(ir::BlockId block, ir::Scalar scalar);
   // False behind a terminator.
   bool reachable() const { return current_.valid(); }
@@ -28,6 +29,11 @@ class Builder {
   void copy(const ir::Place& target, const ir::Place& source);
   void init(const ir::Place& place, ir::ConstId constant);
   ir::ValueId address(const ir::Place& place);
+  ir::ValueId handle(const ir::Place& place);
+  ir::ValueId move_handle(ir::ValueId handle, ir::ValueId bytes);
+  ir::ValueId flat(ir::ValueId handle);
+  ir::ValueId unflat(ir::ValueId address);
+  ir::ValueId size_of(ir::TypeId type);
   ir::ValueId string(const ir::Place& place, bool wide);
   ir::ValueId unary(ir::Op op, ir::Scalar scalar, ir::ValueId operand);
   ir::ValueId binary(ir::Op op, ir::Scalar scalar, ir::ValueId a, ir::ValueId b);
@@ -42,10 +48,12 @@ class Builder {
   ir::ValueId call_native(uint32_t native, ir::Scalar result, std::vector<ir::ValueId> operands);
   void call_native(uint32_t native, std::vector<ir::ValueId> operands);
   ir::ValueId task_time();
+  void advance_time(ir::ValueId ns);
 
   void jump(ir::BlockId block, std::vector<ir::ValueId> args = {});
   void branch(ir::ValueId condition, ir::BlockId if_true, ir::BlockId if_false);
   void ret();
+  void trap(ir::TrapKind kind);
 
   // A variable of the frame that no source name means.
   uint32_t temporary(ir::TypeId type);

@@ -28,7 +28,7 @@ void Body::evaluate_input(Binding& binding, bool keep) {
     ir::Place list;
     list.base = ir::PlaceBase::kConst;
     list.base_type = list.type = parameter.type;
-    list.constant = sema_.initial_value(id, parameter.type);
+    list.constant = sema_.initial_value(id, parameter.type, {}, Known::kByCall);
     if (list.constant.valid()) binding.place = list;
     return;
   }
@@ -54,9 +54,18 @@ bool Body::evaluate_in_out(Binding& binding) {
   ExprId id = binding.arg->value;
   const Note& note = sema_.infer(id);
   if (!note.type.valid() || !parameter.type.valid()) return false;
-  bool instance = types().is_instance(note.type);
-  if (!instance && !check_writable(id)) return false;
-  if (note.type != parameter.type || tree_[id].kind == ExprKind::kBit) {
+  if (parameter.by_reference) {
+    binding.value = reference_value(id, parameter.type);
+    return true;
+  }
+  if (!check_writable(id)) return false;
+  if (note.bit_size != 0 || is_character(id)) {
+    sema_.error(DiagnosticCode::kInOutNeedsVariable, binding.arg->span,
+                quoted_name(parameter.name) + " cannot be bound to a part of a variable",
+                "copy the part into a variable of its own and pass that");
+    return false;
+  }
+  if (note.type != parameter.type) {
     sema_.error(DiagnosticCode::kInOutNeedsVariable, binding.arg->span,
                 quoted_name(parameter.name) + " is `" + sema_.type_text(parameter.type) +
                     "`, the argument is `" + sema_.type_text(note.type) + "`",
@@ -95,7 +104,7 @@ void Body::evaluate_arguments(const Expr& call, std::vector<Binding>& bindings) 
 
 void Body::pass_input(const Binding& binding, const ir::Place& parameter) {
   const Variable& variable = sema_.resolve(binding.variable);
-  if (variable.section == VarSection::kInOut) {
+  if (variable.section == VarSection::kInOut && !variable.by_reference) {
     if (binding.value.valid()) build_.store(parameter, ir::Scalar::kAddr, binding.value);
   } else if (binding.place) {
     build_.copy(parameter, *binding.place);
@@ -223,10 +232,8 @@ Body::Result Body::call_function(const Expr& call, uint32_t pou, bool wants_resu
   return result;
 }
 
-void Body::call_statement(const Stmt& stmt) {
-  const Expr& call = tree_[stmt.value];
-  if (call.kind != ExprKind::kCall) return;
-  Callee callee = sema_.callee(call);
+void Body::call_statement(ExprId id, const Callee& callee) {
+  const Expr& call = tree_[id];
   switch (callee.kind) {
     case Callee::Kind::kError:
       for (uint32_t i = 0; i < call.args.count; ++i) {
@@ -239,22 +246,27 @@ void Body::call_statement(const Stmt& stmt) {
     case Callee::Kind::kFunction:
       call_function(call, callee.pou, false);
       return;
+    case Callee::Kind::kTest:
+      return test_call(call, *callee.test);
+    case Callee::Kind::kReference:
     case Callee::Kind::kStandard:
+      if (callee.row->rule == stdlib::FunctionRule::kSplit) return split(call, *callee.row);
+      [[fallthrough]];
+    case Callee::Kind::kBound:
     case Callee::Kind::kConversion: {
-      const Note& note = sema_.infer(stmt.value);
+      const Note& note = sema_.infer(id);
       if (!note.type.valid()) return;
       if (types().is_scalar(note.type)) {
-        natural(stmt.value);
+        emit_call(call, callee, without_range(types(), note.type));
       } else {
-        place(stmt.value);
+        call_place(call, callee, note.type);
       }
       return;
     }
   }
 }
 
-ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
-  Callee callee = sema_.callee(expr);
+ir::ValueId Body::emit_call(const Expr& expr, const Callee& callee, ir::TypeId own) {
   switch (callee.kind) {
     case Callee::Kind::kFunction: {
       ir::ValueId result = call_function(expr, callee.pou, true).value;
@@ -264,15 +276,15 @@ ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
       return emit_standard(expr, *callee.row, own);
     case Callee::Kind::kConversion:
       return emit_conversion(expr, callee.conversion);
+    case Callee::Kind::kReference:
+      return emit_reference_call(expr, callee.reference, own);
     default:
       return zero(own);
   }
 }
 
 // A result that is no scalar.
-ir::Place Body::call_place(ExprId id, const Expr& expr) {
-  ir::TypeId type = sema_.infer(id).type;
-  Callee callee = sema_.callee(expr);
+ir::Place Body::call_place(const Expr& expr, const Callee& callee, ir::TypeId type) {
   if (callee.kind == Callee::Kind::kFunction) {
     Result result = call_function(expr, callee.pou, true);
     return result.place.type.valid() ? result.place : temporary_place(type);
@@ -286,6 +298,8 @@ ir::Place Body::call_place(ExprId id, const Expr& expr) {
     case stdlib::FunctionRule::kSelect:
     case stdlib::FunctionRule::kMux:
       return choose(args, *callee.row, type);
+    case stdlib::FunctionRule::kExtreme:
+      return extreme_string(args, *callee.row, type);
     case stdlib::FunctionRule::kString:
       return string_function(args, *callee.row, type);
     default:

@@ -2,21 +2,20 @@
 // language.md, section 2: reals round half to even and trap when out of range,
 // integers keep their low bits, times count in the unit of their type.
 #include "frontend/lower/body.h"
+#include "ir/types/time_units.h"
 
 namespace frontend {
 namespace {
-
-constexpr int64_t kDayNs = 86'400'000'000'000;
 
 // Nanoseconds per unit in conversions to and from numbers.
 int64_t unit_of(ir::Kind kind) {
   switch (kind) {
     case ir::Kind::kTime:
     case ir::Kind::kTod:
-      return 1'000'000;
+      return ir::kNsPerMillisecond;
     case ir::Kind::kDate:
     case ir::Kind::kDt:
-      return 1'000'000'000;
+      return ir::kNsPerSecond;
     default:
       return 1;
   }
@@ -55,6 +54,9 @@ ir::ValueId Body::machine_convert(ir::ValueId value, ir::Scalar from, ir::Scalar
 
 // Implicit: what the context needs from what is there.
 ir::ValueId Body::convert(Typed from, ir::TypeId to, base::SourceSpan span) {
+  if (types().is_reference(from.type) || types().is_reference(to)) {
+    return convert_reference(from, to, span);
+  }
   switch (implicit_fit(types(), from.type, to, sema_.options.dialect)) {
     case Fit::kNone:
       sema_.error(
@@ -89,6 +91,10 @@ ir::ValueId Body::explicit_conversion(Typed from, ir::TypeId to, bool truncate) 
   if (time_source && time_target) return time_to_time(from, to);
   if (time_source) return from_time(from, to);
   if (time_target) return to_time(from, to);
+  if (types().root_kind(from.type) == ir::Kind::kWchar &&
+      types().root_kind(to) == ir::Kind::kChar) {
+    return narrow_character(from.value);
+  }
   return machine_convert(from.value, scalar(from.type), scalar(to), truncate);
 }
 
@@ -141,27 +147,35 @@ ir::ValueId Body::time_to_time(Typed from, ir::TypeId to) {
   bool to_tod = target == ir::Kind::kTod || target == ir::Kind::kLtod;
   bool is_tod = source == ir::Kind::kTod || source == ir::Kind::kLtod;
   bool is_date = source == ir::Kind::kDate || source == ir::Kind::kLdate;
-  if (to_tod && !is_tod) return floor_modulo(from.value, kDayNs);
+  if (to_tod && !is_tod) return floor_modulo(from.value, ir::kNsPerDay);
   if (to_date && !is_date) {
-    ir::ValueId rest = floor_modulo(from.value, kDayNs);
+    ir::ValueId rest = floor_modulo(from.value, ir::kNsPerDay);
     return build_.binary(ir::Op::kSub, ir::Scalar::kI64, from.value, rest);
   }
   return from.value;
 }
 
 ir::ValueId Body::emit_conversion(const Expr& expr, const Conversion& conversion) {
-  ExprId argument = tree_.args[expr.args.first].value;
+  ExprId argument = sema_.conversion_argument(expr);
   ir::TypeId to = elementary(conversion.to);
   const Note& note = sema_.infer(argument);
-  if (is_string(types(), note.type)) return from_string(argument, to, expr.span);
-  ir::TypeId from = note.type;
-  if (!conversion.any_source && ir::is_elementary(conversion.from)) {
-    from = elementary(conversion.from);
-  }
-  from = without_range(types(), from);
+  bool named = !conversion.any_source && ir::is_elementary(conversion.from);
+  if (is_string(types(), note.type) && !named) return from_string(argument, to);
+  ir::TypeId from = without_range(types(), named ? elementary(conversion.from) : note.type);
   ir::ValueId source = value(argument, from);
   set_line(expr.span);
+  if (conversion.bcd == Conversion::Bcd::kFrom) return from_bcd({source, from}, to);
+  if (conversion.bcd == Conversion::Bcd::kTo) return to_bcd({source, from}, to);
   return explicit_conversion({source, from}, to, conversion.truncate);
+}
+
+// What Latin-1 lacks becomes a question mark, as in strings.
+ir::ValueId Body::narrow_character(ir::ValueId wide_character) {
+  constexpr ir::Scalar kU16 = ir::Scalar::kU16;
+  ir::ValueId most = build_.constant(kU16, 0xFF);
+  ir::ValueId fits = build_.compare(ir::Op::kLe, kU16, wide_character, most);
+  ir::ValueId out = build_.select(kU16, fits, build_.constant(kU16, '?'), wide_character);
+  return build_.unary(ir::Op::kWrap, ir::Scalar::kU8, out);
 }
 
 }  // namespace frontend

@@ -63,7 +63,7 @@ bool Body::for_head(const Stmt& stmt, ForLoop& loop) {
   if (!to) return false;
   Traits traits = traits_of(types(), to->type);
   bool bits = traits.bits && sema_.options.dialect != Dialect::kIec;
-  if (to->bit_size != 0 || (!traits.integer && !bits)) {
+  if (to->bit_size != 0 || to->character.valid() || (!traits.integer && !bits)) {
     sema_.error(DiagnosticCode::kBadLoopVariable, tree_[stmt.target].span,
                 "a FOR variable of `" + sema_.type_text(to->type) + "`", "use an integer variable");
     return false;

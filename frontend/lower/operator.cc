@@ -112,7 +112,10 @@ ir::ValueId Body::compare_scalars(BinaryOp op, ir::TypeId type, ir::ValueId a, i
 
 ir::ValueId Body::compare_strings(BinaryOp op, ExprId left, ExprId right) {
   ir::Place a = place(left);
-  ir::Place b = place(right);
+  return compare_places(op, a, place(right));
+}
+
+ir::ValueId Body::compare_places(BinaryOp op, const ir::Place& a, const ir::Place& b) {
   bool is_wide = wide(a.type);
   ir::ValueId order = native(is_wide ? stdlib::NativeId::kCompareW : stdlib::NativeId::kCompareS,
                              {string_value(a), string_value(b)});
@@ -123,6 +126,9 @@ ir::ValueId Body::compare_strings(BinaryOp op, ExprId left, ExprId right) {
 ir::ValueId Body::emit_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own) {
   const Note& a = sema_.infer(left);
   const Note& b = sema_.infer(right);
+  if (types().is_reference(a.type) || types().is_reference(b.type)) {
+    return emit_pointer_arithmetic(op, left, right, own);
+  }
   if (op == BinaryOp::kPower) {
     Typed base = natural(left);
     return power(base, natural(right), own);

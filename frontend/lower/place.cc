@@ -37,36 +37,52 @@ ir::Place Body::global_place(uint32_t member) {
 
 ir::Place Body::variable_place(VarId id) {
   const Variable& variable = sema_.resolve(id);
-  ir::Place place;
   if (variable.storage == Storage::kGlobal) return global_place(variable.index);
-  if (variable.storage == Storage::kLocal) {
-    place = local_place(variable.index);
-  } else {
-    place.base = ir::PlaceBase::kSelf;
-    place.base_type = info_.self;
-    place.steps.push_back(step(ir::StepKind::kMember, variable.index));
+  if (variable.edge.valid()) return local_place(sema_.resolve(variable.edge).index);
+  ir::Place place = variable.storage == Storage::kLocal ? local_place(variable.index)
+                                                        : member_variable_place(variable);
+  if (variable.section == VarSection::kInOut && !variable.by_reference) {
+    place.steps.push_back(step(ir::StepKind::kDeref));
   }
-  if (variable.section == VarSection::kInOut) place.steps.push_back(step(ir::StepKind::kDeref));
+  place.type = variable.type;
+  return place;
+}
+
+ir::Place Body::member_variable_place(const Variable& variable) {
+  ir::Place place;
+  place.base = ir::PlaceBase::kSelf;
+  place.base_type = info_.self;
+  place.steps.push_back(step(ir::StepKind::kMember, variable.index));
   place.type = variable.type;
   return place;
 }
 
 // Any expression that is not a scalar, and any scalar that has a place of its own.
 ir::Place Body::place(ExprId id) {
+  const Note& note = sema_.infer(id);
+  if (!note.reference.valid()) return raw_place(id);
+  return target_place(raw_reference(id), note.type);
+}
+
+ir::Place Body::raw_place(ExprId id) {
   const Expr& expr = tree_[id];
   const Note& note = sema_.infer(id);
-  if (note.constant) return constant_place(id);
+  if (is_known(note)) return constant_place(id);
+  if (note.variable.valid()) return variable_place(note.variable);
   switch (expr.kind) {
-    case ExprKind::kName:
-      return variable_place(note.variable);
     case ExprKind::kMember:
       return member_place(expr);
     case ExprKind::kIndex:
-      return index_place(expr);
+      return types().is_reference(sema_.infer(expr.operand).type) ? dereferenced_place(expr)
+                                                                  : index_place(expr);
+    case ExprKind::kDeref:
+      return dereferenced_place(expr);
     case ExprKind::kDirect:
       return global_place(sema_.direct_member(expr));
     case ExprKind::kCall:
       return call_place(id, expr);
+    case ExprKind::kAssign:
+      return assignment_place(id, expr);
     default:
       return temporary_place(note.type);
   }
@@ -86,6 +102,15 @@ ir::Place Body::member_place(const Expr& expr) {
   place.steps.push_back(step(ir::StepKind::kMember, member));
   place.type = types()[outer].members[member].type;
   return place;
+}
+
+// The member of a structure that holds the BIT member which `part` is.
+ir::Place Body::bit_word_place(ExprId structure, const Note& part) {
+  ir::Place out = place(structure);
+  auto member = static_cast<uint32_t>(part.bit_member);
+  out.steps.push_back(step(ir::StepKind::kMember, member));
+  out.type = types()[sema_.infer(structure).type].members[member].type;
+  return out;
 }
 
 ir::Place Body::index_place(const Expr& expr) {
@@ -112,11 +137,16 @@ ir::Place Body::constant_place(ExprId id) {
   place.base = ir::PlaceBase::kConst;
   place.base_type = place.type = note.type;
   if (types().is_scalar(note.type)) {
-    auto bits = sema_.fold_bits(id, note.type);
+    auto bits = sema_.fold_bits(id, note.type, Known::kInitially);
     place.constant = sema_.program.constants.scalar(bits.value_or(0));
     return place;
   }
-  auto text = sema_.fold(id, note.type);
+  if (!is_string(types(), note.type)) {
+    auto part = sema_.initial_part(id);
+    if (part) place.constant = part->init;
+    return place;
+  }
+  auto text = sema_.fold(id, note.type, Known::kInitially);
   place.constant = sema_.program.constants.add({0, text ? text->text : std::string(), {}});
   return place;
 }
@@ -133,6 +163,9 @@ bool Body::check_writable(ExprId id) {
                   "`" + std::string(expr.name.text) + "` is an input of the process image");
       return false;
     case ExprKind::kMember: {
+      if (VarId global = sema_.infer(id).variable; global.valid()) {
+        return check_writable_variable(expr, global);
+      }
       const PouInfo* block = sema_.pou_of(sema_.infer(expr.operand).type);
       if (block == nullptr) return check_writable(expr.operand);
       const Variable& variable = sema_.resolve(block->names.find(expr.name.text)->second);
@@ -142,7 +175,11 @@ bool Body::check_writable(ExprId id) {
                       std::string(block->decl->name.text) + "`; only the block itself writes it");
       return false;
     }
+    case ExprKind::kDeref:
+      return true;
     case ExprKind::kIndex:
+      if (types().is_reference(sema_.infer(expr.operand).type)) return true;
+      return check_writable(expr.operand);
     case ExprKind::kBit:
       return check_writable(expr.operand);
     default:
@@ -152,16 +189,20 @@ bool Body::check_writable(ExprId id) {
 }
 
 void Body::note_output(const ir::DirectAddress& address, base::SourceSpan span) {
-  if (address.area == ir::DirectArea::kOutput) info_.writes.push_back({address, span});
+  bool known = address.bit_size != 0;
+  if (address.area == ir::DirectArea::kOutput && known) info_.writes.push_back({address, span});
 }
 
 bool Body::check_writable_name(const Expr& expr) {
-  VarId id = sema_.find_variable(expr.name.text);
+  VarId id = sema_.find_variable(expr);
+  if (id.valid()) return check_writable_variable(expr, id);
+  sema_.error(DiagnosticCode::kNotAssignable, expr.span,
+              "`" + std::string(expr.name.text) + "` is not a variable");
+  return false;
+}
+
+bool Body::check_writable_variable(const Expr& expr, VarId id) {
   std::string name = "`" + std::string(expr.name.text) + "`";
-  if (!id.valid()) {
-    sema_.error(DiagnosticCode::kNotAssignable, expr.span, name + " is not a variable");
-    return false;
-  }
   const Variable* variable = &sema_.resolve(id);
   bool constant = variable->constant;
   if (variable->external.valid()) {
@@ -193,38 +234,65 @@ bool Body::check_writable_name(const Expr& expr) {
 
 // Evaluates the indices of an assignment's left side; reports what cannot be written.
 std::optional<Target> Body::target(ExprId id) {
-  const Expr& expr = tree_[id];
-  const Note& note = sema_.infer(id);
+  const Note note = sema_.infer(id);
   if (!note.type.valid() || !check_writable(id)) return std::nullopt;
   Target out;
   out.type = note.type;
   ExprId at = id;
-  if (expr.kind == ExprKind::kBit) out.bit_size = expr.bit_size;
-  while (tree_[at].kind == ExprKind::kBit) {
-    out.bit_offset += tree_[at].number * tree_[at].bit_size;
+  out.bit_size = note.bit_size;
+  while (sema_.infer(at).bit_size != 0) {
+    const Note part = sema_.infer(at);
+    out.bit_offset += part.bit_number * part.bit_size;
     at = tree_[at].operand;
+    if (part.bit_member < 0) continue;
+    out.place = bit_word_place(at, part);
+    return out;
   }
-  out.place = place(at);
+  if (is_character(at)) {
+    const Expr& character = tree_[at];
+    out.place = place(character.operand);
+    out.character = character_position(character);
+  } else {
+    out.place = place(at);
+  }
   return out;
+}
+
+ir::ValueId Body::load(const Target& target) {
+  ir::ValueId base = load_base(target);
+  if (target.bit_size == 0) return base;
+  return part_of(base, base_scalar(target), target.bit_offset, target.bit_size);
+}
+
+ir::Scalar Body::base_scalar(const Target& target) const {
+  if (!target.character.valid()) return scalar(target.place.type);
+  return wide(target.place.type) ? ir::Scalar::kU16 : ir::Scalar::kU8;
+}
+
+ir::ValueId Body::load_base(const Target& target) {
+  if (target.character.valid()) return load_character(target.place, target.character);
+  return build_.load(target.place, base_scalar(target));
+}
+
+void Body::store_base(const Target& target, ir::ValueId value) {
+  if (target.character.valid()) return store_character(target.place, target.character, value);
+  build_.store(target.place, base_scalar(target), value);
 }
 
 // `value` has the target's type. Bits are put into the word that holds them.
 void Body::store(const Target& target, ir::ValueId value) {
-  ir::Scalar machine = scalar(target.place.type);
-  if (target.bit_size == 0) {
-    build_.store(target.place, machine, value);
-    return;
-  }
+  ir::Scalar machine = base_scalar(target);
+  if (target.bit_size == 0) return store_base(target, value);
   uint64_t ones = (uint64_t{1} << target.bit_size) - 1;
   uint64_t keep = ~(ones << target.bit_offset);
   Wide mask = wrap_to(machine, static_cast<Wide>(keep) & limits_of(ir::Scalar::kU64).high);
-  ir::ValueId old = build_.load(target.place, machine);
+  ir::ValueId old = load_base(target);
   ir::ValueId rest = build_.binary(ir::Op::kAnd, machine, old,
                                    build_.constant(machine, static_cast<uint64_t>(mask)));
   ir::ValueId bits = build_.unary(ir::Op::kWrap, machine, value);
   ir::ValueId count = build_.constant(ir::Scalar::kU32, target.bit_offset);
   ir::ValueId placed = build_.binary(ir::Op::kShl, machine, bits, count);
-  build_.store(target.place, machine, build_.binary(ir::Op::kOr, machine, rest, placed));
+  store_base(target, build_.binary(ir::Op::kOr, machine, rest, placed));
 }
 
 }  // namespace frontend

@@ -53,6 +53,19 @@ ir::ValueId Body::emit_standard(const Expr& expr, const stdlib::FunctionRow& row
   switch (row.rule) {
     case FunctionRule::kClock:
       return build_.task_time();
+    case FunctionRule::kTimeSum:
+    case FunctionRule::kTimeDifference:
+    case FunctionRule::kTimeProduct:
+    case FunctionRule::kTimeQuotient:
+      return time_function(args, row);
+    case FunctionRule::kMoment:
+      return moment(args, row);
+    case FunctionRule::kWeekday:
+      return day_of_week(args[0]);
+    case FunctionRule::kByteOrder:
+      return byte_order(args[0], row, own);
+    case FunctionRule::kValid:
+      return is_valid(args[0], row);
     case FunctionRule::kMove:
       return value(args[0], own);
     case FunctionRule::kNumberSame:
@@ -84,6 +97,7 @@ ir::ValueId Body::emit_standard(const Expr& expr, const stdlib::FunctionRow& row
     case FunctionRule::kStringNumber:
       return string_number(args, row);
     case FunctionRule::kString:
+    case FunctionRule::kSplit:
       break;
   }
   return zero(own);
@@ -175,11 +189,25 @@ ir::ValueId Body::multiplex(const std::vector<ExprId>& args, ir::TypeId own) {
   return result;
 }
 
+// Every argument is evaluated once; each is compared with the next.
 ir::ValueId Body::compare_chain(const std::vector<ExprId>& args, BinaryOp op) {
-  ir::ValueId all = emit_comparison(op, args[0], args[1]);
-  for (size_t i = 1; i + 1 < args.size(); ++i) {
-    ir::ValueId next = emit_comparison(op, args[i], args[i + 1]);
-    all = build_.binary(ir::Op::kAnd, ir::Scalar::kBool, all, next);
+  ir::TypeId common = sema_.infer_common(args).type;
+  if (!common.valid()) return zero(elementary(ir::Kind::kBool));
+  bool text = is_string(types(), common);
+  std::vector<ir::ValueId> values;
+  std::vector<ir::Place> places;
+  for (ExprId arg : args) {
+    if (text) {
+      places.push_back(place(arg));
+    } else {
+      values.push_back(value(arg, common));
+    }
+  }
+  ir::ValueId all;
+  for (size_t i = 0; i + 1 < args.size(); ++i) {
+    ir::ValueId next = text ? compare_places(op, places[i], places[i + 1])
+                            : compare_scalars(op, common, values[i], values[i + 1]);
+    all = i == 0 ? next : build_.binary(ir::Op::kAnd, ir::Scalar::kBool, all, next);
   }
   return all;
 }

@@ -76,6 +76,29 @@ ir::Place Body::concat(const std::vector<ExprId>& args, ir::TypeId type, bool is
   return sum;
 }
 
+// MAX, MIN and LIMIT of strings: `result` becomes `next` when that is the better one.
+ir::Place Body::extreme_string(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                               ir::TypeId type) {
+  std::vector<ir::Place> places;
+  for (ExprId arg : args) places.push_back(place(arg));
+  bool limit = row.id == FunctionId::kLimit;
+  if (limit) std::swap(places[0], places[1]);  // IN, then at least MN, then at most MX
+  ir::Place result = temporary_place(type);
+  build_.copy(result, places[0]);
+  for (size_t i = 1; i < places.size(); ++i) {
+    bool largest = limit ? i == 1 : row.id == FunctionId::kMax;
+    BinaryOp better = largest ? BinaryOp::kGt : BinaryOp::kLt;
+    ir::BlockId take = build_.new_block();
+    ir::BlockId next = build_.new_block();
+    build_.branch(compare_places(better, places[i], result), take, next);
+    build_.start(take);
+    build_.copy(result, places[i]);
+    build_.jump(next);
+    build_.start(next);
+  }
+  return result;
+}
+
 // SEL and MUX of strings, structures and arrays.
 ir::Place Body::choose(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
                        ir::TypeId type) {

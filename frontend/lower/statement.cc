@@ -4,11 +4,13 @@
 namespace frontend {
 
 void Body::statements(Range32 list) {
+  labels_.push_back(labels_of(list));
   bool warned = false;
   bool was_reachable = build_.reachable();
   for (uint32_t i = 0; i < list.count; ++i) {
     const Stmt& stmt = tree_[tree_.stmt_lists[list.first + i]];
-    bool counts = stmt.kind != StmtKind::kEmpty && stmt.kind != StmtKind::kError;
+    bool counts = stmt.kind != StmtKind::kEmpty && stmt.kind != StmtKind::kError &&
+                  stmt.kind != StmtKind::kLabel;
     if (i > 0 && counts && was_reachable && !build_.reachable() && !warned) {
       sema_.warning(DiagnosticCode::kUnreachableCode, stmt.span,
                     "nothing gets here: the statement before always leaves");
@@ -16,6 +18,7 @@ void Body::statements(Range32 list) {
     }
     statement(stmt);
   }
+  labels_.pop_back();
 }
 
 void Body::statement(const Stmt& stmt) {
@@ -42,7 +45,16 @@ void Body::statement(const Stmt& stmt) {
     case StmtKind::kContinue:
       return leave_loop(stmt);
     case StmtKind::kReturn:
-      return build_.ret();
+      return leave();
+    case StmtKind::kJump:
+      return jump(stmt);
+    case StmtKind::kLabel:
+      return label(stmt);
+    case StmtKind::kTry:  // reported by report_not_supported()
+      return;
+    case StmtKind::kMock:
+    case StmtKind::kMockFunction:
+      return mock_statement(stmt);
   }
 }
 

@@ -1,5 +1,9 @@
-// Conversions between strings and everything else: native functions do the work.
+// Conversions between strings and everything else: native functions do the work. Texts are written
+// as STRING; a WSTRING is made of it, or narrowed before it is read.
+#include <limits>
+
 #include "frontend/lower/body.h"
+#include "frontend/sema/operators.h"
 
 namespace frontend {
 namespace {
@@ -11,53 +15,54 @@ constexpr uint32_t kNumberText = 80;  // longer than any number, time or date
 struct TextForm {
   NativeId native;
   ir::Scalar machine;
+  bool has_long_form = false;  // a third argument says which one
 };
 
-std::optional<TextForm> text_form(ir::Kind kind, ir::Scalar machine) {
+TextForm text_form(ir::Kind kind, ir::Scalar machine) {
   switch (kind) {
     case ir::Kind::kBool:
-      return TextForm{NativeId::kBoolToString, ir::Scalar::kBool};
+      return {NativeId::kBoolToString, ir::Scalar::kBool};
     case ir::Kind::kReal:
-      return TextForm{NativeId::kF32ToString, ir::Scalar::kF32};
+      return {NativeId::kF32ToString, ir::Scalar::kF32};
     case ir::Kind::kLreal:
-      return TextForm{NativeId::kF64ToString, ir::Scalar::kF64};
+      return {NativeId::kF64ToString, ir::Scalar::kF64};
     case ir::Kind::kTime:
     case ir::Kind::kLtime:
-      return TextForm{NativeId::kTimeToString, ir::Scalar::kI64};
+      return {NativeId::kTimeToString, ir::Scalar::kI64, true};
     case ir::Kind::kDate:
     case ir::Kind::kLdate:
-      return TextForm{NativeId::kDateToString, ir::Scalar::kI64};
+      return {NativeId::kDateToString, ir::Scalar::kI64, true};
     case ir::Kind::kTod:
     case ir::Kind::kLtod:
-      return TextForm{NativeId::kTodToString, ir::Scalar::kI64};
+      return {NativeId::kTodToString, ir::Scalar::kI64, true};
     case ir::Kind::kDt:
     case ir::Kind::kLdt:
-      return TextForm{NativeId::kDtToString, ir::Scalar::kI64};
+      return {NativeId::kDtToString, ir::Scalar::kI64, true};
     case ir::Kind::kChar:
     case ir::Kind::kWchar:
-      return std::nullopt;
+      return {NativeId::kCharToString, ir::Scalar::kU64};
     default:
-      if (ir::is_signed(machine)) return TextForm{NativeId::kI64ToString, ir::Scalar::kI64};
-      return TextForm{NativeId::kU64ToString, ir::Scalar::kU64};
+      if (ir::is_signed(machine)) return {NativeId::kI64ToString, ir::Scalar::kI64};
+      return {NativeId::kU64ToString, ir::Scalar::kU64};
   }
 }
 
-std::optional<TextForm> value_form(ir::Kind kind, ir::Scalar machine) {
-  switch (kind) {
-    case ir::Kind::kBool:
-      return TextForm{NativeId::kStringToBool, ir::Scalar::kBool};
-    case ir::Kind::kReal:
-    case ir::Kind::kLreal:
-      return TextForm{NativeId::kStringToF64, ir::Scalar::kF64};
-    case ir::Kind::kTime:
-    case ir::Kind::kLtime:
-      return TextForm{NativeId::kStringToTime, ir::Scalar::kI64};
+TextForm value_form(ir::Kind kind, ir::Scalar machine) {
+  switch (ir::elementary_group(kind)) {
+    case ir::Group::kReal:
+      return {NativeId::kStringToF64, ir::Scalar::kF64};
+    case ir::Group::kDuration:
+      return {NativeId::kStringToTime, ir::Scalar::kI64};
+    case ir::Group::kDate:
+      return {NativeId::kStringToDate, ir::Scalar::kI64};
     default:
-      if (kind > ir::Kind::kLreal) return std::nullopt;
-      if (ir::is_signed(machine)) return TextForm{NativeId::kStringToI64, ir::Scalar::kI64};
-      return TextForm{NativeId::kStringToU64, ir::Scalar::kU64};
+      if (kind == ir::Kind::kBool) return {NativeId::kStringToBool, ir::Scalar::kBool};
+      if (ir::is_signed(machine)) return {NativeId::kStringToI64, ir::Scalar::kI64};
+      return {NativeId::kStringToU64, ir::Scalar::kU64};
   }
 }
+
+bool is_character_kind(ir::Kind kind) { return ir::elementary_group(kind) == ir::Group::kChar; }
 
 }  // namespace
 
@@ -70,46 +75,106 @@ ir::Place Body::narrow_string(ir::Place source, bool is_wide) {
 }
 
 ir::Place Body::to_string(const Expr& call, const Conversion& conversion, ir::TypeId type) {
-  ExprId argument = tree_.args[call.args.first].value;
+  ExprId argument = sema_.conversion_argument(call);
   const Note& note = sema_.infer(argument);
-  bool to_wide = conversion.to == ir::Kind::kWstring;
-  ir::Place text;
-  if (is_string(types(), note.type)) {
-    text = place(argument);
-    if (wide(text.type) == to_wide) return text;
-    if (!to_wide) return narrow_string(text, true);
-  } else {
-    ir::TypeId from = !conversion.any_source && ir::is_elementary(conversion.from)
-                          ? elementary(conversion.from)
-                          : without_range(types(), note.type);
-    ir::ValueId source = value(argument, from);
-    auto form = text_form(types().root_kind(from), scalar(from));
-    text = temporary_place(sema_.program.types.string(kNumberText));
-    if (!form) {
-      sema_.error(DiagnosticCode::kNotSupported, call.span,
-                  "conversion of `" + sema_.type_text(from) + "` to a string");
-      return text;
-    }
-    source = machine_convert(source, scalar(from), form->machine);
-    native(form->native, {string_value(text), source});
-    if (!to_wide) return text;
+  bool named = !conversion.any_source && ir::is_elementary(conversion.from);
+  if (is_string(types(), note.type) && !named) return string_to_string(argument, type);
+  ir::TypeId from = without_range(types(), named ? elementary(conversion.from) : note.type);
+  Typed source{value(argument, from), from};
+  ir::Place out = temporary_place(type);
+  if (wide(type) && is_character_kind(types().root_kind(from))) {
+    ir::ValueId code = machine_convert(source.value, scalar(from), ir::Scalar::kU64);
+    native(NativeId::kCharToWstring, {string_value(out), code});
+    return out;
   }
+  ir::Place text = wide(type) ? temporary_place(sema_.program.types.string(kNumberText)) : out;
+  write_text(text, source);
+  if (wide(type)) native(NativeId::kStringToWstring, {string_value(out), string_value(text)});
+  return out;
+}
+
+ir::Place Body::string_to_string(ExprId source, ir::TypeId type) {
+  ir::Place text = place(source);
+  if (wide(text.type) == wide(type)) return text;
+  if (!wide(type)) return narrow_string(text, true);
   ir::Place out = temporary_place(type);
   native(NativeId::kStringToWstring, {string_value(out), string_value(text)});
   return out;
 }
 
-ir::ValueId Body::from_string(ExprId source, ir::TypeId to, base::SourceSpan span) {
-  ir::Place text = place(source);
-  text = narrow_string(text, wide(text.type));
-  auto form = value_form(types().root_kind(to), scalar(to));
-  if (!form) {
-    sema_.error(DiagnosticCode::kNotSupported, span,
-                "conversion of a string to `" + sema_.type_text(to) + "`");
-    return zero(to);
+void Body::write_text(const ir::Place& text, Typed source) {
+  if (is_enum(types(), source.type) && sema_.prints_names(source.type)) {
+    return write_enumerator_name(text, source);
   }
-  ir::ValueId result = native(form->native, {string_value(text)});
-  return machine_convert(result, form->machine, scalar(to));
+  ir::Kind kind = types().root_kind(source.type);
+  TextForm form = text_form(kind, scalar(source.type));
+  ir::ValueId number = machine_convert(source.value, scalar(source.type), form.machine);
+  if (!form.has_long_form) {
+    native(form.native, {string_value(text), number});
+    return;
+  }
+  ir::ValueId is_long = build_.constant(ir::Scalar::kBool, is_long_time(kind) ? 1 : 0);
+  native(form.native, {string_value(text), number, is_long});
+}
+
+// The number first; a literal of that value replaces it.
+void Body::write_enumerator_name(const ir::Place& text, Typed source) {
+  ir::Scalar machine = scalar(source.type);
+  ir::TypeId type = without_range(types(), source.type);
+  ir::ValueId number = machine_convert(source.value, machine, ir::Scalar::kI64);
+  native(NativeId::kI64ToString, {string_value(text), number});
+  const std::vector<ir::EnumLiteral> literals = types()[type].literals;
+  for (const ir::EnumLiteral& literal : literals) {
+    ir::BlockId take = build_.new_block();
+    ir::BlockId next = build_.new_block();
+    ir::ValueId code = build_.constant(machine, static_cast<uint64_t>(literal.value));
+    build_.branch(build_.compare(ir::Op::kEq, machine, source.value, code), take, next);
+    build_.start(take);
+    ir::Place name;
+    name.base = ir::PlaceBase::kConst;
+    name.base_type = name.type =
+        sema_.program.types.string(static_cast<uint32_t>(literal.name.size()));
+    name.constant = sema_.program.constants.add({0, literal.name, {}});
+    build_.copy(text, name);
+    build_.jump(next);
+    build_.start(next);
+  }
+}
+
+// What is too large for the target becomes its nearest value.
+ir::ValueId Body::from_string(ExprId source, ir::TypeId to) {
+  ir::Place text = place(source);
+  ir::Kind kind = types().root_kind(to);
+  if (is_character_kind(kind)) return character_of(text, to);
+  text = narrow_string(text, wide(text.type));
+  TextForm form = value_form(kind, scalar(to));
+  std::vector<ir::ValueId> operands{string_value(text)};
+  if (form.native == NativeId::kStringToDate) {
+    operands.push_back(build_.constant(ir::Scalar::kI32, static_cast<uint64_t>(kind)));
+  }
+  ir::ValueId result = native(form.native, operands);
+  return clamp(result, form.machine, scalar(to));
+}
+
+ir::ValueId Body::character_of(const ir::Place& text, ir::TypeId to) {
+  if (!wide(text.type) || types().root_kind(to) == ir::Kind::kChar) {
+    ir::Place narrow = narrow_string(text, wide(text.type));
+    ir::ValueId code = native(NativeId::kStringToChar, {string_value(narrow)});
+    return machine_convert(code, ir::Scalar::kI32, scalar(to));
+  }
+  ir::ValueId code = native(NativeId::kWstringToChar, {string_value(text)});
+  return machine_convert(code, ir::Scalar::kI32, scalar(to));
+}
+
+ir::ValueId Body::clamp(ir::ValueId number, ir::Scalar wide, ir::Scalar narrow) {
+  if (ir::is_integer(wide) && ir::scalar_size(narrow) < ir::scalar_size(wide)) {
+    Limits limits = limits_of(narrow);
+    ir::ValueId most = build_.constant(wide, static_cast<uint64_t>(limits.high));
+    number = build_.binary(ir::Op::kMin, wide, number, most);
+    ir::ValueId least = build_.constant(wide, static_cast<uint64_t>(limits.low));
+    number = build_.binary(ir::Op::kMax, wide, number, least);
+  }
+  return machine_convert(number, wide, narrow);
 }
 
 // Result and arguments are typed by the row in natives.def.

@@ -18,6 +18,8 @@ ir::TypeId Body::own_type(const Note& note, ir::TypeId target) const {
       return traits.enumeration ? plain : note.type;
     case Flex::kText:
       return note.type;
+    case Flex::kNull:
+      return types().is_reference(target) ? plain : note.type;
   }
   return note.type;
 }
@@ -26,8 +28,10 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
   const Note& note = sema_.infer(id);
   const Expr& expr = tree_[id];
   if (!note.type.valid() || !target.valid()) return zero(target);
-  if (note.constant) {
-    auto bits = sema_.fold_bits(id, target);
+  if (types()[target].kind == ir::Kind::kReferenceTo) return reference_value(id, target);
+  if (note.constant && types().is_reference(target)) return constant_reference(id);
+  if (is_known(note)) {
+    auto bits = sema_.fold_bits(id, target, evaluating_ ? Known::kInitially : Known::kConstant);
     set_line(expr.span);
     return bits ? build_.constant(scalar(target), *bits) : zero(target);
   }
@@ -53,39 +57,51 @@ Typed Body::natural(ExprId id) {
 ir::ValueId Body::emit(ExprId id, ir::TypeId own) {
   const Expr& expr = tree_[id];
   set_line(expr.span);
+  if (sema_.infer(id).bit_size != 0) return emit_bit(id);
+  if (is_character(id)) return emit_character(expr);
   switch (expr.kind) {
     case ExprKind::kName:
     case ExprKind::kMember:
     case ExprKind::kIndex:
+    case ExprKind::kDeref:
     case ExprKind::kDirect: {
       ir::Place from = place(id);
       return build_.load(from, scalar(from.type));
     }
-    case ExprKind::kBit:
-      return emit_bit(expr);
     case ExprKind::kUnary:
       return emit_unary(expr, own);
     case ExprKind::kBinary:
       return emit_binary(expr, own);
     case ExprKind::kCall:
       return emit_call(expr, own);
+    case ExprKind::kAssign:
+      return emit_assignment(expr);
     default:
       return zero(own);
   }
 }
 
-ir::ValueId Body::emit_bit(const Expr& expr) {
-  Typed word = natural(expr.operand);
-  ir::Scalar machine = scalar(word.type);
-  uint32_t offset = expr.number * expr.bit_size;
-  ir::ValueId bits = word.value;
+ir::ValueId Body::emit_bit(ExprId id) {
+  const Note part = sema_.infer(id);
+  uint32_t offset = part.bit_number * part.bit_size;
+  if (part.bit_member >= 0) {
+    ir::Place word = bit_word_place(tree_[id].operand, part);
+    ir::ValueId bits = build_.load(word, scalar(word.type));
+    return part_of(bits, scalar(word.type), offset, 1);
+  }
+  Typed word = natural(tree_[id].operand);
+  return part_of(word.value, scalar(word.type), offset, part.bit_size);
+}
+
+ir::ValueId Body::part_of(ir::ValueId word, ir::Scalar machine, uint32_t offset, uint32_t size) {
+  ir::ValueId bits = word;
   if (offset != 0) {
     bits = build_.binary(ir::Op::kShr, machine, bits, build_.constant(ir::Scalar::kU32, offset));
   }
-  if (expr.bit_size != 1) {
-    ir::DirectAddress size;
-    size.bit_size = expr.bit_size;
-    return machine_convert(bits, machine, scalar(sema_.type_of_direct(size)));
+  if (size != 1) {
+    ir::DirectAddress part;
+    part.bit_size = size;
+    return machine_convert(bits, machine, scalar(sema_.type_of_direct(part)));
   }
   bits = build_.binary(ir::Op::kAnd, machine, bits, build_.constant(machine, 1));
   return build_.unary(ir::Op::kToBool, ir::Scalar::kBool, bits);

@@ -1,4 +1,6 @@
-// Tasks and program instances.
+// The resource that is compiled: its tasks and program instances.
+#include <algorithm>
+
 #include "base/limits.h"
 #include "frontend/sema/sema.h"
 
@@ -6,44 +8,74 @@ namespace frontend {
 namespace {
 
 constexpr int64_t kDefaultPeriodNs = 10'000'000;
-constexpr int64_t kMaxPriority = 65535;
 
 std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
+ir::Task main_task() {
+  ir::Task task;
+  task.name = "Main";
+  task.period_ns = kDefaultPeriodNs;
+  return task;
+}
+
 }  // namespace
 
-void Sema::configure() {
-  if (tree.configs.empty()) {
-    default_configuration();
-    return;
-  }
+// One image runs one resource: the one that was asked for, else the first.
+void Sema::choose_resource() {
+  if (tree.configs.empty()) return;
+  const ConfigDecl& config = tree.configs[0];
   if (tree.configs.size() > 1) {
     error(DiagnosticCode::kTwoConfigurations, tree.configs[1].span,
           "a second CONFIGURATION " + quoted(tree.configs[1].name));
   }
+  NearestName nearest(options.resource);
+  for (const ResourceDecl& resource : config.resources) {
+    nearest.offer(resource.name.text);
+    bool wanted = options.resource.empty() || ir::same_name(resource.name.text, options.resource);
+    if (wanted && resource_ == nullptr) resource_ = &resource;
+  }
+  if (resource_ == nullptr && !options.resource.empty()) {
+    error(DiagnosticCode::kUnknownResource, config.span,
+          "there is no RESOURCE `" + options.resource + "`", nearest.fix());
+  } else if (options.resource.empty() && config.resources.size() > 1) {
+    warning(DiagnosticCode::kResourceChosen, config.resources[1].name.span,
+            "RESOURCE " + quoted(resource_->name) + " is compiled, " +
+                quoted(config.resources[1].name) + " is left out",
+            "say which one is meant: --resource NAME");
+  }
+}
+
+void Sema::configure() {
+  if (for_tests()) return configure_tests();
+  if (tree.configs.empty()) {
+    default_configuration();
+    return;
+  }
   const ConfigDecl& config = tree.configs[0];
   program.name = config.name.text;
-  if (config.resources.size() > 1) {
-    error(DiagnosticCode::kTwoConfigurations, config.resources[1].name.span,
-          "a second RESOURCE " + quoted(config.resources[1].name),
-          "put its tasks into the first; one controller runs one resource");
+  if (config.resources.size() > 1 && resource_ != nullptr) {
+    program.name += "." + std::string(resource_->name.text);
   }
-  if (!config.resources.empty()) configure_resource(config.resources[0]);
-  bool named = false;
-  for (const ResourceDecl& resource : config.resources) named = named || !resource.programs.empty();
-  if (!named) {
+  if (resource_ != nullptr) configure_resource(*resource_);
+  if (resource_ == nullptr || resource_->programs.empty()) {
     error(DiagnosticCode::kNoPrograms, config.span, "the CONFIGURATION names no program to run",
           "add PROGRAM name WITH task : Type;");
   }
-  if (program.tasks.empty()) program.tasks.push_back({"Main", kDefaultPeriodNs, 0, 0});
+  if (program.tasks.empty()) program.tasks.push_back(main_task());
+  configure_paths(tree.globals);
+  configure_paths(config.globals);
+  if (resource_ != nullptr) configure_paths(resource_->globals);
+  check_open_addresses();
 }
 
 void Sema::default_configuration() {
-  program.tasks.push_back({"Main", kDefaultPeriodNs, 0, 0});
+  program.tasks.push_back(main_task());
   for (const PouInfo& pou : pous) {
     if (pou.decl->kind != PouKind::kProgram) continue;
     program.instances.push_back({std::string(pou.decl->name.text), pou.self, 0, {}});
   }
+  configure_paths(tree.globals);
+  check_open_addresses();
 }
 
 void Sema::configure_resource(const ResourceDecl& resource) {
@@ -52,54 +84,36 @@ void Sema::configure_resource(const ResourceDecl& resource) {
     return;
   }
   for (const TaskDecl& task : resource.tasks) add_task(task);
-  for (const ProgramDecl& decl : resource.programs) add_instance(decl);
+  for (const ProgramDecl& decl : resource.programs) add_instance(decl, resource);
 }
 
-void Sema::add_task(const TaskDecl& decl) {
-  for (const ir::Task& task : program.tasks) {
-    if (!ir::same_name(task.name, decl.name.text)) continue;
-    error(DiagnosticCode::kDuplicateName, decl.name.span,
-          "task " + quoted(decl.name) + " is declared twice");
+std::optional<uint32_t> Sema::find_task(const Name& name) {
+  NearestName nearest(name.text);
+  for (uint32_t i = 0; i < program.tasks.size(); ++i) {
+    if (ir::same_name(program.tasks[i].name, name.text)) return i;
+    nearest.offer(program.tasks[i].name);
   }
-  ir::Task task;
-  task.name = decl.name.text;
-  if (decl.single.valid()) {
-    error(DiagnosticCode::kNotSupported, decl.span, "event tasks (SINGLE)",
-          "give the task an INTERVAL and test the event in its program");
-  }
-  if (decl.interval.valid()) {
-    auto period = fold_bits(decl.interval, program.types.elementary(ir::Kind::kTime));
-    task.period_ns = period ? static_cast<int64_t>(*period) : kDefaultPeriodNs;
-    if (task.period_ns <= 0) {
-      error(DiagnosticCode::kBadInterval, decl.span,
-            "task " + quoted(decl.name) + " has the interval " + std::to_string(task.period_ns) +
-                " ns");
-    }
-  }
-  if (decl.priority.valid()) {
-    int64_t priority = fold_integer(decl.priority).value_or(0);
-    if (priority < 0 || priority > kMaxPriority) {
-      error(DiagnosticCode::kBadPriority, decl.span,
-            "task " + quoted(decl.name) + " has the priority " + std::to_string(priority),
-            "use 0 (highest) to " + std::to_string(kMaxPriority));
-      priority = 0;
-    }
-    task.priority = static_cast<uint32_t>(priority);
-  }
-  program.tasks.push_back(std::move(task));
+  error(DiagnosticCode::kUnknownTask, name.span, quoted(name) + " is not a task", nearest.fix());
+  return std::nullopt;
 }
 
-void Sema::add_instance(const ProgramDecl& decl) {
+std::optional<uint32_t> Sema::find_program(const ProgramDecl& decl) {
   auto found = pou_names_.find(decl.type.text);
-  if (found == pou_names_.end() || pous[found->second].decl->kind != PouKind::kProgram) {
-    NearestName nearest(decl.type.text);
-    for (const PouInfo& pou : pous) {
-      if (pou.decl->kind == PouKind::kProgram) nearest.offer(pou.decl->name.text);
-    }
-    error(DiagnosticCode::kUnknownProgram, decl.type.span, quoted(decl.type) + " is not a PROGRAM",
-          nearest.fix());
-    return;
+  if (found != pou_names_.end() && pous[found->second].decl->kind == PouKind::kProgram) {
+    return found->second;
   }
+  NearestName nearest(decl.type.text);
+  for (const PouInfo& pou : pous) {
+    if (pou.decl->kind == PouKind::kProgram) nearest.offer(pou.decl->name.text);
+  }
+  error(DiagnosticCode::kUnknownProgram, decl.type.span, quoted(decl.type) + " is not a PROGRAM",
+        nearest.fix());
+  return std::nullopt;
+}
+
+void Sema::add_instance(const ProgramDecl& decl, const ResourceDecl& resource) {
+  auto pou = find_program(decl);
+  if (!pou) return;
   for (const ir::ProgramInstance& other : program.instances) {
     if (!ir::same_name(other.name, decl.name.text)) continue;
     error(DiagnosticCode::kDuplicateName, decl.name.span,
@@ -107,49 +121,102 @@ void Sema::add_instance(const ProgramDecl& decl) {
   }
   ir::ProgramInstance instance;
   instance.name = decl.name.text;
-  instance.type = pous[found->second].self;
   if (decl.task.empty()) {
-    if (program.tasks.empty()) program.tasks.push_back({"Main", kDefaultPeriodNs, 0, 0});
+    if (program.tasks.empty()) program.tasks.push_back(main_task());
+  } else if (auto task = find_task(decl.task)) {
+    instance.task = *task;
   } else {
-    while (instance.task < program.tasks.size() &&
-           !ir::same_name(program.tasks[instance.task].name, decl.task.text)) {
-      ++instance.task;
-    }
-    if (instance.task == program.tasks.size()) {
-      NearestName nearest(decl.task.text);
-      for (const ir::Task& task : program.tasks) nearest.offer(task.name);
-      error(DiagnosticCode::kUnknownTask, decl.task.span, quoted(decl.task) + " is not a task",
-            nearest.fix());
-      return;
-    }
+    return;
   }
-  instance.init = program_arguments(decl, pous[found->second]);
+  auto same_type = [&](const ProgramDecl& other) {
+    return ir::same_name(other.type.text, decl.type.text);
+  };
+  bool alone = std::count_if(resource.programs.begin(), resource.programs.end(), same_type) == 1;
+  std::vector<Connection> connections;
+  instance.init = program_arguments(decl, pous[*pou], connections);
+  if (!connections.empty()) {
+    if (!alone) *pou = clone_program(*pou, decl.name);
+    pous[*pou].connections = std::move(connections);
+  }
+  instance.type = pous[*pou].self;
   program.instances.push_back(std::move(instance));
+  for (const BlockTask& block : decl.block_tasks) add_block_task(block, pous[*pou]);
 }
 
-ir::ConstId Sema::program_arguments(const ProgramDecl& decl, const PouInfo& info) {
+// PROGRAM p : T (fb WITH task): the block runs in a task of its own.
+void Sema::add_block_task(const BlockTask& decl, const PouInfo& info) {
+  auto task = find_task(decl.task);
+  if (!task) return;
+  auto found = info.names.find(decl.block.text);
+  const Variable* block = found == info.names.end() ? nullptr : &resolve(found->second);
+  bool instance = block != nullptr && block->storage == Storage::kMember && block->type.valid() &&
+                  program.types[block->type].kind == ir::Kind::kFunctionBlock &&
+                  block->section != VarSection::kInOut;
+  if (!instance) {
+    error(DiagnosticCode::kUnknownMember, decl.block.span,
+          quoted(decl.block) + " is no function block of " + quoted(info.decl->name));
+    return;
+  }
+  auto number = static_cast<uint32_t>(program.instances.size() - 1);
+  program.block_tasks.push_back({number, block->index, *task});
+}
+
+// Constants become initial values, everything else is copied around the program's scan.
+ir::ConstId Sema::program_arguments(const ProgramDecl& decl, const PouInfo& info,
+                                    std::vector<Connection>& connections) {
   ir::ConstValue value;
   for (uint32_t i = 0; i < decl.args.count; ++i) {
     const Arg& arg = tree.args[decl.args.first + i];
     auto found = info.names.find(arg.name.text);
-    if (found == info.names.end()) {
+    const Variable* variable = found == info.names.end() ? nullptr : &resolve(found->second);
+    bool parameter = variable != nullptr && (variable->section == VarSection::kInput ||
+                                             variable->section == VarSection::kOutput);
+    if (!parameter) {
       error(DiagnosticCode::kUnknownParameter, arg.span,
-            quoted(decl.type) + " has no parameter " + quoted(arg.name));
+            quoted(decl.type) + " has no input or output " + quoted(arg.name));
       continue;
     }
-    const Variable& variable = resolve(found->second);
-    bool input = variable.section == VarSection::kInput && !arg.output && arg.value.valid();
-    if (!input || !infer(arg.value).constant) {
-      error(DiagnosticCode::kNotSupported, arg.span,
-            "connecting " + quoted(arg.name) + " to a variable",
-            "give inputs constant values here; connect variables in the program's body");
+    bool output = variable->section == VarSection::kOutput;
+    if (arg.output != output) {
+      error(DiagnosticCode::kWrongDirection, arg.span,
+            quoted(arg.name) + (output ? " is an output" : " is no output"),
+            output ? "write `=>`" : "write `:=`");
       continue;
     }
-    ir::ConstId init = initial_value(arg.value, variable.type);
-    if (init.valid()) value.elements.push_back({variable.index, 1, init});
+    if (!arg.value.valid() || !variable->type.valid()) continue;
+    ExprKind kind = tree[arg.value].kind;
+    bool list = kind == ExprKind::kArrayInit || kind == ExprKind::kStructInit;
+    bool constant = !output && (list || infer(arg.value).known >= Known::kByCall);
+    if (!constant) {
+      connections.push_back({found->second, &arg});
+      continue;
+    }
+    ir::ConstId init = initial_value(arg.value, variable->type, variable->init);
+    if (init.valid()) value.elements.push_back({variable->index, 1, init});
   }
   if (value.elements.empty()) return {};
   return program.constants.add(std::move(value));
+}
+
+// A program whose instances are connected differently has code and a type for each.
+uint32_t Sema::clone_program(uint32_t original, const Name& instance) {
+  auto number = static_cast<uint32_t>(pous.size());
+  PouInfo& info = pous.emplace_back();
+  info.decl = pous[original].decl;
+  info.meaning = std::make_unique<Meaning>();
+  info.id = ir::PouId(static_cast<uint32_t>(program.pous.size()));
+  ir::Pou code;
+  code.name = std::string(info.decl->name.text) + "(" + std::string(instance.text) + ")";
+  code.kind = ir::PouKind::kProgram;
+  ir::Type type;
+  type.kind = ir::Kind::kProgram;
+  type.name = code.name;
+  info.self = code.self = program.types.declare(std::move(type));
+  pou_by_type_.emplace(info.self, number);
+  program.pous.push_back(std::move(code));
+  collect_interface(number);
+  resolve_interface(number);
+  return number;
 }
 
 }  // namespace frontend

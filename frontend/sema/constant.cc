@@ -1,5 +1,7 @@
 #include "frontend/sema/constant.h"
 
+#include <bit>
+
 namespace frontend {
 
 Limits limits_of(ir::Scalar scalar) {
@@ -30,6 +32,23 @@ std::string wide_text(Wide value) {
     rest /= 10;
   } while (rest != 0);
   return negative ? "-" + digits : digits;
+}
+
+Constant scalar_constant(const ir::TypeTable& types, ir::TypeId type, uint64_t bits) {
+  Constant value;
+  value.type = type;
+  ir::Scalar scalar = types.scalar(type);
+  if (scalar == ir::Scalar::kF32) {
+    value.form = Constant::Form::kReal;
+    value.real = std::bit_cast<float>(static_cast<uint32_t>(bits));
+  } else if (scalar == ir::Scalar::kF64) {
+    value.form = Constant::Form::kReal;
+    value.real = std::bit_cast<double>(bits);
+  } else {
+    value.integer = ir::is_signed(scalar) ? static_cast<Wide>(static_cast<int64_t>(bits))
+                                          : static_cast<Wide>(bits);
+  }
+  return value;
 }
 
 }  // namespace frontend

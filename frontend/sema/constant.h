@@ -31,4 +31,12 @@ Limits limits_of(ir::Scalar scalar);
 Wide wrap_to(ir::Scalar scalar, Wide value);
 std::string wide_text(Wide value);
 
+class Sema;
+// The value of a call of a standard function, or of a power, whose operands are known;
+// `context` as for Sema::fold. Implemented by lower/constant_evaluation.cc, which knows what calls
+// do.
+std::optional<Constant> evaluate_constant(Sema& sema, ExprId expr, ir::TypeId context);
+// A scalar of `type` from its bits.
+Constant scalar_constant(const ir::TypeTable& types, ir::TypeId type, uint64_t bits);
+
 }  // namespace frontend

@@ -22,25 +22,11 @@ const NameMap<Kind>& kinds_by_name() {
     table.emplace("LDT", Kind::kLdt);
     table.emplace("STRING", Kind::kString);
     table.emplace("WSTRING", Kind::kWstring);
+    table.emplace("USTRING", Kind::kString);  // docs/adr/0008-characters.md
+    table.emplace("UCHAR", Kind::kChar);
     return table;
   }();
   return kTable;
-}
-
-bool is_integer_kind(Kind kind) {
-  Group group = ir::elementary_group(kind);
-  return group == Group::kSigned || group == Group::kUnsigned;
-}
-
-std::optional<Conversion> truncation_of_name(std::string_view name) {
-  constexpr std::string_view kForms[] = {"TRUNC_", "REAL_TRUNC_", "LREAL_TRUNC_"};
-  for (std::string_view form : kForms) {
-    if (name.size() <= form.size() || !ir::same_name(name.substr(0, form.size()), form)) continue;
-    auto to = kind_of_name(name.substr(form.size()));
-    if (!to || !is_integer_kind(*to)) return std::nullopt;
-    return Conversion{form[0] == 'T', true, form[0] == 'L' ? Kind::kLreal : Kind::kReal, *to};
-  }
-  return std::nullopt;
 }
 
 // A number type as the range of integers it holds exactly.
@@ -109,22 +95,6 @@ std::optional<Kind> kind_of_name(std::string_view name) {
   auto found = kinds_by_name().find(name);
   if (found == kinds_by_name().end()) return std::nullopt;
   return found->second;
-}
-
-std::optional<Conversion> conversion_of_name(std::string_view name) {
-  if (auto truncation = truncation_of_name(name)) return truncation;
-  if (name.size() > 3 && ir::same_name(name.substr(0, 3), "TO_")) {
-    auto to = kind_of_name(name.substr(3));
-    if (!to) return std::nullopt;
-    return Conversion{true, false, Kind::kBool, *to};
-  }
-  for (size_t i = 1; i + 4 < name.size(); ++i) {
-    if (!ir::same_name(name.substr(i, 4), "_TO_")) continue;
-    auto from = kind_of_name(name.substr(0, i));
-    auto to = kind_of_name(name.substr(i + 4));
-    if (from && to) return Conversion{false, false, *from, *to};
-  }
-  return std::nullopt;
 }
 
 ir::TypeId without_range(const ir::TypeTable& types, ir::TypeId type) {

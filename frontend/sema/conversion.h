@@ -17,12 +17,16 @@ inline constexpr uint32_t kDefaultStringCapacity = 80;
 
 // An explicit conversion function by its name.
 struct Conversion {
+  enum class Bcd : uint8_t { kNone, kFrom, kTo };
   bool any_source = false;  // TO_Y, TRUNC_Y: whatever the argument is
   bool truncate = false;
+  Bcd bcd = Bcd::kNone;  // binary coded decimals on that side
   ir::Kind from = ir::Kind::kBool;
   ir::Kind to = ir::Kind::kBool;
 };
 std::optional<Conversion> conversion_of_name(std::string_view name);
+// Elementary kinds and strings: does an explicit conversion exist?
+bool is_convertible(ir::Kind from, ir::Kind to);
 
 enum class Fit : uint8_t {
   kSame,  // one machine representation, no code

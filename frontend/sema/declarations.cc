@@ -8,12 +8,11 @@ ir::PouKind ir_kind(PouKind kind) {
   switch (kind) {
     case PouKind::kFunction:
       return ir::PouKind::kFunction;
-    case PouKind::kFunctionBlock:
-      return ir::PouKind::kFunctionBlock;
     case PouKind::kProgram:
       return ir::PouKind::kProgram;
+    default:
+      return ir::PouKind::kFunctionBlock;
   }
-  return ir::PouKind::kFunction;
 }
 
 bool is_parameter(VarSection section) {
@@ -24,27 +23,84 @@ bool is_parameter(VarSection section) {
 }  // namespace
 
 void Sema::collect() {
+  choose_resource();
   collect_pous();
+  if (for_tests()) collect_tests();
   collect_types();
-  collect_globals(tree.globals);
+  for (const VarBlock& block : tree.globals) collect_globals(block, list_of(block));
   for (const ConfigDecl& config : tree.configs) {
-    collect_globals(config.globals);
-    for (const ResourceDecl& resource : config.resources) collect_globals(resource.globals);
+    collect_globals(config.globals, config.name.text);
+    for (const ResourceDecl& resource : config.resources) {
+      if (&resource == resource_) collect_globals(resource.globals, resource.name.text);
+    }
   }
 }
 
 void Sema::collect_types() {
   for (const TypeDecl& decl : tree.types) {
     if (decl.name.empty() || !decl.spec.valid()) continue;
+    if (in_library(decl.name.span)) {
+      collect_library_type(decl);
+      continue;
+    }
     if (!types_.emplace(decl.name.text, decl.spec).second || pou_names_.contains(decl.name.text)) {
       error(DiagnosticCode::kDuplicateName, decl.name.span,
             "`" + std::string(decl.name.text) + "` is declared twice");
       continue;
     }
-    specs_[decl.spec.index].name = decl.name;
-    specs_[decl.spec.index].default_value = decl.init;
+    declare_type(decl);
+    if (tree.find_attribute(decl.attributes, "qualified_only") != nullptr) continue;
     collect_enumerators(decl.spec);
   }
+}
+
+void Sema::declare_type(const TypeDecl& decl) {
+  specs_[decl.spec.index].name = decl.name;
+  specs_[decl.spec.index].default_value = decl.init;
+  forward_declare(decl);
+}
+
+void Sema::collect_library_type(const TypeDecl& decl) {
+  library_types_.emplace(decl.name.text, &decl);
+  for (const Enumerator& enumerator : tree[decl.spec].enumerators) {
+    library_literals_.emplace(enumerator.name.text, &decl);
+  }
+}
+
+// Library types enter the program when their name, or a literal that nobody else has, is first
+// used.
+bool Sema::use_library_type(std::string_view name) {
+  auto found = library_types_.find(name);
+  if (found == library_types_.end() || types_.contains(name)) return false;
+  const TypeDecl& decl = *found->second;
+  types_.emplace(decl.name.text, decl.spec);
+  declare_type(decl);
+  return true;
+}
+
+bool Sema::use_library_literal(std::string_view name) {
+  auto found = library_literals_.find(name);
+  if (found == library_literals_.end()) return false;
+  const TypeDecl& decl = *found->second;
+  use_library_type(decl.name.text);
+  if (types_.find(decl.name.text)->second != decl.spec) return false;
+  const std::vector<Enumerator>& enumerators = tree[decl.spec].enumerators;
+  for (uint32_t i = 0; i < enumerators.size(); ++i) {
+    if (ir::same_name(enumerators[i].name.text, name)) {
+      literals_[enumerators[i].name.text].push_back({decl.spec, i});
+    }
+  }
+  return true;
+}
+
+// References may lead to a structure whose content is not known yet.
+void Sema::forward_declare(const TypeDecl& decl) {
+  const SpecKind kind = tree[decl.spec].kind;
+  if (kind != SpecKind::kStruct && kind != SpecKind::kUnion) return;
+  ir::Type type;
+  type.kind = kind == SpecKind::kUnion ? ir::Kind::kUnion : ir::Kind::kStruct;
+  type.name = decl.name.text;
+  specs_[decl.spec.index].forward = program.types.declare(std::move(type));
 }
 
 void Sema::collect_enumerators(SpecId spec) {
@@ -71,33 +127,20 @@ VarId Sema::add_variable(Variable variable, NameMap<VarId>& scope) {
   return id;
 }
 
-void Sema::collect_globals(const std::vector<VarBlock>& blocks) {
-  for (const VarBlock& block : blocks) {
-    for (const VarDecl& decl : block.vars) {
-      collect_enumerators(decl.spec);
-      for (const Name& name : decl.names) {
-        Variable variable;
-        variable.name = name;
-        variable.decl = &decl;
-        variable.section = VarSection::kGlobal;
-        variable.constant = block.constant;
-        variable.retain = block.retain;
-        variable.storage = Storage::kGlobal;
-        variable.index = static_cast<uint32_t>(global_order_.size());
-        VarId id = add_variable(variable, globals_);
-        if (id.valid()) global_order_.push_back(id);
-      }
-    }
-  }
-}
-
 void Sema::collect_pous() {
   for (const PouDecl& decl : tree.pous) {
     if (decl.name.empty()) continue;
-    bool library = sources.file_of(decl.span.begin) >= library_file_;
+    bool library = in_library(decl.span);
     if (library) {
       library_.emplace(decl.name.text, &decl);
-    } else if (pou_names_.contains(decl.name.text)) {
+    } else if (auto same = pou_names_.find(decl.name.text);
+               same != pou_names_.end() && decl.kind == PouKind::kFunction &&
+               pous[same->second].decl->kind == PouKind::kFunction) {
+      uint32_t last = same->second;
+      while (pous[last].overload != kNoPou) last = pous[last].overload;
+      pous[last].overload = static_cast<uint32_t>(pous.size());
+      add_pou(decl, false);
+    } else if (same != pou_names_.end()) {
       error(DiagnosticCode::kDuplicateName, decl.name.span,
             "`" + std::string(decl.name.text) + "` is declared twice");
     } else {
@@ -111,9 +154,10 @@ uint32_t Sema::add_pou(const PouDecl& decl, bool library) {
   PouInfo& info = pous.emplace_back();
   info.decl = &decl;
   info.library = library;
-  info.id = ir::PouId(static_cast<uint32_t>(program.pous.size()));
+  info.open = is_open(decl);
+  if (!info.open) info.id = ir::PouId(static_cast<uint32_t>(program.pous.size()));
   pou_names_.emplace(decl.name.text, number);
-  ir::Pou& pou = program.pous.emplace_back();
+  ir::Pou pou;
   pou.name = decl.name.text;
   pou.kind = ir_kind(decl.kind);
   if (decl.kind != PouKind::kFunction) {
@@ -124,6 +168,15 @@ uint32_t Sema::add_pou(const PouDecl& decl, bool library) {
     pou.self = info.self;
     pou_by_type_.emplace(info.self, number);
   }
+  if (!info.open) program.pous.push_back(std::move(pou));
+  collect_interface(number);
+  if (library) add_aliases(info);
+  return number;
+}
+
+void Sema::collect_interface(uint32_t number) {
+  PouInfo& info = pous[number];
+  const PouDecl& decl = *info.decl;
   for (const VarBlock& block : decl.blocks) collect_variables(number, block);
   if (decl.kind == PouKind::kFunction && decl.result.valid()) {
     Variable result;
@@ -135,13 +188,14 @@ uint32_t Sema::add_pou(const PouDecl& decl, bool library) {
     if (info.result.valid()) info.variables.push_back(info.result);
   }
   number_variables(info);
-  return number;
 }
 
 void Sema::collect_variables(uint32_t pou, const VarBlock& block) {
   PouInfo& info = pous[pou];
+  if (block.section == VarSection::kAccess) return;
+  if (block.section == VarSection::kStatic) allow_extension("VAR_STAT", block.span);
   for (const VarDecl& decl : block.vars) {
-    collect_enumerators(decl.spec);
+    if (info.meaning == nullptr) collect_enumerators(decl.spec);
     for (const Name& name : decl.names) {
       Variable variable;
       variable.name = name;
@@ -150,8 +204,15 @@ void Sema::collect_variables(uint32_t pou, const VarBlock& block) {
       variable.constant = block.constant;
       variable.retain = block.retain;
       variable.pou = pou;
+      if (block.section == VarSection::kStatic) {
+        add_static(variable, info);
+        continue;
+      }
       VarId id = add_variable(variable, info.names);
-      if (id.valid()) info.variables.push_back(id);
+      if (!id.valid()) continue;
+      info.variables.push_back(id);
+      bool keeps = info.decl->kind != PouKind::kFunction && block.section == VarSection::kInput;
+      if (decl.edge != Edge::kNone && keeps) add_edge(id, info);
     }
   }
 }
@@ -181,19 +242,38 @@ void Sema::number_variables(PouInfo& info) {
   }
 }
 
+// CTU_DINT has the aliases of CTU.
+void Sema::add_aliases(PouInfo& info) {
+  std::string_view name = info.decl->name.text;
+  for (const stdlib::AliasRow& row : stdlib::alias_rows()) {
+    bool variant = name.size() > row.block.size() && name[row.block.size()] == '_';
+    if (name.substr(0, row.block.size()) != row.block ||
+        (!variant && name.size() != row.block.size())) {
+      continue;
+    }
+    auto parameter = info.names.find(row.parameter);
+    if (parameter != info.names.end()) info.names.emplace(row.name, VarId(parameter->second));
+  }
+}
+
 // Library POUs enter the program when their name is first used.
 bool Sema::use_library(std::string_view name) {
   auto found = library_.find(name);
   if (found == library_.end() || pou_names_.contains(name)) return false;
-  add_pou(*found->second, true);
+  uint32_t number = add_pou(*found->second, true);
+  if (declared_) resolve_interface(number);  // a function first met in a body
   return true;
 }
 
+// After errors much is unused that will not stay so.
 void Sema::report_unused() {
+  if (diagnostics_.has_errors()) return;
   for (const Variable& variable : variables_) {
-    bool private_section =
-        variable.section == VarSection::kLocal || variable.section == VarSection::kTemp;
+    bool private_section = variable.section == VarSection::kLocal ||
+                           variable.section == VarSection::kTemp ||
+                           variable.section == VarSection::kStatic;
     if (variable.used || !private_section || variable.decl->has_address) continue;
+    if (variable.pou != kNoPou && pous[variable.pou].open) continue;
     warning(DiagnosticCode::kUnusedVariable, variable.name.span,
             "`" + std::string(variable.name.text) + "` is never used");
   }

@@ -1,6 +1,7 @@
 // Constants meet the type of their place: what fits is taken, what does not is an error.
 #include <bit>
 #include <cmath>
+#include <cstdio>
 
 #include "frontend/sema/sema.h"
 
@@ -9,7 +10,8 @@ namespace {
 
 std::string value_text(const Constant& value) {
   if (value.form == Constant::Form::kReal) {
-    std::string text = std::to_string(value.real);
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value.real);
     return text;
   }
   if (value.form == Constant::Form::kText) return "'" + value.text + "'";
@@ -105,8 +107,8 @@ std::optional<std::string> Sema::fit_text(const Constant& value, ir::TypeId targ
   return value.text.substr(0, room);
 }
 
-std::optional<uint64_t> Sema::fold_bits(ExprId expr, ir::TypeId target) {
-  auto value = fold(expr, target);
+std::optional<uint64_t> Sema::fold_bits(ExprId expr, ir::TypeId target, Known least) {
+  auto value = fold(expr, target, least);
   if (!value) return std::nullopt;
   return fit(*value, target, tree[expr].span);
 }

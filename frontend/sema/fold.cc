@@ -1,55 +1,18 @@
 // Constant expressions. Values of literals alone stay exact until their context
 // gives them a type; typed ones wrap in their width as they would at run time.
-#include <bit>
 #include <cmath>
 
+#include "frontend/sema/folder.h"
 #include "frontend/sema/operators.h"
-#include "frontend/sema/sema.h"
 
 namespace frontend {
-namespace {
-
-// Exact integers may grow to this before they are refused: far beyond any type, and
-// products of two of them still fit.
-constexpr Wide kMaxExact = static_cast<Wide>(1) << 62;
-
-}  // namespace
-
-// Evaluates one expression known to be constant; all states of failure are reported.
-class Folder {
- public:
-  Folder(Sema& sema, ir::TypeId context) : sema_(sema), context_(context) {}
-  std::optional<Constant> fold(ExprId id);
-
- private:
-  std::optional<Constant> literal(const Expr& expr);
-  std::optional<Constant> name(ExprId id, const Expr& expr);
-  std::optional<Constant> enumerator(ir::TypeId type, std::string_view name);
-  std::optional<Constant> unary(ExprId id, const Expr& expr);
-  std::optional<Constant> binary(ExprId id, const Expr& expr);
-  std::optional<Constant> compare(const Expr& expr, const Constant& a, const Constant& b);
-  std::optional<Constant> real_binary(const Expr& expr, double a, double b, Constant result);
-  std::optional<Constant> integer_binary(const Expr& expr, Wide a, Wide b, Constant result);
-  std::optional<Constant> exact(Constant result, Wide value, const Expr& expr);
-  Constant of_bits(ir::TypeId type, uint64_t bits) const;
-  double real_of(const Constant& value) const {
-    return value.form == Constant::Form::kReal ? value.real : static_cast<double>(value.integer);
-  }
-  bool context_is_real() const {
-    return context_.valid() && traits_of(sema_.program.types, context_).real;
-  }
-
-  Sema& sema_;
-  ir::TypeId context_;
-};
-
 std::optional<Constant> Folder::fold(ExprId id) {
   const Expr& expr = sema_.tree[id];
   const Note& note = sema_.infer(id);
   if (!note.type.valid()) return std::nullopt;
-  if (!note.constant) {
+  if (note.known < least_) {
     sema_.error(DiagnosticCode::kNotConstant, expr.span, "this has to be known when compiling",
-                "use literals, constants and enumeration literals");
+                "use literals, constants and standard functions of them");
     return std::nullopt;
   }
   switch (expr.kind) {
@@ -58,15 +21,85 @@ std::optional<Constant> Folder::fold(ExprId id) {
     case ExprKind::kName:
       return name(id, expr);
     case ExprKind::kQualified:
-    case ExprKind::kMember:
       return enumerator(note.type, expr.name.text);
+    case ExprKind::kMember:
+      return member(id, expr);
+    case ExprKind::kIndex:
+      return part(id);
+    case ExprKind::kBit:
+      return bits_of(id, expr);
+    case ExprKind::kCall:
+      return call(id);
     case ExprKind::kUnary:
       return unary(id, expr);
     case ExprKind::kBinary:
-      return binary(id, expr);
+      return expr.binary == BinaryOp::kPower ? call(id) : binary(id, expr);
     default:
       return std::nullopt;
   }
+}
+
+std::optional<Constant> Folder::member(ExprId id, const Expr& expr) {
+  const Note& note = sema_.infer(id);
+  if (note.bit_size != 0) return bits_of(id, expr);
+  bool literal = note.constant && !note.variable.valid();
+  return literal ? enumerator(note.type, expr.name.text) : part(id);
+}
+
+// A variable or part of one, with its initial value.
+std::optional<Constant> Folder::part(ExprId id) {
+  auto part = sema_.initial_part(id);
+  if (!part) return std::nullopt;
+  const ir::TypeTable& types = sema_.program.types;
+  ir::ConstId init = part->init;
+  for (ir::TypeId type = part->type; !init.valid() && type.valid(); type = types[type].base) {
+    init = types[type].init;
+  }
+  if (is_string(types, part->type)) {
+    Constant value;
+    value.form = Constant::Form::kText;
+    value.type = part->type;
+    if (init.valid()) value.text = sema_.program.constants[init].text;
+    return value;
+  }
+  if (!types.is_scalar(part->type)) {
+    sema_.error(DiagnosticCode::kBadInitializer, sema_.tree[id].span,
+                "this is a whole `" + sema_.type_text(part->type) + "`",
+                "name the member or element that is meant");
+    return std::nullopt;
+  }
+  return of_bits(part->type, init.valid() ? sema_.program.constants[init].bits : 0);
+}
+
+std::optional<Constant> Folder::bits_of(ExprId id, const Expr& expr) {
+  const Note note = sema_.infer(id);
+  ir::TypeId saved = context_;
+  context_ = {};
+  auto whole = fold(expr.operand);
+  context_ = saved;
+  if (!whole) return std::nullopt;
+  Wide mask = (static_cast<Wide>(1) << note.bit_size) - 1;
+  Constant value;
+  value.type = note.type;
+  value.integer = (whole->integer >> (note.bit_number * note.bit_size)) & mask;
+  return value;
+}
+
+// What a call gives is not repeated here: it is lowered and run as any other code.
+std::optional<Constant> Folder::call(ExprId id) {
+  const Expr& expr = sema_.tree[id];
+  if (expr.kind == ExprKind::kCall) {
+    Callee callee = sema_.callee(expr);
+    if (callee.kind == Callee::Kind::kBound) {
+      auto bound = sema_.bound_of(expr, callee.upper);
+      if (!bound) return std::nullopt;
+      Constant value;
+      value.type = sema_.infer(id).type;
+      value.integer = *bound;
+      return value;
+    }
+  }
+  return evaluate_constant(sema_, id, context_);
 }
 
 std::optional<Constant> Folder::literal(const Expr& expr) {
@@ -119,24 +152,6 @@ std::optional<Constant> Folder::literal(const Expr& expr) {
   return of_bits(type, *bits);
 }
 
-Constant Folder::of_bits(ir::TypeId type, uint64_t bits) const {
-  const ir::TypeTable& types = sema_.program.types;
-  Constant value;
-  value.type = type;
-  ir::Scalar scalar = types.scalar(type);
-  if (scalar == ir::Scalar::kF32) {
-    value.form = Constant::Form::kReal;
-    value.real = std::bit_cast<float>(static_cast<uint32_t>(bits));
-  } else if (scalar == ir::Scalar::kF64) {
-    value.form = Constant::Form::kReal;
-    value.real = std::bit_cast<double>(bits);
-  } else {
-    value.integer = ir::is_signed(scalar) ? static_cast<Wide>(static_cast<int64_t>(bits))
-                                          : static_cast<Wide>(bits);
-  }
-  return value;
-}
-
 std::optional<Constant> Folder::name(ExprId id, const Expr& expr) {
   const Note& note = sema_.infer(id);
   if (!note.variable.valid()) {
@@ -151,18 +166,7 @@ std::optional<Constant> Folder::name(ExprId id, const Expr& expr) {
     }
     return enumerator(type, expr.name.text);
   }
-  const Variable& variable = sema_.resolve(note.variable);
-  const ir::TypeTable& types = sema_.program.types;
-  ir::ConstId init = variable.init;
-  if (!init.valid()) init = types[variable.type].init;
-  if (is_string(types, variable.type)) {
-    Constant value;
-    value.form = Constant::Form::kText;
-    value.type = variable.type;
-    if (init.valid()) value.text = sema_.program.constants[init].text;
-    return value;
-  }
-  return of_bits(variable.type, init.valid() ? sema_.program.constants[init].bits : 0);
+  return part(id);
 }
 
 std::optional<Constant> Folder::enumerator(ir::TypeId type, std::string_view name) {
@@ -249,117 +253,9 @@ std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
   return out;
 }
 
-std::optional<Constant> Folder::compare(const Expr& expr, const Constant& a, const Constant& b) {
-  int order = 0;
-  bool unordered = false;
-  if (a.form == Constant::Form::kText) {
-    order = a.text.compare(b.text);
-  } else if (a.form == Constant::Form::kReal || b.form == Constant::Form::kReal) {
-    double x = real_of(a);
-    double y = real_of(b);
-    unordered = std::isnan(x) || std::isnan(y);
-    order = x < y ? -1 : x > y ? 1 : 0;
-  } else {
-    order = a.integer < b.integer ? -1 : a.integer > b.integer ? 1 : 0;
-  }
-  bool holds = false;
-  switch (expr.binary) {
-    case BinaryOp::kEq:
-      holds = order == 0;
-      break;
-    case BinaryOp::kNe:
-      holds = order != 0;
-      break;
-    case BinaryOp::kLt:
-      holds = order < 0;
-      break;
-    case BinaryOp::kLe:
-      holds = order <= 0;
-      break;
-    case BinaryOp::kGt:
-      holds = order > 0;
-      break;
-    default:
-      holds = order >= 0;
-      break;
-  }
-  if (unordered) holds = expr.binary == BinaryOp::kNe;
-  Constant result;
-  result.type = sema_.program.types.elementary(ir::Kind::kBool);
-  result.integer = holds ? 1 : 0;
-  return result;
-}
-
-std::optional<Constant> Folder::real_binary(const Expr& expr, double a, double b, Constant result) {
-  double value = 0;
-  switch (expr.binary) {
-    case BinaryOp::kAdd:
-      value = a + b;
-      break;
-    case BinaryOp::kSub:
-      value = a - b;
-      break;
-    case BinaryOp::kMul:
-      value = a * b;
-      break;
-    case BinaryOp::kDiv:
-      value = a / b;
-      break;
-    default:
-      sema_.error(DiagnosticCode::kBadOperand, expr.span,
-                  std::string(operator_text(expr.binary)) + " is not defined for reals");
-      return std::nullopt;
-  }
-  Traits traits = traits_of(sema_.program.types, result.type);
-  if (result.flex == Flex::kNone && traits.duration) {
-    if (!(std::fabs(value) < 9.2e18)) {
-      sema_.error(DiagnosticCode::kConstantOverflow, expr.span, "the duration does not fit");
-      return std::nullopt;
-    }
-    result.integer = static_cast<Wide>(std::nearbyint(value));
-    return result;
-  }
-  result.form = Constant::Form::kReal;
-  bool single =
-      result.flex == Flex::kNone && sema_.program.types.scalar(result.type) == ir::Scalar::kF32;
-  result.real = single ? static_cast<double>(static_cast<float>(value)) : value;
-  return result;
-}
-
-std::optional<Constant> Folder::integer_binary(const Expr& expr, Wide a, Wide b, Constant result) {
-  switch (expr.binary) {
-    case BinaryOp::kAdd:
-      return exact(result, a + b, expr);
-    case BinaryOp::kSub:
-      return exact(result, a - b, expr);
-    case BinaryOp::kMul: {
-      Wide product = 0;
-      if (__builtin_mul_overflow(a, b, &product)) product = kMaxExact * kMaxExact;
-      return exact(result, product, expr);
-    }
-    case BinaryOp::kDiv:
-    case BinaryOp::kMod:
-      if (b == 0) {
-        sema_.error(DiagnosticCode::kConstantDivision, expr.span, "the divisor is 0");
-        return std::nullopt;
-      }
-      return exact(result, expr.binary == BinaryOp::kDiv ? a / b : a % b, expr);
-    case BinaryOp::kAnd:
-    case BinaryOp::kAndThen:
-      return exact(result, a & b, expr);
-    case BinaryOp::kOr:
-    case BinaryOp::kOrElse:
-      return exact(result, a | b, expr);
-    case BinaryOp::kXor:
-      return exact(result, a ^ b, expr);
-    default:
-      return std::nullopt;
-  }
-}
-
-std::optional<Constant> Sema::fold(ExprId expr, ir::TypeId context) {
+std::optional<Constant> Sema::fold(ExprId expr, ir::TypeId context, Known least) {
   if (!infer(expr).type.valid()) return std::nullopt;
-  return Folder(*this, context).fold(expr);
+  return Folder(*this, context, least).fold(expr);
 }
 
 // A type for a literal that no candidate of the context has: the first declared one.

@@ -32,8 +32,21 @@ ir::Kind integer_kind(const Literal& literal) {
 
 }  // namespace
 
+SpecInfo& Sema::spec_info(SpecId id) {
+  if (current_pou_ == kNoPou) return specs_[id.index];
+  const PouInfo& pou = pous[current_pou_];
+  base::SourcePos at = tree[id].span.begin;
+  bool own = pou.meaning != nullptr && !(at < pou.decl->span.begin) && at < pou.decl->span.end;
+  return own ? pou.meaning->specs[id.index] : specs_[id.index];
+}
+
+Note& Sema::note(ExprId id) {
+  bool own = current_pou_ != kNoPou && pous[current_pou_].meaning != nullptr;
+  return own ? pous[current_pou_].meaning->notes[id.index] : notes_[id.index];
+}
+
 const Note& Sema::infer(ExprId id) {
-  Note& note = notes_[id.index];
+  Note& note = this->note(id);
   if (note.progress == Progress::kDone) return note;
   const Expr& expr = tree[id];
   if (depth_ > kMaxDepth) {
@@ -44,6 +57,14 @@ const Note& Sema::infer(ExprId id) {
   }
   ++depth_;
   note = infer_kind(id, expr);
+  note.reference = {};
+  if (note.type.valid() && program.types[note.type].kind == ir::Kind::kReferenceTo) {
+    note.reference = note.type;
+    note.type = program.types[note.type].base;
+    note.constant = false;
+    note.can_trap = true;
+  }
+  if (note.constant) note.known = Known::kConstant;
   --depth_;
   note.progress = Progress::kDone;
   return note;
@@ -69,17 +90,15 @@ Note Sema::infer_kind(ExprId, const Expr& expr) {
       return infer_binary(expr);
     case ExprKind::kCall:
       return infer_call(expr);
+    case ExprKind::kAssign:
+      return infer_assign(expr);
     case ExprKind::kDirect: {
       Note note;
       note.type = type_of_direct(expr.address);
       return note;
     }
     case ExprKind::kDeref:
-      if (infer(expr.operand).type.valid()) {
-        error(DiagnosticCode::kNotReference, expr.span,
-              "`" + type_text(infer(expr.operand).type) + "` is not a reference");
-      }
-      return {};
+      return infer_deref(expr);
     case ExprKind::kArrayInit:
     case ExprKind::kRepeat:
     case ExprKind::kStructInit:
@@ -87,6 +106,9 @@ Note Sema::infer_kind(ExprId, const Expr& expr) {
             "a list of values stands where a single value is needed");
       return {};
     case ExprKind::kError:
+    case ExprKind::kThis:  // these are reported by report_not_supported()
+    case ExprKind::kSuper:
+    case ExprKind::kType:
       return {};
   }
   return {};
@@ -135,8 +157,25 @@ Note Sema::infer_literal(const Expr& expr) {
 }
 
 Note Sema::infer_name(const Expr& expr) {
-  VarId id = find_variable(expr.name.text);
-  if (!id.valid()) return infer_enum_name(expr);
+  VarId id = find_variable(expr);
+  if (!id.valid() && expr.global) {
+    NearestName nearest(expr.name.text);
+    nearest.offer_all(globals_);
+    error(DiagnosticCode::kUnknownName, expr.span,
+          "there is no global variable `" + std::string(expr.name.text) + "`", nearest.fix());
+    return {};
+  }
+  if (!id.valid() && ir::same_name(expr.name.text, "NULL")) {
+    Note note;
+    note.type = program.types.ref_to(program.types.elementary(ir::Kind::kByte));
+    note.flex = Flex::kNull;
+    note.constant = true;
+    return note;
+  }
+  return id.valid() ? variable_note(id) : infer_enum_name(expr);
+}
+
+Note Sema::variable_note(VarId id) {
   variables_[id.index].used = true;
   const Variable* variable = &resolve(id);
   if (variable->external.valid()) {
@@ -150,12 +189,18 @@ Note Sema::infer_name(const Expr& expr) {
   note.constant =
       variable->constant && variable->type.valid() &&
       (program.types.is_scalar(variable->type) || is_string(program.types, variable->type));
+  bool has_initial = variable->section != VarSection::kInOut;
+  note.known = variable->constant ? Known::kConstant : has_initial ? Known::kInitially : Known::kNo;
   return note;
 }
 
 Note Sema::infer_enum_name(const Expr& expr) {
   auto found = literals_.find(expr.name.text);
+  if (found == literals_.end() && use_library_literal(expr.name.text)) {
+    found = literals_.find(expr.name.text);
+  }
   if (found == literals_.end()) {
+    if (VarId id = program_variable(expr.name.text, false); id.valid()) return variable_note(id);
     bool pou = pou_names_.contains(expr.name.text) || types_.contains(expr.name.text) ||
                library_.contains(expr.name.text) || standard_.contains(expr.name.text);
     error(pou ? DiagnosticCode::kNotAValue : DiagnosticCode::kUnknownName, expr.span,
@@ -210,21 +255,41 @@ Note Sema::infer_bit(const Expr& expr) {
           "`" + type_text(operand.type) + "` has no bits to access");
     return {};
   }
-  uint32_t width = ir::scalar_size(program.types.scalar(operand.type)) * 8;
-  if ((uint64_t{expr.number} + 1) * expr.bit_size > width) {
-    error(DiagnosticCode::kBitOutOfRange, expr.span,
-          "number " + std::to_string(expr.number) + " in `" + type_text(operand.type) + "`",
-          "the highest is " + std::to_string(width / expr.bit_size - 1));
-    return {};
-  }
-  Note note = operand;
+  if (!check_part(operand.type, expr.number, expr.bit_size, expr.span)) return {};
+  return part_note(operand, expr.number, expr.bit_size);
+}
+
+// What the variable holds then; of S= and R= the value on the right.
+Note Sema::infer_assign(const Expr& expr) {
+  allow_extension("an assignment inside an expression", expr.span, "write two statements");
+  bool set = expr.assign == AssignOp::kSet || expr.assign == AssignOp::kReset;
+  Note note;
+  note.calls = true;
+  note.type = set ? program.types.elementary(ir::Kind::kBool) : infer(expr.operand).type;
+  return note;
+}
+
+bool Sema::check_part(ir::TypeId whole, uint32_t number, uint8_t size, base::SourceSpan span) {
+  uint32_t width = ir::scalar_size(program.types.scalar(whole)) * 8;
+  if ((uint64_t{number} + 1) * size <= width) return true;
+  error(DiagnosticCode::kBitOutOfRange, span,
+        "number " + std::to_string(number) + " in `" + type_text(whole) + "`",
+        "the highest is " + std::to_string(width / size - 1));
+  return false;
+}
+
+Note Sema::part_note(const Note& whole, uint32_t number, uint8_t size) const {
+  Note note = whole;
   note.progress = Progress::kNew;
   note.flex = Flex::kNone;
   note.constant = false;
   note.variable = {};
-  ir::DirectAddress size;
-  size.bit_size = expr.bit_size;
-  note.type = type_of_direct(size);
+  note.bit_size = size;
+  note.bit_member = -1;
+  note.bit_number = number;
+  ir::DirectAddress bits;
+  bits.bit_size = size;
+  note.type = type_of_direct(bits);
   return note;
 }
 
@@ -233,6 +298,7 @@ Note Sema::infer_unary(const Expr& expr) {
   if (!operand.type.valid()) return {};
   Note note = operand;
   note.variable = {};
+  note.bit_size = 0;
   Traits traits = traits_of(program.types, operand.type);
   note.type = without_range(program.types, operand.type);
   bool good = false;

@@ -1,4 +1,6 @@
 // Members and elements.
+#include <algorithm>
+
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -7,30 +9,35 @@ namespace {
 
 std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
-bool is_type_name(const Expr& expr) { return expr.kind == ExprKind::kName; }
-
 }  // namespace
 
 Note Sema::infer_member(const Expr& expr) {
   const Expr& head = tree[expr.operand];
-  // E.a: a literal qualified by its enumeration.
-  if (is_type_name(head) && !find_variable(head.name.text).valid() &&
-      types_.contains(head.name.text)) {
+  if (names_enumeration(head)) {  // E.a: a literal qualified by its enumeration
     Expr qualified = expr;
     qualified.prefix = head.name;
     return infer_qualified(qualified);
   }
+  if (auto global = infer_list_member(expr)) return *global;
   const Note& operand = infer(expr.operand);
   if (!operand.type.valid()) return {};
+  if (auto bit = infer_named_bit(expr, operand)) return *bit;
   Note note = operand;
   note.variable = {};
   note.constant = false;
+  note.bit_size = 0;
+  note.bit_member = -1;
   note.flex = Flex::kNone;
   const ir::Type& type = program.types[operand.type];
-  if (type.kind == ir::Kind::kStruct) {
-    int32_t member = find_member(operand.type, expr.name.text);
-    if (member >= 0) {
-      note.type = type.members[static_cast<uint32_t>(member)].type;
+  if (ir::is_structure(type.kind)) {
+    if (const Field* field = find_field(operand.type, expr.name.text)) {
+      if (field->bit >= 0) {
+        note = part_note(note, static_cast<uint32_t>(field->bit), 1);
+        note.bit_member = static_cast<int32_t>(field->member);
+        note.known = Known::kNo;
+        return note;
+      }
+      note.type = type.members[field->member].type;
       return note;
     }
     NearestName nearest(expr.name.text);
@@ -64,17 +71,52 @@ Note Sema::infer_member(const Expr& expr) {
   return {};
 }
 
+// `colour : Colour` is common: the type is meant where the variable has no members.
+bool Sema::names_enumeration(const Expr& head) {
+  if (head.kind != ExprKind::kName || !types_.contains(head.name.text)) return false;
+  VarId variable = find_variable(head.name.text);
+  if (!variable.valid()) return true;
+  ir::TypeId type = resolve(variable).type;
+  if (!type.valid() || !is_enum(program.types, type)) return false;
+  auto use = find_type(head.name.text);
+  return use && is_enum(program.types, use->type);
+}
+
+// `x.NUMBER`: the bit that a constant names.
+std::optional<Note> Sema::infer_named_bit(const Expr& expr, const Note& operand) {
+  Traits traits = traits_of(program.types, operand.type);
+  if (!traits.bits && !traits.integer) return std::nullopt;
+  VarId id = find_variable(expr.name.text);
+  if (!id.valid()) return std::nullopt;
+  const Variable& constant = resolve(id);
+  variables_[id.index].used = true;
+  allow_extension("a constant as the number of a bit", expr.span);
+  if (!constant.constant || !traits_of(program.types, constant.type).integer) return std::nullopt;
+  ir::ConstId init = constant.init;
+  uint64_t number = init.valid() ? program.constants[init].bits : 0;
+  uint32_t bit = static_cast<uint32_t>(std::min<uint64_t>(number, 0xffff'ffffu));
+  if (!check_part(operand.type, bit, 1, expr.span)) return Note();
+  return part_note(operand, bit, 1);
+}
+
 Note Sema::infer_index(const Expr& expr) {
+  if (const Note& operand = infer(expr.operand);
+      operand.type.valid() && program.types[operand.type].kind == ir::Kind::kPointer) {
+    return infer_pointer_index(expr, operand);
+  }
   Note note = infer(expr.operand);
   note.variable = {};
   note.constant = false;
+  note.bit_size = 0;
   note.flex = Flex::kNone;
   for (uint32_t i = 0; i < expr.list.count; ++i) {
     const Note& index = infer(tree.expr_lists[expr.list.first + i]);
+    note.known = std::min(note.known, index.known);
     note.calls = note.calls || index.calls;
     note.can_trap = note.can_trap || index.can_trap || !index.constant;
   }
   if (!note.type.valid()) return {};
+  if (is_string(program.types, note.type)) return infer_character(expr, note);
   const ir::Type& array = program.types[note.type];
   if (array.kind != ir::Kind::kArray) {
     error(DiagnosticCode::kNotArray, expr.span, "`" + type_text(note.type) + "` is not an array");
@@ -89,6 +131,28 @@ Note Sema::infer_index(const Expr& expr) {
   ir::TypeId element = array.base;
   check_index_list(expr, array);
   note.type = element;
+  return note;
+}
+
+// Characters count from 0 and are BYTE or WORD, as in CODESYS; with `iec`, from 1 and CHAR
+// or WCHAR (edition 3, 6.4.2.1). Position n of STRING[n] holds the NUL: `s[n] := 0` is common.
+Note Sema::infer_character(const Expr& expr, Note note) {
+  if (expr.list.count != 1) {
+    error(DiagnosticCode::kWrongIndexCount, expr.span,
+          std::to_string(expr.list.count) + " indices for `" + type_text(note.type) + "`",
+          "give 1");
+    return {};
+  }
+  ir::Type characters;
+  bool iec = options.dialect == Dialect::kIec;
+  characters.dims.push_back({iec ? 1 : 0, program.types[note.type].capacity});
+  check_index_list(expr, characters);
+  bool wide = program.types[note.type].kind == ir::Kind::kWstring;
+  ir::Kind kind = iec    ? wide ? ir::Kind::kWchar : ir::Kind::kChar
+                  : wide ? ir::Kind::kWord
+                         : ir::Kind::kByte;
+  note.type = program.types.elementary(kind);
+  note.known = Known::kNo;
   return note;
 }
 

@@ -1,4 +1,6 @@
 // Calls: what is called, and what it gives back.
+#include <algorithm>
+
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -11,10 +13,14 @@ std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"
 Callee Sema::callee(const Expr& call) {
   const Expr& head = tree[call.operand];
   if (head.kind == ExprKind::kName) {
-    VarId id = find_variable(head.name.text);
-    if (!id.valid()) return named_callee(head);
+    VarId id = find_variable(head);
+    if (!id.valid()) id = program_variable(head.name.text, true);
+    if (!id.valid()) {
+      Callee named = named_callee(head);
+      return named.kind == Callee::Kind::kFunction ? select_function(call, named.pou) : named;
+    }
     // The function's own name is its result inside; calling it would be recursion.
-    if (variables_[id.index].decl == nullptr) {
+    if (variables_[id.index].decl == nullptr && !variables_[id.index].hidden) {
       error(DiagnosticCode::kRecursiveCall, head.span, quoted(head.name) + " calls itself",
             "use a loop");
       return {};
@@ -26,7 +32,7 @@ Callee Sema::callee(const Expr& call) {
   const Note& note = infer(call.operand);
   if (!note.type.valid()) return {};
   const PouInfo* block = pou_of(note.type);
-  if (block == nullptr || block->decl->kind != PouKind::kFunctionBlock) {
+  if (block == nullptr) {
     error(DiagnosticCode::kNotCallable, head.span,
           "`" + type_text(note.type) + "` cannot be called");
     return {};
@@ -60,9 +66,30 @@ Callee Sema::named_callee(const Expr& head) {
     callee.row = found->second;
     return callee;
   }
+  bool upper = ir::same_name(name, "UPPER_BOUND");
+  if (upper || ir::same_name(name, "LOWER_BOUND")) {
+    callee.kind = Callee::Kind::kBound;
+    callee.upper = upper;
+    return callee;
+  }
   if (auto conversion = conversion_of_name(name)) {
     callee.kind = Callee::Kind::kConversion;
     callee.conversion = *conversion;
+    return callee;
+  }
+  if (auto reference = reference_call_of_name(name); reference != ReferenceCall::kNone) {
+    callee.kind = Callee::Kind::kReference;
+    callee.reference = reference;
+    return callee;
+  }
+  if (const TestCallRow* test = find_test_call(name)) {
+    if (for_tests() || test->call == TestCall::kAssert) {
+      callee.kind = Callee::Kind::kTest;
+      callee.test = test;
+    } else {
+      error(DiagnosticCode::kTestOnly, head.span, quoted(head.name) + " is for tests only",
+            "put it into a TEST block and run that with stc test");
+    }
     return callee;
   }
   error(DiagnosticCode::kUnknownName, head.span, quoted(head.name) + " is not declared",
@@ -80,6 +107,14 @@ Note Sema::infer_call(const Expr& expr) {
       return infer_standard(expr, *target.row);
     case Callee::Kind::kConversion:
       return infer_conversion(expr, target.conversion);
+    case Callee::Kind::kBound:
+      return infer_bound(expr, target.upper);
+    case Callee::Kind::kReference:
+      return infer_reference_call(expr, target.reference);
+    case Callee::Kind::kTest:
+      error(DiagnosticCode::kNoResult, expr.span, "an assertion has no result",
+            "write it as a statement of its own");
+      return {};
     case Callee::Kind::kInstance:
       error(DiagnosticCode::kNoResult, expr.span, "a function block has no result",
             "call it in a statement of its own and read its outputs");
@@ -107,32 +142,6 @@ Note Sema::unify_arguments(const std::vector<ExprId>& args, uint32_t first) {
   note.variable = {};
   note.constant = false;
   note.progress = Progress::kNew;
-  return note;
-}
-
-Note Sema::infer_conversion(const Expr& expr, const Conversion& conversion) {
-  if (expr.args.count != 1 || !tree.args[expr.args.first].value.valid()) {
-    error(DiagnosticCode::kWrongArgumentCount, expr.span, "a conversion takes one argument");
-    return {};
-  }
-  Note note = infer(tree.args[expr.args.first].value);
-  if (!note.type.valid()) return {};
-  bool convertible = program.types.is_scalar(note.type) || is_string(program.types, note.type);
-  if (!convertible) {
-    error(DiagnosticCode::kWrongArgument, expr.span,
-          "`" + type_text(note.type) + "` cannot be converted");
-    return {};
-  }
-  Traits source = traits_of(program.types, note.type);
-  note.variable = {};
-  note.constant = false;
-  note.flex = Flex::kNone;
-  uint32_t capacity = is_string(program.types, note.type) ? program.types[note.type].capacity
-                                                          : kDefaultStringCapacity;
-  note.type = conversion.to == ir::Kind::kString    ? program.types.string(capacity)
-              : conversion.to == ir::Kind::kWstring ? program.types.wstring(capacity)
-                                                    : program.types.elementary(conversion.to);
-  note.can_trap = note.can_trap || (source.real && !traits_of(program.types, note.type).real);
   return note;
 }
 

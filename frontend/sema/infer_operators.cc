@@ -1,4 +1,6 @@
 // Operators: what their operands have in common, and what comes out.
+#include <algorithm>
+
 #include "frontend/sema/operators.h"
 #include "frontend/sema/sema.h"
 
@@ -10,6 +12,7 @@ Note merged(const Note& a, const Note& b) {
   note.constant = a.constant && b.constant;
   note.calls = a.calls || b.calls;
   note.can_trap = a.can_trap || b.can_trap;
+  note.known = std::min(a.known, b.known);
   return note;
 }
 
@@ -65,6 +68,14 @@ Note Sema::unify(const Note& a, const Note& b, base::SourceSpan span) {
   Note note = merged(a, b);
   if (!a.type.valid() || !b.type.valid()) return {};
   const ir::TypeTable& types = program.types;
+  if (types.is_reference(a.type) || types.is_reference(b.type)) {
+    note.type = common_reference(a, b);
+    note.flex = a.flex == Flex::kNull && b.flex == Flex::kNull ? Flex::kNull : Flex::kNone;
+    if (note.type.valid()) return note;
+    error(DiagnosticCode::kOperandsDiffer, span,
+          "`" + type_text(a.type) + "` and `" + type_text(b.type) + "` have no common type");
+    return {};
+  }
   if (is_flexible_number(a) && is_flexible_number(b)) {
     note.flex = a.flex == Flex::kReal || b.flex == Flex::kReal ? Flex::kReal : Flex::kInteger;
     note.type = note.flex == Flex::kReal ? types.elementary(ir::Kind::kLreal)
@@ -124,6 +135,9 @@ Note Sema::infer_binary(const Expr& expr) {
   if (!left.type.valid() || !right.type.valid()) return {};
   switch (operator_class(expr.binary)) {
     case OperatorClass::kLogical: {
+      if (expr.binary == BinaryOp::kAndThen || expr.binary == BinaryOp::kOrElse) {
+        allow_extension(operator_text(expr.binary), expr.span, "nest IF statements");
+      }
       bool eager = expr.binary == BinaryOp::kAnd || expr.binary == BinaryOp::kOr;
       bool boolean = traits_of(program.types, right.type).boolean;
       if (eager && boolean && right.can_trap) {
@@ -202,6 +216,9 @@ Note Sema::infer_comparison(BinaryOp op, const Note& left, const Note& right,
 
 Note Sema::infer_arithmetic(BinaryOp op, const Note& left, const Note& right,
                             base::SourceSpan span) {
+  if (program.types.is_reference(left.type) || program.types.is_reference(right.type)) {
+    return infer_pointer_arithmetic(op, left, right, span);
+  }
   Traits a = traits_of(program.types, left.type);
   Traits b = traits_of(program.types, right.type);
   if (a.duration || a.date || b.duration || b.date) {
@@ -211,6 +228,7 @@ Note Sema::infer_arithmetic(BinaryOp op, const Note& left, const Note& right,
     // The base decides; an integer base is raised as a real number.
     Note note = merged(left, right);
     note.constant = false;
+    note.known = std::min(note.known, Known::kByCall);
     bool real_base = a.real;
     if ((a.number() || a.bits) && (b.number() || b.bits)) {
       note.type = real_base ? without_range(program.types, left.type)

@@ -45,20 +45,26 @@ BinaryOp standard_operator(stdlib::FunctionId id) {
 
 Note Sema::infer_standard(const Expr& expr, const stdlib::FunctionRow& row) {
   std::vector<ExprId> args = standard_arguments(expr, row);
-  if (args.empty() && expr.args.count + row.fewest != 0) return {};
+  if (args.empty() && plain_arguments(expr, nullptr).size() + row.fewest != 0) return {};
   Note all;
+  all.known = row.rule == FunctionRule::kClock ? Known::kNo : Known::kByCall;
   for (ExprId arg : args) {
+    if (!arg.valid()) continue;  // an output that is not connected
     const Note& note = infer(arg);
     if (!note.type.valid()) return {};
     all.calls = all.calls || note.calls;
     all.can_trap = all.can_trap || note.can_trap;
+    all.known = std::min(all.known, note.known);
   }
   Note note = infer_rule(expr, row, args);
+  note.known = all.known;
+  note.bit_size = 0;
   note.calls = all.calls;
   note.can_trap = note.can_trap || all.can_trap;
   note.constant = false;
   note.variable = {};
   note.progress = Progress::kNew;
+  mark_enabled(expr, note);
   return note;
 }
 
@@ -79,6 +85,34 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
   switch (row.rule) {
     case FunctionRule::kClock:
       return elementary(row.id == stdlib::FunctionId::kTime ? ir::Kind::kTime : ir::Kind::kLtime);
+    case FunctionRule::kTimeSum:
+    case FunctionRule::kTimeDifference:
+    case FunctionRule::kTimeProduct:
+    case FunctionRule::kTimeQuotient:
+    case FunctionRule::kMoment:
+      return infer_by_signature(row, args);
+    case FunctionRule::kSplit:
+      error(DiagnosticCode::kNoResult, expr.span, std::string(row.name) + " has no result",
+            "call it in a statement of its own");
+      return {};
+    case FunctionRule::kWeekday: {
+      ir::Kind kind = program.types.root_kind(argument(0).type);
+      bool clock = kind == ir::Kind::kTod || kind == ir::Kind::kLtod;
+      if (!traits_of(program.types, argument(0).type).date || clock) return refuse(argument(0));
+      return elementary(ir::Kind::kInt);
+    }
+    case FunctionRule::kByteOrder: {
+      Note note = argument(0);
+      note.type = without_range(program.types, note.type);
+      note.flex = Flex::kNone;
+      return program.types.is_scalar(note.type) ? note : refuse(note);
+    }
+    case FunctionRule::kValid: {
+      Traits traits = traits_of(program.types, argument(0).type);
+      bool real = row.id == stdlib::FunctionId::kIsValid;
+      if (real ? !traits.real : !traits.bits) return refuse(argument(0));
+      return elementary(ir::Kind::kBool);
+    }
     case FunctionRule::kMove:
       return argument(0);
     case FunctionRule::kNumberSame: {
@@ -136,12 +170,8 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
       return !note.type.valid() || ordered ? note : refuse(note);
     }
     case FunctionRule::kCompare: {
-      for (uint32_t i = 0; i + 1 < args.size(); ++i) {
-        Note note =
-            infer_comparison(standard_operator(row.id), argument(i), argument(i + 1), expr.span);
-        if (!note.type.valid()) return note;
-      }
-      return elementary(ir::Kind::kBool);
+      Note common = unify_arguments(args, 0);
+      return infer_comparison(standard_operator(row.id), common, common, expr.span);
     }
     case FunctionRule::kString:
       return infer_string_function(args, row);

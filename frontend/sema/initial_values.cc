@@ -1,56 +1,111 @@
 // Initial values of any type as trees of constants.
+#include <map>
+
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 
-ir::ConstId Sema::initial_value(ExprId id, ir::TypeId type) {
-  const Expr& expr = tree[id];
-  const ir::Kind kind = program.types[type].kind;
-  bool instance = kind == ir::Kind::kFunctionBlock;
+// Builds one initial value. `otherwise` is the value that the declared type gives the
+// place: what a list leaves out keeps it.
+class InitialBuilder {
+ public:
+  InitialBuilder(Sema& sema, Known least) : sema_(sema), least_(least) {}
+  ir::ConstId value(ExprId id, ir::TypeId type, ir::ConstId otherwise);
+
+ private:
+  struct ArrayList {
+    ir::TypeId type;
+    ir::ConstId otherwise;
+    uint64_t total = 1;
+    uint64_t at = 0;  // flat number of the next element
+    std::vector<ir::ConstElement> elements;
+    std::map<std::pair<uint32_t, uint32_t>, ir::ConstId> known;  // by expression and default
+  };
+  struct Slot {
+    int32_t member = -1;
+    ir::TypeId type;
+    int32_t bit = -1;  // of a BIT member
+  };
+
+  ir::ConstId whole(ExprId id, ir::TypeId type);
+  ir::ConstId text(ExprId id, ir::TypeId type);
+  ir::ConstId array(const Expr& expr, ir::TypeId type, ir::ConstId otherwise);
+  bool item(ExprId id, ArrayList& list);
+  bool item_parts(ExprId id, uint64_t& rounds, std::vector<ExprId>& values);
+  bool element(ExprId id, uint64_t rounds, ArrayList& list);
+  ir::ConstId element_value(ExprId id, ir::ConstId otherwise, ArrayList& list);
+  ir::ConstId structure(const Expr& expr, ir::TypeId type, ir::ConstId otherwise);
+  Slot find_slot(ir::TypeId type, const Name& name);
+  bool set_bit(ExprId id, const Slot& slot, ir::TypeId type,
+               std::vector<ir::ConstElement>& elements);
+
+  Sema& sema_;
+  Known least_;
+};
+
+ir::ConstId InitialBuilder::value(ExprId id, ir::TypeId type, ir::ConstId otherwise) {
+  const ir::TypeTable& types = sema_.program.types;
+  const Expr& expr = sema_.tree[id];
+  ir::Kind kind = types[type].kind;
+  bool members = ir::is_structure(kind) || kind == ir::Kind::kFunctionBlock;
   if (expr.kind == ExprKind::kArrayInit && kind == ir::Kind::kArray) {
-    return array_value(expr, type);
+    return array(expr, type, otherwise);
   }
-  if (expr.kind == ExprKind::kStructInit && (kind == ir::Kind::kStruct || instance)) {
-    return struct_value(expr, type);
+  if (expr.kind == ExprKind::kStructInit && members) return structure(expr, type, otherwise);
+  if (types.is_scalar(type)) {
+    auto bits = sema_.fold_bits(id, type, least_);
+    return bits ? sema_.program.constants.scalar(*bits) : ir::ConstId();
   }
-  if (program.types.is_scalar(type)) {
-    auto bits = fold_bits(id, type);
-    return bits ? program.constants.scalar(*bits) : ir::ConstId();
-  }
-  if (is_string(program.types, type)) {
-    auto value = fold(id, type);
-    if (!value) return {};
-    auto text = fit_text(*value, type, expr.span);
-    if (!text) return {};
-    return program.constants.add({0, std::move(*text), {}});
-  }
-  // Another constant of the same structure or array type.
-  if (expr.kind == ExprKind::kName) {
-    const Note& note = infer(id);
+  return is_string(types, type) ? text(id, type) : whole(id, type);
+}
+
+ir::ConstId InitialBuilder::text(ExprId id, ir::TypeId type) {
+  auto value = sema_.fold(id, type, least_);
+  if (!value) return {};
+  auto text = sema_.fit_text(*value, type, sema_.tree[id].span);
+  if (!text) return {};
+  return sema_.program.constants.add({0, std::move(*text), {}});
+}
+
+// Another variable of the same structure or array type.
+ir::ConstId InitialBuilder::whole(ExprId id, ir::TypeId type) {
+  const Expr& expr = sema_.tree[id];
+  bool list = expr.kind == ExprKind::kArrayInit || expr.kind == ExprKind::kStructInit ||
+              expr.kind == ExprKind::kRepeat;
+  if (!list) {
+    const Note& note = sema_.infer(id);
     if (!note.type.valid()) return {};
-    const Variable* constant = note.variable.valid() ? &resolve(note.variable) : nullptr;
-    if (constant != nullptr && constant->constant && constant->type == type) return constant->init;
+    if (note.type == type && note.known >= least_ && !sema_.program.types.is_instance(type)) {
+      auto part = sema_.initial_part(id);
+      if (!part) return {};
+      if (part->init.valid()) return part->init;
+      return sema_.program.constants.add({});
+    }
   }
-  error(
-      DiagnosticCode::kBadInitializer, expr.span,
-      "this is no initial value of `" + type_text(type) + "`",
-      kind == ir::Kind::kArray ? "write [value, value, 3(value)]" : "write (member := value, ...)");
+  bool is_array = sema_.program.types[type].kind == ir::Kind::kArray;
+  sema_.error(DiagnosticCode::kBadInitializer, expr.span,
+              "this is no initial value of `" + sema_.type_text(type) + "`",
+              is_array ? "write [value, value, 3(value)]" : "write (member := value, ...)");
   return {};
 }
 
-ir::ConstId Sema::array_value(const Expr& expr, ir::TypeId type) {
-  uint64_t total = 1;
-  for (const ir::Dimension& dim : program.types[type].dims) total *= dim.count();
-  std::vector<ir::ConstElement> elements;
-  uint64_t at = 0;
-  if (!array_elements(expr, type, total, elements, at)) return {};
+ir::ConstId InitialBuilder::array(const Expr& expr, ir::TypeId type, ir::ConstId otherwise) {
+  ArrayList list;
+  list.type = type;
+  list.otherwise = otherwise;
+  for (const ir::Dimension& dim : sema_.program.types[type].dims) list.total *= dim.count();
+  if (otherwise.valid()) list.elements = sema_.program.constants[otherwise].elements;
+  for (uint32_t i = 0; i < expr.list.count; ++i) {
+    if (!item(sema_.tree.expr_lists[expr.list.first + i], list)) return {};
+  }
   ir::ConstValue value;
-  value.elements = std::move(elements);
-  return program.constants.add(std::move(value));
+  value.elements = std::move(list.elements);
+  return sema_.program.constants.add(std::move(value));
 }
 
 // `3(7)` and `N(7)`: how often, and which values; other items stand once.
-bool Sema::array_item(ExprId id, uint64_t& rounds, std::vector<ExprId>& values) {
+bool InitialBuilder::item_parts(ExprId id, uint64_t& rounds, std::vector<ExprId>& values) {
+  const Tree& tree = sema_.tree;
   const Expr& item = tree[id];
   rounds = 1;
   if (item.kind == ExprKind::kRepeat) {
@@ -58,7 +113,7 @@ bool Sema::array_item(ExprId id, uint64_t& rounds, std::vector<ExprId>& values) 
       values.push_back(tree.expr_lists[item.list.first + k]);
     }
   } else if (item.kind == ExprKind::kCall && tree[item.operand].kind == ExprKind::kName &&
-             find_variable(tree[item.operand].name.text).valid()) {
+             sema_.find_variable(tree[item.operand].name.text).valid()) {
     for (uint32_t k = 0; k < item.args.count; ++k) {
       values.push_back(tree.args[item.args.first + k].value);
       if (!values.back().valid()) return false;
@@ -67,93 +122,131 @@ bool Sema::array_item(ExprId id, uint64_t& rounds, std::vector<ExprId>& values) 
     values.push_back(id);
     return true;
   }
-  auto count = fold_integer(item.operand);
+  auto count = sema_.fold_integer(item.operand);
   if (!count) return false;
   if (*count < 0) {
-    error(DiagnosticCode::kBadInitializer, item.span, "a negative number of values");
+    sema_.error(DiagnosticCode::kBadInitializer, item.span, "a negative number of values");
     return false;
   }
   rounds = static_cast<uint64_t>(*count);
   return true;
 }
 
-// `at` is the flat number of the next element. Runs of one value stay one entry.
-bool Sema::array_elements(const Expr& list, ir::TypeId type, uint64_t total,
-                          std::vector<ir::ConstElement>& out, uint64_t& at) {
-  ir::TypeId element = program.types[type].base;
-  for (uint32_t i = 0; i < list.list.count; ++i) {
-    ExprId id = tree.expr_lists[list.list.first + i];
-    uint64_t rounds = 1;
-    std::vector<ExprId> items;
-    if (!array_item(id, rounds, items)) return false;
-    uint64_t width = items.empty() ? 1 : items.size();  // n(): elements keep their default
-    if (rounds > total || at + rounds * width > total) {
-      error(DiagnosticCode::kTooManyInitializers, tree[id].span,
-            "`" + type_text(type) + "` has " + std::to_string(total) + " elements");
-      return false;
-    }
-    std::vector<ir::ConstId> values;
-    for (ExprId item : items) {
-      values.push_back(initial_value(item, element));
-      if (!values.back().valid()) return false;
-    }
-    if (values.size() <= 1) {
-      if (rounds != 0 && !values.empty()) {
-        out.push_back({static_cast<uint32_t>(at), static_cast<uint32_t>(rounds), values[0]});
-      }
-      at += rounds;
-      continue;
-    }
-    for (uint64_t round = 0; round < rounds; ++round) {
-      for (ir::ConstId value : values) out.push_back({static_cast<uint32_t>(at++), 1, value});
+bool InitialBuilder::item(ExprId id, ArrayList& list) {
+  uint64_t rounds = 1;
+  std::vector<ExprId> values;
+  if (!item_parts(id, rounds, values)) return false;
+  uint64_t width = values.empty() ? 1 : values.size();  // n(): elements keep their default
+  if (rounds > list.total || list.at + rounds * width > list.total) {
+    sema_.error(
+        DiagnosticCode::kTooManyInitializers, sema_.tree[id].span,
+        "`" + sema_.type_text(list.type) + "` has " + std::to_string(list.total) + " elements");
+    return false;
+  }
+  if (values.empty()) list.at += rounds;
+  if (values.size() == 1) return element(values[0], rounds, list);
+  for (uint64_t round = 0; round < rounds; ++round) {
+    for (ExprId value : values) {
+      if (!element(value, 1, list)) return false;
     }
   }
   return true;
 }
 
-ir::ConstId Sema::struct_value(const Expr& expr, ir::TypeId type) {
+// One value for `rounds` elements. Runs of one value stay one entry, unless the elements
+// had different defaults that the value keeps in part.
+bool InitialBuilder::element(ExprId id, uint64_t rounds, ArrayList& list) {
+  ExprKind kind = sema_.tree[id].kind;
+  bool partial = kind == ExprKind::kArrayInit || kind == ExprKind::kStructInit;
+  uint64_t step = partial && list.otherwise.valid() ? 1 : rounds;
+  for (uint64_t end = list.at + rounds; list.at < end; list.at += step) {
+    ir::ConstId init = element_value(id, sema_.listed(list.otherwise, list.at), list);
+    if (!init.valid()) return false;
+    list.elements.push_back({static_cast<uint32_t>(list.at), static_cast<uint32_t>(step), init});
+  }
+  return true;
+}
+
+ir::ConstId InitialBuilder::element_value(ExprId id, ir::ConstId otherwise, ArrayList& list) {
+  auto [known, added] = list.known.try_emplace({id.index, otherwise.index});
+  if (added) known->second = value(id, sema_.program.types[list.type].base, otherwise);
+  return known->second;
+}
+
+// One bit of the byte that holds it, the others as they are so far.
+bool InitialBuilder::set_bit(ExprId id, const Slot& slot, ir::TypeId type,
+                             std::vector<ir::ConstElement>& elements) {
+  auto bit = sema_.fold_bits(id, slot.type, least_);
+  if (!bit) return false;
+  auto index = static_cast<uint32_t>(slot.member);
+  ir::ConstId before = sema_.member_default(type, index);
+  for (const ir::ConstElement& element : elements) {
+    if (element.first == index) before = element.value;
+  }
+  uint64_t bits = before.valid() ? sema_.program.constants[before].bits : 0;
+  uint64_t mask = uint64_t{1} << slot.bit;
+  bits = *bit != 0 ? bits | mask : bits & ~mask;
+  elements.push_back({index, 1, sema_.program.constants.scalar(bits)});
+  return true;
+}
+
+InitialBuilder::Slot InitialBuilder::find_slot(ir::TypeId type, const Name& name) {
+  const PouInfo* block = sema_.pou_of(type);
+  if (block == nullptr) {
+    const Sema::Field* field = sema_.find_field(type, name.text);
+    if (field == nullptr) return {};
+    bool bit = field->bit >= 0;
+    return {static_cast<int32_t>(field->member),
+            bit ? sema_.program.types.elementary(ir::Kind::kBool)
+                : sema_.program.types[type].members[field->member].type,
+            field->bit};
+  }
+  auto found = block->names.find(name.text);
+  if (found == block->names.end()) return {};
+  const Variable& variable = sema_.resolve(found->second);
+  bool settable = variable.storage == Storage::kMember && variable.section != VarSection::kInOut &&
+                  variable.section != VarSection::kExternal;
+  return {settable ? static_cast<int32_t>(variable.index) : -1, variable.type, -1};
+}
+
+ir::ConstId InitialBuilder::structure(const Expr& expr, ir::TypeId type, ir::ConstId otherwise) {
   ir::ConstValue value;
-  const PouInfo* block = pou_of(type);
+  if (otherwise.valid()) value.elements = sema_.program.constants[otherwise].elements;
   std::vector<bool> given;
   for (uint32_t i = 0; i < expr.args.count; ++i) {
-    const Arg& arg = tree.args[expr.args.first + i];
-    int32_t member = -1;
-    ir::TypeId member_type;
-    if (block != nullptr) {
-      auto found = block->names.find(arg.name.text);
-      if (found != block->names.end()) {
-        const Variable& variable = resolve(found->second);
-        bool settable = variable.storage == Storage::kMember &&
-                        variable.section != VarSection::kInOut &&
-                        variable.section != VarSection::kExternal;
-        if (settable) member = static_cast<int32_t>(variable.index);
-        member_type = variable.type;
-      }
-    } else {
-      member = find_member(type, arg.name.text);
-      if (member >= 0)
-        member_type = program.types[type].members[static_cast<uint32_t>(member)].type;
-    }
-    if (member < 0 || arg.output || !arg.value.valid()) {
-      error(DiagnosticCode::kUnknownMember, arg.span,
-            "`" + type_text(type) + "` has no member `" + std::string(arg.name.text) +
-                "` to initialise");
+    const Arg& arg = sema_.tree.args[expr.args.first + i];
+    Slot slot = find_slot(type, arg.name);
+    if (slot.member < 0 || arg.output || !arg.value.valid()) {
+      sema_.error(DiagnosticCode::kUnknownMember, arg.span,
+                  "`" + sema_.type_text(type) + "` has no member `" + std::string(arg.name.text) +
+                      "` to initialise");
       return {};
     }
-    if (!member_type.valid()) return {};
-    uint32_t index = static_cast<uint32_t>(member);
-    if (given.size() <= index) given.resize(index + 1);
-    if (given[index]) {
-      error(DiagnosticCode::kDuplicateName, arg.span,
-            "`" + std::string(arg.name.text) + "` is initialised twice");
+    if (!slot.type.valid()) return {};
+    uint32_t index = static_cast<uint32_t>(slot.member);
+    size_t number = index * 9 + static_cast<size_t>(slot.bit + 1);
+    if (given.size() <= number) given.resize(number + 1);
+    if (given[number]) {
+      sema_.error(DiagnosticCode::kDuplicateName, arg.span,
+                  "`" + std::string(arg.name.text) + "` is initialised twice");
       return {};
     }
-    given[index] = true;
-    ir::ConstId init = initial_value(arg.value, member_type);
+    given[number] = true;
+    if (slot.bit >= 0) {
+      if (!set_bit(arg.value, slot, type, value.elements)) return {};
+      continue;
+    }
+    ir::ConstId before = sema_.listed(otherwise, index);
+    if (!before.valid()) before = sema_.member_default(type, index);
+    ir::ConstId init = this->value(arg.value, slot.type, before);
     if (!init.valid()) return {};
     value.elements.push_back({index, 1, init});
   }
-  return program.constants.add(std::move(value));
+  return sema_.program.constants.add(std::move(value));
+}
+
+ir::ConstId Sema::initial_value(ExprId id, ir::TypeId type, ir::ConstId otherwise, Known least) {
+  return InitialBuilder(*this, least).value(id, type, otherwise);
 }
 
 }  // namespace frontend

@@ -41,54 +41,74 @@ struct Located {
   std::string name;
 };
 
+// What is bound by reference is a reference that comes in.
+VarSection ir_section(const Variable& variable) {
+  return variable.by_reference ? VarSection::kInput : variable.section;
+}
+
 }  // namespace
 
 void Sema::resolve_declarations() {
-  for (const TypeDecl& decl : tree.types) resolve(decl.spec);
+  for (const TypeDecl& decl : tree.types) {
+    if (!in_library(decl.name.span)) resolve(decl.spec);
+  }
   resolve_globals();
   // Grows while library blocks are discovered.
   for (uint32_t i = 0; i < pous.size(); ++i) resolve_interface(i);
+  declared_ = true;
+  check_overloads();
   check_containment();
   check_direct_addresses();
 }
 
 void Sema::resolve_globals() {
-  for (VarId id : global_order_) {
+  for (size_t i = 0; i < global_order_.size(); ++i) {  // grows with instances that are found
+    VarId id = global_order_[i];
     resolve(id);
     const Variable& variable = variables_[id.index];
     program.types.edit(program.globals)
         .members.push_back(member_of(variable, ir::Section::kGlobal));
   }
+  if (for_tests()) add_test_globals();
 }
 
 ir::Member Sema::member_of(const Variable& variable, ir::Section section) const {
   ir::Member member;
-  member.name = variable.name.text;
+  if (!variable.list.empty()) member.name = std::string(variable.list) + ".";
+  member.name += variable.name.text;
   member.type = variable.type;
   member.section = section;
   member.constant = variable.constant;
   member.retain = variable.retain;
   member.init = variable.init;
-  if (variable.decl != nullptr && variable.decl->has_address) {
+  if (variable.decl != nullptr && variable.decl->has_address && !variable.hidden) {
     member.address = variable.decl->address;
+    if (variable.decl->incomplete) {
+      member.address.bit_offset = ir::kOpenAddress;
+      member.address.bit_size = address_bits(variable.type);
+    }
   }
   return member;
 }
 
 void Sema::resolve_interface(uint32_t number) {
   PouInfo& info = pous[number];
+  if (info.open || info.resolved) return;
+  info.resolved = true;
   Within scope(*this, number);
   for (VarId id : info.variables) resolve(id);
   std::vector<ir::Member> members;
   for (VarId id : info.members) {
     const Variable& variable = variables_[id.index];
-    members.push_back(member_of(variable, section_of(variable.section)));
+    members.push_back(member_of(variable, section_of(ir_section(variable))));
   }
+  if (for_tests() && info.decl->kind == PouKind::kFunctionBlock) add_mock_members(info, members);
   if (info.self.valid()) program.types.edit(info.self).members = std::move(members);
   ir::Pou& pou = program.pous[info.id.index];
   for (VarId id : info.locals) {
     const Variable& variable = variables_[id.index];
-    ir::LocalKind kind = id == info.result ? ir::LocalKind::kReturn : local_kind(variable.section);
+    ir::LocalKind kind =
+        id == info.result ? ir::LocalKind::kReturn : local_kind(ir_section(variable));
     pou.locals.push_back({std::string(variable.name.text), variable.type, kind});
   }
 }

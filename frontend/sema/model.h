@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include "frontend/parse/tree.h"
@@ -29,34 +31,36 @@ struct Variable {
   bool constant = false;
   bool retain = false;
   bool used = false;
+  bool hidden = false;        // not of the source: see hidden_variables.cc
+  bool by_reference = false;   // in-out of a function block: a REFERENCE TO bound at each call
   bool runtime_init = false;  // the initialiser runs at each call
   Progress progress = Progress::kNew;
   Storage storage = Storage::kMember;
   uint32_t index = 0;  // member or local number
   uint32_t pou = kNoPou;
-  VarId external;    // the global that a VAR_EXTERNAL means
-  ir::TypeId type;   // invalid: could not be resolved (already reported)
-  ir::ConstId init;  // invalid: the type's default
+  VarId external;         // the global that a VAR_EXTERNAL means
+  std::string_view list;  // of a global that is visible as `List.name` only
+  VarId edge, last;       // R_EDGE, F_EDGE: what the body sees, and the level before
+  ir::TypeId bound;       // of an open parameter: the type that this instance gives it
+  ir::TypeId type;        // invalid: could not be resolved (already reported)
+  ir::ConstId init;       // invalid: the type's default
+};
+
+// The global variables of one file, CONFIGURATION, RESOURCE or {attribute 'list' := 'Name'}.
+struct GlobalList {
+  NameMap<VarId> names;
+};
+
+// An argument of a program instance that is copied at each scan.
+struct Connection {
+  VarId parameter;
+  const Arg* arg;
 };
 
 // A write to the output image, found in a body.
 struct OutputWrite {
   ir::DirectAddress address;
   base::SourceSpan span;
-};
-
-struct PouInfo {
-  const PouDecl* decl = nullptr;
-  bool library = false;
-  ir::PouId id;
-  ir::TypeId self;  // instance type; invalid for functions
-  NameMap<VarId> names;
-  std::vector<VarId> variables;  // in declaration order
-  std::vector<VarId> locals;     // by local number
-  std::vector<VarId> members;    // by member number
-  VarId result;
-  std::vector<OutputWrite> writes;  // filled by lowering, like callees
-  std::vector<uint32_t> callees;
 };
 
 // A type expression after resolution. `init` is the default of a derived type.
@@ -70,6 +74,7 @@ struct SpecInfo {
   ExprId default_value;
   Progress progress = Progress::kNew;
   TypeUse use;
+  ir::TypeId forward;  // structures and unions: known by name before their content
 };
 
 struct EnumRef {
@@ -84,6 +89,16 @@ enum class Flex : uint8_t {
   kReal,     // any real type
   kText,     // string literal: also CHAR or WCHAR
   kEnum,     // literal of several enumerations: the context's one
+  kNull,     // NULL, ADR(x): any pointer or reference
+};
+
+// What the compiler may know of a value. Bodies only take kConstant as known: calls of
+// standard functions there stay calls, with their traps.
+enum class Known : uint8_t {
+  kNo,
+  kInitially,  // from initial values of variables: in initial values only
+  kByCall,     // standard functions of constants: wherever a constant is asked for
+  kConstant,
 };
 
 struct Note {
@@ -91,9 +106,60 @@ struct Note {
   Flex flex = Flex::kNone;
   Progress progress = Progress::kNew;
   bool constant = false;
-  bool calls = false;  // contains a call of a POU
+  Known known = Known::kNo;  // kConstant where `constant` is set
+  uint8_t bit_size = 0;      // x.3, x.%B1, x.NUMBER: size and number of the part; else 0
+  uint32_t bit_number = 0;
+  int32_t bit_member = -1;  // of a BIT member: the member of the structure that holds it
+  bool calls = false;       // contains a call of a POU
   bool can_trap = false;
   VarId variable;  // kName: the variable meant
+  // Valid: the expression is a REFERENCE TO of this type and stands for its target; `type` is the
+  // target's.
+  ir::TypeId reference;
+};
+
+// What the declaration means in one instance of it: its expressions and types differ from
+// those of other instances.
+struct Meaning {
+  std::unordered_map<uint32_t, Note> notes;      // by expression
+  std::unordered_map<uint32_t, SpecInfo> specs;  // by type expression
+  NameMap<ir::TypeId> generic;                   // ANY_NUM -> INT
+};
+
+// What a build for tests adds to a POU, so that a test can replace it and count its calls.
+// Function blocks: member numbers. Functions: members of the globals.
+struct MockSlots {
+  bool present = false;
+  uint32_t active = 0;  // DINT; 0: not mocked, 1: by RETURNS or MOCK, else 2 + number of the body
+  uint32_t calls = 0;   // UDINT
+  uint32_t value = 0;   // of a function with a result
+  std::vector<uint32_t> bodies;  // POUs of MOCK_FUNCTION declarations
+};
+
+struct PouInfo {
+  const PouDecl* decl = nullptr;
+  const PouDecl* setup = nullptr;  // of a TEST: runs before and behind its body
+  const PouDecl* teardown = nullptr;
+  MockSlots mock;
+  bool library = false;
+  ir::PouId id;
+  ir::TypeId self;  // instance type; invalid for functions
+  NameMap<VarId> names;
+  std::vector<VarId> variables;  // in declaration order
+  std::vector<VarId> locals;     // by local number
+  std::vector<VarId> members;    // by member number
+  VarId result;
+  // Parameters of open types (ANY_NUM, ARRAY[*]): no code of its own, only instances have.
+  bool open = false;
+  bool resolved = false;                // its interface is in the program
+  std::string_view static_list;         // in front of the names of VAR_STAT variables
+  uint32_t overload = kNoPou;           // the next function of that name
+  std::unique_ptr<Meaning> meaning;     // of an instance
+  std::vector<Connection> connections;  // of a program instance
+  VarId global;                         // of a program that others use: called_programs.cc
+  bool called = false;                  // by other POUs
+  std::vector<OutputWrite> writes;      // filled by lowering, like callees
+  std::vector<uint32_t> callees;
 };
 
 }  // namespace frontend

@@ -8,6 +8,7 @@ void Sema::check_output_tasks() {
   if (program.tasks.size() < 2) return;
   std::unordered_map<uint32_t, uint32_t> owner;  // output byte -> task
   for (const ir::ProgramInstance& instance : program.instances) {
+    if (instance.task == ir::kNoTask) continue;
     check_instance_outputs(instance, owner);
   }
 }

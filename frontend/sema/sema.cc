@@ -3,11 +3,13 @@
 namespace frontend {
 
 Sema::Sema(const base::SourceMap& source_map, const Tree& syntax, uint32_t library_file,
-           const CompileOptions& compile_options, base::Diagnostics& diagnostics)
+           const CompileOptions& compile_options, Purpose purpose, base::Diagnostics& diagnostics)
     : sources(source_map),
       tree(syntax),
       options(compile_options),
       diagnostics_(diagnostics),
+      follow_ups_(source_map, syntax, diagnostics),
+      purpose_(purpose),
       library_file_(library_file),
       specs_(syntax.specs.size()),
       notes_(syntax.exprs.size()) {
@@ -19,12 +21,21 @@ Sema::Sema(const base::SourceMap& source_map, const Tree& syntax, uint32_t libra
 }
 
 void Sema::error(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix) {
+  const PouDecl* within = current_pou_ == kNoPou ? nullptr : pous[current_pou_].decl;
+  if (follow_ups_.silences(code, within, text)) return;
   diagnostics_.add(code, span, std::move(text), std::move(fix));
 }
 
 void Sema::warning(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix) {
-  if (span.begin.valid() && sources.file_of(span.begin) >= library_file_) return;
+  if (in_library(span)) return;
   diagnostics_.add(code, span, std::move(text), std::move(fix));
+}
+
+void Sema::allow_extension(std::string_view what, base::SourceSpan span, std::string fix) {
+  bool library = span.begin.valid() && sources.file_of(span.begin) >= library_file_;
+  if (options.dialect != Dialect::kIec || library) return;
+  error(DiagnosticCode::kExtension, span, std::string(what) + " is no part of the standard",
+        std::move(fix));
 }
 
 bool Sema::allow_narrowing(ir::TypeId from, ir::TypeId to, base::SourceSpan span) {

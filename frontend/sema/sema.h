@@ -8,6 +8,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <optional>
 
 #include "base/diagnostics.h"
@@ -15,7 +16,10 @@
 #include "frontend/compile.h"
 #include "frontend/sema/constant.h"
 #include "frontend/sema/conversion.h"
+#include "frontend/sema/follow_ups.h"
 #include "frontend/sema/model.h"
+#include "frontend/sema/reference_calls.h"
+#include "frontend/sema/test_calls.h"
 #include "stdlib/registry.h"
 
 namespace frontend {
@@ -24,11 +28,29 @@ using base::DiagnosticCode;
 
 // What the head of a call expression means.
 struct Callee {
-  enum class Kind : uint8_t { kError, kFunction, kInstance, kStandard, kConversion };
+  enum class Kind : uint8_t {
+    kError,
+    kFunction,
+    kInstance,
+    kStandard,
+    kConversion,
+    kBound,
+    kTest,
+    kReference,
+  };
   Kind kind = Kind::kError;
   uint32_t pou = kNoPou;  // kFunction; kInstance: the block's POU
   const stdlib::FunctionRow* row = nullptr;
   Conversion conversion;
+  const TestCallRow* test = nullptr;
+  ReferenceCall reference = ReferenceCall::kNone;
+  bool upper = false;  // kBound: UPPER_BOUND, else LOWER_BOUND
+};
+
+// An argument and the parameter that it is for.
+struct Match {
+  VarId parameter;
+  const Arg* arg;
 };
 
 // The operator that a standard function of rule kArithmetic, kBitwise or kCompare is.
@@ -36,17 +58,27 @@ BinaryOp standard_operator(stdlib::FunctionId id);
 // How many leading arguments of a string function are strings.
 uint32_t string_arguments(const stdlib::FunctionRow& row, uint32_t count);
 
+enum class Purpose : uint8_t { kRun, kTest };
+
 class Sema {
  public:
   // Files below `library_file` are the project, the others the standard library.
   Sema(const base::SourceMap& sources, const Tree& tree, uint32_t library_file,
-       const CompileOptions& options, base::Diagnostics& diagnostics);
+       const CompileOptions& options, Purpose purpose, base::Diagnostics& diagnostics);
 
   // --- declarations (declarations.cc, interface.cc, configuration.cc)
+  void report_not_supported();  // not_supported.cc
   void collect();
   void resolve_declarations();
   void configure();
+  void finish_programs();  // after all bodies, as check_output_tasks
   void report_unused();
+  bool for_tests() const { return purpose_ == Purpose::kTest; }
+  // Member of the globals that takes the message of a failed assertion.
+  uint32_t test_message() const { return test_message_; }
+  std::vector<const PouInfo*> mocked_functions() const;
+  // Is the body of a MOCK_FUNCTION active in this test?
+  bool mock_applies(uint32_t pou, const PouDecl& test) const;
   void check_output_tasks();  // after all bodies
 
   // --- types (types.cc, enumeration.cc, containment.cc)
@@ -57,9 +89,19 @@ class Sema {
   // --- variables and members (variables.cc)
   const Variable& resolve(VarId id);
   VarId find_variable(std::string_view name);
+  VarId find_variable(const Expr& name);  // `.name` means a global
   // The instance type's POU; the POU's variable of that name.
   const PouInfo* pou_of(ir::TypeId instance) const;
-  int32_t find_member(ir::TypeId structure, std::string_view name);
+  // Where a structure keeps what that name means.
+  struct Field {
+    uint32_t member = 0;
+    int32_t bit = -1;  // of a BIT member: its number in the BYTE
+  };
+  const Field* find_field(ir::TypeId structure, std::string_view name) const;
+  // -1 for BIT members too.
+  int32_t find_member(ir::TypeId structure, std::string_view name) const;
+  const PouInfo* find_pou(std::string_view name) const;
+  uint32_t number_of(const PouInfo& pou) const { return pou.id.index; }
   // The global pseudo variable of a direct address.
   uint32_t direct_member(const Expr& expr);
   std::string name_suggestion(std::string_view name, bool callable) const;
@@ -67,29 +109,47 @@ class Sema {
   // --- expressions (infer*.cc)
   const Note& infer(ExprId expr);
   Callee callee(const Expr& call);
+  // Does a conversion to a string give the names of this enumeration's literals?
+  bool prints_names(ir::TypeId enumeration) const;
   // Arguments of a standard function in the order of its parameters; none when reported.
+  // Outputs that are not connected are invalid.
   std::vector<ExprId> standard_arguments(const Expr& call, const stdlib::FunctionRow& row);
+  // Is this the implicit EN or ENO of the callee (null: a standard function)?
+  bool is_enable(const Arg& arg, const PouInfo* callee) const;
+  // The one argument of a conversion; invalid when there is not just one.
+  ExprId conversion_argument(const Expr& call) const;
+  // Type in which all arguments meet.
+  Note infer_common(const std::vector<ExprId>& args) { return unify_arguments(args, 0); }
   // Type of the operands of a binary operator that have to agree.
   Note unify(const Note& a, const Note& b, base::SourceSpan span);
+  // A type, or the type of a variable, as argument of SIZEOF.
+  ir::TypeId type_of_argument(ExprId argument);
+  bool reference_fits(ir::TypeId from, ir::TypeId to) const;
   ir::TypeId type_of_direct(const ir::DirectAddress& address) const;
 
   // --- constants (fold*.cc, initial_values.cc)
   // nullopt when reported. `context` steers literals; may be invalid.
-  std::optional<Constant> fold(ExprId expr, ir::TypeId context);
-  std::optional<uint64_t> fold_bits(ExprId expr, ir::TypeId target);
+  std::optional<Constant> fold(ExprId expr, ir::TypeId context, Known least = Known::kByCall);
+  std::optional<uint64_t> fold_bits(ExprId expr, ir::TypeId target, Known least = Known::kByCall);
   std::optional<int64_t> fold_integer(ExprId expr);
   // Bits of a constant as a value of scalar type `target`; reports what does not fit.
   std::optional<uint64_t> fit(const Constant& value, ir::TypeId target, base::SourceSpan span);
   std::optional<std::string> fit_text(const Constant& value, ir::TypeId target,
                                       base::SourceSpan span);
-  // Initial value of any type; invalid when reported.
-  ir::ConstId initial_value(ExprId expr, ir::TypeId type);
+  // Initial value of any type; invalid when reported. What a list leaves out keeps its
+  // value in `otherwise`, the default of the declared type.
+  ir::ConstId initial_value(ExprId expr, ir::TypeId type, ir::ConstId otherwise,
+                            Known least = Known::kInitially);
+  // The initial value of a variable, or of a part of one, with `known` above kNo.
+  std::optional<TypeUse> initial_part(ExprId expr);
 
   // --- messages
   void error(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix = {});
   void warning(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix = {});
   // Reports an implicit conversion that may lose; false when the dialect forbids it.
   bool allow_narrowing(ir::TypeId from, ir::TypeId to, base::SourceSpan span);
+  // Reports what only real sources have where the dialect is the standard's own.
+  void allow_extension(std::string_view what, base::SourceSpan span, std::string fix = {});
   std::string type_text(ir::TypeId type) const { return program.types.text(type); }
 
   // The POU whose names are visible; set while anything of it is resolved.
@@ -112,21 +172,66 @@ class Sema {
   const CompileOptions& options;
   ir::Program program;
   std::deque<PouInfo> pous;  // stable addresses; grows when library blocks are used
+  std::vector<TestCase> test_cases;
 
  private:
   friend class Within;
   friend class Folder;
+  friend class InitialBuilder;
 
   // declarations.cc
   void collect_types();
+  void collect_library_type(const TypeDecl& decl);
+  void declare_type(const TypeDecl& decl);
+  bool use_library_type(std::string_view name);
+  bool use_library_literal(std::string_view name);
+  bool in_library(base::SourceSpan span) const {
+    return span.begin.valid() && sources.file_of(span.begin) >= library_file_;
+  }
+  void forward_declare(const TypeDecl& decl);
   void collect_enumerators(SpecId spec);
-  void collect_globals(const std::vector<VarBlock>& blocks);
+  void collect_globals(const VarBlock& block, std::string_view list);
+  void collect_globals(const std::vector<VarBlock>& blocks, std::string_view list);
+  VarId add_global(Variable variable, GlobalList& list);
+  std::string_view list_of(const VarBlock& block) const;
   void collect_variables(uint32_t pou, const VarBlock& block);
   void collect_pous();
   uint32_t add_pou(const PouDecl& decl, bool library);
+  void collect_interface(uint32_t pou);
   void number_variables(PouInfo& info);
+  void add_aliases(PouInfo& info);
   VarId add_variable(Variable variable, NameMap<VarId>& scope);
   bool use_library(std::string_view name);
+
+  // open_functions.cc
+  bool is_open(const PouDecl& decl) const;
+  bool is_generic_name(std::string_view name) const;
+  std::vector<Match> match(const Expr& call, const PouInfo& callee) const;
+  Callee select_function(const Expr& call, uint32_t first);
+  uint32_t select_overload(const Expr& call, uint32_t first);
+  std::optional<uint32_t> distance(const Expr& call, uint32_t pou);
+  Callee bind_open(const Expr& call, uint32_t pou);
+  bool bind_generic(const Match& match, const Spec& spec, NameMap<Note>& generic);
+  bool bind_array(const Match& match, const Spec& spec, NameMap<Note>& generic);
+  uint32_t string_variant(const Expr& call, uint32_t pou);
+  using ParameterTypes = std::vector<ir::TypeId>;  // by number in PouInfo::variables
+  uint32_t instance_of(uint32_t pou, const ParameterTypes& types, NameMap<ir::TypeId> generic);
+  void check_overloads();
+  std::string signature(const PouInfo& pou);
+
+  // bounds.cc
+  Note infer_bound(const Expr& expr, bool upper);
+  std::optional<int64_t> bound_of(const Expr& expr, bool upper);
+  // test_cases.cc
+  void collect_tests();
+  void collect_test(const PouDecl& test);
+  void configure_tests();
+  void add_test_globals();
+  void add_function_mock(const Name& name);
+  void add_mock_body(const PouDecl& decl, bool inside_test);
+  void resolve_mock_bodies();
+  void check_mock_body(const PouDecl& decl, const PouInfo& mock, const PouInfo& function);
+  void add_mock_members(PouInfo& info, std::vector<ir::Member>& members);
 
   // interface.cc
   void resolve_interface(uint32_t pou);
@@ -140,6 +245,7 @@ class Sema {
   void resolve_initial(Variable& variable);
   void check_placement(const Variable& variable);
   void check_address(const Variable& variable);
+  uint32_t address_bits(ir::TypeId type) const;
 
   // types.cc
   TypeUse resolve_kind(SpecId id, const Spec& spec);
@@ -149,17 +255,52 @@ class Sema {
   TypeUse resolve_struct(SpecId id, const Spec& spec);
   TypeUse resolve_subrange(const Spec& spec);
   TypeUse resolve_enum(SpecId id, const Spec& spec);
-  bool add_field(ir::Type& type, NameMap<uint32_t>& names, const VarDecl& field);
+  TypeUse resolve_reference(const Spec& spec);
+  bool check_overlap(const ir::Type& type, base::SourceSpan span);
+
+  // infer_reference.cc
+  Note infer_deref(const Expr& expr);
+  Note infer_pointer_index(const Expr& expr, const Note& operand);
+  Note infer_reference_call(const Expr& expr, ReferenceCall call);
+  Note infer_pointer_arithmetic(BinaryOp op, const Note& left, const Note& right,
+                                base::SourceSpan span);
+  ir::TypeId common_reference(const Note& a, const Note& b);
+
+  // structures.cc
+  struct StructBuild;
+  bool add_base(StructBuild& build, const Spec& spec);
+  bool is_bit(SpecId spec) const;
+  bool add_field(StructBuild& build, const VarDecl& field);
+  Field add_bit(StructBuild& build, const Name& name, ir::ConstId init);
+  void close_bits(StructBuild& build);
+
+  // hidden_variables.cc
+  std::string_view keep_name(std::string name);
+  VarId add_static(Variable variable, PouInfo& info);
+  void place_global(VarId id);
+  void add_edge(VarId input, PouInfo& info);
+  void check_edge(const Variable& variable);
+
+  // enable.cc
+  std::vector<const Arg*> plain_arguments(const Expr& call, const PouInfo* callee) const;
+  void mark_enabled(const Expr& call, Note& note) const;
 
   // infer*.cc
   Note infer_kind(ExprId id, const Expr& expr);
   Note infer_literal(const Expr& expr);
   Note infer_name(const Expr& expr);
+  Note variable_note(VarId id);
+  std::optional<Note> infer_list_member(const Expr& expr);
   Note infer_enum_name(const Expr& expr);
   Note infer_qualified(const Expr& expr);
   Note infer_member(const Expr& expr);
   Note infer_bit(const Expr& expr);
+  bool check_part(ir::TypeId whole, uint32_t number, uint8_t size, base::SourceSpan span);
+  Note part_note(const Note& whole, uint32_t number, uint8_t size) const;
+  bool names_enumeration(const Expr& head);
+  std::optional<Note> infer_named_bit(const Expr& expr, const Note& operand);
   Note infer_index(const Expr& expr);
+  Note infer_assign(const Expr& expr);
   Note infer_unary(const Expr& expr);
   Note infer_binary(const Expr& expr);
   ir::TypeId infer_name_candidates(std::string_view name);
@@ -167,8 +308,14 @@ class Sema {
   Note infer_standard(const Expr& expr, const stdlib::FunctionRow& row);
   Note infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
                   const std::vector<ExprId>& args);
+  bool standard_argument(const Arg& arg, const stdlib::FunctionRow& row, uint32_t number,
+                         std::vector<ExprId>& ordered);
+  Note infer_by_signature(const stdlib::FunctionRow& row, const std::vector<ExprId>& args);
+  bool takes(std::string_view wanted, const Note& argument) const;
   Note infer_string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
   Note infer_conversion(const Expr& expr, const Conversion& conversion);
+  bool check_conversion(const Expr& expr, const Conversion& conversion, ir::Kind from,
+                        const Note& argument);
   void check_real_equality(const Expr& expr);
   Note infer_arithmetic(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span);
   Note infer_time_arithmetic(BinaryOp op, const Note& left, const Note& right,
@@ -177,43 +324,91 @@ class Sema {
   Note infer_comparison(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span);
   Note unify_arguments(const std::vector<ExprId>& args, uint32_t first);
   Callee named_callee(const Expr& head);
+  Note infer_character(const Expr& expr, Note note);
   void check_index_list(const Expr& expr, const ir::Type& array);
 
-  // initial_values.cc
-  ir::ConstId array_value(const Expr& expr, ir::TypeId type);
-  ir::ConstId struct_value(const Expr& expr, ir::TypeId type);
-  bool array_item(ExprId id, uint64_t& rounds, std::vector<ExprId>& values);
-  bool array_elements(const Expr& list, ir::TypeId type, uint64_t total,
-                      std::vector<ir::ConstElement>& out, uint64_t& at);
+  // initial_part.cc
+  ir::ConstId listed(ir::ConstId list, uint64_t index) const;
+  ir::ConstId member_default(ir::TypeId type, uint32_t member);
+  std::optional<TypeUse> initial_variable(const Expr& expr, VarId id);
+  std::optional<TypeUse> initial_member(const Expr& expr);
+  std::optional<TypeUse> initial_element(const Expr& expr);
 
   // output_tasks.cc
   void check_instance_outputs(const ir::ProgramInstance& instance,
                               std::unordered_map<uint32_t, uint32_t>& owner);
 
   // configuration.cc
+  void choose_resource();
   void default_configuration();
   void configure_resource(const ResourceDecl& resource);
+  std::optional<uint32_t> find_task(const Name& name);
+  std::optional<uint32_t> find_program(const ProgramDecl& decl);
+  void add_instance(const ProgramDecl& decl, const ResourceDecl& resource);
+  void add_block_task(const BlockTask& decl, const PouInfo& info);
+  ir::ConstId program_arguments(const ProgramDecl& decl, const PouInfo& info,
+                                std::vector<Connection>& connections);
+  uint32_t clone_program(uint32_t original, const Name& instance);
+
+  // tasks.cc
   void add_task(const TaskDecl& decl);
-  void add_instance(const ProgramDecl& decl);
-  ir::ConstId program_arguments(const ProgramDecl& decl, const PouInfo& info);
+  uint32_t event_of(ExprId expr);
+
+  // called_programs.cc
+  VarId program_variable(std::string_view name, bool called);
+
+  // instance_paths.cc
+  struct InstancePath;
+  void configure_paths(const std::vector<VarBlock>& blocks);
+  void configure_variable(const VarDecl& decl);
+  void add_access(const VarDecl& decl);
+  bool walk_path(ExprId expr, InstancePath& path);
+  bool path_head(const Expr& expr, InstancePath& path);
+  bool path_member(const Expr& expr, InstancePath& path);
+  bool path_element(const Expr& expr, InstancePath& path);
+  bool check_path_type(const VarDecl& decl, const InstancePath& path);
+  ir::ConstId with_initial(ir::ConstId before, ir::TypeId type, const std::vector<uint32_t>& steps,
+                           size_t at, ExprId init);
+  void check_open_addresses();
+  void check_open_addresses(ir::TypeId type, const std::string& path,
+                            const std::unordered_map<std::string, bool>& known, uint32_t depth);
 
   base::Diagnostics& diagnostics_;
+  FollowUps follow_ups_;
+  Purpose purpose_;
+  uint32_t test_message_ = 0;
+  std::deque<PouDecl> made_decls_;
+  struct MockBody {
+    const PouDecl* decl;
+    bool inside_test;
+    uint32_t pou;
+  };
+  std::vector<MockBody> mock_bodies_;
   uint32_t library_file_;
+  const ResourceDecl* resource_ = nullptr;  // the one that is compiled
   uint32_t current_pou_ = kNoPou;
   uint32_t depth_ = 0;
   std::deque<Variable> variables_;  // stable addresses, as pous
+  SpecInfo& spec_info(SpecId spec);
+  Note& note(ExprId expr);
   std::vector<SpecInfo> specs_;
   std::vector<Note> notes_;
+  std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> instances_;
+  bool declared_ = false;  // all interfaces are resolved; later ones at once
   NameMap<VarId> globals_;
+  NameMap<GlobalList> lists_;
   std::vector<VarId> global_order_;
   NameMap<SpecId> types_;
   NameMap<uint32_t> pou_names_;
   NameMap<const PouDecl*> library_;
+  NameMap<const TypeDecl*> library_types_;
+  NameMap<const TypeDecl*> library_literals_;
   NameMap<std::vector<EnumRef>> literals_;
   NameMap<const stdlib::FunctionRow*> standard_;
   std::unordered_map<ir::TypeId, uint32_t> pou_by_type_;
   std::unordered_map<std::string, uint32_t> direct_members_;
-  std::unordered_map<ir::TypeId, NameMap<uint32_t>> structures_;
+  std::unordered_map<ir::TypeId, NameMap<Field>> structures_;
+  std::deque<std::string> made_names_;
 };
 
 }  // namespace frontend

@@ -14,7 +14,7 @@ constexpr uint64_t kMaxElements = base::kMaxTypeBytes;
 
 TypeUse Sema::resolve(SpecId id) {
   if (!id.valid()) return {};
-  SpecInfo& info = specs_[id.index];
+  SpecInfo& info = spec_info(id);
   if (info.progress == Progress::kDone) return info.use;
   const Spec& spec = tree[id];
   if (info.progress == Progress::kBusy) {
@@ -34,7 +34,7 @@ TypeUse Sema::resolve(SpecId id) {
   // The default may name the type itself: Colour : (Red, Green) := Green.
   info.progress = Progress::kDone;
   if (use.type.valid() && info.default_value.valid()) {
-    info.use.init = initial_value(info.default_value, use.type);
+    info.use.init = initial_value(info.default_value, use.type, use.init);
     if (spec.kind == SpecKind::kEnum) program.types.edit(use.type).init = info.use.init;
   }
   --depth_;
@@ -57,6 +57,12 @@ TypeUse Sema::resolve_kind(SpecId id, const Spec& spec) {
       return resolve_enum(id, spec);
     case SpecKind::kSubrange:
       return resolve_subrange(spec);
+    case SpecKind::kUnion:
+      return resolve_struct(id, spec);
+    case SpecKind::kPointer:
+    case SpecKind::kRefTo:
+    case SpecKind::kReferenceTo:
+      return resolve_reference(spec);
   }
   return {};
 }
@@ -70,6 +76,11 @@ std::optional<TypeUse> Sema::find_type(std::string_view name) {
     }
     return TypeUse{program.types.elementary(*kind), {}};
   }
+  if (ir::same_name(name, "BIT") && !types_.contains(name)) {
+    return TypeUse{program.types.elementary(ir::Kind::kBool), {}};
+  }
+  bool declared_pou = pou_names_.contains(name);
+  if (!declared_pou && !types_.contains(name)) use_library_type(name);
   if (auto declared = types_.find(name); declared != types_.end()) {
     Within global(*this, kNoPou);
     return resolve(declared->second);
@@ -81,6 +92,13 @@ std::optional<TypeUse> Sema::find_type(std::string_view name) {
 }
 
 TypeUse Sema::resolve_named(const Spec& spec) {
+  if (current_pou_ != kNoPou && pous[current_pou_].meaning != nullptr) {
+    const NameMap<ir::TypeId>& generic = pous[current_pou_].meaning->generic;
+    if (auto found = generic.find(spec.name.text); found != generic.end()) {
+      return {found->second, {}};
+    }
+  }
+  if (spec.qualifiers.count != 0) return {};  // reported by report_not_supported()
   if (auto use = find_type(spec.name.text)) return *use;
   NearestName nearest(spec.name.text);
   nearest.offer_all(types_);
@@ -116,6 +134,11 @@ TypeUse Sema::resolve_array(const Spec& spec) {
     error(DiagnosticCode::kTooManyDimensions, spec.span,
           std::to_string(spec.dims.size()) + " dimensions",
           "use at most " + std::to_string(base::kMaxDimensions));
+    return {};
+  }
+  if (spec.open_bounds) {
+    error(DiagnosticCode::kSectionNotAllowed, spec.span, "an array with open bounds `[*]`",
+          "only parameters of functions leave the bounds open");
     return {};
   }
   std::vector<ir::Dimension> dims;
@@ -176,41 +199,6 @@ TypeUse Sema::resolve_subrange(const Spec& spec) {
   return use;
 }
 
-TypeUse Sema::resolve_struct(SpecId id, const Spec& spec) {
-  ir::Type type;
-  type.kind = ir::Kind::kStruct;
-  type.name = specs_[id.index].name.text;
-  NameMap<uint32_t> names;
-  bool good = true;
-  for (const VarDecl& field : spec.fields) good = add_field(type, names, field) && good;
-  if (!good) return {};
-  if (type.members.empty()) {
-    error(DiagnosticCode::kEmptyList, spec.span, "a structure without members");
-    return {};
-  }
-  ir::TypeId made = program.types.declare(std::move(type));
-  structures_.emplace(made, std::move(names));
-  return {made, {}};
-}
-
-bool Sema::add_field(ir::Type& type, NameMap<uint32_t>& names, const VarDecl& field) {
-  TypeUse use = resolve(field.spec);
-  if (!use.type.valid()) return false;
-  ir::Member member;
-  member.type = use.type;
-  member.init = field.init.valid() ? initial_value(field.init, use.type) : use.init;
-  for (const Name& name : field.names) {
-    if (!names.emplace(name.text, static_cast<uint32_t>(type.members.size())).second) {
-      error(DiagnosticCode::kDuplicateName, name.span,
-            "`" + std::string(name.text) + "` is declared twice");
-      return false;
-    }
-    member.name = name.text;
-    type.members.push_back(member);
-  }
-  return true;
-}
-
 TypeUse Sema::resolve_enum(SpecId id, const Spec& spec) {
   TypeUse base{program.types.elementary(ir::Kind::kInt), {}};
   if (spec.element.valid()) base = resolve(spec.element);
@@ -221,9 +209,15 @@ TypeUse Sema::resolve_enum(SpecId id, const Spec& spec) {
           "an enumeration of `" + type_text(base.type) + "`", "enumerations need an integer type");
     return {};
   }
+  if (spec.enumerators.size() > base::kMaxEnumerators) {
+    error(DiagnosticCode::kTooComplex, spec.span,
+          std::to_string(spec.enumerators.size()) + " literals in one enumeration",
+          "use at most " + std::to_string(base::kMaxEnumerators));
+    return {};
+  }
   ir::Type type;
   type.kind = ir::Kind::kEnum;
-  type.name = specs_[id.index].name.text;
+  type.name = spec_info(id).name.text;
   type.base = without_range(program.types, base.type);
   Limits limits = limits_of(program.types.scalar(base.type));
   NameMap<bool> names;

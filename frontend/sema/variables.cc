@@ -19,6 +19,12 @@ VarId Sema::find_variable(std::string_view name) {
   return found == globals_.end() ? VarId() : found->second;
 }
 
+VarId Sema::find_variable(const Expr& name) {
+  if (!name.global) return find_variable(name.name.text);
+  auto found = globals_.find(name.name.text);
+  return found == globals_.end() ? VarId() : found->second;
+}
+
 const Variable& Sema::resolve(VarId id) {
   Variable& variable = variables_[id.index];
   if (variable.progress == Progress::kDone) return variable;
@@ -46,7 +52,7 @@ void Sema::resolve_variable(VarId id) {
     variable.init = use.init;
     return;
   }
-  TypeUse use = resolve(variable.decl->spec);
+  TypeUse use = variable.bound.valid() ? TypeUse{variable.bound, {}} : resolve(variable.decl->spec);
   variable.type = use.type;
   variable.init = use.init;
   if (!variable.type.valid()) return;
@@ -55,8 +61,16 @@ void Sema::resolve_variable(VarId id) {
     return;
   }
   check_placement(variable);
+  // A slot has no place that another frame could point to (ADR 0006).
+  if (variable.section == VarSection::kInOut &&
+      program.types[variable.type].kind == ir::Kind::kFunctionBlock) {
+    variable.by_reference = true;
+    variable.type = program.types.reference_to(variable.type);
+    variable.init = {};
+  }
   check_address(variable);
-  if (variable.decl->init.valid()) resolve_initial(variable);
+  check_edge(variable);
+  if (variable.decl->init.valid() && !variable.hidden) resolve_initial(variable);
 }
 
 void Sema::resolve_external(Variable& variable) {
@@ -87,11 +101,11 @@ void Sema::resolve_initial(Variable& variable) {
   bool list = expr.kind == ExprKind::kArrayInit || expr.kind == ExprKind::kStructInit;
   bool at_call = variable.storage == Storage::kLocal &&
                  (variable.section == VarSection::kLocal || variable.section == VarSection::kTemp);
-  if (at_call && !variable.constant && !list && !infer(init).constant) {
+  if (at_call && !variable.constant && !list && infer(init).known < Known::kByCall) {
     variable.runtime_init = true;
     return;
   }
-  variable.init = initial_value(init, variable.type);
+  variable.init = initial_value(init, variable.type, variable.init);
 }
 
 void Sema::check_placement(const Variable& variable) {
@@ -111,16 +125,19 @@ void Sema::check_placement(const Variable& variable) {
   }
 }
 
+// 0: not a value that an address can name.
+uint32_t Sema::address_bits(ir::TypeId type) const {
+  if (!type.valid() || !program.types.is_scalar(type)) return 0;
+  ir::Scalar machine = program.types.scalar(type);
+  return machine == ir::Scalar::kBool ? 1 : ir::scalar_size(machine) * 8;
+}
+
 void Sema::check_address(const Variable& variable) {
-  if (!variable.decl->has_address) return;
+  if (!variable.decl->has_address || variable.hidden) return;
   const ir::DirectAddress& address = variable.decl->address;
-  bool scalar = program.types.is_scalar(variable.type);
-  uint32_t bits = 0;
-  if (scalar) {
-    ir::Scalar machine = program.types.scalar(variable.type);
-    bits = machine == ir::Scalar::kBool ? 1 : ir::scalar_size(machine) * 8;
-  }
-  if (bits != address.bit_size) {
+  uint32_t bits = address_bits(variable.type);
+  bool open = variable.decl->incomplete && address.bit_size == 0 && bits != 0;
+  if (bits != address.bit_size && !open) {
     error(DiagnosticCode::kBadAddress, variable.name.span,
           quoted(variable.name) + " is `" + type_text(variable.type) + "`, the address has " +
               std::to_string(address.bit_size) + " bits",
@@ -137,11 +154,9 @@ const PouInfo* Sema::pou_of(ir::TypeId instance) const {
   return found == pou_by_type_.end() ? nullptr : &pous[found->second];
 }
 
-int32_t Sema::find_member(ir::TypeId structure, std::string_view name) {
-  auto table = structures_.find(structure);
-  if (table == structures_.end()) return -1;
-  auto found = table->second.find(name);
-  return found == table->second.end() ? -1 : static_cast<int32_t>(found->second);
+const PouInfo* Sema::find_pou(std::string_view name) const {
+  auto found = pou_names_.find(name);
+  return found == pou_names_.end() ? nullptr : &pous[found->second];
 }
 
 std::string Sema::name_suggestion(std::string_view name, bool callable) const {

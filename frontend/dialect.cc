@@ -1,0 +1,38 @@
+#include "frontend/dialect.h"
+
+namespace frontend {
+
+namespace {
+
+constexpr DialectRow kRows[] = {
+#define DIALECT(id, name, what) {name, what},
+#include "frontend/dialects.def"
+};
+
+constexpr DialectRule kRules[] = {
+#define DIALECT_RULE(what, example, iec, others) {what, example, iec, others},
+#include "frontend/dialects.def"
+};
+
+}  // namespace
+
+std::span<const DialectRow> dialect_rows() { return kRows; }
+std::span<const DialectRule> dialect_rules() { return kRules; }
+
+std::optional<Dialect> dialect_from_name(std::string_view name) {
+  for (uint8_t i = 0; i < std::size(kRows); ++i) {
+    if (kRows[i].name == name) return static_cast<Dialect>(i);
+  }
+  return std::nullopt;
+}
+
+std::string unknown_dialect(std::string_view name) {
+  std::string text = "unknown dialect `" + std::string(name) + "`; known are ";
+  for (const DialectRow& row : kRows) {
+    if (&row != kRows) text += ", ";
+    text += row.name;
+  }
+  return text;
+}
+
+}  // namespace frontend

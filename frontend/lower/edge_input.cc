@@ -1,0 +1,28 @@
+// R_EDGE and F_EDGE: inside, such an input is TRUE in the call that sees the edge. What
+// the caller wrote, or left as it was, is compared with what the call before saw.
+#include "frontend/lower/body.h"
+
+namespace frontend {
+
+void Body::detect_edges() {
+  for (VarId id : info_.variables) {
+    const Variable& input = sema_.resolve(id);
+    if (!input.edge.valid() || !input.type.valid()) continue;
+    constexpr ir::Scalar kBool = ir::Scalar::kBool;
+    set_line(input.name.span);
+    ir::Place raw = member_variable_place(input);
+    ir::Place last = member_variable_place(sema_.resolve(input.last));
+    ir::Place edge = local_place(sema_.resolve(input.edge).index);
+    ir::ValueId now = build_.load(raw, kBool);
+    ir::ValueId before = build_.load(last, kBool);
+    bool rising = input.decl->edge == Edge::kRising;
+    // The memory starts FALSE, as in the standard's R_TRIG and F_TRIG: for a falling edge it
+    // holds the negated value.
+    ir::ValueId level = rising ? now : build_.unary(ir::Op::kNot, kBool, now);
+    ir::ValueId was_not = build_.unary(ir::Op::kNot, kBool, before);
+    build_.store(edge, kBool, build_.binary(ir::Op::kAnd, kBool, level, was_not));
+    build_.store(last, kBool, level);
+  }
+}
+
+}  // namespace frontend

@@ -1,0 +1,108 @@
+// EN and ENO, which every function and function block has (IEC 61131-3, 6.6.1.5): with EN
+// FALSE nothing is called, ENO is FALSE, outputs keep what they had, and a function's
+// result is the default of its type. Who declares parameters of these names has them.
+#include "frontend/lower/enable.h"
+
+namespace frontend {
+
+std::optional<Body::Enable> Body::enable_of(const Expr& call, const Callee& callee) {
+  const PouInfo* pou = callee.pou == kNoPou ? nullptr : &sema_.pous[callee.pou];
+  Enable enable;
+  for (uint32_t i = 0; i < call.args.count; ++i) {
+    const Arg& arg = tree_.args[call.args.first + i];
+    if (!sema_.is_enable(arg, pou)) continue;
+    const Arg*& slot = ir::same_name(arg.name.text, "EN") ? enable.en : enable.eno;
+    bool output = &slot == &enable.eno;
+    if (arg.output != output || slot != nullptr || (arg.negated && !output)) {
+      sema_.error(DiagnosticCode::kBadEnable, arg.span,
+                  output ? "ENO is an output" : "EN is an input",
+                  output ? "write `ENO => variable`, once" : "write `EN := condition`, once");
+      return std::nullopt;
+    }
+    if (arg.value.valid()) slot = &arg;
+  }
+  if (enable.en == nullptr && enable.eno == nullptr) return std::nullopt;
+  return enable;
+}
+
+void Body::open_enable(Enable& enable) {
+  ir::TypeId boolean = elementary(ir::Kind::kBool);
+  enable.done = build_.new_block();
+  if (enable.eno != nullptr) {
+    enable.target = target(enable.eno->value);
+    if (enable.target && !traits_of(types(), enable.target->type).boolean) {
+      sema_.error(DiagnosticCode::kBadEnable, enable.eno->span,
+                  "ENO is BOOL, its target is `" + sema_.type_text(enable.target->type) + "`");
+      enable.target.reset();
+    }
+  }
+  if (enable.en == nullptr) return;
+  enable.skip = build_.new_block();
+  ir::BlockId run = build_.new_block();
+  build_.branch(value(enable.en->value, boolean), run, enable.skip);
+  build_.start(run);
+}
+
+void Body::store_eno(const Enable& enable, bool good) {
+  if (!enable.target) return;
+  bool bit = good != enable.eno->negated;
+  store(*enable.target, build_.constant(ir::Scalar::kBool, bit ? 1 : 0));
+}
+
+void Body::close_enable(Enable& enable, std::vector<ir::ValueId> result, ir::TypeId type) {
+  store_eno(enable, true);
+  build_.jump(enable.done, std::move(result));
+  if (enable.skip.valid()) {
+    build_.start(enable.skip);
+    store_eno(enable, false);
+    std::vector<ir::ValueId> otherwise;
+    if (type.valid()) otherwise.push_back(build_.constant(scalar(type), default_bits(type)));
+    build_.jump(enable.done, std::move(otherwise));
+  }
+  build_.start(enable.done);
+}
+
+uint64_t Body::default_bits(ir::TypeId type) const {
+  ir::ConstId init;
+  for (ir::TypeId at = type; !init.valid() && at.valid(); at = types()[at].base) {
+    init = types()[at].init;
+  }
+  return init.valid() ? sema_.program.constants[init].bits : 0;
+}
+
+ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
+  Callee callee = sema_.callee(expr);
+  auto enable = enable_of(expr, callee);
+  if (!enable) return emit_call(expr, callee, own);
+  open_enable(*enable);
+  ir::ValueId result = build_.add_param(enable->done, scalar(own));
+  close_enable(*enable, {emit_call(expr, callee, own)}, own);
+  return result;
+}
+
+// A result that is no scalar.
+ir::Place Body::call_place(ExprId id, const Expr& expr) {
+  ir::TypeId type = sema_.infer(id).type;
+  Callee callee = sema_.callee(expr);
+  auto enable = enable_of(expr, callee);
+  if (!enable) return call_place(expr, callee, type);
+  ir::Place result = temporary_place(type);
+  build_.init(result, {});
+  open_enable(*enable);
+  build_.copy(result, call_place(expr, callee, type));
+  close_enable(*enable, {}, {});
+  return result;
+}
+
+void Body::call_statement(const Stmt& stmt) {
+  const Expr& call = tree_[stmt.value];
+  if (call.kind != ExprKind::kCall) return;
+  Callee callee = sema_.callee(call);
+  auto enable = enable_of(call, callee);
+  if (!enable) return call_statement(stmt.value, callee);
+  open_enable(*enable);
+  call_statement(stmt.value, callee);
+  close_enable(*enable, {}, {});
+}
+
+}  // namespace frontend

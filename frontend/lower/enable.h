@@ -1,0 +1,16 @@
+// EN and ENO of one call.
+#pragma once
+
+#include "frontend/lower/body.h"
+
+namespace frontend {
+
+struct Body::Enable {
+  const Arg* en = nullptr;
+  const Arg* eno = nullptr;
+  std::optional<Target> target;  // of ENO
+  ir::BlockId skip;              // where EN is FALSE
+  ir::BlockId done;
+};
+
+}  // namespace frontend

@@ -1,0 +1,56 @@
+// JMP and labels. A label is reached from its own statement list and from everything
+// inside; nothing jumps into a block.
+#include "frontend/lower/body.h"
+
+namespace frontend {
+
+Body::Labels Body::labels_of(Range32 list) {
+  Labels labels;
+  for (uint32_t i = 0; i < list.count; ++i) {
+    const Stmt& stmt = tree_[tree_.stmt_lists[list.first + i]];
+    if (stmt.kind != StmtKind::kLabel) continue;
+    // `x : f(y);` is a slip of the finger, and would be a label and a call.
+    if (sema_.find_variable(stmt.name.text).valid()) {
+      sema_.error(DiagnosticCode::kDuplicateName, stmt.name.span,
+                  "`" + std::string(stmt.name.text) + "` is a variable and cannot be a label",
+                  "write `:=` to assign to it");
+    }
+    if (!labels.emplace(stmt.name.text, build_.new_block()).second) {
+      sema_.error(DiagnosticCode::kDuplicateName, stmt.name.span,
+                  "the label `" + std::string(stmt.name.text) + "` stands twice");
+    }
+  }
+  return labels;
+}
+
+void Body::label(const Stmt& stmt) {
+  ir::BlockId block = labels_.back().find(stmt.name.text)->second;
+  if (build_.started(block)) return;  // the name stands twice
+  if (build_.reachable()) build_.jump(block);
+  build_.start(block);
+}
+
+void Body::jump(const Stmt& stmt) {
+  sema_.allow_extension("JMP in Structured Text", stmt.span, "use IF, loops, EXIT and RETURN");
+  for (size_t i = labels_.size(); i-- > 0;) {
+    auto found = labels_[i].find(stmt.name.text);
+    if (found != labels_[i].end()) return build_.jump(found->second);
+  }
+  std::string name = "`" + std::string(stmt.name.text) + "`";
+  for (const Stmt& other : tree_.stmts) {
+    bool inside = other.kind == StmtKind::kLabel && info_.decl != nullptr &&
+                  !(other.span.begin < info_.decl->span.begin) &&
+                  other.span.begin < info_.decl->span.end;
+    if (!inside || !ir::same_name(other.name.text, stmt.name.text)) continue;
+    sema_.error(DiagnosticCode::kJumpIntoBlock, stmt.span,
+                "the label " + name + " lies inside a block that this jump is not in",
+                "put the label in front of the block, or the jump inside it");
+    return;
+  }
+  NearestName nearest(stmt.name.text);
+  for (const Labels& labels : labels_) nearest.offer_all(labels);
+  sema_.error(DiagnosticCode::kUnknownLabel, stmt.name.span, "there is no label " + name,
+              nearest.fix());
+}
+
+}  // namespace frontend

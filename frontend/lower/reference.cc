@@ -1,0 +1,186 @@
+// Pointers and references in bodies, by the shapes of "References" in ir/program/ir.h.
+#include "frontend/lower/body.h"
+
+namespace frontend {
+namespace {
+
+bool is_wide(ir::Scalar scalar) { return ir::scalar_size(scalar) == 8; }
+
+}  // namespace
+
+ir::Place Body::target_place(ir::ValueId handle, ir::TypeId type) const {
+  ir::Place place;
+  place.base = ir::PlaceBase::kTarget;
+  place.value = handle;
+  place.base_type = place.type = type;
+  return place;
+}
+
+// p^, and p[i].
+ir::Place Body::dereferenced_place(const Expr& expr) {
+  const Typed pointer = natural(expr.operand);
+  const ir::TypeId target = types()[pointer.type].base;
+  set_line(expr.span);
+  if (expr.kind == ExprKind::kDeref) return target_place(pointer.value, target);
+  const Typed index = natural(tree_.expr_lists[expr.list.first]);
+  return target_place(
+      moved(pointer.value, machine_convert(index.value, scalar(index.type), ir::Scalar::kI64),
+            target),
+      target);
+}
+
+ir::ValueId Body::moved(ir::ValueId handle, ir::ValueId count, ir::TypeId element) {
+  const ir::ValueId size =
+      machine_convert(build_.size_of(element), ir::Scalar::kU32, ir::Scalar::kI64);
+  return build_.move_handle(handle, build_.binary(ir::Op::kMul, ir::Scalar::kI64, count, size));
+}
+
+// The place itself, also of what is constant: references need a home.
+ir::Place Body::addressable_place(ExprId id) {
+  const Expr& expr = tree_[id];
+  const Note& note = sema_.infer(id);
+  const bool part = note.bit_size != 0 || is_character(id);
+  const bool value = expr.kind == ExprKind::kLiteral || expr.kind == ExprKind::kCall ||
+                     expr.kind == ExprKind::kUnary || expr.kind == ExprKind::kBinary ||
+                     expr.kind == ExprKind::kQualified || expr.kind == ExprKind::kAssign;
+  if (expr.kind == ExprKind::kName && note.variable.valid() && !note.reference.valid()) {
+    return variable_place(note.variable);
+  }
+  if (!part && !value && !note.constant) return place(id);
+  sema_.error(DiagnosticCode::kBadReference, expr.span,
+              part ? "a part of a variable has no address" : "a value has no address",
+              "store it in a variable and refer to that");
+  return temporary_place(note.type);
+}
+
+// The handle that leads to what `id` names.
+ir::ValueId Body::handle_of(ExprId id) {
+  const Expr& expr = tree_[id];
+  const Note& note = sema_.infer(id);
+  if (!note.type.valid()) return zero({});
+  if (note.reference.valid()) return raw_reference(id);
+  if (expr.kind == ExprKind::kDeref) return natural(expr.operand).value;
+  return build_.handle(addressable_place(id));
+}
+
+// The value of a REFERENCE TO itself, which otherwise stands for its target.
+ir::ValueId Body::raw_reference(ExprId id) {
+  const Expr& expr = tree_[id];
+  if (expr.kind == ExprKind::kCall) return emit_call(expr, sema_.infer(id).reference);
+  return build_.load(raw_place(id), ir::Scalar::kU64);
+}
+
+// What binds a REFERENCE TO: a variable, another reference, a pointer's value, or NULL.
+ir::ValueId Body::reference_value(ExprId id, ir::TypeId target) {
+  const Note& note = sema_.infer(id);
+  const ir::Type& reference = types()[target];
+  if (!note.type.valid()) return zero(target);
+  if (note.constant && note.flex == Flex::kNull) return build_.constant(ir::Scalar::kU64, 0);
+  const bool pointer = types().is_reference(note.type) && types()[note.type].base == reference.base;
+  if (pointer) return natural(id).value;
+  if (note.type == reference.base || types().is_a(note.type, reference.base)) return handle_of(id);
+  sema_.error(
+      DiagnosticCode::kTypeMismatch, tree_[id].span,
+      "`" + sema_.type_text(target) + "` cannot refer to a `" + sema_.type_text(note.type) + "`");
+  return zero(target);
+}
+
+// r REF= x
+void Body::bind_reference(const Stmt& stmt) {
+  const Note& note = sema_.infer(stmt.target);
+  if (!note.type.valid()) return;
+  if (!note.reference.valid()) {
+    sema_.error(DiagnosticCode::kBadReference, tree_[stmt.target].span,
+                "`" + sema_.type_text(note.type) + "` is not a REFERENCE TO", "assign with `:=`");
+    return;
+  }
+  const ir::Place where = raw_place(stmt.target);
+  const ir::ValueId handle = reference_value(stmt.value, note.reference);
+  set_line(stmt.span);
+  build_.store(where, ir::Scalar::kU64, handle);
+}
+
+ir::ValueId Body::emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own) {
+  const ExprId argument = tree_.args[expr.args.first].value;
+  switch (call) {
+    case ReferenceCall::kSizeof:
+      return machine_convert(build_.size_of(sema_.type_of_argument(argument)), ir::Scalar::kU32,
+                             scalar(own));
+    case ReferenceCall::kIsValid: {
+      const bool raw = sema_.infer(argument).reference.valid();
+      const ir::ValueId handle = raw ? raw_reference(argument) : natural(argument).value;
+      const ir::ValueId address = build_.flat(handle);
+      return build_.compare(ir::Op::kNe, ir::Scalar::kU32, address,
+                            build_.constant(ir::Scalar::kU32, 0));
+    }
+    default:
+      return handle_of(argument);
+  }
+}
+
+ir::ValueId Body::emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own) {
+  const ir::TypeId dword = elementary(ir::Kind::kDword);
+  const bool first = types().is_reference(sema_.infer(left).type);
+  const bool second = types().is_reference(sema_.infer(right).type);
+  if (!types().is_reference(own)) {
+    if (first && second && op == BinaryOp::kSub) {
+      const ir::ValueId a = build_.flat(natural(left).value);
+      const ir::ValueId b = build_.flat(natural(right).value);
+      return build_.unary(ir::Op::kWrap, scalar(own),
+                          build_.binary(ir::Op::kSub, ir::Scalar::kU32, a, b));
+    }
+    const ir::ValueId a = value(left, dword);
+    return number_op(op, dword, a, value(right, dword));
+  }
+  const Typed a = natural(left);
+  const Typed b = natural(right);
+  const Typed& pointer = first ? a : b;
+  const Typed& number = first ? b : a;
+  ir::ValueId bytes = machine_convert(number.value, scalar(number.type), ir::Scalar::kI64);
+  if (op == BinaryOp::kSub) bytes = build_.unary(ir::Op::kNeg, ir::Scalar::kI64, bytes);
+  return build_.move_handle(pointer.value, bytes);
+}
+
+// Pointers to integers and back (ADR 0005): 64 bits hold the handle, 32 bits the flat address.
+ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan span) {
+  const bool reference_source = types().is_reference(from.type);
+  const bool reference_target = types().is_reference(to);
+  const bool codesys = sema_.options.dialect != Dialect::kIec;
+  if (reference_source && reference_target) {
+    if (sema_.reference_fits(from.type, to)) return from.value;
+  } else if (reference_source) {
+    const Traits traits = traits_of(types(), to);
+    const uint32_t bytes = traits.integer || traits.bits ? ir::scalar_size(scalar(to)) : 0;
+    if (codesys && bytes == 8) return from.value;
+    if (codesys && bytes == 4) {
+      return machine_convert(build_.flat(from.value), ir::Scalar::kU32, scalar(to));
+    }
+    if (codesys && bytes != 0) {
+      sema_.error(DiagnosticCode::kBadReference, span,
+                  "an address does not fit into `" + sema_.type_text(to) + "`",
+                  "use DWORD or LWORD");
+      return zero(to);
+    }
+  } else {
+    const Traits traits = traits_of(types(), from.type);
+    if (codesys && (traits.integer || traits.bits)) {
+      if (is_wide(scalar(from.type))) return from.value;
+      return build_.unflat(machine_convert(from.value, scalar(from.type), ir::Scalar::kU32));
+    }
+  }
+  sema_.error(
+      DiagnosticCode::kTypeMismatch, span,
+      "`" + sema_.type_text(from.type) + "` does not go with `" + sema_.type_text(to) + "`");
+  return zero(to);
+}
+
+// A constant where a pointer is wanted: NULL, 0, or an address.
+ir::ValueId Body::constant_reference(ExprId id) {
+  if (sema_.infer(id).flex == Flex::kNull) return build_.constant(ir::Scalar::kU64, 0);
+  const auto bits = sema_.fold_bits(id, elementary(ir::Kind::kLword));
+  if (!bits || *bits == 0) return build_.constant(ir::Scalar::kU64, 0);
+  if (*bits > 0xffffffffu) return build_.constant(ir::Scalar::kU64, *bits);
+  return build_.unflat(build_.constant(ir::Scalar::kU32, *bits));
+}
+
+}  // namespace frontend

@@ -1,0 +1,190 @@
+// Assertions and the other calls of tests. A failed assertion leaves its message in a global
+// and traps, which ends the test; stc test shows both.
+#include "frontend/lower/body.h"
+
+namespace frontend {
+namespace {
+
+using stdlib::NativeId;
+
+constexpr uint32_t kMessageText = 400;
+constexpr uint32_t kValueText = 80;
+
+struct Relation {
+  BinaryOp op;
+  const char* wanted;  // completes "expected X" in front of the second argument
+};
+
+Relation relation_of(TestCall call) {
+  switch (call) {
+    case TestCall::kAssertNeq:
+      return {BinaryOp::kNe, "anything but "};
+    case TestCall::kAssertGt:
+      return {BinaryOp::kGt, "more than "};
+    case TestCall::kAssertLt:
+      return {BinaryOp::kLt, "less than "};
+    case TestCall::kAssertGe:
+      return {BinaryOp::kGe, "at least "};
+    case TestCall::kAssertLe:
+      return {BinaryOp::kLe, "at most "};
+    default:
+      return {BinaryOp::kEq, ""};
+  }
+}
+
+}  // namespace
+
+void Body::test_call(const Expr& call, const TestCallRow& row) {
+  std::vector<ExprId> args;
+  for (uint32_t i = 0; i < call.args.count; ++i) {
+    const Arg& arg = tree_.args[call.args.first + i];
+    if (arg.value.valid() && arg.name.empty()) args.push_back(arg.value);
+  }
+  if (args.size() < row.fewest || args.size() > row.most || args.size() != call.args.count) {
+    sema_.error(DiagnosticCode::kWrongArgumentCount, call.span,
+                std::string(row.name) + " with " + std::to_string(call.args.count) + " arguments",
+                "it takes, in this order: " + std::string(row.parameters));
+    return;
+  }
+  const ExprId message = args.size() == row.most && row.most > 1 ? args.back() : ExprId();
+  switch (row.call) {
+    case TestCall::kAdvanceTime:
+      build_.advance_time(value(args[0], elementary(ir::Kind::kLtime)));
+      return;
+    case TestCall::kAssert:
+    case TestCall::kAssertTrue:
+    case TestCall::kAssertFalse: {
+      const bool wanted = row.call != TestCall::kAssertFalse;
+      ir::ValueId given = condition(args[0]);
+      if (!wanted) given = build_.unary(ir::Op::kNot, ir::Scalar::kBool, given);
+      fail_unless(given, message, [&] {
+        return constant_text(wanted ? "expected TRUE, got FALSE" : "expected FALSE, got TRUE");
+      });
+      return;
+    }
+    case TestCall::kAssertNear:
+      return assert_near(args, message);
+    case TestCall::kVerifyCalled:
+    case TestCall::kVerifyCallCount:
+      return verify_calls(args, row.call == TestCall::kVerifyCallCount, message);
+    default:
+      return assert_relation(row.call, args, message);
+  }
+}
+
+void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message) {
+  const Relation relation = relation_of(call);
+  const Note common = sema_.unify(sema_.infer(args[0]), sema_.infer(args[1]), tree_[args[1]].span);
+  if (!common.type.valid()) return;
+  std::function<ir::Place()> actual;
+  std::function<ir::Place()> expected;
+  ir::ValueId holds;
+  if (is_string(types(), common.type)) {
+    const ir::Place a = place(args[0]);
+    const ir::Place b = place(args[1]);
+    actual = [this, a] { return narrow_string(a, wide(a.type)); };
+    expected = [this, b] { return narrow_string(b, wide(b.type)); };
+    holds = compare_places(relation.op, a, b);
+  } else if (!types().is_scalar(common.type)) {
+    sema_.error(DiagnosticCode::kWrongArgument, tree_[args[0]].span,
+                "`" + sema_.type_text(common.type) + "` cannot be compared as a whole",
+                "compare its members or elements");
+    return;
+  } else {
+    const Typed a{value(args[0], common.type), common.type};
+    const Typed b{value(args[1], common.type), common.type};
+    actual = [this, a] { return text_of(a); };
+    expected = [this, b] { return text_of(b); };
+    holds = compare_scalars(relation.op, common.type, a.value, b.value);
+  }
+  fail_unless(holds, message, [&] {
+    ir::Place text = joined(constant_text(std::string("expected ") + relation.wanted), expected());
+    return joined(joined(text, constant_text(", got ")), actual());
+  });
+}
+
+// NaN is near nothing.
+void Body::assert_near(const std::vector<ExprId>& args, ExprId message) {
+  const ir::TypeId lreal = elementary(ir::Kind::kLreal);
+  const ir::ValueId actual = value(args[0], lreal);
+  const ir::ValueId expected = value(args[1], lreal);
+  const ir::ValueId tolerance = value(args[2], lreal);
+  ir::ValueId distance = build_.binary(ir::Op::kSub, ir::Scalar::kF64, actual, expected);
+  distance = build_.unary(ir::Op::kAbs, ir::Scalar::kF64, distance);
+  const ir::ValueId holds = build_.compare(ir::Op::kLe, ir::Scalar::kF64, distance, tolerance);
+  fail_unless(holds, message, [&] {
+    ir::Place text = joined(constant_text("expected "), text_of({expected, lreal}));
+    text = joined(joined(text, constant_text(" within ")), text_of({tolerance, lreal}));
+    return joined(joined(text, constant_text(", got ")), text_of({actual, lreal}));
+  });
+}
+
+void Body::verify_calls(const std::vector<ExprId>& args, bool exact, ExprId message) {
+  const auto calls = mock_slot(args[0], &MockSlots::calls);
+  if (!calls) return;
+  const ir::TypeId udint = elementary(ir::Kind::kUdint);
+  const Typed count{build_.load(*calls, ir::Scalar::kU32), udint};
+  const Typed wanted{exact ? value(args[1], udint) : build_.constant(ir::Scalar::kU32, 1), udint};
+  const ir::ValueId holds = build_.compare(exact ? ir::Op::kEq : ir::Op::kLe, ir::Scalar::kU32,
+                                           wanted.value, count.value);
+  fail_unless(holds, message, [&] {
+    ir::Place text =
+        joined(constant_text(exact ? "expected " : "expected at least "), text_of(wanted));
+    return joined(joined(text, constant_text(" calls, got ")), text_of(count));
+  });
+}
+
+// `what` is built where the assertion has failed.
+void Body::fail_unless(ir::ValueId holds, ExprId message, const std::function<ir::Place()>& what) {
+  const ir::BlockId failed = build_.new_block();
+  const ir::BlockId passed = build_.new_block();
+  build_.branch(holds, passed, failed);
+  build_.start(failed);
+  if (sema_.for_tests()) {
+    ir::Place text = what();
+    if (message.valid()) {
+      const ir::Place words = place(message);
+      if (is_string(types(), words.type)) {
+        text = joined(narrow_string(words, wide(words.type)), joined(constant_text(": "), text));
+      }
+    }
+    build_.copy(global_place(sema_.test_message()), text);
+  }
+  build_.trap(ir::TrapKind::kAssert);
+  build_.start(passed);
+}
+
+ir::Place Body::constant_text(std::string text) {
+  ir::Place place;
+  place.base = ir::PlaceBase::kConst;
+  place.base_type = place.type =
+      sema_.program.types.string(static_cast<uint32_t>(std::max<size_t>(text.size(), 1)));
+  place.constant = sema_.program.constants.add({0, std::move(text), {}});
+  return place;
+}
+
+// Longer than any number, time, date or name of an enumerator that fits a message.
+ir::Place Body::text_of(Typed value) {
+  ir::Place text = temporary_place(sema_.program.types.string(kValueText));
+  write_text(text, value);
+  return text;
+}
+
+// Three buffers serve all messages of a body; neither operand is overwritten.
+ir::Place Body::joined(const ir::Place& first, const ir::Place& second) {
+  if (message_buffers_[0] == kNoLocal) {
+    for (uint32_t& buffer : message_buffers_) {
+      buffer = build_.temporary(sema_.program.types.string(kMessageText));
+    }
+  }
+  auto holds = [](const ir::Place& place, uint32_t buffer) {
+    return place.base == ir::PlaceBase::kLocal && place.base_index == buffer;
+  };
+  size_t free = 0;
+  while (holds(first, message_buffers_[free]) || holds(second, message_buffers_[free])) ++free;
+  const ir::Place out = local_place(message_buffers_[free]);
+  native(NativeId::kConcatS, {string_value(out), string_value(first), string_value(second)});
+  return out;
+}
+
+}  // namespace frontend

@@ -1,0 +1,51 @@
+// Programs that other POUs call or look into: `P();`, `P.x`. There is one instance, of the
+// program's own name.
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+
+// The global through which code reaches the program; invalid: there is no such program.
+VarId Sema::program_variable(std::string_view name, bool called) {
+  auto found = pou_names_.find(name);
+  if (found == pou_names_.end() || pous[found->second].decl->kind != PouKind::kProgram) return {};
+  PouInfo& info = pous[found->second];
+  info.called = info.called || called;
+  if (info.global.valid()) return info.global;
+  VarId id(static_cast<uint32_t>(variables_.size()));
+  Variable variable;
+  variable.name = info.decl->name;
+  variable.section = VarSection::kGlobal;
+  variable.storage = Storage::kGlobal;
+  variable.used = true;
+  variable.hidden = true;
+  variable.type = info.self;
+  variable.progress = Progress::kDone;
+  variables_.push_back(variable);
+  info.global = id;
+  place_global(id);
+  return id;
+}
+
+// After all bodies. What is called does not run by itself, unless a CONFIGURATION says so.
+void Sema::finish_programs() {
+  for (const PouInfo& info : pous) {
+    if (!info.global.valid()) continue;
+    ir::ProgramInstance* instance = nullptr;
+    for (ir::ProgramInstance& other : program.instances) {
+      if (ir::same_name(other.name, info.decl->name.text)) instance = &other;
+    }
+    if (instance == nullptr) {
+      program.instances.push_back({std::string(info.decl->name.text), info.self, ir::kNoTask, {}});
+    } else if (instance->type != info.self) {
+      error(DiagnosticCode::kDuplicateName, info.decl->name.span,
+            "the program instance `" + instance->name +
+                "` is of another type than the program "
+                "of that name, which other POUs use",
+            "give the instance another name");
+    } else if (tree.configs.empty() && info.called) {
+      instance->task = ir::kNoTask;
+    }
+  }
+}
+
+}  // namespace frontend

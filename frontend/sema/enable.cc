@@ -1,0 +1,33 @@
+// EN and ENO among the arguments of a call.
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+
+// Of a callee without parameters of these names; null: a standard function.
+bool Sema::is_enable(const Arg& arg, const PouInfo* callee) const {
+  bool named = ir::same_name(arg.name.text, "EN") || ir::same_name(arg.name.text, "ENO");
+  return named && (callee == nullptr || !callee->names.contains(arg.name.text));
+}
+
+std::vector<const Arg*> Sema::plain_arguments(const Expr& call, const PouInfo* callee) const {
+  std::vector<const Arg*> plain;
+  for (uint32_t i = 0; i < call.args.count; ++i) {
+    const Arg& arg = tree.args[call.args.first + i];
+    if (!is_enable(arg, callee)) plain.push_back(&arg);
+  }
+  return plain;
+}
+
+ExprId Sema::conversion_argument(const Expr& call) const {
+  std::vector<const Arg*> plain = plain_arguments(call, nullptr);
+  return plain.size() == 1 ? plain[0]->value : ExprId();
+}
+
+// ENO is written, and EN may call: such a call is no pure value.
+void Sema::mark_enabled(const Expr& call, Note& note) const {
+  if (plain_arguments(call, nullptr).size() == call.args.count) return;
+  note.calls = true;
+  note.known = Known::kNo;
+}
+
+}  // namespace frontend

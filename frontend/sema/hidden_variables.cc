@@ -1,0 +1,70 @@
+// Variables that declarations imply: those of VAR_STAT among the globals, and what edge
+// inputs remember.
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+
+std::string_view Sema::keep_name(std::string name) {
+  made_names_.push_back(std::move(name));
+  return made_names_.back();
+}
+
+// One for all instances and calls: a global that is named `Pou.variable`.
+VarId Sema::add_static(Variable variable, PouInfo& info) {
+  variable.storage = Storage::kGlobal;
+  if (info.static_list.empty()) {
+    info.static_list = keep_name(info.self.valid() ? program.types[info.self].name
+                                                   : program.pous[info.id.index].name);
+  }
+  variable.list = info.static_list;
+  VarId id = add_variable(variable, info.names);
+  if (id.valid()) place_global(id);
+  return id;
+}
+
+// Behind the globals that are there.
+void Sema::place_global(VarId id) {
+  if (!declared_) {
+    variables_[id.index].index = static_cast<uint32_t>(global_order_.size());
+    global_order_.push_back(id);
+    return;
+  }
+  // The globals are laid out already: bare addresses may stand behind them.
+  variables_[id.index].index = static_cast<uint32_t>(program.types[program.globals].members.size());
+  const Variable& resolved = resolve(id);
+  ir::Member member = member_of(resolved, ir::Section::kGlobal);
+  program.types.edit(program.globals).members.push_back(std::move(member));
+}
+
+// `x#last` remembers, `x#edge` is what the body sees; no source can write these names.
+void Sema::add_edge(VarId input, PouInfo& info) {
+  const Variable original = variables_[input.index];
+  auto add = [&](const char* suffix, VarSection section) {
+    Variable hidden;
+    hidden.name = original.name;
+    hidden.name.text = keep_name(std::string(original.name.text) + suffix);
+    hidden.decl = original.decl;
+    hidden.section = section;
+    hidden.pou = original.pou;
+    hidden.used = true;
+    hidden.hidden = true;
+    VarId id = add_variable(hidden, info.names);
+    if (id.valid()) info.variables.push_back(id);
+    return id;
+  };
+  VarId last = add("#last", VarSection::kLocal);
+  VarId edge = add("#edge", VarSection::kTemp);
+  variables_[input.index].last = last;
+  variables_[input.index].edge = edge;
+}
+
+void Sema::check_edge(const Variable& variable) {
+  if (variable.decl->edge == Edge::kNone || variable.hidden) return;
+  bool kept = variable.storage == Storage::kMember && variable.section == VarSection::kInput;
+  if (kept && traits_of(program.types, variable.type).boolean) return;
+  error(
+      DiagnosticCode::kBadEdge, variable.name.span,
+      "`" + std::string(variable.name.text) + "` is no BOOL input of a function block or program");
+}
+
+}  // namespace frontend

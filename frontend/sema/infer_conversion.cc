@@ -1,0 +1,94 @@
+// Explicit conversions: what may be converted into what.
+#include <algorithm>
+
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+bool is_text(ir::Kind kind) { return kind == ir::Kind::kString || kind == ir::Kind::kWstring; }
+
+std::string kind_text(ir::Kind kind) {
+  if (is_text(kind)) return kind == ir::Kind::kString ? "STRING" : "WSTRING";
+  return std::string(ir::elementary_name(kind));
+}
+
+}  // namespace
+
+Note Sema::infer_conversion(const Expr& expr, const Conversion& conversion) {
+  ExprId argument = conversion_argument(expr);
+  if (!argument.valid()) {
+    error(DiagnosticCode::kWrongArgumentCount, expr.span, "a conversion takes one argument");
+    return {};
+  }
+  Note note = infer(argument);
+  if (!note.type.valid()) return {};
+  bool text = is_string(program.types, note.type);
+  if (!program.types.is_scalar(note.type) && !text) {
+    error(DiagnosticCode::kWrongArgument, expr.span,
+          "`" + type_text(note.type) + "` cannot be converted");
+    return {};
+  }
+  ir::Kind from = text ? program.types[note.type].kind : program.types.root_kind(note.type);
+  if (!check_conversion(expr, conversion, from, note)) return {};
+  uint32_t capacity = text ? program.types[note.type].capacity : kDefaultStringCapacity;
+  Traits source = traits_of(program.types, note.type);
+  note.variable = {};
+  note.constant = false;
+  note.bit_size = 0;
+  note.known = std::min(note.known, Known::kByCall);
+  mark_enabled(expr, note);
+  note.flex = Flex::kNone;
+  note.type = conversion.to == ir::Kind::kString    ? program.types.string(capacity)
+              : conversion.to == ir::Kind::kWstring ? program.types.wstring(capacity)
+                                                    : program.types.elementary(conversion.to);
+  bool rounds = source.real && !traits_of(program.types, note.type).real;
+  note.can_trap = note.can_trap || rounds || conversion.bcd != Conversion::Bcd::kNone;
+  return note;
+}
+
+// As CODESYS has it: the number, unless the type says {attribute 'to_string'}.
+bool Sema::prints_names(ir::TypeId enumeration) const {
+  const std::string& name = program.types[without_range(program.types, enumeration)].name;
+  for (const TypeDecl& decl : tree.types) {
+    if (!ir::same_name(decl.name.text, name)) continue;
+    return tree.find_attribute(decl.attributes, "to_string") != nullptr;
+  }
+  return false;
+}
+
+bool Sema::check_conversion(const Expr& expr, const Conversion& conversion, ir::Kind from,
+                            const Note& argument) {
+  bool named = !conversion.any_source;
+  std::string name(tree[expr.operand].name.text);
+  if (named && !is_convertible(conversion.from, conversion.to)) {
+    error(DiagnosticCode::kNoConversion, expr.span, "there is no conversion " + name);
+    return false;
+  }
+  Traits traits = traits_of(program.types, argument.type);
+  bool literal = argument.flex == Flex::kInteger;
+  const char* wanted = nullptr;
+  if (conversion.truncate && !traits.real) wanted = "REAL or LREAL";
+  if (conversion.bcd == Conversion::Bcd::kFrom && !traits.bits && !literal) {
+    wanted = "BYTE, WORD, DWORD or LWORD";
+  }
+  if (conversion.bcd == Conversion::Bcd::kTo && !traits.integer) wanted = "an integer";
+  // A literal text is a CHAR where one is wanted.
+  bool character =
+      ir::elementary_group(conversion.from) == ir::Group::kChar && argument.flex == Flex::kText;
+  bool texts = is_text(from) || is_text(conversion.from);
+  bool mismatch = named && texts && from != conversion.from && !character;
+  if (wanted != nullptr || mismatch) {
+    error(DiagnosticCode::kWrongArgument, expr.span,
+          name + " takes " + (wanted != nullptr ? wanted : kind_text(conversion.from)) +
+              ", the argument is `" + type_text(argument.type) + "`");
+    return false;
+  }
+  if (character || literal || is_convertible(from, conversion.to)) return true;
+  error(DiagnosticCode::kNoConversion, expr.span,
+        "there is no conversion of `" + type_text(argument.type) + "` to `" +
+            kind_text(conversion.to) + "`");
+  return false;
+}
+
+}  // namespace frontend

@@ -1,0 +1,207 @@
+// Pointers and references (docs/adr/0005): their types, what they lead to, their arithmetic.
+#include "frontend/sema/operators.h"
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+struct Named {
+  std::string_view name;
+  ReferenceCall call;
+};
+constexpr Named kCalls[] = {{"ADR", ReferenceCall::kAdr},
+                            {"REF", ReferenceCall::kRef},
+                            {"SIZEOF", ReferenceCall::kSizeof},
+                            {"XSIZEOF", ReferenceCall::kSizeof},
+                            {"__ISVALIDREF", ReferenceCall::kIsValid}};
+
+ir::Kind reference_kind(SpecKind kind) {
+  switch (kind) {
+    case SpecKind::kPointer:
+      return ir::Kind::kPointer;
+    case SpecKind::kRefTo:
+      return ir::Kind::kRefTo;
+    default:
+      return ir::Kind::kReferenceTo;
+  }
+}
+
+}  // namespace
+
+ReferenceCall reference_call_of_name(std::string_view name) {
+  for (const Named& row : kCalls) {
+    if (ir::same_name(row.name, name)) return row.call;
+  }
+  return ReferenceCall::kNone;
+}
+
+// The target may be a type whose content is being found out just now, or later: structures may
+// lead back to themselves.
+TypeUse Sema::resolve_reference(const Spec& spec) {
+  const Spec& element = tree[spec.element];
+  ir::TypeId target;
+  if (element.kind == SpecKind::kNamed && element.qualifiers.count == 0) {
+    if (auto declared = types_.find(element.name.text); declared != types_.end()) {
+      target = specs_[declared->second.index].forward;
+    }
+  }
+  if (!target.valid()) target = resolve(spec.element).type;
+  if (!target.valid()) return {};
+  if (program.types[target].kind == ir::Kind::kReferenceTo) {
+    error(DiagnosticCode::kBadReference, spec.span, "a reference to a `" + type_text(target) + "`",
+          "REFERENCE TO stands for its target; refer to that");
+    return {};
+  }
+  return {program.types.reference(reference_kind(spec.kind), target), {}};
+}
+
+Note Sema::infer_deref(const Expr& expr) {
+  const Note& operand = infer(expr.operand);
+  if (!operand.type.valid()) return {};
+  if (!program.types.is_reference(operand.type) || operand.flex == Flex::kNull) {
+    error(DiagnosticCode::kNotReference, expr.span,
+          "`" + type_text(operand.type) + "` is not a reference");
+    return {};
+  }
+  Note note;
+  note.type = program.types[without_range(program.types, operand.type)].base;
+  note.calls = operand.calls;
+  note.can_trap = true;
+  return note;
+}
+
+// p[i] is the i-th value behind the pointer; nothing but the area bounds i.
+Note Sema::infer_pointer_index(const Expr& expr, const Note& operand) {
+  Note note;
+  if (expr.list.count != 1) {
+    error(DiagnosticCode::kWrongIndexCount, expr.span, "a pointer takes one index");
+    return {};
+  }
+  const ExprId at = tree.expr_lists[expr.list.first];
+  const Note& index = infer(at);
+  if (!index.type.valid()) return {};
+  const Traits traits = traits_of(program.types, index.type);
+  if (!traits.integer && !traits.bits) {
+    error(DiagnosticCode::kIndexNotInteger, tree[at].span,
+          "the index is `" + type_text(index.type) + "`");
+    return {};
+  }
+  note.type = program.types[operand.type].base;
+  note.calls = operand.calls || index.calls;
+  note.can_trap = true;
+  return note;
+}
+
+Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
+  const bool given = expr.args.count == 1 && tree.args[expr.args.first].value.valid() &&
+                     !tree.args[expr.args.first].output;
+  if (!given) {
+    error(DiagnosticCode::kWrongArgumentCount, expr.span,
+          "`" + std::string(tree[expr.operand].name.text) + "` takes one argument");
+    return {};
+  }
+  const ExprId argument = tree.args[expr.args.first].value;
+  Note note;
+  if (call == ReferenceCall::kSizeof) {
+    if (!type_of_argument(argument).valid()) return {};
+    note.type = program.types.elementary(ir::Kind::kUdint);
+    note.flex = Flex::kInteger;
+    return note;
+  }
+  const Note& operand = infer(argument);
+  if (!operand.type.valid()) return {};
+  note.calls = operand.calls;
+  note.can_trap = operand.can_trap;
+  switch (call) {
+    case ReferenceCall::kAdr:
+      note.type = program.types.pointer(operand.type);
+      note.flex = Flex::kNull;
+      return note;
+    case ReferenceCall::kRef:
+      note.type = program.types.ref_to(operand.type);
+      return note;
+    default:
+      if (!operand.reference.valid() && !program.types.is_reference(operand.type)) {
+        error(DiagnosticCode::kBadReference, expr.span,
+              "`" + type_text(operand.type) + "` is not a reference");
+        return {};
+      }
+      note.type = program.types.elementary(ir::Kind::kBool);
+      return note;
+  }
+}
+
+// SIZEOF takes a variable or a type.
+ir::TypeId Sema::type_of_argument(ExprId argument) {
+  const Expr& expr = tree[argument];
+  if (expr.kind == ExprKind::kType) return resolve(expr.spec).type;
+  if (expr.kind == ExprKind::kName && !find_variable(expr.name.text).valid()) {
+    if (auto use = find_type(expr.name.text)) return use->type;
+  }
+  return infer(argument).type;
+}
+
+// Sums move a pointer by bytes; the distance of two pointers is a number; every other
+// operation takes the pointer as the number that its address is.
+Note Sema::infer_pointer_arithmetic(BinaryOp op, const Note& left, const Note& right,
+                                    base::SourceSpan span) {
+  const ir::TypeTable& types = program.types;
+  Note note;
+  note.calls = left.calls || right.calls;
+  note.can_trap = left.can_trap || right.can_trap;
+  const bool first = types.is_reference(left.type);
+  const bool second = types.is_reference(right.type);
+  auto number = [&](const Note& side) {
+    const Traits traits = traits_of(types, side.type);
+    return traits.integer || traits.bits;
+  };
+  if (first && second && op == BinaryOp::kSub) {
+    note.type = types.elementary(ir::Kind::kDint);
+    return note;
+  }
+  if (first && number(right) && (op == BinaryOp::kAdd || op == BinaryOp::kSub)) {
+    note.type = left.type;
+    return note;
+  }
+  if (second && number(left) && op == BinaryOp::kAdd) {
+    note.type = right.type;
+    return note;
+  }
+  if ((first || number(left)) && (second || number(right)) && op != BinaryOp::kPower) {
+    note.type = types.elementary(ir::Kind::kDword);
+    return note;
+  }
+  error(DiagnosticCode::kBadOperand, span,
+        std::string(operator_text(op)) + " is not defined for `" + type_text(left.type) +
+            "` and `" + type_text(right.type) + "`");
+  return {};
+}
+
+// What a reference is compared with: another one, NULL, or an integer that holds an address.
+ir::TypeId Sema::common_reference(const Note& a, const Note& b) {
+  const ir::TypeTable& types = program.types;
+  if (types.is_reference(a.type) && types.is_reference(b.type)) {
+    return a.flex == Flex::kNull ? b.type : a.type;
+  }
+  const Note& pointer = types.is_reference(a.type) ? a : b;
+  const Note& other = types.is_reference(a.type) ? b : a;
+  if (other.flex == Flex::kInteger) return pointer.type;
+  const Traits traits = traits_of(types, other.type);
+  if (!traits.integer && !traits.bits) return {};
+  const bool wide = ir::scalar_size(types.scalar(other.type)) == 8;
+  return types.elementary(wide ? ir::Kind::kLword : ir::Kind::kDword);
+}
+
+// May a reference of type `from` go where `to` is wanted? Pointers go to pointers (existing code
+// casts buffers so); typed references only to what their target is or extends.
+bool Sema::reference_fits(ir::TypeId from, ir::TypeId to) const {
+  const ir::TypeTable& types = program.types;
+  if (from == to) return true;
+  const ir::TypeId source = types[from].base;
+  const ir::TypeId target = types[to].base;
+  if (source == target) return true;
+  if (types[to].kind == ir::Kind::kPointer && types[from].kind == ir::Kind::kPointer) return true;
+  return types.is_a(source, target);
+}
+
+}  // namespace frontend

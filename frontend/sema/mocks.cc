@@ -1,0 +1,119 @@
+// What a build for tests adds to POUs that tests replace: whether a mock is active, how often
+// the POU was called, and for functions the value to return.
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
+
+uint32_t add_mock_global(ir::Type& globals, const std::string& name, ir::TypeId type) {
+  ir::Member member;
+  member.name = name;
+  member.type = type;
+  member.section = ir::Section::kGlobal;
+  globals.members.push_back(std::move(member));
+  return static_cast<uint32_t>(globals.members.size() - 1);
+}
+
+}  // namespace
+
+void Sema::add_function_mock(const Name& name) {
+  auto found = pou_names_.find(name.text);
+  if (found == pou_names_.end() || pous[found->second].decl->kind != PouKind::kFunction) {
+    error(DiagnosticCode::kBadMock, name.span, quoted(name) + " is not a function of the project",
+          "MOCK_FUNCTION replaces functions; MOCK replaces an instance of a function block");
+    return;
+  }
+  PouInfo& info = pous[found->second];
+  if (info.mock.present) return;
+  const std::string prefix = "__MOCK_" + std::string(info.decl->name.text);
+  const ir::TypeId result = info.result.valid() ? resolve(info.result).type : ir::TypeId();
+  const ir::TypeId dint = program.types.elementary(ir::Kind::kDint);
+  const ir::TypeId udint = program.types.elementary(ir::Kind::kUdint);
+  ir::Type& globals = program.types.edit(program.globals);
+  info.mock.active = add_mock_global(globals, prefix + "_ACTIVE", dint);
+  info.mock.calls = add_mock_global(globals, prefix + "_CALLS", udint);
+  if (result.valid()) info.mock.value = add_mock_global(globals, prefix + "_VALUE", result);
+  info.mock.present = true;
+}
+
+// A MOCK_FUNCTION with a body is a function of its own, under a name that no source can use.
+void Sema::add_mock_body(const PouDecl& decl, bool inside_test) {
+  if (decl.name.empty()) return;
+  const std::string& name = made_names_.emplace_back(std::string(decl.name.text) + "#" +
+                                                     std::to_string(made_names_.size()));
+  PouDecl& made = made_decls_.emplace_back(decl);
+  made.kind = PouKind::kFunction;
+  // Inside, the result has the function's name; outside, the body has its own.
+  const bool declared = pou_names_.contains(decl.name.text);
+  const uint32_t pou = add_pou(made, false);
+  if (!declared) pou_names_.erase(decl.name.text);
+  pou_names_.emplace(name, pou);
+  program.pous[pous[pou].id.index].name = name;
+  mock_bodies_.push_back({&decl, inside_test, pou});
+}
+
+void Sema::resolve_mock_bodies() {
+  for (const MockBody& body : mock_bodies_) {
+    const PouDecl& decl = *body.decl;
+    auto found = pou_names_.find(decl.name.text);
+    add_function_mock(decl.name);
+    if (found == pou_names_.end() || !pous[found->second].mock.present) continue;
+    PouInfo& function = pous[found->second];
+    check_mock_body(decl, pous[body.pou], function);
+    function.mock.bodies.push_back(body.pou);
+  }
+}
+
+bool Sema::mock_applies(uint32_t pou, const PouDecl& test) const {
+  for (const MockBody& body : mock_bodies_) {
+    if (body.pou != pou) continue;
+    const base::SourcePos at = body.decl->span.begin;
+    if (!body.inside_test) return sources.file_of(at) == sources.file_of(test.span.begin);
+    return at.offset >= test.span.begin.offset && at.offset < test.span.end.offset;
+  }
+  return false;
+}
+
+std::vector<const PouInfo*> Sema::mocked_functions() const {
+  std::vector<const PouInfo*> out;
+  for (const PouInfo& pou : pous) {
+    if (pou.mock.present && !pou.mock.bodies.empty()) out.push_back(&pou);
+  }
+  return out;
+}
+
+void Sema::check_mock_body(const PouDecl& decl, const PouInfo& mock, const PouInfo& function) {
+  auto parameters = [this](const PouInfo& info) {
+    std::vector<std::pair<ir::TypeId, VarSection>> out;
+    for (VarId id : info.locals) {
+      const Variable& variable = resolve(id);
+      bool parameter = id == info.result || variable.section == VarSection::kInput ||
+                       variable.section == VarSection::kOutput ||
+                       variable.section == VarSection::kInOut;
+      if (parameter) out.push_back({variable.type, variable.section});
+    }
+    return out;
+  };
+  if (parameters(mock) == parameters(function)) return;
+  error(DiagnosticCode::kBadMock, decl.name.span,
+        "the parameters or the result differ from those of the function " + quoted(decl.name),
+        "declare the same VAR_INPUT, VAR_OUTPUT, VAR_IN_OUT and result as the function");
+}
+
+void Sema::add_mock_members(PouInfo& info, std::vector<ir::Member>& members) {
+  ir::Member active;
+  active.name = "__MOCK_ACTIVE";
+  active.type = program.types.elementary(ir::Kind::kDint);
+  info.mock.active = static_cast<uint32_t>(members.size());
+  members.push_back(std::move(active));
+  ir::Member calls;
+  calls.name = "__MOCK_CALLS";
+  calls.type = program.types.elementary(ir::Kind::kUdint);
+  info.mock.calls = static_cast<uint32_t>(members.size());
+  members.push_back(std::move(calls));
+  info.mock.present = true;
+}
+
+}  // namespace frontend

@@ -1,0 +1,248 @@
+// Functions whose parameters leave types open: ANY_NUM and the like, ARRAY[*]. Each
+// combination of argument types gives an instance with code of its own. So do STRING
+// in-outs whose argument has another capacity: inside, the argument's own one counts.
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+constexpr std::string_view kGenericNames[] = {
+    "ANY",      "ANY_ELEMENTARY", "ANY_MAGNITUDE", "ANY_NUM",      "ANY_REAL",
+    "ANY_INT",  "ANY_SIGNED",     "ANY_UNSIGNED",  "ANY_BIT",      "ANY_CHARS",
+    "ANY_CHAR", "ANY_STRING",     "ANY_DATE",      "ANY_DURATION", "ANY_DERIVED",
+};
+
+bool is_parameter(const VarBlock& block) {
+  return block.section == VarSection::kInput || block.section == VarSection::kOutput ||
+         block.section == VarSection::kInOut;
+}
+
+// The hierarchy of generic types (edition 3, figure 5).
+bool belongs(const ir::TypeTable& types, std::string_view group, ir::TypeId type) {
+  Traits t = traits_of(types, type);
+  auto is = [group](std::string_view name) { return ir::same_name(group, name); };
+  bool elementary = types.is_scalar(type) || is_string(types, type);
+  if (is("ANY")) return true;
+  if (is("ANY_DERIVED")) return !elementary || t.enumeration;
+  if (is("ANY_ELEMENTARY")) return elementary;
+  if (is("ANY_MAGNITUDE")) return t.number() || t.duration;
+  if (is("ANY_NUM")) return t.number();
+  if (is("ANY_REAL")) return t.real;
+  if (is("ANY_INT")) return t.integer;
+  if (is("ANY_SIGNED")) return t.integer && ir::is_signed(types.scalar(type));
+  if (is("ANY_UNSIGNED")) return t.integer && !ir::is_signed(types.scalar(type));
+  if (is("ANY_BIT")) return t.bits || t.boolean;
+  if (is("ANY_CHARS")) return t.character || is_string(types, type);
+  if (is("ANY_CHAR")) return t.character;
+  if (is("ANY_STRING")) return is_string(types, type);
+  return is("ANY_DATE") ? t.date : t.duration;
+}
+
+}  // namespace
+
+bool Sema::is_generic_name(std::string_view name) const {
+  for (std::string_view generic : kGenericNames) {
+    if (ir::same_name(name, generic)) return true;
+  }
+  return false;
+}
+
+bool Sema::is_open(const PouDecl& decl) const {
+  if (decl.kind != PouKind::kFunction) return false;
+  for (const VarBlock& block : decl.blocks) {
+    if (!is_parameter(block)) continue;
+    for (const VarDecl& variable : block.vars) {
+      if (!variable.spec.valid()) continue;
+      const Spec& spec = tree[variable.spec];
+      bool generic = spec.kind == SpecKind::kNamed && is_generic_name(spec.name.text);
+      if (generic || (spec.kind == SpecKind::kArray && spec.open_bounds)) return true;
+    }
+  }
+  return false;
+}
+
+// Quiet: what does not match is reported where the call is lowered.
+std::vector<Match> Sema::match(const Expr& call, const PouInfo& callee) const {
+  std::vector<VarId> parameters;
+  for (bool outputs : {false, true}) {
+    for (VarId id : callee.variables) {
+      if (id == callee.result) continue;
+      VarSection section = variables_[id.index].section;
+      bool input = section == VarSection::kInput || section == VarSection::kInOut;
+      if (outputs ? section == VarSection::kOutput : input) parameters.push_back(id);
+    }
+  }
+  std::vector<Match> matches;
+  for (uint32_t i = 0; i < call.args.count; ++i) {
+    const Arg& arg = tree.args[call.args.first + i];
+    if (!arg.value.valid() || is_enable(arg, &callee)) continue;
+    if (arg.name.empty()) {
+      if (i < parameters.size()) matches.push_back({parameters[i], &arg});
+      continue;
+    }
+    auto found = callee.names.find(arg.name.text);
+    if (found != callee.names.end()) matches.push_back({found->second, &arg});
+  }
+  return matches;
+}
+
+Callee Sema::select_function(const Expr& call, uint32_t first) {
+  uint32_t pou = first;
+  if (pous[first].overload != kNoPou) pou = select_overload(call, first);
+  if (pou == kNoPou) return {};
+  if (pous[pou].open) return bind_open(call, pou);
+  Callee callee;
+  callee.kind = Callee::Kind::kFunction;
+  callee.pou = string_variant(call, pou);
+  return callee;
+}
+
+Callee Sema::bind_open(const Expr& call, uint32_t pou) {
+  const PouInfo& info = pous[pou];
+  NameMap<Note> generic;
+  ParameterTypes types(info.variables.size());
+  for (const Match& match : this->match(call, info)) {
+    const Variable& parameter = variables_[match.parameter.index];
+    const Spec& spec = tree[parameter.decl->spec];
+    bool named = spec.kind == SpecKind::kNamed && is_generic_name(spec.name.text);
+    if (named && !bind_generic(match, spec, generic)) return {};
+    bool open = spec.kind == SpecKind::kArray && spec.open_bounds;
+    if (open && !bind_array(match, spec, generic)) return {};
+  }
+  NameMap<ir::TypeId> bound;
+  for (const auto& [name, note] : generic) bound.emplace(name, note.type);
+  for (const Match& match : this->match(call, info)) {
+    const Variable& parameter = variables_[match.parameter.index];
+    const Spec& spec = tree[parameter.decl->spec];
+    bool open = spec.kind == SpecKind::kArray && spec.open_bounds;
+    bool string = parameter.section == VarSection::kInOut && spec.kind == SpecKind::kString;
+    if (!open && !string) continue;
+    for (size_t i = 0; i < info.variables.size(); ++i) {
+      if (info.variables[i] == match.parameter) types[i] = infer(match.arg->value).type;
+    }
+  }
+  for (size_t i = 0; i < info.variables.size(); ++i) {
+    const Variable& parameter = variables_[info.variables[i].index];
+    if (parameter.decl == nullptr) continue;
+    const Spec& spec = tree[parameter.decl->spec];
+    if (spec.kind == SpecKind::kArray && spec.open_bounds && !types[i].valid()) {
+      error(DiagnosticCode::kMissingInOut, call.span,
+            "`" + std::string(parameter.name.text) + "` of `" + std::string(info.decl->name.text) +
+                "` is not connected");
+      return {};
+    }
+    bool named = spec.kind == SpecKind::kNamed && is_generic_name(spec.name.text);
+    if (!named || bound.contains(spec.name.text)) continue;
+    error(DiagnosticCode::kBadGenericArgument, call.span,
+          "no argument says what `" + std::string(spec.name.text) + "` is for `" +
+              std::string(parameter.name.text) + "`",
+          "give that argument");
+    return {};
+  }
+  Callee callee;
+  callee.kind = Callee::Kind::kFunction;
+  callee.pou = instance_of(pou, types, std::move(bound));
+  return callee;
+}
+
+// One name stands for one type in a call; literals take the others' type.
+bool Sema::bind_generic(const Match& match, const Spec& spec, NameMap<Note>& generic) {
+  const Note& argument = infer(match.arg->value);
+  if (!argument.type.valid()) return false;
+  auto [known, first] = generic.try_emplace(spec.name.text, argument);
+  base::SourceSpan span = tree[match.arg->value].span;
+  if (!first) known->second = unify(known->second, argument, span);
+  if (!known->second.type.valid()) return false;
+  known->second.type = without_range(program.types, known->second.type);
+  if (belongs(program.types, spec.name.text, known->second.type)) return true;
+  error(DiagnosticCode::kBadGenericArgument, span,
+        "`" + type_text(argument.type) + "` is no " + std::string(spec.name.text));
+  return false;
+}
+
+bool Sema::bind_array(const Match& match, const Spec& spec, NameMap<Note>& generic) {
+  const Note& argument = infer(match.arg->value);
+  if (!argument.type.valid()) return false;
+  const ir::Type& array = program.types[argument.type];
+  base::SourceSpan span = tree[match.arg->value].span;
+  if (array.kind != ir::Kind::kArray || array.dims.size() != spec.dims.size()) {
+    error(DiagnosticCode::kBadGenericArgument, span,
+          "`" + type_text(argument.type) + "` is no array with " +
+              std::to_string(spec.dims.size()) + " dimensions");
+    return false;
+  }
+  const Spec& element = tree[spec.element];
+  if (element.kind == SpecKind::kNamed && is_generic_name(element.name.text)) {
+    Note note;
+    note.type = array.base;
+    generic.try_emplace(element.name.text, note);
+    return true;
+  }
+  Within scope(*this, kNoPou);
+  ir::TypeId wanted = resolve(spec.element).type;
+  if (!wanted.valid() || wanted == array.base) return wanted.valid();
+  error(DiagnosticCode::kBadGenericArgument, span,
+        "an array of `" + type_text(array.base) + "` where one of `" + type_text(wanted) +
+            "` is needed");
+  return false;
+}
+
+// In-out strings keep the capacity that the argument has.
+uint32_t Sema::string_variant(const Expr& call, uint32_t pou) {
+  const PouInfo& info = pous[pou];
+  ParameterTypes types(info.variables.size());
+  bool other = false;
+  for (const Match& match : this->match(call, info)) {
+    if (variables_[match.parameter.index].section != VarSection::kInOut) continue;
+    ir::TypeId declared = resolve(match.parameter).type;
+    ir::TypeId given = infer(match.arg->value).type;
+    if (!is_string(program.types, declared) || !is_string(program.types, given)) continue;
+    const ir::Type& wanted = program.types[declared];
+    const ir::Type& string = program.types[given];
+    bool fits = options.dialect != Dialect::kIec || string.capacity >= wanted.capacity;
+    if (wanted.kind != string.kind || wanted.capacity == string.capacity || !fits) continue;
+    for (size_t i = 0; i < info.variables.size(); ++i) {
+      if (info.variables[i] == match.parameter) types[i] = given;
+    }
+    other = true;
+  }
+  return other ? instance_of(pou, types, {}) : pou;
+}
+
+uint32_t Sema::instance_of(uint32_t pou, const ParameterTypes& types, NameMap<ir::TypeId> generic) {
+  const PouInfo& original = pous[pou];
+  std::vector<uint32_t> key;
+  std::string name;
+  for (size_t i = 0; i < types.size(); ++i) {
+    const Variable& variable = variables_[original.variables[i].index];
+    ir::TypeId type = types[i];
+    if (!type.valid() && variable.decl != nullptr) {
+      auto found = generic.find(tree[variable.decl->spec].name.text);
+      if (found != generic.end()) type = found->second;
+    }
+    key.push_back(type.index);
+    if (type.valid()) name += (name.empty() ? "" : ",") + type_text(type);
+  }
+  auto [known, added] =
+      instances_.try_emplace({pou, std::move(key)}, static_cast<uint32_t>(pous.size()));
+  if (!added) return known->second;
+  uint32_t number = known->second;
+  PouInfo& info = pous.emplace_back();
+  info.decl = original.decl;
+  info.library = original.library;
+  info.meaning = std::make_unique<Meaning>();
+  info.meaning->generic = std::move(generic);
+  info.id = ir::PouId(static_cast<uint32_t>(program.pous.size()));
+  ir::Pou code;
+  code.name = std::string(info.decl->name.text) + "(" + name + ")";
+  while (program.find_pou(code.name).valid()) code.name += "'";
+  program.pous.push_back(std::move(code));
+  collect_interface(number);
+  for (size_t i = 0; i < types.size() && i < info.variables.size(); ++i) {
+    variables_[info.variables[i].index].bound = types[i];
+  }
+  if (declared_) resolve_interface(number);
+  return number;
+}
+
+}  // namespace frontend

@@ -1,0 +1,131 @@
+// Functions that share a name: the one is called whose parameters fit the arguments best.
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+// How far an argument is from a parameter: the same type, a literal that takes it, a
+// conversion without loss (the narrower the better, and integers stay integers), one
+// that can lose.
+constexpr uint32_t kLiteral = 1;
+constexpr uint32_t kLossless = 4;
+constexpr uint32_t kOtherClass = 16;
+constexpr uint32_t kNarrowing = 64;
+
+bool is_parameter(VarSection section) {
+  return section == VarSection::kInput || section == VarSection::kOutput ||
+         section == VarSection::kInOut;
+}
+
+bool literal_fits(const Traits& to, Flex flex) {
+  switch (flex) {
+    case Flex::kInteger:
+      return to.number() || to.bits;
+    case Flex::kReal:
+      return to.real;
+    case Flex::kText:
+      return to.character;
+    default:
+      return to.enumeration;
+  }
+}
+
+}  // namespace
+
+// nullopt: the function cannot be called like this.
+std::optional<uint32_t> Sema::distance(const Expr& call, uint32_t pou) {
+  const PouInfo& info = pous[pou];
+  std::vector<Match> matches = match(call, info);
+  if (matches.size() != plain_arguments(call, &info).size()) return std::nullopt;
+  uint32_t sum = info.open ? kLossless : 0;
+  uint32_t inputs = 0;
+  uint32_t given = 0;
+  for (VarId id : info.variables) {
+    VarSection section = variables_[id.index].section;
+    if (section == VarSection::kInput || section == VarSection::kInOut) ++inputs;
+  }
+  for (const Match& match : matches) {
+    const Variable& parameter = variables_[match.parameter.index];
+    if (!is_parameter(parameter.section)) return std::nullopt;
+    if (parameter.section != VarSection::kOutput) ++given;
+    if (info.open) continue;
+    ir::TypeId wanted = resolve(match.parameter).type;
+    const Note& note = infer(match.arg->value);
+    if (!wanted.valid() || !note.type.valid() || note.type == wanted) continue;
+    if (note.flex != Flex::kNone && literal_fits(traits_of(program.types, wanted), note.flex)) {
+      sum += kLiteral;
+      continue;
+    }
+    Fit fit = parameter.section == VarSection::kOutput
+                  ? implicit_fit(program.types, wanted, note.type, options.dialect)
+                  : implicit_fit(program.types, note.type, wanted, options.dialect);
+    if (fit == Fit::kNone) return std::nullopt;
+    if (fit == Fit::kNarrowing) sum += kNarrowing;
+    if (fit != Fit::kLossless || !program.types.is_scalar(wanted)) continue;
+    bool other = traits_of(program.types, wanted).real != traits_of(program.types, note.type).real;
+    uint32_t width = ir::scalar_size(program.types.scalar(wanted));
+    sum += kLossless + width + (other ? kOtherClass : 0);
+  }
+  return sum + (inputs - given);  // left out inputs count little: the shorter function is meant
+}
+
+uint32_t Sema::select_overload(const Expr& call, uint32_t first) {
+  uint32_t best = kNoPou;
+  uint32_t best_distance = 0;
+  bool ambiguous = false;
+  for (uint32_t pou = first; pou != kNoPou; pou = pous[pou].overload) {
+    std::optional<uint32_t> found = distance(call, pou);
+    if (!found) continue;
+    if (best != kNoPou && *found > best_distance) continue;
+    ambiguous = best != kNoPou && *found == best_distance;
+    best = pou;
+    best_distance = *found;
+  }
+  std::string name = "`" + std::string(pous[first].decl->name.text) + "`";
+  if (best == kNoPou) {
+    std::string all;
+    for (uint32_t pou = first; pou != kNoPou; pou = pous[pou].overload) {
+      all += (all.empty() ? "" : ", ") + signature(pous[pou]);
+    }
+    error(DiagnosticCode::kNoOverload, call.span, "no " + name + " takes these arguments",
+          "there are " + all);
+  } else if (ambiguous) {
+    error(DiagnosticCode::kAmbiguousCall, call.span, "several " + name + " fit equally well",
+          "convert an argument explicitly");
+    return kNoPou;
+  }
+  return best;
+}
+
+// "Area(REAL,REAL)"
+std::string Sema::signature(const PouInfo& pou) {
+  std::string text;
+  for (VarId id : pou.variables) {
+    const Variable& variable = variables_[id.index];
+    if (id == pou.result || !is_parameter(variable.section)) continue;
+    const Spec& spec = tree[variable.decl->spec];
+    std::string type = pou.open && spec.kind == SpecKind::kNamed ? std::string(spec.name.text)
+                       : pou.open                                ? "?"
+                                                                 : type_text(resolve(id).type);
+    text += (text.empty() ? "" : ",") + type;
+  }
+  return std::string(pou.decl->name.text) + "(" + text + ")";
+}
+
+// Names in the program are unique: further functions are called after their parameters.
+void Sema::check_overloads() {
+  for (uint32_t first = 0; first < pous.size(); ++first) {
+    for (uint32_t pou = pous[first].overload; pou != kNoPou; pou = pous[pou].overload) {
+      std::string text = signature(pous[pou]);
+      if (ir::same_name(text, signature(pous[first]))) {
+        error(DiagnosticCode::kDuplicateName, pous[pou].decl->name.span,
+              "`" + text + "` is declared twice",
+              "functions of one name differ in their parameters");
+        return;
+      }
+      if (!pous[pou].open) program.pous[pous[pou].id.index].name = std::move(text);
+    }
+  }
+}
+
+}  // namespace frontend

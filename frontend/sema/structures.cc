@@ -1,0 +1,151 @@
+// Structures: members, those of the base (EXTENDS), and BIT members, which share bytes.
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+constexpr uint32_t kBitsPerByte = 8;
+
+std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
+
+}  // namespace
+
+// A structure on its way into the type table.
+struct Sema::StructBuild {
+  ir::Type type;
+  NameMap<Field> names;
+  int32_t bit_member = -1;  // BIT members still go there
+  uint32_t bits = 0;
+  uint64_t bit_defaults = 0;
+};
+
+TypeUse Sema::resolve_struct(SpecId id, const Spec& spec) {
+  StructBuild build;
+  build.type.kind = spec.kind == SpecKind::kUnion ? ir::Kind::kUnion : ir::Kind::kStruct;
+  build.type.overlap = spec.kind == SpecKind::kUnion || spec.overlap;
+  build.type.name = spec_info(id).name.text;
+  bool good = !spec.element.valid() || add_base(build, spec);
+  for (const VarDecl& field : spec.fields) good = add_field(build, field) && good;
+  close_bits(build);
+  if (!good) return {};
+  if (build.type.members.empty()) {
+    error(DiagnosticCode::kEmptyList, spec.span, "a structure without members");
+    return {};
+  }
+  if (build.type.overlap && !check_overlap(build.type, spec.span)) return {};
+  ir::TypeId made = spec_info(id).forward;
+  if (made.valid()) {
+    program.types.edit(made) = std::move(build.type);
+  } else {
+    made = program.types.declare(std::move(build.type));
+  }
+  structures_.emplace(made, std::move(build.names));
+  return {made, {}};
+}
+
+bool Sema::add_base(StructBuild& build, const Spec& spec) {
+  TypeUse base = resolve(spec.element);
+  if (!base.type.valid()) return false;
+  if (!ir::is_structure(program.types[base.type].kind)) {
+    error(DiagnosticCode::kTypeMismatch, tree[spec.element].span,
+          "`" + type_text(base.type) + "` is no structure; only structures can be extended");
+    return false;
+  }
+  build.type.members = program.types[base.type].members;
+  build.names = structures_[base.type];
+  return true;
+}
+
+// What lies on top of each other must be plain data: an ID of an instance would be damaged.
+bool Sema::check_overlap(const ir::Type& type, base::SourceSpan span) {
+  for (const ir::Member& member : type.members) {
+    ir::TypeId inner = member.type;
+    while (program.types[inner].kind == ir::Kind::kArray) inner = program.types[inner].base;
+    bool good = !program.types.is_instance(inner);
+    if (good && ir::is_structure(program.types[inner].kind)) {
+      good = check_overlap(program.types[inner], span);
+    } else if (!good) {
+      error(DiagnosticCode::kBadReference, span,
+            "`" + member.name + "` is an instance of `" + type_text(inner) +
+                "` and cannot share its place with other members",
+            "keep function blocks outside of unions");
+    }
+    if (!good) return false;
+  }
+  return true;
+}
+
+bool Sema::is_bit(SpecId id) const {
+  const Spec& spec = tree[id];
+  return spec.kind == SpecKind::kNamed && ir::same_name(spec.name.text, "BIT") &&
+         !types_.contains(spec.name.text);
+}
+
+bool Sema::add_field(StructBuild& build, const VarDecl& field) {
+  TypeUse use = resolve(field.spec);
+  if (!use.type.valid()) return false;
+  bool bit = is_bit(field.spec);
+  ir::Member member;
+  member.type = use.type;
+  member.init = field.init.valid() ? initial_value(field.init, use.type, use.init) : use.init;
+  if (!bit) close_bits(build);
+  for (const Name& name : field.names) {
+    Field where{static_cast<uint32_t>(build.type.members.size()), -1};
+    if (bit) where = add_bit(build, name, member.init);
+    if (!build.names.emplace(name.text, where).second) {
+      error(DiagnosticCode::kDuplicateName, name.span, quoted(name) + " is declared twice");
+      return false;
+    }
+    if (bit) continue;
+    member.name = name.text;
+    if (field.has_address) {
+      member.address = field.address;
+      build.type.overlap = true;
+    }
+    build.type.members.push_back(member);
+  }
+  return true;
+}
+
+// Neighbouring BIT members share a BYTE, named after the first and the last of them.
+Sema::Field Sema::add_bit(StructBuild& build, const Name& name, ir::ConstId init) {
+  if (build.bits == kBitsPerByte) close_bits(build);
+  if (build.bit_member < 0) {
+    build.bit_member = static_cast<int32_t>(build.type.members.size());
+    ir::Member word;
+    word.name = name.text;
+    word.type = program.types.elementary(ir::Kind::kByte);
+    build.type.members.push_back(std::move(word));
+  } else {
+    std::string& all = build.type.members.back().name;
+    all = all.substr(0, all.find('-')) + "-" + std::string(name.text);
+  }
+  if (init.valid() && program.constants[init].bits != 0) {
+    build.bit_defaults |= uint64_t{1} << build.bits;
+  }
+  return {static_cast<uint32_t>(build.bit_member), static_cast<int32_t>(build.bits++)};
+}
+
+void Sema::close_bits(StructBuild& build) {
+  if (build.bit_defaults != 0) {
+    build.type.members[static_cast<size_t>(build.bit_member)].init =
+        program.constants.scalar(build.bit_defaults);
+  }
+  build.bit_member = -1;
+  build.bits = 0;
+  build.bit_defaults = 0;
+}
+
+const Sema::Field* Sema::find_field(ir::TypeId structure, std::string_view name) const {
+  auto table = structures_.find(structure);
+  if (table == structures_.end()) return nullptr;
+  auto found = table->second.find(name);
+  return found == table->second.end() ? nullptr : &found->second;
+}
+
+int32_t Sema::find_member(ir::TypeId structure, std::string_view name) const {
+  const Field* field = find_field(structure, name);
+  return field == nullptr || field->bit >= 0 ? -1 : static_cast<int32_t>(field->member);
+}
+
+}  // namespace frontend

@@ -1,0 +1,90 @@
+// TEST blocks become programs, one each, that share nothing: SETUP and TEARDOWN of the same
+// file are part of every one. The project's own configuration gives globals only.
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+constexpr int64_t kTestPeriodNs = 1'000'000'000;
+constexpr uint32_t kMessageCapacity = 400;
+
+std::string_view without_quotes(std::string_view text) {
+  bool quoted = text.size() >= 2 && text.front() == '\'' && text.back() == '\'';
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
+}  // namespace
+
+void Sema::collect_tests() {
+  for (const PouDecl& decl : tree.tests) {
+    if (decl.kind == PouKind::kTest) collect_test(decl);
+  }
+  for (const PouDecl& decl : tree.tests) {
+    if (decl.kind == PouKind::kMockFunction) add_mock_body(decl, false);
+    for (const PouDecl& member : decl.members) {
+      if (member.kind == PouKind::kMockFunction) add_mock_body(member, true);
+    }
+  }
+}
+
+void Sema::collect_test(const PouDecl& test) {
+  const uint32_t file = sources.file_of(test.span.begin);
+  const PouDecl* setup = nullptr;
+  const PouDecl* teardown = nullptr;
+  for (const PouDecl& other : tree.tests) {
+    if (sources.file_of(other.span.begin) != file) continue;
+    const PouDecl*& slot = other.kind == PouKind::kSetup ? setup : teardown;
+    if (other.kind != PouKind::kSetup && other.kind != PouKind::kTeardown) continue;
+    if (slot != nullptr && slot != &other && test_cases.empty()) {
+      error(DiagnosticCode::kDuplicateName, other.span, "a second SETUP or TEARDOWN in this file");
+    }
+    slot = &other;
+  }
+  const std::string& name =
+      made_names_.emplace_back("__TEST" + std::to_string(test_cases.size() + 1));
+  PouDecl& made = made_decls_.emplace_back(test);
+  made.kind = PouKind::kProgram;
+  made.name = {name, test.name.span};
+  if (setup != nullptr) {
+    made.blocks.insert(made.blocks.begin(), setup->blocks.begin(), setup->blocks.end());
+  }
+  if (teardown != nullptr) {
+    made.blocks.insert(made.blocks.end(), teardown->blocks.begin(), teardown->blocks.end());
+  }
+  const uint32_t number = add_pou(made, false);
+  // Not every test needs all that SETUP makes.
+  for (VarId id : pous[number].variables) {
+    const uint32_t at = variables_[id.index].name.span.begin.offset;
+    variables_[id.index].used = at < test.span.begin.offset || at >= test.span.end.offset;
+  }
+  pous[number].setup = setup;
+  pous[number].teardown = teardown;
+  const base::SourceLocation at = sources.locate(test.span.begin);
+  test_cases.push_back(
+      {std::string(without_quotes(test.name.text)), std::string(at.file), at.line, name});
+}
+
+void Sema::configure_tests() {
+  program.tasks.push_back({"Tests", kTestPeriodNs, 0, 0});
+  for (const TestCase& test : test_cases) {
+    const PouInfo& pou = pous[pou_names_.find(test.instance)->second];
+    program.instances.push_back({test.instance, pou.self, 0, {}});
+  }
+}
+
+void Sema::add_test_globals() {
+  ir::Member message;
+  message.name = kTestMessage;
+  message.type = program.types.string(kMessageCapacity);
+  message.section = ir::Section::kGlobal;
+  std::vector<ir::Member>& members = program.types.edit(program.globals).members;
+  test_message_ = static_cast<uint32_t>(members.size());
+  members.push_back(std::move(message));
+  for (const Stmt& stmt : tree.stmts) {
+    if (stmt.kind != StmtKind::kMockFunction || !stmt.target.valid()) continue;
+    if (tree[stmt.target].kind == ExprKind::kName) add_function_mock(tree[stmt.target].name);
+  }
+  resolve_mock_bodies();
+}
+
+}  // namespace frontend
