@@ -20,15 +20,15 @@ int run_command(const char* tool, const Entry& entry, std::span<char* const> arg
 }  // namespace
 
 int dispatch(const char* tool, const char* purpose, std::span<const Entry* const> entries, int argc,
-             char** argv) {
+             char** argv, const std::string& notes) {
   std::vector<const Command*> commands;
   for (const Entry* entry : entries) commands.push_back(entry->command);
   if (argc < 2) {
-    std::fputs(overview(tool, purpose, commands).c_str(), stderr);
+    std::fputs((overview(tool, purpose, commands) + notes).c_str(), stderr);
     return kUsage;
   }
   if (std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "-h") == 0) {
-    std::fputs(overview(tool, purpose, commands).c_str(), stdout);
+    std::fputs((overview(tool, purpose, commands) + notes).c_str(), stdout);
     return kOk;
   }
   for (const Entry* entry : entries) {

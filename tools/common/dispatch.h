@@ -12,7 +12,8 @@ struct Entry {
   int (*run)(const Options& options);  // the exit code
 };
 
+// `notes` end the overview.
 int dispatch(const char* tool, const char* purpose, std::span<const Entry* const> entries, int argc,
-             char** argv);
+             char** argv, const std::string& notes = {});
 
 }  // namespace tools

@@ -81,7 +81,14 @@ base::Status write_file(const std::string& path, base::ByteSpan bytes) {
   {
     Descriptor file{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
     if (file.fd < 0) return file_error(base::Refusal::kFileUnwritable, path, errno);
+    struct stat old;
+    bool replaces = ::stat(path.c_str(), &old) == 0;
     status = write_all(file.fd, path, bytes);
+    // What is replaced keeps its permissions; and it goes only when the new content is on the disk.
+    bool kept = !replaces || ::fchmod(file.fd, old.st_mode & 07777) == 0;
+    if (status.ok() && (!kept || ::fsync(file.fd) != 0)) {
+      status = file_error(base::Refusal::kFileUnwritable, path, errno);
+    }
   }
   if (status.ok() && ::rename(temporary.c_str(), path.c_str()) != 0) {
     status = file_error(base::Refusal::kFileUnwritable, path, errno);

@@ -35,6 +35,13 @@ struct BuildOptions {
 base::Result<Version> build(const Project& project, const BuildOptions& options,
                             base::Diagnostics& diagnostics);
 
+// The TEST blocks of a project, one program instance each (frontend/compile.h).
+struct TestVersion {
+  Version version;
+  std::vector<frontend::TestCase> cases;
+};
+base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics& diagnostics);
+
 base::Result<Version> read_image(const std::string& path);
 // Is this file an image (by its magic)?
 bool is_image(const std::string& path);

@@ -9,8 +9,10 @@ using tools::Entry;
 
 extern const Entry kCheck;
 extern const Entry kBuild;
+extern const Entry kTest;
 extern const Entry kPackage;
 extern const Entry kDiff;
+extern const Entry kFormat;
 extern const Entry kDump;
 extern const Entry kExplain;
 

@@ -1,8 +1,9 @@
 // stc dump: what each phase made, as text.
 #include <cstdio>
 
+#include "frontend/compile.h"
 #include "frontend/lex/lexer.h"
-#include "frontend/parse/parse.h"
+#include "frontend/parse/tree.h"
 #include "ir/bytecode/symbols.h"
 #include "ir/program/text.h"
 #include "tools/stc/commands.h"
@@ -27,18 +28,18 @@ constexpr tools::Command kCommand{"dump", "PATHS...", "Prints what a phase of th
 
 std::string tokens_text(const Project& project, base::Diagnostics& diagnostics) {
   std::string out;
+  frontend::LexOptions lexing;
+  lexing.defines = project.compile.defines;
   for (uint32_t file = 0; file < project.sources.file_count(); ++file) {
-    out +=
-        frontend::print_tokens(frontend::lex(project.sources, file, diagnostics), project.sources);
+    out += frontend::print_tokens(frontend::lex(project.sources, file, diagnostics, lexing),
+                                  project.sources);
   }
   return out;
 }
 
 std::string tree_text(const Project& project, base::Diagnostics& diagnostics) {
   frontend::Tree tree;
-  for (uint32_t file = 0; file < project.sources.file_count(); ++file) {
-    frontend::parse(project.sources, file, tree, diagnostics);
-  }
+  frontend::parse_all(project.sources, project.compile, tree, diagnostics);
   return frontend::print(tree);
 }
 

@@ -7,6 +7,7 @@
 #include "base/diagnostics.h"
 #include "base/limits.h"
 #include "base/result.h"
+#include "frontend/dialect.h"
 #include "ir/bytecode/code.h"
 #include "ir/program/ir.h"
 #include "stdlib/registry.h"
@@ -85,26 +86,55 @@ std::string diagnostics_page() {
 std::string overview_page() {
   return "stc explain CODE     E.... and W.... of the compiler, R.... of everything else\n"
          "stc explain TRAP     a run-time trap by name\n"
-         "stc explain TABLE    limits, opcodes, functions, refusals, diagnostics, traps\n";
+         "stc explain TABLE    limits, opcodes, functions, refusals, diagnostics, traps, "
+         "dialects\n";
 }
 
 std::string functions_page() {
-  tools::Table table({"function", "signature", "meaning"});
-  for (const stdlib::FunctionRow& row : stdlib::function_rows()) {
-    table.row({std::string(row.name), std::string(row.signature), std::string(row.meaning)});
+  std::string page;
+  std::optional<tools::Table> table;
+  auto flush = [&] {
+    if (table) page += fitted(*table) + "\n";
+  };
+  for (const stdlib::PageRow& row : stdlib::page_rows()) {
+    if (row.interface.empty()) {
+      flush();
+      page += std::string(row.name) + "\n\n";
+      table.emplace(std::vector<std::string>{"name", "signature", "meaning"});
+    } else {
+      table->row({std::string(row.name), std::string(row.interface), std::string(row.meaning)});
+    }
   }
-  table.row({"X_TO_Y, TO_Y", "any elementary type -> Y", "conversion; reals round half to even"});
-  table.row({"TRUNC_Y", "ANY_REAL -> integer type Y", "towards zero; traps when out of range"});
-  return fitted(table);
+  flush();
+  return page;
+}
+
+std::string verdict(std::string_view code) { return code.empty() ? "accepted" : std::string(code); }
+
+std::string dialects_page() {
+  std::string page;
+  for (const frontend::DialectRow& row : frontend::dialect_rows()) {
+    std::string line(row.name);
+    line.resize(10, ' ');
+    page += line + std::string(row.what) + "\n";
+  }
+  page += "\n";
+  tools::Table table({"what", "iec", "codesys, twincat", "example"});
+  for (const frontend::DialectRule& rule : frontend::dialect_rules()) {
+    table.row({std::string(rule.what), verdict(rule.iec), verdict(rule.others),
+               std::string(rule.example)});
+  }
+  return page + fitted(table);
 }
 
 struct Page {
   const char* name;
   std::string (*text)();
 };
-constexpr Page kPages[] = {{"limits", limits_page},   {"functions", functions_page},
-                           {"opcodes", opcodes_page}, {"refusals", refusals_page},
-                           {"traps", traps_page},     {"diagnostics", diagnostics_page}};
+constexpr Page kPages[] = {{"limits", limits_page},    {"functions", functions_page},
+                           {"opcodes", opcodes_page},  {"refusals", refusals_page},
+                           {"traps", traps_page},      {"diagnostics", diagnostics_page},
+                           {"dialects", dialects_page}};
 
 std::optional<std::string> page_of(const std::string& what) {
   for (const Page& page : kPages) {

@@ -40,8 +40,9 @@ std::string tasks_text(const ir::Image& image) {
     for (uint32_t id : task.programs) {
       programs += (programs.empty() ? "" : ", ") + image.instance_path(id);
     }
-    table.row({task.name, number(static_cast<uint64_t>(task.period_ns / 1000)),
-               number(task.priority), programs});
+    std::string period =
+        task.period_ns == 0 ? "event" : number(static_cast<uint64_t>(task.period_ns / 1000));
+    table.row({task.name, period, number(task.priority), programs});
   }
   return table.text();
 }

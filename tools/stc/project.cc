@@ -5,6 +5,7 @@
 
 #include "base/limits.h"
 #include "tools/common/files.h"
+#include "tools/stc/format_settings.h"
 #include "tools/stc/toml.h"
 
 namespace stc {
@@ -69,18 +70,10 @@ base::Status apply_slack(const std::string& file, const std::string& key, const 
     slack.*known.slack = static_cast<uint32_t>(*number);
     return base::Ok{};
   }
-  return toml_error(
-      file, value.line, value.column,
-      "unknown key `" + key + "`; known are name, dialect, sources and the table [slack]");
-}
-
-base::Result<frontend::Dialect> dialect_named(const std::string& file, const TomlValue& value,
-                                              const std::string& name) {
-  if (name == "iec") return frontend::Dialect::kIec;
-  if (name == "codesys") return frontend::Dialect::kCodesys;
-  if (name == "twincat") return frontend::Dialect::kTwincat;
   return toml_error(file, value.line, value.column,
-                    "unknown dialect `" + name + "`; known are iec, codesys, twincat");
+                    "unknown key `" + key +
+                        "`; known are name, dialect, resource, sources, defines and the tables "
+                        "[slack] and [format]");
 }
 
 // Applies stc.toml of `folder`; `sources` is replaced when the file lists its own.
@@ -100,14 +93,28 @@ base::Status apply_project_file(const std::string& folder, Project& project,
     } else if (key == "dialect") {
       base::Result<std::string> name = typed<std::string>(file, key, value, "a text");
       if (!name.ok()) return name.error();
-      base::Result<frontend::Dialect> dialect = dialect_named(file, value, *name);
-      if (!dialect.ok()) return dialect.error();
+      auto dialect = frontend::dialect_from_name(*name);
+      if (!dialect) {
+        return toml_error(file, value.line, value.column, frontend::unknown_dialect(*name));
+      }
       project.compile.dialect = *dialect;
+    } else if (key == "resource") {
+      base::Result<std::string> name = typed<std::string>(file, key, value, "a text");
+      if (!name.ok()) return name.error();
+      project.compile.resource = *name;
     } else if (key == "sources") {
       auto list = typed<std::vector<std::string>>(file, key, value, "a list of texts");
       if (!list.ok()) return list.error();
       sources.clear();
       for (const std::string& entry : *list) sources.push_back((fs::path(folder) / entry).string());
+    } else if (key.starts_with(kFormatTable)) {
+      frontend::FormatOptions unused;  // only its own command needs them, but all check them
+      base::Status status = apply_format_key(file, key, value, unused);
+      if (!status.ok()) return status;
+    } else if (key == "defines") {
+      auto list = typed<std::vector<std::string>>(file, key, value, "a list of texts");
+      if (!list.ok()) return list.error();
+      project.compile.defines = *list;
     } else if (base::Status status = apply_slack(file, key, value, project.slack); !status.ok()) {
       return status;
     }
@@ -123,12 +130,8 @@ std::string project_name(const std::string& path) {
 }
 
 base::Result<std::vector<std::string>> expand(const std::string& path, Project& project) {
-  if (!fs::exists(path)) {
-    return base::Error{base::Refusal::kFileNotFound, path + ": no such file or directory"};
-  }
-  if (!fs::is_directory(path)) return std::vector<std::string>{path};
-  base::Result<std::vector<std::string>> found = sources_below(path);
-  if (!found.ok()) return found;
+  base::Result<std::vector<std::string>> found = source_files(path);
+  if (!found.ok() || !fs::is_directory(path)) return found;
   base::Status status = apply_project_file(path, project, *found);
   if (!status.ok()) return status.error();
   if (found->empty()) {
@@ -139,6 +142,14 @@ base::Result<std::vector<std::string>> expand(const std::string& path, Project& 
 }
 
 }  // namespace
+
+base::Result<std::vector<std::string>> source_files(const std::string& path) {
+  if (!fs::exists(path)) {
+    return base::Error{base::Refusal::kFileNotFound, path + ": no such file or directory"};
+  }
+  if (!fs::is_directory(path)) return std::vector<std::string>{path};
+  return sources_below(path);
+}
 
 base::Result<Project> load_project(const std::vector<std::string>& paths,
                                    std::optional<frontend::Dialect> dialect) {

@@ -20,6 +20,10 @@ struct Project {
   linker::Slack slack;
 };
 
+// `path` itself, or the sources in that folder and below it, sorted. Errors: kFileNotFound,
+// kFileUnreadable.
+base::Result<std::vector<std::string>> source_files(const std::string& path);
+
 // Reads every source: files as given, folders recursively (*.st, sorted by path).
 // File names in messages are the paths as typed. Errors: kFileNotFound,
 // kFileUnreadable, kBadProject, kTooMany (kMaxSourceBytes).

@@ -10,11 +10,9 @@ namespace {
 base::Result<std::optional<frontend::Dialect>> dialect_option(const tools::Options& options) {
   if (!options.has("--dialect")) return std::optional<frontend::Dialect>();
   std::string name = options.text("--dialect");
-  if (name == "iec") return std::optional(frontend::Dialect::kIec);
-  if (name == "codesys") return std::optional(frontend::Dialect::kCodesys);
-  if (name == "twincat") return std::optional(frontend::Dialect::kTwincat);
-  return base::Error{base::Refusal::kUsage,
-                     "unknown dialect `" + name + "`; known are iec, codesys, twincat"};
+  auto dialect = frontend::dialect_from_name(name);
+  if (!dialect) return base::Error{base::Refusal::kUsage, frontend::unknown_dialect(name)};
+  return dialect;
 }
 
 }  // namespace
@@ -24,7 +22,12 @@ base::Result<Project> open_project(const tools::Options& options,
   auto dialect = dialect_option(options);
   if (!dialect.ok()) return dialect.error();
   base::Result<Project> project = load_project(paths, *dialect);
-  if (project.ok() && options.has("--name")) {
+  if (!project.ok()) return project;
+  if (options.has("--resource")) project->compile.resource = options.text("--resource");
+  for (std::string& define : options.all("--define")) {
+    project->compile.defines.push_back(std::move(define));
+  }
+  if (options.has("--name")) {
     project->name = options.text("--name");
     project->compile.name = project->name;
   }

@@ -8,10 +8,12 @@
 
 namespace stc {
 
-#define STC_SOURCE_OPTIONS                                                     \
-  {"--dialect", "NAME", "iec, codesys (default) or twincat"},                  \
-      {"--format", "FORM", "text (default), json, sarif or github"}, {         \
-    "--name", "NAME", "name of the program, instead of the folder's or file's" \
+#define STC_SOURCE_OPTIONS                                                       \
+  {"--dialect", "NAME", "iec, codesys (default) or twincat"},                    \
+      {"--resource", "NAME", "the RESOURCE to compile, when there are several"}, \
+      {"--define", "NAME", "for {IF defined(NAME)}; NAME=VALUE for hasvalue"},   \
+      {"--format", "FORM", "text (default), json, sarif or github"}, {           \
+    "--name", "NAME", "name of the program, instead of the folder's or file's"   \
   }
 
 // Loads the project named by `paths` with the options above.

@@ -1,7 +1,7 @@
 // The variables of the running program, page by page.
 #include "base/check.h"
 #include "tools/stvm/controller_service.h"
-#include "tools/stvm/pattern.h"
+#include "tools/common/pattern.h"
 
 namespace stvm {
 
@@ -16,7 +16,7 @@ base::Result<base::Bytes> ControllerService::list(const vm::Request& request) {
   uint64_t bytes = 0;
   ir::for_each_leaf(image, [&](const std::string& path, const ir::Symbol& symbol) {
     uint64_t index = at++;
-    if (index < request.offset || values.next != 0 || !matches(pattern, path)) return;
+    if (index < request.offset || values.next != 0 || !tools::matches(pattern, path)) return;
     if (bytes > vm::kChunkBytes) {
       values.next = index;
       return;

@@ -1,8 +1,8 @@
-#include "tools/stvm/pattern.h"
+#include "tools/common/pattern.h"
 
 #include "ir/types/types.h"
 
-namespace stvm {
+namespace tools {
 
 // Greedy with one step back to the last `*`: linear for all that people type, never exponential.
 bool matches(std::string_view pattern, std::string_view name) {
@@ -29,4 +29,4 @@ bool matches(std::string_view pattern, std::string_view name) {
   return p == pattern.size();
 }
 
-}  // namespace stvm
+}  // namespace tools

@@ -1,0 +1,187 @@
+#include "tools/stc/test_report.h"
+
+#include <cstdio>
+
+#include "tools/common/json.h"
+
+namespace stc {
+namespace {
+
+constexpr const char* kGreen = "\x1b[32m";
+constexpr const char* kRed = "\x1b[31m";
+constexpr const char* kPlain = "\x1b[0m";
+
+const char* verdict_word(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kPassed:
+      return "PASS ";
+    case Verdict::kFailed:
+      return "FAIL ";
+    default:
+      return "ERROR";
+  }
+}
+
+std::string place(const std::string& file, uint32_t line) {
+  return file + ":" + std::to_string(line);
+}
+
+std::string seconds_text(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6f", seconds);
+  return text;
+}
+
+std::string trimmed_line(const base::SourceMap& sources, const std::string& file, uint32_t line) {
+  for (uint32_t i = 0; i < sources.file_count(); ++i) {
+    if (sources.file_name(i) != file) continue;
+    std::string_view text = sources.text(i);
+    for (uint32_t at = 1; at < line; ++at) {
+      const size_t end = text.find('\n');
+      if (end == std::string_view::npos) return {};
+      text.remove_prefix(end + 1);
+    }
+    text = text.substr(0, text.find('\n'));
+    const size_t first = text.find_first_not_of(" \t");
+    if (first == std::string_view::npos) return {};
+    const size_t last = text.find_last_not_of(" \t\r");
+    return std::string(text.substr(first, last - first + 1));
+  }
+  return {};
+}
+
+// Characters that XML 1.0 cannot hold become `?`.
+std::string xml(std::string_view text) {
+  std::string out;
+  for (char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? '?' : c;
+    }
+  }
+  return out;
+}
+
+// A description in TAP must not contain what begins a directive.
+std::string tap_name(std::string_view name) {
+  std::string out;
+  for (char c : name) {
+    if (c == '#' || c == '\\') out += '\\';
+    out += c == '\n' ? ' ' : c;
+  }
+  return out;
+}
+
+}  // namespace
+
+TestTally tally(const std::vector<TestResult>& results) {
+  TestTally out;
+  for (const TestResult& result : results) {
+    out.passed += result.verdict == Verdict::kPassed;
+    out.failed += result.verdict == Verdict::kFailed;
+    out.errors += result.verdict == Verdict::kError;
+    out.seconds += result.seconds;
+  }
+  return out;
+}
+
+std::string test_text(const TestResult& result, const base::SourceMap& sources, bool colour) {
+  const bool passed = result.verdict == Verdict::kPassed;
+  std::string out;
+  if (colour) out += passed ? kGreen : kRed;
+  out += verdict_word(result.verdict);
+  if (colour) out += kPlain;
+  out += "  " + result.test.name + "  (" + place(result.test.file, result.test.line) + ")\n";
+  if (passed) return out;
+  out += "       " + place(result.file, result.line) + ": " + result.text + "\n";
+  const std::string line = trimmed_line(sources, result.file, result.line);
+  if (!line.empty()) out += "       | " + line + "\n";
+  return out;
+}
+
+std::string summary_text(const std::vector<TestResult>& results, bool colour) {
+  const TestTally sum = tally(results);
+  const bool good = sum.failed + sum.errors == 0;
+  char time[32];
+  std::snprintf(time, sizeof time, "%.3f s", sum.seconds);
+  std::string out;
+  if (colour) out += good ? kGreen : kRed;
+  out += std::to_string(sum.passed) + " passed, " + std::to_string(sum.failed) + " failed";
+  if (sum.errors != 0) out += ", " + std::to_string(sum.errors) + " stopped by a trap";
+  if (colour) out += kPlain;
+  return out + "  (" + time + ")\n";
+}
+
+std::string tap_text(const std::vector<TestResult>& results) {
+  std::string out = "TAP version 13\n1.." + std::to_string(results.size()) + "\n";
+  for (size_t i = 0; i < results.size(); ++i) {
+    const TestResult& result = results[i];
+    const bool passed = result.verdict == Verdict::kPassed;
+    out += std::string(passed ? "ok " : "not ok ") + std::to_string(i + 1) + " - " +
+           tap_name(result.test.name) + "\n";
+    if (passed) continue;
+    tools::JsonWriter message;  // a JSON string is a YAML string
+    message.value(result.text);
+    tools::JsonWriter at;
+    at.value(place(result.file, result.line));
+    out += "  ---\n  message: " + message.finish() + "  at: " + at.finish();
+    out += "  trap: " + result.trap + "\n  ...\n";
+  }
+  return out;
+}
+
+std::string junit_text(const std::string& suite, const std::vector<TestResult>& results) {
+  const TestTally sum = tally(results);
+  const std::string counts =
+      " tests=\"" + std::to_string(results.size()) + "\" failures=\"" + std::to_string(sum.failed) +
+      "\" errors=\"" + std::to_string(sum.errors) + "\" time=\"" + seconds_text(sum.seconds) + "\"";
+  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + counts +
+                    ">\n  <testsuite name=\"" + xml(suite) + "\"" + counts + ">\n";
+  for (const TestResult& result : results) {
+    out += "    <testcase name=\"" + xml(result.test.name) + "\" classname=\"" +
+           xml(result.test.file) + "\" file=\"" + xml(result.test.file) + "\" line=\"" +
+           std::to_string(result.test.line) + "\" time=\"" + seconds_text(result.seconds) + "\"";
+    if (result.verdict == Verdict::kPassed) {
+      out += "/>\n";
+      continue;
+    }
+    const char* element = result.verdict == Verdict::kFailed ? "failure" : "error";
+    out += std::string(">\n      <") + element + " type=\"" + xml(result.trap) + "\" message=\"" +
+           xml(result.text) + "\">" + xml(place(result.file, result.line) + ": " + result.text) +
+           "</" + element + ">\n    </testcase>\n";
+  }
+  return out + "  </testsuite>\n</testsuites>\n";
+}
+
+std::string json_text(const std::vector<TestResult>& results) {
+  const TestTally sum = tally(results);
+  tools::JsonWriter json;
+  json.begin_object().field("passed", sum.passed).field("failed", sum.failed);
+  json.field("errors", sum.errors).key("tests").begin_array();
+  for (const TestResult& result : results) {
+    json.begin_object().field("name", result.test.name).field("file", result.test.file);
+    json.field("line", result.test.line).field("passed", result.verdict == Verdict::kPassed);
+    json.field("seconds", result.seconds);
+    if (result.verdict != Verdict::kPassed) {
+      json.field("trap", result.trap).field("text", result.text);
+      json.field("at", place(result.file, result.line));
+    }
+    json.end_object();
+  }
+  json.end_array().end_object();
+  return json.finish();
+}
+
+}  // namespace stc

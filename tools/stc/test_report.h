@@ -1,0 +1,28 @@
+// What a run of tests looks like: for people, and for the tools of continuous integration
+// (TAP version 13, JUnit XML as Jenkins and GitLab read it, JSON).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/source.h"
+#include "tools/stc/test_run.h"
+
+namespace stc {
+
+struct TestTally {
+  uint32_t passed = 0;
+  uint32_t failed = 0;
+  uint32_t errors = 0;
+  double seconds = 0;
+};
+TestTally tally(const std::vector<TestResult>& results);
+
+// One test, as its lines appear while the run goes on. `sources` give the line that failed.
+std::string test_text(const TestResult& result, const base::SourceMap& sources, bool colour);
+std::string summary_text(const std::vector<TestResult>& results, bool colour);
+std::string tap_text(const std::vector<TestResult>& results);
+std::string junit_text(const std::string& suite, const std::vector<TestResult>& results);
+std::string json_text(const std::vector<TestResult>& results);
+
+}  // namespace stc

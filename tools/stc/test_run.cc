@@ -1,0 +1,64 @@
+#include "tools/stc/test_run.h"
+
+#include <chrono>
+
+#include "ir/bytecode/symbols.h"
+#include "vm/exec/execution.h"
+#include "vm/exec/memory.h"
+#include "vm/load/generation.h"
+
+namespace stc {
+namespace {
+
+// Calls and loop rounds of one test; a test that needs more hangs.
+constexpr uint64_t kFuel = 100'000'000;
+
+uint32_t instance_of(const ir::Image& image, const std::string& name) {
+  for (uint32_t id = 1; id < image.instances.size(); ++id) {
+    const ir::Instance& row = image.instances[id];
+    if (row.live && row.parent == 0 && ir::same_name(row.name, name)) return id;
+  }
+  return 0;
+}
+
+std::string assertion_message(const ir::Image& image, const vm::Memory& memory) {
+  base::Result<ir::Symbol> symbol = ir::find_symbol(image, frontend::kTestMessage);
+  if (!symbol.ok()) return {};
+  const char* text = reinterpret_cast<const char*>(memory.data()) + symbol->data;
+  return std::string(text, ::strnlen(text, image.types[symbol->type].capacity));
+}
+
+}  // namespace
+
+base::Result<TestResult> run_test(const ir::VerifiedImage& verified,
+                                  const frontend::TestCase& test) {
+  base::Result<vm::Memory> memory = vm::Memory::reserve();
+  if (!memory.ok()) return memory.error();
+  const ir::Image& image = verified.image();
+  vm::write_initial_data(image, memory->data());
+  const std::unique_ptr<vm::Generation> generation =
+      vm::Generation::build(verified, 0, memory->data());
+  vm::Execution execution(image.call_depth);
+  execution.start(*generation, memory->data(), instance_of(image, test.instance), ir::kStackBegin,
+                  0);
+  const auto begin = std::chrono::steady_clock::now();
+  const vm::Exit exit = execution.run(kFuel);
+  const auto end = std::chrono::steady_clock::now();
+
+  TestResult result;
+  result.test = test;
+  result.seconds = std::chrono::duration<double>(end - begin).count();
+  if (exit == vm::Exit::kDone) return result;
+  const vm::Trap trap =
+      exit == vm::Exit::kTrap ? execution.trap() : execution.interrupted(ir::TrapKind::kFuel);
+  const vm::TrapText text = vm::describe(image, trap);
+  const bool assertion = trap.kind == ir::TrapKind::kAssert;
+  result.verdict = assertion ? Verdict::kFailed : Verdict::kError;
+  result.file = text.file;
+  result.line = text.line;
+  result.trap = ir::trap_name(trap.kind);
+  result.text = assertion ? assertion_message(image, *memory) : text.text;
+  return result;
+}
+
+}  // namespace stc
