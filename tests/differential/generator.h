@@ -1,13 +1,13 @@
-// Random valid ST programs: all elementary arithmetic, conversions, structures,
-// arrays, strings, functions, function blocks, every statement. Some of them trap; all tiers
-// must then trap at the same place.
+// Random valid programs over the language that the compiler supports. The same seed gives the
+// same program everywhere.
 #pragma once
 
 #include <cstdint>
-#include <string>
+
+#include "tests/differential/tree.h"
 
 namespace differential {
 
-std::string random_program(uint64_t seed);
+Program random_program(uint64_t seed);
 
 }  // namespace differential

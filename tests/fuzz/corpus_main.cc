@@ -2,6 +2,8 @@
 // `count` mutations of them. The same seed gives the same inputs everywhere.
 //   FUZZER CORPUS_DIR [COUNT] [SEED]
 #include <algorithm>
+#include <cctype>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
@@ -36,7 +39,8 @@ class Random {
 std::vector<std::string> read_corpus(const std::string& folder) {
   std::vector<std::filesystem::path> paths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) paths.push_back(entry.path());
+    bool code = entry.path().extension() == ".cc" || entry.path().extension() == ".h";
+    if (entry.is_regular_file() && !code) paths.push_back(entry.path());
   }
   std::sort(paths.begin(), paths.end());
   std::vector<std::string> out;
@@ -71,10 +75,36 @@ void splice(std::string& text, const std::string& other, Random& random) {
   text.insert(random.below(text.size() + 1), other, from, 1 + random.below(64));
 }
 
+bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+// A word and where it begins; empty when there is none behind `at`.
+std::pair<size_t, std::string> word_behind(const std::string& text, size_t at) {
+  while (at < text.size() && is_word(text[at])) ++at;
+  while (at < text.size() && !is_word(text[at])) ++at;
+  size_t end = at;
+  while (end < text.size() && is_word(text[end])) ++end;
+  return {at, text.substr(at, end - at)};
+}
+
+// One word of the text in another's place: what stays a program reaches the later phases.
+void replace_word(std::string& text, const std::string& other, Random& random) {
+  auto [at, word] = word_behind(text, random.below(text.size() + 1));
+  auto [from, by] = word_behind(other, random.below(other.size() + 1));
+  if (!word.empty() && !by.empty()) text.replace(at, word.size(), by);
+}
+
 std::string mutated(const std::vector<std::string>& corpus, Random& random) {
   std::string text = corpus[random.below(corpus.size())];
   for (size_t steps = 1 + random.below(6); steps != 0; --steps) {
-    switch (random.below(6)) {
+    switch (random.below(10)) {
+      case 6:
+      case 7:
+      case 8:
+        replace_word(text, text, random);
+        break;
+      case 9:
+        replace_word(text, corpus[random.below(corpus.size())], random);
+        break;
       case 0:
         flip(text, random);
         break;
@@ -98,7 +128,21 @@ std::string mutated(const std::vector<std::string>& corpus, Random& random) {
   return text;
 }
 
+const std::string* running = nullptr;
+
+// The input that ended the process goes where it can be looked at.
+void keep_input(int signal) {
+  if (std::FILE* file = std::fopen("failing_input", "wb")) {
+    std::fwrite(running->data(), 1, running->size(), file);
+    std::fclose(file);
+    std::fputs("the input is in failing_input\n", stderr);
+  }
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
 void run(const std::string& text) {
+  running = &text;
   LLVMFuzzerTestOneInput(reinterpret_cast<const uint8_t*>(text.data()), text.size());
 }
 
@@ -116,6 +160,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s: no files\n", argv[1]);
     return 2;
   }
+  for (int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGALRM}) std::signal(signal, keep_input);
   for (const std::string& text : corpus) run(text);
   for (size_t i = 0; i < count; ++i) run(mutated(corpus, random));
   std::printf("%zu corpus files, %zu mutations, no failure\n", corpus.size(), count);

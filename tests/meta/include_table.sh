@@ -16,6 +16,7 @@ ir/opt: ir/types ir/program
 ir/bytecode: ir/types ir/program/ir.h stdlib/native
 ir/lower: ir/types ir/program ir/bytecode
 frontend: ir/types ir/program stdlib
+frontend/format: ir/types/types.h frontend/lex frontend/parse/parse.h
 linker: ir/types ir/program ir/bytecode stdlib/native
 vm: ir/types ir/program/ir.h ir/bytecode stdlib/native
 online_change/diff: ir linker
@@ -24,7 +25,7 @@ online_change/package: ir linker online_change/diff online_change/plan
 online_change/apply: ir/types ir/program/ir.h ir/bytecode online_change vm
 online_change/store: ir/types ir/bytecode online_change/package vm
 tools/common: ir online_change/diff online_change/plan
-tools/stc: ir frontend linker online_change/diff online_change/plan online_change/package stdlib tools/common
+tools/stc: ir frontend linker online_change/diff online_change/plan online_change/package stdlib vm/exec vm/load tools/common
 tools/stvm: ir/types ir/program/ir.h ir/bytecode vm online_change tools/common
 '
 

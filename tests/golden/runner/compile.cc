@@ -2,7 +2,7 @@
 
 #include "frontend/compile.h"
 #include "frontend/lex/lexer.h"
-#include "frontend/parse/parse.h"
+#include "frontend/parse/tree.h"
 #include "ir/lower/lower.h"
 #include "ir/program/verify.h"
 #include "linker/link.h"
@@ -23,15 +23,8 @@ const char* severity_text(base::Severity severity) {
 }
 
 void collect(const base::SourceMap& sources, base::Diagnostics& diagnostics, Outcome& outcome) {
-  diagnostics.sort();
   outcome.errors = diagnostics.has_errors();
-  for (const base::Diagnostic& message : diagnostics.all()) {
-    const base::DiagnosticRow& row = base::diagnostic_row(message.code);
-    base::SourceLocation at = sources.locate(message.span.begin);
-    outcome.messages.push_back(std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
-                               severity_text(row.severity) + "[" + std::string(row.code) +
-                               "]: " + message.text);
-  }
+  outcome.messages = messages_of(sources, diagnostics);
 }
 
 frontend::CompileOptions options_of(const TestFile& test) {
@@ -40,14 +33,32 @@ frontend::CompileOptions options_of(const TestFile& test) {
   std::string dialect = test.option("--dialect", "codesys");
   if (dialect == "iec") options.dialect = frontend::Dialect::kIec;
   if (dialect == "twincat") options.dialect = frontend::Dialect::kTwincat;
+  for (size_t i = 0; i + 1 < test.options.size(); ++i) {
+    if (test.options[i] == "--resource") options.resource = test.options[i + 1];
+    if (test.options[i] == "--define") options.defines.push_back(test.options[i + 1]);
+  }
   return options;
 }
 
 }  // namespace
 
+std::vector<std::string> messages_of(const base::SourceMap& sources,
+                                     base::Diagnostics& diagnostics) {
+  std::vector<std::string> out;
+  diagnostics.sort();
+  for (const base::Diagnostic& message : diagnostics.all()) {
+    const base::DiagnosticRow& row = base::diagnostic_row(message.code);
+    base::SourceLocation at = sources.locate(message.span.begin);
+    out.push_back(std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
+                  severity_text(row.severity) + "[" + std::string(row.code) + "]: " + message.text);
+  }
+  return out;
+}
+
 base::Result<Program> compile(const TestFile& test, size_t version, Outcome& outcome) {
   base::SourceMap sources;
   sources.add(test.name, test.versions[version]);
+  for (const Source& used : test.used) sources.add(used.name, used.text);
   base::Diagnostics diagnostics;
   std::optional<ir::Program> program = frontend::compile(sources, options_of(test), diagnostics);
   collect(sources, diagnostics, outcome);
@@ -94,7 +105,7 @@ std::string tree_of(const TestFile& test, Outcome& outcome) {
   sources.add(test.name, test.versions[0]);
   base::Diagnostics diagnostics;
   frontend::Tree tree;
-  frontend::parse(sources, 0, tree, diagnostics);
+  frontend::parse_all(sources, options_of(test), tree, diagnostics);
   collect(sources, diagnostics, outcome);
   return frontend::print(tree);
 }

@@ -26,6 +26,9 @@ struct Outcome {
   bool errors = false;
 };
 
+std::vector<std::string> messages_of(const base::SourceMap& sources,
+                                     base::Diagnostics& diagnostics);
+
 base::Result<Program> compile(const TestFile& test, size_t version, Outcome& outcome);
 base::Result<ir::VerifiedImage> link(const Program& program, const ir::Image* base, bool move_all);
 // Tokens or tree of version 1, as text.

@@ -11,8 +11,8 @@ constexpr uint64_t kBudget = 20'000'000;
 
 class EvaluatorEngine : public Engine {
  public:
-  explicit EvaluatorEngine(const ir::Program& program)
-      : evaluator_(program), period_ns_(base_period_ns(program)) {}
+  EvaluatorEngine(const ir::Program& program, ir::EvalMemory memory)
+      : evaluator_(program, std::move(memory)), period_ns_(base_period_ns(program)) {}
 
   base::Result<std::string> scan() override {
     std::vector<ir::EvalTrap> traps = evaluator_.scan(now_ns_, kBudget);
@@ -32,16 +32,31 @@ class EvaluatorEngine : public Engine {
   int64_t now_ns_ = 0;
 };
 
+// Where the first version's variables are, for what is looked at as bytes.
+ir::EvalMemory memory_of(const ir::Image& image) {
+  ir::EvalMemory memory{image.layouts, {}};
+  for (uint32_t id = 0; id < image.instances.size(); ++id) {
+    const ir::Instance& row = image.instances[id];
+    if (!row.live) continue;
+    memory.areas.push_back({image.instance_path(id), id, row.generation, row.data});
+  }
+  return memory;
+}
+
 }  // namespace
 
 int64_t base_period_ns(const ir::Program& program) {
   int64_t period = 0;
   for (const ir::Task& task : program.tasks) period = std::gcd(period, task.period_ns);
-  return period;
+  constexpr int64_t kIdleNs = 10'000'000;  // as vm/runtime/task_tables.cc has it
+  return period == 0 ? kIdleNs : period;
 }
 
-std::unique_ptr<Engine> make_evaluator_engine(const Program& program) {
-  return std::make_unique<EvaluatorEngine>(program.program);
+base::Result<std::unique_ptr<Engine>> make_evaluator_engine(const Program& program) {
+  base::Result<ir::VerifiedImage> image = link(program, nullptr, false);
+  if (!image) return image.error();
+  return std::unique_ptr<Engine>(
+      std::make_unique<EvaluatorEngine>(program.program, memory_of(image->image())));
 }
 
 }  // namespace golden

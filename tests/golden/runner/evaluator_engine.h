@@ -5,7 +5,7 @@
 
 namespace golden {
 
-std::unique_ptr<Engine> make_evaluator_engine(const Program& program);
+base::Result<std::unique_ptr<Engine>> make_evaluator_engine(const Program& program);
 // Greatest common divisor of the task periods: one scan of the runner.
 int64_t base_period_ns(const ir::Program& program);
 

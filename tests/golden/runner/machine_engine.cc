@@ -50,6 +50,8 @@ class MachineEngine : public Engine {
     if (!image.ok()) return image.error();
     vm::ControllerOptions options;
     options.fuel_budget = 20'000'000;
+    // As in the evaluator: a trap ends its task, the others finish the scan.
+    options.on_trap = vm::TrapPolicy::kStopTask;
     if (tier_ == Tier::kFuelOne) options.fuel_slice = 1;
     auto controller = vm::Controller::start(*image, options, clock_, devices_);
     if (!controller.ok()) return controller.error();
@@ -63,9 +65,9 @@ class MachineEngine : public Engine {
     controller_->cycle();
     const std::vector<vm::TrapRecord>& traps = controller_->traps();
     if (traps.size() > traps_before) {
-      const vm::TrapRecord& last = traps.back();
-      return std::string(ir::trap_name(last.trap.kind)) + " " + last.text.pou + ":" +
-             std::to_string(last.text.line);
+      const vm::TrapRecord& first = traps[traps_before];
+      return std::string(ir::trap_name(first.trap.kind)) + " " + first.text.pou + ":" +
+             std::to_string(first.text.line);
     }
     bool hard = tier_ == Tier::kIdentity || tier_ == Tier::kMoveAll;
     if (!hard || change_->state() != online_change::State::kIdle) return std::string();
@@ -105,12 +107,14 @@ class MachineEngine : public Engine {
     if (!report.ok()) return report.error();
     previous_ = program_;
     program_ = &next;
+    hard_packages_.clear();
     return lines;
   }
   base::Status undo() override {
     base::Result<online_change::SwitchReport> report = change_->undo();
     if (!report.ok()) return report.error();
     if (previous_ != nullptr) program_ = previous_;
+    hard_packages_.clear();
     return base::Ok{};
   }
   base::Status accept() override { return change_->accept(); }
@@ -124,9 +128,24 @@ class MachineEngine : public Engine {
     return change_->stage(online_change::encode(*package));
   }
 
+  // The package that leads from the running image to the same program. Images alternate between a
+  // few layouts, and linking is a pure function: each is linked once.
+  base::Status stage_hard() {
+    auto known = hard_packages_.find(controller_->verified().digest());
+    if (known != hard_packages_.end()) return change_->stage(known->second);
+    bool move_all = tier_ == Tier::kMoveAll;
+    base::Result<ir::VerifiedImage> image = link(*program_, &controller_->image(), move_all);
+    if (!image.ok()) return image.error();
+    auto package = online_change::make_package(controller_->verified().encoded(), image->encoded());
+    if (!package.ok()) return package.error();
+    base::Bytes& bytes = hard_packages_[controller_->verified().digest()];
+    bytes = online_change::encode(*package);
+    return change_->stage(bytes);
+  }
+
   // An identity change, with or without moving everything; nothing may differ after it.
   base::Status hard_change() {
-    base::Status staged = stage(*program_, tier_ == Tier::kMoveAll);
+    base::Status staged = stage_hard();
     // Relinked against itself, a program without instances to move is the same image.
     if (!staged.ok()) {
       return staged.error().refusal == base::Refusal::kNoChange ? base::Status(base::Ok{}) : staged;
@@ -145,6 +164,7 @@ class MachineEngine : public Engine {
   NoDevices devices_;
   std::unique_ptr<vm::Controller> controller_;
   std::unique_ptr<online_change::Change> change_;
+  std::map<base::Digest, base::Bytes> hard_packages_;
 };
 
 }  // namespace

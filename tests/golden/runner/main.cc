@@ -36,7 +36,7 @@ void print_difference(const std::vector<std::string>& expected,
 
 // `fail_` in the name if and only if the file expects an error.
 bool name_fits(const golden::TestFile& test) {
-  if (test.mode != "check") return true;
+  if (test.mode != "check" && test.mode != "format") return true;
   bool expects = false;
   for (const std::string& line : test.steps[0].expected) {
     expects = expects || line.find(": error[") != std::string::npos;

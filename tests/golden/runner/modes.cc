@@ -6,6 +6,7 @@
 #include "tests/golden/runner/compile.h"
 #include "tests/golden/runner/engine.h"
 #include "tests/golden/runner/evaluator_engine.h"
+#include "tests/golden/runner/format_mode.h"
 #include "tests/golden/runner/machine_engine.h"
 #include "tests/golden/runner/script.h"
 #include "tools/stc/image_text.h"
@@ -144,6 +145,8 @@ Actual produce(const TestFile& test) {
     actual.outputs[0] = lines_of(tree_of(test, outcome));
     actual.outputs[0].insert(actual.outputs[0].end(), outcome.messages.begin(),
                              outcome.messages.end());
+  } else if (test.mode == "format") {
+    produce_format(test, actual);
   } else if (test.mode == "check") {
     produce_check(test, actual);
   } else if (test.mode == "ir" || test.mode == "bytecode" || test.mode == "link") {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "tests/golden/runner/used_sources.h"
 #include "tools/common/files.h"
 
 namespace golden {
@@ -108,6 +109,8 @@ base::Result<TestFile> read_test(const std::string& path) {
   test.versions.emplace_back();
   test.steps.push_back({});
   for (size_t i = 0; i < test.lines.size(); ++i) take_line(test, i);
+  base::Status used = read_used_sources(test);
+  if (!used.ok()) return used.error();
   if (test.mode.empty()) {
     return base::Error{base::Refusal::kBadProject, path + ": no `// MODE:` line"};
   }

@@ -1,7 +1,8 @@
 // A golden file: sources of one or more versions, and what is expected of them,
 // in one text (docs/TESTING.md has the format).
 //
-//   // MODE: run [--scans N] [--dialect iec]
+//   // MODE: run [--scans N] [--dialect iec] [--define NAME[=VALUE]]
+//   // USE: tests/corpus/date/*.st   more sources of every version, from the root of the repository
 //   ...source...
 //   // --- v2             begins the next version (mode change)
 //   // > run 3            script: run N | show NAMES | set NAME VALUE | change K [--allow-loss] |
@@ -30,6 +31,11 @@ struct ScanCheck {  // CHECK:SCAN
   size_t line = 0;
 };
 
+struct Source {
+  std::string name;
+  std::string text;
+};
+
 struct TestFile {
   std::string path;
   std::string name;  // file name without folder
@@ -37,6 +43,7 @@ struct TestFile {
   std::vector<std::string> options;
   std::vector<std::string> lines;
   std::vector<std::string> versions;  // source texts; comment lines stay, so line numbers hold
+  std::vector<Source> used;           // of the USE lines, in their order
   std::vector<Step> steps;            // steps[0] has no command
   std::vector<ScanCheck> scans;
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/hash.h"
+#include "base/sha256.h"
 
 namespace base {
 namespace {
@@ -77,6 +78,16 @@ TEST(Hash, HexRoundTrip) {
   EXPECT_EQ(short_hex(digest), "ba7816bf8f01");
   EXPECT_FALSE(digest_from_hex("ba78", back));
   EXPECT_FALSE(digest_from_hex(std::string(64, 'g'), back));
+}
+
+TEST(Sha256, WithAndWithoutProcessorInstructions) {
+  std::array<uint8_t, 64 * 5> data{};
+  for (size_t i = 0; i < data.size(); ++i) data[i] = static_cast<uint8_t>(i * 37 + i / 64);
+  Sha256State portable{1, 2, 3, 4, 5, 6, 7, 0xffffffff};
+  Sha256State fast = portable;
+  sha256_blocks_portable(portable, data.data(), 5);
+  if (!sha256_blocks_x86(fast, data.data(), 5)) GTEST_SKIP() << "not on this processor";
+  EXPECT_EQ(portable, fast);
 }
 
 }  // namespace

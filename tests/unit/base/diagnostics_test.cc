@@ -157,7 +157,8 @@ TEST(Sarif, ResultRuleAndPlace) {
   std::string out = f.render(DiagnosticFormat::kSarif);
   EXPECT_NE(out.find("\"version\":\"2.1.0\""), std::string::npos);
   EXPECT_NE(out.find("\"rules\":[{\"id\":\"W0003\""), std::string::npos);
-  EXPECT_NE(out.find("{\"ruleId\":\"W0003\",\"level\":\"warning\",\"message\":{\"text\":\"unused "
+  EXPECT_NE(out.find("{\"ruleId\":\"W0003\",\"ruleIndex\":0,\"level\":\"warning\",\"message\":{"
+                     "\"text\":\"unused "
                      "(remove it)\"},\"locations\":[{\"physicalLocation\":{\"artifactLocation\":"
                      "{\"uri\":\"src/a%20b.st\"},\"region\":{\"startLine\":1,\"startColumn\":2,"
                      "\"endLine\":1,\"endColumn\":4}}}]}"),

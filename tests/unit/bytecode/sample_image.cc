@@ -317,7 +317,7 @@ Image image(Code code, std::vector<ir::Merge> merges) {
   image.bounds = {{1, 4, 2, {t.numbers, 0}, "numbers"}, {0, 2, 4, {t.counters, 0}, "fbs"}};
   image.ranges = {{0, 100, "level"}};
   add_instances(image, t);
-  image.tasks = {{"Fast", 10'000'000, 100'000'000, 1, {kMainInstance}}};
+  image.tasks = {{"Fast", 10'000'000, 100'000'000, 1, 0, {kMainInstance}}};
   image.io = {{{ir::DirectArea::kInput, 0, 1}, kIn, image.types.elementary(Kind::kBool)},
               {{ir::DirectArea::kOutput, 0, 1}, kOut, image.types.elementary(Kind::kBool)}};
   image.retain = {{kCount, 4}};

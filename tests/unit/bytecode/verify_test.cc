@@ -314,7 +314,7 @@ TEST(Verify, V11_CallGraphAndStack) {
       i.instances[7 + n].data = 448 + 16 * n;
     }
     i.data.push_back({640 + kFb, {7, 0, 0, 0, 8, 0, 0, 0, 9, 0, 0, 0}});
-    i.tasks.push_back({"Slow", 20'000'000, 100'000'000, 2, {6}});
+    i.tasks.push_back({"Slow", 20'000'000, 100'000'000, 2, 0, {6}});
     set_code(i, kMainPou, kRet);
   });
 }
@@ -433,7 +433,7 @@ TEST(Verify, V14_InputsAndOutputs) {
     i.instances[6].data = 448;
     i.instances[6].pou = 3;
     i.instances[6].live = true;
-    i.tasks.push_back({"Slow", 20'000'000, 100'000'000, 1, {6}});
+    i.tasks.push_back({"Slow", 20'000'000, 100'000'000, 1, 0, {6}});
   });
 }
 

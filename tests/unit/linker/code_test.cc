@@ -1,4 +1,5 @@
 // A12, relocation, far operands, stack and call graph.
+#include "base/limits.h"
 #include "tests/unit/linker/linked.h"
 #include "tests/unit/program/sample.h"
 
@@ -243,6 +244,15 @@ TEST(Linking, EqualConstantsShareOnePlaceInThePool) {
                     "  b0:\n    v0 = const i16 5\n    store i16 global.g, v0\n"
                     "    v1 = const f64 2.5\n    store f64 global.h, v1\n    return\n"));
   EXPECT_EQ(image.pool.size(), 16u);
+}
+
+TEST(Linking, RefusesMorePousThanAnImageNumbers) {
+  const ir::Program program = parsed(ir::kSample);
+  std::vector<ir::Object> objects(base::kMaxPous + 1, objects_of(program)[0]);
+  for (size_t i = 0; i < objects.size(); ++i) objects[i].name = "pou" + std::to_string(i);
+  base::Result<ir::Image> image = link(program, objects, {});
+  ASSERT_FALSE(image.ok());
+  EXPECT_EQ(image.error().refusal, base::Refusal::kTooMany);
 }
 
 }  // namespace

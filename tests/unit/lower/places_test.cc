@@ -218,7 +218,7 @@ TEST(Places, CallsNativesThroughTheirSlots) {
     store i16 self.i, v2
     return
 )"),
-            "STR narg0, s:text, capacity 10\nNATIVE native 12\nMOV_32 f2, narg0\n"
+            "STR narg0, s:text, capacity 10\nNATIVE native 11\nMOV_32 f2, narg0\n"
             "NARROW_32_16 f3, f2\nMOV_16 s:i, f3\nRET\n");
 }
 

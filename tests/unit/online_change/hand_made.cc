@@ -264,6 +264,8 @@ online_change::Plan Running::change(const Version& next) {
   };
   EXPECT_TRUE(transfer_->read(memory_.data(), collect, nullptr));
   EXPECT_TRUE(transfer_->save(memory_.data(), nullptr));
+  back_ = std::make_unique<Transfer>(inverse_, next.image, version_->image, Transfer::Steps::kAll);
+  EXPECT_TRUE(back_->remember(memory_.data(), nullptr));
   EXPECT_TRUE(transfer_->write(memory_.data(), nullptr));
   previous_ = version_;
   version_ = &next;
@@ -271,11 +273,9 @@ online_change::Plan Running::change(const Version& next) {
 }
 
 void Running::undo() {
-  online_change::Transfer back(inverse_, version_->image, previous_->image,
-                               online_change::Transfer::Steps::kAll);
-  EXPECT_TRUE(back.read_back(memory_.data(), *transfer_, nullptr));
-  EXPECT_TRUE(back.save(memory_.data(), nullptr));
-  EXPECT_TRUE(back.write(memory_.data(), nullptr));
+  EXPECT_TRUE(back_->read_back(memory_.data(), *transfer_, nullptr));
+  EXPECT_TRUE(back_->save(memory_.data(), nullptr));
+  EXPECT_TRUE(back_->write(memory_.data(), nullptr));
   std::swap(version_, previous_);
 }
 

@@ -88,6 +88,7 @@ class Running {
   online_change::Plan forward_;
   online_change::Plan inverse_;
   std::unique_ptr<online_change::Transfer> transfer_;
+  std::unique_ptr<online_change::Transfer> back_;
   std::vector<online_change::Loss> losses_;
 };
 

@@ -29,7 +29,7 @@ TEST(Declaration, SectionsAndQualifiers) {
       "VAR_GLOBAL CONSTANT\n  m : INT := 2\nPROGRAM p\n  VAR_INPUT\n    a : INT\n"
       "  VAR_OUTPUT\n    b : INT\n  VAR_IN_OUT\n    c : INT\n  VAR_TEMP\n    d : INT\n"
       "  VAR_EXTERNAL\n    e : INT\n  VAR CONSTANT\n    f : INT := 1\n  VAR RETAIN\n"
-      "    g : INT\n  VAR RETAIN\n    h : INT\n  VAR\n    i : INT\n  VAR RETAIN\n    j : INT\n"
+      "    g : INT\n  VAR RETAIN\n    h : INT\n  VAR NON_RETAIN\n    i : INT\n  VAR RETAIN\n    j : INT\n"
       "  VAR\n    retain : INT\n    constant, k : INT\n");
 }
 
@@ -74,7 +74,7 @@ TEST(Declaration, Configuration) {
                          "  PROGRAM a WITH fast : Main(in := g, out => h);\n"
                          "  PROGRAM b : Idle;\n"
                          "END_RESOURCE\nEND_CONFIGURATION"),
-            "CONFIGURATION c\n  VAR_GLOBAL\n    g : INT\n  RESOURCE r\n    VAR_GLOBAL\n"
+            "CONFIGURATION c\n  VAR_GLOBAL\n    g : INT\n  RESOURCE r ON PLC\n    VAR_GLOBAL\n"
             "      h : BOOL\n    TASK fast INTERVAL T#10000000ns PRIORITY 1\n"
             "    TASK edge SINGLE h PRIORITY 2\n    PROGRAM a WITH fast : Main(in := g, out => h)\n"
             "    PROGRAM b : Idle\n");

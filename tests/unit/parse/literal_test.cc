@@ -110,13 +110,18 @@ TEST(Literal, BadDates) {
 }
 
 TEST(Literal, Strings) {
-  EXPECT_EQ(decode_string("'abc'").bytes, "abc");
-  EXPECT_EQ(decode_string("''").bytes, "");
-  EXPECT_EQ(decode_string("'$$$'$\"$L$N$P$R$T$0A$e4'").bytes, "$'\"\n\n\f\r\t\n\xE4");
-  EXPECT_EQ(decode_string("'\xC3\xA4'").bytes, "\xC3\xA4");
-  EXPECT_EQ(problem(decode_string("'cost $5'")), "E0005");
-  EXPECT_EQ(problem(decode_string("'$")), "E0005");
-  EXPECT_EQ(problem(decode_string("'$5G'")), "E0005");
+  EXPECT_EQ(decode_string("'abc'", StringCharset::kUtf8Source).bytes, "abc");
+  EXPECT_EQ(decode_string("''", StringCharset::kUtf8Source).bytes, "");
+  EXPECT_EQ(decode_string("'$$$'$\"$L$N$P$R$T$0A$e4'", StringCharset::kUtf8Source).bytes, "$'\"\n\n\f\r\t\n\xE4");
+  EXPECT_EQ(decode_string("'\xC3\xA4'", StringCharset::kUtf8Source).bytes, "\xE4");
+  EXPECT_EQ(decode_string("'\xC3\xA4'", StringCharset::kUtf8SourceBytes).bytes, "\xC3\xA4");
+  EXPECT_EQ(decode_string("'\xE4'", StringCharset::kLatin1Source).bytes, "\xE4");
+  EXPECT_EQ(decode_string("'\xE4'", StringCharset::kLatin1ToUtf8).bytes, "\xC3\xA4");
+  EXPECT_EQ(problem(decode_string("'\xCE\xA9'", StringCharset::kUtf8Source)), "E0013");
+  EXPECT_EQ(problem(decode_string("'\xCE\xA9'", StringCharset::kUtf8SourceBytes)), "");
+  EXPECT_EQ(problem(decode_string("'cost $5'", StringCharset::kUtf8Source)), "E0005");
+  EXPECT_EQ(problem(decode_string("'$", StringCharset::kUtf8Source)), "E0005");
+  EXPECT_EQ(problem(decode_string("'$5G'", StringCharset::kUtf8Source)), "E0005");
 }
 
 TEST(Literal, WideStrings) {
@@ -152,11 +157,24 @@ TEST(Literal, Addresses) {
 }
 
 TEST(Literal, BadAddresses) {
-  for (const char* text : {"%X3", "%*", "%I", "%IX", "%IZ3", "%IX1.8", "%IX1.2.3", "%IW1.2",
+  for (const char* text : {"%*", "%I", "%IX", "%IZ3", "%IX1.8", "%IX1..3", "%Z3", "%IW1*",
                            "%IX1a", "%IX99999999999", "%ID999999999", "%IX900000000.1"}) {
     EXPECT_EQ(problem(decode_address(text)), "E0011") << text;
   }
-  EXPECT_EQ(problem(decode_address("%I*")), "E1090");
+}
+
+TEST(Literal, OpenRelativeAndHierarchicalAddresses) {
+  EXPECT_TRUE(decode_address("%I*").incomplete);
+  EXPECT_EQ(decode_address("%I*").address.bit_size, 0u);
+  EXPECT_TRUE(decode_address("%qw*").incomplete);
+  EXPECT_EQ(decode_address("%qw*").address.bit_size, 16u);
+  EXPECT_EQ(decode_address("%B12").address.area, ir::DirectArea::kNone);
+  EXPECT_EQ(decode_address("%B12").address.bit_offset, 96u);
+  EXPECT_EQ(decode_address("%X1.3").address.bit_offset, 11u);
+  EXPECT_EQ(decode_address("%IW2.5.7.1").levels, (std::vector<uint32_t>{2, 5, 7, 1}));
+  EXPECT_TRUE(decode_address("%IX2.5").levels.empty());
+  EXPECT_EQ(problem(decode_address("%IW1.2.3.4.5.6.7.8")), "");  // kMaxAddressLevels
+  EXPECT_EQ(problem(decode_address("%IW1.2.3.4.5.6.7.8.9")), "E0011");
 }
 
 TEST(Literal, Parts) {

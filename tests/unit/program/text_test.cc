@@ -159,7 +159,7 @@ TEST(OpTable, KnowsTerminators) {
   EXPECT_FALSE(op_has_result(Op::kStore));
   EXPECT_TRUE(is_terminator(Op::kTrap));
   EXPECT_FALSE(is_terminator(Op::kTaskTime));
-  EXPECT_EQ(static_cast<uint32_t>(Op::kTrap) + 1, kOpCount);
+  EXPECT_EQ(static_cast<uint32_t>(Op::kEndTry) + 1, kOpCount);
   EXPECT_STREQ(trap_name(TrapKind::kForStep), "for-step");
 }
 

@@ -177,5 +177,26 @@ TEST(NativeCharset, WideUnitsCompareByValueNotByByte) {
   EXPECT_EQ(static_cast<int64_t>(call(NativeId::kCompareW, {small.arg(), large.arg()})), -1);
 }
 
+TEST(NativeCharacters, BehindTheEndThereAreZerosAndWritingFillsWithBlanks) {
+  const struct {
+    uint32_t unit;
+    NativeId get, set;
+  } kinds[] = {{1, NativeId::kCharacterS, NativeId::kSetCharacterS},
+               {2, NativeId::kCharacterW, NativeId::kSetCharacterW}};
+  for (const auto& kind : kinds) {
+    Text text(6, "abc", kind.unit);
+    EXPECT_EQ(call(kind.get, {text.arg(), number(2)}), uint64_t{'c'});
+    EXPECT_EQ(call(kind.get, {text.arg(), number(3)}), 0u);
+    EXPECT_EQ(call(kind.get, {text.arg(), number(-1)}), 0u);
+    call(kind.set, {text.arg(), number(1), number('X')});
+    call(kind.set, {text.arg(), number(5), number('Z')});
+    EXPECT_EQ(text.value(), "aXc  Z");
+    call(kind.set, {text.arg(), number(6), number('!')});
+    EXPECT_EQ(text.value(), "aXc  Z");
+    call(kind.set, {text.arg(), number(1), number(0)});
+    EXPECT_EQ(text.value(), "a");
+  }
+}
+
 }  // namespace
 }  // namespace stdlib::testing

@@ -63,11 +63,6 @@ TEST(NativeMath, Atan2TakesYFirst) {
   EXPECT_DOUBLE_EQ(real_call(NativeId::kAtan2, {1.0, 0.0}), 1.5707963267948966);
 }
 
-TEST(NativeMath, FmodHasTheSignOfTheFirst) {
-  EXPECT_DOUBLE_EQ(real_call(NativeId::kFmod, {-7.5, 2.0}), -1.5);
-  EXPECT_DOUBLE_EQ(real_call(NativeId::kFmod, {7.5, -2.0}), 1.5);
-}
-
 TEST(NativeMath, OutsideTheDomainIsNotANumber) {
   EXPECT_TRUE(std::isnan(real_call(NativeId::kLn, {-1.0})));
   EXPECT_TRUE(std::isnan(real_call(NativeId::kAsin, {2.0})));

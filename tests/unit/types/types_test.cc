@@ -107,5 +107,48 @@ TEST(Names, FoldAsciiOnly) {
   EXPECT_EQ(fold_name("A_z9[`"), "a_z9[`");
 }
 
+TEST(Types, ReferencesAreInternedByTargetAndMayLeadBackToThemselves) {
+  TypeTable types;
+  Type node;
+  node.kind = Kind::kStruct;
+  node.name = "Node";
+  const TypeId id = types.declare(node);
+  const TypeId pointer = types.pointer(id);
+  Member next;
+  next.name = "next";
+  next.type = pointer;
+  types.edit(id).members.push_back(next);
+  EXPECT_EQ(types.pointer(id), pointer);
+  EXPECT_NE(types.ref_to(id), pointer);
+  EXPECT_EQ(types.text(pointer), "POINTER TO Node");
+  EXPECT_EQ(types.text(types.ref_to(types.elementary(Kind::kInt))), "REF_TO INT");
+  EXPECT_EQ(types.text(types.reference_to(types.array(pointer, {{0, 3}}))),
+            "REFERENCE TO ARRAY[0..3] OF POINTER TO Node");
+  EXPECT_TRUE(types.is_scalar(pointer));
+  EXPECT_EQ(types.scalar(pointer), Scalar::kU64);
+  EXPECT_TRUE(types.is_reference(pointer));
+}
+
+TEST(Types, MembersOfAUnionOverlap) {
+  TypeTable types;
+  Type both;
+  both.kind = Kind::kUnion;
+  Member member;
+  member.name = "raw";
+  member.type = types.elementary(Kind::kDword);
+  both.members.push_back(member);
+  member.name = "real";
+  member.type = types.elementary(Kind::kReal);
+  both.members.push_back(member);
+  const TypeId id = types.declare(both);
+  EXPECT_TRUE(types.overlaps(id));
+  EXPECT_TRUE(types.has_members(id));
+  EXPECT_EQ(types.text(id), "UNION raw : DWORD; real : REAL; END_UNION");
+  both.kind = Kind::kStruct;
+  EXPECT_FALSE(types.overlaps(types.declare(both)));
+  both.overlap = true;
+  EXPECT_TRUE(types.overlaps(types.declare(both)));
+}
+
 }  // namespace
 }  // namespace ir

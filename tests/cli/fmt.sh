@@ -1,0 +1,72 @@
+#!/bin/sh
+# stc fmt: exit codes, what is written and what is not.
+. "$(dirname "$0")/lib.sh"
+
+loose() { printf 'program p var n:int;end_var\nn:=1;end_program\n'; }
+tidy() { printf 'PROGRAM p\nVAR n : int; END_VAR\n  n := 1;\nEND_PROGRAM\n'; }
+loose >a.st
+tidy >want.st
+printf 'PROGRAM p n := ; END_PROGRAM\n' >bad.st
+cp bad.st bad.orig
+
+expect 1 stc fmt --check a.st
+said '^a\.st$'
+expect 1 stc fmt --diff a.st
+said '^-n:=1;end_program$'
+said '^\+  n := 1;$'
+patch -s -o patched.st a.st out && cmp patched.st want.st || fail "--diff is no patch"
+expect 1 stc fmt --check --format json a.st want.st
+said '"file":"a.st","status":"changed"'
+said '"file":"want.st","status":"unchanged"'
+said '"changed":1,"errors":0'
+loose | cmp - a.st || fail "--check wrote"
+
+chmod 640 a.st
+expect 0 stc fmt a.st
+silent_on out
+cmp a.st want.st || fail "not formatted"
+[ "$(stat -c %a a.st)" = 640 ] || fail "permissions changed"
+expect 0 stc fmt --check a.st
+
+expect 1 stc fmt bad.st
+said 'bad\.st:1:16: error\[E1005\]'
+cmp bad.st bad.orig || fail "a file with errors was changed"
+loose >c.st
+expect 1 stc fmt bad.st c.st
+cmp c.st want.st || fail "the good file beside the bad one was left"
+expect 1 stc fmt --check --format json bad.st
+said '"status":"error"'
+
+mkdir -p project/sub
+loose >project/sub/a.st
+ln -s sub/a.st project/link.st
+printf '[format]\nindent = 4\nkeyword_case = "keep"\n' >project/stc.toml
+expect 0 stc fmt project
+grep -q '^    n := 1;$' project/sub/a.st || fail "stc.toml not used"
+[ -L project/link.st ] || fail "a link was replaced"
+loose >project/sub/a.st
+expect 0 stc fmt project/sub/a.st
+grep -q '^    n := 1;$' project/sub/a.st || fail "stc.toml above the file not used"
+expect 0 stc check project/sub/a.st
+printf '[format]\nwidth = 5\n' >project/stc.toml
+expect 7 stc fmt project
+said 'format.width. must be a whole number between 40 and 1000'
+expect 7 stc check project
+printf '[format]\ncolour = 5\n' >project/stc.toml
+expect 7 stc fmt project
+said 'known in \[format\] are indent'
+
+loose | { "$bin/stc" fmt --stdin >out 2>err || fail "--stdin"; }
+cmp out want.st || fail "--stdin"
+if "$bin/stc" fmt --stdin <bad.st >out 2>err; then fail "--stdin with errors"; fi
+silent_on out
+expect 2 stc fmt
+expect 2 stc fmt --stdin a.st
+expect 2 stc fmt --format sarif a.st
+expect 7 stc fmt nothing.st
+if ls -R | grep -q tmp; then fail "temporary files left"; fi
+
+# Line ends and other bytes.
+printf '\357\273\277program p\r\n(* \344 *)\r\nend_program\r\n' >dos.st
+expect 0 stc fmt dos.st
+printf '\357\273\277PROGRAM p\r\n  (* \344 *)\r\nEND_PROGRAM\r\n' | cmp - dos.st || fail "bytes"

@@ -1,0 +1,132 @@
+#!/bin/sh
+# stc test: tests in the language on virtual time (language.md, "Unit tests in the language").
+. "$(dirname "$0")/lib.sh"
+
+cat >pump.st <<'ST'
+FUNCTION ReadTemperature : REAL
+VAR_INPUT channel : INT; END_VAR
+ReadTemperature := 20.0 + INT_TO_REAL(channel);
+END_FUNCTION
+
+FUNCTION_BLOCK Pump
+VAR_INPUT run : BOOL; END_VAR
+VAR_OUTPUT speed : INT; hot : BOOL; END_VAR
+VAR delay : TON; END_VAR
+delay(IN := run, PT := T#5s);
+IF delay.Q THEN speed := 10; ELSE speed := 0; END_IF
+hot := ReadTemperature(1) > 50.0;
+END_FUNCTION_BLOCK
+ST
+
+cat >pump_test.st <<'ST'
+SETUP
+VAR uut : Pump; END_VAR
+uut(run := FALSE);
+END_SETUP
+
+TEST 'starts after five seconds'
+uut(run := TRUE);
+ASSERT_EQ(uut.speed, 0);
+ADVANCE_TIME(T#5s);
+uut(run := TRUE);
+ASSERT_EQ(uut.speed, 10);
+END_TEST
+
+TEST 'every test begins anew'
+ASSERT_EQ(uut.speed, 0);
+ASSERT_NEQ(uut.speed, 1);
+ASSERT_LT(uut.speed, 1);
+ASSERT_LE(uut.speed, 0);
+ASSERT_GT(1, uut.speed);
+ASSERT_GE(0, uut.speed);
+ASSERT_FALSE(uut.hot);
+ASSERT_NEAR(ReadTemperature(2), 22.01, 0.02);
+END_TEST
+
+TEST 'a mocked function'
+MOCK_FUNCTION ReadTemperature RETURNS 77.0;
+uut();
+ASSERT_TRUE(uut.hot);
+MOCK_VERIFY_CALLED(ReadTemperature);
+MOCK_VERIFY_CALL_COUNT(ReadTemperature, 2);
+END_TEST
+
+TEST 'a mocked function with a body'
+MOCK_FUNCTION ReadTemperature : REAL
+VAR_INPUT channel : INT; END_VAR
+ReadTemperature := INT_TO_REAL(channel) * 100.0;
+END_MOCK_FUNCTION
+ASSERT_EQ(ReadTemperature(3), 300.0);
+END_TEST
+
+TEST 'a mocked block'
+MOCK uut;
+uut(run := TRUE);
+ADVANCE_TIME(T#9s);
+uut(run := TRUE);
+ASSERT_EQ(uut.speed, 0);
+MOCK_VERIFY_CALL_COUNT(uut, 3);
+END_TEST
+ST
+
+expect 0 stc test pump.st pump_test.st
+said '5 passed, 0 failed'
+said 'PASS .*starts after five seconds.*pump_test.st:6'
+
+cat >wrong_test.st <<'ST'
+TEST 'too early'
+VAR uut : Pump; END_VAR
+uut(run := TRUE);
+ASSERT_EQ(uut.speed, 10, 'speed & delay');
+END_TEST
+
+TEST 'strings'
+ASSERT_EQ(CONCAT('ab', 'c'), 'abd');
+END_TEST
+
+TEST 'division'
+VAR a, b : INT; END_VAR
+a := 1 / b;
+END_TEST
+
+TEST 'endless'
+WHILE TRUE DO ; END_WHILE
+END_TEST
+ST
+expect 1 stc test pump.st wrong_test.st
+said '0 passed, 2 failed, 2 stopped by a trap'
+said 'wrong_test.st:4: speed & delay: expected 10, got 0'
+said 'wrong_test.st:8: expected abd, got abc'
+said 'wrong_test.st:13: division or MOD by zero'
+said 'wrong_test.st:17: the task ran too long'
+
+expect 0 stc test pump.st pump_test.st --filter '*mocked b*'
+said '1 passed'
+expect 1 stc test pump.st pump_test.st --filter nothing
+said 'no test matches'
+expect 0 stc test pump.st pump_test.st --list
+said 'pump_test.st:6: starts after five seconds'
+
+expect 1 stc test pump.st wrong_test.st --format tap
+said '^1\.\.4'
+said '^not ok 1 - too early'
+expect 1 stc test pump.st wrong_test.st --format junit
+said 'tests="4" failures="2" errors="2"'
+said 'message="speed &amp; delay: expected 10, got 0"'
+expect 1 stc test pump.st wrong_test.st --format json
+said '"failed":2'
+expect 1 stc test pump.st wrong_test.st --format junit --output report.xml
+said '0 passed, 2 failed'
+grep -q '</testsuites>' report.xml || fail "no report"
+expect 2 stc test pump.st pump_test.st --format xml
+said 'unknown format'
+
+# Outside of tests nothing may set the clock; a plain build takes no notice of tests.
+printf 'PROGRAM p ADVANCE_TIME(T#1s); END_PROGRAM\n' >outside.st
+expect 1 stc check outside.st
+said 'E8002'
+printf 'TEST %s MOCK_FUNCTION SIN RETURNS 0.5; END_TEST\n' "'m'" >mock.st
+expect 1 stc test mock.st
+said 'E8001'
+printf 'PROGRAM Main VAR n : INT; END_VAR n := n + 1; END_PROGRAM\n' >main.st
+expect 0 stc build main.st pump.st pump_test.st -o main.img

@@ -1,0 +1,190 @@
+// Builds one random program: types first, then POUs, each with the names that it sees. Everything
+// is decided by the seed. What the compiler refuses by rule (overflow of constants, labels
+// that overlap, recursion, endless loops) is never built; what traps is, now and then.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "frontend/parse/tree.h"
+#include "stdlib/registry.h"
+#include "tests/differential/generator.h"
+#include "tests/differential/random.h"
+#include "tests/differential/tree.h"
+
+namespace differential {
+
+// Where a value can stand: "parts[@0].m3", with an index per hole.
+struct Place {
+  std::string pattern;
+  std::vector<Bounds> holes;
+  TypeRef type = kNoType;
+  bool writable = true;
+  bool constant = false;
+};
+
+struct Interface {  // of a function or function block, as its callers see it
+  std::string name;
+  TypeRef result = kNoType;
+  TypeRef block = kNoType;  // the type of instances
+  std::vector<Variable> inputs;
+  std::vector<Variable> outputs;
+  std::vector<Variable> in_outs;
+};
+
+class Builder {
+ public:
+  explicit Builder(uint64_t seed);
+  Program run();
+
+ private:
+  // --- types (types.cc)
+  void declare_types();
+  void declare_enum();
+  void declare_subrange();
+  void declare_struct();
+  void declare_array();
+  TypeRef add_type(Type type);
+  TypeRef declared(Type type);
+  TypeRef string_type(bool wide, uint32_t capacity);
+  TypeRef array_of(TypeRef element, std::vector<Bounds> dims);
+  TypeRef any_scalar();  // elementary, enumeration, subrange or string
+  TypeRef any_elementary();
+  TypeRef any_data();  // also aggregates
+  bool is(TypeRef type, Form form) const { return program_[type].form == form; }
+  bool is_text(TypeRef type) const { return is(type, Form::kString) || is(type, Form::kWstring); }
+  bool is_aggregate(TypeRef type) const {
+    return is(type, Form::kArray) || is(type, Form::kStruct);
+  }
+  ir::Group group(TypeRef type) const;
+  bool is_integer(TypeRef type) const;
+  bool is_bits(TypeRef type) const;  // without BOOL
+  bool is_number(TypeRef type) const { return is_integer(type) || group(type) == ir::Group::kReal; }
+  std::string name_of(TypeRef type) const { return type_text(program_, type); }
+  // The range of an integer or subrange, cut to 64 bits signed.
+  Bounds range(TypeRef type) const;
+
+  // --- literals (literals.cc)
+  Expr literal(TypeRef type, bool bare = false);
+  Expr constant_text(TypeRef type, std::string text);
+  std::string integer_text(TypeRef type, int64_t value, bool bare);
+  std::string random_integer(TypeRef type, bool bare);
+  std::string random_real(TypeRef type, bool bare);
+  std::string random_time(TypeRef type);
+  std::string random_text(bool wide, uint32_t length);
+  Expr initial(TypeRef type);
+
+  // --- names in sight (places.cc)
+  void see(const Variable& variable, bool writable, bool constant = false);
+  void see_inside(Place place);
+  void forget();
+  const Place* find(TypeRef type, bool writable);
+  const Place* find_text(bool wide, bool writable);
+  Expr use(const Place& place, int depth);
+  Expr index(Bounds bounds, int depth);
+  std::optional<Expr> variable(TypeRef type);  // any text of the kind for strings
+  std::optional<Expr> target(TypeRef type);    // to be written, exactly that type
+  Expr read(TypeRef type);                     // a variable, or something not constant
+
+  // --- expressions (expressions.cc, operators.cc, standard.cc)
+  bool possible(TypeRef type);
+  Expr expression(TypeRef type, int depth);
+  Expr operation(TypeRef type, int depth);
+  Expr node(TypeRef type, std::string pattern, std::vector<Expr> operands);
+  Expr enum_operation(TypeRef type, int depth);
+  Expr subrange_operation(TypeRef type, int depth);
+  Expr bool_operation(int depth);
+  Expr integer_operation(TypeRef type, int depth);
+  Expr bits_operation(TypeRef type, int depth);
+  Expr real_operation(TypeRef type, int depth);
+  Expr duration_operation(TypeRef type, int depth);
+  Expr date_operation(TypeRef type, int depth);
+  Expr text_operation(TypeRef type, int depth);
+  Expr division(TypeRef type, int depth);
+  Expr conversion(TypeRef to, int depth);
+  bool convertible(TypeRef from, TypeRef to) const;
+  std::string plain_name(TypeRef type) const;
+  Expr small_real(TypeRef type, int depth);
+  Expr small_integer(TypeRef type, int64_t low, int64_t high, int depth);
+  std::optional<TypeRef> narrower(TypeRef type);
+  std::optional<Expr> standard(TypeRef type, int depth);
+  bool gives(const stdlib::FunctionRow& row, TypeRef type) const;
+  std::vector<Expr> standard_operands(const stdlib::FunctionRow& row, TypeRef type, int depth);
+  static TypeRef named_type(std::string_view name);
+  std::vector<Expr> moment_parts(const stdlib::FunctionRow& row, int depth);
+  static std::string parameter_name(const stdlib::FunctionRow& row, uint32_t number);
+  std::optional<Stmt> split_call(int depth);
+  std::optional<Expr> function_call(TypeRef type, int depth);
+
+  // --- calls (calls.cc)
+  std::optional<std::vector<Expr>> arguments(const Interface& callee, bool block, int depth);
+  bool callable(const Interface& callee);
+  void read_library();
+  void library_block(const frontend::Tree& tree, const frontend::PouDecl& pou);
+  TypeRef library_type(const frontend::Spec& spec);
+
+  // --- statements (statements.cc, loops.cc)
+  std::vector<Stmt> statements(uint32_t count, int depth);
+  Stmt statement(int depth);
+  Stmt simple(std::string head, std::vector<Expr> operands);
+  Stmt assignment();
+  std::optional<Stmt> aggregate_assignment();
+  std::optional<Stmt> bit_assignment();
+  std::optional<Stmt> block_call(int depth);
+  std::optional<Stmt> call_statement(int depth);
+  std::optional<Stmt> chain();
+  std::optional<Stmt> set_or_reset();
+  Stmt jump_over(int depth);
+  Stmt if_statement(int depth);
+  Stmt case_statement(int depth);
+  Stmt case_integer(int depth);
+  Stmt case_enum(TypeRef type, int depth);
+  Stmt for_statement(int depth);
+  Stmt while_statement(int depth);
+  Stmt leave(const char* word);
+
+  // --- declarations (pous.cc)
+  void globals();
+  void function(uint32_t index);
+  void block(uint32_t index);
+  void program(uint32_t index, uint32_t count);
+  void tasks(uint32_t count);
+  VarBlock& section(Pou& pou, Section kind);
+  Variable& declare(Pou& pou, Section kind, TypeRef type, bool with_initial = true);
+  void parameters(Pou& pou, Interface& face);
+  void locals(Pou& pou, uint32_t count);
+  void loop_variables(Pou& pou);
+  void instances(Pou& pou);
+  void body(Pou& pou, uint32_t count, int depth);
+
+  uint32_t below(uint32_t n) { return random_.below(n); }
+  bool one_in(uint32_t n) { return random_.one_in(n); }
+  std::string fresh(const char* prefix) { return prefix + std::to_string(next_name_++); }
+
+  Random random_;
+  Program program_;
+  std::map<TypeRef, std::vector<Place>> places_;
+  std::map<std::pair<bool, uint32_t>, TypeRef> strings_;
+  std::vector<TypeRef> enums_;
+  std::vector<TypeRef> subranges_;
+  std::vector<TypeRef> structs_;
+  std::vector<TypeRef> arrays_;
+  std::vector<TypeRef> holders_;  // structures with function blocks in them
+  std::vector<Interface> functions_;
+  std::vector<Interface> blocks_;   // of the program, callable by those that follow
+  std::vector<Interface> library_;  // standard function blocks
+  std::vector<Variable> global_variables_;
+  std::vector<Variable> global_constants_;
+  std::map<TypeRef, Interface> faces_;                  // by the type of instances
+  std::vector<std::pair<std::string, TypeRef>> loops_;  // counters that the POU has
+  uint32_t loop_level_ = 0;
+  uint32_t rounds_ = 1;  // of all open loops together
+  uint32_t next_name_ = 0;
+  uint32_t inside_index_ = 0;
+  bool guarded_ = false;  // a WHILE or REPEAT is open
+  PouKind kind_ = PouKind::kFunction;
+};
+
+}  // namespace differential

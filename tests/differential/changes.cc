@@ -1,0 +1,257 @@
+#include "tests/differential/changes.h"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "ir/program/evaluate.h"
+#include "ir/types/value_text.h"
+#include "tests/differential/random.h"
+#include "tests/differential/rig.h"
+#include "tests/golden/runner/evaluator_engine.h"
+
+namespace differential {
+namespace {
+
+using Wide = __int128;
+
+Finding failure(std::string key, std::string text) {
+  Finding out;
+  out.failed = true;
+  out.key = std::move(key);
+  out.text = std::move(text);
+  return out;
+}
+
+Finding skipped() {
+  Finding out;
+  out.key = "skipped";
+  return out;
+}
+
+std::optional<golden::Program> compiled(const std::string& source) {
+  golden::TestFile test;
+  test.name = "random.st";
+  test.versions.push_back(source);
+  golden::Outcome outcome;
+  base::Result<golden::Program> program = golden::compile(test, 0, outcome);
+  if (!program.ok()) return std::nullopt;
+  return std::move(*program);
+}
+
+bool is_whole(const ir::TypeTable& types, ir::TypeId type) {
+  if (!types.is_scalar(type) || types[type].kind == ir::Kind::kEnum) return false;
+  ir::Group group = ir::elementary_group(types.root_kind(type));
+  return group == ir::Group::kSigned || group == ir::Group::kUnsigned || group == ir::Group::kBit;
+}
+
+// What a whole number becomes in another whole type (A14): itself, or the nearest that fits.
+std::optional<std::string> expected_whole(const ir::TypeTable& from_types, const Leaf& from,
+                                          const ir::TypeTable& to_types, const Leaf& to,
+                                          uint64_t bits) {
+  if (!is_whole(from_types, from.symbol.type) || !is_whole(to_types, to.symbol.type)) {
+    return std::nullopt;
+  }
+  ir::Scalar source = from_types.scalar(from.symbol.type);
+  ir::Scalar target = to_types.scalar(to.symbol.type);
+  Wide value = ir::is_signed(source) ? Wide{static_cast<int64_t>(bits)} : Wide{bits};
+  uint32_t width = target == ir::Scalar::kBool ? 1 : ir::scalar_size(target) * 8;
+  Wide low = ir::is_signed(target) ? -(Wide{1} << (width - 1)) : Wide{0};
+  Wide high = (Wide{1} << (ir::is_signed(target) ? width - 1 : width)) - 1;
+  if (to_types[to.symbol.type].kind == ir::Kind::kSubrange) {
+    low = to_types[to.symbol.type].low;
+    high = to_types[to.symbol.type].high;
+  }
+  // Every number but 0 is TRUE.
+  if (target == ir::Scalar::kBool && value < 0) value = 1;
+  value = std::min(high, std::max(low, value));
+  return ir::scalar_text(to_types, to.symbol.type, static_cast<uint64_t>(value));
+}
+
+// Is `name` one of the names in `path`?
+bool names(const std::string& path, const std::string& name) {
+  for (size_t at = path.find(name); at != std::string::npos; at = path.find(name, at + 1)) {
+    size_t end = at + name.size();
+    bool begins = at == 0 || path[at - 1] == '.';
+    if (begins && (end == path.size() || path[end] == '.' || path[end] == '[')) return true;
+  }
+  return false;
+}
+
+class Examination {
+ public:
+  Examination(const golden::Program& first, const golden::Program& second)
+      : first_(first), second_(second) {}
+
+  Finding run(const ChangeScript& script) {
+    base::Result<std::unique_ptr<Rig>> rig = Rig::start(first_);
+    if (!rig.ok()) return failure("start", base::to_string(rig.error()));
+    rig_ = std::move(*rig);
+    period_ns_ = golden::base_period_ns(first_.program);
+    for (int i = 0; i < script.scans_before; ++i) {
+      if (!scan().empty()) return skipped();
+    }
+    old_types_ = rig_->image().types;
+    before_ = rig_->leaves();
+    for (const auto& [path, leaf] : before_) {
+      if (old_types_.is_scalar(leaf.symbol.type)) bits_[path] = rig_->scalar_bits(leaf);
+    }
+    base::Status changed = rig_->change(second_);
+    if (!changed.ok()) return change_refused(changed.error());
+    after_ = rig_->leaves();
+    check_switch();
+    if (!out_.failed) check_run(script.scans_after);
+    if (!out_.failed && !trapped_) check_undo();
+    return out_;
+  }
+
+ private:
+  std::string scan() {
+    now_ns_ += period_ns_;
+    return rig_->scan();
+  }
+
+  Finding change_refused(const base::Error& error) {
+    bool legal =
+        error.refusal == base::Refusal::kNoChange || error.refusal == base::Refusal::kOutOfMemory;
+    if (legal) return skipped();
+    return failure("refused " + base::to_string(error).substr(0, 5), base::to_string(error));
+  }
+
+  void wrong(const std::string& key, const std::string& path, const std::string& is,
+             const std::string& should) {
+    if (out_.failed) return;
+    out_ = failure(key, key + ": " + path + " is " + is + ", should be " + should);
+    out_.expected = path + "=" + should;
+  }
+
+  void check_switch() {
+    base::Result<std::unique_ptr<Rig>> cold = Rig::start(second_);
+    if (!cold.ok()) {
+      out_ = failure("cold start", base::to_string(cold.error()));
+      return;
+    }
+    Leaves fresh = (*cold)->leaves();
+    const ir::TypeTable& types = rig_->image().types;
+    for (const auto& [path, leaf] : after_) {
+      auto old = before_.find(path);
+      if (leaf.symbol.constant || old == before_.end()) {
+        const std::string& initial = fresh.at(path).value;
+        if (leaf.value != initial) wrong("initial value", path, leaf.value, initial);
+      } else if (old->second.type == leaf.type) {
+        check_kept(path, old->second, leaf);
+      } else if (std::optional<std::string> expected =
+                     expected_whole(old_types_, old->second, types, leaf, bits_[path])) {
+        if (leaf.value != *expected) wrong("converted value", path, leaf.value, *expected);
+      }
+    }
+  }
+
+  // An enumeration is carried by name, so its text stays too.
+  void check_kept(const std::string& path, const Leaf& old, const Leaf& now) {
+    if (old.symbol.constant) return;
+    if (now.value != old.value) return wrong("kept value", path, now.value, old.value);
+    if (now.symbol.data != old.symbol.data && !said_moved(path)) {
+      wrong("kept place", path, std::to_string(now.symbol.data), std::to_string(old.symbol.data));
+    }
+  }
+
+  // A row of the plan may stand for several alike, and names one of them: the variable's own name
+  // decides. Names are unique in a random program.
+  bool said_moved(const std::string& path) const {
+    for (const online_change::FateRow& row : rig_->plan().fates) {
+      if (row.fate == online_change::Fate::kKept) continue;
+      // An area takes all its variables along, in every instance of its type.
+      if (row.reason.starts_with("area")) return true;
+      std::string name = row.path.substr(row.path.rfind('.') + 1);
+      if (names(path, name.substr(0, name.find('[')))) return true;
+    }
+    return false;
+  }
+
+  // From the values that the switch left, the evaluator goes on in the same way.
+  void check_run(int scans) {
+    ir::Evaluator oracle(second_.program);
+    for (const auto& [path, leaf] : after_) {
+      bool scalar = rig_->image().types.is_scalar(leaf.symbol.type);
+      base::Status done = scalar ? oracle.set_bits(path, rig_->scalar_bits(leaf))
+                                 : oracle.set_string(path, rig_->string_bytes(leaf));
+      if (!done.ok()) return wrong("oracle", path, base::to_string(done.error()), "settable");
+    }
+    int64_t now_ns = now_ns_;
+    for (int i = 0; i < scans && !out_.failed && !trapped_; ++i) {
+      std::string trap = scan();
+      std::string expected;
+      for (const ir::EvalTrap& one : oracle.scan(now_ns, 20'000'000)) {
+        if (!expected.empty()) continue;
+        expected =
+            std::string(ir::trap_name(one.kind)) + " " + one.pou + ":" + std::to_string(one.line);
+      }
+      now_ns += period_ns_;
+      trapped_ = !trap.empty();
+      if (trap != expected) return wrong("trap after change", "trap", trap, expected);
+      compare_states(oracle.state());
+    }
+  }
+
+  void compare_states(const std::string& expected) {
+    std::string now = rig_->state();
+    if (now == expected) return;
+    Finding found = first_difference(expected, now);
+    found.failed = true;
+    found.key = "state after change";
+    found.text = found.key + ": " + found.text;
+    out_ = std::move(found);
+  }
+
+  void check_undo() {
+    Leaves last = rig_->leaves();
+    base::Status undone = rig_->undo();
+    if (!undone.ok()) {
+      out_ = failure("undo refused", base::to_string(undone.error()));
+      return;
+    }
+    for (const auto& [path, leaf] : rig_->leaves()) {
+      auto now = last.find(path);
+      const std::string& was = before_.at(path).value;
+      if (now == last.end() || leaf.symbol.constant) {
+        if (leaf.value != was) wrong("undo of dropped", path, leaf.value, was);
+      } else if (now->second.value == after_.at(path).value) {
+        if (leaf.value != was) wrong("undo of unwritten", path, leaf.value, was);
+      } else if (now->second.type == leaf.type && leaf.value != now->second.value) {
+        wrong("undo of kept", path, leaf.value, now->second.value);
+      }
+    }
+  }
+
+  const golden::Program& first_;
+  const golden::Program& second_;
+  std::unique_ptr<Rig> rig_;
+  ir::TypeTable old_types_;
+  Leaves before_;
+  Leaves after_;
+  std::map<std::string, uint64_t> bits_;
+  int64_t period_ns_ = 0;
+  int64_t now_ns_ = 0;
+  bool trapped_ = false;
+  Finding out_;
+};
+
+}  // namespace
+
+ChangeScript change_script(uint64_t seed) {
+  Random random(seed ^ 0x5ca1ab1e);
+  int before = 1 + static_cast<int>(random.below(4));
+  return {before, random.one_in(3) ? 0 : 1 + static_cast<int>(random.below(4))};
+}
+
+Finding examine_change(const std::string& first, const std::string& second,
+                       const ChangeScript& script) {
+  if (first == second) return skipped();
+  std::optional<golden::Program> a = compiled(first);
+  std::optional<golden::Program> b = compiled(second);
+  if (!a || !b) return skipped();
+  return Examination(*a, *b).run(script);
+}
+
+}  // namespace differential

@@ -1,0 +1,199 @@
+// Functions, function blocks, programs, global variables and tasks.
+#include "tests/differential/builder.h"
+
+namespace differential {
+
+VarBlock& Builder::section(Pou& pou, Section kind) {
+  for (VarBlock& block : pou.blocks) {
+    if (block.section == kind) return block;
+  }
+  pou.blocks.push_back({kind, {}});
+  return pou.blocks.back();
+}
+
+Variable& Builder::declare(Pou& pou, Section kind, TypeRef type, bool with_initial) {
+  Variable variable{fresh("v"), type, std::nullopt, {}, {}};
+  if ((with_initial && one_in(3)) || kind == Section::kConstant) variable.initial = initial(type);
+  bool writable = kind != Section::kInput && kind != Section::kConstant;
+  see(variable, writable, kind == Section::kConstant);
+  VarBlock& block = section(pou, kind);
+  block.variables.push_back(std::move(variable));
+  return block.variables.back();
+}
+
+void Builder::parameters(Pou& pou, Interface& face) {
+  for (uint32_t n = 1 + below(3); n > 0; --n) {
+    Variable& input = declare(pou, Section::kInput, any_data());
+    bool edge = input.type == elementary(ir::Kind::kBool) && kind_ != PouKind::kFunction;
+    if (edge && !input.initial && one_in(2)) input.edge = one_in(2) ? "R_EDGE" : "F_EDGE";
+    face.inputs.push_back(input);
+  }
+  for (uint32_t n = below(3); n > 0; --n) {
+    face.outputs.push_back(declare(pou, Section::kOutput, any_data(), false));
+  }
+  for (uint32_t n = one_in(2) ? 1 + below(2) : 0; n > 0; --n) {
+    face.in_outs.push_back(declare(pou, Section::kInOut, any_data(), false));
+  }
+}
+
+// Counters are written by their FOR only; a trap in between would otherwise never come out.
+void Builder::loop_variables(Pou& pou) {
+  for (int level = 0; level < 3; ++level) {
+    TypeRef type = elementary(static_cast<ir::Kind>(1 + below(8)));
+    Variable variable{fresh("loop"), type, std::nullopt, {}, {}};
+    loops_.emplace_back(variable.name, type);
+    section(pou, Section::kLocal).variables.push_back(std::move(variable));
+  }
+  Variable guard{"guard", elementary(ir::Kind::kDint), std::nullopt, {}, {}};
+  places_[guard.type].push_back({"guard", {}, guard.type, false, false});
+  section(pou, Section::kLocal).variables.push_back(std::move(guard));
+  Variable spare{"spare", elementary(ir::Kind::kDint), std::nullopt, {}, {}};
+  see(spare, true);
+  section(pou, Section::kLocal).variables.push_back(std::move(spare));
+}
+
+void Builder::locals(Pou& pou, uint32_t count) {
+  loop_variables(pou);
+  for (uint32_t i = 0; i < count; ++i) declare(pou, Section::kLocal, any_data());
+  if (kind_ != PouKind::kFunction) {
+    for (uint32_t n = below(2); n > 0; --n) declare(pou, Section::kTemp, any_data());
+    for (uint32_t n = below(2); n > 0; --n) declare(pou, Section::kRetain, any_data());
+  }
+  if (one_in(3)) declare(pou, Section::kStatic, any_data());
+  for (uint32_t n = below(3); n > 0; --n) declare(pou, Section::kConstant, any_elementary());
+  for (const Variable& global : global_variables_) see(global, true);
+  for (const Variable& constant : global_constants_) see(constant, false, true);
+}
+
+void Builder::instances(Pou& pou) {
+  for (uint32_t n = below(3); n > 0; --n) {
+    bool own = !blocks_.empty() && one_in(2);
+    const std::vector<Interface>& from = own ? blocks_ : library_;
+    TypeRef type = from[below(static_cast<uint32_t>(from.size()))].block;
+    if (one_in(4)) type = array_of(type, {{0, 1 + static_cast<int>(below(2))}});
+    declare(pou, Section::kLocal, type, false);
+  }
+}
+
+void Builder::body(Pou& pou, uint32_t count, int depth) {
+  for (Stmt& one : statements(count, depth)) pou.body.push_back(std::move(one));
+  if (one_in(6)) {
+    pou.body.insert(pou.body.begin() + below(static_cast<uint32_t>(pou.body.size())),
+                    leave("RETURN"));
+  }
+}
+
+void Builder::function(uint32_t index) {
+  forget();
+  kind_ = PouKind::kFunction;
+  rounds_ = 8;  // it may be called in loops
+  Pou pou;
+  pou.kind = kind_;
+  pou.name = "Fun" + std::to_string(index);
+  Interface face;
+  face.name = pou.name;
+  if (!one_in(8)) pou.result = any_data();
+  face.result = pou.result;
+  parameters(pou, face);
+  locals(pou, 2 + below(3));
+  body(pou, 2 + below(3), 2);
+  if (pou.result != kNoType && possible(pou.result)) {
+    pou.body.push_back(simple(pou.name + " := @0;", {expression(pou.result, 3)}));
+  }
+  program_.pous.push_back(std::move(pou));
+  functions_.push_back(std::move(face));
+}
+
+void Builder::block(uint32_t index) {
+  forget();
+  kind_ = PouKind::kFunctionBlock;
+  rounds_ = 4;
+  Pou pou;
+  pou.kind = kind_;
+  pou.name = "Block" + std::to_string(index);
+  Interface face;
+  face.name = pou.name;
+  parameters(pou, face);
+  locals(pou, 3 + below(3));
+  instances(pou);
+  body(pou, 3 + below(4), 2);
+  Type type;
+  type.form = Form::kBlock;
+  type.name = pou.name;
+  face.block = add_type(std::move(type));
+  faces_[face.block] = face;
+  program_.pous.push_back(std::move(pou));
+  blocks_.push_back(std::move(face));
+  // Structures and arrays that hold instances.
+  if (one_in(2)) {
+    Type holder;
+    holder.form = Form::kStruct;
+    holder.name = fresh("Holder");
+    holder.members.push_back({fresh("m"), any_scalar(), std::nullopt, {}, {}});
+    holder.members.push_back({fresh("m"), blocks_.back().block, std::nullopt, {}, {}});
+    holders_.push_back(declared(std::move(holder)));
+  }
+}
+
+void Builder::globals() {
+  static constexpr Section kSections[] = {Section::kGlobal, Section::kGlobalRetain,
+                                          Section::kGlobalConstant};
+  for (Section kind : kSections) {
+    VarBlock block{kind, {}};
+    bool constant = kind == Section::kGlobalConstant;
+    for (uint32_t n = below(4); n > 0; --n) {
+      Variable variable{fresh("g"), constant ? any_elementary() : any_data(), std::nullopt, {}, {}};
+      if (constant || one_in(3)) variable.initial = initial(variable.type);
+      (constant ? global_constants_ : global_variables_).push_back(variable);
+      block.variables.push_back(std::move(variable));
+    }
+    program_.globals.push_back(std::move(block));
+  }
+}
+
+void Builder::program(uint32_t index, uint32_t count) {
+  forget();
+  kind_ = PouKind::kProgram;
+  Pou pou;
+  pou.kind = kind_;
+  pou.name = "Main" + std::to_string(index);
+  locals(pou, 16 + below(8));
+  instances(pou);
+  instances(pou);
+  if (!holders_.empty()) {
+    declare(pou, Section::kLocal, holders_[below(static_cast<uint32_t>(holders_.size()))], false);
+  }
+  if (index == 0) {
+    Variable& output = declare(pou, Section::kLocal, elementary(ir::Kind::kBool));
+    output.address = "%QX" + std::to_string(below(4)) + "." + std::to_string(below(8));
+  }
+  body(pou, (10 + below(10)) / count, 3);
+  program_.pous.push_back(std::move(pou));
+}
+
+void Builder::tasks(uint32_t count) {
+  if (count == 1 && one_in(2)) return;
+  for (uint32_t i = 0; i < count; ++i) {
+    static constexpr uint32_t kPeriods[] = {10, 20, 30, 50};
+    program_.tasks.push_back({"Task" + std::to_string(i), i == 0 ? 10 : kPeriods[below(4)],
+                              below(3), "Main" + std::to_string(i)});
+  }
+}
+
+Program Builder::run() {
+  read_library();
+  declare_types();
+  globals();
+  uint32_t functions = 1 + below(3);
+  for (uint32_t i = 0; i < functions; ++i) function(i);
+  uint32_t blocks = 1 + below(3);
+  for (uint32_t i = 0; i < blocks; ++i) block(i);
+  uint32_t programs = one_in(3) ? 2 : 1;
+  for (uint32_t i = 0; i < programs; ++i) program(i, programs);
+  tasks(programs);
+  return std::move(program_);
+}
+
+Program random_program(uint64_t seed) { return Builder(seed).run(); }
+
+}  // namespace differential

@@ -1,0 +1,165 @@
+// The tree as Structured Text.
+#include "tests/differential/tree.h"
+
+namespace differential {
+namespace {
+
+std::string filled(const std::string& pattern, const std::vector<Expr>& operands) {
+  std::string out;
+  for (size_t i = 0; i < pattern.size(); ++i) {
+    if (pattern[i] != '@') {
+      out += pattern[i];
+      continue;
+    }
+    char which = pattern[++i];
+    if (which != '*') {
+      out += text(operands[static_cast<size_t>(which - '0')]);
+      continue;
+    }
+    for (const Expr& operand : operands) {
+      if (&operand != operands.data()) out += ", ";
+      out += text(operand);
+    }
+  }
+  return out;
+}
+
+std::string array_text(const Program& program, const Type& type) {
+  std::string dims;
+  for (const Bounds& dim : type.dims) {
+    if (!dims.empty()) dims += ", ";
+    dims += std::to_string(dim.low) + ".." + std::to_string(dim.high);
+  }
+  return "ARRAY[" + dims + "] OF " + type_text(program, type.base);
+}
+
+class Printer {
+ public:
+  explicit Printer(const Program& program) : program_(program) {}
+
+  std::string run() {
+    types();
+    for (const VarBlock& block : program_.globals) variables(block);
+    for (const Pou& one : program_.pous) pou(one);
+    configuration();
+    return std::move(out_);
+  }
+
+ private:
+  void line(const std::string& text) { out_ += std::string(indent_ * 2, ' ') + text + "\n"; }
+
+  void types() {
+    if (program_.declared.empty()) return;
+    line("TYPE");
+    ++indent_;
+    for (TypeRef type : program_.declared) declaration(program_[type]);
+    --indent_;
+    line("END_TYPE");
+  }
+
+  void declaration(const Type& type) {
+    switch (type.form) {
+      case Form::kEnum:
+        return line(type.name + " : " + enumeration(type) + ";");
+      case Form::kSubrange:
+        return line(type.name + " : " + type_text(program_, type.base) + " (" +
+                    std::to_string(type.low) + ".." + std::to_string(type.high) + ");");
+      case Form::kStruct:
+        line(type.name + " : STRUCT");
+        ++indent_;
+        for (const Variable& member : type.members) variable(member);
+        --indent_;
+        return line("END_STRUCT;");
+      default:
+        return line(type.name + " : " + array_text(program_, type) + ";");
+    }
+  }
+
+  std::string enumeration(const Type& type) const {
+    std::string out = is_elementary(type.base) && type.base != elementary(ir::Kind::kInt)
+                          ? program_[type.base].name + " ("
+                          : "(";
+    for (size_t i = 0; i < type.literals.size(); ++i) {
+      if (i != 0) out += ", ";
+      out += type.literals[i] + " := " + std::to_string(type.values[i]);
+    }
+    return out + ")";
+  }
+
+  void variable(const Variable& one) {
+    line(one.name + (one.address.empty() ? "" : " AT " + one.address) + " : " +
+         type_text(program_, one.type) + (one.edge.empty() ? "" : " " + one.edge) +
+         (one.initial ? " := " + text(*one.initial) : "") + ";");
+  }
+
+  void variables(const VarBlock& block) {
+    if (block.variables.empty()) return;
+    line(section_text(block.section));
+    ++indent_;
+    for (const Variable& one : block.variables) variable(one);
+    --indent_;
+    line("END_VAR");
+  }
+
+  void pou(const Pou& one) {
+    static constexpr const char* kHeads[] = {"FUNCTION", "FUNCTION_BLOCK", "PROGRAM"};
+    std::string head = kHeads[static_cast<size_t>(one.kind)];
+    line(head + " " + one.name +
+         (one.result == kNoType ? "" : " : " + type_text(program_, one.result)));
+    for (const VarBlock& block : one.blocks) variables(block);
+    statements(one.body);
+    line("END_" + head);
+  }
+
+  void statements(const std::vector<Stmt>& list) {
+    ++indent_;
+    for (const Stmt& one : list) {
+      for (const Clause& clause : one.clauses) {
+        line(filled(clause.head, clause.operands));
+        statements(clause.body);
+      }
+      if (!one.tail.empty()) line(one.tail);
+    }
+    --indent_;
+  }
+
+  void configuration() {
+    if (program_.tasks.empty()) return;
+    line("CONFIGURATION Plant");
+    line("  RESOURCE Cpu ON PLC");
+    for (const Task& task : program_.tasks) {
+      line("    TASK " + task.name + "(INTERVAL := T#" + std::to_string(task.period_ms) +
+           "ms, PRIORITY := " + std::to_string(task.priority) + ");");
+    }
+    for (const Task& task : program_.tasks) {
+      line("    PROGRAM Run" + task.program + " WITH " + task.name + " : " + task.program + ";");
+    }
+    line("  END_RESOURCE");
+    line("END_CONFIGURATION");
+  }
+
+  const Program& program_;
+  std::string out_;
+  size_t indent_ = 0;
+};
+
+}  // namespace
+
+const char* section_text(Section section) {
+  static constexpr const char* kTexts[] = {
+      "VAR",        "VAR_INPUT",         "VAR_OUTPUT",         "VAR_IN_OUT",
+      "VAR_TEMP",   "VAR RETAIN",        "VAR CONSTANT",       "VAR_STAT",
+      "VAR_GLOBAL", "VAR_GLOBAL RETAIN", "VAR_GLOBAL CONSTANT"};
+  return kTexts[static_cast<size_t>(section)];
+}
+
+std::string type_text(const Program& program, TypeRef ref) {
+  const Type& type = program[ref];
+  return type.name.empty() ? array_text(program, type) : type.name;
+}
+
+std::string text(const Expr& expr) { return filled(expr.pattern, expr.operands); }
+
+std::string print(const Program& program) { return Printer(program).run(); }
+
+}  // namespace differential

@@ -1,0 +1,87 @@
+#include "tests/differential/rig.h"
+
+#include <cstring>
+
+namespace differential {
+
+base::Result<std::unique_ptr<Rig>> Rig::start(const golden::Program& program) {
+  base::Result<ir::VerifiedImage> image = golden::link(program, nullptr, false);
+  if (!image.ok()) return image.error();
+  auto rig = std::make_unique<Rig>();
+  vm::ControllerOptions options;
+  options.fuel_budget = 20'000'000;
+  options.on_trap = vm::TrapPolicy::kStopTask;
+  auto controller = vm::Controller::start(*image, options, rig->clock_, rig->devices_);
+  if (!controller.ok()) return controller.error();
+  rig->controller_ = std::move(*controller);
+  rig->change_ = std::make_unique<online_change::Change>(*rig->controller_);
+  return rig;
+}
+
+std::string Rig::scan() {
+  size_t before = controller_->traps().size();
+  controller_->cycle();
+  const std::vector<vm::TrapRecord>& traps = controller_->traps();
+  if (traps.size() == before) return {};
+  const vm::TrapRecord& first = traps[before];
+  return std::string(ir::trap_name(first.trap.kind)) + " " + first.text.pou + ":" +
+         std::to_string(first.text.line);
+}
+
+base::Status Rig::change(const golden::Program& next) {
+  base::Result<ir::VerifiedImage> image = golden::link(next, &controller_->image(), false);
+  if (!image.ok()) return image.error();
+  auto package = online_change::make_package(controller_->verified().encoded(), image->encoded());
+  if (!package.ok()) return package.error();
+  base::Status staged = change_->stage(online_change::encode(*package));
+  if (!staged.ok()) return staged;
+  base::Status armed = change_->arm(true, true);
+  if (!armed.ok()) return armed;
+  base::Result<online_change::SwitchReport> report = change_->switch_now();
+  if (!report.ok()) return report.error();
+  return base::Ok{};
+}
+
+base::Status Rig::undo() {
+  base::Result<online_change::SwitchReport> report = change_->undo();
+  if (!report.ok()) return report.error();
+  return base::Ok{};
+}
+
+Leaves Rig::leaves() const {
+  Leaves out;
+  const ir::Image& now = controller_->image();
+  std::span<const uint8_t> memory = controller_->memory().view();
+  ir::for_each_leaf(now, [&](const std::string& path, const ir::Symbol& symbol) {
+    out[path] = {symbol, now.types.text(symbol.type), ir::format_value(now, symbol, memory)};
+  });
+  return out;
+}
+
+std::string Rig::state() const {
+  return ir::state_text(controller_->image(), controller_->memory().view());
+}
+
+std::string Rig::string_bytes(const Leaf& leaf) const {
+  const ir::Type& type = image().types[leaf.symbol.type];
+  size_t unit = type.kind == ir::Kind::kWstring ? 2 : 1;
+  const uint8_t* data = controller_->memory().data() + leaf.symbol.data;
+  size_t length = 0;
+  while (length < type.capacity &&
+         (data[length * unit] != 0 || (unit == 2 && data[length * 2 + 1] != 0))) {
+    ++length;
+  }
+  return {reinterpret_cast<const char*>(data), length * unit};
+}
+
+uint64_t Rig::scalar_bits(const Leaf& leaf) const {
+  ir::Scalar scalar = image().types.scalar(leaf.symbol.type);
+  uint32_t size = ir::scalar_size(scalar);
+  uint64_t bits = 0;
+  std::memcpy(&bits, controller_->memory().data() + leaf.symbol.data, size);
+  if (!ir::is_signed(scalar) || size == 8) return bits;
+  uint32_t shift = 64 - size * 8;
+  return static_cast<uint64_t>(static_cast<int64_t>(bits << shift) >> shift);
+}
+
+}  // namespace differential

@@ -1,0 +1,107 @@
+#include "tests/differential/tiers.h"
+
+#include <string_view>
+
+#include "tests/golden/runner/engine.h"
+
+namespace differential {
+namespace {
+
+struct Run {
+  std::vector<std::string> states;
+  std::string trap;
+};
+
+base::Result<Run> run_on(golden::Tier tier, const golden::Program& program, int scans) {
+  auto engine = golden::make_engine(tier, program);
+  if (!engine.ok()) return engine.error();
+  Run out;
+  for (int i = 0; i < scans && out.trap.empty(); ++i) {
+    base::Result<std::string> trap = (*engine)->scan();
+    if (!trap.ok()) return trap.error();
+    out.trap = *trap;
+    out.states.push_back((*engine)->state());
+  }
+  return out;
+}
+
+std::string_view next_line(std::string_view& rest) {
+  size_t end = rest.find('\n');
+  std::string_view line = rest.substr(0, end);
+  rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+  return line;
+}
+
+void compare(const Run& oracle, const Run& other, const std::string& tier, Finding& out) {
+  for (size_t i = 0; i < oracle.states.size() && i < other.states.size(); ++i) {
+    if (oracle.states[i] == other.states[i]) continue;
+    out = first_difference(oracle.states[i], other.states[i]);
+    out.failed = true;
+    out.key = "state " + tier;
+    out.scan = i + 1;
+    out.text = tier + ", scan " + std::to_string(i + 1) + ": " + out.text;
+    return;
+  }
+  if (oracle.trap == other.trap && oracle.states.size() == other.states.size()) return;
+  out.failed = true;
+  out.key = "trap " + tier;
+  out.text = tier + ": trap `" + oracle.trap + "` | `" + other.trap + "`";
+}
+
+// "1:2: error[E3001]: text" -> "E3001"; otherwise the refusal's own code.
+std::string code_of(const std::string& text) {
+  size_t at = text.find("error[");
+  return at == std::string::npos ? text.substr(0, 5) : text.substr(at + 6, 5);
+}
+
+}  // namespace
+
+Finding first_difference(const std::string& oracle, const std::string& other) {
+  Finding out;
+  std::string_view left = oracle;
+  std::string_view right = other;
+  while (!left.empty() || !right.empty()) {
+    std::string_view l = next_line(left);
+    std::string_view r = next_line(right);
+    if (l == r) continue;
+    out.expected = l;
+    out.text = std::string(l) + " | " + std::string(r);
+    break;
+  }
+  return out;
+}
+
+Finding examine(const std::string& source, int scans) {
+  golden::TestFile test;
+  test.name = "random.st";
+  test.versions.push_back(source);
+  golden::Outcome outcome;
+  Finding out;
+  base::Result<golden::Program> program = golden::compile(test, 0, outcome);
+  if (!program.ok()) {
+    out.failed = true;
+    out.text = base::to_string(program.error());
+    out.key = "compile " + code_of(out.text);
+    return out;
+  }
+  Run oracle;
+  for (golden::Tier tier : golden::kTiers) {
+    base::Result<Run> run = run_on(tier, *program, scans);
+    if (!run.ok()) {
+      out.failed = true;
+      out.text = std::string(golden::tier_name(tier)) + ": " + base::to_string(run.error());
+      out.key = std::string("refused ") + golden::tier_name(tier) + code_of(out.text);
+      return out;
+    }
+    if (tier == golden::Tier::kEvaluator) {
+      oracle = std::move(*run);
+      out.trap = oracle.trap;
+    } else {
+      compare(oracle, *run, golden::tier_name(tier), out);
+      if (out.failed) return out;
+    }
+  }
+  return out;
+}
+
+}  // namespace differential

@@ -1,0 +1,22 @@
+// One source on every tier: evaluator, interpreter and hard modes must agree on state and trap
+// after every scan.
+#pragma once
+
+#include <string>
+
+namespace differential {
+
+struct Finding {
+  bool failed = false;
+  std::string key;       // what kind of failure: shrinking keeps it
+  std::string text;      // for people
+  std::string trap;      // where the program ended, the same on every tier
+  uint64_t scan = 0;     // of a difference
+  std::string expected;  // line of state that the evaluator has there
+};
+
+Finding examine(const std::string& source, int scans);
+// The first line in which two states differ.
+Finding first_difference(const std::string& oracle, const std::string& other);
+
+}  // namespace differential

@@ -1,0 +1,135 @@
+// A random program as the generator built it: a tree that can be printed, shrunk and edited
+// without reading text again. It knows types and holes, not the grammar of every construct: an
+// expression or the head of a statement is a pattern whose holes are filled by operands.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ir/types/types.h"
+
+namespace differential {
+
+using TypeRef = uint32_t;  // Program::types; the elementary types stand first, in ir::Kind's order
+inline constexpr TypeRef kNoType = 0xffffffffu;
+
+// `@0` in the pattern stands for operands[0]; `@*` for all operands, separated by commas.
+struct Expr {
+  TypeRef type = kNoType;  // kNoType: an argument with its name, a type, ...
+  std::string pattern;
+  std::vector<Expr> operands;
+  bool constant = false;  // the compiler computes it, and refuses overflow
+  bool fixed = false;     // a variable has to stand here; only what is inside it shrinks
+};
+
+struct Stmt;
+
+// A head and the statements below it: "IF @0 THEN", "ELSE", "1..3:".
+struct Clause {
+  std::string head;
+  std::vector<Expr> operands;
+  std::vector<Stmt> body;
+  bool optional = false;  // the statement is complete without it
+};
+
+struct Stmt {
+  std::vector<Clause> clauses;
+  std::string tail;     // "END_IF;"
+  bool pinned = false;  // a loop's own counter: the program would not end without it
+};
+
+struct Variable {
+  std::string name;
+  TypeRef type = kNoType;
+  std::optional<Expr> initial;
+  std::string address;  // "%QX0.0"
+  std::string edge;     // "R_EDGE"
+};
+
+enum class Section : uint8_t {
+  kLocal,
+  kInput,
+  kOutput,
+  kInOut,
+  kTemp,
+  kRetain,
+  kConstant,
+  kStatic,
+  kGlobal,
+  kGlobalRetain,
+  kGlobalConstant,
+};
+const char* section_text(Section section);  // "VAR_INPUT"
+
+struct VarBlock {
+  Section section = Section::kLocal;
+  std::vector<Variable> variables;
+};
+
+enum class Form : uint8_t {
+  kElementary,
+  kString,
+  kWstring,
+  kEnum,
+  kSubrange,
+  kArray,
+  kStruct,
+  kBlock,
+};
+
+struct Bounds {
+  int64_t low = 0;
+  int64_t high = 0;
+};
+
+struct Type {
+  Form form = Form::kElementary;
+  std::string name;  // as variables name it; empty for an array written out
+  TypeRef base = kNoType;
+  int64_t low = 0;
+  int64_t high = 0;
+  uint32_t capacity = 0;
+  std::vector<Bounds> dims;
+  std::vector<std::string> literals;
+  std::vector<int64_t> values;  // of the literals
+  std::vector<Variable> members;
+  bool declared = false;  // has a place in TYPE
+};
+
+enum class PouKind : uint8_t { kFunction, kFunctionBlock, kProgram };
+
+struct Pou {
+  PouKind kind = PouKind::kFunction;
+  std::string name;
+  TypeRef result = kNoType;
+  std::vector<VarBlock> blocks;
+  std::vector<Stmt> body;
+};
+
+struct Task {
+  std::string name;
+  uint32_t period_ms = 10;
+  uint32_t priority = 1;
+  std::string program;  // its type; the instance is called Run<type>
+};
+
+struct Program {
+  std::vector<Type> types;
+  std::vector<TypeRef> declared;  // order in TYPE
+  std::vector<VarBlock> globals;
+  std::vector<Pou> pous;
+  std::vector<Task> tasks;  // empty: no CONFIGURATION
+
+  const Type& operator[](TypeRef type) const { return types[type]; }
+};
+
+inline TypeRef elementary(ir::Kind kind) { return static_cast<TypeRef>(kind); }
+inline bool is_elementary(TypeRef type) { return type < ir::kElementaryCount; }
+// Number of values of a scalar or aggregate that a path can name.
+std::string type_text(const Program& program, TypeRef type);
+std::string text(const Expr& expr);
+std::string print(const Program& program);
+
+}  // namespace differential

@@ -1,0 +1,72 @@
+// base/limits.def: what a source may just contain, and what is one too many. Depth and height are
+// in tests/unit/parse, what only images have in tests/unit/bytecode and tests/unit/linker.
+#include <gtest/gtest.h>
+
+#include "base/limits.h"
+#include "tests/unit/frontend/harness.h"
+
+namespace frontend_test {
+namespace {
+
+std::string errors(const std::string& declarations, const std::string& variables) {
+  return compile(declarations + "PROGRAM P VAR " + variables + " END_VAR END_PROGRAM\n").errors();
+}
+
+std::string enumeration(uint64_t literals) {
+  std::string text = "TYPE E : UDINT (";
+  for (uint64_t i = 0; i < literals; ++i) text += (i == 0 ? "e" : ", e") + std::to_string(i);
+  return text + "); END_TYPE\n";
+}
+
+TEST(Limits, Enumerators) {
+  EXPECT_EQ(errors(enumeration(base::kMaxEnumerators), "e : E;"), "");
+  EXPECT_EQ(errors(enumeration(base::kMaxEnumerators + 1), "e : E;"), "E6003");
+}
+
+std::string array(uint32_t dimensions) {
+  std::string text = "a : ARRAY[";
+  for (uint32_t i = 0; i < dimensions; ++i) text += i == 0 ? "0..1" : ", 0..1";
+  return text + "] OF BOOL;";
+}
+
+TEST(Limits, Dimensions) {
+  EXPECT_EQ(errors("", array(base::kMaxDimensions)), "");
+  EXPECT_EQ(errors("", array(base::kMaxDimensions + 1)), "E6006");
+}
+
+TEST(Limits, StringCapacity) {
+  auto string = [](uint32_t length) { return "s : STRING[" + std::to_string(length) + "];"; };
+  EXPECT_EQ(errors("", string(base::kMaxStringCapacity)), "");
+  EXPECT_EQ(errors("", string(base::kMaxStringCapacity + 1)), "E6007");
+  EXPECT_EQ(errors("", string(0)), "E6007");
+}
+
+TEST(Limits, TypeBytes) {
+  auto bytes = [](uint64_t count) {
+    return "a : ARRAY[1.." + std::to_string(count) + "] OF BYTE;";
+  };
+  EXPECT_EQ(errors("", bytes(base::kMaxTypeBytes)), "");
+  EXPECT_EQ(errors("", bytes(uint64_t{base::kMaxTypeBytes} + 1)), "E6005");
+}
+
+std::string tasks(uint32_t count) {
+  std::string text = "PROGRAM P END_PROGRAM CONFIGURATION c RESOURCE r ON PLC\n";
+  for (uint32_t i = 0; i < count; ++i) {
+    text += "TASK t" + std::to_string(i) + "(INTERVAL := T#10ms, PRIORITY := 1);\n";
+  }
+  return text + "PROGRAM p WITH t0 : P; END_RESOURCE END_CONFIGURATION\n";
+}
+
+TEST(Limits, Tasks) {
+  EXPECT_EQ(compile(tasks(base::kMaxTasks)).errors(), "");
+  EXPECT_EQ(compile(tasks(base::kMaxTasks + 1)).errors(), "E6003");
+}
+
+TEST(Limits, Identifier) {
+  auto variable = [](size_t length) { return std::string(length, 'v') + " : INT;"; };
+  EXPECT_EQ(errors("", variable(base::kMaxIdentifier)), "");
+  EXPECT_EQ(errors("", variable(base::kMaxIdentifier + 1)), "E6002");
+}
+
+}  // namespace
+}  // namespace frontend_test
