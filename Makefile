@@ -7,6 +7,7 @@
 #   make bench    ST against C
 #   make asan     tests under AddressSanitizer and UBSan (also: ubsan, tsan)
 #   make fuzz     a million executions of each fuzz target under sanitizers
+#   make differential  5,000 random programs and changes on every tier; SEED=n begins elsewhere
 #   make soak     long differential and hard mode runs
 #   make minimal  build and test with every adapter off
 #   make format   clang-format over the whole tree
@@ -14,7 +15,7 @@
 BUILD := build/release
 JOBS := $(shell nproc)
 
-.PHONY: all build setup demo test test-minimal minimal bench format asan ubsan tsan fuzz soak coverage docs clean
+.PHONY: all build setup demo test test-minimal minimal bench format asan ubsan tsan fuzz differential soak coverage docs clean
 
 all: build
 
@@ -55,14 +56,22 @@ bench: setup
 FUZZ_RUNS := 1000000
 fuzz: setup
 	@cmake --preset asan >/dev/null
-	@cmake --build build/asan -j $(JOBS) --target fuzz_parse fuzz_image
-	@for target in parse image; do \
+	@cmake --build build/asan -j $(JOBS) --target fuzz_parse fuzz_literal fuzz_lex fuzz_image fuzz_compile
+	@for target in parse literal image; do \
 	  build/asan/tests/fuzz/fuzz_$$target tests/fuzz/corpus/$$target $(FUZZ_RUNS) 2 || exit 1; \
 	done
+	@build/asan/tests/fuzz/fuzz_lex tests/golden/parse $(FUZZ_RUNS) 2
+	@build/asan/tests/fuzz/fuzz_compile tests/golden $(FUZZ_RUNS) 2
 
-# Hours, not minutes: 5,000 random programs on every tier; identity changes at 100,000 scans of the line.
+SEED := 1
+PROGRAMS := 5000
+differential: build
+	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --shrink
+	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --changes --shrink
+
+# Hours, not minutes: 100,000 random programs on every tier; identity changes at 100,000 scans of the line.
 soak: build
-	@$(BUILD)/tests/differential 1 5000
+	@$(BUILD)/tests/differential 1 100000 --shrink
 	@tests/cli/determinism.sh $(CURDIR) $(CURDIR)/$(BUILD) 100000
 
 # Rewrites what is generated from the tables (docs/*.md) and the golden files.
