@@ -47,6 +47,7 @@ std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& so
   base::SourceMap all = with_library(sources);
   Tree tree;
   parse_all(all, options, tree, diagnostics);
+  if (has_open_comment(diagnostics)) return std::nullopt;
 
   Sema sema(all, tree, sources.file_count(), options, purpose, diagnostics);
   sema.report_not_supported();

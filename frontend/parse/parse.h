@@ -13,4 +13,8 @@ namespace frontend {
 void parse(const base::SourceMap& sources, uint32_t file, Tree& tree,
            base::Diagnostics& diagnostics, const LexOptions& options = {});
 
+// Is one of the messages from number `first` on that of a comment without end? Then the file's
+// tree ends there, its parser reported nothing, and what follows from the tree is not worth saying.
+bool has_open_comment(const base::Diagnostics& diagnostics, size_t first = 0);
+
 }  // namespace frontend

@@ -1,5 +1,7 @@
 #include "frontend/parse/parser.h"
 
+#include <algorithm>
+
 #include "base/diagnostics_render.h"
 #include "base/limits.h"
 #include "frontend/parse/parse.h"
@@ -18,12 +20,23 @@ void make_room(std::vector<T>& store, size_t more) {
 
 }  // namespace
 
+bool has_open_comment(const base::Diagnostics& diagnostics, size_t first) {
+  const auto& all = diagnostics.all();
+  return std::any_of(all.begin() + static_cast<ptrdiff_t>(first), all.end(), [](const auto& one) {
+    return one.code == base::DiagnosticCode::kUnterminatedComment;
+  });
+}
+
 void parse(const base::SourceMap& sources, uint32_t file, Tree& tree,
            base::Diagnostics& diagnostics, const LexOptions& options) {
+  const size_t before = diagnostics.all().size();
   TokenList tokens = lex(sources, file, diagnostics, options);
+  // What an open comment has swallowed is missing everywhere: one message says it.
+  base::Diagnostics unheard;
+  base::Diagnostics& heard = has_open_comment(diagnostics, before) ? unheard : diagnostics;
   make_room(tree.exprs, tokens.tokens.size() * 5 / 9);
   make_room(tree.stmts, tokens.tokens.size() / 10);
-  Parser(sources, file, tokens, tree, diagnostics).parse_file();
+  Parser(sources, file, tokens, tree, heard).parse_file();
 }
 
 Parser::Parser(const base::SourceMap& sources, uint32_t file, const TokenList& tokens, Tree& tree,

@@ -14,44 +14,14 @@
 #include "base/diagnostics.h"
 #include "base/source.h"
 #include "frontend/compile.h"
+#include "frontend/sema/callee.h"
 #include "frontend/sema/constant.h"
-#include "frontend/sema/conversion.h"
 #include "frontend/sema/follow_ups.h"
 #include "frontend/sema/model.h"
-#include "frontend/sema/reference_calls.h"
-#include "frontend/sema/test_calls.h"
-#include "stdlib/registry.h"
 
 namespace frontend {
 
 using base::DiagnosticCode;
-
-// What the head of a call expression means.
-struct Callee {
-  enum class Kind : uint8_t {
-    kError,
-    kFunction,
-    kInstance,
-    kStandard,
-    kConversion,
-    kBound,
-    kTest,
-    kReference,
-  };
-  Kind kind = Kind::kError;
-  uint32_t pou = kNoPou;  // kFunction; kInstance: the block's POU
-  const stdlib::FunctionRow* row = nullptr;
-  Conversion conversion;
-  const TestCallRow* test = nullptr;
-  ReferenceCall reference = ReferenceCall::kNone;
-  bool upper = false;  // kBound: UPPER_BOUND, else LOWER_BOUND
-};
-
-// An argument and the parameter that it is for.
-struct Match {
-  VarId parameter;
-  const Arg* arg;
-};
 
 // The operator that a standard function of rule kArithmetic, kBitwise or kCompare is.
 BinaryOp standard_operator(stdlib::FunctionId id);

@@ -441,7 +441,8 @@ TEST(Verify, V15_Tasks) {
   expect_refused(Refusal::kBadTask, "none", [](Image& i) { i.tasks.clear(); });
   expect_refused(Refusal::kBadTask, "no period", [](Image& i) { i.tasks[0].period_ns = 0; });
   expect_refused(Refusal::kBadTask, "no watchdog", [](Image& i) { i.tasks[0].watchdog_ns = 0; });
-  expect_refused(Refusal::kBadTask, "no program", [](Image& i) { i.tasks[0].programs = {2}; });
+  expect_refused(Refusal::kBadTask, "no program", [](Image& i) { i.tasks[0].programs = {999}; });
+  expect_refused(Refusal::kBadTask, "the globals", [](Image& i) { i.tasks[0].programs = {0}; });
   expect_refused(Refusal::kBadTask, "a program in two tasks",
                  [](Image& i) { i.tasks.push_back(i.tasks[0]); });
 }
