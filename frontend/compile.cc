@@ -60,6 +60,7 @@ std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& so
   }
   sema.finish_programs();
   sema.check_output_tasks();
+  sema.check_direct_addresses();
   sema.report_unused();
   if (diagnostics.has_errors()) return std::nullopt;
   return TestProgram{std::move(sema.program), std::move(sema.test_cases)};

@@ -39,3 +39,5 @@ done
       }' "$file"
   done
 } >"$out/timing.md"
+
+"$root/scripts/conformance.sh" "$root" >"$out/conformance.md"

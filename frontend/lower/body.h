@@ -240,7 +240,7 @@ class Body {
   void forward_to_mock(const PouInfo& mock);
 
   // --- standard functions (standard*.cc)
-  ir::ValueId emit_standard(const Expr& expr, const stdlib::FunctionRow& row, ir::TypeId own);
+  ir::ValueId emit_standard(const Expr& expr, const Callee& callee, ir::TypeId own);
   ir::ValueId real_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
                             ir::TypeId own);
   ir::ValueId fold_operator(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId own);
@@ -250,7 +250,7 @@ class Body {
                       ir::TypeId own);
   ir::ValueId extreme_of(bool largest, ir::TypeId type, ir::ValueId a, ir::ValueId b);
   ir::ValueId multiplex(const std::vector<ExprId>& args, ir::TypeId own);
-  ir::ValueId compare_chain(const std::vector<ExprId>& args, BinaryOp op);
+  ir::ValueId compare_chain(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId common);
   ir::ValueId string_number(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
   ir::Place string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
                             ir::TypeId type);

@@ -248,11 +248,11 @@ void Body::call_statement(ExprId id, const Callee& callee) {
       return;
     case Callee::Kind::kTest:
       return test_call(call, *callee.test);
-    case Callee::Kind::kReference:
     case Callee::Kind::kStandard:
       if (callee.row->rule == stdlib::FunctionRule::kSplit) return split(call, *callee.row);
       [[fallthrough]];
     case Callee::Kind::kBound:
+    case Callee::Kind::kReference:
     case Callee::Kind::kConversion: {
       const Note& note = sema_.infer(id);
       if (!note.type.valid()) return;
@@ -273,7 +273,7 @@ ir::ValueId Body::emit_call(const Expr& expr, const Callee& callee, ir::TypeId o
       return result.valid() ? result : zero(own);
     }
     case Callee::Kind::kStandard:
-      return emit_standard(expr, *callee.row, own);
+      return emit_standard(expr, callee, own);
     case Callee::Kind::kConversion:
       return emit_conversion(expr, callee.conversion);
     case Callee::Kind::kReference:

@@ -85,6 +85,19 @@ ir::ValueId Body::check_range(ir::ValueId value, ir::TypeId from, ir::TypeId to)
   return build_.check_range(scalar(to), value, range.low, range.high);
 }
 
+namespace {
+
+// Table 25 of edition 3: between reals and bit strings of their size the bits stay. CODESYS
+// sources expect the number there.
+bool is_binary_transfer(const ir::TypeTable& types, ir::TypeId from, ir::TypeId to) {
+  Traits source = traits_of(types, from);
+  Traits target = traits_of(types, to);
+  bool between = (source.real && target.bits) || (source.bits && target.real);
+  return between && ir::scalar_size(types.scalar(from)) == ir::scalar_size(types.scalar(to));
+}
+
+}  // namespace
+
 ir::ValueId Body::explicit_conversion(Typed from, ir::TypeId to, bool truncate) {
   bool time_source = is_time(types(), from.type);
   bool time_target = is_time(types(), to);
@@ -94,6 +107,9 @@ ir::ValueId Body::explicit_conversion(Typed from, ir::TypeId to, bool truncate) 
   if (types().root_kind(from.type) == ir::Kind::kWchar &&
       types().root_kind(to) == ir::Kind::kChar) {
     return narrow_character(from.value);
+  }
+  if (sema_.options.dialect == Dialect::kIec && is_binary_transfer(types(), from.type, to)) {
+    return build_.unary(ir::Op::kBits, scalar(to), from.value);
   }
   return machine_convert(from.value, scalar(from.type), scalar(to), truncate);
 }

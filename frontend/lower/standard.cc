@@ -48,7 +48,8 @@ ir::Op shift_op(FunctionId id) {
 
 }  // namespace
 
-ir::ValueId Body::emit_standard(const Expr& expr, const stdlib::FunctionRow& row, ir::TypeId own) {
+ir::ValueId Body::emit_standard(const Expr& expr, const Callee& callee, ir::TypeId own) {
+  const stdlib::FunctionRow& row = *callee.row;
   std::vector<ExprId> args = sema_.standard_arguments(expr, row);
   switch (row.rule) {
     case FunctionRule::kClock:
@@ -93,7 +94,8 @@ ir::ValueId Body::emit_standard(const Expr& expr, const stdlib::FunctionRow& row
     case FunctionRule::kMux:
       return multiplex(args, own);
     case FunctionRule::kCompare:
-      return compare_chain(args, standard_operator(row.id));
+      return compare_chain(args, standard_operator(row.id),
+                           callee.typed.valid() ? callee.typed : sema_.infer_common(args).type);
     case FunctionRule::kStringNumber:
       return string_number(args, row);
     case FunctionRule::kString:
@@ -190,8 +192,8 @@ ir::ValueId Body::multiplex(const std::vector<ExprId>& args, ir::TypeId own) {
 }
 
 // Every argument is evaluated once; each is compared with the next.
-ir::ValueId Body::compare_chain(const std::vector<ExprId>& args, BinaryOp op) {
-  ir::TypeId common = sema_.infer_common(args).type;
+ir::ValueId Body::compare_chain(const std::vector<ExprId>& args, BinaryOp op,
+                                ir::TypeId common) {
   if (!common.valid()) return zero(elementary(ir::Kind::kBool));
   bool text = is_string(types(), common);
   std::vector<ir::ValueId> values;

@@ -24,6 +24,7 @@ struct Callee {
   Kind kind = Kind::kError;
   uint32_t pou = kNoPou;  // kFunction; kInstance: the block's POU
   const stdlib::FunctionRow* row = nullptr;
+  ir::TypeId typed;  // ADD_INT: the type of the operands; invalid: they decide
   Conversion conversion;
   const TestCallRow* test = nullptr;
   ReferenceCall reference = ReferenceCall::kNone;

@@ -77,6 +77,7 @@ Callee Sema::named_callee(const Expr& head) {
     callee.conversion = *conversion;
     return callee;
   }
+  if (Callee typed = typed_callee(name); typed.row != nullptr) return typed;
   if (auto reference = reference_call_of_name(name); reference != ReferenceCall::kNone) {
     callee.kind = Callee::Kind::kReference;
     callee.reference = reference;
@@ -104,7 +105,7 @@ Note Sema::infer_call(const Expr& expr) {
     case Callee::Kind::kError:
       return {};
     case Callee::Kind::kStandard:
-      return infer_standard(expr, *target.row);
+      return infer_standard(expr, target);
     case Callee::Kind::kConversion:
       return infer_conversion(expr, target.conversion);
     case Callee::Kind::kBound:

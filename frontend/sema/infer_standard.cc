@@ -43,7 +43,8 @@ BinaryOp standard_operator(stdlib::FunctionId id) {
   }
 }
 
-Note Sema::infer_standard(const Expr& expr, const stdlib::FunctionRow& row) {
+Note Sema::infer_standard(const Expr& expr, const Callee& callee) {
+  const stdlib::FunctionRow& row = *callee.row;
   std::vector<ExprId> args = standard_arguments(expr, row);
   if (args.empty() && plain_arguments(expr, nullptr).size() + row.fewest != 0) return {};
   Note all;
@@ -56,7 +57,12 @@ Note Sema::infer_standard(const Expr& expr, const stdlib::FunctionRow& row) {
     all.can_trap = all.can_trap || note.can_trap;
     all.known = std::min(all.known, note.known);
   }
+  if (!takes_typed(callee, args)) return {};
   Note note = infer_rule(expr, row, args);
+  if (callee.typed.valid() && note.type.valid() && row.rule != FunctionRule::kCompare) {
+    note.type = callee.typed;
+    note.flex = Flex::kNone;
+  }
   note.known = all.known;
   note.bit_size = 0;
   note.calls = all.calls;

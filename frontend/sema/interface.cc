@@ -34,13 +34,6 @@ ir::LocalKind local_kind(VarSection section) {
   }
 }
 
-struct Located {
-  uint32_t first_bit;
-  uint32_t bits;
-  base::SourceSpan span;
-  std::string name;
-};
-
 // What is bound by reference is a reference that comes in.
 VarSection ir_section(const Variable& variable) {
   return variable.by_reference ? VarSection::kInput : variable.section;
@@ -58,7 +51,6 @@ void Sema::resolve_declarations() {
   declared_ = true;
   check_overloads();
   check_containment();
-  check_direct_addresses();
 }
 
 void Sema::resolve_globals() {
@@ -111,76 +103,6 @@ void Sema::resolve_interface(uint32_t number) {
         id == info.result ? ir::LocalKind::kReturn : local_kind(ir_section(variable));
     pou.locals.push_back({std::string(variable.name.text), variable.type, kind});
   }
-}
-
-// Each marker variable has storage of its own, so overlapping ones cannot mean the
-// same memory.
-void Sema::check_direct_addresses() {
-  std::vector<Located> markers;
-  for (const Variable& variable : variables_) {
-    if (variable.decl == nullptr || !variable.decl->has_address) continue;
-    const ir::DirectAddress& address = variable.decl->address;
-    if (address.area != ir::DirectArea::kMarker) continue;
-    markers.push_back({address.bit_offset, address.bit_size, variable.name.span,
-                       std::string(variable.name.text)});
-  }
-  std::stable_sort(markers.begin(), markers.end(),
-                   [](const Located& a, const Located& b) { return a.first_bit < b.first_bit; });
-  uint64_t end = 0;
-  std::string last;
-  for (const Located& marker : markers) {
-    if (marker.first_bit < end) {
-      error(DiagnosticCode::kBadAddress, marker.span,
-            "`" + marker.name + "` lies on the same marker bits as `" + last + "`",
-            "give each its own address; overlapping markers are not supported");
-    }
-    uint64_t marker_end = uint64_t{marker.first_bit} + marker.bits;
-    if (marker_end > end) {
-      end = marker_end;
-      last = marker.name;
-    }
-  }
-}
-
-ir::TypeId Sema::type_of_direct(const ir::DirectAddress& address) const {
-  switch (address.bit_size) {
-    case 1:
-      return program.types.elementary(ir::Kind::kBool);
-    case 8:
-      return program.types.elementary(ir::Kind::kByte);
-    case 16:
-      return program.types.elementary(ir::Kind::kWord);
-    case 32:
-      return program.types.elementary(ir::Kind::kDword);
-    default:
-      return program.types.elementary(ir::Kind::kLword);
-  }
-}
-
-// A bare %QX0.0 in code is a global variable of that name, one per address. A
-// declared global at exactly this address is the same variable.
-uint32_t Sema::direct_member(const Expr& expr) {
-  std::string name = ir::fold_name(expr.name.text);
-  if (auto known = direct_members_.find(name); known != direct_members_.end()) {
-    return known->second;
-  }
-  ir::Type& globals = program.types.edit(program.globals);
-  ir::TypeId type = type_of_direct(expr.address);
-  uint32_t index = 0;
-  while (index < globals.members.size() &&
-         !(globals.members[index].address == expr.address && globals.members[index].type == type)) {
-    ++index;
-  }
-  if (index == globals.members.size()) {
-    ir::Member member;
-    member.name = expr.name.text;
-    member.type = type;
-    member.section = ir::Section::kGlobal;
-    member.address = expr.address;
-    globals.members.push_back(std::move(member));
-  }
-  direct_members_.emplace(std::move(name), index);
-  return index;
 }
 
 }  // namespace frontend

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -32,7 +33,7 @@ struct Variable {
   bool retain = false;
   bool used = false;
   bool hidden = false;        // not of the source: see hidden_variables.cc
-  bool by_reference = false;   // in-out of a function block: a REFERENCE TO bound at each call
+  bool by_reference = false;  // in-out of a function block: a REFERENCE TO bound at each call
   bool runtime_init = false;  // the initialiser runs at each call
   Progress progress = Progress::kNew;
   Storage storage = Storage::kMember;
@@ -55,6 +56,14 @@ struct GlobalList {
 struct Connection {
   VarId parameter;
   const Arg* arg;
+};
+
+// What stands at an address: a variable, or the address itself in code.
+struct Located {
+  ir::DirectAddress address;
+  base::SourceSpan span;
+  std::string name;
+  uint64_t end() const { return uint64_t{address.bit_offset} + address.bit_size; }
 };
 
 // A write to the output image, found in a body.

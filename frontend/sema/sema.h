@@ -49,7 +49,8 @@ class Sema {
   std::vector<const PouInfo*> mocked_functions() const;
   // Is the body of a MOCK_FUNCTION active in this test?
   bool mock_applies(uint32_t pou, const PouDecl& test) const;
-  void check_output_tasks();  // after all bodies
+  void check_output_tasks();      // after all bodies
+  void check_direct_addresses();  // located.cc; after all bodies
 
   // --- types (types.cc, enumeration.cc, containment.cc)
   TypeUse resolve(SpecId spec);
@@ -207,7 +208,6 @@ class Sema {
   void resolve_interface(uint32_t pou);
   void resolve_globals();
   ir::Member member_of(const Variable& variable, ir::Section section) const;
-  void check_direct_addresses();
 
   // variables.cc
   void resolve_variable(VarId id);
@@ -275,7 +275,7 @@ class Sema {
   Note infer_binary(const Expr& expr);
   ir::TypeId infer_name_candidates(std::string_view name);
   Note infer_call(const Expr& expr);
-  Note infer_standard(const Expr& expr, const stdlib::FunctionRow& row);
+  Note infer_standard(const Expr& expr, const Callee& callee);
   Note infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
                   const std::vector<ExprId>& args);
   bool standard_argument(const Arg& arg, const stdlib::FunctionRow& row, uint32_t number,
@@ -294,6 +294,8 @@ class Sema {
   Note infer_comparison(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span);
   Note unify_arguments(const std::vector<ExprId>& args, uint32_t first);
   Callee named_callee(const Expr& head);
+  Callee typed_callee(std::string_view name) const;  // typed_functions.cc
+  bool takes_typed(const Callee& callee, const std::vector<ExprId>& args);
   Note infer_character(const Expr& expr, Note note);
   void check_index_list(const Expr& expr, const ir::Type& array);
 
@@ -377,6 +379,7 @@ class Sema {
   NameMap<const stdlib::FunctionRow*> standard_;
   std::unordered_map<ir::TypeId, uint32_t> pou_by_type_;
   std::unordered_map<std::string, uint32_t> direct_members_;
+  std::vector<Located> direct_uses_;
   std::unordered_map<ir::TypeId, NameMap<Field>> structures_;
   std::deque<std::string> made_names_;
 };
