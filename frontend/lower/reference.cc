@@ -75,7 +75,11 @@ ir::ValueId Body::reference_value(ExprId id, ir::TypeId target) {
   const Note& note = sema_.infer(id);
   const ir::Type& reference = types()[target];
   if (!note.type.valid()) return zero(target);
-  if (note.constant && note.flex == Flex::kNull) return build_.constant(ir::Scalar::kU64, 0);
+  const bool zero_literal = note.constant && note.flex == Flex::kInteger &&
+                            sema_.options.dialect != Dialect::kIec && sema_.fold_integer(id) == 0;
+  if ((note.constant && note.flex == Flex::kNull) || zero_literal) {
+    return build_.constant(ir::Scalar::kU64, 0);
+  }
   const bool pointer = types().is_reference(note.type) && types()[note.type].base == reference.base;
   if (pointer) return natural(id).value;
   if (note.type == reference.base || types().is_a(note.type, reference.base)) return handle_of(id);

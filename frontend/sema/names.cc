@@ -2,14 +2,13 @@
 
 #include <algorithm>
 
+#include "base/name_case.h"
 #include "ir/types/types.h"
 
 namespace frontend {
 namespace {
 
 constexpr size_t kLongestCompared = 64;
-
-char fold(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 // Levenshtein distance, given up once it exceeds `limit`.
 uint32_t distance(std::string_view a, std::string_view b, uint32_t limit) {
@@ -32,14 +31,12 @@ uint32_t distance(std::string_view a, std::string_view b, uint32_t limit) {
 }  // namespace
 
 size_t FoldHash::operator()(std::string_view name) const noexcept {
-  uint64_t hash = 0xcbf29ce484222325u;
-  for (char c : name) hash = (hash ^ static_cast<uint8_t>(fold(c))) * 0x100000001b3u;
+  const uint64_t hash = base::name_hash(name);
   return static_cast<size_t>(hash ^ (hash >> 32));
 }
 
 bool FoldEqual::operator()(std::string_view a, std::string_view b) const noexcept {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
-                                            [](char x, char y) { return fold(x) == fold(y); });
+  return base::same_name(a, b);
 }
 
 NearestName::NearestName(std::string_view written)

@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/limits.h"
+#include "base/name_case.h"
 
 namespace ir {
 namespace {
@@ -33,8 +34,6 @@ constexpr auto kElementary = std::to_array<ElementaryRow>({
 static_assert(kElementary.size() == kElementaryCount);
 
 const ElementaryRow& row(Kind kind) { return kElementary[static_cast<size_t>(kind)]; }
-
-char fold(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 std::string bounds_text(int64_t low, int64_t high) {
   return std::to_string(low) + ".." + std::to_string(high);
@@ -305,24 +304,8 @@ std::string TypeTable::text(TypeId id) const {
   return text.take();
 }
 
-bool same_name(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) {
-    return false;
-  }
-  for (size_t i = 0; i < a.size(); ++i) {
-    if (fold(a[i]) != fold(b[i])) {
-      return false;
-    }
-  }
-  return true;
-}
+bool same_name(std::string_view a, std::string_view b) { return base::same_name(a, b); }
 
-std::string fold_name(std::string_view name) {
-  std::string folded(name);
-  for (char& c : folded) {
-    c = fold(c);
-  }
-  return folded;
-}
+std::string fold_name(std::string_view name) { return base::fold_name(name); }
 
 }  // namespace ir

@@ -187,7 +187,7 @@ class TypeTable {
   std::unordered_map<std::string, TypeId> interned_;
 };
 
-// Comparison and folding of IEC identifiers: ASCII without case, other bytes as they are.
+// Comparison and folding of IEC identifiers (base/name_case.h).
 bool same_name(std::string_view a, std::string_view b);
 std::string fold_name(std::string_view name);
 

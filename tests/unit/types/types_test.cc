@@ -97,16 +97,6 @@ TEST(TypeTable, FindsMembersWithoutCase) {
   EXPECT_TRUE(types.has_members(id));
 }
 
-TEST(Names, FoldAsciiOnly) {
-  EXPECT_TRUE(
-      same_name("Gr\xc3\x96\xc3\x9f"
-                "E",
-                "gR\xc3\x96\xc3\x9f"
-                "e"));
-  EXPECT_FALSE(same_name("\xc3\x96", "\xc3\xb6"));
-  EXPECT_EQ(fold_name("A_z9[`"), "a_z9[`");
-}
-
 TEST(Types, ReferencesAreInternedByTargetAndMayLeadBackToThemselves) {
   TypeTable types;
   Type node;
