@@ -5,6 +5,7 @@
 #include "frontend/lower/body.h"
 #include "frontend/parse/parse.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sfc/declare.h"
 #include "stdlib/sources.h"
 
 namespace frontend {
@@ -48,6 +49,7 @@ std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& so
   Tree tree;
   parse_all(all, options, tree, diagnostics);
   if (has_open_comment(diagnostics)) return std::nullopt;
+  sfc::declare_charts(tree, diagnostics);
 
   Sema sema(all, tree, sources.file_count(), options, purpose, diagnostics);
   sema.report_not_supported();

@@ -145,7 +145,13 @@ void Outliner::transition() {
   uint32_t i = at_ + 1;
   while (text_.kind(i) != TokenKind::kAssign && text_.kind(i) != TokenKind::kColon &&
          text_.kind(i) != TokenKind::kEnd && !is_structural(text_.kind(i))) {
-    i = is_opening(text_.kind(i)) ? behind_group(i) : i + 1;
+    if (is_opening(text_.kind(i))) {
+      if (text_.is_word(i + 1, "PRIORITY")) soft_keyword(i + 1);
+      i = behind_group(i);
+    } else {
+      if (text_.is_word(i, "FROM")) soft_keyword(i);
+      ++i;
+    }
   }
   if (text_.kind(i) == TokenKind::kColon) ++i;
   if (text_.kind(i) == TokenKind::kAssign) {

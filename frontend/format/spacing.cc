@@ -44,6 +44,9 @@ bool blank_before_bracket(const Text& text, const Line& line, uint32_t i, uint32
   TokenKind before = text.kind(i - 1);
   if (before == TokenKind::kArray || before == TokenKind::kTypePrefix) return false;
   if (!ends_operand(before)) return !is_sign(text, i - 1, first);
+  // TRANSITION name (PRIORITY := 1) FROM (a, b)
+  bool transition = line.kind == LineKind::kHead && text.kind(first) == TokenKind::kTransition;
+  if (transition && (i <= first + 2 || text.is_word(i - 1, "FROM"))) return true;
   if (text.kind(i) == TokenKind::kLeftBracket || before != TokenKind::kName) return false;
   // TASK Fast (INTERVAL := ...); INT (0..100)
   if (i == first + 2 && text.kind(first) == TokenKind::kTask) return true;

@@ -38,7 +38,11 @@ void Body::run() {
   if (sema_.for_tests() && decl.kind == PouKind::kProgram) activate_mock_bodies();
   if (info_.setup != nullptr) statements(info_.setup->body);
   if (!info_.connections.empty()) exit_ = build_.new_block();
-  statements(decl.body);
+  if (decl.chart != kNoChart) {
+    chart_body(tree_.charts[decl.chart]);
+  } else {
+    statements(decl.body);
+  }
   if (info_.teardown != nullptr) statements(info_.teardown->body);
   set_line({decl.span.end, decl.span.end});
   if (exit_.valid()) {

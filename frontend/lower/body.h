@@ -17,6 +17,11 @@
 
 namespace frontend {
 
+namespace sfc {
+struct Action;
+struct Use;
+}  // namespace sfc
+
 struct Typed {
   ir::ValueId value;
   ir::TypeId type;
@@ -72,6 +77,36 @@ class Body {
   Labels labels_of(Range32 list);
   void jump(const Stmt& stmt);
   void label(const Stmt& stmt);
+
+  // --- sequential function charts (chart.cc, chart_actions.cc)
+  struct ChartCode;
+  void chart_body(const Chart& chart);
+  void chart_errors(const ChartCode& code);
+  bool chart_places(ChartCode& code);
+  ir::Place flags(size_t count);
+  ir::Place flag();
+  ir::Place nth(const ir::Place& flags, uint32_t index) const;
+  ir::Place chart_place(VarId id, const char* member);
+  void set_flag(const ir::Place& flag, bool value = true);
+  void when(ir::ValueId condition, const std::function<void()>& then);
+  void when(const ir::Place& flag, const std::function<void()>& then);
+  void chart_clock(ChartCode& code);
+  void chart_pass_time(const ChartCode& code, VarId variable, const char* member);
+  void chart_times(const ChartCode& code);
+  void chart_transition(const ChartCode& code, uint32_t number);
+  void chart_moves(const ChartCode& code);
+  void chart_enter(const ChartCode& code, uint32_t step);
+  void chart_starts(const ChartCode& code);
+  void chart_unused(const ChartCode& code);
+  void chart_statements(const ChartAction& action, ir::BlockId next);
+  void chart_uses(const ChartCode& code);
+  void chart_use(const ChartCode& code, uint32_t step, const sfc::Use& use);
+  void chart_begin(VarId record, const sfc::Use& use);
+  void chart_controls(const ChartCode& code);
+  void chart_control(const ChartCode& code, uint32_t number);
+  std::optional<Target> chart_variable(const sfc::Action& action);
+  ir::ValueId chart_limit(const ActionUse& use);
+  void chart_bodies(const ChartCode& code);
 
   // --- FOR (for.cc)
   struct ForLoop;

@@ -209,6 +209,12 @@ bool Body::check_writable_variable(const Expr& expr, VarId id) {
     id = variable->external;
     variable = &sema_.resolve(id);
   }
+  if (variable->decl != nullptr && variable->decl->implied) {
+    sema_.error(DiagnosticCode::kNotAssignable, expr.span,
+                name + " belongs to the chart, which alone changes it",
+                "steps change by transitions, actions by the steps that use them");
+    return false;
+  }
   if (constant || variable->constant) {
     sema_.error(DiagnosticCode::kAssignToConstant, expr.span, name + " is a constant");
     return false;

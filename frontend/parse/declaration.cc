@@ -47,7 +47,7 @@ void Parser::parse_declaration() {
     skip_block(TokenKind::kEndVar);
     return;
   }
-  if (skip_unsupported_block()) return;
+  if (skip_unsupported_block() || skip_stray_chart_element()) return;
   report_here(is_closing(kind()) ? Code::kUnexpectedEnd : Code::kExpectedDeclaration,
               is_closing(kind())
                   ? describe(*current_) + " stands here, but nothing that it belongs to is open"
@@ -68,7 +68,10 @@ void Parser::parse_file_pou(PouKind pou_kind, Range32 attributes) {
 // Exported sources write methods and actions behind the POU that they belong to.
 void Parser::parse_outside_member(Range32 attributes) {
   bool owned = owner_ != kNoOwner && takes_members(tree_.pous[owner_].kind);
-  if (owned) return parse_member(tree_.pous[owner_], attributes);
+  if (owned) {
+    parse_member(tree_.pous[owner_], attributes);
+    return take_actions(tree_.pous[owner_]);
+  }
   note_only(
       Code::kMisplacedMember, current_->span(),
       describe(*current_) + " stands outside of a POU, and behind none that it could belong to",

@@ -239,6 +239,22 @@ class Parser {
   void parse_pou_body(PouDecl& pou);
   void close_pou(const Token& opening, const PouDecl& pou, TokenKind end);
 
+  // --- chart.cc
+  bool at_chart_element() const;
+  bool parse_chart_element(PouDecl& pou);
+  bool skip_stray_chart_element();
+  void parse_step(Chart& chart);
+  bool step_ends() const;
+  void parse_action_use(ChartStep& step);
+  void parse_qualifier(ActionUse& use);
+  void parse_action_time(ActionUse& use, const Name& word);
+  void parse_transition(Chart& chart);
+  void parse_transition_head(ChartTransition& transition);
+  void parse_transition_condition(ChartTransition& transition);
+  void parse_step_names(std::vector<Name>& out);
+  void finish_chart(PouDecl& pou);
+  void take_actions(PouDecl& pou);
+
   // --- member.cc
   static bool takes_members(PouKind kind);
   bool at_member() const;

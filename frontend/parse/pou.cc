@@ -213,11 +213,15 @@ void Parser::parse_pou_body(PouDecl& pou) {
   size_t mark = statement_stack_.size();
   base::SourcePos begin = here();
   for (;;) {
-    if (parse_inner(pou)) continue;
-    if (list_ends(false)) break;
-    parse_statement();
+    if (parse_inner(pou) || parse_chart_element(pou)) continue;
+    if (!list_ends(false)) {
+      parse_statement();
+    } else if (!parse_inner(pou) && !parse_chart_element(pou)) {  // behind a stray END_x
+      break;
+    }
   }
   pou.body = move_tail(statement_stack_, mark, tree_.stmt_lists);
+  finish_chart(pou);
   bool bodiless = pou.kind == PouKind::kClass || pou.kind == PouKind::kInterface;
   if (!bodiless || pou.body.count == 0) return;
   base::SourceSpan first = tree_[tree_.stmt_lists[pou.body.first]].span;

@@ -118,6 +118,7 @@ void Printer::pou(const PouDecl& decl) {
   for (const VarBlock& vars : decl.blocks) block(vars);
   for (const PouDecl& inner : decl.members) pou(inner);
   body(decl.body);
+  if (decl.chart != kNoChart) chart(tree_.charts[decl.chart]);
   --depth_;
 }
 

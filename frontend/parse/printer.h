@@ -31,6 +31,9 @@ class Printer {
   void program(const ProgramDecl& decl);
   void line(const std::string& text) { out_ += std::string(2 * depth_, ' ') + text + '\n'; }
 
+  // print_chart.cc
+  void chart(const Chart& chart);
+
   // print_statement.cc
   void body(Range32 statements);
   void statement(const Stmt& stmt);

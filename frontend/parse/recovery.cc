@@ -106,9 +106,6 @@ bool Parser::skip_unsupported_block() {
     const char* what;
   };
   static constexpr Block kBlocks[] = {
-      {TokenKind::kTransition, TokenKind::kEndTransition, "sequential function charts are"},
-      {TokenKind::kInitialStep, TokenKind::kEndStep, "sequential function charts are"},
-      {TokenKind::kStep, TokenKind::kEndStep, "sequential function charts are"},
       {TokenKind::kLadder, TokenKind::kEndLadder, "ladder networks are"},
   };
   for (const Block& block : kBlocks) {

@@ -14,6 +14,7 @@ bool Parser::list_ends(bool in_case) {
   for (;;) {
     if (kind() == TokenKind::kEnd || is_file_level_start(kind()) || is_pou_end(kind())) return true;
     if (at_member() || at_soft_declaration() || at_mock_function_block()) return true;
+    if (at_chart_element()) return true;
     if (in_property_ && at_accessor()) return true;
     if (in_case && at_case_label()) return true;
     if (!is_closing(kind())) return false;

@@ -1,18 +1,21 @@
 // The syntax tree of one compilation: what the sources say, nothing resolved.
 // One Tree owns all nodes of all files in flat stores; nodes refer to each other
 // by id and to text by views into the SourceMap, which must outlive the tree.
-// Immutable once parsing ends. Later languages (ladder, FBD, SFC, IL) lower to
-// the same nodes. Damaged input still gives a tree: kError nodes stand where
-// nothing could be understood, and a diagnostic was reported for each.
+// Immutable once parsing ends. Later languages (ladder, FBD, IL) lower to
+// the same nodes; sequential function charts are a model of their own (chart.h). Damaged input
+// still gives a tree: kError nodes stand where nothing could be understood, and a diagnostic was
+// reported for each.
 //
 // Attributes (`{attribute 'name' := 'value'}`) stay with the declaration that they
 // stand before. Namespaces do not nest in the tree: each declaration names its scope.
 #pragma once
 
+#include <deque>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "frontend/parse/chart.h"
 #include "frontend/parse/code_nodes.h"
 
 namespace frontend {
@@ -57,6 +60,7 @@ struct VarDecl {
   Edge edge = Edge::kNone;
   ExprId path;            // VAR_ACCESS: what the name opens; VAR_CONFIG: what is completed
   bool writable = false;  // VAR_ACCESS: READ_WRITE
+  bool implied = false;   // by a chart (sfc/declare.h): code reads it, only the chart writes it
   Range32 attributes;     // Tree::attributes
   base::SourceSpan span;
 };
@@ -145,13 +149,16 @@ enum class PouKind : uint8_t {
   kMockFunction,  // also a member of a kTest
 };
 
+inline constexpr uint32_t kNoChart = 0xffffffffu;
+
 struct PouDecl {
   PouKind kind = PouKind::kFunction;
   Name name;
   SpecId result;  // functions, methods, properties; may be invalid
   std::vector<VarBlock> blocks;
-  Range32 body;           // Tree::stmt_lists
-  base::SourceSpan span;  // PROGRAM ... END_PROGRAM
+  Range32 body;               // Tree::stmt_lists
+  uint32_t chart = kNoChart;  // Tree::charts: the body is that chart, `body` is empty
+  base::SourceSpan span;      // PROGRAM ... END_PROGRAM
   Access access = Access::kDefault;
   bool is_abstract = false;
   bool is_final = false;
@@ -222,6 +229,8 @@ struct Tree {
   std::vector<Name> names;
   std::vector<uint32_t> levels;
   std::vector<Scope> scopes;
+  std::vector<Chart> charts;
+  std::deque<std::string> made_names;  // of implied variables, which no source spells
 
   std::vector<TypeDecl> types;
   std::vector<PouDecl> pous;

@@ -273,6 +273,7 @@ void Sema::report_unused() {
                            variable.section == VarSection::kTemp ||
                            variable.section == VarSection::kStatic;
     if (variable.used || !private_section || variable.decl->has_address) continue;
+    if (variable.decl->implied) continue;
     if (variable.pou != kNoPou && pous[variable.pou].open) continue;
     warning(DiagnosticCode::kUnusedVariable, variable.name.span,
             "`" + std::string(variable.name.text) + "` is never used");

@@ -36,6 +36,7 @@ Lookup lookup_of(DiagnosticCode code) {
 
 // Statements begin here; declarations are in front of it.
 base::SourcePos body_of(const Tree& tree, const PouDecl& pou) {
+  if (pou.chart != kNoChart) return tree.charts[pou.chart].span.begin;
   if (pou.body.count == 0) return pou.span.end;
   return tree[tree.stmt_lists[pou.body.first]].span.begin;
 }

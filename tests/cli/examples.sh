@@ -6,3 +6,4 @@ for example in "$source_dir"/examples/small/*.st "$source_dir"/examples/bottling
   if grep -qE '(error|warning)\[' err; then fail "diagnostics for $example"; fi
   expect 0 stvm run "$example" --virtual-time --scans 1000 --hash
 done
+expect 0 stc test "$source_dir"/examples/small/crossing_chart.st

@@ -1,0 +1,68 @@
+#include "frontend/sfc/declare.h"
+
+#include "frontend/sfc/check.h"
+#include "frontend/sfc/net.h"
+
+namespace frontend::sfc {
+namespace {
+
+SpecId named_type(Tree& tree, const char* name, base::SourceSpan span) {
+  Spec spec;
+  spec.kind = SpecKind::kNamed;
+  spec.name = {name, span};
+  spec.span = span;
+  tree.specs.push_back(std::move(spec));
+  return SpecId(static_cast<uint32_t>(tree.specs.size() - 1));
+}
+
+VarDecl implied(Tree& tree, const char* type, std::vector<Name> names, base::SourceSpan span) {
+  VarDecl decl;
+  decl.names = std::move(names);
+  decl.spec = named_type(tree, type, span);
+  decl.implied = true;
+  decl.span = span;
+  return decl;
+}
+
+// The name of an action's record: the action's own, unless that is a variable.
+Name record_name(Tree& tree, const Action& action) {
+  if (action.decl != nullptr) return action.name;
+  tree.made_names.push_back(std::string(action.name.text) + kRecordSuffix);
+  return {tree.made_names.back(), action.name.span};
+}
+
+void declare(Tree& tree, PouDecl& pou, const Chart& chart, const Net& net) {
+  VarBlock block;
+  block.scope = pou.scope;
+  block.span = chart.span;
+  std::vector<Name> steps;
+  for (const ChartStep& step : chart.steps) steps.push_back(step.name);  // names stand twice, too
+  if (!steps.empty()) {
+    block.vars.push_back(implied(tree, kStepType, std::move(steps), chart.span));
+  }
+  std::vector<Name> actions;
+  for (const Action& action : net.actions) actions.push_back(record_name(tree, action));
+  for (const ChartAction& action : chart.actions) {
+    const Action& first = net.actions[net.action_names.find(action.name.text)->second];
+    if (first.decl != &action) actions.push_back(action.name);
+  }
+  if (!actions.empty()) {
+    block.vars.push_back(implied(tree, kActionType, std::move(actions), chart.span));
+  }
+  block.vars.push_back(implied(tree, "TIME", {{kClock, chart.span}}, chart.span));
+  pou.blocks.push_back(std::move(block));
+}
+
+}  // namespace
+
+void declare_charts(Tree& tree, base::Diagnostics& diagnostics) {
+  for (PouDecl& pou : tree.pous) {
+    if (pou.chart == kNoChart) continue;
+    const Chart& chart = tree.charts[pou.chart];
+    Net net = resolve(chart);
+    check(chart, net, pou.name, diagnostics);
+    declare(tree, pou, chart, net);
+  }
+}
+
+}  // namespace frontend::sfc
