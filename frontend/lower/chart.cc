@@ -44,25 +44,26 @@ void Body::chart_errors(const ChartCode& code) {
 }
 
 bool Body::chart_places(ChartCode& code) {
-  auto variable = [&](std::string_view name) {
+  auto variable = [&](std::string_view name, const char* member) {
     auto found = info_.names.find(name);
     if (found == info_.names.end()) return VarId();
     const Variable& resolved = sema_.resolve(found->second);
     bool own = resolved.decl != nullptr && resolved.decl->implied && resolved.type.valid();
+    own = own && (member == nullptr || sema_.find_member(resolved.type, member) >= 0);
     return own ? found->second : VarId();
   };
   bool good = true;
   for (const sfc::Step& step : code.net.steps) {
-    code.steps.push_back(variable(step.decl->name.text));
+    code.steps.push_back(variable(step.decl->name.text, "X"));
     good = good && code.steps.back().valid();
   }
   code.qualifiers.resize(code.net.actions.size());
   for (const sfc::Action& action : code.net.actions) {
     std::string record = std::string(action.name.text) + sfc::kRecordSuffix;
-    code.actions.push_back(variable(action.decl != nullptr ? action.name.text : record));
+    code.actions.push_back(variable(action.decl != nullptr ? action.name.text : record, "Q"));
     good = good && code.actions.back().valid();
   }
-  code.clock = variable(sfc::kClock);
+  code.clock = variable(sfc::kClock, nullptr);
   if (!good || !code.clock.valid()) return false;
   for (const sfc::Step& step : code.net.steps) {
     for (const sfc::Use& use : step.uses) {

@@ -43,7 +43,11 @@ struct Figures {
 base::Diagnostics compiled(const std::string& text, base::SourceMap& sources) {
   sources.add("mistaken.st", text);
   base::Diagnostics diagnostics;
-  frontend::compile(sources, {}, diagnostics);
+  if (text.find("END_TEST") == std::string::npos) {
+    frontend::compile(sources, {}, diagnostics);
+  } else {
+    frontend::compile_tests(sources, {}, diagnostics);
+  }
   diagnostics.sort();
   return diagnostics;
 }

@@ -131,7 +131,6 @@ TEST(Recovery, Configuration) {
 
 TEST(Recovery, UnsupportedConstructsAreSkippedWithOneMessage) {
   const char* const kSources[] = {
-      "PROGRAM b INITIAL_STEP s: END_STEP END_PROGRAM",
       "PROGRAM b LADDER |--[ a ]--( b )--| END_LADDER END_PROGRAM",
   };
   for (const char* source : kSources) {
