@@ -83,9 +83,9 @@ class Body {
   void chart_body(const Chart& chart);
   void chart_errors(const ChartCode& code);
   bool chart_places(ChartCode& code);
-  ir::Place flags(size_t count);
-  ir::Place flag();
-  ir::Place nth(const ir::Place& flags, uint32_t index) const;
+  ir::Place chart_flag(const ChartCode& code, uint32_t number) const;
+  ir::ValueId is_raised(const ChartCode& code, uint32_t number);
+  void raise(const ChartCode& code, uint32_t number);
   ir::Place chart_place(VarId id, const char* member);
   void set_flag(const ir::Place& flag, bool value = true);
   void when(ir::ValueId condition, const std::function<void()>& then);
@@ -103,6 +103,7 @@ class Body {
   void chart_use(const ChartCode& code, uint32_t step, const sfc::Use& use);
   void chart_begin(VarId record, const sfc::Use& use);
   void chart_controls(const ChartCode& code);
+  ir::ValueId chart_wanted(const ChartCode& code, uint32_t action, ir::ValueId keep);
   void chart_control(const ChartCode& code, uint32_t number);
   std::optional<Target> chart_variable(const sfc::Action& action);
   ir::ValueId chart_limit(const ActionUse& use);

@@ -1,6 +1,8 @@
 // Sequential function charts: step times, transitions, moves. Actions: chart_actions.cc.
 #include "frontend/lower/chart.h"
 
+#include <algorithm>
+
 #include "frontend/sfc/declare.h"
 
 namespace frontend {
@@ -71,40 +73,60 @@ bool Body::chart_places(ChartCode& code) {
           static_cast<uint16_t>(1u << static_cast<uint32_t>(use.decl->qualifier));
     }
   }
-  code.active = flags(code.net.initial.size());
-  code.fired = flags(code.net.transitions.size());
-  code.spent = flags(code.net.steps.size());
-  code.entered = flags(code.net.steps.size());
-  code.left = flags(code.net.steps.size());
-  code.wanted = flags(code.net.actions.size());
-  code.pulsed = flags(code.net.actions.size());
-  code.reset = flags(code.net.actions.size());
-  code.moved = flag();
-  code.final = flag();
+  code.number_flags();
+  auto last = static_cast<int64_t>(code.flag_count) - 1;
+  ir::TypeId type = sema_.program.types.array(elementary(ir::Kind::kBool), {{0, last}});
+  code.flags = temporary_place(type);
+  build_.init(code.flags, {});
   return true;
 }
 
-ir::Place Body::flags(size_t count) {
-  auto last = static_cast<int64_t>(std::max<size_t>(count, 1)) - 1;
-  ir::TypeId type = sema_.program.types.array(elementary(ir::Kind::kBool), {{0, last}});
-  ir::Place place = temporary_place(type);
-  build_.init(place, {});
-  return place;
+void Body::ChartCode::number_flags() {
+  auto number = [&](Numbers& numbers, size_t count, auto&& needed) {
+    for (uint32_t i = 0; i < count; ++i) numbers.push_back(needed(i) ? flag_count++ : sfc::kNone);
+  };
+  auto always = [](uint32_t) { return true; };
+  auto step_uses = [&](ActionQualifier a, ActionQualifier b) {
+    return [&, a, b](uint32_t step) {
+      const std::vector<sfc::Use>& all = net.steps[step].uses;
+      return std::any_of(all.begin(), all.end(), [&](const sfc::Use& use) {
+        return use.decl->qualifier == a || use.decl->qualifier == b;
+      });
+    };
+  };
+  moved = flag_count++;
+  early = flag_count++;
+  number(active, net.initial.size(), always);
+  number(fired, net.transitions.size(), always);
+  number(spent, net.steps.size(), [&](uint32_t step) { return net.steps[step].out.size() > 1; });
+  number(entered, net.steps.size(), step_uses(ActionQualifier::kP, ActionQualifier::kP1));
+  number(left, net.steps.size(), step_uses(ActionQualifier::kP0, ActionQualifier::kP0));
+  number(wanted, net.actions.size(), always);
+  auto used_by = [&](ActionQualifier qualifier) {
+    return [&, qualifier](uint32_t action) { return uses(action, qualifier); };
+  };
+  number(pulsed, net.actions.size(), used_by(ActionQualifier::kP1));
+  number(released, net.actions.size(), used_by(ActionQualifier::kP0));
+  number(reset, net.actions.size(), used_by(ActionQualifier::kR));
+  number(late, net.actions.size(),
+         [&](uint32_t action) { return net.actions[action].decl != nullptr; });
 }
 
-ir::Place Body::flag() {
-  ir::Place place = temporary_place(elementary(ir::Kind::kBool));
-  set_flag(place, false);
-  return place;
-}
-
-ir::Place Body::nth(const ir::Place& flags, uint32_t index) const {
-  ir::Place place = flags;
+ir::Place Body::chart_flag(const ChartCode& code, uint32_t number) const {
+  ir::Place place = code.flags;
   ir::Step& step = place.steps.emplace_back();
   step.kind = ir::StepKind::kIndex;
-  step.constant_index = index;
+  step.constant_index = number;
   place.type = elementary(ir::Kind::kBool);
   return place;
+}
+
+ir::ValueId Body::is_raised(const ChartCode& code, uint32_t number) {
+  return build_.load(chart_flag(code, number), ir::Scalar::kBool);
+}
+
+void Body::raise(const ChartCode& code, uint32_t number) {
+  if (number != sfc::kNone) set_flag(chart_flag(code, number));
 }
 
 // A member of the variable of a step or action.
@@ -158,7 +180,7 @@ void Body::chart_times(const ChartCode& code) {
   for (uint32_t step = 0; step < code.steps.size(); ++step) {
     when(chart_place(code.steps[step], "X"), [&] {
       chart_pass_time(code, code.steps[step], "T");
-      set_flag(nth(code.active, code.net.steps[step].network));
+      raise(code, code.active[code.net.steps[step].network]);
     });
   }
   for (uint32_t action = 0; action < code.actions.size(); ++action) {
@@ -182,19 +204,18 @@ void Body::chart_transition(const ChartCode& code, uint32_t number) {
     build_.branch(condition, holds ? on : next, holds ? next : on);
     build_.start(on);
   };
-  auto contested = [&](uint32_t step) { return code.net.steps[step].out.size() > 1; };
   set_line(transition.decl->span);
   for (uint32_t step : transition.from) {
     go_on_if(build_.load(chart_place(code.steps[step], "X"), kBool), true);
   }
   for (uint32_t step : transition.from) {
-    if (contested(step)) go_on_if(build_.load(nth(code.spent, step), kBool), false);
+    if (code.spent[step] != sfc::kNone) go_on_if(is_raised(code, code.spent[step]), false);
   }
   if (transition.decl->condition.valid()) go_on_if(condition(transition.decl->condition), true);
-  set_flag(nth(code.fired, number));
-  set_flag(code.moved);
+  raise(code, code.fired[number]);
+  raise(code, code.moved);
   for (uint32_t step : transition.from) {
-    if (contested(step)) set_flag(nth(code.spent, step));
+    raise(code, code.spent[step]);
   }
   build_.jump(next);
   build_.start(next);
@@ -202,17 +223,17 @@ void Body::chart_transition(const ChartCode& code, uint32_t number) {
 
 void Body::chart_moves(const ChartCode& code) {
   if (code.net.transitions.empty()) return;
-  when(code.moved, [&] {
+  when(is_raised(code, code.moved), [&] {
     for (uint32_t t = 0; t < code.net.transitions.size(); ++t) {
-      when(nth(code.fired, t), [&] {
+      when(is_raised(code, code.fired[t]), [&] {
         for (uint32_t step : code.net.transitions[t].from) {
           set_flag(chart_place(code.steps[step], "X"), false);
-          set_flag(nth(code.left, step));
+          raise(code, code.left[step]);
         }
       });
     }
     for (uint32_t t = 0; t < code.net.transitions.size(); ++t) {
-      when(nth(code.fired, t), [&] {
+      when(is_raised(code, code.fired[t]), [&] {
         for (uint32_t step : code.net.transitions[t].to) chart_enter(code, step);
       });
     }
@@ -222,7 +243,7 @@ void Body::chart_moves(const ChartCode& code) {
 void Body::chart_enter(const ChartCode& code, uint32_t step) {
   set_flag(chart_place(code.steps[step], "X"));
   build_.store(chart_place(code.steps[step], "T"), kTime, build_.constant(kTime, 0));
-  set_flag(nth(code.entered, step));
+  raise(code, code.entered[step]);
 }
 
 // A network in which no step is active begins: at its first call, or when an online change has
@@ -232,7 +253,7 @@ void Body::chart_starts(const ChartCode& code) {
     uint32_t initial = code.net.initial[network];
     if (initial == sfc::kNone) continue;
     set_line(code.net.steps[initial].decl->name.span);
-    ir::ValueId active = build_.load(nth(code.active, network), kBool);
+    ir::ValueId active = is_raised(code, code.active[network]);
     when(build_.unary(ir::Op::kNot, kBool, active), [&] { chart_enter(code, initial); });
   }
 }

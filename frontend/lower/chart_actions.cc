@@ -1,4 +1,4 @@
-// Actions of charts: what steps ask of them, whether they run (IEC 61131-3, figures 22 to 24),
+// Actions of charts: what steps ask of them, whether they run (action control of IEC 61131-3),
 // and their statements.
 #include "frontend/lower/chart.h"
 
@@ -52,7 +52,7 @@ void Body::chart_uses(const ChartCode& code) {
         continue;
       }
       set_line(use.decl->span);
-      when(nth(code.left, step), [&] { set_flag(nth(code.pulsed, use.action)); });
+      when(is_raised(code, code.left[step]), [&] { raise(code, code.released[use.action]); });
     }
     if (!active) continue;
     set_line(code.net.steps[step].decl->name.span);
@@ -77,21 +77,23 @@ void Body::chart_use(const ChartCode& code, uint32_t step, const sfc::Use& use) 
   set_line(use.decl->span);
   switch (use.decl->qualifier) {
     case ActionQualifier::kN:
-      return set_flag(nth(code.wanted, use.action));
+      return raise(code, code.wanted[use.action]);
     case ActionQualifier::kR:
-      return set_flag(nth(code.reset, use.action));
+      return raise(code, code.reset[use.action]);
     case ActionQualifier::kS:
       return set_flag(chart_place(record, "S"));
     case ActionQualifier::kL:
-      return request(nth(code.wanted, use.action), still_shorter());
+      return request(chart_flag(code, code.wanted[use.action]), still_shorter());
     case ActionQualifier::kD:
-      return request(nth(code.wanted, use.action), elapsed());
+      return request(chart_flag(code, code.wanted[use.action]), elapsed());
     case ActionQualifier::kDS:
       return request(chart_place(record, "DS"), elapsed());
     case ActionQualifier::kP:
-      return request(nth(code.wanted, use.action), build_.load(nth(code.entered, step), kBool));
+      return request(chart_flag(code, code.wanted[use.action]),
+                     is_raised(code, code.entered[step]));
     case ActionQualifier::kP1:
-      return request(nth(code.pulsed, use.action), build_.load(nth(code.entered, step), kBool));
+      return request(chart_flag(code, code.pulsed[use.action]),
+                     is_raised(code, code.entered[step]));
     case ActionQualifier::kP0:  // chart_uses()
       return;
     case ActionQualifier::kSD:
@@ -123,7 +125,39 @@ void Body::chart_controls(const ChartCode& code) {
   }
 }
 
-// Q and A of one action. R goes above everything.
+// What steps ask of an action and what they stored, without pulses. `keep`: no R; may be invalid.
+ir::ValueId Body::chart_wanted(const ChartCode& code, uint32_t action, ir::ValueId keep) {
+  VarId record = code.actions[action];
+  ir::ValueId wanted = is_raised(code, code.wanted[action]);
+  auto add = [&](ir::ValueId value) { wanted = build_.binary(ir::Op::kOr, kBool, wanted, value); };
+  auto stored = [&](const char* member) {
+    ir::Place place = chart_place(record, member);
+    ir::ValueId value = build_.load(place, kBool);
+    if (!keep.valid()) return value;
+    value = build_.binary(ir::Op::kAnd, kBool, value, keep);
+    build_.store(place, kBool, value);
+    return value;
+  };
+  auto running = [&](const Timer& timer) {
+    ir::ValueId elapsed = build_.load(chart_place(record, timer.elapsed), kTime);
+    ir::ValueId limit = build_.load(chart_place(record, timer.limit), kTime);
+    return build_.compare(ir::Op::kLt, kTime, elapsed, limit);
+  };
+  if (code.uses(action, ActionQualifier::kS)) add(stored("S"));
+  if (code.uses(action, ActionQualifier::kDS)) add(stored("DS"));
+  if (code.uses(action, kDelayed.qualifier)) {
+    ir::ValueId due = build_.unary(ir::Op::kNot, kBool, running(kDelayed));
+    add(build_.binary(ir::Op::kAnd, kBool, stored(kDelayed.stored), due));
+  }
+  if (code.uses(action, kLimited.qualifier)) {
+    add(build_.binary(ir::Op::kAnd, kBool, stored(kLimited.stored), running(kLimited)));
+  }
+  return keep.valid() ? build_.binary(ir::Op::kAnd, kBool, wanted, keep) : wanted;
+}
+
+// Q and A of one action, and when its statements run: `late` by a request or P1, `early` for the
+// final scan or by P0. R goes above everything. Statements see Q FALSE in P0 and P1, as the
+// standard says; a BOOL variable is TRUE then.
 void Body::chart_control(const ChartCode& code, uint32_t number) {
   const sfc::Action& action = code.net.actions[number];
   VarId record = code.actions[number];
@@ -133,51 +167,35 @@ void Body::chart_control(const ChartCode& code, uint32_t number) {
   auto either = [&](ir::ValueId a, ir::ValueId b) {
     return build_.binary(ir::Op::kOr, kBool, a, b);
   };
+  auto no = [&](ir::ValueId value) { return build_.unary(ir::Op::kNot, kBool, value); };
   set_line(action.decl != nullptr ? action.name.span : tree_[action.target].span);
   ir::ValueId keep;
-  if (code.uses(number, ActionQualifier::kR)) {
-    keep = build_.unary(ir::Op::kNot, kBool, build_.load(nth(code.reset, number), kBool));
-  }
-  auto stored = [&](const char* member) {
-    ir::Place place = chart_place(record, member);
-    ir::ValueId value = build_.load(place, kBool);
-    if (!keep.valid()) return value;
-    value = both(value, keep);
-    build_.store(place, kBool, value);
-    return value;
+  if (code.reset[number] != sfc::kNone) keep = no(is_raised(code, code.reset[number]));
+  auto pulse = [&](uint32_t flag) {
+    ir::ValueId value = is_raised(code, flag);
+    return keep.valid() ? both(value, keep) : value;
   };
-  auto running = [&](const Timer& timer) {
-    ir::ValueId elapsed = build_.load(chart_place(record, timer.elapsed), kTime);
-    ir::ValueId limit = build_.load(chart_place(record, timer.limit), kTime);
-    return build_.compare(ir::Op::kLt, kTime, elapsed, limit);
-  };
-  ir::ValueId wanted = build_.load(nth(code.wanted, number), kBool);
-  if (code.uses(number, ActionQualifier::kS)) wanted = either(wanted, stored("S"));
-  if (code.uses(number, ActionQualifier::kDS)) wanted = either(wanted, stored("DS"));
-  if (code.uses(number, kDelayed.qualifier)) {
-    ir::ValueId due = build_.unary(ir::Op::kNot, kBool, running(kDelayed));
-    wanted = either(wanted, both(stored(kDelayed.stored), due));
-  }
-  if (code.uses(number, kLimited.qualifier)) {
-    wanted = either(wanted, both(stored(kLimited.stored), running(kLimited)));
-  }
-  ir::ValueId pulsed = build_.load(nth(code.pulsed, number), kBool);
-  if (keep.valid()) {
-    wanted = both(wanted, keep);
-    pulsed = both(pulsed, keep);
-  }
-  ir::ValueId q = either(wanted, pulsed);
+  ir::ValueId q = chart_wanted(code, number, keep);
+  ir::ValueId late = q;
+  if (code.pulsed[number] != sfc::kNone) late = either(q, pulse(code.pulsed[number]));
   ir::Place due = chart_place(record, "FINAL_DUE");
-  ir::ValueId final = both(build_.load(due, kBool), build_.unary(ir::Op::kNot, kBool, q));
-  build_.store(due, kBool, wanted);
-  build_.store(chart_place(record, "Q"), kBool, q);
-  build_.store(chart_place(record, "A"), kBool, either(q, final));
+  ir::ValueId early = both(build_.load(due, kBool), no(q));
+  build_.store(due, kBool, q);
+  if (code.released[number] != sfc::kNone) {
+    ir::ValueId released = pulse(code.released[number]);
+    early = either(early, released);
+    if (action.decl == nullptr) late = either(late, released);
+  }
+  build_.store(chart_place(record, "A"), kBool, either(late, early));
+  build_.store(chart_place(record, "Q"), kBool, action.decl != nullptr ? q : late);
   if (action.decl == nullptr) {
     auto variable = chart_variable(action);
-    if (variable) store(*variable, q);
+    if (variable) store(*variable, late);
     return;
   }
-  build_.store(code.final, kBool, either(build_.load(code.final, kBool), final));
+  build_.store(chart_flag(code, code.late[number]), kBool, late);
+  ir::Place any = chart_flag(code, code.early);
+  build_.store(any, kBool, either(build_.load(any, kBool), both(early, no(late))));
 }
 
 // An action that is a BOOL variable.
@@ -206,8 +224,8 @@ std::optional<Target> Body::chart_variable(const sfc::Action& action) {
   return target(action.target);
 }
 
-// First the actions whose request has ended, then those that are requested: what a final
-// scan writes cannot undo what an active action writes in the same scan.
+// First final scans and what steps do when they are left, then what is requested: the end of one
+// step cannot undo what the next one does in the same scan.
 void Body::chart_bodies(const ChartCode& code) {
   bool any = false;
   for (const sfc::Action& action : code.net.actions) {
@@ -217,8 +235,8 @@ void Body::chart_bodies(const ChartCode& code) {
   ir::BlockId head = build_.new_block();
   ir::BlockId again = build_.new_block();
   ir::BlockId done = build_.new_block();
-  ir::ValueId final = build_.add_param(head, kBool);
-  build_.jump(head, {build_.load(code.final, kBool)});
+  ir::ValueId early = build_.add_param(head, kBool);
+  build_.jump(head, {is_raised(code, code.early)});
   build_.start(head);
   for (uint32_t number = 0; number < code.net.actions.size(); ++number) {
     const sfc::Action& action = code.net.actions[number];
@@ -226,15 +244,15 @@ void Body::chart_bodies(const ChartCode& code) {
     set_line(action.name.span);
     ir::BlockId run = build_.new_block();
     ir::BlockId next = build_.new_block();
-    ir::ValueId q = build_.load(chart_place(code.actions[number], "Q"), kBool);
+    ir::ValueId late = is_raised(code, code.late[number]);
     ir::ValueId a = build_.load(chart_place(code.actions[number], "A"), kBool);
-    ir::ValueId turn = build_.binary(ir::Op::kXor, kBool, q, final);
+    ir::ValueId turn = build_.binary(ir::Op::kXor, kBool, late, early);
     build_.branch(build_.binary(ir::Op::kAnd, kBool, a, turn), run, next);
     build_.start(run);
     chart_statements(*action.decl, next);
     build_.start(next);
   }
-  build_.branch(final, again, done);
+  build_.branch(early, again, done);
   build_.start(again);
   build_.jump(head, {build_.constant(kBool, 0)});
   build_.start(done);
