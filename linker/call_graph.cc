@@ -10,17 +10,23 @@
 namespace linker {
 namespace {
 
+constexpr uint32_t kNoPou = 0xffffffffu;
+
 class CallGraph {
  public:
   CallGraph(const ir::Image& image, const std::vector<const ir::Object*>& objects)
-      : image_(image), nodes_(objects.size()) {
+      : image_(image),
+        nodes_(objects.size()),
+        by_type_(image.types.size(), kNoPou),
+        dynamic_(image) {
     for (uint32_t i = 0; i < image.pous.size(); ++i) {
       by_name_.emplace(ir::fold_name(image.pous[i].name), i);
-      if (image.pous[i].self.valid()) by_type_.emplace(image.pous[i].self.index, i);
+      if (ir::is_body(image.pous[i].kind)) by_type_[image.pous[i].self.index] = i;
     }
     for (uint32_t i = 0; i < objects.size(); ++i) {
       if (objects[i] != nullptr) nodes_[i] = node_of(*objects[i], i);
     }
+    dynamic_.add_nodes(image, by_type_, nodes_);
   }
 
   base::Result<StackNeeds> run() {
@@ -52,46 +58,45 @@ class CallGraph {
   }
 
  private:
-  uint32_t pou_of(ir::TypeId type) const {
-    const auto found = by_type_.find(type.index);
-    return found == by_type_.end() ? static_cast<uint32_t>(nodes_.size()) : found->second;
-  }
-
   // The function block type in the ID slot at a place.
   ir::TypeId called_type(const ir::Object& object, uint32_t place) const {
     const ir::Region region = object.places[place].result;
     return region.dim != 0 ? image_.types[region.type].base : region.type;
   }
 
-  // Bodies of the type and of all that extend it: a reference may name any of them.
-  template <class Call>
-  void call_extensions(ir::TypeId type, Call call) const {
-    for (const auto& [self, pou] : by_type_) {
-      if (image_.types.is_a(ir::TypeId(self), type)) call(pou);
-    }
-  }
-
   ir::CallNode node_of(const ir::Object& object, uint32_t number) const {
     ir::CallNode node;
     node.frame_bytes = image_.pous[number].frame_size;
     node.recursion_depth = object.recursion_depth;
-    const auto call = [&](uint32_t pou) {
-      if (pou < nodes_.size()) node.callees.push_back(pou);
+    const auto call = [&](uint32_t callee) {
+      if (callee != kNoPou) node.callees.push_back(callee);
+    };
+    const auto named = [&](uint32_t callee) {
+      return by_name_.at(ir::fold_name(object.callees[callee]));
     };
     for (size_t i = 0; i < object.code.size(); ++i) {
       const ir::Unit& unit = object.code[i];
       switch (unit.opcode()) {
         case ir::Opcode::CALL:
-          call(by_name_.at(ir::fold_name(object.callees[unit.c])));
+        case ir::Opcode::CALL_OWN:
+          call(named(unit.c));
+          break;
+        case ir::Opcode::CALL_METHOD:
+        case ir::Opcode::CALL_METHOD_AT:
+        case ir::Opcode::CALL_METHOD_REF:
+          call(named(object.code[i + 1].x()));
+          break;
+        case ir::Opcode::CALL_VIRTUAL:
+          call(dynamic_.any_target(named(object.code[i + 1].x())));
           break;
         case ir::Opcode::CALL_INST:
-          call(pou_of(called_type(object, unit.bc())));
+          call(by_type_[called_type(object, unit.bc()).index]);
           break;
         case ir::Opcode::CALL_INST_AT:
-          call(pou_of(called_type(object, unit.c)));
+          call(by_type_[called_type(object, unit.c).index]);
           break;
         case ir::Opcode::CALL_REF:
-          call_extensions(object.regions[object.code[i + 1].x()].type, call);
+          call(dynamic_.any_body(object.regions[object.code[i + 1].x()].type));
           break;
         default:
           break;
@@ -107,7 +112,8 @@ class CallGraph {
     return node;
   }
 
-  base::Error circle(const std::vector<uint32_t>& pous) const {
+  base::Error circle(std::vector<uint32_t> pous) const {
+    std::erase_if(pous, [&](uint32_t node) { return !nodes_[node].is_pou; });
     std::string text;
     for (uint32_t pou : pous) text += image_.pous[pou].name + " -> ";
     return {base::Refusal::kRecursion,
@@ -119,7 +125,8 @@ class CallGraph {
   const ir::Image& image_;
   std::vector<ir::CallNode> nodes_;
   std::unordered_map<std::string, uint32_t> by_name_;
-  std::unordered_map<uint32_t, uint32_t> by_type_;
+  std::vector<uint32_t> by_type_;  // bodies
+  ir::DynamicCalls dynamic_;
 };
 
 }  // namespace

@@ -58,7 +58,20 @@ class DataTables {
     for (uint32_t child : children) {
       store_id(nodes_[child].id, bytes.data() + nodes_[child].slot_offset);
     }
+    if (&node == &nodes_[kGlobalsNode]) name_programs(bytes);
     add_runs(data_of(node), bytes, image_.data);
+  }
+
+  // A global of program type holds the ID of the program instance of its name.
+  void name_programs(base::Bytes& globals) const {
+    const std::vector<ir::Member>& members = image_.types[image_.globals].members;
+    for (size_t i = 0; i < members.size(); ++i) {
+      if (image_.types[members[i].type].kind != ir::Kind::kProgram) continue;
+      for (const InstanceNode& node : nodes_) {
+        if (!node.program || !ir::same_name(node.name, members[i].name)) continue;
+        store_id(node.id, globals.data() + image_.layouts[image_.globals].member_offsets[i]);
+      }
+    }
   }
 
   void add_members(const InstanceNode& node) {

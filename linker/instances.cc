@@ -82,6 +82,7 @@ class Walker {
     for (size_t i = 0; i < members.size() && !error_; ++i) {
       const ir::Member& member = members[i];
       if (member.section == ir::Section::kInOut || !holds_instances(member.type, 0)) continue;
+      if (types_[member.type].kind == Kind::kProgram) continue;  // the program instance itself
       Spot part = spot;
       part.offset += layouts_[type].member_offsets[i];
       part.retained = spot.retained || member.retain;

@@ -42,13 +42,14 @@ class Builder {
       : types_(types), slack_(slack), base_(base) {
     layouts_.of.resize(types.size());
     done_.resize(types.size(), false);
+    laid_out_.resize(types.size(), false);
     if (base_ != nullptr) index_base();
   }
 
   base::Result<Layouts> run() {
     for (uint32_t i = 0; i < types_.size() && !error_; ++i) value_layout(TypeId(i), 0);
     for (uint32_t i = 0; i < types_.size() && !error_; ++i) {
-      if (has_area(types_[TypeId(i)].kind)) area_layout(TypeId(i));
+      if (has_area(types_[TypeId(i)].kind)) area_layout(TypeId(i), 0);
     }
     if (error_) return *error_;
     return std::move(layouts_);
@@ -103,7 +104,7 @@ class Builder {
       array_layout(id, depth);
     } else if (ir::is_structure(type.kind)) {
       struct_layout(id, depth);
-    } else {
+    } else if (type.kind != Kind::kInterface) {  // nothing is of an interface type
       layout.size = layout.align = ir::scalar_size(types_.scalar(id));
     }
   }
@@ -157,7 +158,17 @@ class Builder {
     return member.section == Section::kInOut ? kSlotBytes : layouts_[member.type].align;
   }
 
-  void area_layout(TypeId id) {
+  // The block that it extends; invalid: none.
+  TypeId base_of(TypeId id) const {
+    return types_[id].kind == Kind::kFunctionBlock ? types_[id].base : TypeId();
+  }
+
+  // Bases first.
+  void area_layout(TypeId id, uint32_t depth) {
+    if (laid_out_[id.index] || depth > base::kMaxNesting) return;
+    laid_out_[id.index] = true;
+    if (base_of(id).valid()) area_layout(base_of(id), depth + 1);
+    if (error_) return;
     const TypeId old = old_of(id);
     const uint32_t old_capacity = old.valid() ? base_->layouts[old].area_capacity : 0;
     place_members(id, old_capacity);
@@ -214,6 +225,21 @@ class Builder {
     return ranges;
   }
 
+  uint64_t inherited_capacity(TypeId id) const {
+    return base_of(id).valid() ? layouts_[base_of(id)].area_capacity : 0;
+  }
+
+  // The members of the base, where they are there; their number.
+  size_t inherit(TypeId id, Extents& taken) {
+    if (!base_of(id).valid()) return 0;
+    const std::vector<uint32_t>& offsets = layouts_[base_of(id)].member_offsets;
+    for (size_t i = 0; i < offsets.size(); ++i) {
+      layouts_.of[id.index].member_offsets[i] = offsets[i];
+      taken.add(offsets[i], size_of(types_[id].members[i]));
+    }
+    return offsets.size();
+  }
+
   void place_members(TypeId id, uint32_t capacity) {
     const Type& type = types_[id];
     const TypeId old = old_of(id);
@@ -222,8 +248,11 @@ class Builder {
     ir::MemberFinder old_members(base_ != nullptr ? base_->types : types_, old);
     std::vector<size_t> added;
     Extents taken;  // what lives on
-    for (size_t i = 0; i < type.members.size(); ++i) {
-      if (const auto offset = kept_offset(old, old_members, type.members[i])) {
+    const size_t inherited = inherit(id, taken);
+    const uint64_t floor = inherited_capacity(id);
+    for (size_t i = inherited; i < type.members.size(); ++i) {
+      const auto offset = kept_offset(old, old_members, type.members[i]);
+      if (offset && *offset >= floor) {
         offsets[i] = *offset;
         taken.add(*offset, size_of(type.members[i]));
       } else {
@@ -243,9 +272,10 @@ class Builder {
   void place_added(TypeId id, TypeId old, uint32_t capacity, const std::vector<size_t>& added,
                    Extents& taken, std::vector<uint32_t>& offsets) {
     Extents before = taken;
-    uint64_t old_used = 0;
+    const uint64_t floor = inherited_capacity(id);
+    uint64_t old_used = floor;
     if (old.valid()) {
-      old_used = base_->layouts[old].used;
+      old_used = std::max<uint64_t>(base_->layouts[old].used, floor);
       for (const Extent64& range : old_ranges(old)) before.add(range.begin, range.size);
     }
     const uint64_t unlimited = uint64_t{1} << 40;
@@ -256,11 +286,11 @@ class Builder {
       const uint64_t size = size_of(member);
       const uint64_t align = align_of(member);
       // Gaps only shrink, so a search for the same size goes on where the last one ended.
-      uint64_t& hint = hints[{size, align}];
+      uint64_t& hint = hints.try_emplace({size, align}, floor).first->second;
       std::optional<uint64_t> at =
           before.first_gap(std::min(hint, old_used), old_used, size, align);
       if (!at) at = before.first_gap(std::max(hint, old_used), end, size, align);
-      if (!at) at = taken.first_gap(0, end, size, align);
+      if (!at) at = taken.first_gap(floor, end, size, align);
       if (!at) at = before.first_gap(std::max(hint, old_used), unlimited, size, align);
       if (*at >= hint) hint = *at;
       if (*at + size > base::kMaxDataBytes) return too_large(id, *at + size, base::kMaxDataBytes);
@@ -288,6 +318,7 @@ class Builder {
   const ir::Image* base_;
   Layouts layouts_;
   std::vector<bool> done_;
+  std::vector<bool> laid_out_;  // areas
   std::unordered_map<std::string, TypeId> old_types_;
   std::optional<base::Error> error_;
 };

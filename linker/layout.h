@@ -4,7 +4,9 @@
 // that were free before, then behind, and into holes that this very change frees only when nothing
 // else is left inside the capacity (so that their initial value can be written before the switch,
 // A19). Areas get slack when they are first laid out and keep their capacity while the contents fit
-// (A5 iii, A8).
+// (A5 iii, A8). What extends a block has the members of its base where the base has them, and its
+// own ones behind the base's capacity, so that the base can grow in its slack
+// (docs/adr/0006-objects.md).
 #pragma once
 
 #include "base/result.h"

@@ -14,7 +14,8 @@
 namespace linker {
 namespace {
 
-constexpr int64_t kEventWatchdogNs = 100'000'000;  // of a task without a period
+constexpr int64_t kEventWatchdogNs = 100'000'000;     // of a task without a period
+constexpr int64_t kStartWatchdogNs = 10'000'000'000;  // of a task that runs once
 
 class Linker {
  public:
@@ -26,8 +27,9 @@ class Linker {
 
   base::Result<ir::Image> run() {
     base::Status (Linker::*const steps[])() = {
-        &Linker::lay_out_types, &Linker::number_pous, &Linker::place_instances, &Linker::fill_pool,
-        &Linker::link_code,     &Linker::link_tasks,  &Linker::measure_stack,
+        &Linker::lay_out_types,  &Linker::number_pous,   &Linker::place_instances,
+        &Linker::fill_pool,      &Linker::link_code,     &Linker::link_tasks,
+        &Linker::link_overrides, &Linker::measure_stack,
     };
     copy_declarations();
     for (const auto step : steps) {
@@ -95,7 +97,7 @@ class Linker {
       const ir::Object* object = context_.objects[i];
       if (object == nullptr) continue;
       context_.pou_numbers.emplace(ir::fold_name(object->name), i);
-      if (object->self.valid()) pou_of_type_.emplace(object->self.index, i);
+      if (ir::is_body(object->kind)) pou_of_type_.emplace(object->self.index, i);
     }
     for (const ir::Object& object : objects_) {
       for (const std::string& callee : object.callees) {
@@ -196,10 +198,13 @@ class Linker {
                                                                  : task.period_ns * 10;
       image_.tasks.push_back({task.name,
                               task.period_ns,
-                              watchdog != 0 ? watchdog : kEventWatchdogNs,
+                              watchdog != 0 ? watchdog
+                              : task.once   ? kStartWatchdogNs
+                                            : kEventWatchdogNs,
                               task.priority,
                               event_of(task),
-                              {}});
+                              {},
+                              task.once});
     }
     for (size_t i = 0; i < program_.instances.size(); ++i) {
       const ir::ProgramInstance& instance = program_.instances[i];
@@ -213,6 +218,26 @@ class Linker {
     for (const ir::BlockTask& block : program_.block_tasks) {
       image_.tasks[block.task].programs.push_back(block_id(block));
     }
+    return base::Ok{};
+  }
+
+  base::Status link_overrides() {
+    for (const ir::Override& row : program_.overrides) {
+      const auto number = [&](ir::PouId pou) {
+        return context_.pou_numbers.find(ir::fold_name(program_.pous[pou.index].name));
+      };
+      const auto prototype = number(row.prototype);
+      const auto target = number(row.target);
+      if (prototype == context_.pou_numbers.end() || target == context_.pou_numbers.end()) {
+        return base::Error{
+            base::Refusal::kUndefinedSymbol,
+            "`" + program_.types[row.type].name + "` overrides a method whose object is missing."};
+      }
+      image_.overrides.push_back({row.type, prototype->second, target->second});
+    }
+    std::sort(image_.overrides.begin(), image_.overrides.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.type.index, a.prototype) < std::pair(b.type.index, b.prototype);
+    });
     return base::Ok{};
   }
 

@@ -93,6 +93,8 @@ uint32_t Numbers::extension_field(const Field& field, uint32_t number, Base base
       return bound_number(number);
     case FieldKind::kType:
       return ir::region_field(object_.regions[number]);
+    case FieldKind::kCode:
+      return pou_number(number);
     case FieldKind::kSize:
       return size_of(object_.regions[number].type);
     default:

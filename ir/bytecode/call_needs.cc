@@ -151,7 +151,8 @@ class Measurer {
         longest.bytes = std::max(longest.bytes, chains_.at(callee).bytes);
         longest.depth = std::max(longest.depth, chains_.at(callee).depth);
       }
-      chains_[node] = {longest.bytes + nodes_[node].frame_bytes, longest.depth + 1};
+      const uint32_t own = nodes_[node].is_pou ? 1 : 0;
+      chains_[node] = {longest.bytes + nodes_[node].frame_bytes, longest.depth + own};
       path.pop_back();
     }
     return chains_.at(start);
@@ -171,7 +172,28 @@ class Measurer {
   uint32_t count_ = 0;
 };
 
+CallNode choice() {
+  CallNode node;
+  node.is_pou = false;
+  return node;
+}
+
 }  // namespace
+
+void DynamicCalls::add_nodes(const Image& image, const std::vector<uint32_t>& pou_of_type,
+                             std::vector<CallNode>& nodes) const {
+  nodes.resize(size_t{pous_} * 2 + types_, choice());
+  for (uint32_t i = 0; i < types_; ++i) {
+    const TypeId type(i);
+    if (pou_of_type[i] < pous_) nodes[any_body(type)].callees.push_back(pou_of_type[i]);
+    const TypeId base = image.types[type].base;
+    if (image.types[type].kind != Kind::kFunctionBlock || !base.valid()) continue;
+    nodes[any_body(base)].callees.push_back(any_body(type));
+  }
+  for (const LinkedOverride& row : image.overrides) {
+    nodes[any_target(row.prototype)].callees.push_back(row.target);
+  }
+}
 
 CallMeasure measure_calls(const std::vector<CallNode>& nodes) {
   CallMeasure measure;

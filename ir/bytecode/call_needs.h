@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "ir/bytecode/image.h"
+
 namespace ir {
 
 struct CallNode {
@@ -16,6 +18,7 @@ struct CallNode {
   uint64_t frame_bytes = 0;
   uint64_t native_bytes = 0;     // argument slots of native calls
   uint32_t recursion_depth = 0;  // at most kMaxCallDepth
+  bool is_pou = true;            // false: a choice between its callees, see DynamicCalls
 };
 
 struct CallNeeds {
@@ -28,5 +31,25 @@ struct CallMeasure {
   std::vector<uint32_t> circle;  // not empty: a circle without a declared POU, `of` means nothing
 };
 CallMeasure measure_calls(const std::vector<CallNode>& nodes);
+
+// Calls whose callee is known at run time only are edges to a node of their own, behind those of
+// the POUs, which leads to everything that may run.
+class DynamicCalls {
+ public:
+  explicit DynamicCalls(const Image& image)
+      : pous_(static_cast<uint32_t>(image.pous.size())), types_(image.types.size()) {}
+
+  // CALL_REF: the body of the type or of one that extends it.
+  uint32_t any_body(TypeId type) const { return pous_ + type.index; }
+  // CALL_VIRTUAL: what stands for the prototype in some type.
+  uint32_t any_target(uint32_t prototype) const { return pous_ + types_ + prototype; }
+  // Behind `nodes`, one for each POU of the image; `pou_of_type`: bodies, by type number.
+  void add_nodes(const Image& image, const std::vector<uint32_t>& pou_of_type,
+                 std::vector<CallNode>& nodes) const;
+
+ private:
+  uint32_t pous_;
+  uint32_t types_;
+};
 
 }  // namespace ir

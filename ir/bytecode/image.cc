@@ -12,7 +12,7 @@ namespace ir {
 namespace {
 
 constexpr std::string_view kMagic = "STCIMAGE";
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 constexpr size_t kDigestAt = 16;
 constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 
@@ -61,7 +61,7 @@ void add_type(TypeTable& types, Type type) {
 
 void types_section(ImageReader& a, TypeTable& types) {
   std::vector<Type> stored;
-  a.list(stored, 46, [&](Type& type) { type_fields(a, type); });
+  a.list(stored, 50, [&](Type& type) { type_fields(a, type); });
   for (Type& type : stored) add_type(types, std::move(type));
 }
 
@@ -96,12 +96,13 @@ void tables_section(Archive& a, I& image) {
     a(range.high);
     a(range.name);
   });
+  a.list(image.overrides, 12, [&](auto& row) { override_fields(a, row); });
   a.list(image.instances, 25, [&](auto& instance) { instance_fields(a, instance); });
   a.list(image.free, 8, [&](auto& extent) {
     a(extent.offset);
     a(extent.size);
   });
-  a.list(image.tasks, 32, [&](auto& task) { task_fields(a, task); });
+  a.list(image.tasks, 33, [&](auto& task) { task_fields(a, task); });
   a.list(image.access, 9, [&](auto& access) { access_fields(a, access); });
   a.list(image.io, 17, [&](auto& binding) {
     address_fields(a, binding.address);

@@ -102,6 +102,14 @@ struct ImageTask {
   uint32_t priority = 0;
   uint32_t event = 0;  // data offset of the BOOL whose edges release it; 0: none (ir::Task)
   std::vector<uint32_t> programs = {};  // instance IDs, in order of execution
+  bool once = false;                    // at cold start, before the first scan; period 0
+};
+
+// CALL_VIRTUAL of POU `prototype` runs POU `target` on instances of `type`.
+struct LinkedOverride {
+  TypeId type;
+  uint32_t prototype = 0;
+  uint32_t target = 0;
 };
 
 // Binds a located variable to the process image (A BOOL takes one bit there).
@@ -127,6 +135,7 @@ struct Image {
   base::Bytes pool;  // constant pool
   std::vector<LinkedBound> bounds;
   std::vector<Range> ranges;
+  std::vector<LinkedOverride> overrides;  // sorted by type, then prototype; no pair twice
   std::vector<Instance> instances;
   std::vector<Extent> free;  // sorted, disjoint, never adjacent
   std::vector<ImageTask> tasks;

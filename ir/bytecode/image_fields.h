@@ -124,6 +124,7 @@ void type_fields(Archive& a, T& v) {
     a(literal.name);
     a(literal.value);
   });
+  a.list(v.interfaces, 4, a);
   a(v.init);
 }
 
@@ -167,7 +168,7 @@ void slot_fields(Archive& a, T& v) {
 template <class Archive, class T>
 void pou_fields(Archive& a, T& v) {
   a(v.name);
-  a.enumerator(v.kind, 3);
+  a.enumerator(v.kind, kPouKindCount);
   a(v.self);
   a(v.recursion_depth);
   a(v.file);
@@ -214,6 +215,14 @@ void task_fields(Archive& a, T& v) {
   a(v.priority);
   a(v.event);
   a.list(v.programs, 4, a);
+  a(v.once);
+}
+
+template <class Archive, class T>
+void override_fields(Archive& a, T& v) {
+  a(v.type);
+  a(v.prototype);
+  a(v.target);
 }
 
 template <class Archive, class T>

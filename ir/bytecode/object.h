@@ -8,8 +8,8 @@
 //   near operand, base self, global            place
 //   near operand, base const                   constant
 //   BC32, P32, OFF, OFF32                      place (base must agree; const: constant)
-//   CODE callee, RANGE range, BOUNDS bound, TYPE and SIZE region, CAP and TRAP literal
-//   FRAME filled by the linker (zero)
+//   CODE callee (or prototype), RANGE range, BOUNDS bound, TYPE and SIZE region, CAP and TRAP
+//   literal FRAME filled by the linker (zero)
 // Jumps are final: distances in units of the object (the linker adjusts them when
 // it has to insert far loads and stores).
 #pragma once
@@ -101,7 +101,7 @@ struct Object {
   std::vector<Region> regions;
   std::vector<Bound> bounds;
   std::vector<Range> ranges;
-  std::vector<std::string> callees;  // functions called by CALL
+  std::vector<std::string> callees;  // POUs that CODE fields name
   std::vector<Unit> code;
   std::vector<Merge> merges;     // sorted by unit
   std::vector<LineEntry> lines;  // sorted by unit

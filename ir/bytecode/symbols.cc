@@ -182,7 +182,9 @@ class LeafWalk {
   }
 
  private:
+  // A program among the globals comes later, as itself.
   void part(Symbol symbol, uint32_t depth) {
+    if (image_.types[symbol.type].kind == Kind::kProgram) return;
     if (!image_.types.is_instance(symbol.type) || enter(image_, symbol)) walk(symbol, depth + 1);
   }
 

@@ -12,7 +12,13 @@ namespace {
 class CallGraph {
  public:
   CallGraph(const Context& context, const std::vector<CodeFacts>& code)
-      : image_(context.image), code_(code) {}
+      : image_(context.image), nodes_(code.size()), code_(code) {
+    for (uint32_t i = 0; i < code.size(); ++i) {
+      const LinkedPou& pou = image_.pous[i];
+      nodes_[i] = {code[i].callees, pou.frame_size, code[i].native_bytes, pou.recursion_depth};
+    }
+    DynamicCalls(image_).add_nodes(image_, context.pou_of_type, nodes_);
+  }
 
   base::Status run() {
     if (base::Status s = measure(); !s) return s;
@@ -22,15 +28,13 @@ class CallGraph {
 
  private:
   base::Status measure() {
-    std::vector<CallNode> nodes(code_.size());
-    for (uint32_t i = 0; i < code_.size(); ++i) {
-      const LinkedPou& pou = image_.pous[i];
-      nodes[i] = {code_[i].callees, pou.frame_size, code_[i].native_bytes, pou.recursion_depth};
-    }
-    needs_ = measure_calls(nodes);
+    needs_ = measure_calls(nodes_);
     if (needs_.circle.empty()) return base::Ok{};
-    return refuse(Refusal::kStackUnbounded, "POU `" + image_.pous[needs_.circle[0]].name +
-                                                "` is in a circle of calls that has no depth");
+    const auto pou = std::find_if(needs_.circle.begin(), needs_.circle.end(),
+                                  [&](uint32_t node) { return nodes_[node].is_pou; });
+    const std::string name = pou == needs_.circle.end() ? "" : image_.pous[*pou].name;
+    return refuse(Refusal::kStackUnbounded,
+                  "POU `" + name + "` is in a circle of calls that has no depth");
   }
 
   // Tasks of different priority may lie on top of each other.
@@ -60,6 +64,7 @@ class CallGraph {
   base::Status check_writers() const {
     std::map<uint32_t, uint32_t> writer;  // data offset of an output -> task
     for (uint32_t t = 0; t < image_.tasks.size(); ++t) {
+      if (image_.tasks[t].once) continue;  // it is over before others begin
       for (uint32_t pou : reachable(image_.tasks[t])) {
         for (uint32_t output : code_[pou].written_outputs) {
           const auto [entry, added] = writer.try_emplace(output, t);
@@ -75,21 +80,23 @@ class CallGraph {
   }
 
   std::vector<uint32_t> reachable(const ImageTask& task) const {
-    std::vector<bool> seen(code_.size());
+    std::vector<bool> seen(nodes_.size());
     std::vector<uint32_t> found;
-    const auto add = [&](uint32_t pou) {
-      if (seen[pou]) return;
-      seen[pou] = true;
-      found.push_back(pou);
+    const auto add = [&](uint32_t node) {
+      if (seen[node]) return;
+      seen[node] = true;
+      found.push_back(node);
     };
     for (uint32_t id : task.programs) add(image_.instances[id].pou);
     for (size_t i = 0; i < found.size(); ++i) {
-      for (uint32_t callee : code_[found[i]].callees) add(callee);
+      for (uint32_t callee : nodes_[found[i]].callees) add(callee);
     }
+    std::erase_if(found, [&](uint32_t node) { return !nodes_[node].is_pou; });
     return found;
   }
 
   const Image& image_;
+  std::vector<CallNode> nodes_;
   const std::vector<CodeFacts>& code_;
   CallMeasure needs_;
 };

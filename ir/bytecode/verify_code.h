@@ -1,6 +1,9 @@
 // The check of one POU's code: a single pass that keeps, for every scalar slot of
 // the frame, whether it holds a value, and for the next frame, what was put there.
 //
+// A handler (TRY) is a merge: what held at the TRY holds there too, since slots keep their class
+// and get no lesser addr while the try is open. Which tries are open is known at every unit.
+//
 // At a merge unit the state is what the merge says and nothing else; every jump
 // there must bring it. So nothing is iterated: typing is by slot (its class and
 // region never change), and of an addr only two facts flow: whether what it points to
@@ -8,6 +11,7 @@
 // call in preparation only, and never survives a merge).
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -49,6 +53,7 @@ class CodeVerifier {
   };
   struct Arrival {  // at merge number i
     bool reached = false;
+    uint32_t scope = 0;  // tries that are open there
     bool loop_head = false;
     bool calls_inside = false;    // a loop head whose loop calls something
     std::vector<bool> read_only;  // parallel to Merge::slots
@@ -67,6 +72,11 @@ class CodeVerifier {
   bool arrive(uint32_t merge, bool backwards);
   bool jump(uint32_t next, bool backwards);
   bool check_return();
+
+  // verify_tries.cc
+  bool check_try(uint32_t next);
+  bool check_end_try();
+  bool outlives_traps(uint32_t slot, const Pointer& pointer);
   uint32_t merge_at(uint32_t unit) const;
   bool fail(Refusal refusal, const std::string& why);
 
@@ -116,6 +126,8 @@ class CodeVerifier {
   const FrameSlot* callee_slot(const LinkedPou& callee, uint32_t offset) const;
   bool is_result(const Outgoing& wanted) const;
   bool fits(const Outgoing& out, const FrameSlot& slot) const;
+  bool check_frame();
+  bool pass_arguments(uint32_t pou);
   bool check_call();
   bool check_native();
   bool check_call_instance(bool from_place);
@@ -123,6 +135,15 @@ class CodeVerifier {
   bool check_instance_frame();
   bool add_instance_call(TypeId type);
   bool end_of_arguments(const char* where);
+
+  // verify_methods.cc
+  bool is_method(uint32_t pou) const;
+  bool runs_on(uint32_t pou, TypeId type) const;
+  bool check_call_own();
+  bool check_call_method(bool from_place);
+  bool check_call_method_reference();
+  bool check_call_virtual();
+  bool check_is_type();
 
   const Context& context_;
   const Image& image_;
@@ -147,6 +168,17 @@ class CodeVerifier {
   uint64_t pending_end_ = 0;
   Results results_;
   std::vector<Arrival> arrivals_;  // by merge
+
+  // Open tries as a tree: an entry is a try inside that of `parent`, with its handler's merge.
+  // 0: none is open.
+  struct Scope {
+    uint32_t parent = 0;
+    uint32_t handler = kNone;
+    uint32_t depth = 0;
+  };
+  std::vector<Scope> scopes_ = {Scope{}};
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> scope_numbers_;  // by parent and handler
+  uint32_t scope_ = 0;
 };
 
 }  // namespace ir::verification

@@ -118,6 +118,10 @@ bool CodeVerifier::step(uint32_t unit) {
     case Opcode::JT:
     case Opcode::JF:
       return near_operand(row.a, u_.base_a(), u_.a, false) && jump(next, false);
+    case Opcode::TRY:
+      return check_try(next);
+    case Opcode::END_TRY:
+      return check_end_try();
     case Opcode::RET:
       return check_return();
     default:
@@ -145,6 +149,7 @@ bool CodeVerifier::enter_merge(uint32_t unit) {
   // What a loop calls may not leave results that its start expects.
   results_ = arrival.loop_head && arrival.calls_inside ? Results{} : arrival.results;
   arrivals_[number].results = results_;
+  scope_ = arrival.scope;
   falls_through_ = true;
   return true;
 }
@@ -154,6 +159,11 @@ bool CodeVerifier::arrive(uint32_t number, bool backwards) {
   const Merge& merge = pou_.merges[number];
   Arrival& arrival = arrivals_[number];
   if (!end_of_arguments("a jump target")) return false;
+  if (!arrival.reached && !backwards) arrival.scope = scope_;
+  if (arrival.scope != scope_) {
+    return fail(Refusal::kBadJump,
+                "other tries are open at the merge at unit " + std::to_string(merge.unit));
+  }
   for (size_t i = 0; i < merge.slots.size(); ++i) {
     const uint16_t slot = merge.slots[i];
     const std::string name = "slot at " + std::to_string(pou_.slots[slot].offset);
@@ -195,6 +205,7 @@ bool CodeVerifier::jump(uint32_t next, bool backwards) {
 
 bool CodeVerifier::check_return() {
   if (!end_of_arguments("the return")) return false;
+  if (scope_ != 0) return fail(Refusal::kBadJump, "returns while a try is open");
   for (uint32_t i = 0; i < pou_.slots.size(); ++i) {
     const FrameSlot& slot = pou_.slots[i];
     const bool result = slot.kind == SlotKind::kParam && !slot.aggregate &&

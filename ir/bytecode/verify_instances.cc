@@ -176,6 +176,7 @@ class InstancesVerifier {
       }
       const Instance& child = image_.instances[id];
       if (child.type != slot.type) return bad(holder, where + ", which has another type");
+      if (is_program(id)) continue;  // of the globals; it exists anyway
       if (child.parent != holder) return bad(holder, where + ", which has another parent");
       if (named_[id]) return bad(holder, where + ", which is named twice");
       named_[id] = true;

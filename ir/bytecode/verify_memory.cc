@@ -64,6 +64,17 @@ bool CodeVerifier::special(const OpcodeRow& row) {
       return check_call_instance(false);
     case Opcode::CALL_REF:
       return check_call_reference();
+    case Opcode::CALL_OWN:
+      return check_call_own();
+    case Opcode::CALL_METHOD:
+    case Opcode::CALL_METHOD_AT:
+      return check_call_method(u_.opcode() == Opcode::CALL_METHOD);
+    case Opcode::CALL_METHOD_REF:
+      return check_call_method_reference();
+    case Opcode::CALL_VIRTUAL:
+      return check_call_virtual();
+    case Opcode::IS_TYPE:
+      return check_is_type();
     case Opcode::NATIVE:
       return check_native();
     default:
@@ -89,6 +100,7 @@ bool CodeVerifier::special(const OpcodeRow& row) {
   if (row.a.kind == FieldKind::kTrap && u_.a >= kTrapCount) {
     return fail(Refusal::kBadReference, "there is no trap " + std::to_string(u_.a));
   }
+  if (row.ends && !end_of_arguments("a trap")) return false;
   const auto reads = [&](const Field& f, Base base, uint32_t offset) {
     return !f.is_near() || !f.reads() || near_operand(f, base, offset, false);
   };

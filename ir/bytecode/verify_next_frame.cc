@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "ir/bytecode/call_needs.h"
 #include "ir/bytecode/verify_code.h"
 #include "stdlib/native/natives.h"
 
@@ -104,16 +105,24 @@ bool CodeVerifier::end_of_arguments(const char* where) {
                                      std::string(where) + " comes before their call");
 }
 
+bool CodeVerifier::check_frame() {
+  if (u_.a == pou_.frame_size / 8) return true;
+  return fail(Refusal::kBadFrame, "the callee's frame would begin at " + std::to_string(u_.a * 8u) +
+                                      ", this one ends at " + std::to_string(pou_.frame_size));
+}
+
 bool CodeVerifier::check_call() {
-  if (u_.a != pou_.frame_size / 8) {
-    return fail(Refusal::kBadFrame, "the callee's frame would begin at " +
-                                        std::to_string(u_.a * 8u) + ", this one ends at " +
-                                        std::to_string(pou_.frame_size));
-  }
+  if (!check_frame()) return false;
   const bool exists = u_.c < image_.pous.size() && image_.pous[u_.c].unit_count != 0 &&
                       image_.pous[u_.c].kind == PouKind::kFunction;
   if (!exists) return fail(Refusal::kBadCall, "there is no function " + std::to_string(u_.c));
-  const LinkedPou& callee = image_.pous[u_.c];
+  facts_.callees.push_back(u_.c);
+  return pass_arguments(u_.c);
+}
+
+// What is in the next frame are exactly the arguments of that POU; then come its results.
+bool CodeVerifier::pass_arguments(uint32_t pou) {
+  const LinkedPou& callee = image_.pous[pou];
   std::vector<bool> given(callee.slots.size());
   for (const Outgoing& out : pending_) {
     const FrameSlot* slot = callee_slot(callee, out.offset);
@@ -133,11 +142,10 @@ bool CodeVerifier::check_call() {
                   "argument `" + slot.name + "` of `" + callee.name + "` is missing");
     }
   }
-  facts_.callees.push_back(u_.c);
   pending_.clear();
   pending_begin_ = ~uint64_t{0};
   pending_end_ = 0;
-  results_ = {ResultsOf::kFunction, u_.c};
+  results_ = {ResultsOf::kFunction, pou};
   return true;
 }
 
@@ -179,10 +187,7 @@ bool CodeVerifier::check_native() {
 }
 
 bool CodeVerifier::check_instance_frame() {
-  if (!end_of_arguments("the call of an instance")) return false;
-  if (u_.a == pou_.frame_size / 8) return true;
-  return fail(Refusal::kBadFrame, "the callee's frame would begin at " + std::to_string(u_.a * 8u) +
-                                      ", this one ends at " + std::to_string(pou_.frame_size));
+  return end_of_arguments("the call of an instance") && check_frame();
 }
 
 bool CodeVerifier::add_instance_call(TypeId type) {
@@ -208,14 +213,13 @@ bool CodeVerifier::check_call_reference() {
   const bool instance = context_.valid(region) && region.dim == 0 &&
                         image_.types[region.type].kind == Kind::kFunctionBlock;
   if (!instance) return fail(Refusal::kBadReference, "there is no such function block");
-  // The instance may be of any type that extends the named one; each runs its own body.
-  for (uint32_t i = 0; i < image_.types.size(); ++i) {
-    const bool other = TypeId(i) != region.type && context_.pou_of_type[i] != kNone;
-    if (other && image_.types.is_a(TypeId(i), region.type)) {
-      facts_.callees.push_back(context_.pou_of_type[i]);
-    }
+  if (context_.pou_of_type[region.type.index] == kNone) {
+    return fail(Refusal::kBadCall, "`" + image_.types.text(region.type) + "` has no code");
   }
-  return add_instance_call(region.type);
+  // The instance may be of any type that extends the named one; each runs its own body.
+  facts_.callees.push_back(DynamicCalls(image_).any_body(region.type));
+  results_ = {};
+  return true;
 }
 
 }  // namespace ir::verification

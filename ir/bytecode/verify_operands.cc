@@ -167,6 +167,7 @@ bool CodeVerifier::write_pointer(uint32_t offset, Class cls, const Pointer& poin
                                          image_.types.text(pou_.slots[slot].region.type) +
                                          ", not of " + image_.types.text(pointer.region.type));
   }
+  if (!outlives_traps(slot, pointer)) return false;
   mark_written(slot, pointer.read_only, pointer.outgoing);
   return true;
 }

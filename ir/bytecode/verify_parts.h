@@ -35,12 +35,15 @@ struct Context {
   const Image& image;
   std::vector<TypeFacts> facts;
   RegionMap regions;
-  std::vector<uint32_t> pou_of_type;  // by type number; kNone
+  std::vector<uint32_t> pou_of_type;  // bodies, by type number; kNone
   bool valid(Region region) const;    // names an existing type and dimension
 };
 
 // --- verify_tables.cc: POU table, slots, bounds, ranges, limits -----------------
 base::Status verify_tables(Context& context);
+
+// --- verify_overrides.cc: what virtual calls find -------------------------------
+base::Status verify_overrides(const Image& image);
 
 // --- verify_instances.cc: areas and the instance tree (V13) ---------------------
 base::Status verify_instances(const Context& context);
@@ -50,7 +53,7 @@ base::Status verify_resources(const Context& context);
 
 // --- verify_code.cc: one POU in one pass (V3 to V10, V12, V19, V20) -------------
 struct CodeFacts {
-  std::vector<uint32_t> callees;          // POU numbers, each once per call
+  std::vector<uint32_t> callees;          // nodes of the call graph, each once per call
   std::vector<uint32_t> written_outputs;  // data offsets of %Q globals
   uint32_t native_bytes = 0;              // argument area of native calls
 };

@@ -34,7 +34,9 @@ class ResourcesVerifier {
       const auto bad = [&](const std::string& why) {
         return refuse(Refusal::kBadTask, "task `" + task.name + "`: " + why);
       };
-      const bool period = task.period_ns > 0 || (task.period_ns == 0 && task.event != 0);
+      const bool period = task.once
+                              ? task.period_ns == 0 && task.event == 0
+                              : task.period_ns > 0 || (task.period_ns == 0 && task.event != 0);
       if (!period) return bad("period of " + std::to_string(task.period_ns) + " ns");
       if (task.event != 0 && !is_event(task.event)) return bad("its event is no BOOL global");
       if (task.watchdog_ns <= 0) {

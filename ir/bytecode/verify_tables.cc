@@ -93,15 +93,10 @@ class TablesVerifier {
   }
 
   base::Status check_self(const LinkedPou& pou, uint32_t number) {
-    const bool function = pou.kind == PouKind::kFunction;
-    const Kind wanted = pou.kind == PouKind::kProgram ? Kind::kProgram : Kind::kFunctionBlock;
-    const bool good =
-        function ? !pou.self.valid()
-                 : image_.types.contains(pou.self) && image_.types[pou.self].kind == wanted;
-    if (!good) {
+    if (!right_self(pou)) {
       return refuse(Refusal::kBadReference, "POU `" + pou.name + "`: wrong instance type");
     }
-    if (function || pou.unit_count == 0) return base::Ok{};
+    if (!is_body(pou.kind) || pou.unit_count == 0) return base::Ok{};
     uint32_t& owner = context_.pou_of_type[pou.self.index];
     if (owner != kNone) {
       return refuse(Refusal::kBadReference, "POUs `" + image_.pous[owner].name + "` and `" +
@@ -111,9 +106,27 @@ class TablesVerifier {
     return base::Ok{};
   }
 
+  bool right_self(const LinkedPou& pou) const {
+    if (pou.kind == PouKind::kFunction) return !pou.self.valid();
+    if (!image_.types.contains(pou.self)) return false;
+    const Kind kind = image_.types[pou.self].kind;
+    switch (pou.kind) {
+      case PouKind::kFunctionBlock:
+        return kind == Kind::kFunctionBlock;
+      case PouKind::kProgram:
+        return kind == Kind::kProgram;
+      default:
+        return image_.types.is_instance(pou.self) || kind == Kind::kInterface;
+    }
+  }
+
   base::Status check_slots(const LinkedPou& pou) const {
     uint64_t end = 0;
     for (const FrameSlot& slot : pou.slots) {
+      // Nobody passes arguments to a body, so nothing may count on them.
+      if (slot.kind == SlotKind::kParam && !has_parameters(pou.kind)) {
+        return bad_frame(pou, "parameters of what has none");
+      }
       if (slot.kind > SlotKind::kTemp) return bad_frame(pou, "slot of a kind that frames lack");
       if (base::Status s = check_slot(pou, slot); !s) return s;
       if (slot.offset < end) {

@@ -27,6 +27,9 @@ class TypesVerifier {
     for (uint32_t i : order_) {
       if (base::Status s = check_layout(i); !s) return s.error();
     }
+    for (uint32_t i = 0; i < types_.size(); ++i) {
+      if (base::Status s = check_ancestors(i); !s) return s.error();
+    }
     if (!types_.contains(image_.globals) || types_[image_.globals].kind != Kind::kGlobals) {
       return refuse(Refusal::kBadFormat, "the globals are not of a globals type");
     }
@@ -62,11 +65,61 @@ class TypesVerifier {
     if (needs_base && types_[type.base].kind == Kind::kGlobals) {
       return bad(i, "is made of the globals");
     }
+    if (type.kind == Kind::kArray && !may_be_part(type.base, false)) {
+      return bad(i, "has elements that nothing can be");
+    }
     if (!types_.has_members(TypeId(i)) && !type.members.empty()) return bad(i, "has members");
     for (const Member& member : type.members) {
       if (!types_.contains(member.type) || types_[member.type].kind == Kind::kGlobals) {
         return bad(i, "the type of member `" + member.name + "` does not exist");
       }
+      if (!may_be_part(member.type, type.kind == Kind::kGlobals)) {
+        return bad(i, "member `" + member.name + "` is of a type that no member can be of");
+      }
+    }
+    return base::Ok{};
+  }
+
+  // Nothing is an interface; a program is a part of the globals only (and lives elsewhere).
+  bool may_be_part(TypeId type, bool of_globals) const {
+    const Kind kind = types_[type].kind;
+    return kind != Kind::kInterface && (kind != Kind::kProgram || of_globals);
+  }
+
+  // What works on the base works on `i`: the same members at the same offsets.
+  base::Status check_ancestors(uint32_t i) const {
+    const Type& type = types_[TypeId(i)];
+    const bool block = type.kind == Kind::kFunctionBlock;
+    if (!type.interfaces.empty() && !block && type.kind != Kind::kInterface) {
+      return bad(i, "implements interfaces and is no block");
+    }
+    for (const TypeId parent : type.interfaces) {
+      const bool good = types_.contains(parent) && types_[parent].kind == Kind::kInterface;
+      if (!good) return bad(i, "implements what is no interface");
+    }
+    if (!block || !type.base.valid()) return base::Ok{};
+    uint32_t depth = 0;
+    for (TypeId base = type.base; base.valid(); base = types_[base].base) {
+      if (!types_.contains(base) || types_[base].kind != Kind::kFunctionBlock) {
+        return bad(i, "extends what is no function block");
+      }
+      if (++depth > base::kMaxNesting) return bad(i, "extends itself, or too many others");
+    }
+    return check_inherited(i);
+  }
+
+  base::Status check_inherited(uint32_t i) const {
+    const Type& type = types_[TypeId(i)];
+    const std::vector<Member>& inherited = types_[type.base].members;
+    if (inherited.size() > type.members.size()) return bad(i, "lacks members of its base");
+    for (size_t m = 0; m < inherited.size(); ++m) {
+      const Member& own = type.members[m];
+      const bool same =
+          same_name(own.name, inherited[m].name) && own.type == inherited[m].type &&
+          own.section == inherited[m].section && own.constant == inherited[m].constant &&
+          own.address == inherited[m].address &&
+          image_.layouts.of[i].member_offsets[m] == image_.layouts[type.base].member_offsets[m];
+      if (!same) return bad(i, "member `" + own.name + "` is not that of its base");
     }
     return base::Ok{};
   }
@@ -105,6 +158,7 @@ class TypesVerifier {
     if (!layout.member_offsets.empty()) return bad(i, "has offsets of members");
     if (type.kind == Kind::kArray) return check_array(i);
     uint64_t size = 0;
+    if (type.kind == Kind::kInterface) return check_size(i, 0);
     if (type.kind == Kind::kString || type.kind == Kind::kWstring) {
       if (type.capacity > base::kMaxStringCapacity) return bad(i, "its capacity is too large");
       size = (uint64_t{type.capacity} + 1) * (type.kind == Kind::kString ? 1 : 2);
@@ -258,7 +312,7 @@ base::Status verify_constants(const Image& image) {
 bool Context::valid(Region region) const {
   if (!image.types.contains(region.type)) return false;
   const Type& type = image.types[region.type];
-  if (region.dim == 0) return true;
+  if (region.dim == 0) return type.kind != Kind::kInterface;
   if (type.kind != Kind::kArray) return false;
   return region.dim < type.dims.size() ||
          (region.dim == type.dims.size() && image.types.is_instance(type.base));

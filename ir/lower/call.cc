@@ -35,6 +35,39 @@ void Selector::select_call_instance(const Inst& inst) {
   forget_references();
 }
 
+void Selector::select_object_call(const Inst& inst) {
+  flush_call(inst);
+  if (inst.op == Op::kCallReference) {
+    emit(Opcode::CALL_REF, {}, use(inst.operands[0]), {}, tables_.region({inst.type, 0}));
+    return forget_references();
+  }
+  const uint32_t callee = tables_.callee(program_.pous[inst.pou.index].name);
+  if (inst.place.valid()) {
+    select_call_on_place(inst, callee);
+  } else if (inst.operands.empty()) {
+    emit(Opcode::CALL_OWN, {}, {}, Operand::immediate(callee));
+  } else {
+    const bool fixed = inst.op == Op::kCallMethod;
+    emit(fixed ? Opcode::CALL_METHOD_REF : Opcode::CALL_VIRTUAL, {}, use(inst.operands[0]), {},
+         callee);
+  }
+  forget_references();
+}
+
+void Selector::select_call_on_place(const Inst& inst, uint32_t callee) {
+  const Place& place = pou_.places[inst.place.index];
+  if (place.base == PlaceBase::kTarget && place.steps.empty()) {
+    return emit(Opcode::CALL_METHOD_REF, {}, use(place.value), {}, callee);
+  }
+  const Location at = locate(place);
+  if (!at.behind_addr) return emit(Opcode::CALL_METHOD, {}, field_of(at), {}, callee);
+  if (at.place.result.dim == 0 && at.place.steps.empty()) {
+    return fail(base::Refusal::kTooMany,
+                "a method of a function block passed as in-out cannot be called; pass a reference");
+  }
+  emit(Opcode::CALL_METHOD_AT, {}, at.addr, Operand::immediate(offset_of(at)), callee);
+}
+
 void Selector::select_native(const Inst& inst) {
   flush_native(inst);
   for (uint32_t i = 0; i < inst.operands.size(); ++i) {

@@ -61,6 +61,15 @@ void Selector::compute(const Inst& inst, Operand dest) {
       return compute_conversion(inst, dest);
     case Op::kTaskTime:
       return emit(Opcode::TASK_TIME, dest);
+    case Op::kTrapKind:
+      return emit(Opcode::TRAP_KIND, dest);
+    case Op::kThis: {
+      ObjectPlace self;
+      self.result = {pou_.self, 0};
+      return emit(Opcode::HANDLE, dest, Operand::place(Base::kSelf, 0), {}, tables_.place(self));
+    }
+    case Op::kIsType:
+      return emit(Opcode::IS_TYPE, dest, use(inst.operands[0]), {}, tables_.region({inst.type, 0}));
     case Op::kHandle:
       return compute_handle(inst, dest);
     case Op::kMoveHandle: {

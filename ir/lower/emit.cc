@@ -95,6 +95,14 @@ class Emitter {
       case EndKind::kBranch:
         emit_branch(position, block.end);
         break;
+      case EndKind::kTry:
+        jump(Unit::make(Opcode::TRY), block.end.other);
+        go(position, block.end.taken);
+        break;
+      case EndKind::kEndTry:
+        object_.code.push_back(Unit::make(Opcode::END_TRY));
+        go(position, block.end.taken);
+        break;
       case EndKind::kReturn:
         object_.code.push_back(Unit::make(Opcode::RET));
         break;

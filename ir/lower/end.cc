@@ -23,6 +23,16 @@ void Selector::select_end(const Inst& inst, const FlowBlock& flow_block) {
       return;
     case Op::kBranch:
       return select_branch(inst, flow_block);
+    case Op::kTry:
+      end.kind = EndKind::kTry;
+      end.taken = flow_block.successors[0];
+      end.other = flow_block.successors[1];
+      return;
+    case Op::kEndTry:
+      pass_arguments(inst.targets[0]);
+      block().end.kind = EndKind::kEndTry;
+      block().end.taken = flow_block.successors[0];
+      return;
     case Op::kTrap:
       end.kind = EndKind::kTrap;
       end.trap = static_cast<uint32_t>(inst.trap);

@@ -26,7 +26,7 @@ Graph graph_of(const Pou& pou) {
   }
   for (uint32_t i = 0; i < pou.blocks.size(); ++i) {
     const Inst& end = pou.blocks[i].insts.back();
-    if (end.op != Op::kBranch) continue;
+    if (end.op != Op::kBranch && end.op != Op::kTry) continue;
     for (size_t t = 0; t < end.targets.size(); ++t) {
       if (!end.targets[t].args.empty()) split_edge(graph, i, t, end.targets[t]);
     }
@@ -66,16 +66,17 @@ std::vector<uint32_t> positions_of(const std::vector<uint32_t>& order, size_t no
   return positions;
 }
 
-// A conditional jump goes forwards only, so one of two backward edges gets a block.
+// Conditional jumps and ways to handlers go forwards only, so one of two backward edges gets a
+// block, and a handler that comes before its try gets one in front.
 bool split_double_backward(Graph& graph, const std::vector<uint32_t>& order, const Pou& pou) {
   const std::vector<uint32_t> positions = positions_of(order, graph.size());
   bool changed = false;
   for (uint32_t node : order) {
     const std::vector<uint32_t>& next = graph[node].successors;
-    const bool both_backward = next.size() == 2 && positions[next[0]] <= positions[node] &&
-                               positions[next[1]] <= positions[node];
-    if (!both_backward) continue;
-    split_edge(graph, node, 1, pou.blocks[graph[node].source.index].insts.back().targets[1]);
+    if (next.size() != 2 || positions[next[1]] > positions[node]) continue;
+    const Inst& end = pou.blocks[graph[node].source.index].insts.back();
+    if (end.op != Op::kTry && positions[next[0]] > positions[node]) continue;
+    split_edge(graph, node, 1, end.targets[1]);
     changed = true;
   }
   return changed;
@@ -92,6 +93,10 @@ Flow order_blocks(const Pou& pou) {
   for (uint32_t node : order) {
     FlowBlock block = std::move(graph[node]);
     for (uint32_t& successor : block.successors) successor = positions[successor];
+    if (block.source.valid()) {
+      const BlockId handler = pou.blocks[block.source.index].handler;
+      if (handler.valid()) block.handler = positions[handler.index];
+    }
     flow.blocks.push_back(std::move(block));
   }
   return flow;

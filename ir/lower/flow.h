@@ -9,17 +9,21 @@
 
 namespace ir::codegen {
 
+inline constexpr uint32_t kNoHandler = 0xffffffffu;
+
 struct FlowBlock {
   BlockId source;                    // invalid: a split edge
   const Target* edge = nullptr;      // of a split edge: where it goes
   std::vector<uint32_t> successors;  // positions, parallel to the terminator's targets
+  uint32_t handler = kNoHandler;     // position of the handler of its try
 };
 
 struct Flow {
   std::vector<FlowBlock> blocks;  // in order of emission
 };
 
-// Splits branch edges that pass arguments, and the second of two backward ones.
+// Splits branch edges that pass arguments, the second of two backward ones, and the way to a
+// handler that lies before its try.
 Flow order_blocks(const Pou& pou);
 
 }  // namespace ir::codegen

@@ -90,14 +90,18 @@ class Analysis {
     }
   }
 
-  // live_in = reads or (live_out and not writes)
+  // live_in = reads or (live_out and not writes). What a handler reads is live throughout the
+  // blocks of its try: a trap may come before any of their writes.
   bool update_live(size_t b) {
     RegisterSet& out = liveness_.live_out[b];
+    const uint32_t handler = machine_.blocks[b].handler;
     for_each_successor(machine_.blocks[b].end,
                        [&](uint32_t next) { out.unite(liveness_.live_in[next]); });
+    if (handler != kNoNumber) out.unite(liveness_.live_in[handler]);
     RegisterSet in = out;
     in.subtract(effects_[b].writes);
     in.unite(effects_[b].reads);
+    if (handler != kNoNumber) in.unite(liveness_.live_in[handler]);
     return liveness_.live_in[b].unite(in);
   }
 

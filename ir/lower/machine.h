@@ -53,13 +53,13 @@ struct Register {
   bool result = false;  // read by the caller after the return
 };
 
-enum class EndKind : uint8_t { kJump, kBranch, kReturn, kTrap };
+enum class EndKind : uint8_t { kJump, kBranch, kReturn, kTrap, kTry, kEndTry };
 
 struct BlockEnd {
   EndKind kind = EndKind::kReturn;
   Operand condition;   // kBranch; TRUE: taken
-  uint32_t taken = 0;  // position of a block; kJump too
-  uint32_t other = 0;  // position of a block, kBranch
+  uint32_t taken = 0;  // position of a block; kJump, kEndTry and the body of kTry too
+  uint32_t other = 0;  // position of a block, kBranch; the handler of kTry
   uint32_t trap = 0;
   uint32_t line = 0;
 };
@@ -67,6 +67,7 @@ struct BlockEnd {
 struct MachineBlock {
   std::vector<MachineInst> insts;
   BlockEnd end;
+  uint32_t handler = kNoNumber;  // position: where its traps go on
 };
 
 struct Machine {
@@ -89,8 +90,9 @@ void for_each_register(const MachineInst& inst, Visit visit) {
 
 template <class Visit>
 void for_each_successor(const BlockEnd& end, Visit visit) {
-  if (end.kind == EndKind::kJump || end.kind == EndKind::kBranch) visit(end.taken);
-  if (end.kind == EndKind::kBranch) visit(end.other);
+  if (end.kind == EndKind::kReturn || end.kind == EndKind::kTrap) return;
+  visit(end.taken);
+  if (end.kind == EndKind::kBranch || end.kind == EndKind::kTry) visit(end.other);
 }
 
 }  // namespace ir::codegen

@@ -17,7 +17,7 @@ std::vector<ValueId> Selector::operands_of(const Inst& inst) const {
       if (step.value.valid()) out.push_back(step.value);
     }
   }
-  if (inst.op == Op::kJump) {
+  if (inst.op == Op::kJump || inst.op == Op::kEndTry) {
     out.insert(out.end(), inst.targets[0].args.begin(), inst.targets[0].args.end());
   }
   return out;

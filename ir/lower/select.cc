@@ -63,6 +63,7 @@ void Selector::select_block(uint32_t position) {
   addresses_.clear();
   pending_.clear();
   const FlowBlock& flow_block = flow_.blocks[position];
+  block().handler = flow_block.handler;
   if (!flow_block.source.valid()) {
     select_edge(flow_block);
     return;
@@ -96,6 +97,11 @@ void Selector::select_inst(const Inst& inst) {
       return select_call(inst);
     case Op::kCallInstance:
       return select_call_instance(inst);
+    case Op::kCallMethod:
+    case Op::kCallBody:
+    case Op::kCallVirtual:
+    case Op::kCallReference:
+      return select_object_call(inst);
     case Op::kCallNative:
       return select_native(inst);
     case Op::kAdvanceTime:

@@ -161,6 +161,8 @@ class Selector {
   // call.cc
   void select_call(const Inst& inst);
   void select_call_instance(const Inst& inst);
+  void select_object_call(const Inst& inst);
+  void select_call_on_place(const Inst& inst, uint32_t callee);
   void select_native(const Inst& inst);
   void forget_references();
 

@@ -38,6 +38,7 @@ bool Values::is_pure(const Inst& inst) const {
     case Op::kTrunc:
     case Op::kCallNative:
     case Op::kTaskTime:
+    case Op::kTrapKind:
     case Op::kFlat:  // what is exposed changes from one instruction to the next
     case Op::kUnflat:
       return false;
@@ -128,7 +129,7 @@ void Values::count_uses(const Pou& pou, const Flow& flow) {
       }
       use_place(pou, inst.place, position);
       use_place(pou, inst.place2, position);
-      if (inst.op == Op::kJump) {
+      if (inst.op == Op::kJump || inst.op == Op::kEndTry) {
         for (ValueId arg : inst.targets[0].args) use(arg, position);
       }
       if (inst.op != Op::kAddress && inst.op != Op::kHandle) continue;

@@ -14,6 +14,7 @@ std::optional<EvalTrap> EvalMachine::run(Variable& instance, uint32_t task, int6
   task_ = task;
   budget_ = &budget;
   trap_.reset();
+  caught_ = {};
   const PouId pou = program_.pou_of_instance_type(instance.type);
   const std::unique_ptr<Frame> frame = make_frame(program_.pous[pou.index], &instance);
   run_frame(*frame);
@@ -167,8 +168,8 @@ void EvalMachine::run_inst(Frame& frame, const Inst& inst) {
     case Op::kCallReference:
       return run_object(frame, inst);
     case Op::kAdvanceTime:
-      now_ns_ = static_cast<int64_t>(static_cast<uint64_t>(now_ns_) +
-                                     bits(frame, inst.operands[0]));
+      now_ns_ =
+          static_cast<int64_t>(static_cast<uint64_t>(now_ns_) + bits(frame, inst.operands[0]));
       return;
     default:
       break;

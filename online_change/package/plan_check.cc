@@ -12,8 +12,7 @@ namespace {
 constexpr uint32_t kMaxDepth = 64;
 
 bool is_area(const ir::Image& image, Node node) {
-  ir::Kind kind = image.types[node.type].kind;
-  return kind == ir::Kind::kGlobals || kind == ir::Kind::kProgram;
+  return image.types[node.type].kind == ir::Kind::kGlobals;
 }
 
 }  // namespace

@@ -28,6 +28,10 @@ struct Interpreter {
     ctx.exposures_made = e.exposures_made_;
     find_deepest_exposed(ctx);
     ctx.task = e.task_;
+    ctx.tries_begin = e.tries_.data();
+    ctx.try_top = e.tries_.data() + e.try_count_;
+    ctx.tries_end = e.tries_.data() + e.tries_.size();
+    ctx.caught = e.caught_;
     ctx.generation = &generation;
     ctx.bounds = generation.bounds().data();
     ctx.ranges = generation.ranges().data();
@@ -40,15 +44,38 @@ struct Interpreter {
 
   // With tail calls the first handler returns when the execution stops; without, each does.
   static void dispatch(Context& ctx, uint8_t* mem, const uint8_t* consts) {
-    while (ctx.running) {
-      kHandlers.of[ctx.pc->op](ctx.pc, ctx.frame, ctx.self, mem, consts, &ctx);
-    }
+    do {
+      while (ctx.running) {
+        kHandlers.of[ctx.pc->op](ctx.pc, ctx.frame, ctx.self, mem, consts, &ctx);
+      }
+    } while (ctx.exit == Exit::kTrap && catch_trap(ctx, mem));
+  }
+
+  // Goes on at the handler of the innermost open try. Calls above its POU are gone, and with them
+  // what they had exposed; what was stored is stored.
+  static bool catch_trap(Context& ctx, uint8_t* mem) {
+    if (ctx.try_top == ctx.tries_begin || !ir::can_be_caught(ctx.trap.kind)) return false;
+    const TryRecord& record = *--ctx.try_top;
+    ctx.caught = ctx.trap.kind;
+    ctx.trap = {};
+    ctx.call = ctx.calls_begin + record.depth;
+    drop_exposed(ctx, record.depth + 1);
+    ctx.pou = record.pou;
+    ctx.instance = record.instance;
+    ctx.pc = record.handler;
+    ctx.frame = mem + record.frame;
+    ctx.self = mem + record.self;
+    ctx.exit = Exit::kDone;
+    ctx.running = true;
+    return true;
   }
 
   static void keep(Execution& e, const Context& ctx, uint64_t fuel) {
     e.depth_ = static_cast<uint32_t>(ctx.call - ctx.calls_begin);
     e.exposure_count_ = ctx.exposure_count;
     e.exposures_made_ = ctx.exposures_made;
+    e.try_count_ = static_cast<uint32_t>(ctx.try_top - ctx.tries_begin);
+    e.caught_ = ctx.caught;
     e.pc_ = ctx.pc;
     e.frame_ = static_cast<uint32_t>(ctx.frame - e.memory_);
     e.self_ = static_cast<uint32_t>(ctx.self - e.memory_);
@@ -64,8 +91,11 @@ struct Interpreter {
   }
 };
 
-Execution::Execution(uint32_t depth, uint32_t task)
-    : calls_(size_t{depth} + 1), exposures_(base::kMaxExposures), task_(task) {}
+Execution::Execution(uint32_t depth, uint32_t task, uint32_t tries)
+    : calls_(size_t{depth} + 1),
+      exposures_(base::kMaxExposures),
+      task_(task),
+      tries_((size_t{depth} + 1) * tries) {}
 
 void Execution::start(const Generation& generation, uint8_t* memory, uint32_t id, uint32_t stack,
                       int64_t task_time_ns) {
@@ -75,6 +105,8 @@ void Execution::start(const Generation& generation, uint8_t* memory, uint32_t id
   memory_ = memory;
   depth_ = 0;
   exposure_count_ = 0;
+  try_count_ = 0;
+  caught_ = {};
   instance_ = id;
   pou_ = instance.pou;
   pc_ = generation.pous()[pou_].code;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/limits.h"
 #include "ir/program/ir.h"
 #include "vm/load/generation.h"
 
@@ -40,6 +41,16 @@ struct CallRecord {
   uint32_t instance = 0;
 };
 
+// An open try: how to go on when something traps inside.
+struct TryRecord {
+  const ir::Unit* handler = nullptr;
+  uint32_t frame = 0;
+  uint32_t self = 0;
+  uint32_t pou = 0;
+  uint32_t instance = 0;
+  uint32_t depth = 0;  // calls below its POU
+};
+
 // A local whose address was taken, for as long as its POU is active.
 struct Exposure {
   uint32_t segment = 0;  // ir::exposed_segment
@@ -50,9 +61,10 @@ struct Exposure {
 
 class Execution {
  public:
-  // `depth` calls at most (Image::call_depth); allocated here, not in run(). `task` tells the
-  // exposed locals of one task from those of others.
-  explicit Execution(uint32_t depth, uint32_t task = 0);
+  // `depth` calls at most (Image::call_depth), with `tries` open ones in each POU at most
+  // (Generation::try_depth); allocated here, not in run(). `task` tells the exposed locals of one
+  // task from those of others.
+  explicit Execution(uint32_t depth, uint32_t task = 0, uint32_t tries = base::kMaxTryDepth);
   // Numbers its exposed locals behind those of `earlier`, so that no stale reference finds one.
   void count_on(const Execution& earlier) {
     exposures_made_ = std::max(exposures_made_, earlier.exposures_made_);
@@ -82,6 +94,9 @@ class Execution {
   uint32_t exposure_count_ = 0;
   uint32_t exposures_made_ = 0;
   uint32_t task_ = 0;
+  std::vector<TryRecord> tries_;
+  uint32_t try_count_ = 0;
+  ir::TrapKind caught_{};
   const ir::Unit* pc_ = nullptr;
   uint32_t frame_ = 0;
   uint32_t self_ = 0;

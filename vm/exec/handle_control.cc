@@ -159,6 +159,14 @@ struct Semantics<ir::Opcode::CALL> : Special {
   }
 };
 
+template <>
+struct Semantics<ir::Opcode::CALL_OWN> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    STC_CALL(pc->c, ctx->instance, self, 1);
+  }
+};
+
 // A row without data is free; the globals' row is made so as well.
 #define STC_FIND_INSTANCE(slot)                                                 \
   const auto id = load<uint32_t>(slot);                                         \
@@ -214,6 +222,52 @@ struct Semantics<ir::Opcode::CALL_REF> : Special {
   }
 };
 template <>
+struct Semantics<ir::Opcode::CALL_METHOD> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    STC_FIND_INSTANCE(STC_AT(B, pc->bc()));
+    STC_CALL(pc[1].x(), id, mem + entry.data, 2);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::CALL_METHOD_AT> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    STC_FIND_INSTANCE(mem + load<uint32_t>(frame + pc->b) + pc->c);
+    STC_CALL(pc[1].x(), id, mem + entry.data, 2);
+  }
+};
+// y is the type that the method is of: Generation::build has put it there.
+template <>
+struct Semantics<ir::Opcode::CALL_METHOD_REF> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    const uint32_t id = find_instance(ctx, load<uint64_t>(STC_AT(B, pc->b)), pc[1].y());
+    if (id == 0) [[unlikely]]
+      return raise(ctx, ir::TrapKind::kReference, pc, frame, self);
+    STC_CALL(pc[1].x(), id, mem + ctx->instances[id].data, 2);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::CALL_VIRTUAL> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    const VirtualCallee found = find_target(ctx, load<uint64_t>(STC_AT(B, pc->b)), pc[1].x());
+    if (found.instance == 0) [[unlikely]]
+      return raise(ctx, ir::TrapKind::kReference, pc, frame, self);
+    STC_CALL(found.pou, found.instance, mem + ctx->instances[found.instance].data, 2);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::IS_TYPE> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    const uint32_t id = find_instance(ctx, load<uint64_t>(STC_AT(B, pc->b)), pc[1].x());
+    store<Bool>(frame + pc->a, static_cast<Bool>(id != 0));
+    STC_NEXT(2);
+  }
+};
+template <>
 struct Semantics<ir::Opcode::RET> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
@@ -231,6 +285,40 @@ struct Semantics<ir::Opcode::NATIVE> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
     call_native(pc->c, frame + pc->a * 8u, mem);
+    STC_NEXT(1);
+  }
+};
+
+// --- tries: the verifier has bounded how many are open, and closed them before each return ---
+
+template <>
+struct Semantics<ir::Opcode::TRY> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    if (ctx->try_top == ctx->tries_end) [[unlikely]]
+      return raise(ctx, ir::TrapKind::kStack, pc, frame, self);
+    *ctx->try_top++ = {pc + 1 + static_cast<int32_t>(pc->bc()),
+                       static_cast<uint32_t>(frame - mem),
+                       static_cast<uint32_t>(self - mem),
+                       ctx->pou,
+                       ctx->instance,
+                       static_cast<uint32_t>(ctx->call - ctx->calls_begin)};
+    STC_NEXT(1);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::END_TRY> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    --ctx->try_top;
+    STC_NEXT(1);
+  }
+};
+template <>
+struct Semantics<ir::Opcode::TRAP_KIND> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    store<uint32_t>(frame + pc->a, static_cast<uint32_t>(ctx->caught));
     STC_NEXT(1);
   }
 };

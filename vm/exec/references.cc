@@ -110,6 +110,14 @@ uint32_t find_instance(const Context* ctx, uint64_t handle, uint32_t type) {
   return right ? home->id : 0;
 }
 
+VirtualCallee find_target(const Context* ctx, uint64_t handle, uint32_t prototype) {
+  const std::optional<Home> home = find_home(*ctx, handle);
+  const std::vector<AreaEntry>& areas = ctx->generation->areas();
+  if (!home || home->id >= areas.size() || ir::handle_offset(handle) != 0) return {};
+  const uint32_t pou = ctx->generation->target_of(areas[home->id].type, prototype);
+  return pou == kNoTarget ? VirtualCallee{} : VirtualCallee{home->id, pou};
+}
+
 uint32_t resolve_exactly(const Context& ctx, uint64_t handle, uint32_t type) {
   const ir::Image& image = ctx.generation->image();
   if (image.types.is_instance(ir::TypeId(type))) {

@@ -28,6 +28,12 @@ uint32_t resolve_exactly(const Context& ctx, uint64_t handle, uint32_t type);
 uint64_t resolve_string(const Context& ctx, uint64_t handle, uint32_t capacity, uint32_t unit);
 // ID of the instance of that type; 0: none.
 uint32_t find_instance(const Context* ctx, uint64_t handle, uint32_t type);
+// What a virtual call on that handle enters; instance 0: nothing, the handle or the row is missing.
+struct VirtualCallee {
+  uint32_t instance = 0;
+  uint32_t pou = 0;
+};
+VirtualCallee find_target(const Context* ctx, uint64_t handle, uint32_t prototype);
 
 // Of data offset `address`, which may lie in a frame of this execution: then the local there is
 // exposed. nullopt: there is no room for one more.

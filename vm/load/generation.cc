@@ -1,9 +1,11 @@
 #include "vm/load/generation.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <unordered_map>
 
+#include "base/limits.h"
 #include "ir/bytecode/regions.h"
 #include "ir/types/handle.h"
 #include "ir/types/inside.h"
@@ -50,13 +52,27 @@ void prepare_code(const ir::Image& image, const std::vector<bool>& has_slots,
     if (!ir::opcode_row(op).extended) continue;
     ir::Unit& extension = code[++i];
     if (op == ir::Opcode::RESOLVE) prepare_resolve(image, has_slots, unit, extension);
-    if (op == ir::Opcode::CALL_REF) {
+    if (op == ir::Opcode::CALL_REF || op == ir::Opcode::IS_TYPE) {
       extension = ir::Unit::extension(ir::region_of_field(extension.x()).type.index, 0);
+    }
+    if (op == ir::Opcode::CALL_METHOD_REF) {
+      extension = ir::Unit::extension(extension.x(), image.pous[extension.x()].self.index);
     }
     if (op != ir::Opcode::COPY) continue;
     const ir::Region region = ir::region_of_field(extension.x());
     extension = ir::Unit::extension(ir::region_size(image.types, image.layouts, region), 0);
   }
+}
+
+// Tries are not inside each other more often than there are instructions that begin one.
+uint32_t tries_in(const ir::Image& image, const ir::LinkedPou& pou) {
+  uint32_t count = 0;
+  for (uint32_t i = pou.first_unit; i < pou.first_unit + pou.unit_count; ++i) {
+    const ir::Opcode op = image.code[i].opcode();
+    if (op == ir::Opcode::TRY) ++count;
+    if (ir::opcode_row(op).extended) ++i;
+  }
+  return std::min(count, base::kMaxTryDepth);
 }
 
 }  // namespace
@@ -100,6 +116,19 @@ void Generation::build_areas() {
             [this](uint32_t a, uint32_t b) { return areas_[a].data < areas_[b].data; });
 }
 
+// At most half full, so that a search is short.
+void Generation::build_overrides() {
+  const std::vector<ir::LinkedOverride>& rows = image_.image().overrides;
+  overrides_.resize(std::bit_ceil(2 * rows.size() + 1));
+  override_mask_ = overrides_.size() - 1;
+  for (const ir::LinkedOverride& row : rows) {
+    const uint64_t key = uint64_t{row.type.index} << 32 | row.prototype;
+    size_t at = first_place(key);
+    while (overrides_[at].key != ~uint64_t{0}) at = (at + 1) & override_mask_;
+    overrides_[at] = {key, row.target};
+  }
+}
+
 std::unique_ptr<Generation> Generation::build(ir::VerifiedImage verified, uint32_t number,
                                               uint8_t* memory) {
   auto made = std::unique_ptr<Generation>(new Generation(std::move(verified)));
@@ -111,12 +140,14 @@ std::unique_ptr<Generation> Generation::build(ir::VerifiedImage verified, uint32
     ir::Unit* const first = made->code_.data() + pou.first_unit;
     prepare_code(image, has_slots, pou, first);
     made->pous_.push_back({first, pou.frame_size, pou.recursion_depth});
+    made->try_depth_ = std::max(made->try_depth_, tries_in(image, pou));
   }
   for (const ir::Instance& row : image.instances) {
     const bool callable = row.live && row.type != image.globals;
     made->instances_.push_back(callable ? InstanceEntry{row.data, row.pou} : InstanceEntry{});
   }
   made->build_areas();
+  made->build_overrides();
   for (const ir::LinkedBound& bound : image.bounds) {
     made->bounds_.push_back({bound.low, bound.count, bound.stride});
   }

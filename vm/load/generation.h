@@ -44,6 +44,13 @@ struct RangeEntry {
   int64_t high = 0;
 };
 
+// A row of Image::overrides in a table of open addressing.
+struct OverrideEntry {
+  uint64_t key = ~uint64_t{0};  // type and prototype; all ones: free
+  uint32_t target = 0;
+};
+inline constexpr uint32_t kNoTarget = 0xffffffffu;
+
 // A cold start's data: `memory` is all zero before.
 void write_initial_data(const ir::Image& image, uint8_t* memory);
 
@@ -67,10 +74,24 @@ class Generation {
   const std::vector<ir::Unit>& code() const { return code_; }
   const std::vector<BoundEntry>& bounds() const { return bounds_; }
   const std::vector<RangeEntry>& ranges() const { return ranges_; }
+  // POU that stands for the prototype on instances of the type; kNoTarget: none.
+  uint32_t target_of(uint32_t type, uint32_t prototype) const {
+    const uint64_t key = uint64_t{type} << 32 | prototype;
+    for (size_t at = first_place(key);; at = (at + 1) & override_mask_) {
+      if (overrides_[at].key == key) return overrides_[at].target;
+      if (overrides_[at].key == ~uint64_t{0}) return kNoTarget;
+    }
+  }
+  // Tries that one POU can have open at once, at most.
+  uint32_t try_depth() const { return try_depth_; }
 
  private:
   explicit Generation(ir::VerifiedImage image) : image_(std::move(image)) {}
   void build_areas();
+  void build_overrides();
+  size_t first_place(uint64_t key) const {
+    return static_cast<size_t>(key * 0x9e3779b97f4a7c15u >> 32) & override_mask_;
+  }
   ir::VerifiedImage image_;
   std::vector<AreaEntry> areas_;
   std::vector<uint32_t> area_slots_;
@@ -81,6 +102,9 @@ class Generation {
   std::vector<InstanceEntry> instances_;
   std::vector<BoundEntry> bounds_;
   std::vector<RangeEntry> ranges_;
+  std::vector<OverrideEntry> overrides_;  // at least one is free
+  size_t override_mask_ = 0;
+  uint32_t try_depth_ = 0;
 };
 
 }  // namespace vm

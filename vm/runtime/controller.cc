@@ -49,6 +49,7 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
   impl.running = Generation::build(image, 0, impl.memory.data());
   auto tables = std::make_unique<TaskTables>(*impl.running, impl.scheduler.next_cycle_ns());
   impl.scheduler.use(*tables);
+  impl.scheduler.run_start_tasks();
   impl.tables[impl.running.get()] = std::move(tables);
   return controller;
 }

@@ -59,7 +59,8 @@ struct Force {
 
 class Controller {
  public:
-  // Cold start: all variables hold their initial values. `clock` and `io` must outlive it.
+  // Cold start: all variables hold their initial values, and the tasks that run once have run.
+  // `clock` and `io` must outlive it.
   static base::Result<std::unique_ptr<Controller>> start(const ir::VerifiedImage& image,
                                                          ControllerOptions options, Clock& clock,
                                                          IoPort& io);

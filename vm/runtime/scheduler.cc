@@ -31,6 +31,18 @@ void Scheduler::use(TaskTables& tables) {
   }
 }
 
+// Nothing else is released before they are done; events are looked at from the first cycle on.
+void Scheduler::run_start_tasks() {
+  const int64_t before = cycle_start_ns_;
+  const ir::Image& image = tables_->generation->image();
+  for (size_t i = 0; i < image.tasks.size(); ++i) tables_->tasks[i].released = image.tasks[i].once;
+  cycle_start_ns_ = looked_ns_ = next_cycle_ns_;
+  starting_ = true;
+  while (TaskSlot* task = choose()) run_slice(*task);
+  starting_ = false;
+  cycle_start_ns_ = before;
+}
+
 void Scheduler::run_cycle() {
   if (faulted_) return;
   begin_cycle();
@@ -69,6 +81,7 @@ bool Scheduler::event_level(const TaskSlot& task) const {
 }
 
 void Scheduler::look_at_events() {
+  if (starting_) return;
   for (TaskSlot& task : tables_->tasks) {
     if (task.event == 0 || task.status.stopped) continue;
     bool level = event_level(task);

@@ -13,6 +13,8 @@ class Scheduler {
  public:
   Scheduler(const ControllerOptions& options, Clock& clock, IoPort& io, uint8_t* memory);
 
+  // At cold start, before the first cycle: the tasks that run once (ir::Task), to their end.
+  void run_start_tasks();
   void run_cycle();
   bool at_boundary() const { return active_.empty(); }
   bool faulted() const { return faulted_; }
@@ -65,6 +67,7 @@ class Scheduler {
   int64_t next_cycle_ns_ = 0;
   int64_t looked_ns_ = 0;       // when the clock was read last
   bool outputs_stale_ = false;  // new tables: pack before the next refresh
+  bool starting_ = false;
   bool faulted_ = false;
 };
 

@@ -9,15 +9,18 @@ namespace {
 // An image without tasks still refreshes its process image.
 constexpr int64_t kIdlePeriodNs = 10'000'000;
 
-TaskSlot make_slot(const ir::Image& image, uint32_t number, int64_t first_release_ns) {
+TaskSlot make_slot(const Generation& generation, uint32_t number, int64_t first_release_ns) {
+  const ir::Image& image = generation.image();
+  const uint32_t try_depth = generation.try_depth();
   const ir::ImageTask& task = image.tasks[number];
   TaskSlot slot;
   slot.status.name = task.name;
-  slot.status.period_ns = std::max<int64_t>(task.period_ns, task.event != 0 ? 0 : 1);
+  const bool no_period = task.event != 0 || task.once;
+  slot.status.period_ns = std::max<int64_t>(task.period_ns, no_period ? 0 : 1);
   slot.status.priority = task.priority;
   slot.watchdog_ns = task.watchdog_ns > 0 ? task.watchdog_ns : 10 * slot.status.period_ns;
   slot.programs = task.programs;
-  slot.execution = std::make_unique<Execution>(image.call_depth, number);
+  slot.execution = std::make_unique<Execution>(image.call_depth, number, try_depth);
   slot.inputs.resize(image.input_bytes);
   slot.outputs_at_start.resize(image.output_bytes);
   slot.next_release_ns = first_release_ns;
@@ -61,7 +64,7 @@ TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
   const ir::Image& image = made_for.image();
   for (uint32_t number = 0; number < image.tasks.size(); ++number) {
     by_priority.push_back(number);
-    tasks.push_back(make_slot(image, number, first_release_ns));
+    tasks.push_back(make_slot(made_for, number, first_release_ns));
   }
   std::stable_sort(by_priority.begin(), by_priority.end(), [&](uint32_t a, uint32_t b) {
     return tasks[a].status.priority < tasks[b].status.priority;

@@ -244,6 +244,7 @@ TEST(Verify, V10_ConstantsVariablesMembers) {
   expect_refused(Refusal::kBadReference, "two POUs of one type", [](Image& i) {
     i.pous[kAddPou].kind = ir::PouKind::kFunctionBlock;
     i.pous[kAddPou].self = types_of(i).counter;
+    i.pous[kAddPou].slots.clear();
   });
 }
 
