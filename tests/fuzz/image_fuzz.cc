@@ -16,7 +16,7 @@
 #include "base/limits.h"
 #include "ir/bytecode/symbols.h"
 #include "ir/bytecode/verify.h"
-#include "tests/unit/bytecode/sample_image.h"
+#include "tests/unit/bytecode/sample_objects.h"
 #include "vm/exec/execution.h"
 #include "vm/exec/memory.h"
 
@@ -79,7 +79,7 @@ void change_pou(ir::LinkedPou& pou, const Change& change) {
         merge->slots.assign(1, static_cast<uint16_t>(change.value % (pou.slots.size() + 1)));
       }
       return;
-    default: pou.kind = static_cast<ir::PouKind>(change.value % 3); return;
+    default: pou.kind = static_cast<ir::PouKind>(change.value % ir::kPouKindCount); return;
   }
 }
 
@@ -98,9 +98,10 @@ void change_type(ir::Image& image, const Change& change) {
       ir::kElementaryCount + change.where % (image.types.size() - ir::kElementaryCount);
   ir::Type& type = image.types.edit(ir::TypeId(number));
   ir::TypeLayout& layout = image.layouts.of[number];
-  switch (change.how / 4 % 6) {
+  switch (change.how / 4 % 7) {
     case 0: return alter(type.base.index, change);
     case 1: return alter(type.capacity, change);
+    case 6: type.interfaces.assign(1, ir::TypeId(change.value % (image.types.size() + 1))); return;
     case 2:
       if (ir::Member* member = pick(type.members, change.value)) {
         member->type.index = change.where / 16 % (image.types.size() + 1);
@@ -121,6 +122,14 @@ void change_instance(ir::Instance& row, const Change& change) {
     case 2: return alter(row.pou, change);
     case 3: return alter(row.parent, change);
     default: row.live = !row.live; return;
+  }
+}
+
+void change_override(ir::LinkedOverride& row, const Change& change) {
+  switch (change.how / 4 % 3) {
+    case 0: return alter(row.type.index, change);
+    case 1: return alter(row.prototype, change);
+    default: return alter(row.target, change);
   }
 }
 
@@ -151,12 +160,16 @@ void apply(ir::Image& image, const Change& change) {
       return on(pick(image.code, change.where), [&](auto& unit) {
         unit = image.code[change.value % image.code.size()];
       });
+    case 10:
+      return on(pick(image.overrides, change.where), [&](auto& row) { change_override(row, change); });
     default: return on(pick(image.code, change.where), [&](auto& unit) { change_unit(unit, change); });
   }
 }
 
+// Of two images; the first byte's upper half says which.
 base::Bytes scripted(const uint8_t* data, size_t size) {
-  ir::Image image = sample::busy_image();
+  const bool objects = size != 0 && (data[0] & 0x10) != 0;
+  ir::Image image = objects ? sample::busy_object_image() : sample::busy_image();
   for (size_t at = 0; at + 6 <= size && at < 6 * 8; at += 6) {
     Change change{data[at], 0, 0, data[at + 5]};
     std::memcpy(&change.where, data + at + 1, 2);
@@ -216,7 +229,7 @@ void run_scans(const ir::VerifiedImage& verified, bool look_at_pages) {
     }
   }
   const auto generation = vm::Generation::build(verified, 0, memory.data());
-  vm::Execution execution(image.call_depth);
+  vm::Execution execution(image.call_depth, 0, generation->try_depth());
   for (int scan = 0; scan < 100; ++scan) {
     for (const ir::ImageTask& task : image.tasks) {
       for (uint32_t program : task.programs) {

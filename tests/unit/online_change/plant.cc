@@ -4,17 +4,34 @@
 #include "frontend/compile.h"
 #include "ir/bytecode/symbols.h"
 #include "ir/lower/lower.h"
+#include "ir/program/text.h"
+#include "ir/program/verify.h"
 
 namespace plant {
 
-Compiled compile(const std::string& source) {
+namespace {
+
+std::optional<ir::Program> program_of(const std::string& source) {
+  if (source.starts_with("program ")) {
+    base::Result<ir::Program> program = ir::parse_program(source);
+    if (!program.ok()) base::check(false, program.error().text.c_str());
+    base::Status status = ir::verify(*program);
+    if (!status.ok()) base::check(false, status.error().text.c_str());
+    return *std::move(program);
+  }
   base::SourceMap sources;
   sources.add("test.st", source);
   base::Diagnostics diagnostics;
   std::optional<ir::Program> program = frontend::compile(sources, {}, diagnostics);
   base::check(program.has_value(),
               base::render(diagnostics, sources, base::DiagnosticFormat::kText, false).c_str());
-  Compiled out{std::move(*program), {}};
+  return program;
+}
+
+}  // namespace
+
+Compiled compile(const std::string& source) {
+  Compiled out{*program_of(source), {}};
   for (uint32_t i = 0; i < out.program.pous.size(); ++i) {
     out.objects.push_back(*ir::lower(out.program, ir::PouId(i)));
   }

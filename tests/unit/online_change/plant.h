@@ -1,5 +1,6 @@
-// A plant under test: Structured Text versions compiled, linked against what runs,
-// run on virtual time, changed and undone through Change as a controller does it.
+// A plant under test: versions in Structured Text, or in IR text (which begins with "program"),
+// compiled, linked against what runs, run on virtual time, changed and undone through Change as a
+// controller does it.
 #pragma once
 
 #include <gtest/gtest.h>
