@@ -176,7 +176,9 @@ std::optional<Constant> Folder::enumerator(ir::TypeId type, std::string_view nam
     return of_bits(root, static_cast<uint64_t>(literal.value));
   }
   // Ambiguous name in the context of a third enumeration: any candidate will be refused.
-  return of_bits(sema_.infer_name_candidates(name), 0);
+  const ir::TypeId any = sema_.infer_name_candidates(name);
+  if (!sema_.program.types.is_scalar(any)) return std::nullopt;  // NULL, for example
+  return of_bits(any, 0);
 }
 
 std::optional<Constant> Folder::exact(Constant result, Wide value, const Expr& expr) {

@@ -224,6 +224,19 @@ TEST(Objects, A18_StartTasksRunAtColdStartOnly) {
   EXPECT_EQ(later.get("started"), "0");
 }
 
+// One that traps stops the controller before the first scan, as any task does.
+TEST(Objects, AStartTaskThatTraps) {
+  Parts parts;
+  parts.types = "type Init = program\n";
+  parts.tasks = "task Start once priority 0\ninstance Init : Init task 1\n";
+  parts.derived_add =
+      "pou program Init self Init\n  b0:\n    trap assert\n" + std::string(kTenfold);
+  Plant plant(source(parts));
+  EXPECT_TRUE(plant.controller().faulted());
+  ASSERT_EQ(plant.controller().traps().size(), 1u);
+  EXPECT_EQ(plant.controller().traps()[0].task, "Start");
+}
+
 // A global of program type comes with a change: it names the instance that runs.
 TEST(Objects, A4_ProgramsBecomeReachableByAChange) {
   Plant plant(source({}));
