@@ -195,7 +195,7 @@ pou program Main self Main
 }
 
 // What runs once runs at cold start: not when a change brings it, and never again.
-TEST(Objects, A18_StartTasksRunAtColdStartOnly) {
+TEST(Objects, StartTasksRunAtColdStartOnly) {
   const auto text = [](const char* amount) {
     Parts parts;
     parts.globals = "  member global started : INT\n";
