@@ -156,7 +156,8 @@ void Parser::parse_action_time(ActionUse& use, const Name& word) {
   use.time = parse_expression();
   if (panic_) return;
   ExprKind what = tree_[use.time].kind;
-  bool simple = what == ExprKind::kLiteral || what == ExprKind::kName || what == ExprKind::kMember;
+  bool simple = what == ExprKind::kLiteral || what == ExprKind::kName ||
+                what == ExprKind::kMember || what == ExprKind::kIndex;
   if (simple) return;
   report(Code::kBadActionTime, tree_[use.time].span,
          "the time of an action is a literal or a variable",
@@ -242,12 +243,15 @@ void Parser::parse_transition_condition(ChartTransition& transition) {
 // Behind the last element of a POU's body.
 void Parser::finish_chart(PouDecl& pou) {
   if (pou.chart == kNoChart) return;
-  if (pou.body.count != 0) {
-    note_only(Code::kChartAndStatements, tree_[tree_.stmt_lists[pou.body.first]].span,
+  for (uint32_t i = 0; i < pou.body.count; ++i) {
+    const Stmt& stmt = tree_[tree_.stmt_lists[pou.body.first + i]];
+    if (stmt.kind == StmtKind::kError) continue;
+    note_only(Code::kChartAndStatements, stmt.span,
               "a statement stands beside the steps and transitions of a chart",
               "put it into an ACTION, and that into a step");
-    pou.body = {};
+    break;
   }
+  pou.body = {};
   take_actions(pou);
 }
 

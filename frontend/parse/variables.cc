@@ -111,7 +111,7 @@ bool Parser::variables_end() {
       is_file_level_start(kind())) {
     return true;
   }
-  if (at_member() || at_soft_declaration()) return !end_var_ahead();
+  if (at_member() || at_soft_declaration() || at_chart_element()) return !end_var_ahead();
   TokenKind next = next_kind();
   bool statement =
       is_statement_keyword(kind()) ||

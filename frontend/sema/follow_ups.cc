@@ -23,6 +23,7 @@ Lookup lookup_of(DiagnosticCode code) {
   switch (code) {
     case DiagnosticCode::kUnknownName:
     case DiagnosticCode::kNotAValue:
+    case DiagnosticCode::kUnknownAction:
       return Lookup::kName;
     case DiagnosticCode::kUnknownType:
     case DiagnosticCode::kUnknownMember:
@@ -34,9 +35,8 @@ Lookup lookup_of(DiagnosticCode code) {
   }
 }
 
-// Statements begin here; declarations are in front of it.
+// Statements begin here; declarations are in front of it. All of a chart declares something.
 base::SourcePos body_of(const Tree& tree, const PouDecl& pou) {
-  if (pou.chart != kNoChart) return tree.charts[pou.chart].span.begin;
   if (pou.body.count == 0) return pou.span.end;
   return tree[tree.stmt_lists[pou.body.first]].span.begin;
 }

@@ -33,8 +33,12 @@ Callee Sema::callee(const Expr& call) {
   if (!note.type.valid()) return {};
   const PouInfo* block = pou_of(note.type);
   if (block == nullptr) {
+    const VarDecl* decl = note.variable.valid() ? variables_[note.variable.index].decl : nullptr;
+    bool chart = decl != nullptr && decl->implied;
     error(DiagnosticCode::kNotCallable, head.span,
-          "`" + type_text(note.type) + "` cannot be called");
+          chart ? quoted(head.name) + " belongs to the chart, whose steps alone run its actions"
+                : "`" + type_text(note.type) + "` cannot be called",
+          chart ? "put what several places call into a function or function block" : "");
     return {};
   }
   Callee callee;

@@ -53,6 +53,17 @@ void declare(Tree& tree, PouDecl& pou, const Chart& chart, const Net& net) {
   pou.blocks.push_back(std::move(block));
 }
 
+// Where the parser lost something, what seems to be missing may have been there.
+bool damaged(const PouDecl& pou, const base::Diagnostics& diagnostics) {
+  for (const base::Diagnostic& message : diagnostics.all()) {
+    bool inside = !(message.span.begin < pou.span.begin) && message.span.begin < pou.span.end;
+    if (inside && base::diagnostic_row(message.code).severity == base::Severity::kError) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 void declare_charts(Tree& tree, base::Diagnostics& diagnostics) {
@@ -60,7 +71,7 @@ void declare_charts(Tree& tree, base::Diagnostics& diagnostics) {
     if (pou.chart == kNoChart) continue;
     const Chart& chart = tree.charts[pou.chart];
     Net net = resolve(chart);
-    check(chart, net, pou.name, diagnostics);
+    if (!damaged(pou, diagnostics)) check(chart, net, pou.name, diagnostics);
     declare(tree, pou, chart, net);
   }
 }
