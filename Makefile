@@ -66,7 +66,7 @@ fuzz: setup
 SEED := 1
 PROGRAMS := 5000
 differential: build
-	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --shrink
+	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --shrink --jobs $(JOBS)
 	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --changes --shrink
 
 # Hours, not minutes: 100,000 random programs on every tier; identity changes at 100,000 scans of the line.

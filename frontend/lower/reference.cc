@@ -155,7 +155,7 @@ ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan 
   } else if (reference_source) {
     const Traits traits = traits_of(types(), to);
     const uint32_t bytes = traits.integer || traits.bits ? ir::scalar_size(scalar(to)) : 0;
-    if (codesys && bytes == 8) return from.value;
+    if (codesys && bytes == 8) return machine_convert(from.value, ir::Scalar::kU64, scalar(to));
     if (codesys && bytes == 4) {
       return machine_convert(build_.flat(from.value), ir::Scalar::kU32, scalar(to));
     }
@@ -168,7 +168,9 @@ ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan 
   } else {
     const Traits traits = traits_of(types(), from.type);
     if (codesys && (traits.integer || traits.bits)) {
-      if (is_wide(scalar(from.type))) return from.value;
+      if (is_wide(scalar(from.type))) {
+        return machine_convert(from.value, scalar(from.type), ir::Scalar::kU64);
+      }
       return build_.unflat(machine_convert(from.value, scalar(from.type), ir::Scalar::kU32));
     }
   }

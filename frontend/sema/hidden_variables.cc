@@ -10,16 +10,37 @@ std::string_view Sema::keep_name(std::string name) {
 }
 
 // One for all instances and calls: a global that is named `Pou.variable`.
+// Also for all that is made of one declaration: open functions, programs with connections; unless
+// the type is open too.
 VarId Sema::add_static(Variable variable, PouInfo& info) {
-  variable.storage = Storage::kGlobal;
-  if (info.static_list.empty()) {
-    info.static_list = keep_name(info.self.valid() ? program.types[info.self].name
-                                                   : program.pous[info.id.index].name);
+  const Spec& spec = tree[variable.decl->spec];
+  const bool generic = spec.kind == SpecKind::kNamed && is_generic_name(spec.name.text);
+  if (info.open && generic) return add_variable(variable, info.names);
+  if (info.meaning != nullptr && !generic) {
+    for (const PouInfo& original : pous) {
+      if (original.decl != info.decl || original.meaning != nullptr) continue;
+      const VarId shared = original.names.at(variable.name.text);
+      info.names.emplace(variable.name.text, shared);
+      return shared;
+    }
   }
+  variable.storage = Storage::kGlobal;
+  if (info.static_list.empty()) info.static_list = keep_name(static_list_name(info));
   variable.list = info.static_list;
   VarId id = add_variable(variable, info.names);
   if (id.valid()) place_global(id);
   return id;
+}
+
+// Without the characters that paths are made of: instances of open functions have them.
+std::string Sema::static_list_name(const PouInfo& info) const {
+  if (info.self.valid()) return program.types[info.self].name;
+  std::string name =
+      info.open ? std::string(info.decl->name.text) : program.pous[info.id.index].name;
+  for (char& c : name) {
+    if (c == '.' || c == '[' || c == ']') c = '_';
+  }
+  return name;
 }
 
 // Behind the globals that are there.

@@ -246,6 +246,7 @@ class Sema {
 
   // hidden_variables.cc
   std::string_view keep_name(std::string name);
+  std::string static_list_name(const PouInfo& info) const;
   VarId add_static(Variable variable, PouInfo& info);
   void place_global(VarId id);
   void add_edge(VarId input, PouInfo& info);

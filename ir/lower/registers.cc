@@ -96,7 +96,11 @@ bool Selector::retarget(Operand dest, Operand source) {
 }
 
 void Selector::move(Class cls, Operand dest, Operand source) {
-  if (dest == source || retarget(dest, source)) return;
+  // A BOOL in memory may hold any byte that was written in another way; moved to itself it is 0
+  // or 1.
+  const bool clean =
+      cls != Class::kB || (dest.is_register() && !machine_.registers[dest.index].pinned);
+  if ((dest == source && clean) || retarget(dest, source)) return;
   emit(move_opcode(cls), dest, source);
 }
 

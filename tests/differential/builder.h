@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,8 @@
 
 namespace differential {
 
+inline constexpr uint32_t kMaxRounds = 60;  // of nested loops, together
+
 // Where a value can stand: "parts[@0].m3", with an index per hole.
 struct Place {
   std::string pattern;
@@ -23,6 +26,16 @@ struct Place {
   TypeRef type = kNoType;
   bool writable = true;
   bool constant = false;
+};
+
+// `runner` goes through the `elements` behind `begin`, `step` bytes each.
+struct Walker {
+  std::string begin;
+  std::string runner;
+  std::string number;   // an integer that may hold an address for a moment
+  std::string element;  // its type
+  uint32_t elements = 0;
+  uint32_t step = 0;
 };
 
 struct Interface {  // of a function or function block, as its callers see it
@@ -36,7 +49,7 @@ struct Interface {  // of a function or function block, as its callers see it
 
 class Builder {
  public:
-  explicit Builder(uint64_t seed);
+  Builder(uint64_t seed, bool overlays);
   Program run();
 
  private:
@@ -46,17 +59,24 @@ class Builder {
   void declare_subrange();
   void declare_struct();
   void declare_array();
+  void declare_union();
+  void declare_node();
   TypeRef add_type(Type type);
   TypeRef declared(Type type);
   TypeRef string_type(bool wide, uint32_t capacity);
   TypeRef array_of(TypeRef element, std::vector<Bounds> dims);
+  TypeRef named(Form form, std::string name,
+                TypeRef base);         // made once: a reference, an open array
+  TypeRef pointer_to(TypeRef target);  // or REF_TO
+  TypeRef open_array(TypeRef element, uint32_t dims);
+  TypeRef any_of(const std::vector<TypeRef>& list) { return list[below(count(list))]; }
   TypeRef any_scalar();  // elementary, enumeration, subrange or string
   TypeRef any_elementary();
   TypeRef any_data();  // also aggregates
   bool is(TypeRef type, Form form) const { return program_[type].form == form; }
   bool is_text(TypeRef type) const { return is(type, Form::kString) || is(type, Form::kWstring); }
   bool is_aggregate(TypeRef type) const {
-    return is(type, Form::kArray) || is(type, Form::kStruct);
+    return is(type, Form::kArray) || is(type, Form::kStruct) || is(type, Form::kUnion);
   }
   ir::Group group(TypeRef type) const;
   bool is_integer(TypeRef type) const;
@@ -65,6 +85,9 @@ class Builder {
   std::string name_of(TypeRef type) const { return type_text(program_, type); }
   // The range of an integer or subrange, cut to 64 bits signed.
   Bounds range(TypeRef type) const;
+
+  bool holds_block(TypeRef type) const;
+  std::optional<uint32_t> bytes_of(TypeRef type) const;  // of plain numbers, and arrays of them
 
   // --- literals (literals.cc)
   Expr literal(TypeRef type, bool bare = false);
@@ -79,14 +102,32 @@ class Builder {
   // --- names in sight (places.cc)
   void see(const Variable& variable, bool writable, bool constant = false);
   void see_inside(Place place);
+  void see_elements(const Place& place, const Type& type);
+  void see_members(const Place& place, const std::vector<Variable>& members, bool writable);
   void forget();
   const Place* find(TypeRef type, bool writable);
   const Place* find_text(bool wide, bool writable);
+  const Place* find_open(TypeRef open, bool writable);  // an array of that element type
+  const Place* find_any();                              // something writable of any type
   Expr use(const Place& place, int depth);
   Expr index(Bounds bounds, int depth);
   std::optional<Expr> variable(TypeRef type);  // any text of the kind for strings
   std::optional<Expr> target(TypeRef type);    // to be written, exactly that type
   Expr read(TypeRef type);                     // a variable, or something not constant
+
+  // --- references (references.cc)
+  void references(Pou& pou);
+  void refer(Pou& pou);
+  void walk(Pou& pou);
+  void link_nodes(Pou& pou);
+  void own_target(Pou& pou, const Variable& parameter);
+  Expr pointer_value(TypeRef type, int depth);
+  std::optional<Expr> address_of(TypeRef pointer, int depth);
+  std::optional<Expr> pointer_test(int depth);
+  std::optional<Stmt> retarget();
+  std::optional<Stmt> step();
+  Variable unseen(Pou& pou, Section kind, TypeRef type);
+  std::string address_word(TypeRef pointer) const;
 
   // --- expressions (expressions.cc, operators.cc, standard.cc)
   bool possible(TypeRef type);
@@ -117,6 +158,7 @@ class Builder {
   static std::string parameter_name(const stdlib::FunctionRow& row, uint32_t number);
   std::optional<Stmt> split_call(int depth);
   std::optional<Expr> function_call(TypeRef type, int depth);
+  std::optional<Expr> character(TypeRef type, bool writable, int depth);
 
   // --- calls (calls.cc)
   std::optional<std::vector<Expr>> arguments(const Interface& callee, bool block, int depth);
@@ -124,6 +166,11 @@ class Builder {
   void read_library();
   void library_block(const frontend::Tree& tree, const frontend::PouDecl& pou);
   TypeRef library_type(const frontend::Spec& spec);
+
+  // --- functions of many types (generics.cc)
+  void declare_generics();
+  std::optional<Expr> generic_call(TypeRef type, int depth);
+  std::optional<Stmt> swap_call();
 
   // --- statements (statements.cc, loops.cc)
   std::vector<Stmt> statements(uint32_t count, int depth);
@@ -137,6 +184,8 @@ class Builder {
   std::optional<Stmt> chain();
   std::optional<Stmt> set_or_reset();
   Stmt jump_over(int depth);
+  std::optional<Stmt> jump_back(int depth);
+  std::optional<Stmt> character_assignment();
   Stmt if_statement(int depth);
   Stmt case_statement(int depth);
   Stmt case_integer(int depth);
@@ -151,19 +200,28 @@ class Builder {
   void block(uint32_t index);
   void program(uint32_t index, uint32_t count);
   void tasks(uint32_t count);
+  void connect(Task& task, const Interface& face);
   VarBlock& section(Pou& pou, Section kind);
   Variable& declare(Pou& pou, Section kind, TypeRef type, bool with_initial = true);
+  void name_initial(Variable& variable);
+  TypeRef any_block();
   void parameters(Pou& pou, Interface& face);
   void locals(Pou& pou, uint32_t count);
   void loop_variables(Pou& pou);
   void instances(Pou& pou);
   void body(Pou& pou, uint32_t count, int depth);
 
+  template <class T>
+  static uint32_t count(const std::vector<T>& list) {
+    return static_cast<uint32_t>(list.size());
+  }
+  bool trap_in(uint32_t n) { return risky_ && one_in(n); }
   uint32_t below(uint32_t n) { return random_.below(n); }
   bool one_in(uint32_t n) { return random_.one_in(n); }
   std::string fresh(const char* prefix) { return prefix + std::to_string(next_name_++); }
 
   Random random_;
+  bool overlays_;
   Program program_;
   std::map<TypeRef, std::vector<Place>> places_;
   std::map<std::pair<bool, uint32_t>, TypeRef> strings_;
@@ -171,19 +229,30 @@ class Builder {
   std::vector<TypeRef> subranges_;
   std::vector<TypeRef> structs_;
   std::vector<TypeRef> arrays_;
+  std::vector<TypeRef> unions_;
+  std::vector<TypeRef> nodes_;    // structures that refer to their own type
   std::vector<TypeRef> holders_;  // structures with function blocks in them
   std::vector<Interface> functions_;
   std::vector<Interface> blocks_;   // of the program, callable by those that follow
   std::vector<Interface> library_;  // standard function blocks
   std::vector<Variable> global_variables_;
   std::vector<Variable> global_constants_;
+  std::vector<Interface> programs_;
+  std::map<std::string, TypeRef> named_;  // types that have no declaration
+  std::vector<Place> bits_;               // BIT members
+  std::vector<Variable> nameable_;        // what an initial value may name
+  std::vector<Stmt> prologue_;            // of the body: references are set there
+  std::vector<Variable> pointers_;        // of the POU, that may be set to something else
+  std::vector<Walker> walkers_;
   std::map<TypeRef, Interface> faces_;                  // by the type of instances
   std::vector<std::pair<std::string, TypeRef>> loops_;  // counters that the POU has
   uint32_t loop_level_ = 0;
   uint32_t rounds_ = 1;  // of all open loops together
   uint32_t next_name_ = 0;
   uint32_t inside_index_ = 0;
-  bool guarded_ = false;  // a WHILE or REPEAT is open
+  bool risky_ = false;     // traps now and then
+  bool generics_ = false;  // has the functions of generics.cc
+  bool guarded_ = false;   // a WHILE or REPEAT is open
   PouKind kind_ = PouKind::kFunction;
 };
 

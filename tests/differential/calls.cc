@@ -37,7 +37,7 @@ std::optional<std::vector<Expr>> Builder::arguments(const Interface& callee, boo
   bool positional = one_in(3);
   const bool all_named = !positional;
   for (const Variable& input : callee.inputs) {
-    if (!positional && one_in(5)) continue;
+    if (!positional && !is(input.type, Form::kOpenArray) && one_in(5)) continue;
     Expr value = expression(input.type, depth);
     bool named = !positional;
     out.push_back(named ? argument(input.name + " := @0", std::move(value))

@@ -150,7 +150,14 @@ class Examination {
   // An enumeration is carried by name, so its text stays too.
   void check_kept(const std::string& path, const Leaf& old, const Leaf& now) {
     if (old.symbol.constant) return;
-    if (now.value != old.value) return wrong("kept value", path, now.value, old.value);
+    const ir::TypeTable& types = rig_->image().types;
+    if (types.is_reference(now.symbol.type)) {
+      // What it names may have another place, and so another text.
+      if (rig_->scalar_bits(now) != bits_[path])
+        wrong("kept reference", path, now.value, old.value);
+    } else if (now.value != old.value) {
+      return wrong("kept value", path, now.value, old.value);
+    }
     if (now.symbol.data != old.symbol.data && !said_moved(path)) {
       wrong("kept place", path, std::to_string(now.symbol.data), std::to_string(old.symbol.data));
     }
@@ -171,7 +178,7 @@ class Examination {
 
   // From the values that the switch left, the evaluator goes on in the same way.
   void check_run(int scans) {
-    ir::Evaluator oracle(second_.program);
+    ir::Evaluator oracle(second_.program, golden::memory_of(rig_->image()));
     for (const auto& [path, leaf] : after_) {
       bool scalar = rig_->image().types.is_scalar(leaf.symbol.type);
       base::Status done = scalar ? oracle.set_bits(path, rig_->scalar_bits(leaf))

@@ -84,10 +84,9 @@ class Editor {
   }
 
   TypeRef any_type() {
-    if (random_.one_in(4)) {
-      return static_cast<TypeRef>(random_.below(static_cast<uint32_t>(program_.types.size())));
-    }
-    return random_.below(ir::kElementaryCount);
+    TypeRef any = random_.below(static_cast<uint32_t>(program_.types.size()));
+    bool whole = program_[any].form <= Form::kPointer;
+    return whole && random_.one_in(4) ? any : random_.below(ir::kElementaryCount);
   }
 
   void add_variable() {
@@ -120,7 +119,8 @@ class Editor {
     Variable* one = list == nullptr ? nullptr : pick(*list);
     if (one == nullptr || is_counter(one->name) || !one->address.empty()) return;
     const Form form = program_[one->type].form;
-    if (form == Form::kBlock || form == Form::kStruct || form == Form::kArray) return;
+    if (form >= Form::kArray) return;
+    one->bit = false;
     one->type = random_.below(ir::kElementaryCount);
     one->initial.reset();
     forget(one->name);

@@ -4,7 +4,10 @@
 namespace differential {
 
 // A scalar always; an aggregate when something of its type is in sight.
-bool Builder::possible(TypeRef type) { return !is_aggregate(type) || find(type, false) != nullptr; }
+bool Builder::possible(TypeRef type) {
+  if (is(type, Form::kOpenArray)) return find_open(type, false) != nullptr;
+  return !is_aggregate(type) || find(type, false) != nullptr;
+}
 
 Expr Builder::node(TypeRef type, std::string pattern, std::vector<Expr> operands) {
   Expr expr;
@@ -15,6 +18,12 @@ Expr Builder::node(TypeRef type, std::string pattern, std::vector<Expr> operands
 }
 
 Expr Builder::expression(TypeRef type, int depth) {
+  if (is(type, Form::kPointer)) return pointer_value(type, depth);
+  if (is(type, Form::kOpenArray)) {
+    Expr array = use(*find_open(type, false), 1);
+    array.fixed = true;
+    return array;
+  }
   if (is_aggregate(type)) {
     if (depth > 0 && one_in(3)) {
       if (std::optional<Expr> call = function_call(type, depth)) return std::move(*call);
@@ -28,6 +37,9 @@ Expr Builder::expression(TypeRef type, int depth) {
     return found ? std::move(*found) : literal(type);
   }
   switch (below(10)) {
+    case 7:
+      if (std::optional<Expr> call = generic_call(type, depth)) return std::move(*call);
+      break;
     case 0:
       return literal(type);
     case 1:
@@ -90,7 +102,7 @@ Expr Builder::subrange_operation(TypeRef type, int depth) {
   TypeRef base = row.base;
   int64_t low = row.low;
   int64_t high = row.high;
-  if (one_in(40)) return node(type, "@0", {read(base)});
+  if (trap_in(40)) return node(type, "@0", {read(base)});
   return node(type, "LIMIT(@0, @1, @2)",
               {constant_text(base, integer_text(base, low == INT64_MIN ? low + 1 : low, false)),
                expression(base, depth - 1), constant_text(base, integer_text(base, high, false))});
@@ -115,6 +127,16 @@ std::optional<Expr> Builder::function_call(TypeRef type, int depth) {
   return std::nullopt;
 }
 
+// s[i]
+std::optional<Expr> Builder::character(TypeRef type, bool writable, int depth) {
+  const Place* text = find_text(type == elementary(ir::Kind::kWord), writable);
+  if (text == nullptr || text->constant) return std::nullopt;
+  Bounds all{0, program_[text->type].capacity};
+  Expr from = use(*text, 1);
+  from.fixed = true;
+  return node(type, "@0[@1]", {std::move(from), index(all, depth)});
+}
+
 // Without the length of a string.
 std::string Builder::plain_name(TypeRef type) const {
   std::string name = name_of(type);
@@ -133,14 +155,14 @@ Expr Builder::conversion(TypeRef to, int depth) {
   if (is_bits(to) && one_in(8)) {
     TypeRef source = elementary(ir::Kind::kUint);
     return node(to, (one_in(2) ? "TO_BCD_" : "UINT_TO_BCD_") + target + "(@0)",
-                {small_integer(source, 0, one_in(20) ? 100 : 99, depth - 1)});
+                {small_integer(source, 0, trap_in(20) ? 100 : 99, depth - 1)});
   }
   for (int tries = 0; tries < 6; ++tries) {
     TypeRef from = one_in(8) ? string_type(one_in(3), 12) : below(ir::kElementaryCount);
     if (from == to || !convertible(from, to)) continue;
     if (is_text(from) && is_text(to) && is(from, program_[to].form)) continue;
     bool real = group(from) == ir::Group::kReal && group(to) != ir::Group::kReal && !is_text(to);
-    Expr operand = real && !one_in(30) ? small_real(from, depth - 1) : expression(from, depth - 1);
+    Expr operand = real && !trap_in(30) ? small_real(from, depth - 1) : expression(from, depth - 1);
     bool integer = is_integer(to);
     std::string name = real && integer && one_in(3) ? "TRUNC_" + target
                        : one_in(4)                  ? "TO_" + target

@@ -8,6 +8,7 @@
 
 namespace differential {
 
-Program random_program(uint64_t seed);
+// Without `overlays` there is no reference and no union in it.
+Program random_program(uint64_t seed, bool overlays);
 
 }  // namespace differential

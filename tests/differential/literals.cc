@@ -113,6 +113,8 @@ Expr Builder::literal(TypeRef type, bool bare) {
       if (value == INT64_MIN) value = 0;
       return constant_text(type, integer_text(row.base, value, bare));
     }
+    case Form::kPointer:
+      return constant_text(type, "NULL");
     default:
       break;
   }
@@ -147,9 +149,11 @@ Expr Builder::initial(TypeRef type) {
     if (row.dims.size() == 1 && one_in(3)) expr.operands.back().pattern.insert(0, "1(").append(")");
     return expr;
   }
-  if (row.form != Form::kStruct) return literal(type, true);
+  if (!is_aggregate(type)) return literal(type, true);
   expr.pattern = "(@*)";
-  for (const Variable& member : row.members) {
+  std::vector<Variable> members = members_of(program_, type);
+  if (row.form == Form::kUnion) members = {members[below(count(members))]};
+  for (const Variable& member : members) {
     if (one_in(2) && !expr.operands.empty()) continue;
     Expr part;
     part.pattern = member.name + " := @0";

@@ -4,11 +4,6 @@
 #include "tests/differential/builder.h"
 
 namespace differential {
-namespace {
-
-constexpr uint32_t kMaxRounds = 60;
-
-}  // namespace
 
 // EXIT, CONTINUE or RETURN under a condition.
 Stmt Builder::leave(const char* word) {
@@ -47,7 +42,7 @@ Stmt Builder::for_statement(int depth) {
   }
   bool by = step != 1 || down || one_in(4);
   if (by && !down && one_in(6)) {
-    operands.push_back(small_integer(type, one_in(10) ? 0 : step, step + 2, 1));
+    operands.push_back(small_integer(type, trap_in(10) ? 0 : step, step + 2, 1));
   } else if (by) {
     operands.push_back(constant_text(type, step_text));
   }

@@ -1,12 +1,16 @@
-// differential FIRST COUNT [--scans N] [--shrink] [--write DIR]: random programs of seeds FIRST..
-// on every tier. With --changes: random changes of them while they run. --shrink makes failing
-// programs small and prints each as a golden file; --write puts them into DIR instead.
-// differential --print SEED [--changes]: the program of a seed, its second version behind it.
-// Ends with "N passed, N failed".
+// differential FIRST COUNT [--scans N] [--jobs N] [--shrink] [--write DIR]: random programs of
+// seeds FIRST.. on every tier, in N processes at a time. With --changes: random changes of them
+// while they run. --shrink makes failing programs small and prints each as a golden file; --write
+// puts them into DIR instead. differential --print SEED [--changes]: the program of a seed, its
+// second version behind it. Ends with "N passed, N failed".
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +31,7 @@ constexpr unsigned kSecondsPerProgram = 20;
 struct Options {
   std::vector<uint64_t> numbers;
   int scans = 20;
+  uint64_t jobs = 1;
   bool print = false;
   bool changes = false;
   bool shrink = false;
@@ -49,6 +54,8 @@ Options parse_options(int argc, char** argv) {
       out.folder = argv[++i];
     } else if (word == "--scans" && more) {
       out.scans = std::atoi(argv[++i]);
+    } else if (word == "--jobs" && more) {
+      out.jobs = std::max(1, std::min(64, std::atoi(argv[++i])));
     } else {
       out.numbers.push_back(std::strtoull(argv[i], nullptr, 10));
     }
@@ -63,7 +70,7 @@ class Case {
       : seed_(seed),
         options_(options),
         script_(differential::change_script(seed)),
-        first_(differential::random_program(seed)),
+        first_(differential::random_program(seed, !options.changes)),
         second_(options.changes ? differential::edited(first_, seed) : Program()) {}
 
   Finding examine() const { return examine(first_, second_); }
@@ -127,6 +134,7 @@ void report_small(Case& one, uint64_t seed, const Finding& finding, const Option
 struct Tally {
   uint64_t failed = 0;
   uint64_t trapped = 0;
+  uint64_t at_once = 0;  // of them in the first scan
   uint64_t skipped = 0;
 };
 
@@ -134,6 +142,7 @@ void run_seed(uint64_t seed, const Options& options, Tally& tally) {
   Case one(seed, options);
   Finding finding = one.examine();
   if (!finding.trap.empty()) ++tally.trapped;
+  if (!finding.trap.empty() && finding.scan <= 1) ++tally.at_once;
   if (finding.key == "skipped") ++tally.skipped;
   if (!finding.failed) return;
   ++tally.failed;
@@ -143,20 +152,57 @@ void run_seed(uint64_t seed, const Options& options, Tally& tally) {
   std::fflush(stdout);
 }
 
+// Every `step`-th seed, in a process of its own; its tally comes through the pipe.
+bool start_worker(uint64_t first, uint64_t end, uint64_t step, const Options& options, int pipe) {
+  pid_t child = ::fork();
+  if (child != 0) return child > 0;
+  Tally tally;
+  for (uint64_t seed = first; seed < end; seed += step) run_seed(seed, options, tally);
+  bool told = ::write(pipe, &tally, sizeof tally) == sizeof tally;
+  _exit(told ? 0 : 1);
+}
+
+std::optional<Tally> run_workers(uint64_t first, uint64_t end, const Options& options) {
+  int ends[2];
+  if (::pipe(ends) != 0) return std::nullopt;
+  std::fflush(stdout);
+  for (uint64_t job = 0; job < options.jobs; ++job) {
+    if (!start_worker(first + job, end, options.jobs, options, ends[1])) return std::nullopt;
+  }
+  ::close(ends[1]);
+  Tally sum;
+  for (uint64_t job = 0; job < options.jobs; ++job) {
+    Tally one;
+    if (::read(ends[0], &one, sizeof one) != sizeof one) return std::nullopt;
+    sum.failed += one.failed;
+    sum.trapped += one.trapped;
+    sum.at_once += one.at_once;
+    sum.skipped += one.skipped;
+  }
+  ::close(ends[0]);
+  while (::wait(nullptr) > 0) continue;
+  return sum;
+}
+
 int run(const Options& options) {
   uint64_t first = options.numbers[0];
   uint64_t count = options.numbers[1];
-  Tally tally;
   auto start = std::chrono::steady_clock::now();
-  for (uint64_t seed = first; seed < first + count; ++seed) run_seed(seed, options, tally);
+  std::optional<Tally> sum = run_workers(first, first + count, options);
+  if (!sum) {
+    std::fprintf(stderr, "a process was lost\n");
+    return 1;
+  }
+  const Tally& tally = *sum;
   double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (options.changes) {
     std::printf("%llu of %llu pairs were no change that can be made",
                 static_cast<unsigned long long>(tally.skipped),
                 static_cast<unsigned long long>(count));
   } else {
-    std::printf("%llu programs ended in a trap, the same on every tier",
-                static_cast<unsigned long long>(tally.trapped));
+    std::printf("%llu programs ended in a trap, the same on every tier, %llu in the first scan",
+                static_cast<unsigned long long>(tally.trapped),
+                static_cast<unsigned long long>(tally.at_once));
   }
   std::printf("; %.1f programs per second\n", static_cast<double>(count) / seconds);
   std::printf("%llu passed, %llu failed\n",
@@ -177,7 +223,7 @@ int main(int argc, char** argv) {
   }
   if (options.numbers.size() != 2) {
     std::fprintf(stderr,
-                 "usage: differential FIRST COUNT [--scans N] [--changes] [--shrink] "
+                 "usage: differential FIRST COUNT [--scans N] [--jobs N] [--changes] [--shrink] "
                  "[--write DIR] | --print SEED [--changes]\n");
     return 2;
   }

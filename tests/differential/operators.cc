@@ -14,7 +14,13 @@ std::string infix(const char* op) { return std::string("(@0 ") + op + " @1)"; }
 
 Expr Builder::bool_operation(int depth) {
   TypeRef type = elementary(ir::Kind::kBool);
-  switch (below(8)) {
+  switch (below(10)) {
+    case 8:
+      if (!bits_.empty()) return use(bits_[below(count(bits_))], depth);
+      return read(type);
+    case 9:
+      if (std::optional<Expr> test = pointer_test(depth)) return std::move(*test);
+      return read(type);
     case 0:
       return node(type, infix(one_in(2) ? "AND_THEN" : "OR_ELSE"),
                   {expression(type, depth - 1), expression(type, depth - 1)});
@@ -44,7 +50,7 @@ Expr Builder::bool_operation(int depth) {
 
 Expr Builder::division(TypeRef type, int depth) {
   std::string op = infix(one_in(2) && is_integer(type) ? "MOD" : "/");
-  if (one_in(40)) return node(type, op, {read(type), read(type)});
+  if (trap_in(40)) return node(type, op, {read(type), read(type)});
   if (one_in(3)) {
     // One is added to something that is not negative.
     return node(type, op, {read(type), small_integer(type, 1, 100, depth - 1)});
@@ -102,6 +108,11 @@ Expr Builder::bits_operation(TypeRef type, int depth) {
     case 3: {
       static constexpr const char* kParts[] = {".%B", ".%W", ".%D"};
       TypeRef wide = elementary(ir::Kind::kLword);
+      bool is_character =
+          type == elementary(ir::Kind::kByte) || type == elementary(ir::Kind::kWord);
+      if (is_character && one_in(2)) {
+        if (std::optional<Expr> found = character(type, false, depth)) return std::move(*found);
+      }
       if (type == wide) return conversion(type, depth);
       uint32_t part = type - elementary(ir::Kind::kByte);
       std::optional<Expr> from = variable(wide);

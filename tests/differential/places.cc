@@ -5,6 +5,11 @@ namespace differential {
 
 void Builder::forget() {
   places_.clear();
+  bits_.clear();
+  nameable_.clear();
+  prologue_.clear();
+  pointers_.clear();
+  walkers_.clear();
   loops_.clear();
   loop_level_ = 0;
   rounds_ = 1;
@@ -15,42 +20,55 @@ void Builder::see(const Variable& variable, bool writable, bool constant) {
   see_inside({variable.name, {}, variable.type, writable, constant});
 }
 
-// A value, and all values inside it.
-void Builder::see_inside(Place place) {
-  const Type& type = program_[place.type];
-  if (type.form == Form::kArray && place.holes.size() + type.dims.size() <= 4) {
-    Place element = place;
-    element.type = type.base;
-    element.pattern += "[";
-    for (const Bounds& dim : type.dims) {
-      if (element.pattern.back() != '[') element.pattern += ", ";
-      element.pattern += "@" + std::to_string(element.holes.size());
-      element.holes.push_back(dim);
-    }
-    element.pattern += "]";
-    see_inside(std::move(element));
+void Builder::see_elements(const Place& place, const Type& type) {
+  Place element = place;
+  element.type = type.base;
+  element.pattern += "[";
+  const bool open = type.form == Form::kOpenArray;
+  for (size_t i = 0; i < type.dims.size(); ++i) {
+    if (i > 0) element.pattern += ", ";
+    std::string hole = "@" + std::to_string(element.holes.size());
+    std::string which = "(" + place.pattern + ", " + std::to_string(i + 1) + ")";
+    element.pattern +=
+        open ? "LIMIT(LOWER_BOUND" + which + ", " + hole + ", UPPER_BOUND" + which + ")" : hole;
+    element.holes.push_back(type.dims[i]);
   }
-  if (type.form == Form::kStruct) {
-    for (const Variable& member : type.members) {
-      Place inside = place;
-      inside.pattern += "." + member.name;
-      inside.type = member.type;
+  element.pattern += "]";
+  see_inside(std::move(element));
+}
+
+void Builder::see_members(const Place& place, const std::vector<Variable>& members, bool writable) {
+  for (const Variable& member : members) {
+    Place inside = place;
+    inside.pattern += "." + member.name;
+    inside.type = member.type;
+    inside.writable = inside.writable && writable;
+    if (member.bit) {
+      bits_.push_back(std::move(inside));
+    } else {
       see_inside(std::move(inside));
     }
   }
+}
+
+// A value, and all values inside it.
+void Builder::see_inside(Place place) {
+  // A copy: seeing more may move the table.
+  const Type type = program_[place.type];
+  if (type.form == Form::kReference) {
+    place.type = type.base;
+    return see_inside(std::move(place));
+  }
+  bool list = type.form == Form::kArray || type.form == Form::kOpenArray;
+  if (list && place.holes.size() + type.dims.size() <= 4) see_elements(place, type);
+  if (type.form == Form::kStruct || type.form == Form::kUnion) {
+    see_members(place, members_of(program_, place.type), true);
+  }
   if (type.form == Form::kBlock) {
-    const Interface& face = faces_[place.type];
-    auto members = [&](const std::vector<Variable>& list, bool writable) {
-      for (const Variable& member : list) {
-        Place inside = place;
-        inside.pattern += "." + member.name;
-        inside.type = member.type;
-        inside.writable = writable;
-        see_inside(std::move(inside));
-      }
-    };
-    members(face.inputs, true);
-    members(face.outputs, false);
+    Place inside = place;
+    inside.writable = true;
+    see_members(inside, faces_[place.type].inputs, true);
+    see_members(inside, faces_[place.type].outputs, false);
   }
   places_[place.type].push_back(std::move(place));
 }
@@ -66,8 +84,30 @@ const Place* Builder::find(TypeRef type, bool writable) {
   return nullptr;
 }
 
+const Place* Builder::find_open(TypeRef open, bool writable) {
+  std::vector<TypeRef> fitting;
+  for (const auto& [type, list] : places_) {
+    const Type& row = program_[type];
+    if (row.form == Form::kArray && row.base == program_[open].base &&
+        row.dims.size() == program_[open].dims.size()) {
+      fitting.push_back(type);
+    }
+  }
+  return fitting.empty() ? nullptr : find(any_of(fitting), writable);
+}
+
+const Place* Builder::find_any() {
+  for (int tries = 0; tries < 8; ++tries) {
+    auto kind = places_.begin();
+    std::advance(kind, below(static_cast<uint32_t>(places_.size())));
+    if (is(kind->first, Form::kOpenArray)) continue;
+    if (const Place* place = find(kind->first, true)) return place;
+  }
+  return nullptr;
+}
+
 const Place* Builder::find_text(bool wide, bool writable) {
-  for (int tries = 0; tries < 4; ++tries) {
+  for (int tries = 0; tries < 4 && !strings_.empty(); ++tries) {
     auto kind = strings_.begin();
     std::advance(kind, below(static_cast<uint32_t>(strings_.size())));
     if (kind->first.first != wide) continue;
@@ -83,7 +123,7 @@ Expr Builder::index(Bounds bounds, int depth) {
     auto count = static_cast<uint32_t>(bounds.high - bounds.low + 1);
     return constant_text(kInt, std::to_string(bounds.low + below(count)));
   }
-  if (one_in(100)) return read(kInt);
+  if (trap_in(100)) return read(kInt);
   return small_integer(kInt, bounds.low, bounds.high, depth - 1);
 }
 
@@ -108,7 +148,7 @@ std::optional<Expr> Builder::variable(TypeRef type) {
 }
 
 std::optional<Expr> Builder::target(TypeRef type) {
-  const Place* place = find(type, true);
+  const Place* place = is(type, Form::kOpenArray) ? find_open(type, true) : find(type, true);
   if (place == nullptr) return std::nullopt;
   Expr expr = use(*place, 1);
   expr.fixed = true;

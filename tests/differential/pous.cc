@@ -14,6 +14,10 @@ VarBlock& Builder::section(Pou& pou, Section kind) {
 Variable& Builder::declare(Pou& pou, Section kind, TypeRef type, bool with_initial) {
   Variable variable{fresh("v"), type, std::nullopt, {}, {}};
   if ((with_initial && one_in(3)) || kind == Section::kConstant) variable.initial = initial(type);
+  bool named = with_initial && kind != Section::kConstant && kind != Section::kInput && one_in(6);
+  if (named) name_initial(variable);
+  bool lasting = kind == Section::kLocal || kind == Section::kConstant;
+  if (lasting) nameable_.push_back(variable);
   bool writable = kind != Section::kInput && kind != Section::kConstant;
   see(variable, writable, kind == Section::kConstant);
   VarBlock& block = section(pou, kind);
@@ -21,18 +25,44 @@ Variable& Builder::declare(Pou& pou, Section kind, TypeRef type, bool with_initi
   return block.variables.back();
 }
 
+// By another variable of its type.
+void Builder::name_initial(Variable& variable) {
+  std::vector<Variable> fitting;
+  for (const Variable& one : nameable_) {
+    if (one.type == variable.type) fitting.push_back(one);
+  }
+  if (fitting.empty()) return;
+  variable.initial = node(variable.type, fitting[below(count(fitting))].name, {});
+}
+
 void Builder::parameters(Pou& pou, Interface& face) {
   for (uint32_t n = 1 + below(3); n > 0; --n) {
-    Variable& input = declare(pou, Section::kInput, any_data());
-    bool edge = input.type == elementary(ir::Kind::kBool) && kind_ != PouKind::kFunction;
+    if (overlays_ && kind_ != PouKind::kProgram && one_in(8)) {
+      Variable input{fresh("v"), pointer_to(any_data()), std::nullopt, {}, {}};
+      section(pou, Section::kInput).variables.push_back(input);
+      own_target(pou, input);
+      face.inputs.push_back(std::move(input));
+      continue;
+    }
+    bool open = kind_ == PouKind::kFunction && one_in(6);
+    TypeRef type = open ? open_array(program_[any_of(arrays_)].base, 1) : any_data();
+    Variable& input = declare(pou, Section::kInput, type, !open);
+    bool edge = input.type == elementary(ir::Kind::kBool) && kind_ == PouKind::kFunctionBlock;
     if (edge && !input.initial && one_in(2)) input.edge = one_in(2) ? "R_EDGE" : "F_EDGE";
     face.inputs.push_back(input);
   }
   for (uint32_t n = below(3); n > 0; --n) {
     face.outputs.push_back(declare(pou, Section::kOutput, any_data(), false));
   }
+  if (kind_ == PouKind::kProgram) return;
   for (uint32_t n = one_in(2) ? 1 + below(2) : 0; n > 0; --n) {
-    face.in_outs.push_back(declare(pou, Section::kInOut, any_data(), false));
+    TypeRef type = any_data();
+    if (one_in(4)) type = any_block();
+    const Type& list = program_[any_of(arrays_)];
+    if (kind_ == PouKind::kFunction && one_in(4)) {
+      type = open_array(list.base, static_cast<uint32_t>(list.dims.size()));
+    }
+    face.in_outs.push_back(declare(pou, Section::kInOut, type, false));
   }
 }
 
@@ -61,21 +91,28 @@ void Builder::locals(Pou& pou, uint32_t count) {
   }
   if (one_in(3)) declare(pou, Section::kStatic, any_data());
   for (uint32_t n = below(3); n > 0; --n) declare(pou, Section::kConstant, any_elementary());
+  if (kind_ != PouKind::kFunction) {
+    for (const Variable& global : global_variables_) nameable_.push_back(global);
+  }
   for (const Variable& global : global_variables_) see(global, true);
   for (const Variable& constant : global_constants_) see(constant, false, true);
 }
 
+TypeRef Builder::any_block() {
+  const std::vector<Interface>& from = !blocks_.empty() && one_in(2) ? blocks_ : library_;
+  return from[below(count(from))].block;
+}
+
 void Builder::instances(Pou& pou) {
   for (uint32_t n = below(3); n > 0; --n) {
-    bool own = !blocks_.empty() && one_in(2);
-    const std::vector<Interface>& from = own ? blocks_ : library_;
-    TypeRef type = from[below(static_cast<uint32_t>(from.size()))].block;
+    TypeRef type = any_block();
     if (one_in(4)) type = array_of(type, {{0, 1 + static_cast<int>(below(2))}});
     declare(pou, Section::kLocal, type, false);
   }
 }
 
 void Builder::body(Pou& pou, uint32_t count, int depth) {
+  pou.body = std::move(prologue_);
   for (Stmt& one : statements(count, depth)) pou.body.push_back(std::move(one));
   if (one_in(6)) {
     pou.body.insert(pou.body.begin() + below(static_cast<uint32_t>(pou.body.size())),
@@ -96,6 +133,7 @@ void Builder::function(uint32_t index) {
   face.result = pou.result;
   parameters(pou, face);
   locals(pou, 2 + below(3));
+  references(pou);
   body(pou, 2 + below(3), 2);
   if (pou.result != kNoType && possible(pou.result)) {
     pou.body.push_back(simple(pou.name + " := @0;", {expression(pou.result, 3)}));
@@ -116,6 +154,7 @@ void Builder::block(uint32_t index) {
   parameters(pou, face);
   locals(pou, 3 + below(3));
   instances(pou);
+  references(pou);
   body(pou, 3 + below(4), 2);
   Type type;
   type.form = Form::kBlock;
@@ -138,13 +177,19 @@ void Builder::block(uint32_t index) {
 void Builder::globals() {
   static constexpr Section kSections[] = {Section::kGlobal, Section::kGlobalRetain,
                                           Section::kGlobalConstant};
+  Variable event{"event", elementary(ir::Kind::kBool), std::nullopt, {}, {}};
+  program_.globals.push_back({Section::kGlobal, {event}});
+  global_variables_.push_back(std::move(event));
   for (Section kind : kSections) {
     VarBlock block{kind, {}};
+    if (one_in(4)) block.list = fresh("List");
     bool constant = kind == Section::kGlobalConstant;
     for (uint32_t n = below(4); n > 0; --n) {
       Variable variable{fresh("g"), constant ? any_elementary() : any_data(), std::nullopt, {}, {}};
       if (constant || one_in(3)) variable.initial = initial(variable.type);
-      (constant ? global_constants_ : global_variables_).push_back(variable);
+      Variable seen = variable;
+      if (!block.list.empty()) seen.name = block.list + "." + seen.name;
+      (constant ? global_constants_ : global_variables_).push_back(std::move(seen));
       block.variables.push_back(std::move(variable));
     }
     program_.globals.push_back(std::move(block));
@@ -157,33 +202,75 @@ void Builder::program(uint32_t index, uint32_t count) {
   Pou pou;
   pou.kind = kind_;
   pou.name = "Main" + std::to_string(index);
+  Interface face;
+  if (one_in(2)) parameters(pou, face);
   locals(pou, 16 + below(8));
   instances(pou);
   instances(pou);
   if (!holders_.empty()) {
     declare(pou, Section::kLocal, holders_[below(static_cast<uint32_t>(holders_.size()))], false);
   }
+  references(pou);
   if (index == 0) {
     Variable& output = declare(pou, Section::kLocal, elementary(ir::Kind::kBool));
     output.address = "%QX" + std::to_string(below(4)) + "." + std::to_string(below(8));
   }
   body(pou, (10 + below(10)) / count, 3);
+  // Blocks that a task of their own may run.
+  for (const VarBlock& list : pou.blocks) {
+    for (const Variable& one : list.variables) {
+      bool fits = list.section == Section::kLocal && is(one.type, Form::kBlock) &&
+                  faces_[one.type].in_outs.empty();
+      if (fits) face.in_outs.push_back(one);
+    }
+  }
+  programs_.push_back(std::move(face));
   program_.pous.push_back(std::move(pou));
+}
+
+// What goes in and out before and behind each scan, and a block with a task of its own.
+void Builder::connect(Task& task, const Interface& face) {
+  auto global = [&](TypeRef type) {
+    std::vector<std::string> names;
+    for (const Variable& one : global_variables_) {
+      if (one.type == type) names.push_back(one.name);
+    }
+    return names.empty() ? std::string() : names[below(count(names))];
+  };
+  for (const Variable& input : face.inputs) {
+    std::string from = global(input.type);
+    if (from.empty() && is_elementary(input.type)) from = text(literal(input.type, true));
+    if (!from.empty() && one_in(2)) task.connections.push_back(input.name + " := " + from);
+  }
+  for (const Variable& output : face.outputs) {
+    std::string to = global(output.type);
+    if (!to.empty()) task.connections.push_back(output.name + " => " + to);
+  }
+  if (!face.in_outs.empty() && one_in(2)) {
+    Task own{"Own" + std::to_string(program_.tasks.size()), 10 + 10 * below(3), below(5), {}};
+    task.connections.push_back(face.in_outs[below(count(face.in_outs))].name + " WITH " + own.name);
+    program_.tasks.push_back(std::move(own));
+  }
 }
 
 void Builder::tasks(uint32_t count) {
   if (count == 1 && one_in(2)) return;
   for (uint32_t i = 0; i < count; ++i) {
     static constexpr uint32_t kPeriods[] = {10, 20, 30, 50};
-    program_.tasks.push_back({"Task" + std::to_string(i), i == 0 ? 10 : kPeriods[below(4)],
-                              below(3), "Main" + std::to_string(i)});
+    Task task{"Task" + std::to_string(i), i == 0 ? 10 : kPeriods[below(4)], below(3),
+              "Main" + std::to_string(i)};
+    if (i > 0 && one_in(3)) task.event = "event";
+    connect(task, programs_[i]);
+    program_.tasks.push_back(std::move(task));
   }
 }
 
 Program Builder::run() {
+  risky_ = one_in(4);
   read_library();
   declare_types();
   globals();
+  if (one_in(2)) declare_generics();
   uint32_t functions = 1 + below(3);
   for (uint32_t i = 0; i < functions; ++i) function(i);
   uint32_t blocks = 1 + below(3);
@@ -194,6 +281,6 @@ Program Builder::run() {
   return std::move(program_);
 }
 
-Program random_program(uint64_t seed) { return Builder(seed).run(); }
+Program random_program(uint64_t seed, bool overlays) { return Builder(seed, overlays).run(); }
 
 }  // namespace differential

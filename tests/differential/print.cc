@@ -65,14 +65,21 @@ class Printer {
         return line(type.name + " : " + type_text(program_, type.base) + " (" +
                     std::to_string(type.low) + ".." + std::to_string(type.high) + ");");
       case Form::kStruct:
-        line(type.name + " : STRUCT");
-        ++indent_;
-        for (const Variable& member : type.members) variable(member);
-        --indent_;
-        return line("END_STRUCT;");
+        return structure(type, "STRUCT");
+      case Form::kUnion:
+        return structure(type, type.overlap ? "STRUCT OVERLAP" : "UNION");
       default:
         return line(type.name + " : " + array_text(program_, type) + ";");
     }
+  }
+
+  void structure(const Type& type, const std::string& word) {
+    bool extends = type.form == Form::kStruct && type.base != kNoType;
+    line(type.name + (extends ? " EXTENDS " + type_text(program_, type.base) : "") + " : " + word);
+    ++indent_;
+    for (const Variable& member : type.members) variable(member);
+    --indent_;
+    line(word == "UNION" ? "END_UNION;" : "END_STRUCT;");
   }
 
   std::string enumeration(const Type& type) const {
@@ -88,12 +95,16 @@ class Printer {
 
   void variable(const Variable& one) {
     line(one.name + (one.address.empty() ? "" : " AT " + one.address) + " : " +
-         type_text(program_, one.type) + (one.edge.empty() ? "" : " " + one.edge) +
+         (one.bit ? "BIT" : type_text(program_, one.type)) +
+         (one.edge.empty() ? "" : " " + one.edge) +
          (one.initial ? " := " + text(*one.initial) : "") + ";");
   }
 
   void variables(const VarBlock& block) {
     if (block.variables.empty()) return;
+    if (!block.list.empty()) {
+      line("{attribute 'list' := '" + block.list + "'} {attribute 'qualified_only'}");
+    }
     line(section_text(block.section));
     ++indent_;
     for (const Variable& one : block.variables) variable(one);
@@ -128,11 +139,18 @@ class Printer {
     line("CONFIGURATION Plant");
     line("  RESOURCE Cpu ON PLC");
     for (const Task& task : program_.tasks) {
-      line("    TASK " + task.name + "(INTERVAL := T#" + std::to_string(task.period_ms) +
-           "ms, PRIORITY := " + std::to_string(task.priority) + ");");
+      std::string when = task.event.empty()
+                             ? "INTERVAL := T#" + std::to_string(task.period_ms) + "ms"
+                             : "SINGLE := " + task.event;
+      line("    TASK " + task.name + "(" + when + ", PRIORITY := " + std::to_string(task.priority) +
+           ");");
     }
     for (const Task& task : program_.tasks) {
-      line("    PROGRAM Run" + task.program + " WITH " + task.name + " : " + task.program + ";");
+      if (task.program.empty()) continue;  // of a function block
+      std::string list;
+      for (const std::string& one : task.connections) list += (list.empty() ? "(" : ", ") + one;
+      line("    PROGRAM Run" + task.program + " WITH " + task.name + " : " + task.program + list +
+           (list.empty() ? ";" : ");"));
     }
     line("  END_RESOURCE");
     line("END_CONFIGURATION");
@@ -151,6 +169,14 @@ const char* section_text(Section section) {
       "VAR_TEMP",   "VAR RETAIN",        "VAR CONSTANT",       "VAR_STAT",
       "VAR_GLOBAL", "VAR_GLOBAL RETAIN", "VAR_GLOBAL CONSTANT"};
   return kTexts[static_cast<size_t>(section)];
+}
+
+std::vector<Variable> members_of(const Program& program, TypeRef ref) {
+  const Type& type = program[ref];
+  std::vector<Variable> out;
+  if (type.form == Form::kStruct && type.base != kNoType) out = members_of(program, type.base);
+  out.insert(out.end(), type.members.begin(), type.members.end());
+  return out;
 }
 
 std::string type_text(const Program& program, TypeRef ref) {

@@ -167,7 +167,7 @@ std::vector<Expr> Builder::moment_parts(const FunctionRow& row, int depth) {
     std::string name = parameter_name(row, i);
     for (const auto& [part, bounds] : kParts) {
       if (part == name) {
-        Bounds wide{bounds.low, bounds.high + (one_in(60) ? 1 : 0)};
+        Bounds wide{bounds.low, bounds.high + (trap_in(60) ? 1 : 0)};
         out.push_back(small_integer(elementary(ir::Kind::kInt), wide.low, wide.high, depth - 1));
       }
     }

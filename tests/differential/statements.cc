@@ -24,10 +24,10 @@ Stmt Builder::statement(int depth) {
       found = aggregate_assignment();
       break;
     case 1:
-      found = bit_assignment();
+      found = one_in(3) ? character_assignment() : bit_assignment();
       break;
     case 2:
-      found = one_in(6) ? split_call(2) : call_statement(2);
+      found = one_in(6) ? split_call(2) : one_in(6) ? swap_call() : call_statement(2);
       break;
     case 3:
       found = block_call(2);
@@ -35,8 +35,12 @@ Stmt Builder::statement(int depth) {
     case 4:
       found = one_in(2) ? chain() : set_or_reset();
       break;
+    case 5:
+      found = one_in(4) ? step() : one_in(4) ? retarget() : std::nullopt;
+      break;
     case 14:
       if (one_in(3)) return jump_over(depth);
+      if (one_in(2)) found = jump_back(depth);
       break;
     case 8:
     case 9:
@@ -69,8 +73,10 @@ Stmt Builder::assignment() {
 }
 
 std::optional<Stmt> Builder::aggregate_assignment() {
-  TypeRef type = one_in(2) ? structs_[below(static_cast<uint32_t>(structs_.size()))]
-                           : arrays_[below(static_cast<uint32_t>(arrays_.size()))];
+  TypeRef type = one_in(2)                ? any_of(structs_)
+                 : overlays_ && one_in(3) ? any_of(unions_)
+                                          : any_of(arrays_);
+  if (!nodes_.empty() && one_in(6)) type = any_of(nodes_);
   std::optional<Expr> to = target(type);
   if (!to) return std::nullopt;
   std::optional<Expr> call = one_in(3) ? function_call(type, 2) : std::nullopt;
@@ -80,6 +86,14 @@ std::optional<Stmt> Builder::aggregate_assignment() {
 }
 
 std::optional<Stmt> Builder::bit_assignment() {
+  if (!bits_.empty() && one_in(3)) {
+    const Place& place = bits_[below(count(bits_))];
+    if (!place.writable) return std::nullopt;
+    Expr bit = use(place, 1);
+    bit.fixed = true;
+    const char* word = one_in(4) ? "@0 S= @1;" : "@0 := @1;";
+    return simple(word, {std::move(bit), expression(elementary(ir::Kind::kBool), 2)});
+  }
   static constexpr ir::Kind kWords[] = {ir::Kind::kByte, ir::Kind::kWord, ir::Kind::kDword,
                                         ir::Kind::kLword};
   uint32_t size = below(4);
@@ -91,6 +105,13 @@ std::optional<Stmt> Builder::bit_assignment() {
   }
   return simple("@0." + std::to_string(below(8u << size)) + " := @1;",
                 {std::move(*to), expression(elementary(ir::Kind::kBool), 2)});
+}
+
+std::optional<Stmt> Builder::character_assignment() {
+  TypeRef type = elementary(one_in(3) ? ir::Kind::kWord : ir::Kind::kByte);
+  std::optional<Expr> to = character(type, true, 1);
+  if (!to) return std::nullopt;
+  return simple("@0 := @1;", {std::move(*to), expression(type, 2)});
 }
 
 // a := b := value;
@@ -117,6 +138,37 @@ Stmt Builder::jump_over(int depth) {
   for (Stmt& one : statements(1 + below(2), depth - 1)) roof.body.push_back(std::move(one));
   roof.body.push_back(simple(label + ":", {}));
   roof.body.push_back(assignment());
+  Stmt out;
+  out.tail = "END_IF;";
+  out.clauses.push_back(std::move(roof));
+  return out;
+}
+
+// Backwards while the guard lasts.
+std::optional<Stmt> Builder::jump_back(int depth) {
+  uint32_t rounds = 1 + below(4);
+  if (guarded_ || rounds_ * rounds > kMaxRounds) return std::nullopt;
+  guarded_ = true;
+  rounds_ *= rounds;
+  std::string label = fresh("label");
+  Clause roof{"IF TRUE THEN", {}, {}, false};
+  auto pinned = [&](std::string text) {
+    Stmt one = simple(std::move(text), {});
+    one.pinned = true;
+    roof.body.push_back(std::move(one));
+  };
+  pinned("guard := " + std::to_string(rounds) + ";");
+  pinned(label + ":");
+  pinned("guard := guard - 1;");
+  for (Stmt& one : statements(1 + below(2), depth - 1)) roof.body.push_back(std::move(one));
+  Stmt again;
+  again.tail = "END_IF;";
+  Expr condition = expression(elementary(ir::Kind::kBool), 2);
+  again.clauses.push_back({"IF guard > 0 AND @0 THEN", {std::move(condition)}, {}, false});
+  again.clauses[0].body.push_back(simple("JMP " + label + ";", {}));
+  roof.body.push_back(std::move(again));
+  rounds_ /= rounds;
+  guarded_ = false;
   Stmt out;
   out.tail = "END_IF;";
   out.clauses.push_back(std::move(roof));

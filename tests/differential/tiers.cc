@@ -96,6 +96,7 @@ Finding examine(const std::string& source, int scans) {
     if (tier == golden::Tier::kEvaluator) {
       oracle = std::move(*run);
       out.trap = oracle.trap;
+      if (!out.trap.empty()) out.scan = oracle.states.size();
     } else {
       compare(oracle, *run, golden::tier_name(tier), out);
       if (out.failed) return out;

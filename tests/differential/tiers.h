@@ -11,7 +11,7 @@ struct Finding {
   std::string key;       // what kind of failure: shrinking keeps it
   std::string text;      // for people
   std::string trap;      // where the program ended, the same on every tier
-  uint64_t scan = 0;     // of a difference
+  uint64_t scan = 0;     // of a difference, or of the trap
   std::string expected;  // line of state that the evaluator has there
 };
 

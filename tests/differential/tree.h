@@ -46,6 +46,7 @@ struct Variable {
   std::optional<Expr> initial;
   std::string address;  // "%QX0.0"
   std::string edge;     // "R_EDGE"
+  bool bit = false;     // a BIT member; its type is BOOL
 };
 
 enum class Section : uint8_t {
@@ -66,6 +67,7 @@ const char* section_text(Section section);  // "VAR_INPUT"
 struct VarBlock {
   Section section = Section::kLocal;
   std::vector<Variable> variables;
+  std::string list = {};  // globals that only `list.x` names
 };
 
 enum class Form : uint8_t {
@@ -76,7 +78,12 @@ enum class Form : uint8_t {
   kSubrange,
   kArray,
   kStruct,
+  kUnion,
   kBlock,
+  kPointer,    // POINTER TO, REF_TO
+  kReference,  // REFERENCE TO
+  kOpenArray,  // ARRAY[*]: of a parameter; dims has indices that are tried
+  kGeneric,    // ANY_NUM: of a parameter
 };
 
 struct Bounds {
@@ -86,8 +93,8 @@ struct Bounds {
 
 struct Type {
   Form form = Form::kElementary;
-  std::string name;  // as variables name it; empty for an array written out
-  TypeRef base = kNoType;
+  std::string name;        // as variables name it; empty for an array written out
+  TypeRef base = kNoType;  // elements, target, what a structure extends
   int64_t low = 0;
   int64_t high = 0;
   uint32_t capacity = 0;
@@ -96,6 +103,7 @@ struct Type {
   std::vector<int64_t> values;  // of the literals
   std::vector<Variable> members;
   bool declared = false;  // has a place in TYPE
+  bool overlap = false;   // a union written as STRUCT OVERLAP
 };
 
 enum class PouKind : uint8_t { kFunction, kFunctionBlock, kProgram };
@@ -112,7 +120,9 @@ struct Task {
   std::string name;
   uint32_t period_ms = 10;
   uint32_t priority = 1;
-  std::string program;  // its type; the instance is called Run<type>
+  std::string program;                        // its type; the instance is called Run<type>
+  std::string event = {};                     // SINGLE
+  std::vector<std::string> connections = {};  // "v1 := g2", "v3 => g4", "v5 WITH Task1"
 };
 
 struct Program {
@@ -127,7 +137,8 @@ struct Program {
 
 inline TypeRef elementary(ir::Kind kind) { return static_cast<TypeRef>(kind); }
 inline bool is_elementary(TypeRef type) { return type < ir::kElementaryCount; }
-// Number of values of a scalar or aggregate that a path can name.
+// Of a structure, with what it extends; of a union.
+std::vector<Variable> members_of(const Program& program, TypeRef type);
 std::string type_text(const Program& program, TypeRef type);
 std::string text(const Expr& expr);
 std::string print(const Program& program);

@@ -11,7 +11,7 @@ constexpr uint32_t kCapacities[] = {1, 5, 12, 80};
 
 }  // namespace
 
-Builder::Builder(uint64_t seed) : random_(seed) {
+Builder::Builder(uint64_t seed, bool overlays) : random_(seed), overlays_(overlays) {
   for (uint32_t i = 0; i < ir::kElementaryCount; ++i) {
     Type type;
     type.name = std::string(ir::elementary_name(static_cast<ir::Kind>(i)));
@@ -49,6 +49,52 @@ TypeRef Builder::array_of(TypeRef element, std::vector<Bounds> dims) {
   type.base = element;
   type.dims = std::move(dims);
   return add_type(std::move(type));
+}
+
+TypeRef Builder::named(Form form, std::string name, TypeRef base) {
+  auto [found, fresh] = named_.try_emplace(name, kNoType);
+  if (fresh) {
+    Type type;
+    type.form = form;
+    type.name = std::move(name);
+    type.base = base;
+    found->second = add_type(std::move(type));
+  }
+  return found->second;
+}
+
+TypeRef Builder::pointer_to(TypeRef target) {
+  return named(Form::kPointer, (one_in(3) ? "REF_TO " : "POINTER TO ") + name_of(target), target);
+}
+
+TypeRef Builder::open_array(TypeRef element, uint32_t dims) {
+  std::string stars = dims == 1 ? "*" : "*, *";
+  TypeRef type = named(Form::kOpenArray, "ARRAY[" + stars + "] OF " + name_of(element), element);
+  program_.types[type].dims.assign(dims, {-3, 6});
+  return type;
+}
+
+bool Builder::holds_block(TypeRef type) const {
+  const Type& row = program_[type];
+  if (row.form == Form::kArray) return holds_block(row.base);
+  return row.form == Form::kBlock ||
+         std::any_of(row.members.begin(), row.members.end(), [this](const Variable& member) {
+           return !is(member.type, Form::kPointer) && holds_block(member.type);
+         });
+}
+
+std::optional<uint32_t> Builder::bytes_of(TypeRef type) const {
+  const Type& row = program_[type];
+  if (row.form == Form::kElementary) {
+    static const ir::TypeTable kTypes;
+    return ir::scalar_size(kTypes.scalar(kTypes.elementary(static_cast<ir::Kind>(type))));
+  }
+  if (row.form != Form::kArray) return std::nullopt;
+  std::optional<uint32_t> size = bytes_of(row.base);
+  for (const Bounds& dim : row.dims) {
+    if (size) *size *= static_cast<uint32_t>(dim.high - dim.low + 1);
+  }
+  return size;
 }
 
 ir::Group Builder::group(TypeRef type) const {
@@ -113,10 +159,16 @@ TypeRef Builder::any_scalar() {
 }
 
 TypeRef Builder::any_data() {
-  switch (below(6)) {
+  switch (below(18)) {
+    case 3:
+      return any_of(overlays_ ? unions_ : structs_);
     case 0:
-      return structs_[below(static_cast<uint32_t>(structs_.size()))];
     case 1:
+    case 2:
+      return structs_[below(static_cast<uint32_t>(structs_.size()))];
+    case 4:
+    case 5:
+    case 6:
       return arrays_[below(static_cast<uint32_t>(arrays_.size()))];
     default:
       return any_scalar();
@@ -155,6 +207,7 @@ void Builder::declare_struct() {
   Type type;
   type.form = Form::kStruct;
   type.name = fresh("Struct");
+  if (!structs_.empty() && one_in(4)) type.base = any_of(structs_);
   for (uint32_t n = 2 + below(4); n > 0; --n) {
     Variable member;
     member.name = fresh("m");
@@ -165,7 +218,43 @@ void Builder::declare_struct() {
     if (!nested && !list && one_in(3)) member.initial = literal(member.type, true);
     type.members.push_back(std::move(member));
   }
+  for (uint32_t n = one_in(3) ? 1 + below(10) : 0; n > 0; --n) {
+    Variable bit{fresh("m"), elementary(ir::Kind::kBool), std::nullopt, {}, {}};
+    bit.bit = true;
+    if (one_in(3)) bit.initial = literal(bit.type, true);
+    type.members.push_back(std::move(bit));
+  }
   structs_.push_back(declared(std::move(type)));
+}
+
+// What lies on top of each other: numbers, texts, arrays and structures of them.
+void Builder::declare_union() {
+  Type type;
+  type.form = Form::kUnion;
+  type.name = fresh("Union");
+  type.overlap = one_in(3);
+  for (uint32_t n = 2 + below(3); n > 0; --n) {
+    Variable member{fresh("m"), any_elementary(), std::nullopt, {}, {}};
+    if (one_in(3)) member.type = array_of(member.type, {{0, 1 + static_cast<int>(below(4))}});
+    if (one_in(6)) member.type = string_type(one_in(3), 5);
+    if (one_in(6)) member.type = any_of(structs_);
+    if (!unions_.empty() && one_in(8)) member.type = any_of(unions_);
+    type.members.push_back(std::move(member));
+  }
+  unions_.push_back(declared(std::move(type)));
+}
+
+void Builder::declare_node() {
+  Type type;
+  type.form = Form::kStruct;
+  type.name = fresh("Node");
+  type.members.push_back({fresh("m"), any_scalar(), std::nullopt, {}, {}});
+  std::string pointer = (one_in(2) ? "POINTER TO " : "REF_TO ") + type.name;
+  TypeRef node = declared(std::move(type));
+  Variable next{fresh("next"), named(Form::kPointer, pointer, node), std::nullopt, {}, {}};
+  std::vector<Variable>& members = program_.types[node].members;
+  members.insert(members.begin() + below(2), std::move(next));
+  nodes_.push_back(node);
 }
 
 void Builder::declare_array() {
@@ -189,6 +278,8 @@ void Builder::declare_types() {
   for (uint32_t n = 1 + below(2); n > 0; --n) declare_subrange();
   for (uint32_t n = 1 + below(3); n > 0; --n) declare_struct();
   for (uint32_t n = 1 + below(2); n > 0; --n) declare_array();
+  for (uint32_t n = overlays_ ? 1 + below(2) : 0; n > 0; --n) declare_union();
+  if (overlays_ && one_in(2)) declare_node();
 }
 
 }  // namespace differential

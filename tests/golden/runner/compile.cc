@@ -72,7 +72,7 @@ base::Result<Program> compile(const TestFile& test, size_t version, Outcome& out
   // The runner checks the IR of every golden file, whatever its mode.
   base::Status sound = ir::verify(*program);
   if (!sound.ok()) return sound.error();
-  Program out{std::move(*program), {}};
+  Program out{std::move(*program), {}, {}};
   for (uint32_t i = 0; i < out.program.pous.size(); ++i) {
     base::Result<ir::Object> object = ir::lower(out.program, ir::PouId(i));
     if (!object.ok()) return object.error();
@@ -83,12 +83,16 @@ base::Result<Program> compile(const TestFile& test, size_t version, Outcome& out
 
 base::Result<ir::VerifiedImage> link(const Program& program, const ir::Image* base_image,
                                      bool move_all) {
+  const bool cold = base_image == nullptr && !move_all;
+  if (cold && program.cold) return *program.cold;
   linker::Options options;
   options.base = base_image;
   options.move_all = move_all;
   base::Result<ir::Image> image = linker::link(program.program, program.objects, options);
   if (!image.ok()) return image.error();
-  return ir::verify(ir::encode(*image));
+  base::Result<ir::VerifiedImage> verified = ir::verify(ir::encode(*image));
+  if (cold && verified.ok()) program.cold = *verified;
+  return verified;
 }
 
 std::string tokens_of(const TestFile& test) {

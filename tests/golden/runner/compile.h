@@ -1,6 +1,7 @@
 // Compiling one version of a golden file, in process.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ namespace golden {
 struct Program {
   ir::Program program;
   std::vector<ir::Object> objects;
+  // Of a link without a base, which every tier begins with: made once.
+  mutable std::optional<ir::VerifiedImage> cold;
 };
 
 // Diagnostics as "line:column: error[E3001]: text", sorted.

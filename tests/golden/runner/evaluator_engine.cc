@@ -32,7 +32,15 @@ class EvaluatorEngine : public Engine {
   int64_t now_ns_ = 0;
 };
 
-// Where the first version's variables are, for what is looked at as bytes.
+}  // namespace
+
+int64_t base_period_ns(const ir::Program& program) {
+  int64_t period = 0;
+  for (const ir::Task& task : program.tasks) period = std::gcd(period, task.period_ns);
+  constexpr int64_t kIdleNs = 10'000'000;  // as vm/runtime/task_tables.cc has it
+  return period == 0 ? kIdleNs : period;
+}
+
 ir::EvalMemory memory_of(const ir::Image& image) {
   ir::EvalMemory memory{image.layouts, {}};
   for (uint32_t id = 0; id < image.instances.size(); ++id) {
@@ -41,15 +49,6 @@ ir::EvalMemory memory_of(const ir::Image& image) {
     memory.areas.push_back({image.instance_path(id), id, row.generation, row.data});
   }
   return memory;
-}
-
-}  // namespace
-
-int64_t base_period_ns(const ir::Program& program) {
-  int64_t period = 0;
-  for (const ir::Task& task : program.tasks) period = std::gcd(period, task.period_ns);
-  constexpr int64_t kIdleNs = 10'000'000;  // as vm/runtime/task_tables.cc has it
-  return period == 0 ? kIdleNs : period;
 }
 
 base::Result<std::unique_ptr<Engine>> make_evaluator_engine(const Program& program) {

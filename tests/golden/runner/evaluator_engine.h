@@ -1,6 +1,7 @@
 // The oracle as an Engine.
 #pragma once
 
+#include "ir/program/evaluate.h"
 #include "tests/golden/runner/engine.h"
 
 namespace golden {
@@ -8,5 +9,8 @@ namespace golden {
 base::Result<std::unique_ptr<Engine>> make_evaluator_engine(const Program& program);
 // Greatest common divisor of the task periods: one scan of the runner.
 int64_t base_period_ns(const ir::Program& program);
+
+// Where variables are in an image, for what is looked at as bytes.
+ir::EvalMemory memory_of(const ir::Image& image);
 
 }  // namespace golden
