@@ -67,11 +67,11 @@ SEED := 1
 PROGRAMS := 5000
 differential: build
 	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --shrink --jobs $(JOBS)
-	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --changes --shrink
+	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --changes --shrink --jobs $(JOBS)
 
 # Hours, not minutes: 100,000 random programs on every tier; identity changes at 100,000 scans of the line.
 soak: build
-	@$(BUILD)/tests/differential 1 100000 --shrink
+	@$(BUILD)/tests/differential 1 100000 --shrink --jobs $(JOBS)
 	@tests/cli/determinism.sh $(CURDIR) $(CURDIR)/$(BUILD) 100000
 
 # Rewrites what is generated from the tables (docs/*.md) and the golden files.
