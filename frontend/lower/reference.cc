@@ -39,7 +39,7 @@ ir::ValueId Body::moved(ir::ValueId handle, ir::ValueId count, ir::TypeId elemen
 ir::Place Body::addressable_place(ExprId id) {
   const Expr& expr = tree_[id];
   const Note& note = sema_.infer(id);
-  const bool part = note.bit_size != 0 || is_character(id);
+  const bool part = note.bit_size != 0;
   const bool value = expr.kind == ExprKind::kLiteral || expr.kind == ExprKind::kCall ||
                      expr.kind == ExprKind::kUnary || expr.kind == ExprKind::kBinary ||
                      expr.kind == ExprKind::kQualified || expr.kind == ExprKind::kAssign;
@@ -48,7 +48,7 @@ ir::Place Body::addressable_place(ExprId id) {
   }
   if (!part && !value && !note.constant) return place(id);
   sema_.error(DiagnosticCode::kBadReference, expr.span,
-              part ? "a part of a variable has no address" : "a value has no address",
+              part ? "a bit of a variable has no address" : "a value has no address",
               "store it in a variable and refer to that");
   return temporary_place(note.type);
 }
@@ -60,6 +60,10 @@ ir::ValueId Body::handle_of(ExprId id) {
   if (!note.type.valid()) return zero({});
   if (note.reference.valid()) return raw_reference(id);
   if (expr.kind == ExprKind::kDeref) return natural(expr.operand).value;
+  if (is_character(id)) {
+    const ir::ValueId string = handle_of(expr.operand);
+    return moved(string, character_position(expr), note.type);
+  }
   return build_.handle(addressable_place(id));
 }
 

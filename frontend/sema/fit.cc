@@ -80,10 +80,32 @@ std::optional<uint64_t> Sema::fit(const Constant& value, ir::TypeId target, base
   Limits limits = limits_of(scalar);
   if (types[target].kind == ir::Kind::kSubrange) limits = {types[target].low, types[target].high};
   if (integer >= limits.low && integer <= limits.high) return static_cast<uint64_t>(integer);
+  if (auto bits = same_bits(value, integer, target, span)) return bits;
   error(DiagnosticCode::kLiteralOutOfRange, span,
         wide_text(integer) + " does not fit into `" + type_text(target) + "`",
         "it holds " + wide_text(limits.low) + ".." + wide_text(limits.high));
   return std::nullopt;
+}
+
+std::optional<uint64_t> Sema::same_bits(const Constant& value, Wide integer, ir::TypeId target,
+                                        base::SourceSpan span) {
+  Traits to = traits_of(program.types, target);
+  if (options.dialect == Dialect::kIec || value.form != Constant::Form::kInteger ||
+      program.types[target].kind == ir::Kind::kSubrange) {
+    return std::nullopt;
+  }
+  ir::Scalar scalar = program.types.scalar(target);
+  Wide span_of_bits = static_cast<Wide>(1) << (ir::scalar_size(scalar) * 8);
+  bool pattern = value.pattern || (value.type.valid() && traits_of(program.types, value.type).bits);
+  bool into_signed =
+      to.integer && ir::is_signed(scalar) && pattern && integer > 0 && integer < span_of_bits;
+  bool into_bits = to.bits && integer < 0 && integer >= -span_of_bits / 2;
+  if (!into_signed && !into_bits) return std::nullopt;
+  Wide wrapped = wrap_to(scalar, integer);
+  warning(DiagnosticCode::kSignChanged, span,
+          wide_text(integer) + " becomes " + wide_text(wrapped) + " in `" + type_text(target) + "`",
+          into_bits ? "write the bits, for example with 16#" : "write the number");
+  return static_cast<uint64_t>(wrapped);
 }
 
 std::optional<std::string> Sema::fit_text(const Constant& value, ir::TypeId target,

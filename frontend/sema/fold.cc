@@ -121,6 +121,7 @@ std::optional<Constant> Folder::literal(const Expr& expr) {
       break;
     default:
       value.integer = literal.integer;
+      value.pattern = literal.based && !literal.negative;
       if (literal.kind == LiteralKind::kInteger)
         value.flex = Flex::kInteger;
       else
@@ -200,6 +201,7 @@ std::optional<Constant> Folder::unary(ExprId id, const Expr& expr) {
   const Note& note = sema_.infer(id);
   if (note.flex == Flex::kNone) result.type = note.type;
   if (expr.unary == UnaryOp::kPlus) return result;
+  result.pattern = false;
   if (expr.unary == UnaryOp::kNegate) {
     if (result.form == Constant::Form::kReal) {
       result.real = -result.real;
@@ -248,6 +250,8 @@ std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
         out = real_binary(expr, real_of(*a), real_of(*b), result);
       } else {
         out = integer_binary(expr, a->integer, b->integer, result);
+        bool logical = operator_class(expr.binary) == OperatorClass::kLogical;
+        if (out) out->pattern = logical && a->pattern && b->pattern;
       }
     }
   }

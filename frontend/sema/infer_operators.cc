@@ -186,10 +186,15 @@ void Sema::check_real_equality(const Expr& expr) {
 }
 
 Note Sema::infer_bitwise(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span) {
+  bool lazy = op == BinaryOp::kAndThen || op == BinaryOp::kOrElse;
+  bool address = program.types.is_reference(left.type) || program.types.is_reference(right.type);
+  // Whether a pointer is aligned: the bits of the number that its address is.
+  if (address && !lazy && options.dialect != Dialect::kIec) {
+    return infer_pointer_arithmetic(op, left, right, span);
+  }
   Note note = unify(left, right, span);
   if (!note.type.valid()) return {};
   Traits traits = traits_of(program.types, note.type);
-  bool lazy = op == BinaryOp::kAndThen || op == BinaryOp::kOrElse;
   bool integers = traits.integer && (options.dialect != Dialect::kIec || note.flex != Flex::kNone);
   if (traits.boolean || (!lazy && (traits.bits || integers))) return note;
   error(DiagnosticCode::kBadOperand, span,

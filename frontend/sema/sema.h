@@ -105,6 +105,10 @@ class Sema {
   std::optional<int64_t> fold_integer(ExprId expr);
   // Bits of a constant as a value of scalar type `target`; reports what does not fit.
   std::optional<uint64_t> fit(const Constant& value, ir::TypeId target, base::SourceSpan span);
+  // Bits for a signed integer, a negative number for a bit string: taken as they are, with a
+  // warning, unless the dialect is the standard's own.
+  std::optional<uint64_t> same_bits(const Constant& value, Wide integer, ir::TypeId target,
+                                    base::SourceSpan span);
   std::optional<std::string> fit_text(const Constant& value, ir::TypeId target,
                                       base::SourceSpan span);
   // Initial value of any type; invalid when reported. What a list leaves out keeps its
