@@ -23,7 +23,8 @@ std::set<std::string> codes_for(const DialectRule& rule, Dialect dialect) {
   for (const base::Diagnostic& message : diagnostics.all()) {
     const base::DiagnosticRow& row = base::diagnostic_row(message.code);
     bool matters = row.severity == base::Severity::kError ||
-                   message.code == base::DiagnosticCode::kImplicitNarrowing;
+                   message.code == base::DiagnosticCode::kImplicitNarrowing ||
+                   message.code == base::DiagnosticCode::kSignChanged;
     if (matters) out.insert(std::string(row.code));
   }
   return out;
