@@ -1,15 +1,17 @@
 #!/bin/sh
 # The corpus, copied until it has the size of the largest libraries people use (30,000 lines, 550
-# POUs): it compiles as it is, in a bounded time, and every copy still gives the known answers. Prints
+# POUs, 14 types): it compiles as it is, in a bounded time, and every copy still gives the known answers. Prints
 # what it measured (docs/TESTING.md has the figures).
 . "$(dirname "$0")/lib.sh"
-copies=${3:-6}
+copies=${3:-4}
 "$bin/scale" "$copies" big "$source_dir"/tests/corpus/*/*.st "$source_dir"/tests/golden/corpus/*.st
 
 lines=$(cat big/*.st | wc -l)
 pous=$(cat big/*.st | LC_ALL=C grep -ciE '^(FUNCTION|FUNCTION_BLOCK|PROGRAM)[[:space:]]')
+types=$(cat big/*.st | LC_ALL=C grep -ciE '^TYPE[[:space:]]')
 [ "$lines" -ge 30000 ] || fail "only $lines lines"
 [ "$pous" -ge 550 ] || fail "only $pous POUs"
+[ "$types" -ge 14 ] || fail "only $types types"
 
 # cpu_of COMMAND...: processor time of it, in milliseconds
 cpu_of() {
@@ -23,7 +25,7 @@ short_messages() { grep -E 'error' err >out || true; head -n 5 out >err; : >out;
 [ ! -e failed ] || { short_messages; fail "stc check: $(cat failed)"; }
 build_ms=$(cpu_of "$bin/stc" build big -o big.img)
 [ ! -e failed ] || { short_messages; fail "stc build: $(cat failed)"; }
-echo "$lines lines, $pous POUs: check $check_ms ms of processor time ($wall_ms ms wall), build $build_ms ms," \
+echo "$lines lines, $pous POUs, $types types: check $check_ms ms of processor time ($wall_ms ms wall), build $build_ms ms," \
   "$((lines * 1000 / (build_ms + 1))) lines per second"
 # Generous: slow machines and builds with sanitizers must hold it too.
 [ "$build_ms" -lt "${STC_SCALE_BUDGET_MS:-5000}" ] || fail "build took $build_ms ms of processor time"
