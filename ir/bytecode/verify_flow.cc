@@ -56,6 +56,8 @@ bool CodeVerifier::scan_instructions() {
     }
     const OpcodeRow& row = opcode_row(u_.opcode());
     if (row.calls || u_.opcode() == Opcode::NATIVE) calls.push_back(unit_);
+    // Where a handler begins, no results are left, as behind a call.
+    if (u_.opcode() == Opcode::TRY) calls.push_back(unit_ + 1 + u_.bc());
     if (row.extended && ++unit_ == code_.size()) {
       return fail(Refusal::kBadOpcode, "its second unit is missing");
     }
@@ -74,6 +76,7 @@ bool CodeVerifier::scan_instructions() {
     }
     arrivals_[i].read_only.resize(merge.slots.size());
   }
+  std::sort(calls.begin(), calls.end());
   return find_loops(calls);
 }
 

@@ -213,10 +213,7 @@ bool CodeVerifier::check_call_reference() {
   const bool instance = context_.valid(region) && region.dim == 0 &&
                         image_.types[region.type].kind == Kind::kFunctionBlock;
   if (!instance) return fail(Refusal::kBadReference, "there is no such function block");
-  if (context_.pou_of_type[region.type.index] == kNone) {
-    return fail(Refusal::kBadCall, "`" + image_.types.text(region.type) + "` has no code");
-  }
-  // The instance may be of any type that extends the named one; each runs its own body.
+  // The instance may be of any type that extends the named one; each has and runs its own body.
   facts_.callees.push_back(DynamicCalls(image_).any_body(region.type));
   results_ = {};
   return true;

@@ -42,7 +42,17 @@ std::string tasks_text(const ir::Image& image) {
     }
     std::string period =
         task.period_ns == 0 ? "event" : number(static_cast<uint64_t>(task.period_ns / 1000));
+    if (task.once) period = "once";
     table.row({task.name, period, number(task.priority), programs});
+  }
+  return table.text();
+}
+
+std::string overrides_text(const ir::Image& image) {
+  tools::Table table({"virtual call", "of", "runs"});
+  for (const ir::LinkedOverride& row : image.overrides) {
+    table.row(
+        {image.pous[row.prototype].name, image.types.text(row.type), image.pous[row.target].name});
   }
   return table.text();
 }
@@ -64,7 +74,8 @@ std::string layout_text(const ir::Image& image) {
 
 std::string image_text(const ir::Image& image, const base::Digest& digest) {
   return image.name + " " + base::to_hex(digest) + "\n" + memory_text(image) + "\n" +
-         tasks_text(image) + "\n" + instances_text(image) + "\n" + pous_text(image);
+         tasks_text(image) + "\n" + instances_text(image) + "\n" + pous_text(image) +
+         (image.overrides.empty() ? "" : "\n" + overrides_text(image));
 }
 
 std::string symbols_text(const ir::Image& image) {

@@ -60,10 +60,6 @@ struct Context {
   uint32_t exposure_count = 0;
   uint32_t exposures_made = 0;
   uint32_t task = 0;
-  TryRecord* tries_begin = nullptr;
-  TryRecord* try_top = nullptr;  // next free record
-  TryRecord* tries_end = nullptr;
-  ir::TrapKind caught{};  // last
   const Generation* generation = nullptr;
   const BoundEntry* bounds = nullptr;
   const RangeEntry* ranges = nullptr;
@@ -75,6 +71,11 @@ struct Context {
   uint8_t* frame = nullptr;
   uint8_t* self = nullptr;
   Trap trap;
+  // Open tries; what ordinary calls use comes first.
+  TryRecord* tries_begin = nullptr;
+  TryRecord* try_top = nullptr;  // next free record
+  TryRecord* tries_end = nullptr;
+  ir::TrapKind caught{};  // last
 };
 
 #define STC_HANDLER_ARGS                                                \

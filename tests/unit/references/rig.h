@@ -63,7 +63,7 @@ class Rig {
   }
 
   std::string evaluate() {
-    const std::vector<ir::EvalTrap> traps = evaluator_.scan(0, 1'000'000);
+    const std::vector<ir::EvalTrap> traps = evaluator_.scan(0, 50'000'000);
     if (traps.empty()) return "";
     return std::string(ir::trap_name(traps[0].kind)) + " " + traps[0].pou + ":" +
            std::to_string(traps[0].line);

@@ -234,6 +234,33 @@ TEST(Try, LoopsWithTries) {
          "", {{"n", "5"}, {"d", "4"}});
 }
 
+// What a call before the loop returned is gone where the handler begins.
+TEST(Try, AHandlerInALoopLeavesNoResults) {
+  expect(
+      objects(kTryGlobals, R"(b0:
+    call One
+    jump b1
+  b1:
+    try b2, b3
+  b2 handler b3:
+    v0 = load i32 global.zero
+    v1 = div i32 v0, v0
+    end_try b3
+  b3:
+    v2 = load i32 global.n
+    v3 = const i32 1
+    v4 = add i32 v2, v3
+    store i32 global.n, v4
+    v5 = const i32 3
+    v6 = lt i32 v4, v5
+    branch v6, b1, b4
+  b4:
+    return
+)",
+              "pou function One\n  local return r : DINT\n  b0:\n    init local.r\n    return\n"),
+      "", {{"n", "3"}});
+}
+
 // The handler lies before its try, because a loop leads back to it.
 TEST(Try, RetryLoops) {
   expect(objects(kTryGlobals, R"(b0:
