@@ -7,8 +7,17 @@ namespace frontend {
 void Body::assign(const Stmt& stmt) {
   if (stmt.assign == AssignOp::kReference) return bind_reference(stmt);
   if (stmt.assign == AssignOp::kSet || stmt.assign == AssignOp::kReset) {
+    if (!stmt.instruction) {
+      allow_set_or_reset(stmt.span);
+    } else if (ir::TypeId type = sema_.infer(stmt.target).type;
+               type.valid() && types().is_instance(type)) {
+      Stmt call = stmt;
+      call.value = stmt.from;
+      return call_statement(call);
+    }
     set_or_reset(stmt.assign, stmt.target, stmt.value, stmt.span);
   } else if (stmt.assign == AssignOp::kAssign) {
+    if (tree_[stmt.target].kind == ExprKind::kResult) return keep_result(stmt);
     assign_value(stmt.target, stmt.value, stmt.span);
   }
 }
@@ -31,19 +40,22 @@ std::optional<Target> Body::assign_value(ExprId left, ExprId right, base::Source
   return to;
 }
 
-// The value of `x S= y` is y: in `a S= b R= y` both follow the same y.
-ir::ValueId Body::set_or_reset(AssignOp op, ExprId left, ExprId right, base::SourceSpan span) {
+void Body::allow_set_or_reset(base::SourceSpan span) {
   sema_.allow_extension("an assignment with S= or R=", span,
                         "write IF condition THEN x := TRUE; END_IF");
+}
+
+// The value of `x S= y` is y: in `a S= b R= y` both follow the same y.
+ir::ValueId Body::set_or_reset(AssignOp op, ExprId left, ExprId right, base::SourceSpan span) {
   ir::TypeId boolean = elementary(ir::Kind::kBool);
   auto to = target(left);
   ir::ValueId condition = value(right, boolean);
   if (!to) return condition;
   if (!traits_of(types(), to->type).boolean) {
     sema_.error(DiagnosticCode::kTypeMismatch, tree_[left].span,
-                std::string(op == AssignOp::kSet ? "S=" : "R=") + " of a `" +
-                    sema_.type_text(to->type) + "`",
-                "only BOOL variables can be set and reset");
+                "a `" + sema_.type_text(to->type) + "` cannot be " +
+                    (op == AssignOp::kSet ? "set" : "reset"),
+                "only BOOL variables can be");
     return condition;
   }
   set_line(span);
@@ -60,6 +72,7 @@ ir::ValueId Body::set_or_reset(AssignOp op, ExprId left, ExprId right, base::Sou
 // The value of an assignment is what its variable holds then.
 ir::ValueId Body::emit_assignment(const Expr& expr) {
   if (expr.assign == AssignOp::kSet || expr.assign == AssignOp::kReset) {
+    allow_set_or_reset(expr.span);
     return set_or_reset(expr.assign, expr.operand, expr.right, expr.span);
   }
   auto to = assign_value(expr.operand, expr.right, expr.span);

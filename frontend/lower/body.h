@@ -64,6 +64,7 @@ class Body {
   void leave_loop(const Stmt& stmt);
   void assign(const Stmt& stmt);
   std::optional<Target> assign_value(ExprId left, ExprId right, base::SourceSpan span);
+  void allow_set_or_reset(base::SourceSpan span);
   ir::ValueId set_or_reset(AssignOp op, ExprId left, ExprId right, base::SourceSpan span);
   ir::ValueId emit_assignment(const Expr& expr);
   ir::Place assignment_place(ExprId id, const Expr& expr);
@@ -151,6 +152,12 @@ class Body {
   ir::ValueId load(const Target& target);
   ir::ValueId load_base(const Target& target);
   void store_base(const Target& target, ir::ValueId value);
+
+  // --- the current result of instruction lists (result.cc)
+  void infer_results(Range32 list);
+  void keep_result(const Stmt& stmt);
+  ir::ValueId emit_result(ExprId id);
+  ir::Place result_place(const Expr& expr, ir::TypeId type);
 
   // --- characters of strings (character.cc)
   bool is_character(ExprId expr);
@@ -334,6 +341,8 @@ class Body {
   ir::BlockId exit_;            // what RETURN goes to; invalid: out of the POU
   std::vector<Labels> labels_;  // of the statement lists around the current statement
   std::vector<VarId> for_variables_;
+  std::unordered_map<uint32_t, ir::ValueId> result_values_;  // by number of the kResult
+  std::unordered_map<uint32_t, ir::Place> result_places_;
   bool evaluating_ = false;  // inside evaluate(): names stand for their initial values
   static constexpr uint32_t kNoLocal = 0xffffffffu;
   std::array<uint32_t, 3> message_buffers_{kNoLocal, kNoLocal, kNoLocal};

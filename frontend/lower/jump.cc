@@ -31,7 +31,9 @@ void Body::label(const Stmt& stmt) {
 }
 
 void Body::jump(const Stmt& stmt) {
-  sema_.allow_extension("JMP in Structured Text", stmt.span, "use IF, loops, EXIT and RETURN");
+  if (!stmt.instruction) {
+    sema_.allow_extension("JMP in Structured Text", stmt.span, "use IF, loops, EXIT and RETURN");
+  }
   for (size_t i = labels_.size(); i-- > 0;) {
     auto found = labels_[i].find(stmt.name.text);
     if (found != labels_[i].end()) return build_.jump(found->second);

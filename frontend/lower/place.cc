@@ -83,6 +83,8 @@ ir::Place Body::raw_place(ExprId id) {
       return call_place(id, expr);
     case ExprKind::kAssign:
       return assignment_place(id, expr);
+    case ExprKind::kResult:
+      return result_place(expr, note.type);
     default:
       return temporary_place(note.type);
   }
@@ -176,6 +178,7 @@ bool Body::check_writable(ExprId id) {
       return false;
     }
     case ExprKind::kDeref:
+    case ExprKind::kResult:
       return true;
     case ExprKind::kIndex:
       if (types().is_reference(sema_.infer(expr.operand).type)) return true;

@@ -4,6 +4,7 @@
 namespace frontend {
 
 void Body::statements(Range32 list) {
+  if (labels_.empty()) infer_results(list);
   labels_.push_back(labels_of(list));
   bool warned = false;
   bool was_reachable = build_.reachable();

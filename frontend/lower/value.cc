@@ -76,6 +76,8 @@ ir::ValueId Body::emit(ExprId id, ir::TypeId own) {
       return emit_call(expr, own);
     case ExprKind::kAssign:
       return emit_assignment(expr);
+    case ExprKind::kResult:
+      return emit_result(id);
     default:
       return zero(own);
   }

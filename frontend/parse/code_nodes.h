@@ -59,6 +59,7 @@ enum class ExprKind : uint8_t {
   kSuper,       // SUPER; likewise
   kType,        // spec: a type as an argument, __NEW(ARRAY[0..3] OF INT). A plain name is kName
   kAssign,      // operand := right, with `assign`; right-associative: a := b := 3
+  kResult,      // what an instruction list keeps of its current result: number in Tree::results
 };
 
 enum class UnaryOp : uint8_t { kNegate, kPlus, kNot };
@@ -137,7 +138,7 @@ struct Expr {
   uint32_t literal = 0;  // Tree::literals
   Range32 list;          // Tree::expr_lists
   Range32 args;          // Tree::args
-  uint32_t number = 0;   // kBit
+  uint32_t number = 0;   // kBit, kResult
   uint8_t bit_size = 1;  // kBit: 1, 8, 16, 32
   ir::DirectAddress address;
   Range32 levels;  // kDirect with more levels than byte.bit: Tree::levels; address then has area
@@ -146,6 +147,7 @@ struct Expr {
   AssignOp assign = AssignOp::kAssign;  // kAssign
   bool global = false;                  // kName
   bool parenthesised = false;
+  bool instruction = false;  // kCall, kBinary, kName of a function: of an instruction list
 };
 
 // --- statements --------------------------------------------------------------
@@ -200,6 +202,8 @@ struct Stmt {
   bool has_finally = false;
   Range32 catch_body;
   Range32 finally_body;
+  // Of an instruction list. S and R of an instance are calls: kAssign then has the call in `from`.
+  bool instruction = false;
 };
 
 }  // namespace frontend

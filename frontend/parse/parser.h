@@ -181,6 +181,11 @@ class Parser {
   Range32 parse_body(TokenKind end);
   void close_statement(const Token& opening, TokenKind end);
 
+  // --- il.cc
+  class InstructionList;
+  bool at_instruction_list() const;
+  bool at_instruction_argument() const;
+
   // --- case.cc
   void parse_case();
   void parse_case_arm();
@@ -297,6 +302,7 @@ class Parser {
   bool panic_ = false;
   bool type_level_ = false;   // the specification begins that a TYPE declares
   bool in_property_ = false;  // GET and SET begin accessors
+  bool in_instructions_ = false;
   uint32_t depth_ = 0;
   size_t next_pragma_ = 0;
   ScopeId scope_;

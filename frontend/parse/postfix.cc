@@ -1,5 +1,5 @@
 // Variables and what follows them: members, bits, indices, calls.
-#include "frontend/parse/parser.h"
+#include "frontend/parse/instruction_list.h"
 
 namespace frontend {
 
@@ -149,7 +149,11 @@ Arg Parser::parse_argument() {
     arg.name = name_of(take());
     arg.output = take().kind == TokenKind::kArrow;
     bool empty = kind() == TokenKind::kComma || kind() == TokenKind::kRightParen;
-    if (!empty) arg.value = parse_listed_value();
+    if (!empty && at_instruction_argument()) {
+      arg.value = InstructionList(*this).argument();
+    } else if (!empty) {
+      arg.value = parse_listed_value();
+    }
   } else {
     arg.value = parse_expression();
   }

@@ -1,5 +1,5 @@
 // FUNCTION, FUNCTION_BLOCK, PROGRAM, CLASS, INTERFACE, TEST: head, variables, members, body.
-#include "frontend/parse/parser.h"
+#include "frontend/parse/instruction_list.h"
 #include "frontend/parse/token_sets.h"
 
 namespace frontend {
@@ -214,7 +214,9 @@ void Parser::parse_pou_body(PouDecl& pou) {
   base::SourcePos begin = here();
   for (;;) {
     if (parse_inner(pou) || parse_chart_element(pou)) continue;
-    if (!list_ends(false)) {
+    if (statement_stack_.size() == mark && at_instruction_list()) {
+      InstructionList(*this).body();
+    } else if (!list_ends(false)) {
       parse_statement();
     } else if (!parse_inner(pou) && !parse_chart_element(pou)) {  // behind a stray END_x
       break;

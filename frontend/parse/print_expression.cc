@@ -124,6 +124,8 @@ std::string Printer::expression(ExprId id) const {
       return expression(expr.operand) + '(' + list(expr.list) + ')';
     case ExprKind::kStructInit:
       return arguments(expr.args);
+    case ExprKind::kResult:
+      return "result#" + std::to_string(expr.number);
     case ExprKind::kThis:
       return "THIS";
     case ExprKind::kSuper:

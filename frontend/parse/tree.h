@@ -2,9 +2,10 @@
 // One Tree owns all nodes of all files in flat stores; nodes refer to each other
 // by id and to text by views into the SourceMap, which must outlive the tree.
 // Immutable once parsing ends. Later languages (ladder, FBD, IL) lower to
-// the same nodes; sequential function charts are a model of their own (chart.h). Damaged input
-// still gives a tree: kError nodes stand where nothing could be understood, and a diagnostic was
-// reported for each.
+// the same nodes; sequential function charts are a model of their own (chart.h). IL has a single
+// node of its own: kResult, a variable without a name whose type is that of the values assigned
+// to it. Damaged input still gives a tree: kError nodes stand where nothing could be understood,
+// and a diagnostic was reported for each.
 //
 // Attributes (`{attribute 'name' := 'value'}`) stay with the declaration that they
 // stand before. Namespaces do not nest in the tree: each declaration names its scope.
@@ -214,6 +215,13 @@ struct ConfigDecl {
   base::SourceSpan span;
 };
 
+// What an instruction list keeps of its current result. `values` are those that come from above;
+// at a label, jumps from below assign others.
+struct KeptResult {
+  Range32 values;  // Tree::expr_lists
+  bool at_label = false;
+};
+
 struct Tree {
   std::vector<Expr> exprs;
   std::vector<Stmt> stmts;
@@ -228,6 +236,7 @@ struct Tree {
   std::vector<Attribute> attributes;
   std::vector<Name> names;
   std::vector<uint32_t> levels;
+  std::vector<KeptResult> results;  // of kResult
   std::vector<Scope> scopes;
   std::vector<Chart> charts;
   std::deque<std::string> made_names;  // of implied variables, which no source spells

@@ -92,6 +92,8 @@ Note Sema::infer_kind(ExprId, const Expr& expr) {
       return infer_call(expr);
     case ExprKind::kAssign:
       return infer_assign(expr);
+    case ExprKind::kResult:
+      return infer_result(expr);
     case ExprKind::kDirect: {
       Note note;
       note.type = type_of_direct(expr.address);

@@ -38,7 +38,9 @@ Callee Sema::callee(const Expr& call) {
     error(DiagnosticCode::kNotCallable, head.span,
           chart ? quoted(head.name) + " belongs to the chart, whose steps alone run its actions"
                 : "`" + type_text(note.type) + "` cannot be called",
-          chart ? "put what several places call into a function or function block" : "");
+          chart              ? "put what several places call into a function or function block"
+          : call.instruction ? "write LD in front of it to load it"
+                             : "");
     return {};
   }
   Callee callee;
@@ -98,7 +100,7 @@ Callee Sema::named_callee(const Expr& head) {
     return callee;
   }
   error(DiagnosticCode::kUnknownName, head.span, quoted(head.name) + " is not declared",
-        name_suggestion(name, true));
+        name_suggestion(name, true, head.instruction));
   return callee;
 }
 

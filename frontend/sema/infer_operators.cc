@@ -144,7 +144,9 @@ Note Sema::infer_binary(const Expr& expr) {
         warning(DiagnosticCode::kRightOperandTraps, tree[expr.right].span,
                 "the right operand of " + std::string(operator_text(expr.binary)) +
                     " is evaluated in any case and can trap",
-                expr.binary == BinaryOp::kAnd ? "use AND_THEN" : "use OR_ELSE");
+                expr.instruction                ? "jump over it with JMPCN"
+                : expr.binary == BinaryOp::kAnd ? "use AND_THEN"
+                                                : "use OR_ELSE");
       }
       return infer_bitwise(expr.binary, left, right, expr.span);
     }

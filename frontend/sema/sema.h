@@ -75,7 +75,7 @@ class Sema {
   uint32_t number_of(const PouInfo& pou) const { return pou.id.index; }
   // The global pseudo variable of a direct address.
   uint32_t direct_member(const Expr& expr);
-  std::string name_suggestion(std::string_view name, bool callable) const;
+  std::string name_suggestion(std::string_view name, bool callable, bool instruction = false) const;
 
   // --- expressions (infer*.cc)
   const Note& infer(ExprId expr);
@@ -97,6 +97,9 @@ class Sema {
   ir::TypeId type_of_argument(ExprId argument);
   bool reference_fits(ir::TypeId from, ir::TypeId to) const;
   ir::TypeId type_of_direct(const ir::DirectAddress& address) const;
+
+  // Has the value that an instruction list keeps the type of its result? (infer_result.cc)
+  bool check_result(const Stmt& assignment);
 
   // --- constants (fold*.cc, initial_values.cc)
   // nullopt when reported. `context` steers literals; may be invalid.
@@ -276,6 +279,7 @@ class Sema {
   std::optional<Note> infer_named_bit(const Expr& expr, const Note& operand);
   Note infer_index(const Expr& expr);
   Note infer_assign(const Expr& expr);
+  Note infer_result(const Expr& expr);
   Note infer_unary(const Expr& expr);
   Note infer_binary(const Expr& expr);
   ir::TypeId infer_name_candidates(std::string_view name);

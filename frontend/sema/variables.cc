@@ -1,4 +1,5 @@
 // Variables and members: what a name means, its type and its initial value.
+#include "frontend/parse/il_operators.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -159,13 +160,16 @@ const PouInfo* Sema::find_pou(std::string_view name) const {
   return found == pou_names_.end() ? nullptr : &pous[found->second];
 }
 
-std::string Sema::name_suggestion(std::string_view name, bool callable) const {
+std::string Sema::name_suggestion(std::string_view name, bool callable, bool instruction) const {
   NearestName nearest(name);
   if (current_pou_ != kNoPou) nearest.offer_all(pous[current_pou_].names);
   nearest.offer_all(globals_);
   if (callable) {
     nearest.offer_all(pou_names_);
     nearest.offer_all(standard_);
+    if (instruction) {
+      for (const IlOperator& op : il_operators()) nearest.offer(op.word);
+    }
   } else {
     nearest.offer_all(literals_);
   }

@@ -1,0 +1,50 @@
+// The current result of an instruction list. Within straight code it is a value, at a label a
+// local that every way there assigns.
+#include "frontend/lower/body.h"
+
+namespace frontend {
+
+// In the order of the source each result depends on what is known already only.
+void Body::infer_results(Range32 list) {
+  for (uint32_t i = 0; i < list.count; ++i) {
+    const Stmt& stmt = tree_[tree_.stmt_lists[list.first + i]];
+    if (!stmt.instruction) continue;
+    bool keeps = stmt.kind == StmtKind::kAssign && tree_[stmt.target].kind == ExprKind::kResult;
+    if (keeps) sema_.infer(stmt.value);
+    if (stmt.kind == StmtKind::kIf) infer_results(tree_.branches[stmt.branches.first].body);
+  }
+}
+
+void Body::keep_result(const Stmt& stmt) {
+  if (!sema_.check_result(stmt)) return;
+  ir::TypeId type = sema_.infer(stmt.target).type;
+  uint32_t number = tree_[stmt.target].number;
+  bool single = !tree_.results[number].at_label && type.valid() && types().is_scalar(type);
+  if (!single) {
+    assign_value(stmt.target, stmt.value, stmt.span);
+  } else {
+    result_values_.emplace(number, value(stmt.value, type));
+  }
+}
+
+ir::ValueId Body::emit_result(ExprId id) {
+  auto found = result_values_.find(tree_[id].number);
+  if (found != result_values_.end()) return found->second;
+  ir::Place from = place(id);
+  return build_.load(from, scalar(from.type));
+}
+
+// The same local wherever the result is used.
+ir::Place Body::result_place(const Expr& expr, ir::TypeId type) {
+  auto found = result_places_.find(expr.number);
+  if (found != result_places_.end()) return found->second;
+  ir::Place local = temporary_place(type);
+  if (auto value = result_values_.find(expr.number); value != result_values_.end()) {
+    build_.store(local, scalar(type), value->second);
+  } else {
+    result_places_.emplace(expr.number, local);
+  }
+  return local;
+}
+
+}  // namespace frontend

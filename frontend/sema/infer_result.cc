@@ -1,0 +1,68 @@
+// What an instruction list keeps of its current result: a variable without a name, whose
+// type comes from the values that reach it from above.
+#include "frontend/sema/operators.h"
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+bool same_kind_of_string(const ir::TypeTable& types, ir::TypeId a, ir::TypeId b) {
+  return is_string(types, a) && types[a].kind == types[b].kind;
+}
+
+}  // namespace
+
+Note Sema::infer_result(const Expr& expr) {
+  Note note;
+  if (expr.operand.valid()) {
+    note.type = infer(expr.operand).type;
+    return note;
+  }
+  const ir::TypeTable& types = program.types;
+  Range32 values = tree.results[expr.number].values;
+  Note best;
+  for (uint32_t i = 0; i < values.count; ++i) {
+    ExprId id = tree.expr_lists[values.first + i];
+    const Note& next = infer(id);
+    if (!next.type.valid()) return {};
+    if (!best.type.valid()) {
+      best = next;
+    } else if (same_kind_of_string(types, best.type, next.type)) {
+      if (types[next.type].capacity > types[best.type].capacity) best = next;
+    } else if (best.flex != Flex::kNone && next.flex == Flex::kNone) {
+      best = next;
+    } else if (best.flex == Flex::kInteger && next.flex == Flex::kReal) {
+      best = next;
+    }
+  }
+  if (!best.type.valid()) return {};
+  if (types.is_instance(best.type)) {
+    error(DiagnosticCode::kNotAValue, expr.span,
+          "an instance of `" + type_text(best.type) + "` is no value", "load one of its variables");
+    return {};
+  }
+  note.type = without_range(types, best.type);
+  return note;
+}
+
+bool Sema::check_result(const Stmt& stmt) {
+  const ir::TypeTable& types = program.types;
+  const Note& value = infer(stmt.value);
+  ir::TypeId wanted = infer(stmt.target).type;
+  if (!value.type.valid() || !wanted.valid() || value.flex != Flex::kNone) {
+    return true;
+  }
+  ir::TypeId given = without_range(types, value.type);
+  if (given == wanted) return true;
+  if (same_kind_of_string(types, given, wanted) &&
+      types[given].capacity <= types[wanted].capacity) {
+    return true;
+  }
+  error(DiagnosticCode::kResultsDiffer, stmt.span,
+        "the current result is `" + type_text(given) + "` here and `" + type_text(wanted) +
+            "` on another way to the same label",
+        "convert one of them, or load the operand behind the label");
+  return false;
+}
+
+}  // namespace frontend
