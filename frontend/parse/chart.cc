@@ -1,6 +1,6 @@
 // Sequential function charts in textual form: INITIAL_STEP, STEP, TRANSITION. An ACTION
 // of a POU whose body is a chart is an action of the chart.
-#include "frontend/parse/parser.h"
+#include "frontend/parse/instruction_list.h"
 #include "frontend/parse/token_sets.h"
 #include "ir/types/types.h"
 
@@ -229,8 +229,13 @@ void Parser::parse_step_names(std::vector<Name>& out) {
 }
 
 void Parser::parse_transition_condition(ChartTransition& transition) {
+  if (kind() == TokenKind::kColon && at_instruction(1)) {
+    const Token colon = take();
+    transition.condition = InstructionList(*this).condition(colon);
+    return;
+  }
   if (kind() == TokenKind::kColon) {
-    not_supported(take().span(), "conditions in instruction list or as a network are",
+    not_supported(take().span(), "conditions as a network are",
                   "write `:= condition;` in Structured Text");
     panic_ = true;  // skips to the end, silently
     return;

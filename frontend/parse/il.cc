@@ -9,16 +9,14 @@ bool Parser::at_instruction_list() const {
   return tokens.is_instruction_list(static_cast<size_t>(current_ - first_));
 }
 
-// `in := (LD a AND b)`: simple instructions compute the argument.
-bool Parser::at_instruction_argument() const {
-  if (!in_instructions_ || kind() != TokenKind::kLeftParen) return false;
+bool Parser::at_instruction(size_t ahead) const {
   IlTokens tokens{first_, static_cast<size_t>(last_ - first_) + 1, text_, base_};
-  return tokens.is_instruction(static_cast<size_t>(current_ - first_) + 1);
+  return tokens.is_instruction(static_cast<size_t>(current_ - first_) + ahead);
 }
 
-bool Parser::InstructionList::at_operator_here() const {
-  IlTokens tokens{p_.first_, static_cast<size_t>(p_.last_ - p_.first_) + 1, p_.text_, p_.base_};
-  return tokens.is_instruction(static_cast<size_t>(p_.current_ - p_.first_));
+// `in := (LD a AND b)`: simple instructions compute the argument.
+bool Parser::at_instruction_argument() const {
+  return in_instructions_ && kind() == TokenKind::kLeftParen && at_instruction(1);
 }
 
 void Parser::InstructionList::body() {
@@ -32,22 +30,36 @@ void Parser::InstructionList::body() {
 }
 
 ExprId Parser::InstructionList::argument() {
+  const Token open = p_.take();
+  ExprId value = value_alone(open);
+  p_.close_bracket(TokenKind::kRightParen, open);
+  return value;
+}
+
+ExprId Parser::InstructionList::condition(const Token& opening) {
+  bool outer = p_.in_instructions_;
+  p_.in_instructions_ = true;
+  ExprId value = value_alone(opening);
+  p_.in_instructions_ = outer;
+  return value;
+}
+
+// What the instructions up to a parenthesis that they did not open, or an END_x, leave.
+ExprId Parser::InstructionList::value_alone(const Token& opening) {
   value_only_ = true;
   Nesting nesting(p_);
   if (!nesting.entered()) return p_.error_expression();
-  const Token open = p_.take();
   while (p_.kind() != TokenKind::kEnd && !is_statement_boundary(p_.kind())) {
     if (p_.kind() == TokenKind::kRightParen && parentheses_.empty()) break;
     instruction();
   }
+  if (!parentheses_.empty()) report_unclosed(p_.current_->span());
   close_parentheses();
   expand();
   Instruction end;
-  end.word = p_.name_of(open);
-  end.span = open.span();
-  ExprId value = use(end, true);
-  p_.close_bracket(TokenKind::kRightParen, open);
-  return value;
+  end.word = p_.name_of(opening);
+  end.span = opening.span();
+  return use(end, true);
 }
 
 // One row, or a part of it: a label, an operator with its parenthesis, a closing parenthesis.
@@ -132,7 +144,7 @@ void Parser::InstructionList::read_parenthesis(Instruction& in) {
   const Token open = p_.take();
   parentheses_.push_back(open);
   in.kind = Kind::kOpen;
-  bool loads = !row_ended() && !at_operator_here() && p_.kind() != TokenKind::kRightParen;
+  bool loads = !row_ended() && !p_.at_instruction(0) && p_.kind() != TokenKind::kRightParen;
   if (!loads) return;
   in.span = {in.word.span.begin, open.span().end};
   Instruction load;
@@ -227,8 +239,9 @@ bool Parser::InstructionList::forbidden(const Instruction& in) {
     return false;
   }
   if (!value_only_ || value) return false;
-  p_.report(Code::kBadInstruction, in.word.span, "only values are computed inside of an argument",
-            "put the instruction in front of the call");
+  p_.report(Code::kBadInstruction, in.word.span,
+            "only values are computed in an argument or condition",
+            "put the instruction in front of it");
   return true;
 }
 
@@ -273,7 +286,7 @@ void Parser::InstructionList::finish_row(const Instruction& read) {
   bool goes_on = in.kind == Kind::kOpen || p_.kind() == TokenKind::kRightParen ||
                  p_.kind() == TokenKind::kSemicolon || row_ended();
   bool inside = value_only_ || !parentheses_.empty();  // there several may share a row
-  if (!goes_on && !p_.panic_ && !(inside && at_operator_here())) {
+  if (!goes_on && !p_.panic_ && !(inside && p_.at_instruction(0))) {
     bool text = p_.at_operator();
     p_.report_here(Code::kBadInstruction,
                    "an instruction ends with its row, found " + p_.describe(*p_.current_),

@@ -20,6 +20,8 @@ class Parser::InstructionList {
   explicit InstructionList(Parser& parser) : p_(parser), tree_(parser.tree_) {}
   void body();        // adds statements; ends where a list of statements would
   ExprId argument();  // `( LD a AND b )` as the value of an argument
+  // `LD a AND b` as the condition of a transition, up to its end.
+  ExprId condition(const Token& opening);
 
  private:
   enum class Kind : uint8_t {
@@ -42,6 +44,7 @@ class Parser::InstructionList {
   };
 
   // --- il.cc
+  ExprId value_alone(const Token& opening);
   void instruction();
   void read_operator(Instruction& in);
   void read_parenthesis(Instruction& in);
@@ -50,7 +53,6 @@ class Parser::InstructionList {
   void read_label();
   ExprId operand();
   Range32 operands();
-  bool at_operator_here() const;
   bool row_ended() const;
   bool forbidden(const Instruction& in);
   void structured_text();
@@ -130,7 +132,7 @@ class Parser::InstructionList {
   std::vector<Need> needs_;  // in front of each instruction, and behind the last
   std::unordered_map<std::string, Label> labels_;  // by folded name
   std::vector<Token> parentheses_;                 // open while reading
-  bool value_only_ = false;                        // inside of an argument
+  bool value_only_ = false;                        // inside of an argument or condition
   Result result_;
   bool reachable_ = true;
   std::vector<Result> outer_;  // what stands in front of each open parenthesis

@@ -185,6 +185,7 @@ class Parser {
   class InstructionList;
   bool at_instruction_list() const;
   bool at_instruction_argument() const;
+  bool at_instruction(size_t ahead) const;
 
   // --- case.cc
   void parse_case();
