@@ -40,10 +40,11 @@ void Body::run() {
   if (!info_.connections.empty()) exit_ = build_.new_block();
   if (decl.chart != kNoChart) {
     chart_body(tree_.charts[decl.chart]);
+  } else if (info_.teardown != nullptr) {
+    try_finally([&] { statements(decl.body); }, info_.teardown->body, decl.span);
   } else {
     statements(decl.body);
   }
-  if (info_.teardown != nullptr) statements(info_.teardown->body);
   set_line({decl.span.end, decl.span.end});
   if (exit_.valid()) {
     if (build_.reachable()) build_.jump(exit_);
@@ -54,13 +55,7 @@ void Body::run() {
   sema_.program.pous[info_.id.index] = std::move(out_);
 }
 
-void Body::leave() {
-  if (exit_.valid()) {
-    build_.jump(exit_);
-  } else {
-    build_.ret();
-  }
-}
+void Body::leave() { go({}, 0); }
 
 void Body::set_line(base::SourceSpan span) {
   if (!span.begin.valid()) return;

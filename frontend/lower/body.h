@@ -73,6 +73,26 @@ class Body {
   ir::ValueId condition(ExprId expr);
   void loop_body(Range32 body, ir::BlockId again, ir::BlockId exit);
 
+  // --- __TRY (try.cc)
+  struct TryScope {    // of a body that the current statement stands in
+    struct Exit {      // a way out that goes on behind the __FINALLY
+      ir::BlockId to;  // invalid: out of the POU
+      size_t tries;    // scopes that are around it
+    };
+    ir::BlockId outer;  // the handler around it
+    ir::BlockId finally;
+    ir::Place where;  // trap kind, or kTrapCount + number of an exit
+    std::vector<Exit> exits;
+  };
+  void try_statement(const Stmt& stmt);
+  void try_finally(const std::function<void()>& body, Range32 finally_body,
+                   base::SourceSpan span);
+  void try_catch(const Stmt& stmt);
+  void catch_variable(const Stmt& stmt);
+  void enter_try(ir::BlockId handler, ir::BlockId finally, base::SourceSpan span);
+  void leave_try();
+  void go(ir::BlockId to, size_t tries);
+
   // --- JMP (jump.cc)
   using Labels = NameMap<ir::BlockId>;
   Labels labels_of(Range32 list);
@@ -232,8 +252,9 @@ class Body {
   struct Enable;
   std::optional<Enable> enable_of(const Expr& call, const Callee& callee);
   void open_enable(Enable& enable);
-  // `type` is that of the result, invalid when there is none.
-  void close_enable(Enable& enable, std::vector<ir::ValueId> result, ir::TypeId type);
+  // `type` is that of the result, invalid when there is none; `otherwise` its value without a call.
+  void close_enable(Enable& enable, std::vector<ir::ValueId> result, ir::TypeId type,
+                    uint64_t otherwise = 0);
   void store_eno(const Enable& enable, bool good);
   uint64_t default_bits(ir::TypeId type) const;
 
@@ -329,6 +350,11 @@ class Body {
   struct Loop {
     ir::BlockId again;
     ir::BlockId exit;
+    size_t tries;  // that are around it
+  };
+  struct LabelList {
+    Labels labels;
+    size_t tries;
   };
 
   Sema& sema_;
@@ -338,8 +364,9 @@ class Body {
   ir::Pou out_;
   Builder build_;
   std::vector<Loop> loops_;
-  ir::BlockId exit_;            // what RETURN goes to; invalid: out of the POU
-  std::vector<Labels> labels_;  // of the statement lists around the current statement
+  ir::BlockId exit_;               // what RETURN goes to; invalid: out of the POU
+  std::vector<LabelList> labels_;  // of the statement lists around the current statement
+  std::vector<TryScope> tries_;    // around the current statement
   std::vector<VarId> for_variables_;
   std::unordered_map<uint32_t, ir::ValueId> result_values_;  // by number of the kResult
   std::unordered_map<uint32_t, ir::Place> result_places_;

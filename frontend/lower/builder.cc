@@ -35,6 +35,7 @@ BlockId Builder::new_block() {
 
 void Builder::start(BlockId block) {
   current_ = block;
+  pou_.blocks[block.index].handler = handler_;
   order_.push_back(block);
 }
 
@@ -235,6 +236,29 @@ void Builder::ret() {
 void Builder::trap(ir::TrapKind kind) {
   emit(Op::kTrap, Scalar::kBool).trap = kind;
   current_ = {};
+}
+
+ValueId Builder::trap_kind() { return result(emit(Op::kTrapKind, Scalar::kU32)); }
+
+void Builder::trap_again(ValueId kind) {
+  emit(Op::kTrapAgain, Scalar::kBool).operands = {kind};
+  current_ = {};
+}
+
+void Builder::begin_try(BlockId body, BlockId handler) {
+  emit(Op::kTry, Scalar::kBool).targets = {{body, {}}, {handler, {}}};
+  current_ = {};
+}
+
+void Builder::end_try(BlockId behind) {
+  emit(Op::kEndTry, Scalar::kBool).targets = {{behind, {}}};
+  current_ = {};
+}
+
+BlockId Builder::set_handler(BlockId handler) {
+  const BlockId before = handler_;
+  handler_ = handler;
+  return before;
 }
 
 uint32_t Builder::temporary(ir::TypeId type) {

@@ -48,12 +48,19 @@ class Builder {
   ir::ValueId call_native(uint32_t native, ir::Scalar result, std::vector<ir::ValueId> operands);
   void call_native(uint32_t native, std::vector<ir::ValueId> operands);
   ir::ValueId task_time();
+  ir::ValueId trap_kind();
   void advance_time(ir::ValueId ns);
 
   void jump(ir::BlockId block, std::vector<ir::ValueId> args = {});
   void branch(ir::ValueId condition, ir::BlockId if_true, ir::BlockId if_false);
   void ret();
   void trap(ir::TrapKind kind);
+  // The last caught trap goes on; `kind` is its kind.
+  void trap_again(ir::ValueId kind);
+  void begin_try(ir::BlockId body, ir::BlockId handler);
+  void end_try(ir::BlockId behind);
+  // Of the blocks that are started from here on; invalid: none. Returns the one before.
+  ir::BlockId set_handler(ir::BlockId handler);
 
   // A variable of the frame that no source name means.
   uint32_t temporary(ir::TypeId type);
@@ -69,6 +76,7 @@ class Builder {
 
   ir::Pou& pou_;
   ir::BlockId current_;
+  ir::BlockId handler_;
   std::vector<ir::BlockId> order_;     // in which blocks were started: the final order
   std::vector<uint32_t> place_table_;  // open addressing; place number + 1, 0: free
   uint32_t line_ = 0;

@@ -1,6 +1,7 @@
 // EN and ENO, which every function and function block has (IEC 61131-3, 6.6.1.5): with EN
 // FALSE nothing is called, ENO is FALSE, outputs keep what they had, and a function's
-// result is the default of its type. Who declares parameters of these names has them.
+// result is the default of its type. The same when the call, or an argument of it, traps and ENO is
+// connected. Who declares parameters of these names has them.
 #include "frontend/lower/enable.h"
 
 namespace frontend {
@@ -36,11 +37,15 @@ void Body::open_enable(Enable& enable) {
       enable.target.reset();
     }
   }
-  if (enable.en == nullptr) return;
-  enable.skip = build_.new_block();
-  ir::BlockId run = build_.new_block();
-  build_.branch(value(enable.en->value, boolean), run, enable.skip);
-  build_.start(run);
+  if (enable.en != nullptr) {
+    enable.skip = build_.new_block();
+    ir::BlockId run = build_.new_block();
+    build_.branch(value(enable.en->value, boolean), run, enable.skip);
+    build_.start(run);
+  }
+  if (enable.eno == nullptr) return;
+  enable.handler = build_.new_block();
+  enter_try(enable.handler, {}, enable.eno->span);
 }
 
 void Body::store_eno(const Enable& enable, bool good) {
@@ -49,15 +54,23 @@ void Body::store_eno(const Enable& enable, bool good) {
   store(*enable.target, build_.constant(ir::Scalar::kBool, bit ? 1 : 0));
 }
 
-void Body::close_enable(Enable& enable, std::vector<ir::ValueId> result, ir::TypeId type) {
+void Body::close_enable(Enable& enable, std::vector<ir::ValueId> result, ir::TypeId type,
+                        uint64_t otherwise) {
+  if (enable.handler.valid()) {
+    ir::BlockId good = build_.new_block();
+    build_.end_try(good);
+    leave_try();
+    build_.start(good);
+  }
   store_eno(enable, true);
   build_.jump(enable.done, std::move(result));
-  if (enable.skip.valid()) {
-    build_.start(enable.skip);
+  for (ir::BlockId failed : {enable.skip, enable.handler}) {
+    if (!failed.valid()) continue;
+    build_.start(failed);
     store_eno(enable, false);
-    std::vector<ir::ValueId> otherwise;
-    if (type.valid()) otherwise.push_back(build_.constant(scalar(type), default_bits(type)));
-    build_.jump(enable.done, std::move(otherwise));
+    std::vector<ir::ValueId> result_then;
+    if (type.valid()) result_then.push_back(build_.constant(scalar(type), otherwise));
+    build_.jump(enable.done, std::move(result_then));
   }
   build_.start(enable.done);
 }
@@ -76,7 +89,14 @@ ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
   if (!enable) return emit_call(expr, callee, own);
   open_enable(*enable);
   ir::ValueId result = build_.add_param(enable->done, scalar(own));
-  close_enable(*enable, {emit_call(expr, callee, own)}, own);
+  ir::ValueId value = emit_call(expr, callee, own);
+  uint64_t otherwise = default_bits(own);
+  if (callee.kind == Callee::Kind::kFunction && sema_.pous[callee.pou].result.valid()) {
+    const Variable& declared = sema_.resolve(sema_.pous[callee.pou].result);
+    otherwise = declared.init.valid() ? sema_.program.constants[declared.init].bits
+                                      : default_bits(declared.type);
+  }
+  close_enable(*enable, {value}, own, otherwise);
   return result;
 }
 

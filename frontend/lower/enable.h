@@ -10,6 +10,7 @@ struct Body::Enable {
   const Arg* eno = nullptr;
   std::optional<Target> target;  // of ENO
   ir::BlockId skip;              // where EN is FALSE
+  ir::BlockId handler;           // of what traps in the call, when ENO is connected
   ir::BlockId done;
 };
 

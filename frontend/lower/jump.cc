@@ -24,7 +24,7 @@ Body::Labels Body::labels_of(Range32 list) {
 }
 
 void Body::label(const Stmt& stmt) {
-  ir::BlockId block = labels_.back().find(stmt.name.text)->second;
+  ir::BlockId block = labels_.back().labels.find(stmt.name.text)->second;
   if (build_.started(block)) return;  // the name stands twice
   if (build_.reachable()) build_.jump(block);
   build_.start(block);
@@ -35,8 +35,8 @@ void Body::jump(const Stmt& stmt) {
     sema_.allow_extension("JMP in Structured Text", stmt.span, "use IF, loops, EXIT and RETURN");
   }
   for (size_t i = labels_.size(); i-- > 0;) {
-    auto found = labels_[i].find(stmt.name.text);
-    if (found != labels_[i].end()) return build_.jump(found->second);
+    auto found = labels_[i].labels.find(stmt.name.text);
+    if (found != labels_[i].labels.end()) return go(found->second, labels_[i].tries);
   }
   std::string name = "`" + std::string(stmt.name.text) + "`";
   for (const Stmt& other : tree_.stmts) {
@@ -50,7 +50,7 @@ void Body::jump(const Stmt& stmt) {
     return;
   }
   NearestName nearest(stmt.name.text);
-  for (const Labels& labels : labels_) nearest.offer_all(labels);
+  for (const LabelList& list : labels_) nearest.offer_all(list.labels);
   sema_.error(DiagnosticCode::kUnknownLabel, stmt.name.span, "there is no label " + name,
               nearest.fix());
 }

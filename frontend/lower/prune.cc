@@ -101,6 +101,7 @@ void Builder::finish() {
   pou_.blocks = std::move(blocks);
   if (in_order) return;
   for (ir::Block& block : pou_.blocks) {
+    if (block.handler.valid()) block.handler = renamed[block.handler.index];
     for (ir::Target& target : block.insts.back().targets) {
       target.block = renamed[target.block.index];
     }

@@ -5,7 +5,7 @@ namespace frontend {
 
 void Body::statements(Range32 list) {
   if (labels_.empty()) infer_results(list);
-  labels_.push_back(labels_of(list));
+  labels_.push_back({labels_of(list), tries_.size()});
   bool warned = false;
   bool was_reachable = build_.reachable();
   for (uint32_t i = 0; i < list.count; ++i) {
@@ -51,8 +51,8 @@ void Body::statement(const Stmt& stmt) {
       return jump(stmt);
     case StmtKind::kLabel:
       return label(stmt);
-    case StmtKind::kTry:  // reported by report_not_supported()
-      return;
+    case StmtKind::kTry:
+      return try_statement(stmt);
     case StmtKind::kMock:
     case StmtKind::kMockFunction:
       return mock_statement(stmt);
@@ -95,7 +95,7 @@ void Body::if_statement(const Stmt& stmt) {
 }
 
 void Body::loop_body(Range32 body, ir::BlockId again, ir::BlockId exit) {
-  loops_.push_back({again, exit});
+  loops_.push_back({again, exit, tries_.size()});
   statements(body);
   loops_.pop_back();
   if (build_.reachable()) build_.jump(again);
@@ -133,7 +133,7 @@ void Body::leave_loop(const Stmt& stmt) {
                 exit ? "RETURN leaves the POU" : "");
     return;
   }
-  build_.jump(exit ? loops_.back().exit : loops_.back().again);
+  go(exit ? loops_.back().exit : loops_.back().again, loops_.back().tries);
 }
 
 }  // namespace frontend

@@ -54,8 +54,6 @@ const char* statement_feature(const Stmt& stmt) {
   switch (stmt.kind) {
     case StmtKind::kAssign:
       return assign_feature(stmt.assign);
-    case StmtKind::kTry:
-      return "__TRY is";
     default:
       return nullptr;
   }

@@ -103,6 +103,8 @@ class Emitter {
         object_.code.push_back(Unit::make(Opcode::END_TRY));
         go(position, block.end.taken);
         break;
+      case EndKind::kInst:
+        break;
       case EndKind::kReturn:
         object_.code.push_back(Unit::make(Opcode::RET));
         break;

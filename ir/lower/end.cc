@@ -33,6 +33,10 @@ void Selector::select_end(const Inst& inst, const FlowBlock& flow_block) {
       block().end.kind = EndKind::kEndTry;
       block().end.taken = flow_block.successors[0];
       return;
+    case Op::kTrapAgain:
+      emit(Opcode::TRAP_AGAIN, {}, use(inst.operands[0]));
+      block().end.kind = EndKind::kInst;
+      return;
     case Op::kTrap:
       end.kind = EndKind::kTrap;
       end.trap = static_cast<uint32_t>(inst.trap);

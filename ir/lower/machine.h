@@ -53,10 +53,10 @@ struct Register {
   bool result = false;  // read by the caller after the return
 };
 
-enum class EndKind : uint8_t { kJump, kBranch, kReturn, kTrap, kTry, kEndTry };
+enum class EndKind : uint8_t { kJump, kBranch, kReturn, kTrap, kTry, kEndTry, kInst };
 
 struct BlockEnd {
-  EndKind kind = EndKind::kReturn;
+  EndKind kind = EndKind::kReturn;  // kInst: the last instruction leads nowhere
   Operand condition;   // kBranch; TRUE: taken
   uint32_t taken = 0;  // position of a block; kJump, kEndTry and the body of kTry too
   uint32_t other = 0;  // position of a block, kBranch; the handler of kTry
@@ -90,7 +90,8 @@ void for_each_register(const MachineInst& inst, Visit visit) {
 
 template <class Visit>
 void for_each_successor(const BlockEnd& end, Visit visit) {
-  if (end.kind == EndKind::kReturn || end.kind == EndKind::kTrap) return;
+  const bool leaves = end.kind == EndKind::kReturn || end.kind == EndKind::kTrap;
+  if (leaves || end.kind == EndKind::kInst) return;
   visit(end.taken);
   if (end.kind == EndKind::kBranch || end.kind == EndKind::kTry) visit(end.other);
 }

@@ -50,6 +50,14 @@ void EvalMachine::trap(const Inst& inst, TrapKind kind, std::string text) {
   }
 }
 
+void EvalMachine::trap_again(const Inst& inst, uint32_t kind) {
+  if (caught_ && static_cast<uint32_t>(caught_->kind) == kind) {
+    trap_ = caught_;
+  } else {
+    trap(inst, kind < kTrapCount ? static_cast<TrapKind>(kind) : TrapKind::kAssert, "");
+  }
+}
+
 bool EvalMachine::alive(const Address& address) const {
   if (address.root == nullptr || address.frame == 0) {
     return address.root != nullptr;
@@ -83,7 +91,7 @@ BlockId EvalMachine::caught_by(Frame& frame, BlockId block) {
   if (!handler.valid() || !can_be_caught(trap_->kind)) {
     return BlockId();
   }
-  caught_ = trap_->kind;
+  caught_ = std::move(trap_);
   trap_.reset();
   frame.callee.reset();
   return handler;
@@ -119,6 +127,9 @@ BlockId EvalMachine::run_terminator(Frame& frame, const Inst& inst) {
       return take(frame, inst.targets[bits(frame, inst.operands[0]) != 0 ? 0 : 1]);
     case Op::kTrap:
       trap(inst, inst.trap, "");
+      return BlockId();
+    case Op::kTrapAgain:
+      trap_again(inst, static_cast<uint32_t>(bits(frame, inst.operands[0])));
       return BlockId();
     default:
       return BlockId();

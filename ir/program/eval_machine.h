@@ -103,6 +103,7 @@ class EvalMachine {
   uint64_t bits(const Frame& frame, ValueId value) const { return frame.values[value.index].bits; }
   bool alive(const Address& address) const;
   void trap(const Inst& inst, TrapKind kind, std::string text);
+  void trap_again(const Inst& inst, uint32_t kind);
 
   const Program& program_;
   const Layouts* layouts_;
@@ -117,7 +118,7 @@ class EvalMachine {
   int64_t now_ns_ = 0;
   uint64_t* budget_ = nullptr;
   std::optional<EvalTrap> trap_;
-  TrapKind caught_ = TrapKind::kDivisionByZero;
+  std::optional<EvalTrap> caught_;
 };
 
 }  // namespace ir

@@ -12,7 +12,8 @@ void EvalMachine::run_object(Frame& frame, const Inst& inst) {
       frame.values[inst.result.index].bits = references_->handle_of_instance(*frame.self);
       return;
     case Op::kTrapKind:
-      frame.values[inst.result.index].bits = static_cast<uint64_t>(caught_);
+      frame.values[inst.result.index].bits =
+          static_cast<uint64_t>(caught_ ? caught_->kind : TrapKind::kDivisionByZero);
       return;
     case Op::kIsType: {
       const Variable* instance = references_->instance_of(bits(frame, inst.operands[0]));

@@ -54,8 +54,9 @@
 // every block of the body names the handler targets[1] in Block::handler. A trap in the body, or in
 // what it calls, goes on at the handler, which has no parameters, finds all stores done before the
 // trap, and may read trap_kind first. `end_try` leaves the body, whose blocks return and jump out
-// in no other way. Handlers may have handlers: that of the try around them. kFuel, kWatchdog and
-// kStack are never caught.
+// in no other way. trap_again raises the caught trap anew, as if it had not been
+// caught. Handlers may have handlers: that of the try around them. kFuel, kWatchdog and kStack are
+// never caught.
 //
 // References (docs/adr/0005). A POINTER TO, REF_TO or REFERENCE TO is a u64 handle; 0 is NULL.
 // Handles are loaded, stored, passed and compared as u64; nothing is checked until use.

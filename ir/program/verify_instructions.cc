@@ -185,6 +185,9 @@ class InstVerifier {
       case Op::kBranch:
         require(operand(inst, 0) == Scalar::kBool, "a branch takes a bool");
         break;
+      case Op::kTrapAgain:
+        require(operand(inst, 0) == Scalar::kU32, "the kind of a trap is u32");
+        break;
       case Op::kTrap:
         require(static_cast<uint32_t>(inst.trap) < kTrapCount, "unknown trap");
         break;

@@ -130,3 +130,33 @@ expect 1 stc test mock.st
 said 'E8001'
 printf 'PROGRAM Main VAR n : INT; END_VAR n := n + 1; END_PROGRAM\n' >main.st
 expect 0 stc build main.st pump.st pump_test.st -o main.img
+
+# TEARDOWN runs behind whatever the test did, and a trap keeps its place.
+cat >teardown_test.st <<'ST'
+FUNCTION_BLOCK Gate
+VAR_INPUT d : INT; END_VAR
+VAR_OUTPUT q : INT; closed : INT; END_VAR
+q := 10 / d;
+END_FUNCTION_BLOCK
+SETUP
+VAR g : Gate; END_VAR
+END_SETUP
+TEARDOWN
+g.d := 1;
+ASSERT_NEQ(g.q, 5, 'the teardown saw 5');
+END_TEARDOWN
+TEST 'a trap'
+g(d := 0);
+END_TEST
+TEST 'a return'
+g(d := 2);
+IF g.q = 5 THEN RETURN; END_IF
+END_TEST
+TEST 'fine'
+g(d := 5);
+END_TEST
+ST
+expect 1 stc test teardown_test.st
+said '1 passed, 1 failed, 1 stopped by a trap'
+said 'teardown_test.st:4: division or MOD by zero'
+said 'teardown_test.st:11: the teardown saw 5'

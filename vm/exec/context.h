@@ -75,7 +75,8 @@ struct Context {
   TryRecord* tries_begin = nullptr;
   TryRecord* try_top = nullptr;  // next free record
   TryRecord* tries_end = nullptr;
-  ir::TrapKind caught{};  // last
+  Trap caught;                  // last
+  bool trap_has_place = false;  // `trap` says already where it was
 };
 
 #define STC_HANDLER_ARGS                                                \

@@ -43,21 +43,31 @@ struct Interpreter {
   }
 
   // With tail calls the first handler returns when the execution stops; without, each does.
-  static void dispatch(Context& ctx, uint8_t* mem, const uint8_t* consts) {
+  static void dispatch(const Execution& e, Context& ctx, uint8_t* mem, const uint8_t* consts) {
     do {
       while (ctx.running) {
         kHandlers.of[ctx.pc->op](ctx.pc, ctx.frame, ctx.self, mem, consts, &ctx);
       }
-    } while (ctx.exit == Exit::kTrap && catch_trap(ctx, mem));
+    } while (ctx.exit == Exit::kTrap && catch_trap(e, ctx, mem));
+  }
+
+  static void place_trap(const Execution& e, Context& ctx) {
+    if (ctx.trap_has_place) return;
+    ctx.trap.pou = ctx.pou;
+    ctx.trap.instance = ctx.instance;
+    ctx.trap.unit = static_cast<uint32_t>(ctx.pc - e.generation_->pous()[ctx.pou].code);
+    ctx.trap_has_place = true;
   }
 
   // Goes on at the handler of the innermost open try. Calls above its POU are gone, and with them
   // what they had exposed; what was stored is stored.
-  static bool catch_trap(Context& ctx, uint8_t* mem) {
+  static bool catch_trap(const Execution& e, Context& ctx, uint8_t* mem) {
     if (ctx.try_top == ctx.tries_begin || !ir::can_be_caught(ctx.trap.kind)) return false;
     const TryRecord& record = *--ctx.try_top;
-    ctx.caught = ctx.trap.kind;
+    place_trap(e, ctx);
+    ctx.caught = ctx.trap;
     ctx.trap = {};
+    ctx.trap_has_place = false;
     ctx.call = ctx.calls_begin + record.depth;
     drop_exposed(ctx, record.depth + 1);
     ctx.pou = record.pou;
@@ -85,9 +95,6 @@ struct Interpreter {
     e.fuel_used_ += fuel - ctx.fuel;
     if (ctx.exit != Exit::kTrap) return;
     e.trap_ = ctx.trap;
-    e.trap_.pou = ctx.pou;
-    e.trap_.instance = ctx.instance;
-    e.trap_.unit = static_cast<uint32_t>(ctx.pc - e.generation_->pous()[ctx.pou].code);
   }
 };
 
@@ -129,7 +136,8 @@ Trap Execution::interrupted(ir::TrapKind kind) const {
 Exit Execution::run(uint64_t fuel) {
   fuel = std::max<uint64_t>(fuel, 1);
   Context ctx = Interpreter::context_of(*this, fuel);
-  Interpreter::dispatch(ctx, memory_, memory_ + generation_->pool_offset());
+  Interpreter::dispatch(*this, ctx, memory_, memory_ + generation_->pool_offset());
+  if (ctx.exit == Exit::kTrap) Interpreter::place_trap(*this, ctx);
   Interpreter::keep(*this, ctx, fuel);
   return ctx.exit;
 }

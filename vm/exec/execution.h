@@ -96,7 +96,7 @@ class Execution {
   uint32_t task_ = 0;
   std::vector<TryRecord> tries_;
   uint32_t try_count_ = 0;
-  ir::TrapKind caught_{};
+  Trap caught_;
   const ir::Unit* pc_ = nullptr;
   uint32_t frame_ = 0;
   uint32_t self_ = 0;

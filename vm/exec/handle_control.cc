@@ -105,6 +105,21 @@ struct Semantics<ir::Opcode::TRAP> : Special {
   }
 };
 template <>
+struct Semantics<ir::Opcode::TRAP_AGAIN> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    const auto kind = load<uint32_t>(STC_AT(B, pc->b));
+    if (kind == static_cast<uint32_t>(ctx->caught.kind)) {
+      ctx->trap = ctx->caught;
+      ctx->trap_has_place = true;
+      return stop(ctx, Exit::kTrap, pc, frame, self);
+    }
+    const bool known = kind < ir::kTrapCount;
+    return raise(ctx, known ? static_cast<ir::TrapKind>(kind) : ir::TrapKind::kAssert, pc, frame,
+                 self);
+  }
+};
+template <>
 struct Semantics<ir::Opcode::TASK_TIME> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
@@ -318,7 +333,7 @@ template <>
 struct Semantics<ir::Opcode::TRAP_KIND> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
-    store<uint32_t>(frame + pc->a, static_cast<uint32_t>(ctx->caught));
+    store<uint32_t>(frame + pc->a, static_cast<uint32_t>(ctx->caught.kind));
     STC_NEXT(1);
   }
 };
