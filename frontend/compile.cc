@@ -23,12 +23,13 @@ void parse_all(const base::SourceMap& sources, const CompileOptions& options, Tr
 
 namespace {
 
-bool fits(const base::SourceMap& sources, base::Diagnostics& diagnostics) {
+bool fits(const base::SourceMap& sources, uint64_t most, base::Diagnostics& diagnostics) {
   uint64_t bytes = 0;
   for (uint32_t file = 0; file < sources.file_count(); ++file) bytes += sources.text(file).size();
-  if (bytes <= base::kMaxSourceBytes) return true;
-  diagnostics.add(base::DiagnosticCode::kSourceTooLarge, {},
-                  std::to_string(bytes) + " bytes of source text");
+  if (bytes <= most) return true;
+  diagnostics.add(
+      base::DiagnosticCode::kSourceTooLarge, {},
+      std::to_string(bytes) + " bytes of source text; the limit is " + std::to_string(most));
   return false;
 }
 
@@ -44,7 +45,7 @@ base::SourceMap with_library(const base::SourceMap& sources) {
 std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& sources,
                                       const CompileOptions& options,
                                       base::Diagnostics& diagnostics) {
-  if (!fits(sources, diagnostics)) return std::nullopt;
+  if (!fits(sources, options.max_source_bytes, diagnostics)) return std::nullopt;
   base::SourceMap all = with_library(sources);
   Tree tree;
   parse_all(all, options, tree, diagnostics);

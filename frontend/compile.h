@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "base/limits.h"
 #include "base/source.h"
 #include "frontend/dialect.h"
 #include "ir/program/ir.h"
@@ -20,6 +21,7 @@ struct CompileOptions {
   // Conditional compilation: NAME or NAME=VALUE, as if {define NAME 'VALUE'} headed each file.
   std::string resource;  // of several; empty: the first
   std::vector<std::string> defines;
+  uint64_t max_source_bytes = base::kMaxSourceBytes;  // tests ask for less
 };
 
 struct Tree;
@@ -37,7 +39,7 @@ std::optional<ir::Program> compile(const base::SourceMap& sources, const Compile
 // TEST blocks (language.md, "Unit tests in the language"), made into one program each; the
 // project's own tasks and programs do not run.
 struct TestCase {
-  std::string name;      // as written, without quotes
+  std::string name;  // as written, without quotes
   std::string file;
   uint32_t line = 0;
   std::string instance;  // the program instance that is this test

@@ -197,6 +197,7 @@ class Body {
   void bind_reference(const Stmt& stmt);
   ir::ValueId emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own);
   ir::ValueId emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own);
+  bool is_distance(ExprId id);
   ir::ValueId convert_reference(Typed from, ir::TypeId to, base::SourceSpan span);
   ir::ValueId constant_reference(ExprId id);
 

@@ -24,6 +24,17 @@ ir::TypeId Body::own_type(const Note& note, ir::TypeId target) const {
   return note.type;
 }
 
+// pt - start, where `start` is a number that holds an address: a distance, though the type is a
+// pointer's, and so is what a constant moves it by.
+bool Body::is_distance(ExprId id) {
+  const Expr& expr = tree_[id];
+  if (expr.kind != ExprKind::kBinary) return false;
+  if (expr.binary != BinaryOp::kAdd && expr.binary != BinaryOp::kSub) return false;
+  if (!types().is_reference(sema_.infer(expr.operand).type)) return false;
+  if (expr.binary == BinaryOp::kSub && !sema_.infer(expr.right).constant) return true;
+  return is_distance(expr.operand);
+}
+
 ir::ValueId Body::value(ExprId id, ir::TypeId target) {
   const Note& note = sema_.infer(id);
   const Expr& expr = tree_[id];
@@ -41,6 +52,11 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
         DiagnosticCode::kTypeMismatch, expr.span,
         "`" + sema_.type_text(own) + "` does not go with `" + sema_.type_text(target) + "`");
     return zero(target);
+  }
+  if (types().is_reference(own) && !types().is_reference(target) && is_distance(id)) {
+    ir::TypeId number = elementary(ir::Kind::kDword);
+    return convert({convert_reference({emit(id, own), own}, number, expr.span), number}, target,
+                   expr.span);
   }
   return convert({emit(id, own), own}, target, expr.span);
 }
