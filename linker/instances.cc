@@ -12,12 +12,13 @@ using ir::TypeId;
 
 class Walker {
  public:
-  Walker(const ir::Program& program, const ir::Layouts& layouts)
+  Walker(const ir::Program& program, const ir::Layouts& layouts, uint32_t most)
       : program_(program),
         types_(program.types),
         layouts_(layouts),
         initial_(program.types, program.constants, layouts),
-        holds_(types_.size(), Holds::kUnknown) {}
+        holds_(types_.size(), Holds::kUnknown),
+        most_(most) {}
 
   base::Result<std::vector<InstanceNode>> run() {
     nodes_.emplace_back();
@@ -128,9 +129,9 @@ class Walker {
       return fail(base::Refusal::kRecursion,
                   "`" + types_.text(type) + "` contains an instance of itself: " + spot.name);
     }
-    if (nodes_.size() >= base::kMaxInstances) {
-      return fail(base::Refusal::kTooMany, "more than " + std::to_string(base::kMaxInstances) +
-                                               " instances; `" + spot.name + "` is one too many");
+    if (nodes_.size() >= most_) {
+      return fail(base::Refusal::kTooMany, "more than " + std::to_string(most_) + " instances; `" +
+                                               spot.name + "` is one too many");
     }
     InstanceNode node;
     node.type = type;
@@ -149,6 +150,7 @@ class Walker {
   InitialValues initial_;
   std::vector<Holds> holds_;
   std::vector<InstanceNode> nodes_;
+  const uint32_t most_;
   std::optional<base::Error> error_;
 };
 
@@ -196,13 +198,13 @@ ir::Instance row_of(const InstanceNode& node, const std::vector<InstanceNode>& n
 }  // namespace
 
 base::Result<std::vector<InstanceNode>> walk_instances(const ir::Program& program,
-                                                       const ir::Layouts& layouts) {
-  return Walker(program, layouts).run();
+                                                       const ir::Layouts& layouts, uint32_t most) {
+  return Walker(program, layouts, most).run();
 }
 
 base::Result<std::vector<ir::Instance>> number_instances(const ir::Program& program,
                                                          std::vector<InstanceNode>& nodes,
-                                                         const ir::Image* base) {
+                                                         const ir::Image* base, uint32_t most) {
   std::vector<ir::Instance> rows(1);
   std::vector<uint32_t> unused;
   if (base != nullptr) {
@@ -230,10 +232,10 @@ base::Result<std::vector<ir::Instance>> number_instances(const ir::Program& prog
     rows[node.id] = row_of(node, nodes);
     rows[node.id].generation = generation;
   }
-  if (rows.size() > base::kMaxInstances) {
-    return base::Error{base::Refusal::kTooMany, std::to_string(rows.size()) +
-                                                    " instance IDs; the limit is " +
-                                                    std::to_string(base::kMaxInstances)};
+  if (rows.size() > most) {
+    return base::Error{
+        base::Refusal::kTooMany,
+        std::to_string(rows.size()) + " instance IDs; the limit is " + std::to_string(most)};
   }
   rows[kGlobalsNode].type = program.globals;
   rows[kGlobalsNode].live = true;

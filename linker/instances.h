@@ -27,9 +27,9 @@ struct InstanceNode {
   uint32_t id = 0;        // row of the instance table
 };
 
-// Node 0 stands for the globals.
+// Node 0 stands for the globals, and counts among the `most`.
 base::Result<std::vector<InstanceNode>> walk_instances(const ir::Program& program,
-                                                       const ir::Layouts& layouts);
+                                                       const ir::Layouts& layouts, uint32_t most);
 
 // Gives every node an ID and returns the table's rows without data and code. With
 // a base, an instance with the same path and types keeps its ID; new ones take
@@ -37,6 +37,6 @@ base::Result<std::vector<InstanceNode>> walk_instances(const ir::Program& progra
 // those as they were.
 base::Result<std::vector<ir::Instance>> number_instances(const ir::Program& program,
                                                          std::vector<InstanceNode>& nodes,
-                                                         const ir::Image* base);
+                                                         const ir::Image* base, uint32_t most);
 
 }  // namespace linker

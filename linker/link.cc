@@ -110,11 +110,12 @@ class Linker {
   }
 
   base::Status place_instances() {
-    base::Result<std::vector<InstanceNode>> nodes = walk_instances(program_, image_.layouts);
+    base::Result<std::vector<InstanceNode>> nodes =
+        walk_instances(program_, image_.layouts, options_.max_instances);
     if (!nodes.ok()) return nodes.error();
     nodes_ = std::move(nodes).value();
     base::Result<std::vector<ir::Instance>> rows =
-        number_instances(program_, nodes_, options_.base);
+        number_instances(program_, nodes_, options_.base, options_.max_instances);
     if (!rows.ok()) return rows.error();
     image_.instances = std::move(rows).value();
     for (size_t i = 1; i < nodes_.size(); ++i) {
@@ -162,17 +163,17 @@ class Linker {
     for (const ir::Object* object : context_.objects) {
       if (object == nullptr) {
         add_pou(unused_pou());
-        continue;
+      } else {
+        base::Result<LinkedCode> linked = relocate(context_, *object);
+        if (!linked.ok()) return linked.error();
+        linked->pou.identity = ir::identity(*object, program_);
+        add_pou(std::move(linked).value());
       }
-      base::Result<LinkedCode> linked = relocate(context_, *object);
-      if (!linked.ok()) return linked.error();
-      linked->pou.identity = ir::identity(*object, program_);
-      add_pou(std::move(linked).value());
-    }
-    if (image_.code.size() > base::kMaxCodeUnits) {
-      return base::Error{base::Refusal::kTooMany, std::to_string(image_.code.size()) +
-                                                      " instructions; the limit is " +
-                                                      std::to_string(base::kMaxCodeUnits)};
+      if (image_.code.size() <= options_.max_code_units) continue;
+      return base::Error{base::Refusal::kTooMany, "more than " +
+                                                      std::to_string(options_.max_code_units) +
+                                                      " instructions; `" + image_.pous.back().name +
+                                                      "` is one POU too many"};
     }
     return base::Ok{};
   }

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "base/limits.h"
 #include "base/result.h"
 #include "ir/bytecode/image.h"
 #include "ir/bytecode/object.h"
@@ -17,6 +18,9 @@ struct Options {
   Slack slack;
   const ir::Image* base = nullptr;  // the running version, or null
   bool move_all = false;            // hard mode: give every instance a new area
+  // Tests ask for less, so that the limits can be reached.
+  uint32_t max_instances = base::kMaxInstances;
+  uint32_t max_code_units = base::kMaxCodeUnits;
 };
 
 base::Result<ir::Image> link(const ir::Program& program, const std::vector<ir::Object>& objects,

@@ -152,7 +152,12 @@ base::Status check_header(base::ByteSpan bytes) {
     return bad_format("version " + std::to_string(version) + ", this program reads " +
                       std::to_string(kVersion));
   }
-  if (length != bytes.size() || length > base::kMaxImageBytes) {
+  if (length > base::kMaxImageBytes) {
+    return base::Error{base::Refusal::kTooLarge, "image of " + std::to_string(length) +
+                                                     " bytes; the limit is " +
+                                                     std::to_string(base::kMaxImageBytes)};
+  }
+  if (length != bytes.size()) {
     return bad_format("header says " + std::to_string(length) + " bytes, there are " +
                       std::to_string(bytes.size()));
   }

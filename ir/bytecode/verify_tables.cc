@@ -42,7 +42,7 @@ class TablesVerifier {
         {"bytes of stack", {image_.stack_bytes, kStackLimit}},
         {"depth of calls", {image_.call_depth, base::kMaxCallDepth}},
         {"POUs", {image_.pous.size(), base::kMaxPous}},
-        {"instances", {image_.instances.size(), uint64_t{base::kMaxInstances} + 1}},
+        {"instances", {image_.instances.size(), base::kMaxInstances}},
         {"instructions", {image_.code.size(), base::kMaxCodeUnits}},
         {"tasks", {image_.tasks.size(), base::kMaxTasks}},
     };

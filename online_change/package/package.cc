@@ -127,15 +127,16 @@ base::Bytes encode(const Package& package) {
 }
 
 base::Result<Package> decode(base::ByteSpan bytes) {
-  if (bytes.size() > uint64_t{base::kMaxImageBytes} + kHeaderBytes) {
-    return base::Error{base::Refusal::kTooLarge,
-                       "change package of " + std::to_string(bytes.size()) + " bytes"};
-  }
   ByteReader in(bytes);
   if (in.u32() != kMagic) return bad_format("does not begin like one");
   uint32_t version = in.u32();
   if (version != kVersion) return bad_format("has version " + std::to_string(version));
   uint32_t length = in.u32();
+  if (length > base::kMaxImageBytes) {
+    return base::Error{base::Refusal::kTooLarge, "change package of " + std::to_string(length) +
+                                                     " bytes; the limit is " +
+                                                     std::to_string(base::kMaxImageBytes)};
+  }
   base::Digest stored = read_digest(in);
   if (in.failed() || length != in.left()) return bad_format("has another length than it says");
   if (base::sha256(bytes.subspan(kHeaderBytes)) != stored) {

@@ -1,6 +1,7 @@
 // The stored form of images: what is written is read, and nothing else is.
 #include <gtest/gtest.h>
 
+#include "base/limits.h"
 #include "ir/bytecode/verify.h"
 #include "tests/unit/bytecode/sample_image.h"
 
@@ -63,6 +64,18 @@ TEST(Image, RefusalsOfTheForm) {
   bytes.back() ^= 1;
   EXPECT_EQ(ir::decode(bytes).error().refusal, Refusal::kBadHash);
   EXPECT_EQ(ir::decode({}).error().refusal, Refusal::kBadFormat);
+}
+
+// The header says a length that the limit allows, and one byte more.
+TEST(Image, LargestImage) {
+  constexpr size_t kLengthAt = 12;
+  base::Bytes bytes = ir::encode(sample::busy_image());
+  auto refusal_of = [&](uint32_t length) {
+    for (size_t i = 0; i < 4; ++i) bytes[kLengthAt + i] = static_cast<uint8_t>(length >> (8 * i));
+    return ir::decode(bytes).error().refusal;
+  };
+  EXPECT_EQ(refusal_of(base::kMaxImageBytes), Refusal::kBadFormat);  // there are fewer
+  EXPECT_EQ(refusal_of(base::kMaxImageBytes + 1), Refusal::kTooLarge);
 }
 
 TEST(Image, InitialBytesBetweenRunsAreZero) {

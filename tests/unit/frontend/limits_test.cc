@@ -68,5 +68,28 @@ TEST(Limits, Identifier) {
   EXPECT_EQ(errors("", variable(base::kMaxIdentifier + 1)), "E6002");
 }
 
+// All files together; the standard library does not count.
+TEST(Limits, SourceBytes) {
+  EXPECT_EQ(frontend::CompileOptions().max_source_bytes, base::kMaxSourceBytes);
+  const std::string first = "FUNCTION f : INT f := 1; END_FUNCTION\n";
+  const std::string second = "PROGRAM P VAR x : INT; END_VAR x := f(); END_PROGRAM\n";
+  auto codes = [&](uint64_t limit) {
+    base::SourceMap sources;
+    sources.add("a.st", first);
+    sources.add("b.st", second);
+    frontend::CompileOptions options;
+    options.max_source_bytes = limit;
+    base::Diagnostics diagnostics;
+    frontend::compile(sources, options, diagnostics);
+    std::string out;
+    for (const base::Diagnostic& message : diagnostics.all()) {
+      out += base::diagnostic_row(message.code).code;
+    }
+    return out;
+  };
+  EXPECT_EQ(codes(first.size() + second.size()), "");
+  EXPECT_EQ(codes(first.size() + second.size() - 1), "E6004");  // kSourceTooLarge
+}
+
 }  // namespace
 }  // namespace frontend_test

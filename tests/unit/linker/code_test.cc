@@ -255,5 +255,16 @@ TEST(Linking, RefusesMorePousThanAnImageNumbers) {
   EXPECT_EQ(image.error().refusal, base::Refusal::kTooMany);
 }
 
+TEST(Linking, RefusesMoreCodeUnitsThanAnImageHas) {
+  EXPECT_EQ(Options().max_code_units, base::kMaxCodeUnits);
+  Options options;
+  options.max_code_units = static_cast<uint32_t>(linked(ir::kSample).code.size());
+  EXPECT_TRUE(try_link(ir::kSample, options).ok());
+  --options.max_code_units;
+  base::Result<ir::Image> refused = try_link(ir::kSample, options);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().refusal, base::Refusal::kTooMany);
+}
+
 }  // namespace
 }  // namespace linker

@@ -53,6 +53,34 @@ TEST(InstanceIds, A10WorkedCase) {
   }
 }
 
+// kMaxInstances counts the globals, too.
+TEST(InstanceIds, LimitAndOneAboveIt) {
+  EXPECT_EQ(Options().max_instances, base::kMaxInstances);
+  const std::string text = worked_case(kOneChild, kThree);
+  const ir::Image image = linked(text);
+  Options options;
+  options.max_instances = static_cast<uint32_t>(image.instances.size());
+  EXPECT_TRUE(try_link(text, options).ok());
+  --options.max_instances;
+  base::Result<ir::Image> refused = try_link(text, options);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().refusal, base::Refusal::kTooMany);
+}
+
+// IDs that only this change frees count as well: undo needs them.
+TEST(InstanceIds, LimitOfIdsAfterAChange) {
+  const ir::Image first = linked(worked_case(kOneChild, kThree));
+  const std::string text = worked_case(kTwoChildren, kTwo);
+  Options options;
+  options.base = &first;
+  options.max_instances = static_cast<uint32_t>(first.instances.size());
+  base::Result<ir::Image> refused = try_link(text, options);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().refusal, base::Refusal::kTooMany);
+  ++options.max_instances;
+  EXPECT_TRUE(try_link(text, options).ok());
+}
+
 // A9: a dead instance's ID can be used again, from the next change on; its
 // generation tells an old reference from a new one.
 TEST(InstanceIds, A9ReusesDeadIdsLowestFirstOneChangeLater) {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <random>
 
+#include "base/limits.h"
 #include "ir/bytecode/symbols.h"
 
 #include "tests/unit/online_change/hand_made.h"
@@ -84,6 +85,18 @@ TEST(Package, C4_every_truncation_and_bit_flip_is_refused) {
     EXPECT_FALSE(decode(bytes).ok()) << bit;
     bytes[bit / 8] ^= static_cast<uint8_t>(1u << (bit % 8));
   }
+}
+
+// The header says a length that the limit allows, and one byte more.
+TEST(Package, LargestPackage) {
+  constexpr size_t kLengthAt = 8;
+  base::Bytes bytes = encode(make_pair()->package);
+  auto refusal_of = [&](uint32_t length) {
+    for (size_t i = 0; i < 4; ++i) bytes[kLengthAt + i] = static_cast<uint8_t>(length >> (8 * i));
+    return decode(bytes).error().refusal;
+  };
+  EXPECT_EQ(refusal_of(base::kMaxImageBytes), base::Refusal::kBadFormat);  // there are fewer
+  EXPECT_EQ(refusal_of(base::kMaxImageBytes + 1), base::Refusal::kTooLarge);
 }
 
 void expect_refused(const Pair& pair, const char* what) {
