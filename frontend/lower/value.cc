@@ -3,6 +3,29 @@
 
 namespace frontend {
 
+namespace {
+
+// Existing sources take the milliseconds of a TIME, or the seconds of a DT, through a POINTER TO
+// DWORD; here they would get something else.
+void warn_of_half_times(Sema& sema, ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
+  const ir::TypeTable& types = sema.program.types;
+  if (!types.is_reference(from) || !types.is_reference(to)) return;
+  ir::TypeId source = types[without_range(types, from)].base;
+  ir::TypeId target = types[without_range(types, to)].base;
+  Traits time = traits_of(types, source);
+  Traits number = traits_of(types, target);
+  if (!time.duration && !time.date) return;
+  if (!number.bits && !number.integer) return;
+  uint32_t bytes = ir::scalar_size(types.scalar(target));
+  if (bytes != 2 && bytes != 4) return;
+  sema.warning(DiagnosticCode::kImplicitNarrowing, span,
+               "`" + sema.type_text(source) + "` is 64 bits of nanoseconds; a `" +
+                   sema.type_text(target) + "` behind its address is a part of them",
+               "convert the value, for example with TO_" + sema.type_text(target));
+}
+
+}  // namespace
+
 ir::TypeId Body::own_type(const Note& note, ir::TypeId target) const {
   if (!target.valid()) return note.type;
   Traits traits = traits_of(types(), target);
@@ -53,6 +76,7 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
         "`" + sema_.type_text(own) + "` does not go with `" + sema_.type_text(target) + "`");
     return zero(target);
   }
+  warn_of_half_times(sema_, note.type, target, expr.span);
   if (types().is_reference(own) && !types().is_reference(target) && is_distance(id)) {
     ir::TypeId number = elementary(ir::Kind::kDword);
     return convert({convert_reference({emit(id, own), own}, number, expr.span), number}, target,
