@@ -59,9 +59,11 @@ std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& so
   sema.configure();
   // Grows while bodies use functions in new instances.
   for (uint32_t pou = 0; pou < sema.pous.size(); ++pou) {
-    if (!sema.pous[pou].open) Body(sema, pou).run();
+    if (sema.pous[pou].id.valid()) Body(sema, pou).run();
   }
   sema.finish_programs();
+  sema.objects.check_recursion();
+  sema.program.overrides = ir::find_overrides(sema.program);
   sema.check_output_tasks();
   sema.check_direct_addresses();
   sema.report_unused();

@@ -27,16 +27,15 @@ bool Body::bind_arguments(const Expr& call, const PouInfo& callee, std::vector<B
 
 bool Body::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding>& bindings) {
   if (sema_.is_enable(arg, &callee)) return true;
-  auto found = callee.names.find(arg.name.text);
-  const Variable* variable = found == callee.names.end() || found->second == callee.result
-                                 ? nullptr
-                                 : &sema_.resolve(found->second);
+  const VarId found = sema_.objects.find_parameter(callee, arg.name.text);
+  const bool known = found.valid() && found != callee.result;
+  const Variable* variable = known ? &sema_.resolve(found) : nullptr;
   bool parameter = variable != nullptr && (variable->section == VarSection::kInput ||
                                            variable->section == VarSection::kOutput ||
                                            variable->section == VarSection::kInOut);
   if (!parameter) {
     NearestName nearest(arg.name.text);
-    for (VarId id : callee.variables) {
+    for (VarId id : sema_.objects.variables_of(callee)) {
       VarSection section = sema_.resolve(id).section;
       if (section == VarSection::kInput || section == VarSection::kOutput ||
           section == VarSection::kInOut) {
@@ -49,7 +48,7 @@ bool Body::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding
     return false;
   }
   for (const Binding& other : bindings) {
-    if (other.variable != found->second) continue;
+    if (other.variable != found) continue;
     sema_.error(DiagnosticCode::kDuplicateArgument, arg.span,
                 quoted_name(arg.name) + " is given twice");
     return false;
@@ -61,7 +60,7 @@ bool Body::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding
     return false;
   }
   if (!arg.value.valid()) return true;  // `name :=` and `name =>` leave the parameter open
-  bindings.push_back({found->second, &arg, {}, {}, {}});
+  bindings.push_back({found, &arg, {}, {}, {}});
   return true;
 }
 
@@ -70,7 +69,7 @@ bool Body::bind_positional(const Expr& call, uint32_t count, const PouInfo& call
                            std::vector<Binding>& bindings) {
   std::vector<VarId> parameters;
   for (bool outputs : {false, true}) {
-    for (VarId id : callee.variables) {
+    for (VarId id : sema_.objects.variables_of(callee)) {
       if (id == callee.result) continue;
       VarSection section = sema_.resolve(id).section;
       bool input = section == VarSection::kInput || section == VarSection::kInOut;
@@ -94,7 +93,7 @@ bool Body::bind_positional(const Expr& call, uint32_t count, const PouInfo& call
 bool Body::check_in_outs(const Expr& call, const PouInfo& callee,
                          const std::vector<Binding>& bindings) {
   bool good = true;
-  for (VarId id : callee.variables) {
+  for (VarId id : sema_.objects.variables_of(callee)) {
     const Variable& variable = sema_.resolve(id);
     if (variable.section != VarSection::kInOut) continue;
     bool given = false;

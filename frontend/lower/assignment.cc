@@ -32,6 +32,7 @@ std::optional<Target> Body::assign_value(ExprId left, ExprId right, base::Source
   }
   if (!types().is_scalar(to->type)) {
     assign_aggregate(*to, right);
+    settle(*to);
     return to;
   }
   ir::ValueId from = value(right, to->type);

@@ -45,6 +45,11 @@ void Body::run() {
   } else {
     statements(decl.body);
   }
+  // A prototype: no virtual call ends here.
+  const bool prototype =
+      info_.owner != kNoPou &&
+      (decl.is_abstract || sema_.pous[info_.owner].decl->kind == PouKind::kInterface);
+  if (prototype && build_.reachable()) build_.trap(ir::TrapKind::kReference);
   set_line({decl.span.end, decl.span.end});
   if (exit_.valid()) {
     if (build_.reachable()) build_.jump(exit_);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "frontend/lower/builder.h"
+#include "frontend/lower/target.h"
 #include "frontend/sema/sema.h"
 #include "stdlib/native/natives.h"
 
@@ -21,20 +22,6 @@ namespace sfc {
 struct Action;
 struct Use;
 }  // namespace sfc
-
-struct Typed {
-  ir::ValueId value;
-  ir::TypeId type;
-};
-
-// Something that can be assigned: a place, a character of a string place, or some bits of either.
-struct Target {
-  ir::Place place;
-  ir::TypeId type;        // of what is assigned
-  ir::ValueId character;  // valid: the one at this position of a string
-  uint32_t bit_size = 0;  // 0: the whole place
-  uint32_t bit_offset = 0;
-};
 
 class Body {
  public:
@@ -85,8 +72,7 @@ class Body {
     std::vector<Exit> exits;
   };
   void try_statement(const Stmt& stmt);
-  void try_finally(const std::function<void()>& body, Range32 finally_body,
-                   base::SourceSpan span);
+  void try_finally(const std::function<void()>& body, Range32 finally_body, base::SourceSpan span);
   void try_catch(const Stmt& stmt);
   void catch_variable(const Stmt& stmt);
   void enter_try(ir::BlockId handler, ir::BlockId finally, base::SourceSpan span);
@@ -156,6 +142,7 @@ class Body {
   ir::Place place(ExprId expr);
   ir::Place raw_place(ExprId expr);
   ir::Place member_place(const Expr& expr);
+  ir::Place property_place(ExprId id);
   ir::Place index_place(const Expr& expr);
   ir::Place bit_word_place(ExprId structure, const Note& part);
   ir::Place constant_place(ExprId expr);
@@ -195,6 +182,7 @@ class Body {
   ir::ValueId raw_reference(ExprId id);
   ir::ValueId reference_value(ExprId id, ir::TypeId target);
   void bind_reference(const Stmt& stmt);
+  ir::ValueId interface_value(ExprId id, ir::TypeId target);
   ir::ValueId emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own);
   ir::ValueId emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own);
   bool is_distance(ExprId id);
@@ -279,7 +267,9 @@ class Body {
     ir::ValueId value;
     ir::Place place;
   };
-  Result call_function(const Expr& call, uint32_t pou, bool wants_result);
+  Result call_function(const Expr& call, const Callee& callee, bool wants_result);
+  Result result_of(const PouInfo& callee);
+  void call_base(const Expr& call, uint32_t pou);
   ir::Place argument_place(const PouInfo& callee, const Variable& variable) const;
   void pass_defaults(const PouInfo& callee, const std::vector<Binding>& bindings);
   ir::ValueId emit_call(const Expr& expr, ir::TypeId own);
@@ -288,6 +278,19 @@ class Body {
   ir::Place call_place(ExprId id, const Expr& expr);
   ir::Place call_place(const Expr& expr, const Callee& callee, ir::TypeId type);
   ir::ValueId emit_conversion(const Expr& expr, const Conversion& conversion);
+
+  // --- methods and properties (method.cc)
+  Receiver receiver_of(const Expr& head);
+  bool is_virtual(const PouInfo& method, const Receiver& receiver) const;
+  void prepare_receiver(const PouInfo& method, Receiver& receiver);
+  void emit_method_call(const PouInfo& method, const Receiver& receiver);
+  const MemberCode& property_code(ExprId id);
+  Result get_property(uint32_t getter, Receiver receiver);
+  Result read_property(ExprId id);
+  std::optional<Target> property_target(ExprId id);
+  void set_property(const Target& target, std::optional<ir::ValueId> value);
+  void settle(const Target& target);
+  void bare_call(ExprId id);
 
   // --- tests (test_call.cc, mock.cc)
   void test_call(const Expr& call, const TestCallRow& row);

@@ -197,6 +197,37 @@ void Builder::call_instance(const Place& place) {
   inst.place = intern(place);
 }
 
+ValueId Builder::this_handle() { return result(emit(Op::kThis, Scalar::kU64)); }
+
+ValueId Builder::is_type(ValueId handle, ir::TypeId type) {
+  Inst& inst = emit(Op::kIsType, Scalar::kBool);
+  inst.operands = {handle};
+  inst.type = type;
+  return result(inst);
+}
+
+void Builder::call_method(ir::PouId pou) { emit(Op::kCallMethod, Scalar::kBool).pou = pou; }
+
+void Builder::call_method(ir::PouId pou, const Place& place) {
+  Inst& inst = emit(Op::kCallMethod, Scalar::kBool);
+  inst.pou = pou;
+  inst.place = intern(place);
+}
+
+void Builder::call_method(ir::PouId pou, ValueId handle) {
+  Inst& inst = emit(Op::kCallMethod, Scalar::kBool);
+  inst.pou = pou;
+  inst.operands = {handle};
+}
+
+void Builder::call_virtual(ir::PouId prototype, ValueId handle) {
+  Inst& inst = emit(Op::kCallVirtual, Scalar::kBool);
+  inst.pou = prototype;
+  inst.operands = {handle};
+}
+
+void Builder::call_body(ir::PouId pou) { emit(Op::kCallBody, Scalar::kBool).pou = pou; }
+
 ValueId Builder::call_native(uint32_t native, Scalar scalar, std::vector<ValueId> operands) {
   Inst& inst = emit(Op::kCallNative, scalar);
   inst.native = native;

@@ -45,6 +45,14 @@ class Builder {
   ir::ValueId check_step(ir::Scalar scalar, ir::ValueId value);
   void call_function(ir::PouId pou);
   void call_instance(const ir::Place& place);
+  // Objects: on the own instance, on a place, on what a reference leads to.
+  ir::ValueId this_handle();
+  ir::ValueId is_type(ir::ValueId handle, ir::TypeId type);
+  void call_method(ir::PouId pou);
+  void call_method(ir::PouId pou, const ir::Place& place);
+  void call_method(ir::PouId pou, ir::ValueId handle);
+  void call_virtual(ir::PouId prototype, ir::ValueId handle);
+  void call_body(ir::PouId pou);
   ir::ValueId call_native(uint32_t native, ir::Scalar result, std::vector<ir::ValueId> operands);
   void call_native(uint32_t native, std::vector<ir::ValueId> operands);
   ir::ValueId task_time();

@@ -137,7 +137,9 @@ void Body::take_outputs(std::vector<Binding>& bindings,
   }
   for (Binding& binding : bindings) {
     const Variable& variable = sema_.resolve(binding.variable);
-    if (variable.section != VarSection::kOutput || !binding.value.valid()) continue;
+    if (variable.section != VarSection::kOutput || !binding.target) continue;
+    settle(*binding.target);
+    if (!binding.value.valid()) continue;
     ir::ValueId out = binding.value;
     if (binding.arg->negated) out = build_.unary(ir::Op::kNot, scalar(variable.type), out);
     if (!types().is_scalar(binding.target->type)) {
@@ -174,6 +176,22 @@ void Body::call_instance(const Expr& call, uint32_t pou) {
   take_outputs(bindings, place_of);
 }
 
+// SUPER^(): parameters are members of the own instance.
+void Body::call_base(const Expr& call, uint32_t pou) {
+  const PouInfo& base = sema_.pous[pou];
+  info_.callees.push_back(pou);
+  std::vector<Binding> bindings;
+  if (!bind_arguments(call, base, bindings)) return;
+  auto place_of = [&](const Variable& variable) { return member_variable_place(variable); };
+  evaluate_arguments(call, bindings);
+  for (const Binding& binding : bindings) {
+    const Variable& variable = sema_.resolve(binding.variable);
+    if (variable.section != VarSection::kOutput) pass_input(binding, place_of(variable));
+  }
+  build_.call_body(base.id);
+  take_outputs(bindings, place_of);
+}
+
 void Body::pass_defaults(const PouInfo& callee, const std::vector<Binding>& bindings) {
   for (VarId id : callee.locals) {
     const Variable& variable = sema_.resolve(id);
@@ -202,13 +220,19 @@ ir::Place Body::argument_place(const PouInfo& callee, const Variable& variable) 
   return out;
 }
 
-Body::Result Body::call_function(const Expr& call, uint32_t pou, bool wants_result) {
-  const PouInfo& function = sema_.pous[pou];
-  info_.callees.push_back(pou);
+Body::Result Body::call_function(const Expr& call, const Callee& callee, bool wants_result) {
+  const PouInfo& function = sema_.pous[callee.pou];
+  const bool method = callee.kind == Callee::Kind::kMethod;
+  if (!method) info_.callees.push_back(callee.pou);
   std::vector<Binding> bindings;
   Result result;
   bool good = bind_arguments(call, function, bindings) && check_in_outs(call, function, bindings);
   if (!good) return result;
+  Receiver receiver;
+  if (method) {
+    receiver = receiver_of(tree_[call.operand]);
+    prepare_receiver(function, receiver);
+  }
   evaluate_arguments(call, bindings);
   for (const Binding& binding : bindings) {
     const Variable& variable = sema_.resolve(binding.variable);
@@ -217,16 +241,12 @@ Body::Result Body::call_function(const Expr& call, uint32_t pou, bool wants_resu
     }
   }
   pass_defaults(function, bindings);
-  build_.call_function(function.id);
-  if (wants_result && function.result.valid()) {
-    const Variable& variable = sema_.resolve(function.result);
-    if (variable.type.valid() && types().is_scalar(variable.type)) {
-      result.value = build_.load(argument_place(function, variable), scalar(variable.type));
-    } else if (variable.type.valid()) {
-      result.place = temporary_place(variable.type);
-      build_.copy(result.place, argument_place(function, variable));
-    }
+  if (method) {
+    emit_method_call(function, receiver);
+  } else {
+    build_.call_function(function.id);
   }
+  if (wants_result && function.result.valid()) result = result_of(function);
   take_outputs(bindings,
                [&](const Variable& variable) { return argument_place(function, variable); });
   return result;
@@ -243,13 +263,17 @@ void Body::call_statement(ExprId id, const Callee& callee) {
       return;
     case Callee::Kind::kInstance:
       return call_instance(call, callee.pou);
+    case Callee::Kind::kBase:
+      return call_base(call, callee.pou);
     case Callee::Kind::kFunction:
-      call_function(call, callee.pou, false);
+    case Callee::Kind::kMethod:
+      call_function(call, callee, false);
       return;
     case Callee::Kind::kTest:
       return test_call(call, *callee.test);
     case Callee::Kind::kStandard:
-      if (callee.row->rule == stdlib::FunctionRule::kSplit) return split(call, *callee.row);
+      if (callee.row != nullptr && callee.row->rule == stdlib::FunctionRule::kSplit)
+        return split(call, *callee.row);
       [[fallthrough]];
     case Callee::Kind::kBound:
     case Callee::Kind::kReference:
@@ -268,8 +292,9 @@ void Body::call_statement(ExprId id, const Callee& callee) {
 
 ir::ValueId Body::emit_call(const Expr& expr, const Callee& callee, ir::TypeId own) {
   switch (callee.kind) {
-    case Callee::Kind::kFunction: {
-      ir::ValueId result = call_function(expr, callee.pou, true).value;
+    case Callee::Kind::kFunction:
+    case Callee::Kind::kMethod: {
+      ir::ValueId result = call_function(expr, callee, true).value;
       return result.valid() ? result : zero(own);
     }
     case Callee::Kind::kStandard:
@@ -285,8 +310,8 @@ ir::ValueId Body::emit_call(const Expr& expr, const Callee& callee, ir::TypeId o
 
 // A result that is no scalar.
 ir::Place Body::call_place(const Expr& expr, const Callee& callee, ir::TypeId type) {
-  if (callee.kind == Callee::Kind::kFunction) {
-    Result result = call_function(expr, callee.pou, true);
+  if (callee.kind == Callee::Kind::kFunction || callee.kind == Callee::Kind::kMethod) {
+    Result result = call_function(expr, callee, true);
     return result.place.type.valid() ? result.place : temporary_place(type);
   }
   if (callee.kind == Callee::Kind::kConversion) return to_string(expr, callee.conversion, type);

@@ -116,7 +116,7 @@ ir::Place Body::call_place(ExprId id, const Expr& expr) {
 
 void Body::call_statement(const Stmt& stmt) {
   const Expr& call = tree_[stmt.value];
-  if (call.kind != ExprKind::kCall) return;
+  if (call.kind != ExprKind::kCall) return bare_call(stmt.value);
   Callee callee = sema_.callee(call);
   auto enable = enable_of(call, callee);
   if (!enable) return call_statement(stmt.value, callee);

@@ -132,7 +132,7 @@ void Body::mock_prologue() {
 
 // Calls the body of a MOCK_FUNCTION with the parameters of this function; same local numbers.
 void Body::forward_to_mock(const PouInfo& mock) {
-  info_.callees.push_back(sema_.number_of(mock));
+  info_.callees.push_back(mock.number);
   std::vector<VarId> results;
   for (uint32_t i = 0; i < info_.locals.size(); ++i) {
     const Variable& own = sema_.resolve(info_.locals[i]);

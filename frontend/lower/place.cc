@@ -38,7 +38,9 @@ ir::Place Body::global_place(uint32_t member) {
 ir::Place Body::variable_place(VarId id) {
   const Variable& variable = sema_.resolve(id);
   if (variable.storage == Storage::kGlobal) return global_place(variable.index);
-  if (variable.edge.valid()) return local_place(sema_.resolve(variable.edge).index);
+  if (variable.edge.valid() && variable.pou == pou_number_) {  // methods see the input itself
+    return local_place(sema_.resolve(variable.edge).index);
+  }
   ir::Place place = variable.storage == Storage::kLocal ? local_place(variable.index)
                                                         : member_variable_place(variable);
   if (variable.section == VarSection::kInOut && !variable.by_reference) {
@@ -68,6 +70,7 @@ ir::Place Body::raw_place(ExprId id) {
   const Expr& expr = tree_[id];
   const Note& note = sema_.infer(id);
   if (is_known(note)) return constant_place(id);
+  if (note.property != kNoPou) return property_place(id);
   if (note.variable.valid()) return variable_place(note.variable);
   switch (expr.kind) {
     case ExprKind::kMember:
@@ -90,11 +93,20 @@ ir::Place Body::raw_place(ExprId id) {
   }
 }
 
+ir::Place Body::property_place(ExprId id) {
+  const Result result = read_property(id);
+  if (!result.value.valid()) return result.place;
+  const ir::Place kept =
+      temporary_place(sema_.resolve(sema_.pous[property_code(id).getter].result).type);
+  build_.store(kept, scalar(kept.type), result.value);
+  return kept;
+}
+
 ir::Place Body::member_place(const Expr& expr) {
   ir::TypeId outer = sema_.infer(expr.operand).type;
   ir::Place place = this->place(expr.operand);
   if (const PouInfo* block = sema_.pou_of(outer)) {
-    const Variable& variable = sema_.resolve(block->names.find(expr.name.text)->second);
+    const Variable& variable = sema_.resolve(sema_.objects.find_parameter(*block, expr.name.text));
     place.steps.push_back(step(ir::StepKind::kEnter));
     place.steps.push_back(step(ir::StepKind::kMember, variable.index));
     place.type = variable.type;
@@ -155,6 +167,13 @@ ir::Place Body::constant_place(ExprId id) {
 
 bool Body::check_writable(ExprId id) {
   const Expr& expr = tree_[id];
+  if (sema_.infer(id).property != kNoPou) {
+    if (sema_.infer(id).reference.valid()) return true;  // what it leads to
+    sema_.error(DiagnosticCode::kPropertyAccess, expr.span,
+                "`" + std::string(expr.name.text) + "` is a property: its value has no place",
+                "assign the property as a whole");
+    return false;
+  }
   switch (expr.kind) {
     case ExprKind::kName:
       return check_writable_name(expr);
@@ -170,8 +189,11 @@ bool Body::check_writable(ExprId id) {
       }
       const PouInfo* block = sema_.pou_of(sema_.infer(expr.operand).type);
       if (block == nullptr) return check_writable(expr.operand);
-      const Variable& variable = sema_.resolve(block->names.find(expr.name.text)->second);
+      const Variable& variable =
+          sema_.resolve(sema_.objects.find_parameter(*block, expr.name.text));
       if (variable.section == VarSection::kInput) return true;
+      if (variable.section != VarSection::kOutput)
+        return check_writable_variable(expr, sema_.objects.find_parameter(*block, expr.name.text));
       sema_.error(DiagnosticCode::kNotAssignable, expr.span,
                   "`" + std::string(expr.name.text) + "` is an output of `" +
                       std::string(block->decl->name.text) + "`; only the block itself writes it");
@@ -186,6 +208,7 @@ bool Body::check_writable(ExprId id) {
     case ExprKind::kBit:
       return check_writable(expr.operand);
     default:
+      if (sema_.infer(id).reference.valid()) return true;  // what a method returns
       sema_.error(DiagnosticCode::kNotAssignable, expr.span, "this is a value, not a variable");
       return false;
   }
@@ -244,8 +267,18 @@ bool Body::check_writable_variable(const Expr& expr, VarId id) {
 // Evaluates the indices of an assignment's left side; reports what cannot be written.
 std::optional<Target> Body::target(ExprId id) {
   const Note note = sema_.infer(id);
-  if (!note.type.valid() || !check_writable(id)) return std::nullopt;
+  if (!note.type.valid()) return std::nullopt;
+  ExprId whole = id;
+  while (sema_.infer(whole).bit_size != 0) whole = tree_[whole].operand;
+  const bool property =
+      sema_.infer(whole).property != kNoPou && !sema_.infer(whole).reference.valid();
+  if (!property && !check_writable(id)) return std::nullopt;
   Target out;
+  if (property) {
+    auto found = property_target(whole);
+    if (!found) return std::nullopt;
+    out = std::move(*found);
+  }
   out.type = note.type;
   ExprId at = id;
   out.bit_size = note.bit_size;
@@ -257,6 +290,7 @@ std::optional<Target> Body::target(ExprId id) {
     out.place = bit_word_place(at, part);
     return out;
   }
+  if (property) return out;
   if (is_character(at)) {
     const Expr& character = tree_[at];
     out.place = place(character.operand);
@@ -280,11 +314,16 @@ ir::Scalar Body::base_scalar(const Target& target) const {
 
 ir::ValueId Body::load_base(const Target& target) {
   if (target.character.valid()) return load_character(target.place, target.character);
+  if (target.setter != kNoPou) {
+    if (target.getter != kNoPou) return get_property(target.getter, target.receiver).value;
+    return zero(target.place.type);
+  }
   return build_.load(target.place, base_scalar(target));
 }
 
 void Body::store_base(const Target& target, ir::ValueId value) {
   if (target.character.valid()) return store_character(target.place, target.character, value);
+  if (target.setter != kNoPou) return set_property(target, value);
   build_.store(target.place, base_scalar(target), value);
 }
 

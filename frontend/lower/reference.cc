@@ -46,7 +46,8 @@ ir::Place Body::addressable_place(ExprId id) {
   if (expr.kind == ExprKind::kName && note.variable.valid() && !note.reference.valid()) {
     return variable_place(note.variable);
   }
-  if (!part && !value && !note.constant) return place(id);
+  const bool property = note.property != kNoPou && !note.reference.valid();
+  if (!part && !value && !property && !note.constant) return place(id);
   sema_.error(DiagnosticCode::kBadReference, expr.span,
               part ? "a bit of a variable has no address" : "a value has no address",
               "store it in a variable and refer to that");
@@ -90,6 +91,17 @@ ir::ValueId Body::reference_value(ExprId id, ir::TypeId target) {
   sema_.error(
       DiagnosticCode::kTypeMismatch, tree_[id].span,
       "`" + sema_.type_text(target) + "` cannot refer to a `" + sema_.type_text(note.type) + "`");
+  return zero(target);
+}
+
+// An instance where a variable of an interface is wanted.
+ir::ValueId Body::interface_value(ExprId id, ir::TypeId target) {
+  const ir::TypeId type = sema_.infer(id).type;
+  if (types().is_a(type, types()[target].base)) return handle_of(id);
+  sema_.error(
+      DiagnosticCode::kTypeMismatch, tree_[id].span,
+      "`" + sema_.type_text(type) + "` does not implement `" + sema_.type_text(target) + "`",
+      "declare it with IMPLEMENTS " + sema_.type_text(target));
   return zero(target);
 }
 

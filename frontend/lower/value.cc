@@ -64,6 +64,9 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
   if (!note.type.valid() || !target.valid()) return zero(target);
   if (types()[target].kind == ir::Kind::kReferenceTo) return reference_value(id, target);
   if (note.constant && types().is_reference(target)) return constant_reference(id);
+  if (sema_.is_interface(target) && types().is_instance(note.type)) {
+    return interface_value(id, target);
+  }
   if (is_known(note)) {
     auto bits = sema_.fold_bits(id, target, evaluating_ ? Known::kInitially : Known::kConstant);
     set_line(expr.span);
@@ -99,7 +102,11 @@ ir::ValueId Body::emit(ExprId id, ir::TypeId own) {
   set_line(expr.span);
   if (sema_.infer(id).bit_size != 0) return emit_bit(id);
   if (is_character(id)) return emit_character(expr);
+  const Note& note = sema_.infer(id);
+  if (note.property != kNoPou && !note.reference.valid()) return read_property(id).value;
   switch (expr.kind) {
+    case ExprKind::kThis:
+      return build_.this_handle();
     case ExprKind::kName:
     case ExprKind::kMember:
     case ExprKind::kIndex:

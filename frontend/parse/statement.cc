@@ -118,7 +118,11 @@ void Parser::parse_simple_statement() {
 }
 
 void Parser::finish_simple(ExprId left, base::SourcePos begin) {
-  bool call = tree_[left].kind == ExprKind::kCall;
+  // `fb.act;` may call an action; lowering knows.
+  const ExprKind shape = tree_[left].kind;
+  bool name = (shape == ExprKind::kName || shape == ExprKind::kMember) &&
+              kind() == TokenKind::kSemicolon && current_[-1].kind == TokenKind::kName;
+  bool call = shape == ExprKind::kCall || name;
   auto op = assign_op_here();
   if (op && !panic_) {
     parse_assignment(left, *op, begin);

@@ -20,9 +20,12 @@ struct Callee {
     kBound,
     kTest,
     kReference,
+    kMethod,
+    kBase,
   };
   Kind kind = Kind::kError;
-  uint32_t pou = kNoPou;  // kFunction; kInstance: the block's POU
+  // kFunction, kMethod; kInstance: the block; kBase: SUPER^(), the base of the own block
+  uint32_t pou = kNoPou;
   const stdlib::FunctionRow* row = nullptr;
   ir::TypeId typed;  // ADD_INT: the type of the operands; invalid: they decide
   Conversion conversion;
@@ -36,5 +39,10 @@ struct Match {
   VarId parameter;
   const Arg* arg;
 };
+
+// The operator that a standard function of rule kArithmetic, kBitwise or kCompare is.
+BinaryOp standard_operator(stdlib::FunctionId id);
+// How many leading arguments of a string function are strings.
+uint32_t string_arguments(const stdlib::FunctionRow& row, uint32_t count);
 
 }  // namespace frontend

@@ -202,6 +202,7 @@ ir::ConstId Sema::program_arguments(const ProgramDecl& decl, const PouInfo& info
 uint32_t Sema::clone_program(uint32_t original, const Name& instance) {
   auto number = static_cast<uint32_t>(pous.size());
   PouInfo& info = pous.emplace_back();
+  info.number = number;
   info.decl = pous[original].decl;
   info.meaning = std::make_unique<Meaning>();
   info.id = ir::PouId(static_cast<uint32_t>(program.pous.size()));
@@ -215,7 +216,7 @@ uint32_t Sema::clone_program(uint32_t original, const Name& instance) {
   pou_by_type_.emplace(info.self, number);
   program.pous.push_back(std::move(code));
   collect_interface(number);
-  resolve_interface(number);
+  for (uint32_t i = number; i < pous.size(); ++i) resolve_interface(i);  // its methods too
   return number;
 }
 

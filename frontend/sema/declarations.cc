@@ -10,8 +10,24 @@ ir::PouKind ir_kind(PouKind kind) {
       return ir::PouKind::kFunction;
     case PouKind::kProgram:
       return ir::PouKind::kProgram;
+    case PouKind::kMethod:
+    case PouKind::kAction:
+    case PouKind::kGetter:
+    case PouKind::kSetter:
+      return ir::PouKind::kMethod;
     default:
       return ir::PouKind::kFunctionBlock;
+  }
+}
+
+ir::Kind instance_kind(PouKind kind) {
+  switch (kind) {
+    case PouKind::kProgram:
+      return ir::Kind::kProgram;
+    case PouKind::kInterface:
+      return ir::Kind::kInterface;
+    default:
+      return ir::Kind::kFunctionBlock;
   }
 }
 
@@ -34,6 +50,7 @@ void Sema::collect() {
       if (&resource == resource_) collect_globals(resource.globals, resource.name.text);
     }
   }
+  objects.inherit();
 }
 
 void Sema::collect_types() {
@@ -152,41 +169,50 @@ void Sema::collect_pous() {
 uint32_t Sema::add_pou(const PouDecl& decl, bool library) {
   uint32_t number = static_cast<uint32_t>(pous.size());
   PouInfo& info = pous.emplace_back();
+  info.number = number;
   info.decl = &decl;
   info.library = library;
   info.open = is_open(decl);
-  if (!info.open) info.id = ir::PouId(static_cast<uint32_t>(program.pous.size()));
   pou_names_.emplace(decl.name.text, number);
-  ir::Pou pou;
-  pou.name = decl.name.text;
-  pou.kind = ir_kind(decl.kind);
-  if (decl.kind != PouKind::kFunction) {
+  if (!has_frame(decl.kind)) {
     ir::Type type;
-    type.kind = decl.kind == PouKind::kProgram ? ir::Kind::kProgram : ir::Kind::kFunctionBlock;
+    type.kind = instance_kind(decl.kind);
     type.name = decl.name.text;
     info.self = program.types.declare(std::move(type));
-    pou.self = info.self;
     pou_by_type_.emplace(info.self, number);
   }
-  if (!info.open) program.pous.push_back(std::move(pou));
+  if (!info.open && decl.kind != PouKind::kInterface) {
+    add_code(info, std::string(decl.name.text));
+  }
   collect_interface(number);
   if (library) add_aliases(info);
   return number;
+}
+
+void Sema::add_code(PouInfo& info, std::string name) {
+  info.id = ir::PouId(static_cast<uint32_t>(program.pous.size()));
+  ir::Pou& pou = program.pous.emplace_back();
+  pou.name = std::move(name);
+  pou.kind = ir_kind(info.decl->kind);
+  pou.self = info.self;
+  pou.recursion_depth = objects.recursion_depth(*info.decl);
 }
 
 void Sema::collect_interface(uint32_t number) {
   PouInfo& info = pous[number];
   const PouDecl& decl = *info.decl;
   for (const VarBlock& block : decl.blocks) collect_variables(number, block);
-  if (decl.kind == PouKind::kFunction && decl.result.valid()) {
+  if (has_frame(decl.kind) && decl.result.valid()) {
     Variable result;
     result.name = decl.name;
-    result.section = VarSection::kOutput;
+    result.section = decl.kind == PouKind::kSetter ? VarSection::kInput : VarSection::kOutput;
     result.pou = number;
     result.used = true;
-    info.result = add_variable(result, info.names);
-    if (info.result.valid()) info.variables.push_back(info.result);
+    VarId id = add_variable(result, info.names);
+    if (id.valid()) info.variables.push_back(id);
+    if (decl.kind != PouKind::kSetter) info.result = id;
   }
+  objects.collect(number);
   number_variables(info);
 }
 
@@ -203,15 +229,20 @@ void Sema::collect_variables(uint32_t pou, const VarBlock& block) {
       variable.section = block.section;
       variable.constant = block.constant;
       variable.retain = block.retain;
+      variable.access = block.access;
       variable.pou = pou;
       if (block.section == VarSection::kStatic) {
         add_static(variable, info);
         continue;
       }
+      if (block.section == VarSection::kInstance) {
+        add_instance_variable(variable, info);
+        continue;
+      }
       VarId id = add_variable(variable, info.names);
       if (!id.valid()) continue;
       info.variables.push_back(id);
-      bool keeps = info.decl->kind != PouKind::kFunction && block.section == VarSection::kInput;
+      bool keeps = !has_frame(info.decl->kind) && block.section == VarSection::kInput;
       if (decl.edge != Edge::kNone && keeps) add_edge(id, info);
     }
   }
@@ -219,7 +250,7 @@ void Sema::collect_variables(uint32_t pou, const VarBlock& block) {
 
 // Members of an instance, or locals of a frame: parameters first, then the result.
 void Sema::number_variables(PouInfo& info) {
-  bool function = info.decl->kind == PouKind::kFunction;
+  bool function = has_frame(info.decl->kind);
   auto place = [&](VarId id, Storage storage, std::vector<VarId>& order) {
     variables_[id.index].storage = storage;
     variables_[id.index].index = static_cast<uint32_t>(order.size());

@@ -6,7 +6,7 @@ namespace frontend {
 // Of a callee without parameters of these names; null: a standard function.
 bool Sema::is_enable(const Arg& arg, const PouInfo* callee) const {
   bool named = ir::same_name(arg.name.text, "EN") || ir::same_name(arg.name.text, "ENO");
-  return named && (callee == nullptr || !callee->names.contains(arg.name.text));
+  return named && (callee == nullptr || !objects.find_parameter(*callee, arg.name.text).valid());
 }
 
 std::vector<const Arg*> Sema::plain_arguments(const Expr& call, const PouInfo* callee) const {

@@ -45,12 +45,17 @@ VarId Sema::add_global(Variable variable, GlobalList& list) {
   return id;
 }
 
+// Is it the name of a list, and of nothing nearer?
+bool Sema::names_list(const Expr& head) {
+  return head.kind == ExprKind::kName && !head.global && lists_.contains(head.name.text) &&
+         !find_variable(head.name.text).valid();
+}
+
 // List.x; nullopt when `x` stands in no list of that name.
 std::optional<Note> Sema::infer_list_member(const Expr& expr) {
   const Expr& head = tree[expr.operand];
-  if (head.kind != ExprKind::kName || head.global) return std::nullopt;
+  if (!names_list(head)) return std::nullopt;
   auto list = lists_.find(head.name.text);
-  if (list == lists_.end() || find_variable(head.name.text).valid()) return std::nullopt;
   auto found = list->second.names.find(expr.name.text);
   if (found != list->second.names.end()) return variable_note(found->second);
   if (types_.contains(head.name.text) || pou_names_.contains(head.name.text)) return std::nullopt;

@@ -1,5 +1,5 @@
-// Variables that declarations imply: those of VAR_STAT among the globals, and what edge
-// inputs remember.
+// Variables that declarations imply: those of VAR_STAT among the globals, those of VAR_INST in
+// the instance, and what edge inputs remember.
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -34,13 +34,29 @@ VarId Sema::add_static(Variable variable, PouInfo& info) {
 
 // Without the characters that paths are made of: instances of open functions have them.
 std::string Sema::static_list_name(const PouInfo& info) const {
-  if (info.self.valid()) return program.types[info.self].name;
+  if (info.self.valid()) {  // of a method: `Block#method`
+    const std::string& block = program.types[info.self].name;
+    return info.owner == kNoPou ? block : block + "#" + std::string(info.decl->name.text);
+  }
   std::string name =
       info.open ? std::string(info.decl->name.text) : program.pous[info.id.index].name;
   for (char& c : name) {
     if (c == '.' || c == '[' || c == ']') c = '_';
   }
   return name;
+}
+
+// Of a method, but kept in the instance: a member that is named `Method#variable`.
+void Sema::add_instance_variable(Variable variable, PouInfo& method) {
+  if (method.owner == kNoPou || pous[method.owner].decl->kind == PouKind::kInterface) {
+    error(DiagnosticCode::kSectionNotAllowed, variable.name.span,
+          "VAR_INST stands in methods of function blocks, classes and programs");
+    return;
+  }
+  VarId id = add_variable(variable, method.names);
+  if (!id.valid()) return;
+  variables_[id.index].method = method.decl->name.text;
+  pous[method.owner].variables.push_back(id);
 }
 
 // Behind the globals that are there.

@@ -57,6 +57,7 @@ const Note& Sema::infer(ExprId id) {
   }
   ++depth_;
   note = infer_kind(id, expr);
+  if (expr.kind != ExprKind::kName && expr.kind != ExprKind::kMember) note.property = kNoPou;
   note.reference = {};
   if (note.type.valid() && program.types[note.type].kind == ir::Kind::kReferenceTo) {
     note.reference = note.type;
@@ -107,10 +108,11 @@ Note Sema::infer_kind(ExprId, const Expr& expr) {
       error(DiagnosticCode::kNotAValue, expr.span,
             "a list of values stands where a single value is needed");
       return {};
-    case ExprKind::kError:
-    case ExprKind::kThis:  // these are reported by report_not_supported()
+    case ExprKind::kThis:
     case ExprKind::kSuper:
-    case ExprKind::kType:
+      return objects.infer_this(expr);
+    case ExprKind::kError:
+    case ExprKind::kType:  // reported by report_not_supported()
       return {};
   }
   return {};
@@ -174,7 +176,12 @@ Note Sema::infer_name(const Expr& expr) {
     note.constant = true;
     return note;
   }
-  return id.valid() ? variable_note(id) : infer_enum_name(expr);
+  if (!id.valid()) return infer_enum_name(expr);
+  const Variable& variable = variables_[id.index];
+  if (variable.access == Access::kPrivate) {  // of a base
+    objects.check_access(variable.access, variable.pou, expr.name);
+  }
+  return variable_note(id);
 }
 
 Note Sema::variable_note(VarId id) {
@@ -197,6 +204,16 @@ Note Sema::variable_note(VarId id) {
 }
 
 Note Sema::infer_enum_name(const Expr& expr) {
+  const uint32_t own = objects.block_of(current_pou_);
+  Objects::Found code;
+  if (own != kNoPou) code = objects.find_code(own, expr.name.text);
+  if (code.code.is_property()) return objects.infer_property(expr.name, code);
+  if (code.owner != kNoPou) {
+    error(DiagnosticCode::kNotAValue, expr.span,
+          "`" + std::string(expr.name.text) + "` is a method",
+          "call it: `" + std::string(expr.name.text) + "()`");
+    return {};
+  }
   auto found = literals_.find(expr.name.text);
   if (found == literals_.end() && use_library_literal(expr.name.text)) {
     found = literals_.find(expr.name.text);
@@ -286,6 +303,7 @@ Note Sema::part_note(const Note& whole, uint32_t number, uint8_t size) const {
   note.flex = Flex::kNone;
   note.constant = false;
   note.variable = {};
+  note.property = kNoPou;
   note.bit_size = size;
   note.bit_member = -1;
   note.bit_number = number;

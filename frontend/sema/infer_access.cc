@@ -19,10 +19,15 @@ Note Sema::infer_member(const Expr& expr) {
     return infer_qualified(qualified);
   }
   if (auto global = infer_list_member(expr)) return *global;
+  if (objects.is_own(head)) {
+    const uint32_t owner = objects.receiver(expr.operand);
+    return owner == kNoPou ? Note() : objects.infer_member(expr, owner, {});
+  }
   const Note& operand = infer(expr.operand);
   if (!operand.type.valid()) return {};
   if (auto bit = infer_named_bit(expr, operand)) return *bit;
   Note note = operand;
+  note.property = kNoPou;
   note.variable = {};
   note.constant = false;
   note.bit_size = 0;
@@ -46,28 +51,12 @@ Note Sema::infer_member(const Expr& expr) {
           "`" + type_text(operand.type) + "` has no member " + quoted(expr.name), nearest.fix());
     return {};
   }
-  const PouInfo* block = pou_of(operand.type);
-  if (block == nullptr) {
-    error(DiagnosticCode::kNoMembers, expr.span,
-          "`" + type_text(operand.type) + "` has no members");
-    return {};
-  }
-  auto found = block->names.find(expr.name.text);
-  if (found != block->names.end()) {
-    const Variable& variable = resolve(found->second);
-    if (variable.section == VarSection::kInput || variable.section == VarSection::kOutput) {
-      note.type = variable.type;
-      return note;
-    }
-    error(DiagnosticCode::kUnknownMember, expr.name.span,
-          quoted(expr.name) + " is private to `" + type_text(operand.type) + "`",
-          "only VAR_INPUT and VAR_OUTPUT are visible outside; declare it there");
-    return {};
-  }
-  NearestName nearest(expr.name.text);
-  nearest.offer_all(block->names);
-  error(DiagnosticCode::kUnknownMember, expr.name.span,
-        "`" + type_text(operand.type) + "` has no member " + quoted(expr.name), nearest.fix());
+  const uint32_t owner = objects.receiver(expr.operand);
+  if (owner != kNoPou) return objects.infer_member(expr, owner, note);
+  const bool block = program.types.is_reference(operand.type) &&
+                     pou_of(program.types[operand.type].base) != nullptr;
+  error(DiagnosticCode::kNoMembers, expr.span, "`" + type_text(operand.type) + "` has no members",
+        block ? "write `^.` to reach what it refers to" : "");
   return {};
 }
 

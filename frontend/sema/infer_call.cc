@@ -14,20 +14,25 @@ Callee Sema::callee(const Expr& call) {
   const Expr& head = tree[call.operand];
   if (head.kind == ExprKind::kName) {
     VarId id = find_variable(head);
+    if (!id.valid() && !head.global) {
+      if (auto method = objects.method_of(objects.block_of(current_pou_), head.name))
+        return *method;
+    }
     if (!id.valid()) id = program_variable(head.name.text, true);
     if (!id.valid()) {
       Callee named = named_callee(head);
       return named.kind == Callee::Kind::kFunction ? select_function(call, named.pou) : named;
     }
-    // The function's own name is its result inside; calling it would be recursion.
-    if (variables_[id.index].decl == nullptr && !variables_[id.index].hidden) {
-      error(DiagnosticCode::kRecursiveCall, head.span, quoted(head.name) + " calls itself",
-            "use a loop");
-      return {};
-    }
+    // The function's own name is its result inside; calling it is recursion.
+    if (current_pou_ != kNoPou && id == pous[current_pou_].result) return objects.itself(head);
     // A variable may have a function's name; calls then still mean the function.
     bool instance = pou_of(resolve(id).type) != nullptr;
     if (!instance && standard_.contains(head.name.text)) return named_callee(head);
+  }
+  if (objects.is_super(head)) return objects.base_body(head);
+  if (head.kind == ExprKind::kMember && !names_list(tree[head.operand])) {
+    const uint32_t owner = objects.receiver(head.operand);
+    if (auto method = objects.method_of(owner, head.name)) return *method;
   }
   const Note& note = infer(call.operand);
   if (!note.type.valid()) return {};
@@ -41,6 +46,11 @@ Callee Sema::callee(const Expr& call) {
           chart              ? "put what several places call into a function or function block"
           : call.instruction ? "write LD in front of it to load it"
                              : "");
+    return {};
+  }
+  if (block->decl->kind == PouKind::kClass) {
+    error(DiagnosticCode::kNotCallable, head.span,
+          quoted(block->decl->name) + " is a class and has no body", "call a method of it");
     return {};
   }
   Callee callee;
@@ -123,10 +133,12 @@ Note Sema::infer_call(const Expr& expr) {
             "write it as a statement of its own");
       return {};
     case Callee::Kind::kInstance:
+    case Callee::Kind::kBase:
       error(DiagnosticCode::kNoResult, expr.span, "a function block has no result",
             "call it in a statement of its own and read its outputs");
       return {};
     case Callee::Kind::kFunction:
+    case Callee::Kind::kMethod:
       break;
   }
   const PouInfo& function = pous[target.pou];

@@ -16,7 +16,8 @@ ir::ConstId Sema::listed(ir::ConstId list, uint64_t index) const {
 // Of an instance whose block is not resolved yet, too.
 ir::ConstId Sema::member_default(ir::TypeId type, uint32_t member) {
   if (const PouInfo* block = pou_of(type)) {
-    return member < block->members.size() ? resolve(block->members[member]).init : ir::ConstId();
+    const VarId id = objects.member_variable(*block, member);
+    return id.valid() ? resolve(id).init : ir::ConstId();
   }
   if (ir::ConstId own = listed(program.types[type].init, member); own.valid()) return own;
   return program.types[type].members[member].init;
@@ -57,7 +58,7 @@ std::optional<TypeUse> Sema::initial_member(const Expr& expr) {
   int32_t member = find_member(whole->type, expr.name.text);
   ir::TypeId type;
   if (const PouInfo* block = pou_of(whole->type)) {
-    const Variable& variable = resolve(block->names.find(expr.name.text)->second);
+    const Variable& variable = resolve(objects.find_parameter(*block, expr.name.text));
     member = static_cast<int32_t>(variable.index);
     type = variable.type;
   } else {

@@ -201,9 +201,9 @@ InitialBuilder::Slot InitialBuilder::find_slot(ir::TypeId type, const Name& name
                 : sema_.program.types[type].members[field->member].type,
             field->bit};
   }
-  auto found = block->names.find(name.text);
-  if (found == block->names.end()) return {};
-  const Variable& variable = sema_.resolve(found->second);
+  const VarId found = sema_.objects.find_parameter(*block, name.text);
+  if (!found.valid()) return {};
+  const Variable& variable = sema_.resolve(found);
   bool settable = variable.storage == Storage::kMember && variable.section != VarSection::kInOut &&
                   variable.section != VarSection::kExternal;
   return {settable ? static_cast<int32_t>(variable.index) : -1, variable.type, -1};

@@ -58,11 +58,11 @@ bool Sema::path_member(const Expr& expr, InstancePath& path) {
   int32_t member = -1;
   path.variable = {};
   if (const PouInfo* block = pou_of(path.type)) {
-    auto found = block->names.find(expr.name.text);
-    if (found != block->names.end() && resolve(found->second).storage == Storage::kMember) {
-      path.variable = found->second;
-      variables_[found->second.index].used = true;
-      member = static_cast<int32_t>(resolve(found->second).index);
+    const VarId found = objects.find_variable(block->number, expr.name.text);
+    if (found.valid() && resolve(found).storage == Storage::kMember) {
+      path.variable = found;
+      variables_[found.index].used = true;
+      member = static_cast<int32_t>(resolve(found).index);
     }
   } else {
     member = find_member(path.type, expr.name.text);
@@ -228,8 +228,10 @@ void Sema::check_open_addresses(ir::TypeId type, const std::string& path,
     std::string inner = path + "." + member.name;
     if (member.address.bit_offset == ir::kOpenAddress && !known.contains(ir::fold_name(inner))) {
       const PouInfo* block = pou_of(type);
+      VarId variable;
+      if (block != nullptr) variable = objects.member_variable(*block, static_cast<uint32_t>(i));
       error(DiagnosticCode::kOpenAddress,
-            block != nullptr ? resolve(block->members[i]).name.span : base::SourceSpan{},
+            variable.valid() ? resolve(variable).name.span : base::SourceSpan{},
             "`" + inner + "` has no address yet",
             "add VAR_CONFIG " + inner + " AT %IX0.0 : type; END_VAR");
     }

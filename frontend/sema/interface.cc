@@ -50,6 +50,7 @@ void Sema::resolve_declarations() {
   for (uint32_t i = 0; i < pous.size(); ++i) resolve_interface(i);
   declared_ = true;
   check_overloads();
+  objects.check();
   check_containment();
 }
 
@@ -67,6 +68,7 @@ void Sema::resolve_globals() {
 ir::Member Sema::member_of(const Variable& variable, ir::Section section) const {
   ir::Member member;
   if (!variable.list.empty()) member.name = std::string(variable.list) + ".";
+  if (!variable.method.empty()) member.name = std::string(variable.method) + "#";
   member.name += variable.name.text;
   member.type = variable.type;
   member.section = section;
@@ -87,15 +89,19 @@ void Sema::resolve_interface(uint32_t number) {
   PouInfo& info = pous[number];
   if (info.open || info.resolved) return;
   info.resolved = true;
+  if (info.base != kNoPou) resolve_interface(info.base);
   Within scope(*this, number);
   for (VarId id : info.variables) resolve(id);
   std::vector<ir::Member> members;
+  if (info.base != kNoPou) members = program.types[pous[info.base].self].members;
   for (VarId id : info.members) {
     const Variable& variable = variables_[id.index];
     members.push_back(member_of(variable, section_of(ir_section(variable))));
   }
   if (for_tests() && info.decl->kind == PouKind::kFunctionBlock) add_mock_members(info, members);
-  if (info.self.valid()) program.types.edit(info.self).members = std::move(members);
+  bool instance = info.self.valid() && info.owner == kNoPou;
+  if (instance) program.types.edit(info.self).members = std::move(members);
+  if (!info.id.valid()) return;
   ir::Pou& pou = program.pous[info.id.index];
   for (VarId id : info.locals) {
     const Variable& variable = variables_[id.index];

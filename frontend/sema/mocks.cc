@@ -104,12 +104,14 @@ void Sema::check_mock_body(const PouDecl& decl, const PouInfo& mock, const PouIn
 
 void Sema::add_mock_members(PouInfo& info, std::vector<ir::Member>& members) {
   ir::Member active;
-  active.name = "__MOCK_ACTIVE";
+  // A base has its own.
+  const std::string suffix = info.base == kNoPou ? "" : "_" + program.types[info.self].name;
+  active.name = "__MOCK_ACTIVE" + suffix;
   active.type = program.types.elementary(ir::Kind::kDint);
   info.mock.active = static_cast<uint32_t>(members.size());
   members.push_back(std::move(active));
   ir::Member calls;
-  calls.name = "__MOCK_CALLS";
+  calls.name = "__MOCK_CALLS" + suffix;
   calls.type = program.types.elementary(ir::Kind::kUdint);
   info.mock.calls = static_cast<uint32_t>(members.size());
   members.push_back(std::move(calls));

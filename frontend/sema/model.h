@@ -25,10 +25,16 @@ enum class Storage : uint8_t { kMember, kLocal, kGlobal };
 
 inline constexpr uint32_t kNoPou = 0xffffffffu;
 
+// Parameters, a result, and variables that live during one call?
+constexpr bool has_frame(PouKind kind) {
+  return kind == PouKind::kFunction || (kind >= PouKind::kMethod && kind <= PouKind::kSetter);
+}
+
 struct Variable {
   Name name;
-  const VarDecl* decl = nullptr;  // null: a function's result
+  const VarDecl* decl = nullptr;  // null: a function's result, or what a setter is given
   VarSection section = VarSection::kLocal;
+  Access access = Access::kDefault;
   bool constant = false;
   bool retain = false;
   bool used = false;
@@ -39,12 +45,13 @@ struct Variable {
   Storage storage = Storage::kMember;
   uint32_t index = 0;  // member or local number
   uint32_t pou = kNoPou;
-  VarId external;         // the global that a VAR_EXTERNAL means
-  std::string_view list;  // of a global that is visible as `List.name` only
-  VarId edge, last;       // R_EDGE, F_EDGE: what the body sees, and the level before
-  ir::TypeId bound;       // of an open parameter: the type that this instance gives it
-  ir::TypeId type;        // invalid: could not be resolved (already reported)
-  ir::ConstId init;       // invalid: the type's default
+  VarId external;           // the global that a VAR_EXTERNAL means
+  std::string_view list;    // of a global that is visible as `List.name` only
+  std::string_view method;  // whose VAR_INST it is
+  VarId edge, last;         // R_EDGE, F_EDGE: what the body sees, and the level before
+  ir::TypeId bound;         // of an open parameter: the type that this instance gives it
+  ir::TypeId type;          // invalid: could not be resolved (already reported)
+  ir::ConstId init;         // invalid: the type's default
 };
 
 // The global variables of one file, CONFIGURATION, RESOURCE or {attribute 'list' := 'Name'}.
@@ -122,6 +129,8 @@ struct Note {
   bool calls = false;       // contains a call of a POU
   bool can_trap = false;
   VarId variable;  // kName: the variable meant
+  // The block or interface whose property of this name the expression is.
+  uint32_t property = kNoPou;
   // Valid: the expression is a REFERENCE TO of this type and stands for its target; `type` is the
   // target's.
   ir::TypeId reference;
@@ -145,18 +154,35 @@ struct MockSlots {
   std::vector<uint32_t> bodies;  // POUs of MOCK_FUNCTION declarations
 };
 
+// What a block, program or interface has under one name besides variables: a method or action,
+// or the accessors of a property. Numbers of POUs.
+struct MemberCode {
+  uint32_t method = kNoPou;
+  uint32_t getter = kNoPou;
+  uint32_t setter = kNoPou;
+  bool is_property() const { return getter != kNoPou || setter != kNoPou; }
+};
+
 struct PouInfo {
+  uint32_t number = 0;  // in Sema::pous
   const PouDecl* decl = nullptr;
   const PouDecl* setup = nullptr;  // of a TEST: runs before and behind its body
   const PouDecl* teardown = nullptr;
   MockSlots mock;
   bool library = false;
   ir::PouId id;
-  ir::TypeId self;  // instance type; invalid for functions
+  ir::TypeId self;          // instance type; invalid for functions; of a method: its owner's
+  uint32_t owner = kNoPou;  // of a method: the block, program or interface
+  uint32_t base = kNoPou;   // EXTENDS of a block
+  std::vector<uint32_t> interfaces;  // IMPLEMENTS of a block, EXTENDS of an interface
+  uint32_t inherited = 0;            // members of the instance that are the base's
+  Progress inheritance = Progress::kNew;
+  NameMap<MemberCode> code;         // its own methods, actions and properties
+  std::vector<uint32_t> overrides;  // of a method: what a virtual call of it may run instead
   NameMap<VarId> names;
   std::vector<VarId> variables;  // in declaration order
   std::vector<VarId> locals;     // by local number
-  std::vector<VarId> members;    // by member number
+  std::vector<VarId> members;    // its own, in order: member `inherited` is the first
   VarId result;
   // Parameters of open types (ANY_NUM, ARRAY[*]): no code of its own, only instances have.
   bool open = false;

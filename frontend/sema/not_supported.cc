@@ -37,10 +37,6 @@ const char* expression_feature(const Expr& expr) {
       return expr.operand.valid() ? "types of a namespace or library are" : nullptr;
     case ExprKind::kDirect:
       return expr.levels.count != 0 ? "hierarchical addresses are" : nullptr;
-    case ExprKind::kThis:
-      return "THIS is";
-    case ExprKind::kSuper:
-      return "SUPER is";
     case ExprKind::kType:
       return "types as arguments are";
     case ExprKind::kAssign:
@@ -59,38 +55,11 @@ const char* statement_feature(const Stmt& stmt) {
   }
 }
 
-const char* section_feature(VarSection section) {
-  switch (section) {
-    case VarSection::kInstance:
-      return "VAR_INST is";
-    default:
-      return nullptr;
-  }
-}
-
 const char* variable_feature(const VarDecl& decl, bool field) {
   if (decl.levels.count != 0) return "hierarchical addresses are";
   return field && decl.has_address && decl.address.area != ir::DirectArea::kNone
-             ? "members with an address are" : nullptr;
-}
-
-const char* pou_feature(const PouDecl& pou) {
-  if (pou.kind == PouKind::kClass) return "classes are";
-  if (pou.kind == PouKind::kInterface) return "interfaces are";
-  if (!pou.extends.empty() || !pou.implements.empty()) return "EXTENDS and IMPLEMENTS are";
-  if (pou.is_abstract || pou.is_final) return "ABSTRACT and FINAL are";
-  return pou.access != Access::kDefault ? "access specifiers are" : nullptr;
-}
-
-const char* member_feature(PouKind kind) {
-  switch (kind) {
-    case PouKind::kMethod:
-      return "methods are";
-    case PouKind::kAction:
-      return "actions are";
-    default:
-      return "properties are";
-  }
+             ? "members with an address are"
+             : nullptr;
 }
 
 }  // namespace
@@ -102,8 +71,6 @@ void Sema::report_not_supported() {
   };
   auto blocks = [&](const std::vector<VarBlock>& list) {
     for (const VarBlock& block : list) {
-      report(section_feature(block.section), block.span);
-      if (block.access != Access::kDefault) report("access specifiers are", block.span);
       for (const VarDecl& decl : block.vars) report(variable_feature(decl, false), decl.span);
     }
   };
@@ -118,11 +85,8 @@ void Sema::report_not_supported() {
     for (Range32 path : scope.usings) report("USING is", tree.names[path.first].span);
   }
   for (const PouDecl& pou : tree.pous) {
-    report(pou_feature(pou), pou.name.span);
     blocks(pou.blocks);
-    for (const PouDecl& member : pou.members) {
-      report(member_feature(member.kind), member.name.span);
-    }
+    for (const PouDecl& member : pou.members) blocks(member.blocks);
   }
   blocks(tree.globals);
   for (const ConfigDecl& config : tree.configs) {

@@ -228,6 +228,7 @@ uint32_t Sema::instance_of(uint32_t pou, const ParameterTypes& types, NameMap<ir
   if (!added) return known->second;
   uint32_t number = known->second;
   PouInfo& info = pous.emplace_back();
+  info.number = number;
   info.decl = original.decl;
   info.library = original.library;
   info.meaning = std::make_unique<Meaning>();

@@ -22,6 +22,9 @@ Sema::Sema(const base::SourceMap& source_map, const Tree& syntax, uint32_t libra
 
 void Sema::error(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix) {
   const PouDecl* within = current_pou_ == kNoPou ? nullptr : pous[current_pou_].decl;
+  if (within != nullptr && pous[current_pou_].owner != kNoPou) {
+    within = pous[pous[current_pou_].owner].decl;
+  }
   if (follow_ups_.silences(code, within, text)) return;
   diagnostics_.add(code, span, std::move(text), std::move(fix));
 }

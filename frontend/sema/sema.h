@@ -18,15 +18,11 @@
 #include "frontend/sema/constant.h"
 #include "frontend/sema/follow_ups.h"
 #include "frontend/sema/model.h"
+#include "frontend/sema/objects.h"
 
 namespace frontend {
 
 using base::DiagnosticCode;
-
-// The operator that a standard function of rule kArithmetic, kBitwise or kCompare is.
-BinaryOp standard_operator(stdlib::FunctionId id);
-// How many leading arguments of a string function are strings.
-uint32_t string_arguments(const stdlib::FunctionRow& row, uint32_t count);
 
 enum class Purpose : uint8_t { kRun, kTest };
 
@@ -55,6 +51,8 @@ class Sema {
   // --- types (types.cc, enumeration.cc, containment.cc)
   TypeUse resolve(SpecId spec);
   std::optional<TypeUse> find_type(std::string_view name);
+  // Of an interface variable?
+  bool is_interface(ir::TypeId type) const;
   void check_containment();
 
   // --- variables and members (variables.cc)
@@ -72,7 +70,6 @@ class Sema {
   // -1 for BIT members too.
   int32_t find_member(ir::TypeId structure, std::string_view name) const;
   const PouInfo* find_pou(std::string_view name) const;
-  uint32_t number_of(const PouInfo& pou) const { return pou.id.index; }
   // The global pseudo variable of a direct address.
   uint32_t direct_member(const Expr& expr);
   std::string name_suggestion(std::string_view name, bool callable, bool instruction = false) const;
@@ -128,7 +125,7 @@ class Sema {
   bool allow_narrowing(ir::TypeId from, ir::TypeId to, base::SourceSpan span);
   // Reports what only real sources have where the dialect is the standard's own.
   void allow_extension(std::string_view what, base::SourceSpan span, std::string fix = {});
-  std::string type_text(ir::TypeId type) const { return program.types.text(type); }
+  std::string type_text(ir::TypeId type) const;
 
   // The POU whose names are visible; set while anything of it is resolved.
   class Within {
@@ -151,10 +148,12 @@ class Sema {
   ir::Program program;
   std::deque<PouInfo> pous;  // stable addresses; grows when library blocks are used
   std::vector<TestCase> test_cases;
+  Objects objects{*this};
 
  private:
   friend class Within;
   friend class Folder;
+  friend class Objects;
   friend class InitialBuilder;
 
   // declarations.cc
@@ -175,6 +174,7 @@ class Sema {
   void collect_variables(uint32_t pou, const VarBlock& block);
   void collect_pous();
   uint32_t add_pou(const PouDecl& decl, bool library);
+  void add_code(PouInfo& info, std::string name);
   void collect_interface(uint32_t pou);
   void number_variables(PouInfo& info);
   void add_aliases(PouInfo& info);
@@ -255,6 +255,7 @@ class Sema {
   std::string_view keep_name(std::string name);
   std::string static_list_name(const PouInfo& info) const;
   VarId add_static(Variable variable, PouInfo& info);
+  void add_instance_variable(Variable variable, PouInfo& method);
   void place_global(VarId id);
   void add_edge(VarId input, PouInfo& info);
   void check_edge(const Variable& variable);
@@ -268,6 +269,7 @@ class Sema {
   Note infer_literal(const Expr& expr);
   Note infer_name(const Expr& expr);
   Note variable_note(VarId id);
+  bool names_list(const Expr& head);
   std::optional<Note> infer_list_member(const Expr& expr);
   Note infer_enum_name(const Expr& expr);
   Note infer_qualified(const Expr& expr);

@@ -84,6 +84,7 @@ bool Sema::is_bit(SpecId id) const {
 bool Sema::add_field(StructBuild& build, const VarDecl& field) {
   TypeUse use = resolve(field.spec);
   if (!use.type.valid()) return false;
+  if (!field.names.empty()) objects.check_instance(use.type, field.names[0].span);
   bool bit = is_bit(field.spec);
   ir::Member member;
   member.type = use.type;

@@ -88,7 +88,19 @@ std::optional<TypeUse> Sema::find_type(std::string_view name) {
   if (!pou_names_.contains(name) && !use_library(name)) return std::nullopt;
   const PouInfo& pou = pous[pou_names_.find(name)->second];
   if (!pou.self.valid()) return std::nullopt;
-  return TypeUse{pou.self, {}};
+  // A variable of an interface refers to what implements it.
+  const bool interface = pou.decl->kind == PouKind::kInterface;
+  return TypeUse{interface ? program.types.ref_to(pou.self) : pou.self, {}};
+}
+
+std::string Sema::type_text(ir::TypeId type) const {
+  return program.types.text(is_interface(type) ? program.types[type].base : type);
+}
+
+bool Sema::is_interface(ir::TypeId type) const {
+  const ir::TypeTable& types = program.types;
+  return type.valid() && types[type].kind == ir::Kind::kRefTo &&
+         types[types[type].base].kind == ir::Kind::kInterface;
 }
 
 TypeUse Sema::resolve_named(const Spec& spec) {

@@ -13,8 +13,10 @@ std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"
 
 VarId Sema::find_variable(std::string_view name) {
   if (current_pou_ != kNoPou) {
-    const NameMap<VarId>& names = pous[current_pou_].names;
-    if (auto found = names.find(name); found != names.end()) return found->second;
+    const PouInfo& pou = pous[current_pou_];
+    if (auto found = pou.names.find(name); found != pou.names.end()) return found->second;
+    VarId id = objects.find_variable(pou.owner != kNoPou ? pou.owner : pou.base, name);
+    if (id.valid()) return id;
   }
   auto found = globals_.find(name);
   return found == globals_.end() ? VarId() : found->second;
@@ -116,6 +118,8 @@ void Sema::check_placement(const Variable& variable) {
           "`" + type.name + "` is a program; a variable cannot be one",
           "make it a FUNCTION_BLOCK, or declare the program in a CONFIGURATION");
   }
+  if (variable.section != VarSection::kInOut)
+    objects.check_instance(variable.type, variable.name.span);
   bool holds_instance = type.kind == ir::Kind::kFunctionBlock;
   if (holds_instance && variable.storage == Storage::kLocal &&
       variable.section != VarSection::kInOut) {
@@ -163,6 +167,10 @@ const PouInfo* Sema::find_pou(std::string_view name) const {
 std::string Sema::name_suggestion(std::string_view name, bool callable, bool instruction) const {
   NearestName nearest(name);
   if (current_pou_ != kNoPou) nearest.offer_all(pous[current_pou_].names);
+  for (uint32_t at = objects.block_of(current_pou_); at != kNoPou; at = pous[at].base) {
+    nearest.offer_all(pous[at].names);
+    nearest.offer_all(pous[at].code);
+  }
   nearest.offer_all(globals_);
   if (callable) {
     nearest.offer_all(pou_names_);

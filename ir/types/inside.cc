@@ -138,7 +138,7 @@ std::string path_inside(const TypeTable& types, const Layouts& layouts, TypeId r
   std::string path;
   Part part{root, offset, false};
   for (uint32_t depth = 0; depth < base::kMaxNesting; ++depth) {
-    if (part.rest == 0 && part.type == target) {
+    if (part.rest == 0 && target.valid() && types.is_a(part.type, target)) {
       break;
     }
     if (!step_down(types, layouts, part, path)) {

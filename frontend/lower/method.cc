@@ -1,0 +1,158 @@
+// Calls of methods, actions and bodies of bases, and properties, by "Objects" in
+// ir/program/ir.h. Where the type of the instance is known, its method is called; a
+// reference, an interface variable or THIS may lead to a derived one that has another.
+#include "frontend/lower/call.h"
+
+namespace frontend {
+
+// Whose method `x.m` or `m` is; evaluates x.
+Receiver Body::receiver_of(const Expr& head) {
+  Receiver receiver;
+  if (head.kind != ExprKind::kMember) return receiver;
+  const ExprId id = head.operand;
+  const Expr& operand = tree_[id];
+  if (sema_.objects.is_own(operand)) {
+    receiver.fixed = sema_.objects.is_super(operand);
+    return receiver;
+  }
+  const Note& note = sema_.infer(id);
+  const bool interface = sema_.is_interface(note.type) && !note.reference.valid();
+  const bool indexed =
+      operand.kind == ExprKind::kIndex && types().is_reference(sema_.infer(operand.operand).type);
+  if (interface) {
+    receiver.handle = natural(id).value;
+  } else if (note.reference.valid() && sema_.is_interface(note.type)) {
+    receiver.handle = build_.load(place(id), ir::Scalar::kU64);
+  } else if (note.reference.valid() || operand.kind == ExprKind::kDeref || indexed) {
+    receiver.handle = handle_of(id);
+  } else {
+    receiver.place = place(id);
+  }
+  return receiver;
+}
+
+bool Body::is_virtual(const PouInfo& method, const Receiver& receiver) const {
+  if (sema_.pous[method.owner].decl->kind == PouKind::kInterface) return true;
+  if (receiver.fixed || receiver.place) return false;
+  return method.decl->is_abstract || !method.overrides.empty();
+}
+
+// Before arguments are passed: what a virtual call needs.
+void Body::prepare_receiver(const PouInfo& method, Receiver& receiver) {
+  info_.callees.push_back(method.number);
+  if (!is_virtual(method, receiver)) return;
+  info_.callees.insert(info_.callees.end(), method.overrides.begin(), method.overrides.end());
+  if (!receiver.handle) receiver.handle = build_.this_handle();
+}
+
+void Body::emit_method_call(const PouInfo& method, const Receiver& receiver) {
+  if (is_virtual(method, receiver)) {
+    build_.call_virtual(method.id, *receiver.handle);
+  } else if (receiver.place) {
+    build_.call_method(method.id, *receiver.place);
+  } else if (receiver.handle) {
+    build_.call_method(method.id, *receiver.handle);
+  } else {
+    build_.call_method(method.id);
+  }
+}
+
+const MemberCode& Body::property_code(ExprId id) {
+  return sema_.pous[sema_.infer(id).property].code.find(tree_[id].name.text)->second;
+}
+
+Body::Result Body::result_of(const PouInfo& callee) {
+  Result result;
+  if (!callee.result.valid()) return result;
+  const Variable& variable = sema_.resolve(callee.result);
+  if (variable.type.valid() && types().is_scalar(variable.type)) {
+    result.value = build_.load(argument_place(callee, variable), scalar(variable.type));
+  } else if (variable.type.valid()) {
+    result.place = temporary_place(variable.type);
+    build_.copy(result.place, argument_place(callee, variable));
+  }
+  return result;
+}
+
+Body::Result Body::get_property(uint32_t getter, Receiver receiver) {
+  const PouInfo& accessor = sema_.pous[getter];
+  prepare_receiver(accessor, receiver);
+  emit_method_call(accessor, receiver);
+  return result_of(accessor);
+}
+
+Body::Result Body::read_property(ExprId id) {
+  const Expr& expr = tree_[id];
+  const MemberCode& code = property_code(id);
+  if (code.getter == kNoPou) {
+    sema_.error(DiagnosticCode::kPropertyAccess, expr.name.span,
+                quoted_name(expr.name) + " has no GET and cannot be read");
+    return {zero(sema_.infer(id).type), temporary_place(sema_.infer(id).type)};
+  }
+  Receiver receiver = receiver_of(expr);
+  set_line(expr.span);
+  return get_property(code.getter, receiver);
+}
+
+// The whole property as an assignment's left side.
+std::optional<Target> Body::property_target(ExprId id) {
+  const Expr& expr = tree_[id];
+  const MemberCode& code = property_code(id);
+  if (code.setter == kNoPou) {
+    sema_.error(DiagnosticCode::kPropertyAccess, expr.name.span,
+                quoted_name(expr.name) + " has no SET and cannot be written");
+    return std::nullopt;
+  }
+  if (!sema_.objects.check_access(sema_.pous[code.setter], expr.name)) return std::nullopt;
+  Target out;
+  const ir::TypeId type = sema_.infer(id).type;
+  out.getter = code.getter;
+  out.setter = code.setter;
+  out.receiver = receiver_of(expr);
+  if (types().is_scalar(type)) {
+    out.place.type = type;
+  } else {
+    out.place = temporary_place(type);
+  }
+  return out;
+}
+
+void Body::set_property(const Target& target, std::optional<ir::ValueId> value) {
+  const PouInfo& accessor = sema_.pous[target.setter];
+  const Variable& parameter = sema_.resolve(sema_.objects.value_of(accessor));
+  Receiver receiver = target.receiver;
+  prepare_receiver(accessor, receiver);
+  const ir::Place argument = argument_place(accessor, parameter);
+  if (value) {
+    build_.store(argument, scalar(parameter.type), *value);
+  } else {
+    build_.copy(argument, target.place);
+  }
+  emit_method_call(accessor, receiver);
+}
+
+// What was put together in `target.place` goes to the setter.
+void Body::settle(const Target& target) {
+  if (target.setter == kNoPou || types().is_scalar(target.place.type)) return;
+  set_property(target, std::nullopt);
+}
+
+// `fb.act;` and `act;` call an action, or a method that needs no arguments.
+void Body::bare_call(ExprId id) {
+  const Expr& expr = tree_[id];
+  if (!sema_.objects.names_method(expr)) {
+    if (expr.kind == ExprKind::kMember && sema_.objects.damaged(expr.operand)) return;
+    sema_.error(DiagnosticCode::kNoEffect, expr.span,
+                "this is no statement: nothing is assigned or called",
+                "write `:=` and a value, or `()` to call");
+    return;
+  }
+  Expr call;
+  call.kind = ExprKind::kCall;
+  call.span = expr.span;
+  call.operand = id;
+  const Callee callee = sema_.callee(call);
+  if (callee.kind == Callee::Kind::kMethod) call_function(call, callee, false);
+}
+
+}  // namespace frontend

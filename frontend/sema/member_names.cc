@@ -1,0 +1,123 @@
+// What `x.name` and `name()` mean where blocks, interfaces and bases have members with code.
+#include "frontend/sema/objects.h"
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
+
+}  // namespace
+
+// Quiet for plain names.
+bool Objects::names_method(const Expr& expr) {
+  uint32_t owner = block_of(sema_.current_pou_);
+  if (expr.kind == ExprKind::kName && sema_.find_variable(expr).valid()) return false;
+  if (expr.kind == ExprKind::kMember) {
+    if (sema_.names_list(sema_.tree[expr.operand])) return false;
+    owner = receiver(expr.operand);
+  }
+  return owner != kNoPou && find_code(owner, expr.name.text).code.method != kNoPou;
+}
+
+// Was a message given for it?
+bool Objects::damaged(ExprId id) {
+  return !sema_.names_list(sema_.tree[id]) && !sema_.infer(id).type.valid();
+}
+
+// The method or action of that name; nullopt: there is none. Reports when it may not be used.
+std::optional<Callee> Objects::method_of(uint32_t owner, const Name& name) {
+  if (owner == kNoPou) return std::nullopt;
+  const Found found = find_code(owner, name.text);
+  if (found.code.method == kNoPou) return std::nullopt;
+  Callee callee;
+  if (!check_access(sema_.pous[found.code.method], name)) return callee;
+  callee.kind = Callee::Kind::kMethod;
+  callee.pou = found.code.method;
+  return callee;
+}
+
+// SUPER^()
+Callee Objects::base_body(const Expr& head) {
+  Callee callee;
+  const uint32_t base = super(head.span);
+  if (base == kNoPou) return callee;
+  if (sema_.pous[base].decl->kind == PouKind::kClass) {
+    sema_.error(DiagnosticCode::kNotCallable, head.span,
+                quoted(sema_.pous[base].decl->name) + " is a class and has no body",
+                "call a method of it");
+    return callee;
+  }
+  callee.kind = Callee::Kind::kBase;
+  callee.pou = base;
+  return callee;
+}
+
+// A function or method inside of itself.
+Callee Objects::itself(const Expr& head) {
+  Callee callee;
+  const PouInfo& own = sema_.pous[sema_.current_pou_];
+  if (recursion_depth(*own.decl) == 0) {
+    sema_.error(DiagnosticCode::kRecursiveCall, head.span, quoted(head.name) + " calls itself",
+                "use a loop, or declare how deep it goes: {attribute 'recursion_depth' := '20'}");
+    return callee;
+  }
+  callee.kind = own.owner == kNoPou ? Callee::Kind::kFunction : Callee::Kind::kMethod;
+  callee.pou = sema_.current_pou_;
+  return callee;
+}
+
+// A variable, property or method of an instance, or behind an interface.
+Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
+  const bool own = is_own(sema_.tree[expr.operand]);
+  const PouInfo& block = sema_.pous[owner];
+  if (VarId id = find_variable(owner, expr.name.text); id.valid()) {
+    const Variable& variable = sema_.resolve(id);
+    if (own) {
+      check_access(variable.access, variable.pou, expr.name);
+      return sema_.variable_note(id);
+    }
+    bool open = variable.access == Access::kPublic || variable.access == Access::kInternal;
+    if (variable.section == VarSection::kInput || variable.section == VarSection::kOutput || open) {
+      sema_.variables_[id.index].used = true;
+      check_access(variable.access, variable.pou, expr.name);
+      note.type = variable.type;
+      return note;
+    }
+    sema_.error(DiagnosticCode::kUnknownMember, expr.name.span,
+                quoted(expr.name) + " is private to " + quoted(block.decl->name),
+                "only VAR_INPUT and VAR_OUTPUT are visible outside; declare it there");
+    return {};
+  }
+  if (Found found = find_code(owner, expr.name.text); found.owner != kNoPou) {
+    if (found.code.is_property()) return infer_property(expr.name, found);
+    sema_.error(DiagnosticCode::kNotAValue, expr.name.span,
+                quoted(expr.name) + " is a method of " + quoted(block.decl->name),
+                "call it: `" + std::string(expr.name.text) + "()`");
+    return {};
+  }
+  sema_.error(DiagnosticCode::kUnknownMember, expr.name.span,
+              quoted(block.decl->name) + " has no member " + quoted(expr.name),
+              suggestion(owner, expr.name.text));
+  return {};
+}
+
+// Its result, or what it is given: has the property's name.
+VarId Objects::value_of(const PouInfo& accessor) const {
+  return accessor.names.find(accessor.decl->name.text)->second;
+}
+
+// Read or written: lowering knows which, and checks that there is GET or SET.
+Note Objects::infer_property(const Name& name, const Found& found) {
+  const bool readable = found.code.getter != kNoPou;
+  const PouInfo& accessor = sema_.pous[readable ? found.code.getter : found.code.setter];
+  if (!check_access(accessor, name)) return {};
+  Note note;
+  note.property = found.owner;
+  note.calls = true;
+  note.can_trap = true;
+  note.type = sema_.resolve(value_of(accessor)).type;
+  return note;
+}
+
+}  // namespace frontend

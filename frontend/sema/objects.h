@@ -1,0 +1,106 @@
+// What blocks, programs and interfaces have besides variables: methods, actions and
+// properties; their bases and interfaces; who may use what. Code of a member is a POU of
+// its own in Sema::pous (PouInfo::owner leads back). docs/adr/0006-objects.md.
+//
+// Functions over one Sema, called in this order: collect() with each block, inherit() when
+// all names are known, check() when all interfaces are resolved; the questions at any time
+// after inherit().
+#pragma once
+
+#include "base/diagnostics.h"
+#include "frontend/sema/callee.h"
+#include "frontend/sema/model.h"
+
+namespace frontend {
+
+class Sema;
+using base::DiagnosticCode;
+
+class Objects {
+ public:
+  explicit Objects(Sema& sema) : sema_(sema) {}
+
+  // --- declarations (objects.cc, inheritance.cc, overriding.cc)
+  void collect(uint32_t block);
+  void inherit();
+  void check();
+  // Reports an instance of an ABSTRACT block, alone or in an array.
+  void check_instance(ir::TypeId type, base::SourceSpan span);
+
+  // --- names (objects.cc)
+  // The block or interface around POU `pou`, which may be one itself; kNoPou: none.
+  uint32_t block_of(uint32_t pou) const;
+  // A variable of the block or of its bases that code outside of its body can see.
+  VarId find_variable(uint32_t block, std::string_view name) const;
+  // Of what is called: a POU with a frame has its own parameters only.
+  VarId find_parameter(const PouInfo& callee, std::string_view name) const;
+  // In order of declaration, those of bases first.
+  std::vector<VarId> variables_of(const PouInfo& pou) const;
+  // Invalid for what no source declares.
+  VarId member_variable(const PouInfo& block, uint32_t member) const;
+  struct Found {
+    uint32_t owner = kNoPou;  // kNoPou: there is none
+    MemberCode code;
+  };
+  // A method, action or property of the block, its bases, or the interface and its parents.
+  Found find_code(uint32_t block, std::string_view name) const;
+  // Is `pou` the same as, or derived from, `base`?
+  bool extends(uint32_t pou, uint32_t base) const;
+  std::string suggestion(uint32_t block, std::string_view name) const;
+
+  // --- expressions (receivers.cc)
+  // THIS, THIS^, SUPER, SUPER^: the own instance.
+  bool is_own(const Expr& expr) const;
+  bool is_super(const Expr& expr) const;
+  // The block or interface that the members behind `operand.` are of; kNoPou: it has no such,
+  // or none that could be found out (then a message was given).
+  uint32_t receiver(ExprId operand);
+  // The base of the own block; reports when there is none.
+  uint32_t super(base::SourceSpan span);
+  // May the code that is looked at use this? Reports when not.
+  bool check_access(Access access, uint32_t owner, const Name& name);
+  bool check_access(const PouInfo& method, const Name& name);
+  Note infer_this(const Expr& expr);
+  // "A.B" where POU `pou` is declared, folded; "" outside of all.
+  std::string namespace_of(uint32_t pou) const;
+
+  // --- what names mean (member_names.cc)
+  // Is `expr`, without `()`, a method or action? Quiet for plain names.
+  bool names_method(const Expr& expr);
+  // Was a message given for it?
+  bool damaged(ExprId expr);
+  // The method or action of that name; nullopt: there is none. Reports when it may not be used.
+  std::optional<Callee> method_of(uint32_t owner, const Name& name);
+  Callee base_body(const Expr& head);  // SUPER^()
+  Callee itself(const Expr& head);     // a function or method inside of itself
+  Note infer_member(const Expr& expr, uint32_t owner, Note note);
+  Note infer_property(const Name& name, const Found& found);
+  VarId value_of(const PouInfo& accessor) const;
+
+  // --- calls (recursion.cc)
+  // How deep the POU may call itself, by its attribute; 0: not declared.
+  uint32_t recursion_depth(const PouDecl& decl);
+  void check_recursion();  // after all bodies
+
+ private:
+  void add_member(uint32_t block, const PouDecl& decl);
+  // inheritance.cc
+  void inherit(uint32_t pou, uint32_t depth);
+  uint32_t named_ancestor(const PouInfo& info, SpecId spec, bool interface);
+  bool finish_ancestor(const PouInfo& info, uint32_t ancestor, SpecId spec, uint32_t depth);
+  void set_base(PouInfo& info, uint32_t base, base::SourceSpan span);
+  // overriding.cc
+  void check_names(const PouInfo& info);
+  void check_member(const PouInfo& info, const PouDecl& decl);
+  void check_override(const PouInfo& method, const Found& inherited, uint32_t MemberCode::*slot);
+  bool check_signature(const PouInfo& method, const PouInfo& wanted, DiagnosticCode code);
+  void check_abstract(const PouInfo& info);
+  void check_implements(const PouInfo& info, const PouInfo& interface);
+  bool inherits(const PouInfo& info, const PouInfo& interface) const;
+
+  void report_circle(const std::vector<uint32_t>& path);
+
+  Sema& sema_;
+};
+
+}  // namespace frontend

@@ -1,0 +1,102 @@
+// Whose member is meant: THIS, SUPER, instances, references, interface variables.
+#include "frontend/sema/objects.h"
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
+
+}  // namespace
+
+bool Objects::is_own(const Expr& expr) const {
+  const Expr& head = expr.kind == ExprKind::kDeref ? sema_.tree[expr.operand] : expr;
+  return head.kind == ExprKind::kThis || head.kind == ExprKind::kSuper;
+}
+
+bool Objects::is_super(const Expr& expr) const {
+  const Expr& head = expr.kind == ExprKind::kDeref ? sema_.tree[expr.operand] : expr;
+  return head.kind == ExprKind::kSuper;
+}
+
+uint32_t Objects::receiver(ExprId operand) {
+  const Expr& expr = sema_.tree[operand];
+  if (is_super(expr)) return super(expr.span);
+  const Note& note = sema_.infer(operand);
+  if (!note.type.valid()) return kNoPou;
+  const bool leads = expr.kind == ExprKind::kThis || sema_.is_interface(note.type);
+  const ir::TypeId type = leads ? sema_.program.types[note.type].base : note.type;
+  const PouInfo* pou = sema_.pou_of(type);
+  return pou == nullptr ? kNoPou : pou->number;
+}
+
+// The base of the own block; reports.
+uint32_t Objects::super(base::SourceSpan span) {
+  const uint32_t own = block_of(sema_.current_pou_);
+  const uint32_t base = own == kNoPou ? kNoPou : sema_.pous[own].base;
+  if (base == kNoPou && (own == kNoPou || sema_.pous[own].decl->extends.empty())) {
+    sema_.error(DiagnosticCode::kBadThis, span,
+                own == kNoPou ? std::string("SUPER stands outside of a function block")
+                              : quoted(sema_.pous[own].decl->name) + " has no base",
+                "SUPER is for blocks that are declared with EXTENDS");
+  }
+  return base;
+}
+
+Note Objects::infer_this(const Expr& expr) {
+  const uint32_t own = block_of(sema_.current_pou_);
+  Note note;
+  if (expr.kind == ExprKind::kSuper) {
+    if (super(expr.span) == kNoPou) return {};
+    sema_.error(DiagnosticCode::kBadThis, expr.span, "SUPER is no value",
+                "write SUPER^.member or SUPER^(); THIS refers to the instance");
+    return {};
+  }
+  if (own == kNoPou) {
+    sema_.error(DiagnosticCode::kBadThis, expr.span, "THIS stands outside of a function block",
+                "only code of function blocks, classes and programs has an instance");
+    return {};
+  }
+  note.type = sema_.program.types.pointer(sema_.pous[own].self);
+  return note;
+}
+
+bool Objects::check_access(Access access, uint32_t owner, const Name& name) {
+  const uint32_t own = block_of(sema_.current_pou_);
+  const char* word = nullptr;
+  if (access == Access::kPrivate && own != owner) word = "PRIVATE";
+  if (access == Access::kProtected && !(own != kNoPou && extends(own, owner))) word = "PROTECTED";
+  if (access == Access::kInternal && namespace_of(sema_.current_pou_) != namespace_of(owner)) {
+    word = "INTERNAL";
+  }
+  if (word == nullptr) return true;
+  sema_.error(DiagnosticCode::kNotAccessible, name.span,
+              quoted(name) + " is " + word + " in " + quoted(sema_.pous[owner].decl->name),
+              access == Access::kPrivate     ? "only that block itself uses it"
+              : access == Access::kProtected ? "only blocks that extend that one use it"
+                                             : "only code of the same namespace uses it");
+  return false;
+}
+
+// Of a method without a specifier: PUBLIC, but PROTECTED in the standard (edition 3, 6.6.5).
+bool Objects::check_access(const PouInfo& method, const Name& name) {
+  Access access = method.decl->access;
+  const PouInfo& owner = sema_.pous[method.owner];
+  const bool closed = sema_.options.dialect == Dialect::kIec &&
+                      owner.decl->kind != PouKind::kInterface &&
+                      method.decl->kind != PouKind::kAction;
+  if (access == Access::kDefault && closed) access = Access::kProtected;
+  return check_access(access, method.owner, name);
+}
+
+std::string Objects::namespace_of(uint32_t pou) const {
+  std::string path;
+  if (pou == kNoPou) return path;
+  for (ScopeId at = sema_.pous[pou].decl->scope; sema_.tree.in_namespace(at);
+       at = sema_.tree[at].parent) {
+    path = ir::fold_name(sema_.tree[at].name.text) + (path.empty() ? "" : ".") + path;
+  }
+  return path;
+}
+
+}  // namespace frontend
