@@ -282,6 +282,17 @@ base::Status Evaluator::set_bits(std::string_view path, uint64_t bits) {
   return base::Ok{};
 }
 
+base::Status Evaluator::set_bytes(std::string_view path, std::span<const uint8_t> bytes) {
+  const bool text = impl_->inspector.find_string(path).ok();
+  const base::Result<Address> at =
+      text ? impl_->inspector.find_string(path) : impl_->inspector.find_scalar(path);
+  if (!at.ok()) {
+    return at.error();
+  }
+  impl_->references.bytes().write(*at->root, at->offset, bytes);
+  return base::Ok{};
+}
+
 std::string Evaluator::state() const { return impl_->inspector.state(); }
 
 }  // namespace ir

@@ -1,5 +1,6 @@
 #include "tests/differential/changes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -93,13 +94,14 @@ class Examination {
     }
     old_types_ = rig_->image().types;
     before_ = rig_->leaves();
-    for (const auto& [path, leaf] : before_) {
-      if (old_types_.is_scalar(leaf.symbol.type)) bits_[path] = rig_->scalar_bits(leaf);
-    }
     base::Status changed = rig_->change(second_);
     if (!changed.ok()) return change_refused(changed.error());
     after_ = rig_->leaves();
     check_switch();
+    // The oracle does not know what level an event had.
+    auto event = [](const ir::Task& task) { return task.event != ir::kNoEvent; };
+    const std::vector<ir::Task>& tasks = second_.program.tasks;
+    if (std::any_of(tasks.begin(), tasks.end(), event)) return out_;
     if (!out_.failed) check_run(script.scans_after);
     if (!out_.failed && !trapped_) check_undo();
     return out_;
@@ -125,6 +127,8 @@ class Examination {
     out_.expected = path + "=" + should;
   }
 
+  // A union that became another one begins anew, where members of structures in it have the
+  // places that the running version gives them.
   void check_switch() {
     base::Result<std::unique_ptr<Rig>> cold = Rig::start(second_);
     if (!cold.ok()) {
@@ -135,29 +139,33 @@ class Examination {
     const ir::TypeTable& types = rig_->image().types;
     for (const auto& [path, leaf] : after_) {
       auto old = before_.find(path);
+      const bool shared = leaf.shared || (old != before_.end() && old->second.shared);
+      if (shared && (old == before_.end() || said_moved(path))) continue;
       if (leaf.symbol.constant || old == before_.end()) {
         const std::string& initial = fresh.at(path).value;
         if (leaf.value != initial) wrong("initial value", path, leaf.value, initial);
       } else if (old->second.type == leaf.type) {
         check_kept(path, old->second, leaf);
       } else if (std::optional<std::string> expected =
-                     expected_whole(old_types_, old->second, types, leaf, bits_[path])) {
+                     expected_whole(old_types_, old->second, types, leaf, old->second.bits)) {
         if (leaf.value != *expected) wrong("converted value", path, leaf.value, *expected);
       }
     }
+  }
+
+  // A reference keeps its handle: what that names may have another place, and so another text. So
+  // may the number of an enumeration that has no name.
+  static bool same_value(const ir::TypeTable& types, const Leaf& a, const Leaf& b) {
+    const bool number = a.value.find_first_not_of("-0123456789") == std::string::npos;
+    if (types.is_reference(b.symbol.type) || number) return a.bits == b.bits;
+    return a.value == b.value;
   }
 
   // An enumeration is carried by name, so its text stays too.
   void check_kept(const std::string& path, const Leaf& old, const Leaf& now) {
     if (old.symbol.constant) return;
     const ir::TypeTable& types = rig_->image().types;
-    if (types.is_reference(now.symbol.type)) {
-      // What it names may have another place, and so another text.
-      if (rig_->scalar_bits(now) != bits_[path])
-        wrong("kept reference", path, now.value, old.value);
-    } else if (now.value != old.value) {
-      return wrong("kept value", path, now.value, old.value);
-    }
+    if (!same_value(types, old, now)) return wrong("kept value", path, now.value, old.value);
     if (now.symbol.data != old.symbol.data && !said_moved(path)) {
       wrong("kept place", path, std::to_string(now.symbol.data), std::to_string(old.symbol.data));
     }
@@ -180,9 +188,7 @@ class Examination {
   void check_run(int scans) {
     ir::Evaluator oracle(second_.program, golden::memory_of(rig_->image()));
     for (const auto& [path, leaf] : after_) {
-      bool scalar = rig_->image().types.is_scalar(leaf.symbol.type);
-      base::Status done = scalar ? oracle.set_bits(path, rig_->scalar_bits(leaf))
-                                 : oracle.set_string(path, rig_->string_bytes(leaf));
+      base::Status done = oracle.set_bytes(path, rig_->bytes(leaf));
       if (!done.ok()) return wrong("oracle", path, base::to_string(done.error()), "settable");
     }
     int64_t now_ns = now_ns_;
@@ -221,11 +227,13 @@ class Examination {
     for (const auto& [path, leaf] : rig_->leaves()) {
       auto now = last.find(path);
       const std::string& was = before_.at(path).value;
+      if (leaf.shared || (now != last.end() && now->second.shared)) continue;
       if (now == last.end() || leaf.symbol.constant) {
         if (leaf.value != was) wrong("undo of dropped", path, leaf.value, was);
       } else if (now->second.value == after_.at(path).value) {
         if (leaf.value != was) wrong("undo of unwritten", path, leaf.value, was);
-      } else if (now->second.type == leaf.type && leaf.value != now->second.value) {
+      } else if (now->second.type == leaf.type &&
+                 !same_value(rig_->image().types, now->second, leaf)) {
         wrong("undo of kept", path, leaf.value, now->second.value);
       }
     }
@@ -237,7 +245,6 @@ class Examination {
   ir::TypeTable old_types_;
   Leaves before_;
   Leaves after_;
-  std::map<std::string, uint64_t> bits_;
   int64_t period_ns_ = 0;
   int64_t now_ns_ = 0;
   bool trapped_ = false;

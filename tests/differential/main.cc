@@ -70,7 +70,7 @@ class Case {
       : seed_(seed),
         options_(options),
         script_(differential::change_script(seed)),
-        first_(differential::random_program(seed, !options.changes)),
+        first_(differential::random_program(seed, true)),
         second_(options.changes ? differential::edited(first_, seed) : Program()) {}
 
   Finding examine() const { return examine(first_, second_); }

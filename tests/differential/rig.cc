@@ -1,5 +1,6 @@
 #include "tests/differential/rig.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace differential {
@@ -53,8 +54,22 @@ Leaves Rig::leaves() const {
   const ir::Image& now = controller_->image();
   std::span<const uint8_t> memory = controller_->memory().view();
   ir::for_each_leaf(now, [&](const std::string& path, const ir::Symbol& symbol) {
-    out[path] = {symbol, now.types.text(symbol.type), ir::format_value(now, symbol, memory)};
+    Leaf& leaf = out[path];
+    leaf = {symbol, now.types.text(symbol.type), ir::format_value(now, symbol, memory), 0};
+    if (now.types.is_scalar(symbol.type)) leaf.bits = scalar_bits(leaf);
   });
+  std::map<std::string, bool> overlapping;
+  for (auto& [path, leaf] : out) {
+    for (size_t end = path.find_last_of(".["); end != std::string::npos && end > 0 && !leaf.shared;
+         end = path.find_last_of(".[", end - 1)) {
+      auto [known, fresh] = overlapping.try_emplace(path.substr(0, end), false);
+      if (fresh) {
+        base::Result<ir::Symbol> whole = ir::find_symbol(now, known->first);
+        known->second = whole.ok() && now.types.overlaps(whole->type);
+      }
+      leaf.shared = known->second;
+    }
+  }
   return out;
 }
 
@@ -62,16 +77,9 @@ std::string Rig::state() const {
   return ir::state_text(controller_->image(), controller_->memory().view());
 }
 
-std::string Rig::string_bytes(const Leaf& leaf) const {
-  const ir::Type& type = image().types[leaf.symbol.type];
-  size_t unit = type.kind == ir::Kind::kWstring ? 2 : 1;
-  const uint8_t* data = controller_->memory().data() + leaf.symbol.data;
-  size_t length = 0;
-  while (length < type.capacity &&
-         (data[length * unit] != 0 || (unit == 2 && data[length * 2 + 1] != 0))) {
-    ++length;
-  }
-  return {reinterpret_cast<const char*>(data), length * unit};
+std::span<const uint8_t> Rig::bytes(const Leaf& leaf) const {
+  return controller_->memory().view().subspan(leaf.symbol.data,
+                                              image().layouts[leaf.symbol.type].size);
 }
 
 uint64_t Rig::scalar_bits(const Leaf& leaf) const {

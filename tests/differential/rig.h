@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct Leaf {
   ir::Symbol symbol;
   std::string type;
   std::string value;
+  uint64_t bits = 0;    // of a scalar
+  bool shared = false;  // inside a union
 };
 using Leaves = std::map<std::string, Leaf>;
 
@@ -31,9 +34,9 @@ class Rig {
   const online_change::Plan& plan() const { return change_->plan(); }
   Leaves leaves() const;
   std::string state() const;
-  // Bytes of a string without its terminator, or a scalar's bits as in ir::ConstValue.
-  std::string string_bytes(const Leaf& leaf) const;
+  // As in ir::ConstValue.
   uint64_t scalar_bits(const Leaf& leaf) const;
+  std::span<const uint8_t> bytes(const Leaf& leaf) const;
   const ir::Image& image() const { return controller_->image(); }
 
  private:
