@@ -62,27 +62,37 @@ class PathReader {
     return text;
   }
 
+  // The name behind a dot, which stays to be read.
+  std::string_view next_name() {
+    if (at_ >= path_.size() || path_[at_] != '.') return {};
+    const size_t dot = at_++;
+    const std::string_view text = name();
+    at_ = dot;
+    return text;
+  }
+
   base::Status read_root(Symbol& symbol) {
     const std::string_view text = name();
+    // Globals that are visible as `List.x` only have that name, and so have static variables: a
+    // program may be called as its instance is.
+    const std::string_view next = next_name();
+    const std::string both = std::string(text) + "." + std::string(next);
+    const bool listed = !next.empty() && image_.types.find_member(image_.globals, both) >= 0;
     for (uint32_t id = 1; id < image_.instances.size(); ++id) {
       const Instance& row = image_.instances[id];
       const bool program = row.live && image_.types.is_instance(row.type) &&
                            image_.types[row.type].kind == Kind::kProgram;
-      if (program && same_name(row.name, text)) {
-        symbol.data = row.data;
-        symbol.type = row.type;
-        return base::Ok{};
-      }
+      if (!program || !same_name(row.name, text)) continue;
+      if (listed && image_.types.find_member(row.type, next) < 0) break;
+      symbol.data = row.data;
+      symbol.type = row.type;
+      return base::Ok{};
     }
     symbol.type = image_.globals;
     symbol.data = image_.instances.empty() ? 0 : image_.instances[0].data;
-    // Globals that are visible as `List.x` only have that name.
-    const bool known = image_.types.find_member(symbol.type, text) >= 0;
-    if (!known && at_ < path_.size() && path_[at_] == '.') {
-      const size_t list = at_++;
-      const std::string both = std::string(text) + "." + std::string(name());
-      if (image_.types.find_member(symbol.type, both) >= 0) return step_to(symbol, both, "");
-      at_ = list;
+    if (listed && image_.types.find_member(symbol.type, text) < 0) {
+      at_ += 1 + next.size();
+      return step_to(symbol, both, "");
     }
     return step_to(symbol, text, "is neither a program nor a global variable");
   }
