@@ -7,7 +7,7 @@
 
 namespace frontend::formatting {
 
-Outline outline(const Text& text) { return Outliner(text).run(); }
+Outline outline(const Text& text, uint32_t indent) { return Outliner(text, indent).run(); }
 
 Outline Outliner::run() {
   blocks_.push_back({});
@@ -48,7 +48,7 @@ void Outliner::follow_conditions() {
 void Outliner::push(TokenKind end, BlockKind kind, uint32_t inner) {
   const Line& line = out_.lines.back();
   uint32_t head = static_cast<uint32_t>(out_.lines.size()) - 1;
-  blocks_.push_back({end, kind, line.level, inner, next_id_++, head, false});
+  blocks_.push_back({end, kind, line.level, inner, next_id_++, head, 0, false, false});
 }
 
 // The line of tokens [at_, end), at least one.

@@ -1,5 +1,7 @@
 #include "frontend/format/format.h"
 
+#include <algorithm>
+
 #include "base/limits.h"
 #include "frontend/format/same_program.h"
 #include "frontend/format/writer.h"
@@ -30,7 +32,7 @@ uint32_t copy_errors(const base::Diagnostics& from, base::Diagnostics& to) {
 std::string laid_out(const base::SourceMap& sources, uint32_t file, const TokenList& tokens,
                      const FormatOptions& options) {
   formatting::Text text(sources, file, tokens);
-  formatting::Outline outline = formatting::outline(text);
+  formatting::Outline outline = formatting::outline(text, options.indent);
   formatting::Rows rows = formatting::Writer(text, outline, options).run();
   return formatting::align(rows, options, text);
 }
@@ -58,7 +60,22 @@ base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,
   parse(sources, file, tree, found);
   uint32_t errors = copy_errors(found, diagnostics);
   if (errors != 0) return errors_in(sources, file, errors);
-  return format_tokens(sources, file, options, diagnostics);
+  auto formatted = format_tokens(sources, file, options, diagnostics);
+  auto of_list = [](const auto& node) { return node.instruction; };
+  bool rows_count = std::any_of(tree.stmts.begin(), tree.stmts.end(), of_list) ||
+                    std::any_of(tree.exprs.begin(), tree.exprs.end(), of_list);
+  if (!formatted.ok() || !rows_count) return formatted;
+  // The ends of rows are part of an instruction list, and no token shows them.
+  base::SourceMap result;
+  result.add(std::string(sources.file_name(file)), *formatted);
+  base::Diagnostics other;
+  Tree after;
+  parse(result, 0, after, other);
+  if (print(after) == print(tree)) return formatted;
+  return base::Error{base::Refusal::kInternal,
+                     std::string(sources.file_name(file)) +
+                         ": formatting would have changed an instruction list; the text was left "
+                         "as it is"};
 }
 
 }  // namespace frontend

@@ -57,7 +57,9 @@ void Layout::write(const Line& line) {
   break_wanted_ = false;
   choose_marks(line);
   size_t rows_before = rows_.rows.size();
-  if (line.kind == LineKind::kCondition) {
+  if (line.kind == LineKind::kInstruction) {
+    instruction(line);
+  } else if (line.kind == LineKind::kCondition) {
     condition(line);
   } else if (line.label_end != 0) {
     range_flat(line.first, line.end);
@@ -83,6 +85,7 @@ void Layout::write(const Line& line) {
 // In front of AT, `:` and `:=` of a declaration, the `:=` of a statement, a label's statement.
 void Layout::choose_marks(const Line& line) {
   for (uint32_t& token : marked_) token = 0;
+  if (line.kind == LineKind::kInstruction) return;
   marked_[0] = line.label_end;
   bool declaration = line.kind == LineKind::kDeclaration && options_.align_declarations;
   bool statement = line.kind == LineKind::kStatement && options_.align_assignments;
@@ -109,6 +112,37 @@ void Layout::condition(const Line& line) {
   range(inner);
   if (closing && !one_row) request_break(base, base + 2 * options_.indent, false);
   range_flat(end, line.end);
+}
+
+// label: OPERATOR operand. Longer words only push what follows them in their row.
+void Layout::instruction(const Line& line) {
+  constexpr uint32_t kOperatorColumns = 6;
+  uint32_t first = line.label_end != 0 ? line.label_end : line.first;
+  uint32_t base = columns_of(line.level + line.label_levels);
+  auto pad_to = [&](uint32_t i, uint32_t column) {
+    if (text_.gap(i).count != 0) return;
+    uint32_t used = row().indent + row().width;
+    put(std::string(used < column ? column - used : 1, ' '));
+    blank_[i - first_] = false;
+  };
+  for (uint32_t i = line.first + 1; i < first; ++i) {
+    if (text_.kind(i) == TokenKind::kColon) blank_[i - first_] = false;
+  }
+  range_flat(line.first, first);
+  if (first != line.first) pad_to(first, base);
+  uint32_t operand = line.operand != 0 ? line.operand : line.end;
+  for (uint32_t i = first + 1; i < operand; ++i) {  // `&N`, `AND(`
+    bool deferred = i == first + 1 && text_.kind(i) == TokenKind::kLeftParen;
+    if (line.operand != 0 || deferred) blank_[i - first_] = false;
+  }
+  range_flat(first, line.operand != 0 ? operand : first);
+  if (line.operand != 0) pad_to(operand, base + kOperatorColumns);
+  bool sign = text_.kind(operand) == TokenKind::kMinus || text_.kind(operand) == TokenKind::kPlus;
+  if (sign && operand + 1 < line.end) blank_[operand + 1 - first_] = false;
+  uint32_t rest = line.operand != 0 ? operand : first;
+  // Only brackets may be broken: the row is the instruction.
+  if (line.one_row || loosest(rest, line.end) != Binding::kNone) return range_flat(rest, line.end);
+  range({rest, line.end, base, 0});
 }
 
 void Layout::range(Range range) {

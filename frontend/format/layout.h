@@ -53,6 +53,7 @@ class Layout {
   void range(Range range);
   void range_flat(uint32_t first, uint32_t end);
   void condition(const Line& line);
+  void instruction(const Line& line);
   void token(uint32_t i);
   void request_break(uint32_t indent, uint32_t comment_indent, bool blank_allowed);
   // gaps.cc

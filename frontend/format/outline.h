@@ -12,11 +12,12 @@ namespace frontend::formatting {
 enum class LineKind : uint8_t {
   kStatement,
   kDeclaration,
-  kCondition,  // IF ... THEN, CASE ... OF, UNTIL ...: a word, an expression, a word
-  kHead,       // opens a block
-  kEnd,        // closes one
-  kLabel,      // of a CASE branch or a jump
-  kVerbatim,   // an instruction list
+  kCondition,    // IF ... THEN, CASE ... OF, UNTIL ...: a word, an expression, a word
+  kHead,         // opens a block
+  kEnd,          // closes one
+  kLabel,        // of a CASE branch or a jump
+  kInstruction,  // of an instruction list; ends with its row
+  kVerbatim,     // the same, with instructions in an argument
 };
 
 struct Line {
@@ -27,7 +28,10 @@ struct Line {
   uint32_t block = 0;          // the block that it stands in, to tell neighbours
   uint32_t row_end = 0;        // head of a block that stood in one row: the line that ends it
   uint32_t label_end = 0;      // a label with its statement: first token behind the label
+  uint32_t operand = 0;        // kInstruction: its first operand; 0: there is none
+  uint32_t label_levels = 0;   // kInstruction with a label: from its column to the operator's
   LineKind kind = LineKind::kStatement;
+  bool one_row = false;   // kInstruction: its brackets are not broken either
   bool closes = false;    // no blank line in front of it
   bool opens = false;     // no blank line behind it
   bool ends_pou = false;  // always a blank line behind it
@@ -38,6 +42,7 @@ struct Outline {
   std::vector<bool> soft_keywords;  // by token: a name elsewhere, a keyword here
 };
 
-Outline outline(const Text& text);
+// `indent`: columns of a level.
+Outline outline(const Text& text, uint32_t indent);
 
 }  // namespace frontend::formatting

@@ -11,7 +11,7 @@ namespace frontend::formatting {
 
 class Outliner {
  public:
-  explicit Outliner(const Text& text) : text_(text) {
+  Outliner(const Text& text, uint32_t indent) : text_(text), indent_(indent) {
     out_.soft_keywords.resize(text.token_count());
     out_.lines.reserve(text.token_count() / 6 + 8);
   }
@@ -25,7 +25,9 @@ class Outliner {
     uint32_t outer = 0;  // level of its head
     uint32_t inner = 0;
     uint32_t id = 0;
-    uint32_t head = 0;  // line
+    uint32_t head = 0;          // line
+    uint32_t label_levels = 0;  // of an instruction list: what its labels take
+    bool instructions = false;
     bool pou = false;
   };
 
@@ -70,8 +72,15 @@ class Outliner {
   void until();
   bool exception_handling();
   bool case_label();
-  bool instruction_list();
   void simple_statement();
+
+  // --- instructions.cc
+  bool instruction_list();
+  void instruction();
+  uint32_t label_levels() const;
+  uint32_t behind_labels(uint32_t i) const;
+  uint32_t behind_row(uint32_t i, bool& nested) const;
+  bool is_deferred(uint32_t i) const;
 
   // --- declarations.cc
   bool declaration_block();
@@ -82,6 +91,7 @@ class Outliner {
   void mark_declaration_words(uint32_t from, uint32_t end);
 
   const Text& text_;
+  uint32_t indent_;
   Outline out_;
   std::vector<Block> blocks_;
   std::vector<std::vector<Block>> conditions_;  // blocks open at each open {IF ...}

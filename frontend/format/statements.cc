@@ -13,8 +13,9 @@ void Outliner::statement_level() {
       return;
     }
   }
+  if (instruction_list()) return;
   if (declaration_block() || head() || control() || soft_head() || exception_handling() ||
-      case_label() || instruction_list()) {
+      case_label()) {
     return;
   }
   simple_statement();
@@ -132,25 +133,6 @@ bool Outliner::case_label() {
   bool branch_label = in_case && top().inner != top().outer + 1;
   Line& line = add(LineKind::kLabel, i + 1, branch_label ? top().outer + 1 : top().inner);
   line.opens = true;
-  return true;
-}
-
-// An instruction list stays as it is: its lines mean something, and columns are a matter of taste.
-bool Outliner::instruction_list() {
-  if (top().kind != BlockKind::kBody || !is_name(kind())) return false;
-  static constexpr std::string_view kFirst[] = {"LD", "LDN", "CAL", "CALC", "CALCN", "NOP"};
-  bool operation = false;
-  for (std::string_view word : kFirst) operation = operation || text_.is_word(at_, word);
-  TokenKind operand = kind(1);
-  bool follows = is_name(operand) || operand == TokenKind::kInteger ||
-                 operand == TokenKind::kReal || operand == TokenKind::kDirect ||
-                 operand == TokenKind::kTrue || operand == TokenKind::kFalse ||
-                 operand == TokenKind::kTypePrefix || operand == TokenKind::kDuration ||
-                 operand == TokenKind::kDate || operand == TokenKind::kString;
-  if (!operation || !follows) return false;
-  uint32_t i = at_ + 1;
-  while (text_.kind(i) != TokenKind::kEnd && !is_block_end(text_.kind(i))) ++i;
-  add(LineKind::kVerbatim, i, top().inner);
   return true;
 }
 

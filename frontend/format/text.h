@@ -9,6 +9,7 @@
 
 #include "base/source.h"
 #include "frontend/lex/lexer.h"
+#include "frontend/parse/il_operators.h"
 
 namespace frontend::formatting {
 
@@ -53,6 +54,7 @@ class Text {
   std::string_view piece_text(const Piece& piece) const {
     return text_.substr(piece.begin, piece.end - piece.begin);
   }
+  IlTokens il_tokens() const { return {tokens_.data(), tokens_.size(), text_, base_, false}; }
   // Is token `i` the word `upper`, without regard to case?
   bool is_word(uint32_t i, std::string_view upper) const;
   bool has_byte_order_mark() const { return mark_; }

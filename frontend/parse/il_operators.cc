@@ -124,23 +124,26 @@ bool IlTokens::is_instruction(size_t i) const {
   if (op == nullptr) return false;
   const Token& next = at(i + 1);
   bool alone = op->action == IlAction::kReturn || op->action == IlAction::kNot;
+  if (alone && !rows_count) return is_name(next.kind) || is_statement_boundary(next.kind);
   if (alone) return next.kind == TokenKind::kEnd || begins_row(i + 1);
-  if (begins_row(i + 1)) return false;
+  if (rows_count && begins_row(i + 1)) return false;
   if (op->action == IlAction::kBinary && next.kind == TokenKind::kLeftParen) return true;
-  // `JMP done;` is Structured Text.
-  if (op->action == IlAction::kJump && at(i + 2).kind == TokenKind::kSemicolon) return false;
+  // `r REF= x;` and `JMP done;` are Structured Text.
+  const Token& third = at(i + 2);
+  if (third.kind == TokenKind::kEqual) return false;
+  if (op->action == IlAction::kJump && third.kind == TokenKind::kSemicolon) return false;
   return begins_operand(next.kind);
 }
 
 bool IlTokens::is_instruction_list(size_t i) const {
   while (is_name(at(i).kind) && at(i + 1).kind == TokenKind::kColon) i += 2;
   if (is_instruction(i) && at(i + 1).kind != TokenKind::kLeftParen) return true;
-  if (!is_name(at(i).kind)) return false;
+  if (is_statement_boundary(at(i).kind) || (rows_count && !is_name(at(i).kind))) return false;
   constexpr size_t kLongestCall = 400;  // tokens
   uint32_t depth = 0;
   for (size_t next = i + 1; next < count && next < i + kLongestCall; ++next) {
     TokenKind kind = at(next).kind;
-    if (depth == 0 && begins_row(next) && is_instruction(next)) return true;
+    if (depth == 0 && (!rows_count || begins_row(next)) && is_instruction(next)) return true;
     if (kind == TokenKind::kLeftParen) ++depth;
     if (kind == TokenKind::kRightParen && depth > 0) --depth;
     if (is_statement_boundary(kind) || kind == TokenKind::kSemicolon ||

@@ -43,6 +43,9 @@ struct IlTokens {
   size_t count;
   std::string_view text;
   uint32_t base;  // SourcePos of the text's beginning
+  // False: for the formatter, whose decision must not depend on what it changes. It then takes
+  // more for instructions, but nothing that could be a statement.
+  bool rows_count = true;
 
   const Token& at(size_t i) const { return tokens[i < count ? i : count - 1]; }
   std::string_view word(size_t i) const { return text.substr(at(i).begin - base, at(i).length); }
