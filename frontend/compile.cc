@@ -57,6 +57,7 @@ std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& so
   sema.collect();
   sema.resolve_declarations();
   sema.configure();
+  sema.objects.add_start();
   // Grows while bodies use functions in new instances.
   for (uint32_t pou = 0; pou < sema.pous.size(); ++pou) {
     if (sema.pous[pou].id.valid()) Body(sema, pou).run();

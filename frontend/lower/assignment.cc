@@ -6,6 +6,10 @@ namespace frontend {
 
 void Body::assign(const Stmt& stmt) {
   if (stmt.assign == AssignOp::kReference) return bind_reference(stmt);
+  if (stmt.assign == AssignOp::kAttempt) {
+    attempt(stmt.target, stmt.value, stmt.span);
+    return;
+  }
   if (stmt.assign == AssignOp::kSet || stmt.assign == AssignOp::kReset) {
     if (!stmt.instruction) {
       allow_set_or_reset(stmt.span);
@@ -75,6 +79,9 @@ ir::ValueId Body::emit_assignment(const Expr& expr) {
   if (expr.assign == AssignOp::kSet || expr.assign == AssignOp::kReset) {
     allow_set_or_reset(expr.span);
     return set_or_reset(expr.assign, expr.operand, expr.right, expr.span);
+  }
+  if (expr.assign == AssignOp::kAttempt) {
+    return attempt(expr.operand, expr.right, expr.span).handle;
   }
   auto to = assign_value(expr.operand, expr.right, expr.span);
   return to ? load(*to) : zero(sema_.infer(expr.operand).type);

@@ -38,7 +38,9 @@ void Body::run() {
   if (sema_.for_tests() && decl.kind == PouKind::kProgram) activate_mock_bodies();
   if (info_.setup != nullptr) statements(info_.setup->body);
   if (!info_.connections.empty()) exit_ = build_.new_block();
-  if (decl.chart != kNoChart) {
+  if (info_.constructs) {
+    start_code();
+  } else if (decl.chart != kNoChart) {
     chart_body(tree_.charts[decl.chart]);
   } else if (info_.teardown != nullptr) {
     try_finally([&] { statements(decl.body); }, info_.teardown->body, decl.span);

@@ -279,7 +279,7 @@ class Body {
   ir::Place call_place(const Expr& expr, const Callee& callee, ir::TypeId type);
   ir::ValueId emit_conversion(const Expr& expr, const Conversion& conversion);
 
-  // --- methods and properties (method.cc)
+  // --- methods, properties, type tests (method.cc, type_test.cc)
   Receiver receiver_of(const Expr& head);
   bool is_virtual(const PouInfo& method, const Receiver& receiver) const;
   void prepare_receiver(const PouInfo& method, Receiver& receiver);
@@ -291,6 +291,19 @@ class Body {
   void set_property(const Target& target, std::optional<ir::ValueId> value);
   void settle(const Target& target);
   void bare_call(ExprId id);
+  std::optional<ir::ValueId> object_handle(ExprId id);
+  Attempt attempt(ExprId left, ExprId right, base::SourceSpan span);
+
+  // --- __START (start.cc)
+  void start_code();
+  void start_variable(VarId id);
+  void start_value(const ir::Place& at, ir::TypeId type, const Spec* spec);
+  void start_elements(const ir::Place& at, ir::TypeId type, const Spec* spec);
+  void start_loop(const ir::Place& at, const std::vector<ir::Dimension>& dims, size_t number,
+                  ir::TypeId element, const Spec* spec);
+  void start_instance(const ir::Place& at, ir::TypeId type, Range32 args);
+  void call_init(const ir::Place& at, const PouInfo& init, Range32 args);
+  bool bind_init(const Expr& call, const PouInfo& init, std::vector<Binding>& bindings);
 
   // --- tests (test_call.cc, mock.cc)
   void test_call(const Expr& call, const TestCallRow& row);
@@ -374,7 +387,8 @@ class Body {
   std::vector<VarId> for_variables_;
   std::unordered_map<uint32_t, ir::ValueId> result_values_;  // by number of the kResult
   std::unordered_map<uint32_t, ir::Place> result_places_;
-  bool evaluating_ = false;  // inside evaluate(): names stand for their initial values
+  base::SourceSpan start_span_;  // of the variable that __START constructs
+  bool evaluating_ = false;      // inside evaluate(): names stand for their initial values
   static constexpr uint32_t kNoLocal = 0xffffffffu;
   std::array<uint32_t, 3> message_buffers_{kNoLocal, kNoLocal, kNoLocal};
   // Where the last line was found; positions mostly go forward.

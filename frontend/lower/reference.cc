@@ -123,6 +123,8 @@ void Body::bind_reference(const Stmt& stmt) {
 ir::ValueId Body::emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own) {
   const ExprId argument = tree_.args[expr.args.first].value;
   switch (call) {
+    case ReferenceCall::kQuery:
+      return attempt(tree_.args[expr.args.first + 1].value, argument, expr.span).fits;
     case ReferenceCall::kSizeof:
       return machine_convert(build_.size_of(sema_.type_of_argument(argument)), ir::Scalar::kU32,
                              scalar(own));

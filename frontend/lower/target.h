@@ -21,6 +21,12 @@ struct Receiver {
   bool fixed = false;  // SUPER: the base's method, whatever overrides it
 };
 
+// What came of a type test: whether the instance is what was wanted, and what is stored.
+struct Attempt {
+  ir::ValueId fits;
+  ir::ValueId handle;
+};
+
 // Something that can be assigned: a place, a character of a string place, or some bits of either.
 struct Target {
   ir::Place place;

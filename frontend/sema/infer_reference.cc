@@ -13,7 +13,9 @@ constexpr Named kCalls[] = {{"ADR", ReferenceCall::kAdr},
                             {"REF", ReferenceCall::kRef},
                             {"SIZEOF", ReferenceCall::kSizeof},
                             {"XSIZEOF", ReferenceCall::kSizeof},
-                            {"__ISVALIDREF", ReferenceCall::kIsValid}};
+                            {"__ISVALIDREF", ReferenceCall::kIsValid},
+                            {"__QUERYINTERFACE", ReferenceCall::kQuery},
+                            {"__QUERYPOINTER", ReferenceCall::kQuery}};
 
 ir::Kind reference_kind(SpecKind kind) {
   switch (kind) {
@@ -93,11 +95,16 @@ Note Sema::infer_pointer_index(const Expr& expr, const Note& operand) {
 }
 
 Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
-  const bool given = expr.args.count == 1 && tree.args[expr.args.first].value.valid() &&
-                     !tree.args[expr.args.first].output;
+  const uint32_t wanted = call == ReferenceCall::kQuery ? 2 : 1;
+  bool given = expr.args.count == wanted;
+  for (uint32_t i = 0; i < wanted && given; ++i) {
+    const Arg& arg = tree.args[expr.args.first + i];
+    given = arg.value.valid() && !arg.output;
+  }
   if (!given) {
     error(DiagnosticCode::kWrongArgumentCount, expr.span,
-          "`" + std::string(tree[expr.operand].name.text) + "` takes one argument");
+          "`" + std::string(tree[expr.operand].name.text) + "` takes " +
+              (wanted == 1 ? "one argument" : "two arguments"));
     return {};
   }
   const ExprId argument = tree.args[expr.args.first].value;
@@ -113,6 +120,11 @@ Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
   note.calls = operand.calls;
   note.can_trap = operand.can_trap;
   switch (call) {
+    case ReferenceCall::kQuery:
+      infer(tree.args[expr.args.first + 1].value);
+      note.calls = true;
+      note.type = program.types.elementary(ir::Kind::kBool);
+      return note;
     case ReferenceCall::kAdr:
       note.type = program.types.pointer(operand.type);
       note.flex = Flex::kNull;

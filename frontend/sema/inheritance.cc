@@ -46,18 +46,23 @@ uint32_t Objects::named_ancestor(const PouInfo& info, SpecId spec, bool interfac
 
 // Is what `info` is about to inherit from finished? Reports circles and endless chains.
 bool Objects::finish_ancestor(const PouInfo& info, uint32_t ancestor, SpecId spec, uint32_t depth) {
-  if (depth >= base::kMaxNesting) {
-    sema_.error(DiagnosticCode::kTooDeep, sema_.tree[spec].span,
-                "more than " + std::to_string(base::kMaxNesting) + " bases behind each other");
-    return false;
+  uint32_t length = depth + 1;
+  if (depth < base::kMaxNesting) {
+    inherit(ancestor, depth + 1);
+    if (sema_.pous[ancestor].inheritance != Progress::kDone) {
+      sema_.error(
+          DiagnosticCode::kBadBase, sema_.tree[spec].span,
+          quoted(info.decl->name) + " extends itself" +
+              (ancestor == info.number ? std::string()
+                                       : ", through " + quoted(sema_.pous[ancestor].decl->name)));
+      return false;
+    }
+    length = 1;
+    for (uint32_t at = ancestor; at != kNoPou; at = sema_.pous[at].base) ++length;
   }
-  inherit(ancestor, depth + 1);
-  if (sema_.pous[ancestor].inheritance == Progress::kDone) return true;
-  sema_.error(
-      DiagnosticCode::kBadBase, sema_.tree[spec].span,
-      quoted(info.decl->name) + " extends itself" +
-          (ancestor == info.number ? std::string()
-                                   : ", through " + quoted(sema_.pous[ancestor].decl->name)));
+  if (length <= base::kMaxNesting) return true;
+  sema_.error(DiagnosticCode::kTooDeep, sema_.tree[spec].span,
+              "more than " + std::to_string(base::kMaxNesting) + " bases behind each other");
   return false;
 }
 

@@ -177,6 +177,8 @@ struct PouInfo {
   std::vector<uint32_t> interfaces;  // IMPLEMENTS of a block, EXTENDS of an interface
   uint32_t inherited = 0;            // members of the instance that are the base's
   Progress inheritance = Progress::kNew;
+  uint32_t start = kNoPou;          // its method __START, where members need one
+  bool constructs = false;          // a __START itself
   NameMap<MemberCode> code;         // its own methods, actions and properties
   std::vector<uint32_t> overrides;  // of a method: what a virtual call of it may run instead
   NameMap<VarId> names;

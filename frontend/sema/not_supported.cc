@@ -8,10 +8,7 @@ namespace {
 const char* spec_feature(const Spec& spec) {
   switch (spec.kind) {
     case SpecKind::kNamed:
-      if (spec.has_args) return "arguments of FB_Init are";
       return spec.qualifiers.count != 0 ? "types of a namespace or library are" : nullptr;
-    case SpecKind::kArray:
-      return spec.element_args.count != 0 ? "arguments of FB_Init are" : nullptr;
     default:
       return nullptr;
   }
@@ -26,7 +23,7 @@ const char* assign_feature(AssignOp op) {
     case AssignOp::kReset:
       return nullptr;
     case AssignOp::kAttempt:
-      return "the assignment attempt ?= is";
+      return nullptr;
   }
   return nullptr;
 }

@@ -95,8 +95,10 @@ Objects::Found Objects::find_code(uint32_t block, std::string_view name) const {
     const PouInfo& info = sema_.pous[at];
     if (auto own = info.code.find(name); own != info.code.end()) return {at, own->second};
     if (info.decl->kind != PouKind::kInterface) continue;
-    for (uint32_t parent : info.interfaces) {
-      if (Found found = find_code(parent, name); found.owner != kNoPou) return found;
+    for (ir::TypeId parent : sema_.program.types[info.self].interfaces) {  // all, each once
+      const PouInfo& other = *sema_.pou_of(parent);
+      auto found = other.code.find(name);
+      if (found != other.code.end()) return {other.number, found->second};
     }
   }
   return {};

@@ -14,6 +14,7 @@
 namespace frontend {
 
 class Sema;
+inline constexpr std::string_view kFbInit = "FB_Init";
 using base::DiagnosticCode;
 
 class Objects {
@@ -77,6 +78,14 @@ class Objects {
   Note infer_property(const Name& name, const Found& found);
   VarId value_of(const PouInfo& accessor) const;
 
+  // --- FB_Init (start.cc)
+  // After configure(): adds the code that runs once.
+  void add_start();
+  // Does a variable of this type need anything at the start?
+  bool starts(ir::TypeId type);
+  // What the program __START begins with: globals, then programs.
+  const std::vector<VarId>& start_globals() const { return start_globals_; }
+
   // --- calls (recursion.cc)
   // How deep the POU may call itself, by its attribute; 0: not declared.
   uint32_t recursion_depth(const PouDecl& decl);
@@ -99,8 +108,16 @@ class Objects {
   bool inherits(const PouInfo& info, const PouInfo& interface) const;
 
   void report_circle(const std::vector<uint32_t>& path);
+  // start.cc
+  void check_start_arguments();
+  bool has_members_to_start(const PouInfo& info);
+  void add_start_method(uint32_t block);
+  VarId program_global(const std::string& name, const PouInfo& program);
+  void add_start_program();
 
   Sema& sema_;
+  std::unordered_map<ir::TypeId, bool> starts_;
+  std::vector<VarId> start_globals_;
 };
 
 }  // namespace frontend

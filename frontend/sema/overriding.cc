@@ -81,6 +81,8 @@ void Objects::check_member(const PouInfo& info, const PouDecl& decl) {
                 quoted(decl.name) + " is ABSTRACT, but " + quoted(info.decl->name) + " is not",
                 "declare the block ABSTRACT, or give the method a body");
   }
+  // Each block has its own; nothing calls it virtually.
+  if (ir::same_name(decl.name.text, kFbInit)) return;
   const Found inherited = find_code(info.base, decl.name.text);
   if (inherited.owner != kNoPou) return check_override(method, inherited, slot);
   if (!decl.is_override) return;

@@ -13,6 +13,7 @@ enum class ReferenceCall : uint8_t {
   kRef,      // REF(x): REF_TO the type of x
   kSizeof,   // SIZEOF(x), SIZEOF(Type): bytes
   kIsValid,  // __ISVALIDREF(r): refers to something that is there
+  kQuery,    // __QUERYINTERFACE(x, i), __QUERYPOINTER(x, p): i ?= x, and whether it fits
 };
 
 // Without case.

@@ -160,3 +160,29 @@ expect 1 stc test teardown_test.st
 said '1 passed, 1 failed, 1 stopped by a trap'
 said 'teardown_test.st:4: division or MOD by zero'
 said 'teardown_test.st:11: the teardown saw 5'
+
+# Methods, FB_Init with arguments, calls through references to a base, mocks of derived blocks.
+cat >objects_test.st <<'ST'
+FUNCTION_BLOCK Pump
+VAR_INPUT run : BOOL; END_VAR
+VAR_OUTPUT speed : INT; END_VAR
+VAR start : INT; END_VAR
+METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; s : INT; END_VAR start := s; END_METHOD
+METHOD Stop speed := 0; END_METHOD
+IF run THEN speed := start; END_IF
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Turbo EXTENDS Pump
+METHOD OVERRIDE Stop speed := -1; END_METHOD
+SUPER^();
+END_FUNCTION_BLOCK
+TEST 'methods'
+VAR uut : Turbo(10); plain : Pump(3); r : REFERENCE TO Pump; END_VAR
+uut(run := TRUE); ASSERT_EQ(uut.speed, 10);
+r REF= uut; r.Stop(); ASSERT_EQ(uut.speed, -1);
+plain(run := TRUE); plain.Stop(); ASSERT_EQ(plain.speed, 0);
+MOCK uut; uut(run := TRUE); ASSERT_EQ(uut.speed, -1);
+MOCK_VERIFY_CALL_COUNT(uut, 2);
+END_TEST
+ST
+expect 0 stc test objects_test.st
+said '1 passed, 0 failed'

@@ -226,5 +226,34 @@ TEST(Names, AMethodAndAPropertyOfOneNameAreRefused) {
             "E2002 E7004 E2002");
 }
 
+// Parents that share parents: every interface is looked at once.
+TEST(Interfaces, ManyWaysToOneParentTakeNoTime) {
+  std::string source =
+      "INTERFACE I0 METHOD m : INT END_METHOD END_INTERFACE\n"
+      "INTERFACE I1 EXTENDS I0 END_INTERFACE\n";
+  for (int i = 2; i <= 100; ++i) {
+    source += "INTERFACE I" + std::to_string(i) + " EXTENDS I" + std::to_string(i - 1) + ", I" +
+              std::to_string(i - 2) + " END_INTERFACE\n";
+  }
+  Controlled run(source +
+                 "FUNCTION_BLOCK F IMPLEMENTS I100 METHOD m : INT m := 5; END_METHOD "
+                 "END_FUNCTION_BLOCK\n"
+                 "PROGRAM P VAR f : F; i : I100; n : INT; END_VAR i := f; n := i.m(); END_PROGRAM");
+  EXPECT_EQ(run.scan(), "");
+  EXPECT_EQ(run.number("P.n"), 5);
+  EXPECT_EQ(compile(source + "PROGRAM P VAR i : I100; END_VAR i.none(); END_PROGRAM").errors(),
+            "E2004");
+}
+
+TEST(Inheritance, EndlessChainsAreRefused) {
+  std::string source = "FUNCTION_BLOCK F0 END_FUNCTION_BLOCK\n";
+  for (int i = 1; i <= 1000; ++i) {
+    source += "FUNCTION_BLOCK F" + std::to_string(1000 - i) + "x EXTENDS F" +
+              std::to_string(1001 - i) + "x END_FUNCTION_BLOCK\n";
+  }
+  source += "FUNCTION_BLOCK F1000x END_FUNCTION_BLOCK PROGRAM P END_PROGRAM";
+  EXPECT_TRUE(compile(source).has("E6001"));
+}
+
 }  // namespace
 }  // namespace frontend_test

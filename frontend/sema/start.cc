@@ -1,0 +1,151 @@
+// What runs once, before the first scan, after all initial values: FB_Init of every instance
+// (docs/adr/0006-objects.md). A block with members that need it has a method __START, which
+// calls those of its members and then their FB_Init; a hidden program __START does so for the
+// globals and calls __START of every program instance.
+#include "frontend/sema/objects.h"
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+namespace {
+
+constexpr std::string_view kStart = "__START";
+
+bool has_arguments(const Tree& tree, SpecId id) {
+  const Spec& spec = tree[id];
+  if (spec.kind == SpecKind::kArray) {
+    return spec.element_args.count != 0 || has_arguments(tree, spec.element);
+  }
+  return spec.kind == SpecKind::kNamed && spec.has_args;
+}
+
+}  // namespace
+
+// Does a variable of this type need anything at the start?
+bool Objects::starts(ir::TypeId type) {
+  if (!type.valid()) return false;
+  const ir::TypeTable& types = sema_.program.types;
+  while (types[type].kind == ir::Kind::kArray) type = types[type].base;
+  if (!types.has_members(type)) return false;
+  if (auto known = starts_.find(type); known != starts_.end()) return known->second;
+  starts_.emplace(type, false);  // types do not contain themselves
+  const PouInfo* block = sema_.pou_of(type);
+  bool needed = block != nullptr && find_code(block->number, kFbInit).code.method != kNoPou;
+  for (size_t i = 0; i < types[type].members.size() && !needed; ++i) {
+    const ir::Member& member = types[type].members[i];
+    needed = member.section != ir::Section::kInOut && starts(member.type);
+  }
+  starts_[type] = needed;
+  return needed;
+}
+
+// Arguments stand behind the types of variables only, and there has to be an FB_Init for them.
+void Objects::check_start_arguments() {
+  std::vector<bool> good(sema_.tree.specs.size());
+  for (const Variable& variable : sema_.variables_) {
+    if (variable.decl == nullptr || !variable.decl->spec.valid()) continue;
+    SpecId id = variable.decl->spec;
+    const bool arguments = has_arguments(sema_.tree, id);
+    for (; sema_.tree[id].kind == SpecKind::kArray; id = sema_.tree[id].element) {
+      good[id.index] = true;
+    }
+    good[id.index] = true;
+    if (!arguments || !variable.type.valid() || starts(variable.type)) continue;
+    sema_.error(DiagnosticCode::kBadConstruction, sema_.tree[id].span,
+                "`" + sema_.type_text(variable.type) + "` has no FB_Init that takes arguments",
+                "write `:=` and a value, or (member := value)");
+  }
+  for (uint32_t i = 0; i < sema_.tree.specs.size(); ++i) {
+    const Spec& spec = sema_.tree.specs[i];
+    if (good[i] || (!spec.has_args && spec.element_args.count == 0)) continue;
+    sema_.error(DiagnosticCode::kBadConstruction, spec.span,
+                "arguments of FB_Init stand at a variable's type only",
+                "give them where the variable is declared");
+  }
+}
+
+// After all interfaces are resolved and the program instances are known.
+void Objects::add_start() {
+  check_start_arguments();
+  if (sema_.diagnostics_.has_errors()) return;
+  const auto count = static_cast<uint32_t>(sema_.pous.size());
+  for (uint32_t i = 0; i < count; ++i) {
+    if (has_members_to_start(sema_.pous[i])) add_start_method(i);
+  }
+  for (uint32_t i = 0; i < sema_.variables_.size(); ++i) {
+    const Variable& variable = sema_.variables_[i];
+    const bool global = variable.storage == Storage::kGlobal && !variable.hidden &&
+                        variable.section != VarSection::kExternal;
+    if (global && starts(variable.type)) start_globals_.push_back(VarId(i));
+  }
+  for (const ir::ProgramInstance& instance : sema_.program.instances) {
+    const PouInfo* program = sema_.pou_of(instance.type);
+    if (program != nullptr && program->start != kNoPou) {
+      start_globals_.push_back(program_global(instance.name, *program));
+    }
+  }
+  if (!start_globals_.empty()) add_start_program();
+}
+
+bool Objects::has_members_to_start(const PouInfo& info) {
+  if (info.owner != kNoPou || !info.self.valid() || !info.id.valid()) return false;
+  for (const ir::Member& member : sema_.program.types[info.self].members) {
+    if (member.section != ir::Section::kInOut && starts(member.type)) return true;
+  }
+  return false;
+}
+
+void Objects::add_start_method(uint32_t block) {
+  const auto number = static_cast<uint32_t>(sema_.pous.size());
+  PouInfo& owner = sema_.pous[block];
+  owner.start = number;
+  PouDecl& made = sema_.made_decls_.emplace_back();
+  made.kind = PouKind::kMethod;
+  made.name = {kStart, owner.decl->name.span};
+  made.span = owner.decl->span;
+  made.scope = owner.decl->scope;
+  PouInfo& info = sema_.pous.emplace_back();
+  info.number = number;
+  info.decl = &made;
+  info.library = owner.library;
+  info.owner = block;
+  info.self = owner.self;
+  info.constructs = true;
+  sema_.add_code(info, sema_.program.types[owner.self].name + "." + std::string(kStart));
+  sema_.resolve_interface(number);
+}
+
+// The global through which code reaches a program instance.
+VarId Objects::program_global(const std::string& name, const PouInfo& program) {
+  if (ir::same_name(name, program.decl->name.text)) return sema_.program_variable(name, false);
+  VarId id(static_cast<uint32_t>(sema_.variables_.size()));
+  Variable variable;
+  variable.name = {sema_.keep_name(name), program.decl->name.span};
+  variable.section = VarSection::kGlobal;
+  variable.storage = Storage::kGlobal;
+  variable.used = true;
+  variable.hidden = true;
+  variable.type = program.self;
+  variable.progress = Progress::kDone;
+  sema_.variables_.push_back(variable);
+  sema_.place_global(id);
+  return id;
+}
+
+void Objects::add_start_program() {
+  PouDecl& made = sema_.made_decls_.emplace_back();
+  made.kind = PouKind::kProgram;
+  made.span = sema_.variables_[start_globals_[0].index].name.span;
+  made.name = {kStart, made.span};
+  const uint32_t number = sema_.add_pou(made, false);
+  sema_.pous[number].constructs = true;
+  sema_.resolve_interface(number);
+  ir::Task task;
+  task.name = kStart;
+  task.period_ns = 0;
+  task.once = true;
+  const auto at = static_cast<uint32_t>(sema_.program.tasks.size());
+  sema_.program.tasks.push_back(std::move(task));
+  sema_.program.instances.push_back({std::string(kStart), sema_.pous[number].self, at, {}});
+}
+
+}  // namespace frontend
