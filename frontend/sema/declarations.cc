@@ -303,6 +303,7 @@ void Sema::report_unused() {
     bool private_section = variable.section == VarSection::kLocal ||
                            variable.section == VarSection::kTemp ||
                            variable.section == VarSection::kStatic;
+    if (variable.access == Access::kPublic) continue;  // as an output
     if (variable.used || !private_section || variable.decl->has_address) continue;
     if (variable.decl->implied) continue;
     if (variable.pou != kNoPou && pous[variable.pou].open) continue;

@@ -213,6 +213,15 @@ TEST(Recursion, DeeperThanDeclaredTraps) {
   EXPECT_EQ(run.scan(), "stack");
 }
 
+TEST(Names, UnusedVariablesOfMethodsAndBlocks) {
+  EXPECT_EQ(
+      compile("FUNCTION_BLOCK F VAR PUBLIC shown : INT; END_VAR VAR used, never : INT; END_VAR "
+              "METHOD m : INT VAR local, lost : INT; END_VAR m := used + local; END_METHOD "
+              "END_FUNCTION_BLOCK PROGRAM P VAR f : F; END_VAR f.m(); END_PROGRAM")
+          .warnings(),
+      "W0003 W0003");
+}
+
 TEST(Names, AddressesAsStatementsAreHarmless) {
   EXPECT_EQ(compile("PROGRAM P VAR x : INT; END_VAR ADR(x); END_PROGRAM").errors(), "");
 }
