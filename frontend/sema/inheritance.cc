@@ -3,6 +3,7 @@
 
 #include "base/limits.h"
 #include "frontend/sema/objects.h"
+#include "frontend/sema/query_interface.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -25,6 +26,7 @@ void Objects::inherit() {
 
 // The block or interface that a name behind EXTENDS or IMPLEMENTS means; reports.
 uint32_t Objects::named_ancestor(const PouInfo& info, SpecId spec, bool interface) {
+  if (is_query_interface(sema_.tree, sema_.tree[spec])) return kNoPou;
   Sema::Within scope(sema_, info.number);
   ir::TypeId type = sema_.resolve(spec).type;
   if (!type.valid()) return kNoPou;

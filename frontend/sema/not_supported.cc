@@ -1,5 +1,6 @@
 // What the parser understands and the later passes do not yet: one message per
 // place. Whoever implements a construct takes its line out here.
+#include "frontend/sema/query_interface.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -72,7 +73,7 @@ void Sema::report_not_supported() {
     }
   };
   for (const Spec& spec : tree.specs) {
-    report(spec_feature(spec), spec.span);
+    if (!is_query_interface(tree, spec)) report(spec_feature(spec), spec.span);
     for (const VarDecl& field : spec.fields) report(variable_feature(field, true), field.span);
   }
   for (const Expr& expr : tree.exprs) report(expression_feature(expr), expr.span);

@@ -235,6 +235,18 @@ TEST(Names, AMethodAndAPropertyOfOneNameAreRefused) {
             "E2002 E7004 E2002");
 }
 
+TEST(Interfaces, TheSystemsOwnParentAddsNothing) {
+  Controlled run(
+      "INTERFACE A EXTENDS __SYSTEM.IQueryInterface METHOD m : INT END_METHOD END_INTERFACE\n"
+      "INTERFACE B EXTENDS __System.IQueryInterface END_INTERFACE\n"
+      "FUNCTION_BLOCK F IMPLEMENTS A METHOD m : INT m := 5; END_METHOD END_FUNCTION_BLOCK\n"
+      "PROGRAM P VAR f : F; a : A; b : B; yes, no : BOOL; END_VAR a := f;\n"
+      "yes := __QUERYINTERFACE(f, a); no := __QUERYINTERFACE(a, b); END_PROGRAM");
+  EXPECT_EQ(run.scan(), "");
+  EXPECT_EQ(run.number("P.yes"), 1);
+  EXPECT_EQ(run.number("P.no"), 0);
+}
+
 // Parents that share parents: every interface is looked at once.
 TEST(Interfaces, ManyWaysToOneParentTakeNoTime) {
   std::string source =
