@@ -214,10 +214,9 @@ void Parser::parse_pou_body(PouDecl& pou) {
   base::SourcePos begin = here();
   for (;;) {
     if (parse_inner(pou) || parse_chart_element(pou)) continue;
-    if (statement_stack_.size() == mark && at_instruction_list()) {
-      InstructionList(*this).body();
-    } else if (!list_ends(false)) {
-      parse_statement();
+    if (!list_ends(false)) {
+      bool first = statement_stack_.size() == mark;
+      first && at_instruction_list() ? InstructionList(*this).body() : parse_statement();
     } else if (!parse_inner(pou) && !parse_chart_element(pou)) {  // behind a stray END_x
       break;
     }
