@@ -70,6 +70,7 @@ class Body {
     ir::BlockId finally;
     ir::Place where;  // trap kind, or kTrapCount + number of an exit
     std::vector<Exit> exits;
+    bool eno = false;  // of a call with ENO: string functions out of range trap
   };
   void try_statement(const Stmt& stmt);
   void try_finally(const std::function<void()>& body, Range32 finally_body, base::SourceSpan span);
@@ -225,8 +226,8 @@ class Body {
   // Binary coded decimals (convert_bcd.cc).
   ir::ValueId from_bcd(Typed from, ir::TypeId to);
   ir::ValueId to_bcd(Typed from, ir::TypeId to);
-  // Traps (conversion) unless it holds.
-  void require(ir::ValueId condition);
+  // Traps unless it holds.
+  void require(ir::ValueId condition, ir::TrapKind kind = ir::TrapKind::kConversion);
   // Strings (string_convert.cc).
   ir::Place to_string(const Expr& call, const Conversion& conversion, ir::TypeId type);
   ir::Place string_to_string(ExprId source, ir::TypeId type);

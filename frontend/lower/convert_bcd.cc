@@ -25,12 +25,12 @@ ir::ValueId Body::to_bcd(Typed from, ir::TypeId to) {
   return machine_convert(bcd, kU64, scalar(to));
 }
 
-void Body::require(ir::ValueId condition) {
+void Body::require(ir::ValueId condition, ir::TrapKind kind) {
   ir::BlockId good = build_.new_block();
   ir::BlockId bad = build_.new_block();
   build_.branch(condition, good, bad);
   build_.start(bad);
-  build_.trap(ir::TrapKind::kConversion);
+  build_.trap(kind);
   build_.start(good);
 }
 

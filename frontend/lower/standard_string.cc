@@ -30,6 +30,31 @@ NativeId string_native(FunctionId id, bool wide) {
   }
 }
 
+// Do lengths and positions of the call lie in a text of `length` characters? `operands` are result,
+// strings and numbers. Sums of numbers that are out of range themselves may wrap.
+ir::ValueId in_range(Builder& build, FunctionId id, ir::ValueId length,
+                     const std::vector<ir::ValueId>& operands) {
+  constexpr ir::Scalar kI64 = ir::Scalar::kI64;
+  ir::ValueId one = build.constant(kI64, 1);
+  ir::ValueId last = operands.back();
+  auto inside = [&](ir::ValueId low, ir::ValueId number, ir::ValueId high) {
+    ir::ValueId above = build.compare(ir::Op::kLe, kI64, low, number);
+    ir::ValueId below = build.compare(ir::Op::kLe, kI64, number, high);
+    return build.binary(ir::Op::kAnd, ir::Scalar::kBool, above, below);
+  };
+  ir::ValueId zero = build.constant(kI64, 0);
+  if (id == FunctionId::kLeft || id == FunctionId::kRight || id == FunctionId::kInsert) {
+    return inside(zero, last, length);
+  }
+  ir::ValueId count = operands[operands.size() - 2];
+  ir::ValueId behind = build.binary(ir::Op::kAdd, kI64, length, one);
+  ir::ValueId end = build.binary(ir::Op::kAdd, kI64, last, count);
+  ir::ValueId both = build.binary(ir::Op::kAnd, ir::Scalar::kBool, inside(one, last, behind),
+                                  inside(zero, count, length));
+  ir::ValueId fits = build.compare(ir::Op::kLe, kI64, end, behind);
+  return build.binary(ir::Op::kAnd, ir::Scalar::kBool, both, fits);
+}
+
 }  // namespace
 
 ir::ValueId Body::string_number(const std::vector<ExprId>& args, const stdlib::FunctionRow& row) {
@@ -59,6 +84,12 @@ ir::Place Body::string_function(const std::vector<ExprId>& args, const stdlib::F
       Typed number = natural(args[i]);
       operands.push_back(machine_convert(number.value, scalar(number.type), ir::Scalar::kI64));
     }
+  }
+  if (!tries_.empty() && tries_.back().eno) {
+    constexpr ir::Scalar kI64 = ir::Scalar::kI64;
+    ir::ValueId length = native(string_native(FunctionId::kLen, is_wide), {operands[1]});
+    length = machine_convert(length, ir::Scalar::kI32, kI64);
+    require(in_range(build_, row.id, length, operands), ir::TrapKind::kString);
   }
   native(string_native(row.id, is_wide), operands);
   return result;
