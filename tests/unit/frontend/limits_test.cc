@@ -18,6 +18,19 @@ std::string enumeration(uint64_t literals) {
   return text + "); END_TYPE\n";
 }
 
+std::string tries(uint32_t count) {
+  std::string text = "PROGRAM P VAR n : INT; END_VAR ";
+  for (uint32_t i = 0; i < count; ++i) text += "__TRY ";
+  text += "n := 1 / n; ";
+  for (uint32_t i = 0; i < count; ++i) text += "__CATCH n := 2; __ENDTRY ";
+  return text + "END_PROGRAM\n";
+}
+
+TEST(Limits, Tries) {
+  EXPECT_EQ(compile(tries(base::kMaxTryDepth)).errors(), "");
+  EXPECT_EQ(compile(tries(base::kMaxTryDepth + 1)).errors(), "E6001");
+}
+
 TEST(Limits, Enumerators) {
   EXPECT_EQ(errors(enumeration(base::kMaxEnumerators), "e : E;"), "");
   EXPECT_EQ(errors(enumeration(base::kMaxEnumerators + 1), "e : E;"), "E6003");
