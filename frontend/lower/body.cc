@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "base/hash.h"
+#include "frontend/lower/chart.h"
 
 namespace frontend {
 
@@ -41,7 +42,7 @@ void Body::run() {
   if (info_.constructs) {
     start_code();
   } else if (decl.chart != kNoChart) {
-    chart_body(tree_.charts[decl.chart]);
+    ChartBody(*this, tree_.charts[decl.chart]).run();
   } else if (info_.teardown != nullptr) {
     try_finally([&] { statements(decl.body); }, info_.teardown->body, decl.span);
   } else {

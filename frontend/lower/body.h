@@ -18,11 +18,6 @@
 
 namespace frontend {
 
-namespace sfc {
-struct Action;
-struct Use;
-}  // namespace sfc
-
 class Body {
  public:
   Body(Sema& sema, uint32_t pou);
@@ -32,6 +27,8 @@ class Body {
   static std::optional<Constant> evaluate(Sema& sema, ExprId expr, ir::TypeId context);
 
  private:
+  friend class ChartBody;  // sequential function charts (chart.h)
+
   Body(Sema& sema, PouInfo& info, uint32_t number, ir::Pou pou);
 
   // --- known values (constant_evaluation.cc)
@@ -85,37 +82,6 @@ class Body {
   Labels labels_of(Range32 list);
   void jump(const Stmt& stmt);
   void label(const Stmt& stmt);
-
-  // --- sequential function charts (chart.cc, chart_actions.cc)
-  struct ChartCode;
-  void chart_body(const Chart& chart);
-  void chart_errors(const ChartCode& code);
-  bool chart_places(ChartCode& code);
-  ir::Place chart_flag(const ChartCode& code, uint32_t number) const;
-  ir::ValueId is_raised(const ChartCode& code, uint32_t number);
-  void raise(const ChartCode& code, uint32_t number);
-  ir::Place chart_place(VarId id, const char* member);
-  void set_flag(const ir::Place& flag, bool value = true);
-  void when(ir::ValueId condition, const std::function<void()>& then);
-  void when(const ir::Place& flag, const std::function<void()>& then);
-  void chart_clock(ChartCode& code);
-  void chart_pass_time(const ChartCode& code, VarId variable, const char* member);
-  void chart_times(const ChartCode& code);
-  void chart_transition(const ChartCode& code, uint32_t number);
-  void chart_moves(const ChartCode& code);
-  void chart_enter(const ChartCode& code, uint32_t step);
-  void chart_starts(const ChartCode& code);
-  void chart_unused(const ChartCode& code);
-  void chart_statements(const ChartAction& action, ir::BlockId next);
-  void chart_uses(const ChartCode& code);
-  void chart_use(const ChartCode& code, uint32_t step, const sfc::Use& use);
-  void chart_begin(VarId record, const sfc::Use& use);
-  void chart_controls(const ChartCode& code);
-  ir::ValueId chart_wanted(const ChartCode& code, uint32_t action, ir::ValueId keep);
-  void chart_control(const ChartCode& code, uint32_t number);
-  std::optional<Target> chart_variable(const sfc::Action& action);
-  ir::ValueId chart_limit(const ActionUse& use);
-  void chart_bodies(const ChartCode& code);
 
   // --- FOR (for.cc)
   struct ForLoop;

@@ -1,5 +1,6 @@
-// The code of one chart on its way: its net, where its state lives, and the flags of the
-// current call. docs/adr/0009-sfc.md says what happens in which order.
+// Lowers the chart of one body: where its state lives, the flags of one call, and the code that
+// moves steps and controls actions. docs/adr/0009-sfc.md says what happens in which order. A
+// part of Body: it writes to the same POU and asks it for conditions, statements and values.
 #pragma once
 
 #include "frontend/lower/body.h"
@@ -7,39 +8,84 @@
 
 namespace frontend {
 
-struct Body::ChartCode {
-  explicit ChartCode(const Chart& of) : chart(of), net(sfc::resolve(of)) {}
+class ChartBody {
+ public:
+  ChartBody(Body& body, const Chart& chart)
+      : body_(body),
+        build_(body.build_),
+        sema_(body.sema_),
+        tree_(body.tree_),
+        chart_(chart),
+        net_(sfc::resolve(chart)) {}
+  void run();
 
-  const Chart& chart;
-  sfc::Net net;
-  std::vector<VarId> steps;  // variables of the steps and action records
-  std::vector<VarId> actions;
-  VarId clock;
-  std::vector<uint16_t> qualifiers;  // by action: bit 1 << ActionQualifier
-  ir::ValueId elapsed;               // ns since the last call
+ private:
+  // --- state and flags (chart.cc)
+  bool find_places();
+  void number_flags();
+  void report_all();
+  ir::Place flag(uint32_t number) const;
+  ir::ValueId is_raised(uint32_t number);
+  void raise(uint32_t number);
+  ir::Place part(VarId id, const char* member);
+  void set_flag(const ir::Place& flag, bool value = true);
+  void when(ir::ValueId condition, const std::function<void()>& then);
+  void when(const ir::Place& flag, const std::function<void()>& then);
+
+  // --- steps and transitions (chart.cc)
+  void read_clock();
+  void pass_time(VarId variable, const char* member);
+  void step_times();
+  void transition(uint32_t number);
+  void moves();
+  void enter(uint32_t step);
+  void starts();
+
+  // --- actions (chart_actions.cc)
+  void unused_actions();
+  void action_statements(const ChartAction& action, ir::BlockId next);
+  void step_uses();
+  void request(uint32_t step, const sfc::Use& use);
+  void begin(VarId record, const sfc::Use& use);
+  void controls();
+  ir::ValueId wants(uint32_t action, ir::ValueId keep);
+  void control(uint32_t number);
+  std::optional<Target> variable_of(const sfc::Action& action);
+  ir::ValueId limit_of(const ActionUse& use);
+  void bodies();
+  bool uses(uint32_t action, ActionQualifier qualifier) const {
+    return (qualifiers_[action] >> static_cast<uint32_t>(qualifier) & 1) != 0;
+  }
+
+  Body& body_;
+  Builder& build_;
+  Sema& sema_;
+  const Tree& tree_;
+  const Chart& chart_;
+  sfc::Net net_;
+  std::vector<VarId> steps_;  // variables of the steps and action records
+  std::vector<VarId> actions_;
+  VarId clock_;
+  std::vector<uint16_t> qualifiers_;  // by action: bit 1 << ActionQualifier
+  ir::ValueId elapsed_;               // ns since the last call
 
   // What is known within one call: an array of BOOL in the frame, all FALSE when the call
   // begins. Numbers of its elements; kNone where nobody asks.
-  ir::Place flags;
-  uint32_t flag_count = 0;
+  ir::Place flags_;
+  uint32_t flag_count_ = 0;
   using Numbers = std::vector<uint32_t>;
-  Numbers active;      // by network: one of its steps is
-  Numbers fired;       // by transition
-  Numbers spent;       // by step: a transition that leaves it has fired, of several
-  Numbers entered;     // by step
-  Numbers left;        // by step
-  Numbers wanted;      // by action: Q, with a final scan
-  Numbers pulsed;      // by action: P1
-  Numbers released;    // by action: P0
-  Numbers reset;       // by action
-  Numbers late;        // by action: its statements run behind those that end
-  uint32_t moved = 0;  // some transition has fired
-  uint32_t early = 0;  // some action has its final scan, or runs by P0
-
-  bool uses(uint32_t action, ActionQualifier qualifier) const {
-    return (qualifiers[action] >> static_cast<uint32_t>(qualifier) & 1) != 0;
-  }
-  void number_flags();
+  Numbers active_;      // by network: one of its steps is
+  Numbers fired_;       // by transition
+  Numbers spent_;       // by step: a transition that leaves it has fired, of several
+  Numbers entered_;     // by step
+  Numbers left_;        // by step
+  Numbers wanted_;      // by action: Q, with a final scan
+  Numbers pulsed_;      // by action: P1
+  Numbers released_;    // by action: P0
+  Numbers reset_;       // by action
+  Numbers late_;        // by action: its statements run behind those that end
+  uint32_t moved_ = 0;  // some transition has fired
+  uint32_t early_ = 0;  // some action has its final scan, or runs by P0
 };
 
 }  // namespace frontend

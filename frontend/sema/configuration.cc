@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "frontend/sema/instance_paths.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -62,10 +63,11 @@ void Sema::configure() {
           "add PROGRAM name WITH task : Type;");
   }
   if (program.tasks.empty()) program.tasks.push_back(main_task());
-  configure_paths(tree.globals);
-  configure_paths(config.globals);
-  if (resource_ != nullptr) configure_paths(resource_->globals);
-  check_open_addresses();
+  InstancePaths paths(*this);
+  paths.configure(tree.globals);
+  paths.configure(config.globals);
+  if (resource_ != nullptr) paths.configure(resource_->globals);
+  paths.check_open_addresses();
 }
 
 void Sema::default_configuration() {
@@ -74,8 +76,9 @@ void Sema::default_configuration() {
     if (pou.decl->kind != PouKind::kProgram) continue;
     program.instances.push_back({std::string(pou.decl->name.text), pou.self, 0, {}});
   }
-  configure_paths(tree.globals);
-  check_open_addresses();
+  InstancePaths paths(*this);
+  paths.configure(tree.globals);
+  paths.check_open_addresses();
 }
 
 void Sema::configure_resource(const ResourceDecl& resource) {

@@ -1,11 +1,11 @@
-// Paths through program instances: VAR_CONFIG gives addresses and initial values to
-// variables of single instances, VAR_ACCESS names variables for the outside.
+#include "frontend/sema/instance_paths.h"
+
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 
 // Where a path leads: `steps` are numbers of members and elements.
-struct Sema::InstancePath {
+struct InstancePaths::Path {
   std::string text;  // "" while only the resource was named
   bool global = false;
   uint32_t instance = 0;
@@ -14,7 +14,7 @@ struct Sema::InstancePath {
   VarId variable;  // of the last member of a block
 };
 
-void Sema::configure_paths(const std::vector<VarBlock>& blocks) {
+void InstancePaths::configure(const std::vector<VarBlock>& blocks) {
   for (const VarBlock& block : blocks) {
     for (const VarDecl& decl : block.vars) {
       if (block.section == VarSection::kConfig) configure_variable(decl);
@@ -23,79 +23,82 @@ void Sema::configure_paths(const std::vector<VarBlock>& blocks) {
   }
 }
 
-bool Sema::path_head(const Expr& expr, InstancePath& path) {
-  for (uint32_t i = 0; i < program.instances.size(); ++i) {
-    if (!ir::same_name(program.instances[i].name, expr.name.text)) continue;
+bool InstancePaths::head(const Expr& expr, Path& path) {
+  for (uint32_t i = 0; i < sema_.program.instances.size(); ++i) {
+    if (!ir::same_name(sema_.program.instances[i].name, expr.name.text)) continue;
     path.text = expr.name.text;
     path.instance = i;
-    path.type = program.instances[i].type;
+    path.type = sema_.program.instances[i].type;
     return true;
   }
-  if (VarId id = find_variable(expr); id.valid()) {
-    const Variable& variable = resolve(id);
-    variables_[id.index].used = true;
-    path.text = program.types[program.globals].members[variable.index].name;
+  if (VarId id = sema_.find_variable(expr); id.valid()) {
+    const Variable& variable = sema_.resolve(id);
+    sema_.variables_[id.index].used = true;
+    path.text = sema_.program.types[sema_.program.globals].members[variable.index].name;
     path.global = true;
     path.type = variable.type;
     path.variable = id;
     return path.type.valid();
   }
-  bool prefix = resource_ != nullptr && ir::same_name(resource_->name.text, expr.name.text);
-  bool config = !tree.configs.empty() && ir::same_name(tree.configs[0].name.text, expr.name.text);
+  bool prefix =
+      sema_.resource_ != nullptr && ir::same_name(sema_.resource_->name.text, expr.name.text);
+  bool config =
+      !sema_.tree.configs.empty() && ir::same_name(sema_.tree.configs[0].name.text, expr.name.text);
   if (prefix || config) return true;
   NearestName nearest(expr.name.text);
-  for (const ir::ProgramInstance& instance : program.instances) nearest.offer(instance.name);
-  nearest.offer_all(globals_);
-  error(DiagnosticCode::kUnknownName, expr.span,
-        "`" + std::string(expr.name.text) + "` is no program instance and no global variable",
-        nearest.fix());
+  for (const ir::ProgramInstance& instance : sema_.program.instances) nearest.offer(instance.name);
+  nearest.offer_all(sema_.globals_);
+  sema_.error(DiagnosticCode::kUnknownName, expr.span,
+              "`" + std::string(expr.name.text) + "` is no program instance and no global variable",
+              nearest.fix());
   return false;
 }
 
 // Private variables too: the path belongs to the plant, not to another POU.
-bool Sema::path_member(const Expr& expr, InstancePath& path) {
-  if (path.text.empty()) return path_head(expr, path);
+bool InstancePaths::member(const Expr& expr, Path& path) {
+  if (path.text.empty()) return head(expr, path);
   int32_t member = -1;
   path.variable = {};
-  if (const PouInfo* block = pou_of(path.type)) {
-    const VarId found = objects.find_variable(block->number, expr.name.text);
-    if (found.valid() && resolve(found).storage == Storage::kMember) {
+  if (const PouInfo* block = sema_.pou_of(path.type)) {
+    const VarId found = sema_.objects.find_variable(block->number, expr.name.text);
+    if (found.valid() && sema_.resolve(found).storage == Storage::kMember) {
       path.variable = found;
-      variables_[found.index].used = true;
-      member = static_cast<int32_t>(resolve(found).index);
+      sema_.variables_[found.index].used = true;
+      member = static_cast<int32_t>(sema_.resolve(found).index);
     }
   } else {
-    member = find_member(path.type, expr.name.text);
+    member = sema_.find_member(path.type, expr.name.text);
   }
   if (member < 0) {
-    error(DiagnosticCode::kUnknownMember, expr.name.span,
-          "`" + type_text(path.type) + "` has no member `" + std::string(expr.name.text) + "`");
+    sema_.error(
+        DiagnosticCode::kUnknownMember, expr.name.span,
+        "`" + sema_.type_text(path.type) + "` has no member `" + std::string(expr.name.text) + "`");
     return false;
   }
   auto number = static_cast<uint32_t>(member);
-  path.type = path.variable.valid() ? resolve(path.variable).type
-                                    : program.types[path.type].members[number].type;
+  path.type = path.variable.valid() ? sema_.resolve(path.variable).type
+                                    : sema_.program.types[path.type].members[number].type;
   path.text += "." + std::string(expr.name.text);
   path.steps.push_back(number);
   return path.type.valid();
 }
 
-bool Sema::path_element(const Expr& expr, InstancePath& path) {
-  if (path.text.empty() || program.types[path.type].kind != ir::Kind::kArray ||
-      program.types[path.type].dims.size() != expr.list.count) {
-    error(DiagnosticCode::kNotArray, expr.span, "this path leads to no array of that form");
+bool InstancePaths::element(const Expr& expr, Path& path) {
+  if (path.text.empty() || sema_.program.types[path.type].kind != ir::Kind::kArray ||
+      sema_.program.types[path.type].dims.size() != expr.list.count) {
+    sema_.error(DiagnosticCode::kNotArray, expr.span, "this path leads to no array of that form");
     return false;
   }
-  std::vector<ir::Dimension> dims = program.types[path.type].dims;
+  std::vector<ir::Dimension> dims = sema_.program.types[path.type].dims;
   uint64_t flat = 0;
   path.text += "[";
   for (uint32_t i = 0; i < dims.size(); ++i) {
-    auto index = fold_integer(tree.expr_lists[expr.list.first + i]);
+    auto index = sema_.fold_integer(sema_.tree.expr_lists[expr.list.first + i]);
     if (!index) return false;
     if (*index < dims[i].low || *index > dims[i].high) {
-      error(DiagnosticCode::kIndexOutOfBounds, expr.span,
-            "index " + std::to_string(*index) + " is outside " + std::to_string(dims[i].low) +
-                ".." + std::to_string(dims[i].high));
+      sema_.error(DiagnosticCode::kIndexOutOfBounds, expr.span,
+                  "index " + std::to_string(*index) + " is outside " + std::to_string(dims[i].low) +
+                      ".." + std::to_string(dims[i].high));
       return false;
     }
     path.text += (i == 0 ? "" : ",") + std::to_string(*index);
@@ -103,137 +106,142 @@ bool Sema::path_element(const Expr& expr, InstancePath& path) {
   }
   path.text += "]";
   path.steps.push_back(static_cast<uint32_t>(flat));
-  path.type = program.types[path.type].base;
+  path.type = sema_.program.types[path.type].base;
   return true;
 }
 
-bool Sema::walk_path(ExprId id, InstancePath& path) {
-  const Expr& expr = tree[id];
+bool InstancePaths::walk(ExprId id, Path& path) {
+  const Expr& expr = sema_.tree[id];
   switch (expr.kind) {
     case ExprKind::kName:
-      return path_head(expr, path);
+      return head(expr, path);
     case ExprKind::kMember:
-      return walk_path(expr.operand, path) && path_member(expr, path);
+      return walk(expr.operand, path) && member(expr, path);
     case ExprKind::kIndex:
-      return walk_path(expr.operand, path) && path_element(expr, path);
+      return walk(expr.operand, path) && element(expr, path);
     case ExprKind::kDirect:
-      path.text = program.types[program.globals].members[direct_member(expr)].name;
+      path.text =
+          sema_.program.types[sema_.program.globals].members[sema_.direct_member(expr)].name;
       path.global = true;
-      path.type = type_of_direct(expr.address);
+      path.type = sema_.type_of_direct(expr.address);
       return true;
     default:
-      error(DiagnosticCode::kUnknownName, expr.span,
-            "a path names a program instance and its variables");
+      sema_.error(DiagnosticCode::kUnknownName, expr.span,
+                  "a path names a program instance and its variables");
       return false;
   }
 }
 
-bool Sema::check_path_type(const VarDecl& decl, const InstancePath& path) {
-  TypeUse use = resolve(decl.spec);
+bool InstancePaths::check_type(const VarDecl& decl, const Path& path) {
+  TypeUse use = sema_.resolve(decl.spec);
   if (!use.type.valid()) return false;
   if (path.text.empty() || use.type != path.type) {
-    error(DiagnosticCode::kTypeMismatch, tree[decl.path].span,
-          path.text.empty() ? "the path ends at the resource"
-                            : "`" + path.text + "` is `" + type_text(path.type) +
-                                  "`, declared here as `" + type_text(use.type) + "`");
+    sema_.error(DiagnosticCode::kTypeMismatch, sema_.tree[decl.path].span,
+                path.text.empty() ? "the path ends at the resource"
+                                  : "`" + path.text + "` is `" + sema_.type_text(path.type) +
+                                        "`, declared here as `" + sema_.type_text(use.type) + "`");
     return false;
   }
   return true;
 }
 
-void Sema::configure_variable(const VarDecl& decl) {
-  InstancePath path;
-  if (!decl.path.valid() || !walk_path(decl.path, path) || !check_path_type(decl, path)) return;
+void InstancePaths::configure_variable(const VarDecl& decl) {
+  Path path;
+  if (!decl.path.valid() || !walk(decl.path, path) || !check_type(decl, path)) return;
   if (decl.has_address && !decl.incomplete) {
-    const Variable* variable = path.variable.valid() ? &resolve(path.variable) : nullptr;
+    const Variable* variable = path.variable.valid() ? &sema_.resolve(path.variable) : nullptr;
     bool open = variable != nullptr && variable->decl != nullptr && variable->decl->incomplete &&
                 variable->decl->address.area == decl.address.area;
-    uint32_t bits = address_bits(path.type);
+    uint32_t bits = sema_.address_bits(path.type);
     if (!open || bits != decl.address.bit_size) {
-      error(DiagnosticCode::kBadAddress, decl.span,
-            open ? "`" + path.text + "` has " + std::to_string(bits) + " bits"
-                 : "`" + path.text + "` is not declared with AT %I*, %Q* or %M* of this area");
+      sema_.error(DiagnosticCode::kBadAddress, decl.span,
+                  open
+                      ? "`" + path.text + "` has " + std::to_string(bits) + " bits"
+                      : "`" + path.text + "` is not declared with AT %I*, %Q* or %M* of this area");
       return;
     }
-    program.located.push_back({path.text, decl.address});
+    sema_.program.located.push_back({path.text, decl.address});
   }
   if (!decl.init.valid() || path.global) return;
-  ir::ProgramInstance& instance = program.instances[path.instance];
+  ir::ProgramInstance& instance = sema_.program.instances[path.instance];
   instance.init = with_initial(instance.init, instance.type, path.steps, 0, decl.init);
 }
 
 // `before` with another value behind `steps`.
-ir::ConstId Sema::with_initial(ir::ConstId before, ir::TypeId type,
-                               const std::vector<uint32_t>& steps, size_t at, ExprId init) {
-  if (at == steps.size()) return initial_value(init, type, before);
+ir::ConstId InstancePaths::with_initial(ir::ConstId before, ir::TypeId type,
+                                        const std::vector<uint32_t>& steps, size_t at,
+                                        ExprId init) {
+  if (at == steps.size()) return sema_.initial_value(init, type, before);
   uint32_t step = steps[at];
-  bool array = program.types[type].kind == ir::Kind::kArray;
-  ir::ConstId inner = listed(before, step);
-  if (!inner.valid() && !array) inner = member_default(type, step);
-  ir::TypeId part = array ? program.types[type].base : program.types[type].members[step].type;
+  bool array = sema_.program.types[type].kind == ir::Kind::kArray;
+  ir::ConstId inner = sema_.listed(before, step);
+  if (!inner.valid() && !array) inner = sema_.member_default(type, step);
+  ir::TypeId part =
+      array ? sema_.program.types[type].base : sema_.program.types[type].members[step].type;
   ir::ConstId made = with_initial(inner, part, steps, at + 1, init);
   if (!made.valid()) return before;
   ir::ConstValue value;
-  if (before.valid()) value.elements = program.constants[before].elements;
+  if (before.valid()) value.elements = sema_.program.constants[before].elements;
   value.elements.push_back({step, 1, made});
-  return program.constants.add(std::move(value));
+  return sema_.program.constants.add(std::move(value));
 }
 
-void Sema::add_access(const VarDecl& decl) {
-  InstancePath path;
-  if (!decl.path.valid() || decl.names.empty() || !walk_path(decl.path, path)) return;
-  if (!check_path_type(decl, path)) return;
-  for (const ir::AccessPath& other : program.access) {
+void InstancePaths::add_access(const VarDecl& decl) {
+  Path path;
+  if (!decl.path.valid() || decl.names.empty() || !walk(decl.path, path)) return;
+  if (!check_type(decl, path)) return;
+  for (const ir::AccessPath& other : sema_.program.access) {
     if (!ir::same_name(other.name, decl.names[0].text)) continue;
-    error(DiagnosticCode::kDuplicateName, decl.names[0].span,
-          "`" + other.name + "` is declared twice");
+    sema_.error(DiagnosticCode::kDuplicateName, decl.names[0].span,
+                "`" + other.name + "` is declared twice");
     return;
   }
-  program.access.push_back({std::string(decl.names[0].text), path.text, decl.writable});
+  sema_.program.access.push_back({std::string(decl.names[0].text), path.text, decl.writable});
 }
 
 // Every AT %I*, %Q* has to get its address, in each instance.
-void Sema::check_open_addresses() {
+void InstancePaths::check_open_addresses() {
   bool any = false;
-  for (const Variable& variable : variables_) {
+  for (const Variable& variable : sema_.variables_) {
     any = any || (variable.decl != nullptr && variable.decl->incomplete && !variable.hidden);
   }
   if (!any) return;
   std::unordered_map<std::string, bool> known;
-  for (const ir::LocatedPath& located : program.located) {
+  for (const ir::LocatedPath& located : sema_.program.located) {
     known.emplace(ir::fold_name(located.path), true);
   }
-  for (const ir::ProgramInstance& instance : program.instances) {
+  for (const ir::ProgramInstance& instance : sema_.program.instances) {
     check_open_addresses(instance.type, instance.name, known, 0);
   }
 }
 
-void Sema::check_open_addresses(ir::TypeId type, const std::string& path,
-                                const std::unordered_map<std::string, bool>& known,
-                                uint32_t depth) {
+void InstancePaths::check_open_addresses(ir::TypeId type, const std::string& path,
+                                         const std::unordered_map<std::string, bool>& known,
+                                         uint32_t depth) {
   constexpr uint32_t kMaxDepth = 64;
   if (depth > kMaxDepth) return;
-  const ir::Type& owner = program.types[type];
+  const ir::Type& owner = sema_.program.types[type];
   if (owner.kind == ir::Kind::kArray) {
-    if (!program.types.has_members(owner.base)) return;
+    if (!sema_.program.types.has_members(owner.base)) return;
     const ir::Dimension& dim = owner.dims[0];
     for (int64_t i = dim.low; i <= dim.high && owner.dims.size() == 1; ++i) {
       check_open_addresses(owner.base, path + "[" + std::to_string(i) + "]", known, depth + 1);
     }
     return;
   }
-  if (!program.types.has_members(type)) return;
-  for (size_t i = 0; i < program.types[type].members.size(); ++i) {
-    const ir::Member member = program.types[type].members[i];
+  if (!sema_.program.types.has_members(type)) return;
+  for (size_t i = 0; i < sema_.program.types[type].members.size(); ++i) {
+    const ir::Member member = sema_.program.types[type].members[i];
     std::string inner = path + "." + member.name;
     if (member.address.bit_offset == ir::kOpenAddress && !known.contains(ir::fold_name(inner))) {
-      const PouInfo* block = pou_of(type);
+      const PouInfo* block = sema_.pou_of(type);
       VarId variable;
-      if (block != nullptr) variable = objects.member_variable(*block, static_cast<uint32_t>(i));
-      error(DiagnosticCode::kOpenAddress,
-            variable.valid() ? resolve(variable).name.span : base::SourceSpan{},
-            "`" + inner + "` has no address yet",
-            "add VAR_CONFIG " + inner + " AT %IX0.0 : type; END_VAR");
+      if (block != nullptr)
+        variable = sema_.objects.member_variable(*block, static_cast<uint32_t>(i));
+      sema_.error(DiagnosticCode::kOpenAddress,
+                  variable.valid() ? sema_.resolve(variable).name.span : base::SourceSpan{},
+                  "`" + inner + "` has no address yet",
+                  "add VAR_CONFIG " + inner + " AT %IX0.0 : type; END_VAR");
     }
     if (member.section != ir::Section::kInOut && member.type.valid()) {
       check_open_addresses(member.type, inner, known, depth + 1);

@@ -154,6 +154,7 @@ class Sema {
   friend class Within;
   friend class Folder;
   friend class Objects;
+  friend class InstancePaths;
   friend class InitialBuilder;
 
   // declarations.cc
@@ -339,22 +340,6 @@ class Sema {
 
   // called_programs.cc
   VarId program_variable(std::string_view name, bool called);
-
-  // instance_paths.cc
-  struct InstancePath;
-  void configure_paths(const std::vector<VarBlock>& blocks);
-  void configure_variable(const VarDecl& decl);
-  void add_access(const VarDecl& decl);
-  bool walk_path(ExprId expr, InstancePath& path);
-  bool path_head(const Expr& expr, InstancePath& path);
-  bool path_member(const Expr& expr, InstancePath& path);
-  bool path_element(const Expr& expr, InstancePath& path);
-  bool check_path_type(const VarDecl& decl, const InstancePath& path);
-  ir::ConstId with_initial(ir::ConstId before, ir::TypeId type, const std::vector<uint32_t>& steps,
-                           size_t at, ExprId init);
-  void check_open_addresses();
-  void check_open_addresses(ir::TypeId type, const std::string& path,
-                            const std::unordered_map<std::string, bool>& known, uint32_t depth);
 
   base::Diagnostics& diagnostics_;
   FollowUps follow_ups_;

@@ -1,0 +1,42 @@
+// Paths through program instances: VAR_CONFIG gives addresses and initial values to variables of
+// single instances, VAR_ACCESS names variables for the outside (IEC 61131-3, Table 16). What it
+// finds goes to the program of the Sema that it works for.
+#pragma once
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "frontend/sema/model.h"
+
+namespace frontend {
+
+class Sema;
+
+class InstancePaths {
+ public:
+  explicit InstancePaths(Sema& sema) : sema_(sema) {}
+
+  // The VAR_CONFIG and VAR_ACCESS among `blocks`, when all instances are there.
+  void configure(const std::vector<VarBlock>& blocks);
+  // Reports each AT %I*, %Q*, %M* that has no address then.
+  void check_open_addresses();
+
+ private:
+  struct Path;
+  void configure_variable(const VarDecl& decl);
+  void add_access(const VarDecl& decl);
+  bool walk(ExprId expr, Path& path);
+  bool head(const Expr& expr, Path& path);
+  bool member(const Expr& expr, Path& path);
+  bool element(const Expr& expr, Path& path);
+  bool check_type(const VarDecl& decl, const Path& path);
+  ir::ConstId with_initial(ir::ConstId before, ir::TypeId type, const std::vector<uint32_t>& steps,
+                           size_t at, ExprId init);
+  void check_open_addresses(ir::TypeId type, const std::string& path,
+                            const std::unordered_map<std::string, bool>& known, uint32_t depth);
+
+  Sema& sema_;
+};
+
+}  // namespace frontend
