@@ -39,6 +39,7 @@ void EvalBytes::for_leaves(Var& variable, uint64_t at, uint64_t begin, uint64_t 
     }
     return;
   }
+  if (is_padded(variable)) visit(variable, at);
   for (size_t i = 0; i < variable.parts.size(); ++i) {
     Var& part = variable.parts[i];
     const uint64_t first = at + layouts_[variable.type].member_offsets[i];
@@ -49,10 +50,15 @@ void EvalBytes::for_leaves(Var& variable, uint64_t at, uint64_t begin, uint64_t 
   }
 }
 
+bool EvalBytes::is_padded(const Variable& variable) const {
+  return !variable.parts.empty() && types_[variable.type].kind == Kind::kStruct;
+}
+
 void EvalBytes::read(const Variable& root, uint32_t offset, std::span<uint8_t> out) const {
   std::fill(out.begin(), out.end(), uint8_t{0});
   const uint64_t end = uint64_t{offset} + out.size();
   for_leaves(root, 0, offset, end, [&](const Variable& leaf, uint64_t at) {
+    if (is_padded(leaf) && leaf.bytes.empty()) return;
     for (uint32_t i = 0; i < leaf_size(leaf); ++i) {
       if (at + i >= offset && at + i < end) {
         out[at + i - offset] = leaf_byte(leaf, i);
@@ -64,6 +70,8 @@ void EvalBytes::read(const Variable& root, uint32_t offset, std::span<uint8_t> o
 void EvalBytes::write(Variable& root, uint32_t offset, std::span<const uint8_t> in) const {
   const uint64_t end = uint64_t{offset} + in.size();
   for_leaves(root, 0, offset, end, [&](Variable& leaf, uint64_t at) {
+    // The bytes of its members go along, and are never looked at.
+    if (is_padded(leaf) && leaf.bytes.empty()) leaf.bytes.assign(layouts_[leaf.type].size, 0);
     for (uint32_t i = 0; i < leaf_size(leaf); ++i) {
       if (at + i < offset || at + i >= end) {
         continue;

@@ -1,5 +1,5 @@
 // Variables of the evaluator as the bytes that they are in memory, by a layout. Slots of instances
-// and in-outs are no bytes; padding reads as zero and keeps nothing.
+// and in-outs are no bytes; the padding of a structure goes where the structure goes.
 #pragma once
 
 #include <span>
@@ -19,9 +19,11 @@ class EvalBytes {
   Variable* find(Variable& root, uint32_t offset, TypeId type) const;
 
  private:
-  // Calls visit(leaf, its offset) for every leaf that has a byte in [begin, end).
+  // Calls visit(leaf, its offset) for every leaf that has a byte in [begin, end), and for every
+  // structure before what is in it.
   template <class Var, class Visit>
   void for_leaves(Var& variable, uint64_t at, uint64_t begin, uint64_t end, Visit visit) const;
+  bool is_padded(const Variable& variable) const;
   uint32_t leaf_size(const Variable& leaf) const;
 
   const TypeTable& types_;

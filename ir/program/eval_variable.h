@@ -34,7 +34,9 @@ struct Variable {
   TypeId type;
   bool slot = false;
   uint64_t bits = 0;
-  std::string bytes;  // strings: all units, the NUL and what lies behind it included
+  // Strings: all units, the NUL and what lies behind it included. A structure that was written as
+  // bytes: these, for its padding.
+  std::string bytes;
   std::vector<Variable> parts;
   Address target;
 };

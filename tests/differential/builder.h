@@ -38,18 +38,69 @@ struct Walker {
   uint32_t step = 0;
 };
 
-struct Interface {  // of a function or function block, as its callers see it
+// Of a function, method or function block, as its callers see it.
+struct Interface {
   std::string name;
   TypeRef result = kNoType;
   TypeRef block = kNoType;  // the type of instances
   std::vector<Variable> inputs;
   std::vector<Variable> outputs;
   std::vector<Variable> in_outs;
+  bool callable = true;    // a class has no body
+  bool recursive = false;  // its first input, `depth`, counts down
+  uint32_t rank = 0;       // of a method: it calls those of lower rank only
+  std::string visibility;  // "PROTECTED "
+  std::vector<Interface> methods;
+  std::vector<Variable> properties;
+  std::vector<std::string> actions;
+  bool constructed = false;            // has an FB_Init
+  std::vector<Variable> construction;  // what it takes
+};
+
+struct Seen {
+  Variable variable;
+  bool writable = true;
+  bool constant = false;
+};
+
+// A function block with methods, and what its methods and what extends it see of it.
+struct Class {
+  Interface face;
+  std::vector<Seen> seen;
+  std::vector<std::pair<std::string, TypeRef>> loops;
+  std::vector<std::string> missing;  // methods that are still abstract
+};
+
+// An interface, a base that implements it, and what extends that.
+struct Family {
+  bool plain = false;  // of CLASS
+  bool abstract = false;
+  Interface contract;
+  std::string wide;  // the interface that the contract extends, or itself
+  std::vector<Interface> helpers;
+  TypeRef base = kNoType;
+  std::vector<TypeRef> concrete;
+};
+
+// What methods are called on: "THIS^.", "itf3.".
+struct Receiver {
+  std::string text;
+  Interface face;
+};
+
+// Instances of a family in a POU, and the variables that lead to one of them.
+struct Handles {
+  Family family;
+  std::vector<Variable> instances;
+  std::string face;
+  std::string asked;
+  std::string pointer;  // to the base
+  std::string down;     // to the last that extends it
 };
 
 class Builder {
  public:
-  Builder(uint64_t seed, bool overlays);
+  Builder(uint64_t seed, bool construction);
   Program run();
 
  private:
@@ -167,6 +218,59 @@ class Builder {
   void library_block(const frontend::Tree& tree, const frontend::PouDecl& pou);
   TypeRef library_type(const frontend::Spec& spec);
 
+  // --- objects (objects.cc, receivers.cc)
+  void family();
+  Interface method_face(const char* prefix);
+  void declare_contract(Family& family);
+  Pou head_of(const Interface& face);
+  Class declare_class(const Class* base, const Family& family, bool last);
+  void class_parameters(Pou& pou, Interface& face);
+  void class_methods(Pou& pou, Class& out, const Class* base, const Family& family);
+  void class_members(Pou& pou, Class& out, const Class* base, const Family& family);
+  void see_own(const Class& one);
+  void own_receivers(const Class& owner, const Class* base, uint32_t rank);
+  Pou method(const Class& owner, const Interface& face, const Class* base);
+  void without_loops(const std::vector<Seen>& seen);
+  Stmt action(const std::vector<Seen>& seen, const std::string& name);
+  Stmt property(const Class& owner, const Variable& one);
+  void construct(Pou& pou, Interface& face, const Class* base);
+  std::string construction_arguments(TypeRef type);
+  void objects(Pou& pou);
+  std::optional<std::pair<Expr, Interface>> any_receiver();
+  std::optional<Expr> method_call(TypeRef type, int depth);
+  std::optional<Stmt> method_statement(int depth);
+  std::optional<Stmt> rebind();
+  Stmt tested(const Handles& one);
+  Stmt asked(const Handles& one);
+
+  // --- traps that are caught, recursion (tries.cc)
+  Stmt fault();
+  Stmt try_statement(int depth);
+  void descend(Pou& pou, const Interface& face, const std::string& receiver);
+  void recursive_functions();
+  Expr descent();
+
+  // --- charts (charts.cc)
+  void chart(Pou& pou);
+  std::string qualifier();
+  std::string step(Pou& pou, bool initial);
+  void transition(Pou& pou, const std::string& from, const std::string& to);
+  std::string segment(Pou& pou, const std::string& from);
+
+  // --- instruction lists (lists.cc)
+  void instruction_list(Pou& pou, uint32_t groups);
+  void row(std::vector<Stmt>& out, std::string text, std::vector<Expr> operands,
+           bool pinned = false);
+  Expr operand(TypeRef type);
+  void rows(std::vector<Stmt>& out);
+  void rows_of_values(std::vector<Stmt>& out);
+  void rows_of_bools(std::vector<Stmt>& out);
+  void rows_of_call(std::vector<Stmt>& out);
+  void rows_of_function(std::vector<Stmt>& out);
+  void rows_over(std::vector<Stmt>& out);
+  void rows_again(std::vector<Stmt>& out);
+  void store_bool(std::vector<Stmt>& out);
+
   // --- functions of many types (generics.cc)
   void declare_generics();
   std::optional<Expr> generic_call(TypeRef type, int depth);
@@ -194,13 +298,20 @@ class Builder {
   Stmt while_statement(int depth);
   Stmt leave(const char* word);
 
+  // --- configuration (configuration.cc)
+  void tasks(uint32_t count);
+  void connect(Task& task, const Interface& face);
+  void configure(Pou& pou);
+
   // --- declarations (pous.cc)
   void globals();
   void function(uint32_t index);
   void block(uint32_t index);
+  void block_body(Pou& pou);
   void program(uint32_t index, uint32_t count);
-  void tasks(uint32_t count);
-  void connect(Task& task, const Interface& face);
+  void program_action(Pou& pou);
+  void global_instances();
+  void external(Pou& pou);
   VarBlock& section(Pou& pou, Section kind);
   Variable& declare(Pou& pou, Section kind, TypeRef type, bool with_initial = true);
   void name_initial(Variable& variable);
@@ -215,13 +326,19 @@ class Builder {
   static uint32_t count(const std::vector<T>& list) {
     return static_cast<uint32_t>(list.size());
   }
-  bool trap_in(uint32_t n) { return risky_ && one_in(n); }
+  bool trap_in(uint32_t n) { return caught_ > 0 ? one_in(1 + n / 4) : risky_ && one_in(n); }
+  // A function or method: its variables begin anew at each call.
+  bool has_frame() const { return kind_ == PouKind::kFunction || kind_ == PouKind::kMethod; }
+  // Written by loops only.
+  static bool is_counter_name(const std::string& name) {
+    return name.starts_with("loop") || name == "guard";
+  }
   uint32_t below(uint32_t n) { return random_.below(n); }
   bool one_in(uint32_t n) { return random_.one_in(n); }
   std::string fresh(const char* prefix) { return prefix + std::to_string(next_name_++); }
 
   Random random_;
-  bool overlays_;
+  bool construction_;
   Program program_;
   std::map<TypeRef, std::vector<Place>> places_;
   std::map<std::pair<bool, uint32_t>, TypeRef> strings_;
@@ -246,6 +363,18 @@ class Builder {
   std::vector<Walker> walkers_;
   std::map<TypeRef, Interface> faces_;                  // by the type of instances
   std::vector<std::pair<std::string, TypeRef>> loops_;  // counters that the POU has
+  std::vector<Seen> own_;  // variables of the POU that its methods and actions see
+  std::vector<Receiver> receivers_;
+  std::vector<Handles> handles_;
+  std::vector<Family> families_;
+  std::map<TypeRef, std::vector<TypeRef>> derived_;
+  std::vector<std::string> actions_;  // of the chart
+  uint32_t next_rank_ = 0;
+  uint32_t next_point_ = 0;  // %M
+  uint32_t caught_ = 0;      // open __TRY
+  uint32_t in_loop_ = 0;     // open FOR, WHILE, REPEAT
+  bool descending_ = false;  // a recursive body: no other recursion in it
+  bool configured_ = false;  // has a CONFIGURATION
   uint32_t loop_level_ = 0;
   uint32_t rounds_ = 1;  // of all open loops together
   uint32_t next_name_ = 0;

@@ -37,8 +37,10 @@ std::optional<std::vector<Expr>> Builder::arguments(const Interface& callee, boo
   bool positional = one_in(3);
   const bool all_named = !positional;
   for (const Variable& input : callee.inputs) {
-    if (!positional && !is(input.type, Form::kOpenArray) && one_in(5)) continue;
-    Expr value = expression(input.type, depth);
+    const bool counted = callee.recursive && &input == callee.inputs.data();
+    bool given = positional || counted || is(input.type, Form::kOpenArray);
+    if (!given && one_in(5)) continue;
+    Expr value = counted ? descent() : expression(input.type, depth);
     bool named = !positional;
     out.push_back(named ? argument(input.name + " := @0", std::move(value))
                         : argument("@0", std::move(value)));
@@ -51,7 +53,10 @@ std::optional<std::vector<Expr>> Builder::arguments(const Interface& callee, boo
     if (place) out.push_back(argument("ENO => @0", std::move(*place)));
   }
   for (const Variable& in_out : callee.in_outs) {
-    std::optional<Expr> place = target(in_out.type);
+    auto extended = derived_.find(in_out.type);
+    std::optional<Expr> place;
+    if (extended != derived_.end() && one_in(2)) place = target(any_of(extended->second));
+    if (!place) place = target(in_out.type);
     if (!place) return std::nullopt;
     out.push_back(argument(in_out.name + " := @0", std::move(*place)));
   }
@@ -68,7 +73,7 @@ std::optional<std::vector<Expr>> Builder::arguments(const Interface& callee, boo
 std::optional<Stmt> Builder::block_call(int depth) {
   std::vector<std::pair<TypeRef, const Interface*>> seen;
   for (const auto& [type, face] : faces_) {
-    if (places_.contains(type)) seen.emplace_back(type, &face);
+    if (face.callable && places_.contains(type)) seen.emplace_back(type, &face);
   }
   if (seen.empty()) return std::nullopt;
   auto [type, face] = seen[below(static_cast<uint32_t>(seen.size()))];
@@ -85,6 +90,7 @@ std::optional<Stmt> Builder::block_call(int depth) {
 std::optional<Stmt> Builder::call_statement(int depth) {
   if (functions_.empty()) return std::nullopt;
   const Interface& callee = functions_[below(static_cast<uint32_t>(functions_.size()))];
+  if (callee.recursive && descending_) return std::nullopt;
   std::optional<std::vector<Expr>> args = arguments(callee, false, depth);
   if (!args) return std::nullopt;
   return simple(callee.name + "(@0);", {node(kNoType, "@*", std::move(*args))});

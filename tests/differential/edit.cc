@@ -162,8 +162,13 @@ class Editor {
 
   std::vector<std::vector<Stmt>*> bodies() {
     std::vector<std::vector<Stmt>*> out;
-    for (Pou& pou : program_.pous) collect(pou.body, out);
+    for (Pou& pou : program_.pous) collect(pou, out);
     return out;
+  }
+  void collect(Pou& pou, std::vector<std::vector<Stmt>*>& out) {
+    collect(pou.body, out);
+    collect(pou.members, out);
+    for (Pou& method : pou.methods) collect(method, out);
   }
   void collect(std::vector<Stmt>& list, std::vector<std::vector<Stmt>*>& out) {
     out.push_back(&list);
@@ -199,12 +204,17 @@ class Editor {
 
   // Removes statements and initial values that name it; a branch whose condition does goes whole.
   void forget(const std::string& name) {
-    for (Pou& pou : program_.pous) {
-      forget(pou.body, name);
-      for (VarBlock& block : pou.blocks) forget(block.variables, name);
-    }
+    for (Pou& pou : program_.pous) forget(pou, name);
+    std::erase_if(program_.accesses, [&](const auto& one) { return mentions(one, name); });
+    std::erase_if(program_.configured, [&](const auto& one) { return mentions(one, name); });
     for (VarBlock& block : program_.globals) forget(block.variables, name);
     for (TypeRef type : program_.declared) forget(program_.types[type].members, name);
+  }
+  void forget(Pou& pou, const std::string& name) {
+    forget(pou.body, name);
+    forget(pou.members, name);
+    for (VarBlock& block : pou.blocks) forget(block.variables, name);
+    for (Pou& method : pou.methods) forget(method, name);
   }
   void forget(std::vector<Variable>& list, const std::string& name) {
     for (Variable& one : list) {

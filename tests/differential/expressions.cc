@@ -47,6 +47,7 @@ Expr Builder::expression(TypeRef type, int depth) {
       if (std::optional<Expr> found = variable(type)) return std::move(*found);
       break;
     case 3:
+      if (std::optional<Expr> call = method_call(type, depth)) return std::move(*call);
       if (std::optional<Expr> call = function_call(type, depth)) return std::move(*call);
       break;
     case 4:
@@ -119,7 +120,7 @@ std::optional<Expr> Builder::function_call(TypeRef type, int depth) {
     const Interface& callee = functions_[below(static_cast<uint32_t>(functions_.size()))];
     bool fits = callee.result == type || (is_text(type) && callee.result != kNoType &&
                                           program_[callee.result].form == program_[type].form);
-    if (!fits) continue;
+    if (!fits || (callee.recursive && descending_)) continue;
     std::optional<std::vector<Expr>> args = arguments(callee, false, depth - 1);
     if (!args) continue;
     return node(type, callee.name + "(@*)", std::move(*args));

@@ -8,7 +8,7 @@
 
 namespace differential {
 
-// Without `overlays` there is no reference and no union in it.
-Program random_program(uint64_t seed, bool overlays);
+// Without `construction` no function block has an FB_Init: it runs at a cold start only.
+Program random_program(uint64_t seed, bool construction);
 
 }  // namespace differential

@@ -50,6 +50,7 @@ Stmt Builder::for_statement(int depth) {
   out.tail = "END_FOR;";
   Clause clause{"FOR " + head + (by ? " BY @1 DO" : " DO"), std::move(operands), {}, false};
   ++loop_level_;
+  ++in_loop_;
   rounds_ *= count;
   Variable counter{name, type, std::nullopt, {}, {}};
   places_[type].push_back({name, {}, type, false, false});
@@ -58,6 +59,7 @@ Stmt Builder::for_statement(int depth) {
   if (one_in(4)) clause.body.push_back(leave(one_in(4) ? "RETURN" : "EXIT"));
   places_[type].pop_back();
   rounds_ /= count;
+  --in_loop_;
   --loop_level_;
   out.clauses.push_back(std::move(clause));
   return out;
@@ -68,6 +70,7 @@ Stmt Builder::while_statement(int depth) {
   if (guarded_ || rounds_ * count > kMaxRounds) return assignment();
   TypeRef boolean = elementary(ir::Kind::kBool);
   guarded_ = true;
+  ++in_loop_;
   rounds_ *= count;
   bool repeat = one_in(2);
   Stmt loop;
@@ -87,6 +90,7 @@ Stmt Builder::while_statement(int depth) {
     loop.tail = "END_WHILE;";
   }
   rounds_ /= count;
+  --in_loop_;
   guarded_ = false;
   // The guard is set in front of the loop, both under one roof so that nothing comes between.
   Stmt out;

@@ -2,7 +2,8 @@
 // seeds FIRST.. on every tier, in N processes at a time. With --changes: random changes of them
 // while they run. --shrink makes failing programs small and prints each as a golden file; --write
 // puts them into DIR instead. differential --print SEED [--changes]: the program of a seed, its
-// second version behind it. Ends with "N passed, N failed".
+// second version behind it. With --constructs: no program runs; how many have each construct, and
+// an error when one has none. Ends with "N passed, N failed".
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "tests/differential/changes.h"
+#include "tests/differential/constructs.h"
 #include "tests/differential/edit.h"
 #include "tests/differential/generator.h"
 #include "tests/differential/golden_text.h"
@@ -33,6 +35,7 @@ struct Options {
   int scans = 20;
   uint64_t jobs = 1;
   bool print = false;
+  bool constructs = false;
   bool changes = false;
   bool shrink = false;
   std::string folder;
@@ -45,6 +48,8 @@ Options parse_options(int argc, char** argv) {
     bool more = i + 1 < argc;
     if (word == "--print") {
       out.print = true;
+    } else if (word == "--constructs") {
+      out.constructs = true;
     } else if (word == "--changes") {
       out.changes = true;
     } else if (word == "--shrink") {
@@ -70,7 +75,7 @@ class Case {
       : seed_(seed),
         options_(options),
         script_(differential::change_script(seed)),
-        first_(differential::random_program(seed, true)),
+        first_(differential::random_program(seed, !options.changes)),
         second_(options.changes ? differential::edited(first_, seed) : Program()) {}
 
   Finding examine() const { return examine(first_, second_); }
@@ -184,6 +189,22 @@ std::optional<Tally> run_workers(uint64_t first, uint64_t end, const Options& op
   return sum;
 }
 
+// Does every construct occur in the programs of these seeds?
+int run_constructs(const Options& options) {
+  std::vector<differential::ConstructCount> counts = differential::no_constructs();
+  for (uint64_t i = 0; i < options.numbers[1]; ++i) {
+    Program program = differential::random_program(options.numbers[0] + i, true);
+    differential::count_constructs(differential::print(program), counts);
+  }
+  size_t missing = 0;
+  for (const differential::ConstructCount& one : counts) {
+    std::printf("%8llu %s\n", static_cast<unsigned long long>(one.programs), one.name);
+    if (one.programs == 0) ++missing;
+  }
+  std::printf("%zu passed, %zu failed\n", counts.size() - missing, missing);
+  return missing == 0 ? 0 : 1;
+}
+
 int run(const Options& options) {
   uint64_t first = options.numbers[0];
   uint64_t count = options.numbers[1];
@@ -224,8 +245,8 @@ int main(int argc, char** argv) {
   if (options.numbers.size() != 2) {
     std::fprintf(stderr,
                  "usage: differential FIRST COUNT [--scans N] [--jobs N] [--changes] [--shrink] "
-                 "[--write DIR] | --print SEED [--changes]\n");
+                 "[--write DIR] | --constructs | --print SEED [--changes]\n");
     return 2;
   }
-  return run(options);
+  return options.constructs ? run_constructs(options) : run(options);
 }

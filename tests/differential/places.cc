@@ -10,6 +10,12 @@ void Builder::forget() {
   prologue_.clear();
   pointers_.clear();
   walkers_.clear();
+  receivers_.clear();
+  handles_.clear();
+  descending_ = false;
+  caught_ = 0;
+  in_loop_ = 0;
+  own_.clear();
   loops_.clear();
   loop_level_ = 0;
   rounds_ = 1;

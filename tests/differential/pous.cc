@@ -20,6 +20,10 @@ Variable& Builder::declare(Pou& pou, Section kind, TypeRef type, bool with_initi
   if (lasting) nameable_.push_back(variable);
   bool writable = kind != Section::kInput && kind != Section::kConstant;
   see(variable, writable, kind == Section::kConstant);
+  if (kind == Section::kLocal) variable.arguments = construction_arguments(type);
+  if (kind != Section::kTemp && kind != Section::kInOut) {
+    own_.push_back({variable, writable, kind == Section::kConstant});
+  }
   VarBlock& block = section(pou, kind);
   block.variables.push_back(std::move(variable));
   return block.variables.back();
@@ -37,7 +41,7 @@ void Builder::name_initial(Variable& variable) {
 
 void Builder::parameters(Pou& pou, Interface& face) {
   for (uint32_t n = 1 + below(3); n > 0; --n) {
-    if (overlays_ && kind_ != PouKind::kProgram && one_in(8)) {
+    if (kind_ != PouKind::kProgram && one_in(8)) {
       Variable input{fresh("v"), pointer_to(any_data()), std::nullopt, {}, {}};
       section(pou, Section::kInput).variables.push_back(input);
       own_target(pou, input);
@@ -76,26 +80,39 @@ void Builder::loop_variables(Pou& pou) {
   }
   Variable guard{"guard", elementary(ir::Kind::kDint), std::nullopt, {}, {}};
   places_[guard.type].push_back({"guard", {}, guard.type, false, false});
+  own_.push_back({guard, false, false});
   section(pou, Section::kLocal).variables.push_back(std::move(guard));
   Variable spare{"spare", elementary(ir::Kind::kDint), std::nullopt, {}, {}};
   see(spare, true);
+  own_.push_back({spare, true, false});
   section(pou, Section::kLocal).variables.push_back(std::move(spare));
 }
 
 void Builder::locals(Pou& pou, uint32_t count) {
-  loop_variables(pou);
+  const bool extends = !loops_.empty();
+  if (!extends) loop_variables(pou);
   for (uint32_t i = 0; i < count; ++i) declare(pou, Section::kLocal, any_data());
-  if (kind_ != PouKind::kFunction) {
+  if (!has_frame()) {
     for (uint32_t n = below(2); n > 0; --n) declare(pou, Section::kTemp, any_data());
     for (uint32_t n = below(2); n > 0; --n) declare(pou, Section::kRetain, any_data());
   }
   if (one_in(3)) declare(pou, Section::kStatic, any_data());
   for (uint32_t n = below(3); n > 0; --n) declare(pou, Section::kConstant, any_elementary());
-  if (kind_ != PouKind::kFunction) {
+  if (!has_frame()) {
     for (const Variable& global : global_variables_) nameable_.push_back(global);
   }
+  if (!extends && one_in(4)) external(pou);
   for (const Variable& global : global_variables_) see(global, true);
   for (const Variable& constant : global_constants_) see(constant, false, true);
+}
+
+// What is visible anyway, once more by name.
+void Builder::external(Pou& pou) {
+  for (const Variable& global : global_variables_) {
+    bool plain = global.name.find('.') == std::string::npos && global.arguments.empty();
+    if (!plain || !one_in(3)) continue;
+    section(pou, Section::kExternal).variables.push_back({global.name, global.type});
+  }
 }
 
 TypeRef Builder::any_block() {
@@ -133,10 +150,14 @@ void Builder::function(uint32_t index) {
   face.result = pou.result;
   parameters(pou, face);
   locals(pou, 2 + below(3));
-  references(pou);
-  body(pou, 2 + below(3), 2);
-  if (pou.result != kNoType && possible(pou.result)) {
-    pou.body.push_back(simple(pou.name + " := @0;", {expression(pou.result, 3)}));
+  if (one_in(5)) {
+    instruction_list(pou, 1 + below(3));
+  } else {
+    references(pou);
+    body(pou, 2 + below(3), 2);
+    if (pou.result != kNoType && possible(pou.result)) {
+      pou.body.push_back(simple(pou.name + " := @0;", {expression(pou.result, 3)}));
+    }
   }
   program_.pous.push_back(std::move(pou));
   functions_.push_back(std::move(face));
@@ -154,8 +175,8 @@ void Builder::block(uint32_t index) {
   parameters(pou, face);
   locals(pou, 3 + below(3));
   instances(pou);
-  references(pou);
-  body(pou, 3 + below(4), 2);
+  block_body(pou);
+  if (construction_ && one_in(4)) construct(pou, face, nullptr);
   Type type;
   type.form = Form::kBlock;
   type.name = pou.name;
@@ -164,7 +185,7 @@ void Builder::block(uint32_t index) {
   program_.pous.push_back(std::move(pou));
   blocks_.push_back(std::move(face));
   // Structures and arrays that hold instances.
-  if (one_in(2)) {
+  if (one_in(2) && blocks_.back().construction.empty()) {
     Type holder;
     holder.form = Form::kStruct;
     holder.name = fresh("Holder");
@@ -172,6 +193,15 @@ void Builder::block(uint32_t index) {
     holder.members.push_back({fresh("m"), blocks_.back().block, std::nullopt, {}, {}});
     holders_.push_back(declared(std::move(holder)));
   }
+}
+
+// Statements, a chart or a list.
+void Builder::block_body(Pou& pou) {
+  if (one_in(6)) return instruction_list(pou, 2 + below(4));
+  if (one_in(4)) return chart(pou);
+  objects(pou);
+  references(pou);
+  body(pou, 3 + below(4), 2);
 }
 
 void Builder::globals() {
@@ -210,12 +240,21 @@ void Builder::program(uint32_t index, uint32_t count) {
   if (!holders_.empty()) {
     declare(pou, Section::kLocal, holders_[below(static_cast<uint32_t>(holders_.size()))], false);
   }
-  references(pou);
   if (index == 0) {
     Variable& output = declare(pou, Section::kLocal, elementary(ir::Kind::kBool));
     output.address = "%QX" + std::to_string(below(4)) + "." + std::to_string(below(8));
   }
-  body(pou, (10 + below(10)) / count, 3);
+  if (configured_) configure(pou);
+  if (index > 0 && one_in(3)) {
+    chart(pou);
+  } else if (index > 0 && one_in(3)) {
+    instruction_list(pou, 4 + below(4));
+  } else {
+    objects(pou);
+    references(pou);
+    body(pou, (10 + below(10)) / count, 3);
+    if (one_in(3)) program_action(pou);
+  }
   // Blocks that a task of their own may run.
   for (const VarBlock& list : pou.blocks) {
     for (const Variable& one : list.variables) {
@@ -228,41 +267,24 @@ void Builder::program(uint32_t index, uint32_t count) {
   program_.pous.push_back(std::move(pou));
 }
 
-// What goes in and out before and behind each scan, and a block with a task of its own.
-void Builder::connect(Task& task, const Interface& face) {
-  auto global = [&](TypeRef type) {
-    std::vector<std::string> names;
-    for (const Variable& one : global_variables_) {
-      if (one.type == type) names.push_back(one.name);
-    }
-    return names.empty() ? std::string() : names[below(count(names))];
-  };
-  for (const Variable& input : face.inputs) {
-    std::string from = global(input.type);
-    if (from.empty() && is_elementary(input.type)) from = text(literal(input.type, true));
-    if (!from.empty() && one_in(2)) task.connections.push_back(input.name + " := " + from);
+// Instances that every program sees.
+void Builder::global_instances() {
+  VarBlock block{Section::kGlobal, {}};
+  for (uint32_t n = below(3); n > 0; --n) {
+    Variable one{fresh("g"), any_block()};
+    one.arguments = construction_arguments(one.type);
+    global_variables_.push_back(one);
+    block.variables.push_back(std::move(one));
   }
-  for (const Variable& output : face.outputs) {
-    std::string to = global(output.type);
-    if (!to.empty()) task.connections.push_back(output.name + " => " + to);
-  }
-  if (!face.in_outs.empty() && one_in(2)) {
-    Task own{"Own" + std::to_string(program_.tasks.size()), 10 + 10 * below(3), below(5), {}};
-    task.connections.push_back(face.in_outs[below(count(face.in_outs))].name + " WITH " + own.name);
-    program_.tasks.push_back(std::move(own));
-  }
+  program_.globals.push_back(std::move(block));
 }
 
-void Builder::tasks(uint32_t count) {
-  if (count == 1 && one_in(2)) return;
-  for (uint32_t i = 0; i < count; ++i) {
-    static constexpr uint32_t kPeriods[] = {10, 20, 30, 50};
-    Task task{"Task" + std::to_string(i), i == 0 ? 10 : kPeriods[below(4)], below(3),
-              "Main" + std::to_string(i)};
-    if (i > 0 && one_in(3)) task.event = "event";
-    connect(task, programs_[i]);
-    program_.tasks.push_back(std::move(task));
-  }
+// One that the next program may call.
+void Builder::program_action(Pou& pou) {
+  std::vector<Seen> seen = own_;
+  std::string name = fresh("Act");
+  pou.members.push_back(action(seen, name));
+  if (one_in(2)) pou.body.push_back(simple(name + "();", {}));
 }
 
 Program Builder::run() {
@@ -273,14 +295,21 @@ Program Builder::run() {
   if (one_in(2)) declare_generics();
   uint32_t functions = 1 + below(3);
   for (uint32_t i = 0; i < functions; ++i) function(i);
+  if (one_in(3)) recursive_functions();
   uint32_t blocks = 1 + below(3);
   for (uint32_t i = 0; i < blocks; ++i) block(i);
+  for (uint32_t n = below(3); n > 0; --n) family();
+  if (one_in(2)) block(blocks);
+  global_instances();
   uint32_t programs = one_in(3) ? 2 : 1;
+  configured_ = programs > 1 || one_in(2);
   for (uint32_t i = 0; i < programs; ++i) program(i, programs);
   tasks(programs);
   return std::move(program_);
 }
 
-Program random_program(uint64_t seed, bool overlays) { return Builder(seed, overlays).run(); }
+Program random_program(uint64_t seed, bool construction) {
+  return Builder(seed, construction).run();
+}
 
 }  // namespace differential

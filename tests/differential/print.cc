@@ -95,7 +95,7 @@ class Printer {
 
   void variable(const Variable& one) {
     line(one.name + (one.address.empty() ? "" : " AT " + one.address) + " : " +
-         (one.bit ? "BIT" : type_text(program_, one.type)) +
+         (one.bit ? "BIT" : type_text(program_, one.type)) + one.arguments +
          (one.edge.empty() ? "" : " " + one.edge) +
          (one.initial ? " := " + text(*one.initial) : "") + ";");
   }
@@ -113,12 +113,18 @@ class Printer {
   }
 
   void pou(const Pou& one) {
-    static constexpr const char* kHeads[] = {"FUNCTION", "FUNCTION_BLOCK", "PROGRAM"};
+    static constexpr const char* kHeads[] = {"FUNCTION", "FUNCTION_BLOCK", "PROGRAM",
+                                             "CLASS",    "METHOD",         "INTERFACE"};
     std::string head = kHeads[static_cast<size_t>(one.kind)];
-    line(head + " " + one.name +
+    if (!one.attribute.empty()) line(one.attribute);
+    line(head + " " + one.words + one.name + one.relations +
          (one.result == kNoType ? "" : " : " + type_text(program_, one.result)));
     for (const VarBlock& block : one.blocks) variables(block);
+    ++indent_;
+    for (const Pou& method : one.methods) pou(method);
+    --indent_;
     statements(one.body);
+    statements(one.members);
     line("END_" + head);
   }
 
@@ -153,7 +159,16 @@ class Printer {
            (list.empty() ? ";" : ");"));
     }
     line("  END_RESOURCE");
+    entries("VAR_ACCESS", program_.accesses);
+    entries("VAR_CONFIG", program_.configured);
     line("END_CONFIGURATION");
+  }
+
+  void entries(const std::string& word, const std::vector<std::string>& list) {
+    if (list.empty()) return;
+    line("  " + word);
+    for (const std::string& one : list) line("    " + one);
+    line("  END_VAR");
   }
 
   const Program& program_;
@@ -165,8 +180,8 @@ class Printer {
 
 const char* section_text(Section section) {
   static constexpr const char* kTexts[] = {
-      "VAR",        "VAR_INPUT",         "VAR_OUTPUT",         "VAR_IN_OUT",
-      "VAR_TEMP",   "VAR RETAIN",        "VAR CONSTANT",       "VAR_STAT",
+      "VAR",        "VAR_INPUT",         "VAR_OUTPUT",         "VAR_IN_OUT", "VAR_TEMP",
+      "VAR RETAIN", "VAR CONSTANT",      "VAR_STAT",           "VAR_INST",   "VAR_EXTERNAL",
       "VAR_GLOBAL", "VAR_GLOBAL RETAIN", "VAR_GLOBAL CONSTANT"};
   return kTexts[static_cast<size_t>(section)];
 }

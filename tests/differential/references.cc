@@ -12,7 +12,6 @@ constexpr int kTries = 4;
 }  // namespace
 
 void Builder::references(Pou& pou) {
-  if (!overlays_) return;
   if (!nodes_.empty() && one_in(2)) link_nodes(pou);
   for (uint32_t n = below(4); n > 0; --n) refer(pou);
   if (one_in(2)) walk(pou);
@@ -37,7 +36,7 @@ void Builder::refer(Pou& pou) {
   bool pointer = is(target, Form::kPointer) || !one_in(3);
   TypeRef type = pointer ? pointer_to(target)
                          : named(Form::kReference, "REFERENCE TO " + name_of(target), target);
-  bool temporary = kind_ != PouKind::kFunction && one_in(5);
+  bool temporary = !has_frame() && one_in(5);
   Variable variable = unseen(pou, temporary ? Section::kTemp : Section::kLocal, type);
   std::string set = variable.name + (pointer ? " := " + address_word(type) + "(@0);" : " REF= @0;");
   prologue_.push_back(simple(std::move(set), {std::move(to)}));
@@ -87,7 +86,7 @@ void Builder::walk(Pou& pou) {
                   name_of(element),
                   *bytes / *step,
                   *step};
-    Section passing = kind_ == PouKind::kFunction ? Section::kLocal : Section::kTemp;
+    Section passing = has_frame() ? Section::kLocal : Section::kTemp;
     walker.number =
         unseen(pou, passing, elementary(one_in(2) ? ir::Kind::kDword : ir::Kind::kLword)).name;
     prologue_.push_back(simple(walker.begin + " := ADR(@0);", {std::move(to)}));

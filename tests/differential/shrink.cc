@@ -13,14 +13,20 @@ struct Lists {
   std::vector<std::vector<Variable>*> variables;
   std::vector<Variable*> declarations;
   std::vector<Expr*> expressions;
+  std::vector<std::vector<Pou>*> methods;
 
   explicit Lists(Program& program) {
     for (VarBlock& block : program.globals) add(block.variables);
     for (TypeRef type : program.declared) add(program.types[type].members);
-    for (Pou& pou : program.pous) {
-      for (VarBlock& block : pou.blocks) add(block.variables);
-      add(pou.body);
-    }
+    for (Pou& pou : program.pous) add(pou);
+  }
+
+  void add(Pou& pou) {
+    for (VarBlock& block : pou.blocks) add(block.variables);
+    add(pou.body);
+    add(pou.members);
+    methods.push_back(&pou.methods);
+    for (Pou& method : pou.methods) add(method);
   }
 
   void add(std::vector<Variable>& list) {
@@ -113,6 +119,11 @@ class Shrinker {
 
   bool pous() {
     bool changed = thin([](Program& p) -> auto& { return p.pous; });
+    for (size_t i = 0; i < Lists(program_).methods.size(); ++i) {
+      changed = thin([i](Program& p) -> auto& { return *Lists(p).methods[i]; }) || changed;
+    }
+    changed = thin([](Program& p) -> auto& { return p.accesses; }) || changed;
+    changed = thin([](Program& p) -> auto& { return p.configured; }) || changed;
     changed = thin([](Program& p) -> auto& { return p.tasks; }) || changed;
     changed = thin([](Program& p) -> auto& { return p.declared; }) || changed;
     return thin([](Program& p) -> auto& { return p.globals; }) || changed;

@@ -19,7 +19,7 @@ std::vector<Stmt> Builder::statements(uint32_t count, int depth) {
 
 Stmt Builder::statement(int depth) {
   std::optional<Stmt> found;
-  switch (below(depth <= 0 ? 8 : 16)) {
+  switch (below(depth <= 0 ? 8 : 17)) {
     case 0:
       found = aggregate_assignment();
       break;
@@ -30,13 +30,13 @@ Stmt Builder::statement(int depth) {
       found = one_in(6) ? split_call(2) : one_in(6) ? swap_call() : call_statement(2);
       break;
     case 3:
-      found = block_call(2);
+      found = one_in(2) ? method_statement(2) : block_call(2);
       break;
     case 4:
       found = one_in(2) ? chain() : set_or_reset();
       break;
     case 5:
-      found = one_in(4) ? step() : one_in(4) ? retarget() : std::nullopt;
+      found = one_in(4) ? step() : one_in(4) ? retarget() : one_in(2) ? rebind() : std::nullopt;
       break;
     case 14:
       if (one_in(3)) return jump_over(depth);
@@ -53,6 +53,8 @@ Stmt Builder::statement(int depth) {
       return for_statement(depth);
     case 15:
       return while_statement(depth);
+    case 16:
+      return try_statement(depth);
     default:
       break;
   }
@@ -73,9 +75,7 @@ Stmt Builder::assignment() {
 }
 
 std::optional<Stmt> Builder::aggregate_assignment() {
-  TypeRef type = one_in(2)                ? any_of(structs_)
-                 : overlays_ && one_in(3) ? any_of(unions_)
-                                          : any_of(arrays_);
+  TypeRef type = one_in(2) ? any_of(structs_) : one_in(3) ? any_of(unions_) : any_of(arrays_);
   if (!nodes_.empty() && one_in(6)) type = any_of(nodes_);
   std::optional<Expr> to = target(type);
   if (!to) return std::nullopt;

@@ -43,10 +43,11 @@ struct Stmt {
 struct Variable {
   std::string name;
   TypeRef type = kNoType;
-  std::optional<Expr> initial;
-  std::string address;  // "%QX0.0"
-  std::string edge;     // "R_EDGE"
-  bool bit = false;     // a BIT member; its type is BOOL
+  std::optional<Expr> initial = {};
+  std::string address = {};    // "%QX0.0"
+  std::string edge = {};       // "R_EDGE"
+  bool bit = false;            // a BIT member; its type is BOOL
+  std::string arguments = {};  // of FB_Init: "(1, x := 2)"
 };
 
 enum class Section : uint8_t {
@@ -58,6 +59,8 @@ enum class Section : uint8_t {
   kRetain,
   kConstant,
   kStatic,
+  kInst,
+  kExternal,
   kGlobal,
   kGlobalRetain,
   kGlobalConstant,
@@ -84,6 +87,7 @@ enum class Form : uint8_t {
   kReference,  // REFERENCE TO
   kOpenArray,  // ARRAY[*]: of a parameter; dims has indices that are tried
   kGeneric,    // ANY_NUM: of a parameter
+  kInterface,
 };
 
 struct Bounds {
@@ -106,14 +110,19 @@ struct Type {
   bool overlap = false;   // a union written as STRUCT OVERLAP
 };
 
-enum class PouKind : uint8_t { kFunction, kFunctionBlock, kProgram };
+enum class PouKind : uint8_t { kFunction, kFunctionBlock, kProgram, kClass, kMethod, kInterface };
 
 struct Pou {
   PouKind kind = PouKind::kFunction;
   std::string name;
   TypeRef result = kNoType;
   std::vector<VarBlock> blocks;
-  std::vector<Stmt> body;
+  std::vector<Stmt> body;      // statements, rows of a list, or steps and transitions
+  std::string attribute = {};  // "{attribute 'recursion_depth' := '5'}"
+  std::string words = {};      // "ABSTRACT ", "OVERRIDE "
+  std::string relations = {};  // " EXTENDS Class1 IMPLEMENTS Contract2"
+  std::vector<Pou> methods = {};
+  std::vector<Stmt> members = {};  // actions and properties
 };
 
 struct Task {
@@ -130,7 +139,9 @@ struct Program {
   std::vector<TypeRef> declared;  // order in TYPE
   std::vector<VarBlock> globals;
   std::vector<Pou> pous;
-  std::vector<Task> tasks;  // empty: no CONFIGURATION
+  std::vector<Task> tasks;                   // empty: no CONFIGURATION
+  std::vector<std::string> accesses = {};    // of VAR_ACCESS
+  std::vector<std::string> configured = {};  // of VAR_CONFIG
 
   const Type& operator[](TypeRef type) const { return types[type]; }
 };

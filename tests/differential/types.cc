@@ -11,7 +11,7 @@ constexpr uint32_t kCapacities[] = {1, 5, 12, 80};
 
 }  // namespace
 
-Builder::Builder(uint64_t seed, bool overlays) : random_(seed), overlays_(overlays) {
+Builder::Builder(uint64_t seed, bool construction) : random_(seed), construction_(construction) {
   for (uint32_t i = 0; i < ir::kElementaryCount; ++i) {
     Type type;
     type.name = std::string(ir::elementary_name(static_cast<ir::Kind>(i)));
@@ -161,7 +161,7 @@ TypeRef Builder::any_scalar() {
 TypeRef Builder::any_data() {
   switch (below(18)) {
     case 3:
-      return any_of(overlays_ ? unions_ : structs_);
+      return any_of(unions_);
     case 0:
     case 1:
     case 2:
@@ -278,8 +278,8 @@ void Builder::declare_types() {
   for (uint32_t n = 1 + below(2); n > 0; --n) declare_subrange();
   for (uint32_t n = 1 + below(3); n > 0; --n) declare_struct();
   for (uint32_t n = 1 + below(2); n > 0; --n) declare_array();
-  for (uint32_t n = overlays_ ? 1 + below(2) : 0; n > 0; --n) declare_union();
-  if (overlays_ && one_in(2)) declare_node();
+  for (uint32_t n = 1 + below(2); n > 0; --n) declare_union();
+  if (one_in(2)) declare_node();
 }
 
 }  // namespace differential

@@ -1,5 +1,7 @@
 #include "tests/golden/runner/machine_engine.h"
 
+#include <utility>
+
 #include "ir/bytecode/symbols.h"
 #include "online_change/apply/change.h"
 #include "vm/runtime/controller.h"
@@ -61,11 +63,11 @@ class MachineEngine : public Engine {
   }
 
   base::Result<std::string> scan() override {
-    size_t traps_before = controller_->traps().size();
     controller_->cycle();
     const std::vector<vm::TrapRecord>& traps = controller_->traps();
-    if (traps.size() > traps_before) {
-      const vm::TrapRecord& first = traps[traps_before];
+    // Those of FB_Init, before the first scan, belong to it.
+    if (traps.size() > traps_seen_) {
+      const vm::TrapRecord& first = traps[std::exchange(traps_seen_, traps.size())];
       return std::string(ir::trap_name(first.trap.kind)) + " " + first.text.pou + ":" +
              std::to_string(first.text.line);
     }
@@ -162,6 +164,7 @@ class MachineEngine : public Engine {
   const Program* previous_ = nullptr;
   JumpingClock clock_;
   NoDevices devices_;
+  size_t traps_seen_ = 0;
   std::unique_ptr<vm::Controller> controller_;
   std::unique_ptr<online_change::Change> change_;
   std::map<base::Digest, base::Bytes> hard_packages_;
