@@ -176,6 +176,10 @@ class Examination {
   void check_kept(const std::string& path, const Leaf& old, const Leaf& now) {
     if (old.symbol.constant) return;
     const ir::TypeTable& types = rig_->image().types;
+    // A number that is no literal has no place in an enumeration with other numbers.
+    const bool number = old.value.find_first_not_of("-0123456789") == std::string::npos;
+    const bool unnamed = number && types[now.symbol.type].kind == ir::Kind::kEnum;
+    if (unnamed && said_moved(path)) return;
     if (!same_value(types, old, now)) return wrong("kept value", path, now.value, old.value);
     if (now.symbol.data != old.symbol.data && !said_moved(path)) {
       wrong("kept place", path, std::to_string(now.symbol.data), std::to_string(old.symbol.data));
