@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include "frontend/lex/declaration_index.h"
 #include "frontend/lower/body.h"
+#include "frontend/parse/address_map.h"
 #include "frontend/parse/parse.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sfc/declare.h"
@@ -50,6 +51,7 @@ std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& so
   Tree tree;
   parse_all(all, options, tree, diagnostics);
   if (has_open_comment(diagnostics)) return std::nullopt;
+  map_addresses(tree, diagnostics);
   sfc::declare_charts(tree, diagnostics);
 
   Sema sema(all, tree, sources.file_count(), options, purpose, diagnostics);

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "ir/types/location.h"
+#include "ir/types/natural_layout.h"
+
 namespace linker {
 namespace {
 
@@ -149,14 +152,21 @@ class DataTables {
 // Markers (%M) are variables like others; only inputs and outputs are exchanged.
 void bind_address(ir::Image& image, const ir::DirectAddress& address, uint32_t data,
                   ir::TypeId type) {
-  const ir::DirectArea area = address.area;
-  if (area != ir::DirectArea::kInput && area != ir::DirectArea::kOutput) return;
-  image.io.push_back({address, data, type});
-  const bool scalar = image.types.is_scalar(type);
-  const uint64_t bits = scalar ? address.bit_size : uint64_t{image.layouts[type].size} * 8;
-  const uint64_t end = (uint64_t{address.bit_offset} + bits + 7) / 8;
-  uint32_t& bytes = area == ir::DirectArea::kInput ? image.input_bytes : image.output_bytes;
-  bytes = std::max(bytes, static_cast<uint32_t>(end));
+  const bool exchanged =
+      address.area == ir::DirectArea::kInput || address.area == ir::DirectArea::kOutput;
+  if (exchanged) image.io.push_back({address, data, type});
+}
+
+void size_process_image(ir::Image& image) {
+  if (image.io.empty()) return;
+  const ir::Layouts natural = ir::natural_layouts(image.types);
+  for (const ir::IoBinding& binding : image.io) {
+    const uint64_t end = binding.address.bit_offset +
+                         ir::located_bits(image.types, natural, binding.type, binding.address);
+    const bool input = binding.address.area == ir::DirectArea::kInput;
+    uint32_t& bytes = input ? image.input_bytes : image.output_bytes;
+    bytes = std::max(bytes, static_cast<uint32_t>((end + 7) / 8));
+  }
 }
 
 void fill_data_tables(ir::Image& image, const std::vector<InstanceNode>& nodes) {

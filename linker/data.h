@@ -8,12 +8,15 @@
 
 namespace linker {
 
-// Fills image.data, io, input_bytes, output_bytes and retain; instances, layouts
-// and areas are set.
-// A row of the process image for the variable at `data`; its area grows as far as needed.
+// Fills image.data, retain, and io for the variables whose address is part of their declaration;
+// instances, layouts and areas are set.
+void fill_data_tables(ir::Image& image, const std::vector<InstanceNode>& nodes);
+
+// A row of the process image for the variable at `data`.
 void bind_address(ir::Image& image, const ir::DirectAddress& address, uint32_t data,
                   ir::TypeId type);
 
-void fill_data_tables(ir::Image& image, const std::vector<InstanceNode>& nodes);
+// Sets input_bytes and output_bytes so that everything in image.io has its place.
+void size_process_image(ir::Image& image);
 
 }  // namespace linker

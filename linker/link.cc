@@ -264,6 +264,7 @@ class Linker {
       if (!symbol.ok()) return symbol.error();
       bind_address(image_, located.address, symbol->data, symbol->type);
     }
+    size_process_image(image_);
     image_.access = program_.access;
     return base::Ok{};
   }

@@ -134,6 +134,17 @@ DecodedAddress decode_address(std::string_view text) {
   return out;
 }
 
+DecodedModule decode_module(std::string_view text) {
+  DecodedModule out;
+  if (text.size() > 2 && text[0] == '%') out.area = area_of(text[1]);
+  if (out.area == ir::DirectArea::kNone) {
+    out.problem = bad_address("a module of I/O is written %I2.5, %Q2.5 or %M2.5");
+    return out;
+  }
+  out.problem = read_levels(text.substr(2), out.levels);
+  return out;
+}
+
 DecodedPart decode_part(std::string_view text) {
   DecodedPart out;
   uint32_t bits = bits_of(text[1]);

@@ -85,6 +85,14 @@ struct DecodedAddress {
 // %IX0.3, %QW4, %MD8, %I2.0
 DecodedAddress decode_address(std::string_view text);
 
+struct DecodedModule {
+  ir::DirectArea area = ir::DirectArea::kNone;
+  std::vector<uint32_t> levels;
+  MaybeProblem problem;
+};
+// %I2.5.7: what hierarchical addresses begin with.
+DecodedModule decode_module(std::string_view text);
+
 struct DecodedPart {
   uint32_t number = 0;
   uint8_t bit_size = 1;

@@ -119,7 +119,8 @@ class Body {
   bool check_writable(ExprId expr);
   bool check_writable_name(const Expr& expr);
   bool check_writable_variable(const Expr& expr, VarId variable);
-  void note_output(const ir::DirectAddress& address, base::SourceSpan span);
+  bool check_writable_field(const Expr& expr);
+  void note_output(const ir::DirectAddress& address, ir::TypeId type, base::SourceSpan span);
   std::optional<Target> target(ExprId expr);
   void store(const Target& target, ir::ValueId value);
   ir::Scalar base_scalar(const Target& target) const;

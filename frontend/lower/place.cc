@@ -178,7 +178,7 @@ bool Body::check_writable(ExprId id) {
     case ExprKind::kName:
       return check_writable_name(expr);
     case ExprKind::kDirect:
-      note_output(expr.address, expr.span);
+      note_output(expr.address, sema_.infer(id).type, expr.span);
       if (expr.address.area != ir::DirectArea::kInput) return true;
       sema_.error(DiagnosticCode::kAssignToInput, expr.span,
                   "`" + std::string(expr.name.text) + "` is an input of the process image");
@@ -188,7 +188,7 @@ bool Body::check_writable(ExprId id) {
         return check_writable_variable(expr, global);
       }
       const PouInfo* block = sema_.pou_of(sema_.infer(expr.operand).type);
-      if (block == nullptr) return check_writable(expr.operand);
+      if (block == nullptr) return check_writable_field(expr) && check_writable(expr.operand);
       const Variable& variable =
           sema_.resolve(sema_.objects.find_parameter(*block, expr.name.text));
       if (variable.section == VarSection::kInput) return true;
@@ -214,9 +214,24 @@ bool Body::check_writable(ExprId id) {
   }
 }
 
-void Body::note_output(const ir::DirectAddress& address, base::SourceSpan span) {
-  bool known = address.bit_size != 0;
-  if (address.area == ir::DirectArea::kOutput && known) info_.writes.push_back({address, span});
+// A member of a structure.
+bool Body::check_writable_field(const Expr& expr) {
+  ir::TypeId structure = sema_.infer(expr.operand).type;
+  int32_t member = sema_.find_member(structure, expr.name.text);
+  if (member < 0) return true;
+  const ir::Member& field = types()[structure].members[static_cast<size_t>(member)];
+  if (field.address.area != ir::DirectArea::kInput) return true;
+  sema_.error(DiagnosticCode::kAssignToInput, expr.span,
+              "`" + std::string(expr.name.text) + "` is an input",
+              "copy it to a variable of its own");
+  return false;
+}
+
+void Body::note_output(const ir::DirectAddress& address, ir::TypeId type, base::SourceSpan span) {
+  bool known = address.bit_size != 0 && type.valid();
+  if (address.area == ir::DirectArea::kOutput && known) {
+    info_.writes.push_back({address, type, span});
+  }
 }
 
 bool Body::check_writable_name(const Expr& expr) {
@@ -255,7 +270,7 @@ bool Body::check_writable_variable(const Expr& expr, VarId id) {
     return false;
   }
   if (variable->decl != nullptr && variable->decl->has_address) {
-    note_output(variable->decl->address, expr.span);
+    note_output(variable->decl->address, variable->type, expr.span);
   }
   if (std::find(for_variables_.begin(), for_variables_.end(), id) != for_variables_.end()) {
     sema_.warning(DiagnosticCode::kForVariableAssigned, expr.span,
@@ -273,6 +288,12 @@ std::optional<Target> Body::target(ExprId id) {
   const bool property =
       sema_.infer(whole).property != kNoPou && !sema_.infer(whole).reference.valid();
   if (!property && !check_writable(id)) return std::nullopt;
+  if (!types().is_scalar(note.type) && sema_.holds_input(note.type)) {
+    sema_.error(DiagnosticCode::kAssignToInput, tree_[id].span,
+                "`" + sema_.type_text(note.type) + "` has inputs (AT %I*) among its members",
+                "assign the other members one by one");
+    return std::nullopt;
+  }
   Target out;
   if (property) {
     auto found = property_target(whole);

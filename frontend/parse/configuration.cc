@@ -4,9 +4,10 @@
 
 namespace frontend {
 
-void Parser::parse_configuration() {
+void Parser::parse_configuration(Range32 attributes) {
   const Token opening = take();
   ConfigDecl config;
+  config.attributes = attributes;
   config.scope = scope_;
   config.name = parse_name("configuration");
   panic_ = false;

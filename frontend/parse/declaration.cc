@@ -31,7 +31,7 @@ void Parser::parse_declaration() {
     case TokenKind::kVarConfig:
       return parse_var_block(tree_.globals, attributes);
     case TokenKind::kConfiguration:
-      return parse_configuration();
+      return parse_configuration(attributes);
     default:
       break;
   }

@@ -270,7 +270,7 @@ class Parser {
   bool parse_accessor(const PouDecl& head, PouDecl& owner, size_t first);
 
   // --- configuration.cc
-  void parse_configuration();
+  void parse_configuration(Range32 attributes);
   void parse_configuration_item(ConfigDecl& config);
   void parse_resource(ConfigDecl& config);
   bool parse_resource_item(ResourceDecl& resource);

@@ -197,6 +197,7 @@ std::string Printer::variable(const VarDecl& decl) const {
 }
 
 void Printer::config(const ConfigDecl& decl) {
+  attributes(decl.attributes);
   line("CONFIGURATION " + std::string(decl.name.text));
   ++depth_;
   for (const VarBlock& globals : decl.globals) block(globals);

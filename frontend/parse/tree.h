@@ -211,6 +211,7 @@ struct ConfigDecl {
   Name name;
   std::vector<VarBlock> globals;        // VAR_GLOBAL, VAR_ACCESS, VAR_CONFIG
   std::vector<ResourceDecl> resources;  // a single unnamed one when RESOURCE is left out
+  Range32 attributes;
   ScopeId scope;
   base::SourceSpan span;
 };

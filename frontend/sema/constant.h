@@ -15,8 +15,8 @@ struct Constant {
   Form form = Form::kInteger;
   Flex flex = Flex::kNone;
   bool pattern = false;  // written with 2# 8# 16#, or AND OR XOR of such: bits, not a number
-  ir::TypeId type;   // valid unless `flex` says that the context decides
-  Wide integer = 0;  // also BOOL, bit strings, times, enumerations, characters
+  ir::TypeId type;       // valid unless `flex` says that the context decides
+  Wide integer = 0;      // also BOOL, bit strings, times, enumerations, characters
   double real = 0;
   std::string text;       // STRING: bytes, WSTRING: UTF-16LE
   ir::ConstId aggregate;  // an initial value in the program's table

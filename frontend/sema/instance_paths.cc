@@ -11,7 +11,7 @@ struct InstancePaths::Path {
   uint32_t instance = 0;
   std::vector<uint32_t> steps;
   ir::TypeId type;
-  VarId variable;  // of the last member of a block
+  ir::DirectAddress address;  // as its member declares it
 };
 
 void InstancePaths::configure(const std::vector<VarBlock>& blocks) {
@@ -34,10 +34,11 @@ bool InstancePaths::head(const Expr& expr, Path& path) {
   if (VarId id = sema_.find_variable(expr); id.valid()) {
     const Variable& variable = sema_.resolve(id);
     sema_.variables_[id.index].used = true;
-    path.text = sema_.program.types[sema_.program.globals].members[variable.index].name;
+    const ir::Member& member = sema_.program.types[sema_.program.globals].members[variable.index];
+    path.text = member.name;
     path.global = true;
     path.type = variable.type;
-    path.variable = id;
+    path.address = member.address;
     return path.type.valid();
   }
   bool prefix =
@@ -58,11 +59,11 @@ bool InstancePaths::head(const Expr& expr, Path& path) {
 bool InstancePaths::member(const Expr& expr, Path& path) {
   if (path.text.empty()) return head(expr, path);
   int32_t member = -1;
-  path.variable = {};
+  VarId variable;
   if (const PouInfo* block = sema_.pou_of(path.type)) {
     const VarId found = sema_.objects.find_variable(block->number, expr.name.text);
     if (found.valid() && sema_.resolve(found).storage == Storage::kMember) {
-      path.variable = found;
+      variable = found;
       sema_.variables_[found.index].used = true;
       member = static_cast<int32_t>(sema_.resolve(found).index);
     }
@@ -76,8 +77,9 @@ bool InstancePaths::member(const Expr& expr, Path& path) {
     return false;
   }
   auto number = static_cast<uint32_t>(member);
-  path.type = path.variable.valid() ? sema_.resolve(path.variable).type
-                                    : sema_.program.types[path.type].members[number].type;
+  const ir::Member& chosen = sema_.program.types[path.type].members[number];
+  path.address = chosen.address;
+  path.type = variable.valid() ? sema_.resolve(variable).type : chosen.type;
   path.text += "." + std::string(expr.name.text);
   path.steps.push_back(number);
   return path.type.valid();
@@ -107,6 +109,7 @@ bool InstancePaths::element(const Expr& expr, Path& path) {
   path.text += "]";
   path.steps.push_back(static_cast<uint32_t>(flat));
   path.type = sema_.program.types[path.type].base;
+  path.address = {};
   return true;
 }
 
@@ -149,15 +152,12 @@ void InstancePaths::configure_variable(const VarDecl& decl) {
   Path path;
   if (!decl.path.valid() || !walk(decl.path, path) || !check_type(decl, path)) return;
   if (decl.has_address && !decl.incomplete) {
-    const Variable* variable = path.variable.valid() ? &sema_.resolve(path.variable) : nullptr;
-    bool open = variable != nullptr && variable->decl != nullptr && variable->decl->incomplete &&
-                variable->decl->address.area == decl.address.area;
-    uint32_t bits = sema_.address_bits(path.type);
-    if (!open || bits != decl.address.bit_size) {
-      sema_.error(DiagnosticCode::kBadAddress, decl.span,
-                  open
-                      ? "`" + path.text + "` has " + std::to_string(bits) + " bits"
-                      : "`" + path.text + "` is not declared with AT %I*, %Q* or %M* of this area");
+    bool open =
+        path.address.bit_offset == ir::kOpenAddress && path.address.area == decl.address.area;
+    std::string problem = open ? sema_.address_problem(path.type, decl.address, false)
+                               : "is not declared with AT %I*, %Q* or %M* of this area";
+    if (!problem.empty()) {
+      sema_.error(DiagnosticCode::kBadAddress, decl.span, "`" + path.text + "` " + problem);
       return;
     }
     sema_.program.located.push_back({path.text, decl.address});
@@ -199,53 +199,77 @@ void InstancePaths::add_access(const VarDecl& decl) {
   sema_.program.access.push_back({std::string(decl.names[0].text), path.text, decl.writable});
 }
 
-// Every AT %I*, %Q* has to get its address, in each instance.
-void InstancePaths::check_open_addresses() {
-  bool any = false;
-  for (const Variable& variable : sema_.variables_) {
-    any = any || (variable.decl != nullptr && variable.decl->incomplete && !variable.hidden);
+// Does a variable of this type, or a part of it, stand at an open address?
+bool InstancePaths::holds_open(ir::TypeId type) {
+  if (!type.valid()) return false;
+  if (auto known = holds_open_.find(type); known != holds_open_.end()) return known->second;
+  holds_open_[type] = false;  // blocks in a circle were reported
+  const ir::Type& of = sema_.program.types[type];
+  bool holds = of.kind == ir::Kind::kArray && holds_open(of.base);
+  if (sema_.program.types.has_members(type)) {
+    for (const ir::Member& member : of.members) {
+      if (member.section == ir::Section::kInOut) continue;
+      holds = holds || member.address.bit_offset == ir::kOpenAddress || holds_open(member.type);
+    }
   }
-  if (!any) return;
-  std::unordered_map<std::string, bool> known;
+  return holds_open_[type] = holds;
+}
+
+// Every AT %I*, %Q* has to get its address, in each instance. A VAR_CONFIG with a mistake gives
+// none, and what it meant is not to be known.
+void InstancePaths::check_open_addresses() {
+  if (sema_.diagnostics_.has_errors()) return;
+  Known known;
   for (const ir::LocatedPath& located : sema_.program.located) {
-    known.emplace(ir::fold_name(located.path), true);
+    known.insert(ir::fold_name(located.path));
+  }
+  if (holds_open(sema_.program.globals)) {
+    check_members(sema_.program.globals, "", {}, known);
   }
   for (const ir::ProgramInstance& instance : sema_.program.instances) {
-    check_open_addresses(instance.type, instance.name, known, 0);
+    if (holds_open(instance.type)) check_part(instance.type, instance.name, {}, known);
   }
 }
 
-void InstancePaths::check_open_addresses(ir::TypeId type, const std::string& path,
-                                         const std::unordered_map<std::string, bool>& known,
-                                         uint32_t depth) {
-  constexpr uint32_t kMaxDepth = 64;
-  if (depth > kMaxDepth) return;
-  const ir::Type& owner = sema_.program.types[type];
-  if (owner.kind == ir::Kind::kArray) {
-    if (!sema_.program.types.has_members(owner.base)) return;
-    const ir::Dimension& dim = owner.dims[0];
-    for (int64_t i = dim.low; i <= dim.high && owner.dims.size() == 1; ++i) {
-      check_open_addresses(owner.base, path + "[" + std::to_string(i) + "]", known, depth + 1);
+// `span`: of the nearest variable around it that a source declares.
+void InstancePaths::check_part(ir::TypeId type, const std::string& path, base::SourceSpan span,
+                               const Known& known) {
+  const ir::Type of = sema_.program.types[type];
+  if (of.kind != ir::Kind::kArray) return check_members(type, path + ".", span, known);
+  uint64_t count = 1;
+  for (const ir::Dimension& dim : of.dims) count *= dim.count();
+  for (uint64_t i = 0; i < count; ++i) {
+    std::string indices;
+    uint64_t rest = i;
+    for (size_t d = of.dims.size(); d-- > 0;) {
+      int64_t index = of.dims[d].low + static_cast<int64_t>(rest % of.dims[d].count());
+      rest /= of.dims[d].count();
+      indices = std::to_string(index) + (indices.empty() ? "" : "," + indices);
     }
-    return;
+    check_part(of.base, path + "[" + indices + "]", span, known);
   }
-  if (!sema_.program.types.has_members(type)) return;
-  for (size_t i = 0; i < sema_.program.types[type].members.size(); ++i) {
-    const ir::Member member = sema_.program.types[type].members[i];
-    std::string inner = path + "." + member.name;
-    if (member.address.bit_offset == ir::kOpenAddress && !known.contains(ir::fold_name(inner))) {
-      const PouInfo* block = sema_.pou_of(type);
-      VarId variable;
-      if (block != nullptr)
-        variable = sema_.objects.member_variable(*block, static_cast<uint32_t>(i));
-      sema_.error(DiagnosticCode::kOpenAddress,
-                  variable.valid() ? sema_.resolve(variable).name.span : base::SourceSpan{},
-                  "`" + inner + "` has no address yet",
-                  "add VAR_CONFIG " + inner + " AT %IX0.0 : type; END_VAR");
+}
+
+void InstancePaths::check_members(ir::TypeId type, const std::string& prefix, base::SourceSpan span,
+                                  const Known& known) {
+  const std::vector<ir::Member> members = sema_.program.types[type].members;
+  const PouInfo* block = sema_.pou_of(type);
+  for (uint32_t i = 0; i < members.size(); ++i) {
+    bool open = members[i].address.bit_offset == ir::kOpenAddress;
+    bool inside = members[i].section != ir::Section::kInOut && holds_open(members[i].type);
+    if (!open && !inside) continue;
+    std::string path = prefix + members[i].name;
+    base::SourceSpan here = span;
+    VarId variable;
+    bool declared = type == sema_.program.globals && i < sema_.global_order_.size();
+    if (declared) variable = sema_.global_order_[i];
+    if (block != nullptr) variable = sema_.objects.member_variable(*block, i);
+    if (variable.valid()) here = sema_.resolve(variable).name.span;
+    if (open && !known.contains(ir::fold_name(path))) {
+      sema_.error(DiagnosticCode::kOpenAddress, here, "`" + path + "` has no address yet",
+                  "add VAR_CONFIG " + path + " AT %IX0.0 : type; END_VAR");
     }
-    if (member.section != ir::Section::kInOut && member.type.valid()) {
-      check_open_addresses(member.type, inner, known, depth + 1);
-    }
+    if (inside) check_part(members[i].type, path, here, known);
   }
 }
 

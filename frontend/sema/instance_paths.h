@@ -5,6 +5,7 @@
 
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "frontend/sema/model.h"
@@ -33,10 +34,15 @@ class InstancePaths {
   bool check_type(const VarDecl& decl, const Path& path);
   ir::ConstId with_initial(ir::ConstId before, ir::TypeId type, const std::vector<uint32_t>& steps,
                            size_t at, ExprId init);
-  void check_open_addresses(ir::TypeId type, const std::string& path,
-                            const std::unordered_map<std::string, bool>& known, uint32_t depth);
+  bool holds_open(ir::TypeId type);
+  using Known = std::unordered_set<std::string>;  // folded paths that VAR_CONFIG names
+  void check_part(ir::TypeId type, const std::string& path, base::SourceSpan span,
+                  const Known& known);
+  void check_members(ir::TypeId type, const std::string& prefix, base::SourceSpan span,
+                     const Known& known);
 
   Sema& sema_;
+  std::unordered_map<ir::TypeId, bool> holds_open_;
 };
 
 }  // namespace frontend

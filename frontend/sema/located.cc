@@ -3,8 +3,80 @@
 #include <tuple>
 
 #include "frontend/sema/sema.h"
+#include "ir/types/location.h"
+#include "ir/types/natural_layout.h"
 
 namespace frontend {
+
+// 0: an address with another size than the type's, whatever that is, is none of its own.
+uint32_t Sema::address_bits(ir::TypeId type) const {
+  if (!type.valid() || !program.types.is_scalar(type)) return 0;
+  ir::Scalar machine = program.types.scalar(type);
+  return machine == ir::Scalar::kBool ? 1 : ir::scalar_size(machine) * 8;
+}
+
+bool Sema::holds_instance(ir::TypeId type) const {
+  while (program.types[type].kind == ir::Kind::kArray) type = program.types[type].base;
+  if (!ir::is_structure(program.types[type].kind)) return program.types.is_instance(type);
+  const std::vector<ir::Member>& members = program.types[type].members;
+  return std::any_of(members.begin(), members.end(),
+                     [this](const ir::Member& member) { return holds_instance(member.type); });
+}
+
+// Why a variable of this type cannot be there; empty: it can. An open address (`%I*`) may leave
+// out the size.
+std::string Sema::address_problem(ir::TypeId type, const ir::DirectAddress& address, bool open) {
+  std::string is = "is `" + type_text(type) + "`";
+  bool marker = address.area == ir::DirectArea::kMarker;
+  bool plain = ir::is_locatable(program.types, type) || (marker && !holds_instance(type));
+  if (!plain) return is + ", which cannot have an address";
+  if (uint32_t bits = address_bits(type); bits != 0) {
+    if (bits == address.bit_size || (open && address.bit_size == 0)) return {};
+    return is + ", the address has " + std::to_string(address.bit_size) + " bits";
+  }
+  bool bits = address.bit_size == 1 && ir::located_bools(program.types, type, address) != 0;
+  if (open || bits || address.bit_offset % 8 == 0) return {};
+  return is + ", which begins at a byte";
+}
+
+void Sema::check_address(const Variable& variable) {
+  if (!variable.decl->has_address || variable.hidden || variable.decl->levels.count != 0) return;
+  const VarDecl& decl = *variable.decl;
+  std::string problem = address_problem(variable.type, decl.address, decl.incomplete);
+  if (!problem.empty()) {
+    error(DiagnosticCode::kBadAddress, variable.name.span,
+          "`" + std::string(variable.name.text) + "` " + problem,
+          "use X for BOOL, B W D L for 8 16 32 64 bits; arrays and structures of them begin at "
+          "their first byte");
+  }
+  if (variable.storage == Storage::kLocal) {
+    error(DiagnosticCode::kBadAddress, variable.name.span,
+          "`" + std::string(variable.name.text) +
+              "` lives only during a call and cannot have an address");
+  }
+}
+
+// AT %I* of a member: each variable of the structure's type has such a place, which VAR_CONFIG
+// gives it.
+bool Sema::check_field_address(const VarDecl& field, ir::TypeId type) {
+  std::string problem = field.incomplete
+                            ? address_problem(type, field.address, true)
+                            : "is a member: all variables of its type would share the address";
+  if (problem.empty()) return true;
+  error(DiagnosticCode::kBadAddress, field.span,
+        (field.names.empty() ? "it" : "`" + std::string(field.names[0].text) + "`") + " " + problem,
+        "write AT %I*, %Q* or %M* here and give each variable its address in VAR_CONFIG");
+  return false;
+}
+
+bool Sema::holds_input(ir::TypeId type) const {
+  while (program.types[type].kind == ir::Kind::kArray) type = program.types[type].base;
+  if (!ir::is_structure(program.types[type].kind)) return false;
+  const std::vector<ir::Member>& members = program.types[type].members;
+  return std::any_of(members.begin(), members.end(), [this](const ir::Member& member) {
+    return member.address.area == ir::DirectArea::kInput || holds_input(member.type);
+  });
+}
 
 // Each output or marker variable has storage of its own, so overlapping ones cannot mean the same
 // bits. Inputs may overlap: nobody writes them. The same address and type in VAR_GLOBAL and in
@@ -12,21 +84,27 @@ namespace frontend {
 void Sema::check_direct_addresses() {
   std::vector<Located> all = direct_uses_;
   for (const Variable& variable : variables_) {
-    if (variable.decl == nullptr || !variable.decl->has_address || variable.decl->incomplete)
-      continue;
-    all.push_back({variable.decl->address, variable.name.span, std::string(variable.name.text)});
+    const VarDecl* decl = variable.decl;
+    bool located = decl != nullptr && decl->has_address && !decl->incomplete &&
+                   decl->levels.count == 0 && variable.type.valid();
+    if (!located) continue;
+    all.push_back(
+        {decl->address, variable.type, variable.name.span, std::string(variable.name.text)});
   }
   std::erase_if(all, [](const Located& one) {
     return one.address.area == ir::DirectArea::kInput || one.address.area == ir::DirectArea::kNone;
   });
+  if (all.empty() || diagnostics_.has_errors()) return;
+  const ir::Layouts natural = ir::natural_layouts(program.types);
   std::stable_sort(all.begin(), all.end(), [](const Located& a, const Located& b) {
     return std::tuple(a.address.area, a.address.bit_offset) <
            std::tuple(b.address.area, b.address.bit_offset);
   });
-  const Located* last = nullptr;  // the one that reaches furthest
+  const Located* last = nullptr;  // the one that reaches furthest, to
+  uint64_t end = 0;
   for (const Located& one : all) {
     bool same_area = last != nullptr && last->address.area == one.address.area;
-    if (same_area && one.address.bit_offset < last->end()) {
+    if (same_area && one.address.bit_offset < end) {
       bool marker = one.address.area == ir::DirectArea::kMarker;
       error(DiagnosticCode::kBadAddress, one.span,
             "`" + one.name + "` lies on the same " + (marker ? "marker" : "output") + " bits as `" +
@@ -34,7 +112,11 @@ void Sema::check_direct_addresses() {
             "use one of them everywhere (declare it in VAR_GLOBAL), and its parts: " + last->name +
                 ".%X0, .%B1");
     }
-    if (!same_area || one.end() > last->end()) last = &one;
+    uint64_t here =
+        one.address.bit_offset + ir::located_bits(program.types, natural, one.type, one.address);
+    if (same_area && here <= end) continue;
+    last = &one;
+    end = here;
   }
 }
 
@@ -74,7 +156,7 @@ uint32_t Sema::direct_member(const Expr& expr) {
     member.section = ir::Section::kGlobal;
     member.address = expr.address;
     globals.members.push_back(std::move(member));
-    direct_uses_.push_back({expr.address, expr.span, std::string(expr.name.text)});
+    direct_uses_.push_back({expr.address, type, expr.span, std::string(expr.name.text)});
   }
   direct_members_.emplace(std::move(name), index);
   return index;

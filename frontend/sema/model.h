@@ -68,14 +68,15 @@ struct Connection {
 // What stands at an address: a variable, or the address itself in code.
 struct Located {
   ir::DirectAddress address;
+  ir::TypeId type;
   base::SourceSpan span;
   std::string name;
-  uint64_t end() const { return uint64_t{address.bit_offset} + address.bit_size; }
 };
 
 // A write to the output image, found in a body.
 struct OutputWrite {
   ir::DirectAddress address;
+  ir::TypeId type;
   base::SourceSpan span;
 };
 

@@ -1,20 +1,23 @@
 // Exactly one task writes each byte of the output image: otherwise the order of two
 // tasks would decide what the plant sees (reliability.md, verifier rule on I/O).
 #include "frontend/sema/sema.h"
+#include "ir/types/location.h"
+#include "ir/types/natural_layout.h"
 
 namespace frontend {
 
 void Sema::check_output_tasks() {
-  if (program.tasks.size() < 2) return;
+  if (program.tasks.size() < 2 || diagnostics_.has_errors()) return;
+  const ir::Layouts natural = ir::natural_layouts(program.types);
   std::unordered_map<uint32_t, uint32_t> owner;  // output byte -> task
   for (const ir::ProgramInstance& instance : program.instances) {
     if (instance.task == ir::kNoTask) continue;
-    check_instance_outputs(instance, owner);
+    check_instance_outputs(instance, natural, owner);
   }
 }
 
 // Everything that the program's body can reach through calls.
-void Sema::check_instance_outputs(const ir::ProgramInstance& instance,
+void Sema::check_instance_outputs(const ir::ProgramInstance& instance, const ir::Layouts& natural,
                                   std::unordered_map<uint32_t, uint32_t>& owner) {
   auto start = pou_by_type_.find(instance.type);
   if (start == pou_by_type_.end()) return;
@@ -30,7 +33,8 @@ void Sema::check_instance_outputs(const ir::ProgramInstance& instance,
       work.push_back(callee);
     }
     for (const OutputWrite& write : pou.writes) {
-      uint32_t last = (write.address.bit_offset + write.address.bit_size - 1) / 8;
+      uint64_t bits = ir::located_bits(program.types, natural, write.type, write.address);
+      auto last = static_cast<uint32_t>((write.address.bit_offset + bits - 1) / 8);
       for (uint32_t byte = write.address.bit_offset / 8; byte <= last; ++byte) {
         uint32_t first_task = owner.emplace(byte, instance.task).first->second;
         if (first_task == instance.task) continue;

@@ -19,6 +19,7 @@
 #include "frontend/sema/follow_ups.h"
 #include "frontend/sema/model.h"
 #include "frontend/sema/objects.h"
+#include "ir/types/layout.h"
 
 namespace frontend {
 
@@ -94,6 +95,8 @@ class Sema {
   ir::TypeId type_of_argument(ExprId argument);
   bool reference_fits(ir::TypeId from, ir::TypeId to) const;
   ir::TypeId type_of_direct(const ir::DirectAddress& address) const;
+  // Is a part of such a structure or array at %I*? Then code cannot assign the whole.
+  bool holds_input(ir::TypeId type) const;
 
   // Has the value that an instruction list keeps the type of its result? (infer_result.cc)
   bool check_result(const Stmt& assignment);
@@ -223,7 +226,10 @@ class Sema {
   void resolve_initial(Variable& variable);
   void check_placement(const Variable& variable);
   void check_address(const Variable& variable);
-  uint32_t address_bits(ir::TypeId type) const;
+  uint32_t address_bits(ir::TypeId type) const;  // located.cc
+  std::string address_problem(ir::TypeId type, const ir::DirectAddress& address, bool open);
+  bool check_field_address(const VarDecl& field, ir::TypeId type);
+  bool holds_instance(ir::TypeId type) const;
 
   // types.cc
   TypeUse resolve_kind(SpecId id, const Spec& spec);
@@ -319,7 +325,7 @@ class Sema {
   std::optional<TypeUse> initial_element(const Expr& expr);
 
   // output_tasks.cc
-  void check_instance_outputs(const ir::ProgramInstance& instance,
+  void check_instance_outputs(const ir::ProgramInstance& instance, const ir::Layouts& natural,
                               std::unordered_map<uint32_t, uint32_t>& owner);
 
   // configuration.cc

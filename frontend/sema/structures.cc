@@ -90,6 +90,14 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
   member.type = use.type;
   member.init = field.init.valid() ? initial_value(field.init, use.type, use.init) : use.init;
   if (!bit) close_bits(build);
+  if (field.has_address) {
+    member.address = field.address;
+    if (field.address.area != ir::DirectArea::kNone) {
+      if (!check_field_address(field, use.type)) return false;
+      member.address.bit_offset = ir::kOpenAddress;
+      member.address.bit_size = address_bits(use.type);
+    }
+  }
   for (const Name& name : field.names) {
     Field where{static_cast<uint32_t>(build.type.members.size()), -1};
     if (bit) where = add_bit(build, name, member.init);
@@ -99,10 +107,7 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
     }
     if (bit) continue;
     member.name = name.text;
-    if (field.has_address) {
-      member.address = field.address;
-      build.type.overlap = true;
-    }
+    build.type.overlap |= field.has_address && field.address.area == ir::DirectArea::kNone;
     build.type.members.push_back(member);
   }
   return true;

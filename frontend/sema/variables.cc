@@ -130,30 +130,6 @@ void Sema::check_placement(const Variable& variable) {
   }
 }
 
-// 0: not a value that an address can name.
-uint32_t Sema::address_bits(ir::TypeId type) const {
-  if (!type.valid() || !program.types.is_scalar(type)) return 0;
-  ir::Scalar machine = program.types.scalar(type);
-  return machine == ir::Scalar::kBool ? 1 : ir::scalar_size(machine) * 8;
-}
-
-void Sema::check_address(const Variable& variable) {
-  if (!variable.decl->has_address || variable.hidden) return;
-  const ir::DirectAddress& address = variable.decl->address;
-  uint32_t bits = address_bits(variable.type);
-  bool open = variable.decl->incomplete && address.bit_size == 0 && bits != 0;
-  if (bits != address.bit_size && !open) {
-    error(DiagnosticCode::kBadAddress, variable.name.span,
-          quoted(variable.name) + " is `" + type_text(variable.type) + "`, the address has " +
-              std::to_string(address.bit_size) + " bits",
-          "use X for BOOL, B W D L for 8 16 32 64 bits; arrays and structures cannot be located");
-  }
-  if (variable.storage == Storage::kLocal) {
-    error(DiagnosticCode::kBadAddress, variable.name.span,
-          quoted(variable.name) + " lives only during a call and cannot have an address");
-  }
-}
-
 const PouInfo* Sema::pou_of(ir::TypeId instance) const {
   auto found = pou_by_type_.find(instance);
   return found == pou_by_type_.end() ? nullptr : &pous[found->second];

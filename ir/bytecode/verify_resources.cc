@@ -2,6 +2,8 @@
 
 #include "base/limits.h"
 #include "ir/bytecode/verify_parts.h"
+#include "ir/types/location.h"
+#include "ir/types/natural_layout.h"
 
 namespace ir::verification {
 namespace {
@@ -13,8 +15,9 @@ class ResourcesVerifier {
   base::Status run() {
     if (base::Status s = check_tasks(); !s) return s;
     collect_areas();
+    const Layouts natural = image_.io.empty() ? Layouts{} : natural_layouts(image_.types);
     for (uint32_t i = 0; i < image_.io.size(); ++i) {
-      if (base::Status s = check_binding(i); !s) return s;
+      if (base::Status s = check_binding(natural, i); !s) return s;
     }
     for (uint32_t i = 0; i < image_.retain.size(); ++i) {
       const RetainRange& range = image_.retain[i];
@@ -88,7 +91,7 @@ class ResourcesVerifier {
   }
   bool inside_one_area(uint32_t data, uint64_t size) const { return area_of(data, size) != kNone; }
 
-  base::Status check_binding(uint32_t number) const {
+  base::Status check_binding(const Layouts& natural, uint32_t number) const {
     const IoBinding& io = image_.io[number];
     const auto bad = [&](const std::string& why) {
       return refuse(Refusal::kBadIoAccess, "I/O binding " + std::to_string(number) + ": " + why);
@@ -103,7 +106,8 @@ class ResourcesVerifier {
     if (io.address.area == DirectArea::kMarker) return base::Ok{};
     const bool input = io.address.area == DirectArea::kInput;
     if (input ? !flags->input : !flags->output) return bad("its variable is not located there");
-    const uint64_t bits = io.address.bit_size == 1 ? 1 : uint64_t{image_.layouts[io.type].size} * 8;
+    if (!is_locatable(image_.types, io.type)) return bad("devices cannot exchange its type");
+    const uint64_t bits = located_bits(image_.types, natural, io.type, io.address);
     const uint64_t end = (io.address.bit_offset + bits + 7) / 8;
     const uint32_t limit = input ? image_.input_bytes : image_.output_bytes;
     if (end > limit) {

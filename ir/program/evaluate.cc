@@ -23,8 +23,12 @@ struct Evaluator::Impl {
   EvalMemory memory;
   Variable globals;
   std::vector<Variable> instances;  // parallel to Program::instances; never moved
-  std::vector<Variable*> outputs;   // at %Q; scalars
-  std::vector<uint64_t> published;  // their values after the last complete scan
+  struct Output {
+    Variable* variable;  // a scalar, or what overlaps
+    uint64_t bits = 0;   // as after the last complete scan
+    std::string bytes = {};
+  };
+  std::vector<Output> outputs;  // at %Q
   References references;
   EvalMachine machine;
   EvalInspector inspector;
@@ -44,7 +48,7 @@ struct Evaluator::Impl {
     place_areas();
     collect_outputs(globals);
     for (Variable& instance : instances) collect_outputs(instance);
-    published.resize(outputs.size());
+    for (Output& output : outputs) output.bytes.resize(output.variable->bytes.size());
     released.resize(program.tasks.size());
     level.resize(program.tasks.size());
     for (const uint32_t task : by_priority([](const Task& each) { return each.once; })) {
@@ -52,11 +56,16 @@ struct Evaluator::Impl {
     }
   }
 
-  void collect_outputs(Variable& owner) {
-    const std::vector<Member>& members = program.types[owner.type].members;
-    for (size_t i = 0; i < owner.parts.size() && i < members.size(); ++i) {
-      if (members[i].address.area == DirectArea::kOutput) outputs.push_back(&owner.parts[i]);
+  // `located`: all of it is at %Q.
+  void collect_outputs(Variable& owner, bool located = false) {
+    if (owner.slot) return;
+    const Type& type = program.types[owner.type];
+    const bool members = program.types.has_members(owner.type);
+    for (size_t i = 0; i < owner.parts.size(); ++i) {
+      const bool at = members && type.members[i].address.area == DirectArea::kOutput;
+      collect_outputs(owner.parts[i], located || at);
     }
+    if (located && owner.parts.empty()) outputs.push_back({&owner});
   }
 
   static std::vector<Variable> make_instances(const Program& program, const Layouts& layouts) {
@@ -157,16 +166,31 @@ struct Evaluator::Impl {
   // What a task that traps has written to outputs goes back to what the last complete scan left
   // (vm/runtime/scheduler.cc); before that, to zero.
   std::optional<EvalTrap> run_task(uint32_t task, int64_t now_ns, uint64_t budget) {
-    std::vector<uint64_t> before;
-    for (const Variable* output : outputs) before.push_back(output->bits);
+    std::vector<Output> before;
+    for (const Output& output : outputs) {
+      before.push_back({output.variable, output.variable->bits, output.variable->bytes});
+    }
     std::optional<EvalTrap> trap = run_programs(task, now_ns, budget);
     for (size_t i = 0; i < outputs.size(); ++i) {
-      uint64_t& now = outputs[i]->bits;
-      const uint64_t written = now ^ before[i];
-      if (trap) now = (now & ~written) | (published[i] & written);
-      if (!trap) published[i] = now;
+      Variable& now = *outputs[i].variable;
+      if (trap) {
+        restore(now.bits, before[i].bits, outputs[i].bits);
+        for (size_t b = 0; b < now.bytes.size(); ++b) {
+          restore(now.bytes[b], before[i].bytes[b], outputs[i].bytes[b]);
+        }
+      } else {
+        outputs[i].bits = now.bits;
+        outputs[i].bytes = now.bytes;
+      }
     }
     return trap;
+  }
+
+  // The bits that differ from `before` become those of `published`.
+  template <class T>
+  static void restore(T& now, T before, T published) {
+    const T written = static_cast<T>(now ^ before);
+    now = static_cast<T>((now & ~written) | (published & written));
   }
 
   // Edges of events release tasks.

@@ -1,6 +1,6 @@
 // Between the process image (%I and %Q as the devices see them: bits packed, little endian) and
-// the located variables (a BOOL is one byte). A table made once for each image; copying needs no
-// allocation.
+// the located variables (a BOOL is one byte; ir/types/location.h). A table made once for each
+// image; copying needs no allocation.
 #pragma once
 
 #include <cstdint>
@@ -29,12 +29,12 @@ class ProcessImage {
   struct Point {
     uint32_t data = 0;  // offset of the variable
     uint32_t byte = 0;  // in the process image
-    uint32_t size = 0;  // 0: one bit
-    uint8_t mask = 0;
+    uint32_t size = 0;  // 0: a BOOL
+    uint8_t mask = 0;   // of a BOOL: its bit, or kWholeByte: TRUE is 1, read as any but 0
   };
+  static constexpr uint8_t kWholeByte = 0xff;
   using Points = std::vector<Point>;
-  static void add(Points& points, const ir::Image& image, const ir::IoBinding& binding,
-                  uint32_t limit);
+  class Collector;
   static void unpack(const Points& points, std::span<const uint8_t> from, uint8_t* memory);
 
   Points inputs_;

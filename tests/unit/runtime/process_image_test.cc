@@ -1,4 +1,6 @@
 // B3, B5: inputs stand still for a scan, outputs are never half-done.
+#include "vm/runtime/process_image.h"
+#include "ir/bytecode/symbols.h"
 #include "tests/unit/runtime/plant.h"
 
 namespace runtime_test {
@@ -29,6 +31,53 @@ END_PROGRAM)");
   plant.io.set_input(0, 0xf7);
   plant.cycles(2);
   EXPECT_EQ(plant.io.output(0), 0x80);
+}
+
+// Arrays of BOOL at a bit address are packed; structures lie as they are declared, a BOOL in a
+// byte.
+TEST(ProcessImage, TakesArraysAndStructures) {
+  Plant plant(R"(
+TYPE Inputs : STRUCT ready : BOOL; code : BYTE; level : INT; END_STRUCT END_TYPE
+PROGRAM P
+VAR panel AT %IB4 : Inputs; lamps AT %QX10.4 : ARRAY[1..6] OF BOOL;
+    speeds AT %QW20 : ARRAY[0..2] OF INT; echo AT %QB50 : ARRAY[0..1] OF Inputs; END_VAR
+  lamps[1] := panel.ready; lamps[6] := TRUE; speeds[2] := panel.level;
+  echo[1].ready := panel.ready; echo[1].level := panel.level + 1;
+END_PROGRAM)");
+  ASSERT_TRUE(plant.ok());
+  plant.io.set_input(4, 0x80);
+  plant.io.set_input(6, 0x34);
+  plant.io.set_input(7, 0x12);
+  plant.cycles(2);
+  EXPECT_EQ(plant.get("P.panel.ready"), "TRUE");
+  EXPECT_EQ(plant.io.output(10), 0x10);
+  EXPECT_EQ(plant.io.output(11), 0x02);
+  EXPECT_EQ(plant.io.output(44), 0x34);
+  EXPECT_EQ(plant.io.output(45), 0x12);
+  EXPECT_EQ(plant.io.output(54), 0x01);
+  EXPECT_EQ(plant.io.output(56), 0x35);
+  EXPECT_EQ(plant.io.output(57), 0x12);
+}
+
+// A change that takes a member away leaves a hole in the variable, but none in the process image.
+TEST(ProcessImage, DoesNotDependOnTheHistoryOfALayout) {
+  auto source = [](const std::string& members) {
+    return "TYPE S : STRUCT " + members +
+           " END_STRUCT END_TYPE PROGRAM P VAR s AT %QB0 : S; END_VAR "
+           "s.b := 5; END_PROGRAM";
+  };
+  auto before = build(source("a : INT; gone : INT; b : INT;"));
+  ASSERT_TRUE(before);
+  auto after = build(source("a : INT; b : INT;"), &before->image());
+  ASSERT_TRUE(after);
+  const uint32_t at = ir::find_symbol(after->image(), "P.s.b")->data;
+  EXPECT_EQ(at - ir::find_symbol(after->image(), "P.s.a")->data, 4u);
+  EXPECT_EQ(after->image().output_bytes, 4u);
+  std::vector<uint8_t> memory(after->image().data_capacity);
+  memory[at] = 5;
+  std::vector<uint8_t> outputs(4);
+  vm::ProcessImage(after->image()).variables_to_outputs(memory.data(), outputs);
+  EXPECT_EQ(outputs, (std::vector<uint8_t>{0, 0, 5, 0}));
 }
 
 constexpr const char* kSlowAndFast = R"(
