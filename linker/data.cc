@@ -83,6 +83,7 @@ class DataTables {
       const ir::Member& member = members[i];
       if (member.section == ir::Section::kInOut) continue;
       const uint32_t at = data_of(node) + image_.layouts[node.type].member_offsets[i];
+      if (member.section == ir::Section::kStamp) continue;  // never retained
       if (member.retain || node.retained) retain(member.type, at, 0);
       bind(member, at);
     }

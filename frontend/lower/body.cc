@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "base/hash.h"
+#include "frontend/lower/start_code.h"
 #include "frontend/lower/chart.h"
 
 namespace frontend {
@@ -40,7 +41,7 @@ void Body::run() {
   if (info_.setup != nullptr) statements(info_.setup->body);
   if (!info_.connections.empty()) exit_ = build_.new_block();
   if (info_.constructs) {
-    start_code();
+    StartCode(*this).run();
   } else if (decl.chart != kNoChart) {
     ChartBody(*this, tree_.charts[decl.chart]).run();
   } else if (info_.teardown != nullptr) {

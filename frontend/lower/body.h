@@ -28,6 +28,7 @@ class Body {
 
  private:
   friend class ChartBody;  // sequential function charts (chart.h)
+  friend class StartCode;  // __START (start_code.h)
 
   Body(Sema& sema, PouInfo& info, uint32_t number, ir::Pou pou);
 
@@ -262,17 +263,6 @@ class Body {
   std::optional<ir::ValueId> object_handle(ExprId id);
   Attempt attempt(ExprId left, ExprId right, base::SourceSpan span);
 
-  // --- __START (start.cc)
-  void start_code();
-  void start_variable(VarId id);
-  void start_value(const ir::Place& at, ir::TypeId type, const Spec* spec);
-  void start_elements(const ir::Place& at, ir::TypeId type, const Spec* spec);
-  void start_loop(const ir::Place& at, const std::vector<ir::Dimension>& dims, size_t number,
-                  ir::TypeId element, const Spec* spec);
-  void start_instance(const ir::Place& at, ir::TypeId type, Range32 args);
-  void call_init(const ir::Place& at, const PouInfo& init, Range32 args);
-  bool bind_init(const Expr& call, const PouInfo& init, std::vector<Binding>& bindings);
-
   // --- tests (test_call.cc, mock.cc)
   void test_call(const Expr& call, const TestCallRow& row);
   void assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message);
@@ -355,8 +345,7 @@ class Body {
   std::vector<VarId> for_variables_;
   std::unordered_map<uint32_t, ir::ValueId> result_values_;  // by number of the kResult
   std::unordered_map<uint32_t, ir::Place> result_places_;
-  base::SourceSpan start_span_;  // of the variable that __START constructs
-  bool evaluating_ = false;      // inside evaluate(): names stand for their initial values
+  bool evaluating_ = false;  // inside evaluate(): names stand for their initial values
   static constexpr uint32_t kNoLocal = 0xffffffffu;
   std::array<uint32_t, 3> message_buffers_{kNoLocal, kNoLocal, kNoLocal};
   // Where the last line was found; positions mostly go forward.

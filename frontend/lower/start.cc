@@ -1,6 +1,7 @@
-// The code of __START (sema/start.cc): FB_Init of every instance, inner ones first, with the
-// arguments that its declaration gives.
+#include "frontend/lower/start_code.h"
+
 #include "frontend/lower/call.h"
+#include "ir/types/stamps.h"
 
 namespace frontend {
 namespace {
@@ -20,51 +21,52 @@ ir::Step step(ir::StepKind kind, uint32_t index = 0) {
 
 }  // namespace
 
-void Body::start_code() {
-  if (info_.owner == kNoPou) {
-    for (VarId id : sema_.objects.start_globals()) start_variable(id);
+void StartCode::run() {
+  PouInfo& info = body_.info_;
+  if (info.owner == kNoPou) {
+    for (VarId id : sema_.objects.start_globals()) variable(id);
     return;
   }
-  const PouInfo& block = sema_.pous[info_.owner];
+  const PouInfo& block = sema_.pous[info.owner];
   const uint32_t base = block.base == kNoPou ? kNoPou : sema_.pous[block.base].start;
   if (base != kNoPou) {
-    info_.callees.push_back(base);
+    info.callees.push_back(base);
     build_.call_method(sema_.pous[base].id);
   }
-  for (VarId id : block.members) start_variable(id);
+  for (VarId id : block.members) variable(id);
 }
 
-void Body::start_variable(VarId id) {
+void StartCode::variable(VarId id) {
   const Variable& variable = sema_.resolve(id);
   if (variable.section == VarSection::kInOut || !sema_.objects.starts(variable.type)) return;
-  const Spec* spec = variable.decl == nullptr ? nullptr : &tree_[variable.decl->spec];
-  set_line(variable.name.span);
-  start_span_ = variable.name.span;
-  start_value(variable_place(id), variable.type, spec);
+  const Spec* spec = variable.decl == nullptr ? nullptr : &sema_.tree[variable.decl->spec];
+  body_.set_line(variable.name.span);
+  span_ = variable.name.span;
+  value(body_.variable_place(id), variable.type, spec);
 }
 
-void Body::start_value(const ir::Place& at, ir::TypeId type, const Spec* spec) {
+void StartCode::value(const ir::Place& at, ir::TypeId type, const Spec* spec) {
   if (!sema_.objects.starts(type)) return;
   const ir::Kind kind = types()[type].kind;
-  if (kind == ir::Kind::kArray) return start_elements(at, type, spec);
+  if (kind == ir::Kind::kArray) return elements(at, type, spec);
   if (!ir::is_structure(kind)) {
-    return start_instance(at, type, spec == nullptr ? Range32() : spec->args);
+    return instance(at, type, spec == nullptr ? Range32() : spec->args);
   }
   for (uint32_t i = 0; i < types()[type].members.size(); ++i) {
     ir::Place member = at;
     member.steps.push_back(step(ir::StepKind::kMember, i));
     member.type = types()[type].members[i].type;
-    start_value(member, member.type, nullptr);
+    value(member, member.type, nullptr);
   }
 }
 
 // Pump[(1), (2)] has arguments for each element; otherwise all have the same.
-void Body::start_elements(const ir::Place& at, ir::TypeId type, const Spec* spec) {
+void StartCode::elements(const ir::Place& at, ir::TypeId type, const Spec* spec) {
   const std::vector<ir::Dimension> dims = types()[type].dims;
   const ir::TypeId element = types()[type].base;
   const bool written = spec != nullptr && spec->kind == SpecKind::kArray;
   if (!written || spec->element_args.count == 0) {
-    return start_loop(at, dims, 0, element, written ? &tree_[spec->element] : nullptr);
+    return loop(at, dims, 0, element, written ? &sema_.tree[spec->element] : nullptr);
   }
   uint64_t total = 1;
   for (const ir::Dimension& dim : dims) total *= dim.count();
@@ -84,21 +86,21 @@ void Body::start_elements(const ir::Place& at, ir::TypeId type, const Spec* spec
       one.steps.insert(one.steps.begin() + static_cast<ptrdiff_t>(at.steps.size()), index);
     }
     one.type = element;
-    const Expr& list = tree_[tree_.expr_lists[spec->element_args.first + i]];
-    start_instance(one, element, list.args);
+    const Expr& list = sema_.tree[sema_.tree.expr_lists[spec->element_args.first + i]];
+    instance(one, element, list.args);
   }
 }
 
 // One loop for each dimension, from the first.
-void Body::start_loop(const ir::Place& at, const std::vector<ir::Dimension>& dims, size_t number,
-                      ir::TypeId element, const Spec* spec) {
+void StartCode::loop(const ir::Place& at, const std::vector<ir::Dimension>& dims, size_t number,
+                     ir::TypeId element, const Spec* spec) {
   if (number == dims.size()) {
     ir::Place one = at;
     one.type = element;
-    return start_value(one, element, spec);
+    return value(one, element, spec);
   }
   constexpr ir::Scalar kI64 = ir::Scalar::kI64;
-  const ir::Place counter = temporary_place(elementary(ir::Kind::kLint));
+  const ir::Place counter = body_.temporary_place(types().elementary(ir::Kind::kLint));
   const ir::BlockId head = build_.new_block();
   const ir::BlockId body = build_.new_block();
   const ir::BlockId done = build_.new_block();
@@ -114,72 +116,125 @@ void Body::start_loop(const ir::Place& at, const std::vector<ir::Dimension>& dim
   ir::Place inner = at;
   inner.steps.push_back(step(ir::StepKind::kIndex));
   inner.steps.back().value = now;
-  start_loop(inner, dims, number + 1, element, spec);
+  loop(inner, dims, number + 1, element, spec);
   build_.store(counter, kI64, build_.binary(ir::Op::kAdd, kI64, now, constant(1)));
   build_.jump(head);
   build_.start(done);
 }
 
-void Body::start_instance(const ir::Place& at, ir::TypeId type, Range32 args) {
-  const PouInfo& block = *sema_.pou_of(type);
-  if (block.start != kNoPou) {
-    info_.callees.push_back(block.start);
-    build_.call_method(sema_.pous[block.start].id, at);
-  }
-  const uint32_t init = sema_.objects.find_code(block.number, kFbInit).code.method;
-  if (init != kNoPou) {
-    call_init(at, sema_.pous[init], args);
-  } else if (args.count != 0) {
-    sema_.error(DiagnosticCode::kBadConstruction, start_span_,
-                quoted_name(block.decl->name) + " has no FB_Init that takes arguments");
-  }
+void StartCode::when(ir::ValueId condition, const std::function<void()>& then) {
+  const ir::BlockId inside = build_.new_block();
+  const ir::BlockId behind = build_.new_block();
+  build_.branch(condition, inside, behind);
+  build_.start(inside);
+  then();
+  build_.jump(behind);
+  build_.start(behind);
 }
 
-void Body::call_init(const ir::Place& at, const PouInfo& init, Range32 args) {
-  Expr call;
-  call.kind = ExprKind::kCall;
-  call.args = args;
-  call.span = start_span_;
-  std::vector<Binding> bindings;
-  if (!bind_init(call, init, bindings) || !check_in_outs(call, init, bindings)) return;
-  info_.callees.push_back(init.number);
-  evaluate_arguments(call, bindings);
-  for (const Binding& binding : bindings) {
-    pass_input(binding, argument_place(init, sema_.resolve(binding.variable)));
+// What leaves, leaves from the outside in; the other way round, what is inside is ready first.
+void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args) {
+  constexpr ir::Scalar kU32 = ir::Scalar::kU32;
+  const PouInfo& block = *sema_.pou_of(type);
+  auto code_of = [&](std::string_view name) -> const PouInfo* {
+    const uint32_t method = sema_.objects.find_code(block.number, name).code.method;
+    return method == kNoPou ? nullptr : &sema_.pous[method];
+  };
+  const PouInfo* init = code_of(kFbInit);
+  const PouInfo* exit = code_of(kFbExit);
+  const PouInfo* reinit = code_of(kFbReinit);
+  ir::Place stamp = at;
+  if (block.stamp.valid()) {
+    stamp.steps.push_back(step(ir::StepKind::kEnter));
+    stamp.steps.push_back(step(ir::StepKind::kMember, sema_.resolve(block.stamp).index));
+    stamp.type = sema_.resolve(block.stamp).type;
   }
-  pass_defaults(init, bindings);
-  for (VarId id : init.locals) {  // a cold start: retained variables have initial values too
+  auto is = [&](uint32_t value) {
+    return build_.compare(ir::Op::kEq, kU32, build_.load(stamp, kU32), number(value));
+  };
+  auto set = [&](uint32_t value) { build_.store(stamp, kU32, number(value)); };
+  const uint32_t made = block.stamp.valid() ? sema_.objects.stamp_of(block) : 0;
+  if (exit != nullptr) {
+    when(is(ir::kLeavingStamp), [&] {
+      call(at, *exit, {});
+      set(ir::kLeftStamp);
+    });
+  }
+  if (block.start != kNoPou) {
+    body_.info_.callees.push_back(block.start);
+    build_.call_method(sema_.pous[block.start].id, at);
+  }
+  if (init == nullptr && args.count != 0) {
+    sema_.error(DiagnosticCode::kBadConstruction, span_,
+                quoted_name(block.decl->name) + " has no FB_Init that takes arguments");
+  }
+  if (!block.stamp.valid()) return;
+  when(is(ir::kNewStamp), [&] {
+    if (init != nullptr) call(at, *init, args);
+    set(made);
+  });
+  if (reinit == nullptr) return;
+  const ir::ValueId now = build_.load(stamp, kU32);
+  when(build_.compare(ir::Op::kLe, kU32, number(ir::kFirstShapeStamp), now), [&] {
+    when(build_.compare(ir::Op::kNe, kU32, now, number(made)), [&] {
+      call(at, *reinit, {});
+      set(made);
+    });
+  });
+}
+
+void StartCode::call(const ir::Place& at, const PouInfo& method, Range32 args) {
+  constexpr ir::Scalar kBool = ir::Scalar::kBool;
+  Expr written;
+  written.kind = ExprKind::kCall;
+  written.args = args;
+  written.span = span_;
+  std::vector<Body::Binding> bindings;
+  if (!bind(written, method, bindings) || !body_.check_in_outs(written, method, bindings)) return;
+  body_.info_.callees.push_back(method.number);
+  body_.evaluate_arguments(written, bindings);
+  const ir::Place flag = body_.variable_place(sema_.objects.change_flag());
+  const ir::ValueId changed =
+      build_.compare(ir::Op::kNe, ir::Scalar::kU32, build_.load(flag, ir::Scalar::kU32), number(0));
+  for (const Body::Binding& binding : bindings) {
+    body_.pass_input(binding, body_.argument_place(method, sema_.resolve(binding.variable)));
+  }
+  body_.pass_defaults(method, bindings);
+  for (VarId id : method.locals) {
     const Variable& variable = sema_.resolve(id);
-    if (variable.section != VarSection::kInput || !traits_of(types(), variable.type).boolean)
-      continue;
-    if (!ir::same_name(variable.name.text, kImplicit[0])) continue;
-    build_.store(argument_place(init, variable), ir::Scalar::kBool,
-                 build_.constant(ir::Scalar::kBool, 1));
+    if (variable.section != VarSection::kInput || !is_implicit(variable.name)) continue;
+    if (!traits_of(types(), variable.type).boolean) continue;
+    // What is made has its initial values, retained variables too.
+    const bool retains = ir::same_name(variable.name.text, kImplicit[0]);
+    build_.store(body_.argument_place(method, variable), kBool,
+                 retains ? build_.constant(kBool, 1) : changed);
   }
-  build_.call_method(init.id, at);
+  build_.call_method(method.id, at);
 }
 
 // bInitRetains and bInCopyCode are given by the system; the others by the declaration.
-bool Body::bind_init(const Expr& call, const PouInfo& init, std::vector<Binding>& bindings) {
+bool StartCode::bind(const Expr& call, const PouInfo& method,
+                     std::vector<Body::Binding>& bindings) {
+  const std::string name(method.decl->name.text);
+  const std::string of = name + " of " + quoted_name(sema_.pous[method.owner].decl->name);
   std::vector<VarId> parameters;
-  for (VarId id : init.locals) {
+  for (VarId id : method.locals) {
     const Variable& variable = sema_.resolve(id);
     const bool input =
         variable.section == VarSection::kInput || variable.section == VarSection::kInOut;
     if (input && !is_implicit(variable.name)) parameters.push_back(id);
   }
   for (uint32_t i = 0; i < call.args.count; ++i) {
-    const Arg& arg = tree_.args[call.args.first + i];
+    const Arg& arg = sema_.tree.args[call.args.first + i];
     if (arg.output) {
-      sema_.error(DiagnosticCode::kBadConstruction, arg.span, "FB_Init has no outputs here");
+      sema_.error(DiagnosticCode::kBadConstruction, arg.span, name + " has no outputs here");
       return false;
     }
     if (!arg.name.empty()) {
-      if (!bind_named(arg, init, bindings)) return false;
+      if (!body_.bind_named(arg, method, bindings)) return false;
     } else if (i >= parameters.size()) {
       sema_.error(DiagnosticCode::kBadConstruction, arg.span,
-                  "FB_Init of " + quoted_name(sema_.pous[init.owner].decl->name) + " takes " +
-                      std::to_string(parameters.size()) + " arguments");
+                  of + " takes " + std::to_string(parameters.size()) + " arguments");
       return false;
     } else if (arg.value.valid()) {
       bindings.push_back({parameters[i], &arg, {}, {}, {}});
@@ -188,13 +243,14 @@ bool Body::bind_init(const Expr& call, const PouInfo& init, std::vector<Binding>
   for (VarId id : parameters) {
     const Variable& variable = sema_.resolve(id);
     bool given = variable.decl != nullptr && variable.decl->init.valid();
-    for (const Binding& binding : bindings) given = given || binding.variable == id;
+    for (const Body::Binding& binding : bindings) given = given || binding.variable == id;
     if (given) continue;
     sema_.error(DiagnosticCode::kBadConstruction, call.span,
-                "FB_Init of " + quoted_name(sema_.pous[init.owner].decl->name) + " needs " +
-                    quoted_name(variable.name),
-                "give it in the declaration: name : Block(" + std::string(variable.name.text) +
-                    " := value);");
+                of + " needs " + quoted_name(variable.name),
+                ir::same_name(name, kFbInit)
+                    ? "give it in the declaration: name : Block(" +
+                          std::string(variable.name.text) + " := value);"
+                    : "give it an initial value: nobody calls " + name + " with arguments");
     return false;
   }
   return true;

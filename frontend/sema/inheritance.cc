@@ -102,6 +102,7 @@ void Objects::inherit(uint32_t number, uint32_t depth) {
   if (info.self.valid() && info.owner == kNoPou) {
     sema_.program.types.edit(info.self).interfaces = std::move(interfaces);
   }
+  if (is_block(decl.kind)) add_stamp(info);
   info.inheritance = Progress::kDone;
 }
 

@@ -71,7 +71,7 @@ ir::Member Sema::member_of(const Variable& variable, ir::Section section) const 
   if (!variable.method.empty()) member.name = std::string(variable.method) + "#";
   member.name += variable.name.text;
   member.type = variable.type;
-  member.section = section;
+  member.section = variable.stamp ? ir::Section::kStamp : section;
   member.constant = variable.constant;
   member.retain = variable.retain;
   member.init = variable.init;

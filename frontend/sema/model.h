@@ -39,6 +39,7 @@ struct Variable {
   bool retain = false;
   bool used = false;
   bool hidden = false;        // not of the source: see hidden_variables.cc
+  bool stamp = false;         // of start code: ir::Section::kStamp
   bool by_reference = false;  // in-out of a function block: a REFERENCE TO bound at each call
   bool runtime_init = false;  // the initialiser runs at each call
   Progress progress = Progress::kNew;
@@ -179,6 +180,7 @@ struct PouInfo {
   uint32_t inherited = 0;            // members of the instance that are the base's
   Progress inheritance = Progress::kNew;
   uint32_t start = kNoPou;          // its method __START, where members need one
+  VarId stamp;                      // of it or its base, where FB_Init and the like are
   bool constructs = false;          // a __START itself
   NameMap<MemberCode> code;         // its own methods, actions and properties
   std::vector<uint32_t> overrides;  // of a method: what a virtual call of it may run instead

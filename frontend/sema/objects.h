@@ -15,6 +15,8 @@ namespace frontend {
 
 class Sema;
 inline constexpr std::string_view kFbInit = "FB_Init";
+inline constexpr std::string_view kFbExit = "FB_Exit";
+inline constexpr std::string_view kFbReinit = "FB_Reinit";
 using base::DiagnosticCode;
 
 class Objects {
@@ -78,13 +80,17 @@ class Objects {
   Note infer_property(const Name& name, const Found& found);
   VarId value_of(const PouInfo& accessor) const;
 
-  // --- FB_Init (start.cc)
+  // --- FB_Init, FB_Exit, FB_Reinit (start.cc)
   // After configure(): adds the code that runs once.
   void add_start();
   // Does a variable of this type need anything at the start?
   bool starts(ir::TypeId type);
   // What the program __START begins with: globals, then programs.
   const std::vector<VarId>& start_globals() const { return start_globals_; }
+  // A global, not 0 where a change is what start code runs for.
+  VarId change_flag() const { return change_flag_; }
+  // What the stamp of an instance becomes: another number for another layout.
+  uint32_t stamp_of(const PouInfo& block) const;
 
   // --- calls (recursion.cc)
   // How deep the POU may call itself, by its attribute; 0: not declared.
@@ -114,10 +120,13 @@ class Objects {
   void add_start_method(uint32_t block);
   VarId program_global(const std::string& name, const PouInfo& program);
   void add_start_program();
+  void add_stamp(PouInfo& block);
+  VarId add_hidden_global(std::string_view name, ir::TypeId type, base::SourceSpan span);
 
   Sema& sema_;
   std::unordered_map<ir::TypeId, bool> starts_;
   std::vector<VarId> start_globals_;
+  VarId change_flag_;
 };
 
 }  // namespace frontend

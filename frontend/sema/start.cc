@@ -2,13 +2,18 @@
 // (docs/adr/0006-objects.md). A block with members that need it has a method __START, which
 // calls those of its members and then their FB_Init; a hidden program __START does so for the
 // globals and calls __START of every program instance.
+#include <algorithm>
+
+#include "base/hash.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/sema.h"
+#include "ir/types/stamps.h"
 
 namespace frontend {
 namespace {
 
-constexpr std::string_view kStart = "__START";
+constexpr std::string_view kStampName = "#stamp";
+constexpr std::string_view kChangeFlag = "#changed";
 
 bool has_arguments(const Tree& tree, SpecId id) {
   const Spec& spec = tree[id];
@@ -16,6 +21,24 @@ bool has_arguments(const Tree& tree, SpecId id) {
     return spec.element_args.count != 0 || has_arguments(tree, spec.element);
   }
   return spec.kind == SpecKind::kNamed && spec.has_args;
+}
+
+// What of a type decides how a variable of it is laid out; instances have areas of their own.
+std::string shape(const ir::TypeTable& types, ir::TypeId id) {
+  const ir::Type& type = types[id];
+  if (type.kind == ir::Kind::kArray) {
+    std::string text = "[";
+    for (const ir::Dimension& dim : type.dims) {
+      text += std::to_string(dim.low) + ".." + std::to_string(dim.high) + ",";
+    }
+    return text + "]" + shape(types, type.base);
+  }
+  std::string text = types.text(id);
+  if (!ir::is_structure(type.kind)) return text;
+  for (const ir::Member& member : type.members) {
+    text += "{" + ir::fold_name(member.name) + ":" + shape(types, member.type) + "}";
+  }
+  return text;
 }
 
 }  // namespace
@@ -29,7 +52,7 @@ bool Objects::starts(ir::TypeId type) {
   if (auto known = starts_.find(type); known != starts_.end()) return known->second;
   starts_.emplace(type, false);  // types do not contain themselves
   const PouInfo* block = sema_.pou_of(type);
-  bool needed = block != nullptr && find_code(block->number, kFbInit).code.method != kNoPou;
+  bool needed = block != nullptr && block->stamp.valid();
   for (size_t i = 0; i < types[type].members.size() && !needed; ++i) {
     const ir::Member& member = types[type].members[i];
     needed = member.section != ir::Section::kInOut && starts(member.type);
@@ -83,7 +106,10 @@ void Objects::add_start() {
       start_globals_.push_back(program_global(instance.name, *program));
     }
   }
-  if (!start_globals_.empty()) add_start_program();
+  if (start_globals_.empty()) return;
+  change_flag_ = add_hidden_global(kChangeFlag, sema_.program.types.elementary(ir::Kind::kDword),
+                                   sema_.variables_[start_globals_[0].index].name.span);
+  add_start_program();
 }
 
 bool Objects::has_members_to_start(const PouInfo& info) {
@@ -100,7 +126,7 @@ void Objects::add_start_method(uint32_t block) {
   owner.start = number;
   PouDecl& made = sema_.made_decls_.emplace_back();
   made.kind = PouKind::kMethod;
-  made.name = {kStart, owner.decl->name.span};
+  made.name = {ir::kStartProgram, owner.decl->name.span};
   made.span = owner.decl->span;
   made.scope = owner.decl->scope;
   PouInfo& info = sema_.pous.emplace_back();
@@ -110,42 +136,85 @@ void Objects::add_start_method(uint32_t block) {
   info.owner = block;
   info.self = owner.self;
   info.constructs = true;
-  sema_.add_code(info, sema_.program.types[owner.self].name + "." + std::string(kStart));
+  sema_.add_code(info, sema_.program.types[owner.self].name + "." + std::string(ir::kStartProgram));
   sema_.resolve_interface(number);
 }
 
 // The global through which code reaches a program instance.
 VarId Objects::program_global(const std::string& name, const PouInfo& program) {
   if (ir::same_name(name, program.decl->name.text)) return sema_.program_variable(name, false);
+  return add_hidden_global(sema_.keep_name(name), program.self, program.decl->name.span);
+}
+
+VarId Objects::add_hidden_global(std::string_view name, ir::TypeId type, base::SourceSpan span) {
   VarId id(static_cast<uint32_t>(sema_.variables_.size()));
   Variable variable;
-  variable.name = {sema_.keep_name(name), program.decl->name.span};
+  variable.name = {name, span};
   variable.section = VarSection::kGlobal;
   variable.storage = Storage::kGlobal;
   variable.used = true;
   variable.hidden = true;
-  variable.type = program.self;
+  variable.stamp = name == kChangeFlag;
+  variable.type = type;
   variable.progress = Progress::kDone;
   sema_.variables_.push_back(variable);
   sema_.place_global(id);
   return id;
 }
 
+// A member that says what has been done with an instance (ir/types/stamps.h). The nearest base
+// that needs one has it for all that extend it.
+void Objects::add_stamp(PouInfo& block) {
+  if (block.base != kNoPou) block.stamp = sema_.pous[block.base].stamp;
+  bool needed = false;
+  for (std::string_view name : {kFbInit, kFbExit, kFbReinit}) {
+    auto found = block.code.find(name);
+    needed = needed || (found != block.code.end() && found->second.method != kNoPou);
+  }
+  if (block.stamp.valid() || !needed) return;
+  block.stamp = VarId(static_cast<uint32_t>(sema_.variables_.size()));
+  Variable variable;
+  variable.name = {kStampName, block.decl->name.span};
+  variable.used = true;
+  variable.hidden = true;
+  variable.stamp = true;
+  variable.pou = block.number;
+  variable.index = block.inherited + static_cast<uint32_t>(block.members.size());
+  variable.type = sema_.program.types.elementary(ir::Kind::kDword);
+  variable.progress = Progress::kDone;
+  sema_.variables_.push_back(variable);
+  block.members.push_back(block.stamp);
+}
+
+// By names and types of its members, in whatever order they are declared.
+uint32_t Objects::stamp_of(const PouInfo& block) const {
+  std::vector<std::string> lines;
+  for (const ir::Member& member : sema_.program.types[block.self].members) {
+    if (member.section == ir::Section::kStamp) continue;
+    lines.push_back(ir::fold_name(member.name) + ":" + shape(sema_.program.types, member.type));
+  }
+  std::sort(lines.begin(), lines.end());
+  std::string text;
+  for (const std::string& line : lines) text += line + ";";
+  return static_cast<uint32_t>(base::hash64(base::as_bytes(text))) | ir::kFirstShapeStamp;
+}
+
 void Objects::add_start_program() {
   PouDecl& made = sema_.made_decls_.emplace_back();
   made.kind = PouKind::kProgram;
   made.span = sema_.variables_[start_globals_[0].index].name.span;
-  made.name = {kStart, made.span};
+  made.name = {ir::kStartProgram, made.span};
   const uint32_t number = sema_.add_pou(made, false);
   sema_.pous[number].constructs = true;
   sema_.resolve_interface(number);
   ir::Task task;
-  task.name = kStart;
+  task.name = ir::kStartProgram;
   task.period_ns = 0;
   task.once = true;
   const auto at = static_cast<uint32_t>(sema_.program.tasks.size());
   sema_.program.tasks.push_back(std::move(task));
-  sema_.program.instances.push_back({std::string(kStart), sema_.pous[number].self, at, {}});
+  sema_.program.instances.push_back(
+      {std::string(ir::kStartProgram), sema_.pous[number].self, at, {}});
 }
 
 }  // namespace frontend

@@ -113,7 +113,7 @@ void type_fields(Archive& a, T& v) {
   a.list(v.members, 24, [&](auto& member) {
     a(member.name);
     a(member.type);
-    a.enumerator(member.section, 5);
+    a.enumerator(member.section, 6);
     a(member.constant);
     a(member.retain);
     a(member.init);

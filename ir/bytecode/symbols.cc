@@ -202,7 +202,7 @@ class LeafWalk {
     const size_t length = path_.size();
     const Type& type = image_.types[symbol.type];
     for (size_t i = 0; i < type.members.size(); ++i) {
-      if (type.members[i].section == Section::kInOut) continue;
+      if (!is_listed(type.members[i])) continue;
       if (length != 0) path_ += '.';
       path_ += type.members[i].name;
       part(member_of(image_, symbol, i), depth);

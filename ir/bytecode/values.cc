@@ -91,7 +91,7 @@ class Formatter {
     const Type& type = image_.types[id];
     std::string out = "(";
     for (size_t i = 0; i < type.members.size(); ++i) {
-      if (type.members[i].section == Section::kInOut) continue;
+      if (!is_listed(type.members[i])) continue;
       if (out.size() > 1) out += ", ";
       out += type.members[i].name + " := " +
              part(type.members[i].type, data + image_.layouts[id].member_offsets[i], depth + 1);

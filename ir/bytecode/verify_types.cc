@@ -207,6 +207,10 @@ class TypesVerifier {
     }
     if (types_.overlaps(TypeId(i))) return check_overlapping(i, limit);
     for (const Member& member : type.members) {
+      const bool dword = types_[member.type].kind == Kind::kDword;
+      if (member.section == Section::kStamp && (!is_area(type.kind) || !dword)) {
+        return bad(i, "`" + member.name + "` is no stamp of an instance");
+      }
       const bool slot = member.section == Section::kInOut || types_.is_instance(member.type);
       facts_[i].has_slots |= slot || facts_[member.type.index].has_slots;
     }

@@ -216,6 +216,7 @@ void EvalInspector::append_state(const std::string& path, const Address& at,
     }
   } else if (program_.types.has_members(at.type)) {
     for (size_t i = 0; i < type.members.size(); ++i) {
+      if (type.members[i].section == Section::kStamp) continue;
       append_state(path + (path.empty() ? "" : ".") + type.members[i].name, part_of(at, i), out);
     }
   } else {

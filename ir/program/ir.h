@@ -227,8 +227,8 @@ struct Task {
   int64_t period_ns = 10'000'000;
   int64_t watchdog_ns = 0;  // 0: ten periods
   uint32_t priority = 0;    // 0 is the highest, as in IEC 61131-3
-  // Runs once, at cold start, after all initial values and before the first scan;
-  // never again, also not for what a change adds. Its period is 0.
+  // Start code: runs at cold start, after all initial values and before the first scan, and in
+  // the first cycle behind a change of variables, before all others. Its period is 0.
   bool once = false;
   // SINGLE: the number of a BOOL member of the globals; kNoEvent: none. Each rising edge
   // releases the task. It is looked at when a cycle starts and when a task ends; its

@@ -9,8 +9,8 @@
 
 namespace ir {
 
-inline constexpr std::array<std::string_view, 5> kSectionWords = {"local", "input", "output",
-                                                                  "in_out", "global"};
+inline constexpr std::array<std::string_view, 6> kSectionWords = {"local",  "input",  "output",
+                                                                  "in_out", "global", "stamp"};
 inline constexpr std::array<std::string_view, 4> kAreaWords = {"none", "input", "output", "marker"};
 inline constexpr std::array<std::string_view, 5> kLocalWords = {"input", "output", "in_out",
                                                                 "return", "temp"};

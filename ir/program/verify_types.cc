@@ -105,6 +105,10 @@ class TypesVerifier {
               "a member of a union has an I/O address");
       require(member.section != Section::kInOut || types_.is_instance(id), id,
               "in-out outside of an instance");
+      require(member.section != Section::kStamp ||
+                  (types_.contains(member.type) && types_[member.type].kind == Kind::kDword &&
+                   (types_.is_instance(id) || type.kind == Kind::kGlobals)),
+              id, "a stamp that is no DWORD of an instance");
       if (types_.contains(member.type)) {
         const Kind kind = types_[member.type].kind;
         require((kind != Kind::kProgram || type.kind == Kind::kGlobals) && kind != Kind::kGlobals,

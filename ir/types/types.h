@@ -81,7 +81,9 @@ using TypeId = base::Id<TypeTag>;
 // An initial value in the program's ConstTable (constants.h).
 using ConstId = base::Id<ConstTag>;
 
-enum class Section : uint8_t { kLocal, kInput, kOutput, kInOut, kGlobal };
+// kStamp: a DWORD of start code, which no source sees and nobody lists. In a block: 0 in a new
+// instance, see stamps.h; in the globals: not 0 where start code runs for a change.
+enum class Section : uint8_t { kLocal, kInput, kOutput, kInOut, kGlobal, kStamp };
 
 // What direct address an AT declaration names (I/O and marker memory).
 enum class DirectArea : uint8_t { kNone, kInput, kOutput, kMarker };
@@ -104,6 +106,11 @@ struct Member {
   ConstId init;           // invalid: the type's default
   DirectAddress address;  // for AT declarations
 };
+
+// Is it a variable by itself, that people can see?
+inline bool is_listed(const Member& member) {
+  return member.section != Section::kInOut && member.section != Section::kStamp;
+}
 
 struct Dimension {
   int64_t low = 0;

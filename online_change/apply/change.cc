@@ -6,6 +6,7 @@
 
 #include "online_change/apply/losses.h"
 #include "online_change/apply/transfer.h"
+#include "online_change/diff/instance_match.h"
 
 namespace online_change {
 namespace {
@@ -26,6 +27,29 @@ base::Error no_boundary() {
   return {base::Refusal::kBusy, "a task is inside a scan; the switch waits for a boundary"};
 }
 
+// Without it, start code would find nothing to do.
+bool does_anything(const Plan& plan) { return !plan.steps.empty() || plan.counts.dropped != 0; }
+
+bool has_stamp(const ir::Image& image, uint32_t id) {
+  const std::vector<ir::Member>& members = image.types[image.instances[id].type].members;
+  return std::any_of(members.begin(), members.end(), [](const ir::Member& member) {
+    return member.section == ir::Section::kStamp;
+  });
+}
+
+// The instances with a stamp that only one of the two versions has.
+void find_leaving(const ir::Image& old_image, const ir::Image& new_image,
+                  std::vector<uint32_t>& old_ids, std::vector<uint32_t>& new_ids) {
+  if (!has_stamp(old_image, 0) && !has_stamp(new_image, 0)) return;
+  const InstanceMatch match = match_instances(old_image, new_image);
+  for (uint32_t id : match.old_order) {
+    if (match.new_of_old[id] == kNoInstance && has_stamp(old_image, id)) old_ids.push_back(id);
+  }
+  for (uint32_t id : match.new_order) {
+    if (match.old_of_new[id] == kNoInstance && has_stamp(new_image, id)) new_ids.push_back(id);
+  }
+}
+
 }  // namespace
 
 struct Change::Pending {
@@ -43,6 +67,8 @@ struct Change::Pending {
   Transfer backward;
   // Version 2 until the switch, version 1 in trial.
   std::unique_ptr<vm::Generation> waiting;
+  std::vector<uint32_t> leaving;       // instances that the switch drops and FB_Exit is for
+  std::vector<uint32_t> leaving_back;  // that undo drops
   bool allow_loss = false;
 };
 
@@ -108,6 +134,8 @@ base::Status Change::stage_steps(base::ByteSpan bytes) {
   base::Status sound = check_package(*package, controller_.image(), image->image());
   if (!sound.ok()) return sound;
   pending_ = std::make_unique<Pending>(std::move(*package), controller_.verified(), *image);
+  find_leaving(pending_->old_image.image(), pending_->new_image.image(), pending_->leaving,
+               pending_->leaving_back);
   state_ = State::kPlanned;
   if (interrupted()) return abandoned("when its plan was checked");
   pending_->waiting = controller_.prepare(*image);
@@ -233,17 +261,32 @@ base::Status Change::carry_over() {
   return base::Ok{};
 }
 
+// FB_Exit runs while the old program still does: what it writes is carried over. Behind it the old
+// program goes on only after FB_Init has made the same instances again.
+base::Status Change::leave(const std::vector<uint32_t>& ids) {
+  if (ids.empty()) return base::Ok{};
+  if (interrupted()) return abandoned("at the boundary");
+  return controller_.leave(ids, controller_.base_period_ns());
+}
+
 base::Result<SwitchReport> Change::switch_now() {
   if (state_ != State::kArmed) return not_in(state_, "armed");
   if (!controller_.at_boundary()) return no_boundary();
   SwitchReport report = report_begin();
   int64_t begin_ns = monotonic_ns();
-  base::Status carried = carry_over();
+  const bool leaves = !pending_->leaving.empty();
+  base::Status carried = leaves ? check_losses(pending_->allow_loss) : base::Status(base::Ok{});
+  if (carried.ok()) {
+    carried = leave(pending_->leaving);
+    if (carried.ok()) carried = carry_over();
+    if (!carried.ok() && leaves) controller_.construct();
+  }
   if (!carried.ok()) {
     cancel();
     return carried.error();
   }
   pending_->waiting = controller_.publish(std::move(pending_->waiting));
+  if (does_anything(plan())) controller_.construct();
   report.pause_ns = monotonic_ns() - begin_ns;
   state_ = State::kTrial;
   report.missed = missed_releases() - report.missed;
@@ -270,12 +313,19 @@ base::Result<SwitchReport> Change::undo() {
   uint8_t* memory = controller_.memory().data();
   int64_t begin_ns = monotonic_ns();
   Transfer& back = pending_->backward;
+  base::Status left = leave(pending_->leaving_back);
+  if (!left.ok()) {
+    controller_.construct();
+    return left.error();
+  }
   bool done = back.read_back(memory, pending_->forward, interrupted_) &&
               back.save(memory, interrupted_) && back.write(memory, interrupted_);
   if (!done) {
+    if (!pending_->leaving_back.empty()) controller_.construct();
     return base::Error{base::Refusal::kDeadline, "the undo was abandoned; the trial goes on"};
   }
   retired_ = controller_.publish(std::move(pending_->waiting));
+  if (does_anything(pending_->package.inverse)) controller_.construct();
   report.pause_ns = monotonic_ns() - begin_ns;
   report.missed = missed_releases() - report.missed;
   report.counts = pending_->package.inverse.counts;

@@ -72,6 +72,7 @@ class Change {
   base::Status check_losses(bool allow_loss) const;
   bool write_early();
   base::Status carry_over();
+  base::Status leave(const std::vector<uint32_t>& ids);
   bool interrupted() const { return interrupted_ && interrupted_(); }
   base::Error abandoned(const char* where) const;
   SwitchReport report_begin() const;

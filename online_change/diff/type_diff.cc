@@ -121,7 +121,7 @@ uint64_t TypeDiffer::count_leaves(const ir::Image& image, TypeId id) {
   if (!image.types.has_members(id) || image.types.overlaps(id)) return 1;
   uint64_t count = 0;
   for (const Member& member : type.members) {
-    if (member.section == Section::kInOut || image.types.is_instance(member.type)) continue;
+    if (!ir::is_listed(member) || image.types.is_instance(member.type)) continue;
     count += leaves(image, member.type);
   }
   return count;
@@ -252,6 +252,11 @@ void TypeDiffer::add_new_member(TypeDiff& diff, const Member& member, uint32_t t
     diff.ops.push_back(op);
     return;
   }
+  op.stamp = member.section == Section::kStamp;
+  if (op.stamp) {
+    diff.ops.push_back(op);
+    return;
+  }
   op.leaves = leaves(new_, member.type);
   op.row = static_cast<uint32_t>(diff.rows.size());
   diff.ops.push_back(op);
@@ -262,7 +267,7 @@ void TypeDiffer::add_new_member(TypeDiff& diff, const Member& member, uint32_t t
 void TypeDiffer::add_dropped_member(TypeDiff& diff, const Member& member) {
   if (old_.types.is_instance(member.type)) return;  // a row of its own, with its area
   diff.rows.push_back(make_row(Fate::kDropped, "." + member.name, old_.types.text(member.type), "",
-                               "removed", leaves(old_, member.type)));
+                               "removed", ir::is_listed(member) ? leaves(old_, member.type) : 0));
 }
 
 void TypeDiffer::add_member(TypeDiff& diff, const Member& old_member, uint32_t from,
@@ -309,6 +314,7 @@ void TypeDiffer::append_value(TypeDiff& diff, const TypeDiff& inner, const Membe
     op.from += from;
     op.to += to;
     op.row = op.row == kWholeVariable ? own_row : first_row + op.row;
+    if (new_member.section == Section::kStamp) op.leaves = 0;
     op.constant = op.constant || (new_member.constant && op.kind == DiffKind::kSame);
     diff.ops.push_back(op);
   }

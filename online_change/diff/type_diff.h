@@ -33,6 +33,7 @@ inline constexpr uint32_t kWholeVariable = 0xffffffffu;  // DiffOp::row: no row 
 struct DiffOp {
   DiffKind kind = DiffKind::kSame;
   bool has_source = true;  // kSlot, kInOut: the old version had it
+  bool stamp = false;      // kInitialise, in an instance that lives on: it has been made
   bool constant = false;   // kSame: CONSTANT, initialised when its value changed
   uint32_t from = 0;
   uint32_t to = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "ir/types/stamps.h"
 #include "online_change/diff/value_conversion.h"
 #include "online_change/package/package.h"
 
@@ -162,6 +163,12 @@ bool PlanCheck::for_each_part(Node node, Visit visit) const {
 }
 
 bool PlanCheck::check_area(uint32_t id) {
+  const ir::TypeId type = new_.instances[id].type;
+  stamp_at_ = 0;
+  for (size_t i = 0; id != 0 && i < new_.types[type].members.size(); ++i) {
+    if (new_.types[type].members[i].section != ir::Section::kStamp) continue;
+    stamp_at_ = new_.instances[id].data + new_.layouts[type].member_offsets[i];
+  }
   Node area{new_.instances[id].type, new_areas_.begin(id), false};
   uint32_t used = new_areas_.used(id);
   auto first = std::partition_point(targets_.begin(), targets_.end(), [&](const Target& target) {
@@ -245,6 +252,9 @@ bool PlanCheck::check_initial(Node node, const Target& target) {
     new_data_.read(node.begin, wanted);
     size_t at = size_t{target.index} * step.size + (node.begin - target.to);
     right = std::memcmp(wanted.data(), step.bytes.data() + at, size) == 0;
+    constexpr uint32_t kOld = ir::kOldStamp;
+    right = right || (node.begin == stamp_at_ && size == sizeof kOld &&
+                      std::memcmp(&kOld, step.bytes.data() + at, size) == 0);
   }
   return right || fail(node.begin, "is initialised with something else than its initial value");
 }

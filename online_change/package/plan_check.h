@@ -61,6 +61,7 @@ class PlanCheck {
   InitialData new_data_;
   TypeFit fit_;
   std::vector<Target> targets_;  // sorted, disjoint after check_targets()
+  uint32_t stamp_at_ = 0;        // of the instance that is looked at
   std::string why_;
 };
 

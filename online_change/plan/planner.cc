@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ir/types/stamps.h"
 #include "online_change/plan/area_steps.h"
 #include "online_change/plan/pause.h"
 
@@ -10,6 +11,8 @@ namespace {
 
 // More steps than this are refused: a package must fit into a controller's memory.
 constexpr size_t kMaxSteps = 8'000'000;
+
+base::Bytes old_stamp() { return base::Bytes(4, static_cast<uint8_t>(ir::kOldStamp)); }
 
 constexpr uint32_t kReplaced = FateRows::kNoRow - 1;  // row_of_old_: counted with its successor
 
@@ -129,7 +132,9 @@ void Planner::apply_same(const Carried& instance, const DiffOp& op) {
   }
   if (!in_place) {
     plan_.counts.moved += op.leaves;
-    return put(step_for(op, StepKind::kCopy, instance.from, instance.to, moved_row(instance, op)));
+    const bool counted = op.leaves != 0 || instance.moved();
+    return put(step_for(op, StepKind::kCopy, instance.from, instance.to,
+                        counted ? moved_row(instance, op) : kNoFate));
   }
   plan_.counts.kept += op.leaves;
   if (!initial_equal(instance, op)) note_row(instance, op);
@@ -137,7 +142,7 @@ void Planner::apply_same(const Carried& instance, const DiffOp& op) {
 
 void Planner::initialise(const Carried& instance, const DiffOp& op, uint32_t fate) {
   UpdateStep step = step_for(op, StepKind::kInitialise, instance.from, instance.to, fate);
-  step.bytes = initial_bytes(new_data_, step);
+  step.bytes = op.stamp && instance.new_id != 0 ? old_stamp() : initial_bytes(new_data_, step);
   put(std::move(step));
 }
 
@@ -180,7 +185,8 @@ void Planner::add_instance(uint32_t new_id) {
   const ir::Instance& instance = new_.instances[new_id];
   uint64_t leaves = differ_.leaves(new_, instance.type);
   used_here_.clear();
-  uint32_t row = added_row(new_id, leaves);
+  const bool hidden = instance.name == ir::kStartProgram;
+  uint32_t row = hidden ? kNoFate : added_row(new_id, leaves);
   row_of_new_[new_id] = row;
   plan_.counts.initialised += leaves;
   if (match_.retyped_from[new_id] != kNoInstance) {
@@ -197,7 +203,7 @@ void Planner::add_instance(uint32_t new_id) {
 
 void Planner::drop_instance(uint32_t old_id) {
   const ir::Instance& instance = old_.instances[old_id];
-  if (row_of_old_[old_id] == kReplaced) return;
+  if (row_of_old_[old_id] == kReplaced || instance.name == ir::kStartProgram) return;
   uint32_t parent_row = instance.parent == 0 ? FateRows::kNoRow : row_of_old_[instance.parent];
   if (parent_row == kReplaced) {
     row_of_old_[old_id] = kReplaced;

@@ -5,6 +5,9 @@
 
 namespace stvm {
 
+// What FB_Exit of all instances may take at the end of a run.
+inline constexpr int64_t kExitLimitNs = 1'000'000'000;
+
 using tools::Entry;
 
 extern const Entry kRun;

@@ -179,10 +179,11 @@ base::Result<int> run_program(const tools::Options& options) {
   if (!done.ok()) return done.error();
   finish_scan(**controller);
   (settings->json ? print_json : print_text)(*settings, options, **controller);
+  base::Status left = (*controller)->leave_all(kExitLimitNs);  // its trap is one of these
   for (const vm::TrapRecord& trap : (*controller)->traps()) {
     std::fprintf(stderr, "stvm: trap: %s\n", trap_text(trap).c_str());
   }
-  return (*controller)->traps().empty() ? tools::kOk : tools::kFindings;
+  return left.ok() && (*controller)->traps().empty() ? tools::kOk : tools::kFindings;
 }
 
 int run(const tools::Options& options) {

@@ -74,6 +74,9 @@ void control_loop(vm::Controller& controller, vm::Clock& clock, vm::Mailbox& mai
       idle(controller, clock, mailbox);
     }
   }
+  if (!controller.at_boundary()) return;
+  base::Status left = controller.leave_all(kExitLimitNs);
+  if (!left.ok()) refuse(left.error());
 }
 
 void print_ready(const vm::Controller& controller, const std::string& directory) {

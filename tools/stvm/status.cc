@@ -38,7 +38,9 @@ void print_text(const vm::StatusReport& report) {
   tools::Table tasks(
       {"task", "> period", "> priority", "> scans", "> missed", "> last", "> longest", "state"});
   for (const vm::TaskStatus& task : report.tasks) {
-    std::string period = task.period_ns == 0 ? "event" : tools::duration(task.period_ns);
+    std::string period = task.once             ? "once"
+                         : task.period_ns == 0 ? "event"
+                                               : tools::duration(task.period_ns);
     tasks.row({task.name, period, std::to_string(task.priority), std::to_string(task.scans),
                std::to_string(task.missed), tools::duration(task.last_ns),
                tools::duration(task.max_ns), task.stopped ? "stopped" : "ok"});

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "vm/runtime/scheduler.h"
+#include "vm/runtime/stamp_ref.h"
 #include "vm/runtime/task_tables.h"
 
 namespace vm {
@@ -26,6 +27,8 @@ struct Controller::Impl {
   const ir::Image& image() const { return running->image(); }
   base::Result<ir::Symbol> writable(std::string_view path) const;
   void forces_changed();
+  void set_change_flag(bool changed);
+  base::Status leave(const std::vector<uint32_t>& ids, bool changed, int64_t limit_ns);
 
   Memory memory;
   Scheduler scheduler;
@@ -141,6 +144,51 @@ std::unique_ptr<Generation> Controller::publish(std::unique_ptr<Generation> next
   impl_->scheduler.use(tables);
   std::swap(impl_->running, next);
   return next;
+}
+
+void Controller::construct() {
+  impl_->set_change_flag(true);
+  impl_->scheduler.start_in_next_cycle();
+}
+
+base::Status Controller::leave(const std::vector<uint32_t>& ids, int64_t limit_ns) {
+  return impl_->leave(ids, true, limit_ns);
+}
+
+base::Status Controller::leave_all(int64_t limit_ns) {
+  std::vector<uint32_t> ids;
+  for (uint32_t id = 1; id < image().instances.size(); ++id) {
+    if (image().instances[id].live) ids.push_back(id);
+  }
+  base::Status left = impl_->leave(ids, false, limit_ns);
+  impl_->scheduler.send_outputs();
+  return left;
+}
+
+base::Status Controller::Impl::leave(const std::vector<uint32_t>& ids, bool changed,
+                                     int64_t limit_ns) {
+  std::vector<std::pair<StampRef, uint32_t>> marked;  // with what it was
+  for (uint32_t id : ids) {
+    const StampRef stamp(image(), id, memory.data());
+    if (stamp.get() != ir::kNewStamp && !scheduler.faulted())
+      marked.push_back({stamp, stamp.get()});
+  }
+  if (marked.empty()) return base::Ok{};
+  for (const auto& [stamp, before] : marked) stamp.set(ir::kLeavingStamp);
+  set_change_flag(changed);
+  const bool done = scheduler.run_exits(limit_ns);
+  for (const auto& [stamp, before] : marked) {
+    stamp.set(stamp.get() == ir::kLeavingStamp ? before : ir::kNewStamp);
+  }
+  if (done) return base::Ok{};
+  const TrapRecord& last = scheduler.traps().back();
+  return base::Error{
+      base::Refusal::kExitFailed,
+      last.text.pou + " in line " + std::to_string(last.text.line) + ": " + last.text.text};
+}
+
+void Controller::Impl::set_change_flag(bool changed) {
+  StampRef(image(), 0, memory.data()).set(changed ? 1 : 0);
 }
 
 base::Result<ir::Symbol> Controller::Impl::writable(std::string_view path) const {

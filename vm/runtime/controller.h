@@ -42,6 +42,7 @@ struct TaskStatus {
   int64_t last_ns = 0;  // run time of the last scan
   int64_t max_ns = 0;
   bool stopped = false;  // by a trap
+  bool once = false;     // start code: at cold start and behind changes
 };
 
 struct TrapRecord {
@@ -100,6 +101,13 @@ class Controller {
   // re-derives task, I/O and force tables that were prepared by prepare(). Tasks keep scan
   // counts and phase by name. Returns the generation that ran until now.
   std::unique_ptr<Generation> publish(std::unique_ptr<Generation> next);
+  // Behind a change: the next cycle begins with the start code, which constructs what is new.
+  void construct();
+  // At a boundary: FB_Exit of these instances, those around others first. When one traps or takes
+  // longer than `limit_ns`, the rest is left out and the old program can run on behind construct().
+  base::Status leave(const std::vector<uint32_t>& ids, int64_t limit_ns);
+  // The same of all there are, and their outputs are sent: nothing runs behind it.
+  base::Status leave_all(int64_t limit_ns);
 
  private:
   Controller();

@@ -66,6 +66,7 @@ void task_fields(A& a, T& task) {
   a(task.last_ns);
   a(task.max_ns);
   a(task.stopped);
+  a(task.once);
 }
 
 template <class A, class T>

@@ -31,21 +31,43 @@ void Scheduler::use(TaskTables& tables) {
   }
 }
 
-// Nothing else is released before they are done; events are looked at from the first cycle on.
+// Events are looked at from the first cycle on.
 void Scheduler::run_start_tasks() {
   const int64_t before = cycle_start_ns_;
-  const ir::Image& image = tables_->generation->image();
-  for (size_t i = 0; i < image.tasks.size(); ++i) tables_->tasks[i].released = image.tasks[i].once;
   cycle_start_ns_ = looked_ns_ = next_cycle_ns_;
+  finish_start_tasks();
+  cycle_start_ns_ = before;
+}
+
+// Nothing else begins before they are done.
+void Scheduler::finish_start_tasks() {
+  for (TaskSlot& task : tables_->tasks) {
+    if (!task.once) continue;
+    task.released = true;
+    task.begun_in_cycle = 0;
+    task.status.stopped = false;
+  }
   starting_ = true;
   while (TaskSlot* task = choose()) run_slice(*task);
   starting_ = false;
-  cycle_start_ns_ = before;
+}
+
+bool Scheduler::run_exits(int64_t limit_ns) {
+  base::check(at_boundary(), "instances leave while a task is inside a scan");
+  exit_limit_ns_ = limit_ns;
+  exit_failed_ = false;
+  leaving_ = true;
+  looked_ns_ = clock_.now_ns();
+  finish_start_tasks();
+  leaving_ = false;
+  return !exit_failed_;
 }
 
 void Scheduler::run_cycle() {
   if (faulted_) return;
   begin_cycle();
+  if (start_pending_) finish_start_tasks();
+  start_pending_ = false;
   while (TaskSlot* task = choose()) {
     run_slice(*task);
     if (looked_ns_ >= next_cycle_ns_) break;
@@ -117,6 +139,7 @@ void Scheduler::release_due_tasks() {
 TaskSlot* Scheduler::next_released() {
   for (uint32_t index : tables_->by_priority) {
     TaskSlot& task = tables_->tasks[index];
+    if (starting_ && !task.once) continue;
     if (task.released && task.begun_in_cycle != cycles_ + 1) return &task;
   }
   return nullptr;
@@ -170,7 +193,8 @@ void Scheduler::run_slice(TaskSlot& task) {
   task.run_ns += now - looked_ns_;
   looked_ns_ = now;
 
-  bool too_long = task.watchdog_ns > 0 && task.run_ns > task.watchdog_ns;
+  const int64_t limit_ns = leaving_ ? exit_limit_ns_ : task.watchdog_ns;
+  bool too_long = limit_ns > 0 && task.run_ns > limit_ns;
   if (exit == Exit::kTrap) {
     trap_in(task, task.execution->trap());
   } else if (too_long) {
@@ -210,6 +234,12 @@ void Scheduler::leave(TaskSlot& task) {
 void Scheduler::trap_in(TaskSlot& task, const Trap& trap) {
   if (traps_.size() == kKeptTraps) traps_.erase(traps_.begin());
   traps_.push_back({cycles_, task.status.name, trap, describe(tables_->generation->image(), trap)});
+  if (leaving_) {
+    exit_failed_ = true;
+    roll_back_outputs(task);
+    leave(task);
+    return;
+  }
   task.status.stopped = true;
   if (options_.on_trap == TrapPolicy::kStopAll) {
     fault();

@@ -15,6 +15,12 @@ class Scheduler {
 
   // At cold start, before the first cycle: the tasks that run once (ir::Task), to their end.
   void run_start_tasks();
+  // Behind a switch: the next cycle begins with them.
+  void start_in_next_cycle() { start_pending_ = true; }
+  // At a boundary: them, for instances that leave. A trap, or more than `limit_ns`, ends them, and
+  // nothing else: false.
+  bool run_exits(int64_t limit_ns);
+  void send_outputs() { io_.send(tables_->outputs); }
   void run_cycle();
   bool at_boundary() const { return active_.empty(); }
   bool faulted() const { return faulted_; }
@@ -32,6 +38,7 @@ class Scheduler {
   enum class Look : uint8_t { kGoOn, kCycleOver };
 
   void begin_cycle();
+  void finish_start_tasks();
   void release_due_tasks();
   void release(TaskSlot& task);
   // Edges of events (ir::Task) release their tasks.
@@ -68,6 +75,10 @@ class Scheduler {
   int64_t looked_ns_ = 0;       // when the clock was read last
   bool outputs_stale_ = false;  // new tables: pack before the next refresh
   bool starting_ = false;
+  bool start_pending_ = false;
+  bool leaving_ = false;  // inside run_exits()
+  int64_t exit_limit_ns_ = 0;
+  bool exit_failed_ = false;
   bool faulted_ = false;
 };
 

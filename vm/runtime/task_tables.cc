@@ -24,6 +24,7 @@ TaskSlot make_slot(const Generation& generation, uint32_t number, int64_t first_
   slot.inputs.resize(image.input_bytes);
   slot.outputs_at_start.resize(image.output_bytes);
   slot.next_release_ns = first_release_ns;
+  slot.once = slot.status.once = task.once;
   slot.event = task.event;
   for (const ir::IoBinding& binding : image.io) {
     bool input = binding.address.area == ir::DirectArea::kInput && binding.data == task.event;
@@ -85,6 +86,7 @@ void TaskTables::adopt(const TaskTables& previous, int64_t cycle_start_ns) {
       TaskStatus status = old.status;
       status.period_ns = slot.status.period_ns;
       status.priority = slot.status.priority;
+      status.once = slot.status.once;
       slot.status = std::move(status);
       slot.released = old.released;
       slot.event_level = old.event_level;

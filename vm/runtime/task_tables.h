@@ -21,6 +21,7 @@ struct TaskSlot {
   base::Bytes inputs;            // what this activation sees of %I, from start to end (B3)
   base::Bytes outputs_at_start;  // %Q variables when it began, to know what it wrote
   int64_t next_release_ns = 0;
+  bool once = false;            // start code
   bool released = false;        // due, not yet begun
   uint64_t begun_in_cycle = 0;  // number of the cycle, from 1: once in each at most
 

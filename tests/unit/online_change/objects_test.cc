@@ -194,8 +194,8 @@ pou program Main self Main
   EXPECT_EQ(plant.get("Main.block.b"), "TRUE");
 }
 
-// What runs once runs at cold start: not when a change brings it, and never again.
-TEST(Objects, StartTasksRunAtColdStartOnly) {
+// Start code runs at cold start and behind changes of variables, not behind those of code alone.
+TEST(Objects, StartTasksRunBehindChangesOfVariables) {
   const auto text = [](const char* amount) {
     Parts parts;
     parts.globals = "  member global started : INT\n";
@@ -220,8 +220,11 @@ TEST(Objects, StartTasksRunAtColdStartOnly) {
   Plant later(source({}));
   later.run(1);
   later.change(text("5"));
-  later.run(1);
   EXPECT_EQ(later.get("started"), "0");
+  later.run(1);
+  EXPECT_EQ(later.get("started"), "5");
+  later.run(1);
+  EXPECT_EQ(later.get("started"), "5");
 }
 
 // One that traps stops the controller before the first scan, as any task does.

@@ -1,0 +1,35 @@
+// The code of __START (sema/start.cc): FB_Init of every new instance, inner ones first, with the
+// arguments that its declaration gives; FB_Exit of those that leave, FB_Reinit of those whose type
+// a change has changed. Which is which, their stamps say (ir/types/stamps.h). A part of Body: it
+// writes to the same POU.
+#pragma once
+
+#include "frontend/lower/body.h"
+
+namespace frontend {
+
+class StartCode {
+ public:
+  explicit StartCode(Body& body) : body_(body), build_(body.build_), sema_(body.sema_) {}
+  void run();
+
+ private:
+  void variable(VarId id);
+  void value(const ir::Place& at, ir::TypeId type, const Spec* spec);
+  void elements(const ir::Place& at, ir::TypeId type, const Spec* spec);
+  void loop(const ir::Place& at, const std::vector<ir::Dimension>& dims, size_t number,
+            ir::TypeId element, const Spec* spec);
+  void instance(const ir::Place& at, ir::TypeId type, Range32 args);
+  void call(const ir::Place& at, const PouInfo& method, Range32 args);
+  bool bind(const Expr& call, const PouInfo& method, std::vector<Body::Binding>& bindings);
+  void when(ir::ValueId condition, const std::function<void()>& then);
+  ir::ValueId number(uint32_t value) { return build_.constant(ir::Scalar::kU32, value); }
+  const ir::TypeTable& types() const { return sema_.program.types; }
+
+  Body& body_;
+  Builder& build_;
+  Sema& sema_;
+  base::SourceSpan span_;  // of the variable that is constructed
+};
+
+}  // namespace frontend
