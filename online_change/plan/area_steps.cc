@@ -5,14 +5,12 @@
 namespace online_change {
 namespace {
 
-constexpr uint32_t kMaxGap = 16;  // padding and small holes; as in diff_ops.cc
-
+// Side by side only: what stays in its place has no step, and may lie in a gap.
 bool joins(const UpdateStep& a, const UpdateStep& b) {
   if (a.kind != StepKind::kCopy || b.kind != StepKind::kCopy) return false;
   if (a.count != 1 || b.count != 1 || a.fate != b.fate) return false;
   if (a.to - a.from != b.to - b.from) return false;
-  uint64_t end = uint64_t{a.to} + a.size;
-  return end <= b.to && b.to - end <= kMaxGap;
+  return uint64_t{a.to} + a.size == b.to;
 }
 
 }  // namespace
