@@ -43,6 +43,10 @@ class Builder {
     layouts_.of.resize(types.size());
     done_.resize(types.size(), false);
     laid_out_.resize(types.size(), false);
+    overlaid_.resize(types.size(), false);
+    for (uint32_t i = 0; i < types.size(); ++i) {
+      if (types_.overlaps(TypeId(i))) mark_overlaid(TypeId(i));
+    }
     if (base_ != nullptr) index_base();
   }
 
@@ -69,9 +73,19 @@ class Builder {
     }
   }
 
+  // What other members of a union look at: its bytes are part of what the source says, so it is
+  // laid out as in a first version.
+  void mark_overlaid(TypeId id) {
+    if (overlaid_[id.index]) return;
+    overlaid_[id.index] = true;
+    if (types_[id].kind == Kind::kArray) return mark_overlaid(types_[id].base);
+    if (!ir::is_structure(types_[id].kind)) return;
+    for (const Member& member : types_[id].members) mark_overlaid(member.type);
+  }
+
   // The running version's type of the same name and kind; invalid: none.
   TypeId old_of(TypeId id) const {
-    if (base_ == nullptr) return {};
+    if (base_ == nullptr || overlaid_[id.index]) return {};
     const auto found = old_types_.find(key_of(types_, id));
     return found == old_types_.end() ? TypeId() : found->second;
   }
@@ -319,6 +333,7 @@ class Builder {
   Layouts layouts_;
   std::vector<bool> done_;
   std::vector<bool> laid_out_;  // areas
+  std::vector<bool> overlaid_;
   std::unordered_map<std::string, TypeId> old_types_;
   std::optional<base::Error> error_;
 };

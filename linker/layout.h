@@ -6,7 +6,8 @@
 // A19). Areas get slack when they are first laid out and keep their capacity while the contents fit
 // (A5 iii, A8). What extends a block has the members of its base where the base has them, and its
 // own ones behind the base's capacity, so that the base can grow in its slack
-// (docs/adr/0006-objects.md).
+// (docs/adr/0006-objects.md). A structure inside a union has nothing but its declaration to go by:
+// the union's other members see its bytes.
 #pragma once
 
 #include "base/result.h"

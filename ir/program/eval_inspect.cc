@@ -133,6 +133,14 @@ std::optional<Address> EvalInspector::find(std::string_view path) const {
   return at;
 }
 
+base::Result<Address> EvalInspector::find_value(std::string_view path) const {
+  const std::optional<Address> at = find(path);
+  if (!at || is_slot(*at)) {
+    return no_such_variable(path);
+  }
+  return *at;
+}
+
 base::Result<Address> EvalInspector::find_scalar(std::string_view path) const {
   const std::optional<Address> at = find(path);
   if (!at) {

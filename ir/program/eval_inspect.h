@@ -22,6 +22,7 @@ class EvalInspector {
         globals_(globals),
         instances_(instances) {}
 
+  base::Result<Address> find_value(std::string_view path) const;  // of any type
   base::Result<Address> find_scalar(std::string_view path) const;
   base::Result<Address> find_string(std::string_view path) const;
   std::string text_of(const Address& at) const;  // of a string, up to its NUL

@@ -307,9 +307,7 @@ base::Status Evaluator::set_bits(std::string_view path, uint64_t bits) {
 }
 
 base::Status Evaluator::set_bytes(std::string_view path, std::span<const uint8_t> bytes) {
-  const bool text = impl_->inspector.find_string(path).ok();
-  const base::Result<Address> at =
-      text ? impl_->inspector.find_string(path) : impl_->inspector.find_scalar(path);
+  const base::Result<Address> at = impl_->inspector.find_value(path);
   if (!at.ok()) {
     return at.error();
   }

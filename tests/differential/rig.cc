@@ -73,6 +73,23 @@ Leaves Rig::leaves() const {
   return out;
 }
 
+std::vector<Leaf> Rig::structures() const {
+  const ir::Image& now = controller_->image();
+  std::map<std::string, bool> seen;
+  std::vector<Leaf> out;
+  ir::for_each_leaf(now, [&](const std::string& path, const ir::Symbol&) {
+    for (size_t end = path.find_first_of(".["); end != std::string::npos;
+         end = path.find_first_of(".[", end + 1)) {
+      std::string prefix = path.substr(0, end);
+      if (!seen.try_emplace(prefix, true).second) continue;
+      base::Result<ir::Symbol> whole = ir::find_symbol(now, prefix);
+      if (!whole.ok() || now.types[whole->type].kind != ir::Kind::kStruct) continue;
+      out.push_back({*whole, std::move(prefix), {}});
+    }
+  });
+  return out;
+}
+
 std::string Rig::state() const {
   return ir::state_text(controller_->image(), controller_->memory().view());
 }

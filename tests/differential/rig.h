@@ -33,6 +33,7 @@ class Rig {
   base::Status undo();
   const online_change::Plan& plan() const { return change_->plan(); }
   Leaves leaves() const;
+  std::vector<Leaf> structures() const;  // outer ones first; `type` is the path
   std::string state() const;
   // As in ir::ConstValue.
   uint64_t scalar_bits(const Leaf& leaf) const;
