@@ -63,11 +63,12 @@ class MachineEngine : public Engine {
   }
 
   base::Result<std::string> scan() override {
+    // Those of FB_Init at the start belong to the first scan.
+    size_t traps_before = std::exchange(scanned_, true) ? controller_->traps().size() : 0;
     controller_->cycle();
     const std::vector<vm::TrapRecord>& traps = controller_->traps();
-    // Those of FB_Init, before the first scan, belong to it.
-    if (traps.size() > traps_seen_) {
-      const vm::TrapRecord& first = traps[std::exchange(traps_seen_, traps.size())];
+    if (traps.size() > traps_before) {
+      const vm::TrapRecord& first = traps[traps_before];
       return std::string(ir::trap_name(first.trap.kind)) + " " + first.text.pou + ":" +
              std::to_string(first.text.line);
     }
@@ -164,7 +165,7 @@ class MachineEngine : public Engine {
   const Program* previous_ = nullptr;
   JumpingClock clock_;
   NoDevices devices_;
-  size_t traps_seen_ = 0;
+  bool scanned_ = false;
   std::unique_ptr<vm::Controller> controller_;
   std::unique_ptr<online_change::Change> change_;
   std::map<base::Digest, base::Bytes> hard_packages_;
