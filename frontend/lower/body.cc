@@ -3,8 +3,8 @@
 #include <cstring>
 
 #include "base/hash.h"
-#include "frontend/lower/start_code.h"
 #include "frontend/lower/chart.h"
+#include "frontend/lower/start_code.h"
 
 namespace frontend {
 
@@ -110,7 +110,9 @@ void Body::initialise_local(uint32_t local, VarId id) {
     Target target;
     target.place = where;
     target.type = variable.type;
-    if (types().is_scalar(variable.type)) {
+    if (types()[variable.type].kind == ir::Kind::kReferenceTo) {
+      build_.store(where, ir::Scalar::kU64, reference_value(variable.decl->init, variable.type));
+    } else if (types().is_scalar(variable.type)) {
       build_.store(where, scalar(variable.type), value(variable.decl->init, variable.type));
     } else {
       assign_aggregate(target, variable.decl->init);
@@ -119,6 +121,7 @@ void Body::initialise_local(uint32_t local, VarId id) {
   }
   if (!types().is_scalar(variable.type)) {
     build_.init(where, variable.init);
+    StartCode(*this).bind_references(where, variable.type, variable.init);
     return;
   }
   ir::ConstId init = variable.init.valid() ? variable.init : types()[variable.type].init;

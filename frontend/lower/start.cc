@@ -19,11 +19,25 @@ ir::Step step(ir::StepKind kind, uint32_t index = 0) {
   return out;
 }
 
+// Element number `flat` of the array `at`.
+ir::Place element(const ir::Place& at, const std::vector<ir::Dimension>& dims, ir::TypeId type,
+                  uint64_t flat) {
+  ir::Place one = at;
+  for (size_t d = dims.size(); d-- > 0; flat /= dims[d].count()) {
+    ir::Step index = step(ir::StepKind::kIndex);
+    index.constant_index = dims[d].low + static_cast<int64_t>(flat % dims[d].count());
+    one.steps.insert(one.steps.begin() + static_cast<ptrdiff_t>(at.steps.size()), index);
+  }
+  one.type = type;
+  return one;
+}
+
 }  // namespace
 
 void StartCode::run() {
   PouInfo& info = body_.info_;
   if (info.owner == kNoPou) {
+    references(sema_.objects.start_globals());
     for (VarId id : sema_.objects.start_globals()) variable(id);
     return;
   }
@@ -33,12 +47,73 @@ void StartCode::run() {
     info.callees.push_back(base);
     build_.call_method(sema_.pous[base].id);
   }
+  references(block.members);
   for (VarId id : block.members) variable(id);
+}
+
+void StartCode::references(const std::vector<VarId>& variables) {
+  for (VarId id : variables) {
+    const Variable& variable = sema_.resolve(id);
+    if (variable.section == VarSection::kInOut || !variable.type.valid()) continue;
+    if (!sema_.start_values.inside(variable.type, variable.init)) continue;
+    span_ = variable.name.span;
+    bind_references(body_.variable_place(id), variable.type, variable.init);
+  }
+}
+
+void StartCode::bind_references(const ir::Place& at, ir::TypeId id, ir::ConstId init) {
+  if (!sema_.start_values.inside(id, init)) return;
+  const ir::Type type = types()[id];
+  if (!init.valid()) init = type.init;
+  if (types().is_reference(id)) return bind_reference(at, sema_.program.constants[init].bits);
+  if (type.kind == ir::Kind::kArray) return bind_elements(at, id, init);
+  for (uint32_t i = 0; i < type.members.size(); ++i) {
+    const ir::ConstId given = sema_.listed(init, i);
+    if (!ir::is_structure(type.kind) && !given.valid()) continue;  // a matter of the block
+    ir::Place member = at;
+    if (!ir::is_structure(type.kind)) member.steps.push_back(step(ir::StepKind::kEnter));
+    member.steps.push_back(step(ir::StepKind::kMember, i));
+    member.type = type.members[i].type;
+    bind_references(member, member.type, given.valid() ? given : type.members[i].init);
+  }
+}
+
+// Those that the initial value lists one by one, unless all are alike.
+void StartCode::bind_elements(const ir::Place& at, ir::TypeId id, ir::ConstId init) {
+  const ir::Type type = types()[id];
+  uint64_t total = 1;
+  for (const ir::Dimension& dim : type.dims) total *= dim.count();
+  std::vector<ir::ConstElement> given;
+  if (init.valid()) given = sema_.program.constants[init].elements;
+  const bool alike = given.empty() || (given.size() == 1 && given[0].count == total);
+  if (alike) {
+    const ir::ConstId each = given.empty() ? ir::ConstId() : given[0].value;
+    return loop(at, type.dims, 0, type.base,
+                [&](const ir::Place& one) { bind_references(one, type.base, each); });
+  }
+  for (uint64_t i = 0; i < total; ++i) {
+    const ir::ConstId each = sema_.listed(init, i);
+    if (!sema_.start_values.inside(type.base, each)) continue;
+    bind_references(element(at, type.dims, type.base, i), type.base, each);
+  }
+}
+
+void StartCode::bind_reference(const ir::Place& at, uint64_t unbound) {
+  constexpr ir::Scalar kU64 = ir::Scalar::kU64;
+  const ExprId expr = sema_.start_values.find(unbound);
+  const ir::ValueId now = build_.load(at, kU64);
+  when(build_.compare(ir::Op::kEq, kU64, now, build_.constant(kU64, unbound)), [&] {
+    const bool stands_for_target = types()[at.type].kind == ir::Kind::kReferenceTo;
+    body_.set_line(sema_.tree[expr].span);
+    build_.store(
+        at, kU64,
+        stands_for_target ? body_.reference_value(expr, at.type) : body_.value(expr, at.type));
+  });
 }
 
 void StartCode::variable(VarId id) {
   const Variable& variable = sema_.resolve(id);
-  if (variable.section == VarSection::kInOut || !sema_.objects.starts(variable.type)) return;
+  if (variable.section == VarSection::kInOut || !sema_.objects.constructs(variable.type)) return;
   const Spec* spec = variable.decl == nullptr ? nullptr : &sema_.tree[variable.decl->spec];
   body_.set_line(variable.name.span);
   span_ = variable.name.span;
@@ -46,7 +121,7 @@ void StartCode::variable(VarId id) {
 }
 
 void StartCode::value(const ir::Place& at, ir::TypeId type, const Spec* spec) {
-  if (!sema_.objects.starts(type)) return;
+  if (!sema_.objects.constructs(type)) return;
   const ir::Kind kind = types()[type].kind;
   if (kind == ir::Kind::kArray) return elements(at, type, spec);
   if (!ir::is_structure(kind)) {
@@ -63,14 +138,15 @@ void StartCode::value(const ir::Place& at, ir::TypeId type, const Spec* spec) {
 // Pump[(1), (2)] has arguments for each element; otherwise all have the same.
 void StartCode::elements(const ir::Place& at, ir::TypeId type, const Spec* spec) {
   const std::vector<ir::Dimension> dims = types()[type].dims;
-  const ir::TypeId element = types()[type].base;
+  const ir::TypeId base = types()[type].base;
   const bool written = spec != nullptr && spec->kind == SpecKind::kArray;
   if (!written || spec->element_args.count == 0) {
-    return loop(at, dims, 0, element, written ? &sema_.tree[spec->element] : nullptr);
+    const Spec* inner = written ? &sema_.tree[spec->element] : nullptr;
+    return loop(at, dims, 0, base, [&](const ir::Place& one) { value(one, base, inner); });
   }
   uint64_t total = 1;
   for (const ir::Dimension& dim : dims) total *= dim.count();
-  if (total != spec->element_args.count || !types().is_instance(element)) {
+  if (total != spec->element_args.count || !types().is_instance(base)) {
     sema_.error(DiagnosticCode::kBadConstruction, spec->span,
                 std::to_string(spec->element_args.count) + " lists of arguments for " +
                     std::to_string(total) + " elements",
@@ -78,26 +154,18 @@ void StartCode::elements(const ir::Place& at, ir::TypeId type, const Spec* spec)
     return;
   }
   for (uint32_t i = 0; i < total; ++i) {
-    ir::Place one = at;
-    uint64_t rest = i;
-    for (size_t d = dims.size(); d-- > 0; rest /= dims[d].count()) {
-      ir::Step index = step(ir::StepKind::kIndex);
-      index.constant_index = dims[d].low + static_cast<int64_t>(rest % dims[d].count());
-      one.steps.insert(one.steps.begin() + static_cast<ptrdiff_t>(at.steps.size()), index);
-    }
-    one.type = element;
     const Expr& list = sema_.tree[sema_.tree.expr_lists[spec->element_args.first + i]];
-    instance(one, element, list.args);
+    instance(element(at, dims, base, i), base, list.args);
   }
 }
 
 // One loop for each dimension, from the first.
 void StartCode::loop(const ir::Place& at, const std::vector<ir::Dimension>& dims, size_t number,
-                     ir::TypeId element, const Spec* spec) {
+                     ir::TypeId element, const PerElement& each) {
   if (number == dims.size()) {
     ir::Place one = at;
     one.type = element;
-    return value(one, element, spec);
+    return each(one);
   }
   constexpr ir::Scalar kI64 = ir::Scalar::kI64;
   const ir::Place counter = body_.temporary_place(types().elementary(ir::Kind::kLint));
@@ -116,7 +184,7 @@ void StartCode::loop(const ir::Place& at, const std::vector<ir::Dimension>& dims
   ir::Place inner = at;
   inner.steps.push_back(step(ir::StepKind::kIndex));
   inner.steps.back().value = now;
-  loop(inner, dims, number + 1, element, spec);
+  loop(inner, dims, number + 1, element, each);
   build_.store(counter, kI64, build_.binary(ir::Op::kAdd, kI64, now, constant(1)));
   build_.jump(head);
   build_.start(done);

@@ -12,13 +12,19 @@ class StartCode {
  public:
   explicit StartCode(Body& body) : body_(body), build_(body.build_), sema_(body.sema_) {}
   void run();
+  // Gives the references inside of `at` their values, where `init` says that they are unbound.
+  void bind_references(const ir::Place& at, ir::TypeId type, ir::ConstId init);
 
  private:
+  void references(const std::vector<VarId>& variables);
+  void bind_elements(const ir::Place& at, ir::TypeId type, ir::ConstId init);
+  void bind_reference(const ir::Place& at, uint64_t unbound);
   void variable(VarId id);
   void value(const ir::Place& at, ir::TypeId type, const Spec* spec);
   void elements(const ir::Place& at, ir::TypeId type, const Spec* spec);
+  using PerElement = std::function<void(const ir::Place&)>;
   void loop(const ir::Place& at, const std::vector<ir::Dimension>& dims, size_t number,
-            ir::TypeId element, const Spec* spec);
+            ir::TypeId element, const PerElement& each);
   void instance(const ir::Place& at, ir::TypeId type, Range32 args);
   void call(const ir::Place& at, const PouInfo& method, Range32 args);
   bool bind(const Expr& call, const PouInfo& method, std::vector<Body::Binding>& bindings);

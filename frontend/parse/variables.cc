@@ -228,6 +228,9 @@ void Parser::parse_default(ExprId& init) {
               "`=` compares; an initial value is given by `:=`", "write `:=`");
     take();
     init = parse_initializer();
+  } else if (assign_op_here() == AssignOp::kReference) {
+    take_assign_op();
+    init = parse_initializer();
   } else if (accept(TokenKind::kAssign)) {
     init = parse_initializer();
   }

@@ -52,6 +52,10 @@ ir::ConstId InitialBuilder::value(ExprId id, ir::TypeId type, ir::ConstId otherw
     return array(expr, type, otherwise);
   }
   if (expr.kind == ExprKind::kStructInit && members) return structure(expr, type, otherwise);
+  if (types.is_reference(type) && sema_.binds_at_start_) {
+    const Note& note = sema_.infer(id);
+    if (note.type.valid() && !note.constant) return sema_.start_values.add(id);
+  }
   if (types.is_scalar(type)) {
     auto bits = sema_.fold_bits(id, type, least_);
     return bits ? sema_.program.constants.scalar(*bits) : ir::ConstId();

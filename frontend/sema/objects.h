@@ -83,8 +83,10 @@ class Objects {
   // --- FB_Init, FB_Exit, FB_Reinit (start.cc)
   // After configure(): adds the code that runs once.
   void add_start();
-  // Does a variable of this type need anything at the start?
-  bool starts(ir::TypeId type);
+  // Does a variable of this type, with this initial value, need anything at the start?
+  bool starts(ir::TypeId type, ir::ConstId init);
+  // Are there instances in it that start code visits?
+  bool constructs(ir::TypeId type);
   // What the program __START begins with: globals, then programs.
   const std::vector<VarId>& start_globals() const { return start_globals_; }
   // A global, not 0 where a change is what start code runs for.
@@ -124,7 +126,7 @@ class Objects {
   VarId add_hidden_global(std::string_view name, ir::TypeId type, base::SourceSpan span);
 
   Sema& sema_;
-  std::unordered_map<ir::TypeId, bool> starts_;
+  std::unordered_map<ir::TypeId, bool> constructs_;
   std::vector<VarId> start_globals_;
   VarId change_flag_;
 };

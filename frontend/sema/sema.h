@@ -19,6 +19,7 @@
 #include "frontend/sema/follow_ups.h"
 #include "frontend/sema/model.h"
 #include "frontend/sema/objects.h"
+#include "frontend/sema/start_values.h"
 #include "ir/types/layout.h"
 
 namespace frontend {
@@ -118,6 +119,8 @@ class Sema {
   // value in `otherwise`, the default of the declared type.
   ir::ConstId initial_value(ExprId expr, ir::TypeId type, ir::ConstId otherwise,
                             Known least = Known::kInitially);
+  // What an initial value says of one element or member; invalid: nothing.
+  ir::ConstId listed(ir::ConstId list, uint64_t index) const;
   // The initial value of a variable, or of a part of one, with `known` above kNo.
   std::optional<TypeUse> initial_part(ExprId expr);
 
@@ -152,6 +155,7 @@ class Sema {
   std::deque<PouInfo> pous;  // stable addresses; grows when library blocks are used
   std::vector<TestCase> test_cases;
   Objects objects{*this};
+  StartValues start_values{*this};
 
  private:
   friend class Within;
@@ -159,6 +163,7 @@ class Sema {
   friend class Objects;
   friend class InstancePaths;
   friend class InitialBuilder;
+  friend class StartValues;
 
   // declarations.cc
   void collect_types();
@@ -318,7 +323,7 @@ class Sema {
   void check_index_list(const Expr& expr, const ir::Type& array);
 
   // initial_part.cc
-  ir::ConstId listed(ir::ConstId list, uint64_t index) const;
+  std::string scope_name() const;
   ir::ConstId member_default(ir::TypeId type, uint32_t member);
   std::optional<TypeUse> initial_variable(const Expr& expr, VarId id);
   std::optional<TypeUse> initial_member(const Expr& expr);
@@ -368,6 +373,7 @@ class Sema {
   std::vector<SpecInfo> specs_;
   std::vector<Note> notes_;
   std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> instances_;
+  bool binds_at_start_ = false;  // what is initialised now may hold an unbound handle
   bool declared_ = false;  // all interfaces are resolved; later ones at once
   NameMap<VarId> globals_;
   NameMap<GlobalList> lists_;

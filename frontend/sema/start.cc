@@ -43,21 +43,23 @@ std::string shape(const ir::TypeTable& types, ir::TypeId id) {
 
 }  // namespace
 
-// Does a variable of this type need anything at the start?
-bool Objects::starts(ir::TypeId type) {
+bool Objects::starts(ir::TypeId type, ir::ConstId init) {
+  return sema_.start_values.inside(type, init) || constructs(type);
+}
+
+bool Objects::constructs(ir::TypeId type) {
   if (!type.valid()) return false;
   const ir::TypeTable& types = sema_.program.types;
   while (types[type].kind == ir::Kind::kArray) type = types[type].base;
   if (!types.has_members(type)) return false;
-  if (auto known = starts_.find(type); known != starts_.end()) return known->second;
-  starts_.emplace(type, false);  // types do not contain themselves
+  if (auto known = constructs_.find(type); known != constructs_.end()) return known->second;
+  constructs_.emplace(type, false);  // types do not contain themselves
   const PouInfo* block = sema_.pou_of(type);
-  bool needed = block != nullptr && block->stamp.valid();
-  for (size_t i = 0; i < types[type].members.size() && !needed; ++i) {
-    const ir::Member& member = types[type].members[i];
-    needed = member.section != ir::Section::kInOut && starts(member.type);
+  bool needed = block != nullptr && (block->stamp.valid() || has_members_to_start(*block));
+  for (size_t i = 0; block == nullptr && i < types[type].members.size() && !needed; ++i) {
+    needed = constructs(types[type].members[i].type);
   }
-  starts_[type] = needed;
+  constructs_[type] = needed;
   return needed;
 }
 
@@ -72,7 +74,7 @@ void Objects::check_start_arguments() {
       good[id.index] = true;
     }
     good[id.index] = true;
-    if (!arguments || !variable.type.valid() || starts(variable.type)) continue;
+    if (!arguments || !variable.type.valid() || constructs(variable.type)) continue;
     sema_.error(DiagnosticCode::kBadConstruction, sema_.tree[id].span,
                 "`" + sema_.type_text(variable.type) + "` has no FB_Init that takes arguments",
                 "write `:=` and a value, or (member := value)");
@@ -98,7 +100,7 @@ void Objects::add_start() {
     const Variable& variable = sema_.variables_[i];
     const bool global = variable.storage == Storage::kGlobal && !variable.hidden &&
                         variable.section != VarSection::kExternal;
-    if (global && starts(variable.type)) start_globals_.push_back(VarId(i));
+    if (global && starts(variable.type, variable.init)) start_globals_.push_back(VarId(i));
   }
   for (const ir::ProgramInstance& instance : sema_.program.instances) {
     const PouInfo* program = sema_.pou_of(instance.type);
@@ -106,16 +108,17 @@ void Objects::add_start() {
       start_globals_.push_back(program_global(instance.name, *program));
     }
   }
-  if (start_globals_.empty()) return;
+  if (sema_.pous.size() == count && start_globals_.empty()) return;
   change_flag_ = add_hidden_global(kChangeFlag, sema_.program.types.elementary(ir::Kind::kDword),
-                                   sema_.variables_[start_globals_[0].index].name.span);
+                                   base::SourceSpan());
+  if (start_globals_.empty()) return;  // blocks that nobody has an instance of
   add_start_program();
 }
 
 bool Objects::has_members_to_start(const PouInfo& info) {
   if (info.owner != kNoPou || !info.self.valid() || !info.id.valid()) return false;
   for (const ir::Member& member : sema_.program.types[info.self].members) {
-    if (member.section != ir::Section::kInOut && starts(member.type)) return true;
+    if (member.section != ir::Section::kInOut && starts(member.type, member.init)) return true;
   }
   return false;
 }

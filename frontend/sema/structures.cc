@@ -1,4 +1,6 @@
 // Structures: members, those of the base (EXTENDS), and BIT members, which share bytes.
+#include <utility>
+
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -88,7 +90,9 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
   bool bit = is_bit(field.spec);
   ir::Member member;
   member.type = use.type;
+  const bool saved = std::exchange(binds_at_start_, !build.type.overlap);
   member.init = field.init.valid() ? initial_value(field.init, use.type, use.init) : use.init;
+  binds_at_start_ = saved;
   if (!bit) close_bits(build);
   if (field.has_address) {
     member.address = field.address;

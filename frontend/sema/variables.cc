@@ -1,4 +1,6 @@
 // Variables and members: what a name means, its type and its initial value.
+#include <utility>
+
 #include "frontend/parse/il_operators.h"
 #include "frontend/sema/sema.h"
 
@@ -108,7 +110,11 @@ void Sema::resolve_initial(Variable& variable) {
     variable.runtime_init = true;
     return;
   }
+  const bool parameter = variable.storage == Storage::kLocal &&
+                         (variable.section == VarSection::kInput || variable.constant);
+  const bool saved = std::exchange(binds_at_start_, !variable.constant && !parameter);
   variable.init = initial_value(init, variable.type, variable.init);
+  binds_at_start_ = saved;
 }
 
 void Sema::check_placement(const Variable& variable) {

@@ -23,6 +23,11 @@ constexpr uint32_t segment_id(uint32_t segment) {
 constexpr uint32_t exposed_segment(uint32_t task, uint32_t count) {
   return kExposedBit | (task & 0x7f) << 24 | (count & 0xffffff);
 }
+// The initial value of a reference that start code gives its value (`p : POINTER TO INT :=
+// ADR(x)`): the NULL segment, so that it leads nowhere, and a number for the expression.
+constexpr uint64_t unbound_handle(uint64_t expression) {
+  return 0xa0000000u | (expression & 0x0fffffffu);
+}
 constexpr uint32_t handle_segment(uint64_t handle) { return static_cast<uint32_t>(handle >> 32); }
 constexpr uint32_t handle_offset(uint64_t handle) { return static_cast<uint32_t>(handle); }
 constexpr uint64_t make_handle(uint32_t segment, uint32_t offset) {
