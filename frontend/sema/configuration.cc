@@ -137,10 +137,10 @@ void Sema::add_instance(const ProgramDecl& decl, const ResourceDecl& resource) {
   bool alone = std::count_if(resource.programs.begin(), resource.programs.end(), same_type) == 1;
   std::vector<Connection> connections;
   instance.init = program_arguments(decl, pous[*pou], connections);
-  if (!connections.empty()) {
-    if (!alone) *pou = clone_program(*pou, decl.name);
-    pous[*pou].connections = std::move(connections);
-  }
+  bool own = !connections.empty() || decl.retain;
+  if (own && !alone) *pou = clone_program(*pou, decl.name);
+  pous[*pou].connections = std::move(connections);
+  if (decl.retain) retain_program(pous[*pou]);
   instance.type = pous[*pou].self;
   program.instances.push_back(std::move(instance));
   for (const BlockTask& block : decl.block_tasks) add_block_task(block, pous[*pou]);
@@ -201,7 +201,18 @@ ir::ConstId Sema::program_arguments(const ProgramDecl& decl, const PouInfo& info
   return program.constants.add(std::move(value));
 }
 
-// A program whose instances are connected differently has code and a type for each.
+// PROGRAM RETAIN p: all that its POU does not declare NON_RETAIN.
+void Sema::retain_program(const PouInfo& info) {
+  std::vector<ir::Member>& members = program.types.edit(info.self).members;
+  for (VarId id : info.members) {
+    Variable& variable = variables_[id.index];
+    variable.retain = !variable.non_retain && variable.section != VarSection::kInOut;
+    members[variable.index].retain = variable.retain;
+  }
+}
+
+// A program whose instances are connected differently, or not all RETAIN, has code and a type for
+// each.
 uint32_t Sema::clone_program(uint32_t original, const Name& instance) {
   auto number = static_cast<uint32_t>(pous.size());
   PouInfo& info = pous.emplace_back();

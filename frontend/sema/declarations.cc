@@ -229,6 +229,7 @@ void Sema::collect_variables(uint32_t pou, const VarBlock& block) {
       variable.section = block.section;
       variable.constant = block.constant;
       variable.retain = block.retain;
+      variable.non_retain = block.non_retain;
       variable.access = block.access;
       variable.pou = pou;
       if (block.section == VarSection::kStatic) {

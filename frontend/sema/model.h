@@ -37,6 +37,7 @@ struct Variable {
   Access access = Access::kDefault;
   bool constant = false;
   bool retain = false;
+  bool non_retain = false;  // says NON_RETAIN
   bool used = false;
   bool hidden = false;        // not of the source: see hidden_variables.cc
   bool stamp = false;         // of start code: ir::Section::kStamp

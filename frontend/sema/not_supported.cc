@@ -41,13 +41,6 @@ void Sema::report_not_supported() {
     if (!scope.name.empty()) report("namespaces are", scope.name.span);
     for (Range32 path : scope.usings) report("USING is", tree.names[path.first].span);
   }
-  for (const ConfigDecl& config : tree.configs) {
-    for (const ResourceDecl& resource : config.resources) {
-      for (const ProgramDecl& decl : resource.programs) {
-        if (decl.retain) report("RETAIN for a whole program is", decl.span);
-      }
-    }
-  }
 }
 
 }  // namespace frontend

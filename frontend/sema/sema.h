@@ -343,6 +343,7 @@ class Sema {
   void add_block_task(const BlockTask& decl, const PouInfo& info);
   ir::ConstId program_arguments(const ProgramDecl& decl, const PouInfo& info,
                                 std::vector<Connection>& connections);
+  void retain_program(const PouInfo& info);
   uint32_t clone_program(uint32_t original, const Name& instance);
 
   // tasks.cc

@@ -81,7 +81,8 @@ std::string image_text(const ir::Image& image, const base::Digest& digest) {
 std::string symbols_text(const ir::Image& image) {
   std::string out;
   ir::for_each_leaf(image, [&](const std::string& path, const ir::Symbol& symbol) {
-    out += path + " : " + image.types.text(symbol.type) + " @ " + number(symbol.data) + "\n";
+    out += path + " : " + image.types.text(symbol.type) + " @ " + number(symbol.data) +
+           (symbol.retain ? " RETAIN\n" : "\n");
   });
   return out;
 }
