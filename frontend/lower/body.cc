@@ -98,14 +98,18 @@ void Body::initialise_locals() {
     const Variable& variable = sema_.resolve(info_.locals[i]);
     bool written_by_caller =
         variable.section == VarSection::kInput || variable.section == VarSection::kInOut;
-    if (!written_by_caller && variable.type.valid()) initialise_local(i, info_.locals[i]);
+    if (!written_by_caller && variable.type.valid()) initialise(local_place(i), variable);
+  }
+  if (!info_.shares_temporaries) return;
+  for (VarId id : info_.variables) {
+    const Variable& variable = sema_.resolve(id);
+    bool temporary = variable.section == VarSection::kTemp && variable.type.valid();
+    if (temporary) initialise(member_variable_place(variable), variable);
   }
 }
 
-void Body::initialise_local(uint32_t local, VarId id) {
-  const Variable& variable = sema_.resolve(id);
+void Body::initialise(const ir::Place& where, const Variable& variable) {
   set_line(variable.name.span);
-  ir::Place where = local_place(local);
   if (variable.runtime_init) {
     Target target;
     target.place = where;

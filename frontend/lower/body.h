@@ -313,7 +313,7 @@ class Body {
   void connect_inputs();
   void connect_outputs();
   void leave();
-  void initialise_local(uint32_t local, VarId id);
+  void initialise(const ir::Place& where, const Variable& variable);
   void set_line(base::SourceSpan span);
   const ir::TypeTable& types() const { return sema_.program.types; }
   ir::Scalar scalar(ir::TypeId type) const { return types().scalar(type); }

@@ -12,7 +12,7 @@ void Body::detect_edges() {
     set_line(input.name.span);
     ir::Place raw = member_variable_place(input);
     ir::Place last = member_variable_place(sema_.resolve(input.last));
-    ir::Place edge = local_place(sema_.resolve(input.edge).index);
+    ir::Place edge = variable_place(input.edge);
     ir::ValueId now = build_.load(raw, kBool);
     ir::ValueId before = build_.load(last, kBool);
     bool rising = input.decl->edge == Edge::kRising;

@@ -38,9 +38,10 @@ ir::Place Body::global_place(uint32_t member) {
 ir::Place Body::variable_place(VarId id) {
   const Variable& variable = sema_.resolve(id);
   if (variable.storage == Storage::kGlobal) return global_place(variable.index);
-  if (variable.edge.valid() && variable.pou == pou_number_) {  // methods see the input itself
-    return local_place(sema_.resolve(variable.edge).index);
-  }
+  // Methods see the input itself.
+  bool body = variable.pou == pou_number_ ||
+              (variable.pou == info_.owner && info_.decl->kind == PouKind::kAction);
+  if (variable.edge.valid() && body) return variable_place(variable.edge);
   ir::Place place = variable.storage == Storage::kLocal ? local_place(variable.index)
                                                         : member_variable_place(variable);
   if (variable.section == VarSection::kInOut && !variable.by_reference) {

@@ -206,7 +206,8 @@ void Sema::retain_program(const PouInfo& info) {
   std::vector<ir::Member>& members = program.types.edit(info.self).members;
   for (VarId id : info.members) {
     Variable& variable = variables_[id.index];
-    variable.retain = !variable.non_retain && variable.section != VarSection::kInOut;
+    bool lasts = variable.section != VarSection::kInOut && variable.section != VarSection::kTemp;
+    variable.retain = lasts && !variable.non_retain;
     members[variable.index].retain = variable.retain;
   }
 }

@@ -250,8 +250,15 @@ void Sema::collect_variables(uint32_t pou, const VarBlock& block) {
 }
 
 // Members of an instance, or locals of a frame: parameters first, then the result.
+// Actions see the VAR_TEMP of the body that calls them, so these are members then, which the
+// body makes anew.
 void Sema::number_variables(PouInfo& info) {
   bool function = has_frame(info.decl->kind);
+  const std::vector<PouDecl>& members = info.decl->members;
+  info.shares_temporaries =
+      !function && std::any_of(members.begin(), members.end(), [](const PouDecl& member) {
+        return member.kind == PouKind::kAction;
+      });
   auto place = [&](VarId id, Storage storage, std::vector<VarId>& order) {
     variables_[id.index].storage = storage;
     variables_[id.index].index = static_cast<uint32_t>(order.size());
@@ -269,7 +276,7 @@ void Sema::number_variables(PouInfo& info) {
     VarSection section = variables_[id.index].section;
     if (section == VarSection::kExternal || id == info.result) continue;
     if (function && is_parameter(section)) continue;
-    bool local = function || section == VarSection::kTemp;
+    bool local = function || (section == VarSection::kTemp && !info.shares_temporaries);
     place(id, local ? Storage::kLocal : Storage::kMember, local ? info.locals : info.members);
   }
 }

@@ -183,6 +183,7 @@ struct PouInfo {
   uint32_t start = kNoPou;          // its method __START, where members need one
   VarId stamp;                      // of it or its base, where FB_Init and the like are
   bool constructs = false;          // a __START itself
+  bool shares_temporaries = false;  // its VAR_TEMP are members, which actions see
   NameMap<MemberCode> code;         // its own methods, actions and properties
   std::vector<uint32_t> overrides;  // of a method: what a virtual call of it may run instead
   NameMap<VarId> names;

@@ -63,9 +63,17 @@ VarId Objects::find_variable(uint32_t block, std::string_view name) const {
     const NameMap<VarId>& names = sema_.pous[block].names;
     auto found = names.find(name);
     if (found == names.end()) continue;
-    if (sema_.variables_[found->second.index].storage != Storage::kLocal) return found->second;
+    const Variable& variable = sema_.variables_[found->second.index];
+    if (variable.section == VarSection::kTemp && !in_action_of(block)) continue;
+    if (variable.storage != Storage::kLocal) return found->second;
   }
   return {};
+}
+
+bool Objects::in_action_of(uint32_t block) const {
+  if (sema_.current_pou_ == kNoPou) return false;
+  const PouInfo& current = sema_.pous[sema_.current_pou_];
+  return current.owner == block && current.decl->kind == PouKind::kAction;
 }
 
 VarId Objects::find_parameter(const PouInfo& callee, std::string_view name) const {

@@ -100,6 +100,7 @@ class Objects {
   void check_recursion();  // after all bodies
 
  private:
+  bool in_action_of(uint32_t block) const;
   void add_member(uint32_t block, const PouDecl& decl);
   // inheritance.cc
   void inherit(uint32_t pou, uint32_t depth);

@@ -115,8 +115,9 @@ Callee Sema::bind_open(const Expr& call, uint32_t pou) {
     const Variable& parameter = variables_[match.parameter.index];
     const Spec& spec = tree[parameter.decl->spec];
     bool open = spec.kind == SpecKind::kArray && spec.open_bounds;
-    bool string = parameter.section == VarSection::kInOut && spec.kind == SpecKind::kString;
-    if (!open && !string) continue;
+    bool generic_name = spec.kind == SpecKind::kNamed && bound.contains(spec.name.text);
+    bool exact = generic_name || spec.kind == SpecKind::kString;  // in-outs; ANY_INT of a subrange
+    if (!open && !(exact && parameter.section == VarSection::kInOut)) continue;
     for (size_t i = 0; i < info.variables.size(); ++i) {
       if (info.variables[i] == match.parameter) types[i] = infer(match.arg->value).type;
     }

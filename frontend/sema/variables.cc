@@ -104,8 +104,8 @@ void Sema::resolve_initial(Variable& variable) {
   ExprId init = variable.decl->init;
   const Expr& expr = tree[init];
   bool list = expr.kind == ExprKind::kArrayInit || expr.kind == ExprKind::kStructInit;
-  bool at_call = variable.storage == Storage::kLocal &&
-                 (variable.section == VarSection::kLocal || variable.section == VarSection::kTemp);
+  bool at_call = variable.section == VarSection::kTemp ||
+                 (variable.storage == Storage::kLocal && variable.section == VarSection::kLocal);
   if (at_call && !variable.constant && !list && infer(init).known < Known::kByCall) {
     variable.runtime_init = true;
     return;
@@ -127,7 +127,8 @@ void Sema::check_placement(const Variable& variable) {
   if (variable.section != VarSection::kInOut)
     objects.check_instance(variable.type, variable.name.span);
   bool holds_instance = type.kind == ir::Kind::kFunctionBlock;
-  if (holds_instance && variable.storage == Storage::kLocal &&
+  bool anew = variable.storage == Storage::kLocal || variable.section == VarSection::kTemp;
+  if (holds_instance && anew &&
       variable.section != VarSection::kInOut) {
     error(DiagnosticCode::kSectionNotAllowed, variable.name.span,
           quoted(variable.name) + " is an instance of `" + type.name +
@@ -150,6 +151,10 @@ std::string Sema::name_suggestion(std::string_view name, bool callable, bool ins
   NearestName nearest(name);
   if (current_pou_ != kNoPou) nearest.offer_all(pous[current_pou_].names);
   for (uint32_t at = objects.block_of(current_pou_); at != kNoPou; at = pous[at].base) {
+    auto own = pous[at].names.find(name);
+    if (own != pous[at].names.end() && variables_[own->second.index].section == VarSection::kTemp) {
+      return "VAR_TEMP is seen by the body and its actions only; declare it in VAR";
+    }
     nearest.offer_all(pous[at].names);
     nearest.offer_all(pous[at].code);
   }
