@@ -231,6 +231,7 @@ class Builder {
   void own_receivers(const Class& owner, const Class* base, uint32_t rank);
   Pou method(const Class& owner, const Interface& face, const Class* base);
   void without_loops(const std::vector<Seen>& seen);
+  bool passes_addresses(const Pou& pou) const;
   Stmt action(const std::vector<Seen>& seen, const std::string& name);
   Stmt property(const Class& owner, const Variable& one);
   void construct(Pou& pou, Interface& face, const Class* base);

@@ -226,7 +226,7 @@ void Builder::class_members(Pou& pou, Class& out, const Class* base, const Famil
     if (base == nullptr || one_in(3)) pou.members.push_back(property(out, one));
   }
   out.face.properties = properties;
-  if (!one_in(2)) return;
+  if (passes_addresses(pou) || !one_in(2)) return;
   pou.members.push_back(action(out.seen, fresh("Act")));
   std::string head = pou.members.back().clauses[0].head;
   out.face.actions.push_back(head.substr(7, head.size() - 8));
@@ -238,6 +238,18 @@ void Builder::without_loops(const std::vector<Seen>& seen) {
   for (const Seen& one : seen) see(one.variable, one.writable, one.constant);
   for (const Variable& global : global_variables_) see(global, true);
   guarded_ = true;
+}
+
+// With actions VAR_TEMP are members, and an address in a number does not follow its instance.
+bool Builder::passes_addresses(const Pou& pou) const {
+  for (const VarBlock& block : pou.blocks) {
+    for (const Variable& one : block.variables) {
+      bool number =
+          one.type == elementary(ir::Kind::kDword) || one.type == elementary(ir::Kind::kLword);
+      if (block.section == Section::kTemp && number) return true;
+    }
+  }
+  return false;
 }
 
 Stmt Builder::action(const std::vector<Seen>& seen, const std::string& name) {

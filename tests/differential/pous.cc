@@ -253,7 +253,7 @@ void Builder::program(uint32_t index, uint32_t count) {
     objects(pou);
     references(pou);
     body(pou, (10 + below(10)) / count, 3);
-    if (one_in(3)) program_action(pou);
+    if (!passes_addresses(pou) && one_in(3)) program_action(pou);
   }
   // Blocks that a task of their own may run.
   for (const VarBlock& list : pou.blocks) {
