@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstring>
 
+#include "online_change/apply/handle_transfer.h"
 #include "online_change/apply/losses.h"
 #include "online_change/apply/transfer.h"
 #include "online_change/diff/instance_match.h"
@@ -58,13 +59,15 @@ struct Change::Pending {
         old_image(std::move(running)),
         new_image(std::move(next)),
         forward(package.forward, old_image.image(), new_image.image(), Transfer::Steps::kBoundary),
-        backward(package.inverse, new_image.image(), old_image.image(), Transfer::Steps::kAll) {}
+        backward(package.inverse, new_image.image(), old_image.image(), Transfer::Steps::kAll),
+        handles(old_image.image(), new_image.image()) {}
 
   Package package;
   ir::VerifiedImage old_image;
   ir::VerifiedImage new_image;
   Transfer forward;
   Transfer backward;
+  HandleTransfer handles;
   // Version 2 until the switch, version 1 in trial.
   std::unique_ptr<vm::Generation> waiting;
   std::vector<uint32_t> leaving;       // instances that the switch drops and FB_Exit is for
@@ -163,6 +166,11 @@ std::vector<LiveLoss> Change::live_losses() const {
   std::vector<LiveLoss> others =
       values_without_place(plan(), pending_->old_image.image(), controller_.memory().view());
   rows.insert(rows.end(), others.begin(), others.end());
+  const ir::Image& old_image = pending_->old_image.image();
+  Areas old_areas(old_image);
+  pending_->handles.for_each_broken(memory, [&](uint32_t at, ir::TypeId type) {
+    rows.push_back(describe_broken(old_areas, at, type, controller_.memory().view()));
+  });
   return rows;
 }
 
@@ -254,7 +262,16 @@ base::Status Change::carry_over() {
   if (!transfer.save(memory, interrupted_)) return abandoned("at the boundary");
   if (!pending_->backward.remember(memory, interrupted_)) return abandoned("at the boundary");
   if (!transfer.write(memory, interrupted_)) return abandoned("at the boundary");
+  std::optional<uint32_t> broken =
+      pending_->handles.forward(memory, pending_->allow_loss, interrupted_);
+  if (broken) {
+    transfer.restore(memory);
+    return *broken == HandleTransfer::kInterrupted
+               ? abandoned("at the boundary")
+               : would_lose(broken_at(Areas(pending_->new_image.image()), *broken), 0);
+  }
   if (interrupted()) {
+    pending_->handles.restore_forward(memory);
     transfer.restore(memory);
     return abandoned("before its last step");
   }
@@ -318,9 +335,11 @@ base::Result<SwitchReport> Change::undo() {
     controller_.construct();
     return left.error();
   }
-  bool done = back.read_back(memory, pending_->forward, interrupted_) &&
+  const bool led_back = pending_->handles.back(memory, interrupted_);
+  bool done = led_back && back.read_back(memory, pending_->forward, interrupted_) &&
               back.save(memory, interrupted_) && back.write(memory, interrupted_);
   if (!done) {
+    if (led_back) pending_->handles.restore(memory);
     if (!pending_->leaving_back.empty()) controller_.construct();
     return base::Error{base::Refusal::kDeadline, "the undo was abandoned; the trial goes on"};
   }

@@ -3,6 +3,11 @@
 #include "ir/bytecode/symbols.h"
 
 namespace online_change {
+namespace {
+
+constexpr const char* kBroken = "leads to what is dropped or retyped";
+
+}  // namespace
 
 LiveLoss describe(const Loss& loss, const Transfer& transfer, const Areas& new_areas,
                   const uint8_t* memory) {
@@ -16,6 +21,19 @@ LiveLoss describe(const Loss& loss, const Transfer& transfer, const Areas& new_a
   row.new_value = transfer.conversions().new_text(step, converted.data());
   row.what = loss.what;
   return row;
+}
+
+LiveLoss describe_broken(const Areas& old_areas, uint32_t at, ir::TypeId type,
+                         std::span<const uint8_t> memory) {
+  ir::Symbol symbol;
+  symbol.data = at;
+  symbol.type = type;
+  return {old_areas.path_at(at), ir::format_value(old_areas.image(), symbol, memory), "NULL",
+          kBroken};
+}
+
+LiveLoss broken_at(const Areas& new_areas, uint32_t at) {
+  return {new_areas.path_at(at), "a reference", "NULL", kBroken};
 }
 
 std::vector<LiveLoss> values_without_place(const Plan& plan, const ir::Image& old_image,

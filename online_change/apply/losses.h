@@ -11,6 +11,11 @@ namespace online_change {
 
 LiveLoss describe(const Loss& loss, const Transfer& transfer, const Areas& new_areas,
                   const uint8_t* memory);
+// A reference of the old version at `at` whose target the change drops.
+LiveLoss describe_broken(const Areas& old_areas, uint32_t at, ir::TypeId type,
+                         std::span<const uint8_t> memory);
+// The same at the boundary, where only its place in the new version is known.
+LiveLoss broken_at(const Areas& new_areas, uint32_t at);
 // Values that go (dropped), and values of variables that keep their name but get a type
 // without a rule from the old one.
 std::vector<LiveLoss> values_without_place(const Plan& plan, const ir::Image& old_image,

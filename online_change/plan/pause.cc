@@ -1,6 +1,7 @@
 #include "online_change/plan/pause.h"
 
 #include "online_change/diff/fast_conversion.h"
+#include "online_change/diff/place_moves.h"
 
 namespace online_change {
 
@@ -14,6 +15,9 @@ int64_t predicted_pause_ns(const Plan& plan, const ir::Image& old_image,
         fast_converter(old_image.types, step.old_type, new_image.types, step.new_type) == nullptr;
     ns += kPauseStepNs + (slow ? kPauseSlowConversionNs : kPauseValueNs) * int64_t{step.count};
     ns += static_cast<int64_t>(step.total()) / kPauseBytesPerNs;
+  }
+  if (!PlaceMoves(old_image, new_image).trivial()) {
+    ns += kPauseReferenceNs * static_cast<int64_t>(reference_leaves(new_image).size());
   }
   return ns;
 }

@@ -13,6 +13,7 @@ inline constexpr int64_t kPauseFixedNs = 5'000;        // checks, publishing
 inline constexpr int64_t kPauseStepNs = 30;            // one step
 inline constexpr int64_t kPauseValueNs = 6;            // one value copied, or converted fast
 inline constexpr int64_t kPauseSlowConversionNs = 80;  // strings, enumerations, subranges
+inline constexpr int64_t kPauseReferenceNs = 40;       // one reference, when targets move or go
 inline constexpr int64_t kPauseBytesPerNs = 2;         // read, save and write together
 
 int64_t predicted_pause_ns(const Plan& plan, const ir::Image& old_image,

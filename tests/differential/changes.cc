@@ -96,6 +96,7 @@ class Examination {
     }
     old_types_ = rig_->image().types;
     before_ = rig_->leaves();
+    remember_targets();
     base::Status changed = rig_->change(second_);
     if (!changed.ok()) return change_refused(changed.error());
     after_ = rig_->leaves();
@@ -103,7 +104,7 @@ class Examination {
     // The oracle does not know what level an event had.
     auto event = [](const ir::Task& task) { return task.event != ir::kNoEvent; };
     const std::vector<ir::Task>& tasks = second_.program.tasks;
-    if (std::any_of(tasks.begin(), tasks.end(), event) || leads_elsewhere()) return out_;
+    if (std::any_of(tasks.begin(), tasks.end(), event) || leads_between()) return out_;
     if (!out_.failed) check_run(script.scans_after);
     if (!out_.failed && !trapped_) check_undo();
     return out_;
@@ -159,20 +160,55 @@ class Examination {
     }
   }
 
-  // A reference keeps its handle: what that names may have another place, and so another text. So
-  // may the number of an enumeration that has no name.
-  static bool same_value(const ir::TypeTable& types, const Leaf& a, const Leaf& b) {
+  // The number of an enumeration that has no name is compared as such.
+  static bool same_value(const Leaf& a, const Leaf& b) {
     const bool number = a.value.find_first_not_of("-0123456789") == std::string::npos;
-    if (types.is_reference(b.symbol.type) || number) return a.bits == b.bits;
-    return a.value == b.value;
+    return number ? a.bits == b.bits : a.value == b.value;
   }
 
-  // What a reference named is gone or has another place: it reads what no variable has.
-  bool leads_elsewhere() const {
+  // The types of what references lead to.
+  void remember_targets() {
+    for (const auto& [path, leaf] : before_) {
+      if (!old_types_.is_reference(leaf.symbol.type)) continue;
+      base::Result<ir::Symbol> target = ir::find_symbol(rig_->image(), leaf.value);
+      if (target.ok()) old_types_of_[leaf.value] = old_types_.text(target->type);
+    }
+  }
+
+  // A reference leads to the variable of the same path; to nothing when that is gone or has another
+  // type. What lies between the bytes of variables has no path.
+  void check_reference(const std::string& path, const Leaf& old, const Leaf& now) {
+    if (now.value == old.value || old.value == "ref" || old.value.find('+') != std::string::npos) {
+      return;
+    }
+    base::Result<ir::Symbol> target = ir::find_symbol(rig_->image(), old.value);
+    const auto before = before_.find(old.value);
+    const auto after = after_.find(old.value);
+    bool alike = target.ok();
+    if (alike && before != before_.end() && after != after_.end()) {
+      alike = before->second.type == after->second.type && !after->second.shared;
+    } else if (alike) {
+      alike = old_types_of_.at(old.value) == rig_->image().types.text(target->type);
+    }
+    alike = alike && !in_union(old.value);
+    if (alike || now.value != "NULL") wrong("reference", path, now.value, old.value);
+  }
+
+  bool in_union(const std::string& path) const {
+    for (size_t end = path.find_first_of(".["); end != std::string::npos;
+         end = path.find_first_of(".[", end + 1)) {
+      base::Result<ir::Symbol> whole = ir::find_symbol(rig_->image(), path.substr(0, end));
+      if (whole.ok() && rig_->image().types.overlaps(whole->type)) return true;
+    }
+    return false;
+  }
+
+  // Of a reference to something else than a variable: its bytes are nobody's.
+  bool leads_between() const {
     return std::any_of(after_.begin(), after_.end(), [this](const auto& entry) {
-      const auto old = before_.find(entry.first);
-      return rig_->image().types.is_reference(entry.second.symbol.type) && old != before_.end() &&
-             old->second.value != entry.second.value;
+      const std::string& value = entry.second.value;
+      bool nowhere = value == "ref" || value.find('+') != std::string::npos;
+      return nowhere && rig_->image().types.is_reference(entry.second.symbol.type);
     });
   }
 
@@ -184,7 +220,11 @@ class Examination {
     const bool number = old.value.find_first_not_of("-0123456789") == std::string::npos;
     const bool unnamed = number && types[now.symbol.type].kind == ir::Kind::kEnum;
     if (unnamed && said_moved(path)) return;
-    if (!same_value(types, old, now)) return wrong("kept value", path, now.value, old.value);
+    if (types.is_reference(now.symbol.type)) {
+      check_reference(path, old, now);
+    } else if (!same_value(old, now)) {
+      return wrong("kept value", path, now.value, old.value);
+    }
     if (now.symbol.data != old.symbol.data && !said_moved(path)) {
       wrong("kept place", path, std::to_string(now.symbol.data), std::to_string(old.symbol.data));
     }
@@ -266,8 +306,11 @@ class Examination {
         if (leaf.value != was) wrong("undo of dropped", path, leaf.value, was);
       } else if (now->second.value == after_.at(path).value) {
         if (leaf.value != was) wrong("undo of unwritten", path, leaf.value, was);
-      } else if (now->second.type == leaf.type &&
-                 !same_value(rig_->image().types, now->second, leaf)) {
+      } else if (rig_->image().types.is_reference(leaf.symbol.type)) {
+        bool lost = leaf.value == "NULL" || !before_.contains(now->second.value);
+        if (!lost && leaf.value != now->second.value)
+          wrong("undo of a reference", path, leaf.value, now->second.value);
+      } else if (now->second.type == leaf.type && !same_value(now->second, leaf)) {
         wrong("undo of kept", path, leaf.value, now->second.value);
       }
     }
@@ -278,6 +321,7 @@ class Examination {
   std::unique_ptr<Rig> rig_;
   ir::TypeTable old_types_;
   Leaves before_;
+  std::map<std::string, std::string> old_types_of_;  // by path
   Leaves after_;
   int64_t period_ns_ = 0;
   int64_t now_ns_ = 0;

@@ -1,0 +1,300 @@
+#include "online_change/diff/place_moves.h"
+
+#include <algorithm>
+
+#include "ir/types/handle.h"
+#include "online_change/diff/areas.h"
+#include "online_change/diff/instance_match.h"
+#include "online_change/diff/type_diff.h"
+#include "online_change/diff/value_conversion.h"
+
+namespace online_change {
+namespace {
+
+using ir::TypeId;
+
+constexpr uint32_t kMaxDepth = 64;
+
+std::unordered_map<std::string, uint32_t> members_by_name(const ir::Type& type) {
+  std::unordered_map<std::string, uint32_t> out;
+  for (uint32_t i = 0; i < type.members.size(); ++i) {
+    out.emplace(ir::fold_name(type.members[i].name), i);
+  }
+  return out;
+}
+
+Target target_of(const ir::Image& image, const std::vector<uint32_t>& names, TypeId reference) {
+  const TypeId base = image.types[reference].base;
+  const bool instance =
+      image.types.is_instance(base) || image.types[base].kind == ir::Kind::kInterface;
+  return {names[base.index], instance};
+}
+
+}  // namespace
+
+// Makes the tables of a PlaceMoves.
+class PlaceMoves::Maker {
+ public:
+  Maker(PlaceMoves& out, const ir::Image& old_image, const ir::Image& new_image)
+      : out_(out), old_(old_image), new_(new_image) {}
+
+  void run() {
+    number_types(old_, out_.old_names_);
+    number_types(new_, out_.new_names_);
+    const InstanceMatch match = match_instances(old_, new_);
+    out_.areas_.resize(old_.instances.size());
+    for (uint32_t id : match.old_order) {
+      Area& area = out_.areas_[id];
+      area.old_segment = ir::area_segment(id, old_.instances[id].generation);
+      const uint32_t twin = match.new_of_old[id];
+      if (twin != kNoInstance) {
+        area.new_segment = ir::area_segment(twin, new_.instances[twin].generation);
+        area.pair = areas_pair(old_.instances[id].type, new_.instances[twin].type);
+      }
+      const bool stays = area.new_segment == area.old_segment && out_.pairs_[area.pair].same;
+      out_.trivial_ = out_.trivial_ && stays;
+    }
+  }
+
+ private:
+  void number_types(const ir::Image& image, std::vector<uint32_t>& names) {
+    for (uint32_t i = 0; i < image.types.size(); ++i) {
+      const auto next = static_cast<uint32_t>(numbers_.size());
+      names.push_back(
+          numbers_.try_emplace(ir::fold_name(image.types.text(TypeId(i))), next).first->second);
+    }
+  }
+
+  uint32_t areas_pair(TypeId from, TypeId to) {
+    const auto [found, fresh] = areas_.try_emplace({from.index, to.index}, kNone);
+    if (!fresh) return found->second;
+    Pair pair = named(from, to);
+    structure(pair, from, to, 0);
+    return areas_[{from.index, to.index}] = put(std::move(pair));
+  }
+
+  uint32_t value(TypeId from, TypeId to, uint32_t depth) {
+    const auto known = values_.find({from.index, to.index});
+    if (known != values_.end()) return known->second;
+    Pair pair = named(from, to);
+    const bool structures = has_own_parts(old_.types, from) && has_own_parts(new_.types, to);
+    const ir::Type& old_type = old_.types[from];
+    const ir::Type& new_type = new_.types[to];
+    if (depth < kMaxDepth && structures) {
+      structure(pair, from, to, depth);
+    } else if (depth < kMaxDepth && old_type.kind == ir::Kind::kArray &&
+               new_type.kind == ir::Kind::kArray && old_type.dims.size() == new_type.dims.size()) {
+      array(pair, old_type, new_type, depth);
+    } else {
+      leaf(pair, from, to);
+    }
+    return values_[{from.index, to.index}] = put(std::move(pair));
+  }
+
+  Pair named(TypeId from, TypeId to) const {
+    Pair pair;
+    pair.old_name = out_.old_names_[from.index];
+    pair.new_name = out_.new_names_[to.index];
+    pair.old_size = old_.layouts[from].size;
+    pair.new_size = new_.layouts[to].size;
+    return pair;
+  }
+
+  uint32_t put(Pair pair) {
+    out_.pairs_.push_back(std::move(pair));
+    return static_cast<uint32_t>(out_.pairs_.size() - 1);
+  }
+
+  void leaf(Pair& pair, TypeId from, TypeId to) const {
+    if (old_.types.is_instance(from) || new_.types.is_instance(to)) {
+      pair.kept = old_.types.is_instance(from) && new_.types.is_instance(to) &&
+                  same_instance_type(old_, from, new_, to);
+    } else if (old_.types.overlaps(from) || new_.types.overlaps(to)) {
+      pair.kept = ir::same_value_type(old_.types, old_.layouts, from, new_.types, new_.layouts, to);
+    } else {
+      pair.kept = pair.old_name == pair.new_name ||
+                  classify(old_.types, from, new_.types, to) == Conversion::kSame;
+    }
+    pair.same = pair.kept;
+  }
+
+  void array(Pair& pair, const ir::Type& from, const ir::Type& to, uint32_t depth) {
+    pair.kind = Kind::kArray;
+    pair.element = value(from.base, to.base, depth + 1);
+    for (size_t i = 0; i < from.dims.size(); ++i) {
+      pair.dims.push_back(
+          {from.dims[i].low, to.dims[i].low, from.dims[i].count(), to.dims[i].count()});
+    }
+    const Pair& element = out_.pairs_[pair.element];
+    pair.same = element.same && from.dims == to.dims && element.old_size == element.new_size;
+  }
+
+  void structure(Pair& pair, TypeId from, TypeId to, uint32_t depth) {
+    pair.kind = Kind::kStructure;
+    pair.same = true;
+    const ir::Type& old_type = old_.types[from];
+    const ir::Type& new_type = new_.types[to];
+    const auto names = members_by_name(new_type);
+    for (uint32_t i = 0; i < old_type.members.size(); ++i) {
+      const ir::Member& member = old_type.members[i];
+      if (member.section == ir::Section::kInOut) continue;  // no handle names a slot
+      Part part{old_.layouts[from].member_offsets[i], old_.layouts[member.type].size, 0, kNone};
+      const auto twin = names.find(ir::fold_name(member.name));
+      if (twin != names.end() && new_type.members[twin->second].section != ir::Section::kInOut) {
+        part.to = new_.layouts[to].member_offsets[twin->second];
+        part.pair = value(member.type, new_type.members[twin->second].type, depth + 1);
+      }
+      pair.same =
+          pair.same && part.pair != kNone && part.to == part.begin && out_.pairs_[part.pair].same;
+      pair.parts.push_back(part);
+    }
+    std::sort(pair.parts.begin(), pair.parts.end(),
+              [](const Part& a, const Part& b) { return a.begin < b.begin; });
+  }
+
+  using Key = std::pair<uint32_t, uint32_t>;
+  PlaceMoves& out_;
+  const ir::Image& old_;
+  const ir::Image& new_;
+  std::unordered_map<std::string, uint32_t> numbers_;
+  std::map<Key, uint32_t> areas_;
+  std::map<Key, uint32_t> values_;
+};
+
+PlaceMoves::PlaceMoves(const ir::Image& old_image, const ir::Image& new_image) {
+  Maker(*this, old_image, new_image).run();
+}
+
+Target PlaceMoves::target_in_old(const ir::Image& image, TypeId reference) const {
+  return target_of(image, old_names_, reference);
+}
+
+Target PlaceMoves::target_in_new(const ir::Image& image, TypeId reference) const {
+  return target_of(image, new_names_, reference);
+}
+
+bool PlaceMoves::element_of(const Pair& array, uint64_t number, uint64_t& out) {
+  uint64_t stride = 1;
+  out = 0;
+  for (size_t i = array.dims.size(); i-- > 0;) {
+    const Bounds& dim = array.dims[i];
+    const int64_t index = dim.old_low + static_cast<int64_t>(number % dim.old_count);
+    number /= dim.old_count;
+    if (index < dim.new_low) return false;
+    const auto place = static_cast<uint64_t>(index - dim.new_low);
+    if (place >= dim.new_count) return false;
+    out += place * stride;
+    stride *= dim.new_count;
+  }
+  return number == 0;
+}
+
+const PlaceMoves::Part* PlaceMoves::part_at(const Pair& structure, uint32_t offset) const {
+  const auto behind = std::partition_point(structure.parts.begin(), structure.parts.end(),
+                                           [&](const Part& part) { return part.begin <= offset; });
+  if (behind == structure.parts.begin()) return nullptr;
+  const Part& part = *(behind - 1);
+  return offset - part.begin < part.size ? &part : nullptr;
+}
+
+Followed PlaceMoves::follow(uint64_t handle, Target target) const {
+  const uint32_t segment = ir::handle_segment(handle);
+  const uint32_t id = ir::segment_id(segment);
+  if (id >= areas_.size() || areas_[id].old_segment != segment) return {handle, false};
+  const Area& area = areas_[id];
+  if (area.new_segment == 0) return {0, true};
+  uint32_t rest = ir::handle_offset(handle);
+  if (pairs_[area.pair].same || (target.instance && rest == 0)) {
+    return {ir::make_handle(area.new_segment, rest), false};
+  }
+  uint32_t at = 0;  // in the new area
+  uint32_t number = area.pair;
+  for (uint32_t depth = 0; depth <= kMaxDepth + 1; ++depth) {
+    const Pair& pair = pairs_[number];
+    const bool whole = depth > 0 && rest == 0 && pair.old_name == target.name;
+    if (whole && pair.new_name == target.name) {
+      return {ir::make_handle(area.new_segment, at), false};
+    }
+    if (pair.kind == Kind::kLeaf) {
+      if (!pair.kept || rest >= pair.old_size) return {0, true};
+      return {ir::make_handle(area.new_segment, at + rest), false};
+    }
+    if (pair.kind == Kind::kArray) {
+      const Pair& element = pairs_[pair.element];
+      uint64_t place = 0;
+      if (element.old_size == 0 || !element_of(pair, rest / element.old_size, place)) {
+        return {0, true};
+      }
+      at += static_cast<uint32_t>(place * element.new_size);
+      rest %= element.old_size;
+      number = pair.element;
+      continue;
+    }
+    const Part* part = part_at(pair, rest);
+    if (part == nullptr || part->pair == kNone) return {0, part != nullptr};
+    at += part->to;
+    rest -= part->begin;
+    number = part->pair;
+  }
+  return {0, true};
+}
+
+namespace {
+
+// Offsets of references inside each type.
+class LeafFinder {
+ public:
+  explicit LeafFinder(const ir::Image& image) : image_(image) {}
+
+  const std::vector<ReferenceLeaf>& inside(TypeId type, bool area, uint32_t depth) {
+    auto& known = area ? areas_ : values_;
+    const auto found = known.find(type.index);
+    if (found != known.end()) return found->second;
+    std::vector<ReferenceLeaf> out;
+    if (depth < kMaxDepth) find(type, area, depth, out);
+    return known[type.index] = std::move(out);
+  }
+
+ private:
+  void find(TypeId id, bool area, uint32_t depth, std::vector<ReferenceLeaf>& out) {
+    const ir::Type& type = image_.types[id];
+    if (image_.types.is_reference(id)) out.push_back({0, id});
+    if (type.kind == ir::Kind::kArray) {
+      const std::vector<ReferenceLeaf>& element = inside(type.base, false, depth + 1);
+      if (element.empty()) return;
+      const uint32_t stride = image_.layouts[type.base].size;
+      for (uint32_t at = 0; at + stride <= image_.layouts[id].size; at += stride) {
+        for (const ReferenceLeaf& leaf : element) out.push_back({at + leaf.at, leaf.type});
+      }
+    }
+    if (!area && !has_own_parts(image_.types, id)) return;
+    for (size_t i = 0; i < type.members.size(); ++i) {
+      const ir::Member& member = type.members[i];
+      if (member.section == ir::Section::kInOut || image_.types.is_instance(member.type)) continue;
+      const uint32_t at = image_.layouts[id].member_offsets[i];
+      for (const ReferenceLeaf& leaf : inside(member.type, false, depth + 1)) {
+        out.push_back({at + leaf.at, leaf.type});
+      }
+    }
+  }
+
+  const ir::Image& image_;
+  std::map<uint32_t, std::vector<ReferenceLeaf>> values_;
+  std::map<uint32_t, std::vector<ReferenceLeaf>> areas_;
+};
+
+}  // namespace
+
+std::vector<ReferenceLeaf> reference_leaves(const ir::Image& image) {
+  LeafFinder finder(image);
+  std::vector<ReferenceLeaf> out;
+  for (const ir::Instance& instance : image.instances) {
+    if (!instance.live) continue;
+    for (const ReferenceLeaf& leaf : finder.inside(instance.type, true, 0)) {
+      out.push_back({instance.data + leaf.at, leaf.type});
+    }
+  }
+  return out;
+}
+
+}  // namespace online_change
