@@ -1,6 +1,9 @@
 #include "stdlib/registry.h"
 
+#include <algorithm>
 #include <array>
+
+#include "base/name_case.h"
 
 namespace stdlib {
 
@@ -34,12 +37,22 @@ std::span<const std::string_view> library_names() {
   return kNames;
 }
 
+bool is_vendor_library(std::string_view name) {
+#define VENDOR(name, meaning) name,
+  static constexpr std::string_view kNames[] = {
+#include "stdlib/registry.def"
+  };
+  return std::any_of(std::begin(kNames), std::end(kNames),
+                     [name](std::string_view one) { return base::same_name(one, name); });
+}
+
 std::span<const PageRow> page_rows() {
 #define SECTION(title) PageRow{title, "", ""},
 #define FUNCTION(id, name, rule, fewest, most, parameters, signature, meaning) \
   PageRow{name, signature, meaning},
 #define CONVERSION(form, signature, meaning) PageRow{form, signature, meaning},
 #define LIBRARY(name, interface, meaning) PageRow{name, interface, meaning},
+#define VENDOR(name, meaning) PageRow{name, "all of it", meaning},
   static constexpr PageRow kRows[] = {
 #include "stdlib/registry.def"
   };

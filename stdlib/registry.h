@@ -74,6 +74,9 @@ struct AliasRow {
 };
 std::span<const AliasRow> alias_rows();
 
+// Does a vendor call the library, or a part of it, by this name? Standard.TON, Tc2_Standard.TON.
+bool is_vendor_library(std::string_view name);
+
 // The whole table as the reference page shows it. A row without an interface is a heading.
 struct PageRow {
   std::string_view name;

@@ -10,7 +10,7 @@ Body::Labels Body::labels_of(Range32 list) {
     const Stmt& stmt = tree_[tree_.stmt_lists[list.first + i]];
     if (stmt.kind != StmtKind::kLabel) continue;
     // `x : f(y);` is a slip of the finger, and would be a label and a call.
-    if (sema_.find_variable(stmt.name.text).valid()) {
+    if (sema_.find_variable(stmt.name).valid()) {
       sema_.error(DiagnosticCode::kDuplicateName, stmt.name.span,
                   "`" + std::string(stmt.name.text) + "` is a variable and cannot be a label",
                   "write `:=` to assign to it");

@@ -18,9 +18,9 @@ ir::Step member(uint32_t index) {
 // The counter or switch of what a test names: an instance, or a function.
 std::optional<ir::Place> Body::mock_slot(ExprId target, uint32_t MockSlots::*slot) {
   const Expr& expr = tree_[target];
-  const bool bare = expr.kind == ExprKind::kName && !sema_.find_variable(expr.name.text).valid();
-  if (bare) {
-    const PouInfo* function = sema_.find_pou(expr.name.text);
+  const bool plain = expr.kind == ExprKind::kName;
+  if (!plain || !sema_.find_variable(expr.name).valid()) {
+    const PouInfo* function = sema_.find_pou(sema_.namespaces.find(NameSort::kDeclaration, expr));
     if (function != nullptr && function->decl->kind == PouKind::kFunction) {
       if (function->mock.present) return global_place(function->mock.*slot);
       sema_.error(DiagnosticCode::kBadMock, expr.span,
@@ -49,7 +49,8 @@ void Body::mock_statement(const Stmt& stmt) {
   const auto active = mock_slot(stmt.target, &MockSlots::active);
   if (!active) return;
   if (stmt.kind == StmtKind::kMockFunction) {
-    const PouInfo* function = sema_.find_pou(tree_[stmt.target].name.text);
+    const PouInfo* function =
+        sema_.find_pou(sema_.namespaces.find(NameSort::kDeclaration, tree_[stmt.target]));
     if (function == nullptr) return;
     if (stmt.value.valid() && !function->result.valid()) {
       sema_.error(DiagnosticCode::kBadMock, tree_[stmt.value].span,

@@ -5,11 +5,13 @@
 namespace frontend {
 
 void Parser::parse_file() {
+  const base::SourcePos begin = here();
   open_scope({}, false);
   while (kind() != TokenKind::kEnd) {
     parse_declaration();
     panic_ = false;
   }
+  tree_.scopes[scope_.index].span = {begin, current_->span().end};
 }
 
 void Parser::open_scope(const Name& name, bool internal) {
@@ -83,26 +85,39 @@ void Parser::parse_outside_member(Range32 attributes) {
 // NAMESPACE [INTERNAL] A.B ... END_NAMESPACE
 void Parser::parse_namespace() {
   const Token opening = take();
-  ScopeId outer = scope_;
-  Nesting nesting(*this);
-  if (!nesting.entered()) return skip_past(TokenKind::kEndNamespace);
-  bool internal = kind() == TokenKind::kInternal && is_name(next_kind());
+  const ScopeId outer = scope_;
+  const uint32_t outer_depth = depth_;
+  const size_t first = tree_.scopes.size();
+  if (open_namespaces()) {
+    const size_t behind = tree_.scopes.size();
+    owner_ = kNoOwner;
+    while (kind() != TokenKind::kEndNamespace && kind() != TokenKind::kEnd) {
+      parse_declaration();
+      panic_ = false;
+    }
+    if (!accept(TokenKind::kEndNamespace)) report_missing_end(opening, TokenKind::kEndNamespace);
+    for (size_t i = first; i < behind; ++i) tree_.scopes[i].span = span_from({opening.begin});
+    accept(TokenKind::kSemicolon);
+  } else {
+    skip_past(TokenKind::kEndNamespace);
+  }
+  depth_ = outer_depth;
+  scope_ = outer;
+  owner_ = kNoOwner;
+}
+
+// [INTERNAL] A.B: a scope for each name. False, after a report, when nested too deeply.
+bool Parser::open_namespaces() {
+  const bool internal = kind() == TokenKind::kInternal && is_name(next_kind());
   if (internal) take();
   do {
-    Name name = parse_name("namespace");
+    if (!enter()) return false;
+    const Name name = parse_name("namespace");
     if (panic_) break;
     open_scope(name, internal);
   } while (accept(TokenKind::kDot));
   panic_ = false;
-  owner_ = kNoOwner;
-  while (kind() != TokenKind::kEndNamespace && kind() != TokenKind::kEnd) {
-    parse_declaration();
-    panic_ = false;
-  }
-  if (!accept(TokenKind::kEndNamespace)) report_missing_end(opening, TokenKind::kEndNamespace);
-  accept(TokenKind::kSemicolon);
-  scope_ = outer;
-  owner_ = kNoOwner;
+  return true;
 }
 
 // USING A.B, C;

@@ -98,7 +98,9 @@ void Parser::parse_mock() {
 // MOCK_FUNCTION Name : T ... END_MOCK_FUNCTION, as opposed to the statement.
 bool Parser::at_mock_function_block() const {
   if (kind() != TokenKind::kMockFunction || !is_name(next_kind())) return false;
-  return peek(2).kind == TokenKind::kColon || is_var_start(peek(2).kind);
+  size_t at = 2;
+  while (peek(at).kind == TokenKind::kDot && is_name(peek(at + 1).kind)) at += 2;
+  return peek(at).kind == TokenKind::kColon || is_var_start(peek(at).kind);
 }
 
 }  // namespace frontend

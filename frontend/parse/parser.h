@@ -200,6 +200,7 @@ class Parser {
   SpecId parse_type_name();  // A.B.Name
   SpecId parse_named_spec(bool type_level);
   bool at_subrange() const;
+  void parse_qualified(Range32& qualifiers, Name& name);
   void parse_init_arguments(SpecId named);
   Range32 parse_element_arguments();
   SpecId parse_string_spec();
@@ -286,6 +287,7 @@ class Parser {
   void parse_file_pou(PouKind pou_kind, Range32 attributes);
   void parse_outside_member(Range32 attributes);
   void parse_namespace();
+  bool open_namespaces();
   void parse_using(std::vector<Range32>& out);
   Range32 parse_path(const char* what);
   void skip_to_next_declaration();

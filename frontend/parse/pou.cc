@@ -104,6 +104,7 @@ void Parser::parse_pou_header(PouDecl& pou) {
   }
   if (pou.kind == PouKind::kSetup || pou.kind == PouKind::kTeardown) return;
   pou.name = parse_name(what);
+  if (pou.kind == PouKind::kMockFunction) parse_qualified(pou.qualifiers, pou.name);
   if (panic_) return;
   while (kind() == TokenKind::kUsing && is_name(next_kind())) parse_using(pou.usings);
   parse_inheritance(pou);
@@ -216,7 +217,7 @@ void Parser::parse_pou_body(PouDecl& pou) {
     if (parse_inner(pou) || parse_chart_element(pou)) continue;
     if (!list_ends(false)) {
       bool first = statement_stack_.size() == mark;
-      first && at_instruction_list() ? InstructionList(*this).body() : parse_statement();
+      first&& at_instruction_list() ? InstructionList(*this).body() : parse_statement();
     } else if (!parse_inner(pou) && !parse_chart_element(pou)) {  // behind a stray END_x
       break;
     }

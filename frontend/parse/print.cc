@@ -109,6 +109,7 @@ void Printer::pou(const PouDecl& decl) {
   if (decl.is_abstract) head += "ABSTRACT ";
   if (decl.is_final) head += "FINAL ";
   if (decl.is_override) head += "OVERRIDE ";
+  if (decl.qualifiers.count != 0) head += path(decl.qualifiers) + '.';
   head += member ? std::string(decl.name.text) : scoped(decl.scope, decl.name);
   head += spec_list(" EXTENDS ", decl.extends) + spec_list(" IMPLEMENTS ", decl.implements);
   if (decl.result.valid()) head += " : " + spec(decl.result);

@@ -121,6 +121,7 @@ struct Scope {
   ScopeId parent;
   bool internal = false;
   std::vector<Range32> usings;  // USING A.B; a path in Tree::names each
+  base::SourceSpan span;
 };
 
 struct TypeDecl {
@@ -155,7 +156,8 @@ inline constexpr uint32_t kNoChart = 0xffffffffu;
 struct PouDecl {
   PouKind kind = PouKind::kFunction;
   Name name;
-  SpecId result;  // functions, methods, properties; may be invalid
+  Range32 qualifiers;  // kMockFunction: A, B of A.B.Name; Tree::names
+  SpecId result;       // functions, methods, properties; may be invalid
   std::vector<VarBlock> blocks;
   Range32 body;               // Tree::stmt_lists
   uint32_t chart = kNoChart;  // Tree::charts: the body is that chart, `body` is empty

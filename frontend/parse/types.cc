@@ -119,17 +119,22 @@ SpecId Parser::parse_type_name() {
   base::SourcePos begin = here();
   Spec spec;
   spec.kind = SpecKind::kNamed;
-  spec.qualifiers.first = static_cast<uint32_t>(tree_.names.size());
   spec.name = parse_name("type");
-  while (!panic_ && kind() == TokenKind::kDot && is_name(next_kind())) {
-    tree_.names.push_back(spec.name);
-    ++spec.qualifiers.count;
-    take();
-    spec.name = name_of(take());
-  }
+  parse_qualified(spec.qualifiers, spec.name);
   if (panic_) spec.kind = SpecKind::kError;
   spec.span = span_from(begin);
   return add_spec(std::move(spec));
+}
+
+// What follows the first name of A.B.Name, which becomes a qualifier itself.
+void Parser::parse_qualified(Range32& qualifiers, Name& name) {
+  qualifiers.first = static_cast<uint32_t>(tree_.names.size());
+  while (!panic_ && kind() == TokenKind::kDot && is_name(next_kind())) {
+    tree_.names.push_back(name);
+    ++qualifiers.count;
+    take();
+    name = name_of(take());
+  }
 }
 
 // `INT`, `INT (0..10)`, `INT (Off, On)`, `Pump (5)`. A type other than the elementary ones

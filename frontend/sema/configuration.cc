@@ -219,6 +219,7 @@ uint32_t Sema::clone_program(uint32_t original, const Name& instance) {
   PouInfo& info = pous.emplace_back();
   info.number = number;
   info.decl = pous[original].decl;
+  info.name = pous[original].name;
   info.meaning = std::make_unique<Meaning>();
   info.id = ir::PouId(static_cast<uint32_t>(program.pous.size()));
   ir::Pou code;

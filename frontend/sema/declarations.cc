@@ -45,11 +45,16 @@ void Sema::collect() {
   collect_types();
   for (const VarBlock& block : tree.globals) collect_globals(block, list_of(block));
   for (const ConfigDecl& config : tree.configs) {
+    if (tree.in_namespace(config.scope)) {
+      error(DiagnosticCode::kNotInNamespace, config.name.span,
+            "a CONFIGURATION stands in a namespace", "put it outside");
+    }
     collect_globals(config.globals, config.name.text);
     for (const ResourceDecl& resource : config.resources) {
       if (&resource == resource_) collect_globals(resource.globals, resource.name.text);
     }
   }
+  namespaces.check();
   objects.inherit();
 }
 
@@ -60,21 +65,23 @@ void Sema::collect_types() {
       collect_library_type(decl);
       continue;
     }
-    if (!types_.emplace(decl.name.text, decl.spec).second || pou_names_.contains(decl.name.text)) {
+    const std::string_view name =
+        namespaces.declare(NameSort::kDeclaration, decl.scope, decl.name, decl.access);
+    if (!types_.emplace(name, decl.spec).second || pou_names_.contains(name)) {
       error(DiagnosticCode::kDuplicateName, decl.name.span,
-            "`" + std::string(decl.name.text) + "` is declared twice");
+            "`" + std::string(name) + "` is declared twice");
       continue;
     }
-    declare_type(decl);
+    declare_type(decl, name);
     if (tree.find_attribute(decl.attributes, "qualified_only") != nullptr) continue;
-    collect_enumerators(decl.spec);
+    collect_enumerators(decl.spec, decl.scope, decl.access);
   }
 }
 
-void Sema::declare_type(const TypeDecl& decl) {
-  specs_[decl.spec.index].name = decl.name;
+void Sema::declare_type(const TypeDecl& decl, std::string_view name) {
+  specs_[decl.spec.index].name = {name, decl.name.span};
   specs_[decl.spec.index].default_value = decl.init;
-  forward_declare(decl);
+  forward_declare(decl, name);
 }
 
 void Sema::collect_library_type(const TypeDecl& decl) {
@@ -91,7 +98,7 @@ bool Sema::use_library_type(std::string_view name) {
   if (found == library_types_.end() || types_.contains(name)) return false;
   const TypeDecl& decl = *found->second;
   types_.emplace(decl.name.text, decl.spec);
-  declare_type(decl);
+  declare_type(decl, decl.name.text);
   return true;
 }
 
@@ -111,33 +118,36 @@ bool Sema::use_library_literal(std::string_view name) {
 }
 
 // References may lead to a structure whose content is not known yet.
-void Sema::forward_declare(const TypeDecl& decl) {
+void Sema::forward_declare(const TypeDecl& decl, std::string_view name) {
   const SpecKind kind = tree[decl.spec].kind;
   if (kind != SpecKind::kStruct && kind != SpecKind::kUnion) return;
   ir::Type type;
   type.kind = kind == SpecKind::kUnion ? ir::Kind::kUnion : ir::Kind::kStruct;
-  type.name = decl.name.text;
+  type.name = name;
   specs_[decl.spec.index].forward = program.types.declare(std::move(type));
 }
 
-void Sema::collect_enumerators(SpecId spec) {
+void Sema::collect_enumerators(SpecId spec, ScopeId scope, Access access) {
   if (!spec.valid()) return;
   const Spec& content = tree[spec];
   for (uint32_t i = 0; i < content.enumerators.size(); ++i) {
-    literals_[content.enumerators[i].name.text].push_back({spec, i});
+    const Name& name = content.enumerators[i].name;
+    literals_[namespaces.declare(NameSort::kLiteral, scope, name, access)].push_back({spec, i});
   }
 }
 
-VarId Sema::add_variable(Variable variable, NameMap<VarId>& scope) {
+// `name`: by which the scope knows it, when that is not its own.
+VarId Sema::add_variable(Variable variable, NameMap<VarId>& scope, std::string_view name) {
   VarId id(static_cast<uint32_t>(variables_.size()));
-  if (!scope.emplace(variable.name.text, id).second) {
-    const Variable& first = variables_[scope[variable.name.text].index];
+  if (name.empty()) name = variable.name.text;
+  if (!scope.emplace(name, id).second) {
+    const Variable& first = variables_[scope[name].index];
     std::string where = first.decl == nullptr
                             ? "the function's result has the function's name"
                             : "first declared in line " +
                                   std::to_string(sources.locate(first.name.span.begin).line);
     error(DiagnosticCode::kDuplicateName, variable.name.span,
-          "`" + std::string(variable.name.text) + "` is declared twice; " + where);
+          "`" + std::string(name) + "` is declared twice; " + where);
     return {};
   }
   variables_.push_back(variable);
@@ -147,43 +157,50 @@ VarId Sema::add_variable(Variable variable, NameMap<VarId>& scope) {
 void Sema::collect_pous() {
   for (const PouDecl& decl : tree.pous) {
     if (decl.name.empty()) continue;
-    bool library = in_library(decl.span);
-    if (library) {
+    if (in_library(decl.span)) {
       library_.emplace(decl.name.text, &decl);
-    } else if (auto same = pou_names_.find(decl.name.text);
-               same != pou_names_.end() && decl.kind == PouKind::kFunction &&
+      continue;
+    }
+    if (decl.kind == PouKind::kProgram && tree.in_namespace(decl.scope)) {
+      error(DiagnosticCode::kNotInNamespace, decl.name.span, "a PROGRAM stands in a namespace",
+            "put it outside, with USING for the names of the namespace");
+      continue;
+    }
+    const std::string_view name =
+        namespaces.declare(NameSort::kDeclaration, decl.scope, decl.name, decl.access);
+    const auto same = pou_names_.find(name);
+    if (same == pou_names_.end()) {
+      add_pou(decl, false, name);
+    } else if (decl.kind == PouKind::kFunction &&
                pous[same->second].decl->kind == PouKind::kFunction) {
       uint32_t last = same->second;
       while (pous[last].overload != kNoPou) last = pous[last].overload;
       pous[last].overload = static_cast<uint32_t>(pous.size());
-      add_pou(decl, false);
-    } else if (same != pou_names_.end()) {
-      error(DiagnosticCode::kDuplicateName, decl.name.span,
-            "`" + std::string(decl.name.text) + "` is declared twice");
+      add_pou(decl, false, name);
     } else {
-      add_pou(decl, false);
+      error(DiagnosticCode::kDuplicateName, decl.name.span,
+            "`" + std::string(name) + "` is declared twice");
     }
   }
 }
 
-uint32_t Sema::add_pou(const PouDecl& decl, bool library) {
+uint32_t Sema::add_pou(const PouDecl& decl, bool library, std::string_view name) {
   uint32_t number = static_cast<uint32_t>(pous.size());
   PouInfo& info = pous.emplace_back();
   info.number = number;
   info.decl = &decl;
+  info.name = name;
   info.library = library;
   info.open = is_open(decl);
-  pou_names_.emplace(decl.name.text, number);
+  pou_names_.emplace(name, number);
   if (!has_frame(decl.kind)) {
     ir::Type type;
     type.kind = instance_kind(decl.kind);
-    type.name = decl.name.text;
+    type.name = name;
     info.self = program.types.declare(std::move(type));
     pou_by_type_.emplace(info.self, number);
   }
-  if (!info.open && decl.kind != PouKind::kInterface) {
-    add_code(info, std::string(decl.name.text));
-  }
+  if (!info.open && decl.kind != PouKind::kInterface) add_code(info, std::string(name));
   collect_interface(number);
   if (library) add_aliases(info);
   return number;
@@ -221,7 +238,7 @@ void Sema::collect_variables(uint32_t pou, const VarBlock& block) {
   if (block.section == VarSection::kAccess) return;
   if (block.section == VarSection::kStatic) allow_extension("VAR_STAT", block.span);
   for (const VarDecl& decl : block.vars) {
-    if (info.meaning == nullptr) collect_enumerators(decl.spec);
+    if (info.meaning == nullptr) collect_enumerators(decl.spec, info.decl->scope);
     for (const Name& name : decl.names) {
       Variable variable;
       variable.name = name;
@@ -299,7 +316,7 @@ void Sema::add_aliases(PouInfo& info) {
 bool Sema::use_library(std::string_view name) {
   auto found = library_.find(name);
   if (found == library_.end() || pou_names_.contains(name)) return false;
-  uint32_t number = add_pou(*found->second, true);
+  uint32_t number = add_pou(*found->second, true, found->first);
   if (declared_) resolve_interface(number);  // a function first met in a body
   return true;
 }

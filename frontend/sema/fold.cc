@@ -21,7 +21,7 @@ std::optional<Constant> Folder::fold(ExprId id) {
     case ExprKind::kName:
       return name(id, expr);
     case ExprKind::kQualified:
-      return enumerator(note.type, expr.name.text);
+      return enumerator(note.type, expr);
     case ExprKind::kMember:
       return member(id, expr);
     case ExprKind::kIndex:
@@ -43,7 +43,7 @@ std::optional<Constant> Folder::member(ExprId id, const Expr& expr) {
   const Note& note = sema_.infer(id);
   if (note.bit_size != 0) return bits_of(id, expr);
   bool literal = note.constant && !note.variable.valid();
-  return literal ? enumerator(note.type, expr.name.text) : part(id);
+  return literal ? name(id, expr) : part(id);
 }
 
 // A variable or part of one, with its initial value.
@@ -165,20 +165,22 @@ std::optional<Constant> Folder::name(ExprId id, const Expr& expr) {
                   "write the enumeration's name before it: Name#" + std::string(expr.name.text));
       return std::nullopt;
     }
-    return enumerator(type, expr.name.text);
+    return enumerator(type, expr);
   }
   return part(id);
 }
 
-std::optional<Constant> Folder::enumerator(ir::TypeId type, std::string_view name) {
+std::optional<Constant> Folder::enumerator(ir::TypeId type, const Expr& name) {
   ir::TypeId root = without_range(sema_.program.types, type);
   for (const ir::EnumLiteral& literal : sema_.program.types[root].literals) {
-    if (!ir::same_name(literal.name, name)) continue;
+    if (!ir::same_name(literal.name, name.name.text)) continue;
     return of_bits(root, static_cast<uint64_t>(literal.value));
   }
   // Ambiguous name in the context of a third enumeration: any candidate will be refused.
-  const ir::TypeId any = sema_.infer_name_candidates(name);
-  if (!sema_.program.types.is_scalar(any)) return std::nullopt;  // NULL, for example
+  auto found = sema_.literals_.find(sema_.namespaces.find(NameSort::kLiteral, name));
+  if (found == sema_.literals_.end()) return std::nullopt;  // NULL, for example
+  const ir::TypeId any = sema_.resolve(found->second[0].spec).type;
+  if (!sema_.program.types.is_scalar(any)) return std::nullopt;
   return of_bits(any, 0);
 }
 
@@ -262,12 +264,6 @@ std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
 std::optional<Constant> Sema::fold(ExprId expr, ir::TypeId context, Known least) {
   if (!infer(expr).type.valid()) return std::nullopt;
   return Folder(*this, context, least).fold(expr);
-}
-
-// A type for a literal that no candidate of the context has: the first declared one.
-ir::TypeId Sema::infer_name_candidates(std::string_view name) {
-  auto found = literals_.find(name);
-  return found == literals_.end() ? ir::TypeId() : resolve(found->second[0].spec).type;
 }
 
 }  // namespace frontend

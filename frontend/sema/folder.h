@@ -23,7 +23,7 @@ class Folder {
   std::optional<Constant> part(ExprId id);
   std::optional<Constant> bits_of(ExprId id, const Expr& expr);
   std::optional<Constant> call(ExprId id);
-  std::optional<Constant> enumerator(ir::TypeId type, std::string_view name);
+  std::optional<Constant> enumerator(ir::TypeId type, const Expr& name);
   std::optional<Constant> unary(ExprId id, const Expr& expr);
   std::optional<Constant> binary(ExprId id, const Expr& expr);
   std::optional<Constant> compare(const Expr& expr, const Constant& a, const Constant& b);

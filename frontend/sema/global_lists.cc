@@ -17,11 +17,17 @@ void Sema::collect_globals(const std::vector<VarBlock>& blocks, std::string_view
   for (const VarBlock& block : blocks) collect_globals(block, list);
 }
 
+// In a namespace, the namespace is the list that variables belong to.
 void Sema::collect_globals(const VarBlock& block, std::string_view list) {
   if (block.section != VarSection::kGlobal) return;
-  bool qualified = tree.find_attribute(block.attributes, "qualified_only") != nullptr;
+  const bool closed = tree.in_namespace(block.scope);
+  const bool qualified = tree.find_attribute(block.attributes, "qualified_only") != nullptr;
+  if (closed) allow_extension("VAR_GLOBAL in a namespace", block.span);
+  const std::string_view list_name =
+      namespaces.declare(NameSort::kList, block.scope, {list, block.span}, block.access);
+  GlobalList& names = lists_[list_name];
   for (const VarDecl& decl : block.vars) {
-    collect_enumerators(decl.spec);
+    collect_enumerators(decl.spec, block.scope);
     for (const Name& name : decl.names) {
       Variable variable;
       variable.name = name;
@@ -31,36 +37,38 @@ void Sema::collect_globals(const VarBlock& block, std::string_view list) {
       variable.retain = block.retain;
       variable.storage = Storage::kGlobal;
       variable.index = static_cast<uint32_t>(global_order_.size());
-      if (qualified) variable.list = list;
-      VarId id = add_global(variable, lists_[list]);
-      if (id.valid()) global_order_.push_back(id);
+      std::string_view whole;
+      if (qualified) {
+        variable.list = list_name;
+        whole = keep_name(std::string(list_name) + "." + std::string(name.text));
+      } else {
+        whole = namespaces.declare(NameSort::kVariable, block.scope, name, block.access);
+        if (closed) variable.list = whole.substr(0, whole.rfind('.'));
+      }
+      VarId id = add_variable(variable, globals_, whole);
+      if (!id.valid()) continue;
+      names.names.emplace(name.text, id);
+      global_order_.push_back(id);
     }
   }
 }
 
-VarId Sema::add_global(Variable variable, GlobalList& list) {
-  if (!variable.list.empty()) return add_variable(variable, list.names);
-  VarId id = add_variable(variable, globals_);
-  if (id.valid()) list.names.emplace(variable.name.text, id);
-  return id;
-}
-
-// Is it the name of a list, and of nothing nearer?
-bool Sema::names_list(const Expr& head) {
-  return head.kind == ExprKind::kName && !head.global && lists_.contains(head.name.text) &&
-         !find_variable(head.name.text).valid();
-}
-
-// List.x; nullopt when `x` stands in no list of that name.
+// List.x or A.x; nullopt when neither a list nor a namespace stands before the dot.
 std::optional<Note> Sema::infer_list_member(const Expr& expr) {
   const Expr& head = tree[expr.operand];
-  if (!names_list(head)) return std::nullopt;
-  auto list = lists_.find(head.name.text);
-  auto found = list->second.names.find(expr.name.text);
-  if (found != list->second.names.end()) return variable_note(found->second);
-  if (types_.contains(head.name.text) || pou_names_.contains(head.name.text)) return std::nullopt;
+  const GlobalList* list = namespaces.list(head);
+  if (list != nullptr) {
+    auto found = list->names.find(expr.name.text);
+    if (found != list->names.end()) return variable_note(found->second);
+  }
+  if (namespaces.is_namespace(head)) {
+    auto variable = globals_.find(namespaces.find(NameSort::kVariable, expr));
+    return variable == globals_.end() ? infer_enum_name(expr) : variable_note(variable->second);
+  }
+  const std::string_view other = namespaces.find(NameSort::kDeclaration, head);
+  if (list == nullptr || types_.contains(other) || pou_names_.contains(other)) return std::nullopt;
   NearestName nearest(expr.name.text);
-  nearest.offer_all(list->second.names);
+  nearest.offer_all(list->names);
   error(DiagnosticCode::kUnknownName, expr.name.span,
         "the global variables `" + std::string(head.name.text) + "` have no `" +
             std::string(expr.name.text) + "`",

@@ -1,5 +1,7 @@
 // Variables that declarations imply: those of VAR_STAT among the globals, those of VAR_INST in
 // the instance, and what edge inputs remember.
+#include <span>
+
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -38,9 +40,8 @@ std::string Sema::static_list_name(const PouInfo& info) const {
     const std::string& block = program.types[info.self].name;
     return info.owner == kNoPou ? block : block + "#" + std::string(info.decl->name.text);
   }
-  std::string name =
-      info.open ? std::string(info.decl->name.text) : program.pous[info.id.index].name;
-  for (char& c : name) {
+  std::string name = info.open ? std::string(info.name) : program.pous[info.id.index].name;
+  for (char& c : std::span(name).subspan(info.name.size())) {
     if (c == '.' || c == '[' || c == ']') c = '_';
   }
   return name;

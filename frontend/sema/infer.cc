@@ -124,7 +124,7 @@ Note Sema::infer_literal(const Expr& expr) {
   note.constant = true;
   if (literal.too_large) return {};
   if (!literal.prefix.empty()) {
-    auto use = find_type(literal.prefix.text);
+    auto use = find_type(namespaces.find(NameSort::kDeclaration, literal.prefix));
     if (!use) {
       error(DiagnosticCode::kUnknownType, literal.prefix.span,
             "`" + std::string(literal.prefix.text) + "` is not a type");
@@ -203,8 +203,10 @@ Note Sema::variable_note(VarId id) {
   return note;
 }
 
+// `name`, or `A.name` where A is a namespace.
 Note Sema::infer_enum_name(const Expr& expr) {
-  const uint32_t own = objects.block_of(current_pou_);
+  const bool plain = expr.kind == ExprKind::kName;
+  const uint32_t own = plain ? objects.block_of(current_pou_) : kNoPou;
   Objects::Found code;
   if (own != kNoPou) code = objects.find_code(own, expr.name.text);
   if (code.code.is_property()) return objects.infer_property(expr.name, code);
@@ -214,53 +216,73 @@ Note Sema::infer_enum_name(const Expr& expr) {
           "call it: `" + std::string(expr.name.text) + "()`");
     return {};
   }
-  auto found = literals_.find(expr.name.text);
-  if (found == literals_.end() && use_library_literal(expr.name.text)) {
-    found = literals_.find(expr.name.text);
-  }
+  std::string_view name = namespaces.find(NameSort::kLiteral, expr);
+  auto found = literals_.find(name);
+  if (found == literals_.end() && plain && use_library_literal(name)) found = literals_.find(name);
   if (found == literals_.end()) {
-    if (VarId id = program_variable(expr.name.text, false); id.valid()) return variable_note(id);
-    bool pou = pou_names_.contains(expr.name.text) || types_.contains(expr.name.text) ||
-               library_.contains(expr.name.text) || standard_.contains(expr.name.text);
+    VarId id = plain ? program_variable(name, false) : VarId();
+    if (id.valid()) return variable_note(id);
+    name = namespaces.find(NameSort::kDeclaration, expr);
+    if (namespaces.is_path(expr)) {
+      error(DiagnosticCode::kNotAValue, expr.span, "`" + std::string(name) + "` is a namespace");
+      return {};
+    }
+    bool pou = pou_names_.contains(name) || types_.contains(name) || library_.contains(name) ||
+               standard_.contains(name);
     error(pou ? DiagnosticCode::kNotAValue : DiagnosticCode::kUnknownName, expr.span,
-          "`" + std::string(expr.name.text) + (pou ? "` is not a variable" : "` is not declared"),
-          pou ? std::string() : name_suggestion(expr.name.text, false));
+          "`" + std::string(name) + (pou ? "` is not a variable" : "` is not declared"),
+          pou ? std::string() : name_suggestion(name, false));
     return {};
   }
   Note note;
   note.constant = true;
-  if (found->second.size() == 1) {
-    note.type = resolve(found->second[0].spec).type;
-    return note;
-  }
-  note.flex = Flex::kEnum;
+  const bool several = found->second.size() > 1 || namespaces.is_ambiguous(expr.name);
+  if (several) note.flex = Flex::kEnum;
   note.type = resolve(found->second[0].spec).type;
   return note;
 }
 
-// Color#Red
+// Color#Red, A.Color#Red
 Note Sema::infer_qualified(const Expr& expr) {
-  auto use = find_type(expr.prefix.text);
+  const Name& type = expr.prefix;
+  if (!expr.operand.valid()) {
+    return infer_literal_of(namespaces.find(NameSort::kDeclaration, type), type.span, expr.name);
+  }
+  Expr whole;  // A.Color
+  whole.kind = ExprKind::kMember;
+  whole.operand = expr.operand;
+  whole.name = type;
+  whole.span = {tree[expr.operand].span.begin, type.span.end};
+  const std::string_view name = namespaces.find(NameSort::kDeclaration, whole);
+  if (!name.empty()) return infer_literal_of(name, whole.span, expr.name);
+  error(DiagnosticCode::kUnknownName, tree[expr.operand].span,
+        "what stands before `" + std::string(type.text) + "#` is not a namespace");
+  return {};
+}
+
+// `span`: of the type's name.
+Note Sema::infer_literal_of(std::string_view name, base::SourceSpan span, const Name& wanted) {
+  auto use = find_type(name);
   bool known = use && use->type.valid();
   if (use && !known) return {};
   if (!known || !is_enum(program.types, use->type)) {
-    error(known ? DiagnosticCode::kNotEnumeration : DiagnosticCode::kUnknownType, expr.prefix.span,
-          "`" + std::string(expr.prefix.text) + "` is not an enumeration");
+    NearestName type(name);
+    type.offer_all(types_);
+    error(known ? DiagnosticCode::kNotEnumeration : DiagnosticCode::kUnknownType, span,
+          "`" + std::string(name) + "` is not an enumeration", known ? "" : type.fix());
     return {};
   }
+  NearestName nearest(wanted.text);
   for (const ir::EnumLiteral& literal : program.types[use->type].literals) {
-    if (!ir::same_name(literal.name, expr.name.text)) continue;
+    nearest.offer(literal.name);
+    if (!ir::same_name(literal.name, wanted.text)) continue;
     Note note;
     note.type = use->type;
     note.constant = true;
     return note;
   }
-  NearestName nearest(expr.name.text);
-  for (const ir::EnumLiteral& literal : program.types[use->type].literals) {
-    nearest.offer(literal.name);
-  }
-  error(DiagnosticCode::kNotEnumeration, expr.name.span,
-        "`" + type_text(use->type) + "` has no literal `" + std::string(expr.name.text) + "`",
+  error(DiagnosticCode::kNotEnumeration, wanted.span,
+        "`" + type_text(use->type) + "` has no literal `" + std::string(wanted.text) + "`",
         nearest.fix());
   return {};
 }

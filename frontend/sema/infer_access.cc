@@ -13,10 +13,8 @@ std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"
 
 Note Sema::infer_member(const Expr& expr) {
   const Expr& head = tree[expr.operand];
-  if (names_enumeration(head)) {  // E.a: a literal qualified by its enumeration
-    Expr qualified = expr;
-    qualified.prefix = head.name;
-    return infer_qualified(qualified);
+  if (std::string_view type = enumeration_named(head); !type.empty()) {  // E.a, A.E.a
+    return infer_literal_of(type, head.span, expr.name);
   }
   if (auto global = infer_list_member(expr)) return *global;
   if (objects.is_own(head)) {
@@ -56,26 +54,30 @@ Note Sema::infer_member(const Expr& expr) {
   const bool block = program.types.is_reference(operand.type) &&
                      pou_of(program.types[operand.type].base) != nullptr;
   error(DiagnosticCode::kNoMembers, expr.span, "`" + type_text(operand.type) + "` has no members",
-        block ? "write `^.` to reach what it refers to" : "");
+        block                      ? "write `^.` to reach what it refers to"
+        : namespaces.is_path(head) ? "the variable hides the namespace of that name"
+                                   : "");
   return {};
 }
 
-// `colour : Colour` is common: the type is meant where the variable has no members.
-bool Sema::names_enumeration(const Expr& head) {
-  if (head.kind != ExprKind::kName || !types_.contains(head.name.text)) return false;
-  VarId variable = find_variable(head.name.text);
-  if (!variable.valid()) return true;
+// The type that stands before `.a`; "": none does. `colour : Colour` is common: the type is meant
+// where the variable has no members.
+std::string_view Sema::enumeration_named(const Expr& head) {
+  const std::string_view name = namespaces.find(NameSort::kDeclaration, head);
+  if (name.empty() || !types_.contains(name)) return {};
+  VarId variable = head.kind == ExprKind::kName ? find_variable(head.name) : VarId();
+  if (!variable.valid()) return name;
   ir::TypeId type = resolve(variable).type;
-  if (!type.valid() || !is_enum(program.types, type)) return false;
-  auto use = find_type(head.name.text);
-  return use && is_enum(program.types, use->type);
+  if (!type.valid() || !is_enum(program.types, type)) return {};
+  auto use = find_type(name);
+  return use && is_enum(program.types, use->type) ? name : std::string_view();
 }
 
 // `x.NUMBER`: the bit that a constant names.
 std::optional<Note> Sema::infer_named_bit(const Expr& expr, const Note& operand) {
   Traits traits = traits_of(program.types, operand.type);
   if (!traits.bits && !traits.integer) return std::nullopt;
-  VarId id = find_variable(expr.name.text);
+  VarId id = find_variable(expr.name);
   if (!id.valid()) return std::nullopt;
   const Variable& constant = resolve(id);
   variables_[id.index].used = true;

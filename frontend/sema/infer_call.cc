@@ -20,17 +20,17 @@ Callee Sema::callee(const Expr& call) {
     }
     if (!id.valid()) id = program_variable(head.name.text, true);
     if (!id.valid()) {
-      Callee named = named_callee(head);
-      return named.kind == Callee::Kind::kFunction ? select_function(call, named.pou) : named;
+      return named_callee(call, head);
     }
     // The function's own name is its result inside; calling it is recursion.
     if (current_pou_ != kNoPou && id == pous[current_pou_].result) return objects.itself(head);
     // A variable may have a function's name; calls then still mean the function.
     bool instance = pou_of(resolve(id).type) != nullptr;
-    if (!instance && standard_.contains(head.name.text)) return named_callee(head);
+    if (!instance && standard_.contains(head.name.text)) return named_callee(call, head);
   }
+  if (namespaces.declares(head)) return named_callee(call, head);
   if (objects.is_super(head)) return objects.base_body(head);
-  if (head.kind == ExprKind::kMember && !names_list(tree[head.operand])) {
+  if (head.kind == ExprKind::kMember && !namespaces.is_scope(tree[head.operand])) {
     const uint32_t owner = objects.receiver(head.operand);
     if (auto method = objects.method_of(owner, head.name)) return *method;
   }
@@ -59,17 +59,16 @@ Callee Sema::callee(const Expr& call) {
   return callee;
 }
 
-Callee Sema::named_callee(const Expr& head) {
+// f or A.f
+Callee Sema::named_callee(const Expr& call, const Expr& head) {
   Callee callee;
-  std::string_view name = head.name.text;
+  const std::string_view name = namespaces.find(NameSort::kDeclaration, head);
   bool declared = pou_names_.contains(name);
   if (!declared && !standard_.contains(name)) declared = use_library(name);
   if (declared) {
     uint32_t number = pou_names_.find(name)->second;
     if (pous[number].decl->kind == PouKind::kFunction) {
-      callee.kind = Callee::Kind::kFunction;
-      callee.pou = number;
-      return callee;
+      return select_function(call, number);
     }
     bool block = pous[number].decl->kind == PouKind::kFunctionBlock;
     error(block ? DiagnosticCode::kNeedsInstance : DiagnosticCode::kNotCallable, head.span,
@@ -109,7 +108,7 @@ Callee Sema::named_callee(const Expr& head) {
     }
     return callee;
   }
-  error(DiagnosticCode::kUnknownName, head.span, quoted(head.name) + " is not declared",
+  error(DiagnosticCode::kUnknownName, head.span, "`" + std::string(name) + "` is not declared",
         name_suggestion(name, true, head.instruction));
   return callee;
 }

@@ -42,8 +42,10 @@ ReferenceCall reference_call_of_name(std::string_view name) {
 TypeUse Sema::resolve_reference(const Spec& spec) {
   const Spec& element = tree[spec.element];
   ir::TypeId target;
-  if (element.kind == SpecKind::kNamed && element.qualifiers.count == 0) {
-    if (auto declared = types_.find(element.name.text); declared != types_.end()) {
+  if (element.kind == SpecKind::kNamed) {
+    const std::string_view name =
+        namespaces.find(NameSort::kDeclaration, element.qualifiers, element.name);
+    if (auto declared = types_.find(name); declared != types_.end()) {
       target = specs_[declared->second.index].forward;
     }
   }
@@ -147,8 +149,9 @@ Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
 ir::TypeId Sema::type_of_argument(ExprId argument) {
   const Expr& expr = tree[argument];
   if (expr.kind == ExprKind::kType) return resolve(expr.spec).type;
-  if (expr.kind == ExprKind::kName && !find_variable(expr.name.text).valid()) {
-    if (auto use = find_type(expr.name.text)) return use->type;
+  if (expr.kind == ExprKind::kName ? !find_variable(expr.name).valid()
+                                   : namespaces.declares(expr)) {
+    if (auto use = find_type(namespaces.find(NameSort::kDeclaration, expr))) return use->type;
   }
   return infer(argument).type;
 }

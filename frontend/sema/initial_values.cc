@@ -117,7 +117,7 @@ bool InitialBuilder::item_parts(ExprId id, uint64_t& rounds, std::vector<ExprId>
       values.push_back(tree.expr_lists[item.list.first + k]);
     }
   } else if (item.kind == ExprKind::kCall && tree[item.operand].kind == ExprKind::kName &&
-             sema_.find_variable(tree[item.operand].name.text).valid()) {
+             sema_.find_variable(tree[item.operand]).valid()) {
     for (uint32_t k = 0; k < item.args.count; ++k) {
       values.push_back(tree.args[item.args.first + k].value);
       if (!values.back().valid()) return false;

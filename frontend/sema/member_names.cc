@@ -14,7 +14,7 @@ bool Objects::names_method(const Expr& expr) {
   uint32_t owner = block_of(sema_.current_pou_);
   if (expr.kind == ExprKind::kName && sema_.find_variable(expr).valid()) return false;
   if (expr.kind == ExprKind::kMember) {
-    if (sema_.names_list(sema_.tree[expr.operand])) return false;
+    if (sema_.namespaces.is_scope(sema_.tree[expr.operand])) return false;
     owner = receiver(expr.operand);
   }
   return owner != kNoPou && find_code(owner, expr.name.text).code.method != kNoPou;
@@ -22,7 +22,7 @@ bool Objects::names_method(const Expr& expr) {
 
 // Was a message given for it?
 bool Objects::damaged(ExprId id) {
-  return !sema_.names_list(sema_.tree[id]) && !sema_.infer(id).type.valid();
+  return !sema_.namespaces.is_scope(sema_.tree[id]) && !sema_.infer(id).type.valid();
 }
 
 // The method or action of that name; nullopt: there is none. Reports when it may not be used.

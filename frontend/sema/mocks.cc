@@ -18,16 +18,17 @@ uint32_t add_mock_global(ir::Type& globals, const std::string& name, ir::TypeId 
 
 }  // namespace
 
-void Sema::add_function_mock(const Name& name) {
-  auto found = pou_names_.find(name.text);
+void Sema::add_function_mock(std::string_view name, base::SourceSpan span) {
+  auto found = pou_names_.find(name);
   if (found == pou_names_.end() || pous[found->second].decl->kind != PouKind::kFunction) {
-    error(DiagnosticCode::kBadMock, name.span, quoted(name) + " is not a function of the project",
+    error(DiagnosticCode::kBadMock, span,
+          "`" + std::string(name) + "` is not a function of the project",
           "MOCK_FUNCTION replaces functions; MOCK replaces an instance of a function block");
     return;
   }
   PouInfo& info = pous[found->second];
   if (info.mock.present) return;
-  const std::string prefix = "__MOCK_" + std::string(info.decl->name.text);
+  const std::string prefix = "__MOCK_" + std::string(info.name);
   const ir::TypeId result = info.result.valid() ? resolve(info.result).type : ir::TypeId();
   const ir::TypeId dint = program.types.elementary(ir::Kind::kDint);
   const ir::TypeId udint = program.types.elementary(ir::Kind::kUdint);
@@ -45,20 +46,16 @@ void Sema::add_mock_body(const PouDecl& decl, bool inside_test) {
                                                      std::to_string(made_names_.size()));
   PouDecl& made = made_decls_.emplace_back(decl);
   made.kind = PouKind::kFunction;
-  // Inside, the result has the function's name; outside, the body has its own.
-  const bool declared = pou_names_.contains(decl.name.text);
-  const uint32_t pou = add_pou(made, false);
-  if (!declared) pou_names_.erase(decl.name.text);
-  pou_names_.emplace(name, pou);
-  program.pous[pous[pou].id.index].name = name;
-  mock_bodies_.push_back({&decl, inside_test, pou});
+  mock_bodies_.push_back({&decl, inside_test, add_pou(made, false, name)});
 }
 
 void Sema::resolve_mock_bodies() {
   for (const MockBody& body : mock_bodies_) {
     const PouDecl& decl = *body.decl;
-    auto found = pou_names_.find(decl.name.text);
-    add_function_mock(decl.name);
+    const std::string_view name =
+        namespaces.find(NameSort::kDeclaration, decl.qualifiers, decl.name);
+    auto found = pou_names_.find(name);
+    add_function_mock(name, decl.name.span);
     if (found == pou_names_.end() || !pous[found->second].mock.present) continue;
     PouInfo& function = pous[found->second];
     check_mock_body(decl, pous[body.pou], function);

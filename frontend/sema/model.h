@@ -169,6 +169,7 @@ struct MemberCode {
 struct PouInfo {
   uint32_t number = 0;  // in Sema::pous
   const PouDecl* decl = nullptr;
+  std::string_view name;           // qualified: A.B.Pump; of a method: its own
   const PouDecl* setup = nullptr;  // of a TEST: runs before and behind its body
   const PouDecl* teardown = nullptr;
   MockSlots mock;

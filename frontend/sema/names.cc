@@ -28,6 +28,9 @@ uint32_t distance(std::string_view a, std::string_view b, uint32_t limit) {
   return row.back();
 }
 
+// "Pump" of "A.B.Pump".
+std::string_view last_name(std::string_view name) { return name.substr(name.rfind('.') + 1); }
+
 }  // namespace
 
 size_t FoldHash::operator()(std::string_view name) const noexcept {
@@ -41,14 +44,16 @@ bool FoldEqual::operator()(std::string_view a, std::string_view b) const noexcep
 
 NearestName::NearestName(std::string_view written)
     : written_(ir::fold_name(written.substr(0, kLongestCompared))),
-      best_distance_(static_cast<uint32_t>(written_.size() + 2) / 3 + 1) {}
+      plain_(written.find('.') == std::string_view::npos),
+      best_distance_(static_cast<uint32_t>(last_name(written_).size() + 2) / 3 + 1) {}
 
 void NearestName::offer(std::string_view candidate) {
-  if (candidate.size() > written_.size() + best_distance_ ||
-      written_.size() > candidate.size() + best_distance_) {
+  const std::string_view compared = plain_ ? last_name(candidate) : candidate;
+  if (compared.size() > written_.size() + best_distance_ ||
+      written_.size() > compared.size() + best_distance_) {
     return;
   }
-  uint32_t found = distance(written_, ir::fold_name(candidate), best_distance_);
+  uint32_t found = distance(written_, ir::fold_name(compared), best_distance_);
   if (found > best_distance_ || (found == best_distance_ && (best_.empty() || candidate > best_))) {
     return;
   }

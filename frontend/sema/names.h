@@ -19,7 +19,8 @@ template <class T>
 using NameMap = std::unordered_map<std::string_view, T, FoldHash, FoldEqual>;
 
 // Keeps the candidate that is nearest to what was written, for "did you mean".
-// Names further away than a third of their letters are no help and stay out.
+// Names further away than a third of their letters are no help and stay out. A name without dots
+// is compared with the last part of A.B.Name, too, which a USING would make visible.
 class NearestName {
  public:
   explicit NearestName(std::string_view written);
@@ -33,6 +34,7 @@ class NearestName {
 
  private:
   std::string written_;
+  bool plain_;
   std::string best_;
   uint32_t best_distance_;
 };

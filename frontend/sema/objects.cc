@@ -43,6 +43,7 @@ void Objects::add_member(uint32_t block, const PouDecl& decl) {
   PouInfo& info = sema_.pous.emplace_back();
   info.number = slot;
   info.decl = &decl;
+  info.name = decl.name.text;
   info.library = owner.library;
   info.owner = block;
   info.self = owner.self;

@@ -64,8 +64,6 @@ class Objects {
   bool check_access(Access access, uint32_t owner, const Name& name);
   bool check_access(const PouInfo& method, const Name& name);
   Note infer_this(const Expr& expr);
-  // "A.B" where POU `pou` is declared, folded; "" outside of all.
-  std::string namespace_of(uint32_t pou) const;
 
   // --- what names mean (member_names.cc)
   // Is `expr`, without `()`, a method or action? Quiet for plain names.

@@ -231,12 +231,13 @@ uint32_t Sema::instance_of(uint32_t pou, const ParameterTypes& types, NameMap<ir
   PouInfo& info = pous.emplace_back();
   info.number = number;
   info.decl = original.decl;
+  info.name = original.name;
   info.library = original.library;
   info.meaning = std::make_unique<Meaning>();
   info.meaning->generic = std::move(generic);
   info.id = ir::PouId(static_cast<uint32_t>(program.pous.size()));
   ir::Pou code;
-  code.name = std::string(info.decl->name.text) + "(" + name + ")";
+  code.name = std::string(info.name) + "(" + name + ")";
   while (program.find_pou(code.name).valid()) code.name += "'";
   program.pous.push_back(std::move(code));
   collect_interface(number);

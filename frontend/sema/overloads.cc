@@ -81,7 +81,7 @@ uint32_t Sema::select_overload(const Expr& call, uint32_t first) {
     best = pou;
     best_distance = *found;
   }
-  std::string name = "`" + std::string(pous[first].decl->name.text) + "`";
+  std::string name = "`" + std::string(pous[first].name) + "`";
   if (best == kNoPou) {
     std::string all;
     for (uint32_t pou = first; pou != kNoPou; pou = pous[pou].overload) {
@@ -109,7 +109,7 @@ std::string Sema::signature(const PouInfo& pou) {
                                                                  : type_text(resolve(id).type);
     text += (text.empty() ? "" : ",") + type;
   }
-  return std::string(pou.decl->name.text) + "(" + text + ")";
+  return std::string(pou.name) + "(" + text + ")";
 }
 
 // Names in the program are unique: further functions are called after their parameters.

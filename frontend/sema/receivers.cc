@@ -66,7 +66,8 @@ bool Objects::check_access(Access access, uint32_t owner, const Name& name) {
   const char* word = nullptr;
   if (access == Access::kPrivate && own != owner) word = "PRIVATE";
   if (access == Access::kProtected && !(own != kNoPou && extends(own, owner))) word = "PROTECTED";
-  if (access == Access::kInternal && namespace_of(sema_.current_pou_) != namespace_of(owner)) {
+  if (access == Access::kInternal &&
+      !sema_.namespaces.inside(name.span.begin, sema_.pous[owner].decl->scope)) {
     word = "INTERNAL";
   }
   if (word == nullptr) return true;
@@ -87,16 +88,6 @@ bool Objects::check_access(const PouInfo& method, const Name& name) {
                       method.decl->kind != PouKind::kAction;
   if (access == Access::kDefault && closed) access = Access::kProtected;
   return check_access(access, method.owner, name);
-}
-
-std::string Objects::namespace_of(uint32_t pou) const {
-  std::string path;
-  if (pou == kNoPou) return path;
-  for (ScopeId at = sema_.pous[pou].decl->scope; sema_.tree.in_namespace(at);
-       at = sema_.tree[at].parent) {
-    path = ir::fold_name(sema_.tree[at].name.text) + (path.empty() ? "" : ".") + path;
-  }
-  return path;
 }
 
 }  // namespace frontend

@@ -18,6 +18,7 @@
 #include "frontend/sema/constant.h"
 #include "frontend/sema/follow_ups.h"
 #include "frontend/sema/model.h"
+#include "frontend/sema/namespaces.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/start_values.h"
 #include "ir/types/layout.h"
@@ -52,14 +53,14 @@ class Sema {
 
   // --- types (types.cc, enumeration.cc, containment.cc)
   TypeUse resolve(SpecId spec);
-  std::optional<TypeUse> find_type(std::string_view name);
+  std::optional<TypeUse> find_type(std::string_view qualified);
   // Of an interface variable?
   bool is_interface(ir::TypeId type) const;
   void check_containment();
 
   // --- variables and members (variables.cc)
   const Variable& resolve(VarId id);
-  VarId find_variable(std::string_view name);
+  VarId find_variable(const Name& name);
   VarId find_variable(const Expr& name);  // `.name` means a global
   // The instance type's POU; the POU's variable of that name.
   const PouInfo* pou_of(ir::TypeId instance) const;
@@ -71,7 +72,7 @@ class Sema {
   const Field* find_field(ir::TypeId structure, std::string_view name) const;
   // -1 for BIT members too.
   int32_t find_member(ir::TypeId structure, std::string_view name) const;
-  const PouInfo* find_pou(std::string_view name) const;
+  const PouInfo* find_pou(std::string_view qualified) const;
   // The global pseudo variable of a direct address.
   uint32_t direct_member(const Expr& expr);
   std::string name_suggestion(std::string_view name, bool callable, bool instruction = false) const;
@@ -156,10 +157,12 @@ class Sema {
   std::vector<TestCase> test_cases;
   Objects objects{*this};
   StartValues start_values{*this};
+  Namespaces namespaces{*this};
 
  private:
   friend class Within;
   friend class Folder;
+  friend class Namespaces;
   friend class Objects;
   friend class InstancePaths;
   friend class InitialBuilder;
@@ -168,26 +171,25 @@ class Sema {
   // declarations.cc
   void collect_types();
   void collect_library_type(const TypeDecl& decl);
-  void declare_type(const TypeDecl& decl);
+  void declare_type(const TypeDecl& decl, std::string_view name);
   bool use_library_type(std::string_view name);
   bool use_library_literal(std::string_view name);
   bool in_library(base::SourceSpan span) const {
     return span.begin.valid() && sources.file_of(span.begin) >= library_file_;
   }
-  void forward_declare(const TypeDecl& decl);
-  void collect_enumerators(SpecId spec);
+  void forward_declare(const TypeDecl& decl, std::string_view name);
+  void collect_enumerators(SpecId spec, ScopeId scope, Access access = Access::kDefault);
   void collect_globals(const VarBlock& block, std::string_view list);
   void collect_globals(const std::vector<VarBlock>& blocks, std::string_view list);
-  VarId add_global(Variable variable, GlobalList& list);
   std::string_view list_of(const VarBlock& block) const;
   void collect_variables(uint32_t pou, const VarBlock& block);
   void collect_pous();
-  uint32_t add_pou(const PouDecl& decl, bool library);
+  uint32_t add_pou(const PouDecl& decl, bool library, std::string_view name);
   void add_code(PouInfo& info, std::string name);
   void collect_interface(uint32_t pou);
   void number_variables(PouInfo& info);
   void add_aliases(PouInfo& info);
-  VarId add_variable(Variable variable, NameMap<VarId>& scope);
+  VarId add_variable(Variable variable, NameMap<VarId>& scope, std::string_view name = {});
   bool use_library(std::string_view name);
 
   // open_functions.cc
@@ -214,7 +216,7 @@ class Sema {
   void collect_test(const PouDecl& test);
   void configure_tests();
   void add_test_globals();
-  void add_function_mock(const Name& name);
+  void add_function_mock(std::string_view name, base::SourceSpan span);
   void add_mock_body(const PouDecl& decl, bool inside_test);
   void resolve_mock_bodies();
   void check_mock_body(const PouDecl& decl, const PouInfo& mock, const PouInfo& function);
@@ -281,22 +283,21 @@ class Sema {
   Note infer_literal(const Expr& expr);
   Note infer_name(const Expr& expr);
   Note variable_note(VarId id);
-  bool names_list(const Expr& head);
   std::optional<Note> infer_list_member(const Expr& expr);
   Note infer_enum_name(const Expr& expr);
   Note infer_qualified(const Expr& expr);
+  Note infer_literal_of(std::string_view type, base::SourceSpan span, const Name& wanted);
   Note infer_member(const Expr& expr);
   Note infer_bit(const Expr& expr);
   bool check_part(ir::TypeId whole, uint32_t number, uint8_t size, base::SourceSpan span);
   Note part_note(const Note& whole, uint32_t number, uint8_t size) const;
-  bool names_enumeration(const Expr& head);
+  std::string_view enumeration_named(const Expr& head);
   std::optional<Note> infer_named_bit(const Expr& expr, const Note& operand);
   Note infer_index(const Expr& expr);
   Note infer_assign(const Expr& expr);
   Note infer_result(const Expr& expr);
   Note infer_unary(const Expr& expr);
   Note infer_binary(const Expr& expr);
-  ir::TypeId infer_name_candidates(std::string_view name);
   Note infer_call(const Expr& expr);
   Note infer_standard(const Expr& expr, const Callee& callee);
   Note infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
@@ -316,7 +317,7 @@ class Sema {
   Note infer_bitwise(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span);
   Note infer_comparison(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span);
   Note unify_arguments(const std::vector<ExprId>& args, uint32_t first);
-  Callee named_callee(const Expr& head);
+  Callee named_callee(const Expr& call, const Expr& head);
   Callee typed_callee(std::string_view name) const;  // typed_functions.cc
   bool takes_typed(const Callee& callee, const std::vector<ExprId>& args);
   Note infer_character(const Expr& expr, Note note);

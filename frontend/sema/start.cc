@@ -207,7 +207,7 @@ void Objects::add_start_program() {
   made.kind = PouKind::kProgram;
   made.span = sema_.variables_[start_globals_[0].index].name.span;
   made.name = {ir::kStartProgram, made.span};
-  const uint32_t number = sema_.add_pou(made, false);
+  const uint32_t number = sema_.add_pou(made, false, made.name.text);
   sema_.pous[number].constructs = true;
   sema_.resolve_interface(number);
   ir::Task task;

@@ -79,8 +79,8 @@ bool Sema::check_overlap(const ir::Type& type, base::SourceSpan span) {
 
 bool Sema::is_bit(SpecId id) const {
   const Spec& spec = tree[id];
-  return spec.kind == SpecKind::kNamed && ir::same_name(spec.name.text, "BIT") &&
-         !types_.contains(spec.name.text);
+  return spec.kind == SpecKind::kNamed && spec.qualifiers.count == 0 &&
+         ir::same_name(spec.name.text, "BIT") && !types_.contains(spec.name.text);
 }
 
 bool Sema::add_field(StructBuild& build, const VarDecl& field) {

@@ -51,7 +51,7 @@ void Sema::collect_test(const PouDecl& test) {
   if (teardown != nullptr) {
     made.blocks.insert(made.blocks.end(), teardown->blocks.begin(), teardown->blocks.end());
   }
-  const uint32_t number = add_pou(made, false);
+  const uint32_t number = add_pou(made, false, name);
   // Not every test needs all that SETUP makes.
   for (VarId id : pous[number].variables) {
     const uint32_t at = variables_[id.index].name.span.begin.offset;
@@ -82,7 +82,9 @@ void Sema::add_test_globals() {
   members.push_back(std::move(message));
   for (const Stmt& stmt : tree.stmts) {
     if (stmt.kind != StmtKind::kMockFunction || !stmt.target.valid()) continue;
-    if (tree[stmt.target].kind == ExprKind::kName) add_function_mock(tree[stmt.target].name);
+    const Expr& target = tree[stmt.target];
+    const std::string_view name = namespaces.find(NameSort::kDeclaration, target);
+    if (!name.empty()) add_function_mock(name, target.span);
   }
   resolve_mock_bodies();
 }

@@ -110,17 +110,17 @@ TypeUse Sema::resolve_named(const Spec& spec) {
       return {found->second, {}};
     }
   }
-  if (spec.qualifiers.count != 0) return {};  // reported by report_not_supported()
-  if (auto use = find_type(spec.name.text)) return *use;
-  NearestName nearest(spec.name.text);
+  const std::string_view name = namespaces.find(NameSort::kDeclaration, spec.qualifiers, spec.name);
+  if (auto use = find_type(name)) return *use;
+  NearestName nearest(name);
   nearest.offer_all(types_);
   nearest.offer_all(pou_names_);
   nearest.offer_all(library_);
   for (uint32_t i = 0; i < ir::kElementaryCount; ++i) {
     nearest.offer(ir::elementary_name(static_cast<ir::Kind>(i)));
   }
-  error(DiagnosticCode::kUnknownType, spec.name.span,
-        "`" + std::string(spec.name.text) + "` is not a type", nearest.fix());
+  error(DiagnosticCode::kUnknownType, spec.name.span, "`" + std::string(name) + "` is not a type",
+        nearest.fix());
   return {};
 }
 

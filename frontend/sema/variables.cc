@@ -13,19 +13,18 @@ std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"
 
 }  // namespace
 
-VarId Sema::find_variable(std::string_view name) {
+VarId Sema::find_variable(const Name& name) {
   if (current_pou_ != kNoPou) {
     const PouInfo& pou = pous[current_pou_];
-    if (auto found = pou.names.find(name); found != pou.names.end()) return found->second;
-    VarId id = objects.find_variable(pou.owner != kNoPou ? pou.owner : pou.base, name);
+    if (auto found = pou.names.find(name.text); found != pou.names.end()) return found->second;
+    VarId id = objects.find_variable(pou.owner != kNoPou ? pou.owner : pou.base, name.text);
     if (id.valid()) return id;
   }
-  auto found = globals_.find(name);
-  return found == globals_.end() ? VarId() : found->second;
+  return namespaces.find_global(name);
 }
 
 VarId Sema::find_variable(const Expr& name) {
-  if (!name.global) return find_variable(name.name.text);
+  if (!name.global) return find_variable(name.name);
   auto found = globals_.find(name.name.text);
   return found == globals_.end() ? VarId() : found->second;
 }
@@ -79,8 +78,8 @@ void Sema::resolve_variable(VarId id) {
 }
 
 void Sema::resolve_external(Variable& variable) {
-  auto found = globals_.find(variable.name.text);
-  if (found == globals_.end()) {
+  const VarId found = namespaces.find_global(variable.name);
+  if (!found.valid()) {
     NearestName nearest(variable.name.text);
     nearest.offer_all(globals_);
     error(DiagnosticCode::kUnknownName, variable.name.span,
@@ -88,8 +87,8 @@ void Sema::resolve_external(Variable& variable) {
     variable.type = {};
     return;
   }
-  variable.external = found->second;
-  const Variable& global = resolve(found->second);
+  variable.external = found;
+  const Variable& global = resolve(found);
   if (global.type.valid() && global.type != variable.type) {
     error(DiagnosticCode::kExternalMismatch, variable.name.span,
           quoted(variable.name) + " is `" + type_text(global.type) + "`, declared here as `" +
@@ -142,8 +141,8 @@ const PouInfo* Sema::pou_of(ir::TypeId instance) const {
   return found == pou_by_type_.end() ? nullptr : &pous[found->second];
 }
 
-const PouInfo* Sema::find_pou(std::string_view name) const {
-  auto found = pou_names_.find(name);
+const PouInfo* Sema::find_pou(std::string_view qualified) const {
+  auto found = pou_names_.find(qualified);
   return found == pou_names_.end() ? nullptr : &pous[found->second];
 }
 

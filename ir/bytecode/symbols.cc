@@ -5,6 +5,7 @@
 
 #include "base/limits.h"
 #include "ir/bytecode/regions.h"
+#include "ir/types/listed_name.h"
 
 namespace ir {
 namespace {
@@ -62,37 +63,28 @@ class PathReader {
     return text;
   }
 
-  // The name behind a dot, which stays to be read.
-  std::string_view next_name() {
-    if (at_ >= path_.size() || path_[at_] != '.') return {};
-    const size_t dot = at_++;
-    const std::string_view text = name();
-    at_ = dot;
-    return text;
-  }
-
   base::Status read_root(Symbol& symbol) {
     const std::string_view text = name();
-    // Globals that are visible as `List.x` only have that name, and so have static variables: a
-    // program may be called as its instance is.
-    const std::string_view next = next_name();
-    const std::string both = std::string(text) + "." + std::string(next);
-    const bool listed = !next.empty() && image_.types.find_member(image_.globals, both) >= 0;
+    // Globals that are visible as `List.x` or `A.B.x` only have that name, and so have static
+    // variables: a program may be called as its instance is.
+    const std::string_view listed = listed_name(image_.types, image_.globals, path_);
+    std::string_view next = listed.empty() ? listed : listed.substr(text.size() + 1);
+    next = next.substr(0, next.find('.'));
     for (uint32_t id = 1; id < image_.instances.size(); ++id) {
       const Instance& row = image_.instances[id];
       const bool program = row.live && image_.types.is_instance(row.type) &&
                            image_.types[row.type].kind == Kind::kProgram;
       if (!program || !same_name(row.name, text)) continue;
-      if (listed && image_.types.find_member(row.type, next) < 0) break;
+      if (!listed.empty() && image_.types.find_member(row.type, next) < 0) break;
       symbol.data = row.data;
       symbol.type = row.type;
       return base::Ok{};
     }
     symbol.type = image_.globals;
     symbol.data = image_.instances.empty() ? 0 : image_.instances[0].data;
-    if (listed && image_.types.find_member(symbol.type, text) < 0) {
-      at_ += 1 + next.size();
-      return step_to(symbol, both, "");
+    if (!listed.empty() && image_.types.find_member(symbol.type, text) < 0) {
+      at_ = listed.size();
+      return step_to(symbol, listed, "");
     }
     return step_to(symbol, text, "is neither a program nor a global variable");
   }

@@ -5,6 +5,7 @@
 
 #include "ir/program/eval_scalar.h"
 #include "ir/types/inside.h"
+#include "ir/types/listed_name.h"
 #include "ir/types/value_text.h"
 
 namespace ir {
@@ -100,14 +101,14 @@ std::optional<Address> EvalInspector::find_element(const Address& at,
   return flat ? std::optional(part_of(at, *flat)) : std::nullopt;
 }
 
-// A static variable of a POU is a global one with two names: "Count.all". `end` is behind them.
+// `end` is behind the name.
 std::optional<Address> EvalInspector::find_dotted(std::string_view path, size_t& end) const {
-  const size_t dot = path.find_first_of(".[");
-  if (dot >= path.size() || path[dot] == '[') {
+  const std::string_view name = listed_name(program_.types, program_.globals, path);
+  if (name.empty()) {
     return std::nullopt;
   }
-  end = std::min(path.find_first_of(".[", dot + 1), path.size());
-  return find_member(whole(globals_), path.substr(0, end));
+  end = name.size();
+  return find_member(whole(globals_), name);
 }
 
 // Path grammar of ir/bytecode/symbols.h.

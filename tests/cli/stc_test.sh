@@ -186,3 +186,33 @@ END_TEST
 ST
 expect 0 stc test objects_test.st
 said '1 passed, 0 failed'
+
+# Namespaces: a test inside of one sees its INTERNAL names; MOCK_FUNCTION takes whole names.
+cat >space_test.st <<'ST'
+NAMESPACE Plant
+FUNCTION Read : INT Read := 1; END_FUNCTION
+FUNCTION INTERNAL Sum : INT VAR_INPUT a : INT; END_VAR Sum := a + Read(); END_FUNCTION
+FUNCTION_BLOCK Pump VAR_OUTPUT n : INT; END_VAR n := Sum(10); END_FUNCTION_BLOCK
+TEST 'inside' MOCK_FUNCTION Read RETURNS 5; ASSERT_EQ(Sum(1), 6); MOCK_VERIFY_CALL_COUNT(Plant.Read, 1); END_TEST
+END_NAMESPACE
+FUNCTION Read : INT Read := 100; END_FUNCTION
+TEST 'outside'
+VAR p : Plant.Pump; END_VAR
+MOCK_FUNCTION Plant.Read : INT Read := 7; END_MOCK_FUNCTION
+p();
+ASSERT_EQ(p.n, 17);
+ASSERT_EQ(Read(), 100);
+END_TEST
+TEST 'with USING'
+USING Plant;
+VAR p : Pump; END_VAR
+MOCK p;
+MOCK_FUNCTION Plant.Read RETURNS 2;
+p();
+ASSERT_EQ(p.n, 0);
+ASSERT_EQ(Plant.Read(), 2);
+ASSERT_EQ(Read(), 100);
+END_TEST
+ST
+expect 0 stc test space_test.st
+said '3 passed, 0 failed'
