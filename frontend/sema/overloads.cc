@@ -30,6 +30,12 @@ bool literal_fits(const Traits& to, Flex flex) {
   }
 }
 
+// An integer stays one rather than that it becomes a bit string or a real number.
+uint32_t literal_distance(const Traits& to, Flex flex) {
+  if (flex != Flex::kInteger) return kLiteral;
+  return kLiteral + (to.real ? 2 : to.bits ? 1 : 0);
+}
+
 }  // namespace
 
 // nullopt: the function cannot be called like this.
@@ -53,7 +59,7 @@ std::optional<uint32_t> Sema::distance(const Expr& call, uint32_t pou) {
     const Note& note = infer(match.arg->value);
     if (!wanted.valid() || !note.type.valid() || note.type == wanted) continue;
     if (note.flex != Flex::kNone && literal_fits(traits_of(program.types, wanted), note.flex)) {
-      sum += kLiteral;
+      sum += literal_distance(traits_of(program.types, wanted), note.flex);
       continue;
     }
     Fit fit = parameter.section == VarSection::kOutput
