@@ -40,4 +40,5 @@ done
   done
 } >"$out/timing.md"
 
-"$root/scripts/conformance.sh" "$root" >"$out/conformance.md"
+"$root/scripts/conformance.sh" "$root" "$root/tests/conformance/iec_61131_3.txt" >"$out/conformance.md"
+"$root/scripts/conformance.sh" "$root" "$root/tests/conformance/language.txt" >"$out/language.md"
