@@ -76,6 +76,7 @@ struct Family {
   bool plain = false;  // of CLASS
   bool abstract = false;
   Interface contract;
+  std::string self;  // a method that gives the object; none: ""
   std::string wide;  // the interface that the contract extends, or itself
   std::vector<Interface> helpers;
   TypeRef base = kNoType;
@@ -179,6 +180,7 @@ class Builder {
   std::optional<Stmt> step();
   Variable unseen(Pou& pou, Section kind, TypeRef type);
   std::string address_word(TypeRef pointer) const;
+  bool bound_at_start(const Expr& to) const;
 
   // --- expressions (expressions.cc, operators.cc, standard.cc)
   bool possible(TypeRef type);
@@ -223,6 +225,7 @@ class Builder {
   Interface method_face(const char* prefix);
   void declare_contract(Family& family);
   Pou head_of(const Interface& face);
+  Pou self_method(const Family& family, bool with_body);
   Class declare_class(const Class* base, const Family& family, bool last);
   void class_parameters(Pou& pou, Interface& face);
   void class_methods(Pou& pou, Class& out, const Class* base, const Family& family);
@@ -311,6 +314,8 @@ class Builder {
   void block_body(Pou& pou);
   void program(uint32_t index, uint32_t count);
   void program_action(Pou& pou);
+  void side_program();
+  void call_side();
   void global_instances();
   void external(Pou& pou);
   VarBlock& section(Pou& pou, Section kind);
@@ -370,6 +375,7 @@ class Builder {
   std::vector<Family> families_;
   std::map<TypeRef, std::vector<TypeRef>> derived_;
   std::vector<std::string> actions_;  // of the chart
+  std::optional<Interface> side_;     // a program that others call
   uint32_t next_rank_ = 0;
   uint32_t next_point_ = 0;  // %M
   uint32_t caught_ = 0;      // open __TRY

@@ -35,6 +35,7 @@ void Builder::family() {
     down.inputs.insert(down.inputs.begin(), {"depth", elementary(ir::Kind::kInt)});
   }
   for (uint32_t n = 1 + below(2); n > 0; --n) out.contract.methods.push_back(method_face("Do"));
+  if (one_in(2)) out.self = fresh("Self");
   if (one_in(2)) out.contract.properties.push_back({fresh("Prop"), any_scalar()});
   declare_contract(out);
   std::vector<Class> chain;
@@ -63,6 +64,7 @@ void Builder::declare_contract(Family& family) {
     for (const Interface& face : methods) pou.methods.push_back(head_of(face));
     return pou;
   };
+  const bool chains = !family.self.empty();
   std::vector<Interface> first = contract.methods;
   std::vector<Interface> rest;
   const bool two = first.size() > 1 && one_in(2);
@@ -79,6 +81,17 @@ void Builder::declare_contract(Family& family) {
   program_.pous.push_back(std::move(pou));
   family.wide = contract.name;
   if (two) program_.pous.push_back(declare(" EXTENDS " + contract.name, rest));
+  if (chains) program_.pous.back().methods.push_back(self_method(family, false));
+}
+
+// Gives the object itself: calls of its methods can be chained.
+Pou Builder::self_method(const Family& family, bool with_body) {
+  Pou pou;
+  pou.kind = PouKind::kMethod;
+  pou.name = family.self;
+  pou.result = named(Form::kInterface, family.contract.name, kNoType);
+  if (with_body) pou.body.push_back(simple(family.self + " := THIS^;", {}));
+  return pou;
 }
 
 // The parameters, with no body.
@@ -155,6 +168,7 @@ void Builder::class_methods(Pou& pou, Class& out, const Class* base, const Famil
   all.insert(all.end(), family.contract.methods.begin(), family.contract.methods.end());
   const bool abstract = base == nullptr && family.abstract;
   if (base == nullptr) {
+    if (!family.self.empty()) pou.methods.push_back(self_method(family, true));
     out.face.methods.clear();
     for (const Interface& face : all) out.face.methods.push_back(face);
   }

@@ -252,6 +252,7 @@ void Builder::program(uint32_t index, uint32_t count) {
   } else {
     objects(pou);
     references(pou);
+    call_side();
     body(pou, (10 + below(10)) / count, 3);
     if (!passes_addresses(pou) && one_in(3)) program_action(pou);
   }
@@ -279,6 +280,32 @@ void Builder::global_instances() {
   program_.globals.push_back(std::move(block));
 }
 
+// It has no task of its own.
+void Builder::side_program() {
+  forget();
+  kind_ = PouKind::kProgram;
+  rounds_ = 8;
+  Pou pou;
+  pou.kind = kind_;
+  Interface face;
+  face.name = pou.name = "Side";
+  parameters(pou, face);
+  locals(pou, 3 + below(3));
+  instances(pou);
+  references(pou);
+  body(pou, 3 + below(3), 2);
+  program_.pous.push_back(std::move(pou));
+  side_ = std::move(face);
+}
+
+void Builder::call_side() {
+  if (!side_) return;
+  for (const Variable& one : side_->outputs) see({"Side." + one.name, one.type}, false);
+  std::optional<std::vector<Expr>> args = arguments(*side_, true, 2);
+  if (!args) args.emplace();
+  prologue_.push_back(simple("Side(@0);", {node(kNoType, "@*", std::move(*args))}));
+}
+
 // One that the next program may call.
 void Builder::program_action(Pou& pou) {
   std::vector<Seen> seen = own_;
@@ -301,6 +328,7 @@ Program Builder::run() {
   for (uint32_t n = below(3); n > 0; --n) family();
   if (one_in(2)) block(blocks);
   global_instances();
+  if (one_in(4)) side_program();
   uint32_t programs = one_in(3) ? 2 : 1;
   configured_ = programs > 1 || one_in(2);
   for (uint32_t i = 0; i < programs; ++i) program(i, programs);

@@ -97,7 +97,11 @@ class Printer {
     line(one.name + (one.address.empty() ? "" : " AT " + one.address) + " : " +
          (one.bit ? "BIT" : type_text(program_, one.type)) + one.arguments +
          (one.edge.empty() ? "" : " " + one.edge) +
-         (one.initial ? " := " + text(*one.initial) : "") + ";");
+         (one.initial ? initial_word(one) + text(*one.initial) : "") + ";");
+  }
+
+  const char* initial_word(const Variable& one) const {
+    return program_[one.type].form == Form::kReference ? " REF= " : " := ";
   }
 
   void variables(const VarBlock& block) {

@@ -24,6 +24,9 @@ void Builder::objects(Pou& pou) {
   out.asked = variable("asked", named(Form::kInterface, family.wide, kNoType));
   prologue_.push_back(simple(out.face + " := " + first() + ";", {}));
   receivers_.push_back({out.face + ".", family.contract});
+  if (!family.self.empty()) {
+    receivers_.push_back({out.face + "." + family.self + "().", family.contract});
+  }
   std::string base = name_of(family.base);
   TypeRef pointer = named(Form::kPointer, "POINTER TO " + base, family.base);
   out.pointer = variable("base", pointer);
@@ -146,7 +149,10 @@ Stmt Builder::asked(const Handles& one) {
   out.clauses.push_back(
       {"IF __QUERYINTERFACE(" + one.face + ", " + one.asked + ") THEN", {}, {}, false});
   out.clauses[0].body.push_back(simple(one.face + " ?= " + one.asked + ";", {}));
-  if (one_in(2)) {
+  if (one_in(3)) {
+    out.clauses[0].head = "IF __QUERYPOINTER(" + one.face + ", " + one.down + ") THEN";
+    out.clauses[0].body[0] = simple(one.pointer + " := " + one.down + ";", {});
+  } else if (one_in(2)) {
     out.clauses[0].body.push_back(
         simple("spare := SEL(" + one.asked + " = " + one.face + ", spare, spare + 1);", {}));
   }

@@ -37,12 +37,28 @@ void Builder::refer(Pou& pou) {
   TypeRef type = pointer ? pointer_to(target)
                          : named(Form::kReference, "REFERENCE TO " + name_of(target), target);
   bool temporary = !has_frame() && one_in(5);
+  const bool from_start = !temporary && bound_at_start(to) && one_in(2);
   Variable variable = unseen(pou, temporary ? Section::kTemp : Section::kLocal, type);
+  if (from_start) {
+    std::string word = pointer ? address_word(type) + "(@0)" : "@0";
+    section(pou, Section::kLocal).variables.back().initial = node(kNoType, word, {to});
+  }
   std::string set = variable.name + (pointer ? " := " + address_word(type) + "(@0);" : " REF= @0;");
-  prologue_.push_back(simple(std::move(set), {std::move(to)}));
+  if (!from_start) prologue_.push_back(simple(std::move(set), {std::move(to)}));
   pointers_.push_back(variable);
   if (pointer) places_[type].push_back({variable.name, {}, type});
   see_inside({variable.name + (pointer ? "^" : ""), {}, target});
+}
+
+// Can it be where a reference begins? A variable that is there before any code runs.
+bool Builder::bound_at_start(const Expr& to) const {
+  const std::string name = to.pattern.substr(0, to.pattern.find_first_of(".["));
+  auto is_it = [&](const auto& one) { return one.name == name; };
+  return to.operands.empty() && to.pattern.find('^') == std::string::npos &&
+         (std::any_of(global_variables_.begin(), global_variables_.end(), is_it) ||
+          std::any_of(own_.begin(), own_.end(), [&](const Seen& one) {
+            return one.variable.name == name && !is(one.variable.type, Form::kReference);
+          }));
 }
 
 // Two nodes that lead to each other.

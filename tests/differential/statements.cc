@@ -99,11 +99,19 @@ std::optional<Stmt> Builder::bit_assignment() {
   uint32_t size = below(4);
   std::optional<Expr> to = target(elementary(kWords[size]));
   if (!to) return std::nullopt;
+  if (size > 1 && one_in(4)) {
+    return simple("@0.%W" + std::to_string(below(1u << (size - 1))) + " := @1;",
+                  {std::move(*to), expression(elementary(ir::Kind::kWord), 2)});
+  }
+  if (size > 2 && one_in(4)) {
+    return simple("@0.%D" + std::to_string(below(2)) + " := @1;",
+                  {std::move(*to), expression(elementary(ir::Kind::kDword), 2)});
+  }
   if (size > 0 && one_in(3)) {
     return simple("@0.%B" + std::to_string(below(1u << size)) + " := @1;",
                   {std::move(*to), expression(elementary(ir::Kind::kByte), 2)});
   }
-  return simple("@0." + std::to_string(below(8u << size)) + " := @1;",
+  return simple((one_in(3) ? "@0.%X" : "@0.") + std::to_string(below(8u << size)) + " := @1;",
                 {std::move(*to), expression(elementary(ir::Kind::kBool), 2)});
 }
 
