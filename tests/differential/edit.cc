@@ -37,7 +37,7 @@ class Editor {
 
  private:
   void edit() {
-    switch (random_.below(9)) {
+    switch (random_.below(11)) {
       case 0:
       case 1:
         return add_variable();
@@ -50,6 +50,10 @@ class Editor {
         return reorder();
       case 6:
         return change_type();
+      case 7:
+        return remove_method();
+      case 8:
+        return add_override();
       default:
         return change_body();
     }
@@ -158,6 +162,47 @@ class Editor {
   void add_literal(Type& type) {
     type.literals.push_back("LitAdded" + std::to_string(next_++));
     type.values.push_back(*std::max_element(type.values.begin(), type.values.end()) + 1);
+  }
+
+  Pou* pick_class() {
+    std::vector<Pou*> classes;
+    for (Pou& pou : program_.pous) {
+      if (!pou.methods.empty() && pou.kind != PouKind::kInterface) classes.push_back(&pou);
+    }
+    Pou** found = pick(classes);
+    return found == nullptr ? nullptr : *found;
+  }
+
+  static bool has_method(const Pou& pou, const std::string& name) {
+    return std::any_of(pou.methods.begin(), pou.methods.end(),
+                       [&](const Pou& method) { return method.name == name; });
+  }
+
+  // An override: the base's one runs again. Otherwise its calls go, too.
+  void remove_method() {
+    Pou* pou = pick_class();
+    if (pou == nullptr) return;
+    uint32_t at = random_.below(static_cast<uint32_t>(pou->methods.size()));
+    std::string name = pou->methods[at].name;
+    pou->methods.erase(pou->methods.begin() + at);
+    bool elsewhere = std::any_of(program_.pous.begin(), program_.pous.end(),
+                                 [&](const Pou& one) { return has_method(one, name); });
+    if (!elsewhere) forget(name);
+  }
+
+  // What extends the class gets a copy of one of its methods, with one statement less.
+  void add_override() {
+    Pou* base = pick_class();
+    if (base == nullptr) return;
+    Pou copy = base->methods[random_.below(static_cast<uint32_t>(base->methods.size()))];
+    if (copy.words.find("ABSTRACT") != std::string::npos) return;
+    if (copy.body.size() > 2 && !copy.body[1].pinned) copy.body.erase(copy.body.begin() + 1);
+    for (Pou& pou : program_.pous) {
+      bool extends = mentions(pou.relations, base->name) && pou.kind == base->kind;
+      if (!extends || has_method(pou, copy.name)) continue;
+      pou.methods.push_back(std::move(copy));
+      return;
+    }
   }
 
   std::vector<std::vector<Stmt>*> bodies() {
