@@ -51,6 +51,10 @@ struct Evaluator::Impl {
     for (Output& output : outputs) output.bytes.resize(output.variable->bytes.size());
     released.resize(program.tasks.size());
     level.resize(program.tasks.size());
+    run_start();
+  }
+
+  void run_start() {
     for (const uint32_t task : by_priority([](const Task& each) { return each.once; })) {
       add_trap(start_traps, run_task(task, 0, kStartBudget));
     }
@@ -250,6 +254,8 @@ Evaluator::Evaluator(const Program& program)
 Evaluator::Evaluator(const Program& program, EvalMemory memory)
     : impl_(std::make_unique<Impl>(program, std::move(memory))) {}
 Evaluator::~Evaluator() = default;
+
+void Evaluator::run_start() { impl_->run_start(); }
 
 std::vector<EvalTrap> Evaluator::scan(int64_t now_ns, uint64_t budget) {
   std::vector<EvalTrap> traps = std::exchange(impl_->start_traps, {});

@@ -55,6 +55,9 @@ class Evaluator {
   Evaluator(const Program& program, EvalMemory memory);
   ~Evaluator();
 
+  // Start code once more, as a controller runs it behind a change: for what has not begun yet. Its
+  // traps belong to the next scan, as those of the start.
+  void run_start();
   // Runs one scan: every task whose period divides now_ns, by priority, each to its
   // end. A trap stops the rest of that task for this scan and is returned.
   // `budget` bounds the instructions of a task (kFuel trap).

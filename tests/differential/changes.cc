@@ -265,6 +265,7 @@ class Examination {
       base::Status done = oracle.set_bytes(path, rig_->bytes(leaf));
       if (!done.ok()) return wrong("oracle", path, base::to_string(done.error()), "settable");
     }
+    oracle.run_start();
     int64_t now_ns = now_ns_;
     for (int i = 0; i < scans && !out_.failed && !trapped_; ++i) {
       std::string trap = scan();
