@@ -130,7 +130,15 @@ Note Sema::infer_literal(const Expr& expr) {
             "`" + std::string(literal.prefix.text) + "` is not a type");
       return {};
     }
-    note.type = use->type;
+    const ir::TypeId type = use->type;
+    const bool single = type.valid() && !program.types.is_reference(type) &&
+                        (program.types.is_scalar(type) || is_string(program.types, type));
+    if (type.valid() && !single) {
+      error(DiagnosticCode::kUnknownType, literal.prefix.span,
+            "`" + std::string(literal.prefix.text) + "` has no literals");
+    }
+    if (!single) return {};
+    note.type = type;
     return note;
   }
   switch (literal.kind) {
