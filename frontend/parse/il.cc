@@ -176,6 +176,11 @@ void Parser::InstructionList::read_function(Instruction& in) {
       tree_.exprs[call.operand.index].instruction = true;
       return;
     }
+    if (call.kind == ExprKind::kMember) {  // Lib.f
+      in.kind = Kind::kFunction;
+      in.others = operands();
+      return;
+    }
     p_.report(Code::kBadInstruction, behind.span(),
               "an instruction begins with its operator, and a variable is none",
               "write LD in front of it to load it");

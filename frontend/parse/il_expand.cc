@@ -167,10 +167,14 @@ void Parser::InstructionList::call_function(size_t i) {
     return damage(in.span);
   }
   Expr name;
-  name.kind = ExprKind::kName;
-  name.name = in.word;
+  if (in.operand.valid()) {
+    name = tree_[in.operand];
+  } else {
+    name.kind = ExprKind::kName;
+    name.name = in.word;
+    name.span = in.word.span;
+  }
   name.instruction = true;
-  name.span = in.word.span;
   Expr call;
   call.kind = ExprKind::kCall;
   call.instruction = true;

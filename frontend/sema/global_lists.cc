@@ -56,15 +56,10 @@ void Sema::collect_globals(const VarBlock& block, std::string_view list) {
 // List.x or A.x; nullopt when neither a list nor a namespace stands before the dot.
 std::optional<Note> Sema::infer_list_member(const Expr& expr) {
   const Expr& head = tree[expr.operand];
+  const VarId variable = namespaces.find_global(expr);
+  if (variable.valid()) return variable_note(variable);
+  if (namespaces.is_namespace(head)) return infer_enum_name(expr);
   const GlobalList* list = namespaces.list(head);
-  if (list != nullptr) {
-    auto found = list->names.find(expr.name.text);
-    if (found != list->names.end()) return variable_note(found->second);
-  }
-  if (namespaces.is_namespace(head)) {
-    auto variable = globals_.find(namespaces.find(NameSort::kVariable, expr));
-    return variable == globals_.end() ? infer_enum_name(expr) : variable_note(variable->second);
-  }
   const std::string_view other = namespaces.find(NameSort::kDeclaration, head);
   if (list == nullptr || types_.contains(other) || pou_names_.contains(other)) return std::nullopt;
   NearestName nearest(expr.name.text);

@@ -8,7 +8,7 @@ namespace frontend {
 struct InstancePaths::Path {
   std::string text;  // "" while only the resource was named
   bool global = false;
-  uint32_t instance = 0;
+  uint32_t root = 0;  // number of the program instance, or of the global variable
   std::vector<uint32_t> steps;
   ir::TypeId type;
   ir::DirectAddress address;  // as its member declares it
@@ -23,24 +23,27 @@ void InstancePaths::configure(const std::vector<VarBlock>& blocks) {
   }
 }
 
+bool InstancePaths::global(VarId id, Path& path) {
+  const Variable& variable = sema_.resolve(id);
+  sema_.variables_[id.index].used = true;
+  const ir::Member& member = sema_.program.types[sema_.program.globals].members[variable.index];
+  path.text = member.name;
+  path.global = true;
+  path.root = variable.index;
+  path.type = variable.type;
+  path.address = member.address;
+  return path.type.valid();
+}
+
 bool InstancePaths::head(const Expr& expr, Path& path) {
   for (uint32_t i = 0; i < sema_.program.instances.size(); ++i) {
     if (!ir::same_name(sema_.program.instances[i].name, expr.name.text)) continue;
     path.text = expr.name.text;
-    path.instance = i;
+    path.root = i;
     path.type = sema_.program.instances[i].type;
     return true;
   }
-  if (VarId id = sema_.find_variable(expr); id.valid()) {
-    const Variable& variable = sema_.resolve(id);
-    sema_.variables_[id.index].used = true;
-    const ir::Member& member = sema_.program.types[sema_.program.globals].members[variable.index];
-    path.text = member.name;
-    path.global = true;
-    path.type = variable.type;
-    path.address = member.address;
-    return path.type.valid();
-  }
+  if (VarId id = sema_.find_variable(expr); id.valid()) return global(id, path);
   bool prefix =
       sema_.resource_ != nullptr && ir::same_name(sema_.resource_->name.text, expr.name.text);
   bool config =
@@ -119,12 +122,14 @@ bool InstancePaths::walk(ExprId id, Path& path) {
     case ExprKind::kName:
       return head(expr, path);
     case ExprKind::kMember:
+      if (VarId found = sema_.namespaces.find_global(expr); found.valid())
+        return global(found, path);
       return walk(expr.operand, path) && member(expr, path);
     case ExprKind::kIndex:
       return walk(expr.operand, path) && element(expr, path);
     case ExprKind::kDirect:
-      path.text =
-          sema_.program.types[sema_.program.globals].members[sema_.direct_member(expr)].name;
+      path.root = sema_.direct_member(expr);
+      path.text = sema_.program.types[sema_.program.globals].members[path.root].name;
       path.global = true;
       path.type = sema_.type_of_direct(expr.address);
       return true;
@@ -162,9 +167,19 @@ void InstancePaths::configure_variable(const VarDecl& decl) {
     }
     sema_.program.located.push_back({path.text, decl.address});
   }
-  if (!decl.init.valid() || path.global) return;
-  ir::ProgramInstance& instance = sema_.program.instances[path.instance];
-  instance.init = with_initial(instance.init, instance.type, path.steps, 0, decl.init);
+  if (!decl.init.valid()) return;
+  auto configure = [&](ir::ConstId before, ir::TypeId type) {
+    return with_initial(before, type, path.steps, 0, decl.init);
+  };
+  if (path.global) {
+    ir::TypeTable& types = sema_.program.types;
+    const ir::Member& member = types[sema_.program.globals].members[path.root];
+    const ir::ConstId init = configure(member.init, member.type);
+    types.edit(sema_.program.globals).members[path.root].init = init;
+    return;
+  }
+  ir::ProgramInstance& instance = sema_.program.instances[path.root];
+  instance.init = configure(instance.init, instance.type);
 }
 
 // `before` with another value behind `steps`.

@@ -28,6 +28,7 @@ class InstancePaths {
   void configure_variable(const VarDecl& decl);
   void add_access(const VarDecl& decl);
   bool walk(ExprId expr, Path& path);
+  bool global(VarId id, Path& path);
   bool head(const Expr& expr, Path& path);
   bool member(const Expr& expr, Path& path);
   bool element(const Expr& expr, Path& path);

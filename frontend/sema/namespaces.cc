@@ -302,6 +302,17 @@ VarId Namespaces::find_global(const Name& name) {
   return found == sema_.globals_.end() ? VarId() : found->second;
 }
 
+VarId Namespaces::find_global(const Expr& member) {
+  const Expr& operand = sema_.tree[member.operand];
+  if (const GlobalList* variables = list(operand)) {
+    auto found = variables->names.find(member.name.text);
+    if (found != variables->names.end()) return found->second;
+  }
+  if (!is_namespace(operand)) return {};
+  auto found = sema_.globals_.find(find(NameSort::kVariable, member));
+  return found == sema_.globals_.end() ? VarId() : found->second;
+}
+
 const GlobalList* Namespaces::list(const Expr& head) {
   const bool plain = head.kind == ExprKind::kName;
   if (plain && (head.global || sema_.find_variable(head.name).valid())) return nullptr;
@@ -310,12 +321,8 @@ const GlobalList* Namespaces::list(const Expr& head) {
 }
 
 bool Namespaces::declares(const Expr& expr) {
-  if (expr.kind != ExprKind::kMember) return false;
-  const Expr& operand = sema_.tree[expr.operand];
-  if (!is_namespace(operand)) return false;
-  const GlobalList* variables = list(operand);
-  if (variables != nullptr && variables->names.contains(expr.name.text)) return false;
-  return !sema_.globals_.contains(find(NameSort::kVariable, expr));
+  return expr.kind == ExprKind::kMember && is_namespace(sema_.tree[expr.operand]) &&
+         !find_global(expr).valid();
 }
 
 std::string_view Namespaces::find(NameSort sort, const Expr& expr) {

@@ -40,6 +40,8 @@ class Namespaces {
   std::string_view find(NameSort sort, const Expr& expr);
   // The global variable of that name; invalid: there is none.
   VarId find_global(const Name& name);
+  // The same of `A.x` or `List.x` in code.
+  VarId find_global(const Expr& member);
   // The list of globals that `L` or `A.L` in code means; null: it means none.
   const GlobalList* list(const Expr& head);
   // Is `A.f` in code a name of a namespace, and of no variable there?
