@@ -4,7 +4,7 @@
 
 #include "base/hash.h"
 #include "frontend/lower/chart.h"
-#include "frontend/lower/start_code.h"
+#include "frontend/lower/pool_code.h"
 
 namespace frontend {
 
@@ -40,8 +40,12 @@ void Body::run() {
   if (sema_.for_tests() && decl.kind == PouKind::kProgram) activate_mock_bodies();
   if (info_.setup != nullptr) statements(info_.setup->body);
   if (!info_.connections.empty()) exit_ = build_.new_block();
-  if (info_.constructs) {
+  if (info_.made == MadeCode::kStart) {
     StartCode(*this).run();
+  } else if (info_.made == MadeCode::kReset) {
+    PoolCode(*this).reset_method();
+  } else if (info_.made == MadeCode::kLeave) {
+    PoolCode(*this).leave_method();
   } else if (decl.chart != kNoChart) {
     ChartBody(*this, tree_.charts[decl.chart]).run();
   } else if (info_.teardown != nullptr) {
@@ -114,9 +118,7 @@ void Body::initialise(const ir::Place& where, const Variable& variable) {
     Target target;
     target.place = where;
     target.type = variable.type;
-    if (types()[variable.type].kind == ir::Kind::kReferenceTo) {
-      build_.store(where, ir::Scalar::kU64, reference_value(variable.decl->init, variable.type));
-    } else if (types().is_scalar(variable.type)) {
+    if (types().is_scalar(variable.type)) {
       build_.store(where, scalar(variable.type), value(variable.decl->init, variable.type));
     } else {
       assign_aggregate(target, variable.decl->init);

@@ -29,6 +29,7 @@ class Body {
  private:
   friend class ChartBody;  // sequential function charts (chart.h)
   friend class StartCode;  // __START (start_code.h)
+  friend class PoolCode;   // __NEW, __DELETE (pool_code.h)
 
   Body(Sema& sema, PouInfo& info, uint32_t number, ir::Pou pou);
 

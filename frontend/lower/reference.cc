@@ -1,5 +1,6 @@
 // Pointers and references in bodies, by the shapes of "References" in ir/program/ir.h.
 #include "frontend/lower/body.h"
+#include "frontend/lower/pool_code.h"
 
 namespace frontend {
 namespace {
@@ -123,6 +124,11 @@ void Body::bind_reference(const Stmt& stmt) {
 ir::ValueId Body::emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own) {
   const ExprId argument = tree_.args[expr.args.first].value;
   switch (call) {
+    case ReferenceCall::kNew:
+      return PoolCode(*this).make(expr);
+    case ReferenceCall::kDelete:
+      PoolCode(*this).destroy(expr);
+      return zero(own);
     case ReferenceCall::kQuery:
       return attempt(tree_.args[expr.args.first + 1].value, argument, expr.span).fits;
     case ReferenceCall::kSizeof:

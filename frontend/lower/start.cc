@@ -1,6 +1,7 @@
 #include "frontend/lower/start_code.h"
 
 #include "frontend/lower/call.h"
+#include "frontend/lower/pool_code.h"
 #include "ir/types/stamps.h"
 
 namespace frontend {
@@ -39,7 +40,9 @@ void StartCode::run() {
   if (info.owner == kNoPou) {
     references(sema_.objects.start_globals());
     for (VarId id : sema_.objects.start_globals()) variable(id);
-    return;
+    PoolCode(body_).visit_all();
+    const ir::Place flag = body_.variable_place(sema_.objects.change_flag());
+    return build_.store(flag, ir::Scalar::kU32, number(0));
   }
   const PouInfo& block = sema_.pous[info.owner];
   const uint32_t base = block.base == kNoPou ? kNoPou : sema_.pous[block.base].start;
@@ -66,7 +69,11 @@ void StartCode::bind_references(const ir::Place& at, ir::TypeId id, ir::ConstId 
   const ir::Type type = types()[id];
   if (!init.valid()) init = type.init;
   if (types().is_reference(id)) return bind_reference(at, sema_.program.constants[init].bits);
-  if (type.kind == ir::Kind::kArray) return bind_elements(at, id, init);
+  if (type.kind == ir::Kind::kArray) {
+    return each_element(at, id, init, [&](const ir::Place& one, ir::ConstId given) {
+      bind_references(one, type.base, given);
+    });
+  }
   for (uint32_t i = 0; i < type.members.size(); ++i) {
     const ir::ConstId given = sema_.listed(init, i);
     if (!ir::is_structure(type.kind) && !given.valid()) continue;  // a matter of the block
@@ -78,8 +85,9 @@ void StartCode::bind_references(const ir::Place& at, ir::TypeId id, ir::ConstId 
   }
 }
 
-// Those that the initial value lists one by one, unless all are alike.
-void StartCode::bind_elements(const ir::Place& at, ir::TypeId id, ir::ConstId init) {
+// One by one, unless all are alike.
+void StartCode::each_element(const ir::Place& at, ir::TypeId id, ir::ConstId init,
+                             const PerValue& each) {
   const ir::Type type = types()[id];
   uint64_t total = 1;
   for (const ir::Dimension& dim : type.dims) total *= dim.count();
@@ -87,14 +95,11 @@ void StartCode::bind_elements(const ir::Place& at, ir::TypeId id, ir::ConstId in
   if (init.valid()) given = sema_.program.constants[init].elements;
   const bool alike = given.empty() || (given.size() == 1 && given[0].count == total);
   if (alike) {
-    const ir::ConstId each = given.empty() ? ir::ConstId() : given[0].value;
-    return loop(at, type.dims, 0, type.base,
-                [&](const ir::Place& one) { bind_references(one, type.base, each); });
+    const ir::ConstId value = given.empty() ? ir::ConstId() : given[0].value;
+    return loop(at, type.dims, 0, type.base, [&](const ir::Place& one) { each(one, value); });
   }
   for (uint64_t i = 0; i < total; ++i) {
-    const ir::ConstId each = sema_.listed(init, i);
-    if (!sema_.start_values.inside(type.base, each)) continue;
-    bind_references(element(at, type.dims, type.base, i), type.base, each);
+    each(element(at, type.dims, type.base, i), sema_.listed(init, i));
   }
 }
 
@@ -103,11 +108,8 @@ void StartCode::bind_reference(const ir::Place& at, uint64_t unbound) {
   const ExprId expr = sema_.start_values.find(unbound);
   const ir::ValueId now = build_.load(at, kU64);
   when(build_.compare(ir::Op::kEq, kU64, now, build_.constant(kU64, unbound)), [&] {
-    const bool stands_for_target = types()[at.type].kind == ir::Kind::kReferenceTo;
     body_.set_line(sema_.tree[expr].span);
-    build_.store(
-        at, kU64,
-        stands_for_target ? body_.reference_value(expr, at.type) : body_.value(expr, at.type));
+    build_.store(at, kU64, body_.value(expr, at.type));
   });
 }
 
@@ -200,17 +202,27 @@ void StartCode::when(ir::ValueId condition, const std::function<void()>& then) {
   build_.start(behind);
 }
 
+const PouInfo* StartCode::code_of(const PouInfo& block, std::string_view name) const {
+  const uint32_t method = sema_.objects.find_code(block.number, name).code.method;
+  return method == kNoPou ? nullptr : &sema_.pous[method];
+}
+
+void StartCode::construct(const ir::Place& at, ir::TypeId type, Range32 args,
+                          base::SourceSpan span) {
+  span_ = span;
+  instance(at, type, args);
+}
+
+void StartCode::exit(const ir::Place& at, const PouInfo& block) {
+  if (const PouInfo* method = code_of(block, kFbExit)) call(at, *method, {});
+}
+
 // What leaves, leaves from the outside in; the other way round, what is inside is ready first.
-void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args) {
+void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args, bool new_ones) {
   constexpr ir::Scalar kU32 = ir::Scalar::kU32;
   const PouInfo& block = *sema_.pou_of(type);
-  auto code_of = [&](std::string_view name) -> const PouInfo* {
-    const uint32_t method = sema_.objects.find_code(block.number, name).code.method;
-    return method == kNoPou ? nullptr : &sema_.pous[method];
-  };
-  const PouInfo* init = code_of(kFbInit);
-  const PouInfo* exit = code_of(kFbExit);
-  const PouInfo* reinit = code_of(kFbReinit);
+  const PouInfo* init = code_of(block, kFbInit);
+  const PouInfo* reinit = code_of(block, kFbReinit);
   ir::Place stamp = at;
   if (block.stamp.valid()) {
     stamp.steps.push_back(step(ir::StepKind::kEnter));
@@ -222,9 +234,9 @@ void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args) {
   };
   auto set = [&](uint32_t value) { build_.store(stamp, kU32, number(value)); };
   const uint32_t made = block.stamp.valid() ? sema_.objects.stamp_of(block) : 0;
-  if (exit != nullptr) {
+  if (code_of(block, kFbExit) != nullptr) {
     when(is(ir::kLeavingStamp), [&] {
-      call(at, *exit, {});
+      exit(at, block);
       set(ir::kLeftStamp);
     });
   }
@@ -237,10 +249,12 @@ void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args) {
                 quoted_name(block.decl->name) + " has no FB_Init that takes arguments");
   }
   if (!block.stamp.valid()) return;
-  when(is(ir::kNewStamp), [&] {
-    if (init != nullptr) call(at, *init, args);
-    set(made);
-  });
+  if (new_ones) {
+    when(is(ir::kNewStamp), [&] {
+      if (init != nullptr) call(at, *init, args);
+      set(made);
+    });
+  }
   if (reinit == nullptr) return;
   const ir::ValueId now = build_.load(stamp, kU32);
   when(build_.compare(ir::Op::kLe, kU32, number(ir::kFirstShapeStamp), now), [&] {
@@ -261,6 +275,7 @@ void StartCode::call(const ir::Place& at, const PouInfo& method, Range32 args) {
   if (!bind(written, method, bindings) || !body_.check_in_outs(written, method, bindings)) return;
   body_.info_.callees.push_back(method.number);
   body_.evaluate_arguments(written, bindings);
+  if (!sema_.objects.change_flag().valid()) return;  // there are errors
   const ir::Place flag = body_.variable_place(sema_.objects.change_flag());
   const ir::ValueId changed =
       build_.compare(ir::Op::kNe, ir::Scalar::kU32, build_.load(flag, ir::Scalar::kU32), number(0));

@@ -15,9 +15,19 @@ class StartCode {
   // Gives the references inside of `at` their values, where `init` says that they are unbound.
   void bind_references(const ir::Place& at, ir::TypeId type, ir::ConstId init);
 
+  // FB_Init of a new instance and of those in it, with these arguments, behind its references.
+  void construct(const ir::Place& at, ir::TypeId type, Range32 args, base::SourceSpan span);
+  // What a change does with an instance that has been made.
+  void visit(const ir::Place& at, ir::TypeId type) { instance(at, type, {}, false); }
+  // FB_Exit, if the block has one.
+  void exit(const ir::Place& at, const PouInfo& block);
+  void when(ir::ValueId condition, const std::function<void()>& then);
+  // With what `init` gives each element.
+  using PerValue = std::function<void(const ir::Place&, ir::ConstId)>;
+  void each_element(const ir::Place& at, ir::TypeId array, ir::ConstId init, const PerValue& each);
+
  private:
   void references(const std::vector<VarId>& variables);
-  void bind_elements(const ir::Place& at, ir::TypeId type, ir::ConstId init);
   void bind_reference(const ir::Place& at, uint64_t unbound);
   void variable(VarId id);
   void value(const ir::Place& at, ir::TypeId type, const Spec* spec);
@@ -25,10 +35,10 @@ class StartCode {
   using PerElement = std::function<void(const ir::Place&)>;
   void loop(const ir::Place& at, const std::vector<ir::Dimension>& dims, size_t number,
             ir::TypeId element, const PerElement& each);
-  void instance(const ir::Place& at, ir::TypeId type, Range32 args);
+  void instance(const ir::Place& at, ir::TypeId type, Range32 args, bool new_ones = true);
+  const PouInfo* code_of(const PouInfo& block, std::string_view name) const;
   void call(const ir::Place& at, const PouInfo& method, Range32 args);
   bool bind(const Expr& call, const PouInfo& method, std::vector<Body::Binding>& bindings);
-  void when(ir::ValueId condition, const std::function<void()>& then);
   ir::ValueId number(uint32_t value) { return build_.constant(ir::Scalar::kU32, value); }
   const ir::TypeTable& types() const { return sema_.program.types; }
 

@@ -230,7 +230,7 @@ class Parser {
   void parse_variable_declaration(std::vector<VarDecl>& out);
   void parse_location(VarDecl& decl);
   Edge parse_edge();
-  void parse_default(ExprId& init);
+  void parse_default(ExprId& init, bool* binds = nullptr);
   void finish_declaration(const char* what);
 
   // --- pou.cc

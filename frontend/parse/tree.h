@@ -61,6 +61,7 @@ struct VarDecl {
   Edge edge = Edge::kNone;
   ExprId path;            // VAR_ACCESS: what the name opens; VAR_CONFIG: what is completed
   bool writable = false;  // VAR_ACCESS: READ_WRITE
+  bool binds = false;     // REF= in front of `init`
   bool implied = false;   // by a chart (sfc/declare.h): code reads it, only the chart writes it
   Range32 attributes;     // Tree::attributes
   base::SourceSpan span;

@@ -156,7 +156,7 @@ void Parser::parse_variable_declaration(std::vector<VarDecl>& out) {
   if (panic_) return skip_to_declaration_end();
   decl.spec = parse_spec();
   decl.edge = parse_edge();
-  parse_default(decl.init);
+  parse_default(decl.init, &decl.binds);
   decl.span = span_from(begin);
   out.push_back(std::move(decl));
   finish_declaration("declaration");
@@ -215,20 +215,21 @@ void Parser::parse_config_variable(std::vector<VarDecl>& out) {
     return skip_to_declaration_end();
   }
   decl.spec = parse_spec();
-  parse_default(decl.init);
+  parse_default(decl.init, &decl.binds);
   decl.span = span_from(begin);
   out.push_back(std::move(decl));
   finish_declaration("declaration");
 }
 
-void Parser::parse_default(ExprId& init) {
+void Parser::parse_default(ExprId& init, bool* binds) {
   if (panic_) return;
   if (kind() == TokenKind::kEqual) {
     note_only(Code::kAssignEquals, current_->span(),
               "`=` compares; an initial value is given by `:=`", "write `:=`");
     take();
     init = parse_initializer();
-  } else if (assign_op_here() == AssignOp::kReference) {
+  } else if (binds != nullptr && assign_op_here() == AssignOp::kReference) {
+    *binds = true;
     take_assign_op();
     init = parse_initializer();
   } else if (accept(TokenKind::kAssign)) {

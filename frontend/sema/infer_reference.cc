@@ -14,6 +14,8 @@ constexpr Named kCalls[] = {{"ADR", ReferenceCall::kAdr},
                             {"SIZEOF", ReferenceCall::kSizeof},
                             {"XSIZEOF", ReferenceCall::kSizeof},
                             {"__ISVALIDREF", ReferenceCall::kIsValid},
+                            {"__NEW", ReferenceCall::kNew},
+                            {"__DELETE", ReferenceCall::kDelete},
                             {"__QUERYINTERFACE", ReferenceCall::kQuery},
                             {"__QUERYPOINTER", ReferenceCall::kQuery}};
 
@@ -98,6 +100,12 @@ Note Sema::infer_pointer_index(const Expr& expr, const Note& operand) {
 
 Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
   const uint32_t wanted = call == ReferenceCall::kQuery ? 2 : 1;
+  if (call == ReferenceCall::kNew && expr.args.count == 2) {
+    error(DiagnosticCode::kBadPool, expr.span, "a pool gives one element at a time",
+          "take an array: TYPE {attribute 'pool' := '2'} Ten : ARRAY[1..10] OF INT; END_TYPE and "
+          "__NEW(Ten)");
+    return {};
+  }
   bool given = expr.args.count == wanted;
   for (uint32_t i = 0; i < wanted && given; ++i) {
     const Arg& arg = tree.args[expr.args.first + i];
@@ -111,6 +119,7 @@ Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
   }
   const ExprId argument = tree.args[expr.args.first].value;
   Note note;
+  if (call == ReferenceCall::kNew) return pools.infer_new(argument);
   if (call == ReferenceCall::kSizeof) {
     if (!type_of_argument(argument).valid()) return {};
     note.type = program.types.elementary(ir::Kind::kUdint);
@@ -119,6 +128,7 @@ Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
   }
   const Note& operand = infer(argument);
   if (!operand.type.valid()) return {};
+  if (call == ReferenceCall::kDelete) return pools.infer_delete(argument);
   note.calls = operand.calls;
   note.can_trap = operand.can_trap;
   switch (call) {

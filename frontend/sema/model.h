@@ -166,6 +166,9 @@ struct MemberCode {
   bool is_property() const { return getter != kNoPou || setter != kNoPou; }
 };
 
+// Code without a body in the source: __START, and the methods __RESET and __LEAVE.
+enum class MadeCode : uint8_t { kNone, kStart, kReset, kLeave };
+
 struct PouInfo {
   uint32_t number = 0;  // in Sema::pous
   const PouDecl* decl = nullptr;
@@ -183,8 +186,10 @@ struct PouInfo {
   Progress inheritance = Progress::kNew;
   uint32_t start = kNoPou;          // its method __START, where members need one
   VarId stamp;                      // of it or its base, where FB_Init and the like are
-  bool constructs = false;          // a __START itself
   bool shares_temporaries = false;  // its VAR_TEMP are members, which actions see
+  uint32_t reset = kNoPou;          // its methods for pools: pools.h
+  uint32_t leave = kNoPou;
+  MadeCode made = MadeCode::kNone;  // what it is itself
   NameMap<MemberCode> code;         // its own methods, actions and properties
   std::vector<uint32_t> overrides;  // of a method: what a virtual call of it may run instead
   NameMap<VarId> names;

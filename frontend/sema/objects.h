@@ -87,6 +87,9 @@ class Objects {
   bool constructs(ir::TypeId type);
   // What the program __START begins with: globals, then programs.
   const std::vector<VarId>& start_globals() const { return start_globals_; }
+  VarId add_hidden_global(std::string_view name, ir::TypeId type, base::SourceSpan span);
+  // Its number in Sema::pous.
+  uint32_t add_made_method(uint32_t block, std::string_view name, MadeCode code);
   // A global, not 0 where a change is what start code runs for.
   VarId change_flag() const { return change_flag_; }
   // What the stamp of an instance becomes: another number for another layout.
@@ -118,11 +121,9 @@ class Objects {
   // start.cc
   void check_start_arguments();
   bool has_members_to_start(const PouInfo& info);
-  void add_start_method(uint32_t block);
   VarId program_global(const std::string& name, const PouInfo& program);
   void add_start_program();
   void add_stamp(PouInfo& block);
-  VarId add_hidden_global(std::string_view name, ir::TypeId type, base::SourceSpan span);
 
   Sema& sema_;
   std::unordered_map<ir::TypeId, bool> constructs_;

@@ -13,6 +13,8 @@ enum class ReferenceCall : uint8_t {
   kRef,      // REF(x): REF_TO the type of x
   kSizeof,   // SIZEOF(x), SIZEOF(Type): bytes
   kIsValid,  // __ISVALIDREF(r): refers to something that is there
+  kNew,      // __NEW(T), __NEW(T(arguments)): POINTER TO T, or NULL
+  kDelete,   // __DELETE(p)
   kQuery,    // __QUERYINTERFACE(x, i), __QUERYPOINTER(x, p): i ?= x, and whether it fits
 };
 

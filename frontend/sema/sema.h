@@ -20,6 +20,7 @@
 #include "frontend/sema/model.h"
 #include "frontend/sema/namespaces.h"
 #include "frontend/sema/objects.h"
+#include "frontend/sema/pools.h"
 #include "frontend/sema/start_values.h"
 #include "ir/types/layout.h"
 
@@ -158,6 +159,7 @@ class Sema {
   Objects objects{*this};
   StartValues start_values{*this};
   Namespaces namespaces{*this};
+  Pools pools{*this};
 
  private:
   friend class Within;
@@ -167,6 +169,7 @@ class Sema {
   friend class InstancePaths;
   friend class InitialBuilder;
   friend class StartValues;
+  friend class Pools;
 
   // declarations.cc
   void collect_types();
@@ -231,6 +234,7 @@ class Sema {
   void resolve_variable(VarId id);
   void resolve_external(Variable& variable);
   void resolve_initial(Variable& variable);
+  void check_binding(const VarDecl& decl, ir::TypeId type);
   void check_placement(const Variable& variable);
   void check_address(const Variable& variable);
   uint32_t address_bits(ir::TypeId type) const;  // located.cc

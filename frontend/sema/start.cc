@@ -90,11 +90,13 @@ void Objects::check_start_arguments() {
 
 // After all interfaces are resolved and the program instances are known.
 void Objects::add_start() {
+  sema_.pools.declare();
   check_start_arguments();
   if (sema_.diagnostics_.has_errors()) return;
   const auto count = static_cast<uint32_t>(sema_.pous.size());
   for (uint32_t i = 0; i < count; ++i) {
-    if (has_members_to_start(sema_.pous[i])) add_start_method(i);
+    if (!has_members_to_start(sema_.pous[i])) continue;
+    sema_.pous[i].start = add_made_method(i, ir::kStartProgram, MadeCode::kStart);
   }
   for (uint32_t i = 0; i < sema_.variables_.size(); ++i) {
     const Variable& variable = sema_.variables_[i];
@@ -108,10 +110,11 @@ void Objects::add_start() {
       start_globals_.push_back(program_global(instance.name, *program));
     }
   }
-  if (sema_.pous.size() == count && start_globals_.empty()) return;
+  const bool pools = !sema_.pools.all().empty();
+  if (sema_.pous.size() == count && start_globals_.empty() && !pools) return;
   change_flag_ = add_hidden_global(kChangeFlag, sema_.program.types.elementary(ir::Kind::kDword),
                                    base::SourceSpan());
-  if (start_globals_.empty()) return;  // blocks that nobody has an instance of
+  if (start_globals_.empty() && !pools) return;  // blocks that nobody has an instance of
   add_start_program();
 }
 
@@ -123,13 +126,12 @@ bool Objects::has_members_to_start(const PouInfo& info) {
   return false;
 }
 
-void Objects::add_start_method(uint32_t block) {
+uint32_t Objects::add_made_method(uint32_t block, std::string_view name, MadeCode code) {
   const auto number = static_cast<uint32_t>(sema_.pous.size());
-  PouInfo& owner = sema_.pous[block];
-  owner.start = number;
+  const PouInfo& owner = sema_.pous[block];
   PouDecl& made = sema_.made_decls_.emplace_back();
   made.kind = PouKind::kMethod;
-  made.name = {ir::kStartProgram, owner.decl->name.span};
+  made.name = {name, owner.decl->name.span};
   made.span = owner.decl->span;
   made.scope = owner.decl->scope;
   PouInfo& info = sema_.pous.emplace_back();
@@ -138,9 +140,10 @@ void Objects::add_start_method(uint32_t block) {
   info.library = owner.library;
   info.owner = block;
   info.self = owner.self;
-  info.constructs = true;
-  sema_.add_code(info, sema_.program.types[owner.self].name + "." + std::string(ir::kStartProgram));
+  info.made = code;
+  sema_.add_code(info, sema_.program.types[owner.self].name + "." + std::string(name));
   sema_.resolve_interface(number);
+  return number;
 }
 
 // The global through which code reaches a program instance.
@@ -205,10 +208,11 @@ uint32_t Objects::stamp_of(const PouInfo& block) const {
 void Objects::add_start_program() {
   PouDecl& made = sema_.made_decls_.emplace_back();
   made.kind = PouKind::kProgram;
-  made.span = sema_.variables_[start_globals_[0].index].name.span;
+  const VarId first = start_globals_.empty() ? sema_.pools.all()[0].elements : start_globals_[0];
+  made.span = sema_.variables_[first.index].name.span;
   made.name = {ir::kStartProgram, made.span};
   const uint32_t number = sema_.add_pou(made, false, made.name.text);
-  sema_.pous[number].constructs = true;
+  sema_.pous[number].made = MadeCode::kStart;
   sema_.resolve_interface(number);
   ir::Task task;
   task.name = ir::kStartProgram;

@@ -90,6 +90,7 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
   bool bit = is_bit(field.spec);
   ir::Member member;
   member.type = use.type;
+  check_binding(field, use.type);
   const bool saved = std::exchange(binds_at_start_, !build.type.overlap);
   member.init = field.init.valid() ? initial_value(field.init, use.type, use.init) : use.init;
   binds_at_start_ = saved;

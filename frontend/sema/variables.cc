@@ -74,7 +74,15 @@ void Sema::resolve_variable(VarId id) {
   }
   check_address(variable);
   check_edge(variable);
+  check_binding(*variable.decl, variable.type);
   if (variable.decl->init.valid() && !variable.hidden) resolve_initial(variable);
+}
+
+// `r : REFERENCE TO INT REF= x`
+void Sema::check_binding(const VarDecl& decl, ir::TypeId type) {
+  if (!decl.binds || program.types[type].kind == ir::Kind::kReferenceTo) return;
+  error(DiagnosticCode::kBadReference, tree[decl.init].span,
+        "`" + type_text(type) + "` is not a REFERENCE TO", "give the initial value with `:=`");
 }
 
 void Sema::resolve_external(Variable& variable) {

@@ -1,0 +1,43 @@
+// __NEW and __DELETE, and the methods __RESET and __LEAVE of what lies in pools (sema/pools.h). A
+// part of Body: it writes to the same POU.
+#pragma once
+
+#include "frontend/lower/start_code.h"
+
+namespace frontend {
+
+class PoolCode {
+ public:
+  explicit PoolCode(Body& body)
+      : body_(body), build_(body.build_), sema_(body.sema_), start_(body) {}
+
+  // The first free element, as new, or NULL.
+  ir::ValueId make(const Expr& call);
+  // The element that `argument` points to is free again, and the pointer NULL.
+  void destroy(const Expr& call);
+  void reset_method();  // all variables of the instance have their initial values
+  void leave_method();  // FB_Exit of the instances in it
+  // In __START: what is in use is visited there too.
+  void visit_all();
+
+ private:
+  using PerElement = std::function<void(const ir::Place& element, const ir::Place& state)>;
+  // Goes through the pool; `each` may leave by a jump.
+  void search(const Pool& pool, const PerElement& each);
+  ir::ValueId has_state(const ir::Place& state, uint64_t wanted);
+  void set_state(const ir::Place& state, uint64_t value);
+  ir::ValueId handle(const Pool& pool, const ir::Place& element);
+  void free(const Pool& pool, const ir::Place& element, const ir::Place& state);
+  void call_made(uint32_t method, const ir::Place& at);
+  void reset(const ir::Place& at, ir::TypeId type, ir::ConstId init);
+  void reset_elements(const ir::Place& at, ir::TypeId type, ir::ConstId init);
+  void leave(const ir::Place& at, ir::TypeId type);
+  const ir::TypeTable& types() const { return sema_.program.types; }
+
+  Body& body_;
+  Builder& build_;
+  Sema& sema_;
+  StartCode start_;
+};
+
+}  // namespace frontend

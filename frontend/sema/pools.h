@@ -1,0 +1,61 @@
+// Pools that __NEW takes from: {attribute 'pool' := '16'} in front of a FUNCTION_BLOCK or a TYPE
+// (docs/adr/0006-objects.md). Each is an array of instances in the globals and a BYTE for each of
+// them; what is no block lies in one (`Name#box`, its only variable `value`), so that every
+// element has an ID of its own, and a change that moves or grows a pool moves no element's handle.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "frontend/sema/model.h"
+
+namespace frontend {
+
+class Sema;
+
+struct Pool {
+  std::string_view name;    // of the type, as declared
+  ir::TypeId type;          // what a pointer to an element points to
+  uint32_t block = kNoPou;  // of the instances
+  bool boxed = false;
+  uint32_t count = 0;
+  VarId elements;  // ARRAY[1..count] OF the block
+  VarId states;    // ARRAY[1..count] OF BYTE: kPoolFree and so on
+};
+
+inline constexpr uint64_t kPoolFree = 0;
+inline constexpr uint64_t kPoolUsed = 1;
+inline constexpr uint64_t kPoolLeaving = 2;  // inside of __DELETE
+
+class Pools {
+ public:
+  explicit Pools(Sema& sema) : sema_(sema) {}
+
+  // Behind all declarations: adds the variables, and the methods __RESET and __LEAVE to the blocks
+  // that they need.
+  void declare();
+  const std::vector<Pool>& all() const { return pools_; }
+  // __NEW(type), __DELETE(pointer)
+  Note infer_new(ExprId type);
+  Note infer_delete(ExprId pointer);
+  // Of the type that `type` names, as __NEW has it: T, or T(arguments). Reports when there is none.
+  const Pool* of_new(ExprId type);
+  // Where an object behind a pointer to `target` may come from.
+  std::vector<const Pool*> of_target(ir::TypeId target) const;
+  // Is there anything in it that leaves by FB_Exit?
+  bool leaves(ir::TypeId type);
+  // An instance, or an array or structure with one?
+  bool holds_instance(ir::TypeId type) const;
+
+ private:
+  uint32_t count_of(const Attribute& attribute);
+  void add(const Name& name, ir::TypeId type, uint32_t block, bool boxed, uint32_t count);
+  void add_type(const TypeDecl& decl, const Attribute& attribute);
+  uint32_t add_box(const TypeDecl& decl);
+  void add_methods(ir::TypeId type);
+
+  Sema& sema_;
+  std::vector<Pool> pools_;
+};
+
+}  // namespace frontend
