@@ -116,7 +116,8 @@ void StartCode::bind_reference(const ir::Place& at, uint64_t unbound) {
 void StartCode::variable(VarId id) {
   const Variable& variable = sema_.resolve(id);
   if (variable.section == VarSection::kInOut || !sema_.objects.constructs(variable.type)) return;
-  const Spec* spec = variable.decl == nullptr ? nullptr : &sema_.tree[variable.decl->spec];
+  const Spec* spec =
+      variable.decl == nullptr ? nullptr : sema_.objects.construction(variable.decl->spec);
   body_.set_line(variable.name.span);
   span_ = variable.name.span;
   value(body_.variable_place(id), variable.type, spec);
@@ -133,7 +134,10 @@ void StartCode::value(const ir::Place& at, ir::TypeId type, const Spec* spec) {
     ir::Place member = at;
     member.steps.push_back(step(ir::StepKind::kMember, i));
     member.type = types()[type].members[i].type;
-    value(member, member.type, nullptr);
+    const Sema::Field* field = sema_.find_field(type, types()[type].members[i].name);
+    const bool whole = field != nullptr && field->bit < 0;
+    Sema::Within outside(sema_, kNoPou);  // what the members' arguments name
+    value(member, member.type, whole ? sema_.objects.construction(field->spec) : nullptr);
   }
 }
 
@@ -143,7 +147,7 @@ void StartCode::elements(const ir::Place& at, ir::TypeId type, const Spec* spec)
   const ir::TypeId base = types()[type].base;
   const bool written = spec != nullptr && spec->kind == SpecKind::kArray;
   if (!written || spec->element_args.count == 0) {
-    const Spec* inner = written ? &sema_.tree[spec->element] : nullptr;
+    const Spec* inner = written ? sema_.objects.construction(spec->element) : nullptr;
     return loop(at, dims, 0, base, [&](const ir::Place& one) { value(one, base, inner); });
   }
   uint64_t total = 1;

@@ -145,10 +145,8 @@ SpecId Parser::parse_named_spec(bool type_level) {
   if (kind() != TokenKind::kLeftParen || panic_) return id;
   const Spec& named = tree_[id];
   bool elementary = named.qualifiers.count == 0 && is_elementary_name(named.name.text);
-  if (elementary || type_level) {
-    return at_enumerators() ? parse_enum(id, begin) : parse_subrange(id, begin);
-  }
-  if (at_subrange()) return parse_subrange(id, begin);
+  if ((elementary || type_level) && at_enumerators()) return parse_enum(id, begin);
+  if (elementary || at_subrange()) return parse_subrange(id, begin);
   parse_init_arguments(id);
   return id;
 }

@@ -13,14 +13,6 @@ ir::ConstId Sema::listed(ir::ConstId list, uint64_t index) const {
   return found;
 }
 
-// Of the POU that is looked at; "" outside of all.
-std::string Sema::scope_name() const {
-  if (current_pou_ == kNoPou) return {};
-  const PouInfo& pou = pous[current_pou_];
-  if (pou.self.valid()) return ir::fold_name(program.types[pou.self].name);
-  return ir::fold_name(pou.decl->name.text);
-}
-
 // Of an instance whose block is not resolved yet, too.
 ir::ConstId Sema::member_default(ir::TypeId type, uint32_t member) {
   if (const PouInfo* block = pou_of(type)) {

@@ -83,6 +83,8 @@ class Objects {
   void add_start();
   // Does a variable of this type, with this initial value, need anything at the start?
   bool starts(ir::TypeId type, ir::ConstId init);
+  // How its author wrote the type: behind names of types, as long as they have no arguments.
+  const Spec* construction(SpecId spec) const;
   // Are there instances in it that start code visits?
   bool constructs(ir::TypeId type);
   // What the program __START begins with: globals, then programs.
@@ -120,6 +122,7 @@ class Objects {
   void report_circle(const std::vector<uint32_t>& path);
   // start.cc
   void check_start_arguments();
+  void check_start_arguments(SpecId spec, ir::TypeId type, std::vector<bool>& good);
   bool has_members_to_start(const PouInfo& info);
   VarId program_global(const std::string& name, const PouInfo& program);
   void add_start_program();

@@ -69,6 +69,7 @@ class Sema {
   struct Field {
     uint32_t member = 0;
     int32_t bit = -1;  // of a BIT member: its number in the BYTE
+    SpecId spec = {};  // as written
   };
   const Field* find_field(ir::TypeId structure, std::string_view name) const;
   // -1 for BIT members too.
@@ -328,7 +329,6 @@ class Sema {
   void check_index_list(const Expr& expr, const ir::Type& array);
 
   // initial_part.cc
-  std::string scope_name() const;
   ir::ConstId member_default(ir::TypeId type, uint32_t member);
   std::optional<TypeUse> initial_variable(const Expr& expr, VarId id);
   std::optional<TypeUse> initial_member(const Expr& expr);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/hash.h"
+#include "base/limits.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/sema.h"
 #include "ir/types/stamps.h"
@@ -63,28 +64,52 @@ bool Objects::constructs(ir::TypeId type) {
   return needed;
 }
 
-// Arguments stand behind the types of variables only, and there has to be an FB_Init for them.
+const Spec* Objects::construction(SpecId id) const {
+  for (uint32_t depth = 0; depth < base::kMaxNesting; ++depth) {
+    const Spec& spec = sema_.tree[id];
+    if (spec.kind != SpecKind::kNamed || spec.has_args || spec.qualifiers.count != 0) break;
+    auto named = sema_.types_.find(spec.name.text);
+    if (named == sema_.types_.end()) break;
+    id = named->second;
+  }
+  return &sema_.tree[id];
+}
+
+void Objects::check_start_arguments(SpecId id, ir::TypeId type, std::vector<bool>& good) {
+  const bool arguments = has_arguments(sema_.tree, id);
+  for (; sema_.tree[id].kind == SpecKind::kArray; id = sema_.tree[id].element) {
+    good[id.index] = true;
+  }
+  good[id.index] = true;
+  if (!arguments || !type.valid() || constructs(type)) return;
+  sema_.error(DiagnosticCode::kBadConstruction, sema_.tree[id].span,
+              "`" + sema_.type_text(type) + "` has no FB_Init that takes arguments",
+              "write `:=` and a value, or (member := value)");
+}
+
+// Arguments stand behind the types of variables, members of structures and declared types, and
+// there has to be an FB_Init for them.
 void Objects::check_start_arguments() {
   std::vector<bool> good(sema_.tree.specs.size());
   for (const Variable& variable : sema_.variables_) {
     if (variable.decl == nullptr || !variable.decl->spec.valid()) continue;
-    SpecId id = variable.decl->spec;
-    const bool arguments = has_arguments(sema_.tree, id);
-    for (; sema_.tree[id].kind == SpecKind::kArray; id = sema_.tree[id].element) {
-      good[id.index] = true;
-    }
-    good[id.index] = true;
-    if (!arguments || !variable.type.valid() || constructs(variable.type)) continue;
-    sema_.error(DiagnosticCode::kBadConstruction, sema_.tree[id].span,
-                "`" + sema_.type_text(variable.type) + "` has no FB_Init that takes arguments",
-                "write `:=` and a value, or (member := value)");
+    check_start_arguments(variable.decl->spec, variable.type, good);
+  }
+  auto check = [&](SpecId id) {
+    if (!id.valid() || !has_arguments(sema_.tree, id)) return;
+    check_start_arguments(id, sema_.resolve(id).type, good);
+  };
+  for (const TypeDecl& decl : sema_.tree.types) check(decl.spec);
+  for (const Spec& spec : sema_.tree.specs) {
+    if (spec.kind != SpecKind::kStruct) continue;
+    for (const VarDecl& field : spec.fields) check(field.spec);
   }
   for (uint32_t i = 0; i < sema_.tree.specs.size(); ++i) {
     const Spec& spec = sema_.tree.specs[i];
     if (good[i] || (!spec.has_args && spec.element_args.count == 0)) continue;
     sema_.error(DiagnosticCode::kBadConstruction, spec.span,
-                "arguments of FB_Init stand at a variable's type only",
-                "give them where the variable is declared");
+                "arguments of FB_Init have no place here",
+                "give them where a variable, a member or a type is declared");
   }
 }
 

@@ -12,12 +12,20 @@ ir::ConstId StartValues::add(ExprId id) {
   const uint32_t begin = sema_.sources.begin(file).offset;
   std::string text(sema_.sources.text(file).substr(span.begin.offset - begin,
                                                    span.end.offset - span.begin.offset));
-  text = sema_.scope_name() + ":" + ir::fold_name(text);
+  text = scope_name() + ":" + ir::fold_name(text);
   for (uint64_t seed = 0;; ++seed) {
     const uint64_t handle = ir::unbound_handle(base::hash64(base::as_bytes(text), seed));
     auto [found, added] = expressions_.try_emplace(handle, Expression{id, text});
     if (added || found->second.text == text) return sema_.program.constants.scalar(handle);
   }
+}
+
+// Of the POU that is looked at; "" outside of all.
+std::string StartValues::scope_name() const {
+  if (sema_.current_pou_ == kNoPou) return {};
+  const PouInfo& pou = sema_.pous[sema_.current_pou_];
+  if (pou.self.valid()) return ir::fold_name(sema_.program.types[pou.self].name);
+  return ir::fold_name(pou.decl->name.text);
 }
 
 ExprId StartValues::find(uint64_t handle) const {

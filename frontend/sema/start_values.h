@@ -30,6 +30,7 @@ class StartValues {
   bool inside(ir::TypeId type, ir::ConstId init);
 
  private:
+  std::string scope_name() const;
   bool look_inside(ir::TypeId type, ir::ConstId init);
 
   struct Expression {

@@ -106,6 +106,7 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
   for (const Name& name : field.names) {
     Field where{static_cast<uint32_t>(build.type.members.size()), -1};
     if (bit) where = add_bit(build, name, member.init);
+    where.spec = field.spec;
     if (!build.names.emplace(name.text, where).second) {
       error(DiagnosticCode::kDuplicateName, name.span, quoted(name) + " is declared twice");
       return false;
