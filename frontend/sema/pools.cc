@@ -28,7 +28,8 @@ void Pools::declare() {
           "put the attribute in front of a FUNCTION_BLOCK that is not ABSTRACT, or of a TYPE");
       continue;
     }
-    add(info.decl->name, info.self, info.number, false, count_of(*attribute));
+    const Name name{sema_.keep_name(sema_.program.types[info.self].name), info.decl->name.span};
+    add(name, info.self, info.number, false, count_of(*attribute));
   }
   for (const TypeDecl& decl : sema_.tree.types) {
     const Attribute* attribute = sema_.tree.find_attribute(decl.attributes, kAttribute);
@@ -60,14 +61,15 @@ void Pools::add_type(const TypeDecl& decl, const Attribute& attribute) {
                 "put the attribute in front of the FUNCTION_BLOCK itself, or of a TYPE of data");
     return;
   }
-  add(decl.name, type, add_box(decl), true, count_of(attribute));
+  const std::string_view name = sema_.namespaces.qualified(decl.scope, decl.name.text);
+  add({name, decl.name.span}, type, add_box(decl, name), true, count_of(attribute));
 }
 
 // FUNCTION_BLOCK Name#box VAR value : Name; END_VAR END_FUNCTION_BLOCK
-uint32_t Pools::add_box(const TypeDecl& decl) {
+uint32_t Pools::add_box(const TypeDecl& decl, std::string_view name) {
   PouDecl& made = sema_.made_decls_.emplace_back();
   made.kind = PouKind::kFunctionBlock;
-  made.name = {sema_.keep_name(std::string(decl.name.text) + "#box"), decl.name.span};
+  made.name = {sema_.keep_name(std::string(name) + "#box"), decl.name.span};
   made.span = decl.name.span;
   made.scope = decl.scope;
   VarBlock& block = made.blocks.emplace_back();
@@ -78,7 +80,7 @@ uint32_t Pools::add_box(const TypeDecl& decl) {
   value.names.push_back({"value", decl.name.span});
   value.spec = decl.spec;
   value.span = decl.name.span;
-  const uint32_t number = sema_.add_pou(made, false);
+  const uint32_t number = sema_.add_pou(made, false, made.name.text);
   sema_.objects.inherit();
   sema_.resolve_interface(number);
   return number;
@@ -150,7 +152,9 @@ bool Pools::holds_instance(ir::TypeId type) const {
 const Pool* Pools::of_new(ExprId id) {
   const Expr* expr = &sema_.tree[id];
   if (expr->kind == ExprKind::kCall) expr = &sema_.tree[expr->operand];
-  const std::string_view name = expr->kind == ExprKind::kName ? expr->name.text : "";
+  const bool named = expr->kind == ExprKind::kName || expr->kind == ExprKind::kMember;
+  const std::string_view name =
+      named ? sema_.namespaces.find(NameSort::kDeclaration, *expr) : std::string_view();
   for (const Pool& pool : pools_) {
     if (!name.empty() && ir::same_name(pool.name, name)) return &pool;
   }

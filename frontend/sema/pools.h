@@ -14,7 +14,7 @@ namespace frontend {
 class Sema;
 
 struct Pool {
-  std::string_view name;    // of the type, as declared
+  std::string_view name;    // of the type, qualified
   ir::TypeId type;          // what a pointer to an element points to
   uint32_t block = kNoPou;  // of the instances
   bool boxed = false;
@@ -51,7 +51,7 @@ class Pools {
   uint32_t count_of(const Attribute& attribute);
   void add(const Name& name, ir::TypeId type, uint32_t block, bool boxed, uint32_t count);
   void add_type(const TypeDecl& decl, const Attribute& attribute);
-  uint32_t add_box(const TypeDecl& decl);
+  uint32_t add_box(const TypeDecl& decl, std::string_view name);
   void add_methods(ir::TypeId type);
 
   Sema& sema_;

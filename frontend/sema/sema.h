@@ -17,7 +17,6 @@
 #include "frontend/sema/callee.h"
 #include "frontend/sema/constant.h"
 #include "frontend/sema/follow_ups.h"
-#include "frontend/sema/model.h"
 #include "frontend/sema/namespaces.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/pools.h"

@@ -67,8 +67,9 @@ bool Objects::constructs(ir::TypeId type) {
 const Spec* Objects::construction(SpecId id) const {
   for (uint32_t depth = 0; depth < base::kMaxNesting; ++depth) {
     const Spec& spec = sema_.tree[id];
-    if (spec.kind != SpecKind::kNamed || spec.has_args || spec.qualifiers.count != 0) break;
-    auto named = sema_.types_.find(spec.name.text);
+    if (spec.kind != SpecKind::kNamed || spec.has_args) break;
+    auto named = sema_.types_.find(
+        sema_.namespaces.find(NameSort::kDeclaration, spec.qualifiers, spec.name));
     if (named == sema_.types_.end()) break;
     id = named->second;
   }
