@@ -312,6 +312,7 @@ class Builder {
   void function(uint32_t index);
   void block(uint32_t index);
   void block_body(Pou& pou);
+  std::string place_in_space(Pou& pou);
   void program(uint32_t index, uint32_t count);
   void program_action(Pou& pou);
   void side_program();
@@ -376,6 +377,7 @@ class Builder {
   std::map<TypeRef, std::vector<TypeRef>> derived_;
   std::vector<std::string> actions_;  // of the chart
   std::optional<Interface> side_;     // a program that others call
+  std::vector<std::string> spaces_;   // namespaces with something in them
   uint32_t next_rank_ = 0;
   uint32_t next_point_ = 0;  // %M
   uint32_t caught_ = 0;      // open __TRY

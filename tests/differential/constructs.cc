@@ -121,6 +121,11 @@ const Row kRows[] = {
     {"FB_Init of the base", {"SUPER^.FB_Init("}},
     {"FB_Init with arguments", {" : Class", "(", ");"}},
     {"FB_Init with named arguments", {" : Block", "(v", " := "}},
+    {"NAMESPACE", {"NAMESPACE Space"}},
+    {"NAMESPACE in another", {"NAMESPACE Space0.Deep"}},
+    {"whole name", {" : Space"}},
+    {"USING", {"USING Space"}},
+    {"EXTENDS of a whole name", {" EXTENDS Space"}},
     // Charts.
     {"INITIAL_STEP", {"INITIAL_STEP "}},
     {"several steps begin together", {"TRANSITION", " TO (Step"}},

@@ -59,7 +59,8 @@ void Builder::declare_contract(Family& family) {
   auto declare = [&](std::string relations, const std::vector<Interface>& methods) {
     Pou pou;
     pou.kind = PouKind::kInterface;
-    pou.name = contract.name = fresh("Contract");
+    pou.name = fresh("Contract");
+    contract.name = place_in_space(pou);
     pou.relations = std::move(relations);
     for (const Interface& face : methods) pou.methods.push_back(head_of(face));
     return pou;
@@ -114,7 +115,8 @@ Class Builder::declare_class(const Class* base, const Family& family, bool last)
   if (base != nullptr) out = *base;
   Pou pou;
   pou.kind = family.plain ? PouKind::kClass : PouKind::kFunctionBlock;
-  pou.name = out.face.name = fresh("Class");
+  pou.name = fresh("Class");
+  out.face.name = place_in_space(pou);
   const bool abstract = base == nullptr && family.abstract;
   pou.words = abstract ? "ABSTRACT " : last && one_in(3) ? "FINAL " : "";
   pou.relations =
@@ -130,7 +132,7 @@ Class Builder::declare_class(const Class* base, const Family& family, bool last)
   out.loops = loops_;
   Type type;
   type.form = Form::kBlock;
-  type.name = pou.name;
+  type.name = out.face.name;
   out.face.block = add_type(std::move(type));
   if (construction_ && one_in(3)) construct(pou, out.face, base);
   class_methods(pou, out, base, family);

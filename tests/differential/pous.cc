@@ -145,7 +145,7 @@ void Builder::function(uint32_t index) {
   pou.kind = kind_;
   pou.name = "Fun" + std::to_string(index);
   Interface face;
-  face.name = pou.name;
+  face.name = place_in_space(pou);
   if (!one_in(8)) pou.result = any_data();
   face.result = pou.result;
   parameters(pou, face);
@@ -171,7 +171,7 @@ void Builder::block(uint32_t index) {
   pou.kind = kind_;
   pou.name = "Block" + std::to_string(index);
   Interface face;
-  face.name = pou.name;
+  face.name = place_in_space(pou);
   parameters(pou, face);
   locals(pou, 3 + below(3));
   instances(pou);
@@ -179,7 +179,7 @@ void Builder::block(uint32_t index) {
   if (construction_ && one_in(4)) construct(pou, face, nullptr);
   Type type;
   type.form = Form::kBlock;
-  type.name = pou.name;
+  type.name = face.name;
   face.block = add_type(std::move(type));
   faces_[face.block] = face;
   program_.pous.push_back(std::move(pou));
@@ -193,6 +193,15 @@ void Builder::block(uint32_t index) {
     holder.members.push_back({fresh("m"), blocks_.back().block, std::nullopt, {}, {}});
     holders_.push_back(declared(std::move(holder)));
   }
+}
+
+// Its whole name: what others call it.
+std::string Builder::place_in_space(Pou& pou) {
+  static constexpr const char* kSpaces[] = {"Space0", "Space1", "Space0.Deep"};
+  if (!one_in(4)) return pou.name;
+  pou.space = kSpaces[below(3)];
+  spaces_.push_back(pou.space);
+  return pou.space + "." + pou.name;
 }
 
 // Statements, a chart or a list.
@@ -240,6 +249,8 @@ void Builder::program(uint32_t index, uint32_t count) {
   if (!holders_.empty()) {
     declare(pou, Section::kLocal, holders_[below(static_cast<uint32_t>(holders_.size()))], false);
   }
+  if (!spaces_.empty() && one_in(2))
+    pou.uses = spaces_[below(static_cast<uint32_t>(spaces_.size()))];
   if (index == 0) {
     Variable& output = declare(pou, Section::kLocal, elementary(ir::Kind::kBool));
     output.address = "%QX" + std::to_string(below(4)) + "." + std::to_string(below(8));

@@ -40,7 +40,7 @@ class Printer {
   std::string run() {
     types();
     for (const VarBlock& block : program_.globals) variables(block);
-    for (const Pou& one : program_.pous) pou(one);
+    for (const Pou& one : program_.pous) in_space(one);
     configuration();
     return std::move(out_);
   }
@@ -116,6 +116,29 @@ class Printer {
     line("END_VAR");
   }
 
+  void in_space(const Pou& one) {
+    if (!one.space.empty()) line("NAMESPACE " + one.space);
+    size_t begin = out_.size();
+    pou(one);
+    if (!one.uses.empty()) shorten(begin, one.uses);
+    if (!one.space.empty()) line("END_NAMESPACE");
+  }
+
+  // Names of that namespace stand alone.
+  void shorten(size_t begin, const std::string& space) {
+    std::string text = out_.substr(begin);
+    out_.resize(begin);
+    size_t done = 0;
+    for (size_t at = text.find(space + "."); at != std::string::npos;
+         at = text.find(space + ".", done)) {
+      size_t end = at + space.size() + 1;
+      bool deeper = text.compare(end, 4, "Deep") == 0;
+      out_ += text.substr(done, (deeper ? end : at) - done);
+      done = end;
+    }
+    out_ += text.substr(done);
+  }
+
   void pou(const Pou& one) {
     static constexpr const char* kHeads[] = {"FUNCTION", "FUNCTION_BLOCK", "PROGRAM",
                                              "CLASS",    "METHOD",         "INTERFACE"};
@@ -123,6 +146,7 @@ class Printer {
     if (!one.attribute.empty()) line(one.attribute);
     line(head + " " + one.words + one.name + one.relations +
          (one.result == kNoType ? "" : " : " + type_text(program_, one.result)));
+    if (!one.uses.empty()) line("  USING " + one.uses + ";");
     for (const VarBlock& block : one.blocks) variables(block);
     ++indent_;
     for (const Pou& method : one.methods) pou(method);

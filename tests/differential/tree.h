@@ -121,6 +121,8 @@ struct Pou {
   std::string attribute = {};  // "{attribute 'recursion_depth' := '5'}"
   std::string words = {};      // "ABSTRACT ", "OVERRIDE "
   std::string relations = {};  // " EXTENDS Class1 IMPLEMENTS Contract2"
+  std::string space = {};      // the namespace it stands in
+  std::string uses = {};       // one whose names stand alone in it
   std::vector<Pou> methods = {};
   std::vector<Stmt> members = {};  // actions and properties
 };
