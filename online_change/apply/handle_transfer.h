@@ -46,7 +46,6 @@ class HandleTransfer {
   };
 
   const ir::Image& old_;
-  const ir::Image& new_;
   PlaceMoves moves_;
   PlaceMoves moves_back_;
   std::vector<Reference> references_;  // of the new version
