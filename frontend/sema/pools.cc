@@ -14,6 +14,7 @@ constexpr uint32_t kMostElements = 65'535;
 }  // namespace
 
 void Pools::declare() {
+  declared_ = true;
   const size_t count = sema_.pous.size();
   for (size_t i = 0; i < count; ++i) {
     const PouInfo& info = sema_.pous[i];
@@ -150,6 +151,11 @@ bool Pools::holds_instance(ir::TypeId type) const {
 }
 
 const Pool* Pools::of_new(ExprId id) {
+  if (!declared_) {
+    sema_.error(DiagnosticCode::kBadPool, sema_.tree[id].span,
+                "no initial value is taken from a pool", "call __NEW in FB_Init, or in code");
+    return nullptr;
+  }
   const Expr* expr = &sema_.tree[id];
   if (expr->kind == ExprKind::kCall) expr = &sema_.tree[expr->operand];
   const bool named = expr->kind == ExprKind::kName || expr->kind == ExprKind::kMember;

@@ -56,6 +56,7 @@ class Pools {
 
   Sema& sema_;
   std::vector<Pool> pools_;
+  bool declared_ = false;
 };
 
 }  // namespace frontend
