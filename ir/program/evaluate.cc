@@ -8,6 +8,7 @@
 
 #include "ir/program/eval_inspect.h"
 #include "ir/program/eval_machine.h"
+#include "ir/program/eval_restart.h"
 #include "ir/types/inside.h"
 #include "ir/types/natural_layout.h"
 
@@ -33,6 +34,7 @@ struct Evaluator::Impl {
   EvalMachine machine;
   EvalInspector inspector;
   std::vector<EvalTrap> start_traps;  // of what ran before the first scan
+  bool start_pending = false;         // behind a restart
   std::vector<bool> released;         // by task
   std::vector<bool> level;            // of its event, when it was looked at last
 
@@ -51,13 +53,7 @@ struct Evaluator::Impl {
     for (Output& output : outputs) output.bytes.resize(output.variable->bytes.size());
     released.resize(program.tasks.size());
     level.resize(program.tasks.size());
-    run_start();
-  }
-
-  void run_start() {
-    for (const uint32_t task : by_priority([](const Task& each) { return each.once; })) {
-      add_trap(start_traps, run_task(task, 0, kStartBudget));
-    }
+    run_start_code(start_traps, 0);
   }
 
   // `located`: all of it is at %Q.
@@ -197,6 +193,29 @@ struct Evaluator::Impl {
     now = static_cast<T>((now & ~written) | (published & written));
   }
 
+  // What leaves traps in nobody's scan.
+  void restart(bool warm) {
+    EvalRestart data(program, memory.layouts, globals, instances);
+    if (data.mark_leaving()) {
+      std::vector<EvalTrap> unreported;
+      run_start_code(unreported, 0);
+    }
+    data.reset(warm);
+    for (Output& output : outputs) {
+      output.bits = output.variable->bits;
+      output.bytes = output.variable->bytes;
+    }
+    released.assign(released.size(), false);
+    level.assign(level.size(), false);
+    start_pending = true;
+  }
+
+  void run_start_code(std::vector<EvalTrap>& traps, int64_t now_ns) {
+    for (const uint32_t task : by_priority([](const Task& each) { return each.once; })) {
+      add_trap(traps, run_task(task, now_ns, kStartBudget));
+    }
+  }
+
   // Edges of events release tasks.
   void look_at_events() {
     for (uint32_t i = 0; i < program.tasks.size(); ++i) {
@@ -255,12 +274,13 @@ Evaluator::Evaluator(const Program& program, EvalMemory memory)
     : impl_(std::make_unique<Impl>(program, std::move(memory))) {}
 Evaluator::~Evaluator() = default;
 
-void Evaluator::run_start() { impl_->run_start(); }
+void Evaluator::run_start() { impl_->run_start_code(impl_->start_traps, 0); }
 
 std::vector<EvalTrap> Evaluator::scan(int64_t now_ns, uint64_t budget) {
   std::vector<EvalTrap> traps = std::exchange(impl_->start_traps, {});
   impl_->look_at_events();
   impl_->release_due(now_ns);
+  if (std::exchange(impl_->start_pending, false)) impl_->run_start_code(traps, now_ns);
   std::vector<bool> begun(impl_->program.tasks.size());
   while (const std::optional<uint32_t> task = impl_->next_task(begun)) {
     begun[*task] = true;
@@ -270,6 +290,8 @@ std::vector<EvalTrap> Evaluator::scan(int64_t now_ns, uint64_t budget) {
   }
   return traps;
 }
+
+void Evaluator::restart(bool warm) { impl_->restart(warm); }
 
 base::Result<uint64_t> Evaluator::bits(std::string_view path) const {
   const base::Result<Address> at = impl_->inspector.find_scalar(path);

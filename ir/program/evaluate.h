@@ -63,6 +63,10 @@ class Evaluator {
   // `budget` bounds the instructions of a task (kFuel trap).
   std::vector<EvalTrap> scan(int64_t now_ns, uint64_t budget);
 
+  // Which variables keep their values: those that are RETAIN, or none. What has FB_Exit leaves
+  // first; start code runs at the next scan.
+  void restart(bool warm);
+
   // One leaf variable by path ("Main.fb.x", "gCount", "Main.a[1,2].b"), without
   // case: its bits (sign-extended; bool 0/1), or a string's bytes.
   base::Result<uint64_t> bits(std::string_view path) const;

@@ -28,6 +28,7 @@ struct Controller::Impl {
   base::Result<ir::Symbol> writable(std::string_view path) const;
   void forces_changed();
   void set_change_flag(bool changed);
+  void reset_data(bool retain);
   base::Status leave(const std::vector<uint32_t>& ids, bool changed, int64_t limit_ns);
 
   Memory memory;
@@ -163,6 +164,38 @@ base::Status Controller::leave_all(int64_t limit_ns) {
   base::Status left = impl_->leave(ids, false, limit_ns);
   impl_->scheduler.send_outputs();
   return left;
+}
+
+base::Status Controller::restart(Restart kind, int64_t exit_limit_ns) {
+  base::Status left = base::Ok{};
+  if (kind != Restart::kHot) {
+    left = leave_all(exit_limit_ns);
+    impl_->reset_data(kind == Restart::kWarm);
+    impl_->set_change_flag(false);
+  }
+  impl_->scheduler.restart();
+  if (kind != Restart::kHot) impl_->scheduler.start_in_next_cycle();
+  return left;
+}
+
+// To initial values, in the areas of this program only.
+void Controller::Impl::reset_data(bool retain) {
+  uint8_t* data = memory.data();
+  std::vector<uint8_t> kept;
+  for (const ir::RetainRange& range : image().retain) {
+    kept.insert(kept.end(), data + range.data, data + range.data + range.size);
+  }
+  for (uint32_t id = 0; id < image().instances.size(); ++id) {
+    const ir::Instance& row = image().instances[id];
+    if (id != 0 && !row.live) continue;
+    std::memset(data + row.data, 0, image().layouts[row.type].area_capacity);
+  }
+  write_initial_data(image(), data);
+  const uint8_t* from = kept.data();
+  for (const ir::RetainRange& range : image().retain) {
+    if (retain) std::memcpy(data + range.data, from, range.size);
+    from += range.size;
+  }
 }
 
 base::Status Controller::Impl::leave(const std::vector<uint32_t>& ids, bool changed,

@@ -25,6 +25,9 @@
 
 namespace vm {
 
+// Which variables a restart leaves as they are: none, those that are RETAIN, all.
+enum class Restart : uint8_t { kCold, kWarm, kHot };
+
 enum class TrapPolicy : uint8_t { kStopTask, kStopAll };
 
 struct ControllerOptions {
@@ -108,6 +111,11 @@ class Controller {
   base::Status leave(const std::vector<uint32_t>& ids, int64_t limit_ns);
   // The same of all there are, and their outputs are sent: nothing runs behind it.
   base::Status leave_all(int64_t limit_ns);
+
+  // At a boundary, also behind a fault: all tasks run again. Cold and warm: instances leave first,
+  // unless a fault ended everything, and start code makes them anew in the next cycle. Forces stay.
+  // Returns the error of leave_all(), behind which the restart is made all the same.
+  base::Status restart(Restart kind, int64_t exit_limit_ns);
 
  private:
   Controller();

@@ -63,6 +63,21 @@ bool Scheduler::run_exits(int64_t limit_ns) {
   return !exit_failed_;
 }
 
+void Scheduler::restart() {
+  base::check(at_boundary(), "a restart while a task is inside a scan");
+  auto next = [](int64_t at, int64_t step, int64_t from) {
+    return at >= from ? at : at + (from - at + step - 1) / step * step;
+  };
+  next_cycle_ns_ = next(next_cycle_ns_, tables_->base_period_ns, clock_.now_ns());
+  for (TaskSlot& task : tables_->tasks) {
+    task.status.stopped = task.released = task.event_level = false;
+    const int64_t period = task.status.period_ns;
+    if (period != 0) task.next_release_ns = next(task.next_release_ns, period, next_cycle_ns_);
+  }
+  outputs_stale_ = true;
+  faulted_ = start_pending_ = false;
+}
+
 void Scheduler::run_cycle() {
   if (faulted_) return;
   begin_cycle();

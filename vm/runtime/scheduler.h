@@ -20,6 +20,9 @@ class Scheduler {
   // At a boundary: them, for instances that leave. A trap, or more than `limit_ns`, ends them, and
   // nothing else: false.
   bool run_exits(int64_t limit_ns);
+  // At a boundary, also behind a fault: every task runs again, in its phase; none has missed a
+  // release until then.
+  void restart();
   void send_outputs() { io_.send(tables_->outputs); }
   void run_cycle();
   bool at_boundary() const { return active_.empty(); }

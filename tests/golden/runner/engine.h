@@ -33,6 +33,8 @@ class Engine {
   virtual base::Status set(const std::string& path, const std::string& value) = 0;
   virtual base::Status force(const std::string& path, const std::string& value);
   virtual base::Status unforce(const std::string& path);
+  enum class Restart : uint8_t { kCold, kWarm, kHot };
+  virtual base::Status restart(Restart kind) = 0;
   // Online change; the lines of its report.
   virtual base::Result<std::vector<std::string>> change(const Program& next, bool allow_loss);
   virtual base::Status undo();

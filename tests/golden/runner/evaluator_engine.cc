@@ -26,6 +26,11 @@ class EvaluatorEngine : public Engine {
     return base::Error{base::Refusal::kUsage, "a script with `set` needs mode change"};
   }
 
+  base::Status restart(Restart kind) override {
+    if (kind != Restart::kHot) evaluator_.restart(kind == Restart::kWarm);
+    return base::Ok{};
+  }
+
  private:
   ir::Evaluator evaluator_;
   int64_t period_ns_;

@@ -90,6 +90,14 @@ class MachineEngine : public Engine {
   }
   base::Status unforce(const std::string& path) override { return controller_->unforce(path); }
 
+  base::Status restart(Restart kind) override {
+    constexpr int64_t kExitLimitNs = 1'000'000'000;
+    constexpr vm::Restart kKinds[] = {vm::Restart::kCold, vm::Restart::kWarm, vm::Restart::kHot};
+    // What FB_Exit trapped is on record; the evaluator does not report it either.
+    (void)controller_->restart(kKinds[static_cast<size_t>(kind)], kExitLimitNs);
+    return base::Ok{};
+  }
+
   base::Result<std::vector<std::string>> change(const Program& next, bool allow_loss) override {
     base::Status staged = stage(next, false);
     if (!staged.ok()) return staged.error();

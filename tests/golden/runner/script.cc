@@ -99,11 +99,24 @@ class Runner {
       change(args, output);
     } else if (verb == "undo") {
       note(engine_.undo(), output);
+    } else if (verb == "restart" && args.size() == 1) {
+      restart(args[0], output);
     } else if (verb == "accept") {
       note(engine_.accept(), output);
     } else {
       fail({base::Refusal::kUsage, "script: `" + test_.steps[index].command + "`"});
     }
+  }
+
+  // All tasks run again, also behind a trap.
+  void restart(const std::string& kind, std::vector<std::string>& output) {
+    constexpr const char* kKinds[] = {"cold", "warm", "hot"};
+    for (size_t i = 0; i < std::size(kKinds); ++i) {
+      if (kind != kKinds[i]) continue;
+      stopped_ = false;
+      return note(engine_.restart(static_cast<Engine::Restart>(i)), output);
+    }
+    fail({base::Refusal::kUsage, "script: restart cold, warm or hot"});
   }
 
   void note(const base::Status& status, std::vector<std::string>& output) {
