@@ -5,7 +5,7 @@
 
 namespace stvm {
 
-// What FB_Exit of all instances may take at the end of a run.
+// What FB_Exit of all instances may take at the end of a run, or before a restart.
 inline constexpr int64_t kExitLimitNs = 1'000'000'000;
 
 using tools::Entry;
@@ -23,6 +23,7 @@ extern const Entry kChange;
 extern const Entry kUndo;
 extern const Entry kAccept;
 extern const Entry kStop;
+extern const Entry kRestart;
 
 #define STVM_DIR_OPTION \
   { "--dir", "STATE", "state directory of the controller (default: $STVM_DIR, else .stvm)" }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "tools/stvm/commands.h"
 
 namespace stvm {
 namespace {
@@ -77,6 +78,8 @@ base::Result<base::Bytes> ControllerService::dispatch(const vm::Request& request
       return cancel(request);
     case vm::Command::kStop:
       return stop(request);
+    case vm::Command::kRestart:
+      return restart(request);
   }
   return base::Error{base::Refusal::kProtocol, "unknown command"};
 }
@@ -242,6 +245,19 @@ base::Result<base::Bytes> ControllerService::image(const vm::Request& request) {
 base::Result<base::Bytes> ControllerService::stop(const vm::Request&) {
   stop_wanted_.store(true, std::memory_order_relaxed);
   return nothing();
+}
+
+// The answer is what FB_Exit had to say, mostly nothing.
+base::Result<base::Bytes> ControllerService::restart(const vm::Request& request) {
+  if (request.flags > static_cast<uint32_t>(vm::Restart::kHot)) {
+    return base::Error{base::Refusal::kProtocol, "a restart is cold, warm or hot"};
+  }
+  const auto kind = static_cast<vm::Restart>(request.flags);
+  base::Status left = base::Ok{};
+  base::Status taken = at_boundary([&] { left = controller_.restart(kind, kExitLimitNs); });
+  if (!taken.ok()) return taken.error();
+  const std::string text = left.ok() ? std::string() : base::to_string(left.error());
+  return base::Bytes(text.begin(), text.end());
 }
 
 }  // namespace stvm

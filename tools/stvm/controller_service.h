@@ -43,6 +43,7 @@ class ControllerService : public vm::Service {
   Answer accept(const vm::Request& request);
   Answer cancel(const vm::Request& request);
   Answer stop(const vm::Request& request);
+  Answer restart(const vm::Request& request);
 
   base::Status check_expected(const vm::Request& request) const;
   // Runs `job` on the control thread at a boundary and waits for its end.

@@ -22,6 +22,7 @@ bool on_trial(const vm::StatusReport& report) { return report.change == "trial";
 void print_versions(const vm::StatusReport& report) {
   const char* state = report.faulted ? "FAULT" : on_trial(report) ? "running, on trial" : "running";
   std::printf("%s: %s\n", report.name.c_str(), state);
+  if (report.faulted) std::printf("  `stvm restart` runs it again\n");
   std::printf("  running     %s\n", base::short_hex(report.running).c_str());
   if (on_trial(report)) {
     std::printf("  undo brings %s\n", base::short_hex(report.previous).c_str());

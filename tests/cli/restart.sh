@@ -1,0 +1,44 @@
+#!/bin/sh
+# stvm restart: a controller that a trap has stopped runs again, with the values that are asked for.
+. "$(dirname "$0")/lib.sh"
+cat >plant.st <<'ST'
+VAR_GLOBAL RETAIN total : INT; END_VAR
+VAR_GLOBAL divisor : INT := 1; quotient : INT; END_VAR
+PROGRAM P VAR scans : INT; END_VAR
+scans := scans + 1; total := total + 1; quotient := 10 / divisor;
+END_PROGRAM
+ST
+stc build plant.st -o plant.img 2>/dev/null
+serve plant plant.img
+expect 0 stvm set divisor=0 --dir plant
+wait_for() {
+  for _ in $(seq 100); do
+    stvm status --dir plant >out 2>&1 && grep -q "$1" out && return
+    sleep 0.05
+  done
+  fail "never: $1"
+}
+wait_for 'FAULT'
+grep -q 'stvm restart' out || fail "$(cat out)"
+expect 0 stvm get total divisor --dir plant
+said '^divisor=0'
+expect 2 stvm restart --warm --cold --dir plant
+said 'one of --warm, --cold and --hot'
+expect 0 stvm restart --dir plant
+said 'restarted, warm'
+wait_for 'running'
+expect 0 stvm get divisor --dir plant
+said '^divisor=1'
+before=$(stvm get total --format json --dir plant | tr -dc 0-9)
+[ "$before" -gt 1 ] || fail "total is $before"
+expect 0 stvm set divisor=0 --dir plant
+wait_for 'FAULT'
+expect 0 stvm restart --hot --format json --dir plant
+said '"restarted": *"hot"'
+wait_for 'FAULT'
+expect 0 stvm set total=30000 --dir plant
+expect 0 stvm restart --cold --dir plant
+wait_for 'running'
+after=$(stvm get total --format json --dir plant | tr -dc 0-9)
+[ "$after" -lt 30000 ] || fail "total is $after"
+expect 0 stvm stop --dir plant

@@ -1,0 +1,75 @@
+// stvm restart: all tasks run again, also behind a fault.
+#include <cstdio>
+
+#include "tools/common/exit.h"
+#include "tools/common/json.h"
+#include "tools/stvm/commands.h"
+#include "tools/stvm/controller_client.h"
+
+namespace stvm {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {{"--warm", nullptr, "keeps what is RETAIN (default)"},
+                                         {"--cold", nullptr, "keeps nothing: all initial values"},
+                                         {"--hot", nullptr, "keeps all values: only goes on"},
+                                         STVM_DIR_OPTION,
+                                         STVM_FORMAT_OPTION};
+constexpr tools::Command kCommand{"restart", "", "Runs all tasks again, behind a fault too.",
+                                  kOptions,  0,  0};
+
+struct Kind {
+  const char* option;
+  const char* name;
+  vm::Restart restart;
+};
+constexpr Kind kKinds[] = {{"--warm", "warm", vm::Restart::kWarm},
+                           {"--cold", "cold", vm::Restart::kCold},
+                           {"--hot", "hot", vm::Restart::kHot}};
+
+base::Result<Kind> chosen(const tools::Options& options) {
+  const Kind* found = nullptr;
+  for (const Kind& kind : kKinds) {
+    if (!options.has(kind.option)) continue;
+    if (found != nullptr) {
+      return base::Error{base::Refusal::kUsage, "restart: one of --warm, --cold and --hot"};
+    }
+    found = &kind;
+  }
+  return found == nullptr ? kKinds[0] : *found;
+}
+
+base::Status restart(const tools::Options& options) {
+  base::Result<bool> json = wants_json(options);
+  if (!json.ok()) return json.error();
+  base::Result<Kind> kind = chosen(options);
+  if (!kind.ok()) return kind.error();
+  base::Result<ControllerClient> client = ControllerClient::connect(state_directory(options));
+  if (!client.ok()) return client.error();
+  base::Result<vm::StatusReport> status = client->status();  // which version runs
+  if (!status.ok()) return status.error();
+  vm::Request request{.command = vm::Command::kRestart};
+  request.flags = static_cast<uint32_t>(kind->restart);
+  base::Result<base::Bytes> answer = client->call(request);
+  if (!answer.ok()) return answer.error();
+  const std::string left(answer->begin(), answer->end());
+  if (!*json) {
+    std::printf("restarted, %s\n", kind->name);
+    if (!left.empty()) std::printf("  not all instances left: %s\n", left.c_str());
+    return base::Ok{};
+  }
+  tools::JsonWriter out;
+  out.begin_object().field("restarted", kind->name).field("exit_error", left).end_object();
+  std::fputs(out.finish().c_str(), stdout);
+  return base::Ok{};
+}
+
+int run(const tools::Options& options) {
+  base::Status done = restart(options);
+  return done.ok() ? tools::kOk : refuse(done.error());
+}
+
+}  // namespace
+
+const Entry kRestart{&kCommand, run};
+
+}  // namespace stvm
