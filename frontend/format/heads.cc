@@ -122,6 +122,7 @@ void Outliner::named_group(TokenKind end, BlockKind block) {
   }
   add_head(behind_semicolons(i));
   push(end, block, top().inner + 1);
+  top().pou = end == TokenKind::kEndNamespace;
 }
 
 void Outliner::property_part(TokenKind end) {

@@ -63,14 +63,16 @@ Note Sema::infer_member(const Expr& expr) {
 // The type that stands before `.a`; "": none does. `colour : Colour` is common: the type is meant
 // where the variable has no members.
 std::string_view Sema::enumeration_named(const Expr& head) {
+  auto enumeration = [this](ir::TypeId type) {
+    return type.valid() && is_enum(program.types, type);
+  };
+  const VarId variable = head.kind == ExprKind::kName ? find_variable(head.name) : VarId();
+  if (variable.valid() && !enumeration(resolve(variable).type)) return {};
   const std::string_view name = namespaces.find(NameSort::kDeclaration, head);
   if (name.empty() || !types_.contains(name)) return {};
-  VarId variable = head.kind == ExprKind::kName ? find_variable(head.name) : VarId();
   if (!variable.valid()) return name;
-  ir::TypeId type = resolve(variable).type;
-  if (!type.valid() || !is_enum(program.types, type)) return {};
   auto use = find_type(name);
-  return use && is_enum(program.types, use->type) ? name : std::string_view();
+  return use && enumeration(use->type) ? name : std::string_view();
 }
 
 // `x.NUMBER`: the bit that a constant names.

@@ -16,6 +16,11 @@ std::string joined(std::string_view path, std::string_view name) {
   return text += name;
 }
 
+// Is the name of the namespace with those around it not too long?
+bool fits(std::string_view around, std::string_view name) {
+  return around.empty() || around.size() + name.size() < base::kMaxIdentifier;
+}
+
 // "A" of "A.B"; "" of "A".
 std::string_view outer_path(std::string_view path) {
   const size_t dot = path.rfind('.');
@@ -46,8 +51,8 @@ void Namespaces::add_scopes() {
     const Scope& scope = tree.scopes[i];
     if (!scope.name.empty()) {
       const std::string_view around = paths_[scope.parent.index];
-      const bool fits = around.size() + scope.name.text.size() < base::kMaxIdentifier;
-      paths_[i] = fits ? keep(joined(around, scope.name.text)) : around;
+      const bool shorter = fits(around, scope.name.text);
+      paths_[i] = shorter ? keep(joined(around, scope.name.text)) : around;
       known_.emplace(paths_[i], true);
       words_.emplace(scope.name.text, true);
     }
@@ -119,22 +124,27 @@ std::string_view Namespaces::declare(NameSort sort, ScopeId scope, const Name& n
 void Namespaces::check() {
   for (const Scope& scope : sema_.tree.scopes) {
     if (scope.name.empty()) continue;
-    const std::string_view around = paths_[scope.parent.index];
-    if (around.size() + scope.name.text.size() < base::kMaxIdentifier) continue;
+    if (fits(paths_[scope.parent.index], scope.name.text)) continue;
     sema_.error(DiagnosticCode::kTooComplex, scope.name.span,
                 "the name of this namespace, with those around it, has more than " +
                     std::to_string(base::kMaxIdentifier) + " characters");
     return;
   }
   for (Region& region : regions_) {
-    for (Range32 written : region.written) resolve_using(region, written);
+    const size_t around = region.outer == kNoRegion ? 0 : regions_[region.outer].used;
+    region.used = around + region.written.size();
+    if (region.used <= base::kMaxUsings) {
+      for (Range32 written : region.written) resolve_using(region, written);
+    } else if (around <= base::kMaxUsings) {
+      sema_.error(DiagnosticCode::kTooComplex, sema_.tree.names[region.written[0].first].span,
+                  std::to_string(region.used) + " namespaces by USING",
+                  "use at most " + std::to_string(base::kMaxUsings));
+    }
   }
 }
 
 void Namespaces::resolve_using(Region& region, Range32 written) {
-  const Name* names = &sema_.tree.names[written.first];
-  std::string path(names[0].text);
-  for (uint32_t i = 1; i < written.count; ++i) path = joined(path, names[i].text);
+  const std::string path = path_of(written);
   for (std::string_view around = region.path;; around = outer_path(around)) {
     if (auto found = known_.find(joined(around, path)); found != known_.end()) {
       region.usings.push_back(found->first);
@@ -145,8 +155,8 @@ void Namespaces::resolve_using(Region& region, Range32 written) {
   if (stdlib::is_vendor_library(path)) return;
   NearestName nearest(path);
   nearest.offer_all(known_);
-  sema_.error(DiagnosticCode::kUnknownName, names[0].span, quoted(path) + " is not a namespace",
-              nearest.fix());
+  sema_.error(DiagnosticCode::kUnknownName, sema_.tree.names[written.first].span,
+              quoted(path) + " is not a namespace", nearest.fix());
 }
 
 bool Namespaces::inside(base::SourcePos at, ScopeId scope) const {
@@ -159,10 +169,8 @@ std::string_view Namespaces::find(NameSort sort, const Name& name) {
 
 std::string_view Namespaces::find(NameSort sort, Range32 qualifiers, const Name& name) {
   if (qualifiers.count == 0) return find(sort, name);
-  const Name* names = &sema_.tree.names[qualifiers.first];
-  std::string text;
-  for (uint32_t i = 0; i < qualifiers.count; ++i) text = joined(text, names[i].text);
-  return find(sort, keep(joined(text, name.text)), {names[0].span.begin, name.span.end});
+  const base::SourcePos begin = sema_.tree.names[qualifiers.first].span.begin;
+  return find(sort, keep(joined(path_of(qualifiers), name.text)), {begin, name.span.end});
 }
 
 std::string_view Namespaces::find(NameSort sort, std::string_view written, base::SourceSpan span) {
@@ -171,7 +179,7 @@ std::string_view Namespaces::find(NameSort sort, std::string_view written, base:
   if (plain && regions_.empty()) return written;
   const std::string_view from = path_at(span.begin);
   Table::const_iterator found = find_around(table, written, from);
-  if (found == table.end() && plain) found = find_used(table, {written, span});
+  if (found == table.end() && plain) found = find_used(sort, {written, span});
   if (found == table.end()) return plain ? written : find_in_library(sort, written);
   if (auto path = closed_to(found->second, from)) report_internal(found->first, *path, span);
   return found->first;
@@ -187,32 +195,28 @@ Namespaces::Table::const_iterator Namespaces::find_around(const Table& table,
   return table.find(written);
 }
 
-// What all USINGs around the place make visible. INTERNAL names count only when nothing else has
-// the name.
-Namespaces::Table::const_iterator Namespaces::find_used(const Table& table, const Name& name) {
+// What all USINGs around the place make visible; INTERNAL names of others are none of it.
+Namespaces::Table::const_iterator Namespaces::find_used(NameSort sort, const Name& name) {
+  const Table& table = declared_[static_cast<size_t>(sort)];
   const std::string_view from = path_at(name.span.begin);
-  Table::const_iterator best = table.end();
-  bool open = false;
+  Table::const_iterator first = table.end();
   for (uint32_t at = region_at(name.span.begin); at != kNoRegion; at = regions_[at].outer) {
     for (std::string_view used : regions_[at].usings) {
       const auto found = table.find(joined(used, name.text));
-      if (found == table.end() || found == best) continue;
-      const bool closed = closed_to(found->second, from).has_value();
-      if (closed && best != table.end()) continue;
-      const bool several = open && !closed;
-      if (several && &table == &declared_[static_cast<size_t>(NameSort::kLiteral)]) {
+      if (found == table.end() || found == first || closed_to(found->second, from)) continue;
+      if (first == table.end()) {
+        first = found;
+      } else if (sort == NameSort::kLiteral) {
         several_.insert(name.span.begin.offset);
-      } else if (several && first_report(name.span)) {
+      } else if (first_report(name.span)) {
         sema_.error(DiagnosticCode::kAmbiguousName, name.span,
-                    quoted(name.text) + " may be " + quoted(best->first) + " or " +
+                    quoted(name.text) + " may be " + quoted(first->first) + " or " +
                         quoted(found->first) + ", by USING",
                     "write the whole name");
       }
-      if (!open) best = found;
-      open = open || !closed;
     }
   }
-  return best;
+  return first;
 }
 
 // Standard.TON
@@ -268,6 +272,15 @@ const Expr* Namespaces::head_of(const Expr& expr) const {
   const Expr* head = &expr;
   while (head->kind == ExprKind::kMember) head = &sema_.tree[head->operand];
   return head->kind == ExprKind::kName && !head->global ? head : nullptr;
+}
+
+std::string Namespaces::path_of(Range32 names) const {
+  std::string path(sema_.tree.names[names.first].text);
+  for (uint32_t i = 1; i < names.count; ++i) {
+    path += '.';
+    path += sema_.tree.names[names.first + i].text;
+  }
+  return path;
 }
 
 std::string Namespaces::path_of(const Expr& expr) const {

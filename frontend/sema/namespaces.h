@@ -74,6 +74,7 @@ class Namespaces {
     std::string_view path;
     std::vector<Range32> written;          // USING
     std::vector<std::string_view> usings;  // the namespaces that are meant
+    size_t used = 0;                       // by those around it, too
   };
 
   void add_scopes();
@@ -86,7 +87,7 @@ class Namespaces {
   std::string_view find(NameSort sort, std::string_view written, base::SourceSpan span);
   Table::const_iterator find_around(const Table& table, std::string_view written,
                                     std::string_view path) const;
-  Table::const_iterator find_used(const Table& table, const Name& name);
+  Table::const_iterator find_used(NameSort sort, const Name& name);
   std::string_view find_in_library(NameSort sort, std::string_view written);
   std::string_view library_alias(std::string_view name);
   // The innermost namespace around whose own INTERNAL keeps `from` out; nullopt: none does.
@@ -95,6 +96,7 @@ class Namespaces {
   bool first_report(base::SourceSpan span);
   const Expr* head_of(const Expr& expr) const;
   std::string path_of(const Expr& expr) const;
+  std::string path_of(Range32 names) const;
 
   Sema& sema_;
   std::vector<std::string_view> paths_;  // by scope

@@ -31,6 +31,35 @@ TEST(Limits, Tries) {
   EXPECT_EQ(compile(tries(base::kMaxTryDepth + 1)).errors(), "E6001");
 }
 
+// Half of the USINGs at the head of the file, half in the program.
+std::string usings(uint32_t count) {
+  std::string text;
+  std::string inner;
+  for (uint32_t i = 0; i < count; ++i) {
+    const std::string name = "N" + std::to_string(i);
+    text += "NAMESPACE " + name + " TYPE T" + std::to_string(i) + " : INT; END_TYPE END_NAMESPACE ";
+    (i % 2 == 0 ? text : inner) += "USING " + name + "; ";
+  }
+  const std::string last = "T" + std::to_string(base::kMaxUsings - 1);
+  return text + "PROGRAM P " + inner + "VAR n : " + last + "; END_VAR n := 1; END_PROGRAM\n";
+}
+
+TEST(Limits, kMaxUsings) {
+  EXPECT_EQ(compile(usings(base::kMaxUsings)).errors(), "");
+  EXPECT_EQ(compile(usings(base::kMaxUsings + 1)).errors(), "E6003 E2003");
+}
+
+// The names of namespaces around each other, with their dots, are as long as an identifier may be.
+TEST(Limits, NamespacePath) {
+  auto space = [](uint32_t length) {
+    const std::string first(base::kMaxIdentifier / 2, 'A');
+    const std::string second(length - first.size() - 1, 'B');
+    return "NAMESPACE " + first + "." + second + " TYPE T : INT; END_TYPE END_NAMESPACE\n";
+  };
+  EXPECT_EQ(errors(space(base::kMaxIdentifier), "n : INT;"), "");
+  EXPECT_EQ(errors(space(base::kMaxIdentifier + 1), "n : INT;"), "E6003");
+}
+
 TEST(Limits, Enumerators) {
   EXPECT_EQ(errors(enumeration(base::kMaxEnumerators), "e : E;"), "");
   EXPECT_EQ(errors(enumeration(base::kMaxEnumerators + 1), "e : E;"), "E6003");
