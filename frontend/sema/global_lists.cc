@@ -60,8 +60,9 @@ std::optional<Note> Sema::infer_list_member(const Expr& expr) {
   if (variable.valid()) return variable_note(variable);
   if (namespaces.is_namespace(head)) return infer_enum_name(expr);
   const GlobalList* list = namespaces.list(head);
+  if (list == nullptr) return std::nullopt;
   const std::string_view other = namespaces.find(NameSort::kDeclaration, head);
-  if (list == nullptr || types_.contains(other) || pou_names_.contains(other)) return std::nullopt;
+  if (types_.contains(other) || pou_names_.contains(other)) return std::nullopt;
   NearestName nearest(expr.name.text);
   nearest.offer_all(list->names);
   error(DiagnosticCode::kUnknownName, expr.name.span,
