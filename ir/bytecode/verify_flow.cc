@@ -90,7 +90,7 @@ bool CodeVerifier::find_loops(const std::vector<uint32_t>& calls) {
       }
       const auto inside = std::lower_bound(calls.begin(), calls.end(), pou_.merges[head].unit);
       arrivals_[head].loop_head = true;
-      arrivals_[head].calls_inside |= inside != calls.end() && *inside < unit_;
+      arrivals_[head].calls_inside |= inside != calls.end() && *inside <= unit_;
     }
     if (opcode_row(u_.opcode()).extended) ++unit_;
   }
