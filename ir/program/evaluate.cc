@@ -340,6 +340,10 @@ base::Status Evaluator::set_bytes(std::string_view path, std::span<const uint8_t
     return at.error();
   }
   impl_->references.bytes().write(*at->root, at->offset, bytes);
+  for (Impl::Output& output : impl_->outputs) {
+    output.bits = output.variable->bits;
+    output.bytes = output.variable->bytes;
+  }
   return base::Ok{};
 }
 

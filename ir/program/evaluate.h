@@ -73,7 +73,7 @@ class Evaluator {
   base::Result<std::string> string(std::string_view path) const;
   base::Status set_bits(std::string_view path, uint64_t bits);
   // As they are in memory, of a structure too: with what overlaps other leaves, follows a NUL or
-  // is padding.
+  // is padding. Outputs count as left by a complete scan.
   base::Status set_bytes(std::string_view path, std::span<const uint8_t> bytes);
   // Cut to the capacity; WSTRING: UTF-16LE.
   base::Status set_string(std::string_view path, std::string_view text);
