@@ -158,6 +158,7 @@ void PoolCode::reset_method() {
 }
 
 void PoolCode::reset(const ir::Place& at, ir::TypeId id, ir::ConstId init) {
+  if (!types().contains(id)) return;  // of a member whose type nobody knows
   const ir::Type type = types()[id];
   if (types().is_scalar(id)) {
     if (!init.valid()) init = type.init;
@@ -203,6 +204,7 @@ void PoolCode::leave_method() {
 
 // From the outside in.
 void PoolCode::leave(const ir::Place& at, ir::TypeId id) {
+  if (!types().contains(id)) return;
   if (!sema_.pools.leaves(id)) return;
   const ir::Type type = types()[id];
   if (type.kind == ir::Kind::kArray) {

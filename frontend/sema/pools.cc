@@ -108,6 +108,7 @@ void Pools::add(const Name& name, ir::TypeId type, uint32_t block, bool boxed, u
 // __RESET for every block that a pool's elements are or hold, __LEAVE where something leaves.
 void Pools::add_methods(ir::TypeId type) {
   const ir::TypeTable& types = sema_.program.types;
+  if (!types.contains(type)) return;  // of a member whose type nobody knows
   while (types[type].kind == ir::Kind::kArray) type = types[type].base;
   if (!types.has_members(type)) return;
   const PouInfo* block = sema_.pou_of(type);
@@ -128,6 +129,7 @@ void Pools::add_methods(ir::TypeId type) {
 
 bool Pools::leaves(ir::TypeId type) {
   const ir::TypeTable& types = sema_.program.types;
+  if (!types.contains(type)) return false;
   while (types[type].kind == ir::Kind::kArray) type = types[type].base;
   if (!types.has_members(type)) return false;
   const PouInfo* block = sema_.pou_of(type);
@@ -142,6 +144,7 @@ bool Pools::leaves(ir::TypeId type) {
 
 bool Pools::holds_instance(ir::TypeId type) const {
   const ir::TypeTable& types = sema_.program.types;
+  if (!types.contains(type)) return false;
   while (types[type].kind == ir::Kind::kArray) type = types[type].base;
   if (types.is_instance(type)) return true;
   if (!types.has_members(type)) return false;
