@@ -46,7 +46,10 @@ void ChartBody::step_uses() {
     const std::vector<sfc::Use>& uses = net_.steps[step].uses;
     bool active = false;
     for (const sfc::Use& use : uses) {
-      for (ExprId indicator : use.decl->indicators) sema_.infer(indicator);
+      for (ExprId indicator : use.decl->indicators) {
+        const VarId variable = sema_.infer(indicator).variable;
+        if (variable.valid()) sema_.mark_written(variable);  // by what the action says
+      }
       if (use.decl->qualifier != ActionQualifier::kP0) {
         active = true;
         continue;

@@ -270,6 +270,7 @@ bool Body::check_writable_variable(const Expr& expr, VarId id) {
                 "copy it to a variable of its own");
     return false;
   }
+  sema_.mark_written(id);
   if (variable->decl != nullptr && variable->decl->has_address) {
     note_output(variable->decl->address, variable->type, expr.span);
   }

@@ -39,6 +39,14 @@ ir::ValueId Body::moved(ir::ValueId handle, ir::ValueId count, ir::TypeId elemen
 // The place itself, also of what is constant: references need a home.
 ir::Place Body::addressable_place(ExprId id) {
   const Expr& expr = tree_[id];
+  ExprId whole = id;
+  while (tree_[whole].kind == ExprKind::kMember || tree_[whole].kind == ExprKind::kIndex) {
+    if (sema_.infer(whole).variable.valid()) break;
+    whole = tree_[whole].operand;
+  }
+  if (VarId variable = sema_.infer(whole).variable; variable.valid()) {
+    sema_.mark_written(variable);  // who has the address can
+  }
   const Note& note = sema_.infer(id);
   const bool part = note.bit_size != 0;
   const bool value = expr.kind == ExprKind::kLiteral || expr.kind == ExprKind::kCall ||

@@ -323,15 +323,30 @@ bool Sema::use_library(std::string_view name) {
 
 // After errors much is unused that will not stay so.
 void Sema::report_unused() {
+  // Values that stay what their type begins with. Retained ones may come from somewhere.
+  auto never_written = [this](const Variable& variable) {
+    return !variable.written && !variable.constant && !variable.retain && !variable.hidden &&
+           !variable.decl->init.valid() && variable.type.valid() &&
+           program.types.is_scalar(variable.type) && !program.types.is_reference(variable.type) &&
+           !program.types[variable.type].init.valid();
+  };
   if (diagnostics_.has_errors()) return;
   for (const Variable& variable : variables_) {
     bool private_section = variable.section == VarSection::kLocal ||
                            variable.section == VarSection::kTemp ||
                            variable.section == VarSection::kStatic;
     if (variable.access == Access::kPublic) continue;  // as an output
-    if (variable.used || !private_section || variable.decl->has_address) continue;
-    if (variable.decl->implied) continue;
+    if (!private_section || variable.decl == nullptr) continue;
+    if (variable.decl->has_address || variable.decl->implied) continue;
     if (variable.pou != kNoPou && pous[variable.pou].open) continue;
+    if (variable.used) {
+      if (never_written(variable)) {
+        warning(DiagnosticCode::kNeverWritten, variable.name.span,
+                "`" + std::string(variable.name.text) + "` is read, but nothing here writes it",
+                "give it an initial value, if that is what it is for");
+      }
+      continue;
+    }
     warning(DiagnosticCode::kUnusedVariable, variable.name.span,
             "`" + std::string(variable.name.text) + "` is never used");
   }

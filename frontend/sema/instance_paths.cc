@@ -25,7 +25,7 @@ void InstancePaths::configure(const std::vector<VarBlock>& blocks) {
 
 bool InstancePaths::global(VarId id, Path& path) {
   const Variable& variable = sema_.resolve(id);
-  sema_.variables_[id.index].used = true;
+  sema_.variables_[id.index].used = sema_.variables_[id.index].written = true;
   const ir::Member& member = sema_.program.types[sema_.program.globals].members[variable.index];
   path.text = member.name;
   path.global = true;
@@ -67,7 +67,7 @@ bool InstancePaths::member(const Expr& expr, Path& path) {
     const VarId found = sema_.objects.find_variable(block->number, expr.name.text);
     if (found.valid() && sema_.resolve(found).storage == Storage::kMember) {
       variable = found;
-      sema_.variables_[found.index].used = true;
+      sema_.variables_[found.index].used = sema_.variables_[found.index].written = true;
       member = static_cast<int32_t>(sema_.resolve(found).index);
     }
   } else {

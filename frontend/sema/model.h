@@ -39,6 +39,7 @@ struct Variable {
   bool retain = false;
   bool non_retain = false;  // says NON_RETAIN
   bool used = false;
+  bool written = false;  // by code, or its address was taken
   bool hidden = false;        // not of the source: see hidden_variables.cc
   bool stamp = false;         // of start code: ir::Section::kStamp
   bool by_reference = false;  // in-out of a function block: a REFERENCE TO bound at each call

@@ -42,6 +42,7 @@ class Sema {
   void configure();
   void finish_programs();  // after all bodies, as check_output_tasks
   void report_unused();
+  void mark_written(VarId id) { variables_[id.index].written = true; }
   bool for_tests() const { return purpose_ == Purpose::kTest; }
   // Member of the globals that takes the message of a failed assertion.
   uint32_t test_message() const { return test_message_; }
@@ -83,8 +84,7 @@ class Sema {
   Callee callee(const Expr& call);
   // Does a conversion to a string give the names of this enumeration's literals?
   bool prints_names(ir::TypeId enumeration) const;
-  // Arguments of a standard function in the order of its parameters; none when reported.
-  // Outputs that are not connected are invalid.
+  // In the order of the parameters; none when reported. Outputs not connected are invalid.
   std::vector<ExprId> standard_arguments(const Expr& call, const stdlib::FunctionRow& row);
   // Is this the implicit EN or ENO of the callee (null: a standard function)?
   bool is_enable(const Arg& arg, const PouInfo* callee) const;
