@@ -4,7 +4,7 @@
 # usage: conformance.sh ROOT LIST
 #
 #   page TITLE
-#   table NAME TITLE
+#   table [NUMBER] TITLE
 #   FEATURE | PATTERN (extended regular expression, without case) | TEST [; TEST]... under tests/golden
 #
 # A feature without a test is printed as "no"; text behind "no:" says why.
@@ -61,11 +61,9 @@ while IFS= read -r line; do
     '' | '#'*) ;;
     'page '*) title=${line#page } ;;
     'table '*)
-      name=${line#table }
-      heading=${name#* }
-      name=${name%% *}
-      case $name in [0-9]*) name="Table $name" ;; esac
-      printf '\n## %s: %s\n\n| feature | supported | shown by |\n| --- | --- | --- |\n' "$name" "$heading"
+      heading=${line#table }
+      case $heading in [0-9]*) heading="Table ${heading%% *}: ${heading#* }" ;; esac
+      printf '\n## %s\n\n| feature | supported | shown by |\n| --- | --- | --- |\n' "$heading"
       ;;
     *) row ;;
   esac
