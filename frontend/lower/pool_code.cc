@@ -25,6 +25,13 @@ ir::Place element_at(ir::Place array, ir::ValueId index, ir::TypeId type) {
   return array;
 }
 
+ir::Place own_instance(ir::TypeId self) {
+  ir::Place own;
+  own.base = ir::PlaceBase::kSelf;
+  own.base_type = own.type = self;
+  return own;
+}
+
 }  // namespace
 
 void PoolCode::search(const Pool& pool, const PerElement& each) {
@@ -146,9 +153,7 @@ void PoolCode::visit_all() {
 
 void PoolCode::reset_method() {
   const ir::TypeId self = body_.info_.self;
-  ir::Place own;
-  own.base = ir::PlaceBase::kSelf;
-  own.base_type = own.type = self;
+  const ir::Place own = own_instance(self);
   const std::vector<ir::Member> members = types()[self].members;
   for (uint32_t i = 0; i < members.size(); ++i) {
     const bool located = members[i].address.area != ir::DirectArea::kNone;
@@ -192,9 +197,7 @@ void PoolCode::reset_elements(const ir::Place& at, ir::TypeId id, ir::ConstId in
 
 void PoolCode::leave_method() {
   const ir::TypeId self = body_.info_.self;
-  ir::Place own;
-  own.base = ir::PlaceBase::kSelf;
-  own.base_type = own.type = self;
+  const ir::Place own = own_instance(self);
   const std::vector<ir::Member> members = types()[self].members;
   for (uint32_t i = 0; i < members.size(); ++i) {
     if (!ir::is_listed(members[i])) continue;

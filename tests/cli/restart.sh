@@ -42,3 +42,24 @@ wait_for 'running'
 after=$(stvm get total --format json --dir plant | tr -dc 0-9)
 [ "$after" -lt 30000 ] || fail "total is $after"
 expect 0 stvm stop --dir plant
+
+# FB_Exit that traps does not keep the controller from starting again; the answer says so.
+cat >leaving.st <<'ST'
+FUNCTION_BLOCK Pump VAR zero : INT := 0; END_VAR
+METHOD FB_Exit : BOOL VAR_INPUT bInCopyCode : BOOL; END_VAR
+zero := 1 / zero;
+END_METHOD
+END_FUNCTION_BLOCK
+PROGRAM P VAR a : Pump; n : DINT; END_VAR n := n + 1; END_PROGRAM
+ST
+stc build leaving.st -o leaving.img 2>/dev/null
+serve leaving leaving.img
+expect 0 stvm set P.n=1000000 --dir leaving
+expect 0 stvm restart --dir leaving
+said 'restarted, warm'
+said 'not all instances left: .*Pump.FB_Exit in line 3'
+expect 0 stvm get P.n --format json --dir leaving
+[ "$(tr -dc 0-9 <out)" -lt 1000000 ] || fail "$(cat out)"
+expect 0 stvm status --dir leaving
+said 'running'
+expect 0 stvm stop --dir leaving
