@@ -1,7 +1,5 @@
 // The commands of an online change, as the serving controller carries them out.
 #include <algorithm>
-#include <chrono>
-#include <thread>
 
 #include "base/limits.h"
 #include "online_change/diff/initial_data.h"
@@ -17,7 +15,7 @@ constexpr uint64_t kLinesPerPage = 1000;
 constexpr size_t kShownLosses = 500;
 // A switch that finds too little time before the next cycle is tried again after it.
 constexpr int kSwitchAttempts = 200;
-constexpr auto kBetweenAttempts = std::chrono::milliseconds(1);
+constexpr int64_t kBetweenAttemptsNs = 1'000'000;
 
 // Initial value of a scalar or string of the new version; "" for anything else.
 std::string initial_text(const ir::Image& image, const std::string& path) {
@@ -178,7 +176,7 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
     change_.set_interruption(nullptr);
   };
   for (int attempt = 0; attempt < kSwitchAttempts && !report; ++attempt) {
-    if (attempt != 0) std::this_thread::sleep_for(kBetweenAttempts);
+    if (attempt != 0) boundary_.pause(kBetweenAttemptsNs);
     base::Status taken = at_boundary(job);
     if (!taken.ok()) return taken.error();
   }
@@ -199,7 +197,7 @@ base::Result<online_change::SwitchReport> ControllerService::finish_report(
     });
     if (!taken.ok()) return taken.error();
     if (cycles > report.cycle_after || controller_.faulted()) break;
-    std::this_thread::sleep_for(kBetweenAttempts);
+    boundary_.pause(kBetweenAttemptsNs);
   }
   return report;
 }

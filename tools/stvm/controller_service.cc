@@ -20,11 +20,11 @@ vm::ValueRow value_row(const ir::Image& image, const std::string& path, const ir
 }  // namespace
 
 ControllerService::ControllerService(vm::Controller& controller, vm::Clock& clock,
-                                     vm::Storage& storage, vm::Mailbox& mailbox)
+                                     vm::Storage& storage, vm::Boundary& boundary)
     : controller_(controller),
       clock_(clock),
       storage_(storage),
-      mailbox_(mailbox),
+      boundary_(boundary),
       change_(controller),
       boots_next_(controller.verified().digest()) {}
 
@@ -96,12 +96,12 @@ base::Status ControllerService::check_expected(const vm::Request& request) const
 }
 
 base::Status ControllerService::at_boundary(const std::function<void()>& job) {
-  switch (mailbox_.run(job, kBoundaryPatienceNs)) {
-    case vm::Mailbox::Outcome::kDone:
+  switch (boundary_.run(job, kBoundaryPatienceNs)) {
+    case vm::Boundary::Outcome::kDone:
       return base::Ok{};
-    case vm::Mailbox::Outcome::kClosed:
+    case vm::Boundary::Outcome::kClosed:
       return base::Error{base::Refusal::kNotRunning, "the controller is stopping"};
-    case vm::Mailbox::Outcome::kTimeout:
+    case vm::Boundary::Outcome::kTimeout:
       break;
   }
   return base::Error{base::Refusal::kBusy, "no boundary came within 5 s: a task does not end"};

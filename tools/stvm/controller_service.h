@@ -1,5 +1,5 @@
 // What a serving controller answers. Runs on the channel's thread; whatever reads or writes live
-// data goes to the control thread through the mailbox and is done at one boundary. Everything
+// data goes to the control thread through vm::Boundary and is done at one boundary. Everything
 // else (decoding, checking, planning, formatting) stays here, beside the running program.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 #include "online_change/apply/change.h"
 #include "tools/stvm/fate_message.h"
-#include "vm/runtime/mailbox.h"
+#include "vm/runtime/boundary.h"
 #include "vm/runtime/protocol.h"
 #include "vm/runtime/socket_server.h"
 
@@ -19,7 +19,7 @@ inline constexpr const char* kBootRecord = "boot";  // the image that boots next
 class ControllerService : public vm::Service {
  public:
   ControllerService(vm::Controller& controller, vm::Clock& clock, vm::Storage& storage,
-                    vm::Mailbox& mailbox);
+                    vm::Boundary& boundary);
   base::Bytes answer(base::ByteSpan request, bool& keep_open) override;
   bool stop_wanted() const { return stop_wanted_.load(std::memory_order_relaxed); }
 
@@ -64,7 +64,7 @@ class ControllerService : public vm::Service {
   vm::Controller& controller_;
   vm::Clock& clock_;
   vm::Storage& storage_;
-  vm::Mailbox& mailbox_;
+  vm::Boundary& boundary_;
   online_change::Change change_;
   base::Bytes upload_;
   std::optional<ir::VerifiedImage> staged_;

@@ -11,6 +11,7 @@
 #include "vm/runtime/clocks.h"
 #include "vm/runtime/file_storage.h"
 #include "vm/runtime/io.h"
+#include "vm/runtime/mailbox.h"
 
 namespace stvm {
 namespace {

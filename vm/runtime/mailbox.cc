@@ -37,6 +37,8 @@ Mailbox::Outcome Mailbox::run(const std::function<void()>& job, int64_t timeout_
   }
 }
 
+void Mailbox::pause(int64_t ns) { std::this_thread::sleep_for(std::chrono::nanoseconds(ns)); }
+
 void Mailbox::serve() {
   uint32_t expected = kPosted;
   if (!state_.compare_exchange_strong(expected, kRunning, std::memory_order_acq_rel)) return;

@@ -6,15 +6,15 @@
 #include <cstdint>
 #include <functional>
 
+#include "vm/runtime/boundary.h"
+
 namespace vm {
 
-class Mailbox {
+class Mailbox : public Boundary {
  public:
-  enum class Outcome : uint8_t { kDone, kTimeout, kClosed };
-
-  // Channel thread: runs `job` on the control thread, waits for its end. After kTimeout and
-  // kClosed it has not run and will not.
-  Outcome run(const std::function<void()>& job, int64_t timeout_ns);
+  // Channel thread.
+  Outcome run(const std::function<void()>& job, int64_t timeout_ns) override;
+  void pause(int64_t ns) override;
 
   // Control thread, at a boundary.
   void serve();
