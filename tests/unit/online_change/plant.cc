@@ -51,11 +51,13 @@ ir::VerifiedImage link_sources(const std::string& source, const linker::Options&
 
 }  // namespace
 
-Plant::Plant(const std::string& source, linker::Slack slack) : slack_(slack) {
+Plant::Plant(const std::string& source, linker::Slack slack, int64_t ns_per_safe_point)
+    : slack_(slack), clock_(ns_per_safe_point) {
   linker::Options options;
   options.slack = slack_;
-  auto controller = vm::Controller::start(link_sources(source, options), vm::ControllerOptions(),
-                                          clock_, devices_);
+  vm::ControllerOptions running;
+  if (ns_per_safe_point != 0) running.fuel_slice = 1;  // suspended as soon as a release is due
+  auto controller = vm::Controller::start(link_sources(source, options), running, clock_, devices_);
   base::check(controller.ok(), "the controller starts");
   controller_ = std::move(*controller);
   change_ = std::make_unique<online_change::Change>(*controller_);

@@ -13,13 +13,17 @@
 #include "online_change/apply/change.h"
 #include "vm/runtime/clocks.h"
 #include "vm/runtime/controller.h"
+#include "vm/runtime/io.h"
 
 namespace plant {
 
-class NoDevices : public vm::IoPort {
+// Every process image that was sent, and terminals for inputs.
+class Devices : public vm::SimulatedIo {
  public:
-  void receive(std::span<uint8_t>) override {}
-  void send(std::span<const uint8_t>) override {}
+  void send(std::span<const uint8_t> outputs) override {
+    sent.emplace_back(outputs.begin(), outputs.end());
+  }
+  std::vector<base::Bytes> sent;
 };
 
 // Objects of one source text.
@@ -31,7 +35,8 @@ Compiled compile(const std::string& source);
 
 class Plant {
  public:
-  explicit Plant(const std::string& source, linker::Slack slack = {});
+  explicit Plant(const std::string& source, linker::Slack slack = {},
+                 int64_t ns_per_safe_point = 0);
 
   void run(int scans);
   std::string get(const std::string& path) const;
@@ -52,6 +57,7 @@ class Plant {
   const online_change::FateRow* row(const std::string& path) const;
   vm::Controller& controller() { return *controller_; }
   online_change::Change& driver() { return *change_; }
+  Devices& devices() { return devices_; }
   uint32_t id_of(const std::string& path) const;  // of a live instance; 0 when there is none
 
  private:
@@ -59,7 +65,7 @@ class Plant {
 
   linker::Slack slack_;
   vm::VirtualClock clock_;
-  NoDevices devices_;
+  Devices devices_;
   std::unique_ptr<vm::Controller> controller_;
   std::unique_ptr<online_change::Change> change_;
   online_change::Plan plan_;
