@@ -1,6 +1,8 @@
 // stc diff: the fate report between two versions, without a controller (X1).
 #include <cstdio>
+#include <filesystem>
 
+#include "tools/common/child.h"
 #include "tools/common/fate_report.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/session.h"
@@ -8,16 +10,38 @@
 namespace stc {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {STC_SOURCE_OPTIONS};
-constexpr tools::Command kCommand{
-    "diff",   "OLD NEW", "Shows the fate of every variable when OLD is changed to NEW.",
-    kOptions, 2,         2};
+constexpr tools::OptionRow kOptions[] = {
+    STC_SOURCE_OPTIONS,
+    {"--against", "HOST|DIR", "OLD is what runs there: a state directory, or a host to ssh to"},
+};
+constexpr tools::Command kCommand{"diff", "[OLD] NEW",
+                                  "Shows the fate of every variable when OLD is changed to NEW.",
+                                  kOptions, 1};
+
+// The program of a running controller, fetched by the stvm beside this tool.
+base::Result<Version> running_version(const std::string& place) {
+  base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
+  if (!folder.ok()) return folder.error();
+  const std::string file = folder->file("running.img");
+  std::error_code ignored;
+  const char* option = std::filesystem::is_directory(place, ignored) ? "--dir" : "--host";
+  base::Status fetched = tools::run_beside("stvm", {"image", option, place, "-o", file});
+  if (!fetched.ok()) return fetched.error();
+  return read_image(file);
+}
 
 base::Result<online_change::Plan> plan_between(const tools::Options& options) {
-  base::Result<Version> before = open_version(options, {options.arguments()[0]}, {});
+  std::vector<std::string> next = options.arguments();
+  const bool running = options.has("--against");
+  if (!running && next.size() != 2) {
+    return base::Error{base::Refusal::kUsage,
+                       "diff: OLD and NEW, or --against HOST|DIR and NEW..."};
+  }
+  base::Result<Version> before = running ? running_version(options.text("--against"))
+                                         : open_version(options, {next.front()}, {});
   if (!before.ok()) return before.error();
-  base::Result<Version> after =
-      open_version(options, {options.arguments()[1]}, {&before->image, false});
+  if (!running) next.erase(next.begin());
+  base::Result<Version> after = open_version(options, next, {&before->image, false});
   if (!after.ok()) return after.error();
   return online_change::plan(before->image, after->image);
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "tools/common/child.h"
 #include "tools/common/exit.h"
 #include "tools/common/fate_report.h"
 #include "tools/common/files.h"
@@ -19,7 +20,7 @@ namespace stvm {
 namespace {
 
 constexpr tools::OptionRow kOptions[] = {
-    STVM_DIR_OPTION,
+    STVM_CONTROLLER_OPTIONS,
     {"--yes", nullptr, "switch without asking"},
     {"--dry-run", nullptr, "stop after the fate report; nothing is changed"},
     {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},
@@ -32,14 +33,14 @@ constexpr tools::Command kCommand{"change", "SOURCES...|IMAGE",
                                   "Changes the running program without stopping it.", kOptions, 1};
 
 base::Result<base::Bytes> make_package(const Sources& sources, base::ByteSpan running) {
-  base::Result<TemporaryFolder> folder = TemporaryFolder::make();
+  base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
   if (!folder.ok()) return folder.error();
   std::string base_file = folder->file("running.img");
   std::string package_file = folder->file("change.pkg");
   base::Status written = tools::write_file(base_file, running);
   if (!written.ok()) return written.error();
-  base::Status made =
-      run_stc(stc_arguments({"package", "--base", base_file, "-o", package_file}, sources));
+  base::Status made = tools::run_beside(
+      "stc", stc_arguments({"package", "--base", base_file, "-o", package_file}, sources));
   if (!made.ok()) return made.error();
   return tools::read_bytes(package_file);
 }
@@ -175,7 +176,7 @@ base::Result<Outcome> change(const tools::Options& options, ControllerClient& cl
 int run(const tools::Options& options) {
   base::Result<bool> json = wants_json(options);
   if (!json.ok()) return refuse(json.error());
-  base::Result<ControllerClient> client = ControllerClient::connect(state_directory(options));
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return refuse(client.error());
   base::Result<Outcome> outcome = change(options, *client, *json);
   if (!outcome.ok()) return refuse(outcome.error());

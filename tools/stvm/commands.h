@@ -24,9 +24,13 @@ extern const Entry kUndo;
 extern const Entry kAccept;
 extern const Entry kStop;
 extern const Entry kRestart;
+extern const Entry kImage;
+extern const Entry kBridge;
 
 #define STVM_DIR_OPTION \
   { "--dir", "STATE", "state directory of the controller (default: $STVM_DIR, else .stvm)" }
+#define STVM_CONTROLLER_OPTIONS \
+  STVM_DIR_OPTION, { "--host", "HOST", "the controller runs there; reached with ssh" }
 #define STVM_FORMAT_OPTION \
   { "--format", "FORM", "text (default) or json" }
 

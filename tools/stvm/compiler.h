@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -10,25 +9,6 @@
 #include "tools/common/options.h"
 
 namespace stvm {
-
-// A folder for intermediate files that goes when its owner goes.
-class TemporaryFolder {
- public:
-  static base::Result<TemporaryFolder> make();
-  TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
-  ~TemporaryFolder();
-  std::string file(const char* name) const { return path_ + "/" + name; }
-
- private:
-  explicit TemporaryFolder(std::string path) : path_(std::move(path)) {}
-  std::string path_;
-};
-
-enum class Messages : uint8_t { kShown, kOnlyOfFailure };
-// Runs `stc ARGUMENTS...`; its messages go to stderr, its refusal comes back as the error.
-base::Status run_stc(const std::vector<std::string>& arguments,
-                     Messages messages = Messages::kShown);
 
 // Sources as a command line names them.
 struct Sources {

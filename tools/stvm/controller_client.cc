@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "tools/stvm/commands.h"
+#include "tools/stvm/remote_client.h"
 #include "vm/runtime/socket_client.h"
 
 namespace stvm {
@@ -17,8 +19,13 @@ base::Error endless() {
 
 }  // namespace
 
-base::Result<ControllerClient> ControllerClient::connect(const std::string& directory) {
-  auto transport = vm::SocketClient::connect(directory);
+base::Result<ControllerClient> ControllerClient::connect(const tools::Options& options) {
+  if (options.has("--host")) {
+    auto transport = RemoteClient::connect(options.text("--host"), options.text("--dir"));
+    if (!transport.ok()) return transport.error();
+    return ControllerClient(std::move(*transport));
+  }
+  auto transport = vm::SocketClient::connect(state_directory(options));
   if (!transport.ok()) return transport.error();
   return ControllerClient(std::move(*transport));
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/options.h"
 #include "tools/stvm/fate_message.h"
 #include "vm/runtime/ports.h"
 #include "vm/runtime/protocol.h"
@@ -14,7 +15,8 @@ namespace stvm {
 
 class ControllerClient {
  public:
-  static base::Result<ControllerClient> connect(const std::string& directory);
+  // The one that --dir or --host names.
+  static base::Result<ControllerClient> connect(const tools::Options& options);
   explicit ControllerClient(std::unique_ptr<vm::Transport> transport)
       : transport_(std::move(transport)) {}
 

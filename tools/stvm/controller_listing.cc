@@ -1,7 +1,7 @@
 // The variables of the running program, page by page.
 #include "base/check.h"
-#include "tools/stvm/controller_service.h"
 #include "tools/common/pattern.h"
+#include "tools/stvm/controller_service.h"
 
 namespace stvm {
 

@@ -13,7 +13,7 @@ namespace {
 constexpr tools::OptionRow kOptions[] = {
     {"--list", nullptr, "list variables and their types; NAMES are patterns with * and ?"},
     {"--forces", nullptr, "list forced variables"},
-    STVM_DIR_OPTION,
+    STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION,
 };
 constexpr tools::Command kCommand{"get", "NAMES...", "Shows values of variables.", kOptions};
@@ -54,7 +54,7 @@ base::Status show(const tools::Options& options) {
   if (options.arguments().empty() && !whole) {
     return base::Error{base::Refusal::kUsage, "get: needs NAMES, or --list"};
   }
-  base::Result<ControllerClient> client = ControllerClient::connect(state_directory(options));
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
   if (options.has("--list")) return list(options, *client, *json);
   base::Result<vm::Values> values =

@@ -1,5 +1,6 @@
 #include "tools/stvm/hard_mode.h"
 
+#include "tools/common/child.h"
 #include "tools/common/files.h"
 #include "tools/stvm/compiler.h"
 
@@ -7,16 +8,17 @@ namespace stvm {
 namespace {
 
 base::Result<base::Bytes> relinked(const Sources& sources, base::ByteSpan running) {
-  base::Result<TemporaryFolder> folder = TemporaryFolder::make();
+  base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
   if (!folder.ok()) return folder.error();
   std::string base_file = folder->file("base.img");
   std::string next_file = folder->file("next.img");
   base::Status written = tools::write_file(base_file, running);
   if (!written.ok()) return written.error();
-  base::Status built = run_stc(
+  base::Status built = tools::run_beside(
+      "stc",
       stc_arguments({"build", "--quiet", "--base", base_file, "--move-all", "-o", next_file},
                     sources),
-      Messages::kOnlyOfFailure);
+      tools::Messages::kOnlyOfFailure);
   if (!built.ok()) return built.error();
   return tools::read_bytes(next_file);
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr tools::OptionRow kOptions[] = {{"--warm", nullptr, "keeps what is RETAIN (default)"},
                                          {"--cold", nullptr, "keeps nothing: all initial values"},
                                          {"--hot", nullptr, "keeps all values: only goes on"},
-                                         STVM_DIR_OPTION,
+                                         STVM_CONTROLLER_OPTIONS,
                                          STVM_FORMAT_OPTION};
 constexpr tools::Command kCommand{"restart", "", "Runs all tasks again, behind a fault too.",
                                   kOptions,  0,  0};
@@ -43,7 +43,7 @@ base::Status restart(const tools::Options& options) {
   if (!json.ok()) return json.error();
   base::Result<Kind> kind = chosen(options);
   if (!kind.ok()) return kind.error();
-  base::Result<ControllerClient> client = ControllerClient::connect(state_directory(options));
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
   base::Result<vm::StatusReport> status = client->status();  // which version runs
   if (!status.ok()) return status.error();

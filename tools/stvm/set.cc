@@ -10,9 +10,9 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {STVM_DIR_OPTION, STVM_FORMAT_OPTION};
+constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
 constexpr tools::OptionRow kUnforceOptions[] = {
-    {"--all", nullptr, "every forced variable"}, STVM_DIR_OPTION, STVM_FORMAT_OPTION};
+    {"--all", nullptr, "every forced variable"}, STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
 constexpr tools::Command kSetCommand{"set", "NAME=VALUE...",
                                      "Writes variables once, all at one boundary.", kOptions, 1};
 constexpr tools::Command kForceCommand{
@@ -24,7 +24,7 @@ base::Status send(vm::Command command, const tools::Options& options,
                   const std::vector<std::string>& names, const std::vector<std::string>& values) {
   base::Result<bool> json = wants_json(options);
   if (!json.ok()) return json.error();
-  base::Result<ControllerClient> client = ControllerClient::connect(state_directory(options));
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
   base::Result<vm::StatusReport> status = client->status();
   if (!status.ok()) return status.error();

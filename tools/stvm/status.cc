@@ -13,7 +13,7 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {STVM_DIR_OPTION, STVM_FORMAT_OPTION};
+constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
 constexpr tools::Command kCommand{"status", "", "Shows what a controller runs and how it is.",
                                   kOptions, 0,  0};
 
@@ -81,7 +81,7 @@ void print_json(const vm::StatusReport& report) {
 base::Status show(const tools::Options& options) {
   base::Result<bool> json = wants_json(options);
   if (!json.ok()) return json.error();
-  base::Result<ControllerClient> client = ControllerClient::connect(state_directory(options));
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
   base::Result<vm::StatusReport> report = client->status();
   if (!report.ok()) return report.error();

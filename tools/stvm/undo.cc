@@ -13,7 +13,7 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {STVM_DIR_OPTION, STVM_FORMAT_OPTION};
+constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
 constexpr tools::Command kUndoCommand{
     "undo",   "", "Brings back the program, and the values, from before the last change.",
     kOptions, 0,  0};
@@ -23,7 +23,7 @@ constexpr tools::Command kStopCommand{"stop", "", "Ends a serving controller.", 
 
 // Connects and learns which version runs.
 base::Result<ControllerClient> meet(const tools::Options& options) {
-  base::Result<ControllerClient> client = ControllerClient::connect(state_directory(options));
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client;
   base::Result<vm::StatusReport> status = client->status();
   if (!status.ok()) return status.error();
@@ -88,7 +88,8 @@ base::Status wait_until_gone(const std::string& directory) {
 
 int stop(const tools::Options& options) {
   base::Status stopped = simple(options, vm::Command::kStop, "stopped");
-  return code_of(stopped.ok() ? wait_until_gone(state_directory(options)) : stopped);
+  return code_of(stopped.ok() && !options.has("--host") ? wait_until_gone(state_directory(options))
+                                                        : stopped);
 }
 
 }  // namespace

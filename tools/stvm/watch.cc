@@ -15,7 +15,7 @@ namespace {
 constexpr tools::OptionRow kOptions[] = {
     {"--interval", "MS", "time between two samples (default 500)"},
     {"--count", "N", "samples to take (default: until interrupted)"},
-    STVM_DIR_OPTION,
+    STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION,
 };
 constexpr tools::Command kCommand{
@@ -34,7 +34,7 @@ base::Status watch(const tools::Options& options) {
   if (!interval.ok()) return interval.error();
   base::Result<uint64_t> count = options.number("--count", UINT64_MAX);
   if (!count.ok()) return count.error();
-  base::Result<ControllerClient> client = ControllerClient::connect(state_directory(options));
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
   StopSignal::install();
   for (uint64_t i = 0; i < *count && !StopSignal::received(); ++i) {

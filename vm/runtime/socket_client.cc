@@ -19,10 +19,16 @@ constexpr time_t kPatienceSeconds = 60;
 }  // namespace
 
 base::Error SocketClient::lost(const char* what) const {
-  return {base::Refusal::kNotRunning, "the controller in " + directory_ + " " + what};
+  return {base::Refusal::kNotRunning, "the controller " + place_ + " " + what};
 }
 
 base::Result<std::unique_ptr<SocketClient>> SocketClient::connect(const std::string& directory) {
+  base::Result<Descriptor> socket = open(directory);
+  if (!socket.ok()) return socket.error();
+  return over(std::move(*socket), "in " + directory);
+}
+
+base::Result<Descriptor> SocketClient::open(const std::string& directory) {
   Descriptor holder;
   base::Result<std::string> path = socket_path(directory, holder);
   if (!path.ok()) {
@@ -30,9 +36,6 @@ base::Result<std::unique_ptr<SocketClient>> SocketClient::connect(const std::str
                        "no controller runs there: " + path.error().text};
   }
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  timeval patience{kPatienceSeconds, 0};
-  ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-  ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   std::memcpy(address.sun_path, path->data(), path->size());
@@ -40,7 +43,14 @@ base::Result<std::unique_ptr<SocketClient>> SocketClient::connect(const std::str
     return base::Error{base::Refusal::kNotRunning,
                        "no controller runs in " + directory + ": " + std::strerror(errno)};
   }
-  return std::unique_ptr<SocketClient>(new SocketClient(directory, std::move(socket)));
+  return socket;
+}
+
+std::unique_ptr<SocketClient> SocketClient::over(Descriptor socket, std::string place) {
+  timeval patience{kPatienceSeconds, 0};
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+  return std::unique_ptr<SocketClient>(new SocketClient(std::move(place), std::move(socket)));
 }
 
 base::Result<base::Bytes> SocketClient::exchange(base::ByteSpan request) {

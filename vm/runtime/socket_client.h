@@ -13,16 +13,20 @@ class SocketClient : public Transport {
  public:
   // kNotRunning when nobody listens in `directory`.
   static base::Result<std::unique_ptr<SocketClient>> connect(const std::string& directory);
+  // The connection alone.
+  static base::Result<Descriptor> open(const std::string& directory);
+  // Over a socket that is connected already; `place` for messages: "on plc7".
+  static std::unique_ptr<SocketClient> over(Descriptor socket, std::string place);
   // One framed message each way; kNotRunning when the other side goes away or says nothing for
   // 60 s.
   base::Result<base::Bytes> exchange(base::ByteSpan request) override;
 
  private:
-  SocketClient(std::string directory, Descriptor socket)
-      : directory_(std::move(directory)), socket_(std::move(socket)) {}
+  SocketClient(std::string place, Descriptor socket)
+      : place_(std::move(place)), socket_(std::move(socket)) {}
   base::Error lost(const char* what) const;
 
-  std::string directory_;
+  std::string place_;
   Descriptor socket_;
 };
 

@@ -1,0 +1,62 @@
+#!/bin/sh
+# A controller on another machine over `ssh HOST stvm bridge`, with a stand-in for ssh that runs the command here; and the fate
+# report against what runs, after the build folder is lost (X1).
+. "$(dirname "$0")/lib.sh"
+
+# Refuses what no host is, notes how it was called, runs the command as sshd's shell would.
+cat >ssh <<SH
+#!/bin/sh
+[ "\$1" = -T ] || exit 99
+echo "\$2" >>"$work/hosts"
+[ "\$2" = plant7 ] || { echo "ssh: no such host" >&2; exit 255; }
+PATH=$bin:\$PATH exec sh -c "\$3"
+SH
+chmod +x ssh
+STVM_SSH=$work/ssh
+export STVM_SSH
+
+printf 'PROGRAM Main VAR n : INT; gone : INT; END_VAR n := n + 1; END_PROGRAM\n' >v1.st
+printf 'PROGRAM Main VAR n : DINT; more : BOOL := TRUE; END_VAR n := n + 1; END_PROGRAM\n' >v2.st
+directory="it's a folder"
+serve "$directory" v1.st
+rm v1.st
+
+expect 0 stvm status --host plant7 --dir "$work/$directory"
+said 'Main|v1'
+expect 0 stvm set --host plant7 --dir "$work/$directory" Main.gone=5
+expect 0 stvm get --dir "$directory" Main.gone
+said '5'
+expect 0 stc diff --against "$work/$directory" v2.st
+said 'converted +Main.n : INT -> DINT'
+said 'dropped +Main.gone'
+expect 0 stc diff --against "$work/$directory" v2.st --format json
+said '"variable": *"Main.more"'
+cp out local
+STVM_DIR=$work/$directory
+export STVM_DIR
+expect 0 stc diff --against plant7 v2.st --format json
+cmp out local || fail "the report over ssh is another one"
+unset STVM_DIR
+grep -q plant7 hosts || fail "ssh was not used"
+
+expect 0 stvm change v2.st --host plant7 --dir "$work/$directory" --yes --allow-loss
+said 'on trial'
+expect 0 stvm undo --host plant7 --dir "$work/$directory"
+expect 0 stvm get --dir "$directory" Main.gone
+said '5'
+
+expect 7 stvm status --host elsewhere
+said 'R0404.*on elsewhere'
+expect 2 stvm status --host=-oProxyCommand=touch
+said 'names a machine'
+expect 7 stvm bridge --dir nowhere
+said 'R0404'
+expect 7 stc diff --against nowhere-at-all v2.st
+said 'R0404'
+expect 2 stc diff v2.st
+said 'against'
+expect 2 stvm image --dir "$directory"
+said 'output'
+# A client that goes away in the middle of a message, and one that says nothing, leave the controller alone.
+printf '\377\377\377' | stvm bridge --dir "$directory" >/dev/null || true
+expect 0 stvm stop --host plant7 --dir "$work/$directory"

@@ -1,0 +1,159 @@
+#include "tools/common/child.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "tools/common/files.h"
+
+extern char** environ;
+
+namespace tools {
+namespace {
+
+using FileActions = posix_spawn_file_actions_t;
+
+// The pid. `prepare` says what becomes of the standard streams.
+template <class Prepare>
+base::Result<pid_t> spawn(const std::vector<std::string>& command, Prepare prepare) {
+  std::vector<char*> argv;
+  for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  FileActions actions;
+  posix_spawn_file_actions_init(&actions);
+  prepare(actions);
+  pid_t pid = 0;
+  int code = posix_spawnp(&pid, argv[0], &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (code == 0) return pid;
+  return base::Error{base::Refusal::kFileNotFound, command[0] + ": " + std::strerror(code)};
+}
+
+// The exit code; -1 when it ended in another way.
+int wait_for(pid_t pid) {
+  int status = 0;
+  while (::waitpid(pid, &status, 0) < 0) {
+    if (errno != EINTR) return -1;
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+std::string read_all(int fd) {
+  std::string text;
+  char buffer[4096];
+  for (;;) {
+    ssize_t n = ::read(fd, buffer, sizeof buffer);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return text;
+    text.append(buffer, static_cast<size_t>(n));
+  }
+}
+
+struct Output {
+  std::string messages;
+  std::optional<base::Error> refusal;
+};
+
+// A refusal ("stc: R0202: text" and a line of help) is not a message but comes back as the error,
+// so that this tool says it once, with the same code.
+Output sort_out(const std::string& tool, const std::string& text) {
+  const std::string mark = tool + ": ";
+  Output out;
+  for (size_t at = 0; at < text.size();) {
+    size_t end = std::min(text.find('\n', at), text.size());
+    std::string_view line = std::string_view(text).substr(at, end - at);
+    at = end + 1;
+    bool marked = line.starts_with(mark) && line.size() > mark.size() + 7;
+    auto code = marked ? base::refusal_from_code(line.substr(mark.size(), 5)) : std::nullopt;
+    if (code) {
+      out.refusal = base::Error{*code, std::string(line.substr(mark.size() + 7))};
+    } else if (!(out.refusal && line.starts_with("  help: "))) {
+      out.messages += std::string(line) + "\n";
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+base::Status run_beside(const std::string& tool, const std::vector<std::string>& arguments,
+                        Messages messages) {
+  std::vector<std::string> command = {own_folder() + "/" + tool};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) return base::Error{base::Refusal::kInternal, "no pipe"};
+  base::Result<pid_t> child = spawn(command, [&](FileActions& actions) {
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+  });
+  ::close(ends[1]);
+  if (!child.ok()) {
+    ::close(ends[0]);
+    return base::Error{child.error().refusal,
+                       child.error().text + "; stc and stvm must lie in one folder"};
+  }
+  Output output = sort_out(tool, read_all(ends[0]));
+  ::close(ends[0]);
+  const bool good = wait_for(*child) == 0;
+  if (!good || messages == Messages::kShown) std::fputs(output.messages.c_str(), stderr);
+  if (good) return base::Ok{};
+  if (output.refusal) return *output.refusal;
+  return base::Error{base::Refusal::kInternal, tool + " failed without a reason"};
+}
+
+base::Result<ConnectedChild> ConnectedChild::start(const std::vector<std::string>& command) {
+  int ends[2];
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+    return base::Error{base::Refusal::kInternal, "no pair of sockets"};
+  }
+  base::Result<pid_t> child = spawn(command, [&](FileActions& actions) {
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  });
+  ::close(ends[1]);
+  if (child.ok()) return ConnectedChild(*child, ends[0]);
+  ::close(ends[0]);
+  return child.error();
+}
+
+ConnectedChild::ConnectedChild(ConnectedChild&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)), socket_(std::exchange(other.socket_, -1)) {}
+
+ConnectedChild::~ConnectedChild() {
+  if (socket_ >= 0) ::close(socket_);
+  if (pid_ > 0) wait_for(pid_);
+}
+
+int ConnectedChild::take_socket() { return std::exchange(socket_, -1); }
+
+base::Result<TemporaryFolder> TemporaryFolder::make() {
+  const char* parent = std::getenv("TMPDIR");
+  std::string path = parent != nullptr && *parent != '\0' ? parent : "/tmp";
+  path += "/stvm-XXXXXX";
+  if (::mkdtemp(path.data()) == nullptr) {
+    return base::Error{base::Refusal::kFileUnwritable, path + ": " + std::strerror(errno)};
+  }
+  return TemporaryFolder(std::move(path));
+}
+
+TemporaryFolder::TemporaryFolder(TemporaryFolder&& other) noexcept
+    : path_(std::exchange(other.path_, {})) {}
+
+TemporaryFolder::~TemporaryFolder() {
+  if (path_.empty()) return;
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+}  // namespace tools

@@ -1,0 +1,48 @@
+// Another program as a child: the tool beside this one, or ssh.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+namespace tools {
+
+enum class Messages : uint8_t { kShown, kOnlyOfFailure };
+// Runs TOOL of the own folder ("stc", "stvm"). Its messages go to stderr, its refusal comes back as
+// the error.
+base::Status run_beside(const std::string& tool, const std::vector<std::string>& arguments,
+                        Messages messages = Messages::kShown);
+
+// Runs `program` (looked up in PATH) with both its standard streams on one socket; stderr is
+// shared. Ends it with the connection.
+class ConnectedChild {
+ public:
+  static base::Result<ConnectedChild> start(const std::vector<std::string>& command);
+  ConnectedChild(ConnectedChild&& other) noexcept;
+  ConnectedChild& operator=(ConnectedChild&&) = delete;
+  ~ConnectedChild();  // waits for its end
+  // Our end of the socket, once; the caller owns it.
+  int take_socket();
+
+ private:
+  ConnectedChild(int pid, int socket) : pid_(pid), socket_(socket) {}
+  int pid_ = -1;
+  int socket_ = -1;
+};
+
+// A folder for intermediate files that goes when its owner goes.
+class TemporaryFolder {
+ public:
+  static base::Result<TemporaryFolder> make();
+  TemporaryFolder(TemporaryFolder&& other) noexcept;
+  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
+  ~TemporaryFolder();
+  std::string file(const char* name) const { return path_ + "/" + name; }
+
+ private:
+  explicit TemporaryFolder(std::string path) : path_(std::move(path)) {}
+  std::string path_;
+};
+
+}  // namespace tools

@@ -1,0 +1,61 @@
+// stvm bridge: standard input and output as a connection to the controller of this machine. What
+// `--host` runs over ssh.
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "tools/common/exit.h"
+#include "tools/stvm/commands.h"
+#include "vm/runtime/socket_client.h"
+
+namespace stvm {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {STVM_DIR_OPTION};
+constexpr tools::Command kCommand{
+    "bridge", "", "Connects its standard streams to the controller (what --host runs there).",
+    kOptions, 0,  0};
+
+// False: the other side is gone.
+bool write_all(int fd, const char* bytes, size_t size) {
+  while (size != 0) {
+    const ssize_t n = ::write(fd, bytes, size);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    bytes += n;
+    size -= static_cast<size_t>(n);
+  }
+  return true;
+}
+
+// False: nothing more will come.
+bool pass_on(int from, int to) {
+  char buffer[65536];
+  const ssize_t n = ::read(from, buffer, sizeof buffer);
+  if (n < 0 && errno == EINTR) return true;
+  return n > 0 && write_all(to, buffer, static_cast<size_t>(n));
+}
+
+void relay(int controller) {
+  pollfd ends[] = {{STDIN_FILENO, POLLIN, 0}, {controller, POLLIN, 0}};
+  for (;;) {
+    if (::poll(ends, 2, -1) < 0 && errno != EINTR) return;
+    if (ends[0].revents != 0 && !pass_on(STDIN_FILENO, controller)) return;
+    if (ends[1].revents != 0 && !pass_on(controller, STDOUT_FILENO)) return;
+  }
+}
+
+int run(const tools::Options& options) {
+  base::Result<vm::Descriptor> socket = vm::SocketClient::open(state_directory(options));
+  if (!socket.ok()) return refuse(socket.error());
+  relay(socket->get());
+  return tools::kOk;
+}
+
+}  // namespace
+
+const Entry kBridge{&kCommand, run};
+
+}  // namespace stvm

@@ -1,0 +1,40 @@
+// stvm image: the running program as a file, for `stc diff` and `stc package`: a lost build folder
+// never forces a stop (X1).
+#include <cstdio>
+
+#include "tools/common/exit.h"
+#include "tools/common/files.h"
+#include "tools/stvm/commands.h"
+#include "tools/stvm/controller_client.h"
+
+namespace stvm {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {{"--output|-o", "FILE", "image to write (required)"},
+                                         STVM_CONTROLLER_OPTIONS};
+constexpr tools::Command kCommand{"image",  "", "Writes the running program to a file.",
+                                  kOptions, 0,  0};
+
+base::Status fetch(const tools::Options& options) {
+  if (!options.has("--output")) {
+    return base::Error{base::Refusal::kUsage, "image: --output is required"};
+  }
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
+  if (!client.ok()) return client.error();
+  base::Result<vm::StatusReport> status = client->status();
+  if (!status.ok()) return status.error();
+  base::Result<base::Bytes> image = client->image();
+  if (!image.ok()) return image.error();
+  return tools::write_file(options.text("--output"), *image);
+}
+
+int run(const tools::Options& options) {
+  base::Status fetched = fetch(options);
+  return fetched.ok() ? tools::kOk : refuse(fetched.error());
+}
+
+}  // namespace
+
+const Entry kImage{&kCommand, run};
+
+}  // namespace stvm

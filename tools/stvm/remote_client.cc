@@ -1,0 +1,34 @@
+#include "tools/stvm/remote_client.h"
+
+#include <cstdlib>
+
+namespace stvm {
+namespace {
+
+// One word for the shell of the other side, whatever is in it.
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace
+
+base::Result<std::unique_ptr<RemoteClient>> RemoteClient::connect(const std::string& host,
+                                                                  const std::string& directory) {
+  // ssh would take it for one of its options.
+  if (host.empty() || host[0] == '-') {
+    return base::Error{base::Refusal::kUsage, "--host names a machine, not `" + host + "`"};
+  }
+  const char* preset = std::getenv("STVM_SSH");
+  const std::string ssh = preset != nullptr && *preset != '\0' ? preset : "ssh";
+  std::string command = "stvm bridge";
+  if (!directory.empty()) command += " --dir " + quoted(directory);
+  base::Result<tools::ConnectedChild> child =
+      tools::ConnectedChild::start({ssh, "-T", host, command});
+  if (!child.ok()) return child.error();
+  auto client = vm::SocketClient::over(vm::Descriptor(child->take_socket()), "on " + host);
+  return std::unique_ptr<RemoteClient>(new RemoteClient(std::move(*child), std::move(client)));
+}
+
+}  // namespace stvm
