@@ -110,6 +110,7 @@ VarId Objects::value_of(const PouInfo& accessor) const {
 // Read or written: lowering knows which, and checks that there is GET or SET.
 Note Objects::infer_property(const Name& name, const Found& found) {
   const bool readable = found.code.getter != kNoPou;
+  if (!readable && found.code.setter == kNoPou) return {};  // said where it is declared
   const PouInfo& accessor = sema_.pous[readable ? found.code.getter : found.code.setter];
   if (!check_access(accessor, name)) return {};
   Note note;

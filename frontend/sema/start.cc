@@ -26,6 +26,7 @@ bool has_arguments(const Tree& tree, SpecId id) {
 
 // What of a type decides how a variable of it is laid out; instances have areas of their own.
 std::string shape(const ir::TypeTable& types, ir::TypeId id) {
+  if (!id.valid()) return "?";  // behind an error that was said
   const ir::Type& type = types[id];
   if (type.kind == ir::Kind::kArray) {
     std::string text = "[";

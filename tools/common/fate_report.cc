@@ -9,6 +9,9 @@ namespace {
 
 using online_change::Fate;
 using online_change::FateRow;
+using online_change::PouEdit;
+
+constexpr size_t kWidth = 80;
 
 struct CountColumn {
   const char* name;
@@ -46,7 +49,6 @@ std::string value_change(const FateRow& row, const LiveValues& live) {
 // "converted      LineStops : INT -> DINT", and behind it or below, whatever fits in
 // 80 columns, live value and reason.
 std::string row_text(const FateRow& row, const LiveValues& live) {
-  constexpr size_t kWidth = 80;
   std::string text = online_change::fate_name(row.fate);
   text.resize(12, ' ');
   if (row.count != 1) text += "x" + std::to_string(row.count);
@@ -56,6 +58,23 @@ std::string row_text(const FateRow& row, const LiveValues& live) {
   std::string rest = value_change(row, live);
   if (!row.reason.empty()) rest += (rest.empty() ? "(" : "  (") + row.reason + ")";
   if (rest.empty()) return text + "\n";
+  if (text.size() + 2 + rest.size() <= kWidth) return text + "  " + rest + "\n";
+  return text + "\n" + std::string(21, ' ') + rest + "\n";
+}
+
+// "code               Motor  (body; 3 instances go on with their values: outputs may jump)"
+std::string edit_text(const PouEdit& edit) {
+  std::string text = "code";
+  text.resize(19, ' ');
+  text += edit.pou;
+  std::string rest = std::string("(") + online_change::pou_change_name(edit.change);
+  if (!edit.what.empty()) rest += ": " + edit.what;
+  if (edit.instances != 0) {
+    rest += "; " + std::to_string(edit.instances) +
+            (edit.instances == 1 ? " instance goes" : " instances go") + " on with " +
+            (edit.instances == 1 ? "its" : "their") + " values: outputs may jump";
+  }
+  rest += ")";
   if (text.size() + 2 + rest.size() <= kWidth) return text + "  " + rest + "\n";
   return text + "\n" + std::string(21, ' ') + rest + "\n";
 }
@@ -78,7 +97,8 @@ std::string duration(int64_t ns) {
   return text;
 }
 
-std::string fate_report(const online_change::Plan& plan, const LiveValues& live) {
+std::string fate_report(const online_change::Plan& plan, const LiveValues& live,
+                        const PouEdits& edits) {
   std::string out;
   Table counts({"fate", "> variables"});
   for (auto [name, field] : kCounts) counts.row({name, std::to_string(plan.counts.*field)});
@@ -86,12 +106,14 @@ std::string fate_report(const online_change::Plan& plan, const LiveValues& live)
   for (const FateRow& row : plan.fates) {
     if (row.fate != Fate::kKept || !row.reason.empty()) out += row_text(row, live);
   }
+  for (const PouEdit& edit : edits) out += edit_text(edit);
   out += "\npredicted pause " + duration(plan.predicted_pause_ns) + " (" +
          std::to_string(plan.boundary_bytes) + " bytes written at the boundary)\n";
   return out;
 }
 
-void fate_report(const online_change::Plan& plan, const LiveValues& live, JsonWriter& json) {
+void fate_report(const online_change::Plan& plan, const LiveValues& live, const PouEdits& edits,
+                 JsonWriter& json) {
   json.key("counts").begin_object();
   for (auto [name, field] : kCounts) json.field(name, plan.counts.*field);
   json.end_object();
@@ -108,6 +130,12 @@ void fate_report(const online_change::Plan& plan, const LiveValues& live, JsonWr
       json.field("loss", found->second.loss);
     }
     json.end_object();
+  }
+  json.end_array().key("code").begin_array();
+  for (const PouEdit& edit : edits) {
+    json.begin_object().field("pou", edit.pou);
+    json.field("change", online_change::pou_change_name(edit.change));
+    json.field("instances", edit.instances).field("what", edit.what).end_object();
   }
   json.end_array();
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "online_change/plan/plan.h"
+#include "online_change/plan/pou_edits.h"
 #include "tools/common/json.h"
 
 namespace tools {
@@ -17,10 +18,15 @@ struct LiveValue {
 };
 using LiveValues = std::map<std::string, LiveValue>;  // by path
 
-// Counts, then one row for each group of variables that is not kept.
-std::string fate_report(const online_change::Plan& plan, const LiveValues& live);
-// "fates", "counts", "predicted_pause_ns" into an open object.
-void fate_report(const online_change::Plan& plan, const LiveValues& live, JsonWriter& json);
+using PouEdits = std::vector<online_change::PouEdit>;
+
+// Counts, then one row for each group of variables that is not kept, and for each POU with other
+// code.
+std::string fate_report(const online_change::Plan& plan, const LiveValues& live,
+                        const PouEdits& edits);
+// "fates", "code", "counts", "predicted_pause_ns" into an open object.
+void fate_report(const online_change::Plan& plan, const LiveValues& live, const PouEdits& edits,
+                 JsonWriter& json);
 
 // "12.5 us", "3 ms": three digits at most.
 std::string duration(int64_t ns);

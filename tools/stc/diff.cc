@@ -12,6 +12,7 @@ namespace {
 
 constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
+    STC_RESTRICTED_OPTION,
     {"--against", "HOST|DIR", "OLD is what runs there: a state directory, or a host to ssh to"},
 };
 constexpr tools::Command kCommand{"diff", "[OLD] NEW",
@@ -30,7 +31,12 @@ base::Result<Version> running_version(const std::string& place) {
   return read_image(file);
 }
 
-base::Result<online_change::Plan> plan_between(const tools::Options& options) {
+struct Difference {
+  online_change::Plan plan;
+  tools::PouEdits edits;
+};
+
+base::Result<Difference> difference(const tools::Options& options) {
   std::vector<std::string> next = options.arguments();
   const bool running = options.has("--against");
   if (!running && next.size() != 2) {
@@ -43,20 +49,29 @@ base::Result<online_change::Plan> plan_between(const tools::Options& options) {
   if (!running) next.erase(next.begin());
   base::Result<Version> after = open_version(options, next, {&before->image, false});
   if (!after.ok()) return after.error();
-  return online_change::plan(before->image, after->image);
+  Difference out;
+  out.edits = online_change::pou_edits(before->image, after->image);
+  if (options.has("--restricted")) {
+    base::Status kept = online_change::check_restricted(out.edits);
+    if (!kept.ok()) return kept.error();
+  }
+  base::Result<online_change::Plan> plan = online_change::plan(before->image, after->image);
+  if (!plan.ok()) return plan.error();
+  out.plan = std::move(*plan);
+  return out;
 }
 
 int run(const tools::Options& options) {
-  base::Result<online_change::Plan> plan = plan_between(options);
-  if (!plan.ok()) return tools::refuse("stc", plan.error());
+  base::Result<Difference> found = difference(options);
+  if (!found.ok()) return tools::refuse("stc", found.error());
   if (options.text("--format") == "json") {
     tools::JsonWriter json;
     json.begin_object();
-    tools::fate_report(*plan, {}, json);
+    tools::fate_report(found->plan, {}, found->edits, json);
     json.end_object();
     std::fputs(json.finish().c_str(), stdout);
   } else {
-    std::fputs(tools::fate_report(*plan, {}).c_str(), stdout);
+    std::fputs(tools::fate_report(found->plan, {}, found->edits).c_str(), stdout);
   }
   return tools::kOk;
 }

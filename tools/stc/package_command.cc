@@ -1,5 +1,6 @@
 // stc package: a running image and a new version -> change package.
 #include "online_change/package/package.h"
+#include "online_change/plan/pou_edits.h"
 #include "tools/common/files.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/session.h"
@@ -11,6 +12,7 @@ constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
     {"--base", "IMAGE", "the running version (required)"},
     {"--output|-o", "FILE", "package to write (required)"},
+    STC_RESTRICTED_OPTION,
     {"--move-all", nullptr, "give every instance a new place (a test of changes)"},
 };
 constexpr tools::Command kCommand{"package", "NEW...",
@@ -26,6 +28,11 @@ base::Status make(const tools::Options& options) {
   BuildOptions build_options{&old_version->image, options.has("--move-all")};
   base::Result<Version> next = open_version(options, options.arguments(), build_options);
   if (!next.ok()) return next.error();
+  if (options.has("--restricted")) {
+    base::Status kept =
+        online_change::check_restricted(online_change::pou_edits(old_version->image, next->image));
+    if (!kept.ok()) return kept.error();
+  }
   auto package = online_change::make_package(old_version->bytes, next->bytes);
   if (!package.ok()) return package.error();
   return tools::write_file(options.text("--output"), online_change::encode(*package));

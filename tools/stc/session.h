@@ -16,6 +16,9 @@ namespace stc {
     "--name", "NAME", "name of the program, instead of the folder's or file's"   \
   }
 
+#define STC_RESTRICTED_OPTION \
+  { "--restricted", nullptr, "refuse when the interface of a POU is edited" }
+
 // Loads the project named by `paths` with the options above.
 base::Result<Project> open_project(const tools::Options& options,
                                    const std::vector<std::string>& paths);

@@ -25,6 +25,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--dry-run", nullptr, "stop after the fate report; nothing is changed"},
     {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},
     {"--allow-overrun", nullptr, "switch even if a task may be delayed"},
+    {"--restricted", nullptr, "refuse when the interface of a POU is edited"},
     {"--permanent", nullptr, "accept at once: no undo, the new program boots next"},
     STVM_DIALECT_OPTION,
     STVM_FORMAT_OPTION,
@@ -32,15 +33,16 @@ constexpr tools::OptionRow kOptions[] = {
 constexpr tools::Command kCommand{"change", "SOURCES...|IMAGE",
                                   "Changes the running program without stopping it.", kOptions, 1};
 
-base::Result<base::Bytes> make_package(const Sources& sources, base::ByteSpan running) {
+base::Result<base::Bytes> make_package(const tools::Options& options, base::ByteSpan running) {
   base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
   if (!folder.ok()) return folder.error();
   std::string base_file = folder->file("running.img");
   std::string package_file = folder->file("change.pkg");
   base::Status written = tools::write_file(base_file, running);
   if (!written.ok()) return written.error();
-  base::Status made = tools::run_beside(
-      "stc", stc_arguments({"package", "--base", base_file, "-o", package_file}, sources));
+  std::vector<std::string> command = {"package", "--base", base_file, "-o", package_file};
+  if (options.has("--restricted")) command.push_back("--restricted");
+  base::Status made = tools::run_beside("stc", stc_arguments(command, sources_of(options)));
   if (!made.ok()) return made.error();
   return tools::read_bytes(package_file);
 }
@@ -125,7 +127,7 @@ void print_text(const Outcome& outcome, bool permanent) {
 void print_json(const Outcome& outcome) {
   tools::JsonWriter json;
   json.begin_object();
-  tools::fate_report(plan_of(outcome.page), live_of(outcome.page), json);
+  tools::fate_report(plan_of(outcome.page), live_of(outcome.page), outcome.page.edits, json);
   losses_json(outcome.page, json);
   json.field("switched", outcome.report.has_value());
   if (outcome.report) switch_json(*outcome.report, json);
@@ -143,7 +145,7 @@ base::Result<Outcome> change(const tools::Options& options, ControllerClient& cl
   }
   base::Result<base::Bytes> running = client.image();
   if (!running.ok()) return running.error();
-  base::Result<base::Bytes> package = make_package(sources_of(options), *running);
+  base::Result<base::Bytes> package = make_package(options, *running);
   if (!package.ok()) return package.error();
   base::Status staged = client.stage(*package);
   if (!staged.ok()) return staged.error();
@@ -151,7 +153,8 @@ base::Result<Outcome> change(const tools::Options& options, ControllerClient& cl
   if (!page.ok()) return page.error();
   Outcome outcome{std::move(*page), {}, {}};
   if (!json) {
-    std::string report = tools::fate_report(plan_of(outcome.page), live_of(outcome.page));
+    std::string report =
+        tools::fate_report(plan_of(outcome.page), live_of(outcome.page), outcome.page.edits);
     std::fputs((report + losses_text(outcome.page)).c_str(), stdout);
     std::fflush(stdout);
   }

@@ -53,6 +53,14 @@ std::optional<ir::VerifiedImage> image_of(base::ByteSpan bytes) {
   return *image;
 }
 
+// What fits into a message; a change that edits more POUs is looked at by other means.
+tools::PouEdits shown_edits(const ir::Image& old_image, const ir::Image& new_image) {
+  constexpr size_t kShownEdits = 1000;
+  tools::PouEdits edits = online_change::pou_edits(old_image, new_image);
+  if (edits.size() > kShownEdits) edits.resize(kShownEdits);
+  return edits;
+}
+
 uint64_t line_bytes(const FateLine& line) {
   return line.row.path.size() + line.row.old_type.size() + line.row.new_type.size() +
          line.row.reason.size() + line.live.now.size() + line.live.after.size() +
@@ -118,7 +126,7 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
   base::Status taken = at_boundary([&] { losses = change_.live_losses(); });
   if (!taken.ok()) return taken.error();
   FatePage page{plan.counts, plan.predicted_pause_ns, plan.boundary_bytes, 0, {}, losses.size(),
-                {}};
+                {}, {}};
   uint64_t bytes = 0;
   for (FateLine& line : *lines) {
     if (bytes > vm::kChunkBytes) break;
@@ -131,6 +139,7 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
   if (request.offset == 0) {
     losses.resize(std::min(losses.size(), kShownLosses));
     for (online_change::LiveLoss& loss : losses) page.losses.push_back({std::move(loss)});
+    if (staged_) page.edits = shown_edits(controller_.image(), staged_->image());
   }
   return encode(page);
 }

@@ -32,6 +32,13 @@ void live_fields(A& a, T& live) {
 }
 
 template <class A, class T>
+void edit_fields(A& a, T& edit) {
+  a(edit.pou);
+  a(edit.instances);
+  a(edit.what);
+}
+
+template <class A, class T>
 void loss_fields(A& a, T& loss) {
   a(loss.path);
   a(loss.old_value);
@@ -48,6 +55,7 @@ void page_fields(A& a, T& page) {
   a.list(page.lines, 38);
   a(page.loss_count);
   a.list(page.losses, 16);
+  a.list(page.edits, 17);
 }
 
 template <class A, class T>
@@ -79,6 +87,28 @@ static void fields(vm::FieldReader& a, FateLine& line) {
   row_fields(a, line.row);
   live_fields(a, line.live);
 }
+
+}  // namespace stvm
+
+// list() finds functions in the namespace of its rows.
+namespace online_change {
+
+static void fields(vm::FieldWriter& a, const PouEdit& edit) {
+  a(static_cast<uint8_t>(edit.change));
+  stvm::edit_fields(a, edit);
+}
+
+static void fields(vm::FieldReader& a, PouEdit& edit) {
+  uint8_t change = 0;
+  a(change);
+  if (change > static_cast<uint8_t>(PouChange::kInterface)) return a.fail();
+  edit.change = static_cast<PouChange>(change);
+  stvm::edit_fields(a, edit);
+}
+
+}  // namespace online_change
+
+namespace stvm {
 
 static void fields(vm::FieldWriter& a, const LossLine& line) { loss_fields(a, line.loss); }
 static void fields(vm::FieldReader& a, LossLine& line) { loss_fields(a, line.loss); }

@@ -28,7 +28,7 @@ base::Result<std::unique_ptr<RemoteClient>> RemoteClient::connect(const std::str
       tools::ConnectedChild::start({ssh, "-T", host, command});
   if (!child.ok()) return child.error();
   auto client = vm::SocketClient::over(vm::Descriptor(child->take_socket()), "on " + host);
-  return std::unique_ptr<RemoteClient>(new RemoteClient(std::move(*child), std::move(client)));
+  return std::make_unique<RemoteClient>(std::move(*child), std::move(client));
 }
 
 }  // namespace stvm

@@ -16,13 +16,13 @@ class RemoteClient : public vm::Transport {
   // `directory` on that machine; "": its default.
   static base::Result<std::unique_ptr<RemoteClient>> connect(const std::string& host,
                                                              const std::string& directory);
+  RemoteClient(tools::ConnectedChild child, std::unique_ptr<vm::SocketClient> client)
+      : child_(std::move(child)), client_(std::move(client)) {}
   base::Result<base::Bytes> exchange(base::ByteSpan request) override {
     return client_->exchange(request);
   }
 
  private:
-  RemoteClient(tools::ConnectedChild child, std::unique_ptr<vm::SocketClient> client)
-      : child_(std::move(child)), client_(std::move(client)) {}
   tools::ConnectedChild child_;  // ends when client_, which is gone before, closes its socket
   std::unique_ptr<vm::SocketClient> client_;
 };

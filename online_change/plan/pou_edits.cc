@@ -1,0 +1,189 @@
+#include "online_change/plan/pou_edits.h"
+
+#include <algorithm>
+#include <map>
+#include <unordered_map>
+
+namespace online_change {
+namespace {
+
+struct Parameter {
+  std::string kind;  // "input"
+  std::string name;
+  std::string type;     // as people read it
+  std::string content;  // of its structures and enumerations too
+};
+
+// Two types with the same text can differ inside: a structure by its members.
+class TypeContent {
+ public:
+  explicit TypeContent(const ir::TypeTable& types) : types_(types) {}
+  std::string of(ir::TypeId id) {
+    std::string out = types_.text(id);
+    append(id, out);
+    seen_.clear();
+    return out;
+  }
+
+ private:
+  void append(ir::TypeId id, std::string& out) {
+    const ir::Type& type = types_[id];
+    if (ir::is_reference(type.kind) || types_.is_instance(id)) return;
+    if (type.kind == ir::Kind::kArray) return append(type.base, out);
+    if (std::find(seen_.begin(), seen_.end(), id) != seen_.end()) return;
+    seen_.push_back(id);
+    for (const ir::EnumLiteral& literal : type.literals) {
+      out += "," + ir::fold_name(literal.name) + "=" + std::to_string(literal.value);
+    }
+    if (!ir::is_structure(type.kind)) return;
+    out += "{";
+    for (const ir::Member& member : type.members) {
+      out += ir::fold_name(member.name) + ":" + types_.text(member.type);
+      append(member.type, out);
+      out += ";";
+    }
+    out += "}";
+  }
+
+  const ir::TypeTable& types_;
+  std::vector<ir::TypeId> seen_;
+};
+
+const char* kind_of(ir::Section section) {
+  switch (section) {
+    case ir::Section::kInput:
+      return "input";
+    case ir::Section::kOutput:
+      return "output";
+    case ir::Section::kInOut:
+      return "in-out";
+    default:
+      return nullptr;
+  }
+}
+
+const char* kind_of(ir::LocalKind kind) {
+  switch (kind) {
+    case ir::LocalKind::kInput:
+      return "input";
+    case ir::LocalKind::kOutput:
+      return "output";
+    case ir::LocalKind::kInOut:
+      return "in-out";
+    default:
+      return "result";
+  }
+}
+
+std::vector<Parameter> interface_of(const ir::Image& image, const ir::LinkedPou& pou) {
+  std::vector<Parameter> out;
+  TypeContent content(image.types);
+  if (ir::is_body(pou.kind)) {
+    for (const ir::Member& member : image.types[pou.self].members) {
+      const char* kind = kind_of(member.section);
+      if (kind == nullptr) continue;
+      out.push_back({kind, member.name, image.types.text(member.type), content.of(member.type)});
+    }
+    return out;
+  }
+  for (const ir::FrameSlot& slot : pou.slots) {
+    if (slot.kind != ir::SlotKind::kParam) continue;
+    const ir::TypeId type = slot.region.type;
+    out.push_back({kind_of(slot.local), slot.name, image.types.text(type), content.of(type)});
+  }
+  return out;
+}
+
+// The first difference; "" when callers see the same.
+std::string interface_difference(const std::vector<Parameter>& before,
+                                 const std::vector<Parameter>& after) {
+  auto text = [](const Parameter& p) { return p.kind + " `" + p.name + "`"; };
+  for (size_t i = 0; i < std::max(before.size(), after.size()); ++i) {
+    if (i >= after.size()) return text(before[i]) + " removed";
+    if (i >= before.size()) return text(after[i]) + " added";
+    const Parameter& a = before[i];
+    const Parameter& b = after[i];
+    if (a.kind != b.kind || !ir::same_name(a.name, b.name)) {
+      return text(b) + " in the place of " + text(a);
+    }
+    if (a.type != b.type) return text(b) + " " + a.type + " -> " + b.type;
+    if (a.content != b.content) return text(b) + ": " + b.type + " has another content";
+  }
+  return {};
+}
+
+using Pous = std::map<std::string, const ir::LinkedPou*>;  // by folded name
+
+Pous by_name(const ir::Image& image) {
+  Pous out;
+  for (const ir::LinkedPou& pou : image.pous) {
+    // A number that a removed POU had, and no other has yet, stays without a name.
+    if (!pou.name.empty()) out.emplace(ir::fold_name(pou.name), &pou);
+  }
+  return out;
+}
+
+// Live instances of each POU.
+std::vector<uint64_t> instance_counts(const ir::Image& image) {
+  std::vector<uint64_t> counts(image.pous.size());
+  for (uint32_t id = 1; id < image.instances.size(); ++id) {
+    const ir::Instance& row = image.instances[id];
+    if (row.live && row.pou < counts.size()) ++counts[row.pou];
+  }
+  return counts;
+}
+
+}  // namespace
+
+const char* pou_change_name(PouChange change) {
+  switch (change) {
+    case PouChange::kAdded:
+      return "added";
+    case PouChange::kRemoved:
+      return "removed";
+    case PouChange::kBody:
+      return "body";
+    case PouChange::kInterface:
+      return "interface";
+  }
+  base::check(false, "a change that pou_change_name() knows");
+  return "";
+}
+
+std::vector<PouEdit> pou_edits(const ir::Image& old_image, const ir::Image& new_image) {
+  const Pous before = by_name(old_image);
+  const Pous after = by_name(new_image);
+  const std::vector<uint64_t> counts = instance_counts(old_image);
+  std::vector<PouEdit> edits;
+  for (const auto& [name, pou] : after) {
+    const auto found = before.find(name);
+    if (found == before.end()) {
+      edits.push_back({PouChange::kAdded, pou->name, 0, {}});
+      continue;
+    }
+    const ir::LinkedPou& old_pou = *found->second;
+    PouEdit edit{PouChange::kBody, pou->name, 0, {}};
+    edit.what =
+        interface_difference(interface_of(old_image, old_pou), interface_of(new_image, *pou));
+    if (!edit.what.empty()) edit.change = PouChange::kInterface;
+    if (edit.what.empty() && old_pou.identity == pou->identity) continue;
+    if (ir::is_body(pou->kind)) {
+      edit.instances = counts[static_cast<size_t>(&old_pou - old_image.pous.data())];
+    }
+    edits.push_back(std::move(edit));
+  }
+  for (const auto& [name, pou] : before) {
+    if (!after.contains(name)) edits.push_back({PouChange::kRemoved, pou->name, 0, {}});
+  }
+  return edits;
+}
+
+base::Status check_restricted(const std::vector<PouEdit>& edits) {
+  for (const PouEdit& edit : edits) {
+    if (edit.change != PouChange::kInterface) continue;
+    return base::Error{base::Refusal::kInterfaceEdit, "`" + edit.pou + "`: " + edit.what};
+  }
+  return base::Ok{};
+}
+
+}  // namespace online_change

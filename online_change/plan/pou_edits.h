@@ -1,0 +1,35 @@
+// What a change does to code: the POUs whose object is another one (E1), and whether what their
+// callers see of them stays. Beside the fates of variables in the report: where an instance goes on
+// with its values under other code, its outputs may jump (change case 41).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "ir/bytecode/image.h"
+
+namespace online_change {
+
+enum class PouChange : uint8_t {
+  kAdded,
+  kRemoved,
+  kBody,       // callers see the same
+  kInterface,  // inputs, outputs, in-outs or result differ
+};
+const char* pou_change_name(PouChange change);
+
+struct PouEdit {
+  PouChange change = PouChange::kBody;
+  std::string pou;
+  uint64_t instances = 0;  // that go on with their values; of a body: function block or program
+  std::string what;        // kInterface: "input `speed` INT -> DINT"
+};
+
+// By name, the removed ones last. Linear in the POUs of both versions.
+std::vector<PouEdit> pou_edits(const ir::Image& old_image, const ir::Image& new_image);
+// D7: kInterfaceEdit when a POU that stays gets another interface.
+base::Status check_restricted(const std::vector<PouEdit>& edits);
+
+}  // namespace online_change
