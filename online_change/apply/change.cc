@@ -5,9 +5,11 @@
 #include <cstring>
 
 #include "online_change/apply/handle_transfer.h"
+#include "online_change/apply/leaving.h"
 #include "online_change/apply/losses.h"
+#include "online_change/apply/standby.h"
 #include "online_change/apply/transfer.h"
-#include "online_change/diff/instance_match.h"
+#include "online_change/plan/pause.h"
 
 namespace online_change {
 namespace {
@@ -31,69 +33,43 @@ base::Error no_boundary() {
 // Without it, start code would find nothing to do.
 bool does_anything(const Plan& plan) { return !plan.steps.empty() || plan.counts.dropped != 0; }
 
-bool has_stamp(const ir::Image& image, uint32_t id) {
-  const std::vector<ir::Member>& members = image.types[image.instances[id].type].members;
-  return std::any_of(members.begin(), members.end(), [](const ir::Member& member) {
-    return member.section == ir::Section::kStamp;
-  });
-}
-
-// The instances with a stamp that only one of the two versions has.
-void find_leaving(const ir::Image& old_image, const ir::Image& new_image,
-                  std::vector<uint32_t>& old_ids, std::vector<uint32_t>& new_ids) {
-  if (!has_stamp(old_image, 0) && !has_stamp(new_image, 0)) return;
-  const InstanceMatch match = match_instances(old_image, new_image);
-  for (uint32_t id : match.old_order) {
-    if (match.new_of_old[id] == kNoInstance && has_stamp(old_image, id)) old_ids.push_back(id);
-  }
-  for (uint32_t id : match.new_order) {
-    if (match.old_of_new[id] == kNoInstance && has_stamp(new_image, id)) new_ids.push_back(id);
-  }
-}
-
 }  // namespace
 
 struct Change::Pending {
-  Pending(Package received, ir::VerifiedImage running, ir::VerifiedImage next)
-      : package(std::move(received)),
+  Pending(Package received, ir::VerifiedImage running, ir::VerifiedImage next, Strategy chosen)
+      : strategy(chosen),
+        package(std::move(received)),
         old_image(std::move(running)),
         new_image(std::move(next)),
-        forward(package.forward, old_image.image(), new_image.image(), Transfer::Steps::kBoundary),
+        forward(package.forward, old_image.image(), new_image.image(),
+                in_place() ? Transfer::Steps::kBoundary : Transfer::Steps::kApart),
+        early(package.forward, old_image.image(), new_image.image(), Transfer::Steps::kEarly),
         backward(package.inverse, new_image.image(), old_image.image(), Transfer::Steps::kAll),
-        handles(old_image.image(), new_image.image()) {}
+        handles(old_image.image(), new_image.image()),
+        leaving(find_leaving(old_image.image(), new_image.image())) {}
+  bool in_place() const { return strategy == Strategy::kInPlace; }
 
+  Strategy strategy;
   Package package;
   ir::VerifiedImage old_image;
   ir::VerifiedImage new_image;
   Transfer forward;
+  Transfer early;  // in place
+  size_t early_done = 0;
   Transfer backward;
   HandleTransfer handles;
   // Version 2 until the switch, version 1 in trial.
   std::unique_ptr<vm::Generation> waiting;
-  std::vector<uint32_t> leaving;       // instances that the switch drops and FB_Exit is for
-  std::vector<uint32_t> leaving_back;  // that undo drops
+  // Standby: its data. In trial that is version 1's, as the switch found it.
+  std::unique_ptr<Standby> area;
+  Leaving leaving;
   bool allow_loss = false;
 };
 
 const char* state_name(State state) {
-  switch (state) {
-    case State::kIdle:
-      return "idle";
-    case State::kStaged:
-      return "staged";
-    case State::kVerified:
-      return "verified";
-    case State::kPlanned:
-      return "planned";
-    case State::kPrepared:
-      return "prepared";
-    case State::kArmed:
-      return "armed";
-    case State::kTrial:
-      return "trial";
-  }
-  base::check(false, "a state that state_name() knows");
-  return "";
+  constexpr const char* kNames[] = {"idle",     "staged", "verified", "planned",
+                                    "prepared", "armed",  "trial"};
+  return kNames[static_cast<size_t>(state)];
 }
 
 Change::Change(vm::Controller& controller) : controller_(controller) {}
@@ -104,18 +80,19 @@ base::Error Change::abandoned(const char* where) const {
           std::string("the change was abandoned ") + where + "; the old program runs on"};
 }
 
-base::Status Change::stage(base::ByteSpan package) {
+base::Status Change::stage(base::ByteSpan package, Strategy strategy) {
   if (state_ != State::kIdle) {
     return base::Error{base::Refusal::kChangePending, std::string("another change is ") +
                                                           state_name(state_) +
                                                           "; accept, undo or cancel it first"};
   }
-  base::Status status = stage_steps(package);
+  collect();
+  base::Status status = stage_steps(package, strategy);
   if (!status.ok()) cancel();
   return status;
 }
 
-base::Status Change::stage_steps(base::ByteSpan bytes) {
+base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy) {
   base::Result<Package> package = decode(bytes);
   if (!package.ok()) return package.error();
   const base::Digest& running = controller_.verified().digest();
@@ -136,13 +113,18 @@ base::Status Change::stage_steps(base::ByteSpan bytes) {
   if (interrupted()) return abandoned("when it was verified");
   base::Status sound = check_package(*package, controller_.image(), image->image());
   if (!sound.ok()) return sound;
-  pending_ = std::make_unique<Pending>(std::move(*package), controller_.verified(), *image);
-  find_leaving(pending_->old_image.image(), pending_->new_image.image(), pending_->leaving,
-               pending_->leaving_back);
+  pending_ =
+      std::make_unique<Pending>(std::move(*package), controller_.verified(), *image, strategy);
   state_ = State::kPlanned;
   if (interrupted()) return abandoned("when its plan was checked");
   pending_->waiting = controller_.prepare(*image);
   retired_.reset();  // prepare() has just forgotten it
+  if (!pending_->in_place()) {
+    base::Result<std::unique_ptr<Standby>> area = Standby::make(
+        controller_.generation(), *pending_->waiting, pending_->forward, controller_.data_limit());
+    if (!area.ok()) return area.error();
+    pending_->area = std::move(*area);
+  }
   state_ = State::kPrepared;
   if (interrupted()) return abandoned("when it was prepared");
   return base::Ok{};
@@ -151,6 +133,15 @@ base::Status Change::stage_steps(base::ByteSpan bytes) {
 const Plan& Change::plan() const {
   static const Plan kNothing;
   return pending_ ? pending_->package.forward : kNothing;
+}
+
+Strategy Change::strategy() const { return pending_ ? pending_->strategy : Strategy::kInPlace; }
+
+int64_t Change::predicted_pause_ns() const {
+  if (!pending_ || pending_->in_place()) return plan().predicted_pause_ns;
+  if (!pending_->area) return 0;
+  return predicted_standby_pause_ns(plan(), pending_->old_image.image(),
+                                    pending_->new_image.image(), pending_->area->compared_bytes());
 }
 
 std::vector<LiveLoss> Change::live_losses() const {
@@ -162,7 +153,7 @@ std::vector<LiveLoss> Change::live_losses() const {
     rows.push_back(describe(loss, pending_->forward, areas, memory));
     return true;
   };
-  pending_->forward.read(memory, collect, nullptr);
+  pending_->forward.losses(memory, collect);
   std::vector<LiveLoss> others =
       values_without_place(plan(), pending_->old_image.image(), controller_.memory().view());
   rows.insert(rows.end(), others.begin(), others.end());
@@ -184,14 +175,14 @@ base::Status Change::check_losses(bool allow_loss) const {
 // Free time of a task: its period without its longest scan.
 base::Status Change::check_pause(bool allow_overrun) const {
   if (allow_overrun) return base::Ok{};
+  const int64_t pause_ns = predicted_pause_ns();
   for (const vm::TaskStatus& task : controller_.tasks()) {
     if (task.stopped || task.period_ns == 0) continue;  // events leave as much time as there is
     int64_t free_ns = task.period_ns - task.max_ns;
-    if (plan().predicted_pause_ns <= free_ns) continue;
+    if (pause_ns <= free_ns) continue;
     return base::Error{base::Refusal::kPauseTooLong,
-                       "the switch is expected to take " +
-                           std::to_string(plan().predicted_pause_ns) + " ns; task `" + task.name +
-                           "` leaves " + std::to_string(free_ns) +
+                       "the switch is expected to take " + std::to_string(pause_ns) +
+                           " ns; task `" + task.name + "` leaves " + std::to_string(free_ns) +
                            " ns; split the change, or allow it with --allow-overrun"};
   }
   return base::Ok{};
@@ -203,32 +194,44 @@ base::Status Change::arm(bool allow_loss, bool allow_overrun) {
   if (!fits.ok()) return fits;
   base::Status lossless = check_losses(allow_loss);
   if (!lossless.ok()) return lossless;
-  if (interrupted() || !write_early()) {
-    cancel();
+  do {
+    if (!interrupted()) continue;
+    abandon();
     return abandoned("while it was armed");
-  }
-  pending_->forward.touch(controller_.memory().data());
+  } while (unit());
+  if (pending_->in_place()) pending_->forward.touch(controller_.memory().data());
   pending_->allow_loss = allow_loss;
   state_ = State::kArmed;
   return base::Ok{};
 }
 
-// A19. Version 1 owns none of these bytes, so there is nothing to take back.
-bool Change::write_early() {
+base::Result<bool> Change::configure() {
+  if (state_ != State::kPrepared) return not_in(state_, "prepared");
+  if (!controller_.at_boundary()) return no_boundary();
+  bool stop = false;
+  controller_.run_idle([&] {
+    stop = interrupted();
+    return !stop && unit();
+  });
+  if (!stop) return units_left() == 0;
+  abandon();
+  return abandoned("while it was configured");
+}
+
+// In place version 1 owns none of the bytes that are written here, and a second area is not its own
+// either, so there is nothing to take back. False: nothing was left.
+bool Change::unit() {
   uint8_t* memory = controller_.memory().data();
-  for (const UpdateStep& step : plan().steps) {
-    if (!step.early) continue;
-    if (interrupted()) return false;
-    for (uint32_t i = 0; i < step.count; ++i) {
-      uint8_t* to = memory + step.to + size_t{i} * step.to_stride;
-      if (step.bytes.empty()) {
-        std::memset(to, 0, step.size);
-      } else {
-        std::memcpy(to, step.bytes.data() + size_t{i} * step.size, step.size);
-      }
-    }
-  }
-  return true;
+  if (pending_->area) return pending_->area->unit(memory);
+  const std::vector<Piece>& pieces = pending_->early.pieces();
+  if (pending_->early_done == pieces.size()) return false;
+  return pending_->early.move(pieces[pending_->early_done++], memory, memory, nullptr);
+}
+
+uint64_t Change::units_left() const {
+  if (!pending_) return 0;
+  if (pending_->area) return pending_->area->units_left();
+  return pending_->early.pieces().size() - pending_->early_done;
 }
 
 uint64_t Change::missed_releases() const {
@@ -245,34 +248,43 @@ SwitchReport Change::report_begin() const {
   return report;
 }
 
+bool Change::carry_in_place(const OnLoss& on_loss) {
+  uint8_t* memory = controller_.memory().data();
+  return pending_->forward.read(memory, on_loss, interrupted_) &&
+         pending_->forward.save(memory, interrupted_) &&
+         pending_->backward.remember(memory, interrupted_) &&
+         pending_->forward.write(memory, interrupted_);
+}
+
 // Nothing is visible before the last line of it, and a failure leaves version 1's state.
 base::Status Change::carry_over() {
-  uint8_t* memory = controller_.memory().data();
+  const uint8_t* source = controller_.memory().data();
+  const bool apart = pending_->area != nullptr;
+  uint8_t* target = apart ? pending_->area->data().data() : controller_.memory().data();
   Transfer& transfer = pending_->forward;
   Loss lost;
   auto on_loss = [&](const Loss& loss) {
     lost = loss;
     return pending_->allow_loss;
   };
-  if (!transfer.read(memory, on_loss, interrupted_)) {
+  const bool carried =
+      apart ? pending_->area->close(source, on_loss, interrupted_) : carry_in_place(on_loss);
+  if (!carried) {
     if (lost.what == nullptr || pending_->allow_loss) return abandoned("at the boundary");
     Areas areas(pending_->new_image.image());
-    return would_lose(describe(lost, transfer, areas, memory), 0);
+    return would_lose(describe(lost, transfer, areas, source), 0);
   }
-  if (!transfer.save(memory, interrupted_)) return abandoned("at the boundary");
-  if (!pending_->backward.remember(memory, interrupted_)) return abandoned("at the boundary");
-  if (!transfer.write(memory, interrupted_)) return abandoned("at the boundary");
   std::optional<uint32_t> broken =
-      pending_->handles.forward(memory, pending_->allow_loss, interrupted_);
+      pending_->handles.forward(target, pending_->allow_loss, interrupted_);
   if (broken) {
-    transfer.restore(memory);
+    if (!apart) transfer.restore(target);
     return *broken == HandleTransfer::kInterrupted
                ? abandoned("at the boundary")
                : would_lose(broken_at(Areas(pending_->new_image.image()), *broken), 0);
   }
   if (interrupted()) {
-    pending_->handles.restore_forward(memory);
-    transfer.restore(memory);
+    if (!apart) pending_->handles.restore_forward(target);
+    if (!apart) transfer.restore(target);
     return abandoned("before its last step");
   }
   return base::Ok{};
@@ -291,18 +303,19 @@ base::Result<SwitchReport> Change::switch_now() {
   if (!controller_.at_boundary()) return no_boundary();
   SwitchReport report = report_begin();
   int64_t begin_ns = monotonic_ns();
-  const bool leaves = !pending_->leaving.empty();
+  const bool leaves = !pending_->leaving.at_switch.empty();
   base::Status carried = leaves ? check_losses(pending_->allow_loss) : base::Status(base::Ok{});
   if (carried.ok()) {
-    carried = leave(pending_->leaving);
+    carried = leave(pending_->leaving.at_switch);
     if (carried.ok()) carried = carry_over();
     if (!carried.ok() && leaves) controller_.construct();
   }
   if (!carried.ok()) {
-    cancel();
+    abandon();
     return carried.error();
   }
-  pending_->waiting = controller_.publish(std::move(pending_->waiting));
+  vm::Memory* const area = pending_->area ? &pending_->area->data() : nullptr;
+  pending_->waiting = controller_.publish(std::move(pending_->waiting), area);
   if (does_anything(plan())) controller_.construct();
   report.pause_ns = monotonic_ns() - begin_ns;
   state_ = State::kTrial;
@@ -316,6 +329,7 @@ base::Status Change::accept() {
     return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to accept"};
   }
   retired_ = std::move(pending_->waiting);
+  retired_area_ = std::move(pending_->area);
   pending_.reset();
   state_ = State::kIdle;
   return base::Ok{};
@@ -330,17 +344,19 @@ base::Result<SwitchReport> Change::undo() {
   uint8_t* memory = controller_.memory().data();
   int64_t begin_ns = monotonic_ns();
   Transfer& back = pending_->backward;
-  base::Status left = leave(pending_->leaving_back);
+  base::Status left = leave(pending_->leaving.at_undo);
   if (!left.ok()) {
     controller_.construct();
     return left.error();
   }
   const bool led_back = pending_->handles.back(memory, interrupted_);
-  bool done = led_back && back.read_back(memory, pending_->forward, interrupted_) &&
+  const bool remembered =
+      !pending_->area || back.remember(pending_->area->data().data(), interrupted_);
+  bool done = led_back && remembered && back.read_back(memory, pending_->forward, interrupted_) &&
               back.save(memory, interrupted_) && back.write(memory, interrupted_);
   if (!done) {
     if (led_back) pending_->handles.restore(memory);
-    if (!pending_->leaving_back.empty()) controller_.construct();
+    if (!pending_->leaving.at_undo.empty()) controller_.construct();
     return base::Error{base::Refusal::kDeadline, "the undo was abandoned; the trial goes on"};
   }
   retired_ = controller_.publish(std::move(pending_->waiting));
@@ -348,14 +364,24 @@ base::Result<SwitchReport> Change::undo() {
   report.pause_ns = monotonic_ns() - begin_ns;
   report.missed = missed_releases() - report.missed;
   report.counts = pending_->package.inverse.counts;
+  retired_area_ = std::move(pending_->area);
   pending_.reset();
   state_ = State::kIdle;
   return report;
 }
 
 void Change::cancel() {
+  abandon();
+  collect();
+}
+
+void Change::collect() { retired_area_.reset(); }
+
+// At a boundary too: what was taken is freed later.
+void Change::abandon() {
   if (state_ == State::kTrial) return;
   if (pending_ && pending_->waiting) retired_ = std::move(pending_->waiting);
+  if (pending_) retired_area_ = std::move(pending_->area);
   pending_.reset();
   state_ = State::kIdle;
 }

@@ -15,6 +15,13 @@
 
 namespace online_change {
 
+// How a change gets data memory into version 2's state; what comes of it is the same
+// (docs/adr/0011-two-strategies.md).
+enum class Strategy : uint8_t {
+  kInPlace,  // A: nothing is copied that keeps its place and type
+  kStandby,  // C: a second data area is prepared in idle time, and the two change roles
+};
+
 enum class State : uint8_t { kIdle, kStaged, kVerified, kPlanned, kPrepared, kArmed, kTrial };
 const char* state_name(State state);
 
@@ -33,6 +40,9 @@ struct SwitchReport {
   FateCounts counts;          // what was done
 };
 
+struct Loss;
+class Standby;
+
 class Change {
  public:
   explicit Change(vm::Controller& controller);
@@ -40,13 +50,19 @@ class Change {
 
   State state() const { return state_; }
   // Idle -> Prepared, in steps; may be called while version 1 runs (between cycles).
-  base::Status stage(base::ByteSpan package);
+  base::Status stage(base::ByteSpan package, Strategy strategy = Strategy::kInPlace);
   // Values that would be lost if the switch came now; by kPrepared.
   std::vector<LiveLoss> live_losses() const;
   const Plan& plan() const;
+  Strategy strategy() const;
+  int64_t predicted_pause_ns() const;
+  // By kPrepared, at a boundary: work that must be done before the switch, as far as idle time goes
+  // (C5). In place: new variables in bytes that version 1 does not use get their initial values
+  // (A19); standby: the second data area. True: all is done.
+  base::Result<bool> configure();
+  uint64_t units_left() const;  // of that work
   // Prepared -> Armed. Losses are refused unless allowed (kWouldLose), and so is a predicted pause
-  // longer than the free time of the tightest task (kPauseTooLong). New variables in bytes that
-  // version 1 does not use get their initial values here (A19).
+  // longer than the free time of the tightest task (kPauseTooLong). What configure() left is done.
   base::Status arm(bool allow_loss, bool allow_overrun = false);
   // At a boundary: Armed -> Trial. Re-checks losses; on failure -> Idle, version 1 untouched.
   base::Result<SwitchReport> switch_now();
@@ -55,8 +71,11 @@ class Change {
   // Trial -> Idle with version 1 again; at a boundary. Inverse plan on the current state; values
   // that the change dropped or narrowed come back as they were, if nobody wrote them since.
   base::Result<SwitchReport> undo();
-  // Any state before the switch -> Idle. Nothing in trial: that takes accept() or undo().
+  // Any state before the switch -> Idle; frees what the change took, so not at a boundary. Nothing
+  // in trial: that takes accept() or undo().
   void cancel();
+  // Frees data areas that are no longer used. That takes time, so not at a boundary.
+  void collect();
 
   // Asked before every single step from stage() to the publishing store; true abandons the change
   // there (kDeadline): a deadline that comes too near, or a test.
@@ -67,11 +86,13 @@ class Change {
  private:
   struct Pending;
 
-  base::Status stage_steps(base::ByteSpan package);
+  base::Status stage_steps(base::ByteSpan package, Strategy strategy);
   base::Status check_pause(bool allow_overrun) const;
   base::Status check_losses(bool allow_loss) const;
-  bool write_early();
+  bool unit();
+  bool carry_in_place(const std::function<bool(const Loss&)>& on_loss);
   base::Status carry_over();
+  void abandon();
   base::Status leave(const std::vector<uint32_t>& ids);
   bool interrupted() const { return interrupted_ && interrupted_(); }
   base::Error abandoned(const char* where) const;
@@ -84,6 +105,7 @@ class Change {
   // A generation that was published or prepared and is no longer used; it lives until the next
   // prepare(), because the controller's tables may still refer to it.
   std::unique_ptr<vm::Generation> retired_;
+  std::unique_ptr<Standby> retired_area_;
   std::function<bool()> interrupted_;
 };
 

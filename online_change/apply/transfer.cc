@@ -6,26 +6,36 @@
 namespace online_change {
 namespace {
 
-// `count` values of `size` bytes, `stride` apart, to or from a place without gaps.
-void gather(const uint8_t* from, const UpdateStep& step, uint32_t stride, uint8_t* out) {
-  if (step.count == 1 || stride == step.size) {
-    std::memcpy(out, from, step.total());
+constexpr uint32_t kPieceBytes = 4096;
+// Values that are copied or converted fast take some 5 ns, others (fast_conversion.h) up to 80.
+constexpr uint32_t kFastValues = 1024;
+constexpr uint32_t kSlowValues = 128;
+
+// Values of `piece`, `stride` apart, to or from a place without gaps.
+void gather(const uint8_t* from, const Piece& piece, uint32_t stride, uint8_t* out) {
+  if (piece.count == 1 || stride == piece.size) {
+    std::memcpy(out, from, piece.total());
     return;
   }
-  for (uint32_t i = 0; i < step.count; ++i) {
-    std::memcpy(out + size_t{i} * step.size, from + size_t{i} * stride, step.size);
+  for (uint32_t i = 0; i < piece.count; ++i) {
+    std::memcpy(out + size_t{i} * piece.size, from + size_t{i} * stride, piece.size);
   }
 }
 
-void scatter(const uint8_t* from, const UpdateStep& step, uint8_t* memory) {
-  uint8_t* to = memory + step.to;
-  if (step.count == 1 || step.to_stride == step.size) {
-    std::memcpy(to, from, step.total());
+void scatter(const uint8_t* from, const Piece& piece, uint32_t stride, uint8_t* to) {
+  if (piece.count == 1 || stride == piece.size) {
+    std::memcpy(to, from, piece.total());
     return;
   }
-  for (uint32_t i = 0; i < step.count; ++i) {
-    std::memcpy(to + size_t{i} * step.to_stride, from + size_t{i} * step.size, step.size);
+  for (uint32_t i = 0; i < piece.count; ++i) {
+    std::memcpy(to + size_t{i} * stride, from + size_t{i} * piece.size, piece.size);
   }
+}
+
+bool without_gaps(const UpdateStep& step) {
+  if (step.kind == StepKind::kConvert) return false;
+  const bool read_so = step.kind == StepKind::kInitialise || step.from_stride == step.size;
+  return step.count == 1 || (read_so && step.to_stride == step.size);
 }
 
 }  // namespace
@@ -36,169 +46,237 @@ Transfer::Transfer(const Plan& plan, const ir::Image& from, const ir::Image& to,
   for (uint32_t number = 0; number < plan.steps.size(); ++number) {
     const UpdateStep& step = plan.steps[number];
     if (which == Steps::kBoundary && step.early) continue;
-    bool converts = step.kind == StepKind::kConvert;
-    work_.push_back({number, bytes, converts ? conversions_.fast(step) : nullptr});
-    for (uint32_t i = 0; i < step.count; ++i) {
-      targets_.push_back(
-          {step.to + i * step.to_stride, step.size, bytes + size_t{i} * step.size, converts});
-    }
+    if (which == Steps::kEarly && !step.early) continue;
+    add_step(number, bytes);
     bytes += step.total();
   }
-  auto by_place = [](const Target& a, const Target& b) { return a.to < b.to; };
-  if (!std::is_sorted(targets_.begin(), targets_.end(), by_place)) {
-    std::sort(targets_.begin(), targets_.end(), by_place);
+  auto by_place = [](const Converted& a, const Converted& b) { return a.to < b.to; };
+  if (!std::is_sorted(converted_.begin(), converted_.end(), by_place)) {
+    std::sort(converted_.begin(), converted_.end(), by_place);
   }
   staged_.resize(bytes);
-  saved_.resize(bytes);
+  if (which == Steps::kBoundary || which == Steps::kAll) saved_.resize(bytes);
   if (which == Steps::kAll) remembered_.resize(bytes);
+}
+
+void Transfer::add_step(uint32_t number, size_t at) {
+  const UpdateStep& step = plan_.steps[number];
+  Piece piece;
+  piece.step = number;
+  piece.at = at;
+  piece.from = step.from;
+  piece.to = step.to;
+  if (without_gaps(step)) return add_bytes(piece, step.total());
+  const bool converts = step.kind == StepKind::kConvert;
+  if (converts) piece.fast = conversions_.fast(step);
+  piece.size = step.size;
+  uint32_t most = converts && piece.fast == nullptr ? kSlowValues : kFastValues;
+  most = std::clamp(kPieceBytes / std::max(step.size, 1u), 1u, most);
+  for (piece.first = 0; piece.first < step.count; piece.first += piece.count) {
+    piece.count = std::min(most, step.count - piece.first);
+    piece.from = step.from + piece.first * step.from_stride;
+    piece.to = step.to + piece.first * step.to_stride;
+    piece.within = piece.first * step.size;
+    piece.at = at + piece.within;
+    if (step.size > kPieceBytes && !converts) {
+      add_bytes(piece, step.size);
+    } else {
+      pieces_.push_back(piece);
+    }
+    for (uint32_t i = 0; converts && i < piece.count; ++i) {
+      converted_.push_back(
+          {piece.to + i * step.to_stride, step.size, piece.at + size_t{i} * step.size});
+    }
+  }
+}
+
+void Transfer::add_bytes(Piece part, uint64_t length) {
+  part.count = 1;
+  while (length != 0) {
+    part.size = static_cast<uint32_t>(std::min<uint64_t>(length, kPieceBytes));
+    pieces_.push_back(part);
+    part.from += part.size;
+    part.to += part.size;
+    part.within += part.size;
+    part.at += part.size;
+    length -= part.size;
+  }
+}
+
+uint64_t Transfer::source_extent(const Piece& piece) const {
+  const UpdateStep& step = step_of(piece);
+  if (step.kind == StepKind::kInitialise) return 0;
+  const bool converts = step.kind == StepKind::kConvert;
+  const uint32_t size = converts ? conversions_.source_size(step) : piece.size;
+  return uint64_t{piece.count - 1} * step.from_stride + size;
+}
+
+uint64_t Transfer::target_extent(const Piece& piece) const {
+  return uint64_t{piece.count - 1} * step_of(piece).to_stride + piece.size;
 }
 
 void Transfer::touch(uint8_t* memory) const {
   constexpr uint64_t kPage = 4096;
-  uint64_t next = 0;
-  for (const Target& target : targets_) {
-    for (uint64_t at = std::max<uint64_t>(target.to, next); at < target.end();) {
+  for (const Piece& piece : pieces_) {
+    const uint64_t end = piece.to + target_extent(piece);
+    for (uint64_t at = piece.to; at < end; at = (at / kPage + 1) * kPage) {
       volatile uint8_t* byte = memory + at;
       *byte = *byte;
-      next = (at / kPage + 1) * kPage;
-      at = next;
     }
   }
 }
 
-void Transfer::read_values(const UpdateStep& step, const uint8_t* memory, uint8_t* out) const {
-  if (step.kind == StepKind::kInitialise) {
-    if (step.bytes.empty()) {
-      std::memset(out, 0, step.total());
-    } else {
-      std::memcpy(out, step.bytes.data(), step.total());
-    }
-    return;
+void Transfer::read_values(const Piece& piece, const uint8_t* memory, uint8_t* out) const {
+  const UpdateStep& step = step_of(piece);
+  if (step.kind == StepKind::kCopy) {
+    gather(memory + piece.from, piece, step.from_stride, out);
+  } else if (step.bytes.empty()) {
+    std::memset(out, 0, piece.total());
+  } else {
+    std::memcpy(out, step.bytes.data() + piece.within, piece.total());
   }
-  gather(memory + step.from, step, step.from_stride, out);
 }
 
-bool Transfer::read_converted(const Work& work, const uint8_t* memory,
-                              const std::function<bool(const Loss&)>& on_loss) {
-  const UpdateStep& step = step_of(work);
-  for (uint32_t i = 0; i < step.count; ++i) {
-    const uint8_t* source = memory + step.from + size_t{i} * step.from_stride;
-    uint8_t* to = staged_.data() + work.at + size_t{i} * step.size;
-    if (work.fast != nullptr) {
-      i += static_cast<uint32_t>(work.fast({source, step.from_stride, to, step.count - i}));
-      if (i == step.count) return true;
-      source = memory + step.from + size_t{i} * step.from_stride;
-      to = staged_.data() + work.at + size_t{i} * step.size;
+bool Transfer::read_converted(const Piece& piece, const uint8_t* memory, uint8_t* out,
+                              const OnLoss& on_loss) const {
+  const UpdateStep& step = step_of(piece);
+  for (uint32_t i = 0; i < piece.count; ++i) {
+    const uint8_t* source = memory + piece.from + size_t{i} * step.from_stride;
+    uint8_t* to = out + size_t{i} * step.size;
+    if (piece.fast != nullptr) {
+      i += static_cast<uint32_t>(piece.fast({source, step.from_stride, to, piece.count - i}));
+      if (i == piece.count) return true;
+      source = memory + piece.from + size_t{i} * step.from_stride;
+      to = out + size_t{i} * step.size;
     }
-    const char* what = conversions_.convert(step, i, source, {to, step.size});
-    if (what != nullptr && !on_loss({work.step, i, what})) return false;
+    const char* what = conversions_.convert(step, piece.first + i, source, {to, step.size});
+    if (what != nullptr && !on_loss({piece.step, piece.first + i, what})) return false;
   }
   return true;
 }
 
-bool Transfer::read(const uint8_t* memory, const std::function<bool(const Loss&)>& on_loss,
-                    const Interrupted& interrupted) {
-  for (const Work& work : work_) {
-    if (interrupted && interrupted()) return false;
-    const UpdateStep& step = step_of(work);
-    if (step.kind != StepKind::kConvert) {
-      read_values(step, memory, staged_.data() + work.at);
-    } else if (!read_converted(work, memory, on_loss)) {
-      return false;
-    }
+bool Transfer::losses(const uint8_t* memory, const OnLoss& on_loss) const {
+  base::Bytes scratch;
+  for (const Piece& piece : pieces_) {
+    if (step_of(piece).kind != StepKind::kConvert) continue;
+    scratch.resize(std::max<size_t>(scratch.size(), piece.total()));
+    if (!read_converted(piece, memory, scratch.data(), on_loss)) return false;
   }
+  return true;
+}
+
+bool Transfer::read_piece(const Piece& piece, const uint8_t* memory, const OnLoss& on_loss) {
+  uint8_t* out = staged_.data() + piece.at;
+  if (step_of(piece).kind == StepKind::kConvert) {
+    return read_converted(piece, memory, out, on_loss);
+  }
+  read_values(piece, memory, out);
+  return true;
+}
+
+bool Transfer::read(const uint8_t* memory, const OnLoss& on_loss, const Interrupted& interrupted) {
+  for (const Piece& piece : pieces_) {
+    if (interrupted && interrupted()) return false;
+    if (!read_piece(piece, memory, on_loss)) return false;
+  }
+  return true;
+}
+
+bool Transfer::move(const Piece& piece, const uint8_t* source, uint8_t* target,
+                    const OnLoss& on_loss) {
+  if (!read_piece(piece, source, on_loss)) return false;
+  scatter(staged_.data() + piece.at, piece, step_of(piece).to_stride, target + piece.to);
   return true;
 }
 
 bool Transfer::remember(const uint8_t* memory, const Interrupted& interrupted) {
-  for (const Work& work : work_) {
-    const UpdateStep& step = step_of(work);
+  for (const Piece& piece : pieces_) {
+    const UpdateStep& step = step_of(piece);
     if (step.kind == StepKind::kCopy) continue;
     if (interrupted && interrupted()) return false;
-    gather(memory + step.to, step, step.to_stride, remembered_.data() + work.at);
+    gather(memory + piece.to, piece, step.to_stride, remembered_.data() + piece.at);
   }
   return true;
 }
 
 bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
                          const Interrupted& interrupted) {
-  for (const Work& work : work_) {
+  for (const Piece& piece : pieces_) {
     if (interrupted && interrupted()) return false;
-    const UpdateStep& step = step_of(work);
-    uint8_t* out = staged_.data() + work.at;
-    switch (step.kind) {
+    switch (step_of(piece).kind) {
       case StepKind::kCopy:
-        read_values(step, memory, out);
+        read_values(piece, memory, staged_.data() + piece.at);
         break;
       case StepKind::kConvert:
-        read_back_converted(work, memory, forward);
+        read_back_converted(piece, memory, forward);
         break;
       case StepKind::kInitialise:
-        std::memcpy(out, remembered_.data() + work.at, step.total());
+        std::memcpy(staged_.data() + piece.at, remembered_.data() + piece.at, piece.total());
         break;
     }
   }
   return true;
 }
 
-void Transfer::read_back_converted(const Work& work, const uint8_t* memory,
+void Transfer::read_back_converted(const Piece& piece, const uint8_t* memory,
                                    const Transfer& forward) {
-  const UpdateStep& step = step_of(work);
-  for (uint32_t i = 0; i < step.count; ++i) {
-    std::span<uint8_t> out(staged_.data() + work.at + size_t{i} * step.size, step.size);
-    uint32_t from = step.from + i * step.from_stride;
+  const UpdateStep& step = step_of(piece);
+  for (uint32_t i = 0; i < piece.count; ++i) {
+    const size_t at = piece.at + size_t{i} * step.size;
+    std::span<uint8_t> out(staged_.data() + at, step.size);
+    uint32_t from = piece.from + i * step.from_stride;
     if (forward.still_as_converted(from, conversions_.source_size(step), memory)) {
-      std::memcpy(out.data(), remembered_.data() + work.at + size_t{i} * step.size, step.size);
+      std::memcpy(out.data(), remembered_.data() + at, step.size);
     } else {
-      conversions_.convert(step, i, memory + from, out);
+      conversions_.convert(step, piece.first + i, memory + from, out);
     }
   }
 }
 
 bool Transfer::save(const uint8_t* memory, const Interrupted& interrupted) {
-  for (const Work& work : work_) {
+  for (const Piece& piece : pieces_) {
     if (interrupted && interrupted()) return false;
-    const UpdateStep& step = step_of(work);
-    gather(memory + step.to, step, step.to_stride, saved_.data() + work.at);
+    gather(memory + piece.to, piece, step_of(piece).to_stride, saved_.data() + piece.at);
   }
   return true;
 }
 
 bool Transfer::write(uint8_t* memory, const Interrupted& interrupted) {
-  for (size_t done = 0; done < work_.size(); ++done) {
+  for (size_t done = 0; done < pieces_.size(); ++done) {
     if (interrupted && interrupted()) {
       restore_first(memory, done);
       return false;
     }
-    scatter(staged_.data() + work_[done].at, step_of(work_[done]), memory);
+    const Piece& piece = pieces_[done];
+    scatter(staged_.data() + piece.at, piece, step_of(piece).to_stride, memory + piece.to);
   }
   return true;
 }
 
 void Transfer::restore_first(uint8_t* memory, size_t count) const {
   for (size_t done = 0; done < count; ++done) {
-    scatter(saved_.data() + work_[done].at, step_of(work_[done]), memory);
+    const Piece& piece = pieces_[done];
+    scatter(saved_.data() + piece.at, piece, step_of(piece).to_stride, memory + piece.to);
   }
 }
 
-size_t Transfer::first_target(uint32_t offset, size_t& hint) const {
+size_t Transfer::first_converted(uint32_t offset, size_t& hint) const {
   auto is_first = [&](size_t i) {
-    return i < targets_.size() && targets_[i].end() > offset &&
-           (i == 0 || targets_[i - 1].end() <= offset);
+    return i < converted_.size() && converted_[i].end() > offset &&
+           (i == 0 || converted_[i - 1].end() <= offset);
   };
   if (is_first(hint)) return hint;
   if (is_first(hint + 1)) return ++hint;
-  auto found = std::partition_point(targets_.begin(), targets_.end(),
-                                    [&](const Target& target) { return target.end() <= offset; });
-  return hint = static_cast<size_t>(found - targets_.begin());
+  auto found = std::partition_point(converted_.begin(), converted_.end(),
+                                    [&](const Converted& one) { return one.end() <= offset; });
+  return hint = static_cast<size_t>(found - converted_.begin());
 }
 
 bool Transfer::still_as_converted(uint32_t offset, uint32_t size, const uint8_t* memory) const {
-  size_t at = first_target(offset, converted_hint_);
-  if (at == targets_.size() || targets_[at].to != offset) return false;
-  const Target& target = targets_[at];
-  return target.converted && target.size == size &&
-         std::memcmp(memory + offset, staged_.data() + target.at, size) == 0;
+  size_t at = first_converted(offset, converted_hint_);
+  if (at == converted_.size() || converted_[at].to != offset) return false;
+  const Converted& value = converted_[at];
+  return value.size == size && std::memcmp(memory + offset, staged_.data() + value.at, size) == 0;
 }
 
 }  // namespace online_change

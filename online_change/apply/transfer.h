@@ -1,7 +1,9 @@
-// Moves data memory from one version's state to the other's in three passes: read
-// all sources into a buffer, save what will be overwritten, write. Sources and
-// targets may overlap; until write() begins nothing has happened, and restore()
-// takes back what write() did. All memory is allocated beforehand.
+// Carries values from one version's state to the other's: from a source to a target memory, which
+// may be the same one (in place; docs/adr/0011-two-strategies.md). In place it goes in three
+// passes: read all sources into a buffer, save what will be overwritten, write. Sources and targets
+// may overlap; until write() begins nothing has happened, and restore() takes back what write()
+// did. With a target apart from the source, move() carries one piece at a time, in any order and
+// again. All memory is allocated beforehand.
 #pragma once
 
 #include <cstdint>
@@ -22,21 +24,42 @@ struct Loss {  // of one value of a kConvert step
   uint32_t index = 0;
   const char* what = nullptr;
 };
+// False: stop here.
+using OnLoss = std::function<bool(const Loss&)>;
+
+// Values of a step, few enough for one unit of idle time; or a part of one long value.
+struct Piece {
+  uint32_t step = 0;
+  uint32_t first = 0;   // number of its first value
+  uint32_t count = 1;   // values
+  uint32_t size = 0;    // of each, or of the part
+  uint32_t from = 0;    // in the source
+  uint32_t to = 0;      // in the target
+  uint32_t within = 0;  // in the step's values laid end to end
+  size_t at = 0;        // in the transfer's buffers
+  FastConverter fast = nullptr;
+  uint32_t total() const { return size * count; }
+};
 
 class Transfer {
  public:
-  enum class Steps : uint8_t { kBoundary, kAll };
+  // Those of the boundary; those that are done before it in place (A19); all, in place; all, into
+  // a memory apart.
+  enum class Steps : uint8_t { kBoundary, kEarly, kAll, kApart };
   Transfer(const Plan& plan, const ir::Image& from, const ir::Image& to, Steps which);
 
   // Makes every page that write() needs present, so that the operating system has nothing to do at
   // the boundary. Changes no byte.
   void touch(uint8_t* memory) const;
+  // Losses that read() would find now; changes nothing.
+  bool losses(const uint8_t* memory, const OnLoss& on_loss) const;
+
   // First pass. Losses are handed to `on_loss`; false from it ends the pass. False: ended early.
-  bool read(const uint8_t* memory, const std::function<bool(const Loss&)>& on_loss,
-            const Interrupted& interrupted);
-  // On the way back, before `forward` writes: keeps what this plan will initialise or convert.
-  // Memory cannot keep it: version 2 copies whole structures, with the gaps that it has in the
-  // place of dropped members. False: interrupted.
+  bool read(const uint8_t* memory, const OnLoss& on_loss, const Interrupted& interrupted);
+  // On the way back, before `forward` writes, or from the memory that it left untouched: keeps what
+  // this plan will initialise or convert. The memory that version 2 writes cannot keep it: whole
+  // structures are copied there, with the gaps that it has in the place of dropped members. False:
+  // interrupted.
   bool remember(const uint8_t* memory, const Interrupted& interrupted);
   // The way back: like read(), but what this plan initialises, and what nobody wrote since
   // `forward` converted it, is what was remembered.
@@ -44,39 +67,43 @@ class Transfer {
   bool save(const uint8_t* memory, const Interrupted& interrupted);
   // False: interrupted and restored.
   bool write(uint8_t* memory, const Interrupted& interrupted);
-  void restore(uint8_t* memory) const { restore_first(memory, work_.size()); }
+  void restore(uint8_t* memory) const { restore_first(memory, pieces_.size()); }
+
+  const std::vector<Piece>& pieces() const { return pieces_; }
+  // Reads a piece and writes it. False: ended by `on_loss`, not written.
+  bool move(const Piece& piece, const uint8_t* source, uint8_t* target, const OnLoss& on_loss);
+  // Bytes from the first value's begin to the last one's end; 0 for what is initialised.
+  uint64_t source_extent(const Piece& piece) const;
+  uint64_t target_extent(const Piece& piece) const;
 
   const Conversions& conversions() const { return conversions_; }
   const Plan& plan() const { return plan_; }
 
  private:
-  struct Work {
-    uint32_t step = 0;
-    size_t at = 0;  // in staged_ and saved_
-    FastConverter fast = nullptr;
-  };
-  struct Target {  // one value that was written
+  struct Converted {  // one value that was written
     uint32_t to = 0;
     uint32_t size = 0;
     size_t at = 0;
-    bool converted = false;
     uint64_t end() const { return uint64_t{to} + size; }
   };
 
-  const UpdateStep& step_of(const Work& work) const { return plan_.steps[work.step]; }
-  void read_values(const UpdateStep& step, const uint8_t* memory, uint8_t* out) const;
-  bool read_converted(const Work& work, const uint8_t* memory,
-                      const std::function<bool(const Loss&)>& on_loss);
-  void read_back_converted(const Work& work, const uint8_t* memory, const Transfer& forward);
+  void add_step(uint32_t number, size_t at);
+  void add_bytes(Piece part, uint64_t length);
+  const UpdateStep& step_of(const Piece& piece) const { return plan_.steps[piece.step]; }
+  void read_values(const Piece& piece, const uint8_t* memory, uint8_t* out) const;
+  bool read_converted(const Piece& piece, const uint8_t* memory, uint8_t* out,
+                      const OnLoss& on_loss) const;
+  bool read_piece(const Piece& piece, const uint8_t* memory, const OnLoss& on_loss);
+  void read_back_converted(const Piece& piece, const uint8_t* memory, const Transfer& forward);
   void restore_first(uint8_t* memory, size_t count) const;
   // Does memory still hold what this transfer converted to `offset`?
   bool still_as_converted(uint32_t offset, uint32_t size, const uint8_t* memory) const;
-  size_t first_target(uint32_t offset, size_t& hint) const;
+  size_t first_converted(uint32_t offset, size_t& hint) const;
 
   const Plan& plan_;
   Conversions conversions_;
-  std::vector<Work> work_;
-  std::vector<Target> targets_;  // sorted
+  std::vector<Piece> pieces_;         // in the order of the steps
+  std::vector<Converted> converted_;  // sorted
   // Where the search before ended: offsets go upwards.
   mutable size_t converted_hint_ = 0;
   base::Bytes staged_;

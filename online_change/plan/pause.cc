@@ -4,12 +4,13 @@
 #include "online_change/diff/place_moves.h"
 
 namespace online_change {
+namespace {
 
-int64_t predicted_pause_ns(const Plan& plan, const ir::Image& old_image,
-                           const ir::Image& new_image) {
+int64_t pause_of_steps(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image,
+                       bool with_early) {
   int64_t ns = kPauseFixedNs;
   for (const UpdateStep& step : plan.steps) {
-    if (step.early) continue;
+    if (step.early && !with_early) continue;
     bool slow =
         step.kind == StepKind::kConvert &&
         fast_converter(old_image.types, step.old_type, new_image.types, step.new_type) == nullptr;
@@ -20,6 +21,19 @@ int64_t predicted_pause_ns(const Plan& plan, const ir::Image& old_image,
     ns += kPauseReferenceNs * static_cast<int64_t>(reference_leaves(new_image).size());
   }
   return ns;
+}
+
+}  // namespace
+
+int64_t predicted_pause_ns(const Plan& plan, const ir::Image& old_image,
+                           const ir::Image& new_image) {
+  return pause_of_steps(plan, old_image, new_image, false);
+}
+
+int64_t predicted_standby_pause_ns(const Plan& plan, const ir::Image& old_image,
+                                   const ir::Image& new_image, uint64_t compared) {
+  return pause_of_steps(plan, old_image, new_image, true) +
+         static_cast<int64_t>(compared) / kPauseComparedBytesPerNs;
 }
 
 }  // namespace online_change

@@ -16,7 +16,12 @@ inline constexpr int64_t kPauseSlowConversionNs = 80;  // strings, enumerations,
 inline constexpr int64_t kPauseReferenceNs = 40;       // one reference, when targets move or go
 inline constexpr int64_t kPauseBytesPerNs = 2;         // read, save and write together
 
+// Standby: `compared` bytes are looked at, and in the worst case all of them have changed.
+inline constexpr int64_t kPauseComparedBytesPerNs = 2;
+
 int64_t predicted_pause_ns(const Plan& plan, const ir::Image& old_image,
                            const ir::Image& new_image);
+int64_t predicted_standby_pause_ns(const Plan& plan, const ir::Image& old_image,
+                                   const ir::Image& new_image, uint64_t compared);
 
 }  // namespace online_change

@@ -47,6 +47,16 @@ expect 0 stvm get --dir plc Main.gone
 said '77'
 expect 7 stvm undo --dir plc
 said 'R0305'
+expect 2 stvm change v2.st --dir plc --yes --strategy copy
+said 'R0504.*in-place or standby'
+expect 0 stvm change v2.st --dir plc --yes --allow-loss --strategy standby
+said 'pause'
+expect 0 stvm get --dir plc Main.added Main.m[2].hours
+said 'TRUE'
+said '1\.5'
+expect 0 stvm undo --dir plc
+expect 0 stvm get --dir plc Main.gone
+said '77'
 expect 0 stvm change v2.st --dir plc --yes --allow-loss --format json
 said '"counts"'
 expect 0 stvm accept --dir plc

@@ -84,21 +84,29 @@ bool names(const std::string& path, const std::string& name) {
 
 class Examination {
  public:
-  Examination(const golden::Program& first, const golden::Program& second)
-      : first_(first), second_(second) {}
+  Examination(const golden::Program& first, const golden::Program& second,
+              online_change::Strategy strategy)
+      : first_(first), second_(second), strategy_(strategy) {}
 
   Finding run(const ChangeScript& script) {
-    base::Result<std::unique_ptr<Rig>> rig = Rig::start(first_);
+    base::Result<std::unique_ptr<Rig>> rig = Rig::start(first_, strategy_);
     if (!rig.ok()) return failure("start", base::to_string(rig.error()));
     rig_ = std::move(*rig);
     period_ns_ = golden::base_period_ns(first_.program);
-    for (int i = 0; i < script.scans_before; ++i) {
+    // The standby strategy's second area is a scan old at the switch.
+    const int before_arming = strategy_ == online_change::Strategy::kStandby ? 1 : 0;
+    for (int i = before_arming; i < script.scans_before; ++i) {
+      if (!scan().empty()) return skipped();
+    }
+    base::Status armed = rig_->arm(second_);
+    if (!armed.ok()) return change_refused(armed.error());
+    for (int i = 0; i < before_arming; ++i) {
       if (!scan().empty()) return skipped();
     }
     old_types_ = rig_->image().types;
     before_ = rig_->leaves();
     remember_targets();
-    base::Status changed = rig_->change(second_);
+    base::Status changed = rig_->make_switch();
     if (!changed.ok()) return change_refused(changed.error());
     after_ = rig_->leaves();
     check_switch();
@@ -329,6 +337,7 @@ class Examination {
 
   const golden::Program& first_;
   const golden::Program& second_;
+  online_change::Strategy strategy_;
   std::unique_ptr<Rig> rig_;
   ir::TypeTable old_types_;
   Leaves before_;
@@ -354,7 +363,12 @@ Finding examine_change(const std::string& first, const std::string& second,
   std::optional<golden::Program> a = compiled(first);
   std::optional<golden::Program> b = compiled(second);
   if (!a || !b) return skipped();
-  return Examination(*a, *b).run(script);
+  Finding found = Examination(*a, *b, online_change::Strategy::kInPlace).run(script);
+  if (found.failed) return found;
+  Finding other = Examination(*a, *b, online_change::Strategy::kStandby).run(script);
+  if (!other.failed) return found;
+  other.key += " (standby)";
+  return other;
 }
 
 }  // namespace differential

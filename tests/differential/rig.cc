@@ -5,10 +5,12 @@
 
 namespace differential {
 
-base::Result<std::unique_ptr<Rig>> Rig::start(const golden::Program& program) {
+base::Result<std::unique_ptr<Rig>> Rig::start(const golden::Program& program,
+                                              online_change::Strategy strategy) {
   base::Result<ir::VerifiedImage> image = golden::link(program, nullptr, false);
   if (!image.ok()) return image.error();
   auto rig = std::make_unique<Rig>();
+  rig->strategy_ = strategy;
   vm::ControllerOptions options;
   options.fuel_budget = 20'000'000;
   options.on_trap = vm::TrapPolicy::kStopTask;
@@ -29,15 +31,17 @@ std::string Rig::scan() {
          std::to_string(first.text.line);
 }
 
-base::Status Rig::change(const golden::Program& next) {
+base::Status Rig::arm(const golden::Program& next) {
   base::Result<ir::VerifiedImage> image = golden::link(next, &controller_->image(), false);
   if (!image.ok()) return image.error();
   auto package = online_change::make_package(controller_->verified().encoded(), image->encoded());
   if (!package.ok()) return package.error();
-  base::Status staged = change_->stage(online_change::encode(*package));
+  base::Status staged = change_->stage(online_change::encode(*package), strategy_);
   if (!staged.ok()) return staged;
-  base::Status armed = change_->arm(true, true);
-  if (!armed.ok()) return armed;
+  return change_->arm(true, true);
+}
+
+base::Status Rig::make_switch() {
   base::Result<online_change::SwitchReport> report = change_->switch_now();
   if (!report.ok()) return report.error();
   return base::Ok{};

@@ -26,10 +26,14 @@ using Leaves = std::map<std::string, Leaf>;
 
 class Rig {
  public:
-  static base::Result<std::unique_ptr<Rig>> start(const golden::Program& program);
+  static base::Result<std::unique_ptr<Rig>> start(
+      const golden::Program& program,
+      online_change::Strategy strategy = online_change::Strategy::kInPlace);
 
   std::string scan();  // the trap as text, or ""
-  base::Status change(const golden::Program& next);
+  // Everything before the switch; the program may run on in between.
+  base::Status arm(const golden::Program& next);
+  base::Status make_switch();
   base::Status undo();
   const online_change::Plan& plan() const { return change_->plan(); }
   Leaves leaves() const;
@@ -60,6 +64,7 @@ class Rig {
   Devices devices_;
   std::unique_ptr<vm::Controller> controller_;
   std::unique_ptr<online_change::Change> change_;
+  online_change::Strategy strategy_ = online_change::Strategy::kInPlace;
 };
 
 }  // namespace differential

@@ -24,6 +24,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--yes", nullptr, "switch without asking"},
     {"--dry-run", nullptr, "stop after the fate report; nothing is changed"},
     {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},
+    {"--strategy", "S", "in-place (default), or standby: a second data area, made in idle time"},
     {"--allow-overrun", nullptr, "switch even if a task may be delayed"},
     {"--restricted", nullptr, "refuse when the interface of a POU is edited"},
     {"--permanent", nullptr, "accept at once: no undo, the new program boots next"},
@@ -136,7 +137,17 @@ void print_json(const Outcome& outcome) {
   std::fputs(json.finish().c_str(), stdout);
 }
 
+base::Result<uint32_t> stage_flags(const tools::Options& options) {
+  const std::string strategy = options.text("--strategy");
+  if (strategy.empty() || strategy == "in-place") return 0u;
+  if (strategy == "standby") return uint32_t{vm::kByStandby};
+  return base::Error{base::Refusal::kUsage,
+                     "--strategy is in-place or standby, not `" + strategy + "`"};
+}
+
 base::Result<Outcome> change(const tools::Options& options, ControllerClient& client, bool json) {
+  base::Result<uint32_t> strategy = stage_flags(options);
+  if (!strategy.ok()) return strategy.error();
   base::Result<vm::StatusReport> status = client.status();
   if (!status.ok()) return status.error();
   if (status->change == "trial") {
@@ -147,7 +158,7 @@ base::Result<Outcome> change(const tools::Options& options, ControllerClient& cl
   if (!running.ok()) return running.error();
   base::Result<base::Bytes> package = make_package(options, *running);
   if (!package.ok()) return package.error();
-  base::Status staged = client.stage(*package);
+  base::Status staged = client.stage(*package, *strategy);
   if (!staged.ok()) return staged.error();
   base::Result<FatePage> page = client.fates();
   if (!page.ok()) return page.error();

@@ -16,6 +16,8 @@ constexpr size_t kShownLosses = 500;
 // A switch that finds too little time before the next cycle is tried again after it.
 constexpr int kSwitchAttempts = 200;
 constexpr int64_t kBetweenAttemptsNs = 1'000'000;
+// So many times in turn without any idle time, and a change that needs some is given up.
+constexpr int kIdleAttempts = 200;
 
 // Initial value of a scalar or string of the new version; "" for anything else.
 std::string initial_text(const ir::Image& image, const std::string& path) {
@@ -92,7 +94,9 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   if (base::sha256(package) != request.digest) {
     return base::Error{base::Refusal::kBadHash, "the package arrived damaged"};
   }
-  base::Status staged = change_.stage(package);
+  const bool standby = (request.flags & vm::kByStandby) != 0;
+  base::Status staged = change_.stage(
+      package, standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace);
   if (!staged.ok()) return staged.error();
   staged_ = image_of(package);
   return base::Bytes{};
@@ -125,8 +129,8 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
   std::vector<online_change::LiveLoss> losses;
   base::Status taken = at_boundary([&] { losses = change_.live_losses(); });
   if (!taken.ok()) return taken.error();
-  FatePage page{plan.counts, plan.predicted_pause_ns, plan.boundary_bytes, 0, {}, losses.size(),
-                {}, {}};
+  FatePage page{
+      plan.counts, change_.predicted_pause_ns(), plan.boundary_bytes, 0, {}, losses.size(), {}, {}};
   uint64_t bytes = 0;
   for (FateLine& line : *lines) {
     if (bytes > vm::kChunkBytes) break;
@@ -168,7 +172,26 @@ uint64_t ControllerService::missed_releases() const {
 
 bool ControllerService::time_for_switch() const {
   int64_t left = controller_.next_cycle_ns() - clock_.now_ns();
-  return left > change_.plan().predicted_pause_ns;
+  return left > change_.predicted_pause_ns();
+}
+
+base::Status ControllerService::configure(bool allow_overrun) {
+  base::Result<bool> done = false;
+  uint64_t left = change_.units_left();
+  for (int idle_less = 0; done.ok() && !*done;) {
+    base::Status taken = at_boundary([&] { done = change_.configure(); });
+    if (!taken.ok()) return taken;
+    const bool progress = change_.units_left() != left;
+    left = change_.units_left();
+    idle_less = progress ? 0 : idle_less + 1;
+    if (idle_less < kIdleAttempts) continue;
+    if (allow_overrun) return base::Ok{};  // arm() does the rest
+    change_.cancel();
+    return base::Error{base::Refusal::kDeadline,
+                       "the tasks leave no idle time to prepare the change in; the old program "
+                       "runs on"};
+  }
+  return done.ok() ? base::Status(base::Ok{}) : done.error();
 }
 
 base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
@@ -214,7 +237,8 @@ base::Result<online_change::SwitchReport> ControllerService::finish_report(
 base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& request) {
   bool allow_overrun = (request.flags & vm::kAllowOverrun) != 0;
   ir::VerifiedImage running = controller_.verified();
-  base::Status armed = base::Ok{};
+  base::Status armed = configure(allow_overrun);
+  if (!armed.ok()) return armed.error();
   uint64_t missed_before = 0;
   base::Status taken = at_boundary(
       [&] { armed = change_.arm((request.flags & vm::kAllowLoss) != 0, allow_overrun); });
@@ -222,6 +246,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   if (!armed.ok()) return armed.error();
   base::Result<online_change::SwitchReport> report = switch_in_time(allow_overrun, missed_before);
   staged_.reset();
+  change_.collect();
   if (!report.ok()) return report.error();
   previous_ = std::move(running);
   ++edition_;
@@ -243,6 +268,7 @@ base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
   });
   if (!taken.ok()) return taken.error();
   if (!report->ok()) return report->error();
+  change_.collect();
   previous_.reset();
   ++edition_;
   report = finish_report(**report, missed_before);
@@ -262,6 +288,7 @@ base::Status ControllerService::make_permanent() {
   base::Status accepted = base::Ok{};
   base::Status taken = at_boundary([&] { accepted = change_.accept(); });
   if (!taken.ok()) return taken;
+  change_.collect();
   previous_.reset();
   ++edition_;
   return accepted;

@@ -114,7 +114,7 @@ base::Result<base::Bytes> ControllerClient::image() {
   }
 }
 
-base::Status ControllerClient::stage(base::ByteSpan package) {
+base::Status ControllerClient::stage(base::ByteSpan package, uint32_t flags) {
   vm::Request part{.command = vm::Command::kUpload};
   do {
     size_t size = std::min<size_t>(vm::kChunkBytes, package.size() - part.offset);
@@ -126,6 +126,7 @@ base::Status ControllerClient::stage(base::ByteSpan package) {
   } while (part.offset < package.size());
   vm::Request stage{.command = vm::Command::kStage};
   stage.digest = base::sha256(package);
+  stage.flags = flags;
   base::Result<base::Bytes> staged = call(std::move(stage));
   if (!staged.ok()) return staged.error();
   return base::Ok{};

@@ -30,7 +30,7 @@ class ControllerClient {
                       const std::vector<std::string>& values);
   base::Result<base::Bytes> image();
 
-  base::Status stage(base::ByteSpan package);
+  base::Status stage(base::ByteSpan package, uint32_t flags);
   base::Result<FatePage> fates();
   base::Result<online_change::SwitchReport> make_switch(uint32_t flags);
   base::Result<online_change::SwitchReport> undo();

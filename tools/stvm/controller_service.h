@@ -55,6 +55,8 @@ class ControllerService : public vm::Service {
   base::Result<online_change::SwitchReport> switch_in_time(bool allow_overrun,
                                                            uint64_t& missed_before);
   bool time_for_switch() const;
+  // What the change must have done before the switch, cycle by cycle in idle time (C5).
+  base::Status configure(bool allow_overrun);
   base::Result<online_change::SwitchReport> finish_report(online_change::SwitchReport report,
                                                           uint64_t missed_before);
   // The running image boots next, and only then the change is final.

@@ -18,6 +18,7 @@ namespace {
 
 constexpr tools::OptionRow kOptions[] = {
     STVM_DIR_OPTION,
+    {"--data-limit", "BYTES", "of all data areas of a change together (default: no limit)"},
     {"--virtual-time", nullptr, "cycles as fast as they can run, instead of real time"},
     STVM_DIALECT_OPTION,
 };
@@ -99,7 +100,11 @@ base::Status serve(const tools::Options& options) {
   vm::Clock* clock = &real_clock;
   if (options.has("--virtual-time")) clock = &virtual_clock;
   vm::NullIo io;
-  auto controller = vm::Controller::start(*image, {}, *clock, io);
+  vm::ControllerOptions limits;
+  base::Result<uint64_t> data_limit = options.number("--data-limit", 0);
+  if (!data_limit.ok()) return data_limit.error();
+  limits.data_limit = *data_limit;
+  auto controller = vm::Controller::start(*image, limits, *clock, io);
   if (!controller.ok()) return controller.error();
   vm::Mailbox mailbox;
   ControllerService service(**controller, *clock, storage, mailbox);

@@ -87,6 +87,11 @@ uint32_t Generation::pool_offset() const {
   return number_ % 2 == 0 ? ir::kConstPoolA : ir::kConstPoolB;
 }
 
+void Generation::write_pool(uint8_t* memory) const {
+  const base::Bytes& pool = image().pool;
+  if (!pool.empty()) std::memcpy(memory + pool_offset(), pool.data(), pool.size());
+}
+
 // Slots are listed once per type.
 void Generation::build_areas() {
   const ir::Image& image = image_.image();
@@ -152,9 +157,7 @@ std::unique_ptr<Generation> Generation::build(ir::VerifiedImage verified, uint32
     made->bounds_.push_back({bound.low, bound.count, bound.stride});
   }
   for (const ir::Range& range : image.ranges) made->ranges_.push_back({range.low, range.high});
-  if (!image.pool.empty()) {
-    std::memcpy(memory + made->pool_offset(), image.pool.data(), image.pool.size());
-  }
+  made->write_pool(memory);
   return made;
 }
 

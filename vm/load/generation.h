@@ -65,6 +65,8 @@ class Generation {
   const ir::Image& image() const { return image_.image(); }
   uint32_t number() const { return number_; }
   uint32_t pool_offset() const;
+  // The constant pool to its place in data memory.
+  void write_pool(uint8_t* memory) const;
   const std::vector<PouEntry>& pous() const { return pous_; }
   const std::vector<InstanceEntry>& instances() const { return instances_; }
   const std::vector<AreaEntry>& areas() const { return areas_; }

@@ -22,7 +22,9 @@ base::Error read_only(std::string_view path, const char* what) {
 
 struct Controller::Impl {
   Impl(const ControllerOptions& options, Clock& clock, IoPort& io, Memory reserved)
-      : memory(std::move(reserved)), scheduler(options, clock, io, memory.data()) {}
+      : memory(std::move(reserved)),
+        scheduler(options, clock, io),
+        data_limit(options.data_limit) {}
 
   const ir::Image& image() const { return running->image(); }
   base::Result<ir::Symbol> writable(std::string_view path) const;
@@ -33,6 +35,7 @@ struct Controller::Impl {
 
   Memory memory;
   Scheduler scheduler;
+  uint64_t data_limit;
   std::unique_ptr<Generation> running;
   // Of the running generation, and of one that is prepared or can come back by undo.
   TablesByGeneration tables;
@@ -52,13 +55,14 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
   write_initial_data(image.image(), impl.memory.data());
   impl.running = Generation::build(image, 0, impl.memory.data());
   auto tables = std::make_unique<TaskTables>(*impl.running, impl.scheduler.next_cycle_ns());
-  impl.scheduler.use(*tables);
+  impl.scheduler.use(*tables, impl.memory.data());
   impl.scheduler.run_start_tasks();
   impl.tables[impl.running.get()] = std::move(tables);
   return controller;
 }
 
 void Controller::cycle() { impl_->scheduler.run_cycle(); }
+void Controller::run_idle(const std::function<bool()>& unit) { impl_->scheduler.run_idle(unit); }
 uint64_t Controller::cycles() const { return impl_->scheduler.cycles(); }
 bool Controller::at_boundary() const { return impl_->scheduler.at_boundary(); }
 bool Controller::faulted() const { return impl_->scheduler.faulted(); }
@@ -71,6 +75,7 @@ const ir::Image& Controller::image() const { return impl_->image(); }
 const ir::VerifiedImage& Controller::verified() const { return impl_->running->verified(); }
 const Generation& Controller::generation() const { return *impl_->running; }
 Memory& Controller::memory() { return impl_->memory; }
+uint64_t Controller::data_limit() const { return impl_->data_limit; }
 
 std::vector<TaskStatus> Controller::tasks() const {
   std::vector<TaskStatus> rows;
@@ -136,13 +141,14 @@ std::unique_ptr<Generation> Controller::prepare(ir::VerifiedImage next_image) {
   return next;
 }
 
-std::unique_ptr<Generation> Controller::publish(std::unique_ptr<Generation> next) {
+std::unique_ptr<Generation> Controller::publish(std::unique_ptr<Generation> next, Memory* data) {
   base::check(at_boundary(), "a program is replaced while a task is inside a scan");
   auto prepared = impl_->tables.find(next.get());
   base::check(prepared != impl_->tables.end(), "a generation is published that was not prepared");
   TaskTables& tables = *prepared->second;
   tables.adopt(impl_->scheduler.tables(), impl_->scheduler.cycle_start_ns());
-  impl_->scheduler.use(tables);
+  if (data != nullptr) std::swap(impl_->memory, *data);
+  impl_->scheduler.use(tables, impl_->memory.data());
   std::swap(impl_->running, next);
   return next;
 }

@@ -28,12 +28,16 @@ namespace vm {
 // Which variables a restart leaves as they are: none, those that are RETAIN, all.
 enum class Restart : uint8_t { kCold, kWarm, kHot };
 
+// What a unit of idle work takes at most; where less is left before a cycle, none is begun.
+inline constexpr int64_t kIdleUnitNs = 20'000;
+
 enum class TrapPolicy : uint8_t { kStopTask, kStopAll };
 
 struct ControllerOptions {
   TrapPolicy on_trap = TrapPolicy::kStopAll;
   uint64_t fuel_slice = 1000;         // safe points between two looks at the clock; hard mode: 1
   uint64_t fuel_budget = 50'000'000;  // safe points of one scan of one task before kFuel
+  uint64_t data_limit = 0;            // bytes of all data areas of a change together; 0: no limit
 };
 
 struct TaskStatus {
@@ -72,6 +76,10 @@ class Controller {
 
   // Runs one control cycle, waiting for its start first; nothing when faulted.
   void cycle();
+  // At a boundary, in the idle time before the next cycle (B10, C5): calls `unit` until it says
+  // that it had nothing to do, or another one might not be over when the cycle begins. A unit takes
+  // kIdleUnitNs at most, and counts as one safe point for a virtual clock.
+  void run_idle(const std::function<bool()>& unit);
   uint64_t cycles() const;
   bool at_boundary() const;
   bool faulted() const;
@@ -85,6 +93,7 @@ class Controller {
   const ir::VerifiedImage& verified() const;
   const Generation& generation() const;
   Memory& memory();
+  uint64_t data_limit() const;
   std::vector<TaskStatus> tasks() const;
   const std::vector<TrapRecord>& traps() const;  // the last 32
 
@@ -103,7 +112,8 @@ class Controller {
   // At a boundary only: one pointer store makes `next` the running generation, and
   // re-derives task, I/O and force tables that were prepared by prepare(). Tasks keep scan
   // counts and phase by name. Returns the generation that ran until now.
-  std::unique_ptr<Generation> publish(std::unique_ptr<Generation> next);
+  // With `data`, that is exchanged with the running data area by the same store (C6).
+  std::unique_ptr<Generation> publish(std::unique_ptr<Generation> next, Memory* data = nullptr);
   // Behind a change: the next cycle begins with the start code, which constructs what is new.
   void construct();
   // At a boundary: FB_Exit of these instances, those around others first. When one traps or takes

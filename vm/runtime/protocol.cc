@@ -5,7 +5,7 @@
 namespace vm {
 namespace {
 
-enum class Body : uint8_t { kNone, kNames, kAssignments, kPage, kData, kDigest, kFlags };
+enum class Body : uint8_t { kNone, kNames, kAssignments, kPage, kData, kStage, kFlags };
 
 struct CommandRow {
   const char* name;
@@ -47,8 +47,9 @@ void request_fields(A& a, R& request) {
       a(request.offset);
       a(request.data);
       break;
-    case Body::kDigest:
+    case Body::kStage:
       a(request.digest);
+      a(request.flags);
       break;
     case Body::kFlags:
       a(request.flags);

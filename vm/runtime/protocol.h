@@ -34,6 +34,10 @@ enum SwitchFlags : uint32_t {
   kAllowOverrun = 4,  // even if the predicted pause does not fit the tightest task
 };
 
+enum StageFlags : uint32_t {
+  kByStandby = 1,  // the change prepares a second data area (docs/adr/0011-two-strategies.md)
+};
+
 struct Request {
   Command command = Command::kStatus;
   // Of commands that change state: what the sender believes to run.

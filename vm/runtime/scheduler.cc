@@ -13,16 +13,17 @@ constexpr size_t kKeptTraps = 32;
 
 }  // namespace
 
-Scheduler::Scheduler(const ControllerOptions& options, Clock& clock, IoPort& io, uint8_t* memory)
-    : options_(options), clock_(clock), io_(io), memory_(memory) {
+Scheduler::Scheduler(const ControllerOptions& options, Clock& clock, IoPort& io)
+    : options_(options), clock_(clock), io_(io) {
   active_.reserve(base::kMaxTasks);
   next_cycle_ns_ = clock_.now_ns();
 }
 
-void Scheduler::use(TaskTables& tables) {
+void Scheduler::use(TaskTables& tables, uint8_t* memory) {
   base::check(at_boundary(), "a program is replaced while a task is inside a scan");
   bool first = tables_ == nullptr;
   tables_ = &tables;
+  memory_ = memory;
   if (first) {
     cycle_start_ns_ = next_cycle_ns_ - tables.base_period_ns;
   } else {
@@ -88,6 +89,11 @@ void Scheduler::run_cycle() {
     if (looked_ns_ >= next_cycle_ns_) break;
   }
   ++cycles_;
+}
+
+void Scheduler::run_idle(const std::function<bool()>& unit) {
+  base::check(at_boundary(), "idle work while a task is inside a scan");
+  while (clock_.now_ns() + kIdleUnitNs <= next_cycle_ns_ && unit()) clock_.consumed(1);
 }
 
 void Scheduler::begin_cycle() {

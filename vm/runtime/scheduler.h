@@ -2,6 +2,7 @@
 // safe points (B1, D6). Tasks are activations on one stack of one thread, so nothing is locked.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace vm {
 
 class Scheduler {
  public:
-  Scheduler(const ControllerOptions& options, Clock& clock, IoPort& io, uint8_t* memory);
+  Scheduler(const ControllerOptions& options, Clock& clock, IoPort& io);
 
   // At cold start, before the first cycle: the tasks that run once (ir::Task), to their end.
   void run_start_tasks();
@@ -32,8 +33,10 @@ class Scheduler {
   int64_t next_cycle_ns() const { return next_cycle_ns_; }
   const std::vector<TrapRecord>& traps() const { return traps_; }
 
-  // At a boundary: these tables from now on. They must live as long as they are used.
-  void use(TaskTables& tables);
+  // At a boundary: these tables and that data from now on. They must live as long as they are used.
+  void use(TaskTables& tables, uint8_t* memory);
+  // Controller::run_idle.
+  void run_idle(const std::function<bool()>& unit);
   TaskTables& tables() { return *tables_; }
   const TaskTables& tables() const { return *tables_; }
 
@@ -68,7 +71,7 @@ class Scheduler {
   ControllerOptions options_;
   Clock& clock_;
   IoPort& io_;
-  uint8_t* memory_;
+  uint8_t* memory_ = nullptr;
   TaskTables* tables_ = nullptr;
   std::vector<TaskSlot*> active_;  // suspended ones, the running one last
   std::vector<TrapRecord> traps_;

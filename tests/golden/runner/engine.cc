@@ -18,6 +18,8 @@ const char* tier_name(Tier tier) {
       return "identity change at every scan";
     case Tier::kMoveAll:
       return "every instance moved at every scan";
+    case Tier::kStandby:
+      return "changes by the standby strategy";
   }
   return "?";
 }

@@ -18,9 +18,10 @@ enum class Tier : uint8_t {
   kFuelOne,   // suspended at every safe point
   kIdentity,  // an identity change after every scan
   kMoveAll,   // every instance moved after every scan
+  kStandby,   // as kIdentity, and the script's changes too, by the standby strategy
 };
 inline constexpr Tier kTiers[] = {Tier::kEvaluator, Tier::kInterpreter, Tier::kFuelOne,
-                                  Tier::kIdentity, Tier::kMoveAll};
+                                  Tier::kIdentity,  Tier::kMoveAll,     Tier::kStandby};
 const char* tier_name(Tier tier);
 
 class Engine {

@@ -72,9 +72,9 @@ class MachineEngine : public Engine {
       return std::string(ir::trap_name(first.trap.kind)) + " " + first.text.pou + ":" +
              std::to_string(first.text.line);
     }
-    bool hard = tier_ == Tier::kIdentity || tier_ == Tier::kMoveAll;
-    if (!hard || change_->state() != online_change::State::kIdle) return std::string();
-    base::Status switched = hard_change();
+    bool hard = tier_ == Tier::kIdentity || tier_ == Tier::kMoveAll || tier_ == Tier::kStandby;
+    if (!hard || change_->state() == online_change::State::kTrial) return std::string();
+    base::Status switched = tier_ == Tier::kStandby ? late_change() : hard_change();
     if (!switched.ok()) return switched.error();
     return std::string();
   }
@@ -99,6 +99,7 @@ class MachineEngine : public Engine {
   }
 
   base::Result<std::vector<std::string>> change(const Program& next, bool allow_loss) override {
+    change_->cancel();  // of late_change()
     base::Status staged = stage(next, false);
     if (!staged.ok()) return staged.error();
     std::vector<std::string> lines = {count_text(change_->plan().counts)};
@@ -131,27 +132,57 @@ class MachineEngine : public Engine {
   base::Status accept() override { return change_->accept(); }
 
  private:
+  online_change::Strategy strategy() const {
+    return tier_ == Tier::kStandby ? online_change::Strategy::kStandby
+                                   : online_change::Strategy::kInPlace;
+  }
+
   base::Status stage(const Program& next, bool move_all) {
     base::Result<ir::VerifiedImage> image = link(next, &controller_->image(), move_all);
     if (!image.ok()) return image.error();
     auto package = online_change::make_package(controller_->verified().encoded(), image->encoded());
     if (!package.ok()) return package.error();
-    return change_->stage(online_change::encode(*package));
+    return change_->stage(online_change::encode(*package), strategy());
+  }
+
+  // The same program under another name: without that, a change to itself would be none.
+  base::Result<base::Bytes> hard_image() const {
+    if (tier_ != Tier::kMoveAll) {
+      ir::Image image = controller_->image();
+      image.name = image.name.ends_with('\'') ? image.name.substr(0, image.name.size() - 1)
+                                              : image.name + '\'';
+      return ir::encode(image);
+    }
+    base::Result<ir::VerifiedImage> image = link(*program_, &controller_->image(), true);
+    if (!image.ok()) return image.error();
+    return image->encoded();
   }
 
   // The package that leads from the running image to the same program. Images alternate between a
   // few layouts, and linking is a pure function: each is linked once.
   base::Status stage_hard() {
     auto known = hard_packages_.find(controller_->verified().digest());
-    if (known != hard_packages_.end()) return change_->stage(known->second);
-    bool move_all = tier_ == Tier::kMoveAll;
-    base::Result<ir::VerifiedImage> image = link(*program_, &controller_->image(), move_all);
-    if (!image.ok()) return image.error();
-    auto package = online_change::make_package(controller_->verified().encoded(), image->encoded());
+    if (known != hard_packages_.end()) return change_->stage(known->second, strategy());
+    base::Result<base::Bytes> next = hard_image();
+    if (!next.ok()) return next.error();
+    auto package = online_change::make_package(controller_->verified().encoded(), *next);
     if (!package.ok()) return package.error();
     base::Bytes& bytes = hard_packages_[controller_->verified().digest()];
     bytes = online_change::encode(*package);
-    return change_->stage(bytes);
+    return change_->stage(bytes, strategy());
+  }
+
+  // An identity change whose second area is a scan old when it is switched to.
+  base::Status late_change() {
+    if (change_->state() == online_change::State::kArmed) {
+      base::Result<online_change::SwitchReport> report = change_->switch_now();
+      if (!report.ok()) return report.error();
+      base::Status accepted = change_->accept();
+      if (!accepted.ok()) return accepted;
+    }
+    base::Status staged = stage_hard();
+    if (!staged.ok()) return staged;
+    return change_->arm(false);
   }
 
   // An identity change, with or without moving everything; nothing may differ after it.

@@ -33,7 +33,7 @@ TEST(Change, C1_states_in_order) {
   EXPECT_EQ(change.state(), State::kIdle);
   EXPECT_FALSE(change.arm(true).ok());
   EXPECT_FALSE(change.switch_now().ok());
-  ASSERT_TRUE(change.stage(plant.package(kSecond)).ok());
+  ASSERT_TRUE(plant.stage(plant.package(kSecond)).ok());
   EXPECT_EQ(change.state(), State::kPrepared);
   EXPECT_FALSE(change.switch_now().ok());
   plant.run(2);  // version 1 runs on
@@ -94,7 +94,8 @@ TEST(Change, C1_every_step_can_fail) {
     plant.driver().set_interruption([&] { return passed++ == fail_at; });
     Change& change = plant.driver();
     base::Bytes package = plant.package(kSecond);
-    bool done = change.stage(package).ok() && change.arm(true).ok() && change.switch_now().ok();
+    bool done = plant.stage(package).ok() && change.configure().ok() && change.arm(true).ok() &&
+                change.switch_now().ok();
     if (done) break;
     ++points;
     EXPECT_EQ(change.state(), State::kIdle) << fail_at;
@@ -103,6 +104,8 @@ TEST(Change, C1_every_step_can_fail) {
     Plant reference(kFirst);
     reference.run(5);
     EXPECT_EQ(plant.hash(), reference.hash()) << fail_at;
+    EXPECT_EQ(plant.clock().now_ns(), reference.clock().now_ns()) << fail_at;
+    EXPECT_EQ(plant.controller().next_release_ns(), reference.controller().next_release_ns());
     plant.driver().set_interruption(nullptr);
     plant.change(kSecond, true);  // and the next attempt succeeds
     plant.run(1);
@@ -133,14 +136,14 @@ TEST(Change, case58_wrong_base_same_change_two_tools) {
   base::Bytes other =
       plant.package(std::string(kFirst) + "\nFUNCTION f : INT f := 1; END_FUNCTION");
   Change& change = plant.driver();
-  ASSERT_TRUE(change.stage(package).ok());
-  EXPECT_EQ(change.stage(other).error().refusal, Refusal::kChangePending);
+  ASSERT_TRUE(plant.stage(package).ok());
+  EXPECT_EQ(plant.stage(other).error().refusal, Refusal::kChangePending);
   ASSERT_TRUE(change.arm(true).ok());
   ASSERT_TRUE(change.switch_now().ok());
-  EXPECT_EQ(change.stage(other).error().refusal, Refusal::kChangePending);
+  EXPECT_EQ(plant.stage(other).error().refusal, Refusal::kChangePending);
   plant.accept();
-  EXPECT_EQ(change.stage(other).error().refusal, Refusal::kStaleBase);
-  EXPECT_EQ(change.stage(package).error().refusal, Refusal::kNoChange);
+  EXPECT_EQ(plant.stage(other).error().refusal, Refusal::kStaleBase);
+  EXPECT_EQ(plant.stage(package).error().refusal, Refusal::kNoChange);
   EXPECT_EQ(change.state(), State::kIdle);
 }
 
@@ -149,8 +152,8 @@ TEST(Change, C4_damaged_package_is_refused) {
   base::Digest before = plant.hash();
   base::Bytes package = plant.package(kSecond);
   package[package.size() / 2] ^= 1;
-  EXPECT_EQ(plant.driver().stage(package).error().refusal, Refusal::kBadHash);
-  EXPECT_EQ(plant.driver().stage({}).error().refusal, Refusal::kBadFormat);
+  EXPECT_EQ(plant.stage(package).error().refusal, Refusal::kBadHash);
+  EXPECT_EQ(plant.stage({}).error().refusal, Refusal::kBadFormat);
   EXPECT_EQ(plant.hash(), before);
   EXPECT_EQ(plant.driver().state(), State::kIdle);
 }
@@ -165,10 +168,10 @@ TEST(Change, cancel_before_the_switch) {
   plant.run(2);
   base::Digest before = plant.hash();
   Change& change = plant.driver();
-  ASSERT_TRUE(change.stage(plant.package(kSecond)).ok());
+  ASSERT_TRUE(plant.stage(plant.package(kSecond)).ok());
   change.cancel();
   EXPECT_EQ(plant.hash(), before);
-  ASSERT_TRUE(change.stage(plant.package(kSecond)).ok());
+  ASSERT_TRUE(plant.stage(plant.package(kSecond)).ok());
   ASSERT_TRUE(change.arm(true).ok());
   change.cancel();
   EXPECT_EQ(plant.hash(), before);
@@ -197,7 +200,7 @@ TEST(Change, case1_exact_and_loss) {
 TEST(Change, case2_loss_appears_between_preview_and_switch) {
   Plant plant(kInt);
   Change& change = plant.driver();
-  ASSERT_TRUE(change.stage(plant.package(kSint)).ok());
+  ASSERT_TRUE(plant.stage(plant.package(kSint)).ok());
   EXPECT_TRUE(change.live_losses().empty());
   ASSERT_TRUE(change.arm(false).ok());
   plant.set("Main.x", "300");
@@ -224,7 +227,7 @@ TEST(Change, case45_too_long_a_pause_is_refused_before) {
   base::Digest before = plant.hash();
   EXPECT_EQ(plant.refused(converted), Refusal::kPauseTooLong);
   EXPECT_EQ(plant.hash(), before);
-  ASSERT_TRUE(plant.driver().stage(plant.package(converted)).ok());
+  ASSERT_TRUE(plant.stage(plant.package(converted)).ok());
   EXPECT_TRUE(plant.driver().arm(false, true).ok());
   EXPECT_TRUE(plant.driver().switch_now().ok());
 }

@@ -1,5 +1,7 @@
 #include "tests/unit/online_change/plant.h"
 
+#include <cstdlib>
+
 #include "base/diagnostics.h"
 #include "frontend/compile.h"
 #include "ir/bytecode/symbols.h"
@@ -40,6 +42,12 @@ Compiled compile(const std::string& source) {
 
 namespace {
 
+online_change::Strategy default_strategy() {
+  const char* const name = std::getenv("STC_TEST_STRATEGY");
+  return name != nullptr && std::string(name) == "standby" ? online_change::Strategy::kStandby
+                                                           : online_change::Strategy::kInPlace;
+}
+
 ir::VerifiedImage link_sources(const std::string& source, const linker::Options& options) {
   Compiled compiled = compile(source);
   base::Result<ir::Image> image = linker::link(compiled.program, compiled.objects, options);
@@ -51,12 +59,13 @@ ir::VerifiedImage link_sources(const std::string& source, const linker::Options&
 
 }  // namespace
 
-Plant::Plant(const std::string& source, linker::Slack slack, int64_t ns_per_safe_point)
-    : slack_(slack), clock_(ns_per_safe_point) {
+Plant::Plant(const std::string& source, const Settings& settings)
+    : slack_(settings.slack), strategy_(default_strategy()), clock_(settings.ns_per_safe_point) {
   linker::Options options;
   options.slack = slack_;
-  vm::ControllerOptions running;
-  if (ns_per_safe_point != 0) running.fuel_slice = 1;  // suspended as soon as a release is due
+  vm::ControllerOptions running = settings.options;
+  // Suspended as soon as a release is due.
+  if (settings.ns_per_safe_point != 0) running.fuel_slice = 1;
   auto controller = vm::Controller::start(link_sources(source, options), running, clock_, devices_);
   base::check(controller.ok(), "the controller starts");
   controller_ = std::move(*controller);
@@ -99,7 +108,7 @@ base::Bytes Plant::package(const std::string& source, bool move_all) {
 
 online_change::SwitchReport Plant::change(const std::string& source, bool allow_loss,
                                           bool move_all) {
-  base::Status staged = change_->stage(package(source, move_all));
+  base::Status staged = stage(package(source, move_all));
   EXPECT_TRUE(staged.ok()) << base::to_string(staged.error());
   if (!staged.ok()) return {};
   plan_ = change_->plan();
@@ -112,7 +121,7 @@ online_change::SwitchReport Plant::change(const std::string& source, bool allow_
 }
 
 base::Refusal Plant::refused(const std::string& source, bool allow_loss) {
-  base::Status status = change_->stage(package(source));
+  base::Status status = stage(package(source));
   if (status.ok()) {
     plan_ = change_->plan();
     status = change_->arm(allow_loss);

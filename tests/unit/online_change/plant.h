@@ -33,10 +33,20 @@ struct Compiled {
 };
 Compiled compile(const std::string& source);
 
+struct Settings {
+  linker::Slack slack = {};
+  vm::ControllerOptions options = {};
+  int64_t ns_per_safe_point = 0;
+};
+
 class Plant {
  public:
-  explicit Plant(const std::string& source, linker::Slack slack = {},
-                 int64_t ns_per_safe_point = 0);
+  explicit Plant(const std::string& source, linker::Slack slack = {}, int64_t ns_per_safe_point = 0)
+      : Plant(source, Settings{slack, {}, ns_per_safe_point}) {}
+  Plant(const std::string& source, const Settings& settings);
+
+  // How change() and stage() go about it; at first what STC_TEST_STRATEGY says, else in place.
+  void use(online_change::Strategy strategy) { strategy_ = strategy; }
 
   void run(int scans);
   std::string get(const std::string& path) const;
@@ -45,6 +55,7 @@ class Plant {
 
   // Compiles and links against the running version; the encoded package.
   base::Bytes package(const std::string& source, bool move_all = false);
+  base::Status stage(base::ByteSpan package) { return change_->stage(package, strategy_); }
   // Stages, arms and switches. Fails the test when anything is refused.
   online_change::SwitchReport change(const std::string& source, bool allow_loss = false,
                                      bool move_all = false);
@@ -56,6 +67,7 @@ class Plant {
   const online_change::Plan& plan() const { return plan_; }
   const online_change::FateRow* row(const std::string& path) const;
   vm::Controller& controller() { return *controller_; }
+  vm::VirtualClock& clock() { return clock_; }
   online_change::Change& driver() { return *change_; }
   Devices& devices() { return devices_; }
   uint32_t id_of(const std::string& path) const;  // of a live instance; 0 when there is none
@@ -64,6 +76,7 @@ class Plant {
   ir::VerifiedImage link(const std::string& source, bool move_all) const;
 
   linker::Slack slack_;
+  online_change::Strategy strategy_;
   vm::VirtualClock clock_;
   Devices devices_;
   std::unique_ptr<vm::Controller> controller_;

@@ -48,7 +48,7 @@ TEST(References, C1_case29_case32_every_step_can_fail) {
     plant.driver().set_interruption([&] { return passed++ == fail_at; });
     Change& change = plant.driver();
     const base::Bytes package = plant.package(kSecond);
-    if (change.stage(package).ok() && change.arm(true).ok() && change.switch_now().ok()) break;
+    if (plant.stage(package).ok() && change.arm(true).ok() && change.switch_now().ok()) break;
     ++points;
     ASSERT_EQ(plant.hash(), before) << fail_at;
   }
@@ -108,7 +108,7 @@ TEST(References, A13_broken_at_the_boundary_only) {
               "IF go THEN p := ADR(x); END_IF END_PROGRAM");
   const std::string second = "PROGRAM Main VAR x : DINT := 7; " + rest + "END_PROGRAM";
   plant.run(1);
-  ASSERT_TRUE(plant.driver().stage(plant.package(second)).ok());
+  ASSERT_TRUE(plant.stage(plant.package(second)).ok());
   ASSERT_TRUE(plant.driver().arm(false).ok());
   plant.set("Main.go", "TRUE");
   plant.run(1);
