@@ -82,11 +82,20 @@ class PathReader {
     }
     symbol.type = image_.globals;
     symbol.data = image_.instances.empty() ? 0 : image_.instances[0].data;
-    if (!listed.empty() && image_.types.find_member(symbol.type, text) < 0) {
+    if (!listed.empty() && !global_has(text, next)) {
       at_ = listed.size();
       return step_to(symbol, listed, "");
     }
     return step_to(symbol, text, "is neither a program nor a global variable");
+  }
+
+  // A global `name` with a member `next`. A program that others call is among the globals too.
+  bool global_has(std::string_view name, std::string_view next) const {
+    const int32_t number = image_.types.find_member(image_.globals, name);
+    if (number < 0) return false;
+    const Member& global = image_.types[image_.globals].members[static_cast<size_t>(number)];
+    return image_.types[global.type].kind != Kind::kProgram ||
+           image_.types.find_member(global.type, next) >= 0;
   }
 
   base::Status read_member(Symbol& symbol) {

@@ -83,7 +83,9 @@ base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) 
   return base::Bytes{};
 }
 
-// Checks and builds beside the running program; touches nothing of it, so it needs no boundary.
+// Checks and builds beside the running program; touches nothing of it, so it needs no boundary. A
+// change that somebody staged and did not switch gives way, and the new edition, which is the
+// answer, makes sure that nobody switches what he did not stage.
 base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   base::Bytes package = std::move(upload_);
   upload_ = {};
@@ -94,12 +96,16 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   if (base::sha256(package) != request.digest) {
     return base::Error{base::Refusal::kBadHash, "the package arrived damaged"};
   }
+  change_.cancel();
+  staged_.reset();
   const bool standby = (request.flags & vm::kByStandby) != 0;
   base::Status staged = change_.stage(
       package, standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace);
   if (!staged.ok()) return staged.error();
   staged_ = image_of(package);
-  return base::Bytes{};
+  base::ByteWriter answer;
+  answer.u64(++edition_);
+  return answer.take();
 }
 
 base::Result<std::vector<FateLine>> ControllerService::live_lines(uint64_t first, uint64_t count) {

@@ -129,6 +129,10 @@ base::Status ControllerClient::stage(base::ByteSpan package, uint32_t flags) {
   stage.flags = flags;
   base::Result<base::Bytes> staged = call(std::move(stage));
   if (!staged.ok()) return staged.error();
+  base::ByteReader answer(*staged);
+  edition_ = answer.u64();
+  if (!answer.done())
+    return base::Error{base::Refusal::kProtocol, "answer not understood: edition"};
   return base::Ok{};
 }
 

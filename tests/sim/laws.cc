@@ -1,0 +1,88 @@
+#include "tests/sim/laws.h"
+
+#include "ir/bytecode/symbols.h"
+
+namespace sim {
+namespace {
+
+// Is one of the things that the path goes through a union?
+bool in_union(const ir::Image& image, const std::string& path, std::map<std::string, bool>& known) {
+  for (size_t end = path.find_first_of(".["); end != std::string::npos;
+       end = path.find_first_of(".[", end + 1)) {
+    auto [row, fresh] = known.try_emplace(path.substr(0, end), false);
+    if (fresh) {
+      base::Result<ir::Symbol> whole = ir::find_symbol(image, row->first);
+      row->second = whole.ok() && image.types.overlaps(whole->type);
+    }
+    if (row->second) return true;
+  }
+  return false;
+}
+
+Values values_of(const ir::Image& image, std::span<const uint8_t> memory) {
+  Values out;
+  std::map<std::string, bool> unions;
+  ir::for_each_leaf(image, [&](const std::string& path, const ir::Symbol& symbol) {
+    Value& value = out[path];
+    value.type = image.types.text(symbol.type);
+    value.text = ir::format_value(image, symbol, memory);
+    value.retain = symbol.retain;
+    value.comparable = !symbol.constant && !image.types.is_reference(symbol.type) &&
+                       !in_union(image, path, unions);
+  });
+  return out;
+}
+
+// A literal that the enumeration does not have any more, or a number that is none, has no place.
+bool is_no_literal(const ir::Image& image, const std::string& path, const std::string& text) {
+  base::Result<ir::Symbol> now = ir::find_symbol(image, path);
+  if (!now.ok() || image.types[now->type].kind != ir::Kind::kEnum) return false;
+  for (const ir::EnumLiteral& literal : image.types[now->type].literals) {
+    if (ir::same_name(literal.name, text)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Snapshot::Snapshot(vm::Controller& controller) : image_(controller.verified()) {
+  const uint8_t* begin = controller.memory().data();
+  data_.assign(begin, begin + controller.image().data_capacity);
+}
+
+const Values& Snapshot::values() const {
+  if (!values_) values_ = values_of(image_.image(), data_);
+  return *values_;
+}
+
+void check_untouched(const Snapshot& before, const Snapshot& now, const std::string& what) {
+  require(before.image().digest() == now.image().digest(), what + " replaced the program");
+  // Bytes of nobody may differ: what a change prepares lies there.
+  if (before.same_bytes(now)) return;
+  for (const auto& [path, value] : before.values()) {
+    const Value& other = now.values().at(path);
+    require(value.text == other.text,
+            what + " changed " + path + " from " + value.text + " to " + other.text);
+  }
+}
+
+void check_kept(const Snapshot& before, const Snapshot& now) {
+  for (const auto& [path, value] : now.values()) {
+    const auto old = before.values().find(path);
+    if (old == before.values().end() || old->second.type != value.type) continue;
+    if (!value.comparable || !old->second.comparable || old->second.text == value.text) continue;
+    require(is_no_literal(now.image().image(), path, old->second.text),
+            "a switch changed " + path + " from " + old->second.text + " to " + value.text);
+  }
+}
+
+void check_restored(const Snapshot& at_switch, const Snapshot& before_undo, const Snapshot& now) {
+  for (const auto& [path, value] : now.values()) {
+    if (before_undo.values().contains(path) || !value.comparable) continue;
+    const Value& was = at_switch.values().at(path);
+    require(was.text == value.text,
+            "undo brought " + path + " back as " + value.text + ", it was " + was.text);
+  }
+}
+
+}  // namespace sim

@@ -1,0 +1,107 @@
+// One controller, its devices, its people and its bad luck, all drawn from one seed: production
+// code (Controller, Change, the service of the control channel, its client) with clock, devices and
+// transport replaced. The same seed is the same run on every machine.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "online_change/package/package.h"
+#include "tests/differential/random.h"
+#include "tests/differential/tree.h"
+#include "tests/golden/runner/compile.h"
+#include "tests/sim/faulty_transport.h"
+#include "tests/sim/stepped_boundary.h"
+#include "tools/stvm/controller_client.h"
+#include "tools/stvm/controller_service.h"
+#include "vm/runtime/io.h"
+
+namespace sim {
+
+struct Tally {
+  uint64_t steps = 0;
+  uint64_t cycles = 0;
+  uint64_t switches = 0;  // undos included
+  uint64_t refusals = 0;
+  uint64_t faults = 0;
+};
+
+class World {
+ public:
+  // `trace`: every step is printed.
+  World(uint64_t seed, bool trace);
+  ~World();
+  // Throws Violation. False: the seed's program does not compile.
+  bool run(int steps);
+  const Tally& tally() const { return tally_; }
+
+ private:
+  struct Version {
+    differential::Program tree;
+    golden::Program compiled;
+  };
+  struct Hand {  // a tool that is connected
+    FaultyTransport* way = nullptr;
+    std::optional<stvm::ControllerClient> client;
+    vm::StatusReport seen;
+  };
+
+  void step();
+  uint32_t strategy();  // of a change, as a flag of the protocol
+  void let_run();
+  void change();
+  void bad_package();
+  void two_tools();
+  void undo();
+  void accept();
+  void write_values();
+  void force();
+  void restart();
+
+  void boot(const ir::VerifiedImage& image);
+  Hand connect();
+  // Its next exchanges may fail, one time in four.
+  void bad_luck(Hand& hand);
+  // What a status without faults says; checks what must hold of every status.
+  vm::StatusReport settled();
+  std::optional<base::Bytes> package_for(const base::Digest& base, Version& next);
+  std::shared_ptr<Version> edited_version(const base::Digest& base);
+  // stage, look at the fates, switch; what came of it.
+  base::Status try_change(Hand& hand, base::ByteSpan package, uint32_t flags);
+  void switched(const Snapshot& before, const Snapshot& now);
+  void say(const std::string& text);
+  void refused(const base::Error& error);
+
+  differential::Random random_;
+  bool trace_;
+  Tally tally_;
+  vm::VirtualClock clock_;
+  vm::SimulatedIo devices_;
+  class Records : public vm::Storage {
+   public:
+    base::Result<base::Bytes> read(std::string_view name) override {
+      return records_[std::string(name)];
+    }
+    base::Status write(std::string_view name, base::ByteSpan bytes) override {
+      records_[std::string(name)].assign(bytes.begin(), bytes.end());
+      return base::Ok{};
+    }
+    bool exists(std::string_view name) override { return records_.contains(std::string(name)); }
+
+   private:
+    std::map<std::string, base::Bytes> records_;
+  };
+  Records storage_;
+  std::unique_ptr<vm::Controller> controller_;
+  std::unique_ptr<SteppedBoundary> boundary_;
+  std::unique_ptr<stvm::ControllerService> service_;
+  std::map<base::Digest, std::shared_ptr<Version>> versions_;
+  base::Bytes last_package_;
+  // Of the change on trial: the boundary at which it was switched.
+  std::optional<Snapshot> at_switch_;
+};
+
+}  // namespace sim
