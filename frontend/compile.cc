@@ -5,6 +5,7 @@
 #include "frontend/lower/body.h"
 #include "frontend/parse/address_map.h"
 #include "frontend/parse/parse.h"
+#include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sfc/declare.h"
 #include "stdlib/sources.h"
@@ -53,6 +54,7 @@ std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& so
   if (has_open_comment(diagnostics)) return std::nullopt;
   map_addresses(tree, diagnostics);
   sfc::declare_charts(tree, diagnostics);
+  check_renames(tree, diagnostics);
 
   Sema sema(all, tree, sources.file_count(), options, purpose, diagnostics);
   sema.report_not_supported();

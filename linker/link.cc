@@ -4,6 +4,7 @@
 #include <unordered_set>
 
 #include "base/limits.h"
+#include "ir/bytecode/renames.h"
 #include "ir/bytecode/symbols.h"
 #include "linker/areas.h"
 #include "linker/call_graph.h"
@@ -23,7 +24,11 @@ class Linker {
       : program_(program),
         objects_(objects),
         options_(options),
-        context_{program, image_, pool_, {}, {}, {}, {}} {}
+        context_{program, image_, pool_, {}, {}, {}, {}} {
+    if (options.base == nullptr) return;
+    renamed_base_ = ir::under_new_names(*options.base, program);
+    if (renamed_base_) options_.base = &*renamed_base_;
+  }
 
   base::Result<ir::Image> run() {
     base::Status (Linker::*const steps[])() = {
@@ -118,6 +123,9 @@ class Linker {
         number_instances(program_, nodes_, options_.base, options_.max_instances);
     if (!rows.ok()) return rows.error();
     image_.instances = std::move(rows).value();
+    for (size_t i = 0; i < program_.instances.size(); ++i) {
+      image_.instances[nodes_[i + 1].id].old_name = program_.instances[i].old_name;
+    }
     for (size_t i = 1; i < nodes_.size(); ++i) {
       const auto pou = pou_of_type_.find(nodes_[i].type.index);
       if (pou == pou_of_type_.end()) {
@@ -279,7 +287,8 @@ class Linker {
 
   const ir::Program& program_;
   const std::vector<ir::Object>& objects_;
-  const Options& options_;
+  Options options_;
+  std::optional<ir::Image> renamed_base_;
   ir::Image image_;
   ConstantPool pool_;
   LinkContext context_;

@@ -49,8 +49,28 @@ std::string_view inside_pragma(std::string_view pragma) {
   return pragma.size() < 2 ? std::string_view() : pragma.substr(1, pragma.size() - 2);
 }
 
+namespace {
+
+// renamed from := 'old'. Whoever looks for it says what is wrong with one that is written
+// otherwise.
+PragmaAttribute read_rename(PragmaReader& reader) {
+  PragmaAttribute out;
+  out.name = reader.piece();
+  reader.next();
+  const bool head =
+      reader.accept_word("from") && reader.accept_sign(':') && reader.accept_sign('=');
+  if (!head || reader.kind() != PragmaReader::Kind::kText) return out;
+  out.value = reader.piece();
+  reader.next();
+  out.has_value = reader.kind() == PragmaReader::Kind::kEnd;
+  return out;
+}
+
+}  // namespace
+
 std::optional<PragmaAttribute> read_attribute(std::string_view pragma) {
   PragmaReader reader(inside_pragma(pragma));
+  if (reader.is_word(kRenamedAttribute)) return read_rename(reader);
   if (!reader.accept_word("attribute")) return std::nullopt;
   bool named =
       reader.kind() == PragmaReader::Kind::kText || reader.kind() == PragmaReader::Kind::kWord;

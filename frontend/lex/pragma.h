@@ -33,7 +33,10 @@ struct PragmaAttribute {
   std::string_view value;
   bool has_value = false;
 };
-// `{attribute 'name'}`, `{attribute 'name' := 'value'}`; nullopt for all other pragmas.
+// `{attribute 'name'}`, `{attribute 'name' := 'value'}`, and `{renamed from := 'old'}` as an
+// attribute `renamed`, whose value is missing when it is written in another way. nullopt for all
+// other pragmas.
+inline constexpr std::string_view kRenamedAttribute = "renamed";
 std::optional<PragmaAttribute> read_attribute(std::string_view pragma);
 
 // Without the braces.

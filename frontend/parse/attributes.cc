@@ -1,6 +1,7 @@
 // Attributes: pragmas that belong to the declaration which they stand before.
 #include "frontend/lex/pragma.h"
 #include "frontend/parse/parser.h"
+#include "ir/types/types.h"
 
 namespace frontend {
 
@@ -13,11 +14,29 @@ Range32 Parser::take_attributes() {
   for (; next_pragma_ < pragmas.size(); ++next_pragma_) {
     base::SourceSpan span = pragmas[next_pragma_];
     if (span.begin.offset >= current_->begin) break;
-    if (span.begin.offset < after) continue;
-    add_attribute(span);
+    if (span.begin.offset < after) {
+      report_lost_rule(span);
+    } else {
+      add_attribute(span);
+    }
   }
   out.count = static_cast<uint32_t>(tree_.attributes.size()) - out.first;
   return out;
+}
+
+// A rule that changes what becomes of values must not be passed over in silence.
+void Parser::report_lost_rule(base::SourceSpan span) {
+  uint32_t begin = span.begin.offset - base_;
+  auto found = read_attribute(text_.substr(begin, span.end.offset - span.begin.offset));
+  if (!found || !ir::same_name(found->name, kRenamedAttribute)) return;
+  diagnostics_.add(Code::kBadRename, span, "this rule stands before no declaration",
+                   "put it in front of what was renamed");
+}
+
+void Parser::report_lost_rules() {
+  for (; next_pragma_ < list_.pragmas.size(); ++next_pragma_) {
+    report_lost_rule(list_.pragmas[next_pragma_]);
+  }
 }
 
 void Parser::add_attribute(base::SourceSpan span) {

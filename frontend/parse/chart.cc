@@ -76,8 +76,9 @@ bool Parser::skip_stray_chart_element() {
 
 // STEP name : action(qualifier); ... END_STEP
 void Parser::parse_step(Chart& chart) {
-  const Token opening = take();
   ChartStep step;
+  step.attributes = take_attributes();
+  const Token opening = take();
   step.initial = opening.kind == TokenKind::kInitialStep;
   step.name = parse_name("step");
   if (!panic_) expect(TokenKind::kColon, "behind the name of the step");
@@ -265,7 +266,8 @@ void Parser::take_actions(PouDecl& pou) {
   std::vector<PouDecl> others;
   for (PouDecl& member : pou.members) {
     if (member.kind == PouKind::kAction) {
-      tree_.charts[pou.chart].actions.push_back({member.name, member.body, member.span});
+      tree_.charts[pou.chart].actions.push_back(
+          {member.name, member.body, member.span, member.attributes});
     } else {
       others.push_back(std::move(member));
     }

@@ -39,6 +39,7 @@ struct ActionUse {  // Act(L, T#5s, indicator) in a step
 
 struct ChartStep {
   Name name;
+  Range32 attributes;
   bool initial = false;
   std::vector<ActionUse> uses;
 };
@@ -57,6 +58,7 @@ struct ChartAction {
   Name name;
   Range32 body;  // Tree::stmt_lists
   base::SourceSpan span;
+  Range32 attributes;
 };
 
 // Never without any step or transition; actions in source order.

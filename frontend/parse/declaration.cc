@@ -11,6 +11,7 @@ void Parser::parse_file() {
     parse_declaration();
     panic_ = false;
   }
+  report_lost_rules();
   tree_.scopes[scope_.index].span = {begin, current_->span().end};
 }
 

@@ -74,6 +74,8 @@ class Parser {
   // --- attributes.cc
   Range32 take_attributes();
   void add_attribute(base::SourceSpan span);
+  void report_lost_rule(base::SourceSpan span);
+  void report_lost_rules();  // those behind the last declaration
   Range32 join_attributes(Range32 a, Range32 b);
 
   class Nesting;

@@ -1,5 +1,6 @@
 // Programs that other POUs call or look into: `P();`, `P.x`. There is one instance, of the
 // program's own name.
+#include "frontend/sema/old_names.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -35,7 +36,11 @@ void Sema::finish_programs() {
       if (ir::same_name(other.name, info.decl->name.text)) instance = &other;
     }
     if (instance == nullptr) {
-      program.instances.push_back({std::string(info.decl->name.text), info.self, ir::kNoTask, {}});
+      program.instances.push_back({std::string(info.decl->name.text),
+                                   info.self,
+                                   ir::kNoTask,
+                                   {},
+                                   OldNames(*this).add(std::string(info.old_name))});
     } else if (instance->type != info.self) {
       error(DiagnosticCode::kDuplicateName, info.decl->name.span,
             "the program instance `" + instance->name +

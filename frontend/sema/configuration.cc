@@ -3,6 +3,8 @@
 
 #include "base/limits.h"
 #include "frontend/sema/instance_paths.h"
+#include "frontend/sema/old_names.h"
+#include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -74,7 +76,11 @@ void Sema::default_configuration() {
   program.tasks.push_back(main_task());
   for (const PouInfo& pou : pous) {
     if (pou.decl->kind != PouKind::kProgram) continue;
-    program.instances.push_back({std::string(pou.decl->name.text), pou.self, 0, {}});
+    program.instances.push_back({std::string(pou.decl->name.text),
+                                 pou.self,
+                                 0,
+                                 {},
+                                 OldNames(*this).add(std::string(pou.old_name))});
   }
   InstancePaths paths(*this);
   paths.configure(tree.globals);
@@ -124,6 +130,7 @@ void Sema::add_instance(const ProgramDecl& decl, const ResourceDecl& resource) {
   }
   ir::ProgramInstance instance;
   instance.name = decl.name.text;
+  instance.old_name = OldNames(*this).of_rule(decl.attributes);
   if (decl.task.empty()) {
     if (program.tasks.empty()) program.tasks.push_back(main_task());
   } else if (auto task = find_task(decl.task)) {
@@ -138,7 +145,7 @@ void Sema::add_instance(const ProgramDecl& decl, const ResourceDecl& resource) {
   std::vector<Connection> connections;
   instance.init = program_arguments(decl, pous[*pou], connections);
   bool own = !connections.empty() || decl.retain;
-  if (own && !alone) *pou = clone_program(*pou, decl.name);
+  if (own && !alone) *pou = clone_program(*pou, decl);
   pous[*pou].connections = std::move(connections);
   if (decl.retain) retain_program(pous[*pou]);
   instance.type = pous[*pou].self;
@@ -214,7 +221,9 @@ void Sema::retain_program(const PouInfo& info) {
 
 // A program whose instances are connected differently, or not all RETAIN, has code and a type for
 // each.
-uint32_t Sema::clone_program(uint32_t original, const Name& instance) {
+uint32_t Sema::clone_program(uint32_t original, const ProgramDecl& decl) {
+  const Name& instance = decl.name;
+  const std::string old_instance(renamed_from(tree, decl.attributes));
   auto number = static_cast<uint32_t>(pous.size());
   PouInfo& info = pous.emplace_back();
   info.number = number;
@@ -228,6 +237,12 @@ uint32_t Sema::clone_program(uint32_t original, const Name& instance) {
   ir::Type type;
   type.kind = ir::Kind::kProgram;
   type.name = code.name;
+  const std::string_view before = pous[original].old_name;
+  if (!before.empty() || !old_instance.empty()) {
+    type.old_name = OldNames(*this).add(
+        std::string(before.empty() ? info.name : before) + "(" +
+        (old_instance.empty() ? std::string(instance.text) : old_instance) + ")");
+  }
   info.self = code.self = program.types.declare(std::move(type));
   pou_by_type_.emplace(info.self, number);
   program.pous.push_back(std::move(code));

@@ -1,4 +1,6 @@
 // First pass: every name that a declaration brings into the world, nothing resolved.
+#include "frontend/sema/old_names.h"
+#include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -192,11 +194,15 @@ uint32_t Sema::add_pou(const PouDecl& decl, bool library, std::string_view name)
   info.name = name;
   info.library = library;
   info.open = is_open(decl);
+  if (const std::string_view rule = renamed_from(tree, decl.attributes); !rule.empty()) {
+    info.old_name = keep_name(whole_old_name(name, rule));
+  }
   pou_names_.emplace(name, number);
   if (!has_frame(decl.kind)) {
     ir::Type type;
     type.kind = instance_kind(decl.kind);
     type.name = name;
+    type.old_name = OldNames(*this).add(std::string(info.old_name));
     info.self = program.types.declare(std::move(type));
     pou_by_type_.emplace(info.self, number);
   }

@@ -1,6 +1,7 @@
 // Interfaces: the members of instances, the locals of frames, the global variables.
 #include <algorithm>
 
+#include "frontend/sema/old_names.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -45,6 +46,7 @@ void Sema::resolve_declarations() {
   for (const TypeDecl& decl : tree.types) {
     if (!in_library(decl.name.span)) resolve(decl.spec);
   }
+  OldNames(*this).rename_types();
   resolve_globals();
   // Grows while library blocks are discovered.
   for (uint32_t i = 0; i < pous.size(); ++i) resolve_interface(i);
@@ -65,8 +67,9 @@ void Sema::resolve_globals() {
   if (for_tests()) add_test_globals();
 }
 
-ir::Member Sema::member_of(const Variable& variable, ir::Section section) const {
+ir::Member Sema::member_of(const Variable& variable, ir::Section section) {
   ir::Member member;
+  member.old_name = OldNames(*this).of(variable);
   if (!variable.list.empty()) member.name = std::string(variable.list) + ".";
   if (!variable.method.empty()) member.name = std::string(variable.method) + "#";
   member.name += variable.name.text;

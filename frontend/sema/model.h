@@ -39,7 +39,7 @@ struct Variable {
   bool retain = false;
   bool non_retain = false;  // says NON_RETAIN
   bool used = false;
-  bool written = false;  // by code, or its address was taken
+  bool written = false;       // by code, or its address was taken
   bool hidden = false;        // not of the source: see hidden_variables.cc
   bool stamp = false;         // of start code: ir::Section::kStamp
   bool by_reference = false;  // in-out of a function block: a REFERENCE TO bound at each call
@@ -201,6 +201,7 @@ struct PouInfo {
   // Parameters of open types (ANY_NUM, ARRAY[*]): no code of its own, only instances have.
   bool open = false;
   bool resolved = false;                // its interface is in the program
+  std::string_view old_name;            // by a rule in front of it, qualified as `name`; "": none
   std::string_view static_list;         // in front of the names of VAR_STAT variables
   uint32_t overload = kNoPou;           // the next function of that name
   std::unique_ptr<Meaning> meaning;     // of an instance

@@ -1,6 +1,7 @@
 // Members with code, and what names mean in a block with bases.
 #include "frontend/sema/objects.h"
 
+#include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -44,6 +45,7 @@ void Objects::add_member(uint32_t block, const PouDecl& decl) {
   info.number = slot;
   info.decl = &decl;
   info.name = decl.name.text;
+  info.old_name = renamed_from(sema_.tree, decl.attributes);
   info.library = owner.library;
   info.owner = block;
   info.self = owner.self;

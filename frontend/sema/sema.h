@@ -162,7 +162,7 @@ class Sema {
   Pools pools{*this};
 
  private:
-  friend class Within;
+  friend class OldNames;
   friend class Folder;
   friend class Namespaces;
   friend class Objects;
@@ -228,7 +228,7 @@ class Sema {
   // interface.cc
   void resolve_interface(uint32_t pou);
   void resolve_globals();
-  ir::Member member_of(const Variable& variable, ir::Section section) const;
+  ir::Member member_of(const Variable& variable, ir::Section section);
 
   // variables.cc
   void resolve_variable(VarId id);
@@ -348,7 +348,7 @@ class Sema {
   ir::ConstId program_arguments(const ProgramDecl& decl, const PouInfo& info,
                                 std::vector<Connection>& connections);
   void retain_program(const PouInfo& info);
-  uint32_t clone_program(uint32_t original, const Name& instance);
+  uint32_t clone_program(uint32_t original, const ProgramDecl& decl);
 
   // tasks.cc
   void add_task(const TaskDecl& decl);
@@ -379,7 +379,7 @@ class Sema {
   std::vector<Note> notes_;
   std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> instances_;
   bool binds_at_start_ = false;  // what is initialised now may hold an unbound handle
-  bool declared_ = false;  // all interfaces are resolved; later ones at once
+  bool declared_ = false;        // all interfaces are resolved; later ones at once
   NameMap<VarId> globals_;
   NameMap<GlobalList> lists_;
   std::vector<VarId> global_order_;

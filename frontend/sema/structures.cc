@@ -1,6 +1,7 @@
 // Structures: members, those of the base (EXTENDS), and BIT members, which share bytes.
 #include <utility>
 
+#include "frontend/sema/old_names.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -113,6 +114,7 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
     }
     if (bit) continue;
     member.name = name.text;
+    member.old_name = OldNames(*this).of_rule(field.attributes);
     build.type.overlap |= field.has_address && field.address.area == ir::DirectArea::kNone;
     build.type.members.push_back(member);
   }

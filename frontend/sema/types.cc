@@ -1,6 +1,7 @@
 // Type expressions -> TypeIds. Aliases, named strings, arrays and subranges stand
 // for their content; structures and enumerations are types of their own.
 #include "base/limits.h"
+#include "frontend/sema/old_names.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -251,7 +252,8 @@ TypeUse Sema::resolve_enum(SpecId id, const Spec& spec) {
                 wide_text(limits.high));
       return {};
     }
-    type.literals.push_back({name, static_cast<int64_t>(next)});
+    type.literals.push_back(
+        {name, static_cast<int64_t>(next), OldNames(*this).of_rule(enumerator.attributes)});
     next += 1;
   }
   if (type.literals.empty()) return {};

@@ -15,9 +15,11 @@ SpecId named_type(Tree& tree, const char* name, base::SourceSpan span) {
   return SpecId(static_cast<uint32_t>(tree.specs.size() - 1));
 }
 
-VarDecl implied(Tree& tree, const char* type, std::vector<Name> names, base::SourceSpan span) {
+VarDecl implied(Tree& tree, const char* type, Name name, base::SourceSpan span,
+                Range32 attributes) {
   VarDecl decl;
-  decl.names = std::move(names);
+  decl.names = {name};
+  decl.attributes = attributes;
   decl.spec = named_type(tree, type, span);
   decl.implied = true;
   decl.span = span;
@@ -35,21 +37,20 @@ void declare(Tree& tree, PouDecl& pou, const Chart& chart, const Net& net) {
   VarBlock block;
   block.scope = pou.scope;
   block.span = chart.span;
-  std::vector<Name> steps;
-  for (const ChartStep& step : chart.steps) steps.push_back(step.name);  // names stand twice, too
-  if (!steps.empty()) {
-    block.vars.push_back(implied(tree, kStepType, std::move(steps), chart.span));
+  for (const ChartStep& step : chart.steps) {  // names stand twice, too
+    block.vars.push_back(implied(tree, kStepType, step.name, chart.span, step.attributes));
   }
-  std::vector<Name> actions;
-  for (const Action& action : net.actions) actions.push_back(record_name(tree, action));
+  for (const Action& action : net.actions) {
+    const Range32 attributes = action.decl == nullptr ? Range32{} : action.decl->attributes;
+    block.vars.push_back(
+        implied(tree, kActionType, record_name(tree, action), chart.span, attributes));
+  }
   for (const ChartAction& action : chart.actions) {
     const Action& first = net.actions[net.action_names.find(action.name.text)->second];
-    if (first.decl != &action) actions.push_back(action.name);
+    if (first.decl == &action) continue;
+    block.vars.push_back(implied(tree, kActionType, action.name, chart.span, action.attributes));
   }
-  if (!actions.empty()) {
-    block.vars.push_back(implied(tree, kActionType, std::move(actions), chart.span));
-  }
-  block.vars.push_back(implied(tree, "TIME", {{kClock, chart.span}}, chart.span));
+  block.vars.push_back(implied(tree, "TIME", {kClock, chart.span}, chart.span, {}));
   pou.blocks.push_back(std::move(block));
 }
 

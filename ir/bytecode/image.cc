@@ -12,7 +12,7 @@ namespace ir {
 namespace {
 
 constexpr std::string_view kMagic = "STCIMAGE";
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 constexpr size_t kDigestAt = 16;
 constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 
@@ -25,12 +25,13 @@ base::Error bad_format(std::string text) {
 }
 
 void types_section(ImageWriter& a, const TypeTable& types) {
+  a.list(types.old_names(), 4, a);
   a(types.size() - kElementaryCount);
   for (uint32_t i = kElementaryCount; i < types.size(); ++i) type_fields(a, types[TypeId(i)]);
 }
 
 bool is_interned(const Type& type) {
-  return type.name.empty() && !type.init.valid() &&
+  return type.name.empty() && !type.init.valid() && !type.old_name.valid() &&
          (type.kind == Kind::kString || type.kind == Kind::kWstring || type.kind == Kind::kArray ||
           type.kind == Kind::kSubrange || is_reference(type.kind));
 }
@@ -60,8 +61,11 @@ void add_type(TypeTable& types, Type type) {
 }
 
 void types_section(ImageReader& a, TypeTable& types) {
+  std::vector<std::string> old_names;
+  a.list(old_names, 4, a);
+  types.set_old_names(std::move(old_names));
   std::vector<Type> stored;
-  a.list(stored, 50, [&](Type& type) { type_fields(a, type); });
+  a.list(stored, 54, [&](Type& type) { type_fields(a, type); });
   for (Type& type : stored) add_type(types, std::move(type));
 }
 
@@ -97,7 +101,7 @@ void tables_section(Archive& a, I& image) {
     a(range.name);
   });
   a.list(image.overrides, 12, [&](auto& row) { override_fields(a, row); });
-  a.list(image.instances, 25, [&](auto& instance) { instance_fields(a, instance); });
+  a.list(image.instances, 29, [&](auto& instance) { instance_fields(a, instance); });
   a.list(image.free, 8, [&](auto& extent) {
     a(extent.offset);
     a(extent.size);

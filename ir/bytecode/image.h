@@ -82,6 +82,7 @@ struct Instance {
   uint32_t generation = 0;  // counts the reuses of this ID
   bool live = false;        // false: the ID is free
   std::string name;         // "Prog1", "inst2", "arr[3]", "s.fb": path from the parent
+  OldNameId old_name;       // of a program; others are renamed with their variables
 };
 
 struct Extent {

@@ -110,7 +110,7 @@ void type_fields(Archive& a, T& v) {
     a(dim.low);
     a(dim.high);
   });
-  a.list(v.members, 24, [&](auto& member) {
+  a.list(v.members, 28, [&](auto& member) {
     a(member.name);
     a(member.type);
     a.enumerator(member.section, 6);
@@ -118,14 +118,17 @@ void type_fields(Archive& a, T& v) {
     a(member.retain);
     a(member.init);
     address_fields(a, member.address);
+    a(member.old_name);
   });
   a(v.overlap);
-  a.list(v.literals, 12, [&](auto& literal) {
+  a.list(v.literals, 16, [&](auto& literal) {
     a(literal.name);
     a(literal.value);
+    a(literal.old_name);
   });
   a.list(v.interfaces, 4, a);
   a(v.init);
+  a(v.old_name);
 }
 
 template <class Archive, class T>
@@ -205,6 +208,7 @@ void instance_fields(Archive& a, T& v) {
   a(v.generation);
   a(v.live);
   a(v.name);
+  a(v.old_name);
 }
 
 template <class Archive, class T>

@@ -5,6 +5,7 @@
 
 #include "base/limits.h"
 #include "ir/bytecode/regions.h"
+#include "ir/types/inside.h"
 #include "ir/types/listed_name.h"
 
 namespace ir {
@@ -274,6 +275,19 @@ base::Result<Symbol> find_symbol(const Image& image, std::string_view path) {
     return symbol;
   }
   return PathReader(image, path).run();
+}
+
+std::string path_of(const Image& image, const Symbol& symbol) {
+  for (uint32_t id = 0; id < image.instances.size(); ++id) {
+    const Instance& row = image.instances[id];
+    const uint64_t end = uint64_t{row.data} + image.layouts[row.type].area_capacity;
+    if ((id != 0 && !row.live) || symbol.data < row.data || symbol.data >= end) continue;
+    std::string inside =
+        path_inside(image.types, image.layouts, row.type, symbol.data - row.data, symbol.type);
+    if (id == 0 && inside.starts_with('.')) inside.erase(0, 1);
+    return image.instance_path(id) + inside;
+  }
+  return {};
 }
 
 void for_each_leaf(const Image& image,

@@ -27,6 +27,9 @@ struct Symbol {
 
 base::Result<Symbol> find_symbol(const Image& image, std::string_view path);
 
+// The path by which a variable is found, from its place and type; an access path names it as well.
+std::string path_of(const Image& image, const Symbol& symbol);
+
 // Every leaf (scalars and strings) in declaration order: globals, then programs;
 // instances where their slot is declared. In-out slots are skipped.
 void for_each_leaf(const Image& image,

@@ -58,6 +58,7 @@ class InstancesVerifier {
 
   base::Status check_row(uint32_t id) const {
     const Instance& row = image_.instances[id];
+    if (!image_.types.knows(row.old_name)) return bad(id, "has an old name that is nowhere");
     if (!is_live(id)) return base::Ok{};
     if (id != 0) {
       if (!image_.types.is_instance(row.type)) return bad(id, "has no instance type");

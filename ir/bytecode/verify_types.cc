@@ -59,6 +59,7 @@ class TypesVerifier {
 
   base::Status check_references(uint32_t i) const {
     const Type& type = types_[TypeId(i)];
+    if (!old_names_known(type)) return bad(i, "has an old name that is nowhere");
     const bool needs_base = type.kind == Kind::kArray || type.kind == Kind::kEnum ||
                             type.kind == Kind::kSubrange || is_reference(type.kind);
     if (needs_base && !types_.contains(type.base)) return bad(i, "its base does not exist");
@@ -78,6 +79,13 @@ class TypesVerifier {
       }
     }
     return base::Ok{};
+  }
+
+  bool old_names_known(const Type& type) const {
+    bool good = types_.knows(type.old_name);
+    for (const Member& member : type.members) good = good && types_.knows(member.old_name);
+    for (const EnumLiteral& literal : type.literals) good = good && types_.knows(literal.old_name);
+    return good;
   }
 
   // Nothing is an interface; a program is a part of the globals only (and lives elsewhere).

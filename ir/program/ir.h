@@ -245,6 +245,7 @@ struct ProgramInstance {
   TypeId type;
   uint32_t task = 0;  // index into Program::tasks, or kNoTask
   ConstId init;       // overrides, or invalid
+  OldNameId old_name = {};
 };
 
 // A function block instance that a task runs by itself, behind the task's programs:

@@ -109,8 +109,11 @@ class ProgramParser {
     type.kind = static_cast<Kind>(static_cast<uint32_t>(Kind::kString) + line.choice(kKindWords));
     parse_definition(line, type);
     const ConstId init = parse_init(line);
+    const OldNameId old_name = parse_renamed(line);
     if (!line.failed()) {
-      program_.types.edit(declare(std::move(type))).init = init;
+      Type& declared = program_.types.edit(declare(std::move(type)));
+      declared.init = init;
+      declared.old_name = old_name;
     }
   }
 
@@ -167,13 +170,19 @@ class ProgramParser {
     high = line.signed_number();
   }
 
-  static void parse_literals(LineReader& line, Type& type) {
+  OldNameId parse_renamed(LineReader& line) {
+    return line.take("renamed") ? program_.types.add_old_name(std::string(line.name()))
+                                : OldNameId();
+  }
+
+  void parse_literals(LineReader& line, Type& type) {
     line.expect("(");
     while (!line.failed() && !line.take(")")) {
       EnumLiteral literal;
       literal.name = line.name();
       line.expect("=");
       literal.value = line.signed_number();
+      literal.old_name = parse_renamed(line);
       type.literals.push_back(std::move(literal));
       if (line.peek() != ")") {
         line.expect(",");
@@ -233,6 +242,7 @@ class ProgramParser {
       member.address.bit_offset = static_cast<uint32_t>(line.number(0xffffffff));
       member.address.bit_size = static_cast<uint32_t>(line.number(0xffffffff));
     }
+    member.old_name = parse_renamed(line);
     const TypeId owner(program_.types.size() - 1);
     if (!program_.types.has_members(owner)) {
       line.fail("member behind a type that has none");
@@ -303,6 +313,7 @@ class ProgramParser {
     line.expect("task");
     instance.task = line.index();
     instance.init = parse_init(line);
+    instance.old_name = parse_renamed(line);
     program_.instances.push_back(std::move(instance));
   }
 

@@ -61,13 +61,17 @@ class ProgramPrinter {
     return init.valid() ? " init #" + std::to_string(init.index) : "";
   }
 
+  std::string renamed_text(OldNameId old) const {
+    return old.valid() ? " renamed " + name_text(program_.types.old_name(old)) : "";
+  }
+
   void print_type(TypeId id) {
     const Type& type = program_.types[id];
     text_ += "type " + names_.type(id);
     if (!names_.is_unique_type(id) && !type.name.empty()) {
       text_ += " " + name_text(type.name);
     }
-    text_ += " = " + definition(type) + init_text(type.init) + "\n";
+    text_ += " = " + definition(type) + init_text(type.init) + renamed_text(type.old_name) + "\n";
     for (const Member& member : type.members) {
       print_member(member);
     }
@@ -109,11 +113,11 @@ class ProgramPrinter {
     return text;
   }
 
-  static std::string literals(const Type& type) {
+  std::string literals(const Type& type) const {
     std::string text;
     for (const EnumLiteral& literal : type.literals) {
       text += (text.empty() ? "" : ", ") + name_text(literal.name) + " = " +
-              std::to_string(literal.value);
+              std::to_string(literal.value) + renamed_text(literal.old_name);
     }
     return text;
   }
@@ -138,7 +142,7 @@ class ProgramPrinter {
                std::to_string(member.address.bit_offset) + " " +
                std::to_string(member.address.bit_size);
     }
-    text_ += "\n";
+    text_ += renamed_text(member.old_name) + "\n";
   }
 
   void print_tasks() {
@@ -155,7 +159,8 @@ class ProgramPrinter {
   void print_instances() {
     for (const ProgramInstance& instance : program_.instances) {
       text_ += "instance " + name_text(instance.name) + " : " + names_.type(instance.type) +
-               " task " + std::to_string(instance.task) + init_text(instance.init) + "\n";
+               " task " + std::to_string(instance.task) + init_text(instance.init) +
+               renamed_text(instance.old_name) + "\n";
     }
   }
 

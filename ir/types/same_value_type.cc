@@ -13,11 +13,18 @@ struct Side {
   const Layouts& layouts;
 };
 
-bool same_literals(const Type& a, const Type& b) {
-  return std::equal(a.literals.begin(), a.literals.end(), b.literals.begin(), b.literals.end(),
-                    [](const EnumLiteral& x, const EnumLiteral& y) {
-                      return x.value == y.value && same_name(x.name, y.name);
-                    });
+// Has every literal of the old type its value in the new one? Others may have come.
+bool keeps_literals(const Type& old_type, const Type& new_type) {
+  const std::vector<EnumLiteral>& now = new_type.literals;
+  size_t at = 0;  // literals mostly stay in their order
+  for (const EnumLiteral& literal : old_type.literals) {
+    const auto same = [&](const EnumLiteral& other) { return same_name(other.name, literal.name); };
+    auto found = std::find_if(now.begin() + static_cast<ptrdiff_t>(at), now.end(), same);
+    if (found == now.end()) found = std::find_if(now.begin(), now.end(), same);
+    if (found == now.end() || found->value != literal.value) return false;
+    at = static_cast<size_t>(found - now.begin()) + 1;
+  }
+  return true;
 }
 
 bool same(const Side& old_side, TypeId old_type, const Side& new_side, TypeId new_type,
@@ -54,7 +61,7 @@ bool same(const Side& old_side, TypeId old_type, const Side& new_side, TypeId ne
     case Kind::kWstring:
       return a.capacity == b.capacity;
     case Kind::kEnum:
-      return same_literals(a, b) && same(old_side, a.base, new_side, b.base, depth + 1);
+      return keeps_literals(a, b) && same(old_side, a.base, new_side, b.base, depth + 1);
     case Kind::kSubrange:
       return a.low == b.low && a.high == b.high &&
              same(old_side, a.base, new_side, b.base, depth + 1);

@@ -77,6 +77,11 @@ TypeId TypeTable::declare(Type type) {
   return TypeId(size() - 1);
 }
 
+OldNameId TypeTable::add_old_name(std::string name) {
+  old_names_.push_back(std::move(name));
+  return OldNameId(static_cast<uint32_t>(old_names_.size() - 1));
+}
+
 TypeId TypeTable::intern(std::string key, Type type) {
   auto [found, inserted] = interned_.try_emplace(std::move(key), TypeId(size()));
   if (inserted) {

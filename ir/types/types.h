@@ -80,6 +80,9 @@ struct ConstTag;
 using TypeId = base::Id<TypeTag>;
 // An initial value in the program's ConstTable (constants.h).
 using ConstId = base::Id<ConstTag>;
+// What `{renamed from := 'old'}` says, kept in the TypeTable; invalid: no rule.
+struct OldNameTag;
+using OldNameId = base::Id<OldNameTag>;
 
 // kStamp: a DWORD of start code, which no source sees and nobody lists. In a block: 0 in a new
 // instance, see stamps.h; in the globals: not 0 where start code runs for a change.
@@ -105,6 +108,7 @@ struct Member {
   bool retain = false;
   ConstId init;           // invalid: the type's default
   DirectAddress address;  // for AT declarations
+  OldNameId old_name;
 };
 
 // Is it a variable by itself, that people can see?
@@ -122,6 +126,7 @@ struct Dimension {
 struct EnumLiteral {
   std::string name;
   int64_t value = 0;
+  OldNameId old_name = {};
 };
 
 struct Type {
@@ -141,6 +146,7 @@ struct Type {
   // interfaces included. Of an interface: all its parents.
   std::vector<TypeId> interfaces;
   ConstId init;  // default initial value when it is not all zero
+  OldNameId old_name;
 };
 
 class TypeTable {
@@ -165,6 +171,12 @@ class TypeTable {
   Type& edit(TypeId id) { return types_[id.index]; }
 
   const Type& operator[](TypeId id) const { return types_[id.index]; }
+  OldNameId add_old_name(std::string name);
+  const std::string& old_name(OldNameId id) const { return old_names_[id.index]; }
+  bool knows(OldNameId id) const { return !id.valid() || id.index < old_names_.size(); }
+  const std::vector<std::string>& old_names() const { return old_names_; }
+  void set_old_names(std::vector<std::string> names) { old_names_ = std::move(names); }
+
   uint32_t size() const { return static_cast<uint32_t>(types_.size()); }
   bool contains(TypeId id) const { return id.index < types_.size(); }
 
@@ -192,6 +204,7 @@ class TypeTable {
 
   std::vector<Type> types_;
   std::unordered_map<std::string, TypeId> interned_;
+  std::vector<std::string> old_names_;
 };
 
 // Comparison and folding of IEC identifiers (base/name_case.h).

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstring>
 
+#include "ir/bytecode/renames.h"
 #include "online_change/apply/handle_transfer.h"
 #include "online_change/apply/leaving.h"
 #include "online_change/apply/losses.h"
@@ -41,18 +42,22 @@ struct Change::Pending {
         package(std::move(received)),
         old_image(std::move(running)),
         new_image(std::move(next)),
-        forward(package.forward, old_image.image(), new_image.image(),
+        renamed(old_image.image(), new_image.image()),
+        forward(package.forward, old(), new_image.image(),
                 in_place() ? Transfer::Steps::kBoundary : Transfer::Steps::kApart),
-        early(package.forward, old_image.image(), new_image.image(), Transfer::Steps::kEarly),
-        backward(package.inverse, new_image.image(), old_image.image(), Transfer::Steps::kAll),
-        handles(old_image.image(), new_image.image()),
-        leaving(find_leaving(old_image.image(), new_image.image())) {}
+        early(package.forward, old(), new_image.image(), Transfer::Steps::kEarly),
+        backward(package.inverse, new_image.image(), old(), Transfer::Steps::kAll),
+        handles(old(), new_image.image()),
+        leaving(find_leaving(old(), new_image.image())) {}
   bool in_place() const { return strategy == Strategy::kInPlace; }
+  // Version 1 under the names of version 2.
+  const ir::Image& old() const { return renamed.image(); }
 
   Strategy strategy;
   Package package;
   ir::VerifiedImage old_image;
   ir::VerifiedImage new_image;
+  ir::OldUnderNewNames renamed;
   Transfer forward;
   Transfer early;  // in place
   size_t early_done = 0;
@@ -155,9 +160,9 @@ std::vector<LiveLoss> Change::live_losses() const {
   };
   pending_->forward.losses(memory, collect);
   std::vector<LiveLoss> others =
-      values_without_place(plan(), pending_->old_image.image(), controller_.memory().view());
+      values_without_place(plan(), pending_->old(), controller_.memory().view());
   rows.insert(rows.end(), others.begin(), others.end());
-  const ir::Image& old_image = pending_->old_image.image();
+  const ir::Image& old_image = pending_->old();
   Areas old_areas(old_image);
   pending_->handles.for_each_broken(memory, [&](uint32_t at, ir::TypeId type) {
     rows.push_back(describe_broken(old_areas, at, type, controller_.memory().view()));

@@ -110,9 +110,9 @@ std::string bounds_text(const std::vector<ir::Dimension>& from,
 
 // An element that is byte for byte the same, without slots: one run for all of it.
 void use_whole_elements(TypeDiff& element, uint32_t size) {
-  bool plain =
-      element.same && std::all_of(element.ops.begin(), element.ops.end(),
-                                  [](const DiffOp& op) { return op.kind == DiffKind::kSame; });
+  bool plain = element.same && !element.renamed &&
+               std::all_of(element.ops.begin(), element.ops.end(),
+                           [](const DiffOp& op) { return op.kind == DiffKind::kSame; });
   if (!plain || element.ops.empty()) return;
   DiffOp whole;
   whole.size = size;
@@ -141,6 +141,7 @@ TypeDiff TypeDiffer::compare_arrays(TypeId old_type, TypeId new_type) {
 
   TypeDiff diff;
   diff.leaves = leaves(new_, new_type);
+  diff.renamed = element.renamed;
   for (FateRow row : element.rows) {
     if (common == 0) break;
     row.count *= common;

@@ -223,6 +223,7 @@ TypeDiff TypeDiffer::compare_members(TypeId old_type, TypeId new_type, bool is_a
     bool gone = twin == MemberNames::kNone || to.members[twin].section == Section::kInOut;
     if (gone && member.section != Section::kInOut) add_dropped_member(diff, member);
   }
+  if (!back_) propose_renames(diff, old_type, new_type);
   join(diff.ops);
   uint32_t old_size = is_area ? old_layout.used : old_layout.size;
   uint32_t new_size = is_area ? new_layout.used : new_layout.size;
@@ -290,21 +291,30 @@ void TypeDiffer::add_member(TypeDiff& diff, const Member& old_member, uint32_t f
   append_value(diff, inner, old_member, from, new_member, to, is_area);
 }
 
+// "renamed from `x`"; "" for a variable that kept its name.
+std::string TypeDiffer::rename_note(const Member& old_member) const {
+  if (!renamed_ || !old_member.old_name.valid()) return {};
+  return "renamed from `" + old_.types.old_name(old_member.old_name) + "`";
+}
+
 void TypeDiffer::append_value(TypeDiff& diff, const TypeDiff& inner, const Member& old_member,
                               uint32_t from, const Member& new_member, uint32_t to, bool is_area) {
   auto first_row = static_cast<uint32_t>(diff.rows.size());
+  std::string note = rename_note(old_member);
+  diff.renamed = diff.renamed || inner.renamed || !note.empty();
   for (const FateRow& row : inner.rows) {
     diff.rows.push_back(row);
+    if (!note.empty() && row.path.empty()) diff.rows.back().reason = note + ", " + row.reason;
     diff.rows.back().path =
         "." + (row.fate == Fate::kDropped ? old_member : new_member).name + row.path;
   }
   // One row for what may move with the variable; a row that stays empty is left out.
   uint32_t own_row = kWholeVariable;
-  if (is_area) {
+  if (is_area || !note.empty()) {
     own_row = static_cast<uint32_t>(diff.rows.size());
     diff.rows.push_back(make_row(Fate::kMoved, "." + new_member.name,
                                  old_.types.text(old_member.type), new_.types.text(new_member.type),
-                                 "moved", 0));
+                                 std::move(note), 0));
   }
   if (diff.ops.size() + inner.ops.size() > kMaxDiffOps) {
     failed_ = true;

@@ -53,13 +53,21 @@ struct TypeDiff {
   bool same = false;          // byte for byte the same layout and meaning
   bool has_rule = true;       // false: A14 knows no way; initialise the whole
   uint64_t leaves = 0;        // of the new type
+  bool renamed = false;       // some row says that a variable was renamed
+  // Of function blocks that are new here: what they may be called by mistake, by folded name.
+  std::map<std::string, std::string> hints;
 };
 
 class TypeDiffer {
  public:
   enum class Direction : uint8_t { kForward, kBack };  // kBack: for the undo of new -> old
-  TypeDiffer(const ir::Image& old_image, const ir::Image& new_image, Direction direction)
-      : old_(old_image), new_(new_image), back_(direction == Direction::kBack) {}
+  // `renamed`: the old image is one with the names of the new one (ir/bytecode/renames.h).
+  TypeDiffer(const ir::Image& old_image, const ir::Image& new_image, Direction direction,
+             bool renamed)
+      : old_(old_image),
+        new_(new_image),
+        back_(direction == Direction::kBack),
+        renamed_(renamed && direction == Direction::kForward) {}
 
   // The members of two instance types, two structures or the two globals. Every op of an area
   // that moves has its row in `rows`, one per variable.
@@ -89,11 +97,14 @@ class TypeDiffer {
   void append_value(TypeDiff& diff, const TypeDiff& value, const ir::Member& old_member,
                     uint32_t from, const ir::Member& new_member, uint32_t to, bool is_area);
   uint64_t count_leaves(const ir::Image& image, ir::TypeId type);
+  std::string rename_note(const ir::Member& old_member) const;
+  void propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const;
   Conversion conversion_of(ir::TypeId old_type, ir::TypeId new_type) const;
 
   const ir::Image& old_;
   const ir::Image& new_;
   bool back_;
+  bool renamed_;
   std::map<Key, std::unique_ptr<TypeDiff>> areas_;
   std::map<Key, std::unique_ptr<TypeDiff>> values_;
   std::map<std::pair<const ir::Image*, ir::TypeId>, uint64_t> leaves_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "ir/bytecode/renames.h"
 #include "ir/types/stamps.h"
 #include "online_change/diff/value_conversion.h"
 #include "online_change/package/package.h"
@@ -291,9 +292,10 @@ bool PlanCheck::check_carried(Node node, uint32_t from, uint32_t depth) {
 
 base::Status check_package(const Package& package, const ir::Image& old_image,
                            const ir::Image& new_image) {
-  base::Status forward = PlanCheck(package.forward, old_image, new_image).run();
+  const ir::OldUnderNewNames old(old_image, new_image);
+  base::Status forward = PlanCheck(package.forward, old.image(), new_image).run();
   if (!forward) return forward;
-  base::Status inverse = PlanCheck(package.inverse, new_image, old_image).run();
+  base::Status inverse = PlanCheck(package.inverse, new_image, old.image()).run();
   if (inverse) return inverse;
   return base::Error{inverse.error().refusal, inverse.error().text + " (on the way back)"};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ir/bytecode/renames.h"
 #include "ir/types/stamps.h"
 #include "online_change/plan/area_steps.h"
 #include "online_change/plan/pause.h"
@@ -19,14 +20,15 @@ constexpr uint32_t kReplaced = FateRows::kNoRow - 1;  // row_of_old_: counted wi
 }  // namespace
 
 Planner::Planner(const ir::Image& old_image, const ir::Image& new_image,
-                 TypeDiffer::Direction direction)
+                 TypeDiffer::Direction direction, bool renamed)
     : old_(old_image),
       new_(new_image),
+      renamed_(renamed && direction == TypeDiffer::Direction::kForward),
       old_data_(old_image),
       new_data_(new_image),
       old_areas_(old_image),
       match_(match_instances(old_image, new_image)),
-      differ_(old_image, new_image, direction),
+      differ_(old_image, new_image, direction, renamed),
       row_of_new_(new_image.instances.size(), FateRows::kNoRow),
       row_of_old_(old_image.instances.size(), FateRows::kNoRow) {}
 
@@ -60,12 +62,14 @@ void Planner::carry(uint32_t old_id, uint32_t new_id) {
   const ir::Instance& from = old_.instances[old_id];
   const ir::Instance& to = new_.instances[new_id];
   Carried instance{old_id, new_id, from.data, to.data, &differ_.area(from.type, to.type), ""};
-  if (stays_whole(instance)) {
+  used_here_.clear();
+  const bool whole = stays_whole(instance);
+  if (renamed_ && from.old_name.valid()) rename_row(instance, whole);
+  if (whole) {
     plan_.counts.kept += instance.diff->leaves;
     return;
   }
   instance.key = std::to_string(from.type.index) + "," + std::to_string(to.type.index);
-  used_here_.clear();
   if (moves_whole(instance)) return;
   for (const DiffOp& op : instance.diff->ops) apply(instance, op);
   add_dropped_rows(instance);
@@ -73,7 +77,7 @@ void Planner::carry(uint32_t old_id, uint32_t new_id) {
 }
 
 bool Planner::nothing_differs(const Carried& instance) const {
-  return instance.diff->same &&
+  return instance.diff->same && !instance.diff->renamed &&
          old_data_.equal(instance.from, new_data_, instance.to, old_areas_.used(instance.old_id));
 }
 
@@ -137,7 +141,7 @@ void Planner::apply_same(const Carried& instance, const DiffOp& op) {
                         counted ? moved_row(instance, op) : kNoFate));
   }
   plan_.counts.kept += op.leaves;
-  if (!initial_equal(instance, op)) note_row(instance, op);
+  if (!initial_equal(instance, op) || !rename_note(instance, op).empty()) note_row(instance, op);
 }
 
 void Planner::initialise(const Carried& instance, const DiffOp& op, uint32_t fate) {
@@ -235,11 +239,13 @@ void Planner::finish_area() {
 }
 
 base::Result<Plan> plan(const ir::Image& old_image, const ir::Image& new_image) {
-  return Planner(old_image, new_image, TypeDiffer::Direction::kForward).run();
+  const ir::OldUnderNewNames old(old_image, new_image);
+  return Planner(old.image(), new_image, TypeDiffer::Direction::kForward, old.renamed()).run();
 }
 
 base::Result<Plan> inverse_plan(const ir::Image& old_image, const ir::Image& new_image) {
-  return Planner(new_image, old_image, TypeDiffer::Direction::kBack).run();
+  const ir::OldUnderNewNames old(old_image, new_image);
+  return Planner(new_image, old.image(), TypeDiffer::Direction::kBack, old.renamed()).run();
 }
 
 }  // namespace online_change

@@ -17,7 +17,9 @@ namespace online_change {
 
 class Planner {
  public:
-  Planner(const ir::Image& old_image, const ir::Image& new_image, TypeDiffer::Direction direction);
+  // `renamed`: the old image is one with the names of the new one (ir/bytecode/renames.h).
+  Planner(const ir::Image& old_image, const ir::Image& new_image, TypeDiffer::Direction direction,
+          bool renamed);
   base::Result<Plan> run();
 
  private:
@@ -49,7 +51,10 @@ class Planner {
   uint32_t share(const std::string& key, uint64_t leaves, MakeRow make);
   uint32_t row_of(const Carried& instance, uint32_t diff_row, uint64_t leaves);
   uint32_t constant_row(const Carried& instance, const DiffOp& op);
+  void rename_row(const Carried& instance, bool whole);
+  std::string rename_note(const Carried& instance, const DiffOp& op) const;
   uint32_t note_row(const Carried& instance, const DiffOp& op);
+  std::string rename_hint(uint32_t new_id);
   uint32_t moved_row(const Carried& instance, const DiffOp& op);
   uint32_t added_row(uint32_t new_id, uint64_t leaves);
   uint32_t dropped_row(uint32_t old_id, uint64_t leaves);
@@ -60,6 +65,7 @@ class Planner {
 
   const ir::Image& old_;
   const ir::Image& new_;
+  bool renamed_;
   InitialData old_data_;
   InitialData new_data_;
   Areas old_areas_;

@@ -48,30 +48,60 @@ uint32_t Planner::constant_row(const Carried& instance, const DiffOp& op) {
   });
 }
 
-// The live value stays; the new initial value will show after a cold start only.
+// "renamed from `x`"; "" for what kept its name.
+std::string Planner::rename_note(const Carried& instance, const DiffOp& op) const {
+  if (op.row >= instance.diff->rows.size()) return {};
+  const FateRow& row = instance.diff->rows[op.row];
+  return row.fate == Fate::kMoved ? row.reason : std::string();
+}
+
+// An instance under another name. `whole`: what is in it has no rows of its own.
+void Planner::rename_row(const Carried& instance, bool whole) {
+  const ir::Instance& from = old_.instances[instance.old_id];
+  const std::string key = "R" + std::to_string(old_.instances[from.parent].type.index) + "." +
+                          base_name(from.name) + ":" + std::to_string(from.type.index);
+  share(key, whole ? instance.diff->leaves : 0, [&] {
+    FateRow row;
+    row.path = new_.instance_path(instance.new_id);
+    row.old_type = row.new_type = new_.types.text(new_.instances[instance.new_id].type);
+    row.reason = "renamed from `" + base_name(old_.types.old_name(from.old_name)) + "`";
+    return row;
+  });
+}
+
+// The live value stays; the new initial value will show after a cold start only. Or the name is
+// another one.
 uint32_t Planner::note_row(const Carried& instance, const DiffOp& op) {
-  return share("i" + instance.key + ":" + std::to_string(op.row), op.leaves, [&] {
+  const std::string renamed = rename_note(instance, op);
+  const bool stays = !initial_equal(instance, op);
+  const std::string key = (stays ? "i" : "I") + instance.key + ":" + std::to_string(op.row);
+  return share(key, op.leaves, [&] {
     FateRow row = instance.diff->rows[op.row];
     row.fate = Fate::kKept;
     row.path = join_path(new_.instance_path(instance.new_id), row.path);
-    row.reason = "initial value changed, the live value stays";
+    row.reason = renamed;
+    if (stays && !renamed.empty()) row.reason += "; ";
+    if (stays) row.reason += "initial value changed, the live value stays";
     return row;
   });
 }
 
 // An instance whose area moved has one row for all that moved with it.
 uint32_t Planner::moved_row(const Carried& instance, const DiffOp& op) {
-  std::string part = instance.moved() ? "" : std::to_string(op.row);
+  const std::string renamed = rename_note(instance, op);
+  const bool alone = !instance.moved() || !renamed.empty();
+  std::string part = alone ? std::to_string(op.row) : "";
   return share("m" + instance.key + ":" + part, op.leaves, [&] {
     FateRow row;
     row.fate = Fate::kMoved;
     row.path = new_.instance_path(instance.new_id);
-    if (!instance.moved()) {
+    if (alone) {
       const FateRow& member = instance.diff->rows[op.row];
       row.path = join_path(row.path, member.path);
       row.old_type = member.old_type;
       row.new_type = member.new_type;
-      row.reason = "moved inside its area";
+      row.reason = renamed.empty() ? "" : renamed + ", ";
+      row.reason += instance.moved() ? "area moved" : "moved inside its area";
       return row;
     }
     row.old_type = old_.types.text(old_.instances[instance.old_id].type);
@@ -80,6 +110,17 @@ uint32_t Planner::moved_row(const Carried& instance, const DiffOp& op) {
     if (row.path.empty()) row.path = "global variables";
     return row;
   });
+}
+
+// What TypeDiff::hints says of a new instance in one that lives on.
+std::string Planner::rename_hint(uint32_t new_id) {
+  const ir::Instance& instance = new_.instances[new_id];
+  const uint32_t twin = match_.old_of_new[instance.parent];
+  if (twin == kNoInstance || new_.types[instance.type].kind == ir::Kind::kProgram) return {};
+  const TypeDiff& diff =
+      differ_.area(old_.instances[twin].type, new_.instances[instance.parent].type);
+  const auto hint = diff.hints.find(ir::fold_name(base_name(instance.name)));
+  return hint == diff.hints.end() ? std::string() : hint->second;
 }
 
 // Instances inside a new instance are counted with it; equal ones share a row.
@@ -99,7 +140,7 @@ uint32_t Planner::added_row(uint32_t new_id, uint64_t leaves) {
     row.fate = Fate::kInitialised;
     row.path = new_.instance_path(new_id);
     row.new_type = new_.types.text(instance.type);
-    row.reason = "new";
+    row.reason = "new" + rename_hint(new_id);
     if (replaced != kNoInstance) {
       row.old_type = old_.types.text(old_.instances[replaced].type);
       row.reason = "another function block type";

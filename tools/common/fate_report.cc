@@ -51,7 +51,7 @@ std::string value_change(const FateRow& row, const LiveValues& live) {
 std::string row_text(const FateRow& row, const LiveValues& live) {
   std::string text = online_change::fate_name(row.fate);
   text.resize(12, ' ');
-  if (row.count != 1) text += "x" + std::to_string(row.count);
+  if (row.count > 1) text += "x" + std::to_string(row.count);
   text.resize(std::max<size_t>(text.size() + 1, 19), ' ');
   text += row.path;
   if (std::string type = type_change(row); !type.empty()) text += " : " + type;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "ir/bytecode/renames.h"
+
 namespace vm {
 namespace {
 
@@ -57,6 +59,32 @@ base::Bytes carry_over(const ir::Image& from, const Force& force, const ir::Imag
   base::Result<base::Bytes> value = ir::parse_value(to, symbol.type, text);
   return value.ok() ? *value : base::Bytes{};
 }
+
+// Paths of one version's variables in the other one, whichever of them renames (case 47).
+class RenamedPaths {
+ public:
+  RenamedPaths(const ir::Image& from, const ir::Image& to)
+      : from_(from), to_(to), there_(from, to), back_(to, from) {}
+
+  std::string find(const Force& force) const {
+    if (!there_.renamed() && !back_.renamed()) return force.path;
+    const std::string before = ir::path_of(from_, force.symbol);
+    std::string after;
+    if (there_.renamed()) {
+      after = ir::path_of(there_.image(), force.symbol);
+    } else {
+      base::Result<ir::Symbol> symbol = ir::find_symbol(back_.image(), before);
+      if (symbol.ok()) after = ir::path_of(to_, *symbol);
+    }
+    return before == after ? force.path : after;
+  }
+
+ private:
+  const ir::Image& from_;
+  const ir::Image& to_;
+  ir::OldUnderNewNames there_;
+  ir::OldUnderNewNames back_;
+};
 
 }  // namespace
 
@@ -126,7 +154,11 @@ int64_t TaskTables::next_cycle_ns(int64_t cycle_start_ns) const {
 void TaskTables::adopt_forces(const ir::Image& from, const std::vector<Force>& rows) {
   const ir::Image& to = version.image();
   forces.clear();
-  for (const Force& force : rows) {
+  if (rows.empty()) return;
+  const RenamedPaths paths(from, to);
+  for (const Force& row : rows) {
+    Force force = row;
+    force.path = paths.find(row);
     base::Result<ir::Symbol> symbol = ir::find_symbol(to, force.path);
     if (!symbol.ok() || symbol->constant) continue;
     base::Bytes value = carry_over(from, force, to, *symbol);

@@ -34,7 +34,7 @@ std::string count_text(const online_change::FateCounts& counts) {
 // "Main.x: converted INT -> DINT (retyped)"
 std::string fate_text(const online_change::FateRow& row) {
   std::string text = row.path + ": " + online_change::fate_name(row.fate);
-  if (row.count != 1) text += " x" + std::to_string(row.count);
+  if (row.count > 1) text += " x" + std::to_string(row.count);
   if (row.old_type.empty() || row.new_type.empty() || row.old_type == row.new_type) {
     text += " " + (row.new_type.empty() ? row.old_type : row.new_type);
   } else {

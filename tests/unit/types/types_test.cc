@@ -58,7 +58,8 @@ TEST(TypeTable, SpellsTypesOut) {
   colour.literals = {{"Red", 0}, {"Green", 5}};
   EXPECT_EQ(types.text(types.declare(colour)), "INT (Red := 0, Green := 5)");
   motor.name.clear();
-  motor.members.push_back({.name = "speed", .type = integer, .init = {}, .address = {}});
+  motor.members.push_back(
+      {.name = "speed", .type = integer, .init = {}, .address = {}, .old_name = {}});
   EXPECT_EQ(types.text(types.declare(motor)), "STRUCT speed : INT; END_STRUCT");
 }
 
@@ -67,7 +68,7 @@ TEST(TypeTable, TextOfAnEndlessTypeEnds) {
   Type loop;
   loop.kind = Kind::kStruct;
   const TypeId id = types.declare(loop);
-  const Member member{.name = "next", .type = id, .init = {}, .address = {}};
+  const Member member{.name = "next", .type = id, .init = {}, .address = {}, .old_name = {}};
   types.edit(id).members.assign(2, member);
   EXPECT_LT(types.text(id).size(), 200'000u);
 }
@@ -89,7 +90,8 @@ TEST(TypeTable, FindsMembersWithoutCase) {
   TypeTable types;
   Type fb;
   fb.kind = Kind::kFunctionBlock;
-  fb.members.push_back({.name = "Start", .type = TypeId(0), .init = {}, .address = {}});
+  fb.members.push_back(
+      {.name = "Start", .type = TypeId(0), .init = {}, .address = {}, .old_name = {}});
   const TypeId id = types.declare(fb);
   EXPECT_EQ(types.find_member(id, "START"), 0);
   EXPECT_EQ(types.find_member(id, "Stop"), -1);

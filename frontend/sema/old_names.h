@@ -1,0 +1,31 @@
+// Old names of declarations, from the rules in front of them (rename_rules.h), on their way into
+// the program.
+#pragma once
+
+#include <string>
+
+#include "frontend/sema/model.h"
+
+namespace frontend {
+
+class Sema;
+
+class OldNames {
+ public:
+  explicit OldNames(Sema& sema) : sema_(sema) {}
+
+  ir::OldNameId add(std::string name);  // invalid for ""
+  ir::OldNameId of_rule(Range32 attributes);
+  // By the variable's own rule or that of the POU that it is part of.
+  ir::OldNameId of(const Variable& variable);
+  // Behind the resolution of all types. Only those with a name of their own can be renamed.
+  void rename_types();
+
+ private:
+  std::string old_list(const PouInfo& info) const;
+  std::string old_member(const Variable& variable) const;
+
+  Sema& sema_;
+};
+
+}  // namespace frontend

@@ -1,0 +1,210 @@
+#include "frontend/sema/rename_rules.h"
+
+#include <algorithm>
+#include <set>
+#include <unordered_map>
+
+#include "frontend/lex/characters.h"
+#include "frontend/lex/pragma.h"
+#include "frontend/sema/names.h"
+#include "ir/types/types.h"
+
+namespace frontend {
+namespace {
+
+using Code = base::DiagnosticCode;
+
+std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
+
+// Names with dots between them.
+bool is_path(std::string_view text) {
+  bool name = false;
+  for (char c : text) {
+    if (c != '.' && !is_name_part(c)) return false;
+    if (c == '.' && !name) return false;
+    name = c != '.';
+  }
+  return name;
+}
+
+// What of a POU's variables goes on from call to call.
+bool is_kept(PouKind pou, VarSection section) {
+  const bool frame = pou == PouKind::kFunction || pou >= PouKind::kMethod;
+  switch (section) {
+    case VarSection::kStatic:
+    case VarSection::kInstance:
+      return true;
+    case VarSection::kLocal:
+    case VarSection::kInput:
+    case VarSection::kOutput:
+      return !frame;
+    default:
+      return false;
+  }
+}
+
+class Checker {
+ public:
+  Checker(const Tree& tree, base::Diagnostics& diagnostics)
+      : tree_(tree), diagnostics_(diagnostics) {}
+
+  void run() {
+    const bool any = std::any_of(tree_.attributes.begin(), tree_.attributes.end(), is_rule);
+    if (!any) return;
+    check_file_level();
+    for (const PouDecl& pou : tree_.pous) check_pou(pou);
+    for (const ConfigDecl& config : tree_.configs) check_configuration(config);
+    for (const Attribute& attribute : tree_.attributes) {
+      if (!is_rule(attribute) || seen_.contains(attribute.name.span.begin.offset)) continue;
+      report(attribute, "this rule stands before nothing that can be renamed",
+             "put it in front of a variable, member, literal, type, POU, step or program instance");
+    }
+  }
+
+ private:
+  using Scope = NameMap<std::string_view>;  // old name -> who has it now
+
+  static bool is_rule(const Attribute& attribute) {
+    return ir::same_name(attribute.name.text, kRenamedAttribute);
+  }
+
+  void report(const Attribute& rule, std::string text, std::string fix) {
+    diagnostics_.add(Code::kBadRename, rule.name.span, std::move(text), std::move(fix));
+  }
+
+  void check_file_level() {
+    Scope types;
+    for (const TypeDecl& decl : tree_.types) {
+      check_rule(decl.attributes, decl.name, types, true);
+      if (decl.spec.valid()) check_spec(decl.spec);
+    }
+    for (const PouDecl& pou : tree_.pous) check_rule(pou.attributes, pou.name, types, true);
+    Scope globals;
+    for (const VarBlock& block : tree_.globals) check_block(block, globals);
+  }
+
+  void check_pou(const PouDecl& pou) {
+    Scope variables;
+    for (const VarBlock& block : pou.blocks) {
+      for (const VarDecl& decl : block.vars) check_variable(pou, block, decl, variables);
+    }
+    Scope members;
+    for (const PouDecl& member : pou.members) {
+      check_rule(member.attributes, member.name, members, false);
+      check_pou(member);
+    }
+  }
+
+  void check_variable(const PouDecl& pou, const VarBlock& block, const VarDecl& decl,
+                      Scope& variables) {
+    if (decl.spec.valid()) check_spec(decl.spec);
+    if (is_kept(pou.kind, block.section)) return check_declaration(decl, variables, false);
+    const Attribute* rule = tree_.find_attribute(decl.attributes, kRenamedAttribute);
+    if (rule == nullptr || decl.names.empty()) return;
+    seen_.insert(rule->name.span.begin.offset);
+    report(*rule, quoted(decl.names[0].text) + " keeps no value that a rule could carry over",
+           "take the rule away");
+  }
+
+  void check_block(const VarBlock& block, Scope& scope) {
+    for (const VarDecl& decl : block.vars) {
+      if (decl.spec.valid()) check_spec(decl.spec);
+      if (block.section == VarSection::kGlobal) check_declaration(decl, scope, true);
+    }
+  }
+
+  void check_configuration(const ConfigDecl& config) {
+    Scope globals;
+    for (const VarBlock& block : config.globals) check_block(block, globals);
+    for (const ResourceDecl& resource : config.resources) {
+      for (const VarBlock& block : resource.globals) check_block(block, globals);
+      Scope programs;
+      for (const ProgramDecl& program : resource.programs) {
+        check_rule(program.attributes, program.name, programs, false);
+      }
+    }
+  }
+
+  // Structures and enumerations, also those inside others.
+  void check_spec(SpecId id) {
+    const Spec& spec = tree_[id];
+    if (spec.kind == SpecKind::kArray && spec.element.valid()) return check_spec(spec.element);
+    Scope members;
+    for (const VarDecl& field : spec.fields) {
+      if (field.spec.valid()) check_spec(field.spec);
+      check_field(field, members);
+    }
+    Scope literals;
+    for (const Enumerator& literal : spec.enumerators) {
+      check_rule(literal.attributes, literal.name, literals, false);
+    }
+  }
+
+  void check_field(const VarDecl& field, Scope& members) {
+    const Attribute* rule = tree_.find_attribute(field.attributes, kRenamedAttribute);
+    const Spec* spec = field.spec.valid() ? &tree_[field.spec] : nullptr;
+    const bool bit =
+        spec != nullptr && spec->kind == SpecKind::kNamed && ir::same_name(spec->name.text, "BIT");
+    if (rule == nullptr || !bit) return check_declaration(field, members, false);
+    seen_.insert(rule->name.span.begin.offset);
+    report(*rule, "BIT members share a byte; one of them cannot be renamed alone",
+           "keep the name, or let the byte begin anew");
+  }
+
+  void check_declaration(const VarDecl& decl, Scope& scope, bool paths) {
+    const Attribute* rule = tree_.find_attribute(decl.attributes, kRenamedAttribute);
+    if (rule == nullptr || decl.names.empty()) return;
+    if (decl.names.size() == 1) return check_rule(decl.attributes, decl.names[0], scope, paths);
+    seen_.insert(rule->name.span.begin.offset);
+    report(*rule, "this declares several variables, and the rule gives one old name",
+           "declare the renamed variable by itself");
+  }
+
+  void check_rule(Range32 attributes, const Name& name, Scope& scope, bool paths) {
+    const Attribute* rule = tree_.find_attribute(attributes, kRenamedAttribute);
+    if (rule == nullptr || name.empty()) return;
+    seen_.insert(rule->name.span.begin.offset);
+    if (!rule->has_value || !is_path(rule->value)) {
+      return report(*rule, "this rule cannot be read", "write {renamed from := 'OldName'}");
+    }
+    if (ir::same_name(rule->value, name.text)) {
+      return report(*rule, quoted(name.text) + " is said to be renamed from itself",
+                    "give the name that it had, or take the rule away");
+    }
+    if (!paths && rule->value.find('.') != std::string_view::npos) {
+      return report(*rule, quoted(rule->value) + " is a variable of another place",
+                    "a rule names a variable of the same place; a migration can carry over others");
+    }
+    const auto [other, first] = scope.emplace(rule->value, name.text);
+    if (first) return;
+    report(*rule,
+           quoted(other->second) + " and " + quoted(name.text) + " are both renamed from " +
+               quoted(rule->value),
+           "keep the rule at the one that goes on");
+  }
+
+  const Tree& tree_;
+  base::Diagnostics& diagnostics_;
+  std::set<uint32_t> seen_;  // rules by their place
+};
+
+}  // namespace
+
+void check_renames(const Tree& tree, base::Diagnostics& diagnostics) {
+  Checker(tree, diagnostics).run();
+}
+
+std::string_view renamed_from(const Tree& tree, Range32 attributes) {
+  const Attribute* rule = tree.find_attribute(attributes, kRenamedAttribute);
+  return rule == nullptr || !rule->has_value ? std::string_view() : rule->value;
+}
+
+std::string whole_old_name(std::string_view name, std::string_view old_name) {
+  const size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos || old_name.find('.') != std::string_view::npos) {
+    return std::string(old_name);
+  }
+  return std::string(name.substr(0, dot + 1)) + std::string(old_name);
+}
+
+}  // namespace frontend

@@ -1,0 +1,21 @@
+// `{renamed from := 'old'}` in front of a declaration: the running program's `old` is meant, and
+// its value goes on (X2). Here is checked what can be told from the sources alone; which rules
+// apply depends on what runs (ir/bytecode/renames.h).
+#pragma once
+
+#include "base/diagnostics.h"
+#include "frontend/parse/tree.h"
+
+namespace frontend {
+
+// Charts are declared already.
+void check_renames(const Tree& tree, base::Diagnostics& diagnostics);
+
+// The old name that a checked rule gives; "" when there is none.
+std::string_view renamed_from(const Tree& tree, Range32 attributes);
+
+// The old name of what is called `name` now, with everything in front of its last dot; an old name
+// with dots is a whole one.
+std::string whole_old_name(std::string_view name, std::string_view old_name);
+
+}  // namespace frontend

@@ -1,0 +1,392 @@
+#include "ir/bytecode/renames.h"
+
+#include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "base/limits.h"
+#include "ir/types/listed_name.h"
+#include "ir/types/member_finder.h"
+
+namespace ir {
+namespace {
+
+constexpr uint32_t kNone = 0xffffffffu;
+
+using Numbers = std::unordered_map<std::string, uint32_t>;  // by folded name
+
+// The rules of one scope (the types, a type's members, ...), and which of them apply.
+class Rules {
+ public:
+  void add(std::string_view name, std::string_view from, uint32_t number) {
+    rules_.push_back({fold_name(name), fold_name(from), number, true});
+  }
+  bool empty() const { return rules_.empty(); }
+
+  // `old`: the scope's names in the running version; `carried`: the rule that one of them has
+  // there, folded. Calls apply(old number, new number).
+  template <class Carried, class Apply>
+  void resolve(const Numbers& old, Carried carried, Apply apply) {
+    old_ = &old;
+    for (uint32_t i = 0; i < rules_.size(); ++i) {
+      const Rule& rule = rules_[i];
+      const uint32_t there = find(old, rule.name);
+      const bool known = find(old, rule.from) != kNone && rule.from != rule.name;
+      const bool done = there != kNone && carried(there) == rule.from;
+      by_name_.emplace(rule.name, i);
+      if (!known || done || !by_source_.emplace(rule.from, i).second) rules_[i].applies = false;
+    }
+    for (uint32_t i = 0; i < rules_.size(); ++i) {
+      if (rules_[i].applies && !is_vacated(rules_[i].name)) drop(i);
+    }
+    for (const Rule& rule : rules_) {
+      if (rule.applies) apply(find(old, rule.from), rule.number);
+    }
+  }
+
+ private:
+  struct Rule {
+    std::string name;
+    std::string from;
+    uint32_t number = 0;
+    bool applies = true;
+  };
+
+  static uint32_t find(const Numbers& numbers, const std::string& name) {
+    const auto found = numbers.find(name);
+    return found == numbers.end() ? kNone : found->second;
+  }
+
+  // Is the name free in the running version, or made free by another rule?
+  bool is_vacated(const std::string& name) const {
+    if (find(*old_, name) == kNone) return true;
+    const uint32_t taker = find(by_source_, name);
+    return taker != kNone && rules_[taker].applies;
+  }
+
+  // A rule that does not apply frees no name.
+  void drop(uint32_t rule) {
+    while (rule != kNone && rules_[rule].applies) {
+      rules_[rule].applies = false;
+      rule = find(by_name_, rules_[rule].from);
+    }
+  }
+
+  std::vector<Rule> rules_;
+  Numbers by_name_;
+  Numbers by_source_;
+  const Numbers* old_ = nullptr;
+};
+
+std::string type_key(const Type& type) {
+  return std::to_string(static_cast<uint32_t>(type.kind)) + ":" + fold_name(type.name);
+}
+
+bool has_names(Kind kind) {
+  return is_structure(kind) || kind == Kind::kEnum || kind == Kind::kFunctionBlock ||
+         kind == Kind::kProgram || kind == Kind::kInterface;
+}
+
+struct NewProgram {
+  std::string_view name;
+  OldNameId old_name;
+};
+
+class Renamer {
+ public:
+  Renamer(const Image& old_image, const TypeTable& types, TypeId globals,
+          std::vector<NewProgram> programs)
+      : old_(old_image),
+        types_(types),
+        globals_(globals),
+        programs_(std::move(programs)),
+        paired_(old_image.types.size(), false) {}
+
+  std::optional<Image> run() {
+    find_types();
+    find_programs();
+    for (const auto& [old, next] : pairs_of_types()) pair(old, next, 0);
+    if (type_names_.empty() && member_names_.empty() && literal_names_.empty() &&
+        program_names_.empty()) {
+      return std::nullopt;
+    }
+    out_ = old_;
+    forget_rules();
+    rename();
+    return std::move(out_);
+  }
+
+ private:
+  struct NewName {
+    TypeId type;          // of the running version, as all numbers here
+    uint32_t number = 0;  // member, literal, instance
+    std::string name;
+  };
+
+  std::string rule_of(OldNameId id) const {
+    const bool known = id.valid() && old_.types.knows(id);
+    return known ? fold_name(old_.types.old_name(id)) : std::string();
+  }
+
+  void find_types() {
+    for (uint32_t i = kElementaryCount; i < old_.types.size(); ++i) {
+      const Type& type = old_.types[TypeId(i)];
+      if (has_names(type.kind) && !type.name.empty()) old_types_.emplace(type_key(type), i);
+    }
+    std::unordered_map<uint32_t, std::pair<Rules, Numbers>> kinds;
+    for (uint32_t i = kElementaryCount; i < types_.size(); ++i) {
+      const Type& type = types_[TypeId(i)];
+      if (!type.old_name.valid() || !has_names(type.kind)) continue;
+      kinds[static_cast<uint32_t>(type.kind)].first.add(type.name, types_.old_name(type.old_name),
+                                                        i);
+    }
+    for (auto& [kind, scope] : kinds) {
+      for (const auto& [key, number] : old_types_) {
+        const Type& type = old_.types[TypeId(number)];
+        if (static_cast<uint32_t>(type.kind) == kind) {
+          scope.second.emplace(fold_name(type.name), number);
+        }
+      }
+      scope.first.resolve(
+          scope.second, [&](uint32_t i) { return rule_of(old_.types[TypeId(i)].old_name); },
+          [&](uint32_t from, uint32_t to) {
+            renamed_types_[to] = from;
+            is_source_.insert(from);
+            type_names_.push_back({TypeId(from), 0, types_[TypeId(to)].name});
+          });
+    }
+  }
+
+  std::vector<std::pair<TypeId, TypeId>> pairs_of_types() const {
+    std::vector<std::pair<TypeId, TypeId>> out{{old_.globals, globals_}};
+    for (uint32_t i = kElementaryCount; i < types_.size(); ++i) {
+      const Type& type = types_[TypeId(i)];
+      if (!has_names(type.kind) || type.name.empty()) continue;
+      if (const auto renamed = renamed_types_.find(i); renamed != renamed_types_.end()) {
+        out.emplace_back(renamed->second, i);
+        continue;
+      }
+      const auto found = old_types_.find(type_key(type));
+      if (found == old_types_.end() || is_source_.contains(found->second)) continue;
+      out.emplace_back(found->second, i);
+    }
+    return out;
+  }
+
+  void find_programs() {
+    Rules rules;
+    for (uint32_t i = 0; i < programs_.size(); ++i) {
+      const OldNameId old = programs_[i].old_name;
+      if (old.valid()) rules.add(programs_[i].name, types_.old_name(old), i);
+    }
+    if (rules.empty()) return;
+    Numbers ids;
+    for (uint32_t id : old_.program_ids()) ids.emplace(fold_name(old_.instances[id].name), id);
+    rules.resolve(
+        ids, [&](uint32_t id) { return rule_of(old_.instances[id].old_name); },
+        [&](uint32_t from, uint32_t to) {
+          program_names_.push_back({{}, from, std::string(programs_[to].name)});
+        });
+  }
+
+  // The same type in both versions.
+  void pair(TypeId old, TypeId next, uint32_t depth) {
+    if (paired_[old.index] || depth > base::kMaxNesting) return;
+    paired_[old.index] = true;
+    if (types_[next].kind == Kind::kEnum) return pair_literals(old, next);
+    if (!types_.has_members(next)) return;
+    const std::vector<Member>& members = types_[next].members;
+    Rules rules;
+    for (uint32_t i = 0; i < members.size(); ++i) {
+      const OldNameId rule = members[i].old_name;
+      if (rule.valid()) rules.add(members[i].name, types_.old_name(rule), i);
+    }
+    std::unordered_map<uint32_t, uint32_t> sources;  // new member -> old one
+    if (!rules.empty()) {
+      const std::vector<Member>& before = old_.types[old].members;
+      Numbers numbers;
+      for (uint32_t i = 0; i < before.size(); ++i) numbers.emplace(fold_name(before[i].name), i);
+      rules.resolve(
+          numbers, [&](uint32_t i) { return rule_of(before[i].old_name); },
+          [&](uint32_t from, uint32_t to) {
+            sources[to] = from;
+            member_names_.push_back({old, from, members[to].name});
+          });
+    }
+    pair_members(old, next, sources, depth);
+  }
+
+  // What has no name of its own is known by the variable that it is the type of.
+  void pair_members(TypeId old, TypeId next, const std::unordered_map<uint32_t, uint32_t>& sources,
+                    uint32_t depth) {
+    const std::vector<Member>& members = types_[next].members;
+    MemberFinder finder(old_.types, old);
+    std::unordered_set<size_t> renamed;
+    for (const auto& [to, from] : sources) renamed.insert(from);
+    for (uint32_t i = 0; i < members.size(); ++i) {
+      const TypeId inner = innermost(types_, members[i].type);
+      if (!has_names(types_[inner].kind) || !types_[inner].name.empty()) continue;
+      const auto source = sources.find(i);
+      const std::optional<size_t> twin =
+          source != sources.end() ? source->second : finder.find(members[i].name);
+      if (!twin || (source == sources.end() && renamed.contains(*twin))) continue;
+      const TypeId before = innermost(old_.types, old_.types[old].members[*twin].type);
+      const bool same = old_.types[before].kind == types_[inner].kind;
+      if (same && old_.types[before].name.empty()) pair(before, inner, depth + 1);
+    }
+  }
+
+  static TypeId innermost(const TypeTable& types, TypeId id) {
+    for (uint32_t depth = 0; depth < base::kMaxNesting; ++depth) {
+      if (types[id].kind != Kind::kArray) break;
+      id = types[id].base;
+    }
+    return id;
+  }
+
+  void pair_literals(TypeId old, TypeId next) {
+    Rules rules;
+    const std::vector<EnumLiteral>& literals = types_[next].literals;
+    for (uint32_t i = 0; i < literals.size(); ++i) {
+      const OldNameId rule = literals[i].old_name;
+      if (rule.valid()) rules.add(literals[i].name, types_.old_name(rule), i);
+    }
+    if (rules.empty()) return;
+    const std::vector<EnumLiteral>& before = old_.types[old].literals;
+    Numbers numbers;
+    for (uint32_t i = 0; i < before.size(); ++i) numbers.emplace(fold_name(before[i].name), i);
+    rules.resolve(
+        numbers, [&](uint32_t i) { return rule_of(before[i].old_name); },
+        [&](uint32_t from, uint32_t to) {
+          literal_names_.push_back({old, from, literals[to].name});
+        });
+  }
+
+  void forget_rules() {
+    out_.types.set_old_names({});
+    for (uint32_t i = 0; i < out_.types.size(); ++i) {
+      Type& type = out_.types.edit(TypeId(i));
+      type.old_name = {};
+      for (Member& member : type.members) member.old_name = {};
+      for (EnumLiteral& literal : type.literals) literal.old_name = {};
+    }
+    for (Instance& row : out_.instances) row.old_name = {};
+  }
+
+  void rename_to(std::string& name, OldNameId& old_name, const std::string& next) {
+    old_name = out_.types.add_old_name(std::move(name));
+    name = next;
+  }
+
+  void rename() {
+    for (const NewName& row : type_names_) {
+      Type& type = out_.types.edit(row.type);
+      rename_to(type.name, type.old_name, row.name);
+    }
+    for (const NewName& row : member_names_) {
+      Member& member = out_.types.edit(row.type).members[row.number];
+      rename_to(member.name, member.old_name, row.name);
+    }
+    for (const NewName& row : literal_names_) {
+      EnumLiteral& literal = out_.types.edit(row.type).literals[row.number];
+      rename_to(literal.name, literal.old_name, row.name);
+    }
+    for (const NewName& row : program_names_) {
+      Instance& program = out_.instances[row.number];
+      rename_to(program.name, program.old_name, row.name);
+    }
+    rename_pous();
+    if (!member_names_.empty()) rename_instances();
+  }
+
+  // `Motor`, `Motor.Start`: code belongs to the type that has its name.
+  void rename_pous() {
+    for (LinkedPou& pou : out_.pous) {
+      if (!out_.types.contains(pou.self) || !out_.types[pou.self].old_name.valid()) continue;
+      const std::string& before = out_.types.old_name(out_.types[pou.self].old_name);
+      if (!same_name(pou.name.substr(0, before.size()), before)) continue;
+      pou.name = out_.types[pou.self].name + pou.name.substr(before.size());
+    }
+  }
+
+  // "s.fb", "row[3].fb": by the variables on the way from the parent.
+  void rename_instances() {
+    for (uint32_t id = 1; id < out_.instances.size(); ++id) {
+      Instance& row = out_.instances[id];
+      const bool program = old_.types[row.type].kind == Kind::kProgram;
+      if (!row.live || program || row.parent >= old_.instances.size()) continue;
+      std::string name = new_path(old_.instances[row.parent].type, row.name);
+      if (name != row.name) rename_to(row.name, row.old_name, name);
+    }
+  }
+
+  std::string new_path(TypeId type, std::string_view path) {
+    std::string out;
+    for (size_t at = 0; at < path.size();) {
+      std::string_view name = path.substr(at, path.find_first_of(".[", at) - at);
+      uint32_t number = member_number(type, name);
+      if (number == kNone && type == old_.globals) {
+        name = listed_name(old_.types, type, path);
+        number = member_number(type, name);
+      }
+      if (number == kNone) return std::string(path);
+      out += out_.types[type].members[number].name;
+      type = old_.types[type].members[number].type;
+      at += name.size();
+      if (at < path.size() && path[at] == '[') {
+        const size_t end = std::min(path.find(']', at), path.size() - 1) + 1;
+        out += path.substr(at, end - at);
+        at = end;
+        type = old_.types[type].base;
+      }
+      if (at < path.size() && path[at] == '.') out += path[at++];
+      if (at < path.size() && !old_.types.has_members(type)) return std::string(path);
+    }
+    return out;
+  }
+
+  uint32_t member_number(TypeId type, std::string_view name) {
+    Numbers& numbers = members_of_[type.index];
+    if (numbers.empty()) {
+      const std::vector<Member>& members = old_.types[type].members;
+      for (uint32_t i = 0; i < members.size(); ++i) numbers.emplace(fold_name(members[i].name), i);
+    }
+    const auto found = numbers.find(fold_name(name));
+    return found == numbers.end() ? kNone : found->second;
+  }
+
+  const Image& old_;
+  const TypeTable& types_;
+  TypeId globals_;
+  std::vector<NewProgram> programs_;
+  std::vector<bool> paired_;                              // old types
+  Numbers old_types_;                                     // by kind and name
+  std::unordered_map<uint32_t, uint32_t> renamed_types_;  // new -> old
+  std::unordered_set<uint32_t> is_source_;
+  std::vector<NewName> type_names_;
+  std::vector<NewName> member_names_;
+  std::vector<NewName> literal_names_;
+  std::vector<NewName> program_names_;
+  std::unordered_map<uint32_t, Numbers> members_of_;
+  Image out_;
+};
+
+}  // namespace
+
+std::optional<Image> under_new_names(const Image& old_image, const Program& next) {
+  if (next.types.old_names().empty()) return std::nullopt;
+  std::vector<NewProgram> programs;
+  for (const ProgramInstance& row : next.instances) programs.push_back({row.name, row.old_name});
+  return Renamer(old_image, next.types, next.globals, std::move(programs)).run();
+}
+
+std::optional<Image> under_new_names(const Image& old_image, const Image& next) {
+  if (next.types.old_names().empty()) return std::nullopt;
+  std::vector<NewProgram> programs;
+  for (uint32_t id : next.program_ids()) {
+    programs.push_back({next.instances[id].name, next.instances[id].old_name});
+  }
+  return Renamer(old_image, next.types, next.globals, std::move(programs)).run();
+}
+
+}  // namespace ir

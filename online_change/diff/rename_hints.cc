@@ -1,0 +1,69 @@
+// Case 14: a variable that goes and one of the same type that comes may be one variable with a new
+// name. The report says how to keep its value.
+#include <map>
+#include <unordered_set>
+
+#include "online_change/diff/type_diff.h"
+
+namespace online_change {
+namespace {
+
+using ir::Member;
+
+struct Group {  // of one type
+  std::vector<const Member*> gone;
+  std::vector<const Member*> came;
+};
+
+// Has it a name that a source can write?
+bool is_written(const Member& member) {
+  return ir::is_listed(member) && member.name.find_first_of("#-") == std::string::npos;
+}
+
+// Written variables of `type` that `other` does not have.
+std::vector<const Member*> only_here(const ir::Type& type, const ir::Type& other) {
+  std::unordered_set<std::string> names;
+  for (const Member& member : other.members) names.insert(ir::fold_name(member.name));
+  std::vector<const Member*> out;
+  for (const Member& member : type.members) {
+    if (is_written(member) && !names.contains(ir::fold_name(member.name))) out.push_back(&member);
+  }
+  return out;
+}
+
+// `List.x` is x for a variable of the same list.
+std::string_view seen_from(const std::string& name, const std::string& other) {
+  const size_t list = name.rfind('.');
+  const bool same = list != std::string::npos && list < other.size() &&
+                    ir::same_name(name.substr(0, list + 1), other.substr(0, list + 1));
+  return std::string_view(name).substr(same ? list + 1 : 0);
+}
+
+}  // namespace
+
+void TypeDiffer::propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const {
+  std::map<std::string, Group> groups;
+  for (const Member* member : only_here(old_.types[old_type], new_.types[new_type])) {
+    groups[ir::fold_name(old_.types.text(member->type))].gone.push_back(member);
+  }
+  if (groups.empty()) return;
+  for (const Member* member : only_here(new_.types[new_type], old_.types[old_type])) {
+    groups[ir::fold_name(new_.types.text(member->type))].came.push_back(member);
+  }
+  for (const auto& [type, group] : groups) {
+    if (group.gone.size() != group.came.size()) continue;
+    for (size_t i = 0; i < group.gone.size(); ++i) {
+      const std::string old_name(seen_from(group.gone[i]->name, group.came[i]->name));
+      diff.hints[ir::fold_name(group.came[i]->name)] = "; if it is `" + old_name +
+                                                       "` renamed, write {renamed from := '" +
+                                                       old_name + "'} before it";
+    }
+  }
+  for (FateRow& row : diff.rows) {
+    const bool came = row.fate == Fate::kInitialised && row.old_type.empty() && !row.path.empty();
+    const auto hint = came ? diff.hints.find(ir::fold_name(row.path.substr(1))) : diff.hints.end();
+    if (hint != diff.hints.end()) row.reason += hint->second;
+  }
+}
+
+}  // namespace online_change
