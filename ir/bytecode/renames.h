@@ -2,7 +2,7 @@
 // running version. The result is the running version's image with the names that the new one has
 // for the same things; numbers, layouts, instances and code stay. Whatever compares two versions
 // goes by names, so linker, differ, planner and checks see a renamed variable as one that kept
-// its name when they are given this image (docs/adr/0015-renames.md).
+// its name when they are given this image (docs/adr/0012-renames.md).
 //
 // A rule applies when the running version has the old name, and has the new one not at all or as
 // the old name of another rule that applies (a and b change places). It does not apply again where

@@ -145,7 +145,7 @@ Strategy Change::strategy() const { return pending_ ? pending_->strategy : Strat
 int64_t Change::predicted_pause_ns() const {
   if (!pending_ || pending_->in_place()) return plan().predicted_pause_ns;
   if (!pending_->area) return 0;
-  return predicted_standby_pause_ns(plan(), pending_->old_image.image(),
+  return predicted_standby_pause_ns(plan(), pending_->old(),
                                     pending_->new_image.image(), pending_->area->compared_bytes());
 }
 
