@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-
-#include "vm/runtime/descriptor.h"
 
 namespace vm {
 namespace {
@@ -20,22 +17,16 @@ base::Error failed(base::Refusal refusal, const std::string& path, int code) {
 bool allowed(char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; }
 
 // 0 or errno.
-int write_all(int fd, base::ByteSpan bytes) {
+int write_all(int fd, uint64_t offset, base::ByteSpan bytes) {
   while (!bytes.empty()) {
-    ssize_t n = ::write(fd, bytes.data(), bytes.size());
+    ssize_t n = ::pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return errno;
+    if (n == 0) return EIO;
+    offset += static_cast<uint64_t>(n);
     bytes = bytes.subspan(static_cast<size_t>(n));
   }
   return 0;
-}
-
-// A failed fsync is not tried again: what it lost is lost.
-int write_durably(const std::string& path, base::ByteSpan bytes) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
-  if (!file.valid()) return errno;
-  if (int code = write_all(file.get(), bytes); code != 0) return code;
-  return ::fsync(file.get()) == 0 ? 0 : errno;
 }
 
 int sync_directory(const std::string& path) {
@@ -44,39 +35,103 @@ int sync_directory(const std::string& path) {
   return ::fsync(directory.get()) == 0 ? 0 : errno;
 }
 
+constexpr int kFlags = O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW;
+
 }  // namespace
 
 base::Result<std::string> FileStorage::path(std::string_view name) const {
   if (name.empty() || !std::all_of(name.begin(), name.end(), allowed)) {
-    return base::Error{base::Refusal::kInternal, "record name `" + std::string(name) + "`"};
+    return base::Error{base::Refusal::kInternal, "file name `" + std::string(name) + "`"};
   }
   return directory_ + "/" + std::string(name);
 }
 
-base::Result<base::Bytes> FileStorage::read(std::string_view name) {
-  base::Result<std::string> file_path = path(name);
-  if (!file_path.ok()) return file_path.error();
-  Descriptor file(::open(file_path->c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+base::Result<FileStorage::File> FileStorage::take(const std::string& path, bool create,
+                                                  bool& created) const {
+  created = false;
+  Descriptor descriptor;
+  int code = ENOENT;
+  if (create) {
+    descriptor = Descriptor(::open(path.c_str(), O_RDWR | kFlags));
+    if (!descriptor.valid()) code = errno;
+    if (code == ENOENT && !descriptor.valid()) {
+      descriptor = Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | kFlags, 0600));
+      created = descriptor.valid();
+      if (!created) return failed(base::Refusal::kFileUnwritable, path, errno);
+    }
+  }
+  const bool writable = descriptor.valid();
+  if (!writable) descriptor = Descriptor(::open(path.c_str(), O_RDONLY | kFlags));
   struct stat info {};
-  if (!file.valid() || ::fstat(file.get(), &info) != 0) {
+  if (!descriptor.valid() || ::fstat(descriptor.get(), &info) != 0) {
     auto refusal = errno == ENOENT ? base::Refusal::kFileNotFound : base::Refusal::kFileUnreadable;
-    return failed(refusal, *file_path, errno);
+    return failed(refusal, path, errno);
   }
   if (!S_ISREG(info.st_mode)) {
-    return base::Error{base::Refusal::kFileUnreadable, *file_path + ": not a file"};
+    return base::Error{base::Refusal::kFileUnreadable, path + ": not a file"};
   }
-  auto size = static_cast<uint64_t>(info.st_size);
-  if (size > limit_) {
-    return base::Error{
-        base::Refusal::kFileUnreadable,
-        *file_path + ": " + std::to_string(size) + " bytes, more than " + std::to_string(limit_)};
+  return File{std::move(descriptor), static_cast<uint64_t>(info.st_size), writable};
+}
+
+// A name is durable only when its directory is.
+base::Status FileStorage::allocate(File& file, const std::string& path, uint64_t size,
+                                   bool created) const {
+  if (file.size < size) {
+    if (!file.writable) return failed(base::Refusal::kFileUnwritable, path, EROFS);
+    int code = ::posix_fallocate(file.descriptor.get(), 0, static_cast<off_t>(size));
+    if (code == 0 && ::fsync(file.descriptor.get()) != 0) code = errno;
+    if (code != 0) return failed(base::Refusal::kFileUnwritable, path, code);
+    file.size = size;
   }
-  base::Bytes bytes(size);
+  if (!created) return base::Ok{};
+  int code = sync_directory(directory_);
+  if (code != 0) return failed(base::Refusal::kFileUnwritable, directory_, code);
+  return base::Ok{};
+}
+
+base::Status FileStorage::open(std::string_view name, uint64_t size) {
+  base::Result<std::string> file_path = path(name);
+  if (!file_path.ok()) return file_path.error();
+  bool created = false;
+  base::Result<File> file = take(*file_path, true, created);
+  if (!file.ok()) return file.error();
+  base::Status allocated = allocate(*file, *file_path, size, created);
+  if (!allocated.ok()) {
+    if (created) ::unlink(file_path->c_str());
+    return allocated;
+  }
+  files_[std::string(name)] = std::move(*file);
+  return base::Ok{};
+}
+
+base::Result<const FileStorage::File*> FileStorage::readable(std::string_view name) {
+  auto found = files_.find(name);
+  if (found != files_.end()) return &found->second;
+  base::Result<std::string> file_path = path(name);
+  if (!file_path.ok()) return file_path.error();
+  bool created = false;
+  base::Result<File> file = take(*file_path, false, created);
+  if (!file.ok()) return file.error();
+  return &(files_[std::string(name)] = std::move(*file));
+}
+
+base::Result<uint64_t> FileStorage::size(std::string_view name) {
+  base::Result<const File*> file = readable(name);
+  if (!file.ok()) return file.error();
+  return (*file)->size;
+}
+
+base::Result<base::Bytes> FileStorage::read(std::string_view name, uint64_t offset, uint64_t size) {
+  base::Result<const File*> found = readable(name);
+  if (!found.ok()) return found.error();
+  const File& file = **found;
+  base::Bytes bytes(offset < file.size ? std::min(size, file.size - offset) : 0);
   size_t done = 0;
   while (done < bytes.size()) {
-    ssize_t n = ::read(file.get(), bytes.data() + done, bytes.size() - done);
+    ssize_t n = ::pread(file.descriptor.get(), bytes.data() + done, bytes.size() - done,
+                        static_cast<off_t>(offset + done));
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return failed(base::Refusal::kFileUnreadable, *file_path, errno);
+    if (n < 0) return failed(base::Refusal::kFileUnreadable, *path(name), errno);
     if (n == 0) break;  // became shorter meanwhile
     done += static_cast<size_t>(n);
   }
@@ -84,24 +139,26 @@ base::Result<base::Bytes> FileStorage::read(std::string_view name) {
   return bytes;
 }
 
-base::Status FileStorage::write(std::string_view name, base::ByteSpan bytes) {
-  base::Result<std::string> file_path = path(name);
-  if (!file_path.ok()) return file_path.error();
-  std::string temporary = *file_path + ".tmp";
-  int code = write_durably(temporary, bytes);
-  if (code == 0 && std::rename(temporary.c_str(), file_path->c_str()) != 0) code = errno;
-  if (code != 0) {
-    ::unlink(temporary.c_str());
-    return failed(base::Refusal::kFileUnwritable, *file_path, code);
+base::Status FileStorage::write(std::string_view name, uint64_t offset, base::ByteSpan bytes) {
+  auto found = files_.find(name);
+  if (found == files_.end() || !found->second.writable) {
+    return failed(base::Refusal::kFileUnwritable, std::string(name), EROFS);
   }
-  code = sync_directory(directory_);
-  if (code != 0) return failed(base::Refusal::kFileUnwritable, directory_, code);
+  const File& file = found->second;
+  if (offset > file.size || bytes.size() > file.size - offset) {
+    return failed(base::Refusal::kFileUnwritable, *path(name), EFBIG);
+  }
+  int code = write_all(file.descriptor.get(), offset, bytes);
+  if (code != 0) return failed(base::Refusal::kFileUnwritable, *path(name), code);
   return base::Ok{};
 }
 
-bool FileStorage::exists(std::string_view name) {
-  base::Result<std::string> file_path = path(name);
-  return file_path.ok() && ::access(file_path->c_str(), F_OK) == 0;
+// A failed one is not tried again: the system may have forgotten what it could not write.
+base::Status FileStorage::sync(std::string_view name) {
+  auto found = files_.find(name);
+  if (found == files_.end()) return failed(base::Refusal::kFileUnwritable, std::string(name), EBADF);
+  if (::fdatasync(found->second.descriptor.get()) == 0) return base::Ok{};
+  return failed(base::Refusal::kFileUnwritable, *path(name), errno);
 }
 
 }  // namespace vm

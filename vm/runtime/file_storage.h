@@ -1,31 +1,42 @@
-// Records as files of one directory. A record is replaced by a complete new file that is on disk
-// before it takes the name; after any failure the old record is there as it was.
+// Storage in the files of one directory, which must exist. Files are allocated when they are opened,
+// so a full disk is found then and not in the middle of a record.
 #pragma once
 
+#include <map>
 #include <string>
 
+#include "vm/runtime/descriptor.h"
 #include "vm/runtime/ports.h"
 
 namespace vm {
 
 class FileStorage : public Storage {
  public:
-  // The directory must exist. Records over `limit` bytes are not read.
-  explicit FileStorage(std::string directory, uint64_t limit = 1u << 30)
-      : directory_(std::move(directory)), limit_(limit) {}
+  explicit FileStorage(std::string directory) : directory_(std::move(directory)) {}
 
-  // kFileNotFound, kFileUnreadable.
-  base::Result<base::Bytes> read(std::string_view name) override;
-  // kFileUnwritable.
-  base::Status write(std::string_view name, base::ByteSpan bytes) override;
-  bool exists(std::string_view name) override;
+  // kFileUnwritable, kFileUnreadable. A long enough file that cannot be written can be read.
+  base::Status open(std::string_view name, uint64_t size) override;
+  base::Result<uint64_t> size(std::string_view name) override;
+  base::Result<base::Bytes> read(std::string_view name, uint64_t offset, uint64_t size) override;
+  base::Status write(std::string_view name, uint64_t offset, base::ByteSpan bytes) override;
+  base::Status sync(std::string_view name) override;
 
  private:
-  // Names are lower-case letters, digits and `_`: no record lies outside the directory.
+  struct File {
+    Descriptor descriptor;
+    uint64_t size = 0;
+    bool writable = false;
+  };
+
+  // Names are lower-case letters, digits and `_`: no file lies outside the directory.
   base::Result<std::string> path(std::string_view name) const;
+  base::Result<File> take(const std::string& path, bool create, bool& created) const;
+  base::Status allocate(File& file, const std::string& path, uint64_t size, bool created) const;
+  // One that is open already, or is opened for reading only.
+  base::Result<const File*> readable(std::string_view name);
 
   std::string directory_;
-  uint64_t limit_;
+  std::map<std::string, File, std::less<>> files_;
 };
 
 }  // namespace vm

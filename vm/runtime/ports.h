@@ -34,14 +34,23 @@ class IoPort {
   virtual void send(std::span<const uint8_t> outputs) = 0;
 };
 
-// Durable records of fixed maximum size, by name ("slot_a", "control", "retain_0").
+// Durable files of fixed size, by name ("slot_a", "control_0"). Nothing is repeated behind a
+// failure: what a failed call leaves in its file is unknown, up to a mixture. What is written is
+// durable when sync() of that file has returned without an error, and in no order before.
 class Storage {
  public:
   virtual ~Storage() = default;
-  virtual base::Result<base::Bytes> read(std::string_view name) = 0;
-  // All or nothing, durable when it returns.
-  virtual base::Status write(std::string_view name, base::ByteSpan bytes) = 0;
-  virtual bool exists(std::string_view name) = 0;
+  // The file is there, durably, with room for at least `size` bytes: what it holds stays, new bytes
+  // are zero. Before anything else is done with it.
+  virtual base::Status open(std::string_view name, uint64_t size) = 0;
+  // Of a file, opened or not; kFileNotFound.
+  virtual base::Result<uint64_t> size(std::string_view name) = 0;
+  // `size` bytes from `offset` on, fewer where the file ends.
+  virtual base::Result<base::Bytes> read(std::string_view name, uint64_t offset,
+                                         uint64_t size) = 0;
+  // Inside the size that was opened.
+  virtual base::Status write(std::string_view name, uint64_t offset, base::ByteSpan bytes) = 0;
+  virtual base::Status sync(std::string_view name) = 0;
 };
 
 // One request in, one answer out; framing is the transport's affair.

@@ -1,0 +1,75 @@
+// Several copies of one kind of record, each in a file: the newest valid one counts. A copy on which
+// an operation has failed is dead: nothing is done with it any more, since nobody knows what it
+// holds.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "online_change/store/record.h"
+
+namespace online_change {
+
+class Copies {
+ public:
+  struct Copy {
+    std::string name;
+    Record record;
+    bool dead = false;
+  };
+
+  Copies(vm::Storage& storage, RecordKind kind, std::vector<std::string> names);
+
+  // Makes room for a payload of that size in each file and reads what is there. What was in flight
+  // when the last process ended is made durable first: nothing is built on what a power cut could
+  // still take away.
+  void recover(uint64_t payload_bytes);
+  // Room for a longer payload in one copy.
+  base::Status reserve(size_t number, uint64_t payload_bytes);
+  // Over whatever the copy holds, with the next sequence number.
+  base::Status write(size_t number, base::ByteSpan payload);
+
+  size_t count() const { return copies_.size(); }
+  const Copy& operator[](size_t number) const { return copies_[number]; }
+  bool valid(size_t number) const { return copies_[number].record.state == RecordState::kValid; }
+  // Valid and of the highest sequence number among those whose number `fits` takes.
+  template <class Fits>
+  std::optional<size_t> newest(Fits fits) const {
+    std::optional<size_t> best;
+    for (size_t i = 0; i < copies_.size(); ++i) {
+      if (!valid(i) || !fits(i)) continue;
+      if (!best || copies_[i].record.sequence > copies_[*best].record.sequence) best = i;
+    }
+    return best;
+  }
+  // The one to be written next; the newest is never, nor is one that `needed` takes.
+  template <class Needed>
+  std::optional<size_t> victim(Needed needed) const {
+    const std::optional<size_t> first = newest([](size_t) { return true; });
+    const std::optional<size_t> sure = newest([&](size_t i) { return !copies_[i].dead; });
+    std::optional<size_t> best;
+    for (size_t i = 0; i < copies_.size(); ++i) {
+      if (copies_[i].dead || first == i || sure == i || (valid(i) && needed(i))) continue;
+      if (!best || copies_[i].record.sequence < copies_[*best].record.sequence) best = i;
+    }
+    return best;
+  }
+  // What recover() read; kept until then.
+  base::Bytes take_payload(size_t number) { return std::move(copies_[number].record.payload); }
+  // It is not what it should be.
+  void reject(size_t number) { copies_[number].record = {RecordState::kDamaged, 0, {}}; }
+  // The error of the first copy that died; empty while none is dead.
+  const std::string& complaint() const { return complaint_; }
+
+ private:
+  base::Status bury(Copy& copy, const base::Error& error);
+
+  vm::Storage& storage_;
+  RecordKind kind_;
+  std::vector<Copy> copies_;
+  uint64_t last_sequence_ = 0;
+  std::string complaint_;
+};
+
+}  // namespace online_change

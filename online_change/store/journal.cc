@@ -1,0 +1,144 @@
+#include "online_change/store/journal.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "base/crc32c.h"
+#include "online_change/store/record.h"
+
+namespace online_change {
+namespace {
+
+constexpr uint32_t kMagic = 0x314e524a;  // "JRN1"
+constexpr size_t kChecksumAt = kSectorBytes - 4;
+
+constexpr const char* kEventNames[] = {
+#define EVENT(id, name, meaning) name,
+#include "online_change/store/events.def"
+#undef EVENT
+};
+
+// Whole characters of UTF-8.
+std::string_view cut(std::string_view text, size_t limit) {
+  if (text.size() <= limit) return text;
+  while (limit > 0 && (static_cast<uint8_t>(text[limit]) & 0xc0) == 0x80) --limit;
+  return text.substr(0, limit);
+}
+
+void put_counts(base::ByteWriter& out, const FateCounts& counts) {
+  for (uint64_t count :
+       {counts.kept, counts.moved, counts.converted, counts.initialised, counts.dropped}) {
+    out.u64(count);
+  }
+}
+
+void get_counts(base::ByteReader& in, FateCounts& counts) {
+  for (uint64_t* count :
+       {&counts.kept, &counts.moved, &counts.converted, &counts.initialised, &counts.dropped}) {
+    *count = in.u64();
+  }
+}
+
+void get_digest(base::ByteReader& in, base::Digest& out) {
+  base::ByteSpan bytes = in.raw(out.size());
+  std::copy(bytes.begin(), bytes.end(), out.begin());
+}
+
+}  // namespace
+
+const char* event_name(Event event) { return kEventNames[static_cast<size_t>(event)]; }
+
+base::Bytes encode(const JournalEntry& entry) {
+  base::ByteWriter out;
+  out.u32(kMagic);
+  out.u64(entry.sequence);
+  out.i64(entry.time_ns);
+  out.u8(static_cast<uint8_t>(entry.event));
+  out.raw(entry.from);
+  out.raw(entry.to);
+  put_counts(out, entry.counts);
+  out.i64(entry.predicted_ns);
+  out.i64(entry.measured_ns);
+  out.u64(entry.cycle);
+  out.text(cut(entry.who, kMaxWho));
+  out.text(cut(entry.text, kMaxText));
+  base::Bytes sector = out.take();
+  sector.resize(kSectorBytes);
+  const uint32_t checksum = base::crc32c(base::ByteSpan(sector).first(kChecksumAt));
+  std::memcpy(sector.data() + kChecksumAt, &checksum, sizeof checksum);
+  return sector;
+}
+
+std::optional<JournalEntry> decode_entry(base::ByteSpan sector) {
+  if (sector.size() != kSectorBytes) return std::nullopt;
+  base::ByteReader tail(sector.subspan(kChecksumAt));
+  if (base::crc32c(sector.first(kChecksumAt)) != tail.u32()) return std::nullopt;
+  base::ByteReader in(sector.first(kChecksumAt));
+  if (in.u32() != kMagic) return std::nullopt;
+  JournalEntry entry;
+  entry.sequence = in.u64();
+  entry.time_ns = in.i64();
+  entry.event = in.enumerator<Event>(std::size(kEventNames));
+  get_digest(in, entry.from);
+  get_digest(in, entry.to);
+  get_counts(in, entry.counts);
+  entry.predicted_ns = in.i64();
+  entry.measured_ns = in.i64();
+  entry.cycle = in.u64();
+  entry.who = in.text();
+  entry.text = in.text();
+  if (in.failed() || entry.who.size() > kMaxWho || entry.text.size() > kMaxText) {
+    return std::nullopt;
+  }
+  return entry;
+}
+
+base::Result<std::vector<JournalEntry>> read_journal(vm::Storage& storage, const std::string& name) {
+  constexpr uint64_t kPiece = 256 * kSectorBytes;
+  constexpr uint64_t kMost = 1u << 26;  // a longer file is not one of ours
+  std::vector<JournalEntry> entries;
+  for (uint64_t at = 0; at < kMost; at += kPiece) {
+    base::Result<base::Bytes> piece = storage.read(name, at, kPiece);
+    if (!piece.ok()) return piece.error();
+    for (size_t i = 0; i + kSectorBytes <= piece->size(); i += kSectorBytes) {
+      std::optional<JournalEntry> entry =
+          decode_entry(base::ByteSpan(*piece).subspan(i, kSectorBytes));
+      if (entry) entries.push_back(std::move(*entry));
+    }
+    if (piece->size() < kPiece) break;
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const JournalEntry& a, const JournalEntry& b) {
+                     return a.sequence < b.sequence;
+                   });
+  return entries;
+}
+
+base::Status Journal::fail(const base::Error& error) {
+  complaint_ = error.text;
+  return error;
+}
+
+void Journal::recover() {
+  base::Status opened = storage_.open(name_, uint64_t{entries_} * kSectorBytes);
+  if (opened.ok()) opened = storage_.sync(name_);
+  if (!opened.ok()) (void)fail(opened.error()).ok();
+  base::Result<std::vector<JournalEntry>> entries = read_journal(storage_, name_);
+  if (!entries.ok()) {
+    (void)fail(entries.error()).ok();
+  } else if (!entries->empty()) {
+    next_ = entries->back().sequence + 1;
+  }
+}
+
+base::Status Journal::add(JournalEntry entry) {
+  if (!complaint_.empty()) return base::Error{base::Refusal::kStorageFailed, complaint_};
+  entry.sequence = next_++;
+  const uint64_t at = entry.sequence % entries_ * kSectorBytes;
+  base::Status written = storage_.write(name_, at, encode(entry));
+  if (written.ok()) written = storage_.sync(name_);
+  if (!written.ok()) return fail(written.error());
+  return written;
+}
+
+}  // namespace online_change

@@ -1,0 +1,68 @@
+// What happened to a controller, durably: a ring of entries, each in a sector of its own with a
+// checksum and a sequence number, so a cut costs the entry that was being written and no other. Who
+// changed what, when, from which version to which, with which fates and which pause.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/hash.h"
+#include "online_change/diff/fates.h"
+#include "vm/runtime/ports.h"
+
+namespace online_change {
+
+enum class Event : uint8_t {
+#define EVENT(id, name, meaning) id,
+#include "online_change/store/events.def"
+#undef EVENT
+};
+const char* event_name(Event event);
+
+struct JournalEntry {
+  uint64_t sequence = 0;  // given by the ring
+  int64_t time_ns = 0;    // wall clock, since 1970; handed in
+  Event event = Event::kStarted;
+  std::string who;      // the user; cut at kMaxWho bytes
+  base::Digest from{};  // zeros: none
+  base::Digest to{};
+  FateCounts counts;
+  int64_t predicted_ns = 0;  // pause
+  int64_t measured_ns = 0;
+  uint64_t cycle = 0;
+  std::string text;  // the reason, or the trap; cut at kMaxText bytes
+};
+
+inline constexpr size_t kMaxWho = 32;
+inline constexpr size_t kMaxText = 240;
+
+// One sector.
+base::Bytes encode(const JournalEntry& entry);
+std::optional<JournalEntry> decode_entry(base::ByteSpan sector);
+
+// Entries of a file, oldest first. What is damaged is left out; a part that cannot be read is an
+// error, and so is a file that is not there.
+base::Result<std::vector<JournalEntry>> read_journal(vm::Storage& storage, const std::string& name);
+
+class Journal {
+ public:
+  Journal(vm::Storage& storage, std::string name, uint32_t entries)
+      : storage_(storage), name_(std::move(name)), entries_(entries) {}
+  void recover();
+  // Durable when it returns without an error; behind one nothing more is written.
+  base::Status add(JournalEntry entry);
+  const std::string& complaint() const { return complaint_; }
+
+ private:
+  base::Status fail(const base::Error& error);
+
+  vm::Storage& storage_;
+  std::string name_;
+  uint32_t entries_;
+  uint64_t next_ = 1;
+  std::string complaint_;  // not empty: dead
+};
+
+}  // namespace online_change

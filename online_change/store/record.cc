@@ -1,0 +1,83 @@
+#include "online_change/store/record.h"
+
+#include <algorithm>
+
+#include "base/crc32c.h"
+#include "base/hash.h"
+
+namespace online_change {
+namespace {
+
+constexpr uint64_t kMagic = 0x44524f4345524353;  // "SCRECORD"
+constexpr uint32_t kVersion = 1;
+constexpr size_t kChecksumAt = kSectorBytes - 4;  // of all bytes before it
+
+struct Header {
+  RecordKind kind{};
+  uint64_t sequence = 0;
+  uint64_t length = 0;
+  base::Digest hash{};  // of the payload
+};
+
+bool decode(base::ByteSpan sector, Header& out) {
+  if (sector.size() != kSectorBytes) return false;
+  base::ByteReader tail(sector.subspan(kChecksumAt));
+  if (base::crc32c(sector.first(kChecksumAt)) != tail.u32()) return false;
+  base::ByteReader in(sector);
+  if (in.u64() != kMagic || in.u32() != kVersion) return false;
+  out.kind = static_cast<RecordKind>(in.u32());
+  out.sequence = in.u64();
+  out.length = in.u64();
+  base::ByteSpan hash = in.raw(out.hash.size());
+  std::copy(hash.begin(), hash.end(), out.hash.begin());
+  return true;
+}
+
+bool all_zero(base::ByteSpan bytes) {
+  return std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte == 0; });
+}
+
+}  // namespace
+
+base::Bytes record_header(RecordKind kind, uint64_t sequence, base::ByteSpan payload) {
+  base::ByteWriter out;
+  out.u64(kMagic);
+  out.u32(kVersion);
+  out.u32(static_cast<uint32_t>(kind));
+  out.u64(sequence);
+  out.u64(payload.size());
+  out.raw(base::sha256(payload));
+  base::Bytes sector = out.take();
+  sector.resize(kSectorBytes);
+  const uint32_t checksum = base::crc32c(base::ByteSpan(sector).first(kChecksumAt));
+  std::memcpy(sector.data() + kChecksumAt, &checksum, sizeof checksum);
+  return sector;
+}
+
+Record read_record(vm::Storage& storage, const std::string& name, RecordKind kind) {
+  base::Result<uint64_t> size = storage.size(name);
+  base::Result<base::Bytes> sector = storage.read(name, 0, kSectorBytes);
+  if (!size.ok() || !sector.ok()) return {RecordState::kUnreadable, 0, {}};
+  if (all_zero(*sector)) return {};
+  Header header;
+  const bool fits = decode(*sector, header) && header.kind == kind &&
+                    header.length <= *size - kSectorBytes;
+  if (!fits) return {RecordState::kDamaged, 0, {}};
+  base::Result<base::Bytes> payload = storage.read(name, kSectorBytes, header.length);
+  if (!payload.ok()) return {RecordState::kUnreadable, 0, {}};
+  if (payload->size() != header.length || base::sha256(*payload) != header.hash) {
+    return {RecordState::kDamaged, 0, {}};
+  }
+  return {RecordState::kValid, header.sequence, std::move(*payload)};
+}
+
+base::Status write_record(vm::Storage& storage, const std::string& name, RecordKind kind,
+                          uint64_t sequence, base::ByteSpan payload) {
+  base::Status done = storage.write(name, kSectorBytes, payload);
+  if (done.ok()) done = storage.sync(name);
+  if (done.ok()) done = storage.write(name, 0, record_header(kind, sequence, payload));
+  if (done.ok()) done = storage.sync(name);
+  return done;
+}
+
+}  // namespace online_change

@@ -1,0 +1,40 @@
+// One durable record in a file of its own: a header in the first sector, the payload behind it. A
+// record is valid when its checksums are right, and by nothing else. It is written payload first,
+// then, when that is on disk, the header; so a cut leaves the record as it was, or as it shall be,
+// or one that is seen not to be valid. docs/adr/0011-durable-storage.md has the format.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "vm/runtime/ports.h"
+
+namespace online_change {
+
+inline constexpr uint32_t kSectorBytes = 512;  // what a disk writes at once, and a header takes
+
+enum class RecordKind : uint32_t { kControl = 1, kImage = 2, kRetain = 3 };
+
+enum class RecordState : uint8_t {
+  kEmpty,       // never written
+  kValid,       //
+  kDamaged,     // cut off while it was written, or changed since
+  kUnreadable,  // the storage says so; nothing may be written over it
+};
+
+struct Record {
+  RecordState state = RecordState::kEmpty;
+  uint64_t sequence = 0;  // of kValid
+  base::Bytes payload;    // of kValid
+};
+
+constexpr uint64_t record_bytes(uint64_t payload) { return kSectorBytes + payload; }
+
+base::Bytes record_header(RecordKind kind, uint64_t sequence, base::ByteSpan payload);
+// Any content of the file, of any length. Takes no more memory than the file has bytes.
+Record read_record(vm::Storage& storage, const std::string& name, RecordKind kind);
+// Durable when it returns. Behind an error the file holds anything.
+base::Status write_record(vm::Storage& storage, const std::string& name, RecordKind kind,
+                          uint64_t sequence, base::ByteSpan payload);
+
+}  // namespace online_change

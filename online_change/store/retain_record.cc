@@ -1,0 +1,29 @@
+#include "online_change/store/retain_record.h"
+
+#include <algorithm>
+
+namespace online_change {
+
+base::Bytes encode(const RetainRecord& record) {
+  base::ByteWriter out;
+  out.raw(record.image);
+  out.boolean(record.trial);
+  out.u64(record.cycle);
+  out.blob(record.values);
+  return out.take();
+}
+
+std::optional<RetainRecord> decode_retain(base::ByteSpan payload) {
+  base::ByteReader in(payload);
+  RetainRecord record;
+  base::ByteSpan image = in.raw(record.image.size());
+  std::copy(image.begin(), image.end(), record.image.begin());
+  record.trial = in.boolean();
+  record.cycle = in.u64();
+  base::ByteSpan values = in.blob();
+  record.values.assign(values.begin(), values.end());
+  if (!in.done()) return std::nullopt;
+  return record;
+}
+
+}  // namespace online_change

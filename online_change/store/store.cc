@@ -1,0 +1,302 @@
+#include "online_change/store/store.h"
+
+#include <algorithm>
+
+namespace online_change {
+namespace {
+
+constexpr size_t kDigestBytes = sizeof(base::Digest);
+
+base::Error failed(std::string text) { return {base::Refusal::kStorageFailed, std::move(text)}; }
+
+base::Bytes image_payload(const StoredImage& image) {
+  base::Bytes payload(image.digest.begin(), image.digest.end());
+  payload.insert(payload.end(), image.bytes.begin(), image.bytes.end());
+  return payload;
+}
+
+std::optional<StoredImage> image_of(base::Bytes payload) {
+  if (payload.size() < kDigestBytes) return std::nullopt;
+  StoredImage image;
+  std::copy_n(payload.begin(), kDigestBytes, image.digest.begin());
+  payload.erase(payload.begin(), payload.begin() + kDigestBytes);
+  image.bytes = std::move(payload);
+  return image;
+}
+
+uint64_t retain_payload_bytes(uint64_t values) {
+  return encode(RetainRecord{}).size() + values;
+}
+
+}  // namespace
+
+Store::Store(vm::Storage& storage, StoreSizes sizes)
+    : sizes_(sizes),
+      control_copies_(storage, RecordKind::kControl, {"control_0", "control_1"}),
+      slots_(storage, RecordKind::kImage, {"slot_a", "slot_b"}),
+      retained_(storage, RecordKind::kRetain, {"retain_0", "retain_1", "retain_2"}),
+      journal_(storage, kJournalFile, sizes.journal_entries),
+      traps_(storage, kTrapsFile, sizes.trap_entries) {}
+
+std::unique_ptr<Store> Store::open(vm::Storage& storage, StoreSizes sizes) {
+  std::unique_ptr<Store> store(new Store(storage, sizes));
+  store->recover();
+  return store;
+}
+
+// --- recovery ---------------------------------------------------------------------
+
+void Store::recover() {
+  recover_control();
+  recover_images();
+  recover_retained();
+  journal_.recover();
+  traps_.recover();
+}
+
+void Store::recover_control() {
+  control_copies_.recover(encode(ControlRecord{}).size());
+  std::optional<ControlRecord> records[2];
+  for (size_t i = 0; i < 2; ++i) {
+    if (!control_copies_.valid(i)) continue;
+    records[i] = decode_control(control_copies_.take_payload(i));
+    if (!records[i]) control_copies_.reject(i);
+  }
+  const std::optional<size_t> newest = control_copies_.newest([](size_t) { return true; });
+  has_control_ = newest.has_value();
+  if (newest) control_ = *records[*newest];
+  // The first record ever goes into the first copy, and then into the second one: when that has
+  // never been written, there is nothing that could have been lost.
+  const bool never = control_copies_[1].record.state == RecordState::kEmpty;
+  recovered_.virgin = !newest && never;
+  if (recovered_.virgin) recovered_.nothing = "no program was ever stored there";
+  if (!newest && !never) recovered_.nothing = "both control records are damaged or unreadable";
+  if (has_control_ && control_.trial) recovered_.trial_lost = control_.trial_digest;
+}
+
+void Store::recover_images() {
+  slots_.recover(kDigestBytes + sizes_.image_bytes);
+  for (size_t i = 0; i < 2; ++i) {
+    if (!slots_.valid(i)) continue;
+    std::optional<StoredImage> image = image_of(slots_.take_payload(i));
+    if (!image) {
+      slots_.reject(i);
+      continue;
+    }
+    in_slot_[i] = image->digest;
+    const bool boots = has_control_ && control_.slot == i && control_.boots == image->digest;
+    (boots ? recovered_.boots : recovered_.other) = std::move(*image);
+  }
+  if (!has_control_ || recovered_.boots) return;
+  recovered_.nothing = std::string("the program that boots, ") + base::short_hex(control_.boots) +
+                       " in " + slots_[control_.slot].name + ", is damaged or unreadable";
+}
+
+void Store::recover_retained() {
+  retained_.recover(retain_payload_bytes(sizes_.retain_bytes));
+  std::optional<RetainRecord> records[3];
+  for (size_t i = 0; i < 3; ++i) {
+    if (!retained_.valid(i)) continue;
+    records[i] = decode_retain(retained_.take_payload(i));
+    if (!records[i]) {
+      retained_.reject(i);
+      continue;
+    }
+    in_copy_[i] = RetainHead{records[i]->image, records[i]->trial};
+  }
+  const std::optional<size_t> newest = newest_retained();
+  const std::optional<size_t> before = retained_before();
+  if (newest) recovered_.newest = std::move(records[*newest]);
+  if (before) recovered_.before = std::move(records[*before]);
+  if (has_control_ && !newest) {
+    recovered_.alarms.push_back("no record of the retained values can be used");
+  }
+}
+
+bool Store::in_a_slot(const base::Digest& image) const {
+  return in_slot_[0] == image || in_slot_[1] == image;
+}
+
+std::optional<size_t> Store::newest_retained() const {
+  return retained_.newest([&](size_t i) { return in_copy_[i] && in_a_slot(in_copy_[i]->image); });
+}
+
+std::optional<size_t> Store::retained_before() const {
+  const std::optional<size_t> newest = newest_retained();
+  if (!newest || !in_copy_[*newest]->trial || in_copy_[*newest]->image == control_.boots) {
+    return std::nullopt;
+  }
+  return newest_accepted();
+}
+
+std::optional<size_t> Store::newest_accepted() const {
+  return retained_.newest([&](size_t i) {
+    return in_copy_[i] && !in_copy_[i]->trial && in_copy_[i]->image == control_.boots;
+  });
+}
+
+// --- the program that boots -------------------------------------------------------
+
+base::Status Store::write_control(const ControlRecord& next) {
+  const std::optional<size_t> copy = control_copies_.victim([](size_t) { return false; });
+  if (!copy) return failed("the control record cannot be written: " + control_copies_.complaint());
+  base::Status written = control_copies_.write(*copy, encode(next));
+  if (!written.ok()) return failed("the control record: " + written.error().text);
+  control_ = next;
+  has_control_ = true;
+  return written;
+}
+
+base::Status Store::write_image(size_t slot, const StoredImage& image, uint64_t retain_bytes) {
+  for (size_t i = 0; i < retained_.count(); ++i) {
+    if (retained_[i].dead) continue;
+    base::Status room = retained_.reserve(i, retain_payload_bytes(retain_bytes));
+    if (!room.ok()) return room;
+  }
+  if (in_slot_[slot] == image.digest && !slots_[slot].dead) return base::Ok{};
+  base::Status room = slots_.reserve(slot, kDigestBytes + image.bytes.size());
+  if (!room.ok()) return room;
+  in_slot_[slot].reset();
+  base::Status written = slots_.write(slot, image_payload(image));
+  if (written.ok()) in_slot_[slot] = image.digest;
+  return written;
+}
+
+// Without a program that boots: not the one whose layout the retained values have.
+size_t Store::free_slot() const {
+  if (boots_valid()) return 1 - control_.slot;
+  const std::optional<size_t> newest = newest_retained();
+  if (!newest) return has_control_ ? control_.slot : 0;
+  return in_slot_[0] == in_copy_[*newest]->image ? 1 : 0;
+}
+
+base::Status Store::install(const StoredImage& image, uint64_t retain_bytes) {
+  std::lock_guard lock(mutex_);
+  if (boots_valid() && control_.boots == image.digest) return end_trial_locked();
+  if (boots_valid() && !retained_fits_locked()) {
+    return failed("the retained values are those of another program still");
+  }
+  const size_t slot = free_slot();
+  base::Status stored = write_image(slot, image, retain_bytes);
+  if (!stored.ok()) return stored;
+  stored = write_control({image.digest, static_cast<uint8_t>(slot), false, 0, {}});
+  if (!stored.ok()) return stored;
+  return settle_locked();
+}
+
+base::Status Store::begin_trial(const StoredImage& image, uint64_t retain_bytes) {
+  std::lock_guard lock(mutex_);
+  if (!boots_valid()) return failed("no program is stored that the change could be undone to");
+  if (control_.trial) return base::Error{base::Refusal::kChangePending, "a trial is not over"};
+  if (!retained_fits_locked()) {
+    return failed("the retained values are those of another program still");
+  }
+  base::Status stored = write_image(1 - control_.slot, image, retain_bytes);
+  if (!stored.ok()) return stored;
+  ControlRecord next = control_;
+  next.trial = true;
+  next.tries_left = 1;
+  next.trial_digest = image.digest;
+  return write_control(next);
+}
+
+base::Status Store::end_trial() {
+  std::lock_guard lock(mutex_);
+  return end_trial_locked();
+}
+
+base::Status Store::end_trial_locked() {
+  if (!control_.trial) return base::Ok{};
+  ControlRecord next = control_;
+  next.trial = false;
+  next.tries_left = 0;
+  next.trial_digest = {};
+  return write_control(next);
+}
+
+base::Status Store::accept() {
+  std::lock_guard lock(mutex_);
+  if (!control_.trial) {
+    return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to accept"};
+  }
+  return write_control(
+      {control_.trial_digest, static_cast<uint8_t>(1 - control_.slot), false, 0, {}});
+}
+
+base::Status Store::settle() {
+  std::lock_guard lock(mutex_);
+  base::Status ended = end_trial_locked();
+  return ended.ok() ? settle_locked() : ended;
+}
+
+base::Status Store::settle_locked() {
+  const bool whole = control_copies_.valid(0) && control_copies_.valid(1);
+  if (!has_control_ || whole) return base::Ok{};
+  return write_control(control_);
+}
+
+// --- retained values --------------------------------------------------------------
+
+bool Store::retained_fits_locked() const {
+  const std::optional<size_t> newest = newest_retained();
+  if (!newest) return true;
+  return in_copy_[*newest]->image == control_.boots && !in_copy_[*newest]->trial;
+}
+
+bool Store::retained_fits() const {
+  std::lock_guard lock(mutex_);
+  return retained_fits_locked();
+}
+
+base::Status Store::save_retained(const base::Digest& image, uint64_t cycle,
+                                  base::ByteSpan values) {
+  std::lock_guard lock(mutex_);
+  const bool trial = control_.is_trial(image);
+  if (!trial && !(boots_valid() && control_.boots == image)) {
+    return failed("the retained values are of a program that is not stored");
+  }
+  // What a lost trial goes back to stays until the trial is over and newer values are durable.
+  const std::optional<size_t> newest = newest_retained();
+  const bool on_trial = control_.trial || (newest && in_copy_[*newest]->image != control_.boots);
+  const std::optional<size_t> before = newest_accepted();
+  const std::optional<size_t> copy =
+      retained_.victim([&](size_t i) { return on_trial && before == i; });
+  if (!copy) return failed("no copy of the retained values is left: " + retained_.complaint());
+  base::Status room = retained_.reserve(*copy, retain_payload_bytes(values.size()));
+  if (!room.ok()) return room;
+  in_copy_[*copy].reset();
+  base::Status written = retained_.write(
+      *copy, encode(RetainRecord{image, trial, cycle, base::Bytes(values.begin(), values.end())}));
+  if (written.ok()) in_copy_[*copy] = RetainHead{image, trial};
+  return written;
+}
+
+// --- journal ----------------------------------------------------------------------
+
+void Store::note(JournalEntry entry) {
+  std::lock_guard lock(mutex_);
+  (void)journal_.add(std::move(entry)).ok();  // complaints() has the error
+}
+
+void Store::note_trap(JournalEntry entry) {
+  std::lock_guard lock(mutex_);
+  (void)traps_.add(std::move(entry)).ok();
+}
+
+base::Digest Store::boots() const {
+  std::lock_guard lock(mutex_);
+  return control_.boots;
+}
+
+std::vector<std::string> Store::complaints() const {
+  std::lock_guard lock(mutex_);
+  std::vector<std::string> out;
+  for (const std::string* text :
+       {&control_copies_.complaint(), &slots_.complaint(), &retained_.complaint(),
+        &journal_.complaint(), &traps_.complaint()}) {
+    if (!text->empty()) out.push_back(*text);
+  }
+  return out;
+}
+
+}  // namespace online_change

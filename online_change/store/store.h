@@ -1,0 +1,126 @@
+// What a controller keeps over a power cut: two programs, which of them boots, the retained values,
+// and the journal. Every operation is durable when it returns without an error; a cut at any
+// instant before leaves what was before, or what shall be. Programs are bytes and their digest here;
+// whether they can run is the verifier's question.
+//
+// Two slots hold images; the control record says which one boots and whether the other is on trial.
+// A slot is written over only when neither the control record nor a retained record that a boot
+// would read needs it: so the layout of the retained values can always be read. Three copies of the
+// retained values: the newest, the newest from before the trial, and the one written next.
+//
+// Thread-safe. Never called by the control thread: every operation waits for the disk.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "online_change/store/control_record.h"
+#include "online_change/store/copies.h"
+#include "online_change/store/journal.h"
+#include "online_change/store/retain_record.h"
+
+namespace online_change {
+
+inline constexpr const char* kJournalFile = "journal";
+inline constexpr const char* kTrapsFile = "traps";
+
+struct StoreSizes {
+  uint64_t image_bytes = 1u << 20;  // to begin with: a longer image makes its slot longer
+  uint64_t retain_bytes = 4096;     // likewise
+  uint32_t journal_entries = 1024;
+  uint32_t trap_entries = 32;
+};
+
+struct StoredImage {
+  base::Digest digest{};
+  base::Bytes bytes;
+};
+
+// What was found at the start.
+struct Recovered {
+  std::optional<StoredImage> boots;
+  std::optional<StoredImage> other;     // in the other slot, if anything
+  std::optional<RetainRecord> newest;   // retained values; of `boots` or `other`
+  std::optional<RetainRecord> before;   // `newest` is of a lost trial: those of `boots` before it
+  std::optional<base::Digest> trial_lost;
+  bool virgin = false;              // nothing was ever stored here
+  std::string nothing;              // why there is no `boots`
+  std::vector<std::string> alarms;  // what is damaged
+};
+
+class Store {
+ public:
+  // Recovers; changes nothing of what is stored. Failing storage gives alarms, not an error.
+  static std::unique_ptr<Store> open(vm::Storage& storage, StoreSizes sizes = {});
+
+  // To be taken once.
+  Recovered take_recovered() { return std::move(recovered_); }
+  // A lost trial is over, and both control records are whole again.
+  base::Status settle();
+
+  // This program boots from now on, nothing is on trial. `retain_bytes`: of its retained values.
+  base::Status install(const StoredImage& image, uint64_t retain_bytes);
+  // The program is stored and on trial: what boots stays. The newest retained values must be those
+  // of the program that boots (kStorageFailed).
+  base::Status begin_trial(const StoredImage& image, uint64_t retain_bytes);
+  base::Status end_trial();
+  // What is on trial boots from now on.
+  base::Status accept();
+
+  // `image` boots or is on trial.
+  base::Status save_retained(const base::Digest& image, uint64_t cycle, base::ByteSpan values);
+  // Are the newest ones, if there are any, those of the program that boots, not from its trial?
+  bool retained_fits() const;
+
+  void note(JournalEntry entry);
+  void note_trap(JournalEntry entry);
+
+  base::Digest boots() const;
+  // What storage failed at since the start.
+  std::vector<std::string> complaints() const;
+
+ private:
+  struct RetainHead {
+    base::Digest image{};
+    bool trial = false;
+  };
+
+  Store(vm::Storage& storage, StoreSizes sizes);
+  void recover();
+  void recover_control();
+  void recover_images();
+  void recover_retained();
+  base::Status write_control(const ControlRecord& next);
+  base::Status write_image(size_t slot, const StoredImage& image, uint64_t retain_bytes);
+  base::Status end_trial_locked();
+  base::Status settle_locked();
+  bool boots_valid() const { return has_control_ && in_slot_[control_.slot] == control_.boots; }
+  bool in_a_slot(const base::Digest& image) const;
+  size_t free_slot() const;
+  // Of the retained records that can be read, with a layout that is stored.
+  std::optional<size_t> newest_retained() const;
+  // That one is of a trial that has not been accepted: the newest from before it.
+  std::optional<size_t> retained_before() const;
+  // The newest of the program that boots, not from a trial.
+  std::optional<size_t> newest_accepted() const;
+  bool retained_fits_locked() const;
+
+  mutable std::mutex mutex_;
+  StoreSizes sizes_;
+  Copies control_copies_;
+  Copies slots_;
+  Copies retained_;
+  Journal journal_;
+  Journal traps_;
+  bool has_control_ = false;
+  ControlRecord control_;
+  // By slot and by copy; of valid ones.
+  std::optional<base::Digest> in_slot_[2];
+  std::optional<RetainHead> in_copy_[3];
+  Recovered recovered_;
+};
+
+}  // namespace online_change

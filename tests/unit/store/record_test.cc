@@ -1,0 +1,196 @@
+// Records, copies and entries: every damage is seen, and nothing takes more than it should.
+#include "online_change/store/record.h"
+
+#include <gtest/gtest.h>
+
+#include "online_change/store/control_record.h"
+#include "online_change/store/copies.h"
+#include "online_change/store/journal.h"
+#include "online_change/store/retain_record.h"
+#include "tests/unit/store/sim_storage.h"
+
+namespace online_change {
+namespace {
+
+constexpr RecordKind kKind = RecordKind::kControl;
+
+TEST(Record, IsWhatWasWritten) {
+  sim::SimStorage disk;
+  ASSERT_TRUE(disk.open("r", record_bytes(700)).ok());
+  EXPECT_EQ(read_record(disk, "r", kKind).state, RecordState::kEmpty);
+  ASSERT_TRUE(write_record(disk, "r", kKind, 7, base::Bytes(700, 3)).ok());
+  Record record = read_record(disk, "r", kKind);
+  EXPECT_EQ(record.state, RecordState::kValid);
+  EXPECT_EQ(record.sequence, 7u);
+  EXPECT_EQ(record.payload, base::Bytes(700, 3));
+  EXPECT_EQ(read_record(disk, "r", RecordKind::kImage).state, RecordState::kDamaged);
+  EXPECT_EQ(read_record(disk, "other", kKind).state, RecordState::kUnreadable);
+}
+
+TEST(Record, EveryFlippedBitIsSeen) {
+  sim::SimStorage disk;
+  ASSERT_TRUE(disk.open("r", record_bytes(100)).ok());
+  ASSERT_TRUE(write_record(disk, "r", kKind, 1, base::Bytes(100, 9)).ok());
+  base::Bytes& content = disk.content(0);
+  for (size_t bit = 0; bit < (kSectorBytes + 100) * 8; ++bit) {
+    content[bit / 8] ^= static_cast<uint8_t>(1u << bit % 8);
+    EXPECT_EQ(read_record(disk, "r", kKind).state, RecordState::kDamaged) << "bit " << bit;
+    content[bit / 8] ^= static_cast<uint8_t>(1u << bit % 8);
+  }
+  EXPECT_EQ(read_record(disk, "r", kKind).state, RecordState::kValid);
+}
+
+TEST(Record, EveryTruncationIsSeen) {
+  sim::SimStorage disk;
+  ASSERT_TRUE(disk.open("r", record_bytes(100)).ok());
+  ASSERT_TRUE(write_record(disk, "r", kKind, 1, base::Bytes(100, 9)).ok());
+  base::Bytes& content = disk.content(0);
+  content.resize(record_bytes(100));
+  while (!content.empty()) {
+    content.pop_back();
+    EXPECT_NE(read_record(disk, "r", kKind).state, RecordState::kValid) << content.size();
+  }
+}
+
+// A length that no file has, with a checksum that is right.
+TEST(Record, ALengthBeyondTheFileIsDamage) {
+  sim::SimStorage disk;
+  ASSERT_TRUE(disk.open("r", record_bytes(100)).ok());
+  base::Bytes header = record_header(kKind, 1, base::Bytes(5000));
+  ASSERT_TRUE(disk.write("r", 0, header).ok());
+  EXPECT_EQ(read_record(disk, "r", kKind).state, RecordState::kDamaged);
+}
+
+TEST(Copies, TheNewestIsNeverWrittenOver) {
+  sim::SimStorage disk;
+  Copies copies(disk, kKind, {"a", "b"});
+  copies.recover(10);
+  auto any = [](size_t) { return false; };
+  for (uint8_t i = 1; i < 6; ++i) {
+    std::optional<size_t> next = copies.victim(any);
+    ASSERT_TRUE(next);
+    EXPECT_NE(next, copies.newest([](size_t) { return true; }));
+    ASSERT_TRUE(copies.write(*next, base::Bytes{i}).ok());
+  }
+  Copies again(disk, kKind, {"a", "b"});
+  again.recover(10);
+  EXPECT_EQ(again.take_payload(*again.newest([](size_t) { return true; })), base::Bytes{5});
+}
+
+TEST(Copies, ADeadCopyIsLeftAlone) {
+  sim::SimStorage disk;
+  Copies copies(disk, kKind, {"a", "b"});
+  copies.recover(10);
+  ASSERT_TRUE(copies.write(0, base::Bytes{1}).ok());
+  int syncs = 0;
+  disk.fails = [&](std::string_view call) {
+    return call == "sync" && ++syncs == 2 ? sim::Failure::kError : sim::Failure::kNone;
+  };
+  EXPECT_EQ(copies.write(1, base::Bytes{2}).error().refusal, base::Refusal::kStorageFailed);
+  int calls = 0;
+  disk.before_call = [&] { ++calls; };
+  EXPECT_EQ(copies.write(1, base::Bytes{3}).error().refusal, base::Refusal::kStorageFailed);
+  EXPECT_EQ(calls, 0) << "a failed copy is tried again";
+  EXPECT_FALSE(copies.victim([](size_t) { return false; })) << "only the newest is left";
+  EXPECT_NE(copies.complaint(), "");
+}
+
+TEST(Journal, EntriesComeBackOldestFirstAndTheRingGoesRound) {
+  sim::SimStorage disk;
+  Journal journal(disk, "j", 4);
+  journal.recover();
+  for (int i = 1; i <= 10; ++i) {
+    JournalEntry entry;
+    entry.event = Event::kSwitched;
+    entry.who = "operator";
+    entry.time_ns = i;
+    entry.counts.dropped = static_cast<uint64_t>(i);
+    entry.measured_ns = 100 + i;
+    entry.text = std::string(1000, 'x');
+    ASSERT_TRUE(journal.add(entry).ok());
+  }
+  std::vector<JournalEntry> entries = *read_journal(disk, "j");
+  ASSERT_EQ(entries.size(), 4u);
+  for (size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(entries[i].sequence, 7 + i);
+    EXPECT_EQ(entries[i].counts.dropped, 7 + i);
+    EXPECT_EQ(entries[i].measured_ns, static_cast<int64_t>(107 + i));
+    EXPECT_EQ(entries[i].who, "operator");
+    EXPECT_EQ(entries[i].text, std::string(kMaxText, 'x'));
+  }
+  Journal again(disk, "j", 4);
+  again.recover();
+  ASSERT_TRUE(again.add({}).ok());
+  EXPECT_EQ(read_journal(disk, "j")->back().sequence, 11u);
+}
+
+TEST(Journal, ADamagedEntryCostsNoOther) {
+  sim::SimStorage disk;
+  Journal journal(disk, "j", 4);
+  journal.recover();
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(journal.add({}).ok());
+  const base::Bytes good = disk.content(0);
+  for (size_t bit = 0; bit < kSectorBytes * 8; ++bit) {
+    disk.content(0) = good;
+    disk.content(0)[2 * kSectorBytes + bit / 8] ^= static_cast<uint8_t>(1u << bit % 8);
+    EXPECT_EQ(read_journal(disk, "j")->size(), 3u) << "bit " << bit;
+  }
+}
+
+// It would begin again with the first number, over entries that are newer.
+TEST(Journal, OneThatCannotBeReadIsNotWritten) {
+  sim::SimStorage disk;
+  Journal first(disk, "j", 4);
+  first.recover();
+  ASSERT_TRUE(first.add({}).ok());
+  disk.fails = [](std::string_view call) {
+    return call == "read" ? sim::Failure::kError : sim::Failure::kNone;
+  };
+  Journal journal(disk, "j", 4);
+  journal.recover();
+  EXPECT_NE(journal.complaint(), "");
+  EXPECT_FALSE(journal.add({}).ok());
+}
+
+TEST(Journal, CutsTextsBetweenCharacters) {
+  JournalEntry entry;
+  entry.who = std::string(kMaxWho - 1, 'a') + "\xc3\xa4";
+  std::optional<JournalEntry> back = decode_entry(encode(entry));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->who, std::string(kMaxWho - 1, 'a'));
+}
+
+TEST(Decoders, TakeWhatTheyWroteAndNothingElse) {
+  ControlRecord control;
+  control.boots[3] = 7;
+  control.slot = 1;
+  control.trial = true;
+  control.tries_left = 1;
+  control.trial_digest[5] = 9;
+  base::Bytes bytes = encode(control);
+  std::optional<ControlRecord> back = decode_control(bytes);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(encode(*back), bytes);
+  EXPECT_TRUE(back->is_trial(control.trial_digest));
+  bytes.push_back(0);
+  EXPECT_FALSE(decode_control(bytes));
+  bytes.pop_back();
+  bytes[32] = 2;  // there are two slots
+  EXPECT_FALSE(decode_control(bytes));
+
+  RetainRecord retain;
+  retain.image[0] = 1;
+  retain.trial = true;
+  retain.cycle = 12;
+  retain.values = {1, 2, 3};
+  bytes = encode(retain);
+  std::optional<RetainRecord> values = decode_retain(bytes);
+  ASSERT_TRUE(values);
+  EXPECT_EQ(encode(*values), bytes);
+  for (size_t n = 0; n < bytes.size(); ++n) {
+    EXPECT_FALSE(decode_retain(base::ByteSpan(bytes).first(n))) << n;
+  }
+}
+
+}  // namespace
+}  // namespace online_change
