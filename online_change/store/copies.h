@@ -1,6 +1,6 @@
-// Several copies of one kind of record, each in a file: the newest valid one counts. A copy on which
-// an operation has failed is dead: nothing is done with it any more, since nobody knows what it
-// holds.
+// Several copies of one kind of record, each in a file: the newest valid one counts. A copy on
+// which an operation has failed is dead: nothing is done with it any more, since nobody knows what
+// it holds.
 #pragma once
 
 #include <optional>

@@ -93,7 +93,8 @@ std::optional<JournalEntry> decode_entry(base::ByteSpan sector) {
   return entry;
 }
 
-base::Result<std::vector<JournalEntry>> read_journal(vm::Storage& storage, const std::string& name) {
+base::Result<std::vector<JournalEntry>> read_journal(vm::Storage& storage,
+                                                     const std::string& name) {
   constexpr uint64_t kPiece = 256 * kSectorBytes;
   constexpr uint64_t kMost = 1u << 26;  // a longer file is not one of ours
   std::vector<JournalEntry> entries;
@@ -107,10 +108,9 @@ base::Result<std::vector<JournalEntry>> read_journal(vm::Storage& storage, const
     }
     if (piece->size() < kPiece) break;
   }
-  std::stable_sort(entries.begin(), entries.end(),
-                   [](const JournalEntry& a, const JournalEntry& b) {
-                     return a.sequence < b.sequence;
-                   });
+  std::stable_sort(
+      entries.begin(), entries.end(),
+      [](const JournalEntry& a, const JournalEntry& b) { return a.sequence < b.sequence; });
   return entries;
 }
 

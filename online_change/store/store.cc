@@ -24,9 +24,7 @@ std::optional<StoredImage> image_of(base::Bytes payload) {
   return image;
 }
 
-uint64_t retain_payload_bytes(uint64_t values) {
-  return encode(RetainRecord{}).size() + values;
-}
+uint64_t retain_payload_bytes(uint64_t values) { return encode(RetainRecord{}).size() + values; }
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 // What a controller keeps over a power cut: two programs, which of them boots, the retained values,
 // and the journal. Every operation is durable when it returns without an error; a cut at any
-// instant before leaves what was before, or what shall be. Programs are bytes and their digest here;
-// whether they can run is the verifier's question.
+// instant before leaves what was before, or what shall be. Programs are bytes and their digest
+// here; whether they can run is the verifier's question.
 //
 // Two slots hold images; the control record says which one boots and whether the other is on trial.
 // A slot is written over only when neither the control record nor a retained record that a boot
@@ -42,9 +42,9 @@ struct StoredImage {
 // What was found at the start.
 struct Recovered {
   std::optional<StoredImage> boots;
-  std::optional<StoredImage> other;     // in the other slot, if anything
-  std::optional<RetainRecord> newest;   // retained values; of `boots` or `other`
-  std::optional<RetainRecord> before;   // `newest` is of a lost trial: those of `boots` before it
+  std::optional<StoredImage> other;    // in the other slot, if anything
+  std::optional<RetainRecord> newest;  // retained values; of `boots` or `other`
+  std::optional<RetainRecord> before;  // `newest` is of a lost trial: those of `boots` before it
   std::optional<base::Digest> trial_lost;
   bool virgin = false;              // nothing was ever stored here
   std::string nothing;              // why there is no `boots`

@@ -24,6 +24,7 @@ extern const Entry kUndo;
 extern const Entry kAccept;
 extern const Entry kStop;
 extern const Entry kRestart;
+extern const Entry kJournal;
 extern const Entry kImage;
 extern const Entry kBridge;
 

@@ -101,8 +101,12 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   const bool standby = (request.flags & vm::kByStandby) != 0;
   base::Status staged = change_.stage(
       package, standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace);
-  if (!staged.ok()) return staged.error();
+  if (!staged.ok()) return refused(staged.error());
   staged_ = image_of(package);
+  online_change::JournalEntry done = entry(online_change::Event::kStaged);
+  done.counts = change_.plan().counts;
+  done.predicted_ns = change_.predicted_pause_ns();
+  store_.note(std::move(done));
   base::ByteWriter answer;
   answer.u64(++edition_);
   return answer.take();
@@ -203,8 +207,12 @@ base::Status ControllerService::configure(bool allow_overrun) {
 base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
     bool allow_overrun, uint64_t& missed_before) {
   std::optional<base::Result<online_change::SwitchReport>> report;
+  online_change::Snapshot before = empty_snapshot();
+  online_change::Snapshot after = empty_snapshot();
+  const auto nobody_else_saves = keeper_.hold();
   auto job = [&] {
     if (!allow_overrun && !time_for_switch()) return;
+    keeper_.take(before);
     int64_t deadline_ns = controller_.next_cycle_ns();
     if (!allow_overrun) {
       change_.set_interruption([=, this] { return clock_.now_ns() > deadline_ns; });
@@ -212,13 +220,20 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
     missed_before = missed_releases();
     report.emplace(change_.switch_now());
     change_.set_interruption(nullptr);
+    if (report->ok()) keeper_.take(after);
   };
   for (int attempt = 0; attempt < kSwitchAttempts && !report; ++attempt) {
     if (attempt != 0) boundary_.pause(kBetweenAttemptsNs);
     base::Status taken = at_boundary(job);
     if (!taken.ok()) return taken.error();
   }
-  if (report) return std::move(*report);
+  if (report) {
+    if (report->ok()) {
+      complain(keeper_.save_held(before));
+      complain(keeper_.save_held(after));
+    }
+    return std::move(*report);
+  }
   change_.cancel();
   return base::Error{base::Refusal::kDeadline,
                      "no cycle left time enough for the switch; the old program runs on"};
@@ -249,13 +264,28 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   base::Status taken = at_boundary(
       [&] { armed = change_.arm((request.flags & vm::kAllowLoss) != 0, allow_overrun); });
   if (!taken.ok()) return taken.error();
-  if (!armed.ok()) return armed.error();
+  if (!armed.ok()) return refused(armed.error());
+  base::Status stored = store_trial();
+  if (!stored.ok()) {
+    change_.cancel();
+    const base::Error error = refused(stored.error());
+    staged_.reset();
+    return error;
+  }
   base::Result<online_change::SwitchReport> report = switch_in_time(allow_overrun, missed_before);
-  staged_.reset();
   change_.collect();
-  if (!report.ok()) return report.error();
+  if (!report.ok()) {
+    change_.cancel();
+    complain(store_.end_trial());
+    const base::Error error = refused(report.error());
+    staged_.reset();
+    return error;
+  }
   previous_ = std::move(running);
   ++edition_;
+  note_switch(online_change::Event::kSwitched, previous_->digest(), *report,
+              change_.predicted_pause_ns());
+  staged_.reset();
   if ((request.flags & vm::kPermanent) != 0) {
     base::Status permanent = make_permanent();
     if (!permanent.ok()) return permanent.error();
@@ -265,16 +295,23 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   return encode(*report);
 }
 
+// Done first and then recorded: after a power cut in between it boots the same program.
 base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
   std::optional<base::Result<online_change::SwitchReport>> report;
   uint64_t missed_before = 0;
+  const base::Digest undone = controller_.verified().digest();
+  online_change::Snapshot after = empty_snapshot();
   base::Status taken = at_boundary([&] {
     missed_before = missed_releases();
     report.emplace(change_.undo());
+    if (report->ok()) keeper_.take(after);
   });
   if (!taken.ok()) return taken.error();
-  if (!report->ok()) return report->error();
+  if (!report->ok()) return refused(report->error());
   change_.collect();
+  complain(store_.end_trial());
+  complain(keeper_.save(after));
+  note_switch(online_change::Event::kUndone, undone, **report, 0);
   previous_.reset();
   ++edition_;
   report = finish_report(**report, missed_before);
@@ -285,16 +322,24 @@ base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
 // Durable first: after a power cut in between, the accepted version boots, as it was asked for.
 base::Status ControllerService::make_permanent() {
   if (change_.state() != online_change::State::kTrial) return change_.accept();
-  base::Status stored = storage_.write(kBootRecord, controller_.verified().encoded());
+  base::Status stored = store_.accept();
   if (!stored.ok()) {
-    return base::Error{stored.error().refusal,
-                       stored.error().text + "; the change runs, but is still on trial"};
+    return refused(
+        {stored.error().refusal, stored.error().text + "; the change runs, but is still on trial"});
   }
-  boots_next_ = controller_.verified().digest();
   base::Status accepted = base::Ok{};
-  base::Status taken = at_boundary([&] { accepted = change_.accept(); });
+  online_change::Snapshot after = empty_snapshot();
+  base::Status taken = at_boundary([&] {
+    accepted = change_.accept();
+    keeper_.take(after);
+  });
   if (!taken.ok()) return taken;
   change_.collect();
+  complain(keeper_.save(after));
+  online_change::JournalEntry done = entry(online_change::Event::kAccepted);
+  if (previous_) done.from = previous_->digest();
+  done.to = controller_.verified().digest();
+  store_.note(std::move(done));
   previous_.reset();
   ++edition_;
   return accepted;
@@ -307,6 +352,9 @@ base::Result<base::Bytes> ControllerService::accept(const vm::Request&) {
 }
 
 base::Result<base::Bytes> ControllerService::cancel(const vm::Request&) {
+  if (staged_ && change_.state() != online_change::State::kTrial) {
+    store_.note(entry(online_change::Event::kCancelled));
+  }
   change_.cancel();
   staged_.reset();
   return base::Bytes{};

@@ -20,13 +20,17 @@ vm::ValueRow value_row(const ir::Image& image, const std::string& path, const ir
 }  // namespace
 
 ControllerService::ControllerService(vm::Controller& controller, vm::Clock& clock,
-                                     vm::Storage& storage, vm::Boundary& boundary)
+                                     online_change::Store& store, vm::Boundary& boundary,
+                                     StartReport start,
+                                     online_change::RetainKeeper::WallTime wall_time)
     : controller_(controller),
       clock_(clock),
-      storage_(storage),
+      store_(store),
       boundary_(boundary),
-      change_(controller),
-      boots_next_(controller.verified().digest()) {}
+      start_(std::move(start)),
+      wall_time_(std::move(wall_time)),
+      keeper_(controller, store, wall_time_),
+      change_(controller) {}
 
 base::Bytes ControllerService::answer(base::ByteSpan bytes, bool& keep_open) {
   base::Result<vm::Request> request = vm::decode_request(bytes);
@@ -124,7 +128,10 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.edition = edition_;
   report.change = online_change::state_name(change_.state());
   if (previous_) report.previous = previous_->digest();
-  report.boots_next = boots_next_;
+  report.boots_next = store_.boots();
+  report.trial_lost = start_.trial_lost.value_or(base::Digest{});
+  report.alarms = start_.alarms;
+  for (std::string& text : store_.complaints()) report.alarms.push_back(std::move(text));
   report.base_period_ns = controller_.base_period_ns();
   report.forces = controller_.forces().size();
   return vm::encode(report);
@@ -256,6 +263,11 @@ base::Result<base::Bytes> ControllerService::restart(const vm::Request& request)
   base::Status left = base::Ok{};
   base::Status taken = at_boundary([&] { left = controller_.restart(kind, kExitLimitNs); });
   if (!taken.ok()) return taken.error();
+  online_change::JournalEntry made = entry(online_change::Event::kRestarted);
+  constexpr const char* kKinds[] = {"cold", "warm", "hot"};
+  made.text = kKinds[request.flags];
+  store_.note(std::move(made));
+  if (kind == vm::Restart::kCold) complain(save_retained_now());
   const std::string text = left.ok() ? std::string() : base::to_string(left.error());
   return base::Bytes(text.begin(), text.end());
 }

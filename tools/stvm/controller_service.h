@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "online_change/apply/change.h"
+#include "online_change/store/boot.h"
+#include "online_change/store/retain_keeper.h"
 #include "tools/stvm/fate_message.h"
 #include "vm/runtime/boundary.h"
 #include "vm/runtime/protocol.h"
@@ -14,14 +16,23 @@
 
 namespace stvm {
 
-inline constexpr const char* kBootRecord = "boot";  // the image that boots next
+// What a store says of the start, for status and journal.
+struct StartReport {
+  std::optional<base::Digest> trial_lost;
+  std::vector<std::string> alarms;
+};
+// ns since 1970.
+int64_t wall_time_ns();
 
 class ControllerService : public vm::Service {
  public:
-  ControllerService(vm::Controller& controller, vm::Clock& clock, vm::Storage& storage,
-                    vm::Boundary& boundary);
+  ControllerService(vm::Controller& controller, vm::Clock& clock, online_change::Store& store,
+                    vm::Boundary& boundary, StartReport start = {},
+                    online_change::RetainKeeper::WallTime wall_time = wall_time_ns);
+  void asked_by(const std::string& user) override { who_ = user; }
   base::Bytes answer(base::ByteSpan request, bool& keep_open) override;
   bool stop_wanted() const { return stop_wanted_.load(std::memory_order_relaxed); }
+  online_change::RetainKeeper& keeper() { return keeper_; }
 
  private:
   using Answer = base::Result<base::Bytes>;
@@ -63,15 +74,30 @@ class ControllerService : public vm::Service {
   base::Status make_permanent();
   uint64_t missed_releases() const;
 
+  // controller_journal.cc
+  online_change::JournalEntry entry(online_change::Event event) const;
+  // Notes it, and is the error.
+  base::Error refused(const base::Error& error);
+  // Stored as being on trial, and durable, before anything of it runs.
+  base::Status store_trial();
+  base::Status save_retained_now();
+  online_change::Snapshot empty_snapshot() const;
+  void complain(const base::Status& status);
+  void note_switch(online_change::Event event, const base::Digest& from,
+                   const online_change::SwitchReport& report, int64_t predicted_ns);
+
   vm::Controller& controller_;
   vm::Clock& clock_;
-  vm::Storage& storage_;
+  online_change::Store& store_;
   vm::Boundary& boundary_;
+  StartReport start_;
+  online_change::RetainKeeper::WallTime wall_time_;
+  online_change::RetainKeeper keeper_;
+  std::string who_;
   online_change::Change change_;
   base::Bytes upload_;
   std::optional<ir::VerifiedImage> staged_;
   std::optional<ir::VerifiedImage> previous_;  // during a trial
-  base::Digest boots_next_{};
   uint64_t edition_ = 0;
   std::atomic<bool> stop_wanted_{false};
 };

@@ -3,9 +3,10 @@
 
 int main(int argc, char** argv) {
   const tools::Entry* const entries[] = {
-      &stvm::kRun,   &stvm::kBench,   &stvm::kServe, &stvm::kStatus, &stvm::kGet,  &stvm::kSet,
-      &stvm::kForce, &stvm::kUnforce, &stvm::kWatch, &stvm::kChange, &stvm::kUndo, &stvm::kAccept,
-      &stvm::kStop,  &stvm::kRestart, &stvm::kImage, &stvm::kBridge};
+      &stvm::kRun,   &stvm::kBench,  &stvm::kServe,   &stvm::kStatus,  &stvm::kGet,
+      &stvm::kSet,   &stvm::kForce,  &stvm::kUnforce, &stvm::kWatch,   &stvm::kChange,
+      &stvm::kUndo,  &stvm::kAccept, &stvm::kStop,    &stvm::kRestart, &stvm::kJournal,
+      &stvm::kImage, &stvm::kBridge};
   return tools::dispatch("stvm", "Runs images of stc, and changes them while they run.", entries,
                          argc, argv);
 }

@@ -31,54 +31,79 @@ constexpr tools::Command kCommand{
 constexpr int64_t kLookNs = 2'000'000;
 constexpr int64_t kFaultLookNs = 10'000'000;
 
-base::Result<ir::VerifiedImage> verify_stored(base::ByteSpan bytes, const tools::Options& options) {
-  base::Result<ir::VerifiedImage> image = ir::verify(bytes);
-  if (image.ok()) return image;
-  return base::Error{image.error().refusal, "the program stored in " + state_directory(options) +
-                                                " cannot be used: " + image.error().text};
-}
-
-base::Result<ir::VerifiedImage> boot_image(const tools::Options& options, vm::Storage& storage) {
-  if (options.arguments().empty()) {
-    base::Result<base::Bytes> stored = storage.read(kBootRecord);
-    if (stored.ok()) return verify_stored(*stored, options);
-    if (stored.error().refusal != base::Refusal::kFileNotFound) return stored.error();
-    return base::Error{
-        base::Refusal::kFileNotFound,
-        state_directory(options) + " holds no program yet; name an image or sources"};
+// What runs, and the reason when it is not what was asked for.
+base::Result<online_change::Boot> boot_program(const tools::Options& options,
+                                               online_change::Store& store) {
+  std::optional<ir::VerifiedImage> given;
+  if (!options.arguments().empty()) {
+    base::Result<ir::VerifiedImage> image = load_program(sources_of(options));
+    if (!image.ok()) return image.error();
+    given = *image;
   }
-  base::Result<ir::VerifiedImage> image = load_program(sources_of(options));
-  if (!image.ok()) return image;
-  base::Status stored = storage.write(kBootRecord, image->encoded());
-  if (!stored.ok()) return stored.error();
-  return image;
+  auto boot = online_change::boot(store, given, "serve", wall_time_ns());
+  if (boot.ok()) return boot;
+  const std::string directory = state_directory(options);
+  if (boot.error().refusal == base::Refusal::kFileNotFound) {
+    return base::Error{base::Refusal::kFileNotFound,
+                       directory + " holds no program yet; name an image or sources"};
+  }
+  return base::Error{boot.error().refusal, directory + ": " + boot.error().text};
 }
 
 // Until the next cycle begins; what remains at the end is left to the clock's exact wait.
-void idle(vm::Controller& controller, vm::Clock& clock, vm::Mailbox& mailbox) {
+void idle(vm::Controller& controller, vm::Clock& clock, vm::Mailbox& mailbox,
+          online_change::RetainKeeper& keeper) {
   while (!StopSignal::received()) {
     int64_t now = clock.now_ns();
     if (controller.next_cycle_ns() - now <= kLookNs) return;
     clock.wait_until(std::min(now + kLookNs, controller.next_cycle_ns() - kLookNs));
     mailbox.serve();
+    keeper.serve(controller.next_cycle_ns() - clock.now_ns());
   }
 }
 
 void control_loop(vm::Controller& controller, vm::Clock& clock, vm::Mailbox& mailbox,
-                  const ControllerService& service) {
+                  ControllerService& service) {
+  online_change::RetainKeeper& keeper = service.keeper();
   while (!StopSignal::received() && !service.stop_wanted()) {
     controller.cycle();
     if (!controller.at_boundary()) continue;
     mailbox.serve();
+    keeper.serve(controller.next_cycle_ns() - clock.now_ns());
     if (controller.faulted()) {
       clock.wait_until(clock.now_ns() + kFaultLookNs);
     } else {
-      idle(controller, clock, mailbox);
+      idle(controller, clock, mailbox, keeper);
     }
   }
   if (!controller.at_boundary()) return;
   base::Status left = controller.leave_all(kExitLimitNs);
   if (!left.ok()) refuse(left.error());
+}
+
+// A clean end costs nothing of the retained values. In the middle of a scan there is no boundary:
+// then the last one's are stored.
+void end(vm::Controller& controller, online_change::Store& store, ControllerService& service) {
+  if (controller.at_boundary()) {
+    online_change::Snapshot last;
+    service.keeper().take(last);
+    base::Status saved = service.keeper().save(last);
+    if (!saved.ok()) refuse(saved.error());
+  }
+  online_change::JournalEntry entry;
+  entry.time_ns = wall_time_ns();
+  entry.event = online_change::Event::kStopped;
+  entry.who = "serve";
+  entry.from = controller.verified().digest();
+  store.note(std::move(entry));
+}
+
+void print_boot(const online_change::Boot& boot) {
+  for (const std::string& alarm : boot.alarms) std::fprintf(stderr, "alarm: %s\n", alarm.c_str());
+  if (!boot.trial_lost) return;
+  std::fprintf(stderr, "the trial of %s was lost; %s runs\n",
+               base::short_hex(*boot.trial_lost).c_str(),
+               base::short_hex(boot.image.digest()).c_str());
 }
 
 void print_ready(const vm::Controller& controller, const std::string& directory) {
@@ -93,8 +118,10 @@ base::Status serve(const tools::Options& options) {
   base::Result<StateFolder> folder = StateFolder::open(directory);
   if (!folder.ok()) return folder.error();
   vm::FileStorage storage(directory);
-  base::Result<ir::VerifiedImage> image = boot_image(options, storage);
-  if (!image.ok()) return image.error();
+  const std::unique_ptr<online_change::Store> store = online_change::Store::open(storage);
+  base::Result<online_change::Boot> boot = boot_program(options, *store);
+  if (!boot.ok()) return boot.error();
+  print_boot(*boot);
   vm::RealClock real_clock;
   vm::VirtualClock virtual_clock;
   vm::Clock* clock = &real_clock;
@@ -104,15 +131,18 @@ base::Status serve(const tools::Options& options) {
   base::Result<uint64_t> data_limit = options.number("--data-limit", 0);
   if (!data_limit.ok()) return data_limit.error();
   limits.data_limit = *data_limit;
-  auto controller = vm::Controller::start(*image, limits, *clock, io);
+  auto controller = vm::Controller::start(boot->image, limits, *clock, io, boot->retained);
   if (!controller.ok()) return controller.error();
   vm::Mailbox mailbox;
-  ControllerService service(**controller, *clock, storage, mailbox);
+  ControllerService service(**controller, *clock, *store, mailbox,
+                            {boot->trial_lost, boot->alarms});
   auto server = vm::SocketServer::open(directory, service);
   if (!server.ok()) return server.error();
+  service.keeper().start();
   print_ready(**controller, directory);
   control_loop(**controller, *clock, mailbox, service);
   mailbox.close();
+  end(**controller, *store, service);
   return base::Ok{};
 }
 

@@ -28,6 +28,10 @@ void print_versions(const vm::StatusReport& report) {
     std::printf("  undo brings %s\n", base::short_hex(report.previous).c_str());
   }
   std::printf("  boots next  %s\n", base::short_hex(report.boots_next).c_str());
+  if (report.trial_lost != base::Digest{}) {
+    std::printf("  trial lost  %s; the controller ended before it was accepted\n",
+                base::short_hex(report.trial_lost).c_str());
+  }
   std::printf("  change      %s\n", report.change.c_str());
   std::printf("  cycles      %llu of %s\n", static_cast<unsigned long long>(report.cycles),
               tools::duration(report.base_period_ns).c_str());
@@ -47,6 +51,7 @@ void print_text(const vm::StatusReport& report) {
                tools::duration(task.max_ns), task.stopped ? "stopped" : "ok"});
   }
   std::fputs(tasks.text().c_str(), stdout);
+  for (const std::string& alarm : report.alarms) std::printf("alarm: %s\n", alarm.c_str());
   for (const vm::TrapRow& trap : report.traps) std::printf("trap: %s\n", trap_text(trap).c_str());
 }
 
@@ -64,6 +69,12 @@ void print_json(const vm::StatusReport& report) {
   json.field("change", report.change).field("trial", on_trial(report));
   if (on_trial(report)) json.field("undo_brings", base::to_hex(report.previous));
   json.field("boots_next", base::to_hex(report.boots_next)).field("cycles", report.cycles);
+  if (report.trial_lost != base::Digest{}) {
+    json.field("trial_lost", base::to_hex(report.trial_lost));
+  }
+  json.key("alarms").begin_array();
+  for (const std::string& alarm : report.alarms) json.value(alarm);
+  json.end_array();
   json.field("uptime_ns", report.uptime_ns).field("base_period_ns", report.base_period_ns);
   json.field("faulted", report.faulted).field("forces", report.forces);
   json.key("tasks").begin_array();

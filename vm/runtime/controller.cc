@@ -18,6 +18,14 @@ base::Error read_only(std::string_view path, const char* what) {
   return {base::Refusal::kReadOnly, "`" + std::string(path) + "` is " + what};
 }
 
+void write_retained(const ir::Image& image, base::ByteSpan values, uint8_t* memory) {
+  for (const ir::RetainRange& range : image.retain) {
+    base::check(range.size <= values.size(), "retained values have the layout of their image");
+    std::memcpy(memory + range.data, values.data(), range.size);
+    values = values.subspan(range.size);
+  }
+}
+
 }  // namespace
 
 struct Controller::Impl {
@@ -46,13 +54,14 @@ Controller::~Controller() = default;
 
 base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedImage& image,
                                                             ControllerOptions options, Clock& clock,
-                                                            IoPort& io) {
+                                                            IoPort& io, base::ByteSpan retained) {
   base::Result<Memory> memory = Memory::reserve();
   if (!memory.ok()) return memory.error();
   std::unique_ptr<Controller> controller(new Controller());
   controller->impl_ = std::make_unique<Impl>(options, clock, io, std::move(*memory));
   Impl& impl = *controller->impl_;
   write_initial_data(image.image(), impl.memory.data());
+  if (!retained.empty()) write_retained(image.image(), retained, impl.memory.data());
   impl.running = Generation::build(image, 0, impl.memory.data());
   auto tables = std::make_unique<TaskTables>(*impl.running, impl.scheduler.next_cycle_ns());
   impl.scheduler.use(*tables, impl.memory.data());
@@ -84,6 +93,7 @@ std::vector<TaskStatus> Controller::tasks() const {
 }
 
 const std::vector<TrapRecord>& Controller::traps() const { return impl_->scheduler.traps(); }
+uint64_t Controller::trap_count() const { return impl_->scheduler.trap_count(); }
 
 base::Result<std::string> Controller::get(std::string_view path) const {
   base::Result<ir::Symbol> symbol = ir::find_symbol(image(), path);
@@ -197,11 +207,7 @@ void Controller::Impl::reset_data(bool retain) {
     std::memset(data + row.data, 0, image().layouts[row.type].area_capacity);
   }
   write_initial_data(image(), data);
-  const uint8_t* from = kept.data();
-  for (const ir::RetainRange& range : image().retain) {
-    if (retain) std::memcpy(data + range.data, from, range.size);
-    from += range.size;
-  }
+  if (retain) write_retained(image(), kept, data);
 }
 
 base::Status Controller::Impl::leave(const std::vector<uint32_t>& ids, bool changed,

@@ -68,10 +68,11 @@ struct Force {
 class Controller {
  public:
   // Cold start: all variables hold their initial values, and the tasks that run once have run.
-  // `clock` and `io` must outlive it.
+  // With `retained`, the bytes of the ranges of Image::retain, as at a warm start: those are in
+  // place before. `clock` and `io` must outlive it.
   static base::Result<std::unique_ptr<Controller>> start(const ir::VerifiedImage& image,
                                                          ControllerOptions options, Clock& clock,
-                                                         IoPort& io);
+                                                         IoPort& io, base::ByteSpan retained = {});
   ~Controller();
 
   // Runs one control cycle, waiting for its start first; nothing when faulted.
@@ -96,6 +97,7 @@ class Controller {
   uint64_t data_limit() const;
   std::vector<TaskStatus> tasks() const;
   const std::vector<TrapRecord>& traps() const;  // the last 32
+  uint64_t trap_count() const;                   // all that there were
 
   // Values, at a boundary. Paths as in symbols.h.
   base::Result<std::string> get(std::string_view path) const;

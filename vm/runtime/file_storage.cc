@@ -156,7 +156,8 @@ base::Status FileStorage::write(std::string_view name, uint64_t offset, base::By
 // A failed one is not tried again: the system may have forgotten what it could not write.
 base::Status FileStorage::sync(std::string_view name) {
   auto found = files_.find(name);
-  if (found == files_.end()) return failed(base::Refusal::kFileUnwritable, std::string(name), EBADF);
+  if (found == files_.end())
+    return failed(base::Refusal::kFileUnwritable, std::string(name), EBADF);
   if (::fdatasync(found->second.descriptor.get()) == 0) return base::Ok{};
   return failed(base::Refusal::kFileUnwritable, *path(name), errno);
 }

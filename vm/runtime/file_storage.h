@@ -1,5 +1,5 @@
-// Storage in the files of one directory, which must exist. Files are allocated when they are opened,
-// so a full disk is found then and not in the middle of a record.
+// Storage in the files of one directory, which must exist. Files are allocated when they are
+// opened, so a full disk is found then and not in the middle of a record.
 #pragma once
 
 #include <map>

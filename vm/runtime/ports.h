@@ -46,8 +46,7 @@ class Storage {
   // Of a file, opened or not; kFileNotFound.
   virtual base::Result<uint64_t> size(std::string_view name) = 0;
   // `size` bytes from `offset` on, fewer where the file ends.
-  virtual base::Result<base::Bytes> read(std::string_view name, uint64_t offset,
-                                         uint64_t size) = 0;
+  virtual base::Result<base::Bytes> read(std::string_view name, uint64_t offset, uint64_t size) = 0;
   // Inside the size that was opened.
   virtual base::Status write(std::string_view name, uint64_t offset, base::ByteSpan bytes) = 0;
   virtual base::Status sync(std::string_view name) = 0;

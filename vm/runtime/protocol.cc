@@ -95,6 +95,8 @@ void status_fields(A& a, T& report) {
   a(report.change);
   a(report.previous);
   a(report.boots_next);
+  a(report.trial_lost);
+  a.list(report.alarms, kTextBytes);
   a(report.cycles);
   a(report.uptime_ns);
   a(report.base_period_ns);

@@ -73,6 +73,8 @@ struct StatusReport {
   std::string change;       // state of the change; "idle"
   base::Digest previous{};  // during a trial: what undo brings back
   base::Digest boots_next{};
+  base::Digest trial_lost{};        // the program that was on trial when the last process ended
+  std::vector<std::string> alarms;  // of what is stored
   uint64_t cycles = 0;
   int64_t uptime_ns = 0;
   int64_t base_period_ns = 0;

@@ -253,6 +253,7 @@ void Scheduler::leave(TaskSlot& task) {
 }
 
 void Scheduler::trap_in(TaskSlot& task, const Trap& trap) {
+  ++trap_count_;
   if (traps_.size() == kKeptTraps) traps_.erase(traps_.begin());
   traps_.push_back({cycles_, task.status.name, trap, describe(tables_->generation->image(), trap)});
   if (leaving_) {

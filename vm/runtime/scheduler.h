@@ -32,6 +32,7 @@ class Scheduler {
   int64_t cycle_start_ns() const { return cycle_start_ns_; }
   int64_t next_cycle_ns() const { return next_cycle_ns_; }
   const std::vector<TrapRecord>& traps() const { return traps_; }
+  uint64_t trap_count() const { return trap_count_; }
 
   // At a boundary: these tables and that data from now on. They must live as long as they are used.
   void use(TaskTables& tables, uint8_t* memory);
@@ -75,6 +76,7 @@ class Scheduler {
   TaskTables* tables_ = nullptr;
   std::vector<TaskSlot*> active_;  // suspended ones, the running one last
   std::vector<TrapRecord> traps_;
+  uint64_t trap_count_ = 0;
   uint64_t cycles_ = 0;
   int64_t cycle_start_ns_ = 0;
   int64_t next_cycle_ns_ = 0;

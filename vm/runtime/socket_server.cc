@@ -1,6 +1,7 @@
 #include "vm/runtime/socket_server.h"
 
 #include <poll.h>
+#include <pwd.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -10,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <optional>
 
 #include "vm/runtime/frames.h"
 
@@ -24,6 +26,7 @@ constexpr auto kPatience = std::chrono::seconds(10);
 
 struct Connection {
   Descriptor socket;
+  std::string user;
   FrameReader in;
   base::Bytes out;
   size_t sent = 0;
@@ -66,6 +69,7 @@ bool answer_next(Connection& connection, Service& service) {
   if (connection.sending() || connection.closing) return false;
   if (std::optional<base::Bytes> request = connection.in.next()) {
     bool keep_open = true;
+    service.asked_by(connection.user);
     base::Bytes answer = service.answer(*request, keep_open);
     put_answer(connection, answer, keep_open);
     return true;
@@ -90,19 +94,30 @@ bool attend(Connection& connection, short events, Service& service) {
   return !(connection.waiting_for_peer() && idle > kPatience);
 }
 
-bool same_owner(int socket) {
+std::optional<uid_t> peer_of(int socket) {
   ucred peer{};
   socklen_t size = sizeof peer;
-  return ::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 &&
-         (peer.uid == ::geteuid() || peer.uid == 0);
+  if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return std::nullopt;
+  return peer.uid;
+}
+
+std::string user_name(uid_t id) {
+  char buffer[4096];
+  passwd entry{};
+  passwd* found = nullptr;
+  const bool known = ::getpwuid_r(id, &entry, buffer, sizeof buffer, &found) == 0 && found;
+  return known ? found->pw_name : std::to_string(id);
 }
 
 void take_connection(int listener, std::vector<Connection>& connections) {
   Descriptor socket(::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC));
-  if (!socket.valid() || !same_owner(socket.get())) return;
+  if (!socket.valid()) return;
+  const std::optional<uid_t> peer = peer_of(socket.get());
+  if (!peer || (*peer != ::geteuid() && *peer != 0)) return;
   if (connections.size() >= kMaxConnections) return;
   Connection connection;
   connection.socket = std::move(socket);
+  connection.user = user_name(*peer);
   connections.push_back(std::move(connection));
 }
 

@@ -17,6 +17,8 @@ namespace vm {
 class Service {
  public:
   virtual ~Service() = default;
+  // Before each answer(): the user at the other end, by name or as a number.
+  virtual void asked_by(const std::string& /*user*/) {}
   // On the server's thread. `keep_open` false closes the connection after the answer.
   virtual base::Bytes answer(base::ByteSpan request, bool& keep_open) = 0;
 };

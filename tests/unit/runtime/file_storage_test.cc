@@ -1,9 +1,10 @@
-// Records: all or nothing, whatever fails.
+// Files of a directory as durable storage: allocated when they are opened, never longer or elsewhere.
 #include "vm/runtime/file_storage.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -27,7 +28,7 @@ class FileStorageTest : public ::testing::Test {
   std::string directory_;
 };
 
-// Files of at most `bytes` from here on: writing beyond fails as on a full disk.
+// Files of at most `bytes` from here on: growing beyond fails as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
@@ -45,51 +46,77 @@ class FileSizeLimit {
 
 TEST_F(FileStorageTest, ReadsBackWhatWasWritten) {
   FileStorage storage(directory_);
-  EXPECT_FALSE(storage.exists("boot"));
-  EXPECT_EQ(storage.read("boot").error().refusal, base::Refusal::kFileNotFound);
-  ASSERT_TRUE(storage.write("boot", base::Bytes(100'000, 7)).ok());
-  ASSERT_TRUE(storage.write("boot", base::Bytes{1, 2, 3}).ok());
-  EXPECT_EQ(*storage.read("boot"), (base::Bytes{1, 2, 3}));
-  EXPECT_TRUE(storage.exists("boot"));
+  EXPECT_EQ(storage.size("slot_a").error().refusal, base::Refusal::kFileNotFound);
+  EXPECT_EQ(storage.read("slot_a", 0, 1).error().refusal, base::Refusal::kFileNotFound);
+  ASSERT_TRUE(storage.open("slot_a", 4096).ok());
+  EXPECT_EQ(*storage.size("slot_a"), 4096u);
+  EXPECT_EQ(*storage.read("slot_a", 0, 10), base::Bytes(10, 0));
+  ASSERT_TRUE(storage.write("slot_a", 4090, base::Bytes(6, 7)).ok());
+  ASSERT_TRUE(storage.sync("slot_a").ok());
+  EXPECT_EQ(*storage.read("slot_a", 4088, 100), (base::Bytes{0, 0, 7, 7, 7, 7, 7, 7}));
+  EXPECT_EQ(*storage.read("slot_a", 5000, 1), base::Bytes());
+  FileStorage other(directory_);  // without open(): to look at
+  EXPECT_EQ(*other.read("slot_a", 4090, 2), base::Bytes(2, 7));
+  EXPECT_FALSE(other.write("slot_a", 0, base::Bytes{1}).ok());
   EXPECT_EQ(files(), 1u);
 }
 
-TEST_F(FileStorageTest, FullDiskLeavesTheOldRecord) {
+TEST_F(FileStorageTest, GrowsAndKeepsWhatItHolds) {
   FileStorage storage(directory_);
-  ASSERT_TRUE(storage.write("boot", base::Bytes{1, 2, 3}).ok());
-  {
-    FileSizeLimit limit(1000);
-    base::Status status = storage.write("boot", base::Bytes(5000, 9));
-    ASSERT_FALSE(status.ok());
-    EXPECT_EQ(status.error().refusal, base::Refusal::kFileUnwritable);
-  }
-  EXPECT_EQ(*storage.read("boot"), (base::Bytes{1, 2, 3}));
-  EXPECT_EQ(files(), 1u) << "a half-written file is left";
+  ASSERT_TRUE(storage.open("a", 100).ok());
+  ASSERT_TRUE(storage.write("a", 0, base::Bytes{1, 2, 3}).ok());
+  ASSERT_TRUE(storage.open("a", 100'000).ok());
+  EXPECT_EQ(*storage.read("a", 0, 4), (base::Bytes{1, 2, 3, 0}));
+  ASSERT_TRUE(storage.open("a", 5).ok());
+  EXPECT_EQ(*storage.size("a"), 100'000u);
+}
+
+TEST_F(FileStorageTest, NothingIsWrittenBehindTheEnd) {
+  FileStorage storage(directory_);
+  ASSERT_TRUE(storage.open("a", 100).ok());
+  EXPECT_FALSE(storage.write("a", 95, base::Bytes(6, 1)).ok());
+  EXPECT_FALSE(storage.write("a", ~uint64_t{0}, base::Bytes(6, 1)).ok());
+  EXPECT_FALSE(storage.write("b", 0, base::Bytes(6, 1)).ok());
+  EXPECT_EQ(std::filesystem::file_size(directory_ + "/a"), 100u);
+}
+
+TEST_F(FileStorageTest, AFullDiskIsFoundWhenTheFileIsOpened) {
+  FileStorage storage(directory_);
+  ASSERT_TRUE(storage.open("a", 500).ok());
+  ASSERT_TRUE(storage.write("a", 0, base::Bytes{9}).ok());
+  FileSizeLimit limit(1000);
+  EXPECT_EQ(storage.open("b", 5000).error().refusal, base::Refusal::kFileUnwritable);
+  EXPECT_EQ(storage.open("a", 5000).error().refusal, base::Refusal::kFileUnwritable);
+  EXPECT_EQ(*storage.read("a", 0, 1), base::Bytes{9}) << "what is there stays";
+  EXPECT_TRUE(storage.write("a", 499, base::Bytes{9}).ok());
+  EXPECT_EQ(files(), 1u) << "a file without content is left";
 }
 
 TEST_F(FileStorageTest, MissingDirectoryIsAnError) {
   FileStorage storage(directory_ + "/nowhere");
-  EXPECT_EQ(storage.write("boot", base::Bytes{1}).error().refusal, base::Refusal::kFileUnwritable);
-  EXPECT_EQ(storage.read("boot").error().refusal, base::Refusal::kFileNotFound);
+  EXPECT_EQ(storage.open("boot", 1).error().refusal, base::Refusal::kFileUnwritable);
+  EXPECT_EQ(storage.read("boot", 0, 1).error().refusal, base::Refusal::kFileNotFound);
 }
 
-TEST_F(FileStorageTest, NoRecordOutsideTheDirectory) {
+TEST_F(FileStorageTest, NoFileOutsideTheDirectory) {
   FileStorage storage(directory_);
   for (const char* name : {"", "../boot", "a/b", "A", "boot.tmp", "/etc/passwd"}) {
-    EXPECT_FALSE(storage.write(name, base::Bytes{1}).ok()) << name;
-    EXPECT_FALSE(storage.read(name).ok()) << name;
-    EXPECT_FALSE(storage.exists(name)) << name;
+    EXPECT_FALSE(storage.open(name, 1).ok()) << name;
+    EXPECT_FALSE(storage.read(name, 0, 1).ok()) << name;
+    EXPECT_FALSE(storage.size(name).ok()) << name;
   }
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(FileStorageTest, WhatIsNoFileOrTooLongIsNotRead) {
-  FileStorage storage(directory_, 10);
-  std::filesystem::create_directory(directory_ + "/boot");
-  EXPECT_EQ(storage.read("boot").error().refusal, base::Refusal::kFileUnreadable);
-  EXPECT_FALSE(storage.write("boot", base::Bytes{1}).ok());
-  ASSERT_TRUE(storage.write("big", base::Bytes(11, 0)).ok());
-  EXPECT_EQ(storage.read("big").error().refusal, base::Refusal::kFileUnreadable);
+TEST_F(FileStorageTest, WhatIsNoFileIsNeitherReadNorWritten) {
+  FileStorage storage(directory_);
+  std::filesystem::create_directory(directory_ + "/folder");
+  ASSERT_EQ(::mkfifo((directory_ + "/pipe").c_str(), 0600), 0);
+  std::filesystem::create_symlink("/etc/passwd", directory_ + "/link");
+  for (const char* name : {"folder", "pipe", "link"}) {
+    EXPECT_FALSE(storage.open(name, 10).ok()) << name;
+    EXPECT_FALSE(storage.read(name, 0, 1).ok()) << name;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,136 @@
+#include "online_change/store/boot.h"
+
+#include "online_change/store/retained_values.h"
+
+namespace online_change {
+namespace {
+
+std::optional<ir::VerifiedImage> verified(const std::optional<StoredImage>& stored,
+                                          std::string& why) {
+  if (!stored) return std::nullopt;
+  base::Result<ir::VerifiedImage> image = ir::verify(stored->bytes);
+  const bool named = image.ok() && image->digest() == stored->digest;
+  if (named && retained_bytes(image->image()).ok()) return *image;
+  why = "the stored program " + base::short_hex(stored->digest) + ": " +
+        (image.ok() ? "not what it is called" : base::to_string(image.error()));
+  return std::nullopt;
+}
+
+bool fits(const ir::Image& image, const RetainRecord& record) {
+  const base::Result<uint64_t> bytes = retained_bytes(image);
+  return bytes.ok() && *bytes == record.values.size();
+}
+
+// The newest values, in the layout of `image`.
+base::Result<base::Bytes> values_for(const ir::VerifiedImage& image, const Recovered& found) {
+  const base::Error unusable{base::Refusal::kNothingBoots,
+                             "the retained values do not fit the program they are of"};
+  const RetainRecord& newest = *found.newest;
+  if (newest.image == image.digest()) {
+    if (!fits(image.image(), newest)) return unusable;
+    return newest.values;
+  }
+  std::string why;
+  const std::optional<ir::VerifiedImage> other = verified(found.other, why);
+  if (!other || other->digest() != newest.image || !fits(other->image(), newest)) return unusable;
+  if (found.before && fits(image.image(), *found.before)) {
+    return carry_retained_back(other->image(), newest.values, image.image(), found.before->values);
+  }
+  return carry_retained(other->image(), newest.values, image.image());
+}
+
+class Booting {
+ public:
+  Booting(Store& store, const std::string& who, int64_t time_ns)
+      : store_(store), who_(who), time_ns_(time_ns), found_(store.take_recovered()) {}
+
+  base::Result<Boot> run(const std::optional<ir::VerifiedImage>& given) {
+    std::string why = found_.nothing;
+    const std::optional<ir::VerifiedImage> stored = verified(found_.boots, why);
+    if (!stored && !given) return nothing(why);
+    if (given) {
+      base::Result<uint64_t> bytes = retained_bytes(given->image());
+      if (!bytes.ok()) return bytes.error();
+    }
+    const ir::VerifiedImage& first = stored ? *stored : *given;
+    Boot boot{first, initial_retained(first.image()), {}, std::move(found_.alarms)};
+    if (stored) {
+      begin_with(*stored, boot);
+    } else if (!found_.virgin) {
+      boot.alarms.push_back("cold start: " + why);
+    }
+    if (given && (!stored || given->digest() != stored->digest())) {
+      base::Status installed = install(*given, stored, boot);
+      if (!installed.ok()) return installed.error();
+    }
+    for (const std::string& alarm : boot.alarms) note(Event::kAlarm, {}, {}, alarm);
+    note(Event::kStarted, {}, boot.image.digest(), {});
+    return boot;
+  }
+
+ private:
+  void note(Event event, const base::Digest& from, const base::Digest& to, std::string text) {
+    JournalEntry entry;
+    entry.time_ns = time_ns_;
+    entry.event = event;
+    entry.who = who_;
+    entry.from = from;
+    entry.to = to;
+    entry.text = std::move(text);
+    store_.note(std::move(entry));
+  }
+
+  base::Error nothing(const std::string& why) const {
+    if (found_.virgin) return {base::Refusal::kFileNotFound, why};
+    return {base::Refusal::kNothingBoots, why};
+  }
+
+  void begin_with(const ir::VerifiedImage& image, Boot& boot) {
+    if (found_.newest) {
+      base::Result<base::Bytes> values = values_for(image, found_);
+      if (values.ok()) boot.retained = std::move(*values);
+      if (!values.ok()) boot.alarms.push_back("retained values: " + values.error().text);
+    }
+    boot.trial_lost = found_.trial_lost;
+    // Noted first: a cut in between notes it twice, not never.
+    if (boot.trial_lost) note(Event::kTrialLost, *boot.trial_lost, image.digest(), {});
+    base::Status settled = store_.settle();
+    if (!settled.ok()) boot.alarms.push_back(settled.error().text);
+  }
+
+  // Durable before it runs. The values of the program before are stored in its own layout first, so
+  // that a cut in between finds them.
+  base::Status install(const ir::VerifiedImage& given,
+                       const std::optional<ir::VerifiedImage>& stored, Boot& boot) {
+    if (stored && !store_.retained_fits()) {
+      base::Status saved = store_.save_retained(stored->digest(), 0, boot.retained);
+      if (!saved.ok()) return saved;
+    }
+    if (stored) {
+      base::Result<base::Bytes> values =
+          carry_retained(stored->image(), boot.retained, given.image());
+      boot.retained = values.ok() ? std::move(*values) : initial_retained(given.image());
+      if (!values.ok()) boot.alarms.push_back("retained values: " + values.error().text);
+    }
+    base::Status installed =
+        store_.install({given.digest(), given.encoded()}, boot.retained.size());
+    if (!installed.ok()) return installed;
+    note(Event::kInstalled, stored ? stored->digest() : base::Digest{}, given.digest(), {});
+    boot.image = given;
+    return installed;
+  }
+
+  Store& store_;
+  std::string who_;
+  int64_t time_ns_;
+  Recovered found_;
+};
+
+}  // namespace
+
+base::Result<Boot> boot(Store& store, const std::optional<ir::VerifiedImage>& given,
+                        const std::string& who, int64_t time_ns) {
+  return Booting(store, who, time_ns).run(given);
+}
+
+}  // namespace online_change

@@ -1,0 +1,27 @@
+// What a controller starts with: the program that boots, or one that it is given, and its retained
+// values, whatever the power cut or the disk has left. A lost trial is over when it returns.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ir/bytecode/verify.h"
+#include "online_change/store/store.h"
+
+namespace online_change {
+
+struct Boot {
+  ir::VerifiedImage image;
+  base::Bytes retained;                    // for Controller::start()
+  std::optional<base::Digest> trial_lost;  // the program that was on trial
+  std::vector<std::string> alarms;         // what is damaged or failed
+};
+
+// `given` replaces what is stored; the retained values follow by path and type. kFileNotFound when
+// nothing was ever stored, kNothingBoots when nothing stored can be used, kStorageFailed when
+// `given` cannot be stored. Notes in the journal what it did, at `time_ns`.
+base::Result<Boot> boot(Store& store, const std::optional<ir::VerifiedImage>& given,
+                        const std::string& who, int64_t time_ns);
+
+}  // namespace online_change

@@ -1,0 +1,224 @@
+#include "online_change/store/retained_values.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include "base/limits.h"
+#include "ir/types/handle.h"
+#include "online_change/apply/live_value.h"
+#include "online_change/diff/instance_match.h"
+#include "online_change/diff/place_moves.h"
+#include "online_change/diff/type_diff.h"
+#include "online_change/plan/area_steps.h"
+
+namespace online_change {
+namespace {
+
+// Where the bytes of data memory are among the retained ones.
+class RetainMap {
+ public:
+  struct Part {
+    uint32_t data = 0;
+    uint32_t size = 0;
+    size_t at = 0;
+  };
+
+  explicit RetainMap(const ir::Image& image) {
+    size_t at = 0;
+    for (const ir::RetainRange& range : image.retain) {
+      parts_.push_back({range.data, range.size, at});
+      at += range.size;
+    }
+    std::sort(parts_.begin(), parts_.end(),
+              [](const Part& a, const Part& b) { return a.data < b.data; });
+  }
+
+  // Calls visit(offset in data memory, bytes, place among the values) for what is retained of it.
+  template <class Visit>
+  void for_each(uint64_t data, uint64_t size, Visit visit) const {
+    auto part = std::partition_point(parts_.begin(), parts_.end(), [&](const Part& each) {
+      return uint64_t{each.data} + each.size <= data;
+    });
+    for (; part != parts_.end() && part->data < data + size; ++part) {
+      const uint64_t begin = std::max<uint64_t>(part->data, data);
+      const uint64_t end = std::min<uint64_t>(uint64_t{part->data} + part->size, data + size);
+      if (begin < end) visit(begin, end - begin, part->at + (begin - part->data));
+    }
+  }
+
+  // The place of something that is retained as a whole.
+  std::optional<size_t> find(uint64_t data, uint64_t size) const {
+    std::optional<size_t> found;
+    for_each(data, size, [&](uint64_t begin, uint64_t bytes, size_t at) {
+      if (begin == data && bytes == size) found = at;
+    });
+    return found;
+  }
+
+ private:
+  std::vector<Part> parts_;
+};
+
+class Carrier {
+ public:
+  Carrier(const ir::Image& from, base::ByteSpan values, const ir::Image& to)
+      : from_(from),
+        to_(to),
+        values_(values),
+        from_map_(from),
+        to_map_(to),
+        conversions_(from, to),
+        back_(to, from),
+        out_(initial_retained(to)),
+        carried_(out_.size(), false) {}
+
+  void keep_from(base::ByteSpan before) {
+    before_ = before;
+    out_.assign(before.begin(), before.end());
+  }
+
+  base::Result<base::Bytes> run() {
+    using Direction = TypeDiffer::Direction;
+    TypeDiffer differ(from_, to_, before_.empty() ? Direction::kForward : Direction::kBack);
+    const InstanceMatch match = match_instances(from_, to_);
+    for (uint32_t id : match.new_order) {
+      const uint32_t twin = match.old_of_new[id];
+      if (twin == kNoInstance) continue;
+      const ir::Instance& old_row = from_.instances[twin];
+      const ir::Instance& new_row = to_.instances[id];
+      const TypeDiff& diff = differ.area(old_row.type, new_row.type);
+      if (differ.failed()) {
+        return base::Error{base::Refusal::kTooMany,
+                           "the types of the retained values differ in too many pieces"};
+      }
+      for (const DiffOp& op : diff.ops) carry(op, old_row.data, new_row.data);
+    }
+    follow_references();
+    return std::move(out_);
+  }
+
+ private:
+  void carry(const DiffOp& op, uint32_t old_area, uint32_t new_area) {
+    if (op.kind == DiffKind::kSame) {
+      const bool dense = op.count == 1 || (op.from_stride == op.size && op.to_stride == op.size);
+      const uint32_t count = dense ? 1 : op.count;
+      const uint64_t size = dense ? uint64_t{op.size} * op.count : op.size;
+      for (uint32_t i = 0; i < count; ++i) {
+        copy(uint64_t{old_area} + op.from + uint64_t{i} * op.from_stride,
+             uint64_t{new_area} + op.to + uint64_t{i} * op.to_stride, size);
+      }
+    } else if (op.kind == DiffKind::kConvert) {
+      const UpdateStep step = step_for(op, StepKind::kConvert, old_area, new_area, kNoFate);
+      for (uint32_t i = 0; i < step.count; ++i) convert(step, i);
+    }
+  }
+
+  void copy(uint64_t from, uint64_t to, uint64_t size) {
+    to_map_.for_each(to, size, [&](uint64_t begin, uint64_t bytes, size_t target) {
+      from_map_.for_each(from + (begin - to), bytes, [&](uint64_t at, uint64_t n, size_t source) {
+        const size_t put = target + (at - from) - (begin - to);
+        std::memcpy(out_.data() + put, values_.data() + source, n);
+        std::fill_n(carried_.begin() + static_cast<std::ptrdiff_t>(put), n, true);
+      });
+    });
+  }
+
+  void convert(const UpdateStep& step, uint32_t index) {
+    const uint32_t old_size = conversions_.source_size(step);
+    const auto source =
+        from_map_.find(uint64_t{step.from} + uint64_t{index} * step.from_stride, old_size);
+    const auto target =
+        to_map_.find(uint64_t{step.to} + uint64_t{index} * step.to_stride, step.size);
+    if (!source || !target) return;
+    const base::ByteSpan value = values_.subspan(*source, old_size);
+    if (!before_.empty() &&
+        is_as_converted(step, index, before_.subspan(*target, step.size), value)) {
+      return;
+    }
+    (void)conversions_.convert(step, index, value.data(),
+                               std::span(out_).subspan(*target, step.size));
+    std::fill_n(carried_.begin() + static_cast<std::ptrdiff_t>(*target), step.size, true);
+  }
+
+  // Did the change make `value` of `before`, and nobody wrote it since?
+  bool is_as_converted(const UpdateStep& step, uint32_t index, base::ByteSpan before,
+                       base::ByteSpan value) const {
+    UpdateStep there = step;
+    std::swap(there.from, there.to);
+    std::swap(there.from_stride, there.to_stride);
+    std::swap(there.old_type, there.new_type);
+    there.size = static_cast<uint32_t>(value.size());
+    base::Bytes converted(value.size());
+    (void)back_.convert(there, index, before.data(), converted);
+    return std::equal(value.begin(), value.end(), converted.begin());
+  }
+
+  void follow_references() {
+    const PlaceMoves moves(from_, to_);
+    if (moves.trivial()) return;
+    for (const ReferenceLeaf& leaf : reference_leaves(to_)) {
+      uint64_t handle = 0;
+      const std::optional<size_t> at = to_map_.find(leaf.at, sizeof handle);
+      if (!at || !carried_[*at]) continue;
+      std::memcpy(&handle, out_.data() + *at, sizeof handle);
+      if (handle == 0) continue;
+      handle = moves.follow(handle, moves.target_in_new(to_, leaf.type)).handle;
+      std::memcpy(out_.data() + *at, &handle, sizeof handle);
+    }
+  }
+
+  const ir::Image& from_;
+  const ir::Image& to_;
+  base::ByteSpan values_;
+  RetainMap from_map_;
+  RetainMap to_map_;
+  Conversions conversions_;
+  Conversions back_;
+  base::ByteSpan before_;
+  base::Bytes out_;
+  std::vector<bool> carried_;  // by byte of out_
+};
+
+}  // namespace
+
+base::Bytes initial_retained(const ir::Image& image) {
+  const InitialData data(image);
+  base::Bytes out;
+  for (const ir::RetainRange& range : image.retain) {
+    out.resize(out.size() + range.size);
+    data.read(range.data, std::span(out).last(range.size));
+  }
+  return out;
+}
+
+base::Result<uint64_t> retained_bytes(const ir::Image& image) {
+  uint64_t total = 0;
+  for (const ir::RetainRange& range : image.retain) total += range.size;
+  if (total <= base::kMaxRetainBytes) return total;
+  return base::Error{base::Refusal::kTooLarge, std::to_string(total) +
+                                                   " bytes of retained variables, more than " +
+                                                   std::to_string(base::kMaxRetainBytes)};
+}
+
+void copy_retained(const ir::Image& image, const uint8_t* memory, base::Bytes& out) {
+  out.clear();
+  for (const ir::RetainRange& range : image.retain) {
+    out.insert(out.end(), memory + range.data, memory + range.data + range.size);
+  }
+}
+
+base::Result<base::Bytes> carry_retained(const ir::Image& from, base::ByteSpan values,
+                                         const ir::Image& to) {
+  return Carrier(from, values, to).run();
+}
+
+base::Result<base::Bytes> carry_retained_back(const ir::Image& from, base::ByteSpan values,
+                                              const ir::Image& to, base::ByteSpan before) {
+  Carrier carrier(from, values, to);
+  carrier.keep_from(before);
+  return carrier.run();
+}
+
+}  // namespace online_change

@@ -1,0 +1,113 @@
+#include "tests/unit/store/plc.h"
+
+#include <gtest/gtest.h>
+
+#include "base/diagnostics.h"
+#include "frontend/compile.h"
+#include "ir/bytecode/symbols.h"
+#include "ir/lower/lower.h"
+#include "linker/link.h"
+#include "online_change/package/package.h"
+
+namespace plc {
+
+ir::VerifiedImage build(const std::string& source, const ir::Image* base) {
+  base::SourceMap sources;
+  sources.add("test.st", source);
+  base::Diagnostics diagnostics;
+  std::optional<ir::Program> program = frontend::compile(sources, {}, diagnostics);
+  base::check(program.has_value(),
+              base::render(diagnostics, sources, base::DiagnosticFormat::kText, false).c_str());
+  std::vector<ir::Object> objects;
+  for (uint32_t i = 0; i < program->pous.size(); ++i) {
+    objects.push_back(*ir::lower(*program, ir::PouId(i)));
+  }
+  linker::Options options;
+  options.base = base;
+  base::Result<ir::Image> image = linker::link(*program, objects, options);
+  base::check(image.ok(), "the test program links");
+  base::Result<ir::VerifiedImage> verified = ir::verify(ir::encode(*image));
+  base::check(verified.ok(), "the test program is verified");
+  return *verified;
+}
+
+base::Status Plc::boot(const std::string& source) {
+  if (source.empty()) return boot(std::optional<ir::VerifiedImage>());
+  return boot(std::optional(build(source)));
+}
+
+base::Status Plc::boot(const std::optional<ir::VerifiedImage>& given) {
+  store_ = online_change::Store::open(storage_, {4096, 64, 64, 8});
+  auto found = online_change::boot(*store_, given, "test", 1);
+  if (!found.ok()) return found.error();
+  boot_ = std::move(*found);
+  auto controller =
+      vm::Controller::start(boot_->image, vm::ControllerOptions(), clock_, io_, boot_->retained);
+  if (!controller.ok()) return controller.error();
+  controller_ = std::move(*controller);
+  service_ = std::make_unique<stvm::ControllerService>(
+      *controller_, clock_, *store_, *this, stvm::StartReport{boot_->trial_lost, boot_->alarms},
+      [] { return int64_t{2}; });
+  service_->asked_by("tester");
+  return base::Ok{};
+}
+
+void Plc::run(int scans) {
+  for (int i = 0; i < scans; ++i) controller_->cycle();
+}
+
+std::string Plc::get(const std::string& path) const {
+  base::Result<std::string> value = controller_->get(path);
+  return value.ok() ? *value : "no " + path;
+}
+
+void Plc::set(const std::string& path, const std::string& value) {
+  base::Status status = controller_->set(path, value);
+  EXPECT_TRUE(status.ok()) << base::to_string(status.error());
+}
+
+base::Status Plc::save() {
+  online_change::Snapshot snapshot;
+  service_->keeper().take(snapshot);
+  return service_->keeper().save(snapshot);
+}
+
+vm::StatusReport Plc::status() {
+  bool keep_open = true;
+  base::Bytes answer = service_->answer(vm::encode(vm::Request{}), keep_open);
+  base::Result<base::Bytes> body = vm::decode_answer(answer);
+  base::check(body.ok(), "status is answered");
+  return *vm::decode_status(*body);
+}
+
+base::Status Plc::ask(vm::Request request) {
+  const vm::StatusReport now = status();
+  request.expected = now.running;
+  request.edition = now.edition;
+  bool keep_open = true;
+  base::Result<base::Bytes> body =
+      vm::decode_answer(service_->answer(vm::encode(request), keep_open));
+  if (!body.ok()) return body.error();
+  return base::Ok{};
+}
+
+base::Status Plc::change(const std::string& source, uint32_t flags) {
+  return change(build(source, &controller_->image()), flags);
+}
+
+base::Status Plc::change(const ir::VerifiedImage& next, uint32_t flags) {
+  auto package = online_change::make_package(controller_->verified().encoded(), next.encoded());
+  base::check(package.ok(), "the package is made");
+  vm::Request upload{.command = vm::Command::kUpload};
+  upload.data = online_change::encode(*package);
+  vm::Request stage{.command = vm::Command::kStage};
+  stage.digest = base::sha256(upload.data);
+  vm::Request change{.command = vm::Command::kSwitch};
+  change.flags = flags | vm::kAllowOverrun;
+  base::Status done = ask(std::move(upload));
+  if (done.ok()) done = ask(std::move(stage));
+  if (done.ok()) done = ask(std::move(change));
+  return done;
+}
+
+}  // namespace plc

@@ -1,0 +1,61 @@
+// A controller as `stvm serve` makes it, in one thread on a storage of the test: it boots, answers
+// requests, is changed, and comes back after a cut.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "online_change/store/boot.h"
+#include "tools/stvm/controller_service.h"
+#include "vm/runtime/clocks.h"
+#include "vm/runtime/io.h"
+
+namespace plc {
+
+// Compiled, linked against `base` when there is one, verified.
+ir::VerifiedImage build(const std::string& source, const ir::Image* base = nullptr);
+
+class Plc : public vm::Boundary {
+ public:
+  explicit Plc(vm::Storage& storage) : storage_(storage) {}
+
+  // With a source it is given that program, as on the command line.
+  base::Status boot(const std::string& source = {});
+  base::Status boot(const std::optional<ir::VerifiedImage>& given);
+
+  void run(int scans);
+  std::string get(const std::string& path) const;
+  void set(const std::string& path, const std::string& value);
+  // The retained values of now are durable.
+  base::Status save();
+
+  base::Status change(const std::string& source, uint32_t flags = vm::kAllowLoss);
+  base::Status change(const ir::VerifiedImage& next, uint32_t flags = vm::kAllowLoss);
+  base::Status undo() { return ask(vm::Command::kUndo); }
+  base::Status accept() { return ask(vm::Command::kAccept); }
+  base::Status ask(vm::Command command) { return ask(vm::Request{.command = command}); }
+  base::Status ask(vm::Request request);
+  vm::StatusReport status();
+
+  vm::Controller& controller() { return *controller_; }
+  online_change::Store& store() { return *store_; }
+  const online_change::Boot& found() const { return *boot_; }
+
+ private:
+  Outcome run(const std::function<void()>& job, int64_t) override {
+    job();
+    return Outcome::kDone;
+  }
+  void pause(int64_t) override { controller_->cycle(); }
+
+  vm::Storage& storage_;
+  vm::VirtualClock clock_;
+  vm::NullIo io_;
+  std::unique_ptr<online_change::Store> store_;
+  std::optional<online_change::Boot> boot_;
+  std::unique_ptr<vm::Controller> controller_;
+  std::unique_ptr<stvm::ControllerService> service_;
+};
+
+}  // namespace plc

@@ -1,0 +1,90 @@
+// What the serving controller stores around a change, and what it writes into its journal.
+#include <algorithm>
+#include <chrono>
+
+#include "online_change/store/retained_values.h"
+#include "tools/stvm/controller_service.h"
+
+namespace stvm {
+
+using online_change::Event;
+using online_change::JournalEntry;
+
+int64_t wall_time_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+// From what runs to what is staged.
+JournalEntry ControllerService::entry(Event event) const {
+  JournalEntry entry;
+  entry.time_ns = wall_time_();
+  entry.event = event;
+  entry.who = who_;
+  entry.from = controller_.verified().digest();
+  if (staged_) entry.to = staged_->digest();
+  return entry;
+}
+
+base::Error ControllerService::refused(const base::Error& error) {
+  JournalEntry refusal = entry(Event::kRefused);
+  refusal.text = base::to_string(error);
+  store_.note(std::move(refusal));
+  return error;
+}
+
+void ControllerService::note_switch(Event event, const base::Digest& from,
+                                    const online_change::SwitchReport& report,
+                                    int64_t predicted_ns) {
+  JournalEntry done = entry(event);
+  done.from = from;
+  done.to = controller_.verified().digest();
+  done.counts = report.counts;
+  done.predicted_ns = predicted_ns;
+  done.measured_ns = report.pause_ns;
+  done.cycle = report.cycle_after;
+  store_.note(std::move(done));
+}
+
+// Of the running program or the staged one: room for either.
+online_change::Snapshot ControllerService::empty_snapshot() const {
+  online_change::Snapshot out;
+  uint64_t most = 0;
+  for (const ir::Image* image : {&controller_.image(), staged_ ? &staged_->image() : nullptr,
+                                 previous_ ? &previous_->image() : nullptr}) {
+    if (image == nullptr) continue;
+    const base::Result<uint64_t> bytes = online_change::retained_bytes(*image);
+    if (bytes.ok()) most = std::max(most, *bytes);
+  }
+  out.values.reserve(most);
+  return out;
+}
+
+base::Status ControllerService::save_retained_now() {
+  online_change::Snapshot now = empty_snapshot();
+  base::Status taken = at_boundary([&] { keeper_.take(now); });
+  return taken.ok() ? keeper_.save(now) : taken;
+}
+
+base::Status ControllerService::store_trial() {
+  if (!staged_) return base::Error{base::Refusal::kBusy, "no change is staged"};
+  const base::Result<uint64_t> bytes = online_change::retained_bytes(staged_->image());
+  if (!bytes.ok()) return bytes.error();
+  keeper_.expect_bytes(*bytes);
+  if (!store_.retained_fits()) {
+    base::Status saved = save_retained_now();
+    if (!saved.ok()) return saved;
+  }
+  return store_.begin_trial({staged_->digest(), staged_->encoded()}, *bytes);
+}
+
+// The program runs as it was asked to, only the disk does not follow: status shows that.
+void ControllerService::complain(const base::Status& status) {
+  if (status.ok()) return;
+  JournalEntry alarm = entry(Event::kAlarm);
+  alarm.text = status.error().text;
+  store_.note(std::move(alarm));
+}
+
+}  // namespace stvm

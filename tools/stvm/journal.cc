@@ -1,0 +1,126 @@
+// stvm journal: what happened to a controller, from its state directory; it need not run.
+#include <cstdio>
+#include <ctime>
+
+#include "online_change/store/store.h"
+#include "tools/common/exit.h"
+#include "tools/common/fate_report.h"
+#include "tools/common/json.h"
+#include "tools/stvm/commands.h"
+#include "vm/runtime/file_storage.h"
+
+namespace stvm {
+namespace {
+
+using online_change::Event;
+using online_change::JournalEntry;
+
+constexpr tools::OptionRow kOptions[] = {STVM_DIR_OPTION, STVM_FORMAT_OPTION};
+constexpr tools::Command kCommand{
+    "journal", "", "Shows who changed what and when, power cuts, and traps; oldest first.",
+    kOptions,  0,  0};
+
+// Both rings, by time; what has the same time stays in its own order.
+base::Result<std::vector<JournalEntry>> entries_in(const std::string& directory) {
+  vm::FileStorage storage(directory);
+  auto entries = online_change::read_journal(storage, online_change::kJournalFile);
+  if (!entries.ok()) return entries.error();
+  auto traps = online_change::read_journal(storage, online_change::kTrapsFile);
+  if (!traps.ok()) return traps.error();
+  std::vector<JournalEntry> all;
+  auto trap = traps->begin();
+  for (JournalEntry& entry : *entries) {
+    while (trap != traps->end() && trap->time_ns <= entry.time_ns) {
+      all.push_back(std::move(*trap++));
+    }
+    all.push_back(std::move(entry));
+  }
+  all.insert(all.end(), std::make_move_iterator(trap), std::make_move_iterator(traps->end()));
+  return all;
+}
+
+// "2026-03-01T08:00:00.123Z"
+std::string time_text(int64_t time_ns) {
+  const auto seconds = static_cast<std::time_t>(time_ns / 1'000'000'000);
+  std::tm parts{};
+  char text[64];
+  if (time_ns < 0 || ::gmtime_r(&seconds, &parts) == nullptr) return std::to_string(time_ns);
+  size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
+  std::snprintf(text + length, sizeof text - length, ".%03dZ",
+                static_cast<int>(time_ns / 1'000'000 % 1000));
+  return text;
+}
+
+std::string version_text(const JournalEntry& entry) {
+  const base::Digest none{};
+  std::string out;
+  if (entry.from != none) out += " " + base::short_hex(entry.from);
+  if (entry.from != none && entry.to != none) out += " ->";
+  if (entry.to != none) out += " " + base::short_hex(entry.to);
+  return out;
+}
+
+// Nothing in a file may speak to a terminal.
+std::string printable(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  }
+  return text;
+}
+
+void print_text(const std::vector<JournalEntry>& entries) {
+  for (const JournalEntry& entry : entries) {
+    std::string line = time_text(entry.time_ns) + "  " + event_name(entry.event);
+    line += version_text(entry);
+    if (!entry.who.empty()) line += "  by " + printable(entry.who);
+    if (entry.counts.total() != 0) {
+      const online_change::FateCounts& n = entry.counts;
+      line += "  " + std::to_string(n.kept) + " kept, " + std::to_string(n.moved) + " moved, " +
+              std::to_string(n.converted) + " converted, " + std::to_string(n.initialised) +
+              " initialised, " + std::to_string(n.dropped) + " dropped";
+    }
+    if (entry.measured_ns != 0) line += "  pause " + tools::duration(entry.measured_ns);
+    if (entry.predicted_ns != 0) line += "  expected " + tools::duration(entry.predicted_ns);
+    if (entry.event == Event::kTrap) line += "  cycle " + std::to_string(entry.cycle);
+    if (!entry.text.empty()) line += "  " + printable(entry.text);
+    std::printf("%s\n", line.c_str());
+  }
+}
+
+void print_json(const std::vector<JournalEntry>& entries) {
+  tools::JsonWriter json;
+  json.begin_array();
+  for (const JournalEntry& entry : entries) {
+    json.begin_object().field("time", time_text(entry.time_ns)).field("time_ns", entry.time_ns);
+    json.field("event", event_name(entry.event)).field("who", entry.who);
+    json.field("from", base::to_hex(entry.from)).field("to", base::to_hex(entry.to));
+    json.key("fates").begin_object().field("kept", entry.counts.kept);
+    json.field("moved", entry.counts.moved).field("converted", entry.counts.converted);
+    json.field("initialised", entry.counts.initialised).field("dropped", entry.counts.dropped);
+    json.end_object().field("predicted_pause_ns", entry.predicted_ns);
+    json.field("pause_ns", entry.measured_ns).field("cycle", entry.cycle);
+    json.field("text", entry.text).end_object();
+  }
+  json.end_array();
+  std::fputs(json.finish().c_str(), stdout);
+}
+
+base::Status show(const tools::Options& options) {
+  base::Result<bool> json = wants_json(options);
+  if (!json.ok()) return json.error();
+  auto entries = entries_in(state_directory(options));
+  if (!entries.ok()) return entries.error();
+  (*json ? print_json : print_text)(*entries);
+  return base::Ok{};
+}
+
+int run(const tools::Options& options) {
+  base::Status shown = show(options);
+  return shown.ok() ? tools::kOk : refuse(shown.error());
+}
+
+}  // namespace
+
+const Entry kJournal{&kCommand, run};
+
+}  // namespace stvm
