@@ -34,23 +34,15 @@ Store::Store(vm::Storage& storage, StoreSizes sizes)
       slots_(storage, RecordKind::kImage, {"slot_a", "slot_b"}),
       retained_(storage, RecordKind::kRetain, {"retain_0", "retain_1", "retain_2"}),
       journal_(storage, kJournalFile, sizes.journal_entries),
-      traps_(storage, kTrapsFile, sizes.trap_entries) {}
-
-std::unique_ptr<Store> Store::open(vm::Storage& storage, StoreSizes sizes) {
-  std::unique_ptr<Store> store(new Store(storage, sizes));
-  store->recover();
-  return store;
-}
-
-// --- recovery ---------------------------------------------------------------------
-
-void Store::recover() {
+      traps_(storage, kTrapsFile, sizes.trap_entries) {
   recover_control();
   recover_images();
   recover_retained();
   journal_.recover();
   traps_.recover();
 }
+
+// --- recovery ---------------------------------------------------------------------
 
 void Store::recover_control() {
   control_copies_.recover(encode(ControlRecord{}).size());

@@ -11,7 +11,6 @@
 // Thread-safe. Never called by the control thread: every operation waits for the disk.
 #pragma once
 
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -54,7 +53,7 @@ struct Recovered {
 class Store {
  public:
   // Recovers; changes nothing of what is stored. Failing storage gives alarms, not an error.
-  static std::unique_ptr<Store> open(vm::Storage& storage, StoreSizes sizes = {});
+  explicit Store(vm::Storage& storage, StoreSizes sizes = {});
 
   // To be taken once.
   Recovered take_recovered() { return std::move(recovered_); }
@@ -88,8 +87,6 @@ class Store {
     bool trial = false;
   };
 
-  Store(vm::Storage& storage, StoreSizes sizes);
-  void recover();
   void recover_control();
   void recover_images();
   void recover_retained();

@@ -118,8 +118,8 @@ base::Status serve(const tools::Options& options) {
   base::Result<StateFolder> folder = StateFolder::open(directory);
   if (!folder.ok()) return folder.error();
   vm::FileStorage storage(directory);
-  const std::unique_ptr<online_change::Store> store = online_change::Store::open(storage);
-  base::Result<online_change::Boot> boot = boot_program(options, *store);
+  online_change::Store store(storage);
+  base::Result<online_change::Boot> boot = boot_program(options, store);
   if (!boot.ok()) return boot.error();
   print_boot(*boot);
   vm::RealClock real_clock;
@@ -134,15 +134,14 @@ base::Status serve(const tools::Options& options) {
   auto controller = vm::Controller::start(boot->image, limits, *clock, io, boot->retained);
   if (!controller.ok()) return controller.error();
   vm::Mailbox mailbox;
-  ControllerService service(**controller, *clock, *store, mailbox,
-                            {boot->trial_lost, boot->alarms});
+  ControllerService service(**controller, *clock, store, mailbox, {boot->trial_lost, boot->alarms});
   auto server = vm::SocketServer::open(directory, service);
   if (!server.ok()) return server.error();
   service.keeper().start();
   print_ready(**controller, directory);
   control_loop(**controller, *clock, mailbox, service);
   mailbox.close();
-  end(**controller, *store, service);
+  end(**controller, store, service);
   return base::Ok{};
 }
 

@@ -115,7 +115,7 @@ TEST_F(FileStorageTest, WhatIsNoFileIsNeitherReadNorWritten) {
   std::filesystem::create_symlink("/etc/passwd", directory_ + "/link");
   for (const char* name : {"folder", "pipe", "link"}) {
     EXPECT_FALSE(storage.open(name, 10).ok()) << name;
-    EXPECT_FALSE(storage.read(name, 0, 1).ok()) << name;
+    EXPECT_EQ(storage.read(name, 0, 1).error().refusal, base::Refusal::kFileUnreadable) << name;
   }
 }
 

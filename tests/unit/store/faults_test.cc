@@ -192,7 +192,7 @@ TEST(Damage, OneControlRecordIsMadeWholeFromTheOther) {
 
 TEST(Damage, case57_TheLayoutOfTheRetainedValuesStaysUntilNewOnesAreDurable) {
   sim::SimStorage disk = lived_on();
-  std::unique_ptr<online_change::Store> store = online_change::Store::open(disk, small());
+  auto store = std::make_unique<online_change::Store>(disk, small());
   ASSERT_TRUE(store->settle().ok());
   ASSERT_TRUE(store->begin_trial(program(2), 10).ok());
   ASSERT_TRUE(store->accept().ok());

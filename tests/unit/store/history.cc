@@ -50,7 +50,7 @@ online_change::StoreSizes small() { return {500, 16, kNotes, 2}; }
 // --- what is found ------------------------------------------------------------------
 
 std::string History::open() {
-  store_ = online_change::Store::open(disk_, small());
+  store_ = std::make_unique<online_change::Store>(disk_, small());
   found_ = store_->take_recovered();
   std::string wrong = check_program();
   if (wrong.empty()) wrong = check_trial();

@@ -37,7 +37,8 @@ base::Status Plc::boot(const std::string& source) {
 }
 
 base::Status Plc::boot(const std::optional<ir::VerifiedImage>& given) {
-  store_ = online_change::Store::open(storage_, {4096, 64, 64, 8});
+  store_ =
+      std::make_unique<online_change::Store>(storage_, online_change::StoreSizes{4096, 64, 64, 8});
   auto found = online_change::boot(*store_, given, "test", 1);
   if (!found.ok()) return found.error();
   boot_ = std::move(*found);

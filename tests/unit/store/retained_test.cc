@@ -1,4 +1,4 @@
-// D4, X2, cases 16, 55 and 57: retained values over power cuts, in the same program, another one,
+// D4, X5, cases 16, 55 and 57: retained values over power cuts, in the same program, another one,
 // and the one before.
 #include "online_change/store/retained_values.h"
 
@@ -251,11 +251,31 @@ TEST_F(Carried, A17_BothVersionsAreStoredUntilOneIsFinal) {
   const base::Digest new_version = plc_->status().running;
   ASSERT_TRUE(plc_->accept().ok());
   EXPECT_EQ(plc_->status().boots_next, new_version);
-  online_change::Recovered found =
-      online_change::Store::open(disk_, {4096, 64, 64, 8})->take_recovered();
+  online_change::Recovered found = online_change::Store(disk_, {4096, 64, 64, 8}).take_recovered();
   ASSERT_TRUE(found.boots && found.other);
   EXPECT_EQ(found.boots->digest, new_version);
   EXPECT_EQ(found.other->digest, old_version);
+}
+
+TEST_F(Carried, case56_NothingThatCanRunIsAReasonAndANewProgramAnAlarm) {
+  begin(program("v : INT := 1;"));
+  plc_->set("v", "9");
+  ASSERT_TRUE(plc_->save().ok());
+  cut();
+  for (size_t file = 0; file < disk_.names().size(); ++file) {
+    if (!disk_.names()[file].starts_with("slot")) continue;
+    disk_.content(file)[600] ^= 1;
+    disk_.settle(file);
+  }
+  EXPECT_EQ(plc_->boot().error().refusal, base::Refusal::kNothingBoots);
+  ASSERT_TRUE(plc_->boot(program("v : INT := 1;")).ok());
+  EXPECT_FALSE(plc_->status().alarms.empty());
+  EXPECT_EQ(plc_->get("v"), "1");
+}
+
+TEST_F(Carried, AnEmptyFolderHasNothingToBoot) {
+  plc_ = std::make_unique<Plc>(disk_);
+  EXPECT_EQ(plc_->boot().error().refusal, base::Refusal::kFileNotFound);
 }
 
 TEST_F(Carried, AProgramWithTooMuchToRetainIsRefused) {
