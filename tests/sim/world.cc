@@ -59,13 +59,15 @@ void World::boot(const ir::VerifiedImage& image) {
   vm::ControllerOptions options;
   options.fuel_budget = 20'000'000;
   options.on_trap = vm::TrapPolicy::kStopTask;
+  store_ = std::make_unique<online_change::Store>(disk_);
+  require(online_change::boot(*store_, image, "sim", 0).ok(), "the program is stored");
   auto controller = vm::Controller::start(image, options, clock_, devices_);
   require(controller.ok(), "the program starts");
   controller_ = std::move(*controller);
   boundary_ = std::make_unique<SteppedBoundary>(*controller_, clock_);
   boundary_->on_switch([this](const Snapshot& a, const Snapshot& b) { switched(a, b); });
   boundary_->on_cycle([this] { ++tally_.cycles; });
-  service_ = std::make_unique<stvm::ControllerService>(*controller_, clock_, storage_, *boundary_);
+  service_ = std::make_unique<stvm::ControllerService>(*controller_, clock_, *store_, *boundary_);
 }
 
 void World::switched(const Snapshot& before, const Snapshot& now) {

@@ -15,6 +15,7 @@
 #include "tests/golden/runner/compile.h"
 #include "tests/sim/faulty_transport.h"
 #include "tests/sim/stepped_boundary.h"
+#include "tests/unit/store/sim_storage.h"
 #include "tools/stvm/controller_client.h"
 #include "tools/stvm/controller_service.h"
 #include "vm/runtime/io.h"
@@ -80,21 +81,8 @@ class World {
   Tally tally_;
   vm::VirtualClock clock_;
   vm::SimulatedIo devices_;
-  class Records : public vm::Storage {
-   public:
-    base::Result<base::Bytes> read(std::string_view name) override {
-      return records_[std::string(name)];
-    }
-    base::Status write(std::string_view name, base::ByteSpan bytes) override {
-      records_[std::string(name)].assign(bytes.begin(), bytes.end());
-      return base::Ok{};
-    }
-    bool exists(std::string_view name) override { return records_.contains(std::string(name)); }
-
-   private:
-    std::map<std::string, base::Bytes> records_;
-  };
-  Records storage_;
+  SimStorage disk_;
+  std::unique_ptr<online_change::Store> store_;
   std::unique_ptr<vm::Controller> controller_;
   std::unique_ptr<SteppedBoundary> boundary_;
   std::unique_ptr<stvm::ControllerService> service_;

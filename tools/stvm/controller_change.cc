@@ -105,7 +105,7 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   staged_ = image_of(package);
   online_change::JournalEntry done = entry(online_change::Event::kStaged);
   done.counts = change_.plan().counts;
-  done.predicted_ns = change_.predicted_pause_ns();
+  done.predicted_ns = change_.plan().predicted_pause_ns;
   store_.note(std::move(done));
   base::ByteWriter answer;
   answer.u64(++edition_);
@@ -261,8 +261,11 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   base::Status armed = configure(allow_overrun);
   if (!armed.ok()) return armed.error();
   uint64_t missed_before = 0;
-  base::Status taken = at_boundary(
-      [&] { armed = change_.arm((request.flags & vm::kAllowLoss) != 0, allow_overrun); });
+  int64_t predicted_ns = 0;
+  base::Status taken = at_boundary([&] {
+    armed = change_.arm((request.flags & vm::kAllowLoss) != 0, allow_overrun);
+    predicted_ns = change_.predicted_pause_ns();
+  });
   if (!taken.ok()) return taken.error();
   if (!armed.ok()) return refused(armed.error());
   base::Status stored = store_trial();
@@ -283,8 +286,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   }
   previous_ = std::move(running);
   ++edition_;
-  note_switch(online_change::Event::kSwitched, previous_->digest(), *report,
-              change_.predicted_pause_ns());
+  note_switch(online_change::Event::kSwitched, previous_->digest(), *report, predicted_ns);
   staged_.reset();
   if ((request.flags & vm::kPermanent) != 0) {
     base::Status permanent = make_permanent();
