@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/limits.h"
+#include "ir/bytecode/renames.h"
 #include "ir/types/handle.h"
 #include "online_change/apply/live_value.h"
 #include "online_change/diff/instance_match.h"
@@ -63,7 +64,8 @@ class RetainMap {
 
 class Carrier {
  public:
-  Carrier(const ir::Image& from, base::ByteSpan values, const ir::Image& to)
+  // `out`: what the values of `to` are where nothing is carried over.
+  Carrier(const ir::Image& from, base::ByteSpan values, const ir::Image& to, base::Bytes out)
       : from_(from),
         to_(to),
         values_(values),
@@ -71,17 +73,15 @@ class Carrier {
         to_map_(to),
         conversions_(from, to),
         back_(to, from),
-        out_(initial_retained(to)),
+        out_(std::move(out)),
         carried_(out_.size(), false) {}
 
-  void keep_from(base::ByteSpan before) {
-    before_ = before;
-    out_.assign(before.begin(), before.end());
-  }
+  void go_back_to(base::ByteSpan before) { before_ = before; }
 
   base::Result<base::Bytes> run() {
     using Direction = TypeDiffer::Direction;
-    TypeDiffer differ(from_, to_, before_.empty() ? Direction::kForward : Direction::kBack);
+    const Direction direction = before_.empty() ? Direction::kForward : Direction::kBack;
+    TypeDiffer differ(from_, to_, direction, false);
     const InstanceMatch match = match_instances(from_, to_);
     for (uint32_t id : match.new_order) {
       const uint32_t twin = match.old_of_new[id];
@@ -211,13 +211,15 @@ void copy_retained(const ir::Image& image, const uint8_t* memory, base::Bytes& o
 
 base::Result<base::Bytes> carry_retained(const ir::Image& from, base::ByteSpan values,
                                          const ir::Image& to) {
-  return Carrier(from, values, to).run();
+  const ir::OldUnderNewNames old(from, to);
+  return Carrier(old.image(), values, to, initial_retained(to)).run();
 }
 
 base::Result<base::Bytes> carry_retained_back(const ir::Image& from, base::ByteSpan values,
                                               const ir::Image& to, base::ByteSpan before) {
-  Carrier carrier(from, values, to);
-  carrier.keep_from(before);
+  const ir::OldUnderNewNames old(to, from);
+  Carrier carrier(from, values, old.image(), base::Bytes(before.begin(), before.end()));
+  carrier.go_back_to(before);
   return carrier.run();
 }
 

@@ -178,6 +178,26 @@ TEST_F(Carried, ReferencesFollowWhatTheyLeadTo) {
   EXPECT_EQ(plc_->get("x[2]"), "9");
 }
 
+TEST_F(Carried, X2_RenamedVariablesKeepThemBothWays) {
+  begin(program("speed : DINT;"));
+  plc_->set("speed", "70000");
+  const std::string renamed = program("{renamed from := 'speed'} velocity : INT; x : INT;");
+  ASSERT_TRUE(plc_->change(renamed).ok());
+  EXPECT_EQ(plc_->get("velocity"), "32767");
+  cut();
+  ASSERT_TRUE(plc_->boot().ok());
+  EXPECT_EQ(plc_->get("speed"), "70000") << "nobody wrote it during the trial";
+  ASSERT_TRUE(plc_->change(renamed).ok());
+  plc_->set("velocity", "12");
+  ASSERT_TRUE(plc_->save().ok());
+  cut();
+  ASSERT_TRUE(plc_->boot().ok());
+  EXPECT_EQ(plc_->get("speed"), "12");
+  plc_->set("speed", "13");
+  boot_with(renamed);
+  EXPECT_EQ(plc_->get("velocity"), "13");
+}
+
 // Retained values are in place before anything of the program runs; then it starts as at a warm
 // restart.
 TEST_F(Carried, StartCodeFindsThem) {
