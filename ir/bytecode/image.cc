@@ -216,6 +216,17 @@ base::Result<Image> decode(base::ByteSpan bytes) {
   return image;
 }
 
+size_t layout_end(base::ByteSpan encoded) {
+  constexpr uint32_t kFirstOfProgram = 4;
+  size_t end = std::min(kHeaderBytes, encoded.size());
+  base::ByteReader in(encoded.subspan(end));
+  for (uint32_t number = 0; number < kFirstOfProgram && !in.failed(); ++number) {
+    in.u32();
+    end += 8 + in.blob().size();
+  }
+  return in.failed() ? encoded.size() : end;
+}
+
 bool has_image_magic(base::ByteSpan bytes) {
   return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
 }

@@ -165,6 +165,9 @@ uint32_t initial_id(const Image& image, uint32_t slot);
 base::Bytes encode(const Image& image);
 // Checks form only (V1, V2); what runs must go through verify().
 base::Result<Image> decode(base::ByteSpan bytes);
+// Where the layout of an encoded image (program facts, types, initial values, offsets) ends and its
+// program (POUs, code, tables, data) begins; its size when it is cut off before.
+size_t layout_end(base::ByteSpan encoded);
 // Does the file begin as an image does? For tools that take images and sources.
 bool has_image_magic(base::ByteSpan bytes);
 // The digest in the header: the name of this version everywhere.

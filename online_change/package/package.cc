@@ -1,5 +1,7 @@
 #include "online_change/package/package.h"
 
+#include <array>
+
 #include "base/limits.h"
 #include "ir/bytecode/verify.h"
 
@@ -9,10 +11,12 @@ namespace {
 using base::ByteReader;
 using base::ByteWriter;
 
-// Header: magic, version, bytes that follow the header, their SHA-256.
+// Header: magic, version, of each part its bytes and their SHA-256; then the parts. Layout and
+// program together are the image.
 constexpr uint32_t kMagic = 0x47504353;  // "SCPG"
-constexpr uint32_t kVersion = 1;
-constexpr size_t kHeaderBytes = 4 + 4 + 4 + 32;
+constexpr uint32_t kVersion = 2;
+constexpr const char* kPartNames[] = {"layout", "program", "commands"};
+constexpr size_t kParts = std::size(kPartNames);
 constexpr size_t kMinRowBytes = 1 + 3 * 4 + 1 + 4 + 8;
 constexpr size_t kMinStepBytes = 2 + 9 * 4 + 4;
 constexpr uint32_t kFateKinds = 5;
@@ -109,20 +113,52 @@ base::Error bad_format(const std::string& what) {
   return {base::Refusal::kBadFormat, "change package: " + what};
 }
 
+using Parts = std::array<base::ByteSpan, kParts>;
+
+// Each part as its header says, and nothing behind the last.
+base::Result<Parts> split(ByteReader& in) {
+  std::array<uint32_t, kParts> lengths{};
+  std::array<base::Digest, kParts> stored{};
+  uint64_t total = 0;
+  for (size_t i = 0; i < kParts; ++i) {
+    total += lengths[i] = in.u32();
+    stored[i] = read_digest(in);
+  }
+  if (total > base::kMaxImageBytes) {
+    return base::Error{base::Refusal::kTooLarge, "change package of " + std::to_string(total) +
+                                                     " bytes; the limit is " +
+                                                     std::to_string(base::kMaxImageBytes)};
+  }
+  if (in.failed() || total != in.left()) return bad_format("has another length than it says");
+  Parts parts;
+  for (size_t i = 0; i < kParts; ++i) {
+    parts[i] = in.raw(lengths[i]);
+    if (base::sha256(parts[i]) == stored[i]) continue;
+    return base::Error{base::Refusal::kBadHash,
+                       std::string("change package: the checksum of its ") + kPartNames[i] +
+                           " part does not match"};
+  }
+  return parts;
+}
+
 }  // namespace
 
 base::Bytes encode(const Package& package) {
-  ByteWriter body;
-  body.raw(package.base);
-  body.blob(package.image);
-  write_plan(body, package.forward);
-  write_plan(body, package.inverse);
+  ByteWriter commands;
+  commands.raw(package.base);
+  write_plan(commands, package.forward);
+  write_plan(commands, package.inverse);
+  const base::ByteSpan image = package.image;
+  const size_t layout = ir::layout_end(image);
+  const Parts parts = {image.first(layout), image.subspan(layout), commands.bytes()};
   ByteWriter out;
   out.u32(kMagic);
   out.u32(kVersion);
-  out.u32(static_cast<uint32_t>(body.size()));
-  out.raw(base::sha256(body.bytes()));
-  out.raw(body.bytes());
+  for (const base::ByteSpan part : parts) {
+    out.u32(static_cast<uint32_t>(part.size()));
+    out.raw(base::sha256(part));
+  }
+  for (const base::ByteSpan part : parts) out.raw(part);
   return out.take();
 }
 
@@ -131,24 +167,17 @@ base::Result<Package> decode(base::ByteSpan bytes) {
   if (in.u32() != kMagic) return bad_format("does not begin like one");
   uint32_t version = in.u32();
   if (version != kVersion) return bad_format("has version " + std::to_string(version));
-  uint32_t length = in.u32();
-  if (length > base::kMaxImageBytes) {
-    return base::Error{base::Refusal::kTooLarge, "change package of " + std::to_string(length) +
-                                                     " bytes; the limit is " +
-                                                     std::to_string(base::kMaxImageBytes)};
-  }
-  base::Digest stored = read_digest(in);
-  if (in.failed() || length != in.left()) return bad_format("has another length than it says");
-  if (base::sha256(bytes.subspan(kHeaderBytes)) != stored) {
-    return base::Error{base::Refusal::kBadHash, "change package: content hash does not match"};
-  }
+  base::Result<Parts> parts = split(in);
+  if (!parts.ok()) return parts.error();
+  const auto& [layout, program, commands] = *parts;
   Package package;
-  package.base = read_digest(in);
-  base::ByteSpan image = in.blob();
-  package.image.assign(image.begin(), image.end());
-  package.forward = read_plan(in);
-  package.inverse = read_plan(in);
-  if (!in.done()) return bad_format("has a damaged plan");
+  package.image.assign(layout.begin(), layout.end());
+  package.image.insert(package.image.end(), program.begin(), program.end());
+  ByteReader plans(commands);
+  package.base = read_digest(plans);
+  package.forward = read_plan(plans);
+  package.inverse = read_plan(plans);
+  if (!plans.done()) return bad_format("has a damaged plan");
   return package;
 }
 

@@ -18,7 +18,9 @@ struct Package {
 };
 
 base::Bytes encode(const Package& package);
-// Checks form and checksum; consistency with the images is check_package().
+// In three parts: layout, program (together the image), commands. All three checksums are verified
+// before anything of them is used (C4): kBadHash names the part. Consistency with the images is
+// check_package().
 base::Result<Package> decode(base::ByteSpan bytes);
 // V17: copies in range and inside areas of their own version, types right, no target twice, every
 // variable of the new version kept, written or initialised.

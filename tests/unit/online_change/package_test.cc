@@ -87,6 +87,72 @@ TEST(Package, C4_every_truncation_and_bit_flip_is_refused) {
   }
 }
 
+// magic and version; then for each part its length and checksum.
+constexpr size_t kPartRow = 4 + 32;
+size_t part_length(const base::Bytes& bytes, size_t part) {
+  return base::ByteReader(base::ByteSpan(bytes).subspan(8 + part * kPartRow)).u32();
+}
+
+// With the images' own bytes.
+std::unique_ptr<Pair> make_whole_pair() {
+  auto pair = make_pair();
+  pair->package.base = ir::digest(ir::encode(pair->a.image));
+  pair->package.image = ir::encode(pair->b.image);
+  return pair;
+}
+
+TEST(Package, C4_the_damaged_part_is_named) {
+  const base::Bytes bytes = encode(make_whole_pair()->package);
+  const char* const kNames[] = {"layout", "program", "commands"};
+  size_t at = 8 + 3 * kPartRow;
+  for (size_t part = 0; part < 3; ++part) {
+    ASSERT_GT(part_length(bytes, part), 0u);
+    base::Bytes damaged = bytes;
+    at += part_length(bytes, part);
+    damaged[at - 1] ^= 0x10;
+    const base::Result<Package> decoded = decode(damaged);
+    ASSERT_FALSE(decoded.ok());
+    EXPECT_EQ(decoded.error().refusal, base::Refusal::kBadHash);
+    EXPECT_NE(decoded.error().text.find(kNames[part]), std::string::npos) << decoded.error().text;
+  }
+  EXPECT_EQ(at, bytes.size());
+}
+
+// Parts of two packages, each with the right checksum, are no package.
+TEST(Package, C4_parts_of_different_packages_do_not_mix) {
+  const auto pair = make_whole_pair();
+  Package back;
+  back.base = ir::digest(pair->package.image);
+  back.image = ir::encode(pair->a.image);
+  back.forward = pair->package.inverse;
+  back.inverse = pair->package.forward;
+  const base::Bytes one = encode(pair->package);
+  const base::Bytes other = encode(back);
+  for (size_t foreign = 0; foreign < 3; ++foreign) {
+    base::Bytes mixed(one.begin(), one.begin() + 8);
+    base::Bytes content;
+    size_t one_at = 8 + 3 * kPartRow;
+    size_t other_at = one_at;
+    for (size_t part = 0; part < 3; ++part) {
+      const base::Bytes& from = part == foreign ? other : one;
+      const size_t at = part == foreign ? other_at : one_at;
+      const base::ByteSpan row = base::ByteSpan(from).subspan(8 + part * kPartRow, kPartRow);
+      const base::ByteSpan bytes = base::ByteSpan(from).subspan(at, part_length(from, part));
+      mixed.insert(mixed.end(), row.begin(), row.end());
+      content.insert(content.end(), bytes.begin(), bytes.end());
+      one_at += part_length(one, part);
+      other_at += part_length(other, part);
+    }
+    mixed.insert(mixed.end(), content.begin(), content.end());
+    const base::Result<Package> decoded = decode(mixed);
+    if (!decoded.ok()) continue;
+    const base::Result<ir::Image> image = ir::decode(decoded->image);
+    const bool sound = image.ok() && decoded->base == pair->package.base &&
+                       check_package(*decoded, pair->a.image, *image).ok();
+    EXPECT_FALSE(sound) << foreign;
+  }
+}
+
 // The header says a length that the limit allows, and one byte more.
 TEST(Package, LargestPackage) {
   constexpr size_t kLengthAt = 8;
@@ -95,8 +161,11 @@ TEST(Package, LargestPackage) {
     for (size_t i = 0; i < 4; ++i) bytes[kLengthAt + i] = static_cast<uint8_t>(length >> (8 * i));
     return decode(bytes).error().refusal;
   };
-  EXPECT_EQ(refusal_of(base::kMaxImageBytes), base::Refusal::kBadFormat);  // there are fewer
-  EXPECT_EQ(refusal_of(base::kMaxImageBytes + 1), base::Refusal::kTooLarge);
+  // The first part's, and what it leaves the others.
+  const auto others = static_cast<uint32_t>(part_length(bytes, 1) + part_length(bytes, 2));
+  const uint32_t most = base::kMaxImageBytes - others;
+  EXPECT_EQ(refusal_of(most), base::Refusal::kBadFormat);  // there are fewer
+  EXPECT_EQ(refusal_of(most + 1), base::Refusal::kTooLarge);
 }
 
 void expect_refused(const Pair& pair, const char* what) {
