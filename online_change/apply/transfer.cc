@@ -66,6 +66,9 @@ void Transfer::add_step(uint32_t number, size_t at) {
   piece.at = at;
   piece.from = step.from;
   piece.to = step.to;
+  piece.kind = step.kind;
+  piece.from_stride = step.from_stride;
+  piece.to_stride = step.to_stride;
   if (without_gaps(step)) return add_bytes(piece, step.total());
   const bool converts = step.kind == StepKind::kConvert;
   if (converts) piece.fast = conversions_.fast(step);
@@ -104,15 +107,14 @@ void Transfer::add_bytes(Piece part, uint64_t length) {
 }
 
 uint64_t Transfer::source_extent(const Piece& piece) const {
-  const UpdateStep& step = step_of(piece);
-  if (step.kind == StepKind::kInitialise) return 0;
-  const bool converts = step.kind == StepKind::kConvert;
-  const uint32_t size = converts ? conversions_.source_size(step) : piece.size;
-  return uint64_t{piece.count - 1} * step.from_stride + size;
+  if (piece.kind == StepKind::kInitialise) return 0;
+  const bool converts = piece.kind == StepKind::kConvert;
+  const uint32_t size = converts ? conversions_.source_size(step_of(piece)) : piece.size;
+  return uint64_t{piece.count - 1} * piece.from_stride + size;
 }
 
 uint64_t Transfer::target_extent(const Piece& piece) const {
-  return uint64_t{piece.count - 1} * step_of(piece).to_stride + piece.size;
+  return uint64_t{piece.count - 1} * piece.to_stride + piece.size;
 }
 
 void Transfer::touch(uint8_t* memory) const {
@@ -127,29 +129,29 @@ void Transfer::touch(uint8_t* memory) const {
 }
 
 void Transfer::read_values(const Piece& piece, const uint8_t* memory, uint8_t* out) const {
-  const UpdateStep& step = step_of(piece);
-  if (step.kind == StepKind::kCopy) {
-    gather(memory + piece.from, piece, step.from_stride, out);
-  } else if (step.bytes.empty()) {
+  if (piece.kind == StepKind::kCopy)
+    return gather(memory + piece.from, piece, piece.from_stride, out);
+  const base::Bytes& bytes = step_of(piece).bytes;
+  if (bytes.empty()) {
     std::memset(out, 0, piece.total());
   } else {
-    std::memcpy(out, step.bytes.data() + piece.within, piece.total());
+    std::memcpy(out, bytes.data() + piece.within, piece.total());
   }
 }
 
 bool Transfer::read_converted(const Piece& piece, const uint8_t* memory, uint8_t* out,
                               const OnLoss& on_loss) const {
-  const UpdateStep& step = step_of(piece);
   for (uint32_t i = 0; i < piece.count; ++i) {
-    const uint8_t* source = memory + piece.from + size_t{i} * step.from_stride;
-    uint8_t* to = out + size_t{i} * step.size;
+    const uint8_t* source = memory + piece.from + size_t{i} * piece.from_stride;
+    uint8_t* to = out + size_t{i} * piece.size;
     if (piece.fast != nullptr) {
-      i += static_cast<uint32_t>(piece.fast({source, step.from_stride, to, piece.count - i}));
+      i += static_cast<uint32_t>(piece.fast({source, piece.from_stride, to, piece.count - i}));
       if (i == piece.count) return true;
-      source = memory + piece.from + size_t{i} * step.from_stride;
-      to = out + size_t{i} * step.size;
+      source = memory + piece.from + size_t{i} * piece.from_stride;
+      to = out + size_t{i} * piece.size;
     }
-    const char* what = conversions_.convert(step, piece.first + i, source, {to, step.size});
+    const char* what =
+        conversions_.convert(step_of(piece), piece.first + i, source, {to, piece.size});
     if (what != nullptr && !on_loss({piece.step, piece.first + i, what})) return false;
   }
   return true;
@@ -158,7 +160,7 @@ bool Transfer::read_converted(const Piece& piece, const uint8_t* memory, uint8_t
 bool Transfer::losses(const uint8_t* memory, const OnLoss& on_loss) const {
   base::Bytes scratch;
   for (const Piece& piece : pieces_) {
-    if (step_of(piece).kind != StepKind::kConvert) continue;
+    if (piece.kind != StepKind::kConvert) continue;
     scratch.resize(std::max<size_t>(scratch.size(), piece.total()));
     if (!read_converted(piece, memory, scratch.data(), on_loss)) return false;
   }
@@ -167,7 +169,7 @@ bool Transfer::losses(const uint8_t* memory, const OnLoss& on_loss) const {
 
 bool Transfer::read_piece(const Piece& piece, const uint8_t* memory, const OnLoss& on_loss) {
   uint8_t* out = staged_.data() + piece.at;
-  if (step_of(piece).kind == StepKind::kConvert) {
+  if (piece.kind == StepKind::kConvert) {
     return read_converted(piece, memory, out, on_loss);
   }
   read_values(piece, memory, out);
@@ -185,16 +187,15 @@ bool Transfer::read(const uint8_t* memory, const OnLoss& on_loss, const Interrup
 bool Transfer::move(const Piece& piece, const uint8_t* source, uint8_t* target,
                     const OnLoss& on_loss) {
   if (!read_piece(piece, source, on_loss)) return false;
-  scatter(staged_.data() + piece.at, piece, step_of(piece).to_stride, target + piece.to);
+  scatter(staged_.data() + piece.at, piece, piece.to_stride, target + piece.to);
   return true;
 }
 
 bool Transfer::remember(const uint8_t* memory, const Interrupted& interrupted) {
   for (const Piece& piece : pieces_) {
-    const UpdateStep& step = step_of(piece);
-    if (step.kind == StepKind::kCopy) continue;
+    if (piece.kind == StepKind::kCopy) continue;
     if (interrupted && interrupted()) return false;
-    gather(memory + piece.to, piece, step.to_stride, remembered_.data() + piece.at);
+    gather(memory + piece.to, piece, piece.to_stride, remembered_.data() + piece.at);
   }
   return true;
 }
@@ -203,7 +204,7 @@ bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
                          const Interrupted& interrupted) {
   for (const Piece& piece : pieces_) {
     if (interrupted && interrupted()) return false;
-    switch (step_of(piece).kind) {
+    switch (piece.kind) {
       case StepKind::kCopy:
         read_values(piece, memory, staged_.data() + piece.at);
         break;
@@ -236,7 +237,7 @@ void Transfer::read_back_converted(const Piece& piece, const uint8_t* memory,
 bool Transfer::save(const uint8_t* memory, const Interrupted& interrupted) {
   for (const Piece& piece : pieces_) {
     if (interrupted && interrupted()) return false;
-    gather(memory + piece.to, piece, step_of(piece).to_stride, saved_.data() + piece.at);
+    gather(memory + piece.to, piece, piece.to_stride, saved_.data() + piece.at);
   }
   return true;
 }
@@ -248,7 +249,7 @@ bool Transfer::write(uint8_t* memory, const Interrupted& interrupted) {
       return false;
     }
     const Piece& piece = pieces_[done];
-    scatter(staged_.data() + piece.at, piece, step_of(piece).to_stride, memory + piece.to);
+    scatter(staged_.data() + piece.at, piece, piece.to_stride, memory + piece.to);
   }
   return true;
 }
@@ -256,7 +257,7 @@ bool Transfer::write(uint8_t* memory, const Interrupted& interrupted) {
 void Transfer::restore_first(uint8_t* memory, size_t count) const {
   for (size_t done = 0; done < count; ++done) {
     const Piece& piece = pieces_[done];
-    scatter(saved_.data() + piece.at, piece, step_of(piece).to_stride, memory + piece.to);
+    scatter(saved_.data() + piece.at, piece, piece.to_stride, memory + piece.to);
   }
 }
 

@@ -36,7 +36,10 @@ struct Piece {
   uint32_t from = 0;    // in the source
   uint32_t to = 0;      // in the target
   uint32_t within = 0;  // in the step's values laid end to end
-  size_t at = 0;        // in the transfer's buffers
+  uint32_t from_stride = 0;
+  uint32_t to_stride = 0;
+  StepKind kind = StepKind::kCopy;
+  size_t at = 0;  // in the transfer's buffers
   FastConverter fast = nullptr;
   uint32_t total() const { return size * count; }
 };

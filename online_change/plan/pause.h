@@ -9,7 +9,7 @@
 
 namespace online_change {
 
-inline constexpr int64_t kPauseFixedNs = 5'000;        // checks, publishing
+inline constexpr int64_t kPauseFixedNs = 20'000;       // checks, publishing, cold caches
 inline constexpr int64_t kPauseStepNs = 30;            // one step
 inline constexpr int64_t kPauseValueNs = 6;            // one value copied, or converted fast
 inline constexpr int64_t kPauseSlowConversionNs = 80;  // strings, enumerations, subranges

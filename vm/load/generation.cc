@@ -121,6 +121,24 @@ void Generation::build_areas() {
             [this](uint32_t a, uint32_t b) { return areas_[a].data < areas_[b].data; });
 }
 
+// Looked for once per type: a switch looks stamps up, and types have as many members as they like.
+void Generation::build_stamps() {
+  const ir::Image& image = image_.image();
+  std::unordered_map<ir::TypeId, uint32_t> known;  // offset in the type; none: no stamp
+  for (uint32_t i = 0; i < image.types.size(); ++i) {
+    const std::vector<ir::Member>& members = image.types[ir::TypeId(i)].members;
+    for (size_t member = 0; member < members.size(); ++member) {
+      if (members[member].section != ir::Section::kStamp) continue;
+      known[ir::TypeId(i)] = image.layouts[ir::TypeId(i)].member_offsets[member];
+    }
+  }
+  stamps_.resize(image.instances.size());
+  for (uint32_t id = 0; id < stamps_.size() && !known.empty(); ++id) {
+    const auto found = known.find(image.instances[id].type);
+    if (found != known.end()) stamps_[id] = image.instances[id].data + found->second;
+  }
+}
+
 // At most half full, so that a search is short.
 void Generation::build_overrides() {
   const std::vector<ir::LinkedOverride>& rows = image_.image().overrides;
@@ -152,6 +170,7 @@ std::unique_ptr<Generation> Generation::build(ir::VerifiedImage verified, uint32
     made->instances_.push_back(callable ? InstanceEntry{row.data, row.pou} : InstanceEntry{});
   }
   made->build_areas();
+  made->build_stamps();
   made->build_overrides();
   for (const ir::LinkedBound& bound : image.bounds) {
     made->bounds_.push_back({bound.low, bound.count, bound.stride});

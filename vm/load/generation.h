@@ -73,6 +73,9 @@ class Generation {
   const std::vector<uint32_t>& area_slots() const { return area_slots_; }
   // IDs of all areas by their place in data memory.
   const std::vector<uint32_t>& areas_by_data() const { return areas_by_data_; }
+  // Data offset of the stamp of an instance (ir/types/stamps.h), and of the globals' change flag
+  // (ID 0); 0: none.
+  uint32_t stamp(uint32_t id) const { return stamps_[id]; }
   const std::vector<ir::Unit>& code() const { return code_; }
   const std::vector<BoundEntry>& bounds() const { return bounds_; }
   const std::vector<RangeEntry>& ranges() const { return ranges_; }
@@ -90,6 +93,7 @@ class Generation {
  private:
   explicit Generation(ir::VerifiedImage image) : image_(std::move(image)) {}
   void build_areas();
+  void build_stamps();
   void build_overrides();
   size_t first_place(uint64_t key) const {
     return static_cast<size_t>(key * 0x9e3779b97f4a7c15u >> 32) & override_mask_;
@@ -98,6 +102,7 @@ class Generation {
   std::vector<AreaEntry> areas_;
   std::vector<uint32_t> area_slots_;
   std::vector<uint32_t> areas_by_data_;
+  std::vector<uint32_t> stamps_;
   uint32_t number_ = 0;
   std::vector<ir::Unit> code_;
   std::vector<PouEntry> pous_;

@@ -214,7 +214,7 @@ base::Status Controller::Impl::leave(const std::vector<uint32_t>& ids, bool chan
                                      int64_t limit_ns) {
   std::vector<std::pair<StampRef, uint32_t>> marked;  // with what it was
   for (uint32_t id : ids) {
-    const StampRef stamp(image(), id, memory.data());
+    const StampRef stamp(*running, id, memory.data());
     if (stamp.get() != ir::kNewStamp && !scheduler.faulted())
       marked.push_back({stamp, stamp.get()});
   }
@@ -233,7 +233,7 @@ base::Status Controller::Impl::leave(const std::vector<uint32_t>& ids, bool chan
 }
 
 void Controller::Impl::set_change_flag(bool changed) {
-  StampRef(image(), 0, memory.data()).set(changed ? 1 : 0);
+  StampRef(*running, 0, memory.data()).set(changed ? 1 : 0);
 }
 
 base::Result<ir::Symbol> Controller::Impl::writable(std::string_view path) const {

@@ -6,20 +6,15 @@
 #include <cstdint>
 #include <cstring>
 
-#include "ir/bytecode/image.h"
 #include "ir/types/stamps.h"
+#include "vm/load/generation.h"
 
 namespace vm {
 
 class StampRef {
  public:
-  StampRef(const ir::Image& image, uint32_t id, uint8_t* memory) {
-    const ir::Instance& instance = image.instances[id];
-    const std::vector<ir::Member>& members = image.types[instance.type].members;
-    for (size_t i = 0; i < members.size(); ++i) {
-      if (members[i].section != ir::Section::kStamp) continue;
-      at_ = memory + instance.data + image.layouts[instance.type].member_offsets[i];
-    }
+  StampRef(const Generation& generation, uint32_t id, uint8_t* memory) {
+    if (generation.stamp(id) != 0) at_ = memory + generation.stamp(id);
   }
   bool valid() const { return at_ != nullptr; }
   uint32_t get() const {

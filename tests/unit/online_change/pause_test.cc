@@ -1,0 +1,133 @@
+// What the boundary costs, counted (A16, change cases 24, 35, 52): work in place follows what
+// changes, not the program around it. Measured figures: docs/reference/pause.md.
+#include "bench/plain_method.h"
+#include "ir/bytecode/symbols.h"
+#include "tests/unit/online_change/instructions.h"
+#include "tests/unit/online_change/plant.h"
+
+namespace online_change {
+namespace {
+
+using plant::Plant;
+
+// 50 variables in each of `instances` blocks, `globals` more, and one that changes.
+std::string program(uint32_t instances, uint32_t globals, const char* changed,
+                    const char* cell = "") {
+  std::string cells;
+  std::string more;
+  for (int i = 0; i < 50; ++i) cells += "c" + std::to_string(i) + " : INT; ";
+  for (uint32_t i = 0; i < globals; ++i) more += "g" + std::to_string(i) + " : INT; ";
+  return "FUNCTION_BLOCK Cell VAR " + cells + cell + " END_VAR END_FUNCTION_BLOCK VAR_GLOBAL " +
+         more + "cells : ARRAY[1.." + std::to_string(instances) + "] OF Cell; END_VAR " +
+         "PROGRAM Main VAR x : " + changed + "; END_VAR x := x + 1; END_PROGRAM";
+}
+
+linker::Slack roomy() {
+  linker::Slack slack;
+  slack.free_bytes = 8u << 20;
+  return slack;
+}
+
+struct Cost {
+  size_t steps = 0;
+  uint64_t bytes = 0;
+  int64_t predicted_ns = 0;
+  std::optional<uint64_t> instructions;
+};
+
+Cost cost_of(const std::string& first, const std::string& second) {
+  Plant plant(first, roomy());
+  plant.use(Strategy::kInPlace);
+  plant.run(2);
+  EXPECT_TRUE(plant.stage(plant.package(second)).ok());
+  EXPECT_TRUE(plant.driver().arm(true, true).ok());
+  const Plan& plan = plant.driver().plan();
+  Cost cost{plan.steps.size(), plan.boundary_bytes, plant.driver().predicted_pause_ns(), {}};
+  cost.instructions = plant::count_instructions([&] { (void)plant.driver().switch_now().ok(); });
+  EXPECT_TRUE(plant.driver().switch_now().ok());
+  return cost;
+}
+
+TEST(Pause, A16_case52_one_change_costs_the_same_among_1000000_variables) {
+  const Cost small = cost_of(program(20, 100, "INT"), program(20, 100, "DINT"));
+  const Cost large = cost_of(program(20'000, 5000, "INT"), program(20'000, 5000, "DINT"));
+  EXPECT_EQ(small.steps, 1u);
+  EXPECT_EQ(large.steps, 1u);
+  EXPECT_EQ(small.bytes, large.bytes);
+  EXPECT_EQ(small.predicted_ns, large.predicted_ns);
+  if (!small.instructions || !large.instructions) GTEST_SKIP() << "no process may be traced here";
+  EXPECT_LT(*large.instructions, 2 * *small.instructions);
+  EXPECT_LT(*large.instructions, 20'000u);
+  RecordProperty("instructions", std::to_string(*large.instructions));
+}
+
+// All of it in the slack, and written before the boundary (A19).
+TEST(Pause, A19_case35_ten_thousand_instances_gain_a_variable) {
+  const Cost cost =
+      cost_of(program(10'000, 0, "INT"), program(10'000, 0, "INT", "more : INT := 7;"));
+  EXPECT_EQ(cost.steps, 10'000u);
+  EXPECT_EQ(cost.bytes, 0u);
+  if (!cost.instructions) GTEST_SKIP() << "no process may be traced here";
+  EXPECT_LT(*cost.instructions, 10'000u);
+}
+
+// The baseline of docs/reference/pause.md: the same values, at the price of the whole program.
+TEST(Pause, A18_the_plain_method_saves_and_restores_everything) {
+  std::optional<uint64_t> instructions[2];
+  for (const uint32_t instances : {1, 4}) {
+    const std::string first = program(instances, 0, "INT");
+    const std::string second = program(instances, 0, "DINT", "more : INT := 7;");
+    Plant plain(first, roomy());
+    Plant in_place(first, roomy());
+    for (Plant* plant : {&plain, &in_place}) {
+      plant->run(3);
+      plant->set("cells[1].c7", "-5");
+    }
+    const base::Bytes package = plain.package(second);
+    const ir::VerifiedImage next = *ir::verify(decode(package)->image);
+    bench::PlainMethod method(plain.controller(), next);
+    instructions[instances / 4] = plant::count_instructions([&] { method.make_switch(); });
+    method.make_switch();
+    in_place.change(second);
+    plain.run(2);
+    in_place.run(2);
+    EXPECT_EQ(ir::state_text(plain.controller().image(), plain.controller().memory().view()),
+              ir::state_text(in_place.controller().image(), in_place.controller().memory().view()));
+    EXPECT_EQ(plain.get("Main.x"), "5");
+  }
+  if (!instructions[0] || !instructions[1]) GTEST_SKIP() << "no process may be traced here";
+  EXPECT_GT(*instructions[1], 2 * *instructions[0]);
+}
+
+// Measured with whatever else the machine does: the best of several.
+TEST(Pause, case52_everything_changes_within_the_prediction) {
+#if !defined(__OPTIMIZE__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the prediction is for optimised code";
+#endif
+  const std::string first = "PROGRAM Main VAR a : ARRAY[1..20000] OF INT; END_VAR END_PROGRAM";
+  const std::string second = "PROGRAM Main VAR a : ARRAY[1..20000] OF REAL; END_VAR END_PROGRAM";
+  for (const Strategy strategy : {Strategy::kInPlace, Strategy::kStandby}) {
+    Plant plant(first, roomy());
+    plant.use(strategy);
+    plant.run(1);
+    const base::Bytes package = plant.package(second);
+    int64_t predicted_ns = 0;
+    int64_t best_ns = INT64_MAX;
+    for (int round = 0; round < 5; ++round) {
+      ASSERT_TRUE(plant.stage(package).ok());
+      ASSERT_TRUE(plant.driver().arm(true, true).ok());
+      predicted_ns = plant.driver().predicted_pause_ns();
+      // By standby, so that everything has changed since the copy too.
+      for (int i = 1; i <= 20000; i += 500) {
+        plant.set("Main.a[" + std::to_string(i) + "]", std::to_string(i + round));
+      }
+      best_ns = std::min(best_ns, plant.driver().switch_now()->pause_ns);
+      EXPECT_EQ(plant.get("Main.a[501]"), std::to_string(501 + round) + ".0");
+      plant.undo();
+    }
+    EXPECT_LE(best_ns, predicted_ns);
+  }
+}
+
+}  // namespace
+}  // namespace online_change
