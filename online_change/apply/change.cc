@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstring>
 
+#include "base/memory_limit.h"
 #include "ir/bytecode/renames.h"
 #include "online_change/apply/handle_transfer.h"
 #include "online_change/apply/leaving.h"
@@ -80,6 +81,14 @@ const char* state_name(State state) {
 Change::Change(vm::Controller& controller) : controller_(controller) {}
 Change::~Change() = default;
 
+template <class Step>
+auto Change::guarded(Step step) -> decltype(step()) {
+  return base::within_memory(step, [this]() -> decltype(step()) {
+    abandon();
+    return base::Error{base::Refusal::kNoMemory, {}};
+  });
+}
+
 base::Error Change::abandoned(const char* where) const {
   return {base::Refusal::kDeadline,
           std::string("the change was abandoned ") + where + "; the old program runs on"};
@@ -92,7 +101,7 @@ base::Status Change::stage(base::ByteSpan package, Strategy strategy) {
                                                           "; accept, undo or cancel it first"};
   }
   collect();
-  base::Status status = stage_steps(package, strategy);
+  base::Status status = guarded([&] { return stage_steps(package, strategy); });
   if (!status.ok()) cancel();
   return status;
 }
@@ -194,6 +203,10 @@ base::Status Change::check_pause(bool allow_overrun) const {
 }
 
 base::Status Change::arm(bool allow_loss, bool allow_overrun) {
+  return guarded([&] { return arm_steps(allow_loss, allow_overrun); });
+}
+
+base::Status Change::arm_steps(bool allow_loss, bool allow_overrun) {
   if (state_ != State::kPrepared) return not_in(state_, "prepared");
   base::Status fits = check_pause(allow_overrun);
   if (!fits.ok()) return fits;
@@ -239,17 +252,11 @@ uint64_t Change::units_left() const {
   return pending_->early.pieces().size() - pending_->early_done;
 }
 
-uint64_t Change::missed_releases() const {
-  uint64_t missed = 0;
-  for (const vm::TaskStatus& task : controller_.tasks()) missed += task.missed;
-  return missed;
-}
-
 SwitchReport Change::report_begin() const {
   SwitchReport report;
   report.cycle_before = controller_.cycles();
   report.cycle_after = report.cycle_before + 1;
-  report.missed = missed_releases();
+  report.missed = controller_.missed_releases();
   return report;
 }
 
@@ -304,6 +311,10 @@ base::Status Change::leave(const std::vector<uint32_t>& ids) {
 }
 
 base::Result<SwitchReport> Change::switch_now() {
+  return guarded([&] { return switch_steps(); });
+}
+
+base::Result<SwitchReport> Change::switch_steps() {
   if (state_ != State::kArmed) return not_in(state_, "armed");
   if (!controller_.at_boundary()) return no_boundary();
   SwitchReport report = report_begin();
@@ -324,7 +335,7 @@ base::Result<SwitchReport> Change::switch_now() {
   if (does_anything(plan())) controller_.construct();
   report.pause_ns = monotonic_ns() - begin_ns;
   state_ = State::kTrial;
-  report.missed = missed_releases() - report.missed;
+  report.missed = controller_.missed_releases() - report.missed;
   report.counts = plan().counts;
   return report;
 }
@@ -335,12 +346,16 @@ base::Status Change::accept() {
   }
   retired_ = std::move(pending_->waiting);
   retired_area_ = std::move(pending_->area);
-  pending_.reset();
+  retired_pending_ = std::move(pending_);
   state_ = State::kIdle;
   return base::Ok{};
 }
 
 base::Result<SwitchReport> Change::undo() {
+  return guarded([&] { return undo_steps(); });
+}
+
+base::Result<SwitchReport> Change::undo_steps() {
   if (state_ != State::kTrial) {
     return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"};
   }
@@ -367,10 +382,10 @@ base::Result<SwitchReport> Change::undo() {
   retired_ = controller_.publish(std::move(pending_->waiting));
   if (does_anything(pending_->package.inverse)) controller_.construct();
   report.pause_ns = monotonic_ns() - begin_ns;
-  report.missed = missed_releases() - report.missed;
+  report.missed = controller_.missed_releases() - report.missed;
   report.counts = pending_->package.inverse.counts;
   retired_area_ = std::move(pending_->area);
-  pending_.reset();
+  retired_pending_ = std::move(pending_);
   state_ = State::kIdle;
   return report;
 }
@@ -380,14 +395,17 @@ void Change::cancel() {
   collect();
 }
 
-void Change::collect() { retired_area_.reset(); }
+void Change::collect() {
+  retired_area_.reset();
+  retired_pending_.reset();
+}
 
 // At a boundary too: what was taken is freed later.
 void Change::abandon() {
   if (state_ == State::kTrial) return;
   if (pending_ && pending_->waiting) retired_ = std::move(pending_->waiting);
   if (pending_) retired_area_ = std::move(pending_->area);
-  pending_.reset();
+  if (pending_) retired_pending_ = std::move(pending_);
   state_ = State::kIdle;
 }
 

@@ -74,7 +74,7 @@ class Change {
   // Any state before the switch -> Idle; frees what the change took, so not at a boundary. Nothing
   // in trial: that takes accept() or undo().
   void cancel();
-  // Frees data areas that are no longer used. That takes time, so not at a boundary.
+  // Frees what the last change took. That takes time, so not at a boundary.
   void collect();
 
   // Asked before every single step from stage() to the publishing store; true abandons the change
@@ -86,7 +86,14 @@ class Change {
  private:
   struct Pending;
 
+  // What memory running out in `step` makes of it: kNoMemory, and before the switch no change at
+  // all.
+  template <class Step>
+  auto guarded(Step step) -> decltype(step());
   base::Status stage_steps(base::ByteSpan package, Strategy strategy);
+  base::Status arm_steps(bool allow_loss, bool allow_overrun);
+  base::Result<SwitchReport> switch_steps();
+  base::Result<SwitchReport> undo_steps();
   base::Status check_pause(bool allow_overrun) const;
   base::Status check_losses(bool allow_loss) const;
   bool unit();
@@ -97,7 +104,6 @@ class Change {
   bool interrupted() const { return interrupted_ && interrupted_(); }
   base::Error abandoned(const char* where) const;
   SwitchReport report_begin() const;
-  uint64_t missed_releases() const;
 
   vm::Controller& controller_;
   State state_ = State::kIdle;
@@ -106,6 +112,7 @@ class Change {
   // prepare(), because the controller's tables may still refer to it.
   std::unique_ptr<vm::Generation> retired_;
   std::unique_ptr<Standby> retired_area_;
+  std::unique_ptr<Pending> retired_pending_;  // freed by collect(), not at a boundary
   std::function<bool()> interrupted_;
 };
 

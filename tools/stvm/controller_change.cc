@@ -174,12 +174,6 @@ void ControllerService::complete(FateLine& line,
   }
 }
 
-uint64_t ControllerService::missed_releases() const {
-  uint64_t missed = 0;
-  for (const vm::TaskStatus& task : controller_.tasks()) missed += task.missed;
-  return missed;
-}
-
 bool ControllerService::time_for_switch() const {
   int64_t left = controller_.next_cycle_ns() - clock_.now_ns();
   return left > change_.predicted_pause_ns();
@@ -217,7 +211,7 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
     if (!allow_overrun) {
       change_.set_interruption([=, this] { return clock_.now_ns() > deadline_ns; });
     }
-    missed_before = missed_releases();
+    missed_before = controller_.missed_releases();
     report.emplace(change_.switch_now());
     change_.set_interruption(nullptr);
     if (report->ok()) keeper_.take(after);
@@ -246,7 +240,7 @@ base::Result<online_change::SwitchReport> ControllerService::finish_report(
     uint64_t cycles = 0;
     base::Status taken = at_boundary([&] {
       cycles = controller_.cycles();
-      report.missed = missed_releases() - missed_before;
+      report.missed = controller_.missed_releases() - missed_before;
     });
     if (!taken.ok()) return taken.error();
     if (cycles > report.cycle_after || controller_.faulted()) break;
@@ -304,7 +298,7 @@ base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
   const base::Digest undone = controller_.verified().digest();
   online_change::Snapshot after = empty_snapshot();
   base::Status taken = at_boundary([&] {
-    missed_before = missed_releases();
+    missed_before = controller_.missed_releases();
     report.emplace(change_.undo());
     if (report->ok()) keeper_.take(after);
   });

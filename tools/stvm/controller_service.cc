@@ -1,8 +1,10 @@
 #include "tools/stvm/controller_service.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/limits.h"
+#include "base/memory_limit.h"
 #include "tools/stvm/commands.h"
 
 namespace stvm {
@@ -32,7 +34,14 @@ ControllerService::ControllerService(vm::Controller& controller, vm::Clock& cloc
       keeper_(controller, store, wall_time_),
       change_(controller) {}
 
+// When memory runs out, so that the answer needs none: it was made before.
 base::Bytes ControllerService::answer(base::ByteSpan bytes, bool& keep_open) {
+  if (no_memory_.empty()) no_memory_ = vm::encode_answer({base::Refusal::kNoMemory, {}});
+  return base::within_memory([&] { return answer_within_memory(bytes, keep_open); },
+                             [&] { return std::exchange(no_memory_, {}); });
+}
+
+base::Bytes ControllerService::answer_within_memory(base::ByteSpan bytes, bool& keep_open) {
   base::Result<vm::Request> request = vm::decode_request(bytes);
   if (!request.ok()) {
     keep_open = false;
@@ -100,8 +109,13 @@ base::Status ControllerService::check_expected(const vm::Request& request) const
 }
 
 base::Status ControllerService::at_boundary(const std::function<void()>& job) {
-  switch (boundary_.run(job, kBoundaryPatienceNs)) {
+  bool had_memory = true;
+  const auto guarded = [&] {
+    had_memory = base::within_memory([&] { return job(), true; }, [] { return false; });
+  };
+  switch (boundary_.run(guarded, kBoundaryPatienceNs)) {
     case vm::Boundary::Outcome::kDone:
+      if (!had_memory) return base::Error{base::Refusal::kNoMemory, {}};
       return base::Ok{};
     case vm::Boundary::Outcome::kClosed:
       return base::Error{base::Refusal::kNotRunning, "the controller is stopping"};

@@ -35,6 +35,7 @@ class ControllerService : public vm::Service {
   online_change::RetainKeeper& keeper() { return keeper_; }
 
  private:
+  base::Bytes answer_within_memory(base::ByteSpan request, bool& keep_open);
   using Answer = base::Result<base::Bytes>;
 
   Answer dispatch(const vm::Request& request);
@@ -72,7 +73,6 @@ class ControllerService : public vm::Service {
                                                           uint64_t missed_before);
   // The running image boots next, and only then the change is final.
   base::Status make_permanent();
-  uint64_t missed_releases() const;
 
   // controller_journal.cc
   online_change::JournalEntry entry(online_change::Event event) const;
@@ -96,6 +96,7 @@ class ControllerService : public vm::Service {
   std::string who_;
   online_change::Change change_;
   base::Bytes upload_;
+  base::Bytes no_memory_;  // the answer that says so
   std::optional<ir::VerifiedImage> staged_;
   std::optional<ir::VerifiedImage> previous_;  // during a trial
   uint64_t edition_ = 0;

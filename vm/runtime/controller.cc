@@ -92,6 +92,12 @@ std::vector<TaskStatus> Controller::tasks() const {
   return rows;
 }
 
+uint64_t Controller::missed_releases() const {
+  uint64_t missed = 0;
+  for (const TaskSlot& task : impl_->scheduler.tables().tasks) missed += task.status.missed;
+  return missed;
+}
+
 const std::vector<TrapRecord>& Controller::traps() const { return impl_->scheduler.traps(); }
 uint64_t Controller::trap_count() const { return impl_->scheduler.trap_count(); }
 

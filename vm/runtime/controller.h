@@ -96,6 +96,7 @@ class Controller {
   Memory& memory();
   uint64_t data_limit() const;
   std::vector<TaskStatus> tasks() const;
+  uint64_t missed_releases() const;  // of all tasks
   const std::vector<TrapRecord>& traps() const;  // the last 32
   uint64_t trap_count() const;                   // all that there were
 

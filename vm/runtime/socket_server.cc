@@ -13,6 +13,7 @@
 #include <cstring>
 #include <optional>
 
+#include "base/memory_limit.h"
 #include "vm/runtime/frames.h"
 
 namespace vm {
@@ -178,17 +179,21 @@ SocketServer::~SocketServer() {
 
 void SocketServer::serve() {
   std::vector<Connection> connections;
-  while (!ending_.load()) {
+  const auto round = [&] {  // false: the thread ends
     std::vector<pollfd> set = poll_set(wake_.get(), listener_.get(), connections);
-    if (::poll(set.data(), set.size(), 1000) < 0 && errno != EINTR) return;
+    if (::poll(set.data(), set.size(), 1000) < 0 && errno != EINTR) return false;
     for (size_t i = connections.size(); i-- > 0;) {
-      if (ending_.load()) return;
+      if (ending_.load()) return false;
       if (!attend(connections[i], set[i + 2].revents, service_)) {
         connections.erase(connections.begin() + static_cast<std::ptrdiff_t>(i));
       }
     }
     if ((set[1].revents & POLLIN) != 0) take_connection(listener_.get(), connections);
-  }
+    return true;
+  };
+  // When memory runs out, all connections end: the program runs on, and there is memory again.
+  const auto drop_all = [&] { return connections.clear(), true; };
+  while (!ending_.load() && base::within_memory(round, drop_all)) continue;
 }
 
 }  // namespace vm

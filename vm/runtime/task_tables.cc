@@ -111,11 +111,12 @@ void TaskTables::adopt(const TaskTables& previous, int64_t cycle_start_ns) {
     for (const TaskSlot& old : previous.tasks) {
       slot.execution->count_on(*old.execution);
       if (!ir::same_name(slot.status.name, old.status.name)) continue;
-      TaskStatus status = old.status;
-      status.period_ns = slot.status.period_ns;
-      status.priority = slot.status.priority;
-      status.once = slot.status.once;
-      slot.status = std::move(status);
+      // Not as a whole: at a boundary nothing is allocated, and a name can be long.
+      slot.status.scans = old.status.scans;
+      slot.status.missed = old.status.missed;
+      slot.status.last_ns = old.status.last_ns;
+      slot.status.max_ns = old.status.max_ns;
+      slot.status.stopped = old.status.stopped;
       slot.released = old.released;
       slot.event_level = old.event_level;
       keep_phase(slot, old, cycle_start_ns);

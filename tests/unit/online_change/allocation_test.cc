@@ -1,0 +1,190 @@
+// Memory that runs out at every single allocation of a change: the old program runs on, nothing is
+// leaked, and the same change goes through when there is memory again (case 51).
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "base/memory_limit.h"
+#include "tests/unit/online_change/plant.h"
+
+namespace {
+
+// Of this thread; the tests have no other.
+bool counting = false;
+int64_t until_failure = -1;  // allocations that still succeed; -1: all
+int64_t allocations = 0;
+int64_t live = 0;
+
+void* allocate(size_t size) {
+  if (counting) {
+    ++allocations;
+    if (until_failure == 0) return nullptr;
+    if (until_failure > 0) --until_failure;
+  }
+  void* memory = std::malloc(size == 0 ? 1 : size);
+  if (memory != nullptr) ++live;
+  return memory;
+}
+
+void release(void* memory) {
+  if (memory != nullptr) --live;
+  std::free(memory);
+}
+
+}  // namespace
+
+void* operator new(size_t size) {
+  void* memory = allocate(size);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+void* operator new[](size_t size) { return operator new(size); }
+void* operator new(size_t size, const std::nothrow_t&) noexcept { return allocate(size); }
+void* operator new[](size_t size, const std::nothrow_t&) noexcept { return allocate(size); }
+void operator delete(void* memory) noexcept { release(memory); }
+void operator delete[](void* memory) noexcept { release(memory); }
+void operator delete(void* memory, size_t) noexcept { release(memory); }
+void operator delete[](void* memory, size_t) noexcept { release(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { release(memory); }
+void operator delete[](void* memory, const std::nothrow_t&) noexcept { release(memory); }
+
+namespace online_change {
+namespace {
+
+using plant::Plant;
+
+constexpr const char* kOld =
+    "FUNCTION_BLOCK Box VAR n : INT := 3; t : TON; END_VAR n := n + 1; "
+    "t(IN := TRUE, PT := T#1s); END_FUNCTION_BLOCK\n"
+    "VAR_GLOBAL g : INT := 1; END_VAR\n"
+    "PROGRAM Main VAR b : ARRAY[1..3] OF Box; p : POINTER TO INT := ADR(g); s : STRING[20] := "
+    "'twelve chars'; c : DINT := 70000; gone : INT := 9; END_VAR b[1](); p^ := p^ + 1; "
+    "END_PROGRAM";
+constexpr const char* kNew =
+    "FUNCTION_BLOCK Box VAR more : ARRAY[1..40] OF LREAL; n : INT := 3; t : TON; END_VAR n := n + "
+    "1; t(IN := TRUE, PT := T#1s); END_FUNCTION_BLOCK\n"
+    "VAR_GLOBAL h : LINT; g : DINT := 1; END_VAR\n"
+    "PROGRAM Main VAR b : ARRAY[0..3] OF Box; p : POINTER TO INT; s : STRING[5]; c : INT; END_VAR "
+    "b[1](); END_PROGRAM";
+
+// Memory for `successes` allocations inside `work`.
+template <class Work>
+auto with_allocations(int64_t successes, Work work) {
+  until_failure = successes;
+  counting = true;
+  auto result = work();
+  counting = false;
+  until_failure = -1;
+  return result;
+}
+
+base::Status whole_change(Change& driver, base::ByteSpan package, Strategy strategy) {
+  base::Status done = driver.stage(package, strategy);
+  if (!done.ok()) return done;
+  done = base::within_memory(
+      [&] {
+        (void)driver.live_losses();
+        return base::Status(base::Ok{});
+      },
+      [] {
+        return base::Status(base::Error{base::Refusal::kNoMemory, {}});
+      });
+  if (!done.ok()) return done;
+  done = driver.arm(true, true);
+  if (!done.ok()) return done;
+  auto report = driver.switch_now();
+  if (!report.ok()) return report.error();
+  return base::Ok{};
+}
+
+void try_every_allocation(Strategy strategy) {
+  Plant plant(kOld);
+  plant.run(3);
+  const base::Bytes package = plant.package(kNew);
+  Change& driver = plant.driver();
+  const base::Digest before = plant.hash();
+  int64_t failed = 0;
+  int64_t live_before = -1;
+  for (int64_t successes = 0;; ++successes) {
+    base::Status done =
+        with_allocations(successes, [&] { return whole_change(driver, package, strategy); });
+    if (done.ok()) break;
+    ++failed;
+    ASSERT_EQ(done.error().refusal, base::Refusal::kNoMemory) << successes;
+    driver.cancel();
+    ASSERT_EQ(driver.state(), State::kIdle) << successes;
+    ASSERT_EQ(plant.hash(), before) << successes;
+    ASSERT_EQ(plant.get("Main.gone"), "9");
+    // A generation that was prepared is kept until the next one.
+    if (successes % 100 == 99) {
+      const int64_t limit = live_before < 0 ? live : live_before + 200;
+      ASSERT_LE(live, limit) << successes;
+      live_before = live;
+    }
+  }
+  EXPECT_GT(failed, 500);
+  EXPECT_EQ(driver.state(), State::kTrial);
+  plant.run(2);
+  EXPECT_EQ(plant.get("Main.b[1].n"), "8");
+
+  const base::Digest trial = plant.hash();
+  for (int64_t successes = 0;; ++successes) {
+    auto undone = with_allocations(successes, [&] { return driver.undo(); });
+    if (undone.ok()) break;
+    ASSERT_EQ(undone.error().refusal, base::Refusal::kNoMemory) << successes;
+    ASSERT_EQ(driver.state(), State::kTrial);
+    ASSERT_EQ(plant.hash(), trial) << successes;
+  }
+  EXPECT_EQ(plant.get("Main.gone"), "9");
+  EXPECT_EQ(plant.get("Main.c"), "70000");
+  EXPECT_EQ(plant.get("Main.s"), "'twelve chars'");
+  plant.run(2);
+}
+
+TEST(Allocation, C1_case51_every_allocation_fails_in_place) {
+  try_every_allocation(Strategy::kInPlace);
+}
+
+TEST(Allocation, C1_case51_every_allocation_fails_by_standby) {
+  try_every_allocation(Strategy::kStandby);
+}
+
+// Nothing is taken between the first look at the boundary and the store that publishes.
+TEST(Allocation, invariant2_the_switch_and_undo_allocate_nothing) {
+  for (Strategy strategy : {Strategy::kInPlace, Strategy::kStandby}) {
+    Plant plant(kOld);
+    plant.run(3);
+    const base::Bytes package = plant.package(kNew);
+    ASSERT_TRUE(plant.driver().stage(package, strategy).ok());
+    ASSERT_TRUE(plant.driver().arm(true, true).ok());
+    allocations = 0;
+    EXPECT_TRUE(with_allocations(-1, [&] { return plant.driver().switch_now(); }).ok());
+    EXPECT_EQ(allocations, 0);
+    plant.run(2);
+    allocations = 0;
+    EXPECT_TRUE(with_allocations(-1, [&] { return plant.driver().undo(); }).ok());
+    EXPECT_EQ(allocations, 0);
+  }
+}
+
+// Each change and undo gives back what it took.
+TEST(Allocation, case51_nothing_is_leaked) {
+  Plant plant(kOld);
+  plant.run(3);
+  const base::Bytes package = plant.package(kNew);
+  int64_t settled = 0;
+  for (int i = 0; i < 50; ++i) {
+    const Strategy strategy = i % 2 == 0 ? Strategy::kInPlace : Strategy::kStandby;
+    ASSERT_TRUE(whole_change(plant.driver(), package, strategy).ok());
+    plant.run(1);
+    ASSERT_TRUE(plant.driver().undo().ok());
+    plant.driver().collect();
+    plant.run(1);
+    if (i == 9) settled = live;
+  }
+  EXPECT_EQ(live, settled);
+}
+
+}  // namespace
+}  // namespace online_change
