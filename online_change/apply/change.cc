@@ -70,6 +70,13 @@ struct Change::Pending {
   std::unique_ptr<Standby> area;
   Leaving leaving;
   bool allow_loss = false;
+  // What the last report said would be lost: with leave for that, nothing else may be (X1).
+  bool reported = false;
+  std::vector<std::pair<uint32_t, uint32_t>> shown;  // step and index, sorted
+  bool may_lose(const Loss& loss) const {
+    if (!allow_loss || !reported) return allow_loss;
+    return std::binary_search(shown.begin(), shown.end(), std::pair(loss.step, loss.index));
+  }
 };
 
 const char* state_name(State state) {
@@ -154,8 +161,8 @@ Strategy Change::strategy() const { return pending_ ? pending_->strategy : Strat
 int64_t Change::predicted_pause_ns() const {
   if (!pending_ || pending_->in_place()) return plan().predicted_pause_ns;
   if (!pending_->area) return 0;
-  return predicted_standby_pause_ns(plan(), pending_->old(),
-                                    pending_->new_image.image(), pending_->area->compared_bytes());
+  return predicted_standby_pause_ns(plan(), pending_->old(), pending_->new_image.image(),
+                                    pending_->area->compared_bytes());
 }
 
 std::vector<LiveLoss> Change::live_losses() const {
@@ -163,11 +170,15 @@ std::vector<LiveLoss> Change::live_losses() const {
   if (!pending_ || state_ == State::kTrial) return rows;
   const uint8_t* memory = controller_.memory().data();
   Areas areas(pending_->new_image.image());
+  pending_->reported = true;
+  pending_->shown.clear();
   auto collect = [&](const Loss& loss) {
     rows.push_back(describe(loss, pending_->forward, areas, memory));
+    pending_->shown.push_back({loss.step, loss.index});
     return true;
   };
   pending_->forward.losses(memory, collect);
+  std::sort(pending_->shown.begin(), pending_->shown.end());
   std::vector<LiveLoss> others =
       values_without_place(plan(), pending_->old(), controller_.memory().view());
   rows.insert(rows.end(), others.begin(), others.end());
@@ -176,6 +187,9 @@ std::vector<LiveLoss> Change::live_losses() const {
   pending_->handles.for_each_broken(memory, [&](uint32_t at, ir::TypeId type) {
     rows.push_back(describe_broken(old_areas, at, type, controller_.memory().view()));
   });
+  for (const std::string& path : controller_.ended_forces(*pending_->waiting)) {
+    rows.push_back({path, "forced", "", "is no longer forced"});
+  }
   return rows;
 }
 
@@ -277,12 +291,12 @@ base::Status Change::carry_over() {
   Loss lost;
   auto on_loss = [&](const Loss& loss) {
     lost = loss;
-    return pending_->allow_loss;
+    return pending_->may_lose(loss);
   };
   const bool carried =
       apart ? pending_->area->close(source, on_loss, interrupted_) : carry_in_place(on_loss);
   if (!carried) {
-    if (lost.what == nullptr || pending_->allow_loss) return abandoned("at the boundary");
+    if (lost.what == nullptr || pending_->may_lose(lost)) return abandoned("at the boundary");
     Areas areas(pending_->new_image.image());
     return would_lose(describe(lost, transfer, areas, source), 0);
   }

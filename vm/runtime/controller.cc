@@ -146,6 +146,10 @@ base::Status Controller::unforce(std::string_view path) {
 
 const std::vector<Force>& Controller::forces() const { return impl_->scheduler.tables().forces; }
 
+const std::vector<std::string>& Controller::ended_forces(const Generation& prepared) const {
+  return impl_->tables.at(&prepared)->ended_forces;
+}
+
 std::unique_ptr<Generation> Controller::prepare(ir::VerifiedImage next_image) {
   auto next =
       Generation::build(std::move(next_image), impl_->running->number() + 1, impl_->memory.data());

@@ -96,7 +96,7 @@ class Controller {
   Memory& memory();
   uint64_t data_limit() const;
   std::vector<TaskStatus> tasks() const;
-  uint64_t missed_releases() const;  // of all tasks
+  uint64_t missed_releases() const;              // of all tasks
   const std::vector<TrapRecord>& traps() const;  // the last 32
   uint64_t trap_count() const;                   // all that there were
 
@@ -108,6 +108,8 @@ class Controller {
   base::Status force(std::string_view path, std::string_view value);
   base::Status unforce(std::string_view path);
   const std::vector<Force>& forces() const;
+  // Paths of the forced variables whose force would end with this generation, which was prepared.
+  const std::vector<std::string>& ended_forces(const Generation& prepared) const;
 
   // --- for online change (online_change/apply) --------------------------------
   // Builds a second generation beside the running one. Touches nothing that runs.

@@ -155,15 +155,20 @@ int64_t TaskTables::next_cycle_ns(int64_t cycle_start_ns) const {
 void TaskTables::adopt_forces(const ir::Image& from, const std::vector<Force>& rows) {
   const ir::Image& to = version.image();
   forces.clear();
+  ended_forces.clear();
   if (rows.empty()) return;
   const RenamedPaths paths(from, to);
   for (const Force& row : rows) {
     Force force = row;
     force.path = paths.find(row);
     base::Result<ir::Symbol> symbol = ir::find_symbol(to, force.path);
-    if (!symbol.ok() || symbol->constant) continue;
-    base::Bytes value = carry_over(from, force, to, *symbol);
-    if (!value.empty()) forces.push_back({force.path, *symbol, std::move(value)});
+    base::Bytes value;
+    if (symbol.ok() && !symbol->constant) value = carry_over(from, force, to, *symbol);
+    if (value.empty()) {
+      ended_forces.push_back(row.path);
+    } else {
+      forces.push_back({force.path, *symbol, std::move(value)});
+    }
   }
 }
 

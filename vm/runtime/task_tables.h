@@ -47,7 +47,7 @@ struct TaskTables {
   // The first cycle after `cycle_start_ns`.
   int64_t next_cycle_ns(int64_t cycle_start_ns) const;
   int64_t next_release_ns() const;
-  // Forces of another image by path; what has no place of its kind here is left out.
+  // Forces of another image by path; what has no place of its kind here ends.
   void adopt_forces(const ir::Image& from, const std::vector<Force>& forces);
 
   const Generation* generation;
@@ -60,6 +60,7 @@ struct TaskTables {
   base::Bytes outputs;  // as sent next: complete results only (B5)
   base::Bytes scratch;
   std::vector<Force> forces;
+  std::vector<std::string> ended_forces;  // paths of those that were not adopted
 };
 
 }  // namespace vm

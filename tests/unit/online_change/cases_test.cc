@@ -235,5 +235,34 @@ TEST(Cases, law_non_interference) {
   }
 }
 
+// With leave for what the report showed, a value that would be lost besides stops the switch.
+TEST(Cases, X1_case2_leave_is_for_what_the_report_showed) {
+  const std::string wide = "PROGRAM Main VAR a : INT := 300; b : INT := 5; END_VAR END_PROGRAM";
+  const std::string narrow = "PROGRAM Main VAR a, b : SINT; END_VAR END_PROGRAM";
+  for (Strategy strategy : {Strategy::kInPlace, Strategy::kStandby}) {
+    Plant plant(wide);
+    plant.run(1);
+    ASSERT_TRUE(plant.driver().stage(plant.package(narrow), strategy).ok());
+    ASSERT_EQ(plant.driver().live_losses().size(), 1u);
+    ASSERT_TRUE(plant.driver().arm(true).ok());
+    plant.set("Main.a", "400");
+    plant.set("Main.b", "1000");
+    const base::Digest before = plant.hash();
+    auto report = plant.driver().switch_now();
+    ASSERT_FALSE(report.ok());
+    EXPECT_EQ(report.error().refusal, base::Refusal::kWouldLose);
+    EXPECT_NE(report.error().text.find("Main.b"), std::string::npos) << report.error().text;
+    EXPECT_EQ(plant.hash(), before);
+    EXPECT_EQ(plant.driver().state(), State::kIdle);
+    // The new report shows both, and the value of `a` may have changed meanwhile.
+    ASSERT_TRUE(plant.driver().stage(plant.package(narrow), strategy).ok());
+    ASSERT_EQ(plant.driver().live_losses().size(), 2u);
+    ASSERT_TRUE(plant.driver().arm(true).ok());
+    plant.set("Main.a", "500");
+    EXPECT_TRUE(plant.driver().switch_now().ok());
+    EXPECT_EQ(plant.get("Main.b"), "127");
+  }
+}
+
 }  // namespace
 }  // namespace online_change
