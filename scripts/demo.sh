@@ -1,6 +1,6 @@
 #!/bin/sh
-# make demo: a bottling line runs in real time; its program is changed while bottles move, and the change
-# is taken back. Under a minute. usage: demo.sh BIN
+# make demo: a bottling line runs in real time; its program is changed while bottles move, the change is
+# taken back, and the power goes twice. A minute. usage: demo.sh BIN
 set -eu
 bin=$(cd "$1" && pwd)
 cd "$(dirname "$0")/.."
@@ -30,6 +30,7 @@ counters='BottlesInfed BottlesFilled BottlesCapped Machine.Scans'
 say "1. Compile the line ($(cat examples/bottling_line/*.st | wc -l) lines of Structured Text) and start it"
 step stc build examples/bottling_line -o "$state/line.img"
 "$bin/stvm" serve --dir "$state/plc" "$state/line.img" >"$state/log" 2>&1 &
+plc=$!
 for _ in $(seq 100); do
   stvm status >/dev/null 2>&1 && break
   sleep 0.05
@@ -61,3 +62,40 @@ step stvm watch $counters --interval 1000 --count 3
 missed=$(stvm status --format json | tr ',{' '\n\n' | sed -n 's/.*"missed":\([0-9]*\).*/\1/p' |
   awk '{sum += $1} END {print sum + 0}')
 say "Scans missed from the first to the last: $missed"
+
+# kill -9 in the place of a power cut: the process is gone at whatever instruction it is.
+power_cut() {
+  kill -9 "$plc"
+  wait "$plc" 2>/dev/null || true
+  echo "(the process is gone)"
+}
+power_on() {
+  printf '%s$ stvm serve --dir plc%s\n' "$bold" "$plain"
+  "$bin/stvm" serve --dir "$state/plc" >"$state/log" 2>&1 &
+  plc=$!
+  for _ in $(seq 100); do
+    stvm status >/dev/null 2>&1 && break
+    sleep 0.05
+  done
+}
+
+say "6. Version 2 again, and the power goes while it is on trial: what was accepted boots"
+stvm change examples/bottling_line_v2 --yes --allow-loss | tail -2
+sleep 2
+step stvm get TotalBottles
+power_cut
+power_on
+step stvm status | head -8
+step stvm get TotalBottles
+
+say "7. Version 2, accepted, and the power goes: version 2 boots, with its retained values"
+stvm change examples/bottling_line_v2 --yes --allow-loss | tail -2
+step stvm accept
+sleep 2
+power_cut
+power_on
+step stvm status | head -8
+step stvm get TotalBottles
+
+say "8. Who changed what, and when"
+step stvm journal

@@ -188,7 +188,7 @@ std::vector<LiveLoss> Change::live_losses() const {
     rows.push_back(describe_broken(old_areas, at, type, controller_.memory().view()));
   });
   for (const std::string& path : controller_.ended_forces(*pending_->waiting)) {
-    rows.push_back({path, "forced", "", "is no longer forced"});
+    rows.push_back({path, "forced", "", "loses its force"});
   }
   return rows;
 }

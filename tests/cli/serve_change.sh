@@ -30,6 +30,11 @@ said '77'
 expect 7 stvm force --dir plc Main.nope=1
 said 'R0401'
 
+expect 0 stvm status --dir plc
+said 'instances +3 '
+said 'free [0-9]+ of [0-9]+ bytes'
+expect 0 stvm status --dir plc --format json
+said '"largest_free": *[1-9]'
 expect 0 stvm change v2.st --dir plc --dry-run
 said 'converted'
 said 'Main.gone'

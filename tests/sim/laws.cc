@@ -1,5 +1,7 @@
 #include "tests/sim/laws.h"
 
+#include <algorithm>
+
 #include "ir/bytecode/symbols.h"
 
 namespace sim {
@@ -74,6 +76,20 @@ void check_kept(const Snapshot& before, const Snapshot& now) {
     require(is_no_literal(now.image().image(), path, old->second.text),
             "a switch changed " + path + " from " + old->second.text + " to " + value.text);
   }
+}
+
+Values retained_values(vm::Controller& controller) {
+  Values all = values_of(controller.image(), controller.memory().view());
+  std::erase_if(all, [](const auto& row) { return !row.second.retain || !row.second.comparable; });
+  return all;
+}
+
+bool agree(const Values& a, const Values& b) {
+  return std::all_of(a.begin(), a.end(), [&](const auto& row) {
+    const auto other = b.find(row.first);
+    return other == b.end() || other->second.type != row.second.type ||
+           other->second.text == row.second.text;
+  });
 }
 
 void check_restored(const Snapshot& at_switch, const Snapshot& before_undo, const Snapshot& now) {

@@ -39,6 +39,10 @@ void check_untouched(const Snapshot& before, const Snapshot& now, const std::str
 // A switch, forward or back, between two looks at one boundary: what has the same path and type
 // keeps its value.
 void check_kept(const Snapshot& before, const Snapshot& now);
+// Of the variables that are retained.
+Values retained_values(vm::Controller& controller);
+// Have all variables that both know with one type the same value?
+bool agree(const Values& a, const Values& b);
 // Undo at once or later: what only the old version has is as it was when it was dropped.
 void check_restored(const Snapshot& at_switch, const Snapshot& before_undo, const Snapshot& now);
 

@@ -57,6 +57,7 @@ struct Sum {
     tally.switches += other.tally.switches;
     tally.refusals += other.tally.refusals;
     tally.faults += other.tally.faults;
+    tally.cuts += other.tally.cuts;
     seeds += other.seeds;
     skipped += other.skipped;
     failed += other.failed;
@@ -129,9 +130,9 @@ int main(int argc, char** argv) {
   auto number = [](uint64_t n) { return static_cast<unsigned long long>(n); };
   std::printf(
       "%llu seeds, %llu skipped, %llu failed: %llu steps, %llu cycles, %llu switches, "
-      "%llu refusals, %llu faults\n",
+      "%llu refusals, %llu faults, %llu power cuts\n",
       number(sum.seeds), number(sum.skipped), number(sum.failed), number(sum.tally.steps),
       number(sum.tally.cycles), number(sum.tally.switches), number(sum.tally.refusals),
-      number(sum.tally.faults));
+      number(sum.tally.faults), number(sum.tally.cuts));
   return sum.failed != 0 || sum.seeds == 0 ? 1 : 0;
 }

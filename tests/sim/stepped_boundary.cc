@@ -15,6 +15,7 @@ vm::Boundary::Outcome SteppedBoundary::run(const std::function<void()>& job, int
   }
   const Snapshot before(controller_);
   job();
+  if (cycled_) cycled_();
   const Snapshot now(controller_);
   if (before.image().digest() != now.image().digest()) {
     if (switched_) switched_(before, now);

@@ -55,21 +55,6 @@ bool World::run(int steps) {
   return true;
 }
 
-void World::boot(const ir::VerifiedImage& image) {
-  vm::ControllerOptions options;
-  options.fuel_budget = 20'000'000;
-  options.on_trap = vm::TrapPolicy::kStopTask;
-  store_ = std::make_unique<online_change::Store>(disk_);
-  require(online_change::boot(*store_, image, "sim", 0).ok(), "the program is stored");
-  auto controller = vm::Controller::start(image, options, clock_, devices_);
-  require(controller.ok(), "the program starts");
-  controller_ = std::move(*controller);
-  boundary_ = std::make_unique<SteppedBoundary>(*controller_, clock_);
-  boundary_->on_switch([this](const Snapshot& a, const Snapshot& b) { switched(a, b); });
-  boundary_->on_cycle([this] { ++tally_.cycles; });
-  service_ = std::make_unique<stvm::ControllerService>(*controller_, clock_, *store_, *boundary_);
-}
-
 void World::switched(const Snapshot& before, const Snapshot& now) {
   ++tally_.switches;
   try {
@@ -146,7 +131,7 @@ uint32_t World::strategy() { return random_.one_in(2) ? vm::kByStandby : 0u; }
 
 void World::step() {
   ++tally_.steps;
-  const uint32_t kind = random_.below(20);
+  const uint32_t kind = disk_failed_ ? 22u : random_.below(24);
   if (kind < 6) return let_run();
   if (kind < 11) return change();
   if (kind < 13) return undo();
@@ -155,7 +140,10 @@ void World::step() {
   if (kind == 16) return two_tools();
   if (kind == 17) return write_values();
   if (kind == 18) return force();
-  return restart();
+  if (kind == 19) return restart();
+  if (kind == 20) return save();
+  if (kind == 21) return disk_fault();
+  return power_cut();
 }
 
 void World::let_run() {
@@ -190,6 +178,9 @@ void World::change() {
   if (!package) return;
   const uint32_t flags = (random_.one_in(3) ? 0u : vm::kAllowLoss) | vm::kAllowOverrun |
                          (random_.one_in(5) ? vm::kPermanent : 0u);
+  if ((flags & vm::kPermanent) != 0) {
+    may_boot_.push_back(ir::digest(online_change::decode(*package)->image));
+  }
   bad_luck(hand);
   boundary_->guard("a change that was not switched");
   base::Status done = try_change(hand, *package, flags);
@@ -202,7 +193,7 @@ void World::change() {
     require(now.running != hand.seen.running, "a change that was answered runs");
     require(now.change == (permanent ? "idle" : "trial"), "and is on trial until accepted");
     last_package_ = std::move(*package);
-  } else if (!lost) {
+  } else if (!lost && !(permanent && disk_failed_)) {
     require(now.running == hand.seen.running, "a change that was refused does not run");
   }
   if (now.running == hand.seen.running) {
@@ -294,6 +285,7 @@ void World::accept() {
   say("accept, state " + hand.seen.change);
   bad_luck(hand);
   const bool trial = hand.seen.change == "trial";
+  if (trial) may_boot_.push_back(hand.seen.running);
   boundary_->guard("accept");
   base::Result<base::Bytes> done = hand.client->call({.command = vm::Command::kAccept});
   boundary_->guard("");

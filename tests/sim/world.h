@@ -28,6 +28,7 @@ struct Tally {
   uint64_t switches = 0;  // undos included
   uint64_t refusals = 0;
   uint64_t faults = 0;
+  uint64_t cuts = 0;
 };
 
 class World {
@@ -61,8 +62,16 @@ class World {
   void write_values();
   void force();
   void restart();
+  // power.cc
+  void save();
+  void disk_fault();
+  void power_cut();
 
-  void boot(const ir::VerifiedImage& image);
+  // Given, or what the disk says.
+  void boot(const std::optional<ir::VerifiedImage>& given);
+  void any_operation();
+  void come_back();
+  void remember_retained();
   Hand connect();
   // Its next exchanges may fail, one time in four.
   void bad_luck(Hand& hand);
@@ -87,6 +96,10 @@ class World {
   std::unique_ptr<SteppedBoundary> boundary_;
   std::unique_ptr<stvm::ControllerService> service_;
   std::map<base::Digest, std::shared_ptr<Version>> versions_;
+  // What a boot may find: programs, and the retained values of one of these boundaries.
+  std::vector<base::Digest> may_boot_;
+  std::vector<Values> retained_;
+  bool disk_failed_ = false;
   base::Bytes last_package_;
   // Of the change on trial: the boundary at which it was switched.
   std::optional<Snapshot> at_switch_;

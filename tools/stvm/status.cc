@@ -38,8 +38,39 @@ void print_versions(const vm::StatusReport& report) {
   std::printf("  forces      %llu\n\n", static_cast<unsigned long long>(report.forces));
 }
 
+// What is left for changes, in bytes.
+void print_memory(const vm::MemoryReport& memory) {
+  tools::Table table({"memory", "> areas", "> used", "> slack"});
+  auto row = [&](const char* name, const vm::AreaRoom& room) {
+    table.row(
+        {name, std::to_string(room.areas), std::to_string(room.used), std::to_string(room.slack)});
+  };
+  row("globals", memory.globals);
+  row("programs", memory.programs);
+  row("instances", memory.instances);
+  std::printf("%sfree %llu of %llu bytes, %llu in one piece\n\n", table.text().c_str(),
+              static_cast<unsigned long long>(memory.free),
+              static_cast<unsigned long long>(memory.capacity),
+              static_cast<unsigned long long>(memory.largest_free));
+}
+
+void room_json(tools::JsonWriter& json, const char* name, const vm::AreaRoom& room) {
+  json.key(name).begin_object().field("areas", room.areas).field("used", room.used);
+  json.field("slack", room.slack).end_object();
+}
+
+void memory_json(tools::JsonWriter& json, const vm::MemoryReport& memory) {
+  json.key("memory").begin_object().field("capacity", memory.capacity);
+  json.field("free", memory.free).field("largest_free", memory.largest_free);
+  room_json(json, "globals", memory.globals);
+  room_json(json, "programs", memory.programs);
+  room_json(json, "instances", memory.instances);
+  json.end_object();
+}
+
 void print_text(const vm::StatusReport& report) {
   print_versions(report);
+  print_memory(report.memory);
   tools::Table tasks(
       {"task", "> period", "> priority", "> scans", "> missed", "> last", "> longest", "state"});
   for (const vm::TaskStatus& task : report.tasks) {
@@ -77,6 +108,7 @@ void print_json(const vm::StatusReport& report) {
   json.end_array();
   json.field("uptime_ns", report.uptime_ns).field("base_period_ns", report.base_period_ns);
   json.field("faulted", report.faulted).field("forces", report.forces);
+  memory_json(json, report.memory);
   json.key("tasks").begin_array();
   for (const vm::TaskStatus& task : report.tasks) task_json(json, task);
   json.end_array().key("traps").begin_array();

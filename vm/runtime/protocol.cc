@@ -88,6 +88,23 @@ void value_fields(A& a, T& value) {
 }
 
 template <class A, class T>
+void room_fields(A& a, T& room) {
+  a(room.areas);
+  a(room.used);
+  a(room.slack);
+}
+
+template <class A, class T>
+void memory_fields(A& a, T& memory) {
+  a(memory.capacity);
+  a(memory.free);
+  a(memory.largest_free);
+  room_fields(a, memory.globals);
+  room_fields(a, memory.programs);
+  room_fields(a, memory.instances);
+}
+
+template <class A, class T>
 void status_fields(A& a, T& report) {
   a(report.name);
   a(report.running);
@@ -102,6 +119,7 @@ void status_fields(A& a, T& report) {
   a(report.base_period_ns);
   a(report.faulted);
   a(report.forces);
+  memory_fields(a, report.memory);
   a.list(report.tasks, 49);
   a.list(report.traps, 28);
 }

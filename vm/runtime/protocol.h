@@ -11,6 +11,7 @@
 #include "base/hash.h"
 #include "base/result.h"
 #include "vm/runtime/controller.h"
+#include "vm/runtime/memory_report.h"
 
 namespace vm {
 
@@ -80,6 +81,7 @@ struct StatusReport {
   int64_t base_period_ns = 0;
   bool faulted = false;
   uint64_t forces = 0;
+  MemoryReport memory;
   std::vector<TaskStatus> tasks;
   std::vector<TrapRow> traps;
 };

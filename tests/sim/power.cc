@@ -1,0 +1,161 @@
+// Disks that fail and power that goes: what the simulated plant finds when it comes back.
+#include <algorithm>
+
+#include "online_change/store/boot.h"
+#include "tests/sim/world.h"
+
+namespace sim {
+namespace {
+
+struct PowerCut {};
+
+// Which of the sectors that were not synced have reached the disk, and one of them in part.
+SimStorage what_is_left(const SimStorage& disk, differential::Random& random) {
+  SimStorage::Choice choice;
+  for (const SimStorage::Dirty& dirty : disk.dirty()) {
+    choice.push_back(
+        static_cast<uint8_t>(random.below(static_cast<uint32_t>(dirty.contents.size() + 1))));
+  }
+  Tear tear;
+  if (!choice.empty() && random.one_in(2)) {
+    tear.number = random.below(static_cast<uint32_t>(choice.size()));
+    tear.bytes = random.below(kSector);
+  }
+  return disk.after_cut(choice, tear);
+}
+
+}  // namespace
+
+void World::boot(const std::optional<ir::VerifiedImage>& given) {
+  vm::ControllerOptions options;
+  options.fuel_budget = 20'000'000;
+  options.on_trap = vm::TrapPolicy::kStopTask;
+  store_ = std::make_unique<online_change::Store>(disk_);
+  base::Result<online_change::Boot> boot = online_change::boot(*store_, given, "sim", 0);
+  require(boot.ok(), "a program boots");
+  auto controller = vm::Controller::start(boot->image, options, clock_, devices_, boot->retained);
+  require(controller.ok(), "the program starts");
+  controller_ = std::move(*controller);
+  boundary_ = std::make_unique<SteppedBoundary>(*controller_, clock_);
+  boundary_->on_switch([this](const Snapshot& a, const Snapshot& b) { switched(a, b); });
+  boundary_->on_cycle([this] { remember_retained(); });
+  stvm::StartReport start{boot->trial_lost, boot->alarms};
+  service_ = std::make_unique<stvm::ControllerService>(*controller_, clock_, *store_, *boundary_,
+                                                       start, [] { return int64_t{0}; });
+  remember_retained();
+}
+
+void World::remember_retained() {
+  ++tally_.cycles;
+  if (controller_->at_boundary() && !controller_->image().retain.empty()) {
+    retained_.push_back(retained_values(*controller_));
+  }
+}
+
+// From here on nothing older comes back.
+void World::save() {
+  say("save");
+  online_change::Snapshot snapshot;
+  while (!controller_->at_boundary()) boundary_->cycle();
+  service_->keeper().take(snapshot);
+  const Values now = retained_values(*controller_);
+  base::Status saved = service_->keeper().save(snapshot);
+  if (!saved.ok()) return refused(saved.error());
+  retained_.assign(1, now);
+}
+
+void World::any_operation() {
+  switch (random_.below(5)) {
+    case 0:
+      return save();
+    case 1:
+      return accept();
+    case 2:
+      return undo();
+    default:
+      return change();
+  }
+}
+
+// A call of the disk fails; what failed stays so until the controller starts again.
+void World::disk_fault() {
+  const vm::StatusReport before = settled();
+  const bool from_now_on = random_.one_in(2);
+  const Failure how = random_.one_in(2) ? Failure::kError : Failure::kShort;
+  uint32_t calls = random_.below(12);
+  say("the disk fails");
+  // Whether a record that failed has become durable, nobody knows.
+  may_boot_ = {before.boots_next, before.running};
+  disk_failed_ = true;
+  disk_.fails = [=](std::string_view) mutable {
+    if (calls > 0) return --calls, Failure::kNone;
+    if (!from_now_on) calls = ~0u;
+    return how;
+  };
+  any_operation();
+  disk_.fails = nullptr;
+  may_boot_.push_back(settled().running);
+  ++tally_.faults;
+}
+
+void World::power_cut() {
+  const vm::StatusReport before = settled();
+  if (!disk_failed_) may_boot_ = {before.boots_next};
+  const bool inside = !disk_failed_ && random_.one_in(2);
+  say(inside ? "power cut inside an operation" : "power cut");
+  if (inside) {
+    uint32_t calls = random_.below(40);
+    disk_.before_call = [=]() mutable {
+      if (calls-- == 0) throw PowerCut();
+    };
+    try {
+      any_operation();
+      may_boot_ = {settled().boots_next};
+    } catch (const PowerCut&) {
+      say("  there it was");
+    }
+    disk_.before_call = nullptr;
+  }
+  come_back();
+}
+
+void World::come_back() {
+  ++tally_.cuts;
+  service_.reset();
+  boundary_.reset();
+  controller_.reset();
+  store_.reset();
+  at_switch_.reset();
+  const std::vector<Values> retained = std::move(retained_);
+  retained_.clear();
+  for (bool again = true; again;) {
+    disk_ = what_is_left(disk_, random_);
+    again = random_.one_in(4);
+    uint32_t calls = random_.below(20);
+    if (again) {
+      disk_.before_call = [=]() mutable {
+        if (calls-- == 0) throw PowerCut();
+      };
+    }
+    try {
+      boot(std::nullopt);
+      again = false;
+    } catch (const PowerCut&) {
+      say("  and again");
+      store_.reset();
+    }
+    disk_.before_call = nullptr;
+  }
+  disk_failed_ = false;
+  const base::Digest running = controller_->verified().digest();
+  require(std::find(may_boot_.begin(), may_boot_.end(), running) != may_boot_.end(),
+          "what boots is what was accepted last");
+  require(settled().boots_next == running, "and boots next");
+  const Values now = retained_values(*controller_);
+  const bool known =
+      retained.empty() || std::any_of(retained.begin(), retained.end(),
+                                      [&](const Values& values) { return agree(now, values); });
+  require(known, "the retained values are those of one boundary");
+}
+
+}  // namespace sim
