@@ -68,22 +68,29 @@ std::string printable(std::string text) {
   return text;
 }
 
+std::string counts_text(const online_change::FateCounts& n) {
+  return std::to_string(n.kept) + " kept, " + std::to_string(n.moved) + " moved, " +
+         std::to_string(n.converted) + " converted, " + std::to_string(n.initialised) +
+         " initialised, " + std::to_string(n.dropped) + " dropped";
+}
+
+// One line, and what there is to say of it below, so that it fits a terminal.
 void print_text(const std::vector<JournalEntry>& entries) {
   for (const JournalEntry& entry : entries) {
-    std::string line = time_text(entry.time_ns) + "  " + event_name(entry.event);
-    line += version_text(entry);
-    if (!entry.who.empty()) line += "  by " + printable(entry.who);
-    if (entry.counts.total() != 0) {
-      const online_change::FateCounts& n = entry.counts;
-      line += "  " + std::to_string(n.kept) + " kept, " + std::to_string(n.moved) + " moved, " +
-              std::to_string(n.converted) + " converted, " + std::to_string(n.initialised) +
-              " initialised, " + std::to_string(n.dropped) + " dropped";
+    std::printf("%s  %s%s%s%s\n", time_text(entry.time_ns).c_str(), event_name(entry.event),
+                version_text(entry).c_str(), entry.who.empty() ? "" : "  by ",
+                printable(entry.who).c_str());
+    std::vector<std::string> below;
+    if (entry.counts.total() != 0) below.push_back(counts_text(entry.counts));
+    std::string pause;
+    if (entry.measured_ns != 0) pause = "pause " + tools::duration(entry.measured_ns);
+    if (entry.predicted_ns != 0) {
+      pause += (pause.empty() ? "expected " : ", expected ") + tools::duration(entry.predicted_ns);
     }
-    if (entry.measured_ns != 0) line += "  pause " + tools::duration(entry.measured_ns);
-    if (entry.predicted_ns != 0) line += "  expected " + tools::duration(entry.predicted_ns);
-    if (entry.event == Event::kTrap) line += "  cycle " + std::to_string(entry.cycle);
-    if (!entry.text.empty()) line += "  " + printable(entry.text);
-    std::printf("%s\n", line.c_str());
+    if (!pause.empty()) below.push_back(pause);
+    if (entry.event == Event::kTrap) below.push_back("cycle " + std::to_string(entry.cycle));
+    if (!entry.text.empty()) below.push_back(printable(entry.text));
+    for (const std::string& line : below) std::printf("    %s\n", line.c_str());
   }
 }
 

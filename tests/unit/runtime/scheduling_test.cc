@@ -173,5 +173,40 @@ TEST(Scheduling, TrapStopsOneTaskWhenThePolicySaysSo) {
   EXPECT_EQ(plant->traps()[0].task, "T1");
 }
 
+// What the controller does with its devices, in order.
+class Recorder : public vm::IoPort {
+ public:
+  void receive(std::span<uint8_t> inputs) override {
+    inputs[0] = ++given;
+    log += "in" + std::to_string(given) + " ";
+  }
+  void send(std::span<const uint8_t> outputs) override {
+    log += "out" + std::to_string(outputs[0]) + " ";
+  }
+  std::string log;
+  uint8_t given = 0;
+};
+
+// Output refresh, input refresh, execution, service: an output is what the scan before made of its
+// input, and between two cycles there is a boundary.
+TEST(Scheduling, D6_PhasesOfAScan) {
+  auto image =
+      build("PROGRAM P VAR i AT %IB0 : BYTE; q AT %QB0 : BYTE; END_VAR q := i; END_PROGRAM");
+  ASSERT_TRUE(image.has_value());
+  vm::VirtualClock clock;
+  Recorder devices;
+  auto controller = vm::Controller::start(*image, {}, clock, devices);
+  ASSERT_TRUE(controller.ok());
+  devices.log.clear();
+  const uint8_t first = devices.given;
+  for (int i = 0; i < 3; ++i) {
+    (*controller)->cycle();
+    devices.log += "| ";
+    EXPECT_TRUE((*controller)->at_boundary());
+  }
+  EXPECT_EQ(first, 0);
+  EXPECT_EQ(devices.log, "out0 in1 | out1 in2 | out2 in3 | ");
+}
+
 }  // namespace
 }  // namespace runtime_test
