@@ -5,6 +5,7 @@
 #include "frontend/lower/body.h"
 #include "frontend/parse/address_map.h"
 #include "frontend/parse/parse.h"
+#include "frontend/sema/migrations.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sfc/declare.h"
@@ -60,6 +61,7 @@ std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& so
   sema.report_not_supported();
   sema.collect();
   sema.resolve_declarations();
+  Migrations(sema).collect();
   sema.configure();
   sema.objects.add_start();
   // Grows while bodies use functions in new instances.
@@ -67,6 +69,7 @@ std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& so
     if (sema.pous[pou].id.valid()) Body(sema, pou).run();
   }
   sema.finish_programs();
+  Migrations(sema).check_code();
   sema.objects.check_recursion();
   sema.program.overrides = ir::find_overrides(sema.program);
   sema.check_output_tasks();

@@ -32,9 +32,9 @@ class Linker {
 
   base::Result<ir::Image> run() {
     base::Status (Linker::*const steps[])() = {
-        &Linker::lay_out_types,  &Linker::number_pous,   &Linker::place_instances,
-        &Linker::fill_pool,      &Linker::link_code,     &Linker::link_tasks,
-        &Linker::link_overrides, &Linker::measure_stack,
+        &Linker::lay_out_types,  &Linker::number_pous,     &Linker::place_instances,
+        &Linker::fill_pool,      &Linker::link_code,       &Linker::link_tasks,
+        &Linker::link_overrides, &Linker::link_migrations, &Linker::measure_stack,
     };
     copy_declarations();
     for (const auto step : steps) {
@@ -247,6 +247,19 @@ class Linker {
     std::sort(image_.overrides.begin(), image_.overrides.end(), [](const auto& a, const auto& b) {
       return std::pair(a.type.index, a.prototype) < std::pair(b.type.index, b.prototype);
     });
+    return base::Ok{};
+  }
+
+  base::Status link_migrations() {
+    for (const ir::Migration& row : program_.migrations) {
+      const std::string& name = program_.pous[row.function.index].name;
+      const auto pou = context_.pou_numbers.find(ir::fold_name(name));
+      if (pou == context_.pou_numbers.end()) {
+        return base::Error{base::Refusal::kUndefinedSymbol,
+                           "migration `" + name + "`: its object is missing."};
+      }
+      image_.migrations.push_back({row.type, pou->second, row.inverse, row.values});
+    }
     return base::Ok{};
   }
 

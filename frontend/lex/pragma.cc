@@ -51,17 +51,18 @@ std::string_view inside_pragma(std::string_view pragma) {
 
 namespace {
 
-// renamed from := 'old'. Whoever looks for it says what is wrong with one that is written
-// otherwise.
-PragmaAttribute read_rename(PragmaReader& reader) {
+// NAME [word] := 'text' [, inverse]. Whoever looks for it says what is wrong with one that is
+// written otherwise.
+PragmaAttribute read_rule(PragmaReader& reader, std::string_view word) {
   PragmaAttribute out;
   out.name = reader.piece();
   reader.next();
-  const bool head =
-      reader.accept_word("from") && reader.accept_sign(':') && reader.accept_sign('=');
+  const bool head = (word.empty() || reader.accept_word(word)) && reader.accept_sign(':') &&
+                    reader.accept_sign('=');
   if (!head || reader.kind() != PragmaReader::Kind::kText) return out;
   out.value = reader.piece();
   reader.next();
+  if (word == "of") out.marked = reader.accept_sign(',') && reader.accept_word("inverse");
   out.has_value = reader.kind() == PragmaReader::Kind::kEnd;
   return out;
 }
@@ -70,7 +71,9 @@ PragmaAttribute read_rename(PragmaReader& reader) {
 
 std::optional<PragmaAttribute> read_attribute(std::string_view pragma) {
   PragmaReader reader(inside_pragma(pragma));
-  if (reader.is_word(kRenamedAttribute)) return read_rename(reader);
+  if (reader.is_word(kRenamedAttribute)) return read_rule(reader, "from");
+  if (reader.is_word(kMigrationAttribute)) return read_rule(reader, "of");
+  if (reader.is_word("old") || reader.is_word("new")) return read_rule(reader, "");
   if (!reader.accept_word("attribute")) return std::nullopt;
   bool named =
       reader.kind() == PragmaReader::Kind::kText || reader.kind() == PragmaReader::Kind::kWord;

@@ -32,11 +32,13 @@ struct PragmaAttribute {
   std::string_view name;
   std::string_view value;
   bool has_value = false;
+  bool marked = false;  // `, inverse` behind the value
 };
 // `{attribute 'name'}`, `{attribute 'name' := 'value'}`, and `{renamed from := 'old'}` as an
 // attribute `renamed`, whose value is missing when it is written in another way. nullopt for all
-// other pragmas.
+// other pragmas. So are `{migration of := 'Type'}` and `{old := 'x'}`, `{new := 'x'}`.
 inline constexpr std::string_view kRenamedAttribute = "renamed";
+inline constexpr std::string_view kMigrationAttribute = "migration";
 std::optional<PragmaAttribute> read_attribute(std::string_view pragma);
 
 // Without the braces.

@@ -28,9 +28,13 @@ Range32 Parser::take_attributes() {
 void Parser::report_lost_rule(base::SourceSpan span) {
   uint32_t begin = span.begin.offset - base_;
   auto found = read_attribute(text_.substr(begin, span.end.offset - span.begin.offset));
-  if (!found || !ir::same_name(found->name, kRenamedAttribute)) return;
-  diagnostics_.add(Code::kBadRename, span, "this rule stands before no declaration",
-                   "put it in front of what was renamed");
+  if (!found) return;
+  const bool migrates = ir::same_name(found->name, kMigrationAttribute);
+  if (!migrates && !ir::same_name(found->name, kRenamedAttribute)) return;
+  diagnostics_.add(
+      migrates ? Code::kBadMigration : Code::kBadRename, span,
+      "this rule stands before no declaration",
+      migrates ? "put it in front of a FUNCTION" : "put it in front of what was renamed");
 }
 
 void Parser::report_lost_rules() {
@@ -46,7 +50,7 @@ void Parser::add_attribute(base::SourceSpan span) {
   auto at = static_cast<uint32_t>(found->name.data() - text_.data()) + base_;
   auto length = static_cast<uint32_t>(found->name.size());
   tree_.attributes.push_back(
-      {{found->name, {{at}, {at + length}}}, found->has_value, found->value});
+      {{found->name, {{at}, {at + length}}}, found->has_value, found->value, found->marked});
 }
 
 // Both lists as one. Beyond the limit only the second: a copy for each of many

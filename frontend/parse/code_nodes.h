@@ -36,6 +36,7 @@ struct Attribute {  // names are compared without case
   Name name;
   bool has_value = false;
   std::string_view value;  // between the quotes, escapes as written
+  bool marked = false;     // {migration of := 'T', inverse}
 };
 
 // --- expressions -------------------------------------------------------------

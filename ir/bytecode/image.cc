@@ -12,7 +12,7 @@ namespace ir {
 namespace {
 
 constexpr std::string_view kMagic = "STCIMAGE";
-constexpr uint32_t kVersion = 3;
+constexpr uint32_t kVersion = 4;
 constexpr size_t kDigestAt = 16;
 constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 
@@ -108,6 +108,7 @@ void tables_section(Archive& a, I& image) {
   });
   a.list(image.tasks, 33, [&](auto& task) { task_fields(a, task); });
   a.list(image.access, 9, [&](auto& access) { access_fields(a, access); });
+  a.list(image.migrations, 13, [&](auto& row) { migration_fields(a, row); });
   a.list(image.io, 17, [&](auto& binding) {
     address_fields(a, binding.address);
     a(binding.data);

@@ -125,6 +125,14 @@ struct RetainRange {
   uint32_t size = 0;
 };
 
+// As in ir::Migration; the parameters are frame slots of those names.
+struct LinkedMigration {
+  TypeId type;
+  uint32_t pou = 0;
+  bool inverse = false;
+  std::vector<MigratedName> values;
+};
+
 struct Image {
   std::string name;
   TypeTable types;
@@ -141,6 +149,7 @@ struct Image {
   std::vector<Extent> free;  // sorted, disjoint, never adjacent
   std::vector<ImageTask> tasks;
   std::vector<AccessPath> access;
+  std::vector<LinkedMigration> migrations;
   std::vector<IoBinding> io;
   std::vector<RetainRange> retain;
   std::vector<DataRun> data;  // sorted by offset

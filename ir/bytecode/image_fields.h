@@ -230,6 +230,18 @@ void override_fields(Archive& a, T& v) {
 }
 
 template <class Archive, class T>
+void migration_fields(Archive& a, T& v) {
+  a(v.type);
+  a(v.pou);
+  a(v.inverse);
+  a.list(v.values, 9, [&](auto& value) {
+    a(value.parameter);
+    a(value.member);
+    a(value.output);
+  });
+}
+
+template <class Archive, class T>
 void access_fields(Archive& a, T& v) {
   a(v.name);
   a(v.path);

@@ -12,6 +12,7 @@ base::Status verify_image(const Image& image) {
   verification::Context context(image, std::move(facts).value());
   if (base::Status s = verification::verify_tables(context); !s) return s;
   if (base::Status s = verification::verify_overrides(image); !s) return s;
+  if (base::Status s = verification::verify_migrations(image); !s) return s;
   if (base::Status s = verification::verify_initial_data(image); !s) return s;
   if (base::Status s = verification::verify_instances(context); !s) return s;
   if (base::Status s = verification::verify_resources(context); !s) return s;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/limits.h"
 #include "ir/bytecode/call_needs.h"
 #include "ir/bytecode/verify_parts.h"
 
@@ -47,6 +48,13 @@ class CallGraph {
         uint64_t& most = by_priority[task.priority];
         most = std::max(most, needs_.of[pou].bytes);
         depth = std::max(depth, needs_.of[pou].depth - 1);
+      }
+    }
+    for (const LinkedMigration& row : image_.migrations) {
+      const CallNeeds& needs = needs_.of[row.pou];
+      if (needs.bytes > kStackLimit || needs.depth > base::kMaxCallDepth) {
+        return refuse(Refusal::kStackUnbounded,
+                      "migration `" + image_.pous[row.pou].name + "` needs too much stack");
       }
     }
     uint64_t sum = 0;

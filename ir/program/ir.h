@@ -277,6 +277,20 @@ struct Override {
   friend bool operator==(const Override&, const Override&) = default;
 };
 
+// A function that makes values of a new version from those of the running one, or, for undo, the
+// other way round (docs/adr/0013-migrations.md).
+struct MigratedName {
+  std::string parameter;
+  std::string member;  // of `type`, in the version that is read or made
+  bool output = false;
+};
+struct Migration {
+  PouId function;
+  TypeId type;  // a program, function block or the globals
+  bool inverse = false;
+  std::vector<MigratedName> values;
+};
+
 struct Program {
   std::string name;  // configuration or project name
   TypeTable types;
@@ -289,6 +303,7 @@ struct Program {
   std::vector<AccessPath> access;
   std::vector<LocatedPath> located;
   std::vector<Override> overrides;  // sorted by type, then prototype; no pair twice
+  std::vector<Migration> migrations;
 
   PouId find_pou(std::string_view name) const;    // without case
   PouId pou_of_instance_type(TypeId type) const;  // its body

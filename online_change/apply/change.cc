@@ -5,12 +5,8 @@
 #include <cstring>
 
 #include "base/memory_limit.h"
-#include "ir/bytecode/renames.h"
-#include "online_change/apply/handle_transfer.h"
-#include "online_change/apply/leaving.h"
 #include "online_change/apply/losses.h"
-#include "online_change/apply/standby.h"
-#include "online_change/apply/transfer.h"
+#include "online_change/apply/pending.h"
 #include "online_change/plan/pause.h"
 
 namespace online_change {
@@ -36,48 +32,6 @@ base::Error no_boundary() {
 bool does_anything(const Plan& plan) { return !plan.steps.empty() || plan.counts.dropped != 0; }
 
 }  // namespace
-
-struct Change::Pending {
-  Pending(Package received, ir::VerifiedImage running, ir::VerifiedImage next, Strategy chosen)
-      : strategy(chosen),
-        package(std::move(received)),
-        old_image(std::move(running)),
-        new_image(std::move(next)),
-        renamed(old_image.image(), new_image.image()),
-        forward(package.forward, old(), new_image.image(),
-                in_place() ? Transfer::Steps::kBoundary : Transfer::Steps::kApart),
-        early(package.forward, old(), new_image.image(), Transfer::Steps::kEarly),
-        backward(package.inverse, new_image.image(), old(), Transfer::Steps::kAll),
-        handles(old(), new_image.image()),
-        leaving(find_leaving(old(), new_image.image())) {}
-  bool in_place() const { return strategy == Strategy::kInPlace; }
-  // Version 1 under the names of version 2.
-  const ir::Image& old() const { return renamed.image(); }
-
-  Strategy strategy;
-  Package package;
-  ir::VerifiedImage old_image;
-  ir::VerifiedImage new_image;
-  ir::OldUnderNewNames renamed;
-  Transfer forward;
-  Transfer early;  // in place
-  size_t early_done = 0;
-  Transfer backward;
-  HandleTransfer handles;
-  // Version 2 until the switch, version 1 in trial.
-  std::unique_ptr<vm::Generation> waiting;
-  // Standby: its data. In trial that is version 1's, as the switch found it.
-  std::unique_ptr<Standby> area;
-  Leaving leaving;
-  bool allow_loss = false;
-  // What the last report said would be lost: with leave for that, nothing else may be (X1).
-  bool reported = false;
-  std::vector<std::pair<uint32_t, uint32_t>> shown;  // step and index, sorted
-  bool may_lose(const Loss& loss) const {
-    if (!allow_loss || !reported) return allow_loss;
-    return std::binary_search(shown.begin(), shown.end(), std::pair(loss.step, loss.index));
-  }
-};
 
 const char* state_name(State state) {
   constexpr const char* kNames[] = {"idle",     "staged", "verified", "planned",
@@ -140,6 +94,7 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy) {
   if (interrupted()) return abandoned("when its plan was checked");
   pending_->waiting = controller_.prepare(*image);
   retired_.reset();  // prepare() has just forgotten it
+  if (base::Status migrated = try_migrations(); !migrated.ok()) return migrated;
   if (!pending_->in_place()) {
     base::Result<std::unique_ptr<Standby>> area = Standby::make(
         controller_.generation(), *pending_->waiting, pending_->forward, controller_.data_limit());
@@ -151,70 +106,31 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy) {
   return base::Ok{};
 }
 
+// On the live data, which stays as it is: whether migrations trap or do not end is known now, and
+// what they give is what the switch will write if their inputs stay as they are.
+base::Status Change::try_migrations() {
+  Pending& change = *pending_;
+  const ir::Image& next = change.new_image.image();
+  auto there = Migrator::make(change.package.forward, change.old(), next, *change.waiting);
+  if (!there.ok()) return there.error();
+  auto back = Migrator::make(change.package.inverse, next, change.old(), *change.waiting);
+  if (!back.ok()) return back.error();
+  change.migrate = std::move(*there);
+  change.migrate_back = std::move(*back);
+  return migrate();
+}
+
+base::Status Change::migrate() {
+  if (!pending_->migrate) return base::Ok{};
+  return pending_->migrate->run(controller_.memory().data());
+}
+
 const Plan& Change::plan() const {
   static const Plan kNothing;
   return pending_ ? pending_->package.forward : kNothing;
 }
 
 Strategy Change::strategy() const { return pending_ ? pending_->strategy : Strategy::kInPlace; }
-
-int64_t Change::predicted_pause_ns() const {
-  if (!pending_ || pending_->in_place()) return plan().predicted_pause_ns;
-  if (!pending_->area) return 0;
-  return predicted_standby_pause_ns(plan(), pending_->old(), pending_->new_image.image(),
-                                    pending_->area->compared_bytes());
-}
-
-std::vector<LiveLoss> Change::live_losses() const {
-  std::vector<LiveLoss> rows;
-  if (!pending_ || state_ == State::kTrial) return rows;
-  const uint8_t* memory = controller_.memory().data();
-  Areas areas(pending_->new_image.image());
-  pending_->reported = true;
-  pending_->shown.clear();
-  auto collect = [&](const Loss& loss) {
-    rows.push_back(describe(loss, pending_->forward, areas, memory));
-    pending_->shown.push_back({loss.step, loss.index});
-    return true;
-  };
-  pending_->forward.losses(memory, collect);
-  std::sort(pending_->shown.begin(), pending_->shown.end());
-  std::vector<LiveLoss> others =
-      values_without_place(plan(), pending_->old(), controller_.memory().view());
-  rows.insert(rows.end(), others.begin(), others.end());
-  const ir::Image& old_image = pending_->old();
-  Areas old_areas(old_image);
-  pending_->handles.for_each_broken(memory, [&](uint32_t at, ir::TypeId type) {
-    rows.push_back(describe_broken(old_areas, at, type, controller_.memory().view()));
-  });
-  for (const std::string& path : controller_.ended_forces(*pending_->waiting)) {
-    rows.push_back({path, "forced", "", "loses its force"});
-  }
-  return rows;
-}
-
-base::Status Change::check_losses(bool allow_loss) const {
-  if (allow_loss) return base::Ok{};
-  std::vector<LiveLoss> losses = live_losses();
-  if (losses.empty()) return base::Ok{};
-  return would_lose(losses.front(), losses.size() - 1);
-}
-
-// Free time of a task: its period without its longest scan.
-base::Status Change::check_pause(bool allow_overrun) const {
-  if (allow_overrun) return base::Ok{};
-  const int64_t pause_ns = predicted_pause_ns();
-  for (const vm::TaskStatus& task : controller_.tasks()) {
-    if (task.stopped || task.period_ns == 0) continue;  // events leave as much time as there is
-    int64_t free_ns = task.period_ns - task.max_ns;
-    if (pause_ns <= free_ns) continue;
-    return base::Error{base::Refusal::kPauseTooLong,
-                       "the switch is expected to take " + std::to_string(pause_ns) +
-                           " ns; task `" + task.name + "` leaves " + std::to_string(free_ns) +
-                           " ns; split the change, or allow it with --allow-overrun"};
-  }
-  return base::Ok{};
-}
 
 base::Status Change::arm(bool allow_loss, bool allow_overrun) {
   return guarded([&] { return arm_steps(allow_loss, allow_overrun); });
@@ -224,7 +140,8 @@ base::Status Change::arm_steps(bool allow_loss, bool allow_overrun) {
   if (state_ != State::kPrepared) return not_in(state_, "prepared");
   base::Status fits = check_pause(allow_overrun);
   if (!fits.ok()) return fits;
-  base::Status lossless = check_losses(allow_loss);
+  base::Status lossless = check_charts();
+  if (lossless.ok()) lossless = check_losses(allow_loss);
   if (!lossless.ok()) return lossless;
   do {
     if (!interrupted()) continue;
@@ -337,6 +254,9 @@ base::Result<SwitchReport> Change::switch_steps() {
   base::Status carried = leaves ? check_losses(pending_->allow_loss) : base::Status(base::Ok{});
   if (carried.ok()) {
     carried = leave(pending_->leaving.at_switch);
+    if (carried.ok()) carried = check_charts();
+    if (carried.ok()) carried = migrate();
+    if (carried.ok()) pending_->charts.note(controller_.memory().data());
     if (carried.ok()) carried = carry_over();
     if (!carried.ok() && leaves) controller_.construct();
   }
@@ -344,6 +264,8 @@ base::Result<SwitchReport> Change::switch_steps() {
     abandon();
     return carried.error();
   }
+  vm::Memory& data = pending_->area ? pending_->area->data() : controller_.memory();
+  if (pending_->migrate_back) pending_->migrate_back->note(data.data());
   vm::Memory* const area = pending_->area ? &pending_->area->data() : nullptr;
   pending_->waiting = controller_.publish(std::move(pending_->waiting), area);
   if (does_anything(plan())) controller_.construct();
@@ -379,8 +301,9 @@ base::Result<SwitchReport> Change::undo_steps() {
   int64_t begin_ns = monotonic_ns();
   Transfer& back = pending_->backward;
   base::Status left = leave(pending_->leaving.at_undo);
+  if (left.ok() && pending_->migrate_back) left = pending_->migrate_back->run(memory);
   if (!left.ok()) {
-    controller_.construct();
+    if (!pending_->leaving.at_undo.empty()) controller_.construct();
     return left.error();
   }
   const bool led_back = pending_->handles.back(memory, interrupted_);
@@ -393,6 +316,7 @@ base::Result<SwitchReport> Change::undo_steps() {
     if (!pending_->leaving.at_undo.empty()) controller_.construct();
     return base::Error{base::Refusal::kDeadline, "the undo was abandoned; the trial goes on"};
   }
+  pending_->charts.settle(memory);
   retired_ = controller_.publish(std::move(pending_->waiting));
   if (does_anything(pending_->package.inverse)) controller_.construct();
   report.pause_ns = monotonic_ns() - begin_ns;

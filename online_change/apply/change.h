@@ -94,6 +94,9 @@ class Change {
   base::Status arm_steps(bool allow_loss, bool allow_overrun);
   base::Result<SwitchReport> switch_steps();
   base::Result<SwitchReport> undo_steps();
+  base::Status try_migrations();
+  base::Status migrate();
+  base::Status check_charts() const;
   base::Status check_pause(bool allow_overrun) const;
   base::Status check_losses(bool allow_loss) const;
   bool unit();

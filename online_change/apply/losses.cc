@@ -40,8 +40,8 @@ std::vector<LiveLoss> values_without_place(const Plan& plan, const ir::Image& ol
                                            std::span<const uint8_t> memory) {
   std::vector<LiveLoss> losses;
   for (const FateRow& row : plan.fates) {
-    bool dropped = row.fate == Fate::kDropped;
-    if (!dropped && (row.fate != Fate::kInitialised || !row.may_lose)) continue;
+    const bool dropped = row.fate == Fate::kDropped;
+    if (!row.may_lose || (!dropped && row.fate != Fate::kInitialised)) continue;
     base::Result<ir::Symbol> symbol = ir::find_symbol(old_image, row.path);
     std::string value = row.old_type;
     if (symbol.ok()) value = ir::format_value(old_image, *symbol, memory);

@@ -141,7 +141,7 @@ bool Standby::close(const uint8_t* active, const OnLoss& on_loss, const Interrup
   if (!copy_drift(active, interrupted)) return false;
   const std::vector<Piece>& pieces = transfer_.pieces();
   for (size_t i = 0; i < pieces.size(); ++i) {
-    if (!lossy_[i] && !touches_drift(pieces[i])) continue;
+    if (!lossy_[i] && !transfer_.is_late(pieces[i]) && !touches_drift(pieces[i])) continue;
     if (interrupted && interrupted()) return false;
     if (!transfer_.move(pieces[i], active, data_.data(), on_loss)) return false;
   }

@@ -69,6 +69,7 @@ void Transfer::add_step(uint32_t number, size_t at) {
   piece.kind = step.kind;
   piece.from_stride = step.from_stride;
   piece.to_stride = step.to_stride;
+  if (step.kind == StepKind::kEnter) converted_.push_back({step.to, step.size, at});
   if (without_gaps(step)) return add_bytes(piece, step.total());
   const bool converts = step.kind == StepKind::kConvert;
   if (converts) piece.fast = conversions_.fast(step);
@@ -107,7 +108,7 @@ void Transfer::add_bytes(Piece part, uint64_t length) {
 }
 
 uint64_t Transfer::source_extent(const Piece& piece) const {
-  if (piece.kind == StepKind::kInitialise) return 0;
+  if (piece.kind == StepKind::kInitialise || piece.kind == StepKind::kMigrate) return 0;
   const bool converts = piece.kind == StepKind::kConvert;
   const uint32_t size = converts ? conversions_.source_size(step_of(piece)) : piece.size;
   return uint64_t{piece.count - 1} * piece.from_stride + size;
@@ -131,6 +132,11 @@ void Transfer::touch(uint8_t* memory) const {
 void Transfer::read_values(const Piece& piece, const uint8_t* memory, uint8_t* out) const {
   if (piece.kind == StepKind::kCopy)
     return gather(memory + piece.from, piece, piece.from_stride, out);
+  if (piece.kind == StepKind::kEnter) {
+    const uint32_t other = piece.from_stride;
+    std::memcpy(out, memory + (memory[other] != 0 ? other : piece.from), piece.total());
+    return;
+  }
   const base::Bytes& bytes = step_of(piece).bytes;
   if (bytes.empty()) {
     std::memset(out, 0, piece.total());
@@ -211,6 +217,19 @@ bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
       case StepKind::kConvert:
         read_back_converted(piece, memory, forward);
         break;
+      case StepKind::kEnter:
+        if (forward.still_as_converted(piece.from, piece.total(), memory)) {
+          std::memcpy(staged_.data() + piece.at, remembered_.data() + piece.at, piece.total());
+        } else {
+          read_values(piece, memory, staged_.data() + piece.at);
+        }
+        break;
+      case StepKind::kMigrate:
+        if (!step_of(piece).bytes.empty()) {
+          read_values(piece, memory, staged_.data() + piece.at);
+          break;
+        }
+        [[fallthrough]];  // nobody has written what it would be made of
       case StepKind::kInitialise:
         std::memcpy(staged_.data() + piece.at, remembered_.data() + piece.at, piece.total());
         break;

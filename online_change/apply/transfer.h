@@ -78,6 +78,11 @@ class Transfer {
   // Bytes from the first value's begin to the last one's end; 0 for what is initialised.
   uint64_t source_extent(const Piece& piece) const;
   uint64_t target_extent(const Piece& piece) const;
+  // Is it made anew at the boundary, whatever it was before?
+  bool is_late(const Piece& piece) const {
+    const StepKind kind = step_of(piece).kind;
+    return kind == StepKind::kMigrate || kind == StepKind::kEnter;
+  }
 
   const Conversions& conversions() const { return conversions_; }
   const Plan& plan() const { return plan_; }

@@ -30,6 +30,28 @@ bool joins(const DiffOp& a, const DiffOp& b) {
 
 }  // namespace
 
+FateRow make_row(Fate fate, std::string path, std::string old_type, std::string new_type,
+                 std::string reason, uint64_t count) {
+  FateRow row;
+  row.fate = fate;
+  row.path = std::move(path);
+  row.old_type = std::move(old_type);
+  row.new_type = std::move(new_type);
+  row.reason = std::move(reason);
+  row.count = count;
+  return row;
+}
+
+DiffOp make_op(DiffKind kind, uint32_t from, uint32_t to, uint32_t size, uint64_t leaves) {
+  DiffOp op;
+  op.kind = kind;
+  op.from = from;
+  op.to = to;
+  op.size = size;
+  op.leaves = leaves;
+  return op;
+}
+
 bool repeat(std::vector<DiffOp>& ops, uint64_t count, uint32_t from_stride, uint32_t to_stride) {
   if (count == 1) return true;
   std::vector<DiffOp> out;

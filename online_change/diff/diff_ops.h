@@ -11,6 +11,10 @@ namespace online_change {
 // More pieces than this in one pair of types is refused.
 inline constexpr size_t kMaxDiffOps = 4'000'000;
 
+FateRow make_row(Fate fate, std::string path, std::string old_type, std::string new_type,
+                 std::string reason, uint64_t count);
+DiffOp make_op(DiffKind kind, uint32_t from, uint32_t to, uint32_t size, uint64_t leaves);
+
 // The same operations for `count` neighbours. False: too many pieces.
 bool repeat(std::vector<DiffOp>& ops, uint64_t count, uint32_t from_stride, uint32_t to_stride);
 void shift(std::vector<DiffOp>& ops, uint32_t from, uint32_t to);

@@ -16,28 +16,6 @@ using ir::TypeId;
 
 constexpr uint32_t kMaxDepth = 64;
 
-FateRow make_row(Fate fate, std::string path, std::string old_type, std::string new_type,
-                 std::string reason, uint64_t count) {
-  FateRow row;
-  row.fate = fate;
-  row.path = std::move(path);
-  row.old_type = std::move(old_type);
-  row.new_type = std::move(new_type);
-  row.reason = std::move(reason);
-  row.count = count;
-  return row;
-}
-
-DiffOp make_op(DiffKind kind, uint32_t from, uint32_t to, uint32_t size, uint64_t leaves) {
-  DiffOp op;
-  op.kind = kind;
-  op.from = from;
-  op.to = to;
-  op.size = size;
-  op.leaves = leaves;
-  return op;
-}
-
 // Members by name; a program may have very many.
 class MemberNames {
  public:
@@ -210,18 +188,23 @@ TypeDiff TypeDiffer::compare_members(TypeId old_type, TypeId new_type, bool is_a
     uint32_t twin = old_names.find(member);
     const Member* old_member = twin == MemberNames::kNone ? nullptr : &from.members[twin];
     uint32_t old_offset = old_member == nullptr ? 0 : old_layout.member_offsets[twin];
+    if (is_area && add_migrated(diff, old_member, new_type, i, new_layout.member_offsets[i])) {
+      continue;
+    }
     if (member.section == Section::kInOut) {
       add_in_out(diff, old_member, old_offset, member, new_layout.member_offsets[i]);
     } else if (old_member == nullptr || old_member->section == Section::kInOut) {
       add_new_member(diff, member, new_layout.member_offsets[i], "new");
-    } else {
+    } else if (!is_area || !add_step(diff, old_type, *old_member, old_offset, new_type, member,
+                                     new_layout.member_offsets[i])) {
       add_member(diff, *old_member, old_offset, member, new_layout.member_offsets[i], is_area);
     }
   }
-  for (const Member& member : from.members) {
-    uint32_t twin = new_names.find(member);
+  for (uint32_t i = 0; i < from.members.size(); ++i) {
+    uint32_t twin = new_names.find(from.members[i]);
     bool gone = twin == MemberNames::kNone || to.members[twin].section == Section::kInOut;
-    if (gone && member.section != Section::kInOut) add_dropped_member(diff, member);
+    if (gone && from.members[i].section != Section::kInOut)
+      add_dropped_member(diff, old_type, i, new_type);
   }
   if (!back_) propose_renames(diff, old_type, new_type);
   join(diff.ops);
@@ -265,19 +248,17 @@ void TypeDiffer::add_new_member(TypeDiff& diff, const Member& member, uint32_t t
                                new_.types.text(member.type), reason, op.leaves));
 }
 
-void TypeDiffer::add_dropped_member(TypeDiff& diff, const Member& member) {
-  if (old_.types.is_instance(member.type)) return;  // a row of its own, with its area
-  diff.rows.push_back(make_row(Fate::kDropped, "." + member.name, old_.types.text(member.type), "",
-                               "removed", ir::is_listed(member) ? leaves(old_, member.type) : 0));
-}
-
 void TypeDiffer::add_member(TypeDiff& diff, const Member& old_member, uint32_t from,
                             const Member& new_member, uint32_t to, bool is_area) {
   bool old_is_instance = old_.types.is_instance(old_member.type);
   bool new_is_instance = new_.types.is_instance(new_member.type);
   if (old_is_instance != new_is_instance) {
     add_new_member(diff, new_member, to, old_is_instance ? "was a function block" : "new");
-    if (new_is_instance) add_dropped_member(diff, old_member);
+    if (!new_is_instance) return;
+    diff.rows.push_back(make_row(Fate::kDropped, "." + old_member.name,
+                                 old_.types.text(old_member.type), "", "removed",
+                                 leaves(old_, old_member.type)));
+    diff.rows.back().may_lose = true;
     return;
   }
   const TypeDiff& inner = value(old_member.type, new_member.type);

@@ -14,6 +14,7 @@
 #include "base/result.h"
 #include "ir/bytecode/image.h"
 #include "online_change/diff/fates.h"
+#include "online_change/diff/migrations.h"
 #include "online_change/diff/value_conversion.h"
 
 namespace online_change {
@@ -23,6 +24,8 @@ enum class DiffKind : uint8_t {
   kConvert,     // one scalar or string by A14
   kInitialise,  // the new initial value
   kSlot,        // instance ID of a function block; its area is a matter of its own
+  kEnter,       // a step: from `from`, or from `from_stride` where the step there is active
+  kMigrate,     // made by a migration: `from` is its number in Migrations, `size` as ever
   kInOut,       // address slot, bound again by every call
 };
 
@@ -62,10 +65,12 @@ class TypeDiffer {
  public:
   enum class Direction : uint8_t { kForward, kBack };  // kBack: for the undo of new -> old
   // `renamed`: the old image is one with the names of the new one (ir/bytecode/renames.h).
+  // `migrations` outlives it.
   TypeDiffer(const ir::Image& old_image, const ir::Image& new_image, Direction direction,
-             bool renamed)
+             bool renamed, const Migrations& migrations)
       : old_(old_image),
         new_(new_image),
+        migrations_(migrations),
         back_(direction == Direction::kBack),
         renamed_(renamed && direction == Direction::kForward) {}
 
@@ -91,7 +96,12 @@ class TypeDiffer {
   void add_member(TypeDiff& diff, const ir::Member& old_member, uint32_t from,
                   const ir::Member& new_member, uint32_t to, bool is_area);
   void add_new_member(TypeDiff& diff, const ir::Member& member, uint32_t to, const char* reason);
-  void add_dropped_member(TypeDiff& diff, const ir::Member& member);
+  void add_dropped_member(TypeDiff& diff, ir::TypeId old_type, uint32_t number,
+                          ir::TypeId new_type);
+  bool add_step(TypeDiff& diff, ir::TypeId old_type, const ir::Member& old_member, uint32_t from,
+                ir::TypeId new_type, const ir::Member& new_member, uint32_t to);
+  bool add_migrated(TypeDiff& diff, const ir::Member* old_member, ir::TypeId new_type,
+                    uint32_t member, uint32_t to);
   void add_in_out(TypeDiff& diff, const ir::Member* old_member, uint32_t from,
                   const ir::Member& new_member, uint32_t to);
   void append_value(TypeDiff& diff, const TypeDiff& value, const ir::Member& old_member,
@@ -103,6 +113,7 @@ class TypeDiffer {
 
   const ir::Image& old_;
   const ir::Image& new_;
+  const Migrations& migrations_;
   bool back_;
   bool renamed_;
   std::map<Key, std::unique_ptr<TypeDiff>> areas_;

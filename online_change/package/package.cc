@@ -14,13 +14,15 @@ using base::ByteWriter;
 // Header: magic, version, of each part its bytes and their SHA-256; then the parts. Layout and
 // program together are the image.
 constexpr uint32_t kMagic = 0x47504353;  // "SCPG"
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 constexpr const char* kPartNames[] = {"layout", "program", "commands"};
 constexpr size_t kParts = std::size(kPartNames);
 constexpr size_t kMinRowBytes = 1 + 3 * 4 + 1 + 4 + 8;
 constexpr size_t kMinStepBytes = 2 + 9 * 4 + 4;
 constexpr uint32_t kFateKinds = 5;
-constexpr uint32_t kStepKinds = 3;
+constexpr uint32_t kStepKinds = 5;
+constexpr size_t kMinCallBytes = 3 * 4;
+constexpr size_t kInputBytes = 3 * 4;
 
 void write_row(ByteWriter& out, const FateRow& row) {
   out.u8(static_cast<uint8_t>(row.fate));
@@ -72,6 +74,30 @@ UpdateStep read_step(ByteReader& in) {
   return step;
 }
 
+void write_call(ByteWriter& out, const MigrationCall& call) {
+  out.u32(call.row);
+  out.u32(call.instance);
+  out.u32(static_cast<uint32_t>(call.inputs.size()));
+  for (const MigrationInput& input : call.inputs) {
+    for (uint32_t field : {input.from, input.type.index, input.slot}) out.u32(field);
+  }
+}
+
+MigrationCall read_call(ByteReader& in) {
+  MigrationCall call;
+  call.row = in.u32();
+  call.instance = in.u32();
+  uint32_t inputs = in.count(kInputBytes);
+  for (uint32_t i = 0; i < inputs && !in.failed(); ++i) {
+    MigrationInput input;
+    input.from = in.u32();
+    input.type = ir::TypeId(in.u32());
+    input.slot = in.u32();
+    call.inputs.push_back(input);
+  }
+  return call;
+}
+
 void write_plan(ByteWriter& out, const Plan& plan) {
   out.u32(static_cast<uint32_t>(plan.fates.size()));
   for (const FateRow& row : plan.fates) write_row(out, row);
@@ -82,6 +108,8 @@ void write_plan(ByteWriter& out, const Plan& plan) {
   }
   out.u32(static_cast<uint32_t>(plan.steps.size()));
   for (const UpdateStep& step : plan.steps) write_step(out, step);
+  out.u32(static_cast<uint32_t>(plan.calls.size()));
+  for (const MigrationCall& call : plan.calls) write_call(out, call);
   out.u64(plan.boundary_bytes);
   out.i64(plan.predicted_pause_ns);
 }
@@ -97,6 +125,8 @@ Plan read_plan(ByteReader& in) {
   }
   uint32_t steps = in.count(kMinStepBytes);
   for (uint32_t i = 0; i < steps && !in.failed(); ++i) plan.steps.push_back(read_step(in));
+  uint32_t calls = in.count(kMinCallBytes);
+  for (uint32_t i = 0; i < calls && !in.failed(); ++i) plan.calls.push_back(read_call(in));
   plan.boundary_bytes = in.u64();
   plan.predicted_pause_ns = in.i64();
   return plan;

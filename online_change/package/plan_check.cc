@@ -19,10 +19,12 @@ bool is_area(const ir::Image& image, Node node) {
 
 }  // namespace
 
-PlanCheck::PlanCheck(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image)
+PlanCheck::PlanCheck(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image,
+                     const ir::Image& code)
     : plan_(plan),
       old_(old_image),
       new_(new_image),
+      code_(code),
       old_areas_(old_image),
       new_areas_(new_image),
       old_data_(old_image),
@@ -30,7 +32,7 @@ PlanCheck::PlanCheck(const Plan& plan, const ir::Image& old_image, const ir::Ima
       fit_(old_areas_, new_image) {}
 
 base::Status PlanCheck::run() {
-  bool good = check_forms();
+  bool good = check_calls() && check_forms();
   if (good) expand();
   good = good && check_targets();
   for (uint32_t id = 0; good && id < new_.instances.size(); ++id) {
@@ -68,6 +70,11 @@ bool PlanCheck::check_form(const UpdateStep& step) {
   if (step.fate != kNoFate && step.fate >= plan_.fates.size()) {
     return fail(step.to, "has no row in the fate report");
   }
+  if (step.kind == StepKind::kMigrate) {
+    const bool right = step.count == 1 && !step.early && step.bytes.empty() &&
+                       step.from < plan_.calls.size() && new_.types.contains(step.new_type);
+    return right || fail(step.to, "has a migration step of another form");
+  }
   if (step.kind == StepKind::kInitialise) {
     if (!step.bytes.empty() && step.bytes.size() != step.total()) {
       return fail(step.to, "is initialised with too few or too many bytes");
@@ -75,6 +82,7 @@ bool PlanCheck::check_form(const UpdateStep& step) {
   } else if (step.early || !step.bytes.empty()) {
     return fail(step.to, "has a step that mixes copying and initialising");
   }
+  if (step.kind == StepKind::kEnter && step.count != 1) return fail(step.to, "is several steps");
   bool types_known = old_.types.contains(step.old_type) && new_.types.contains(step.new_type);
   if (step.kind == StepKind::kConvert && !types_known) return fail(step.to, "has no known type");
   return true;
@@ -118,7 +126,8 @@ bool PlanCheck::check_places(const UpdateStep& step) {
     }
     return true;
   }
-  uint64_t size = step.kind == StepKind::kCopy ? step.size : old_.layouts[step.old_type].size;
+  if (step.kind == StepKind::kMigrate) return true;  // check_calls() has seen what it reads
+  uint64_t size = step.kind == StepKind::kConvert ? old_.layouts[step.old_type].size : step.size;
   uint64_t end = step.from + uint64_t{step.from_stride} * (step.count - 1) + size;
   if (end > old_.data_capacity) return fail(step.to, "is read outside of memory");
   id = old_areas_.instance_at(step.from);
@@ -236,6 +245,10 @@ bool PlanCheck::check_written(Node node, const Target& target, uint32_t depth) {
       return check_initial(node, target);
     case StepKind::kConvert:
       return check_conversion(node, target, depth);
+    case StepKind::kEnter:
+      return check_entered(node, target);
+    case StepKind::kMigrate:
+      return check_migrated(node, target);
     case StepKind::kCopy:
       return check_carried(node, source_of(target) + (node.begin - target.to), depth);
   }
@@ -293,9 +306,9 @@ bool PlanCheck::check_carried(Node node, uint32_t from, uint32_t depth) {
 base::Status check_package(const Package& package, const ir::Image& old_image,
                            const ir::Image& new_image) {
   const ir::OldUnderNewNames old(old_image, new_image);
-  base::Status forward = PlanCheck(package.forward, old.image(), new_image).run();
+  base::Status forward = PlanCheck(package.forward, old.image(), new_image, new_image).run();
   if (!forward) return forward;
-  base::Status inverse = PlanCheck(package.inverse, new_image, old.image()).run();
+  base::Status inverse = PlanCheck(package.inverse, new_image, old.image(), new_image).run();
   if (inverse) return inverse;
   return base::Error{inverse.error().refusal, inverse.error().text + " (on the way back)"};
 }

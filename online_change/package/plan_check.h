@@ -17,7 +17,9 @@ namespace online_change {
 
 class PlanCheck {
  public:
-  PlanCheck(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image);
+  // `code`: the image whose migrations the plan calls, one of the two.
+  PlanCheck(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image,
+            const ir::Image& code);
   base::Status run();
 
  private:
@@ -39,6 +41,11 @@ class PlanCheck {
   // Elements from `first` on, `most` at most, that one step converts from neighbours in an array.
   uint32_t converted_run(Node first, uint32_t most) const;
   bool check_node(Node node, uint32_t depth);
+  bool check_calls();
+  bool check_input(const MigrationInput& input, const ir::LinkedPou& pou, TypeFit& fit);
+  const ir::FrameSlot* slot_of(const UpdateStep& step) const;
+  bool check_entered(Node node, const Target& target);
+  bool check_migrated(Node node, const Target& target);
   bool check_written(Node node, const Target& target, uint32_t depth);
   bool check_initial(Node node, const Target& target);
   bool check_conversion(Node node, const Target& target, uint32_t depth);
@@ -55,6 +62,7 @@ class PlanCheck {
   const Plan& plan_;
   const ir::Image& old_;
   const ir::Image& new_;
+  const ir::Image& code_;
   Areas old_areas_;
   Areas new_areas_;
   InitialData old_data_;

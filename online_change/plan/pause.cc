@@ -17,6 +17,7 @@ int64_t pause_of_steps(const Plan& plan, const ir::Image& old_image, const ir::I
     ns += kPauseStepNs + (slow ? kPauseSlowConversionNs : kPauseValueNs) * int64_t{step.count};
     ns += static_cast<int64_t>(step.total()) / kPauseBytesPerNs;
   }
+  ns += kPauseMigrationNs * static_cast<int64_t>(plan.calls.size());
   if (!PlaceMoves(old_image, new_image).trivial()) {
     ns += kPauseReferenceNs * static_cast<int64_t>(reference_leaves(new_image).size());
   }

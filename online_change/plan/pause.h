@@ -13,6 +13,8 @@ inline constexpr int64_t kPauseFixedNs = 20'000;       // checks, publishing, co
 inline constexpr int64_t kPauseStepNs = 30;            // one step
 inline constexpr int64_t kPauseValueNs = 6;            // one value copied, or converted fast
 inline constexpr int64_t kPauseSlowConversionNs = 80;  // strings, enumerations, subranges
+inline constexpr int64_t kPauseMigrationNs = 3'000;    // one call of a migration
+inline constexpr int64_t kPauseLoopNs = 50;            // one loop or call in a migration
 inline constexpr int64_t kPauseReferenceNs = 40;       // one reference, when targets move or go
 inline constexpr int64_t kPauseBytesPerNs = 2;         // read, save and write together
 

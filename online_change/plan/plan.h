@@ -20,6 +20,9 @@ enum class StepKind : uint8_t {
   kInitialise,  // bytes -> to
   kCopy,        // size bytes: from -> to
   kConvert,     // one scalar or string value by A14
+  kEnter,       // a step of a chart: as kCopy, or from `from_stride` where the step there is active
+  kMigrate,     // what a migration gives: `from` is the number of its call, `from_stride` the place
+                // in the function's frame; `bytes` are made on the controller
 };
 
 struct UpdateStep {
@@ -39,11 +42,24 @@ struct UpdateStep {
   uint64_t total() const { return uint64_t{size} * count; }
 };
 
+// A migration for one instance. Its code is the new version's, on the way back too.
+struct MigrationInput {
+  uint32_t from = 0;  // in data memory of the version that is read
+  ir::TypeId type;    // there
+  uint32_t slot = 0;  // place in the function's frame
+};
+struct MigrationCall {
+  uint32_t row = 0;       // in Image::migrations
+  uint32_t instance = 0;  // whose values are made
+  std::vector<MigrationInput> inputs;
+};
+
 struct Plan {
   std::vector<FateRow> fates;  // kept ones are counted, and listed only with something to say
   FateCounts counts;
   std::vector<UpdateStep> steps;  // no two boundary steps overlap in `to`
-  uint64_t boundary_bytes = 0;    // bytes that the switch writes
+  std::vector<MigrationCall> calls;
+  uint64_t boundary_bytes = 0;  // bytes that the switch writes
   // Cost model of the pause: fixed + per step + per byte.
   int64_t predicted_pause_ns = 0;
 };

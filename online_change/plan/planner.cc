@@ -23,16 +23,21 @@ Planner::Planner(const ir::Image& old_image, const ir::Image& new_image,
                  TypeDiffer::Direction direction, bool renamed)
     : old_(old_image),
       new_(new_image),
+      code_(direction == TypeDiffer::Direction::kForward ? new_image : old_image),
       renamed_(renamed && direction == TypeDiffer::Direction::kForward),
       old_data_(old_image),
       new_data_(new_image),
       old_areas_(old_image),
       match_(match_instances(old_image, new_image)),
-      differ_(old_image, new_image, direction, renamed),
+      migrations_(direction == TypeDiffer::Direction::kForward
+                      ? Migrations(old_image, new_image, Migrations::Way::kThere)
+                      : Migrations(new_image, old_image, Migrations::Way::kBack)),
+      differ_(old_image, new_image, direction, renamed, migrations_),
       row_of_new_(new_image.instances.size(), FateRows::kNoRow),
       row_of_old_(old_image.instances.size(), FateRows::kNoRow) {}
 
 base::Result<Plan> Planner::run() {
+  if (migrations_.error()) return *migrations_.error();
   for (uint32_t id : match_.new_order) {
     uint32_t twin = match_.old_of_new[id];
     if (twin == kNoInstance) {
@@ -63,6 +68,7 @@ void Planner::carry(uint32_t old_id, uint32_t new_id) {
   const ir::Instance& to = new_.instances[new_id];
   Carried instance{old_id, new_id, from.data, to.data, &differ_.area(from.type, to.type), ""};
   used_here_.clear();
+  calls_here_.clear();
   const bool whole = stays_whole(instance);
   if (renamed_ && from.old_name.valid()) rename_row(instance, whole);
   if (whole) {
@@ -106,6 +112,10 @@ void Planner::apply(const Carried& instance, const DiffOp& op) {
       return apply_slots(instance, op);
     case DiffKind::kInOut:
       return apply_in_outs(instance, op);
+    case DiffKind::kMigrate:
+      return migrate(instance, op);
+    case DiffKind::kEnter:
+      return enter(instance, op);
     case DiffKind::kInitialise:
       plan_.counts.initialised += op.leaves;
       return initialise(instance, op,
@@ -147,6 +157,40 @@ void Planner::apply_same(const Carried& instance, const DiffOp& op) {
 void Planner::initialise(const Carried& instance, const DiffOp& op, uint32_t fate) {
   UpdateStep step = step_for(op, StepKind::kInitialise, instance.from, instance.to, fate);
   step.bytes = op.stamp && instance.new_id != 0 ? old_stamp() : initial_bytes(new_data_, step);
+  put(std::move(step));
+}
+
+void Planner::enter(const Carried& instance, const DiffOp& op) {
+  plan_.counts.converted += op.leaves;
+  UpdateStep step = step_for(op, StepKind::kEnter, instance.from, instance.to,
+                             row_of(instance, op.row, op.leaves));
+  step.from_stride = instance.from + op.from_stride;
+  put(std::move(step));
+}
+
+void Planner::migrate(const Carried& instance, const DiffOp& op) {
+  const Migration& migration = migrations_.rows()[op.from];
+  const ir::LinkedMigration& row = code_.migrations[migration.row];
+  const std::vector<ir::FrameSlot>& slots = code_.pous[row.pou].slots;
+  const auto [known, fresh] =
+      calls_here_.try_emplace(op.from, static_cast<uint32_t>(plan_.calls.size()));
+  if (fresh) {
+    MigrationCall& call = plan_.calls.emplace_back();
+    call.row = migration.row;
+    call.instance = instance.new_id;
+    for (const MigratedValue& value : migration.values) {
+      if (!value.input) continue;
+      call.inputs.push_back(
+          {instance.from + old_.layouts[migration.from_type].member_offsets[value.member],
+           old_.types[migration.from_type].members[value.member].type, slots[value.slot].offset});
+    }
+  }
+  plan_.counts.converted += op.leaves;
+  UpdateStep step = step_for(op, StepKind::kMigrate, instance.from, instance.to,
+                             row_of(instance, op.row, op.leaves));
+  step.from = known->second;
+  step.from_stride = slots[migration.values[op.from_stride].slot].offset;
+  step.new_type = op.new_type;
   put(std::move(step));
 }
 

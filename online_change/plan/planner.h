@@ -2,6 +2,7 @@
 // steps and fate rows.
 #pragma once
 
+#include <map>
 #include <string>
 #include <unordered_set>
 #include <vector>
@@ -42,6 +43,8 @@ class Planner {
   void apply_slots(const Carried& instance, const DiffOp& op);
   void apply_in_outs(const Carried& instance, const DiffOp& op);
   void initialise(const Carried& instance, const DiffOp& op, uint32_t fate);
+  void enter(const Carried& instance, const DiffOp& op);
+  void migrate(const Carried& instance, const DiffOp& op);
   void add_dropped_rows(const Carried& instance);
   void add_instance(uint32_t new_id);
   void drop_instance(uint32_t old_id);
@@ -65,17 +68,20 @@ class Planner {
 
   const ir::Image& old_;
   const ir::Image& new_;
+  const ir::Image& code_;  // of migrations: the new version's, on the way back too
   bool renamed_;
   InitialData old_data_;
   InitialData new_data_;
   Areas old_areas_;
   InstanceMatch match_;
+  Migrations migrations_;
   TypeDiffer differ_;
   FateRows fates_;
-  std::vector<uint32_t> row_of_new_;        // of added instances, by ID
-  std::vector<uint32_t> row_of_old_;        // of dropped ones
-  std::unordered_set<uint32_t> used_here_;  // rows that the instance at hand already has a part in
-  std::vector<UpdateStep> area_;            // steps of the area at hand
+  std::vector<uint32_t> row_of_new_;         // of added instances, by ID
+  std::vector<uint32_t> row_of_old_;         // of dropped ones
+  std::unordered_set<uint32_t> used_here_;   // rows that the instance at hand already has a part in
+  std::vector<UpdateStep> area_;             // steps of the area at hand
+  std::map<uint32_t, uint32_t> calls_here_;  // of the instance at hand, by number in migrations_
   Plan plan_;
 };
 

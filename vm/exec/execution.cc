@@ -108,18 +108,25 @@ void Execution::start(const Generation& generation, uint8_t* memory, uint32_t id
                       int64_t task_time_ns) {
   const InstanceEntry& instance = generation.instances()[id];
   base::check(instance.data != 0, "an execution starts with a live program instance");
+  call(generation, memory, instance.pou, stack);
+  instance_ = id;
+  self_ = instance.data;
+  task_time_ns_ = task_time_ns;
+}
+
+void Execution::call(const Generation& generation, uint8_t* memory, uint32_t pou, uint32_t frame) {
   generation_ = &generation;
   memory_ = memory;
   depth_ = 0;
   exposure_count_ = 0;
   try_count_ = 0;
   caught_ = {};
-  instance_ = id;
-  pou_ = instance.pou;
-  pc_ = generation.pous()[pou_].code;
-  frame_ = stack;
-  self_ = instance.data;
-  task_time_ns_ = task_time_ns;
+  instance_ = 0;
+  pou_ = pou;
+  pc_ = generation.pous()[pou].code;
+  frame_ = frame;
+  self_ = 0;
+  task_time_ns_ = 0;
   fuel_used_ = 0;
   trap_ = {};
 }

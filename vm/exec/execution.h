@@ -73,6 +73,9 @@ class Execution {
   // Prepares a call of program instance `id`. `stack` is where its frames begin.
   void start(const Generation& generation, uint8_t* memory, uint32_t id, uint32_t stack,
              int64_t task_time_ns);
+  // Prepares a call of a function, which finds its inputs in its frame at `frame`, and leaves what
+  // it gives there.
+  void call(const Generation& generation, uint8_t* memory, uint32_t pou, uint32_t frame);
   // Runs at most `fuel` safe points (calls and back edges; 0 is taken as 1).
   Exit run(uint64_t fuel);
 

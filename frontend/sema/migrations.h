@@ -1,0 +1,33 @@
+// Functions that migrate values in an online change: {migration of := 'Motor'} in front of a
+// FUNCTION, {old := 'x'} and {new := 'x'} in front of its parameters (X2,
+// docs/adr/0013-migrations.md).
+#pragma once
+
+#include "frontend/sema/model.h"
+
+namespace frontend {
+
+class Sema;
+
+class Migrations {
+ public:
+  explicit Migrations(Sema& sema) : sema_(sema) {}
+
+  // Behind all interfaces: fills Program::migrations.
+  void collect();
+  // Behind all bodies: nothing but parameters and locals is read and written.
+  void check_code();
+
+ private:
+  void add(PouInfo& info, const Attribute& rule);
+  ir::TypeId type_of(const Attribute& rule);
+  bool add_value(ir::Migration& row, const Variable& variable);
+  bool is_new_member(const ir::Migration& row, const Variable& variable, const std::string& name);
+  bool is_plain(ir::TypeId type, uint32_t depth) const;
+  void check_function(const ir::Migration& row);
+  void error(base::SourceSpan span, std::string text, std::string fix);
+
+  Sema& sema_;
+};
+
+}  // namespace frontend

@@ -1,0 +1,46 @@
+// Charts across a change (case 38, docs/adr/0009-sfc.md): a chart whose active step goes must have
+// another one to go on at, and undo gives a step back as active only where the chart still is where
+// the switch found it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ir/bytecode/image.h"
+
+namespace online_change {
+
+class Charts {
+ public:
+  // `old_image` has the new version's names.
+  Charts(const ir::Image& old_image, const ir::Image& new_image);
+
+  // A step that is active, goes, and leaves its chart without any active step; "" when there is
+  // none. `memory` is the old version's.
+  std::string deserted(const uint8_t* memory) const;
+  // At the switch, before it: which steps are active.
+  void note(const uint8_t* memory);
+  // Behind undo, in the old version's memory: a step that came back active is left where another
+  // step of its chart has been entered meanwhile.
+  void settle(uint8_t* memory) const;
+
+ private:
+  struct Step {
+    uint32_t at = 0;  // in the old version's memory; X is its first byte
+    uint32_t size = 0;
+    bool goes = false;
+    bool taken = false;  // by a step with a rule
+    bool active = false;
+    std::string path;
+  };
+  struct Chart {
+    std::vector<Step> steps;
+  };
+  void add(const ir::Image& old_image, const ir::Image& new_image, uint32_t old_id,
+           uint32_t new_id);
+
+  std::vector<Chart> charts_;  // those of which a step goes
+};
+
+}  // namespace online_change

@@ -1,0 +1,79 @@
+// Runs the migrations of a plan (diff/migrations.h) on live values. The functions run in a memory
+// of their own, which has nothing but their frames and constants: whatever they do, nothing that
+// lives is touched. A trap, or a run that does not end in time, is an error and changes nothing.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "online_change/apply/live_value.h"
+#include "vm/exec/execution.h"
+#include "vm/exec/memory.h"
+
+namespace online_change {
+
+// Safe points (loops and calls) of one call, and of all calls of one run.
+inline constexpr uint64_t kMigrationFuel = 200'000;
+inline constexpr uint64_t kMigrationsFuel = 5'000'000;
+
+class Migrator {
+ public:
+  // Fills UpdateStep::bytes of the plan's kMigrate steps, so the plan outlives it, and so do the
+  // images and the generation, which is the new version's on the way back, too. Reserves memory,
+  // and so is not for a boundary. Null when there is nothing to migrate.
+  static base::Result<std::unique_ptr<Migrator>> make(Plan& plan, const ir::Image& from,
+                                                      const ir::Image& to,
+                                                      const vm::Generation& code);
+
+  // Runs each call whose inputs in `memory` are not those of its last run.
+  base::Status run(const uint8_t* memory);
+  // Takes the inputs as those of a run without running: on the way back, what nobody has written
+  // since needs no migration.
+  void note(const uint8_t* memory);
+  // Of the longest run so far, for predictions.
+  uint64_t fuel_used() const { return most_fuel_; }
+
+  // For make().
+  Migrator(Plan& plan, const ir::Image& from, const ir::Image& to, const vm::Generation& code,
+           vm::Memory scratch);
+
+ private:
+  struct Output {
+    uint32_t step = 0;  // of the plan
+    uint32_t at = 0;    // in the frame
+  };
+  struct Input {
+    uint32_t from = 0;  // in the memory that is read
+    uint32_t size = 0;
+    uint32_t slot = 0;  // in the frame
+    uint32_t slot_size = 0;
+    bool converts = false;
+    UpdateStep conversion;
+  };
+  struct Call {
+    size_t first_byte = 0;  // of its inputs, in bytes_
+    std::vector<Input> inputs;
+    bool done = false;
+    std::vector<Output> outputs;
+  };
+
+  const ir::LinkedPou& code_of(const MigrationCall& call) const;
+  Input input_of(const MigrationInput& input, const ir::LinkedPou& pou,
+                 const ir::Image& from) const;
+  bool gather(size_t number, const uint8_t* memory);
+  base::Status run_call(size_t number);
+  base::Error failed(const MigrationCall& call, const std::string& why) const;
+
+  Plan& plan_;
+  const ir::Image& to_;
+  const vm::Generation& code_;
+  Conversions conversions_;
+  vm::Memory scratch_;
+  vm::Execution execution_;
+  std::vector<Call> calls_;
+  base::Bytes bytes_;  // of all inputs, as they were in the last run
+  uint64_t fuel_ = 0;
+  uint64_t most_fuel_ = 0;
+};
+
+}  // namespace online_change

@@ -1,0 +1,67 @@
+// What a Change holds from stage() to accept(), undo() or cancel(): both versions, the plans, and
+// everything that carries them out. All memory is allocated here, before the boundary.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "ir/bytecode/renames.h"
+#include "online_change/apply/change.h"
+#include "online_change/apply/charts.h"
+#include "online_change/apply/handle_transfer.h"
+#include "online_change/apply/leaving.h"
+#include "online_change/apply/migrator.h"
+#include "online_change/apply/standby.h"
+#include "online_change/apply/transfer.h"
+
+namespace online_change {
+
+struct Change::Pending {
+  Pending(Package received, ir::VerifiedImage running, ir::VerifiedImage next, Strategy chosen)
+      : strategy(chosen),
+        package(std::move(received)),
+        old_image(std::move(running)),
+        new_image(std::move(next)),
+        renamed(old_image.image(), new_image.image()),
+        forward(package.forward, old(), new_image.image(),
+                in_place() ? Transfer::Steps::kBoundary : Transfer::Steps::kApart),
+        early(package.forward, old(), new_image.image(), Transfer::Steps::kEarly),
+        backward(package.inverse, new_image.image(), old(), Transfer::Steps::kAll),
+        handles(old(), new_image.image()),
+        leaving(find_leaving(old(), new_image.image())),
+        charts(old(), new_image.image()) {}
+  bool in_place() const { return strategy == Strategy::kInPlace; }
+  // Version 1 under the names of version 2.
+  const ir::Image& old() const { return renamed.image(); }
+
+  Strategy strategy;
+  Package package;
+  ir::VerifiedImage old_image;
+  ir::VerifiedImage new_image;
+  ir::OldUnderNewNames renamed;
+  Transfer forward;
+  Transfer early;  // in place
+  size_t early_done = 0;
+  Transfer backward;
+  HandleTransfer handles;
+  std::unique_ptr<Migrator> migrate;  // null: nothing migrates
+  std::unique_ptr<Migrator> migrate_back;
+  // Version 2 until the switch, version 1 in trial.
+  std::unique_ptr<vm::Generation> waiting;
+  // Standby: its data. In trial that is version 1's, as the switch found it.
+  std::unique_ptr<Standby> area;
+  Leaving leaving;
+  Charts charts;
+  bool allow_loss = false;
+  // What the last report said would be lost: with leave for that, nothing else may be (X1).
+  bool reported = false;
+  std::vector<std::pair<uint32_t, uint32_t>> shown;  // step and index, sorted
+  bool may_lose(const Loss& loss) const {
+    if (!allow_loss || !reported) return allow_loss;
+    return std::binary_search(shown.begin(), shown.end(), std::pair(loss.step, loss.index));
+  }
+};
+
+}  // namespace online_change

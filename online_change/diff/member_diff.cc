@@ -1,0 +1,72 @@
+// Members whose values come by other ways than A14: by a migration, or from a step that goes.
+#include "online_change/diff/diff_ops.h"
+#include "online_change/diff/steps.h"
+#include "online_change/diff/type_diff.h"
+
+namespace online_change {
+
+using ir::Member;
+using ir::TypeId;
+
+// What a migration reads is not lost.
+void TypeDiffer::add_dropped_member(TypeDiff& diff, TypeId old_type, uint32_t number,
+                                    TypeId new_type) {
+  const Member& member = old_.types[old_type].members[number];
+  if (old_.types.is_instance(member.type)) return;  // a row of its own, with its area
+  std::string reason;
+  const std::string reader = migrations_.reader_of(old_type, number);
+  if (!reader.empty()) reason = "read by `" + reader + "`";
+  const int32_t taker = back_ ? -1 : taker_of_step(old_, old_type, new_, new_type, number);
+  if (taker >= 0) {
+    reason = "goes on at `" + new_.types[new_type].members[static_cast<size_t>(taker)].name + "`";
+  }
+  diff.rows.push_back(make_row(Fate::kDropped, "." + member.name, old_.types.text(member.type), "",
+                               reason.empty() ? "removed" : reason,
+                               ir::is_listed(member) ? leaves(old_, member.type) : 0));
+  diff.rows.back().may_lose = reason.empty();
+}
+
+// A step that takes over another one. On the way back it is itself again.
+bool TypeDiffer::add_step(TypeDiff& diff, TypeId old_type, const Member& old_member, uint32_t from,
+                          TypeId new_type, const Member& new_member, uint32_t to) {
+  const int32_t taken = back_ ? step_taken_over(new_, new_type, old_, old_type, old_member)
+                              : step_taken_over(old_, old_type, new_, new_type, new_member);
+  if (taken < 0 || !is_step(new_, new_member.type)) return false;
+  DiffOp op = make_op(DiffKind::kEnter, from, to, new_.layouts[new_member.type].size,
+                      leaves(new_, new_member.type));
+  op.from_stride = back_ ? from : old_.layouts[old_type].member_offsets[static_cast<size_t>(taken)];
+  op.row = static_cast<uint32_t>(diff.rows.size());
+  diff.ops.push_back(op);
+  const ir::Type& type = back_ ? new_.types[new_type] : old_.types[old_type];
+  diff.rows.push_back(make_row(Fate::kConverted, "." + new_member.name,
+                               old_.types.text(old_member.type), new_.types.text(new_member.type),
+                               "takes over `" + type.members[static_cast<size_t>(taken)].name + "`",
+                               op.leaves));
+  return true;
+}
+
+// On the way back, what the way there has made anew gets the value from before, if no migration
+// says better.
+bool TypeDiffer::add_migrated(TypeDiff& diff, const Member* old_member, TypeId new_type,
+                              uint32_t number, uint32_t to) {
+  const Member& member = new_.types[new_type].members[number];
+  const std::optional<Migrations::Source> source = migrations_.source_of(new_type, number);
+  if (!source) {
+    if (!migrations_.is_restored(new_type, number)) return false;
+    add_new_member(diff, member, to, "restored");
+    return true;
+  }
+  DiffOp op = make_op(DiffKind::kMigrate, source->migration, to, new_.layouts[member.type].size,
+                      leaves(new_, member.type));
+  op.from_stride = source->value;
+  op.new_type = member.type;
+  op.row = static_cast<uint32_t>(diff.rows.size());
+  diff.ops.push_back(op);
+  diff.rows.push_back(make_row(
+      Fate::kConverted, "." + member.name,
+      old_member == nullptr ? "" : old_.types.text(old_member->type), new_.types.text(member.type),
+      "migrated by `" + migrations_.name_of(source->migration) + "`", op.leaves));
+  return true;
+}
+
+}  // namespace online_change

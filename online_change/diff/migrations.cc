@@ -1,0 +1,165 @@
+#include "online_change/diff/migrations.h"
+
+#include <algorithm>
+
+#include "online_change/diff/value_conversion.h"
+
+namespace online_change {
+namespace {
+
+using ir::TypeId;
+
+constexpr uint32_t kNone = 0xffffffffu;
+
+}  // namespace
+
+TypeId same_type_in(const ir::Image& image, const ir::Image& other, TypeId type) {
+  const ir::Type& wanted = other.types[type];
+  if (wanted.kind == ir::Kind::kGlobals) return image.globals;
+  for (uint32_t i = ir::kElementaryCount; i < image.types.size(); ++i) {
+    const ir::Type& candidate = image.types[TypeId(i)];
+    if (candidate.kind == wanted.kind && ir::same_name(candidate.name, wanted.name)) {
+      return TypeId(i);
+    }
+  }
+  return {};
+}
+
+Migrations::Migrations(const ir::Image& old_image, const ir::Image& new_image, Way way)
+    : old_(old_image),
+      new_(new_image),
+      way_(way),
+      from_(way == Way::kThere ? old_image : new_image),
+      to_(way == Way::kThere ? new_image : old_image) {
+  for (uint32_t row = 0; row < new_.migrations.size() && !error_; ++row) add(row);
+}
+
+bool Migrations::is_carried(const ir::LinkedMigration& row) const {
+  const ir::LinkedPou& code = new_.pous[row.pou];
+  return std::any_of(old_.migrations.begin(), old_.migrations.end(),
+                     [&](const ir::LinkedMigration& other) {
+                       const ir::LinkedPou& before = old_.pous[other.pou];
+                       return other.inverse == row.inverse && before.identity == code.identity &&
+                              ir::same_name(before.name, code.name);
+                     });
+}
+
+void Migrations::fail(const ir::LinkedMigration& row, std::string why) {
+  if (error_) return;
+  error_ = base::Error{base::Refusal::kBadMigration,
+                       "migration `" + new_.pous[row.pou].name + "`: " + std::move(why)};
+}
+
+void Migrations::add(uint32_t number) {
+  const ir::LinkedMigration& row = new_.migrations[number];
+  if (is_carried(row)) return;
+  const TypeId old_type = same_type_in(old_, new_, row.type);
+  if (!old_type.valid()) return;  // nothing lives that could migrate
+  const bool there = way_ == Way::kThere;
+  if (row.inverse == there) {
+    // The way back knows what the way there has made.
+    for (const ir::MigratedName& value : row.values) {
+      const uint32_t slot = slot_of(row, value.parameter);
+      if (there || slot == kNone || new_.pous[row.pou].slots[slot].local == ir::LocalKind::kInput) {
+        continue;
+      }
+      const int32_t member = to_.types.find_member(old_type, value.member);
+      if (member >= 0) restored_.insert({old_type, static_cast<uint32_t>(member)});
+    }
+    return;
+  }
+  Migration migration;
+  migration.row = number;
+  migration.from_type = there ? old_type : row.type;
+  migration.to_type = there ? row.type : old_type;
+  for (size_t i = 0; i < row.values.size(); ++i) {
+    if (!add_value(migration, row, i)) return;
+  }
+  const auto place = static_cast<uint32_t>(rows_.size());
+  for (uint32_t i = 0; i < migration.values.size(); ++i) {
+    const MigratedValue& value = migration.values[i];
+    if (value.input) {
+      read_.try_emplace({migration.from_type, value.member}, new_.pous[row.pou].name);
+    } else if (!made_.try_emplace({migration.to_type, value.member}, Source{place, i}).second) {
+      return fail(row, "`" + row.values[i].member + "` is given by another migration, too");
+    }
+  }
+  rows_.push_back(std::move(migration));
+}
+
+uint32_t Migrations::slot_of(const ir::LinkedMigration& row, const std::string& parameter) const {
+  const std::vector<ir::FrameSlot>& slots = new_.pous[row.pou].slots;
+  for (uint32_t i = 0; i < slots.size(); ++i) {
+    if (slots[i].kind == ir::SlotKind::kParam && slots[i].name == parameter) return i;
+  }
+  return kNone;
+}
+
+bool Migrations::add_value(Migration& migration, const ir::LinkedMigration& row, size_t number) {
+  const ir::MigratedName& name = row.values[number];
+  const std::vector<ir::FrameSlot>& slots = new_.pous[row.pou].slots;
+  MigratedValue value;
+  value.slot = slot_of(row, name.parameter);
+  if (value.slot == kNone) {
+    fail(row, "it has no parameter `" + name.parameter + "`");
+    return false;
+  }
+  value.input = slots[value.slot].local == ir::LocalKind::kInput;
+  const ir::Image& image = value.input ? from_ : to_;
+  const TypeId type = value.input ? migration.from_type : migration.to_type;
+  const char* version = &image == &old_ ? "running" : "new";
+  const int32_t member = image.types.find_member(type, name.member);
+  if (member < 0) {
+    fail(row, "`" + image.types.text(type) + "` of the " + version + " program has no `" +
+                  name.member + "`; take the parameter out, or name another variable");
+    return false;
+  }
+  value.member = static_cast<uint32_t>(member);
+  const ir::Member& found = image.types[type].members[value.member];
+  if (!fits(slots[value.slot], value, migration)) {
+    fail(row, "`" + name.member + "` of the " + version + " program is " +
+                  image.types.text(found.type) + ", `" + name.parameter + "` is " +
+                  new_.types.text(slots[value.slot].region.type) +
+                  "; declare the parameter with the type of the variable");
+    return false;
+  }
+  migration.values.push_back(value);
+  return true;
+}
+
+// Inputs take what A14 carries over exactly, outputs are of the variable's own type.
+bool Migrations::fits(const ir::FrameSlot& slot, const MigratedValue& value,
+                      const Migration& migration) const {
+  const ir::Image& image = value.input ? from_ : to_;
+  const TypeId type = value.input ? migration.from_type : migration.to_type;
+  const ir::Member& member = image.types[type].members[value.member];
+  if (member.section == ir::Section::kInOut || image.types.is_instance(member.type)) return false;
+  if (ir::same_value_type(image.types, image.layouts, member.type, new_.types, new_.layouts,
+                          slot.region.type)) {
+    return true;
+  }
+  if (!value.input) return false;
+  const Conversion way = classify(image.types, member.type, new_.types, slot.region.type);
+  return way == Conversion::kSame || way == Conversion::kExact;
+}
+
+std::optional<Migrations::Source> Migrations::source_of(TypeId to_type, uint32_t member) const {
+  const auto found = made_.find({to_type, member});
+  if (found == made_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::string Migrations::reader_of(TypeId from_type, uint32_t member) const {
+  const auto found = read_.find({from_type, member});
+  return found == read_.end() ? std::string() : found->second;
+}
+
+bool Migrations::is_restored(TypeId to_type, uint32_t member) const {
+  return restored_.contains({to_type, member});
+}
+
+std::string Migrations::name_of(uint32_t migration) const {
+  return new_.pous[new_.migrations[rows_[migration].row].pou].name;
+}
+
+}  // namespace online_change

@@ -1,0 +1,138 @@
+// X2, case 60: migrations in Structured Text on live values.
+#include <gtest/gtest.h>
+
+#include "base/result.h"
+#include "tests/unit/online_change/plant.h"
+
+namespace online_change {
+namespace {
+
+using plant::Plant;
+
+const std::string kOld =
+    "FUNCTION_BLOCK Tank VAR n : INT := 8; d : INT := 2; END_VAR n := n + 1; END_FUNCTION_BLOCK "
+    "PROGRAM Main VAR a, b : Tank; END_VAR a(); b(); END_PROGRAM";
+const std::string kNew =
+    "{migration of := 'Tank'} FUNCTION Divide VAR_INPUT n, d : INT; END_VAR "
+    "VAR_OUTPUT q : INT; END_VAR q := n / d; END_FUNCTION "
+    "FUNCTION_BLOCK Tank VAR n : INT := 8; d : INT := 2; q : INT; END_VAR n := n + 1; "
+    "END_FUNCTION_BLOCK PROGRAM Main VAR a, b : Tank; END_VAR a(); b(); END_PROGRAM";
+
+TEST(Migrations, X2_values_written_after_the_trial_are_migrated_again) {
+  Plant plant(kOld);
+  plant.run(2);
+  ASSERT_TRUE(plant.stage(plant.package(kNew)).ok());
+  plant.run(2);
+  plant.set("Main.b.d", "3");
+  ASSERT_TRUE(plant.driver().arm(false).ok());
+  plant.run(1);
+  ASSERT_TRUE(plant.driver().switch_now().ok());
+  EXPECT_EQ(plant.get("Main.a.q"), "6");  // 13 / 2
+  EXPECT_EQ(plant.get("Main.b.q"), "4");  // 13 / 3
+  plant.run(1);
+  EXPECT_EQ(plant.get("Main.a.n"), "14");
+}
+
+TEST(Migrations, X2_case60_a_trap_at_the_boundary_abandons_the_switch) {
+  Plant plant(kOld);
+  plant.run(1);
+  ASSERT_TRUE(plant.stage(plant.package(kNew)).ok());
+  ASSERT_TRUE(plant.driver().arm(false).ok());
+  plant.set("Main.b.d", "0");
+  const base::Digest before = plant.hash();
+  auto report = plant.driver().switch_now();
+  ASSERT_FALSE(report.ok());
+  EXPECT_EQ(report.error().refusal, base::Refusal::kMigrationFailed);
+  EXPECT_NE(report.error().text.find("Main.b"), std::string::npos) << report.error().text;
+  EXPECT_EQ(plant.hash(), before);
+  plant.run(1);
+  EXPECT_EQ(plant.get("Main.a.n"), "10");
+}
+
+TEST(Migrations, X2_the_predicted_pause_counts_the_calls) {
+  Plant plant(kOld);
+  ASSERT_TRUE(plant.stage(plant.package(kNew)).ok());
+  EXPECT_EQ(plant.driver().plan().calls.size(), 2u);
+  EXPECT_GT(plant.driver().predicted_pause_ns(), plant.driver().plan().predicted_pause_ns);
+}
+
+// Any change of a call, an input or a step leads to values of another type, or to none.
+TEST(Migrations, X2_V17_calls_take_and_give_values_of_their_types_only) {
+  Plant plant(kOld);
+  base::Result<Package> package = decode(plant.package(kNew));
+  ASSERT_TRUE(package.ok());
+  const base::Result<ir::VerifiedImage> next = ir::verify(package->image);
+  ASSERT_TRUE(next.ok());
+  const auto sound = [&](auto edit) {
+    Package copy = *package;
+    edit(copy.forward);
+    return check_package(copy, plant.controller().image(), next->image()).ok();
+  };
+  const auto migrated = [](Plan& plan) -> UpdateStep& {
+    for (UpdateStep& step : plan.steps) {
+      if (step.kind == StepKind::kMigrate) return step;
+    }
+    return plan.steps[0];
+  };
+  EXPECT_TRUE(sound([](Plan&) {}));
+  EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].row = 1; }));
+  EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].instance = 99; }));
+  EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].inputs[0].from += 1; }));
+  EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].inputs[0].from = 0xfffffff0u; }));
+  EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].inputs[0].slot += 1; }));
+  EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].inputs[1] = plan.calls[0].inputs[0]; }));
+  EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].inputs[0].type = ir::TypeId(0); }));
+  EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].inputs.pop_back(); }));
+  EXPECT_FALSE(sound([](Plan& plan) { plan.calls.clear(); }));
+  EXPECT_FALSE(sound([&](Plan& plan) { migrated(plan).from = 7; }));
+  EXPECT_FALSE(sound([&](Plan& plan) { migrated(plan).from_stride = 0xffff; }));
+  EXPECT_FALSE(
+      sound([&](Plan& plan) { migrated(plan).from_stride = plan.calls[0].inputs[0].slot; }));
+  EXPECT_FALSE(sound([&](Plan& plan) { migrated(plan).to += 1; }));
+  EXPECT_FALSE(sound([&](Plan& plan) { migrated(plan).size = 1; }));
+  EXPECT_FALSE(sound([&](Plan& plan) { migrated(plan).bytes = {1, 2}; }));
+  EXPECT_FALSE(sound([&](Plan& plan) { migrated(plan).early = true; }));
+}
+
+// What a damaged image says of its migrations.
+TEST(Migrations, X2_the_verifier_refuses_migrations_that_are_none) {
+  Plant plant(kOld);
+  base::Result<Package> package = decode(plant.package(kNew));
+  ASSERT_TRUE(package.ok());
+  base::Result<ir::Image> image = ir::decode(package->image);
+  ASSERT_TRUE(image.ok());
+  ASSERT_EQ(image->migrations.size(), 1u);
+  const auto sound = [&](auto edit) {
+    ir::Image copy = *image;
+    edit(copy.migrations[0]);
+    return ir::verify(ir::encode(copy)).ok();
+  };
+  EXPECT_TRUE(sound([](ir::LinkedMigration&) {}));
+  EXPECT_FALSE(sound([](ir::LinkedMigration& row) { row.pou = 99; }));
+  EXPECT_FALSE(sound([](ir::LinkedMigration& row) { row.pou = row.pou == 0 ? 1 : 0; }));
+  EXPECT_FALSE(sound([](ir::LinkedMigration& row) { row.type = ir::TypeId(0); }));
+  EXPECT_FALSE(sound([](ir::LinkedMigration& row) { row.values.pop_back(); }));
+  EXPECT_FALSE(sound([](ir::LinkedMigration& row) { row.values[0] = row.values[1]; }));
+  EXPECT_FALSE(sound([](ir::LinkedMigration& row) { row.values[0].output ^= true; }));
+}
+
+// A thousand instances, and one of them written meanwhile.
+TEST(Migrations, X2_every_instance_gets_its_own_values) {
+  const auto source = [](const std::string& text) {
+    return text.substr(0, text.find("PROGRAM")) +
+           "PROGRAM Main VAR r : ARRAY[1..1000] OF Tank; i : INT; END_VAR "
+           "FOR i := 1 TO 1000 DO r[i](); r[i](); END_FOR END_PROGRAM";
+  };
+  Plant plant(source(kOld));
+  plant.run(1);
+  ASSERT_TRUE(plant.stage(plant.package(source(kNew))).ok());
+  plant.set("Main.r[500].d", "5");
+  ASSERT_TRUE(plant.driver().arm(false, true).ok());
+  ASSERT_TRUE(plant.driver().switch_now().ok());
+  EXPECT_EQ(plant.get("Main.r[1].q"), "5");
+  EXPECT_EQ(plant.get("Main.r[500].q"), "2");
+  EXPECT_EQ(plant.get("Main.r[1000].q"), "5");
+}
+
+}  // namespace
+}  // namespace online_change
