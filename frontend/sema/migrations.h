@@ -1,6 +1,6 @@
 // Functions that migrate values in an online change: {migration of := 'Motor'} in front of a
 // FUNCTION, {old := 'x'} and {new := 'x'} in front of its parameters (X2,
-// docs/adr/0013-migrations.md).
+// docs/adr/0014-migrations.md).
 #pragma once
 
 #include "frontend/sema/model.h"

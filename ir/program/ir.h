@@ -278,7 +278,7 @@ struct Override {
 };
 
 // A function that makes values of a new version from those of the running one, or, for undo, the
-// other way round (docs/adr/0013-migrations.md).
+// other way round (docs/adr/0014-migrations.md).
 struct MigratedName {
   std::string parameter;
   std::string member;  // of `type`, in the version that is read or made

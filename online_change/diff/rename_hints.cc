@@ -42,8 +42,14 @@ std::string_view seen_from(const std::string& name, const std::string& other) {
 }  // namespace
 
 void TypeDiffer::propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const {
+  // What a migration reads or another step takes over goes on already.
+  std::unordered_set<std::string> goes_on;
+  for (const FateRow& row : diff.rows) {
+    if (row.fate == Fate::kDropped && !row.may_lose) goes_on.insert(row.path);
+  }
   std::map<std::string, Group> groups;
   for (const Member* member : only_here(old_.types[old_type], new_.types[new_type])) {
+    if (goes_on.contains("." + member->name)) continue;
     groups[ir::fold_name(old_.types.text(member->type))].gone.push_back(member);
   }
   if (groups.empty()) return;

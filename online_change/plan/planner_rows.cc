@@ -158,6 +158,7 @@ uint32_t Planner::dropped_row(uint32_t old_id, uint64_t leaves) {
     row.fate = Fate::kDropped;
     row.path = old_.instance_path(old_id);
     row.old_type = old_.types.text(instance.type);
+    row.may_lose = true;
     row.reason = "removed";
     return row;
   });

@@ -34,7 +34,7 @@ std::string type_change(const FateRow& row) {
 
 std::string value_change(const FateRow& row, const LiveValues& live) {
   auto found = live.find(row.path);
-  if (found == live.end()) return row.may_lose ? "may lose" : "";
+  if (found == live.end()) return row.may_lose && row.fate != Fate::kDropped ? "may lose" : "";
   const LiveValue& value = found->second;
   std::string text = value.now;
   if (text.empty()) {
