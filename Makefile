@@ -63,8 +63,8 @@ bench-pause: setup
 FUZZ_RUNS := 1000000
 fuzz: setup
 	@cmake --preset asan >/dev/null
-	@cmake --build build/asan -j $(JOBS) --target fuzz_parse fuzz_literal fuzz_lex fuzz_image fuzz_compile
-	@for target in parse literal image; do \
+	@cmake --build build/asan -j $(JOBS) --target fuzz_parse fuzz_literal fuzz_lex fuzz_image fuzz_compile fuzz_store
+	@for target in parse literal image store; do \
 	  build/asan/tests/fuzz/fuzz_$$target tests/fuzz/corpus/$$target $(FUZZ_RUNS) 2 || exit 1; \
 	done
 	@build/asan/tests/fuzz/fuzz_lex tests/golden/parse $(FUZZ_RUNS) 2

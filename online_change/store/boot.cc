@@ -48,6 +48,7 @@ class Booting {
     std::string why = found_.nothing;
     const std::optional<ir::VerifiedImage> stored = verified(found_.boots, why);
     if (!stored && !given) return nothing(why);
+    if (!stored) store_.reject_boots();
     if (given) {
       base::Result<uint64_t> bytes = retained_bytes(given->image());
       if (!bytes.ok()) return bytes.error();

@@ -40,6 +40,9 @@ base::Status Copies::reserve(size_t number, uint64_t payload_bytes) {
 base::Status Copies::write(size_t number, base::ByteSpan payload) {
   Copy& copy = copies_[number];
   if (copy.dead) return base::Error{base::Refusal::kStorageFailed, complaint_};
+  if (last_sequence_ >= kLastSequence) {
+    return bury(copy, {base::Refusal::kStorageFailed, copy.name + ": no sequence number is left"});
+  }
   copy.record = {RecordState::kDamaged, 0, {}};
   const uint64_t sequence = ++last_sequence_;
   base::Status written = write_record(storage_, copy.name, kind_, sequence, payload);

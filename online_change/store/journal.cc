@@ -87,7 +87,8 @@ std::optional<JournalEntry> decode_entry(base::ByteSpan sector) {
   entry.cycle = in.u64();
   entry.who = in.text();
   entry.text = in.text();
-  if (in.failed() || entry.who.size() > kMaxWho || entry.text.size() > kMaxText) {
+  if (in.failed() || entry.sequence > kLastSequence || entry.who.size() > kMaxWho ||
+      entry.text.size() > kMaxText) {
     return std::nullopt;
   }
   return entry;

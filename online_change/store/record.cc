@@ -60,8 +60,8 @@ Record read_record(vm::Storage& storage, const std::string& name, RecordKind kin
   if (!size.ok() || !sector.ok()) return {RecordState::kUnreadable, 0, {}};
   if (all_zero(*sector)) return {};
   Header header;
-  const bool fits =
-      decode(*sector, header) && header.kind == kind && header.length <= *size - kSectorBytes;
+  const bool fits = decode(*sector, header) && header.kind == kind &&
+                    header.sequence <= kLastSequence && header.length <= *size - kSectorBytes;
   if (!fits) return {RecordState::kDamaged, 0, {}};
   base::Result<base::Bytes> payload = storage.read(name, kSectorBytes, header.length);
   if (!payload.ok()) return {RecordState::kUnreadable, 0, {}};

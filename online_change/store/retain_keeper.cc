@@ -12,7 +12,7 @@ namespace {
 constexpr int64_t kPeriodNs = 400'000'000;
 constexpr int64_t kPatienceNs = 200'000'000;  // then any boundary will do
 constexpr int64_t kPollNs = 1'000'000;
-constexpr int64_t kCopyNs = 20'000;  // and one for every kCopyBytesPerNs bytes
+constexpr int64_t kCopyNs = 1'000;  // and one for every kCopyBytesPerNs bytes
 constexpr int64_t kCopyBytesPerNs = 2;
 
 }  // namespace
@@ -47,11 +47,14 @@ void RetainKeeper::take(Snapshot& out) {
   copy_retained(controller_.image(), controller_.memory().data(), out.values);
 }
 
+int64_t RetainKeeper::copy_ns() const {
+  return kCopyNs + static_cast<int64_t>(bytes_.load(std::memory_order_relaxed)) / kCopyBytesPerNs;
+}
+
 void RetainKeeper::serve(int64_t free_ns) {
   const uint32_t state = state_.load(std::memory_order_acquire);
   if (state != kWanted && state != kUrgent) return;
-  const auto bytes = static_cast<int64_t>(bytes_.load(std::memory_order_relaxed));
-  if (state == kWanted && free_ns < kCopyNs + bytes / kCopyBytesPerNs) return;
+  if (state == kWanted && free_ns < copy_ns()) return;
   take(snapshot_);
   const uint64_t count = controller_.trap_count();
   if (count != traps_seen_) {

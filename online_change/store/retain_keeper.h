@@ -34,8 +34,9 @@ class RetainKeeper {
 
   // Control thread, at a boundary; `free_ns`: until the next cycle. Without a request: one load.
   void serve(int64_t free_ns);
-  // Control thread, at a boundary.
+  // Control thread, at a boundary. Takes about copy_ns().
   void take(Snapshot& out);
+  int64_t copy_ns() const;
 
   // Any other thread. The programs that snapshots are taken of have so many bytes at most.
   void expect_bytes(uint64_t bytes);

@@ -127,6 +127,11 @@ std::optional<size_t> Store::newest_accepted() const {
 
 // --- the program that boots -------------------------------------------------------
 
+void Store::reject_boots() {
+  std::lock_guard lock(mutex_);
+  if (boots_valid()) in_slot_[control_.slot].reset();
+}
+
 base::Status Store::write_control(const ControlRecord& next) {
   const std::optional<size_t> copy = control_copies_.victim([](size_t) { return false; });
   if (!copy) return failed("the control record cannot be written: " + control_copies_.complaint());
@@ -143,12 +148,15 @@ base::Status Store::write_image(size_t slot, const StoredImage& image, uint64_t 
     base::Status room = retained_.reserve(i, retain_payload_bytes(retain_bytes));
     if (!room.ok()) return room;
   }
-  if (in_slot_[slot] == image.digest && !slots_[slot].dead) return base::Ok{};
+  if (written_[slot] && in_slot_[slot] == image.digest) return base::Ok{};
   base::Status room = slots_.reserve(slot, kDigestBytes + image.bytes.size());
   if (!room.ok()) return room;
   in_slot_[slot].reset();
+  written_[slot] = false;
   base::Status written = slots_.write(slot, image_payload(image));
-  if (written.ok()) in_slot_[slot] = image.digest;
+  if (!written.ok()) return written;
+  in_slot_[slot] = image.digest;
+  written_[slot] = true;
   return written;
 }
 

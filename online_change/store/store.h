@@ -57,6 +57,8 @@ class Store {
 
   // To be taken once.
   Recovered take_recovered() { return std::move(recovered_); }
+  // What boots cannot be used, says the verifier: as if its slot were damaged.
+  void reject_boots();
   // A lost trial is over, and both control records are whole again.
   base::Status settle();
 
@@ -116,6 +118,7 @@ class Store {
   ControlRecord control_;
   // By slot and by copy; of valid ones.
   std::optional<base::Digest> in_slot_[2];
+  bool written_[2] = {false, false};  // by this process, so it is what its digest says
   std::optional<RetainHead> in_copy_[3];
   Recovered recovered_;
 };

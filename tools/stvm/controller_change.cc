@@ -176,7 +176,7 @@ void ControllerService::complete(FateLine& line,
 
 bool ControllerService::time_for_switch() const {
   int64_t left = controller_.next_cycle_ns() - clock_.now_ns();
-  return left > change_.predicted_pause_ns();
+  return left > change_.predicted_pause_ns() + 2 * keeper_.copy_ns();  // before and behind
 }
 
 base::Status ControllerService::configure(bool allow_overrun) {

@@ -1,0 +1,119 @@
+#!/bin/sh
+# The process is killed around changes: what boots, with which retained values, and what status and
+# journal say of it.
+. "$(dirname "$0")/lib.sh"
+
+version() {  # version NUMBER: total is retained in all, in another type and place
+  case $1 in
+    1) variables='total : DINT; old_only : INT := 7;' ;;
+    2) variables='more : ARRAY[0..20] OF INT; total : LINT;' ;;
+    3) variables='total : DINT; again : INT;' ;;
+  esac
+  cat >"v$1.st" <<ST
+VAR_GLOBAL RETAIN $variables END_VAR
+PROGRAM Main VAR scans : DINT; END_VAR total := total + 1; scans := scans + 1; END_PROGRAM
+ST
+}
+for n in 1 2 3; do version $n; done
+
+kill_now() {
+  kill -9 "$(cat plc.pid)"
+  while kill -0 "$(cat plc.pid)" 2>/dev/null; do sleep 0.02; done
+}
+number() { stvm get "$1" --dir plc --format json | sed 's/.*"value" *: *"\{0,1\}\(-\{0,1\}[0-9]*\).*/\1/' | tr -dc '0-9-'; }
+above() { [ "$(number total)" -ge "$1" ] || fail "total is $(number total), not $1 or more"; }
+
+serve plc v1.st
+expect 0 stvm set total=100000 --dir plc
+sleep 2 # a second is what may be lost
+kill_now
+serve plc
+above 100000
+[ "$(number Main.scans)" -lt 1000 ] || fail "scans is not retained"
+expect 0 stvm journal --dir plc
+said 'started'
+
+# During a trial: the accepted program boots, and its values are the trial's.
+expect 0 stvm change v2.st --dir plc --yes --allow-loss
+expect 0 stvm set total=200000 --dir plc
+sleep 2
+kill_now
+expect 0 stvm journal --dir plc
+said 'switched'
+serve plc
+above 200000
+expect 0 stvm get old_only --dir plc
+said '=7'
+expect 0 stvm status --dir plc
+said 'trial lost'
+expect 0 stvm status --dir plc --format json
+said '"trial_lost"'
+expect 0 stvm journal --dir plc
+said 'trial lost'
+
+# Behind accept at once: the new one boots.
+expect 0 stvm change v2.st --dir plc --yes --allow-loss
+expect 0 stvm set total=300000 --dir plc
+expect 0 stvm accept --dir plc
+kill_now
+serve plc
+above 300000
+expect 0 stvm get 'more[3]' --dir plc
+expect 0 stvm status --dir plc --format json
+grep -q trial_lost out && fail "no trial was lost"
+
+# Behind undo at once: the old one boots.
+expect 0 stvm change v3.st --dir plc --yes --allow-loss
+expect 0 stvm set total=400000 --dir plc
+expect 0 stvm undo --dir plc
+kill_now
+serve plc
+above 400000
+expect 0 stvm get 'more[3]' --dir plc
+
+# A clean stop loses nothing at all.
+expect 0 stvm set total=500000 --dir plc
+expect 0 stvm stop --dir plc
+expect 0 stvm journal --dir plc --format json
+said '"event": *"stopped"'
+said '"who"'
+serve plc
+above 500000
+expect 0 stvm stop --dir plc
+
+# Another program on the command line takes the values over.
+serve plc v3.st
+above 500000
+kill_now
+
+# Any content of any file: it runs, or says why not.
+for file in slot_a slot_b; do
+  dd if=/dev/urandom of=plc/$file bs=512 count=40 seek=1 conv=notrunc 2>/dev/null
+done
+expect 7 stvm serve --dir plc
+said 'R0410'
+serve plc v1.st
+expect 0 stvm status --dir plc
+said 'alarm: cold start'
+expect 0 stvm get old_only --dir plc
+said '=7'
+kill_now
+for file in control_0 control_1 retain_0 retain_1 retain_2 journal traps; do
+  head -c 3000 /dev/urandom >plc/$file
+done
+expect 7 stvm serve --dir plc
+said 'R0410'
+serve plc v1.st
+expect 0 stvm stop --dir plc
+expect 7 stvm journal --dir nowhere
+said 'R0501'
+
+# A disk without room: refused, and what ran runs on.
+stc build v1.st -o v1.img 2>/dev/null
+serve plc
+(
+  ulimit -f 1
+  "$bin/stvm" serve --dir full v1.img >full.log 2>&1
+) && fail "no room, and it runs"
+grep -q 'R0409' full.log || fail "$(cat full.log)"
+expect 0 stvm stop --dir plc
