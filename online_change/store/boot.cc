@@ -112,6 +112,10 @@ class Booting {
           carry_retained(stored->image(), boot.retained, given.image());
       boot.retained = values.ok() ? std::move(*values) : initial_retained(given.image());
       if (!values.ok()) boot.alarms.push_back("retained values: " + values.error().text);
+      if (has_migrations(stored->image(), given.image())) {
+        boot.alarms.push_back(
+            "migrations run in an online change only; what they make has its initial value");
+      }
     }
     base::Status installed =
         store_.install({given.digest(), given.encoded()}, boot.retained.size());

@@ -10,6 +10,7 @@
 #include "ir/types/handle.h"
 #include "online_change/apply/live_value.h"
 #include "online_change/diff/instance_match.h"
+#include "online_change/diff/migrations.h"
 #include "online_change/diff/place_moves.h"
 #include "online_change/diff/type_diff.h"
 #include "online_change/plan/area_steps.h"
@@ -80,8 +81,11 @@ class Carrier {
 
   base::Result<base::Bytes> run() {
     using Direction = TypeDiffer::Direction;
-    const Direction direction = before_.empty() ? Direction::kForward : Direction::kBack;
-    TypeDiffer differ(from_, to_, direction, false);
+    const bool there = before_.empty();
+    const Migrations migrations = there ? Migrations(from_, to_, Migrations::Way::kThere)
+                                        : Migrations(to_, from_, Migrations::Way::kBack);
+    TypeDiffer differ(from_, to_, there ? Direction::kForward : Direction::kBack, false,
+                      migrations);
     const InstanceMatch match = match_instances(from_, to_);
     for (uint32_t id : match.new_order) {
       const uint32_t twin = match.old_of_new[id];
@@ -213,6 +217,11 @@ base::Result<base::Bytes> carry_retained(const ir::Image& from, base::ByteSpan v
                                          const ir::Image& to) {
   const ir::OldUnderNewNames old(from, to);
   return Carrier(old.image(), values, to, initial_retained(to)).run();
+}
+
+bool has_migrations(const ir::Image& from, const ir::Image& to) {
+  const ir::OldUnderNewNames old(from, to);
+  return !Migrations(old.image(), to, Migrations::Way::kThere).rows().empty();
 }
 
 base::Result<base::Bytes> carry_retained_back(const ir::Image& from, base::ByteSpan values,

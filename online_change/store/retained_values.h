@@ -23,6 +23,9 @@ void copy_retained(const ir::Image& image, const uint8_t* memory, base::Bytes& o
 base::Result<base::Bytes> carry_retained(const ir::Image& from, base::ByteSpan values,
                                          const ir::Image& to);
 
+// Would a change run migrations? Here they do not run: what they make has its initial value.
+bool has_migrations(const ir::Image& from, const ir::Image& to);
+
 // From a trial that was lost, `from`, to the program before it, `to`, whose values were `before`
 // when the trial began. As undo does: what the change dropped, and what it converted and nobody
 // wrote since, is as it was before.
