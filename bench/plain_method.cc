@@ -45,7 +45,7 @@ PlainMethod::PlainMethod(vm::Controller& controller, const ir::VerifiedImage& ne
     values_.push_back({found->second, symbol, old_image.layouts[type].size, saved_.size(), same});
     saved_.resize(saved_.size() + old_image.layouts[type].size);
   });
-  prepared_ = controller.prepare(next);
+  prepared_ = *controller.prepare(next);
 }
 
 void PlainMethod::save() {

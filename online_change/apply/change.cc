@@ -92,7 +92,9 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy) {
       std::make_unique<Pending>(std::move(*package), controller_.verified(), *image, strategy);
   state_ = State::kPlanned;
   if (interrupted()) return abandoned("when its plan was checked");
-  pending_->waiting = controller_.prepare(*image);
+  base::Result<std::unique_ptr<vm::Generation>> next = controller_.prepare(*image);
+  if (!next.ok()) return next.error();
+  pending_->waiting = std::move(*next);
   retired_.reset();  // prepare() has just forgotten it
   if (base::Status migrated = try_migrations(); !migrated.ok()) return migrated;
   if (!pending_->in_place()) {

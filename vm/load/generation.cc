@@ -152,19 +152,43 @@ void Generation::build_overrides() {
   }
 }
 
+base::Status Generation::place_code(const Generation* running) {
+  const ir::Image& image = image_.image();
+  const std::vector<bool> has_slots = types_with_slots(image);
+  std::vector<ir::Unit> code;
+  for (uint32_t number = 0; number < image.pous.size(); ++number) {
+    const ir::LinkedPou& pou = image.pous[number];
+    const auto first = image.code.begin() + pou.first_unit;
+    code.assign(first, first + pou.unit_count);
+    prepare_code(image, has_slots, pou, code.data());
+    const bool runs = running != nullptr && number < running->pous_.size();
+    base::Result<const ir::Unit*> place =
+        slots_->place(number, pou.name, code, runs ? running->pous_[number].code : nullptr);
+    if (!place.ok()) return place.error();
+    pous_.push_back({*place, pou.frame_size, pou.recursion_depth});
+    try_depth_ = std::max(try_depth_, tries_in(image, pou));
+  }
+  const size_t in_use = running == nullptr ? 0 : running->pous_.size();
+  slots_->keep_first(static_cast<uint32_t>(std::max(in_use, pous_.size())));
+  return base::Ok{};
+}
+
 std::unique_ptr<Generation> Generation::build(ir::VerifiedImage verified, uint32_t number,
                                               uint8_t* memory) {
+  auto slots = std::make_shared<CodeSlots>(UINT64_MAX / 16);
+  return *build(std::move(verified), number, memory, std::move(slots), nullptr);
+}
+
+base::Result<std::unique_ptr<Generation>> Generation::build(ir::VerifiedImage verified,
+                                                            uint32_t number, uint8_t* memory,
+                                                            std::shared_ptr<CodeSlots> slots,
+                                                            const Generation* running) {
   auto made = std::unique_ptr<Generation>(new Generation(std::move(verified)));
   const ir::Image& image = made->image();
   made->number_ = number;
-  made->code_ = image.code;
-  const std::vector<bool> has_slots = types_with_slots(image);
-  for (const ir::LinkedPou& pou : image.pous) {
-    ir::Unit* const first = made->code_.data() + pou.first_unit;
-    prepare_code(image, has_slots, pou, first);
-    made->pous_.push_back({first, pou.frame_size, pou.recursion_depth});
-    made->try_depth_ = std::max(made->try_depth_, tries_in(image, pou));
-  }
+  made->slots_ = std::move(slots);
+  base::Status placed = made->place_code(running);
+  if (!placed.ok()) return placed.error();
   for (const ir::Instance& row : image.instances) {
     const bool callable = row.live && row.type != image.globals;
     made->instances_.push_back(callable ? InstanceEntry{row.data, row.pou} : InstanceEntry{});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ir/bytecode/verify.h"
+#include "vm/load/code_slots.h"
 
 namespace vm {
 
@@ -60,6 +61,13 @@ class Generation {
   // `memory`, which no running code of the other generation reads.
   static std::unique_ptr<Generation> build(ir::VerifiedImage image, uint32_t number,
                                            uint8_t* memory);
+  // Shares `slots` with the generations before it: code that is the same as in `running` (null at
+  // first) stays where it is. Of these generations only `running` may run from now on. kTooLarge
+  // when there is no room for the code.
+  static base::Result<std::unique_ptr<Generation>> build(ir::VerifiedImage image, uint32_t number,
+                                                         uint8_t* memory,
+                                                         std::shared_ptr<CodeSlots> slots,
+                                                         const Generation* running);
 
   const ir::VerifiedImage& verified() const { return image_; }
   const ir::Image& image() const { return image_.image(); }
@@ -76,7 +84,6 @@ class Generation {
   // Data offset of the stamp of an instance (ir/types/stamps.h), and of the globals' change flag
   // (ID 0); 0: none.
   uint32_t stamp(uint32_t id) const { return stamps_[id]; }
-  const std::vector<ir::Unit>& code() const { return code_; }
   const std::vector<BoundEntry>& bounds() const { return bounds_; }
   const std::vector<RangeEntry>& ranges() const { return ranges_; }
   // POU that stands for the prototype on instances of the type; kNoTarget: none.
@@ -92,6 +99,7 @@ class Generation {
 
  private:
   explicit Generation(ir::VerifiedImage image) : image_(std::move(image)) {}
+  base::Status place_code(const Generation* running);
   void build_areas();
   void build_stamps();
   void build_overrides();
@@ -104,7 +112,7 @@ class Generation {
   std::vector<uint32_t> areas_by_data_;
   std::vector<uint32_t> stamps_;
   uint32_t number_ = 0;
-  std::vector<ir::Unit> code_;
+  std::shared_ptr<CodeSlots> slots_;
   std::vector<PouEntry> pous_;
   std::vector<InstanceEntry> instances_;
   std::vector<BoundEntry> bounds_;

@@ -32,7 +32,8 @@ struct Controller::Impl {
   Impl(const ControllerOptions& options, Clock& clock, IoPort& io, Memory reserved)
       : memory(std::move(reserved)),
         scheduler(options, clock, io),
-        data_limit(options.data_limit) {}
+        data_limit(options.data_limit),
+        code_slots(std::make_shared<CodeSlots>(options.code_limit / sizeof(ir::Unit))) {}
 
   const ir::Image& image() const { return running->image(); }
   base::Result<ir::Symbol> writable(std::string_view path) const;
@@ -44,6 +45,7 @@ struct Controller::Impl {
   Memory memory;
   Scheduler scheduler;
   uint64_t data_limit;
+  std::shared_ptr<CodeSlots> code_slots;
   std::unique_ptr<Generation> running;
   // Of the running generation, and of one that is prepared or can come back by undo.
   TablesByGeneration tables;
@@ -62,7 +64,9 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
   Impl& impl = *controller->impl_;
   write_initial_data(image.image(), impl.memory.data());
   if (!retained.empty()) write_retained(image.image(), retained, impl.memory.data());
-  impl.running = Generation::build(image, 0, impl.memory.data());
+  auto first = Generation::build(image, 0, impl.memory.data(), impl.code_slots, nullptr);
+  if (!first.ok()) return first.error();
+  impl.running = std::move(*first);
   auto tables = std::make_unique<TaskTables>(*impl.running, impl.scheduler.next_cycle_ns());
   impl.scheduler.use(*tables, impl.memory.data());
   impl.scheduler.run_start_tasks();
@@ -150,16 +154,19 @@ const std::vector<std::string>& Controller::ended_forces(const Generation& prepa
   return impl_->tables.at(&prepared)->ended_forces;
 }
 
-std::unique_ptr<Generation> Controller::prepare(ir::VerifiedImage next_image) {
-  auto next =
-      Generation::build(std::move(next_image), impl_->running->number() + 1, impl_->memory.data());
+base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage next_image) {
   const Generation* running = impl_->running.get();
   std::erase_if(impl_->tables, [&](const auto& row) { return row.first != running; });
-  auto tables = std::make_unique<TaskTables>(*next, 0);
+  auto next = Generation::build(std::move(next_image), running->number() + 1, impl_->memory.data(),
+                                impl_->code_slots, running);
+  if (!next.ok()) return next;
+  auto tables = std::make_unique<TaskTables>(**next, 0);
   tables->adopt_forces(image(), forces());
-  impl_->tables[next.get()] = std::move(tables);
+  impl_->tables[next->get()] = std::move(tables);
   return next;
 }
+
+const CodeSlots& Controller::code_slots() const { return *impl_->code_slots; }
 
 std::unique_ptr<Generation> Controller::publish(std::unique_ptr<Generation> next, Memory* data) {
   base::check(at_boundary(), "a program is replaced while a task is inside a scan");

@@ -37,7 +37,8 @@ struct ControllerOptions {
   TrapPolicy on_trap = TrapPolicy::kStopAll;
   uint64_t fuel_slice = 1000;         // safe points between two looks at the clock; hard mode: 1
   uint64_t fuel_budget = 50'000'000;  // safe points of one scan of one task before kFuel
-  uint64_t data_limit = 0;            // bytes of all data areas of a change together; 0: no limit
+  uint64_t code_limit = uint64_t{2} << 30;  // bytes of all code slots (two for each POU)
+  uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit
 };
 
 struct TaskStatus {
@@ -112,8 +113,10 @@ class Controller {
   const std::vector<std::string>& ended_forces(const Generation& prepared) const;
 
   // --- for online change (online_change/apply) --------------------------------
-  // Builds a second generation beside the running one. Touches nothing that runs.
-  std::unique_ptr<Generation> prepare(ir::VerifiedImage image);
+  // Builds a second generation beside the running one. Touches nothing that runs; whatever was
+  // prepared or published before can run no more. kTooLarge when its code has no room.
+  base::Result<std::unique_ptr<Generation>> prepare(ir::VerifiedImage image);
+  const CodeSlots& code_slots() const;
   // At a boundary only: one pointer store makes `next` the running generation, and
   // re-derives task, I/O and force tables that were prepared by prepare(). Tasks keep scan
   // counts and phase by name. Returns the generation that ran until now.

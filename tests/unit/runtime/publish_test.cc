@@ -22,7 +22,7 @@ TEST(Publish, IdentityKeepsCountsPhaseAndForces) {
   ASSERT_TRUE(plant.ok());
   plant.cycles(3);
   ASSERT_TRUE(plant->force("B.n", "100").ok());
-  auto next = plant->prepare(plant->verified());
+  auto next = *plant->prepare(plant->verified());
   ASSERT_TRUE(plant->force("A.n", "200").ok());  // after prepare()
   auto old = plant->publish(std::move(next));
   ASSERT_NE(old, nullptr);
@@ -51,9 +51,9 @@ TEST(Publish, A11TwoAreasAndOneRecordThatSaysWhichRuns) {
   ASSERT_TRUE(plant.ok());
   plant.cycles(1);
   const vm::Generation* first = &plant->generation();
-  auto next = plant->prepare(plant->verified());
+  auto next = *plant->prepare(plant->verified());
   const vm::Generation* second = next.get();
-  EXPECT_NE(first->code().data(), second->code().data());
+  EXPECT_NE(first->pous().data(), second->pous().data());
   EXPECT_NE(first->pool_offset(), second->pool_offset());
   plant.cycles(1);
   EXPECT_EQ(&plant->generation(), first) << "prepared, not yet running";
@@ -74,7 +74,7 @@ TEST(Publish, PeriodChangeAndNewTaskKeepTheOthersOnTime) {
                            "PROGRAM C WITH Third : P;"),
                      &plant->image());
   ASSERT_TRUE(image.has_value());
-  auto old = plant->publish(plant->prepare(*image));
+  auto old = plant->publish(*plant->prepare(*image));
   EXPECT_EQ(plant->base_period_ns(), 5 * kMs);
   EXPECT_EQ(plant->next_cycle_ns(), 25 * kMs);
   plant.cycles(4);  // 25, 30, 35, 40 ms
@@ -94,7 +94,7 @@ TEST(Publish, ForcesFollowByNameAndValue) {
   auto image = build("PROGRAM P VAR b : DINT; a : SINT; END_VAR a := 1; b := 1; END_PROGRAM",
                      &plant->image());
   ASSERT_TRUE(image.has_value());
-  auto old = plant->publish(plant->prepare(*image));
+  auto old = plant->publish(*plant->prepare(*image));
   ASSERT_EQ(plant->forces().size(), 1u);
   plant.cycles(1);
   EXPECT_EQ(plant.get("P.b"), "300");

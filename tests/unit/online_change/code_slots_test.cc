@@ -1,0 +1,113 @@
+// Code slots (D1, D2, D5): an edited POU is written to its unused slot, everything else stays where
+// it is; growth is checked.
+#include <map>
+
+#include "tests/unit/online_change/plant.h"
+
+namespace online_change {
+namespace {
+
+using base::Refusal;
+using plant::Plant;
+using plant::Settings;
+
+std::string source(const std::string& body) {
+  return "FUNCTION_BLOCK Edited VAR n : INT; END_VAR " + body +
+         " END_FUNCTION_BLOCK FUNCTION_BLOCK Other VAR n : INT; END_VAR n := n + 2; "
+         "END_FUNCTION_BLOCK PROGRAM Main VAR a : Edited; b : Other; END_VAR a(); b(); "
+         "END_PROGRAM";
+}
+
+std::string repeated(const char* statement, int times) {
+  std::string text;
+  for (int i = 0; i < times; ++i) text += statement;
+  return text;
+}
+
+std::map<std::string, const ir::Unit*> addresses(Plant& plant) {
+  std::map<std::string, const ir::Unit*> out;
+  const vm::Generation& running = plant.controller().generation();
+  for (size_t i = 0; i < running.pous().size(); ++i) {
+    out[running.image().pous[i].name] = running.pous()[i].code;
+  }
+  return out;
+}
+
+TEST(CodeSlots, D1_D2_one_edited_pou_is_one_slot) {
+  Plant plant(source("n := n + 1;"));
+  plant.run(1);
+  const auto first = addresses(plant);
+  const uint64_t written = plant.controller().code_slots().written();
+  plant.change(source("n := n + n + 1;"));
+  EXPECT_EQ(plant.controller().code_slots().written(), written + 1);
+  for (const auto& [name, code] : addresses(plant)) {
+    EXPECT_EQ(code == first.at(name), name != "Edited") << name;
+  }
+  plant.run(1);
+  EXPECT_EQ(plant.get("Main.a.n"), "3");
+  plant.undo();  // D3: the entry is put back
+  EXPECT_EQ(addresses(plant), first);
+  EXPECT_EQ(plant.controller().code_slots().written(), written + 1);
+  plant.run(1);
+  EXPECT_EQ(plant.get("Main.a.n"), "4");
+}
+
+TEST(CodeSlots, D5_inside_the_slack_a_slot_stays) {
+  Plant plant(source(repeated("n := n + 1; ", 40)));
+  plant.change(source(repeated("n := n + 1; ", 41)));
+  plant.accept();
+  const uint64_t units = plant.controller().code_slots().total_units();
+  plant.change(source(repeated("n := n + 1; ", 43)));
+  plant.accept();
+  EXPECT_EQ(plant.controller().code_slots().total_units(), units);
+  plant.change(source(repeated("n := n + 1; ", 400)));
+  plant.accept();
+  EXPECT_GT(plant.controller().code_slots().total_units(), units);
+  plant.run(1);
+  EXPECT_EQ(plant.get("Main.a.n"), "400");
+}
+
+TEST(CodeSlots, D5_beyond_the_limit_is_refused_with_the_amounts) {
+  Settings settings;
+  settings.options.code_limit = 8192;
+  Plant plant(source("n := n + 1;"), settings);
+  plant.run(2);
+  const base::Digest before = plant.hash();
+  const auto first = addresses(plant);
+  const base::Status staged = plant.stage(plant.package(source(repeated("n := n + 1; ", 2000))));
+  ASSERT_FALSE(staged.ok());
+  EXPECT_EQ(staged.error().refusal, Refusal::kTooLarge);
+  EXPECT_NE(staged.error().text.find("`Edited` needs a code slot"), std::string::npos)
+      << staged.error().text;
+  EXPECT_NE(staged.error().text.find("8192"), std::string::npos) << staged.error().text;
+  EXPECT_EQ(plant.driver().state(), State::kIdle);
+  EXPECT_EQ(plant.hash(), before);
+  EXPECT_EQ(addresses(plant), first);
+  plant.run(1);
+  EXPECT_EQ(plant.get("Main.a.n"), "3");
+  plant.change(source("n := n + 10;"));
+  plant.run(1);
+  EXPECT_EQ(plant.get("Main.a.n"), "13");
+}
+
+TEST(CodeSlots, D5_case49_ten_thousand_edits_take_no_more_room) {
+  const std::string versions[] = {source(repeated("n := 5 - n; ", 3)),
+                                  source(repeated("n := 7 - n; ", 30))};
+  Plant plant(versions[0]);
+  std::map<base::Digest, base::Bytes> packages;
+  uint64_t units = 0;
+  for (int round = 1; round <= 10'000; ++round) {
+    base::Bytes& package = packages[plant.controller().verified().digest()];
+    if (package.empty()) package = plant.package(versions[round % 2]);
+    ASSERT_TRUE(plant.stage(package).ok());
+    ASSERT_TRUE(plant.driver().arm(false).ok());
+    ASSERT_TRUE(plant.driver().switch_now().ok());
+    plant.accept();
+    if (round == 2) units = plant.controller().code_slots().total_units();
+  }
+  EXPECT_EQ(plant.controller().code_slots().total_units(), units);
+  EXPECT_LE(packages.size(), 4u);
+}
+
+}  // namespace
+}  // namespace online_change
