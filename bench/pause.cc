@@ -163,7 +163,9 @@ std::string report(const Options& options, const std::vector<Row>& rows, const R
       "are the two strategies of `stvm change`; *plain* saves all values, switches and "
       "restores\nall "
       "of them by tables made beforehand, and exists in this measurement only (A18). Instructions "
-      "of the switch are counted by callgrind.\n\n![pause](pause.svg)\n\n"
+      "of the switch are counted by callgrind. Times are those of the wall clock: on a\nshared "
+      "machine, "
+      "rows of many milliseconds hold time of other programs.\n\n![pause](pause.svg)\n\n"
       "| N | k | in place us | standby us | plain us | in place instr. | standby instr. | plain "
       "instr. | predicted us, in place | predicted us, standby | steps | bytes |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
