@@ -140,7 +140,7 @@ base::Status Change::arm(bool allow_loss, bool allow_overrun) {
 
 base::Status Change::arm_steps(bool allow_loss, bool allow_overrun) {
   if (state_ != State::kPrepared) return not_in(state_, "prepared");
-  base::Status fits = check_pause(allow_overrun);
+  base::Status fits = admit(allow_overrun);
   if (!fits.ok()) return fits;
   base::Status lossless = check_charts();
   if (lossless.ok()) lossless = check_losses(allow_loss);

@@ -51,8 +51,11 @@ class Change {
   State state() const { return state_; }
   // Idle -> Prepared, in steps; may be called while version 1 runs (between cycles).
   base::Status stage(base::ByteSpan package, Strategy strategy = Strategy::kInPlace);
-  // Values that would be lost if the switch came now; by kPrepared.
+  // Values that would be lost if the switch came now; by kPrepared, at a boundary.
   std::vector<LiveLoss> live_losses() const;
+  // The same of a copy of data memory, at any time: what a report shows. Leave to lose is for these
+  // only (arm()).
+  std::vector<LiveLoss> live_losses(std::span<const uint8_t> memory) const;
   const Plan& plan() const;
   Strategy strategy() const;
   int64_t predicted_pause_ns() const;
@@ -61,6 +64,8 @@ class Change {
   // (A19); standby: the second data area. True: all is done.
   base::Result<bool> configure();
   uint64_t units_left() const;  // of that work
+  // kPauseTooLong when the predicted pause is longer than the free time of the tightest task.
+  base::Status admit(bool allow_overrun) const;
   // Prepared -> Armed. Losses are refused unless allowed (kWouldLose), and so is a predicted pause
   // longer than the free time of the tightest task (kPauseTooLong). What configure() left is done.
   base::Status arm(bool allow_loss, bool allow_overrun = false);
@@ -97,7 +102,9 @@ class Change {
   base::Status try_migrations();
   base::Status migrate();
   base::Status check_charts() const;
-  base::Status check_pause(bool allow_overrun) const;
+  // Describes the first `most`; returns how many there are.
+  uint64_t find_losses(std::span<const uint8_t> memory, size_t most,
+                       std::vector<LiveLoss>& rows) const;
   base::Status check_losses(bool allow_loss) const;
   bool unit();
   bool carry_in_place(const std::function<bool(const Loss&)>& on_loss);

@@ -19,31 +19,42 @@ int64_t Change::predicted_pause_ns() const {
 }
 
 std::vector<LiveLoss> Change::live_losses() const {
+  return live_losses(controller_.memory().view());
+}
+
+std::vector<LiveLoss> Change::live_losses(std::span<const uint8_t> memory) const {
   std::vector<LiveLoss> rows;
   if (!pending_ || state_ == State::kTrial) return rows;
-  const uint8_t* memory = controller_.memory().data();
-  Areas areas(pending_->new_image.image());
-  pending_->reported = true;
   pending_->shown.clear();
-  auto collect = [&](const Loss& loss) {
-    rows.push_back(describe(loss, pending_->forward, areas, memory));
+  pending_->reported = true;
+  pending_->forward.losses(memory.data(), [&](const Loss& loss) {
     pending_->shown.push_back({loss.step, loss.index});
     return true;
-  };
-  pending_->forward.losses(memory, collect);
+  });
   std::sort(pending_->shown.begin(), pending_->shown.end());
-  std::vector<LiveLoss> others =
-      values_without_place(plan(), pending_->old(), controller_.memory().view());
-  rows.insert(rows.end(), others.begin(), others.end());
-  const ir::Image& old_image = pending_->old();
-  Areas old_areas(old_image);
-  pending_->handles.for_each_broken(memory, [&](uint32_t at, ir::TypeId type) {
-    rows.push_back(describe_broken(old_areas, at, type, controller_.memory().view()));
+  find_losses(memory, SIZE_MAX, rows);
+  return rows;
+}
+
+uint64_t Change::find_losses(std::span<const uint8_t> memory, size_t most,
+                             std::vector<LiveLoss>& rows) const {
+  uint64_t count = 0;
+  Areas areas(pending_->new_image.image());
+  Areas old_areas(pending_->old());
+  pending_->forward.losses(memory.data(), [&](const Loss& loss) {
+    if (count++ < most) {
+      rows.push_back(describe(loss, pending_->forward, areas, memory.data()));
+    }
+    return true;
+  });
+  count += values_without_place(plan(), pending_->old(), memory, most, rows);
+  pending_->handles.for_each_broken(memory.data(), [&](uint32_t at, ir::TypeId type) {
+    if (count++ < most) rows.push_back(describe_broken(old_areas, at, type, memory));
   });
   for (const std::string& path : controller_.ended_forces(*pending_->waiting)) {
-    rows.push_back({path, "forced", "", "loses its force"});
+    if (count++ < most) rows.push_back({path, "forced", "", "loses its force"});
   }
-  return rows;
+  return count;
 }
 
 // Not a matter of losses: the chart would begin again, whatever it was in the middle of.
@@ -58,13 +69,14 @@ base::Status Change::check_charts() const {
 
 base::Status Change::check_losses(bool allow_loss) const {
   if (allow_loss) return base::Ok{};
-  std::vector<LiveLoss> losses = live_losses();
-  if (losses.empty()) return base::Ok{};
-  return would_lose(losses.front(), losses.size() - 1);
+  std::vector<LiveLoss> first;
+  const uint64_t count = find_losses(controller_.memory().view(), 1, first);
+  if (count == 0) return base::Ok{};
+  return would_lose(first.front(), count - 1);
 }
 
 // Free time of a task: its period without its longest scan.
-base::Status Change::check_pause(bool allow_overrun) const {
+base::Status Change::admit(bool allow_overrun) const {
   if (allow_overrun) return base::Ok{};
   const int64_t pause_ns = predicted_pause_ns();
   for (const vm::TaskStatus& task : controller_.tasks()) {

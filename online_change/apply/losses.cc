@@ -6,8 +6,16 @@ namespace online_change {
 namespace {
 
 constexpr const char* kBroken = "leads to what is dropped or retyped";
+constexpr size_t kShownBytes = 120;
 
 }  // namespace
+
+std::string shortened(std::string value) {
+  if (value.size() <= kShownBytes) return value;
+  size_t end = kShownBytes;
+  while (end > 0 && (static_cast<uint8_t>(value[end]) & 0xc0) == 0x80) --end;  // UTF-8
+  return value.substr(0, end) + "...";
+}
 
 LiveLoss describe(const Loss& loss, const Transfer& transfer, const Areas& new_areas,
                   const uint8_t* memory) {
@@ -36,22 +44,25 @@ LiveLoss broken_at(const Areas& new_areas, uint32_t at) {
   return {new_areas.path_at(at), "a reference", "NULL", kBroken};
 }
 
-std::vector<LiveLoss> values_without_place(const Plan& plan, const ir::Image& old_image,
-                                           std::span<const uint8_t> memory) {
-  std::vector<LiveLoss> losses;
+uint64_t values_without_place(const Plan& plan, const ir::Image& old_image,
+                              std::span<const uint8_t> memory, size_t most,
+                              std::vector<LiveLoss>& rows) {
+  uint64_t count = 0;
   for (const FateRow& row : plan.fates) {
     const bool dropped = row.fate == Fate::kDropped;
     if (!row.may_lose || (!dropped && row.fate != Fate::kInitialised)) continue;
+    ++count;
+    if (rows.size() >= most) continue;
     base::Result<ir::Symbol> symbol = ir::find_symbol(old_image, row.path);
     std::string value = row.old_type;
-    if (symbol.ok()) value = ir::format_value(old_image, *symbol, memory);
+    if (symbol.ok()) value = shortened(ir::format_value(old_image, *symbol, memory));
     if (dropped) {
-      losses.push_back({row.path, value, "", "is dropped"});
+      rows.push_back({row.path, value, "", "is dropped"});
     } else {
-      losses.push_back({row.path, value, "its initial value", "has no conversion"});
+      rows.push_back({row.path, value, "its initial value", "has no conversion"});
     }
   }
-  return losses;
+  return count;
 }
 
 base::Error would_lose(const LiveLoss& first, uint64_t more) {

@@ -9,6 +9,8 @@
 
 namespace online_change {
 
+// A value as a report shows it: a large one by its beginning.
+std::string shortened(std::string value);
 LiveLoss describe(const Loss& loss, const Transfer& transfer, const Areas& new_areas,
                   const uint8_t* memory);
 // A reference of the old version at `at` whose target the change drops.
@@ -18,8 +20,10 @@ LiveLoss describe_broken(const Areas& old_areas, uint32_t at, ir::TypeId type,
 LiveLoss broken_at(const Areas& new_areas, uint32_t at);
 // Values that go (dropped), and values of variables that keep their name but get a type
 // without a rule from the old one.
-std::vector<LiveLoss> values_without_place(const Plan& plan, const ir::Image& old_image,
-                                           std::span<const uint8_t> memory);
+// Describes them as long as `rows` has fewer than `most`; returns how many there are.
+uint64_t values_without_place(const Plan& plan, const ir::Image& old_image,
+                              std::span<const uint8_t> memory, size_t most,
+                              std::vector<LiveLoss>& rows);
 // "`Main.x` is 300; as the new type it saturates to 127", and how many more.
 base::Error would_lose(const LiveLoss& first, uint64_t more);
 

@@ -97,7 +97,7 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
     return base::Error{base::Refusal::kBadHash, "the package arrived damaged"};
   }
   change_.cancel();
-  staged_.reset();
+  forget_staged();
   const bool standby = (request.flags & vm::kByStandby) != 0;
   base::Status staged = change_.stage(
       package, standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace);
@@ -112,66 +112,64 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   return answer.take();
 }
 
-base::Result<std::vector<FateLine>> ControllerService::live_lines(uint64_t first, uint64_t count) {
-  const std::vector<FateRow>& rows = change_.plan().fates;
-  std::vector<FateLine> lines;
-  for (uint64_t i = first; i < std::min<uint64_t>(rows.size(), first + count); ++i) {
-    lines.push_back({rows[i], {}});
-  }
-  base::Status taken = at_boundary([&] {
-    for (FateLine& line : lines) {
-      if (line.row.count != 1 || line.row.old_type.empty()) continue;
-      base::Result<std::string> now = controller_.get(line.row.path);
-      if (now.ok()) line.live.now = *now;
-    }
-  });
-  if (!taken.ok()) return taken.error();
-  return lines;
-}
-
+// The first page takes the live values; the others show the same ones.
 base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
-  if (change_.state() == online_change::State::kIdle) {
+  if (change_.state() == online_change::State::kIdle || !staged_) {
     return base::Error{base::Refusal::kBusy, "no change is staged"};
   }
-  const online_change::Plan& plan = change_.plan();
-  base::Result<std::vector<FateLine>> lines = live_lines(request.offset, kLinesPerPage);
-  if (!lines.ok()) return lines.error();
-  std::vector<online_change::LiveLoss> losses;
-  base::Status taken = at_boundary([&] { losses = change_.live_losses(); });
-  if (!taken.ok()) return taken.error();
-  FatePage page{
-      plan.counts, change_.predicted_pause_ns(), plan.boundary_bytes, 0, {}, losses.size(), {}, {}};
-  uint64_t bytes = 0;
-  for (FateLine& line : *lines) {
-    if (bytes > vm::kChunkBytes) break;
-    complete(line, losses);
-    bytes += line_bytes(line);
-    page.lines.push_back(std::move(line));
+  if (request.offset == 0 || !live_) {
+    live_.reset();
+    auto taken = LiveReport::take(controller_, change_,
+                                  [this](const auto& job) { return at_boundary(job); });
+    if (!taken.ok()) return taken.error();
+    live_.emplace(std::move(*taken));
   }
-  uint64_t next = request.offset + page.lines.size();
+  const online_change::Plan& plan = change_.plan();
+  FatePage page{plan.counts,
+                change_.predicted_pause_ns(),
+                plan.boundary_bytes,
+                0,
+                {},
+                live_->losses().size(),
+                {},
+                {}};
+  uint64_t bytes = 0;
+  uint64_t next = request.offset;
+  const uint64_t end = std::min<uint64_t>(plan.fates.size(), request.offset + kLinesPerPage);
+  for (; next < end && bytes <= vm::kChunkBytes; ++next) {
+    page.lines.push_back(live_line(plan.fates[next]));
+    bytes += line_bytes(page.lines.back());
+  }
   page.next = next < plan.fates.size() ? next : 0;
   if (request.offset == 0) {
-    losses.resize(std::min(losses.size(), kShownLosses));
-    for (online_change::LiveLoss& loss : losses) page.losses.push_back({std::move(loss)});
-    if (staged_) page.edits = shown_edits(controller_.image(), staged_->image());
+    for (size_t i = 0; i < std::min(live_->losses().size(), kShownLosses); ++i) {
+      page.losses.push_back({live_->losses()[i]});
+    }
+    page.edits = shown_edits(controller_.image(), staged_->image());
   }
   return encode(page);
 }
 
-void ControllerService::complete(FateLine& line,
-                                 const std::vector<online_change::LiveLoss>& losses) const {
-  if (line.row.fate == Fate::kMoved || line.row.fate == Fate::kKept) {
+// With the resulting value, and its loss when there is one.
+FateLine ControllerService::live_line(const FateRow& row) const {
+  FateLine line{row, {}};
+  if (row.count == 1 && !row.old_type.empty()) line.live.now = live_->value(row.path);
+  if (row.fate == Fate::kMoved || row.fate == Fate::kKept) {
     line.live.after = line.live.now;
-  } else if (line.row.fate == Fate::kInitialised && line.row.count == 1) {
-    if (staged_) line.live.after = initial_text(staged_->image(), line.row.path);
-  } else if (line.row.fate == Fate::kConverted && !line.live.now.empty()) {
-    if (staged_) line.live.after = converted_text(staged_->image(), line.row.path, line.live.now);
+  } else if (row.fate == Fate::kInitialised && row.count == 1) {
+    line.live.after = initial_text(staged_->image(), row.path);
+  } else if (row.fate == Fate::kConverted && !line.live.now.empty()) {
+    line.live.after = converted_text(staged_->image(), row.path, line.live.now);
   }
-  for (const online_change::LiveLoss& loss : losses) {
-    if (!ir::same_name(loss.path, line.row.path)) continue;
-    line.live = {loss.old_value, loss.new_value, loss.what};
-    return;
+  if (const online_change::LiveLoss* loss = live_->loss(row.path)) {
+    line.live = {loss->old_value, loss->new_value, loss->what};
   }
+  return line;
+}
+
+void ControllerService::forget_staged() {
+  staged_.reset();
+  live_.reset();
 }
 
 bool ControllerService::time_for_switch() const {
@@ -196,6 +194,23 @@ base::Status ControllerService::configure(bool allow_overrun) {
                        "runs on"};
   }
   return done.ok() ? base::Status(base::Ok{}) : done.error();
+}
+
+base::Status ControllerService::arm_in_time(bool allow_loss, bool allow_overrun,
+                                            base::Status& armed) {
+  bool tried = false;
+  for (int attempt = 1; !tried; ++attempt) {
+    if (attempt != 1) boundary_.pause(kBetweenAttemptsNs);
+    base::Status taken = at_boundary([&] {
+      armed = change_.admit(allow_overrun);
+      const bool now = allow_overrun || time_for_switch() || attempt == kSwitchAttempts;
+      if (armed.ok() && !now) return;
+      if (armed.ok()) armed = change_.arm(allow_loss, allow_overrun);
+      tried = true;
+    });
+    if (!taken.ok()) return taken;
+  }
+  return base::Ok{};
 }
 
 base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
@@ -256,17 +271,15 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   if (!armed.ok()) return armed.error();
   uint64_t missed_before = 0;
   int64_t predicted_ns = 0;
-  base::Status taken = at_boundary([&] {
-    armed = change_.arm((request.flags & vm::kAllowLoss) != 0, allow_overrun);
-    predicted_ns = change_.predicted_pause_ns();
-  });
+  base::Status taken = arm_in_time((request.flags & vm::kAllowLoss) != 0, allow_overrun, armed);
   if (!taken.ok()) return taken.error();
+  if (armed.ok()) predicted_ns = change_.predicted_pause_ns();
   if (!armed.ok()) return refused(armed.error());
   base::Status stored = store_trial();
   if (!stored.ok()) {
     change_.cancel();
     const base::Error error = refused(stored.error());
-    staged_.reset();
+    forget_staged();
     return error;
   }
   base::Result<online_change::SwitchReport> report = switch_in_time(allow_overrun, missed_before);
@@ -275,13 +288,13 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
     change_.cancel();
     complain(store_.end_trial());
     const base::Error error = refused(report.error());
-    staged_.reset();
+    forget_staged();
     return error;
   }
   previous_ = std::move(running);
   ++edition_;
   note_switch(online_change::Event::kSwitched, previous_->digest(), *report, predicted_ns);
-  staged_.reset();
+  forget_staged();
   if ((request.flags & vm::kPermanent) != 0) {
     base::Status permanent = make_permanent();
     if (!permanent.ok()) return permanent.error();
@@ -352,7 +365,7 @@ base::Result<base::Bytes> ControllerService::cancel(const vm::Request&) {
     store_.note(entry(online_change::Event::kCancelled));
   }
   change_.cancel();
-  staged_.reset();
+  forget_staged();
   return base::Bytes{};
 }
 

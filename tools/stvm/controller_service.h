@@ -10,6 +10,7 @@
 #include "online_change/store/boot.h"
 #include "online_change/store/retain_keeper.h"
 #include "tools/stvm/fate_message.h"
+#include "tools/stvm/live_report.h"
 #include "vm/runtime/boundary.h"
 #include "vm/runtime/protocol.h"
 #include "vm/runtime/socket_server.h"
@@ -61,9 +62,10 @@ class ControllerService : public vm::Service {
   // Runs `job` on the control thread at a boundary and waits for its end.
   base::Status at_boundary(const std::function<void()>& job);
   base::Status check_assignments(const vm::Request& request, bool inputs_too) const;
-  base::Result<std::vector<FateLine>> live_lines(uint64_t first, uint64_t count);
-  // The resulting value of a line, and its loss when there is one.
-  void complete(FateLine& line, const std::vector<online_change::LiveLoss>& losses) const;
+  FateLine live_line(const online_change::FateRow& row) const;
+  void forget_staged();
+  // Arms at a boundary with time enough for a look at all values.
+  base::Status arm_in_time(bool allow_loss, bool allow_overrun, base::Status& armed);
   base::Result<online_change::SwitchReport> switch_in_time(bool allow_overrun,
                                                            uint64_t& missed_before);
   bool time_for_switch() const;
@@ -98,6 +100,7 @@ class ControllerService : public vm::Service {
   base::Bytes upload_;
   base::Bytes no_memory_;  // the answer that says so
   std::optional<ir::VerifiedImage> staged_;
+  std::optional<LiveReport> live_;             // of the staged change
   std::optional<ir::VerifiedImage> previous_;  // during a trial
   uint64_t edition_ = 0;
   std::atomic<bool> stop_wanted_{false};
