@@ -5,7 +5,7 @@
 #   make demo     a bottling line, changed while it runs
 #   make test     everything that has to hold, some minutes
 #   make bench    ST against C
-#   make bench-pause   how long online changes stop the tasks; writes docs/reference/pause.md
+#   make bench-pause   how long online changes stop the tasks; writes docs/pause.md
 #   make asan     tests under AddressSanitizer and UBSan (also: ubsan, tsan)
 #   make fuzz     a million executions of each fuzz target under sanitizers
 #   make differential  5,000 random programs and changes on every tier; SEED=n begins elsewhere
@@ -58,7 +58,7 @@ MACHINE := $(shell sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(
 bench-pause: setup
 	@cmake --preset release >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target bench_pause
-	@$(BUILD)/bench/bench_pause --out docs/reference/pause --machine "$(MACHINE)"
+	@$(BUILD)/bench/bench_pause --out docs/pause --machine "$(MACHINE)"
 
 FUZZ_RUNS := 1000000
 fuzz: setup

@@ -1,5 +1,5 @@
 // What the boundary costs, counted (A16, change cases 24, 35, 52): work in place follows what
-// changes, not the program around it. Measured figures: docs/reference/pause.md.
+// changes, not the program around it. Measured figures: docs/pause.md.
 #include "bench/plain_method.h"
 #include "ir/bytecode/symbols.h"
 #include "tests/unit/online_change/instructions.h"
@@ -71,7 +71,7 @@ TEST(Pause, A19_case35_ten_thousand_instances_gain_a_variable) {
   EXPECT_LT(*cost.instructions, 10'000u);
 }
 
-// The baseline of docs/reference/pause.md: the same values, at the price of the whole program.
+// The baseline of docs/pause.md: the same values, at the price of the whole program.
 TEST(Pause, A18_the_plain_method_saves_and_restores_everything) {
   std::optional<uint64_t> instructions[2];
   for (const uint32_t instances : {1, 4}) {
