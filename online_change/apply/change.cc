@@ -127,9 +127,16 @@ base::Status Change::migrate() {
   return pending_->migrate->run(controller_.memory().data());
 }
 
-const Plan& Change::plan() const {
-  static const Plan kNothing;
-  return pending_ ? pending_->package.forward : kNothing;
+namespace {
+
+const Plan kNothing;
+
+}  // namespace
+
+const Plan& Change::plan() const { return pending_ ? pending_->package.forward : kNothing; }
+
+const Plan& Change::undo_plan() const {
+  return state_ == State::kTrial ? pending_->package.inverse : kNothing;
 }
 
 Strategy Change::strategy() const { return pending_ ? pending_->strategy : Strategy::kInPlace; }

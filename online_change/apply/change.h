@@ -57,6 +57,8 @@ class Change {
   // only (arm()).
   std::vector<LiveLoss> live_losses(std::span<const uint8_t> memory) const;
   const Plan& plan() const;
+  // In trial: what undo() would do.
+  const Plan& undo_plan() const;
   Strategy strategy() const;
   int64_t predicted_pause_ns() const;
   // By kPrepared, at a boundary: work that must be done before the switch, as far as idle time goes

@@ -47,7 +47,18 @@ said 'TRUE'
 said '1\.5'
 expect 0 stvm status --dir plc
 said 'trial'
+# X4: undo has a fate report of its own.
+expect 0 stvm undo --dir plc --dry-run
+said 'initialised +Main.gone : INT'
+said 'as it was before the change'
+said 'dropped +Main.added : BOOL +TRUE'
+expect 0 stvm undo --dir plc --dry-run --format json
+said '"undone": *false'
+said '"variable": *"Main.gone"'
+expect 0 stvm status --dir plc
+said 'trial'
 expect 0 stvm undo --dir plc
+said 'undone between'
 expect 0 stvm get --dir plc Main.gone
 said '77'
 expect 7 stvm undo --dir plc

@@ -14,6 +14,7 @@
 #include "tools/stvm/commands.h"
 #include "tools/stvm/compiler.h"
 #include "tools/stvm/controller_client.h"
+#include "tools/stvm/fate_view.h"
 #include "tools/stvm/switch_text.h"
 
 namespace stvm {
@@ -46,24 +47,6 @@ base::Result<base::Bytes> make_package(const tools::Options& options, base::Byte
   base::Status made = tools::run_beside("stc", stc_arguments(command, sources_of(options)));
   if (!made.ok()) return made.error();
   return tools::read_bytes(package_file);
-}
-
-online_change::Plan plan_of(const FatePage& page) {
-  online_change::Plan plan;
-  plan.counts = page.counts;
-  plan.predicted_pause_ns = page.predicted_pause_ns;
-  plan.boundary_bytes = page.boundary_bytes;
-  for (const FateLine& line : page.lines) plan.fates.push_back(line.row);
-  return plan;
-}
-
-tools::LiveValues live_of(const FatePage& page) {
-  tools::LiveValues live;
-  for (const FateLine& line : page.lines) {
-    bool any = !line.live.now.empty() || !line.live.after.empty();
-    if (any) live[line.row.path] = line.live;
-  }
-  return live;
 }
 
 std::string losses_text(const FatePage& page) {
@@ -128,7 +111,7 @@ void print_text(const Outcome& outcome, bool permanent) {
 void print_json(const Outcome& outcome) {
   tools::JsonWriter json;
   json.begin_object();
-  tools::fate_report(plan_of(outcome.page), live_of(outcome.page), outcome.page.edits, json);
+  fates_json(outcome.page, json);
   losses_json(outcome.page, json);
   json.field("switched", outcome.report.has_value());
   if (outcome.report) switch_json(*outcome.report, json);
@@ -164,8 +147,7 @@ base::Result<Outcome> change(const tools::Options& options, ControllerClient& cl
   if (!page.ok()) return page.error();
   Outcome outcome{std::move(*page), {}, {}};
   if (!json) {
-    std::string report =
-        tools::fate_report(plan_of(outcome.page), live_of(outcome.page), outcome.page.edits);
+    std::string report = fates_text(outcome.page);
     std::fputs((report + losses_text(outcome.page)).c_str(), stdout);
     std::fflush(stdout);
   }

@@ -114,9 +114,11 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
 
 // The first page takes the live values; the others show the same ones.
 base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
-  if (change_.state() == online_change::State::kIdle || !staged_) {
-    return base::Error{base::Refusal::kBusy, "no change is staged"};
+  const bool back = change_.state() == online_change::State::kTrial && previous_;
+  if (!back && (change_.state() == online_change::State::kIdle || !staged_)) {
+    return base::Error{base::Refusal::kBusy, "no change is staged, and none is on trial"};
   }
+  const ir::Image& next_image = back ? previous_->image() : staged_->image();
   if (request.offset == 0 || !live_) {
     live_.reset();
     auto taken = LiveReport::take(controller_, change_,
@@ -124,9 +126,9 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
     if (!taken.ok()) return taken.error();
     live_.emplace(std::move(*taken));
   }
-  const online_change::Plan& plan = change_.plan();
+  const online_change::Plan& plan = back ? change_.undo_plan() : change_.plan();
   FatePage page{plan.counts,
-                change_.predicted_pause_ns(),
+                back ? plan.predicted_pause_ns : change_.predicted_pause_ns(),
                 plan.boundary_bytes,
                 0,
                 {},
@@ -137,7 +139,7 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
   uint64_t next = request.offset;
   const uint64_t end = std::min<uint64_t>(plan.fates.size(), request.offset + kLinesPerPage);
   for (; next < end && bytes <= vm::kChunkBytes; ++next) {
-    page.lines.push_back(live_line(plan.fates[next]));
+    page.lines.push_back(live_line(plan.fates[next], next_image, back));
     bytes += line_bytes(page.lines.back());
   }
   page.next = next < plan.fates.size() ? next : 0;
@@ -145,21 +147,25 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
     for (size_t i = 0; i < std::min(live_->losses().size(), kShownLosses); ++i) {
       page.losses.push_back({live_->losses()[i]});
     }
-    page.edits = shown_edits(controller_.image(), staged_->image());
+    page.edits = shown_edits(controller_.image(), next_image);
   }
   return encode(page);
 }
 
 // With the resulting value, and its loss when there is one.
-FateLine ControllerService::live_line(const FateRow& row) const {
+FateLine ControllerService::live_line(const FateRow& row, const ir::Image& next, bool back) const {
   FateLine line{row, {}};
   if (row.count == 1 && !row.old_type.empty()) line.live.now = live_->value(row.path);
   if (row.fate == Fate::kMoved || row.fate == Fate::kKept) {
     line.live.after = line.live.now;
+  } else if (back && row.fate == Fate::kInitialised) {
+    line.row.reason = "as it was before the change";
+  } else if (back && row.fate == Fate::kConverted) {
+    line.row.reason = "as it was before the change, unless written since";
   } else if (row.fate == Fate::kInitialised && row.count == 1) {
-    line.live.after = initial_text(staged_->image(), row.path);
+    line.live.after = initial_text(next, row.path);
   } else if (row.fate == Fate::kConverted && !line.live.now.empty()) {
-    line.live.after = converted_text(staged_->image(), row.path, line.live.now);
+    line.live.after = converted_text(next, row.path, line.live.now);
   }
   if (const online_change::LiveLoss* loss = live_->loss(row.path)) {
     line.live = {loss->old_value, loss->new_value, loss->what};

@@ -62,7 +62,8 @@ class ControllerService : public vm::Service {
   // Runs `job` on the control thread at a boundary and waits for its end.
   base::Status at_boundary(const std::function<void()>& job);
   base::Status check_assignments(const vm::Request& request, bool inputs_too) const;
-  FateLine live_line(const online_change::FateRow& row) const;
+  // In the version that the report is about; `back`: by undo.
+  FateLine live_line(const online_change::FateRow& row, const ir::Image& next, bool back) const;
   void forget_staged();
   // Arms at a boundary with time enough for a look at all values.
   base::Status arm_in_time(bool allow_loss, bool allow_overrun, base::Status& armed);

@@ -1,12 +1,14 @@
 // stvm undo, accept, stop: one command, one answer.
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <thread>
 
 #include "tools/common/exit.h"
 #include "tools/common/json.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
+#include "tools/stvm/fate_view.h"
 #include "tools/stvm/state_folder.h"
 #include "tools/stvm/switch_text.h"
 
@@ -14,9 +16,13 @@ namespace stvm {
 namespace {
 
 constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
+constexpr tools::OptionRow kUndoOptions[] = {
+    {"--dry-run", nullptr, "stop after the fate report; nothing is changed"},
+    STVM_CONTROLLER_OPTIONS,
+    STVM_FORMAT_OPTION};
 constexpr tools::Command kUndoCommand{
-    "undo",   "", "Brings back the program, and the values, from before the last change.",
-    kOptions, 0,  0};
+    "undo",       "", "Brings back the program, and the values, from before the last change.",
+    kUndoOptions, 0,  0};
 constexpr tools::Command kAcceptCommand{
     "accept", "", "Makes the last change final; the new program boots next.", kOptions, 0, 0};
 constexpr tools::Command kStopCommand{"stop", "", "Ends a serving controller.", kOptions, 0, 0};
@@ -35,15 +41,28 @@ base::Status undo_change(const tools::Options& options) {
   if (!json.ok()) return json.error();
   base::Result<ControllerClient> client = meet(options);
   if (!client.ok()) return client.error();
-  base::Result<online_change::SwitchReport> report = client->undo();
-  if (!report.ok()) return report.error();
-  if (!*json) {
-    std::fputs(switch_text("undone", *report).c_str(), stdout);
-    return base::Ok{};
+  base::Result<vm::StatusReport> status = client->status();
+  if (!status.ok()) return status.error();
+  if (status->change != "trial") {
+    return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"};
   }
+  base::Result<FatePage> page = client->fates();
+  if (!page.ok()) return page.error();
+  const bool dry_run = options.has("--dry-run");
+  if (!*json) std::fputs(fates_text(*page).c_str(), stdout);
+  std::optional<online_change::SwitchReport> done;
+  if (!dry_run) {
+    base::Result<online_change::SwitchReport> report = client->undo();
+    if (!report.ok()) return report.error();
+    done = *report;
+    if (!*json) std::fputs(switch_text("undone", *done).c_str(), stdout);
+  }
+  if (!*json) return base::Ok{};
   tools::JsonWriter out;
-  out.begin_object().field("undone", true);
-  switch_json(*report, out);
+  out.begin_object();
+  fates_json(*page, out);
+  out.field("undone", done.has_value());
+  if (done) switch_json(*done, out);
   out.end_object();
   std::fputs(out.finish().c_str(), stdout);
   return base::Ok{};
