@@ -18,6 +18,9 @@ namespace {
 constexpr int64_t kEventWatchdogNs = 100'000'000;     // of a task without a period
 constexpr int64_t kStartWatchdogNs = 10'000'000'000;  // of a task that runs once
 
+// Bytes of constants that no code needs any more, besides as many as it needs.
+constexpr size_t kPoolWaste = 4096;
+
 class Linker {
  public:
   Linker(const ir::Program& program, const std::vector<ir::Object>& objects, const Options& options)
@@ -143,14 +146,30 @@ class Linker {
     return base::Ok{};
   }
 
-  base::Status fill_pool() {
+  void fill(ConstantPool& pool) const {
     const InitialValues initial(image_.types, image_.constants, image_.layouts);
     for (const ir::Object* object : context_.objects) {
-      if (object != nullptr) pool_.add_scalars(*object);
+      if (object != nullptr) pool.add_scalars(*object);
     }
     for (const ir::Object* object : context_.objects) {
-      if (object != nullptr) pool_.add_values(*object, initial, image_.layouts);
+      if (object != nullptr) pool.add_values(*object, initial, image_.layouts);
     }
+  }
+
+  // What the base has stays where it is, until too much of it is of no use any more. In the end
+  // every constant is taken from the first place that has its bytes: so the same program linked
+  // against itself comes out the same.
+  base::Status fill_pool() {
+    ConstantPool own;
+    fill(own);
+    base::Bytes bytes = own.bytes();
+    if (options_.base != nullptr && options_.base->pool.size() <= 2 * bytes.size() + kPoolWaste) {
+      ConstantPool grown(options_.base->pool);
+      fill(grown);
+      if (grown.bytes().size() <= ir::kConstPoolLimit) bytes = grown.bytes();
+    }
+    pool_ = ConstantPool(bytes);
+    fill(pool_);
     image_.pool = pool_.bytes();
     if (image_.pool.size() > ir::kConstPoolLimit) {
       return base::Error{base::Refusal::kTooLarge,

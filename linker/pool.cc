@@ -1,16 +1,44 @@
 #include "linker/pool.h"
 
+#include <algorithm>
+#include <cstring>
+
 namespace linker {
 namespace {
 
 constexpr size_t kPoolAlign = 8;
 
+// The first word, what is missing as zeros: scalars are padded so.
+uint64_t first_word(const uint8_t* bytes, size_t size) {
+  uint64_t word = 0;
+  std::memcpy(&word, bytes, std::min(size, kPoolAlign));
+  return word;
+}
+
 }  // namespace
 
+ConstantPool::ConstantPool(const base::Bytes& base) : bytes_(base), base_size_(base.size()) {
+  for (size_t at = 0; at + kPoolAlign <= base_size_; at += kPoolAlign) {
+    words_[first_word(base.data() + at, kPoolAlign)].push_back(static_cast<uint32_t>(at));
+  }
+}
+
+std::optional<uint32_t> ConstantPool::in_base(const base::Bytes& entry) const {
+  const auto found = words_.find(first_word(entry.data(), entry.size()));
+  if (found == words_.end()) return std::nullopt;
+  for (uint32_t at : found->second) {
+    const bool fits = entry.size() <= base_size_ - at;
+    if (fits && std::memcmp(bytes_.data() + at, entry.data(), entry.size()) == 0) return at;
+  }
+  return std::nullopt;
+}
+
 uint32_t ConstantPool::intern(const base::Bytes& entry) {
+  const std::optional<uint32_t> known = in_base(entry);
   const auto [found, added] =
-      offsets_.try_emplace(std::string(entry.begin(), entry.end()), bytes_.size());
-  if (added) {
+      offsets_.try_emplace(std::string(entry.begin(), entry.end()),
+                           known ? *known : static_cast<uint32_t>(bytes_.size()));
+  if (added && !known) {
     bytes_.insert(bytes_.end(), entry.begin(), entry.end());
     bytes_.resize((bytes_.size() + kPoolAlign - 1) / kPoolAlign * kPoolAlign);
   }

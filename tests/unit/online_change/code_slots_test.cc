@@ -1,5 +1,6 @@
 // Code slots (D1, D2, D5): an edited POU is written to its unused slot, everything else stays where
 // it is; growth is checked.
+#include <algorithm>
 #include <map>
 
 #include "tests/unit/online_change/plant.h"
@@ -50,6 +51,53 @@ TEST(CodeSlots, D1_D2_one_edited_pou_is_one_slot) {
   EXPECT_EQ(plant.controller().code_slots().written(), written + 1);
   plant.run(1);
   EXPECT_EQ(plant.get("Main.a.n"), "4");
+}
+
+// New constants go behind those that are there, so that no other POU's code names other places.
+TEST(CodeSlots, D2_an_edit_with_new_constants_is_one_slot) {
+  Plant plant(source("n := n + 12345;"));
+  for (int i = 1; i <= 40; ++i) {
+    const auto before = addresses(plant);
+    const uint64_t written = plant.controller().code_slots().written();
+    const std::string number = std::to_string(20'000 + i * 7);
+    plant.change(source("IF n > " + number + " THEN n := " + number + " - n; END_IF"));
+    EXPECT_EQ(plant.controller().code_slots().written(), written + 1) << i;
+    for (const auto& [name, code] : addresses(plant)) {
+      EXPECT_EQ(code == before.at(name), name != "Edited") << name << " " << i;
+    }
+    plant.accept();
+  }
+}
+
+// However alike they begin, each constant is found again.
+TEST(CodeSlots, case53_many_constants_that_begin_alike) {
+  std::string text = "PROGRAM Main VAR s : STRING[40]; n : INT; END_VAR n := n + 1;\n";
+  for (int i = 0; i < 60; ++i) {
+    text += "IF n = " + std::to_string(i) + " THEN s := 'the same beginning, end " +
+            std::to_string(i) + "'; END_IF\n";
+  }
+  text += "END_PROGRAM";
+  Plant plant(text);
+  EXPECT_EQ(plant.refused(text), Refusal::kNoChange);
+  plant.change(text.substr(0, text.size() - 11) +
+               "IF n = 99 THEN s := 'another one'; END_IF END_PROGRAM");
+  plant.accept();
+  const size_t size = plant.controller().image().pool.size();
+  plant.change(text);
+  EXPECT_EQ(plant.controller().image().pool.size(), size);
+}
+
+TEST(CodeSlots, D2_constants_that_nothing_needs_go_in_the_end) {
+  Plant plant(source("n := n + 12345;"));
+  size_t largest = 0;
+  for (int i = 1; i <= 1200; ++i) {
+    plant.change(source("n := n + " + std::to_string(20'000 + i) + ";"));
+    plant.accept();
+    largest = std::max(largest, plant.controller().image().pool.size());
+  }
+  EXPECT_GT(largest, 4000u);
+  EXPECT_LT(largest, 4200u);
+  EXPECT_LT(plant.controller().image().pool.size(), largest) << "it began anew";
 }
 
 TEST(CodeSlots, D5_inside_the_slack_a_slot_stays) {
