@@ -28,6 +28,8 @@ base::Error no_boundary() {
   return {base::Refusal::kBusy, "a task is inside a scan; the switch waits for a boundary"};
 }
 
+const Plan kNothing;
+
 // Without it, start code would find nothing to do.
 bool does_anything(const Plan& plan) { return !plan.steps.empty() || plan.counts.dropped != 0; }
 
@@ -45,6 +47,8 @@ Change::~Change() = default;
 template <class Step>
 auto Change::guarded(Step step) -> decltype(step()) {
   return base::within_memory(step, [this]() -> decltype(step()) {
+    // What FB_Exit has left already is made again; where nothing has, this does nothing.
+    if (pending_ && pending_->leaves_at(state_)) controller_.construct();
     abandon();
     return base::Error{base::Refusal::kNoMemory, {}};
   });
@@ -126,12 +130,6 @@ base::Status Change::migrate() {
   if (!pending_->migrate) return base::Ok{};
   return pending_->migrate->run(controller_.memory().data());
 }
-
-namespace {
-
-const Plan kNothing;
-
-}  // namespace
 
 const Plan& Change::plan() const { return pending_ ? pending_->package.forward : kNothing; }
 

@@ -32,6 +32,11 @@ struct Change::Pending {
         handles(old(), new_image.image()),
         leaving(find_leaving(old(), new_image.image())),
         charts(old(), new_image.image()) {}
+  // Does the step out of this state run FB_Exit?
+  bool leaves_at(State state) const {
+    return (state == State::kArmed && !leaving.at_switch.empty()) ||
+           (state == State::kTrial && !leaving.at_undo.empty());
+  }
   bool in_place() const { return strategy == Strategy::kInPlace; }
   // Version 1 under the names of version 2.
   const ir::Image& old() const { return renamed.image(); }

@@ -53,7 +53,7 @@ struct Sum {
 
   void add(const Sum& other) {
     tally.steps += other.tally.steps;
-    tally.cycles += other.tally.cycles;
+    tally.boundaries += other.tally.boundaries;
     tally.switches += other.tally.switches;
     tally.refusals += other.tally.refusals;
     tally.faults += other.tally.faults;
@@ -129,10 +129,10 @@ int main(int argc, char** argv) {
   while (::wait(nullptr) > 0) continue;
   auto number = [](uint64_t n) { return static_cast<unsigned long long>(n); };
   std::printf(
-      "%llu seeds, %llu skipped, %llu failed: %llu steps, %llu cycles, %llu switches, "
+      "%llu seeds, %llu skipped, %llu failed: %llu steps, %llu boundaries, %llu switches, "
       "%llu refusals, %llu faults, %llu power cuts\n",
       number(sum.seeds), number(sum.skipped), number(sum.failed), number(sum.tally.steps),
-      number(sum.tally.cycles), number(sum.tally.switches), number(sum.tally.refusals),
+      number(sum.tally.boundaries), number(sum.tally.switches), number(sum.tally.refusals),
       number(sum.tally.faults), number(sum.tally.cuts));
   return sum.failed != 0 || sum.seeds == 0 ? 1 : 0;
 }

@@ -46,7 +46,7 @@ void World::boot(const std::optional<ir::VerifiedImage>& given) {
 }
 
 void World::remember_retained() {
-  ++tally_.cycles;
+  ++tally_.boundaries;
   if (controller_->at_boundary() && !controller_->image().retain.empty()) {
     retained_.push_back(retained_values(*controller_));
   }

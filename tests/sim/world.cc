@@ -32,7 +32,7 @@ World::~World() = default;
 
 void World::say(const std::string& text) {
   if (trace_)
-    std::printf("%8llu %s\n", static_cast<unsigned long long>(tally_.cycles), text.c_str());
+    std::printf("%8llu %s\n", static_cast<unsigned long long>(tally_.boundaries), text.c_str());
 }
 
 void World::refused(const base::Error& error) {

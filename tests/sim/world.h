@@ -24,7 +24,7 @@ namespace sim {
 
 struct Tally {
   uint64_t steps = 0;
-  uint64_t cycles = 0;
+  uint64_t boundaries = 0;
   uint64_t switches = 0;  // undos included
   uint64_t refusals = 0;
   uint64_t faults = 0;

@@ -150,6 +150,42 @@ TEST(Allocation, C1_case51_every_allocation_fails_by_standby) {
   try_every_allocation(Strategy::kStandby);
 }
 
+// FB_Exit has run when memory runs out: the instance is made again before the old program goes on.
+TEST(Allocation, case34_case51_what_has_left_is_made_again) {
+  const std::string pump =
+      "VAR_GLOBAL inits, exits : INT; END_VAR\n"
+      "FUNCTION_BLOCK Pump VAR n : INT; END_VAR\n"
+      "METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; END_VAR inits := inits + "
+      "1; END_METHOD\n"
+      "METHOD FB_Exit : BOOL VAR_INPUT bInCopyCode : BOOL; END_VAR exits := exits + 1; END_METHOD\n"
+      "END_FUNCTION_BLOCK\n";
+  const std::string with =
+      pump + "PROGRAM Main VAR a, b : Pump; v : INT := 300; END_VAR END_PROGRAM";
+  Plant plant(with);
+  plant.run(2);
+  const base::Bytes package =
+      plant.package(pump + "PROGRAM Main VAR b : Pump; v : SINT; END_VAR END_PROGRAM");
+  Change& driver = plant.driver();
+  int behind_exit = 0;
+  for (int64_t successes = 0;; ++successes) {
+    // Leave for what the report showed, which is not all any more: a refusal that has a text.
+    plant.set("Main.v", "5");
+    ASSERT_TRUE(driver.stage(package).ok());
+    (void)driver.live_losses();
+    ASSERT_TRUE(driver.arm(true, true).ok());
+    plant.set("Main.v", "300");
+    auto report = with_allocations(successes, [&] { return driver.switch_now(); });
+    ASSERT_FALSE(report.ok());
+    const bool memory = report.error().refusal == base::Refusal::kNoMemory;
+    if (plant.get("exits") != plant.get("inits")) behind_exit += memory;
+    plant.run(2);
+    // Both were made once at the start; whoever left was made again.
+    ASSERT_EQ(std::stoi(plant.get("inits")), 2 + std::stoi(plant.get("exits"))) << successes;
+    if (!memory) break;
+  }
+  EXPECT_GT(behind_exit, 0);
+}
+
 // Nothing is taken between the first look at the boundary and the store that publishes.
 TEST(Allocation, invariant2_the_switch_and_undo_allocate_nothing) {
   for (Strategy strategy : {Strategy::kInPlace, Strategy::kStandby}) {
