@@ -59,19 +59,21 @@ base::Error Change::abandoned(const char* where) const {
           std::string("the change was abandoned ") + where + "; the old program runs on"};
 }
 
-base::Status Change::stage(base::ByteSpan package, Strategy strategy) {
+base::Status Change::stage(base::ByteSpan package, Strategy strategy,
+                           const AtBoundary& at_boundary) {
   if (state_ != State::kIdle) {
     return base::Error{base::Refusal::kChangePending, std::string("another change is ") +
                                                           state_name(state_) +
                                                           "; accept, undo or cancel it first"};
   }
   collect();
-  base::Status status = guarded([&] { return stage_steps(package, strategy); });
+  base::Status status = guarded([&] { return stage_steps(package, strategy, at_boundary); });
   if (!status.ok()) cancel();
   return status;
 }
 
-base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy) {
+base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy,
+                                 const AtBoundary& at_boundary) {
   base::Result<Package> package = decode(bytes);
   if (!package.ok()) return package.error();
   const base::Digest& running = controller_.verified().digest();
@@ -100,7 +102,7 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy) {
   if (!next.ok()) return next.error();
   pending_->waiting = std::move(*next);
   retired_.reset();  // prepare() has just forgotten it
-  if (base::Status migrated = try_migrations(); !migrated.ok()) return migrated;
+  if (base::Status tried = try_migrations(at_boundary); !tried.ok()) return tried;
   if (!pending_->in_place()) {
     base::Result<std::unique_ptr<Standby>> area = Standby::make(
         controller_.generation(), *pending_->waiting, pending_->forward, controller_.data_limit());
@@ -110,20 +112,6 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy) {
   state_ = State::kPrepared;
   if (interrupted()) return abandoned("when it was prepared");
   return base::Ok{};
-}
-
-// On the live data, which stays as it is: whether migrations trap or do not end is known now, and
-// what they give is what the switch will write if their inputs stay as they are.
-base::Status Change::try_migrations() {
-  Pending& change = *pending_;
-  const ir::Image& next = change.new_image.image();
-  auto there = Migrator::make(change.package.forward, change.old(), next, *change.waiting);
-  if (!there.ok()) return there.error();
-  auto back = Migrator::make(change.package.inverse, next, change.old(), *change.waiting);
-  if (!back.ok()) return back.error();
-  change.migrate = std::move(*there);
-  change.migrate_back = std::move(*back);
-  return migrate();
 }
 
 base::Status Change::migrate() {

@@ -40,6 +40,9 @@ struct SwitchReport {
   FateCounts counts;          // what was done
 };
 
+// Runs a job at a boundary and waits for its end.
+using AtBoundary = std::function<base::Status(const std::function<void()>& job)>;
+
 struct Loss;
 class Standby;
 
@@ -49,8 +52,11 @@ class Change {
   ~Change();
 
   State state() const { return state_; }
-  // Idle -> Prepared, in steps; may be called while version 1 runs (between cycles).
-  base::Status stage(base::ByteSpan package, Strategy strategy = Strategy::kInPlace);
+  // Idle -> Prepared, in steps, while version 1 runs. What it must know of live data it copies in
+  // jobs for `at_boundary`, each of some tens of microseconds; without, the caller is at a
+  // boundary.
+  base::Status stage(base::ByteSpan package, Strategy strategy = Strategy::kInPlace,
+                     const AtBoundary& at_boundary = {});
   // Values that would be lost if the switch came now; by kPrepared, at a boundary.
   std::vector<LiveLoss> live_losses() const;
   // The same of a copy of data memory, at any time: what a report shows. Leave to lose is for these
@@ -97,11 +103,12 @@ class Change {
   // all.
   template <class Step>
   auto guarded(Step step) -> decltype(step());
-  base::Status stage_steps(base::ByteSpan package, Strategy strategy);
+  base::Status stage_steps(base::ByteSpan package, Strategy strategy,
+                           const AtBoundary& at_boundary);
   base::Status arm_steps(bool allow_loss, bool allow_overrun);
   base::Result<SwitchReport> switch_steps();
   base::Result<SwitchReport> undo_steps();
-  base::Status try_migrations();
+  base::Status try_migrations(const AtBoundary& at_boundary);
   base::Status migrate();
   base::Status check_charts() const;
   // Describes the first `most`; returns how many there are.

@@ -6,6 +6,41 @@
 #include "online_change/plan/pause.h"
 
 namespace online_change {
+namespace {
+
+// So much is copied at one boundary.
+constexpr size_t kGatherBytes = 128u << 10;
+
+}  // namespace
+
+// On a copy of what they read of the live data: whether migrations trap or do not end is known now,
+// and what they give is what the switch will write if their inputs stay as they are. A migration
+// reads one instance, and that is copied at one boundary; instances are independent of each other.
+base::Status Change::try_migrations(const AtBoundary& at_boundary) {
+  Pending& change = *pending_;
+  const ir::Image& next = change.new_image.image();
+  auto there = Migrator::make(change.package.forward, change.old(), next, *change.waiting);
+  if (!there.ok()) return there.error();
+  auto back = Migrator::make(change.package.inverse, next, change.old(), *change.waiting);
+  if (!back.ok()) return back.error();
+  change.migrate = std::move(*there);
+  change.migrate_back = std::move(*back);
+  if (!change.migrate) return base::Ok{};
+  Migrator& migrate = *change.migrate;
+  for (size_t call = 0; call < migrate.calls();) {
+    const auto gather = [&] {
+      call = migrate.gather(call, kGatherBytes, controller_.memory().data());
+    };
+    base::Status taken = base::Ok{};
+    if (at_boundary) {
+      taken = at_boundary(gather);
+    } else {
+      gather();
+    }
+    if (!taken.ok()) return taken;
+  }
+  return migrate.run_gathered();
+}
 
 int64_t Change::predicted_pause_ns() const {
   if (!pending_) return 0;

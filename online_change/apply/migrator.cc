@@ -6,6 +6,12 @@
 #include "online_change/diff/value_conversion.h"
 
 namespace online_change {
+namespace {
+
+// What looking at a call costs beside its bytes.
+constexpr size_t kGatherCallBytes = 64;
+
+}  // namespace
 
 Migrator::Migrator(Plan& plan, const ir::Image& from, const ir::Image& to,
                    const vm::Generation& code, vm::Memory scratch)
@@ -66,34 +72,43 @@ const ir::LinkedPou& Migrator::code_of(const MigrationCall& call) const {
   return code_.image().pous[code_.image().migrations[call.row].pou];
 }
 
-// False: the inputs are those of the last run.
-bool Migrator::gather(size_t number, const uint8_t* memory) {
+size_t Migrator::gather_call(size_t number, const uint8_t* memory) {
   Call& call = calls_[number];
-  uint8_t* at = bytes_.data() + call.first_byte;
-  bool changed = !call.done;
+  uint8_t* const begin = bytes_.data() + call.first_byte;
+  uint8_t* at = begin;
   for (const Input& input : call.inputs) {
     if (std::memcmp(at, memory + input.from, input.size) != 0) {
-      changed = true;
+      call.done = false;
       std::memcpy(at, memory + input.from, input.size);
     }
     at += input.size;
   }
-  call.done = true;
-  return changed;
+  return static_cast<size_t>(at - begin);
+}
+
+size_t Migrator::gather(size_t first, size_t most_bytes, const uint8_t* memory) {
+  for (size_t bytes = 0; first < calls_.size() && bytes < most_bytes; ++first) {
+    bytes += gather_call(first, memory) + kGatherCallBytes;
+  }
+  return first;
 }
 
 void Migrator::note(const uint8_t* memory) {
-  for (size_t i = 0; i < calls_.size(); ++i) gather(i, memory);
+  gather(0, SIZE_MAX, memory);
+  for (Call& call : calls_) call.done = true;
 }
 
 base::Status Migrator::run(const uint8_t* memory) {
+  gather(0, SIZE_MAX, memory);
+  return run_gathered();
+}
+
+base::Status Migrator::run_gathered() {
   fuel_ = 0;
   for (size_t i = 0; i < calls_.size(); ++i) {
-    if (!gather(i, memory)) continue;
-    if (base::Status status = run_call(i); !status.ok()) {
-      calls_[i].done = false;
-      return status;
-    }
+    if (calls_[i].done) continue;
+    if (base::Status status = run_call(i); !status.ok()) return status;
+    calls_[i].done = true;
   }
   most_fuel_ = std::max(most_fuel_, fuel_);
   return base::Ok{};

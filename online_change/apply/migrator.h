@@ -25,7 +25,14 @@ class Migrator {
                                                       const ir::Image& to,
                                                       const vm::Generation& code);
 
-  // Runs each call whose inputs in `memory` are not those of its last run.
+  // Takes the inputs of call `first`, and of those behind it that make up about `most_bytes` with
+  // it, so that a large plan can be looked at over several boundaries. What one call reads is
+  // always of one instant. Returns the first call that was not looked at.
+  size_t gather(size_t first, size_t most_bytes, const uint8_t* memory);
+  size_t calls() const { return calls_.size(); }
+  // Runs each call whose inputs, as gathered, are not those of its last run.
+  base::Status run_gathered();
+  // Both, of all calls.
   base::Status run(const uint8_t* memory);
   // Takes the inputs as those of a run without running: on the way back, what nobody has written
   // since needs no migration.
@@ -53,14 +60,15 @@ class Migrator {
   struct Call {
     size_t first_byte = 0;  // of its inputs, in bytes_
     std::vector<Input> inputs;
-    bool done = false;
+    bool done = false;  // run on the inputs in bytes_, or noted
     std::vector<Output> outputs;
   };
 
   const ir::LinkedPou& code_of(const MigrationCall& call) const;
   Input input_of(const MigrationInput& input, const ir::LinkedPou& pou,
                  const ir::Image& from) const;
-  bool gather(size_t number, const uint8_t* memory);
+  // How many bytes they are.
+  size_t gather_call(size_t number, const uint8_t* memory);
   base::Status run_call(size_t number);
   base::Error failed(const MigrationCall& call, const std::string& why) const;
 
@@ -71,7 +79,7 @@ class Migrator {
   vm::Memory scratch_;
   vm::Execution execution_;
   std::vector<Call> calls_;
-  base::Bytes bytes_;  // of all inputs, as they were in the last run
+  base::Bytes bytes_;  // of all inputs, as they were gathered
   uint64_t fuel_ = 0;
   uint64_t most_fuel_ = 0;
 };

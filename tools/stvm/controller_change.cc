@@ -100,7 +100,8 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   forget_staged();
   const bool standby = (request.flags & vm::kByStandby) != 0;
   base::Status staged = change_.stage(
-      package, standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace);
+      package, standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace,
+      [this](const auto& job) { return at_boundary(job); });
   if (!staged.ok()) return refused(staged.error());
   staged_ = image_of(package);
   online_change::JournalEntry done = entry(online_change::Event::kStaged);
@@ -254,48 +255,51 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
                      "no cycle left time enough for the switch; the old program runs on"};
 }
 
-// Releases that the switch made late are known only when the next cycles have been.
-base::Result<online_change::SwitchReport> ControllerService::finish_report(
-    online_change::SwitchReport report, uint64_t missed_before) {
+// Releases that the switch made late are known only when the next cycles have been. The switch has
+// been made: when no boundary comes any more, what is known is the answer.
+online_change::SwitchReport ControllerService::finish_report(online_change::SwitchReport report,
+                                                             uint64_t missed_before) {
   for (int attempt = 0; attempt < kSwitchAttempts; ++attempt) {
     uint64_t cycles = 0;
     base::Status taken = at_boundary([&] {
       cycles = controller_.cycles();
       report.missed = controller_.missed_releases() - missed_before;
     });
-    if (!taken.ok()) return taken.error();
+    if (!taken.ok()) break;
     if (cycles > report.cycle_after || controller_.faulted()) break;
     boundary_.pause(kBetweenAttemptsNs);
   }
   return report;
 }
 
+// What is staged stays so where only this attempt has failed.
+base::Error ControllerService::not_switched(const base::Error& why) {
+  base::Error error = refused(why);
+  if (change_.state() == online_change::State::kIdle) forget_staged();
+  return error;
+}
+
 base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& request) {
   bool allow_overrun = (request.flags & vm::kAllowOverrun) != 0;
   ir::VerifiedImage running = controller_.verified();
   base::Status armed = configure(allow_overrun);
-  if (!armed.ok()) return armed.error();
-  uint64_t missed_before = 0;
-  int64_t predicted_ns = 0;
+  if (!armed.ok()) return not_switched(armed.error());
   base::Status taken = arm_in_time((request.flags & vm::kAllowLoss) != 0, allow_overrun, armed);
-  if (!taken.ok()) return taken.error();
-  if (armed.ok()) predicted_ns = change_.predicted_pause_ns();
-  if (!armed.ok()) return refused(armed.error());
+  if (!taken.ok()) return not_switched(taken.error());
+  if (!armed.ok()) return not_switched(armed.error());
+  const int64_t predicted_ns = change_.predicted_pause_ns();
   base::Status stored = store_trial();
   if (!stored.ok()) {
     change_.cancel();
-    const base::Error error = refused(stored.error());
-    forget_staged();
-    return error;
+    return not_switched(stored.error());
   }
+  uint64_t missed_before = 0;
   base::Result<online_change::SwitchReport> report = switch_in_time(allow_overrun, missed_before);
   change_.collect();
   if (!report.ok()) {
     change_.cancel();
     complain(store_.end_trial());
-    const base::Error error = refused(report.error());
-    forget_staged();
-    return error;
+    return not_switched(report.error());
   }
   previous_ = std::move(running);
   ++edition_;
@@ -305,9 +309,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
     base::Status permanent = make_permanent();
     if (!permanent.ok()) return permanent.error();
   }
-  report = finish_report(*report, missed_before);
-  if (!report.ok()) return report.error();
-  return encode(*report);
+  return encode(finish_report(*report, missed_before));
 }
 
 // Done first and then recorded: after a power cut in between it boots the same program.
@@ -329,9 +331,7 @@ base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
   note_switch(online_change::Event::kUndone, undone, **report, 0);
   previous_.reset();
   ++edition_;
-  report = finish_report(**report, missed_before);
-  if (!report->ok()) return report->error();
-  return encode(**report);
+  return encode(finish_report(**report, missed_before));
 }
 
 // Durable first: after a power cut in between, the accepted version boots, as it was asked for.
@@ -342,15 +342,11 @@ base::Status ControllerService::make_permanent() {
     return refused(
         {stored.error().refusal, stored.error().text + "; the change runs, but is still on trial"});
   }
-  base::Status accepted = base::Ok{};
+  base::Status accepted = change_.accept();  // nothing that runs depends on it
   online_change::Snapshot after = empty_snapshot();
-  base::Status taken = at_boundary([&] {
-    accepted = change_.accept();
-    keeper_.take(after);
-  });
-  if (!taken.ok()) return taken;
+  base::Status taken = at_boundary([&] { keeper_.take(after); });
   change_.collect();
-  complain(keeper_.save(after));
+  complain(taken.ok() ? keeper_.save(after) : taken);
   online_change::JournalEntry done = entry(online_change::Event::kAccepted);
   if (previous_) done.from = previous_->digest();
   done.to = controller_.verified().digest();

@@ -72,8 +72,10 @@ class ControllerService : public vm::Service {
   bool time_for_switch() const;
   // What the change must have done before the switch, cycle by cycle in idle time (C5).
   base::Status configure(bool allow_overrun);
-  base::Result<online_change::SwitchReport> finish_report(online_change::SwitchReport report,
-                                                          uint64_t missed_before);
+  online_change::SwitchReport finish_report(online_change::SwitchReport report,
+                                            uint64_t missed_before);
+  // Notes the refusal of a switch.
+  base::Error not_switched(const base::Error& why);
   // The running image boots next, and only then the change is final.
   base::Status make_permanent();
 

@@ -15,7 +15,7 @@ constexpr uint32_t kSliceBytes = 128u << 10;
 
 base::Result<LiveReport> LiveReport::take(vm::Controller& controller,
                                           const online_change::Change& change,
-                                          const AtBoundary& at_boundary) {
+                                          const online_change::AtBoundary& at_boundary) {
   base::Result<vm::Memory> memory = vm::Memory::reserve();
   if (!memory.ok()) return memory.error();
   LiveReport report(std::move(*memory), controller.verified());

@@ -16,11 +16,9 @@ namespace stvm {
 
 class LiveReport {
  public:
-  // Runs a job at a boundary and waits for its end.
-  using AtBoundary = std::function<base::Status(const std::function<void()>& job)>;
   static base::Result<LiveReport> take(vm::Controller& controller,
                                        const online_change::Change& change,
-                                       const AtBoundary& at_boundary);
+                                       const online_change::AtBoundary& at_boundary);
 
   // Of the program that runs; "" when there is no such variable.
   std::string value(const std::string& path) const;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "base/diagnostics.h"
 #include "frontend/compile.h"
 #include "ir/bytecode/symbols.h"
@@ -25,7 +27,7 @@ ir::VerifiedImage build(const std::string& source, const ir::Image* base) {
   linker::Options options;
   options.base = base;
   base::Result<ir::Image> image = linker::link(*program, objects, options);
-  base::check(image.ok(), "the test program links");
+  base::check(image.ok(), image.ok() ? "" : base::to_string(image.error()).c_str());
   base::Result<ir::VerifiedImage> verified = ir::verify(ir::encode(*image));
   base::check(verified.ok(), "the test program is verified");
   return *verified;
@@ -73,9 +75,20 @@ base::Status Plc::save() {
   return service_->keeper().save(snapshot);
 }
 
+vm::Boundary::Outcome Plc::run(const std::function<void()>& job, int64_t) {
+  const Outcome outcome = at_boundary ? at_boundary() : Outcome::kDone;
+  if (outcome != Outcome::kDone) return outcome;
+  job();
+  if (behind_job) behind_job();
+  return outcome;
+}
+
+// Whatever boundaries do.
 vm::StatusReport Plc::status() {
   bool keep_open = true;
+  auto asked = std::exchange(at_boundary, {});
   base::Bytes answer = service_->answer(vm::encode(vm::Request{}), keep_open);
+  at_boundary = std::move(asked);
   base::Result<base::Bytes> body = vm::decode_answer(answer);
   base::check(body.ok(), "status is answered");
   return *vm::decode_status(*body);

@@ -38,15 +38,17 @@ class Plc : public vm::Boundary {
   base::Status ask(vm::Request request);
   vm::StatusReport status();
 
+  // Asked at each boundary that a command needs; what is not kDone comes instead of its job.
+  std::function<Outcome()> at_boundary;
+  // Called behind each job.
+  std::function<void()> behind_job;
+
   vm::Controller& controller() { return *controller_; }
   online_change::Store& store() { return *store_; }
   const online_change::Boot& found() const { return *boot_; }
 
  private:
-  Outcome run(const std::function<void()>& job, int64_t) override {
-    job();
-    return Outcome::kDone;
-  }
+  Outcome run(const std::function<void()>& job, int64_t timeout_ns) override;
   void pause(int64_t) override { controller_->cycle(); }
 
   vm::Storage& storage_;
