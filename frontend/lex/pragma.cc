@@ -51,6 +51,17 @@ std::string_view inside_pragma(std::string_view pragma) {
 
 namespace {
 
+// , 'text' ...; what `first` begins ends behind the last of them.
+std::string_view read_more(PragmaReader& reader, std::string_view first) {
+  while (reader.accept_sign(',')) {
+    if (reader.kind() != PragmaReader::Kind::kText) return {};
+    const std::string_view piece = reader.piece();
+    first = {first.data(), static_cast<size_t>(piece.data() + piece.size() - first.data())};
+    reader.next();
+  }
+  return first;
+}
+
 // NAME [word] := 'text' [, inverse]. Whoever looks for it says what is wrong with one that is
 // written otherwise.
 PragmaAttribute read_rule(PragmaReader& reader, std::string_view word) {
@@ -63,11 +74,23 @@ PragmaAttribute read_rule(PragmaReader& reader, std::string_view word) {
   out.value = reader.piece();
   reader.next();
   if (word == "of") out.marked = reader.accept_sign(',') && reader.accept_word("inverse");
+  if (word == "from") out.value = read_more(reader, out.value);
   out.has_value = reader.kind() == PragmaReader::Kind::kEnd;
   return out;
 }
 
 }  // namespace
+
+std::vector<std::string_view> quoted_texts(std::string_view value) {
+  std::vector<std::string_view> out;
+  for (size_t at = 0; at <= value.size();) {
+    const size_t end = std::min(value.find_first_of("'\"", at), value.size());
+    out.push_back(value.substr(at, end - at));
+    const size_t next = value.find_first_of("'\"", end + 1);
+    at = next == std::string_view::npos ? value.size() + 1 : next + 1;
+  }
+  return out;
+}
 
 std::optional<PragmaAttribute> read_attribute(std::string_view pragma) {
   PragmaReader reader(inside_pragma(pragma));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace frontend {
 
@@ -35,11 +36,15 @@ struct PragmaAttribute {
   bool marked = false;  // `, inverse` behind the value
 };
 // `{attribute 'name'}`, `{attribute 'name' := 'value'}`, and `{renamed from := 'old'}` as an
-// attribute `renamed`, whose value is missing when it is written in another way. nullopt for all
-// other pragmas. So are `{migration of := 'Type'}` and `{old := 'x'}`, `{new := 'x'}`.
+// attribute `renamed`, whose value is missing when it is written in another way, and goes on to the
+// last one of several old names. nullopt for all other pragmas. So are `{migration of := 'Type'}`
+// and `{old := 'x'}`, `{new := 'x'}`.
 inline constexpr std::string_view kRenamedAttribute = "renamed";
 inline constexpr std::string_view kMigrationAttribute = "migration";
 std::optional<PragmaAttribute> read_attribute(std::string_view pragma);
+
+// The texts of such a value: "b', 'a" -> b, a.
+std::vector<std::string_view> quoted_texts(std::string_view value);
 
 // Without the braces.
 std::string_view inside_pragma(std::string_view pragma);

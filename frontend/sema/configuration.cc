@@ -223,7 +223,7 @@ void Sema::retain_program(const PouInfo& info) {
 // each.
 uint32_t Sema::clone_program(uint32_t original, const ProgramDecl& decl) {
   const Name& instance = decl.name;
-  const std::string old_instance(renamed_from(tree, decl.attributes));
+  const std::string old_instance = renamed_from(tree, decl.attributes);
   auto number = static_cast<uint32_t>(pous.size());
   PouInfo& info = pous.emplace_back();
   info.number = number;
@@ -239,9 +239,7 @@ uint32_t Sema::clone_program(uint32_t original, const ProgramDecl& decl) {
   type.name = code.name;
   const std::string_view before = pous[original].old_name;
   if (!before.empty() || !old_instance.empty()) {
-    type.old_name = OldNames(*this).add(
-        std::string(before.empty() ? info.name : before) + "(" +
-        (old_instance.empty() ? std::string(instance.text) : old_instance) + ")");
+    type.old_name = OldNames(*this).of_clone(info.name, before, instance.text, old_instance);
   }
   info.self = code.self = program.types.declare(std::move(type));
   pou_by_type_.emplace(info.self, number);

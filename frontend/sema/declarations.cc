@@ -194,8 +194,8 @@ uint32_t Sema::add_pou(const PouDecl& decl, bool library, std::string_view name)
   info.name = name;
   info.library = library;
   info.open = is_open(decl);
-  if (const std::string_view rule = renamed_from(tree, decl.attributes); !rule.empty()) {
-    info.old_name = keep_name(whole_old_name(name, rule));
+  if (const std::string rule = renamed_from(tree, decl.attributes); !rule.empty()) {
+    info.old_name = keep_name(whole_old_names(name, rule));
   }
   pou_names_.emplace(name, number);
   if (!has_frame(decl.kind)) {

@@ -45,7 +45,9 @@ void Objects::add_member(uint32_t block, const PouDecl& decl) {
   info.number = slot;
   info.decl = &decl;
   info.name = decl.name.text;
-  info.old_name = renamed_from(sema_.tree, decl.attributes);
+  if (std::string rule = renamed_from(sema_.tree, decl.attributes); !rule.empty()) {
+    info.old_name = sema_.keep_name(std::move(rule));
+  }
   info.library = owner.library;
   info.owner = block;
   info.self = owner.self;

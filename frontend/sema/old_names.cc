@@ -2,22 +2,61 @@
 
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
+#include "ir/types/old_names.h"
 
 namespace frontend {
+namespace {
+
+// What may not have been renamed in this step, too.
+std::string with_name(std::string_view rule, std::string_view name) {
+  return std::string(rule) + (rule.empty() ? "" : ",") + std::string(name);
+}
+
+// Every front with every end but `now`, the name that they have now; whole ends go alone.
+std::string joined_rules(std::string_view fronts, const std::string& between, std::string_view ends,
+                         std::string_view now) {
+  std::vector<std::string> out;
+  for (std::string_view end : ir::old_names_of(ends)) {
+    if (end.find('.') != std::string_view::npos) out.emplace_back(end);
+  }
+  for (std::string_view front : ir::old_names_of(fronts)) {
+    for (std::string_view end : ir::old_names_of(ends)) {
+      const bool whole = end.find('.') != std::string_view::npos;
+      std::string name = std::string(front) + between + std::string(end);
+      if (!whole && !ir::same_name(name, now)) out.push_back(std::move(name));
+    }
+  }
+  return ir::old_names_rule(out);
+}
+
+}  // namespace
 
 ir::OldNameId OldNames::add(std::string name) {
   return name.empty() ? ir::OldNameId() : sema_.program.types.add_old_name(std::move(name));
 }
 
 ir::OldNameId OldNames::of_rule(Range32 attributes) {
-  return add(std::string(renamed_from(sema_.tree, attributes)));
+  return add(renamed_from(sema_.tree, attributes));
 }
 
 ir::OldNameId OldNames::of(const Variable& variable) { return add(old_member(variable)); }
 
+ir::OldNameId OldNames::of_clone(std::string_view name, std::string_view rule,
+                                 std::string_view instance, std::string_view instance_rule) {
+  std::vector<std::string> out;
+  const std::string now = std::string(name) + "(" + std::string(instance) + ")";
+  for (std::string_view program : ir::old_names_of(with_name(rule, name))) {
+    for (std::string_view one : ir::old_names_of(with_name(instance_rule, instance))) {
+      std::string before = std::string(program) + "(" + std::string(one) + ")";
+      if (!ir::same_name(before, now)) out.push_back(std::move(before));
+    }
+  }
+  return add(ir::old_names_rule(out));
+}
+
 void OldNames::rename_types() {
   for (const TypeDecl& decl : sema_.tree.types) {
-    const std::string_view rule = renamed_from(sema_.tree, decl.attributes);
+    const std::string rule = renamed_from(sema_.tree, decl.attributes);
     if (rule.empty() || !decl.spec.valid() || sema_.in_library(decl.name.span)) continue;
     const SpecInfo& info = sema_.spec_info(decl.spec);
     if (!info.use.type.valid()) continue;
@@ -25,7 +64,7 @@ void OldNames::rename_types() {
     const bool own = ir::same_name(type.name, info.name.text) &&
                      (ir::is_structure(type.kind) || type.kind == ir::Kind::kEnum);
     if (own) {
-      type.old_name = add(whole_old_name(info.name.text, rule));
+      type.old_name = add(whole_old_names(info.name.text, rule));
       continue;
     }
     sema_.error(DiagnosticCode::kBadRename, decl.name.span,
@@ -39,10 +78,9 @@ void OldNames::rename_types() {
 std::string OldNames::old_list(const PouInfo& info) const {
   if (info.owner == kNoPou) return std::string(info.old_name);
   const PouInfo& block = sema_.pous[info.owner];
-  if (block.old_name.empty() && info.old_name.empty()) return {};
-  const std::string_view method = info.old_name.empty() ? info.name : info.old_name;
-  const std::string_view owner = block.old_name.empty() ? block.name : block.old_name;
-  return std::string(owner) + "#" + std::string(method);
+  return joined_rules(with_name(block.old_name, block.name), "#",
+                      with_name(info.old_name, info.name),
+                      std::string(block.name) + "#" + std::string(info.name));
 }
 
 // "" where no rule says anything.
@@ -52,24 +90,29 @@ std::string OldNames::old_member(const Variable& variable) const {
     const bool whole = called != nullptr && called->decl->kind == PouKind::kProgram;
     return whole ? std::string(called->old_name) : std::string();
   }
-  const std::string_view own = renamed_from(sema_.tree, variable.decl->attributes);
-  if (own.find('.') != std::string_view::npos) return std::string(own);
+  const std::string own = renamed_from(sema_.tree, variable.decl->attributes);
   std::string front;
-  bool renamed = !own.empty();
+  std::string before;
   if (!variable.list.empty()) front = std::string(variable.list) + ".";
   if (!variable.method.empty()) front = std::string(variable.method) + "#";
   if (variable.pou != kNoPou && !front.empty()) {
     const PouInfo& info = sema_.pous[variable.pou];
-    const std::string before =
-        variable.method.empty() ? old_list(info) : std::string(info.old_name);
-    if (!before.empty()) front = before + front.back();
-    renamed = renamed || !before.empty();
+    before = variable.method.empty() ? old_list(info) : std::string(info.old_name);
   }
-  if (!renamed) return {};
+  if (own.empty() && before.empty()) return {};
   // `x#last`, `x#action` are made for x.
-  const std::string_view name = variable.name.text;
-  if (own.empty()) return front + std::string(name);
-  return front + std::string(own) + std::string(name.substr(std::min(name.find('#'), name.size())));
+  const std::string name(variable.name.text);
+  const std::string made = name.substr(std::min(name.find('#'), name.size()));
+  std::vector<std::string> ends;
+  for (std::string_view end : ir::old_names_of(own)) {
+    const bool whole = end.find('.') != std::string_view::npos;
+    ends.push_back(std::string(end) + (whole ? "" : made));
+  }
+  if (!before.empty() || own.empty()) ends.push_back(name);
+  if (front.empty()) return ir::old_names_rule(ends);
+  const std::string fronts = with_name(before, front.substr(0, front.size() - 1));
+  return joined_rules(fronts, front.substr(front.size() - 1), ir::old_names_rule(ends),
+                      front + name);
 }
 
 }  // namespace frontend

@@ -7,6 +7,7 @@
 #include "frontend/lex/characters.h"
 #include "frontend/lex/pragma.h"
 #include "frontend/sema/names.h"
+#include "ir/types/old_names.h"
 #include "ir/types/types.h"
 
 namespace frontend {
@@ -132,7 +133,8 @@ class Checker {
     Scope members;
     for (const VarDecl& field : spec.fields) {
       if (field.spec.valid()) check_spec(field.spec);
-      check_field(field, members);
+      if (is_bit(field)) check_bit(field, spec);
+      check_declaration(field, members, false);
     }
     Scope literals;
     for (const Enumerator& literal : spec.enumerators) {
@@ -140,15 +142,27 @@ class Checker {
     }
   }
 
-  void check_field(const VarDecl& field, Scope& members) {
-    const Attribute* rule = tree_.find_attribute(field.attributes, kRenamedAttribute);
+  bool is_bit(const VarDecl& field) const {
     const Spec* spec = field.spec.valid() ? &tree_[field.spec] : nullptr;
-    const bool bit =
-        spec != nullptr && spec->kind == SpecKind::kNamed && ir::same_name(spec->name.text, "BIT");
-    if (rule == nullptr || !bit) return check_declaration(field, members, false);
-    seen_.insert(rule->name.span.begin.offset);
-    report(*rule, "BIT members share a byte; one of them cannot be renamed alone",
-           "keep the name, or let the byte begin anew");
+    return spec != nullptr && spec->kind == SpecKind::kNamed &&
+           ir::same_name(spec->name.text, "BIT");
+  }
+
+  // A bit goes on in its place: two of them cannot change names.
+  void check_bit(const VarDecl& field, const Spec& structure) {
+    const Attribute* rule = tree_.find_attribute(field.attributes, kRenamedAttribute);
+    if (rule == nullptr || field.names.size() != 1) return;
+    const std::string old_names = renamed_from(tree_, field.attributes);
+    for (const VarDecl& other : structure.fields) {
+      if (!is_bit(other) || &other == &field) continue;
+      for (const Name& name : other.names) {
+        if (!ir::gives_old_name(old_names, name.text)) continue;
+        return report(*rule,
+                      quoted(name.text) + " is a BIT of this structure; bits that share a byte " +
+                          "cannot change names",
+                      "take the rule away, and exchange them where they are used");
+      }
+    }
   }
 
   void check_declaration(const VarDecl& decl, Scope& scope, bool paths) {
@@ -164,23 +178,43 @@ class Checker {
     const Attribute* rule = tree_.find_attribute(attributes, kRenamedAttribute);
     if (rule == nullptr || name.empty()) return;
     seen_.insert(rule->name.span.begin.offset);
-    if (!rule->has_value || !is_path(rule->value)) {
-      return report(*rule, "this rule cannot be read", "write {renamed from := 'OldName'}");
+    const std::vector<std::string_view> old_names = quoted_texts(rule->value);
+    if (!rule->has_value || !std::all_of(old_names.begin(), old_names.end(), is_path)) {
+      return report(*rule, "this rule cannot be read",
+                    "write {renamed from := 'OldName'}, or several: 'OldName', 'OlderName'");
     }
-    if (ir::same_name(rule->value, name.text)) {
-      return report(*rule, quoted(name.text) + " is said to be renamed from itself",
-                    "give the name that it had, or take the rule away");
+    if (old_names.size() > kMostOldNames) {
+      return report(*rule, "more than " + std::to_string(kMostOldNames) + " old names",
+                    "leave out those that no controller has any more");
     }
-    if (!paths && rule->value.find('.') != std::string_view::npos) {
-      return report(*rule, quoted(rule->value) + " is a variable of another place",
-                    "a rule names a variable of the same place; a migration can carry over others");
+    for (std::string_view old_name : old_names) {
+      if (!check_old_name(*rule, old_name, name, scope, paths)) return;
     }
-    const auto [other, first] = scope.emplace(rule->value, name.text);
-    if (first) return;
-    report(*rule,
-           quoted(other->second) + " and " + quoted(name.text) + " are both renamed from " +
-               quoted(rule->value),
-           "keep the rule at the one that goes on");
+  }
+
+  bool check_old_name(const Attribute& rule, std::string_view old_name, const Name& name,
+                      Scope& scope, bool paths) {
+    if (ir::same_name(old_name, name.text)) {
+      report(rule, quoted(name.text) + " is said to be renamed from itself",
+             "give the name that it had, or take the rule away");
+      return false;
+    }
+    if (!paths && old_name.find('.') != std::string_view::npos) {
+      report(rule, quoted(old_name) + " is a variable of another place",
+             "a rule names a variable of the same place; a migration can carry over others");
+      return false;
+    }
+    const auto [other, first] = scope.emplace(old_name, name.text);
+    if (first) return true;
+    if (other->second == name.text) {
+      report(rule, quoted(old_name) + " stands twice in this rule", "take one of them away");
+    } else {
+      report(rule,
+             quoted(other->second) + " and " + quoted(name.text) + " are both renamed from " +
+                 quoted(old_name),
+             "keep the rule at the one that goes on");
+    }
+    return false;
   }
 
   const Tree& tree_;
@@ -194,17 +228,23 @@ void check_renames(const Tree& tree, base::Diagnostics& diagnostics) {
   Checker(tree, diagnostics).run();
 }
 
-std::string_view renamed_from(const Tree& tree, Range32 attributes) {
+std::string renamed_from(const Tree& tree, Range32 attributes) {
   const Attribute* rule = tree.find_attribute(attributes, kRenamedAttribute);
-  return rule == nullptr || !rule->has_value ? std::string_view() : rule->value;
+  if (rule == nullptr || !rule->has_value) return {};
+  std::vector<std::string> names;
+  for (std::string_view name : quoted_texts(rule->value)) names.emplace_back(name);
+  return ir::old_names_rule(names);
 }
 
-std::string whole_old_name(std::string_view name, std::string_view old_name) {
+std::string whole_old_names(std::string_view name, std::string_view rule) {
   const size_t dot = name.rfind('.');
-  if (dot == std::string_view::npos || old_name.find('.') != std::string_view::npos) {
-    return std::string(old_name);
+  std::vector<std::string> out;
+  for (std::string_view old_name : ir::old_names_of(rule)) {
+    const bool whole =
+        dot == std::string_view::npos || old_name.find('.') != std::string_view::npos;
+    out.push_back((whole ? "" : std::string(name.substr(0, dot + 1))) + std::string(old_name));
   }
-  return std::string(name.substr(0, dot + 1)) + std::string(old_name);
+  return ir::old_names_rule(out);
 }
 
 }  // namespace frontend

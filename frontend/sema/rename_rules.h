@@ -11,11 +11,14 @@ namespace frontend {
 // Charts are declared already.
 void check_renames(const Tree& tree, base::Diagnostics& diagnostics);
 
-// The old name that a checked rule gives; "" when there is none.
-std::string_view renamed_from(const Tree& tree, Range32 attributes);
+// Old names in one rule.
+inline constexpr size_t kMostOldNames = 16;
 
-// The old name of what is called `name` now, with everything in front of its last dot; an old name
+// The old names that a checked rule gives (ir/types/old_names.h); "" when there is none.
+std::string renamed_from(const Tree& tree, Range32 attributes);
+
+// The old names of what is called `name` now, with everything in front of its last dot; an old name
 // with dots is a whole one.
-std::string whole_old_name(std::string_view name, std::string_view old_name);
+std::string whole_old_names(std::string_view name, std::string_view rule);
 
 }  // namespace frontend

@@ -266,7 +266,7 @@ class Sema {
   bool add_base(StructBuild& build, const Spec& spec);
   bool is_bit(SpecId spec) const;
   bool add_field(StructBuild& build, const VarDecl& field);
-  Field add_bit(StructBuild& build, const Name& name, ir::ConstId init);
+  Field add_bit(StructBuild& build, const Name& name, ir::ConstId init, std::string rule);
   void close_bits(StructBuild& build);
 
   // hidden_variables.cc

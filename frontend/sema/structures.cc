@@ -1,15 +1,53 @@
 // Structures: members, those of the base (EXTENDS), and BIT members, which share bytes.
+#include <algorithm>
 #include <utility>
 
 #include "frontend/sema/old_names.h"
+#include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
+#include "ir/types/old_names.h"
 
 namespace frontend {
 namespace {
 
 constexpr uint32_t kBitsPerByte = 8;
 
+// Names that the byte of renamed BIT members may have had. The rest are not tried.
+constexpr size_t kMostBitNames = 64;
+
 std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
+
+std::string joined_bits(const std::vector<std::string>& names, size_t count) {
+  std::string out;
+  for (size_t i = 0; i < count; ++i) out += (i == 0 ? "" : "-") + names[i];
+  return out;
+}
+
+// What the byte was called when its bits had their old names, or when the last of them were not
+// there: those come as FALSE. A single bit is not told from another variable of its name.
+std::vector<std::string> old_names_of_bits(const std::vector<std::string>& names,
+                                           const std::vector<std::string>& rules,
+                                           uint64_t defaults) {
+  std::vector<std::vector<std::string>> before{{""}};  // by the number of bits
+  for (size_t i = 0; i < names.size(); ++i) {
+    std::vector<std::string> next;
+    const std::string choices = rules[i] + (rules[i].empty() ? "" : ",") + names[i];
+    for (std::string_view choice : ir::old_names_of(choices)) {
+      for (const std::string& name : before.back()) {
+        if (next.size() == kMostBitNames) break;
+        next.push_back(name + (i == 0 ? "" : "-") + std::string(choice));
+      }
+    }
+    before.push_back(std::move(next));
+  }
+  std::vector<std::string> out = before.back();
+  for (size_t count = names.size(); count-- > 2;) {
+    if (defaults >> count == 0) out.insert(out.end(), before[count].begin(), before[count].end());
+  }
+  const std::string now = joined_bits(names, names.size());
+  std::erase_if(out, [&](const std::string& name) { return ir::same_name(name, now); });
+  return out;
+}
 
 }  // namespace
 
@@ -20,6 +58,8 @@ struct Sema::StructBuild {
   int32_t bit_member = -1;  // BIT members still go there
   uint32_t bits = 0;
   uint64_t bit_defaults = 0;
+  std::vector<std::string> bit_names;  // of the byte
+  std::vector<std::string> bit_rules;  // their old names (ir/types/old_names.h)
 };
 
 TypeUse Sema::resolve_struct(SpecId id, const Spec& spec) {
@@ -106,7 +146,7 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
   }
   for (const Name& name : field.names) {
     Field where{static_cast<uint32_t>(build.type.members.size()), -1};
-    if (bit) where = add_bit(build, name, member.init);
+    if (bit) where = add_bit(build, name, member.init, renamed_from(tree, field.attributes));
     where.spec = field.spec;
     if (!build.names.emplace(name.text, where).second) {
       error(DiagnosticCode::kDuplicateName, name.span, quoted(name) + " is declared twice");
@@ -121,19 +161,18 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
   return true;
 }
 
-// Neighbouring BIT members share a BYTE, named after the first and the last of them.
-Sema::Field Sema::add_bit(StructBuild& build, const Name& name, ir::ConstId init) {
+// Neighbouring BIT members share a BYTE, which has the names of all of them.
+Sema::Field Sema::add_bit(StructBuild& build, const Name& name, ir::ConstId init,
+                          std::string rule) {
   if (build.bits == kBitsPerByte) close_bits(build);
   if (build.bit_member < 0) {
     build.bit_member = static_cast<int32_t>(build.type.members.size());
     ir::Member word;
-    word.name = name.text;
     word.type = program.types.elementary(ir::Kind::kByte);
     build.type.members.push_back(std::move(word));
-  } else {
-    std::string& all = build.type.members.back().name;
-    all = all.substr(0, all.find('-')) + "-" + std::string(name.text);
   }
+  build.bit_names.emplace_back(name.text);
+  build.bit_rules.push_back(std::move(rule));
   if (init.valid() && program.constants[init].bits != 0) {
     build.bit_defaults |= uint64_t{1} << build.bits;
   }
@@ -141,13 +180,19 @@ Sema::Field Sema::add_bit(StructBuild& build, const Name& name, ir::ConstId init
 }
 
 void Sema::close_bits(StructBuild& build) {
-  if (build.bit_defaults != 0) {
-    build.type.members[static_cast<size_t>(build.bit_member)].init =
-        program.constants.scalar(build.bit_defaults);
+  if (build.bit_member >= 0) {
+    ir::Member& word = build.type.members[static_cast<size_t>(build.bit_member)];
+    word.name = joined_bits(build.bit_names, build.bit_names.size());
+    const std::vector<std::string> rules =
+        old_names_of_bits(build.bit_names, build.bit_rules, build.bit_defaults);
+    word.old_name = OldNames(*this).add(ir::old_names_rule(rules));
+    if (build.bit_defaults != 0) word.init = program.constants.scalar(build.bit_defaults);
   }
   build.bit_member = -1;
   build.bits = 0;
   build.bit_defaults = 0;
+  build.bit_names.clear();
+  build.bit_rules.clear();
 }
 
 const Sema::Field* Sema::find_field(ir::TypeId structure, std::string_view name) const {

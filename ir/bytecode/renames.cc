@@ -5,78 +5,17 @@
 #include <unordered_set>
 
 #include "base/limits.h"
+#include "ir/bytecode/rename_rules.h"
 #include "ir/types/listed_name.h"
 #include "ir/types/member_finder.h"
 
 namespace ir {
 namespace {
 
-constexpr uint32_t kNone = 0xffffffffu;
+constexpr uint32_t kNone = RenameRules::kNone;
 
-using Numbers = std::unordered_map<std::string, uint32_t>;  // by folded name
-
-// The rules of one scope (the types, a type's members, ...), and which of them apply.
-class Rules {
- public:
-  void add(std::string_view name, std::string_view from, uint32_t number) {
-    rules_.push_back({fold_name(name), fold_name(from), number, true});
-  }
-  bool empty() const { return rules_.empty(); }
-
-  // `old`: the scope's names in the running version; `carried`: the rule that one of them has
-  // there, folded. Calls apply(old number, new number).
-  template <class Carried, class Apply>
-  void resolve(const Numbers& old, Carried carried, Apply apply) {
-    old_ = &old;
-    for (uint32_t i = 0; i < rules_.size(); ++i) {
-      const Rule& rule = rules_[i];
-      const uint32_t there = find(old, rule.name);
-      const bool known = find(old, rule.from) != kNone && rule.from != rule.name;
-      const bool done = there != kNone && carried(there) == rule.from;
-      by_name_.emplace(rule.name, i);
-      if (!known || done || !by_source_.emplace(rule.from, i).second) rules_[i].applies = false;
-    }
-    for (uint32_t i = 0; i < rules_.size(); ++i) {
-      if (rules_[i].applies && !is_vacated(rules_[i].name)) drop(i);
-    }
-    for (const Rule& rule : rules_) {
-      if (rule.applies) apply(find(old, rule.from), rule.number);
-    }
-  }
-
- private:
-  struct Rule {
-    std::string name;
-    std::string from;
-    uint32_t number = 0;
-    bool applies = true;
-  };
-
-  static uint32_t find(const Numbers& numbers, const std::string& name) {
-    const auto found = numbers.find(name);
-    return found == numbers.end() ? kNone : found->second;
-  }
-
-  // Is the name free in the running version, or made free by another rule?
-  bool is_vacated(const std::string& name) const {
-    if (find(*old_, name) == kNone) return true;
-    const uint32_t taker = find(by_source_, name);
-    return taker != kNone && rules_[taker].applies;
-  }
-
-  // A rule that does not apply frees no name.
-  void drop(uint32_t rule) {
-    while (rule != kNone && rules_[rule].applies) {
-      rules_[rule].applies = false;
-      rule = find(by_name_, rules_[rule].from);
-    }
-  }
-
-  std::vector<Rule> rules_;
-  Numbers by_name_;
-  Numbers by_source_;
-  const Numbers* old_ = nullptr;
-};
+using Rules = RenameRules;
+using Numbers = RenameRules::Numbers;
 
 std::string type_key(const Type& type) {
   return std::to_string(static_cast<uint32_t>(type.kind)) + ":" + fold_name(type.name);

@@ -1,5 +1,7 @@
 #include "online_change/diff/steps.h"
 
+#include "ir/types/old_names.h"
+
 namespace online_change {
 
 bool is_step(const ir::Image& image, ir::TypeId type) {
@@ -9,16 +11,21 @@ bool is_step(const ir::Image& image, ir::TypeId type) {
 int32_t step_taken_over(const ir::Image& old_image, ir::TypeId old_type, const ir::Image& new_image,
                         ir::TypeId new_type, const ir::Member& member) {
   if (!member.old_name.valid() || !is_step(new_image, member.type)) return -1;
-  const std::string& rule = new_image.types.old_name(member.old_name);
   const int32_t twin = old_image.types.find_member(old_type, member.name);
-  const int32_t gone = old_image.types.find_member(old_type, rule);
+  std::string_view rule;
+  int32_t gone = -1;
+  for (std::string_view name : ir::old_names_of(new_image.types.old_name(member.old_name))) {
+    rule = name;
+    gone = old_image.types.find_member(old_type, rule);
+    if (gone >= 0) break;
+  }
   if (twin < 0 || gone < 0 || new_image.types.find_member(new_type, rule) >= 0) return -1;
   const std::vector<ir::Member>& members = old_image.types[old_type].members;
   const ir::Member& before = members[static_cast<size_t>(twin)];
   const ir::Member& taken = members[static_cast<size_t>(gone)];
   if (!is_step(old_image, before.type) || !is_step(old_image, taken.type)) return -1;
-  const bool applied =
-      before.old_name.valid() && ir::same_name(old_image.types.old_name(before.old_name), rule);
+  const bool applied = before.old_name.valid() &&
+                       ir::gives_old_name(old_image.types.old_name(before.old_name), rule);
   return applied ? -1 : gone;
 }
 
