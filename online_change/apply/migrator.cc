@@ -103,12 +103,15 @@ base::Status Migrator::run(const uint8_t* memory) {
   return run_gathered();
 }
 
-base::Status Migrator::run_gathered() {
+base::Status Migrator::run_gathered(const Failed& failed) {
   fuel_ = 0;
   for (size_t i = 0; i < calls_.size(); ++i) {
     if (calls_[i].done) continue;
-    if (base::Status status = run_call(i); !status.ok()) return status;
-    calls_[i].done = true;
+    base::Status status = run_call(i);
+    calls_[i].done = status.ok();
+    if (status.ok()) continue;
+    if (!failed) return status;
+    failed(status.error());
   }
   most_fuel_ = std::max(most_fuel_, fuel_);
   return base::Ok{};
@@ -123,6 +126,7 @@ base::Error Migrator::failed(const MigrationCall& call, const std::string& why) 
 
 base::Status Migrator::run_call(size_t number) {
   const MigrationCall& call = plan_.calls[number];
+  if (fuel_ > kMigrationsFuel) return failed(call, "no time is left behind those before it");
   const uint32_t pou = code_.image().migrations[call.row].pou;
   uint8_t* frame = scratch_.data() + ir::kStackBegin;
   std::memset(frame, 0, code_.image().pous[pou].frame_size);

@@ -3,6 +3,7 @@
 // lives is touched. A trap, or a run that does not end in time, is an error and changes nothing.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -30,8 +31,10 @@ class Migrator {
   // always of one instant. Returns the first call that was not looked at.
   size_t gather(size_t first, size_t most_bytes, const uint8_t* memory);
   size_t calls() const { return calls_.size(); }
-  // Runs each call whose inputs, as gathered, are not those of its last run.
-  base::Status run_gathered();
+  // Runs each call whose inputs, as gathered, are not those of its last run. The first that fails
+  // ends it, unless there is `failed` to tell: then what that call would have made is empty.
+  using Failed = std::function<void(const base::Error& error)>;
+  base::Status run_gathered(const Failed& failed = {});
   // Both, of all calls.
   base::Status run(const uint8_t* memory);
   // Takes the inputs as those of a run without running: on the way back, what nobody has written

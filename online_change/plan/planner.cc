@@ -23,7 +23,6 @@ Planner::Planner(const ir::Image& old_image, const ir::Image& new_image,
                  TypeDiffer::Direction direction, bool renamed)
     : old_(old_image),
       new_(new_image),
-      code_(direction == TypeDiffer::Direction::kForward ? new_image : old_image),
       renamed_(renamed && direction == TypeDiffer::Direction::kForward),
       old_data_(old_image),
       new_data_(new_image),
@@ -33,6 +32,8 @@ Planner::Planner(const ir::Image& old_image, const ir::Image& new_image,
                       ? Migrations(old_image, new_image, Migrations::Way::kThere)
                       : Migrations(new_image, old_image, Migrations::Way::kBack)),
       differ_(old_image, new_image, direction, renamed, migrations_),
+      calls_(plan_, migrations_, old_image,
+             direction == TypeDiffer::Direction::kForward ? new_image : old_image),
       row_of_new_(new_image.instances.size(), FateRows::kNoRow),
       row_of_old_(old_image.instances.size(), FateRows::kNoRow) {}
 
@@ -68,7 +69,7 @@ void Planner::carry(uint32_t old_id, uint32_t new_id) {
   const ir::Instance& to = new_.instances[new_id];
   Carried instance{old_id, new_id, from.data, to.data, &differ_.area(from.type, to.type), ""};
   used_here_.clear();
-  calls_here_.clear();
+  calls_.end_instance();
   const bool whole = stays_whole(instance);
   if (renamed_ && from.old_name.valid()) rename_row(instance, whole);
   if (whole) {
@@ -169,29 +170,9 @@ void Planner::enter(const Carried& instance, const DiffOp& op) {
 }
 
 void Planner::migrate(const Carried& instance, const DiffOp& op) {
-  const Migration& migration = migrations_.rows()[op.from];
-  const ir::LinkedMigration& row = code_.migrations[migration.row];
-  const std::vector<ir::FrameSlot>& slots = code_.pous[row.pou].slots;
-  const auto [known, fresh] =
-      calls_here_.try_emplace(op.from, static_cast<uint32_t>(plan_.calls.size()));
-  if (fresh) {
-    MigrationCall& call = plan_.calls.emplace_back();
-    call.row = migration.row;
-    call.instance = instance.new_id;
-    for (const MigratedValue& value : migration.values) {
-      if (!value.input) continue;
-      call.inputs.push_back(
-          {instance.from + old_.layouts[migration.from_type].member_offsets[value.member],
-           old_.types[migration.from_type].members[value.member].type, slots[value.slot].offset});
-    }
-  }
   plan_.counts.converted += op.leaves;
-  UpdateStep step = step_for(op, StepKind::kMigrate, instance.from, instance.to,
-                             row_of(instance, op.row, op.leaves));
-  step.from = known->second;
-  step.from_stride = slots[migration.values[op.from_stride].slot].offset;
-  step.new_type = op.new_type;
-  put(std::move(step));
+  put(calls_.step(op, instance.new_id, instance.from, instance.to,
+                  row_of(instance, op.row, op.leaves)));
 }
 
 void Planner::apply_slots(const Carried& instance, const DiffOp& op) {

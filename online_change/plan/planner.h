@@ -2,7 +2,6 @@
 // steps and fate rows.
 #pragma once
 
-#include <map>
 #include <string>
 #include <unordered_set>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "online_change/diff/instance_match.h"
 #include "online_change/diff/type_diff.h"
 #include "online_change/plan/fate_rows.h"
+#include "online_change/plan/migration_calls.h"
 #include "online_change/plan/plan.h"
 
 namespace online_change {
@@ -68,7 +68,6 @@ class Planner {
 
   const ir::Image& old_;
   const ir::Image& new_;
-  const ir::Image& code_;  // of migrations: the new version's, on the way back too
   bool renamed_;
   InitialData old_data_;
   InitialData new_data_;
@@ -76,13 +75,13 @@ class Planner {
   InstanceMatch match_;
   Migrations migrations_;
   TypeDiffer differ_;
-  FateRows fates_;
-  std::vector<uint32_t> row_of_new_;         // of added instances, by ID
-  std::vector<uint32_t> row_of_old_;         // of dropped ones
-  std::unordered_set<uint32_t> used_here_;   // rows that the instance at hand already has a part in
-  std::vector<UpdateStep> area_;             // steps of the area at hand
-  std::map<uint32_t, uint32_t> calls_here_;  // of the instance at hand, by number in migrations_
   Plan plan_;
+  MigrationCalls calls_;  // their code is the new version's, on the way back too
+  FateRows fates_;
+  std::vector<uint32_t> row_of_new_;        // of added instances, by ID
+  std::vector<uint32_t> row_of_old_;        // of dropped ones
+  std::unordered_set<uint32_t> used_here_;  // rows that the instance at hand already has a part in
+  std::vector<UpdateStep> area_;            // steps of the area at hand
 };
 
 }  // namespace online_change

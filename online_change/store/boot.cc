@@ -22,21 +22,21 @@ bool fits(const ir::Image& image, const RetainRecord& record) {
 }
 
 // The newest values, in the layout of `image`.
-base::Result<base::Bytes> values_for(const ir::VerifiedImage& image, const Recovered& found) {
+base::Result<CarriedValues> values_for(const ir::VerifiedImage& image, const Recovered& found) {
   const base::Error unusable{base::Refusal::kNothingBoots,
                              "the retained values do not fit the program they are of"};
   const RetainRecord& newest = *found.newest;
   if (newest.image == image.digest()) {
     if (!fits(image.image(), newest)) return unusable;
-    return newest.values;
+    return CarriedValues{newest.values, {}};
   }
   std::string why;
   const std::optional<ir::VerifiedImage> other = verified(found.other, why);
   if (!other || other->digest() != newest.image || !fits(other->image(), newest)) return unusable;
-  if (found.before && fits(image.image(), *found.before)) {
-    return carry_retained_back(other->image(), newest.values, image.image(), found.before->values);
-  }
-  return carry_retained(other->image(), newest.values, image.image());
+  const bool known = found.before && fits(image.image(), *found.before);
+  if (!newest.trial && !known) return carry_retained(*other, newest.values, image);
+  const base::Bytes before = known ? found.before->values : initial_retained(image.image());
+  return carry_retained_back(*other, newest.values, image, before);
 }
 
 class Booting {
@@ -86,12 +86,15 @@ class Booting {
     return {base::Refusal::kNothingBoots, why};
   }
 
+  // What `boot` holds already stays where there are none.
+  static void take(base::Result<CarriedValues> values, Boot& boot) {
+    if (values.ok()) boot.retained = std::move(values->values);
+    const std::string why = values.ok() ? values->alarm : "retained values: " + values.error().text;
+    if (!why.empty()) boot.alarms.push_back(why);
+  }
+
   void begin_with(const ir::VerifiedImage& image, Boot& boot) {
-    if (found_.newest) {
-      base::Result<base::Bytes> values = values_for(image, found_);
-      if (values.ok()) boot.retained = std::move(*values);
-      if (!values.ok()) boot.alarms.push_back("retained values: " + values.error().text);
-    }
+    if (found_.newest) take(values_for(image, found_), boot);
     boot.trial_lost = found_.trial_lost;
     // Noted first: a cut in between notes it twice, not never.
     if (boot.trial_lost) note(Event::kTrialLost, *boot.trial_lost, image.digest(), {});
@@ -108,14 +111,9 @@ class Booting {
       if (!saved.ok()) return saved;
     }
     if (stored) {
-      base::Result<base::Bytes> values =
-          carry_retained(stored->image(), boot.retained, given.image());
-      boot.retained = values.ok() ? std::move(*values) : initial_retained(given.image());
-      if (!values.ok()) boot.alarms.push_back("retained values: " + values.error().text);
-      if (has_migrations(stored->image(), given.image())) {
-        boot.alarms.push_back(
-            "migrations run in an online change only; what they make has its initial value");
-      }
+      const base::Bytes before = std::move(boot.retained);
+      boot.retained = initial_retained(given.image());
+      take(carry_retained(*stored, before, given), boot);
     }
     base::Status installed =
         store_.install({given.digest(), given.encoded()}, boot.retained.size());

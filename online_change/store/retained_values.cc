@@ -14,61 +14,21 @@
 #include "online_change/diff/place_moves.h"
 #include "online_change/diff/type_diff.h"
 #include "online_change/plan/area_steps.h"
+#include "online_change/store/retain_map.h"
+#include "online_change/store/retained_migrations.h"
 
 namespace online_change {
 namespace {
 
-// Where the bytes of data memory are among the retained ones.
-class RetainMap {
- public:
-  struct Part {
-    uint32_t data = 0;
-    uint32_t size = 0;
-    size_t at = 0;
-  };
-
-  explicit RetainMap(const ir::Image& image) {
-    size_t at = 0;
-    for (const ir::RetainRange& range : image.retain) {
-      parts_.push_back({range.data, range.size, at});
-      at += range.size;
-    }
-    std::sort(parts_.begin(), parts_.end(),
-              [](const Part& a, const Part& b) { return a.data < b.data; });
-  }
-
-  // Calls visit(offset in data memory, bytes, place among the values) for what is retained of it.
-  template <class Visit>
-  void for_each(uint64_t data, uint64_t size, Visit visit) const {
-    auto part = std::partition_point(parts_.begin(), parts_.end(), [&](const Part& each) {
-      return uint64_t{each.data} + each.size <= data;
-    });
-    for (; part != parts_.end() && part->data < data + size; ++part) {
-      const uint64_t begin = std::max<uint64_t>(part->data, data);
-      const uint64_t end = std::min<uint64_t>(uint64_t{part->data} + part->size, data + size);
-      if (begin < end) visit(begin, end - begin, part->at + (begin - part->data));
-    }
-  }
-
-  // The place of something that is retained as a whole.
-  std::optional<size_t> find(uint64_t data, uint64_t size) const {
-    std::optional<size_t> found;
-    for_each(data, size, [&](uint64_t begin, uint64_t bytes, size_t at) {
-      if (begin == data && bytes == size) found = at;
-    });
-    return found;
-  }
-
- private:
-  std::vector<Part> parts_;
-};
-
 class Carrier {
  public:
-  // `out`: what the values of `to` are where nothing is carried over.
-  Carrier(const ir::Image& from, base::ByteSpan values, const ir::Image& to, base::Bytes out)
+  // `out`: what the values of `to` are where nothing is carried over. `code`: the version with the
+  // migrations.
+  Carrier(const ir::Image& from, base::ByteSpan values, const ir::Image& to, base::Bytes out,
+          const ir::VerifiedImage& code)
       : from_(from),
         to_(to),
+        code_(code),
         values_(values),
         from_map_(from),
         to_map_(to),
@@ -77,13 +37,19 @@ class Carrier {
         out_(std::move(out)),
         carried_(out_.size(), false) {}
 
-  void go_back_to(base::ByteSpan before) { before_ = before; }
+  // From a trial; `as_changed` is what the change made of the values `before`.
+  void go_back_to(base::ByteSpan before, base::ByteSpan as_changed) {
+    back_way_ = true;
+    before_ = before;
+    as_changed_ = as_changed;
+  }
 
-  base::Result<base::Bytes> run() {
+  base::Result<CarriedValues> run() {
     using Direction = TypeDiffer::Direction;
-    const bool there = before_.empty();
+    const bool there = !back_way_;
     const Migrations migrations = there ? Migrations(from_, to_, Migrations::Way::kThere)
                                         : Migrations(to_, from_, Migrations::Way::kBack);
+    RetainedMigrations migrated(migrations, from_, to_, code_);
     TypeDiffer differ(from_, to_, there ? Direction::kForward : Direction::kBack, false,
                       migrations);
     const InstanceMatch match = match_instances(from_, to_);
@@ -97,10 +63,17 @@ class Carrier {
         return base::Error{base::Refusal::kTooMany,
                            "the types of the retained values differ in too many pieces"};
       }
-      for (const DiffOp& op : diff.ops) carry(op, old_row.data, new_row.data);
+      for (const DiffOp& op : diff.ops) {
+        carry(op, old_row.data, new_row.data);
+        if (op.kind == DiffKind::kMigrate) migrated.add(op, id, old_row.data, new_row.data);
+      }
+      migrated.end_instance();
     }
     follow_references();
-    return std::move(out_);
+    CarriedValues carried;
+    carried.alarm = migrated.run(values_, as_changed_, out_);
+    carried.values = std::move(out_);
+    return carried;
   }
 
  private:
@@ -137,8 +110,7 @@ class Carrier {
         to_map_.find(uint64_t{step.to} + uint64_t{index} * step.to_stride, step.size);
     if (!source || !target) return;
     const base::ByteSpan value = values_.subspan(*source, old_size);
-    if (!before_.empty() &&
-        is_as_converted(step, index, before_.subspan(*target, step.size), value)) {
+    if (back_way_ && is_as_converted(step, index, before_.subspan(*target, step.size), value)) {
       return;
     }
     (void)conversions_.convert(step, index, value.data(),
@@ -175,12 +147,15 @@ class Carrier {
 
   const ir::Image& from_;
   const ir::Image& to_;
+  const ir::VerifiedImage& code_;
   base::ByteSpan values_;
   RetainMap from_map_;
   RetainMap to_map_;
   Conversions conversions_;
   Conversions back_;
+  bool back_way_ = false;
   base::ByteSpan before_;
+  base::ByteSpan as_changed_;
   base::Bytes out_;
   std::vector<bool> carried_;  // by byte of out_
 };
@@ -213,22 +188,21 @@ void copy_retained(const ir::Image& image, const uint8_t* memory, base::Bytes& o
   }
 }
 
-base::Result<base::Bytes> carry_retained(const ir::Image& from, base::ByteSpan values,
-                                         const ir::Image& to) {
-  const ir::OldUnderNewNames old(from, to);
-  return Carrier(old.image(), values, to, initial_retained(to)).run();
+base::Result<CarriedValues> carry_retained(const ir::VerifiedImage& from, base::ByteSpan values,
+                                           const ir::VerifiedImage& to) {
+  const ir::OldUnderNewNames old(from.image(), to.image());
+  return Carrier(old.image(), values, to.image(), initial_retained(to.image()), to).run();
 }
 
-bool has_migrations(const ir::Image& from, const ir::Image& to) {
-  const ir::OldUnderNewNames old(from, to);
-  return !Migrations(old.image(), to, Migrations::Way::kThere).rows().empty();
-}
-
-base::Result<base::Bytes> carry_retained_back(const ir::Image& from, base::ByteSpan values,
-                                              const ir::Image& to, base::ByteSpan before) {
-  const ir::OldUnderNewNames old(to, from);
-  Carrier carrier(from, values, old.image(), base::Bytes(before.begin(), before.end()));
-  carrier.go_back_to(before);
+base::Result<CarriedValues> carry_retained_back(const ir::VerifiedImage& from,
+                                                base::ByteSpan values, const ir::VerifiedImage& to,
+                                                base::ByteSpan before) {
+  base::Result<CarriedValues> as_changed = carry_retained(to, before, from);
+  if (!as_changed.ok()) return as_changed.error();
+  const ir::OldUnderNewNames old(to.image(), from.image());
+  Carrier carrier(from.image(), values, old.image(), base::Bytes(before.begin(), before.end()),
+                  from);
+  carrier.go_back_to(before, as_changed->values);
   return carrier.run();
 }
 

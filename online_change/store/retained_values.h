@@ -4,9 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "base/result.h"
-#include "ir/bytecode/image.h"
+#include "ir/bytecode/verify.h"
 
 namespace online_change {
 
@@ -18,18 +19,24 @@ base::Bytes initial_retained(const ir::Image& image);
 // From data memory. Allocates nothing when `out` has the capacity.
 void copy_retained(const ir::Image& image, const uint8_t* memory, base::Bytes& out);
 
-// `values` of `from` as values of `to`. Both images have been verified, and `values` has the size
-// that the layout of `from` asks for. kTooMany when the types are too different to be compared.
-base::Result<base::Bytes> carry_retained(const ir::Image& from, base::ByteSpan values,
-                                         const ir::Image& to);
+struct CarriedValues {
+  base::Bytes values;
+  std::string alarm;  // what migrations could not make; "": all of it
+};
 
-// Would a change run migrations? Here they do not run: what they make has its initial value.
-bool has_migrations(const ir::Image& from, const ir::Image& to);
+// `values` of `from` as values of `to`, whose migrations run on them. `values` has the size that
+// the layout of `from` asks for. What a migration cannot make, because it traps, does not end, or
+// reads what is not retained, has its initial value. kTooMany when the types are too different to
+// be compared.
+base::Result<CarriedValues> carry_retained(const ir::VerifiedImage& from, base::ByteSpan values,
+                                           const ir::VerifiedImage& to);
 
 // From a trial that was lost, `from`, to the program before it, `to`, whose values were `before`
-// when the trial began. As undo does: what the change dropped, and what it converted and nobody
-// wrote since, is as it was before.
-base::Result<base::Bytes> carry_retained_back(const ir::Image& from, base::ByteSpan values,
-                                              const ir::Image& to, base::ByteSpan before);
+// when the trial began. As undo does: what the change dropped, and what it made and nobody wrote
+// since, is as it was before; where the trial's program wrote what an inverse migration reads, that
+// runs. What it cannot make is as it was before.
+base::Result<CarriedValues> carry_retained_back(const ir::VerifiedImage& from,
+                                                base::ByteSpan values, const ir::VerifiedImage& to,
+                                                base::ByteSpan before);
 
 }  // namespace online_change

@@ -198,33 +198,6 @@ TEST_F(Carried, X2_RenamedVariablesKeepThemBothWays) {
   EXPECT_EQ(plc_->get("velocity"), "13");
 }
 
-// A migration is part of a change. A lost trial gives back what was before it; at a start with
-// another program it does not run, and an alarm says so.
-TEST_F(Carried, X2_MigrationsRunInAChangeOnly) {
-  const std::string block = "FUNCTION_BLOCK Motor VAR RETAIN ";
-  const std::string end =
-      " END_VAR ; END_FUNCTION_BLOCK PROGRAM P VAR a : Motor; END_VAR a(); "
-      "END_PROGRAM\n";
-  const std::string migrating =
-      "{migration of := 'Motor'} FUNCTION F VAR_INPUT {old := 'turns'} n : DINT; END_VAR "
-      "VAR_OUTPUT "
-      "{new := 'turns'} whole : DINT; END_VAR whole := n / 60; END_FUNCTION " +
-      block + "turns : DINT := 3; more : INT;" + end;
-  begin(block + "turns : DINT;" + end);
-  plc_->set("P.a.turns", "600");
-  ASSERT_TRUE(plc_->change(migrating).ok());
-  EXPECT_EQ(plc_->get("P.a.turns"), "10");
-  cut();
-  ASSERT_TRUE(plc_->boot().ok());
-  EXPECT_EQ(plc_->get("P.a.turns"), "600");
-  ASSERT_TRUE(plc_->save().ok());
-  const ir::VerifiedImage next = build(migrating, &plc_->controller().image());
-  cut();
-  ASSERT_TRUE(plc_->boot(std::optional(next)).ok());
-  EXPECT_FALSE(plc_->found().alarms.empty());
-  EXPECT_EQ(plc_->get("P.a.turns"), "3");
-}
-
 // Retained values are in place before anything of the program runs; then it starts as at a warm
 // restart.
 TEST_F(Carried, StartCodeFindsThem) {
