@@ -74,7 +74,13 @@ ir::TypeId Migrations::type_of(const Attribute& rule) {
   const bool good = found != nullptr && found->self.valid() && found->owner == kNoPou &&
                     found->decl->kind != PouKind::kInterface;
   if (good) return found->self;
-  error(rule.name.span, quoted(rule.value) + " is no program or function block",
+  const std::optional<TypeUse> type = sema_.find_type(rule.value);
+  const ir::TypeTable& types = sema_.program.types;
+  const bool structure = type && type->type.valid() &&
+                         types[type->type].kind == ir::Kind::kStruct &&
+                         !types[type->type].name.empty();
+  if (structure && !types.overlaps(type->type)) return type->type;
+  error(rule.name.span, quoted(rule.value) + " is no program, function block or structure",
         "name the one whose variables migrate, or VAR_GLOBAL");
   return {};
 }

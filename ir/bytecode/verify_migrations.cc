@@ -30,9 +30,7 @@ class MigrationVerifier {
                       image_.pous[row.pou].unit_count != 0;
     if (!code) return bad("", "it is no function");
     const LinkedPou& pou = image_.pous[row.pou];
-    const bool owner = image_.types.contains(row.type) &&
-                       (image_.types.is_instance(row.type) || row.type == image_.globals);
-    if (!owner) return bad(pou.name, "its values belong to no instance");
+    if (!is_owner(row.type)) return bad(pou.name, "its values belong to no instance or structure");
     for (const MigratedName& value : row.values) {
       const auto same = [&](const MigratedName& other) {
         return other.parameter == value.parameter;
@@ -47,6 +45,12 @@ class MigrationVerifier {
       }
     }
     return base::Ok{};
+  }
+
+  bool is_owner(TypeId type) const {
+    if (!image_.types.contains(type)) return false;
+    const bool structure = image_.types[type].kind == Kind::kStruct && !image_.types.overlaps(type);
+    return structure || image_.types.is_instance(type) || type == image_.globals;
   }
 
   bool is_bound(const FrameSlot& slot, const LinkedMigration& row) const {

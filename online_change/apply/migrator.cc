@@ -4,6 +4,7 @@
 
 #include "base/limits.h"
 #include "online_change/diff/value_conversion.h"
+#include "online_change/plan/migration_calls.h"
 
 namespace online_change {
 namespace {
@@ -118,10 +119,8 @@ base::Status Migrator::run_gathered(const Failed& failed) {
 }
 
 base::Error Migrator::failed(const MigrationCall& call, const std::string& why) const {
-  const std::string path = to_.instance_path(call.instance);
-  return {base::Refusal::kMigrationFailed, "`" + code_of(call).name + "` for " +
-                                               (path.empty() ? "the globals" : "`" + path + "`") +
-                                               ": " + why};
+  return {base::Refusal::kMigrationFailed,
+          "`" + code_of(call).name + "` for " + place_of(call, to_) + ": " + why};
 }
 
 base::Status Migrator::run_call(size_t number) {

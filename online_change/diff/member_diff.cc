@@ -14,7 +14,7 @@ void TypeDiffer::add_dropped_member(TypeDiff& diff, TypeId old_type, uint32_t nu
   const Member& member = old_.types[old_type].members[number];
   if (old_.types.is_instance(member.type)) return;  // a row of its own, with its area
   std::string reason;
-  const std::string reader = migrations_.reader_of(old_type, number);
+  const std::string reader = migrations_.reader_of(old_type, new_type, number);
   if (!reader.empty()) reason = "read by `" + reader + "`";
   const int32_t taker = back_ ? -1 : taker_of_step(old_, old_type, new_, new_type, number);
   if (taker >= 0) {
@@ -47,18 +47,21 @@ bool TypeDiffer::add_step(TypeDiff& diff, TypeId old_type, const Member& old_mem
 
 // On the way back, what the way there has made anew gets the value from before, if no migration
 // says better.
-bool TypeDiffer::add_migrated(TypeDiff& diff, const Member* old_member, TypeId new_type,
-                              uint32_t number, uint32_t to) {
+bool TypeDiffer::add_migrated(TypeDiff& diff, const Member* old_member, TypeId old_type,
+                              TypeId new_type, uint32_t number) {
   const Member& member = new_.types[new_type].members[number];
-  const std::optional<Migrations::Source> source = migrations_.source_of(new_type, number);
+  const uint32_t to = new_.layouts[new_type].member_offsets[number];
+  const std::optional<Migrations::Source> source =
+      migrations_.source_of(old_type, new_type, number);
   if (!source) {
-    if (!migrations_.is_restored(new_type, number)) return false;
+    if (!migrations_.is_restored(old_type, new_type, number)) return false;
     add_new_member(diff, member, to, "restored");
     return true;
   }
-  DiffOp op = make_op(DiffKind::kMigrate, source->migration, to, new_.layouts[member.type].size,
-                      leaves(new_, member.type));
-  op.from_stride = source->value;
+  DiffOp op =
+      make_op(DiffKind::kMigrate, 0, to, new_.layouts[member.type].size, leaves(new_, member.type));
+  op.migration = *source;
+  op.within = to;
   op.new_type = member.type;
   op.row = static_cast<uint32_t>(diff.rows.size());
   diff.ops.push_back(op);

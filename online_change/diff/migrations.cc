@@ -64,7 +64,7 @@ void Migrations::add(uint32_t number) {
         continue;
       }
       const int32_t member = to_.types.find_member(old_type, value.member);
-      if (member >= 0) restored_.insert({old_type, static_cast<uint32_t>(member)});
+      if (member >= 0) restored_.insert({row.type, old_type, static_cast<uint32_t>(member)});
     }
     return;
   }
@@ -79,8 +79,12 @@ void Migrations::add(uint32_t number) {
   for (uint32_t i = 0; i < migration.values.size(); ++i) {
     const MigratedValue& value = migration.values[i];
     if (value.input) {
-      read_.try_emplace({migration.from_type, value.member}, new_.pous[row.pou].name);
-    } else if (!made_.try_emplace({migration.to_type, value.member}, Source{place, i}).second) {
+      read_.try_emplace({migration.from_type, migration.to_type, value.member},
+                        new_.pous[row.pou].name);
+    } else if (!made_
+                    .try_emplace({migration.from_type, migration.to_type, value.member},
+                                 Source{place, i})
+                    .second) {
       return fail(row, "`" + row.values[i].member + "` is given by another migration, too");
     }
   }
@@ -143,19 +147,20 @@ bool Migrations::fits(const ir::FrameSlot& slot, const MigratedValue& value,
   return way == Conversion::kSame || way == Conversion::kExact;
 }
 
-std::optional<Migrations::Source> Migrations::source_of(TypeId to_type, uint32_t member) const {
-  const auto found = made_.find({to_type, member});
+std::optional<Migrations::Source> Migrations::source_of(TypeId from_type, TypeId to_type,
+                                                        uint32_t member) const {
+  const auto found = made_.find({from_type, to_type, member});
   if (found == made_.end()) return std::nullopt;
   return found->second;
 }
 
-std::string Migrations::reader_of(TypeId from_type, uint32_t member) const {
-  const auto found = read_.find({from_type, member});
+std::string Migrations::reader_of(TypeId from_type, TypeId to_type, uint32_t member) const {
+  const auto found = read_.find({from_type, to_type, member});
   return found == read_.end() ? std::string() : found->second;
 }
 
-bool Migrations::is_restored(TypeId to_type, uint32_t member) const {
-  return restored_.contains({to_type, member});
+bool Migrations::is_restored(TypeId from_type, TypeId to_type, uint32_t member) const {
+  return restored_.contains({from_type, to_type, member});
 }
 
 std::string Migrations::name_of(uint32_t migration) const {

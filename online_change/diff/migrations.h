@@ -1,7 +1,7 @@
 // X2: migrations in Structured Text. A function of the new version that makes the values of some
-// variables of a program, function block or the globals from those of the old version; or, for
-// undo, those of the old one from the new one's. Which of them apply to two versions, and to which
-// variables.
+// variables of a program, function block, the globals or a structure from those of the old version;
+// or, for undo, those of the old one from the new one's. Which of them apply to two versions, and
+// to which variables.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "base/result.h"
@@ -25,7 +26,7 @@ struct MigratedValue {
 
 struct Migration {
   uint32_t row = 0;      // in Image::migrations of the version with the code
-  ir::TypeId from_type;  // of instances in the version that is read
+  ir::TypeId from_type;  // of instances and values in the version that is read
   ir::TypeId to_type;    // in the one that is made
   std::vector<MigratedValue> values;
 };
@@ -40,21 +41,22 @@ class Migrations {
   // A migration that cannot be carried out between these versions (kBadMigration).
   const std::optional<base::Error>& error() const { return error_; }
   const std::vector<Migration>& rows() const { return rows_; }
-  // The migration, by number, and its value that gives `member` of the type that is made.
+  // The migration, by number, and its value that gives `member` of `to_type`, where that is made
+  // from a value of `from_type`: a structure may also take the place of another one, by A14.
   struct Source {
     uint32_t migration = 0;
     uint32_t value = 0;
   };
-  std::optional<Source> source_of(ir::TypeId to_type, uint32_t member) const;
-  // Names of migrations that read or made the member; "" for none.
-  std::string reader_of(ir::TypeId from_type, uint32_t member) const;
-  // On the way back: is it a member that the way there made anew, so that only the value from
-  // before can be right?
-  bool is_restored(ir::TypeId to_type, uint32_t member) const;
+  std::optional<Source> source_of(ir::TypeId from_type, ir::TypeId to_type, uint32_t member) const;
+  // The name of a migration that reads the member of `from_type`; "" for none.
+  std::string reader_of(ir::TypeId from_type, ir::TypeId to_type, uint32_t member) const;
+  // On the way back: is it a member of `to_type` that the way there made anew, so that only the
+  // value from before can be right?
+  bool is_restored(ir::TypeId from_type, ir::TypeId to_type, uint32_t member) const;
   std::string name_of(uint32_t migration) const;
 
  private:
-  using Key = std::pair<ir::TypeId, uint32_t>;
+  using Key = std::tuple<ir::TypeId, ir::TypeId, uint32_t>;  // from, to, and a member of one
   void add(uint32_t row);
   bool is_carried(const ir::LinkedMigration& row) const;
   uint32_t slot_of(const ir::LinkedMigration& row, const std::string& parameter) const;

@@ -188,9 +188,7 @@ TypeDiff TypeDiffer::compare_members(TypeId old_type, TypeId new_type, bool is_a
     uint32_t twin = old_names.find(member);
     const Member* old_member = twin == MemberNames::kNone ? nullptr : &from.members[twin];
     uint32_t old_offset = old_member == nullptr ? 0 : old_layout.member_offsets[twin];
-    if (is_area && add_migrated(diff, old_member, new_type, i, new_layout.member_offsets[i])) {
-      continue;
-    }
+    if (add_migrated(diff, old_member, old_type, new_type, i)) continue;
     if (member.section == Section::kInOut) {
       add_in_out(diff, old_member, old_offset, member, new_layout.member_offsets[i]);
     } else if (old_member == nullptr || old_member->section == Section::kInOut) {

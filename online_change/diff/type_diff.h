@@ -25,7 +25,7 @@ enum class DiffKind : uint8_t {
   kInitialise,  // the new initial value
   kSlot,        // instance ID of a function block; its area is a matter of its own
   kEnter,       // a step: from `from`, or from `from_stride` where the step there is active
-  kMigrate,     // made by a migration: `from` is its number in Migrations, `size` as ever
+  kMigrate,     // made by a migration, from the structure or area at `from`
   kInOut,       // address slot, bound again by every call
 };
 
@@ -44,8 +44,10 @@ struct DiffOp {
   uint32_t count = 1;
   uint32_t from_stride = 0;
   uint32_t to_stride = 0;
-  ir::TypeId old_type;  // kConvert
-  ir::TypeId new_type;
+  ir::TypeId old_type;            // kConvert
+  ir::TypeId new_type;            // kConvert, kMigrate
+  Migrations::Source migration;   // kMigrate
+  uint32_t within = 0;            // kMigrate: of the value in the structure or area that is made
   uint32_t row = kWholeVariable;  // into TypeDiff::rows
   uint64_t leaves = 0;            // scalars and strings, over all `count`
 };
@@ -100,8 +102,8 @@ class TypeDiffer {
                           ir::TypeId new_type);
   bool add_step(TypeDiff& diff, ir::TypeId old_type, const ir::Member& old_member, uint32_t from,
                 ir::TypeId new_type, const ir::Member& new_member, uint32_t to);
-  bool add_migrated(TypeDiff& diff, const ir::Member* old_member, ir::TypeId new_type,
-                    uint32_t member, uint32_t to);
+  bool add_migrated(TypeDiff& diff, const ir::Member* old_member, ir::TypeId old_type,
+                    ir::TypeId new_type, uint32_t member);
   void add_in_out(TypeDiff& diff, const ir::Member* old_member, uint32_t from,
                   const ir::Member& new_member, uint32_t to);
   void append_value(TypeDiff& diff, const TypeDiff& value, const ir::Member& old_member,

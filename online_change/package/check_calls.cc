@@ -23,7 +23,7 @@ bool PlanCheck::check_calls() {
   for (const MigrationCall& call : plan_.calls) {
     why_ = "calls a migration that is nowhere";
     const bool known = call.row < code_.migrations.size() && call.instance < new_.instances.size();
-    if (!known) return false;
+    if (!known || (call.place != 0 && !new_.types.contains(call.type))) return false;
     const ir::LinkedPou& pou = code_.pous[code_.migrations[call.row].pou];
     size_t wanted = 0;
     for (const ir::FrameSlot& slot : pou.slots) {

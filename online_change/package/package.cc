@@ -14,14 +14,14 @@ using base::ByteWriter;
 // Header: magic, version, of each part its bytes and their SHA-256; then the parts. Layout and
 // program together are the image.
 constexpr uint32_t kMagic = 0x47504353;  // "SCPG"
-constexpr uint32_t kVersion = 3;
+constexpr uint32_t kVersion = 4;
 constexpr const char* kPartNames[] = {"layout", "program", "commands"};
 constexpr size_t kParts = std::size(kPartNames);
 constexpr size_t kMinRowBytes = 1 + 3 * 4 + 1 + 4 + 8;
 constexpr size_t kMinStepBytes = 2 + 9 * 4 + 4;
 constexpr uint32_t kFateKinds = 5;
 constexpr uint32_t kStepKinds = 5;
-constexpr size_t kMinCallBytes = 3 * 4;
+constexpr size_t kMinCallBytes = 5 * 4;
 constexpr size_t kInputBytes = 3 * 4;
 
 void write_row(ByteWriter& out, const FateRow& row) {
@@ -77,6 +77,8 @@ UpdateStep read_step(ByteReader& in) {
 void write_call(ByteWriter& out, const MigrationCall& call) {
   out.u32(call.row);
   out.u32(call.instance);
+  out.u32(call.place);
+  out.u32(call.type.index);
   out.u32(static_cast<uint32_t>(call.inputs.size()));
   for (const MigrationInput& input : call.inputs) {
     for (uint32_t field : {input.from, input.type.index, input.slot}) out.u32(field);
@@ -87,6 +89,8 @@ MigrationCall read_call(ByteReader& in) {
   MigrationCall call;
   call.row = in.u32();
   call.instance = in.u32();
+  call.place = in.u32();
+  call.type = ir::TypeId(in.u32());
   uint32_t inputs = in.count(kInputBytes);
   for (uint32_t i = 0; i < inputs && !in.failed(); ++i) {
     MigrationInput input;

@@ -1,9 +1,11 @@
-// Calls of migrations on their way into a plan: one for each instance that migrates, however many
-// values it gives.
+// Calls of migrations on their way into a plan: one for each instance, or value of a structure,
+// that migrates, however many values it gives.
 #pragma once
 
 #include <cstdint>
 #include <map>
+#include <string>
+#include <utility>
 
 #include "online_change/diff/migrations.h"
 #include "online_change/diff/type_diff.h"
@@ -21,16 +23,24 @@ class MigrationCalls {
 
   // Behind the last value of an instance.
   void end_instance() { here_.clear(); }
-  // The step of a kMigrate operation of the instance that is `instance` in the version that is
-  // made, and whose area was at `from` and is at `to`.
-  UpdateStep step(const DiffOp& op, uint32_t instance, uint32_t from, uint32_t to, uint32_t fate);
+  // The step for value `index` of a kMigrate operation of the instance that is `instance` in the
+  // version that is made, and whose area was at `from` and is at `to`.
+  UpdateStep step(const DiffOp& op, uint32_t index, uint32_t instance, uint32_t from, uint32_t to,
+                  uint32_t fate);
 
  private:
+  uint32_t call_for(const DiffOp& op, uint32_t instance, uint32_t from, uint32_t to);
+
   Plan& plan_;
   const Migrations& migrations_;
   const ir::Image& from_;
   const ir::Image& code_;
-  std::map<uint32_t, uint32_t> here_;  // of the instance at hand, by number in migrations_
+  // Of the instance at hand, by number in migrations_ and place of what is read.
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> here_;
 };
+
+// "`Main.tank`", "`Main.path[3]`", "the globals": whose values the call makes. `to` is the version
+// that is made.
+std::string place_of(const MigrationCall& call, const ir::Image& to);
 
 }  // namespace online_change

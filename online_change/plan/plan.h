@@ -42,7 +42,8 @@ struct UpdateStep {
   uint64_t total() const { return uint64_t{size} * count; }
 };
 
-// A migration for one instance. Its code is the new version's, on the way back too.
+// A migration for one instance, or one value of a structure. Its code is the new version's, on the
+// way back too.
 struct MigrationInput {
   uint32_t from = 0;  // in data memory of the version that is read
   ir::TypeId type;    // there
@@ -50,7 +51,9 @@ struct MigrationInput {
 };
 struct MigrationCall {
   uint32_t row = 0;       // in Image::migrations
-  uint32_t instance = 0;  // whose values are made
+  uint32_t instance = 0;  // whose values are made, or in whose area the structure lies
+  uint32_t place = 0;     // of the structure that is made; 0: it is for the whole instance
+  ir::TypeId type;        // of the structure; invalid for an instance
   std::vector<MigrationInput> inputs;
 };
 

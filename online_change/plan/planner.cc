@@ -46,7 +46,7 @@ base::Result<Plan> Planner::run() {
     } else {
       carry(twin, id);
     }
-    if (differ_.failed() || plan_.steps.size() > kMaxSteps) {
+    if (differ_.failed() || too_many_ || plan_.steps.size() > kMaxSteps) {
       return base::Error{base::Refusal::kTooMany,
                          "the change of `" + new_.instance_path(id) +
                              "` takes more single steps than a change may have (" +
@@ -171,8 +171,11 @@ void Planner::enter(const Carried& instance, const DiffOp& op) {
 
 void Planner::migrate(const Carried& instance, const DiffOp& op) {
   plan_.counts.converted += op.leaves;
-  put(calls_.step(op, instance.new_id, instance.from, instance.to,
-                  row_of(instance, op.row, op.leaves)));
+  const uint32_t row = row_of(instance, op.row, op.leaves);
+  if (plan_.steps.size() + area_.size() + op.count > kMaxSteps) too_many_ = true;
+  for (uint32_t i = 0; i < op.count && !too_many_; ++i) {
+    put(calls_.step(op, i, instance.new_id, instance.from, instance.to, row));
+  }
 }
 
 void Planner::apply_slots(const Carried& instance, const DiffOp& op) {

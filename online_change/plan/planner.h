@@ -82,6 +82,7 @@ class Planner {
   std::vector<uint32_t> row_of_old_;        // of dropped ones
   std::unordered_set<uint32_t> used_here_;  // rows that the instance at hand already has a part in
   std::vector<UpdateStep> area_;            // steps of the area at hand
+  bool too_many_ = false;                   // steps
 };
 
 }  // namespace online_change

@@ -29,8 +29,11 @@ RetainedMigrations::RetainedMigrations(const Migrations& migrations, const ir::I
       calls_(plan_, migrations_, from, code.image()) {}
 
 void RetainedMigrations::add(const DiffOp& op, uint32_t id, uint32_t old_area, uint32_t new_area) {
-  if (migrations_.error() || !to_map_.find(uint64_t{new_area} + op.to, op.size)) return;
-  plan_.steps.push_back(calls_.step(op, id, old_area, new_area, kNoFate));
+  for (uint32_t i = 0; i < op.count && !migrations_.error(); ++i) {
+    const uint64_t to = uint64_t{new_area} + op.to + uint64_t{i} * op.to_stride;
+    if (!to_map_.find(to, op.size)) continue;
+    plan_.steps.push_back(calls_.step(op, i, id, old_area, new_area, kNoFate));
+  }
 }
 
 void RetainedMigrations::failed(const std::string& why) {
@@ -54,9 +57,7 @@ void RetainedMigrations::leave_out_unreadable() {
       continue;
     }
     const uint32_t pou = code_.image().migrations[call.row].pou;
-    const std::string path = to_.instance_path(call.instance);
-    failed("`" + code_.image().pous[pou].name + "` for " +
-           (path.empty() ? "the globals" : "`" + path + "`") +
+    failed("`" + code_.image().pous[pou].name + "` for " + place_of(call, to_) +
            " reads what is not retained: declare it RETAIN, or change online");
   }
   std::erase_if(plan_.steps, [&](UpdateStep& step) {

@@ -56,6 +56,39 @@ TEST(Migrations, X2_the_predicted_pause_counts_the_calls) {
   EXPECT_GT(plant.driver().predicted_pause_ns(), plant.driver().plan().predicted_pause_ns);
 }
 
+std::string points(const char* members, const char* rest, const char* step) {
+  return std::string("TYPE Point : STRUCT ") + members + " END_STRUCT END_TYPE " + rest +
+         "PROGRAM Main VAR row : ARRAY[1..500] OF STRUCT p : Point; k : INT; END_STRUCT; i : INT; "
+         "END_VAR FOR i := 1 TO 500 DO " +
+         step + " END_FOR END_PROGRAM";
+}
+
+// One call for each value; those that are written after the trial are made again.
+TEST(Migrations, X2_each_value_of_a_structure_is_migrated_by_both_strategies) {
+  for (Strategy strategy : {Strategy::kInPlace, Strategy::kStandby}) {
+    Plant plant(points("x : INT;", "", "row[i].p.x := row[i].p.x + i;"));
+    plant.use(strategy);
+    plant.run(2);
+    const std::string there =
+        "{migration of := 'Point'} FUNCTION There VAR_INPUT x : INT; END_VAR "
+        "VAR_OUTPUT mm : DINT; END_VAR mm := INT_TO_DINT(x) * 10; END_FUNCTION ";
+    ASSERT_TRUE(
+        plant.stage(plant.package(points("pad, mm : DINT;", there.c_str(), "row[i].k := 1;")))
+            .ok());
+    EXPECT_EQ(plant.driver().plan().calls.size(), 500u);
+    ASSERT_TRUE(plant.driver().arm(false).ok());
+    plant.run(1);
+    plant.set("Main.row[7].p.x", "-7");
+    ASSERT_TRUE(plant.driver().switch_now().ok());
+    EXPECT_EQ(plant.get("Main.row[7].p.mm"), "-70");
+    EXPECT_EQ(plant.get("Main.row[500].p.mm"), "15000");
+    plant.run(1);
+    plant.undo();
+    EXPECT_EQ(plant.get("Main.row[7].p.x"), "-7");
+    EXPECT_EQ(plant.get("Main.row[500].p.x"), "1500");
+  }
+}
+
 // Any change of a call, an input or a step leads to values of another type, or to none.
 TEST(Migrations, X2_V17_calls_take_and_give_values_of_their_types_only) {
   Plant plant(kOld);
@@ -77,6 +110,10 @@ TEST(Migrations, X2_V17_calls_take_and_give_values_of_their_types_only) {
   EXPECT_TRUE(sound([](Plan&) {}));
   EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].row = 1; }));
   EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].instance = 99; }));
+  EXPECT_FALSE(sound([](Plan& plan) {
+    plan.calls[0].place = 64;
+    plan.calls[0].type = ir::TypeId(9999);
+  }));
   EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].inputs[0].from += 1; }));
   EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].inputs[0].from = 0xfffffff0u; }));
   EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].inputs[0].slot += 1; }));
