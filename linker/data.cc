@@ -170,6 +170,25 @@ void size_process_image(ir::Image& image) {
   }
 }
 
+base::Status place_devices(ir::Image& image, const std::vector<ir::Device>& devices) {
+  auto cover = [&] {
+    const ir::ProcessImageSize size = ir::process_image_size(image.devices);
+    image.input_bytes = std::max(image.input_bytes, size.input_bytes);
+    image.output_bytes = std::max(image.output_bytes, size.output_bytes);
+    return ir::ProcessImageSize{image.input_bytes, image.output_bytes};
+  };
+  image.devices = devices;
+  const ir::ProcessImageSize located = cover();
+  for (ir::Device& device : image.devices) {
+    if (device.map.empty()) ir::add_default_map(device, located);
+  }
+  const ir::ProcessImageSize all = cover();
+  const std::optional<ir::DeviceFault> fault = ir::find_fault(image.devices, &all);
+  if (!fault) return base::Ok{};
+  return base::Error{base::Refusal::kBadMapping,
+                     "device `" + image.devices[fault->device].name + "`: " + fault->text};
+}
+
 void fill_data_tables(ir::Image& image, const std::vector<InstanceNode>& nodes) {
   DataTables(image, nodes).run();
 }

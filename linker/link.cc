@@ -305,6 +305,7 @@ class Linker {
       bind_address(image_, located.address, symbol->data, symbol->type);
     }
     size_process_image(image_);
+    if (base::Status placed = place_devices(image_, options_.devices); !placed.ok()) return placed;
     image_.access = program_.access;
     return base::Ok{};
   }

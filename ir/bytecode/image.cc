@@ -12,13 +12,13 @@ namespace ir {
 namespace {
 
 constexpr std::string_view kMagic = "STCIMAGE";
-constexpr uint32_t kVersion = 4;
+constexpr uint32_t kVersion = 5;
 constexpr size_t kDigestAt = 16;
 constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 
-constexpr const char* kSectionNames[] = {"program", "types", "constants", "layouts",
-                                         "pous",    "code",  "tables",    "data"};
-constexpr uint32_t kSectionCount = 8;
+constexpr const char* kSectionNames[] = {"program", "types",  "constants", "layouts", "pous",
+                                         "code",    "tables", "data",      "devices"};
+constexpr uint32_t kSectionCount = 9;
 
 base::Error bad_format(std::string text) {
   return {base::Refusal::kBadFormat, "image: " + std::move(text)};
@@ -137,11 +137,13 @@ void section(Archive& a, I& image, uint32_t number) {
       return a(image.code);
     case 6:
       return tables_section(a, image);
-    default:
+    case 7:
       return a.list(image.data, 8, [&](auto& run) {
         a(run.offset);
         a(run.bytes);
       });
+    default:
+      return a.list(image.devices, 25, [&](auto& device) { device_fields(a, device); });
   }
 }
 

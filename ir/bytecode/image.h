@@ -16,6 +16,7 @@
 #include "base/hash.h"
 #include "base/result.h"
 #include "ir/bytecode/code.h"
+#include "ir/bytecode/devices.h"
 #include "ir/bytecode/object.h"
 #include "ir/program/ir.h"
 #include "ir/types/constants.h"
@@ -158,6 +159,7 @@ struct Image {
   uint32_t call_depth = 0;
   uint32_t input_bytes = 0;  // process image sizes
   uint32_t output_bytes = 0;
+  std::vector<Device> devices;
 
   // Live program instances in declaration order.
   std::vector<uint32_t> program_ids() const;

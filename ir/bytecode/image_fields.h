@@ -242,6 +242,24 @@ void migration_fields(Archive& a, T& v) {
 }
 
 template <class Archive, class T>
+void device_fields(Archive& a, T& v) {
+  a(v.name);
+  a(v.driver);
+  a.list(v.settings, 8, [&](auto& setting) {
+    a(setting.key);
+    a(setting.value);
+  });
+  a.list(v.map, 19, [&](auto& entry) {
+    a.enumerator(entry.table, kPointTableCount);
+    a(entry.first);
+    a(entry.count);
+    a(entry.to_device);
+    address_fields(a, entry.at);
+  });
+  address_fields(a, v.quality);
+}
+
+template <class Archive, class T>
 void access_fields(Archive& a, T& v) {
   a(v.name);
   a(v.path);

@@ -19,6 +19,7 @@ class ResourcesVerifier {
     for (uint32_t i = 0; i < image_.io.size(); ++i) {
       if (base::Status s = check_binding(natural, i); !s) return s;
     }
+    if (base::Status s = check_devices(); !s) return s;
     for (uint32_t i = 0; i < image_.retain.size(); ++i) {
       const RetainRange& range = image_.retain[i];
       if (inside_one_area(range.data, range.size)) continue;
@@ -55,6 +56,14 @@ class ResourcesVerifier {
       }
     }
     return base::Ok{};
+  }
+
+  base::Status check_devices() const {
+    const ProcessImageSize size{image_.input_bytes, image_.output_bytes};
+    const std::optional<DeviceFault> fault = find_fault(image_.devices, &size);
+    if (!fault) return base::Ok{};
+    return refuse(Refusal::kBadDevice,
+                  "device `" + image_.devices[fault->device].name + "`: " + fault->text);
   }
 
   bool is_event(uint32_t data) const {

@@ -331,6 +331,7 @@ void Change::cancel() {
 void Change::collect() {
   retired_area_.reset();
   retired_pending_.reset();
+  if (state_ == State::kIdle) controller_.settle_devices();
 }
 
 // At a boundary too: what was taken is freed later.

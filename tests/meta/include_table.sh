@@ -19,6 +19,7 @@ frontend: ir/types ir/program stdlib
 frontend/format: ir/types/types.h frontend/lex frontend/parse/il_operators.h frontend/parse/parse.h
 linker: ir/types ir/program ir/bytecode stdlib/native
 vm: ir/types ir/program/ir.h ir/bytecode stdlib/native
+vm/io: ir/types ir/bytecode vm/runtime
 online_change/diff: ir linker
 online_change/plan: ir linker online_change/diff
 online_change/package: ir linker online_change/diff online_change/plan

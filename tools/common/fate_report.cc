@@ -98,7 +98,7 @@ std::string duration(int64_t ns) {
 }
 
 std::string fate_report(const online_change::Plan& plan, const LiveValues& live,
-                        const PouEdits& edits) {
+                        const PouEdits& edits, const DeviceEdits& devices) {
   std::string out;
   Table counts({"fate", "> variables"});
   for (auto [name, field] : kCounts) counts.row({name, std::to_string(plan.counts.*field)});
@@ -107,13 +107,16 @@ std::string fate_report(const online_change::Plan& plan, const LiveValues& live,
     if (row.fate != Fate::kKept || !row.reason.empty()) out += row_text(row, live);
   }
   for (const PouEdit& edit : edits) out += edit_text(edit);
+  for (const online_change::DeviceEdit& edit : devices) {
+    out += "device             " + edit.device + "  (" + edit.what + ")\n";
+  }
   out += "\npredicted pause " + duration(plan.predicted_pause_ns) + " (" +
          std::to_string(plan.boundary_bytes) + " bytes written at the boundary)\n";
   return out;
 }
 
 void fate_report(const online_change::Plan& plan, const LiveValues& live, const PouEdits& edits,
-                 JsonWriter& json) {
+                 const DeviceEdits& devices, JsonWriter& json) {
   json.key("counts").begin_object();
   for (auto [name, field] : kCounts) json.field(name, plan.counts.*field);
   json.end_object();
@@ -136,6 +139,10 @@ void fate_report(const online_change::Plan& plan, const LiveValues& live, const 
     json.begin_object().field("pou", edit.pou);
     json.field("change", online_change::pou_change_name(edit.change));
     json.field("instances", edit.instances).field("what", edit.what).end_object();
+  }
+  json.end_array().key("devices").begin_array();
+  for (const online_change::DeviceEdit& edit : devices) {
+    json.begin_object().field("device", edit.device).field("what", edit.what).end_object();
   }
   json.end_array();
 }

@@ -31,7 +31,7 @@ base::Result<Compiled> lower_all(ir::Program program) {
 
 base::Result<Version> link(const Compiled& compiled, const Project& project,
                            const BuildOptions& options) {
-  linker::Options link_options{project.slack, options.base, options.move_all};
+  linker::Options link_options{project.slack, options.base, options.move_all, project.devices};
   base::Result<ir::Image> image = linker::link(compiled.program, compiled.objects, link_options);
   if (!image.ok()) return image.error();
   Version out{std::move(*image), {}};

@@ -9,6 +9,7 @@
 #include "base/result.h"
 #include "frontend/dialect.h"
 #include "ir/bytecode/code.h"
+#include "ir/bytecode/devices.h"
 #include "ir/program/ir.h"
 #include "stdlib/registry.h"
 #include "tools/common/table.h"
@@ -87,7 +88,26 @@ std::string overview_page() {
   return "stc explain CODE     E.... and W.... of the compiler, R.... of everything else\n"
          "stc explain TRAP     a run-time trap by name\n"
          "stc explain TABLE    limits, opcodes, functions, refusals, diagnostics, traps, "
-         "dialects\n";
+         "dialects, devices\n";
+}
+
+std::string devices_page() {
+  std::string page;
+  for (const ir::DriverRow& driver : ir::driver_rows()) {
+    page += std::string(driver.name) + ": " + std::string(driver.meaning) + "\n\n";
+    tools::Table table({"setting", "default", "meaning"});
+    for (const ir::SettingRow& row : ir::setting_rows()) {
+      if ((row.families & driver.family) == 0) continue;
+      const std::string fallback = row.fallback == nullptr ? "(needed)" : row.fallback;
+      table.row({std::string(row.key), fallback, std::string(row.meaning)});
+    }
+    for (const ir::TableRow& row : ir::table_rows()) {
+      if ((row.families & driver.family) == 0) continue;
+      table.row({"map: " + std::string(row.name), "", std::string(row.meaning)});
+    }
+    page += fitted(table) + "\n";
+  }
+  return page;
 }
 
 std::string functions_page() {
@@ -131,10 +151,10 @@ struct Page {
   const char* name;
   std::string (*text)();
 };
-constexpr Page kPages[] = {{"limits", limits_page},    {"functions", functions_page},
-                           {"opcodes", opcodes_page},  {"refusals", refusals_page},
-                           {"traps", traps_page},      {"diagnostics", diagnostics_page},
-                           {"dialects", dialects_page}};
+constexpr Page kPages[] = {{"limits", limits_page},     {"functions", functions_page},
+                           {"opcodes", opcodes_page},   {"refusals", refusals_page},
+                           {"traps", traps_page},       {"diagnostics", diagnostics_page},
+                           {"dialects", dialects_page}, {"devices", devices_page}};
 
 std::optional<std::string> page_of(const std::string& what) {
   for (const Page& page : kPages) {

@@ -1,6 +1,7 @@
 #include "tools/stc/image_text.h"
 
 #include "ir/bytecode/symbols.h"
+#include "ir/types/address_text.h"
 #include "tools/common/table.h"
 
 namespace stc {
@@ -57,6 +58,21 @@ std::string overrides_text(const ir::Image& image) {
   return table.text();
 }
 
+// Settings in their order, then a line for each map entry.
+std::string devices_text(const ir::Image& image) {
+  tools::Table table({"device", "driver", "map and settings"});
+  for (const ir::Device& device : image.devices) {
+    table.row({device.name, device.driver, ""});
+    for (const ir::DeviceSetting& row : device.settings) {
+      table.row({"", "", row.key + " = " + row.value});
+    }
+    for (const ir::DeviceMapping& row : device.map) table.row({"", "", ir::mapping_text(row)});
+    if (device.quality.area == ir::DirectArea::kNone) continue;
+    table.row({"", "", "quality -> " + ir::address_text(device.quality)});
+  }
+  return table.text();
+}
+
 std::string memory_text(const ir::Image& image) {
   uint64_t free_bytes = 0;
   for (const ir::Extent& extent : image.free) free_bytes += extent.size;
@@ -75,7 +91,8 @@ std::string layout_text(const ir::Image& image) {
 std::string image_text(const ir::Image& image, const base::Digest& digest) {
   return image.name + " " + base::to_hex(digest) + "\n" + memory_text(image) + "\n" +
          tasks_text(image) + "\n" + instances_text(image) + "\n" + pous_text(image) +
-         (image.overrides.empty() ? "" : "\n" + overrides_text(image));
+         (image.overrides.empty() ? "" : "\n" + overrides_text(image)) +
+         (image.devices.empty() ? "" : "\n" + devices_text(image));
 }
 
 std::string symbols_text(const ir::Image& image) {

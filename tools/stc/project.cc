@@ -5,6 +5,7 @@
 
 #include "base/limits.h"
 #include "tools/common/files.h"
+#include "tools/stc/device_tables.h"
 #include "tools/stc/format_settings.h"
 #include "tools/stc/toml.h"
 
@@ -73,7 +74,7 @@ base::Status apply_slack(const std::string& file, const std::string& key, const 
   return toml_error(file, value.line, value.column,
                     "unknown key `" + key +
                         "`; known are name, dialect, resource, sources, defines and the tables "
-                        "[slack] and [format]");
+                        "[slack], [format] and [devices.NAME]");
 }
 
 // Applies stc.toml of `folder`; `sources` is replaced when the file lists its own.
@@ -85,7 +86,11 @@ base::Status apply_project_file(const std::string& folder, Project& project,
   if (!text.ok()) return text.error();
   base::Result<TomlTable> table = parse_toml(file, *text);
   if (!table.ok()) return table.error();
+  base::Result<std::vector<ir::Device>> devices = read_devices(file, *table);
+  if (!devices.ok()) return devices.error();
+  project.devices = std::move(*devices);
   for (const auto& [key, value] : *table) {
+    if (key.starts_with(kDeviceTables)) continue;
     if (key == "name") {
       base::Result<std::string> name = typed<std::string>(file, key, value, "a text");
       if (!name.ok()) return name.error();

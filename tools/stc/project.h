@@ -18,6 +18,7 @@ struct Project {
   base::SourceMap sources;
   frontend::CompileOptions compile;
   linker::Slack slack;
+  std::vector<ir::Device> devices;
 };
 
 // `path` itself, or the sources in that folder and below it, sorted. Errors: kFileNotFound,
@@ -26,7 +27,7 @@ base::Result<std::vector<std::string>> source_files(const std::string& path);
 
 // Reads every source: files as given, folders recursively (*.st, sorted by path).
 // File names in messages are the paths as typed. Errors: kFileNotFound,
-// kFileUnreadable, kBadProject, kTooMany (kMaxSourceBytes).
+// kFileUnreadable, kBadProject, kBadMapping, kTooMany (kMaxSourceBytes).
 base::Result<Project> load_project(const std::vector<std::string>& paths,
                                    std::optional<frontend::Dialect> dialect);
 

@@ -63,6 +63,10 @@ class Parser {
     if (peek() == '[') {
       ++at_;
       prefix_ = key() + ".";
+      while (!failed_ && peek() == '.') {
+        ++at_;
+        prefix_ += key() + ".";
+      }
       if (!failed_ && peek() != ']') fail("expected `]` after the table's name");
       ++at_;
     } else if (is_key_char(peek())) {
@@ -94,10 +98,11 @@ class Parser {
 
   void parse_value(TomlValue& value) {
     char c = peek();
+    value.place = {line_, column()};
     if (c == '"') {
       value.data = string();
     } else if (c == '[') {
-      value.data = array();
+      value.data = array(value.places);
     } else if (text_.substr(at_, 4) == "true") {
       at_ += 4;
       value.data = true;
@@ -156,7 +161,7 @@ class Parser {
     return value;
   }
 
-  std::vector<std::string> array() {
+  std::vector<std::string> array(std::vector<TomlPlace>& places) {
     std::vector<std::string> out;
     ++at_;
     white_space();
@@ -165,6 +170,7 @@ class Parser {
         fail("expected \"text\" or `]`");
         return out;
       }
+      places.push_back({line_, column()});
       out.push_back(string());
       white_space();
       if (peek() == ',') {

@@ -1,6 +1,6 @@
-// The subset of TOML that stc.toml uses: comments, [tables], `key = value` with
-// strings ("..." with \" \\ \n \t), decimal integers with `_`, true/false, and
-// arrays of strings. Anything else is an error with line and column (kBadProject).
+// The subset of TOML that stc.toml uses: comments, [tables] and [tables.of.tables], `key = value`
+// with strings ("..." with \" \\ \n \t), decimal integers with `_`, true/false, and arrays of
+// strings. Anything else is an error with line and column (kBadProject).
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,21 @@
 
 namespace stc {
 
-struct TomlValue {
-  std::variant<std::string, int64_t, bool, std::vector<std::string>> data;
+struct TomlPlace {
   uint32_t line = 0;
   uint32_t column = 0;
 };
 
-// By full key: "name", "slack.globals_percent". A key given twice is an error.
+struct TomlValue {
+  std::variant<std::string, int64_t, bool, std::vector<std::string>> data;
+  uint32_t line = 0;  // of the key
+  uint32_t column = 0;
+  TomlPlace place{};                // of the value
+  std::vector<TomlPlace> places{};  // of an array's elements
+};
+
+// By full key: "name", "slack.globals_percent", "devices.press.driver". A key given twice is an
+// error.
 using TomlTable = std::map<std::string, TomlValue>;
 
 // `file` is named in errors: "stc.toml:3:7: ...".

@@ -13,6 +13,7 @@ using online_change::FateRow;
 
 constexpr uint64_t kLinesPerPage = 1000;
 constexpr size_t kShownLosses = 500;
+constexpr size_t kShownEdits = 1000;
 // A switch that finds too little time before the next cycle is tried again after it.
 constexpr int kSwitchAttempts = 200;
 constexpr int64_t kBetweenAttemptsNs = 1'000'000;
@@ -57,7 +58,6 @@ std::optional<ir::VerifiedImage> image_of(base::ByteSpan bytes) {
 
 // What fits into a message; a change that edits more POUs is looked at by other means.
 tools::PouEdits shown_edits(const ir::Image& old_image, const ir::Image& new_image) {
-  constexpr size_t kShownEdits = 1000;
   tools::PouEdits edits = online_change::pou_edits(old_image, new_image);
   if (edits.size() > kShownEdits) edits.resize(kShownEdits);
   return edits;
@@ -135,6 +135,7 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
                 {},
                 live_->losses().size(),
                 {},
+                {},
                 {}};
   uint64_t bytes = 0;
   uint64_t next = request.offset;
@@ -149,6 +150,8 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
       page.losses.push_back({live_->losses()[i]});
     }
     page.edits = shown_edits(controller_.image(), next_image);
+    page.devices = online_change::device_edits(controller_.image(), next_image);
+    page.devices.resize(std::min<size_t>(page.devices.size(), kShownEdits));
   }
   return encode(page);
 }

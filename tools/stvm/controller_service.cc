@@ -148,6 +148,7 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   for (std::string& text : store_.complaints()) report.alarms.push_back(std::move(text));
   report.base_period_ns = controller_.base_period_ns();
   report.forces = controller_.forces().size();
+  report.devices = controller_.devices();
   report.memory = vm::memory_report(controller_.image());
   return vm::encode(report);
 }

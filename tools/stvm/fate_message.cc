@@ -56,6 +56,7 @@ void page_fields(A& a, T& page) {
   a(page.loss_count);
   a.list(page.losses, 16);
   a.list(page.edits, 17);
+  a.list(page.devices, 8);
 }
 
 template <class A, class T>
@@ -104,6 +105,15 @@ static void fields(vm::FieldReader& a, PouEdit& edit) {
   if (change > static_cast<uint8_t>(PouChange::kInterface)) return a.fail();
   edit.change = static_cast<PouChange>(change);
   stvm::edit_fields(a, edit);
+}
+
+static void fields(vm::FieldWriter& a, const DeviceEdit& edit) {
+  a(edit.device);
+  a(edit.what);
+}
+static void fields(vm::FieldReader& a, DeviceEdit& edit) {
+  a(edit.device);
+  a(edit.what);
 }
 
 }  // namespace online_change

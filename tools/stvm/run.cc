@@ -8,12 +8,12 @@
 #include "tools/common/json.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/compiler.h"
+#include "tools/stvm/device_drivers.h"
 #include "tools/stvm/hard_mode.h"
 #include "tools/stvm/stop_signal.h"
 #include "tools/stvm/trace.h"
 #include "tools/stvm/trap_text.h"
 #include "vm/runtime/clocks.h"
-#include "vm/runtime/io.h"
 
 namespace stvm {
 namespace {
@@ -29,6 +29,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--hash", nullptr, "print the hash of the state at the end"},
     {"--hard-mode", "MODE", "fuel1, identity or move: nothing may come out differently"},
     {"--every", "K", "identity, move: change after every K-th scan (default 1)"},
+    STVM_DEVICE_OPTION,
     STVM_DIALECT_OPTION,
     STVM_FORMAT_OPTION,
 };
@@ -167,7 +168,9 @@ base::Result<int> run_program(const tools::Options& options) {
   vm::RealClock real_clock;
   vm::Clock* clock = &real_clock;
   if (options.has("--virtual-time")) clock = &virtual_clock;
-  vm::NullIo io;
+  auto devices = device_options(options, clock == &virtual_clock ? clock : nullptr);
+  if (!devices.ok()) return devices.error();
+  vm::DeviceIo io(std::move(*devices));
   auto controller = vm::Controller::start(*image, controller_options, *clock, io);
   if (!controller.ok()) return controller.error();
   base::Status assigned = apply_assignments(options, **controller);

@@ -6,11 +6,11 @@
 #include "tools/stvm/commands.h"
 #include "tools/stvm/compiler.h"
 #include "tools/stvm/controller_service.h"
+#include "tools/stvm/device_drivers.h"
 #include "tools/stvm/state_folder.h"
 #include "tools/stvm/stop_signal.h"
 #include "vm/runtime/clocks.h"
 #include "vm/runtime/file_storage.h"
-#include "vm/runtime/io.h"
 #include "vm/runtime/mailbox.h"
 
 namespace stvm {
@@ -20,6 +20,7 @@ constexpr tools::OptionRow kOptions[] = {
     STVM_DIR_OPTION,
     {"--data-limit", "BYTES", "of all data areas of a change together (default: no limit)"},
     {"--virtual-time", nullptr, "cycles as fast as they can run, instead of real time"},
+    STVM_DEVICE_OPTION,
     STVM_DIALECT_OPTION,
 };
 constexpr tools::Command kCommand{
@@ -126,7 +127,9 @@ base::Status serve(const tools::Options& options) {
   vm::VirtualClock virtual_clock;
   vm::Clock* clock = &real_clock;
   if (options.has("--virtual-time")) clock = &virtual_clock;
-  vm::NullIo io;
+  auto devices = device_options(options, clock == &virtual_clock ? clock : nullptr);
+  if (!devices.ok()) return devices.error();
+  vm::DeviceIo io(std::move(*devices));
   vm::ControllerOptions limits;
   base::Result<uint64_t> data_limit = options.number("--data-limit", 0);
   if (!data_limit.ok()) return data_limit.error();

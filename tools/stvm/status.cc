@@ -68,6 +68,25 @@ void memory_json(tools::JsonWriter& json, const vm::MemoryReport& memory) {
   json.end_object();
 }
 
+void print_devices(const std::vector<vm::DeviceStatus>& devices) {
+  if (devices.empty()) return;
+  tools::Table table(
+      {"device", "driver", "state", "> exchanges", "> errors", "> age", "last error"});
+  for (const vm::DeviceStatus& device : devices) {
+    table.row({device.name, device.driver, device.state, std::to_string(device.exchanges),
+               std::to_string(device.errors),
+               device.age_ns < 0 ? "never" : tools::duration(device.age_ns), device.error});
+  }
+  std::printf("\n%s", table.text().c_str());
+}
+
+void device_json(tools::JsonWriter& json, const vm::DeviceStatus& device) {
+  json.begin_object().field("name", device.name).field("driver", device.driver);
+  json.field("state", device.state).field("exchanges", device.exchanges);
+  json.field("errors", device.errors).field("age_ns", device.age_ns);
+  json.field("error", device.error).end_object();
+}
+
 void print_text(const vm::StatusReport& report) {
   print_versions(report);
   print_memory(report.memory);
@@ -82,6 +101,7 @@ void print_text(const vm::StatusReport& report) {
                tools::duration(task.max_ns), task.stopped ? "stopped" : "ok"});
   }
   std::fputs(tasks.text().c_str(), stdout);
+  print_devices(report.devices);
   for (const std::string& alarm : report.alarms) std::printf("alarm: %s\n", alarm.c_str());
   for (const vm::TrapRow& trap : report.traps) std::printf("trap: %s\n", trap_text(trap).c_str());
 }
@@ -111,6 +131,8 @@ void print_json(const vm::StatusReport& report) {
   memory_json(json, report.memory);
   json.key("tasks").begin_array();
   for (const vm::TaskStatus& task : report.tasks) task_json(json, task);
+  json.end_array().key("devices").begin_array();
+  for (const vm::DeviceStatus& device : report.devices) device_json(json, device);
   json.end_array().key("traps").begin_array();
   for (const vm::TrapRow& trap : report.traps) {
     json.begin_object().field("cycle", trap.cycle).field("task", trap.task);

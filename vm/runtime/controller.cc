@@ -31,6 +31,7 @@ void write_retained(const ir::Image& image, base::ByteSpan values, uint8_t* memo
 struct Controller::Impl {
   Impl(const ControllerOptions& options, Clock& clock, IoPort& io, Memory reserved)
       : memory(std::move(reserved)),
+        io_port(io),
         scheduler(options, clock, io),
         data_limit(options.data_limit),
         code_slots(std::make_shared<CodeSlots>(options.code_limit / sizeof(ir::Unit))) {}
@@ -43,6 +44,7 @@ struct Controller::Impl {
   base::Status leave(const std::vector<uint32_t>& ids, bool changed, int64_t limit_ns);
 
   Memory memory;
+  IoPort& io_port;
   Scheduler scheduler;
   uint64_t data_limit;
   std::shared_ptr<CodeSlots> code_slots;
@@ -67,6 +69,8 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
   auto first = Generation::build(image, 0, impl.memory.data(), impl.code_slots, nullptr);
   if (!first.ok()) return first.error();
   impl.running = std::move(*first);
+  if (base::Status devices = io.prepare(image); !devices.ok()) return devices.error();
+  io.use(image.digest());
   auto tables = std::make_unique<TaskTables>(*impl.running, impl.scheduler.next_cycle_ns());
   impl.scheduler.use(*tables, impl.memory.data());
   impl.scheduler.run_start_tasks();
@@ -160,6 +164,8 @@ base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage 
   auto next = Generation::build(std::move(next_image), running->number() + 1, impl_->memory.data(),
                                 impl_->code_slots, running);
   if (!next.ok()) return next;
+  base::Status devices = impl_->io_port.prepare((*next)->verified());
+  if (!devices.ok()) return devices.error();
   auto tables = std::make_unique<TaskTables>(**next, 0);
   tables->adopt_forces(image(), forces());
   impl_->tables[next->get()] = std::move(tables);
@@ -177,8 +183,12 @@ std::unique_ptr<Generation> Controller::publish(std::unique_ptr<Generation> next
   if (data != nullptr) std::swap(impl_->memory, *data);
   impl_->scheduler.use(tables, impl_->memory.data());
   std::swap(impl_->running, next);
+  impl_->io_port.use(verified().digest());
   return next;
 }
+
+void Controller::settle_devices() { impl_->io_port.settle(); }
+std::vector<DeviceStatus> Controller::devices() const { return impl_->io_port.status(); }
 
 void Controller::construct() {
   impl_->set_change_flag(true);

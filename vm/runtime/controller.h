@@ -122,6 +122,9 @@ class Controller {
   // counts and phase by name. Returns the generation that ran until now.
   // With `data`, that is exchanged with the running data area by the same store (C6).
   std::unique_ptr<Generation> publish(std::unique_ptr<Generation> next, Memory* data = nullptr);
+  // Off the control thread: devices that only a version which never runs again has are closed.
+  void settle_devices();
+  std::vector<DeviceStatus> devices() const;
   // Behind a change: the next cycle begins with the start code, which constructs what is new.
   void construct();
   // At a boundary: FB_Exit of these instances, those around others first. When one traps or takes

@@ -4,6 +4,9 @@
 
 namespace vm {
 
+base::Status IoPort::prepare(const ir::VerifiedImage&) { return base::Ok{}; }
+std::vector<DeviceStatus> IoPort::status() const { return {}; }
+
 void SimulatedIo::set_input(size_t byte, uint8_t value) {
   if (byte >= inputs_.size()) inputs_.resize(byte + 1);
   inputs_[byte] = value;

@@ -6,9 +6,15 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/bytes.h"
+#include "base/hash.h"
 #include "base/result.h"
+
+namespace ir {
+class VerifiedImage;
+}
 
 namespace vm {
 
@@ -23,11 +29,32 @@ class Clock {
   virtual void consumed(uint64_t safe_points) = 0;
 };
 
+struct DeviceStatus {
+  std::string name;
+  std::string driver;
+  std::string state;  // "waiting", "online", "lost", "off"
+  uint64_t exchanges = 0;
+  uint64_t errors = 0;
+  int64_t age_ns = -1;  // of the newest inputs; -1: there never were any
+  std::string error;    // the last one
+};
+
 // Field devices: the process image as the driver sees it. Called by the control
 // thread between scans; must not block.
 class IoPort {
  public:
   virtual ~IoPort() = default;
+
+  // Off the control thread: makes the devices of `version` ready beside those that are used;
+  // whatever else was prepared is gone.
+  virtual base::Status prepare(const ir::VerifiedImage& version);
+  // At a boundary: the devices of that version, which was prepared or used before, from now on.
+  virtual void use(const base::Digest& /*version*/) {}
+  // Off the control thread: nothing but what is used will be needed any more.
+  virtual void settle() {}
+  // Off the control thread.
+  virtual std::vector<DeviceStatus> status() const;
+
   // Fills `inputs` (%I bytes) with the newest values.
   virtual void receive(std::span<uint8_t> inputs) = 0;
   // Takes a consistent copy of `outputs` (%Q bytes).

@@ -81,6 +81,17 @@ void trap_fields(A& a, T& trap) {
 }
 
 template <class A, class T>
+void device_fields(A& a, T& device) {
+  a(device.name);
+  a(device.driver);
+  a(device.state);
+  a(device.exchanges);
+  a(device.errors);
+  a(device.age_ns);
+  a(device.error);
+}
+
+template <class A, class T>
 void value_fields(A& a, T& value) {
   a(value.path);
   a(value.type);
@@ -122,6 +133,7 @@ void status_fields(A& a, T& report) {
   memory_fields(a, report.memory);
   a.list(report.tasks, 49);
   a.list(report.traps, 28);
+  a.list(report.devices, 40);
 }
 
 template <class A, class T>
@@ -145,6 +157,7 @@ void image_fields(A& a, T& part) {
   static void fields(FieldReader& a, type& v) { list(a, v); }
 FIELDS(TaskStatus, task_fields)
 FIELDS(TrapRow, trap_fields)
+FIELDS(DeviceStatus, device_fields)
 FIELDS(ValueRow, value_fields)
 FIELDS(StatusReport, status_fields)
 FIELDS(Values, values_fields)

@@ -15,7 +15,7 @@
 
 namespace vm {
 
-inline constexpr uint8_t kProtocolVersion = 2;
+inline constexpr uint8_t kProtocolVersion = 3;
 inline constexpr uint32_t kMaxMessageBytes = 1u << 20;
 inline constexpr uint32_t kMaxNames = 4096;          // in one request
 inline constexpr uint32_t kMaxNameBytes = 65536;     // of a path or a value
@@ -84,6 +84,7 @@ struct StatusReport {
   MemoryReport memory;
   std::vector<TaskStatus> tasks;
   std::vector<TrapRow> traps;
+  std::vector<DeviceStatus> devices;
 };
 
 struct ValueRow {

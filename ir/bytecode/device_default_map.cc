@@ -1,0 +1,47 @@
+#include <algorithm>
+
+#include "ir/bytecode/devices.h"
+
+namespace ir {
+namespace {
+
+constexpr uint32_t kAllPoints = 65536;
+
+void add(Device& device, PointTable table, uint32_t first, uint32_t count, bool to_device,
+         DirectAddress at) {
+  if (count != 0) device.map.push_back({table, first, count, to_device, at});
+}
+
+uint32_t points(uint32_t bytes, uint32_t per_byte) {
+  return std::min<uint64_t>(uint64_t{bytes} * per_byte, kAllPoints);
+}
+
+}  // namespace
+
+bool has_default_map(const Device& device) {
+  const DriverRow* driver = find_driver(device.driver);
+  if (driver == nullptr) return false;
+  return driver->server || driver->id == DriverId::kSimulated ||
+         driver->id == DriverId::kSharedMemory;
+}
+
+void add_default_map(Device& device, const ProcessImageSize& size) {
+  const DirectAddress in{DirectArea::kInput, 0, 8};
+  const DirectAddress out{DirectArea::kOutput, 0, 8};
+  if (!find_driver(device.driver)->server) {
+    add(device, PointTable::kByte, 0, std::min(size.input_bytes, kAllPoints), false, in);
+    add(device, PointTable::kByte, 0, std::min(size.output_bytes, kAllPoints), true, out);
+    return;
+  }
+  const uint32_t in_words = (size.input_bytes + 1) / 2;
+  const uint32_t out_words = std::min<uint32_t>((size.output_bytes + 1) / 2, 1024);
+  add(device, PointTable::kCoil, 0, points(size.output_bytes, 8), true,
+      {DirectArea::kOutput, 0, 1});
+  add(device, PointTable::kDiscrete, 0, points(size.input_bytes, 8), true,
+      {DirectArea::kInput, 0, 1});
+  add(device, PointTable::kInput, 0, std::min(in_words, kAllPoints), true,
+      {DirectArea::kInput, 0, 16});
+  add(device, PointTable::kHolding, 0, out_words, true, {DirectArea::kOutput, 0, 16});
+}
+
+}  // namespace ir

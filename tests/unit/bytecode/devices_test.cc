@@ -1,0 +1,128 @@
+// V14 for devices: what an image says of them is checked as the compiler does, whoever made it.
+#include "ir/bytecode/devices.h"
+
+#include <gtest/gtest.h>
+
+#include "base/limits.h"
+#include "ir/bytecode/verify.h"
+#include "ir/types/address_text.h"
+#include "sample_image.h"
+
+namespace ir {
+namespace {
+
+Device simulated(std::vector<DeviceMapping> map) {
+  return {"press", "simulated", {}, std::move(map), {}};
+}
+
+DeviceMapping input(uint32_t first, uint32_t count, uint32_t byte) {
+  return {PointTable::kByte, first, count, false, {DirectArea::kInput, byte * 8, 8}};
+}
+
+base::Result<VerifiedImage> verified(const std::vector<Device>& devices) {
+  Image image = sample::busy_image();
+  image.input_bytes = std::max<uint32_t>(image.input_bytes, 16);
+  image.output_bytes = std::max<uint32_t>(image.output_bytes, 16);
+  image.devices = devices;
+  return verify(encode(image));
+}
+
+void expect_refused(const std::vector<Device>& devices, const std::string& text) {
+  const base::Result<VerifiedImage> image = verified(devices);
+  ASSERT_FALSE(image.ok()) << text;
+  EXPECT_EQ(image.error().refusal, base::Refusal::kBadDevice) << image.error().text;
+  EXPECT_NE(image.error().text.find(text), std::string::npos) << image.error().text;
+}
+
+TEST(Devices, SurviveEncoding) {
+  Device device = simulated({input(0, 4, 0)});
+  device.settings = {{"on_loss", "zero after 500 ms"}, {"period_ms", "20"}};
+  device.quality = {DirectArea::kInput, 15 * 8 + 7, 1};
+  const base::Result<VerifiedImage> image = verified({device});
+  ASSERT_TRUE(image.ok()) << image.error().text;
+  ASSERT_EQ(image->image().devices.size(), 1u);
+  EXPECT_TRUE(image->image().devices[0] == device);
+  EXPECT_EQ(number_setting(device, "period_ms"), 20);
+  EXPECT_EQ(number_setting(device, "timeout_ms"), 200);
+}
+
+TEST(Devices, V14_RangesOutsideTheProcessImageAreRefused) {
+  EXPECT_TRUE(verified({simulated({input(0, 16, 0)})}).ok());
+  expect_refused({simulated({input(0, 17, 0)})}, "ends at byte 17 of 16");
+  expect_refused({simulated({input(0, 1, 16)})}, "ends at byte 17 of 16");
+  expect_refused({simulated({input(0, 1, base::kMaxDeviceBytes)})}, "the limit is 1048576");
+  expect_refused({simulated({input(0, 65536, base::kMaxDeviceBytes - 65535)})}, "the limit is");
+  Device quality = simulated({});
+  quality.quality = {DirectArea::kInput, 16 * 8, 1};
+  expect_refused({quality}, "ends at byte 17 of 16");
+  quality.quality = {DirectArea::kOutput, 0, 1};
+  expect_refused({quality}, "the quality is a bit of %I");
+}
+
+TEST(Devices, V14_WhatHasNoMeaningIsRefused) {
+  expect_refused({{"x", "carrier-pigeon", {}, {}, {}}}, "there is no driver");
+  expect_refused({simulated({}), simulated({})}, "another device `press`");
+  expect_refused({simulated({input(0, 0, 0)})}, "no points");
+  expect_refused({simulated({input(65535, 2, 0)})}, "`byte` ends at 65535");
+  expect_refused({simulated({input(UINT32_MAX, UINT32_MAX, 0)})}, "`byte` ends at 65535");
+  DeviceMapping odd = input(0, 2, 0);
+  odd.at.bit_offset = 3;
+  expect_refused({simulated({odd})}, "no address");
+  odd = input(0, 2, 0);
+  odd.at.bit_size = 7;
+  expect_refused({simulated({odd})}, "no address");
+  odd = input(0, 2, 0);
+  odd.at.area = DirectArea::kNone;
+  expect_refused({simulated({odd})}, "no address");
+  Device settings = simulated({});
+  settings.settings = {{"speed", "9"}};
+  expect_refused({settings}, "has no setting `speed`");
+  settings.settings = {{"period_ms", "-1"}};
+  expect_refused({settings}, "whole number from 1");
+  expect_refused({{"m", "modbus-tcp", {}, {}, {}}}, "needs `address`");
+}
+
+TEST(Devices, OverlapsAreRefused) {
+  EXPECT_TRUE(verified({simulated({input(0, 4, 0), input(4, 4, 4)})}).ok());
+  expect_refused({simulated({input(0, 4, 0), input(8, 4, 3)})}, "provides the same bits of %I");
+  expect_refused({simulated({input(0, 4, 0), input(3, 4, 4)})}, "takes the same points");
+  // A wide claim hides a narrow one that begins behind others.
+  expect_refused({simulated({input(0, 12, 0), input(20, 1, 2), input(30, 1, 5)})}, "same bits");
+  const DeviceMapping out{PointTable::kByte, 0, 4, true, {DirectArea::kOutput, 0, 8}};
+  EXPECT_TRUE(verified({simulated({input(0, 4, 0), out})}).ok());  // reading back is no overlap
+  expect_refused({simulated({out, out})}, "takes the same points");
+}
+
+TEST(Devices, AtTheLimitAndAbove) {
+  std::vector<Device> devices;
+  for (uint32_t i = 0; i < base::kMaxDevices; ++i) {
+    devices.push_back(simulated({}));
+    devices.back().name += std::to_string(i);
+  }
+  EXPECT_FALSE(find_fault(devices, nullptr).has_value());
+  devices.push_back(simulated({}));
+  ASSERT_TRUE(find_fault(devices, nullptr).has_value());
+  EXPECT_NE(find_fault(devices, nullptr)->text.find("more than 64 devices"), std::string::npos);
+  std::vector<DeviceMapping> map;
+  for (uint32_t i = 0; i < base::kMaxMappings; ++i) map.push_back(input(i, 1, i));
+  EXPECT_FALSE(find_fault({simulated(map)}, nullptr).has_value());
+  map.push_back(input(base::kMaxMappings, 1, base::kMaxMappings));
+  ASSERT_TRUE(find_fault({simulated(map)}, nullptr).has_value());
+}
+
+TEST(Devices, AddressesAsText) {
+  for (const char* text : {"%IX0.0", "%QX12.7", "%IB3", "%QW4", "%MD10", "%IL2"}) {
+    const auto address = parse_address(text);
+    ASSERT_TRUE(address.has_value()) << text;
+    EXPECT_EQ(address_text(*address), text);
+  }
+  EXPECT_EQ(parse_address("%i0.3")->bit_offset, 3u);
+  EXPECT_EQ(parse_address("%QW4")->bit_offset, 64u);
+  for (const char* text : {"", "%", "%I", "IX0.0", "%IX0", "%IX0.8", "%IW2.0", "%AW2", "%IW",
+                           "%IW-1", "%IW99999999999", "%IL4294967295", "%IW2 ", "%IX536870911.7"}) {
+    EXPECT_FALSE(parse_address(text).has_value()) << text;
+  }
+}
+
+}  // namespace
+}  // namespace ir

@@ -1,0 +1,243 @@
+// B8, B9: several devices, each with its own exchange; loss, quality, and a scan that never waits.
+#include "vm/io/device_io.h"
+
+#include <map>
+
+#include "tests/unit/io/rig.h"
+#include "vm/runtime/clocks.h"
+#include "vm/runtime/controller.h"
+
+namespace vm {
+namespace {
+
+using io_test::device;
+using io_test::eventually;
+using io_test::FakeDevice;
+using io_test::to_device;
+using io_test::to_program;
+
+constexpr const char* kEcho =
+    "PROGRAM P VAR i AT %IB0 : BYTE; j AT %IB1 : BYTE; ok AT %IX8.0 : BOOL; q AT %QB0 : BYTE; "
+    "r AT %QB1 : BYTE; n : DINT; END_VAR q := i; r := j; n := n + 1; END_PROGRAM";
+
+constexpr const char* kFast =
+    " CONFIGURATION C RESOURCE R ON PLC TASK T(INTERVAL := T#1ms, PRIORITY := 1); "
+    "PROGRAM Main WITH T : P; END_RESOURCE END_CONFIGURATION";
+
+DriverFactory fakes(std::map<std::string, FakeDevice*> devices) {
+  return [devices](const ir::Device& wanted) -> base::Result<std::unique_ptr<IoDriver>> {
+    const auto found = devices.find(wanted.name);
+    if (found != devices.end()) return io_test::fake_driver(*found->second);
+    return base::Error{base::Refusal::kNoDriver, "no fake of that name"};
+  };
+}
+
+struct Receiver {
+  explicit Receiver(DeviceIo& port) : io(port) {}
+  uint8_t input(size_t byte) {
+    io.receive(inputs);
+    return inputs[byte];
+  }
+  DeviceIo& io;
+  base::Bytes inputs = base::Bytes(16);
+};
+
+ir::Device with_quality(ir::Device made, const std::string& on_loss) {
+  made.quality = {ir::DirectArea::kInput, 64, 1};
+  made.settings.push_back({"on_loss", on_loss});
+  return made;
+}
+
+TEST(DeviceIo, B9_EachDeviceHasItsOwnBuffers) {
+  FakeDevice left;
+  FakeDevice right;
+  DeviceIo io({fakes({{"left", &left}, {"right", &right}})});
+  auto image = io_test::build(kEcho, {device("left", {to_program(0, 1, 0), to_device(0, 1, 0)}),
+                                      device("right", {to_program(5, 1, 1), to_device(7, 1, 1)})});
+  ASSERT_TRUE(image);
+  left.set(32, 11);
+  right.set(37, 22);
+  ASSERT_TRUE(io.prepare(*image).ok());
+  io.use(image->digest());
+  Receiver receiver(io);
+  receiver.inputs.resize(image->image().input_bytes);
+  EXPECT_TRUE(eventually([&] { return receiver.input(0) == 11 && receiver.input(1) == 22; }));
+  io.send(base::Bytes{33, 44});
+  EXPECT_TRUE(eventually([&] { return left.byte(0) == 33 && right.byte(7) == 44; }));
+  EXPECT_EQ(right.byte(0), 0);
+  left.broken = true;  // and the other goes on
+  right.set(37, 23);
+  EXPECT_TRUE(eventually([&] { return receiver.input(1) == 23; }));
+  EXPECT_TRUE(eventually([&] { return io.status()[0].state == "lost"; }));
+  EXPECT_EQ(io.status()[0].error, "the device is broken");
+  EXPECT_EQ(io.status()[1].state, "online");
+}
+
+TEST(DeviceIo, LossHoldsOrClearsInputsAndTheQualityBitFalls) {
+  FakeDevice holds;
+  DeviceIo io({fakes({{"d", &holds}})});
+  for (const char* policy : {"hold", "zero", "zero after 80 ms"}) {
+    auto image = io_test::build(kEcho, {with_quality(device("d", {to_program(0, 1, 0)}), policy)});
+    ASSERT_TRUE(image);
+    holds.broken = false;
+    holds.set(32, 7);
+    ASSERT_TRUE(io.prepare(*image).ok());
+    io.use(image->digest());
+    io.settle();
+    Receiver receiver(io);
+    receiver.inputs.resize(image->image().input_bytes);
+    ASSERT_TRUE(eventually([&] { return receiver.input(0) == 7 && receiver.input(8) == 1; }));
+    holds.broken = true;
+    ASSERT_TRUE(eventually([&] { return receiver.input(8) == 0; })) << policy;
+    const bool zero = std::string(policy) == "zero";
+    EXPECT_EQ(receiver.input(0), zero ? 0 : 7) << policy;
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    EXPECT_EQ(receiver.input(0), std::string(policy) == "hold" ? 7 : 0) << policy;
+    holds.broken = false;
+    holds.set(32, 9);
+    EXPECT_TRUE(eventually([&] { return receiver.input(0) == 9 && receiver.input(8) == 1; }));
+  }
+}
+
+TEST(DeviceIo, B8_ADriverThatHangsDelaysNoScan) {
+  static FakeDevice hangs;  // its thread may outlive the test
+  FakeDevice works;
+  RealClock clock;
+  DeviceIo io({fakes({{"hangs", &hangs}, {"works", &works}})});
+  auto image = io_test::build(
+      std::string(kEcho) + kFast,
+      {with_quality(device("hangs", {to_program(0, 1, 0), to_device(0, 1, 0)}), "hold"),
+       device("works", {to_program(0, 1, 1), to_device(0, 1, 1)})});
+  ASSERT_TRUE(image);
+  auto controller = Controller::start(*image, {}, clock, io);
+  ASSERT_TRUE(controller.ok());
+  hangs.set(32, 5);
+  works.set(32, 6);
+  for (int i = 0; i < 100; ++i) (*controller)->cycle();
+  EXPECT_EQ(*(*controller)->get("Main.i"), "16#05");
+  hangs.hang_ms = 2000;
+  const int64_t begin = clock.now_ns();
+  int64_t longest = 0;
+  while (clock.now_ns() - begin < 1'900'000'000) {
+    const int64_t due = (*controller)->next_cycle_ns();
+    (*controller)->cycle();
+    longest = std::max(longest, clock.now_ns() - due);
+  }
+  // It hung all the time; what the machine itself delays is far below that.
+  EXPECT_LT(longest, 500'000'000);
+  EXPECT_GT(std::stoll(*(*controller)->get("Main.n")), 1000);
+  EXPECT_EQ(*(*controller)->get("Main.ok"), "FALSE");
+  EXPECT_EQ(*(*controller)->get("Main.i"), "16#05");
+  EXPECT_EQ(*(*controller)->get("Main.j"), "16#06");
+  RecordProperty("longest_delay_us", static_cast<int>(longest / 1000));
+  RecordProperty("missed", static_cast<int>((*controller)->missed_releases()));
+  hangs.hang_ms = 0;
+}
+
+TEST(DeviceIo, AnotherVersionKeepsTheConnectionAndUndoComesBack) {
+  FakeDevice fake;
+  DeviceIo io({fakes({{"d", &fake}})});
+  auto first = io_test::build(kEcho, {device("d", {to_program(0, 1, 0), to_device(0, 2, 0)})});
+  auto second = io_test::build(kEcho, {device("d", {to_program(1, 1, 1), to_device(0, 1, 0)})});
+  ASSERT_TRUE(first && second);
+  fake.set(32, 1);
+  fake.set(33, 2);
+  ASSERT_TRUE(io.prepare(*first).ok());
+  io.use(first->digest());
+  Receiver receiver(io);
+  receiver.inputs.resize(9);
+  ASSERT_TRUE(eventually([&] { return receiver.input(0) == 1; }));
+  io.send(base::Bytes{33, 44});
+  ASSERT_TRUE(eventually([&] { return fake.byte(1) == 44; }));
+
+  ASSERT_TRUE(io.prepare(*second).ok());
+  EXPECT_EQ(receiver.input(1), 0);
+  EXPECT_EQ(fake.alive, 1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));  // it is read, and not written
+  EXPECT_EQ(fake.byte(1), 44);
+  io.use(second->digest());
+  EXPECT_EQ(receiver.input(1), 2);                             // at once
+  EXPECT_EQ(receiver.input(0), 0);                             // nobody provides it any more
+  ASSERT_TRUE(eventually([&] { return fake.byte(1) == 0; }));  // an output that is gone
+  EXPECT_EQ(fake.byte(0), 33);                                 // one that stays keeps its value
+  io.send(base::Bytes{34, 45});
+  ASSERT_TRUE(eventually([&] { return fake.byte(0) == 34; }));
+  EXPECT_EQ(fake.byte(1), 0);
+
+  io.use(first->digest());  // undo
+  EXPECT_EQ(receiver.input(0), 1);
+  io.send(base::Bytes{35, 46});
+  EXPECT_TRUE(eventually([&] { return fake.byte(0) == 35 && fake.byte(1) == 46; }));
+  io.settle();
+  EXPECT_EQ(fake.alive, 1);
+}
+
+TEST(DeviceIo, ADeviceThatGoesGetsZerosAndIsClosedBehindAccept) {
+  FakeDevice fake;
+  DeviceIo io({fakes({{"d", &fake}})});
+  auto first = io_test::build(kEcho, {device("d", {to_device(0, 2, 0)})});
+  auto second = io_test::build(kEcho, {});
+  ASSERT_TRUE(first && second);
+  ASSERT_TRUE(io.prepare(*first).ok());
+  io.use(first->digest());
+  io.send(base::Bytes{33, 44});
+  ASSERT_TRUE(eventually([&] { return fake.byte(1) == 44; }));
+  ASSERT_TRUE(io.prepare(*second).ok());
+  io.use(second->digest());
+  ASSERT_TRUE(eventually([&] { return fake.byte(0) == 0 && fake.byte(1) == 0; }));
+  EXPECT_EQ(fake.alive, 1);  // undo needs it
+  io.settle();
+  EXPECT_EQ(fake.alive, 0);
+  EXPECT_TRUE(io.status().empty());
+}
+
+TEST(DeviceIo, WhatCannotBeOpenedIsRefusedAndTheRestGoesOn) {
+  FakeDevice fake;
+  DeviceIo io({fakes({{"d", &fake}})});
+  auto first = io_test::build(kEcho, {device("d", {to_program(0, 1, 0)})});
+  auto second = io_test::build(
+      kEcho, {device("d", {to_program(0, 1, 0)}), device("e", {to_program(0, 1, 1)})});
+  ASSERT_TRUE(first && second);
+  ASSERT_TRUE(io.prepare(*first).ok());
+  io.use(first->digest());
+  const base::Status refused = io.prepare(*second);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().refusal, base::Refusal::kNoDriver);
+  EXPECT_EQ(refused.error().text, "device `e`: no fake of that name");
+  const int before = fake.exchanges;
+  EXPECT_TRUE(eventually([&] { return fake.exchanges > before; }));
+}
+
+TEST(DeviceIo, TheLastOutputsGoOutWhenItEnds) {
+  FakeDevice fake;
+  auto image = io_test::build(
+      kEcho, {device("d", {to_device(0, 1, 0)}, {{"period_ms", "3000"}, {"timeout_ms", "50"}})});
+  ASSERT_TRUE(image);
+  {
+    DeviceIo io({fakes({{"d", &fake}})});
+    ASSERT_TRUE(io.prepare(*image).ok());
+    io.use(image->digest());
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    io.send(base::Bytes{77, 0});
+  }
+  EXPECT_EQ(fake.byte(0), 77);
+}
+
+TEST(DeviceIo, AHangingDriverIsLeftBehindAtTheEnd) {
+  static FakeDevice fake;  // its thread may outlive the test
+  auto image = io_test::build(kEcho, {device("d", {to_program(0, 1, 0)})});
+  ASSERT_TRUE(image);
+  const auto begin = std::chrono::steady_clock::now();
+  {
+    DeviceIo io({fakes({{"d", &fake}})});
+    ASSERT_TRUE(io.prepare(*image).ok());
+    io.use(image->digest());
+    fake.hang_ms = 3000;
+    ASSERT_TRUE(eventually([&] { return fake.exchanges > 0; }));
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(2500));
+  ASSERT_TRUE(eventually([&] { return fake.alive == 0; }));
+}
+
+}  // namespace
+}  // namespace vm

@@ -1,0 +1,181 @@
+#include "tools/stc/device_tables.h"
+
+#include <optional>
+
+#include "ir/types/address_text.h"
+#include "tools/stc/map_entry.h"
+
+namespace stc {
+namespace {
+
+base::Error at(std::string_view file, TomlPlace place, const std::string& text) {
+  return {base::Refusal::kBadMapping, toml_error(file, place.line, place.column, text).text};
+}
+
+// Where the parts of a device stand, for what is found behind them.
+struct Places {
+  TomlPlace device;  // its driver
+  std::vector<TomlPlace> map;
+  TomlPlace quality;
+};
+
+class Reader {
+ public:
+  Reader(std::string_view file, const TomlTable& table) : file_(file), table_(table) {}
+
+  base::Result<std::vector<ir::Device>> run() {
+    for (const auto& [key, value] : table_) {
+      if (!key.starts_with(kDeviceTables)) continue;
+      const std::string_view rest = std::string_view(key).substr(kDeviceTables.size());
+      const size_t dot = rest.find('.');
+      if (dot == std::string_view::npos || rest.find('.', dot + 1) != std::string_view::npos) {
+        return at(file_, {value.line, value.column},
+                  "`" + key + "`: a device is a table [devices.NAME]");
+      }
+      if (base::Status added = add(rest.substr(0, dot), rest.substr(dot + 1), value); !added.ok()) {
+        return added.error();
+      }
+    }
+    if (base::Status whole = check_whole(); !whole.ok()) return whole.error();
+    return std::move(devices_);
+  }
+
+ private:
+  // Keys come sorted by device, so the last one is the one to add to.
+  base::Status add(std::string_view name, std::string_view key, const TomlValue& value) {
+    if (devices_.empty() || devices_.back().name != name) {
+      devices_.emplace_back().name = name;
+      places_.emplace_back().device = {value.line, value.column};
+    }
+    if (key == "driver") return add_driver(value);
+    if (key == "map") return add_map(value);
+    if (key == "quality") return add_quality(value);
+    return add_setting(key, value);
+  }
+
+  base::Status add_driver(const TomlValue& value) {
+    const auto* name = std::get_if<std::string>(&value.data);
+    places_.back().device = value.place;
+    if (name != nullptr && ir::find_driver(*name) != nullptr) {
+      devices_.back().driver = *name;
+      return base::Ok{};
+    }
+    std::string known;
+    for (const ir::DriverRow& row : ir::driver_rows()) {
+      known += (known.empty() ? "\"" : ", \"") + std::string(row.name) + "\"";
+    }
+    return at(file_, value.place,
+              (name == nullptr ? "the driver" : "unknown driver \"" + *name + "\"; it") +
+                  " must be one of " + known);
+  }
+
+  base::Status add_map(const TomlValue& value) {
+    const auto* entries = std::get_if<std::vector<std::string>>(&value.data);
+    if (entries == nullptr) return at(file_, value.place, "`map` must be a list of texts");
+    for (size_t i = 0; i < entries->size(); ++i) {
+      TomlPlace place = value.places[i];
+      ++place.column;  // behind the quote
+      ir::DeviceMapping& mapping = devices_.back().map.emplace_back();
+      if (auto fault = parse_map_entry((*entries)[i], mapping)) {
+        place.column += static_cast<uint32_t>(fault->at);
+        return at(file_, place, "map entry \"" + (*entries)[i] + "\": " + fault->text);
+      }
+      places_.back().map.push_back(place);
+    }
+    return base::Ok{};
+  }
+
+  base::Status add_quality(const TomlValue& value) {
+    const auto* text = std::get_if<std::string>(&value.data);
+    const auto address = text != nullptr ? ir::parse_address(*text) : std::nullopt;
+    if (!address) {
+      return at(file_, value.place, "`quality` must be the address of an input bit: \"%IX100.0\"");
+    }
+    devices_.back().quality = *address;
+    places_.back().quality = value.place;
+    return base::Ok{};
+  }
+
+  base::Status add_setting(std::string_view key, const TomlValue& value) {
+    ir::DeviceSetting& setting = devices_.back().settings.emplace_back();
+    setting.key = key;
+    settings_.push_back({devices_.size() - 1, &value});
+    if (const auto* text = std::get_if<std::string>(&value.data)) {
+      setting.value = *text;
+    } else if (const auto* number = std::get_if<int64_t>(&value.data)) {
+      setting.value = std::to_string(*number);
+    } else {
+      return at(file_, value.place, "`" + setting.key + "` must be a text or a whole number");
+    }
+    return base::Ok{};
+  }
+
+  base::Status check_settings() const {
+    size_t next = 0;
+    for (size_t device = 0; device < devices_.size(); ++device) {
+      const ir::DriverRow* driver = ir::find_driver(devices_[device].driver);
+      if (driver == nullptr) {
+        return at(file_, places_[device].device,
+                  "device `" + devices_[device].name + "` has no `driver`");
+      }
+      for (const ir::DeviceSetting& setting : devices_[device].settings) {
+        const TomlValue& value = *settings_[next++].value;
+        const ir::SettingRow* row = ir::find_setting(*driver, setting.key);
+        if (row == nullptr) {
+          return at(file_, {value.line, value.column},
+                    "unknown key `" + setting.key + "`; " + known_keys(*driver));
+        }
+        const std::string bad = ir::bad_value(*row, setting.value);
+        if (!bad.empty()) return at(file_, value.place, "`" + setting.key + "` " + bad);
+      }
+    }
+    return base::Ok{};
+  }
+
+  static std::string known_keys(const ir::DriverRow& driver) {
+    std::string known = "driver \"" + std::string(driver.name) + "\" knows map, quality";
+    for (const ir::SettingRow& row : ir::setting_rows()) {
+      if ((row.families & driver.family) != 0) known += ", " + std::string(row.key);
+    }
+    return known;
+  }
+
+  // What only shows when all is read, in the order of the file's devices.
+  base::Status check_whole() const {
+    if (base::Status settings = check_settings(); !settings.ok()) return settings;
+    for (size_t device = 0; device < devices_.size(); ++device) {
+      if (!devices_[device].map.empty() || ir::has_default_map(devices_[device])) continue;
+      return at(file_, places_[device].device,
+                "device `" + devices_[device].name + "` has no `map`");
+    }
+    const std::optional<ir::DeviceFault> fault = ir::find_fault(devices_, nullptr);
+    if (!fault) return base::Ok{};
+    const Places& places = places_[fault->device];
+    if (fault->entry == ir::DeviceFault::kQuality) return at(file_, places.quality, fault->text);
+    const std::string name = "device `" + devices_[fault->device].name + "`: ";
+    if (fault->entry == ir::DeviceFault::kDevice) {
+      return at(file_, places.device, name + fault->text);
+    }
+    const std::string entry = ir::mapping_text(devices_[fault->device].map[fault->entry]);
+    return at(file_, places.map[fault->entry], "\"" + entry + "\": " + fault->text);
+  }
+
+  struct GivenSetting {
+    size_t device = 0;
+    const TomlValue* value = nullptr;
+  };
+
+  std::string_view file_;
+  const TomlTable& table_;
+  std::vector<ir::Device> devices_;
+  std::vector<Places> places_;  // parallel
+  std::vector<GivenSetting> settings_;
+};
+
+}  // namespace
+
+base::Result<std::vector<ir::Device>> read_devices(std::string_view file, const TomlTable& table) {
+  return Reader(file, table).run();
+}
+
+}  // namespace stc

@@ -1,0 +1,18 @@
+// The drivers that this stvm was built with.
+#pragma once
+
+#include "tools/common/options.h"
+#include "vm/io/device_io.h"
+
+namespace stvm {
+
+// kNoDriver names the package that was missing; kDeviceFailed.
+base::Result<std::unique_ptr<vm::IoDriver>> make_driver(const ir::Device& device);
+
+#define STVM_DEVICE_OPTION \
+  { "--device", "NAME.KEY=VALUE", "another setting of a device here; repeatable" }
+// From that option; `virtual_clock` null: real time.
+base::Result<vm::DeviceIo::Options> device_options(const tools::Options& options,
+                                                   vm::Clock* virtual_clock);
+
+}  // namespace stvm

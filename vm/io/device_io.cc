@@ -1,0 +1,252 @@
+#include "vm/io/device_io.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "vm/io/bit_copy.h"
+
+namespace vm {
+namespace {
+
+// The same connection: only the map may differ.
+bool same_line(const ir::Device& a, const ir::Device& b) {
+  return a.name == b.name && a.driver == b.driver && a.settings == b.settings;
+}
+
+void set_bit(std::span<uint8_t> bytes, uint32_t bit, bool value) {
+  const auto mask = static_cast<uint8_t>(1u << (bit % 8));
+  if (value) {
+    bytes[bit / 8] |= mask;
+  } else {
+    bytes[bit / 8] &= static_cast<uint8_t>(~mask);
+  }
+}
+
+}  // namespace
+
+// One device in one version. `port` null: it is off.
+struct DeviceIo::Binding {
+  ir::Device device;
+  ir::LossPolicy loss;
+  ExchangePort* port = nullptr;
+  std::shared_ptr<ExchangeSet> set;
+};
+
+struct DeviceIo::Tables {
+  explicit Tables(const ir::VerifiedImage& of)
+      : version(of), mapped_inputs(of.image().input_bytes), received(of.image().input_bytes) {}
+
+  const Binding* of(const ExchangePort& port) const {
+    for (const Binding& binding : bindings) {
+      if (binding.port == &port) return &binding;
+    }
+    return nullptr;
+  }
+
+  ir::VerifiedImage version;
+  std::vector<Binding> bindings;
+  base::Bytes mapped_inputs;  // bits that some device provides
+  base::Bytes received;       // %I as received last, for devices that show it
+};
+
+base::Result<DeviceOverride> parse_device_override(const std::string& text) {
+  const size_t equals = text.find('=');
+  const size_t dot = text.find('.');
+  if (equals == std::string::npos || dot == std::string::npos || dot > equals || dot == 0) {
+    return base::Error{
+        base::Refusal::kUsage,
+        "--device " + text + ": expected NAME.KEY=VALUE, as in press.address=plc:502"};
+  }
+  return DeviceOverride{text.substr(0, dot), text.substr(dot + 1, equals - dot - 1),
+                        text.substr(equals + 1)};
+}
+
+DeviceIo::DeviceIo(Options options) : options_(std::move(options)) {}
+DeviceIo::~DeviceIo() = default;
+
+base::Status DeviceIo::apply_overrides(const std::vector<ir::Device>& devices,
+                                       std::vector<ir::Device>& out) const {
+  out = devices;
+  for (const DeviceOverride& row : options_.overrides) {
+    const std::string what = "--device " + row.device + "." + row.key;
+    const auto device = std::find_if(out.begin(), out.end(), [&](const ir::Device& candidate) {
+      return candidate.name == row.device;
+    });
+    if (device == out.end()) {
+      if (!first_) continue;  // a version may have dropped it
+      return base::Error{base::Refusal::kUsage, what + ": the program has no such device"};
+    }
+    const ir::SettingRow* setting = ir::find_setting(*ir::find_driver(device->driver), row.key);
+    const std::string bad = setting != nullptr ? ir::bad_value(*setting, row.value)
+                                               : "is no setting of \"" + device->driver + "\"";
+    if (!bad.empty()) return base::Error{base::Refusal::kUsage, what + " " + bad};
+    const auto given =
+        std::find_if(device->settings.begin(), device->settings.end(),
+                     [&](const ir::DeviceSetting& candidate) { return candidate.key == row.key; });
+    if (given == device->settings.end()) {
+      device->settings.push_back({row.key, row.value});
+    } else {
+      given->value = row.value;
+    }
+  }
+  return base::Ok{};
+}
+
+base::Result<ExchangePort*> DeviceIo::port_for(const ir::Device& device) {
+  for (const auto& port : ports_) {
+    if (same_line(port->device(), device)) return port.get();
+  }
+  auto driver = options_.make_driver(device);
+  if (!driver.ok()) {
+    return base::Error{driver.error().refusal,
+                       "device `" + device.name + "`: " + driver.error().text};
+  }
+  ports_.push_back(std::make_unique<ExchangePort>(device, std::move(*driver),
+                                                  options_.virtual_clock == nullptr));
+  return ports_.back().get();
+}
+
+base::Result<std::unique_ptr<DeviceIo::Tables>> DeviceIo::build(const ir::VerifiedImage& version) {
+  auto tables = std::make_unique<Tables>(version);
+  std::vector<ir::Device> devices;
+  if (base::Status set = apply_overrides(version.image().devices, devices); !set.ok()) {
+    return set.error();
+  }
+  for (ir::Device& device : devices) {
+    Binding binding;
+    for (const ir::DeviceMapping& mapping : device.map) {
+      if (mapping.to_device) continue;
+      for (uint32_t bit = 0; bit < mapping.bits(); ++bit) {
+        set_bit(tables->mapped_inputs, mapping.at.bit_offset + bit, true);
+      }
+    }
+    if (device.quality.area != ir::DirectArea::kNone) {
+      set_bit(tables->mapped_inputs, device.quality.bit_offset, true);
+    }
+    binding.loss = *ir::parse_loss(ir::setting(device, "on_loss"));
+    const bool off = options_.virtual_clock != nullptr &&
+                     ir::find_driver(device.driver)->id != ir::DriverId::kSimulated;
+    if (!off) {
+      base::Result<ExchangePort*> port = port_for(device);
+      if (!port.ok()) return port.error();
+      DevicePoints points = points_of(device);
+      const Binding* running = running_ != nullptr ? running_->of(**port) : nullptr;
+      const bool same = running != nullptr && running->set->points == points;
+      binding.port = *port;
+      binding.set = same ? running->set : (*port)->add(std::move(points));
+    }
+    binding.device = std::move(device);
+    tables->bindings.push_back(std::move(binding));
+  }
+  return tables;
+}
+
+base::Status DeviceIo::prepare(const ir::VerifiedImage& version) {
+  keep_running_only();
+  auto tables = build(version);
+  if (!tables.ok()) {
+    keep_running_only();
+    return tables.error();
+  }
+  first_ = false;
+  tables_.push_back(std::move(*tables));
+  return base::Ok{};
+}
+
+void DeviceIo::use(const base::Digest& version) {
+  const auto next = std::find_if(tables_.begin(), tables_.end(), [&](const auto& tables) {
+    return tables->version.digest() == version;
+  });
+  base::check(next != tables_.end(), "devices of a version are used that were not prepared");
+  running_ = next->get();
+  switched_ = true;
+  for (const auto& port : ports_) {
+    const Binding* binding = running_->of(*port);
+    port->use(binding != nullptr ? binding->set.get() : nullptr);
+  }
+}
+
+void DeviceIo::settle() { keep_running_only(); }
+
+void DeviceIo::keep_running_only() {
+  for (const auto& tables : tables_) {
+    if (tables.get() == running_) continue;
+    for (const Binding& binding : tables->bindings) {
+      const Binding* kept =
+          running_ != nullptr && binding.port != nullptr ? running_->of(*binding.port) : nullptr;
+      const bool shared = kept != nullptr && kept->set == binding.set;
+      if (binding.port != nullptr && !shared) binding.port->drop(binding.set);
+    }
+  }
+  std::erase_if(tables_, [&](const auto& tables) { return tables.get() != running_; });
+  std::erase_if(ports_, [&](const auto& port) {
+    return running_ == nullptr || running_->of(*port) == nullptr;
+  });
+}
+
+int64_t DeviceIo::now_ns() const {
+  return options_.virtual_clock != nullptr ? options_.virtual_clock->now_ns()
+                                           : ExchangePort::now_ns();
+}
+
+void DeviceIo::receive(std::span<uint8_t> inputs) {
+  if (running_ == nullptr) return;
+  if (switched_) {  // nobody provides them any more
+    for (size_t i = 0; i < inputs.size(); ++i) inputs[i] &= running_->mapped_inputs[i];
+    switched_ = false;
+  }
+  if (running_->bindings.empty()) return;
+  const int64_t now = now_ns();
+  for (const Binding& binding : running_->bindings) {
+    const bool fresh = binding.port != nullptr && binding.port->fresh(now);
+    if (binding.device.quality.area != ir::DirectArea::kNone) {
+      set_bit(inputs, binding.device.quality.bit_offset, fresh);
+    }
+    if (binding.port == nullptr) continue;
+    ExchangeSet& set = *binding.set;
+    if (fresh && set.inputs.take()) set.received = true;
+    const int64_t received = binding.port->received_ns();
+    const bool zero = !fresh && !binding.loss.hold &&
+                      (received == INT64_MIN || now - received >= binding.loss.zero_after_ns);
+    for (const PointRange& range : set.points.inputs) {
+      if (zero) {
+        clear_bits(inputs, range.at.bit_offset, range.bits());
+      } else if (fresh && set.received) {
+        copy_bits(set.inputs.newest(), range.byte * 8, inputs, range.at.bit_offset, range.bits());
+      }
+    }
+  }
+  std::copy(inputs.begin(), inputs.end(), running_->received.begin());
+}
+
+void DeviceIo::send(std::span<const uint8_t> outputs) {
+  if (running_ == nullptr) return;
+  for (const Binding& binding : running_->bindings) {
+    if (binding.port == nullptr) continue;
+    ExchangeSet& set = *binding.set;
+    const std::span<uint8_t> work = set.outputs.work();
+    for (const PointRange& range : set.points.outputs) {
+      const bool input = range.at.area == ir::DirectArea::kInput;
+      copy_bits(input ? std::span<const uint8_t>(running_->received) : outputs, range.at.bit_offset,
+                work, range.byte * 8, range.bits());
+    }
+    set.outputs.publish();
+    if (options_.virtual_clock != nullptr) binding.port->exchange_now(now_ns());
+  }
+}
+
+std::vector<DeviceStatus> DeviceIo::status() const {
+  std::vector<DeviceStatus> rows;
+  if (running_ == nullptr) return rows;
+  for (const Binding& binding : running_->bindings) {
+    if (binding.port != nullptr) {
+      rows.push_back(binding.port->status());
+    } else {
+      rows.push_back({binding.device.name, binding.device.driver, "off", 0, 0, -1,
+                      "not exchanged in virtual time"});
+    }
+  }
+  return rows;
+}
+
+}  // namespace vm

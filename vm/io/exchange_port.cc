@@ -1,0 +1,224 @@
+#include "vm/io/exchange_port.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace vm {
+namespace {
+
+constexpr int64_t kNever = INT64_MIN;
+constexpr int64_t kMs = 1'000'000;
+constexpr int64_t kLongestRetryNs = 2000 * kMs;
+constexpr int64_t kCloseSlackNs = 1000 * kMs;
+
+}  // namespace
+
+// What port and thread share; the thread may outlive the port.
+struct ExchangePort::Core {
+  Core(ir::Device d, std::unique_ptr<IoDriver> made, bool threaded)
+      : device(std::move(d)),
+        own_thread(threaded),
+        exclusive(ir::find_driver(device.driver)->exclusive),
+        period_ns(ir::number_setting(device, "period_ms") * kMs),
+        timeout_ns(ir::number_setting(device, "timeout_ms") * kMs),
+        driver(std::move(made)) {}
+
+  void run();
+  void round(int64_t now);
+  base::Status leave_last(ExchangeSet* next, int64_t now);
+  base::Status exchange(ExchangeSet& set, bool used, int64_t now);
+  void note(const base::Status& status, int64_t now);
+  int64_t pause_ns() const;
+
+  const ir::Device device;
+  const bool own_thread;
+  const bool exclusive;
+  const int64_t period_ns;
+  const int64_t timeout_ns;
+
+  std::atomic<ExchangeSet*> used{nullptr};
+  std::atomic<int64_t> received_ns{kNever};
+  std::atomic<bool> failed{true};
+  std::atomic<uint64_t> exchanges{0};
+  std::atomic<uint64_t> errors{0};
+
+  // Never taken by the control thread.
+  mutable std::mutex mutex;
+  std::condition_variable wake;
+  std::vector<std::shared_ptr<ExchangeSet>> sets;
+  std::string error;
+  bool stopping = false;
+  bool ended = false;
+
+  // The exchange's own.
+  std::unique_ptr<IoDriver> driver;
+  std::shared_ptr<ExchangeSet> last_used;
+  uint32_t failures = 0;  // in turn
+};
+
+int64_t ExchangePort::now_ns() {
+  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+// Where points are left for good, they get zero.
+base::Status ExchangePort::Core::leave_last(ExchangeSet* next, int64_t now) {
+  const DevicePoints left =
+      outputs_without(last_used->points, next != nullptr ? &next->points : nullptr);
+  if (!left.outputs.empty() && last_used->has_outputs) {
+    const base::Bytes zeros(left.output_bytes);
+    base::Status done = driver->exchange({left, zeros, {}, now});
+    if (!done.ok()) return done;
+  }
+  last_used.reset();
+  if (next == nullptr && exclusive) driver->disconnect();
+  return base::Ok{};
+}
+
+base::Status ExchangePort::Core::exchange(ExchangeSet& set, bool is_used, int64_t now) {
+  if (is_used && set.outputs.take()) set.has_outputs = true;
+  const base::ByteSpan outputs =
+      is_used && set.has_outputs ? base::ByteSpan(set.outputs.newest()) : base::ByteSpan();
+  base::Status done = driver->exchange({set.points, outputs, set.inputs.work(), now});
+  if (done.ok()) set.inputs.publish();
+  return done;
+}
+
+void ExchangePort::Core::round(int64_t now) {
+  std::vector<std::shared_ptr<ExchangeSet>> current;
+  {
+    std::lock_guard lock(mutex);
+    current = sets;
+  }
+  ExchangeSet* const wanted = used.load(std::memory_order_acquire);
+  const auto is_wanted = [&](const auto& set) { return set.get() == wanted; };
+  const auto in_use = std::find_if(current.begin(), current.end(), is_wanted);
+  if (wanted != nullptr && in_use == current.end()) return;  // added a moment ago: next time
+  if (last_used && last_used.get() != wanted) {
+    base::Status left = leave_last(wanted, now);
+    if (!left.ok()) return note(left, now);
+  }
+  if (wanted == nullptr && exclusive) return;
+  base::Status result = base::Ok{};
+  for (const std::shared_ptr<ExchangeSet>& set : current) {
+    const bool is_used = set.get() == wanted;
+    if (!is_used && exclusive) continue;
+    base::Status done = exchange(*set, is_used, now);
+    if (is_used) last_used = set;
+    // A version that does not run may ask for what the device does not have.
+    if (is_used || wanted == nullptr) result = std::move(done);
+    if (!result.ok()) break;
+  }
+  note(result, now);
+}
+
+void ExchangePort::Core::note(const base::Status& status, int64_t now) {
+  if (status.ok()) {
+    exchanges.fetch_add(1, std::memory_order_relaxed);
+    received_ns.store(own_thread ? ExchangePort::now_ns() : now, std::memory_order_release);
+    failed.store(false, std::memory_order_release);
+    failures = 0;
+    return;
+  }
+  failed.store(true, std::memory_order_release);
+  errors.fetch_add(1, std::memory_order_relaxed);
+  failures = std::min<uint32_t>(failures + 1, 30);
+  std::lock_guard lock(mutex);
+  error = status.error().text;
+}
+
+// Longer and longer while nobody answers.
+int64_t ExchangePort::Core::pause_ns() const {
+  if (failures < 2) return period_ns;
+  const int64_t longest = std::max(period_ns, kLongestRetryNs);
+  return std::min(period_ns << std::min<uint32_t>(failures - 1, 20), longest);
+}
+
+void ExchangePort::Core::run() {
+  const int64_t begin = ExchangePort::now_ns();
+  for (bool last = false; !last;) {
+    {
+      std::lock_guard lock(mutex);
+      last = stopping;
+    }
+    const int64_t started = ExchangePort::now_ns();
+    round(started - begin);
+    if (last) break;
+    const int64_t rest = started + pause_ns() - ExchangePort::now_ns();
+    std::unique_lock lock(mutex);
+    wake.wait_for(lock, std::chrono::nanoseconds(std::max<int64_t>(rest, 0)),
+                  [this] { return stopping; });
+  }
+  driver.reset();
+  std::lock_guard lock(mutex);
+  ended = true;
+  wake.notify_all();
+}
+
+ExchangePort::ExchangePort(ir::Device device, std::unique_ptr<IoDriver> driver, bool own_thread)
+    : core_(std::make_shared<Core>(std::move(device), std::move(driver), own_thread)) {
+  if (own_thread) {
+    thread_ = std::thread([core = core_] { core->run(); });
+  }
+}
+
+ExchangePort::~ExchangePort() {
+  if (!thread_.joinable()) return;
+  std::unique_lock lock(core_->mutex);
+  core_->stopping = true;
+  core_->wake.notify_all();
+  const bool ended =
+      core_->wake.wait_for(lock, std::chrono::nanoseconds(core_->timeout_ns + kCloseSlackNs),
+                           [this] { return core_->ended; });
+  lock.unlock();
+  if (ended) {
+    thread_.join();
+  } else {
+    thread_.detach();
+  }
+}
+
+const ir::Device& ExchangePort::device() const { return core_->device; }
+
+std::shared_ptr<ExchangeSet> ExchangePort::add(DevicePoints points) {
+  auto set = std::make_shared<ExchangeSet>(std::move(points));
+  std::lock_guard lock(core_->mutex);
+  core_->sets.push_back(set);
+  return set;
+}
+
+void ExchangePort::drop(const std::shared_ptr<ExchangeSet>& set) {
+  std::lock_guard lock(core_->mutex);
+  std::erase(core_->sets, set);
+}
+
+DeviceStatus ExchangePort::status() const {
+  DeviceStatus out;
+  out.name = core_->device.name;
+  out.driver = core_->device.driver;
+  out.exchanges = core_->exchanges.load(std::memory_order_relaxed);
+  out.errors = core_->errors.load(std::memory_order_relaxed);
+  const int64_t received = received_ns();
+  const bool threaded = thread_.joinable();
+  if (received != kNever) out.age_ns = threaded ? now_ns() - received : 0;
+  const bool good = threaded ? fresh(now_ns()) : !core_->failed.load(std::memory_order_acquire);
+  out.state = good ? "online" : out.errors == 0 && received == kNever ? "waiting" : "lost";
+  std::lock_guard lock(core_->mutex);
+  out.error = core_->error;
+  return out;
+}
+
+void ExchangePort::use(ExchangeSet* set) { core_->used.store(set, std::memory_order_release); }
+
+int64_t ExchangePort::received_ns() const {
+  return core_->received_ns.load(std::memory_order_acquire);
+}
+
+bool ExchangePort::fresh(int64_t now) const {
+  if (core_->failed.load(std::memory_order_acquire)) return false;
+  const int64_t received = received_ns();
+  return received != kNever && now - received <= core_->period_ns + core_->timeout_ns;
+}
+
+void ExchangePort::exchange_now(int64_t now) { core_->round(now); }
+
+}  // namespace vm
