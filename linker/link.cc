@@ -11,6 +11,8 @@
 #include "linker/data.h"
 #include "linker/instances.h"
 #include "linker/relocate.h"
+#include "linker/tables.h"
+#include "linker/type_numbers.h"
 
 namespace linker {
 namespace {
@@ -45,6 +47,7 @@ class Linker {
     }
     fill_data_tables(image_, nodes_);
     if (base::Status status = bind_located(); !status.ok()) return status.error();
+    type_numbers_->apply(image_);
     return std::move(image_);
   }
 
@@ -180,6 +183,8 @@ class Linker {
   }
 
   base::Status link_code() {
+    type_numbers_.emplace(program_.types, options_.base);
+    fill_tables(context_, options_.base, *type_numbers_);
     for (const ir::Object* object : context_.objects) {
       context_.parameter_offsets.emplace_back();
       if (object == nullptr) continue;
@@ -322,6 +327,7 @@ class Linker {
   const std::vector<ir::Object>& objects_;
   Options options_;
   std::optional<ir::Image> renamed_base_;
+  std::optional<TypeNumbers> type_numbers_;
   ir::Image image_;
   ConstantPool pool_;
   LinkContext context_;

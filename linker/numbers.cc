@@ -1,21 +1,13 @@
 #include "linker/numbers.h"
 
 #include "linker/offsets.h"
+#include "linker/tables.h"
 
 namespace linker {
 
 using ir::Base;
 using ir::Field;
 using ir::FieldKind;
-
-template <class T>
-uint32_t Numbers::intern(const base::ByteWriter& key, std::vector<T>& table, T value) {
-  const base::Bytes& bytes = key.bytes();
-  const auto [found, added] = context_.table_numbers.try_emplace(
-      std::string(bytes.begin(), bytes.end()), static_cast<uint32_t>(table.size()));
-  if (added) table.push_back(std::move(value));
-  return found->second;
-}
 
 uint64_t Numbers::slot_offset(uint32_t number) const {
   const ir::Slot& slot = object_.slots[number];
@@ -49,32 +41,13 @@ uint32_t Numbers::wide_offset(Base base, uint32_t number) const {
                                                     : offset_of_place(number));
 }
 
-uint32_t Numbers::bound_number(uint32_t number) {
+uint32_t Numbers::bound_number(uint32_t number) const {
   const ir::Bound& bound = object_.bounds[number];
-  const ir::Dimension& dim = context_.program.types[bound.array].dims[bound.dim];
-  base::ByteWriter key;
-  key.u8('b');
-  key.u32(bound.array.index);
-  key.u8(bound.dim);
-  key.text(bound.name);
-  const uint64_t stride =
-      stride_of(context_.program.types, context_.image.layouts, bound.array, bound.dim);
-  return intern(key, context_.image.bounds,
-                ir::LinkedBound{dim.low,
-                                dim.count(),
-                                static_cast<uint32_t>(stride),
-                                {bound.array, bound.dim},
-                                bound.name});
+  return context_.table_numbers.at(bound_key(bound.array, bound.dim, bound.name));
 }
 
-uint32_t Numbers::range_number(uint32_t number) {
-  const ir::Range& range = object_.ranges[number];
-  base::ByteWriter key;
-  key.u8('r');
-  key.i64(range.low);
-  key.i64(range.high);
-  key.text(range.name);
-  return intern(key, context_.image.ranges, range);
+uint32_t Numbers::range_number(uint32_t number) const {
+  return context_.table_numbers.at(range_key(object_.ranges[number]));
 }
 
 // Of an instance: what its variables take.
@@ -83,7 +56,7 @@ uint32_t Numbers::size_of(ir::TypeId type) const {
   return context_.program.types.is_instance(type) ? layout.used : layout.size;
 }
 
-uint32_t Numbers::extension_field(const Field& field, uint32_t number, Base base) {
+uint32_t Numbers::extension_field(const Field& field, uint32_t number, Base base) const {
   switch (field.kind) {
     case FieldKind::kPlace32:
       return wide_offset(base, number);

@@ -13,10 +13,10 @@
 
 namespace linker {
 
-// What relocation needs of the whole program, and the tables that it fills.
+// What relocation needs of the whole program.
 struct LinkContext {
   const ir::Program& program;
-  ir::Image& image;  // types, layouts, instances are set; bounds and ranges are added to
+  ir::Image& image;  // types, layouts, instances and tables are set
   const ConstantPool& pool;
   std::unordered_map<std::string, uint32_t> pou_numbers;    // by folded name
   std::vector<const ir::Object*> objects;                   // by POU number
@@ -26,25 +26,23 @@ struct LinkContext {
 
 class Numbers {
  public:
-  Numbers(LinkContext& context, const ir::Object& object, const FrameLayout& frame)
+  Numbers(const LinkContext& context, const ir::Object& object, const FrameLayout& frame)
       : context_(context), object_(object), frame_(frame) {}
 
   uint32_t pou_number(uint32_t callee) const;
   uint64_t offset_of_place(uint32_t number) const;
   uint64_t near_offset(ir::Base base, uint32_t number) const;
   uint32_t wide_offset(ir::Base base, uint32_t number) const;
-  uint32_t range_number(uint32_t number);
+  uint32_t range_number(uint32_t number) const;
   // Of a field x or y; `base` is that of the instruction's BASE field.
-  uint32_t extension_field(const ir::Field& field, uint32_t number, ir::Base base);
+  uint32_t extension_field(const ir::Field& field, uint32_t number, ir::Base base) const;
 
  private:
   uint64_t slot_offset(uint32_t number) const;
   uint32_t size_of(ir::TypeId type) const;
-  uint32_t bound_number(uint32_t number);
-  template <class T>
-  uint32_t intern(const base::ByteWriter& key, std::vector<T>& table, T value);
+  uint32_t bound_number(uint32_t number) const;
 
-  LinkContext& context_;
+  const LinkContext& context_;
   const ir::Object& object_;
   const FrameLayout& frame_;
 };

@@ -263,7 +263,7 @@ class Examination {
 
   // From the values that the switch left, the evaluator goes on in the same way.
   void check_run(int scans) {
-    ir::Evaluator oracle(second_.program, golden::memory_of(rig_->image()));
+    ir::Evaluator oracle(second_.program, golden::memory_of(rig_->image(), second_.program.types));
     // Structures first: the padding of one that goes into a union can be seen there.
     for (const Leaf& whole : rig_->structures()) {
       base::Status done = oracle.set_bytes(whole.type, rig_->bytes(whole));

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "ir/program/evaluate.h"
+#include "linker/type_numbers.h"
 
 namespace golden {
 namespace {
@@ -46,8 +47,14 @@ int64_t base_period_ns(const ir::Program& program) {
   return period == 0 ? kIdleNs : period;
 }
 
-ir::EvalMemory memory_of(const ir::Image& image) {
-  ir::EvalMemory memory{image.layouts, {}};
+ir::EvalMemory memory_of(const ir::Image& image, const ir::TypeTable& types) {
+  ir::EvalMemory memory;
+  const linker::TypeNumbers numbers(types, &image);
+  memory.layouts.of.resize(types.size());
+  for (uint32_t i = 0; i < image.types.size(); ++i) {
+    const ir::TypeId id = numbers.of_base(ir::TypeId(i));
+    if (id.valid()) memory.layouts.of[id.index] = image.layouts.of[i];
+  }
   for (uint32_t id = 0; id < image.instances.size(); ++id) {
     const ir::Instance& row = image.instances[id];
     if (!row.live) continue;
@@ -60,7 +67,7 @@ base::Result<std::unique_ptr<Engine>> make_evaluator_engine(const Program& progr
   base::Result<ir::VerifiedImage> image = link(program, nullptr, false);
   if (!image) return image.error();
   return std::unique_ptr<Engine>(
-      std::make_unique<EvaluatorEngine>(program.program, memory_of(image->image())));
+      std::make_unique<EvaluatorEngine>(program.program, memory_of(image->image(), program.program.types)));
 }
 
 }  // namespace golden

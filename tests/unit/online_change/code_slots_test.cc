@@ -69,6 +69,73 @@ TEST(CodeSlots, D2_an_edit_with_new_constants_is_one_slot) {
   }
 }
 
+// What other POUs name: types in what they copy and refer to, bounds, ranges.
+std::string typed_source(const std::string& types, const std::string& variables,
+                         const std::string& body) {
+  return types +
+         "TYPE Row : STRUCT a : INT; b : ARRAY[0..3] OF REAL; END_STRUCT END_TYPE "
+         "TYPE Few : INT(0..9); END_TYPE "
+         "FUNCTION_BLOCK Edited VAR n : INT; " +
+         variables + " END_VAR " + body +
+         " END_FUNCTION_BLOCK "
+         "FUNCTION_BLOCK Other VAR rows : ARRAY[1..5] OF Row; one : Row; i : INT; f : Few; "
+         "r : REF_TO Row; END_VAR i := i MOD 4 + 1; rows[i] := one; f := i; one.b[i - 1] := 2.0; "
+         "r := REF(rows[i]); r^.a := f; END_FUNCTION_BLOCK "
+         "PROGRAM Main VAR a : Edited; b : Other; many : ARRAY[0..2] OF Other; END_VAR "
+         "a(); b(); many[1](); END_PROGRAM";
+}
+
+// New types, bounds and ranges take free numbers, and so the tables do not grow with the edits.
+TEST(CodeSlots, D2_an_edit_with_new_types_is_one_slot) {
+  Plant plant(typed_source("", "", "n := n + 1;"));
+  plant.run(1);
+  size_t types = 0;
+  for (int i = 1; i <= 40; ++i) {
+    const auto before = addresses(plant);
+    const uint64_t written = plant.controller().code_slots().written();
+    const std::string number = std::to_string(i);
+    const std::string name = "New" + number;
+    // Some edits bring two types and some none, so that numbers become free and are taken again.
+    std::string types_text =
+        "TYPE " + name + " : STRUCT x : INT(0.." + number + "); END_STRUCT " + "END_TYPE ";
+    std::string variables = "v : ARRAY[0.." + number + "] OF " + name + "; ";
+    std::string body = "v[n MOD 2].x := 1;";
+    if (i % 3 == 1) variables += "w : ARRAY[1..2] OF STRING[" + number + "];";
+    if (i % 5 == 0) types_text = variables = body = "";
+    plant.change(typed_source(types_text, variables, body + " n := n + " + number + ";"), true);
+    EXPECT_EQ(plant.controller().code_slots().written(), written + 1) << i;
+    for (const auto& [pou, code] : addresses(plant)) {
+      EXPECT_EQ(code == before.at(pou), pou != "Edited") << pou << " " << i;
+    }
+    plant.run(3);
+    plant.accept();
+    const ir::Image& image = plant.controller().image();
+    if (i == 1) types = image.types.size();
+    EXPECT_LE(image.types.size(), types) << i;
+    EXPECT_LE(image.bounds.size(), 8u);
+    EXPECT_LE(image.ranges.size(), 8u);
+  }
+  EXPECT_EQ(plant.get("Main.b.i"), "1");
+}
+
+// A change back to what runs is none, also where numbers are free.
+TEST(CodeSlots, D2_free_type_numbers_stay_free) {
+  const std::string with = typed_source("TYPE A : STRUCT x : INT; END_STRUCT END_TYPE ",
+                                        "v : ARRAY[0..7] OF A; k : INT;", "v[k].x := n;");
+  const std::string without = typed_source("", "", "n := n + 1;");
+  Plant plant(with);
+  plant.run(2);
+  const size_t types = plant.controller().image().types.size();
+  plant.change(without, true);
+  EXPECT_EQ(plant.controller().image().types.size(), types) << "the others are behind it";
+  plant.accept();
+  EXPECT_EQ(plant.refused(without), Refusal::kNoChange);
+  plant.change(with);
+  EXPECT_EQ(plant.controller().image().types.size(), types);
+  plant.undo();
+  plant.run(1);
+}
+
 // However alike they begin, each constant is found again.
 TEST(CodeSlots, case53_many_constants_that_begin_alike) {
   std::string text = "PROGRAM Main VAR s : STRING[40]; n : INT; END_VAR n := n + 1;\n";
