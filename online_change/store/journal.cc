@@ -115,6 +115,20 @@ base::Result<std::vector<JournalEntry>> read_journal(vm::Storage& storage,
   return entries;
 }
 
+std::vector<JournalEntry> by_time(std::vector<JournalEntry> entries,
+                                  std::vector<JournalEntry> traps) {
+  std::vector<JournalEntry> all;
+  auto trap = traps.begin();
+  for (JournalEntry& entry : entries) {
+    while (trap != traps.end() && trap->time_ns <= entry.time_ns) {
+      all.push_back(std::move(*trap++));
+    }
+    all.push_back(std::move(entry));
+  }
+  all.insert(all.end(), std::make_move_iterator(trap), std::make_move_iterator(traps.end()));
+  return all;
+}
+
 base::Status Journal::fail(const base::Error& error) {
   complaint_ = error.text;
   return error;

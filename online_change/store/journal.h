@@ -46,6 +46,10 @@ std::optional<JournalEntry> decode_entry(base::ByteSpan sector);
 // error, and so is a file that is not there.
 base::Result<std::vector<JournalEntry>> read_journal(vm::Storage& storage, const std::string& name);
 
+// Those of two, both oldest first, by time; what has the same time stays in its own order.
+std::vector<JournalEntry> by_time(std::vector<JournalEntry> entries,
+                                  std::vector<JournalEntry> traps);
+
 class Journal {
  public:
   Journal(vm::Storage& storage, std::string name, uint32_t entries)
@@ -53,6 +57,7 @@ class Journal {
   void recover();
   // Durable when it returns without an error; behind one nothing more is written.
   base::Status add(JournalEntry entry);
+  base::Result<std::vector<JournalEntry>> read() const { return read_journal(storage_, name_); }
   const std::string& complaint() const { return complaint_; }
 
  private:

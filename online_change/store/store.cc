@@ -281,6 +281,15 @@ void Store::note_trap(JournalEntry entry) {
   (void)traps_.add(std::move(entry)).ok();
 }
 
+base::Result<std::vector<JournalEntry>> Store::history() const {
+  std::lock_guard lock(mutex_);
+  auto entries = journal_.read();
+  if (!entries.ok()) return entries.error();
+  auto traps = traps_.read();
+  if (!traps.ok()) return traps.error();
+  return by_time(std::move(*entries), std::move(*traps));
+}
+
 base::Digest Store::boots() const {
   std::lock_guard lock(mutex_);
   return control_.boots;

@@ -78,6 +78,8 @@ class Store {
 
   void note(JournalEntry entry);
   void note_trap(JournalEntry entry);
+  // Of both rings, by time.
+  base::Result<std::vector<JournalEntry>> history() const;
 
   base::Digest boots() const;
   // What storage failed at since the start.

@@ -45,6 +45,14 @@ expect 0 stvm undo --host plant7 --dir "$work/$directory"
 expect 0 stvm get --dir "$directory" Main.gone
 said '5'
 
+expect 0 stvm journal --dir "$directory"
+cp out local
+expect 0 stvm journal --host plant7 --dir "$work/$directory"
+cmp out local || fail "the journal over ssh is another one"
+said 'undone'
+expect 7 stvm journal --host elsewhere
+said 'R0404'
+
 expect 7 stvm status --host elsewhere
 said 'R0404.*on elsewhere'
 expect 2 stvm status --host=-oProxyCommand=touch

@@ -9,7 +9,7 @@ namespace stc {
 namespace {
 
 base::Error at(std::string_view file, TomlPlace place, const std::string& text) {
-  return {base::Refusal::kBadMapping, toml_error(file, place.line, place.column, text).text};
+  return {base::Refusal::kBadMapping, tools::toml_error(file, place.line, place.column, text).text};
 }
 
 // Where the parts of a device stand, for what is found behind them.
@@ -21,7 +21,7 @@ struct Places {
 
 class Reader {
  public:
-  Reader(std::string_view file, const TomlTable& table) : file_(file), table_(table) {}
+  Reader(std::string_view file, const tools::TomlTable& table) : file_(file), table_(table) {}
 
   base::Result<std::vector<ir::Device>> run() {
     for (const auto& [key, value] : table_) {
@@ -42,7 +42,7 @@ class Reader {
 
  private:
   // Keys come sorted by device, so the last one is the one to add to.
-  base::Status add(std::string_view name, std::string_view key, const TomlValue& value) {
+  base::Status add(std::string_view name, std::string_view key, const tools::TomlValue& value) {
     if (devices_.empty() || devices_.back().name != name) {
       devices_.emplace_back().name = name;
       places_.emplace_back().device = {value.line, value.column};
@@ -53,7 +53,7 @@ class Reader {
     return add_setting(key, value);
   }
 
-  base::Status add_driver(const TomlValue& value) {
+  base::Status add_driver(const tools::TomlValue& value) {
     const auto* name = std::get_if<std::string>(&value.data);
     places_.back().device = value.place;
     if (name != nullptr && ir::find_driver(*name) != nullptr) {
@@ -69,7 +69,7 @@ class Reader {
                   " must be one of " + known);
   }
 
-  base::Status add_map(const TomlValue& value) {
+  base::Status add_map(const tools::TomlValue& value) {
     const auto* entries = std::get_if<std::vector<std::string>>(&value.data);
     if (entries == nullptr) return at(file_, value.place, "`map` must be a list of texts");
     for (size_t i = 0; i < entries->size(); ++i) {
@@ -85,7 +85,7 @@ class Reader {
     return base::Ok{};
   }
 
-  base::Status add_quality(const TomlValue& value) {
+  base::Status add_quality(const tools::TomlValue& value) {
     const auto* text = std::get_if<std::string>(&value.data);
     const auto address = text != nullptr ? ir::parse_address(*text) : std::nullopt;
     if (!address) {
@@ -96,7 +96,7 @@ class Reader {
     return base::Ok{};
   }
 
-  base::Status add_setting(std::string_view key, const TomlValue& value) {
+  base::Status add_setting(std::string_view key, const tools::TomlValue& value) {
     ir::DeviceSetting& setting = devices_.back().settings.emplace_back();
     setting.key = key;
     settings_.push_back({devices_.size() - 1, &value});
@@ -119,7 +119,7 @@ class Reader {
                   "device `" + devices_[device].name + "` has no `driver`");
       }
       for (const ir::DeviceSetting& setting : devices_[device].settings) {
-        const TomlValue& value = *settings_[next++].value;
+        const tools::TomlValue& value = *settings_[next++].value;
         const ir::SettingRow* row = ir::find_setting(*driver, setting.key);
         if (row == nullptr) {
           return at(file_, {value.line, value.column},
@@ -162,11 +162,11 @@ class Reader {
 
   struct GivenSetting {
     size_t device = 0;
-    const TomlValue* value = nullptr;
+    const tools::TomlValue* value = nullptr;
   };
 
   std::string_view file_;
-  const TomlTable& table_;
+  const tools::TomlTable& table_;
   std::vector<ir::Device> devices_;
   std::vector<Places> places_;  // parallel
   std::vector<GivenSetting> settings_;
@@ -174,7 +174,8 @@ class Reader {
 
 }  // namespace
 
-base::Result<std::vector<ir::Device>> read_devices(std::string_view file, const TomlTable& table) {
+base::Result<std::vector<ir::Device>> read_devices(std::string_view file,
+                                                   const tools::TomlTable& table) {
   return Reader(file, table).run();
 }
 

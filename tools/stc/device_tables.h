@@ -7,13 +7,14 @@
 
 #include "base/result.h"
 #include "ir/bytecode/devices.h"
-#include "tools/stc/toml.h"
+#include "tools/common/toml.h"
 
 namespace stc {
 
 inline constexpr std::string_view kDeviceTables = "devices.";
 
 // Sorted by name. Other keys of `table` are left alone.
-base::Result<std::vector<ir::Device>> read_devices(std::string_view file, const TomlTable& table);
+base::Result<std::vector<ir::Device>> read_devices(std::string_view file,
+                                                   const tools::TomlTable& table);
 
 }  // namespace stc

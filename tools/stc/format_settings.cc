@@ -32,24 +32,24 @@ constexpr SwitchKey kSwitches[] = {
     {"format.align_comments", &frontend::FormatOptions::align_comments},
 };
 
-base::Status apply_keyword_case(const std::string& file, const TomlValue& value,
+base::Status apply_keyword_case(const std::string& file, const tools::TomlValue& value,
                                 frontend::FormatOptions& options) {
   const std::string* word = std::get_if<std::string>(&value.data);
   if (word == nullptr || (*word != "upper" && *word != "keep")) {
-    return toml_error(file, value.line, value.column,
-                      "`format.keyword_case` must be \"upper\" or \"keep\"");
+    return tools::toml_error(file, value.line, value.column,
+                             "`format.keyword_case` must be \"upper\" or \"keep\"");
   }
   options.upper_keywords = *word == "upper";
   return base::Ok{};
 }
 
-base::Status apply_number(const std::string& file, const TomlValue& value, const NumberKey& key,
-                          frontend::FormatOptions& options) {
+base::Status apply_number(const std::string& file, const tools::TomlValue& value,
+                          const NumberKey& key, frontend::FormatOptions& options) {
   const int64_t* number = std::get_if<int64_t>(&value.data);
   if (number == nullptr || *number < key.least || *number > key.most) {
-    return toml_error(file, value.line, value.column,
-                      std::string("`") + key.name + "` must be a whole number between " +
-                          std::to_string(key.least) + " and " + std::to_string(key.most));
+    return tools::toml_error(file, value.line, value.column,
+                             std::string("`") + key.name + "` must be a whole number between " +
+                                 std::to_string(key.least) + " and " + std::to_string(key.most));
   }
   options.*key.member = static_cast<uint32_t>(*number);
   return base::Ok{};
@@ -70,7 +70,7 @@ std::string nearest_project_file(const std::string& path) {
 }  // namespace
 
 base::Status apply_format_key(const std::string& file, const std::string& key,
-                              const TomlValue& value, frontend::FormatOptions& options) {
+                              const tools::TomlValue& value, frontend::FormatOptions& options) {
   if (key == "format.keyword_case") return apply_keyword_case(file, value, options);
   for (const NumberKey& known : kNumbers) {
     if (key == known.name) return apply_number(file, value, known, options);
@@ -79,15 +79,17 @@ base::Status apply_format_key(const std::string& file, const std::string& key,
     if (key != known.name) continue;
     const bool* on = std::get_if<bool>(&value.data);
     if (on == nullptr) {
-      return toml_error(file, value.line, value.column, "`" + key + "` must be true or false");
+      return tools::toml_error(file, value.line, value.column,
+                               "`" + key + "` must be true or false");
     }
     options.*known.member = *on;
     return base::Ok{};
   }
-  return toml_error(file, value.line, value.column,
-                    "unknown key `" + key +
-                        "`; known in [format] are indent, tabs, width, keyword_case, "
-                        "align_declarations, align_arguments, align_assignments, align_comments");
+  return tools::toml_error(
+      file, value.line, value.column,
+      "unknown key `" + key +
+          "`; known in [format] are indent, tabs, width, keyword_case, "
+          "align_declarations, align_arguments, align_assignments, align_comments");
 }
 
 base::Result<frontend::FormatOptions> format_settings(const std::string& path) {
@@ -96,7 +98,7 @@ base::Result<frontend::FormatOptions> format_settings(const std::string& path) {
   if (file.empty()) return options;
   base::Result<std::string> text = tools::read_text(file);
   if (!text.ok()) return text.error();
-  base::Result<TomlTable> table = parse_toml(file, *text);
+  base::Result<tools::TomlTable> table = tools::parse_toml(file, *text);
   if (!table.ok()) return table.error();
   for (const auto& [key, value] : *table) {
     if (!key.starts_with(kFormatTable)) continue;

@@ -4,10 +4,11 @@
 #include <filesystem>
 
 #include "base/limits.h"
+#include "tools/common/change_settings.h"
 #include "tools/common/files.h"
+#include "tools/common/toml.h"
 #include "tools/stc/device_tables.h"
 #include "tools/stc/format_settings.h"
-#include "tools/stc/toml.h"
 
 namespace stc {
 namespace {
@@ -51,30 +52,31 @@ constexpr Key kSlackKeys[] = {
 };
 
 template <class T>
-base::Result<T> typed(const std::string& file, const std::string& key, const TomlValue& value,
-                      const char* what) {
+base::Result<T> typed(const std::string& file, const std::string& key,
+                      const tools::TomlValue& value, const char* what) {
   if (const T* data = std::get_if<T>(&value.data)) return *data;
-  return toml_error(file, value.line, value.column, "`" + key + "` must be " + what);
+  return tools::toml_error(file, value.line, value.column, "`" + key + "` must be " + what);
 }
 
-base::Status apply_slack(const std::string& file, const std::string& key, const TomlValue& value,
-                         linker::Slack& slack) {
+base::Status apply_slack(const std::string& file, const std::string& key,
+                         const tools::TomlValue& value, linker::Slack& slack) {
   for (const Key& known : kSlackKeys) {
     if (key != known.name) continue;
     base::Result<int64_t> number = typed<int64_t>(file, key, value, "a whole number");
     if (!number.ok()) return number.error();
     if (*number < 0 || *number > base::kMaxTypeBytes) {
-      return toml_error(
+      return tools::toml_error(
           file, value.line, value.column,
           "`" + key + "` must be between 0 and " + std::to_string(base::kMaxTypeBytes));
     }
     slack.*known.slack = static_cast<uint32_t>(*number);
     return base::Ok{};
   }
-  return toml_error(file, value.line, value.column,
-                    "unknown key `" + key +
-                        "`; known are name, dialect, resource, sources, defines and the tables "
-                        "[slack], [format] and [devices.NAME]");
+  return tools::toml_error(
+      file, value.line, value.column,
+      "unknown key `" + key +
+          "`; known are name, dialect, resource, sources, defines and the tables "
+          "[slack], [change], [format] and [devices.NAME]");
 }
 
 // Applies stc.toml of `folder`; `sources` is replaced when the file lists its own.
@@ -84,7 +86,7 @@ base::Status apply_project_file(const std::string& folder, Project& project,
   if (!fs::exists(file)) return base::Ok{};
   base::Result<std::string> text = tools::read_text(file);
   if (!text.ok()) return text.error();
-  base::Result<TomlTable> table = parse_toml(file, *text);
+  base::Result<tools::TomlTable> table = tools::parse_toml(file, *text);
   if (!table.ok()) return table.error();
   base::Result<std::vector<ir::Device>> devices = read_devices(file, *table);
   if (!devices.ok()) return devices.error();
@@ -100,7 +102,7 @@ base::Status apply_project_file(const std::string& folder, Project& project,
       if (!name.ok()) return name.error();
       auto dialect = frontend::dialect_from_name(*name);
       if (!dialect) {
-        return toml_error(file, value.line, value.column, frontend::unknown_dialect(*name));
+        return tools::toml_error(file, value.line, value.column, frontend::unknown_dialect(*name));
       }
       project.compile.dialect = *dialect;
     } else if (key == "resource") {
@@ -115,6 +117,10 @@ base::Status apply_project_file(const std::string& folder, Project& project,
     } else if (key.starts_with(kFormatTable)) {
       frontend::FormatOptions unused;  // only its own command needs them, but all check them
       base::Status status = apply_format_key(file, key, value, unused);
+      if (!status.ok()) return status;
+    } else if (key.starts_with(tools::kChangeTable)) {
+      tools::ChangeSettings unused;  // stvm's affair
+      base::Status status = tools::apply_change_key(file, key, value, unused);
       if (!status.ok()) return status;
     } else if (key == "defines") {
       auto list = typed<std::vector<std::string>>(file, key, value, "a list of texts");

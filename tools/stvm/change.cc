@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "tools/common/change_settings.h"
 #include "tools/common/child.h"
 #include "tools/common/exit.h"
 #include "tools/common/fate_report.h"
@@ -25,9 +26,12 @@ constexpr tools::OptionRow kOptions[] = {
     {"--yes", nullptr, "switch without asking"},
     {"--dry-run", nullptr, "stop after the fate report; nothing is changed"},
     {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},
-    {"--strategy", "S", "in-place (default), or standby: a second data area, made in idle time"},
+    {"--strategy", "S",
+     "in-place (default, or what the project says), or standby: a second data area, made in idle "
+     "time"},
     {"--allow-overrun", nullptr, "switch even if a task may be delayed"},
     {"--restricted", nullptr, "refuse when the interface of a POU is edited"},
+    {"--unrestricted", nullptr, "do not, whatever the project says"},
     {"--permanent", nullptr, "accept at once: no undo, the new program boots next"},
     STVM_DIALECT_OPTION,
     STVM_FORMAT_OPTION,
@@ -35,7 +39,8 @@ constexpr tools::OptionRow kOptions[] = {
 constexpr tools::Command kCommand{"change", "SOURCES...|IMAGE",
                                   "Changes the running program without stopping it.", kOptions, 1};
 
-base::Result<base::Bytes> make_package(const tools::Options& options, base::ByteSpan running) {
+base::Result<base::Bytes> make_package(const tools::Options& options, bool restricted,
+                                       base::ByteSpan running) {
   base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
   if (!folder.ok()) return folder.error();
   std::string base_file = folder->file("running.img");
@@ -43,7 +48,7 @@ base::Result<base::Bytes> make_package(const tools::Options& options, base::Byte
   base::Status written = tools::write_file(base_file, running);
   if (!written.ok()) return written.error();
   std::vector<std::string> command = {"package", "--base", base_file, "-o", package_file};
-  if (options.has("--restricted")) command.push_back("--restricted");
+  if (restricted) command.push_back("--restricted");
   base::Status made = tools::run_beside("stc", stc_arguments(command, sources_of(options)));
   if (!made.ok()) return made.error();
   return tools::read_bytes(package_file);
@@ -120,8 +125,20 @@ void print_json(const Outcome& outcome) {
   std::fputs(json.finish().c_str(), stdout);
 }
 
-base::Result<uint32_t> stage_flags(const tools::Options& options) {
-  const std::string strategy = options.text("--strategy");
+// Of stc.toml, where the command line says nothing else.
+base::Result<tools::ChangeSettings> settings_of(const tools::Options& options) {
+  base::Result<tools::ChangeSettings> settings = tools::change_settings(options.arguments());
+  if (!settings.ok()) return settings;
+  if (options.has("--restricted") && options.has("--unrestricted")) {
+    return base::Error{base::Refusal::kUsage, "--restricted and --unrestricted: which?"};
+  }
+  settings->strategy = options.text("--strategy", settings->strategy);
+  if (options.has("--restricted")) settings->restricted = true;
+  if (options.has("--unrestricted")) settings->restricted = false;
+  return settings;
+}
+
+base::Result<uint32_t> stage_flags(const std::string& strategy) {
   if (strategy.empty() || strategy == "in-place") return 0u;
   if (strategy == "standby") return uint32_t{vm::kByStandby};
   return base::Error{base::Refusal::kUsage,
@@ -129,7 +146,9 @@ base::Result<uint32_t> stage_flags(const tools::Options& options) {
 }
 
 base::Result<Outcome> change(const tools::Options& options, ControllerClient& client, bool json) {
-  base::Result<uint32_t> strategy = stage_flags(options);
+  base::Result<tools::ChangeSettings> settings = settings_of(options);
+  if (!settings.ok()) return settings.error();
+  base::Result<uint32_t> strategy = stage_flags(settings->strategy);
   if (!strategy.ok()) return strategy.error();
   base::Result<vm::StatusReport> status = client.status();
   if (!status.ok()) return status.error();
@@ -139,7 +158,7 @@ base::Result<Outcome> change(const tools::Options& options, ControllerClient& cl
   }
   base::Result<base::Bytes> running = client.image();
   if (!running.ok()) return running.error();
-  base::Result<base::Bytes> package = make_package(options, *running);
+  base::Result<base::Bytes> package = make_package(options, settings->restricted, *running);
   if (!package.ok()) return package.error();
   base::Status staged = client.stage(*package, *strategy);
   if (!staged.ok()) return staged.error();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "online_change/store/record.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/remote_client.h"
 #include "vm/runtime/socket_client.h"
@@ -111,6 +112,25 @@ base::Result<base::Bytes> ControllerClient::image() {
     if (part->total > base::kMaxImageBytes || all.size() > part->total) return endless();
     if (all.size() == part->total) return all;
     if (part->bytes.empty()) return endless();
+  }
+}
+
+// Whatever is no whole entry ends it: nothing else comes from a journal.
+base::Result<std::vector<online_change::JournalEntry>> ControllerClient::journal() {
+  std::vector<online_change::JournalEntry> all;
+  vm::Request request{.command = vm::Command::kJournal};
+  for (;;) {
+    request.offset = all.size();
+    base::Result<base::Bytes> body = call(request);
+    if (!body.ok()) return body.error();
+    if (body->empty()) return all;
+    const size_t bytes = online_change::kSectorBytes;
+    if (body->size() % bytes != 0 || all.size() > kMaxRows) return endless();
+    for (size_t at = 0; at < body->size(); at += bytes) {
+      auto entry = online_change::decode_entry(base::ByteSpan(*body).subspan(at, bytes));
+      if (!entry) return base::Error{base::Refusal::kProtocol, "message not understood: journal"};
+      all.push_back(std::move(*entry));
+    }
   }
 }
 

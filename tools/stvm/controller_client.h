@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "online_change/store/journal.h"
 #include "tools/common/options.h"
 #include "tools/stvm/fate_message.h"
 #include "vm/runtime/ports.h"
@@ -29,6 +30,7 @@ class ControllerClient {
   base::Status assign(vm::Command command, const std::vector<std::string>& names,
                       const std::vector<std::string>& values);
   base::Result<base::Bytes> image();
+  base::Result<std::vector<online_change::JournalEntry>> journal();
 
   base::Status stage(base::ByteSpan package, uint32_t flags);
   base::Result<FatePage> fates();

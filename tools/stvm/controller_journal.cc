@@ -79,6 +79,23 @@ base::Status ControllerService::store_trial() {
   return store_.begin_trial({staged_->digest(), staged_->encoded()}, *bytes);
 }
 
+// Entries from number `offset` on, as they lie on the disk; none behind the last. The first page
+// reads it, the others are of the same reading.
+base::Result<base::Bytes> ControllerService::journal(const vm::Request& request) {
+  if (request.offset == 0) {
+    auto all = store_.history();
+    if (!all.ok()) return all.error();
+    history_ = std::move(*all);
+  }
+  base::Bytes page;
+  for (uint64_t i = request.offset; i < history_.size() && page.size() < vm::kChunkBytes; ++i) {
+    const base::Bytes entry = online_change::encode(history_[i]);
+    page.insert(page.end(), entry.begin(), entry.end());
+  }
+  if (page.empty()) history_.clear();
+  return page;
+}
+
 // The program runs as it was asked to, only the disk does not follow: status shows that.
 void ControllerService::complain(const base::Status& status) {
   if (status.ok()) return;

@@ -93,6 +93,8 @@ base::Result<base::Bytes> ControllerService::dispatch(const vm::Request& request
       return stop(request);
     case vm::Command::kRestart:
       return restart(request);
+    case vm::Command::kJournal:
+      return journal(request);
   }
   return base::Error{base::Refusal::kProtocol, "unknown command"};
 }

@@ -57,6 +57,7 @@ class ControllerService : public vm::Service {
   Answer cancel(const vm::Request& request);
   Answer stop(const vm::Request& request);
   Answer restart(const vm::Request& request);
+  Answer journal(const vm::Request& request);
 
   base::Status check_expected(const vm::Request& request) const;
   // Runs `job` on the control thread at a boundary and waits for its end.
@@ -103,8 +104,9 @@ class ControllerService : public vm::Service {
   base::Bytes upload_;
   base::Bytes no_memory_;  // the answer that says so
   std::optional<ir::VerifiedImage> staged_;
-  std::optional<LiveReport> live_;             // of the staged change
-  std::optional<ir::VerifiedImage> previous_;  // during a trial
+  std::optional<LiveReport> live_;                    // of the staged change
+  std::vector<online_change::JournalEntry> history_;  // that pages of the journal are of
+  std::optional<ir::VerifiedImage> previous_;         // during a trial
   uint64_t edition_ = 0;
   std::atomic<bool> stop_wanted_{false};
 };

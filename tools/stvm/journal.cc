@@ -1,4 +1,5 @@
-// stvm journal: what happened to a controller, from its state directory; it need not run.
+// stvm journal: what happened to a controller, from its state directory, where it need not run; on
+// another machine, from the controller.
 #include <cstdio>
 #include <ctime>
 
@@ -7,6 +8,7 @@
 #include "tools/common/fate_report.h"
 #include "tools/common/json.h"
 #include "tools/stvm/commands.h"
+#include "tools/stvm/controller_client.h"
 #include "vm/runtime/file_storage.h"
 
 namespace stvm {
@@ -15,28 +17,25 @@ namespace {
 using online_change::Event;
 using online_change::JournalEntry;
 
-constexpr tools::OptionRow kOptions[] = {STVM_DIR_OPTION, STVM_FORMAT_OPTION};
+constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
 constexpr tools::Command kCommand{
     "journal", "", "Shows who changed what and when, power cuts, and traps; oldest first.",
     kOptions,  0,  0};
 
-// Both rings, by time; what has the same time stays in its own order.
 base::Result<std::vector<JournalEntry>> entries_in(const std::string& directory) {
   vm::FileStorage storage(directory);
   auto entries = online_change::read_journal(storage, online_change::kJournalFile);
   if (!entries.ok()) return entries.error();
   auto traps = online_change::read_journal(storage, online_change::kTrapsFile);
   if (!traps.ok()) return traps.error();
-  std::vector<JournalEntry> all;
-  auto trap = traps->begin();
-  for (JournalEntry& entry : *entries) {
-    while (trap != traps->end() && trap->time_ns <= entry.time_ns) {
-      all.push_back(std::move(*trap++));
-    }
-    all.push_back(std::move(entry));
-  }
-  all.insert(all.end(), std::make_move_iterator(trap), std::make_move_iterator(traps->end()));
-  return all;
+  return online_change::by_time(std::move(*entries), std::move(*traps));
+}
+
+base::Result<std::vector<JournalEntry>> entries_of(const tools::Options& options) {
+  if (!options.has("--host")) return entries_in(state_directory(options));
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
+  if (!client.ok()) return client.error();
+  return client->journal();
 }
 
 // "2026-03-01T08:00:00.123Z"
@@ -115,7 +114,7 @@ void print_json(const std::vector<JournalEntry>& entries) {
 base::Status show(const tools::Options& options) {
   base::Result<bool> json = wants_json(options);
   if (!json.ok()) return json.error();
-  auto entries = entries_in(state_directory(options));
+  auto entries = entries_of(options);
   if (!entries.ok()) return entries.error();
   (*json ? print_json : print_text)(*entries);
   return base::Ok{};

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "tools/common/change_settings.h"
 #include "tools/common/exit.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/compiler.h"
@@ -18,7 +19,9 @@ namespace {
 
 constexpr tools::OptionRow kOptions[] = {
     STVM_DIR_OPTION,
-    {"--data-limit", "BYTES", "of all data areas of a change together (default: no limit)"},
+    {"--data-limit", "BYTES",
+     "of all data areas of a change together (default: no limit, or what the project says)"},
+    {"--code-limit", "BYTES", "of all code, two slots for each POU (default: 2 GiB)"},
     {"--virtual-time", nullptr, "cycles as fast as they can run, instead of real time"},
     STVM_DEVICE_OPTION,
     STVM_DIALECT_OPTION,
@@ -107,6 +110,19 @@ void print_boot(const online_change::Boot& boot) {
                base::short_hex(boot.image.digest()).c_str());
 }
 
+base::Result<vm::ControllerOptions> limits_of(const tools::Options& options) {
+  vm::ControllerOptions limits;
+  base::Result<tools::ChangeSettings> settings = tools::change_settings(options.arguments());
+  if (!settings.ok()) return settings.error();
+  base::Result<uint64_t> data_limit = options.number("--data-limit", settings->data_limit);
+  if (!data_limit.ok()) return data_limit.error();
+  limits.data_limit = *data_limit;
+  base::Result<uint64_t> code_limit = options.number("--code-limit", limits.code_limit);
+  if (!code_limit.ok()) return code_limit.error();
+  limits.code_limit = *code_limit;
+  return limits;
+}
+
 void print_ready(const vm::Controller& controller, const std::string& directory) {
   std::printf("ready: %s %s in %s\n", controller.image().name.c_str(),
               base::short_hex(controller.verified().digest()).c_str(), directory.c_str());
@@ -115,6 +131,8 @@ void print_ready(const vm::Controller& controller, const std::string& directory)
 
 base::Status serve(const tools::Options& options) {
   std::string directory = state_directory(options);
+  base::Result<vm::ControllerOptions> limits = limits_of(options);
+  if (!limits.ok()) return limits.error();
   StopSignal::install();
   base::Result<StateFolder> folder = StateFolder::open(directory);
   if (!folder.ok()) return folder.error();
@@ -130,11 +148,7 @@ base::Status serve(const tools::Options& options) {
   auto devices = device_options(options, clock == &virtual_clock ? clock : nullptr);
   if (!devices.ok()) return devices.error();
   vm::DeviceIo io(std::move(*devices));
-  vm::ControllerOptions limits;
-  base::Result<uint64_t> data_limit = options.number("--data-limit", 0);
-  if (!data_limit.ok()) return data_limit.error();
-  limits.data_limit = *data_limit;
-  auto controller = vm::Controller::start(boot->image, limits, *clock, io, boot->retained);
+  auto controller = vm::Controller::start(boot->image, *limits, *clock, io, boot->retained);
   if (!controller.ok()) return controller.error();
   vm::Mailbox mailbox;
   ControllerService service(**controller, *clock, store, mailbox, {boot->trial_lost, boot->alarms});

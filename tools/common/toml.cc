@@ -1,8 +1,8 @@
-#include "tools/stc/toml.h"
+#include "tools/common/toml.h"
 
 #include <charconv>
 
-namespace stc {
+namespace tools {
 namespace {
 
 bool is_key_char(char c) {
@@ -206,4 +206,4 @@ base::Result<TomlTable> parse_toml(std::string_view file, std::string_view text)
   return Parser(file, text).run();
 }
 
-}  // namespace stc
+}  // namespace tools

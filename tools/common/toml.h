@@ -12,7 +12,7 @@
 
 #include "base/result.h"
 
-namespace stc {
+namespace tools {
 
 struct TomlPlace {
   uint32_t line = 0;
@@ -35,4 +35,4 @@ using TomlTable = std::map<std::string, TomlValue>;
 base::Result<TomlTable> parse_toml(std::string_view file, std::string_view text);
 base::Error toml_error(std::string_view file, uint32_t line, uint32_t column, std::string what);
 
-}  // namespace stc
+}  // namespace tools
