@@ -109,6 +109,7 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy,
     if (!area.ok()) return area.error();
     pending_->area = std::move(*area);
   }
+  pending_->count_work();
   state_ = State::kPrepared;
   if (interrupted()) return abandoned("when it was prepared");
   return base::Ok{};
@@ -142,7 +143,7 @@ base::Status Change::arm_steps(bool allow_loss, bool allow_overrun) {
     if (!interrupted()) continue;
     abandon();
     return abandoned("while it was armed");
-  } while (unit());
+  } while (late_unit());
   if (pending_->in_place()) pending_->forward.touch(controller_.memory().data());
   pending_->allow_loss = allow_loss;
   state_ = State::kArmed;
@@ -170,6 +171,12 @@ bool Change::unit() {
   const std::vector<Piece>& pieces = pending_->early.pieces();
   if (pending_->early_done == pieces.size()) return false;
   return pending_->early.move(pieces[pending_->early_done++], memory, memory, nullptr);
+}
+
+bool Change::late_unit() {
+  const bool done = unit();
+  if (done) controller_.worked(vm::kIdleUnitNs);
+  return done;
 }
 
 uint64_t Change::units_left() const {
@@ -254,6 +261,7 @@ base::Result<SwitchReport> Change::switch_steps() {
     if (carried.ok()) pending_->charts.note(controller_.memory().data());
     if (carried.ok()) carried = carry_over();
     if (!carried.ok() && leaves) controller_.construct();
+    count_switch();
   }
   if (!carried.ok()) {
     abandon();
@@ -293,6 +301,8 @@ base::Result<SwitchReport> Change::undo_steps() {
   if (!controller_.at_boundary()) return no_boundary();
   SwitchReport report = report_begin();
   uint8_t* memory = controller_.memory().data();
+  const std::string lost = pending_->charts.lost_on_the_way_back(memory);
+  if (!lost.empty()) return base::Error{base::Refusal::kActiveStepGone, lost};
   int64_t begin_ns = monotonic_ns();
   Transfer& back = pending_->backward;
   base::Status left = leave(pending_->leaving.at_undo);
@@ -304,6 +314,7 @@ base::Result<SwitchReport> Change::undo_steps() {
   const bool led_back = pending_->handles.back(memory, interrupted_);
   const bool remembered =
       !pending_->area || back.remember(pending_->area->data().data(), interrupted_);
+  count_undo();
   bool done = led_back && remembered && back.read_back(memory, pending_->forward, interrupted_) &&
               back.save(memory, interrupted_) && back.write(memory, interrupted_);
   if (!done) {

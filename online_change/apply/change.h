@@ -66,6 +66,7 @@ class Change {
   // In trial: what undo() would do.
   const Plan& undo_plan() const;
   Strategy strategy() const;
+  // Of the switch; in trial, of undo.
   int64_t predicted_pause_ns() const;
   // By kPrepared, at a boundary: work that must be done before the switch, as far as idle time goes
   // (C5). In place: new variables in bytes that version 1 does not use get their initial values
@@ -116,10 +117,13 @@ class Change {
                        std::vector<LiveLoss>& rows) const;
   base::Status check_losses(bool allow_loss) const;
   bool unit();
+  bool late_unit();  // not in idle time
   bool carry_in_place(const std::function<bool(const Loss&)>& on_loss);
   base::Status carry_over();
   void abandon();
   base::Status leave(const std::vector<uint32_t>& ids);
+  void count_switch();
+  void count_undo();
   bool interrupted() const { return interrupted_ && interrupted_(); }
   base::Error abandoned(const char* where) const;
   SwitchReport report_begin() const;

@@ -30,6 +30,7 @@ base::Status Change::try_migrations(const AtBoundary& at_boundary) {
   for (size_t call = 0; call < migrate.calls();) {
     const auto gather = [&] {
       call = migrate.gather(call, kGatherBytes, controller_.memory().data());
+      controller_.worked(int64_t{kGatherBytes} / kPauseComparedBytesPerNs);
     };
     base::Status taken = base::Ok{};
     if (at_boundary) {
@@ -44,13 +45,30 @@ base::Status Change::try_migrations(const AtBoundary& at_boundary) {
 
 int64_t Change::predicted_pause_ns() const {
   if (!pending_) return 0;
-  const uint64_t loops = pending_->migrate ? pending_->migrate->fuel_used() : 0;
-  const int64_t migrations = static_cast<int64_t>(loops) * kPauseLoopNs;
-  if (pending_->in_place()) return plan().predicted_pause_ns + migrations;
-  if (!pending_->area) return 0;
-  return migrations + predicted_standby_pause_ns(plan(), pending_->old(),
-                                                 pending_->new_image.image(),
-                                                 pending_->area->compared_bytes());
+  const bool back = state_ == State::kTrial;
+  BoundaryWork work = back ? pending_->undo_work : pending_->switch_work;
+  const Migrator* migrate = back ? pending_->migrate_back.get() : pending_->migrate.get();
+  if (migrate != nullptr) work.loops = migrate->fuel_used();
+  return pause_ns(work);
+}
+
+// Virtual time passes for what has been done. In place that is all there was to do; by standby,
+// what has drifted since the copy.
+void Change::count_switch() {
+  BoundaryWork work = pending_->switch_work;
+  if (pending_->area) {
+    work = pending_->area->work();
+    work.references = pending_->switch_work.references;
+    work.calls = pending_->switch_work.calls;
+  }
+  if (pending_->migrate) work.loops = pending_->migrate->last_fuel();
+  controller_.worked(pause_ns(work));
+}
+
+void Change::count_undo() {
+  BoundaryWork work = pending_->undo_work;
+  if (pending_->migrate_back) work.loops = pending_->migrate_back->last_fuel();
+  controller_.worked(pause_ns(work));
 }
 
 std::vector<LiveLoss> Change::live_losses() const {

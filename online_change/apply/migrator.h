@@ -40,8 +40,9 @@ class Migrator {
   // Takes the inputs as those of a run without running: on the way back, what nobody has written
   // since needs no migration.
   void note(const uint8_t* memory);
-  // Of the longest run so far, for predictions.
+  // Of the longest run so far, for predictions, and of the last one.
   uint64_t fuel_used() const { return most_fuel_; }
+  uint64_t last_fuel() const { return fuel_; }
 
   // For make().
   Migrator(Plan& plan, const ir::Image& from, const ir::Image& to, const vm::Generation& code,

@@ -32,6 +32,12 @@ struct Change::Pending {
         handles(old(), new_image.image()),
         leaving(find_leaving(old(), new_image.image())),
         charts(old(), new_image.image()) {}
+  // Behind stage(): both are known.
+  void count_work() {
+    switch_work = boundary_work(package.forward, old(), new_image.image(), !in_place());
+    if (area) switch_work.compared = area->compared_bytes();
+    undo_work = boundary_work(package.inverse, new_image.image(), old(), true);
+  }
   // Does the step out of this state run FB_Exit?
   bool leaves_at(State state) const {
     return (state == State::kArmed && !leaving.at_switch.empty()) ||
@@ -57,6 +63,9 @@ struct Change::Pending {
   std::unique_ptr<vm::Generation> waiting;
   // Standby: its data. In trial that is version 1's, as the switch found it.
   std::unique_ptr<Standby> area;
+  // Most of what the switch and undo have to do, without the loops of migrations.
+  BoundaryWork switch_work;
+  BoundaryWork undo_work;
   Leaving leaving;
   Charts charts;
   bool allow_loss = false;

@@ -115,6 +115,7 @@ bool Standby::copy_drift(const uint8_t* active, const Interrupted& interrupted) 
   for (size_t i = 0; i < blocks_.size(); ++i) {
     if (i % kBlocksPerLook == 0 && interrupted && interrupted()) return false;
     const ir::Extent& block = blocks_[i];
+    work_.compared += block.size;
     const uint8_t* now = active + block.offset;
     if (std::memcmp(now, snapshot_.data() + block.offset, block.size) == 0) continue;
     std::memcpy(data_.data() + block.offset, now, block.size);
@@ -138,11 +139,13 @@ bool Standby::touches_drift(const Piece& piece) const {
 }
 
 bool Standby::close(const uint8_t* active, const OnLoss& on_loss, const Interrupted& interrupted) {
+  work_ = {};
   if (!copy_drift(active, interrupted)) return false;
   const std::vector<Piece>& pieces = transfer_.pieces();
   for (size_t i = 0; i < pieces.size(); ++i) {
     if (!lossy_[i] && !transfer_.is_late(pieces[i]) && !touches_drift(pieces[i])) continue;
     if (interrupted && interrupted()) return false;
+    transfer_.count(pieces[i], work_);
     if (!transfer_.move(pieces[i], active, data_.data(), on_loss)) return false;
   }
   return true;

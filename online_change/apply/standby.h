@@ -33,6 +33,8 @@ class Standby {
   // Version 2's data behind close(); whatever is exchanged for it, after that.
   vm::Memory& data() { return data_; }
   uint64_t compared_bytes() const { return compared_bytes_; }
+  // What the last close() did.
+  const BoundaryWork& work() const { return work_; }
 
   // For make().
   Standby(Transfer& transfer, vm::Memory data, vm::Memory snapshot)
@@ -54,6 +56,7 @@ class Standby {
   std::vector<bool> lossy_;    // by piece: its values in the snapshot would lose something
   std::vector<bool> drifted_;  // by page
   bool any_drift_ = false;
+  BoundaryWork work_;
 };
 
 }  // namespace online_change

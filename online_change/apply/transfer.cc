@@ -197,6 +197,17 @@ bool Transfer::move(const Piece& piece, const uint8_t* source, uint8_t* target,
   return true;
 }
 
+// As boundary_work() counts: a step once, and a long value once, in however many pieces.
+void Transfer::count(const Piece& piece, BoundaryWork& work) const {
+  const uint32_t size = step_of(piece).size;
+  const bool slow = piece.kind == StepKind::kConvert && piece.fast == nullptr;
+  if (piece.within == 0) ++work.steps;
+  if (size == 0 || piece.within % size == 0) {
+    (slow ? work.slow_values : work.values) += piece.count;
+  }
+  work.bytes += piece.total();
+}
+
 bool Transfer::remember(const uint8_t* memory, const Interrupted& interrupted) {
   for (const Piece& piece : pieces_) {
     if (piece.kind == StepKind::kCopy) continue;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "online_change/apply/live_value.h"
+#include "online_change/plan/pause.h"
 
 namespace online_change {
 
@@ -75,6 +76,8 @@ class Transfer {
   const std::vector<Piece>& pieces() const { return pieces_; }
   // Reads a piece and writes it. False: ended by `on_loss`, not written.
   bool move(const Piece& piece, const uint8_t* source, uint8_t* target, const OnLoss& on_loss);
+  // What that takes.
+  void count(const Piece& piece, BoundaryWork& work) const;
   // Bytes from the first value's begin to the last one's end; 0 for what is initialised.
   uint64_t source_extent(const Piece& piece) const;
   uint64_t target_extent(const Piece& piece) const;

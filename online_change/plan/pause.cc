@@ -4,37 +4,42 @@
 #include "online_change/diff/place_moves.h"
 
 namespace online_change {
-namespace {
 
-int64_t pause_of_steps(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image,
-                       bool with_early) {
-  int64_t ns = kPauseFixedNs;
-  for (const UpdateStep& step : plan.steps) {
-    if (step.early && !with_early) continue;
-    bool slow =
-        step.kind == StepKind::kConvert &&
-        fast_converter(old_image.types, step.old_type, new_image.types, step.new_type) == nullptr;
-    ns += kPauseStepNs + (slow ? kPauseSlowConversionNs : kPauseValueNs) * int64_t{step.count};
-    ns += static_cast<int64_t>(step.total()) / kPauseBytesPerNs;
-  }
-  ns += kPauseMigrationNs * static_cast<int64_t>(plan.calls.size());
-  if (!PlaceMoves(old_image, new_image).trivial()) {
-    ns += kPauseReferenceNs * static_cast<int64_t>(reference_leaves(new_image).size());
-  }
-  return ns;
+int64_t pause_ns(const BoundaryWork& work) {
+  const auto times = [](uint64_t count, int64_t ns) { return static_cast<int64_t>(count) * ns; };
+  return kPauseFixedNs + times(work.steps, kPauseStepNs) + times(work.values, kPauseValueNs) +
+         times(work.slow_values, kPauseSlowConversionNs) +
+         static_cast<int64_t>(work.bytes) / kPauseBytesPerNs +
+         times(work.calls, kPauseMigrationNs) + times(work.loops, kPauseLoopNs) +
+         times(work.references, kPauseReferenceNs) +
+         static_cast<int64_t>(work.compared) / kPauseComparedBytesPerNs;
 }
 
-}  // namespace
+bool converts_slowly(const UpdateStep& step, const ir::Image& old_image,
+                     const ir::Image& new_image) {
+  return step.kind == StepKind::kConvert &&
+         fast_converter(old_image.types, step.old_type, new_image.types, step.new_type) == nullptr;
+}
+
+BoundaryWork boundary_work(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image,
+                           bool early_too) {
+  BoundaryWork work;
+  for (const UpdateStep& step : plan.steps) {
+    if (step.early && !early_too) continue;
+    ++work.steps;
+    (converts_slowly(step, old_image, new_image) ? work.slow_values : work.values) += step.count;
+    work.bytes += step.total();
+  }
+  work.calls = plan.calls.size();
+  if (!PlaceMoves(old_image, new_image).trivial()) {
+    work.references = reference_leaves(new_image).size();
+  }
+  return work;
+}
 
 int64_t predicted_pause_ns(const Plan& plan, const ir::Image& old_image,
                            const ir::Image& new_image) {
-  return pause_of_steps(plan, old_image, new_image, false);
-}
-
-int64_t predicted_standby_pause_ns(const Plan& plan, const ir::Image& old_image,
-                                   const ir::Image& new_image, uint64_t compared) {
-  return pause_of_steps(plan, old_image, new_image, true) +
-         static_cast<int64_t>(compared) / kPauseComparedBytesPerNs;
+  return pause_ns(boundary_work(plan, old_image, new_image, false));
 }
 
 }  // namespace online_change

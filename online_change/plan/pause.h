@@ -1,4 +1,5 @@
-// The cost model of the pause: what the boundary work of a plan is expected to take.
+// The cost model of the pause: what the boundary work of a plan is expected to take, and what work
+// that has been done takes on a virtual clock.
 // Constants from measurements on one core, two to four times what was measured there,
 // so that the real pause stays below on a slower one.
 #pragma once
@@ -21,9 +22,28 @@ inline constexpr int64_t kPauseBytesPerNs = 2;         // read, save and write t
 // Standby: `compared` bytes are looked at, and in the worst case all of them have changed.
 inline constexpr int64_t kPauseComparedBytesPerNs = 2;
 
+// Work at one boundary, counted.
+struct BoundaryWork {
+  uint64_t steps = 0;
+  uint64_t values = 0;  // copied, or converted fast
+  uint64_t slow_values = 0;
+  uint64_t bytes = 0;  // of both
+  uint64_t calls = 0;  // of migrations
+  uint64_t loops = 0;  // in them
+  uint64_t references = 0;
+  uint64_t compared = 0;  // bytes
+};
+int64_t pause_ns(const BoundaryWork& work);
+
+// Is a value of this step converted by kPauseSlowConversionNs?
+bool converts_slowly(const UpdateStep& step, const ir::Image& old_image,
+                     const ir::Image& new_image);
+// All that a plan asks for; `early_too`: also what can be done before the boundary. The loops of
+// migrations are not known.
+BoundaryWork boundary_work(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image,
+                           bool early_too);
+// Of that, in place.
 int64_t predicted_pause_ns(const Plan& plan, const ir::Image& old_image,
                            const ir::Image& new_image);
-int64_t predicted_standby_pause_ns(const Plan& plan, const ir::Image& old_image,
-                                   const ir::Image& new_image, uint64_t compared);
 
 }  // namespace online_change

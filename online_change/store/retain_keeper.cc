@@ -45,6 +45,7 @@ void RetainKeeper::take(Snapshot& out) {
   out.image = controller_.verified().digest();
   out.cycle = controller_.cycles();
   copy_retained(controller_.image(), controller_.memory().data(), out.values);
+  controller_.worked(copy_ns());
 }
 
 int64_t RetainKeeper::copy_ns() const {

@@ -50,6 +50,7 @@ class Rig {
     int64_t now_ns() override { return now_ns_; }
     void wait_until(int64_t deadline_ns) override { now_ns_ = std::max(now_ns_, deadline_ns); }
     void consumed(uint64_t) override {}
+    void worked(int64_t) override {}
 
    private:
     int64_t now_ns_ = 0;

@@ -147,11 +147,11 @@ void World::come_back() {
     disk_.before_call = nullptr;
   }
   disk_failed_ = false;
+  const Values now = retained_values(*controller_);  // before anything of it runs
   const base::Digest running = controller_->verified().digest();
   require(std::find(may_boot_.begin(), may_boot_.end(), running) != may_boot_.end(),
           "what boots is what was accepted last");
   require(settled().boots_next == running, "and boots next");
-  const Values now = retained_values(*controller_);
   const bool known =
       retained.empty() || std::any_of(retained.begin(), retained.end(),
                                       [&](const Values& values) { return agree(now, values); });

@@ -9,7 +9,10 @@ void SteppedBoundary::cycle() {
 
 vm::Boundary::Outcome SteppedBoundary::run(const std::function<void()>& job, int64_t timeout_ns) {
   const int64_t give_up_ns = clock_.now_ns() + timeout_ns;
-  while (!controller_.at_boundary()) {
+  const auto due = [&] {
+    return !controller_.faulted() && clock_.now_ns() >= controller_.next_cycle_ns();
+  };
+  while (!controller_.at_boundary() || due()) {
     if (clock_.now_ns() >= give_up_ns) return Outcome::kTimeout;
     cycle();
   }

@@ -57,6 +57,8 @@ bool World::run(int steps) {
 
 void World::switched(const Snapshot& before, const Snapshot& now) {
   ++tally_.switches;
+  require(may_delay_ || clock_.now_ns() <= controller_->next_cycle_ns(),
+          "a switch delayed a release");
   try {
     check_kept(before, now);
   } catch (const Violation&) {
@@ -176,14 +178,17 @@ void World::change() {
   if (!next) return;
   std::optional<base::Bytes> package = package_for(hand.seen.running, *next);
   if (!package) return;
-  const uint32_t flags = (random_.one_in(3) ? 0u : vm::kAllowLoss) | vm::kAllowOverrun |
+  const uint32_t flags = (random_.one_in(3) ? 0u : vm::kAllowLoss) |
+                         (random_.one_in(2) ? vm::kAllowOverrun : 0u) |
                          (random_.one_in(5) ? vm::kPermanent : 0u);
   if ((flags & vm::kPermanent) != 0) {
     may_boot_.push_back(ir::digest(online_change::decode(*package)->image));
   }
   bad_luck(hand);
   boundary_->guard("a change that was not switched");
+  may_delay_ = (flags & vm::kAllowOverrun) != 0;
   base::Status done = try_change(hand, *package, flags);
+  may_delay_ = false;
   boundary_->guard("");
   if (!done.ok()) refused(done.error());
   const vm::StatusReport now = settled();
@@ -246,8 +251,8 @@ void World::two_tools() {
   boundary_->guard("a change of one of two tools");
   base::Status staged = one.client->stage(*first, strategy());
   base::Status other = two.client->stage(*second, strategy());
-  auto report = one.client->make_switch(vm::kAllowLoss | vm::kAllowOverrun);
-  auto late = two.client->make_switch(vm::kAllowLoss | vm::kAllowOverrun);
+  auto report = one.client->make_switch(vm::kAllowLoss);
+  auto late = two.client->make_switch(vm::kAllowLoss);
   boundary_->guard("");
   require(!(report.ok() && late.ok()), "one of two tools switches at most");
   const vm::StatusReport now = settled();

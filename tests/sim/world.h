@@ -89,6 +89,7 @@ class World {
   bool trace_;
   Tally tally_;
   vm::VirtualClock clock_;
+  bool may_delay_ = false;  // the change at hand was allowed to
   vm::SimulatedIo devices_;
   SimStorage disk_;
   std::unique_ptr<online_change::Store> store_;

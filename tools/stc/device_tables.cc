@@ -8,15 +8,15 @@
 namespace stc {
 namespace {
 
-base::Error at(std::string_view file, TomlPlace place, const std::string& text) {
+base::Error at(std::string_view file, tools::TomlPlace place, const std::string& text) {
   return {base::Refusal::kBadMapping, tools::toml_error(file, place.line, place.column, text).text};
 }
 
 // Where the parts of a device stand, for what is found behind them.
 struct Places {
-  TomlPlace device;  // its driver
-  std::vector<TomlPlace> map;
-  TomlPlace quality;
+  tools::TomlPlace device;  // its driver
+  std::vector<tools::TomlPlace> map;
+  tools::TomlPlace quality;
 };
 
 class Reader {
@@ -73,7 +73,7 @@ class Reader {
     const auto* entries = std::get_if<std::vector<std::string>>(&value.data);
     if (entries == nullptr) return at(file_, value.place, "`map` must be a list of texts");
     for (size_t i = 0; i < entries->size(); ++i) {
-      TomlPlace place = value.places[i];
+      tools::TomlPlace place = value.places[i];
       ++place.column;  // behind the quote
       ir::DeviceMapping& mapping = devices_.back().map.emplace_back();
       if (auto fault = parse_map_entry((*entries)[i], mapping)) {

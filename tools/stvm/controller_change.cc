@@ -129,7 +129,7 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
   }
   const online_change::Plan& plan = back ? change_.undo_plan() : change_.plan();
   FatePage page{plan.counts,
-                back ? plan.predicted_pause_ns : change_.predicted_pause_ns(),
+                change_.predicted_pause_ns(),
                 plan.boundary_bytes,
                 0,
                 {},
@@ -182,6 +182,7 @@ void ControllerService::forget_staged() {
   live_.reset();
 }
 
+// Undo too takes its time from the next cycle.
 bool ControllerService::time_for_switch() const {
   int64_t left = controller_.next_cycle_ns() - clock_.now_ns();
   return left > change_.predicted_pause_ns() + 2 * keeper_.copy_ns();  // before and behind
@@ -315,23 +316,30 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   return encode(finish_report(*report, missed_before));
 }
 
-// Done first and then recorded: after a power cut in between it boots the same program.
+// Done first and then recorded: after a power cut in between it boots the same program. Where no
+// cycle leaves time enough it is done all the same: it is what people ask for when something is
+// wrong.
 base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
   std::optional<base::Result<online_change::SwitchReport>> report;
   uint64_t missed_before = 0;
+  const int64_t predicted_ns = change_.predicted_pause_ns();
   const base::Digest undone = controller_.verified().digest();
   online_change::Snapshot after = empty_snapshot();
-  base::Status taken = at_boundary([&] {
-    missed_before = controller_.missed_releases();
-    report.emplace(change_.undo());
-    if (report->ok()) keeper_.take(after);
-  });
-  if (!taken.ok()) return taken.error();
+  for (int attempt = 1; !report; ++attempt) {
+    if (attempt != 1) boundary_.pause(kBetweenAttemptsNs);
+    base::Status taken = at_boundary([&] {
+      if (!time_for_switch() && attempt != kSwitchAttempts) return;
+      missed_before = controller_.missed_releases();
+      report.emplace(change_.undo());
+      if (report->ok()) keeper_.take(after);
+    });
+    if (!taken.ok()) return taken.error();
+  }
   if (!report->ok()) return refused(report->error());
   change_.collect();
   complain(store_.end_trial());
   complain(keeper_.save(after));
-  note_switch(online_change::Event::kUndone, undone, **report, 0);
+  note_switch(online_change::Event::kUndone, undone, **report, predicted_ns);
   previous_.reset();
   ++edition_;
   return encode(finish_report(**report, missed_before));

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "online_change/apply/losses.h"
+#include "online_change/plan/pause.h"
 
 namespace stvm {
 namespace {
@@ -24,8 +25,10 @@ base::Result<LiveReport> LiveReport::take(vm::Controller& controller,
     uint8_t* const to = report.memory_.data() + at;
     const size_t size = std::min(kSliceBytes, end - at);
     std::memset(to, 1, size);  // its pages are there before the boundary
-    base::Status taken =
-        at_boundary([&] { std::memcpy(to, controller.memory().data() + at, size); });
+    base::Status taken = at_boundary([&] {
+      std::memcpy(to, controller.memory().data() + at, size);
+      controller.worked(static_cast<int64_t>(size) / online_change::kPauseBytesPerNs);
+    });
     if (!taken.ok()) return taken.error();
   }
   report.losses_ = change.live_losses(report.memory_.view());

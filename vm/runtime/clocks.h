@@ -13,6 +13,7 @@ class RealClock : public Clock {
   int64_t now_ns() override;
   void wait_until(int64_t deadline_ns) override;
   void consumed(uint64_t) override {}
+  void worked(int64_t) override {}
 
  private:
   int64_t origin_ns_ = 0;
@@ -30,6 +31,7 @@ class VirtualClock : public Clock {
   void consumed(uint64_t safe_points) override {
     now_ns_ += static_cast<int64_t>(safe_points) * ns_per_safe_point_;
   }
+  void worked(int64_t expected_ns) override { now_ns_ += expected_ns; }
   void advance(int64_t ns) { now_ns_ += ns; }
 
  private:

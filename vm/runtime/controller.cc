@@ -80,6 +80,7 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
 
 void Controller::cycle() { impl_->scheduler.run_cycle(); }
 void Controller::run_idle(const std::function<bool()>& unit) { impl_->scheduler.run_idle(unit); }
+void Controller::worked(int64_t expected_ns) { impl_->scheduler.worked(expected_ns); }
 uint64_t Controller::cycles() const { return impl_->scheduler.cycles(); }
 bool Controller::at_boundary() const { return impl_->scheduler.at_boundary(); }
 bool Controller::faulted() const { return impl_->scheduler.faulted(); }

@@ -82,6 +82,8 @@ class Controller {
   // that it had nothing to do, or another one might not be over when the cycle begins. A unit takes
   // kIdleUnitNs at most, and counts as one safe point for a virtual clock.
   void run_idle(const std::function<bool()>& unit);
+  // At a boundary, behind work there that no scan did: Clock::worked.
+  void worked(int64_t expected_ns);
   uint64_t cycles() const;
   bool at_boundary() const;
   bool faulted() const;

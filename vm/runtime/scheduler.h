@@ -38,6 +38,8 @@ class Scheduler {
   void use(TaskTables& tables, uint8_t* memory);
   // Controller::run_idle.
   void run_idle(const std::function<bool()>& unit);
+  // Controller::worked.
+  void worked(int64_t expected_ns) { clock_.worked(expected_ns); }
   TaskTables& tables() { return *tables_; }
   const TaskTables& tables() const { return *tables_; }
 

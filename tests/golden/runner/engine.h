@@ -40,6 +40,9 @@ class Engine {
   virtual base::Result<std::vector<std::string>> change(const Program& next, bool allow_loss);
   virtual base::Status undo();
   virtual base::Status accept();
+  // Releases that found their task still running or were passed by, and such that a change or an
+  // undo has delayed.
+  virtual uint64_t missed() const { return 0; }
 };
 
 base::Result<std::unique_ptr<Engine>> make_engine(Tier tier, const Program& program);

@@ -4,20 +4,11 @@
 
 #include "ir/bytecode/symbols.h"
 #include "online_change/apply/change.h"
+#include "vm/runtime/clocks.h"
 #include "vm/runtime/controller.h"
 
 namespace golden {
 namespace {
-
-class JumpingClock : public vm::Clock {
- public:
-  int64_t now_ns() override { return now_ns_; }
-  void wait_until(int64_t deadline_ns) override { now_ns_ = std::max(now_ns_, deadline_ns); }
-  void consumed(uint64_t) override {}
-
- private:
-  int64_t now_ns_ = 0;
-};
 
 class NoDevices : public vm::IoPort {
  public:
@@ -110,12 +101,12 @@ class MachineEngine : public Engine {
       std::string becomes = loss.new_value.empty() ? "" : " -> " + loss.new_value;
       lines.push_back("loss " + loss.path + ": " + loss.old_value + becomes + " " + loss.what);
     }
-    base::Status armed = change_->arm(allow_loss);
+    base::Status armed = arm(allow_loss);
     if (!armed.ok()) {
       change_->cancel();
       return armed.error();
     }
-    base::Result<online_change::SwitchReport> report = change_->switch_now();
+    base::Result<online_change::SwitchReport> report = watched(change_->switch_now());
     if (!report.ok()) return report.error();
     previous_ = program_;
     program_ = &next;
@@ -123,13 +114,14 @@ class MachineEngine : public Engine {
     return lines;
   }
   base::Status undo() override {
-    base::Result<online_change::SwitchReport> report = change_->undo();
+    base::Result<online_change::SwitchReport> report = watched(change_->undo());
     if (!report.ok()) return report.error();
     if (previous_ != nullptr) program_ = previous_;
     hard_packages_.clear();
     return base::Ok{};
   }
   base::Status accept() override { return change_->accept(); }
+  uint64_t missed() const override { return controller_->missed_releases() + delayed_; }
 
  private:
   online_change::Strategy strategy() const {
@@ -143,6 +135,18 @@ class MachineEngine : public Engine {
     auto package = online_change::make_package(controller_->verified().encoded(), image->encoded());
     if (!package.ok()) return package.error();
     return change_->stage(online_change::encode(*package), strategy());
+  }
+
+  base::Result<online_change::SwitchReport> watched(
+      base::Result<online_change::SwitchReport> report) {
+    if (clock_.now_ns() > controller_->next_cycle_ns()) ++delayed_;
+    return report;
+  }
+
+  // What can be done in idle time takes none of the scans'.
+  base::Status arm(bool allow_loss) {
+    base::Result<bool> done = change_->configure();
+    return done.ok() ? change_->arm(allow_loss) : base::Status(done.error());
   }
 
   // The same program under another name: without that, a change to itself would be none.
@@ -175,14 +179,14 @@ class MachineEngine : public Engine {
   // An identity change whose second area is a scan old when it is switched to.
   base::Status late_change() {
     if (change_->state() == online_change::State::kArmed) {
-      base::Result<online_change::SwitchReport> report = change_->switch_now();
+      base::Result<online_change::SwitchReport> report = watched(change_->switch_now());
       if (!report.ok()) return report.error();
       base::Status accepted = change_->accept();
       if (!accepted.ok()) return accepted;
     }
     base::Status staged = stage_hard();
     if (!staged.ok()) return staged;
-    return change_->arm(false);
+    return arm(false);
   }
 
   // An identity change, with or without moving everything; nothing may differ after it.
@@ -192,9 +196,9 @@ class MachineEngine : public Engine {
     if (!staged.ok()) {
       return staged.error().refusal == base::Refusal::kNoChange ? base::Status(base::Ok{}) : staged;
     }
-    base::Status armed = change_->arm(false);
+    base::Status armed = arm(false);
     if (!armed.ok()) return armed;
-    base::Result<online_change::SwitchReport> report = change_->switch_now();
+    base::Result<online_change::SwitchReport> report = watched(change_->switch_now());
     if (!report.ok()) return report.error();
     return change_->accept();
   }
@@ -202,9 +206,10 @@ class MachineEngine : public Engine {
   Tier tier_;
   const Program* program_;
   const Program* previous_ = nullptr;
-  JumpingClock clock_;
+  vm::VirtualClock clock_;
   NoDevices devices_;
   bool scanned_ = false;
+  uint64_t delayed_ = 0;
   std::unique_ptr<vm::Controller> controller_;
   std::unique_ptr<online_change::Change> change_;
   std::map<base::Digest, base::Bytes> hard_packages_;

@@ -99,6 +99,53 @@ TEST(Pause, A18_the_plain_method_saves_and_restores_everything) {
   EXPECT_GT(*instructions[1], 2 * *instructions[0]);
 }
 
+std::string converted_at_1_ms(int values, const char* type) {
+  return "CONFIGURATION C TASK Fast (INTERVAL := T#1ms); PROGRAM Main WITH Fast : Main; "
+         "END_CONFIGURATION PROGRAM Main VAR a : ARRAY[1.." +
+         std::to_string(values) + "] OF " + type + "; END_VAR END_PROGRAM";
+}
+
+// On virtual time a switch and an undo take what the model says of the work that they did: so a
+// release that they delay is seen, and what is admitted delays none.
+TEST(Pause, C5_case45_VirtualTimePassesForTheSwitchAndForUndo) {
+  for (const Strategy strategy : {Strategy::kInPlace, Strategy::kStandby}) {
+    for (const int values : {1000, 400'000}) {
+      const bool fits = values == 1000;
+      Plant plant(converted_at_1_ms(values, "INT"), roomy());
+      plant.use(strategy);
+      plant.run(1);
+      ASSERT_TRUE(plant.stage(plant.package(converted_at_1_ms(values, "REAL"))).ok());
+      ASSERT_TRUE(plant.driver().configure().ok());
+      EXPECT_EQ(plant.driver().arm(true).ok(), fits);
+      if (!fits) {
+        ASSERT_TRUE(plant.driver().arm(true, true).ok());
+      }
+      for (int i = 1; i <= values; ++i) {
+        plant.controller()
+            .memory()
+            .data()[ir::find_symbol(plant.controller().image(), "Main.a[1]")->data + 2 * (i - 1)] ^=
+            1;  // all has drifted
+      }
+      int64_t predicted_ns = plant.driver().predicted_pause_ns();
+      int64_t before_ns = plant.clock().now_ns();
+      ASSERT_TRUE(plant.driver().switch_now().ok());
+      int64_t took_ns = plant.clock().now_ns() - before_ns;
+      EXPECT_GT(took_ns, predicted_ns / 2);
+      EXPECT_LE(took_ns, predicted_ns);
+      EXPECT_EQ(plant.clock().now_ns() <= plant.controller().next_cycle_ns(), fits);
+      plant.run(2);
+      EXPECT_EQ(plant.controller().missed_releases() == 0, fits);
+      predicted_ns = plant.driver().predicted_pause_ns();
+      before_ns = plant.clock().now_ns();
+      plant.undo();
+      took_ns = plant.clock().now_ns() - before_ns;
+      EXPECT_EQ(took_ns, predicted_ns);
+      plant.run(2);
+      EXPECT_EQ(plant.controller().missed_releases() == 0, fits);
+    }
+  }
+}
+
 // Measured with whatever else the machine does: the best of several.
 TEST(Pause, case52_everything_changes_within_the_prediction) {
 #if !defined(__OPTIMIZE__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
