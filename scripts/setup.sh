@@ -12,6 +12,8 @@ need cmake cmake
 need ninja ninja-build
 need ccache ccache
 [ -e /usr/include/gtest/gtest.h ] || missing="$missing libgtest-dev"
+[ -e /usr/include/modbus/modbus.h ] || missing="$missing libmodbus-dev"
+need mbpoll mbpoll
 for package in "$@"; do  # extra packages of one make target
   dpkg -s "$package" >/dev/null 2>&1 || missing="$missing $package"
 done

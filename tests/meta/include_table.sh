@@ -20,6 +20,7 @@ frontend/format: ir/types/types.h frontend/lex frontend/parse/il_operators.h fro
 linker: ir/types ir/program ir/bytecode stdlib/native
 vm: ir/types ir/program/ir.h ir/bytecode stdlib/native
 vm/io: ir/types ir/bytecode vm/runtime
+adapters/modbus: ir/types ir/bytecode vm/io vm/runtime
 online_change/diff: ir linker
 online_change/plan: ir linker online_change/diff
 online_change/package: ir linker online_change/diff online_change/plan
@@ -27,10 +28,10 @@ online_change/apply: ir/types ir/program/ir.h ir/bytecode online_change vm
 online_change/store: ir/types ir/program/ir.h ir/bytecode online_change/diff online_change/plan online_change/apply vm
 tools/common: ir online_change/diff online_change/plan
 tools/stc: ir frontend linker online_change/diff online_change/plan online_change/package stdlib vm/exec vm/load tools/common
-tools/stvm: ir/types ir/program/ir.h ir/bytecode vm online_change tools/common
+tools/stvm: ir/types ir/program/ir.h ir/bytecode vm online_change tools/common adapters
 '
 
-find base ir frontend linker vm online_change stdlib tools -name '*.cc' -o -name '*.h' |
+find adapters base ir frontend linker vm online_change stdlib tools -name '*.cc' -o -name '*.h' |
   xargs grep -n '^#include "' | sed 's/^\([^:]*\):\([0-9]*\):#include "\([^"]*\)".*/\1 \2 \3/' |
   TABLE="$table" awk '
     BEGIN {

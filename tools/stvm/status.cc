@@ -70,14 +70,17 @@ void memory_json(tools::JsonWriter& json, const vm::MemoryReport& memory) {
 
 void print_devices(const std::vector<vm::DeviceStatus>& devices) {
   if (devices.empty()) return;
-  tools::Table table(
-      {"device", "driver", "state", "> exchanges", "> errors", "> age", "last error"});
+  tools::Table table({"device", "driver", "state", "> exchanges", "> errors", "> age"});
   for (const vm::DeviceStatus& device : devices) {
     table.row({device.name, device.driver, device.state, std::to_string(device.exchanges),
                std::to_string(device.errors),
-               device.age_ns < 0 ? "never" : tools::duration(device.age_ns), device.error});
+               device.age_ns < 0 ? "never" : tools::duration(device.age_ns)});
   }
   std::printf("\n%s", table.text().c_str());
+  for (const vm::DeviceStatus& device : devices) {
+    if (device.error.empty()) continue;
+    std::printf("last error of %s: %s\n", device.name.c_str(), device.error.c_str());
+  }
 }
 
 void device_json(tools::JsonWriter& json, const vm::DeviceStatus& device) {

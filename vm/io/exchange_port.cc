@@ -19,6 +19,7 @@ struct ExchangePort::Core {
       : device(std::move(d)),
         own_thread(threaded),
         exclusive(ir::find_driver(device.driver)->exclusive),
+        server(ir::find_driver(device.driver)->server),
         period_ns(ir::number_setting(device, "period_ms") * kMs),
         timeout_ns(ir::number_setting(device, "timeout_ms") * kMs),
         driver(std::move(made)) {}
@@ -33,6 +34,7 @@ struct ExchangePort::Core {
   const ir::Device device;
   const bool own_thread;
   const bool exclusive;
+  const bool server;
   const int64_t period_ns;
   const int64_t timeout_ns;
 
@@ -128,7 +130,7 @@ void ExchangePort::Core::note(const base::Status& status, int64_t now) {
 
 // Longer and longer while nobody answers.
 int64_t ExchangePort::Core::pause_ns() const {
-  if (failures < 2) return period_ns;
+  if (failures < 2 || server) return period_ns;  // a server waits for others
   const int64_t longest = std::max(period_ns, kLongestRetryNs);
   return std::min(period_ns << std::min<uint32_t>(failures - 1, 20), longest);
 }

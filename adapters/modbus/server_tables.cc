@@ -1,0 +1,120 @@
+#include "adapters/modbus/server_tables.h"
+
+#include "adapters/modbus/values.h"
+
+namespace modbus {
+namespace {
+
+using ir::PointTable;
+
+uint32_t word(const uint8_t* at) { return static_cast<uint32_t>(at[0] << 8 | at[1]); }
+
+}  // namespace
+
+ServerTables::ServerTables(bool high_first)
+    : high_first_(high_first), tables_(modbus_mapping_new(kPoints, kPoints, kPoints, kPoints)) {}
+
+ServerTables::Permission& ServerTables::of(PointTable table) {
+  return permissions_[static_cast<size_t>(table) - static_cast<size_t>(PointTable::kCoil)];
+}
+
+void ServerTables::use(const vm::DevicePoints& points) {
+  if (points == points_) return;
+  points_ = points;
+  for (Permission& permission : permissions_) permission = {};
+  auto allow = [&](const vm::PointRange& range, bool write) {
+    for (uint32_t i = 0; i < range.count; ++i) {
+      of(range.table).read[range.first + i] = true;
+      of(range.table).write[range.first + i] = write;
+    }
+  };
+  for (const vm::PointRange& range : points_.inputs) allow(range, true);
+  for (const vm::PointRange& range : points_.outputs) allow(range, false);
+}
+
+void ServerTables::show(base::ByteSpan outputs) {
+  for (const vm::PointRange& range : points_.outputs) {
+    for (uint32_t i = 0; i < range.count; ++i) {
+      const uint32_t at = range.first + i;
+      switch (range.table) {
+        case PointTable::kCoil:
+          tables_->tab_bits[at] = get_bit(outputs, range, i);
+          break;
+        case PointTable::kDiscrete:
+          tables_->tab_input_bits[at] = get_bit(outputs, range, i);
+          break;
+        case PointTable::kInput:
+          tables_->tab_input_registers[at] = get_register(outputs, range, i, high_first_);
+          break;
+        default:
+          tables_->tab_registers[at] = get_register(outputs, range, i, high_first_);
+          break;
+      }
+    }
+  }
+}
+
+void ServerTables::fetch(std::span<uint8_t> inputs) const {
+  for (const vm::PointRange& range : points_.inputs) {
+    for (uint32_t i = 0; i < range.count; ++i) {
+      const uint32_t at = range.first + i;
+      if (range.table == PointTable::kCoil) {
+        set_bit(inputs, range, i, tables_->tab_bits[at] != 0);
+      } else {
+        set_register(inputs, range, i, high_first_, tables_->tab_registers[at]);
+      }
+    }
+  }
+}
+
+bool ServerTables::may(PointTable table, bool write, uint32_t first, uint32_t count) {
+  if (first + count > kPoints) return false;
+  const std::vector<bool>& allowed = write ? of(table).write : of(table).read;
+  for (uint32_t i = 0; i < count; ++i) {
+    if (!allowed[first + i]) return false;
+  }
+  return true;
+}
+
+// Function, address and number of a request; numbers that no request may have, and functions that
+// are not served, are libmodbus' to answer.
+bool ServerTables::permits(const uint8_t* pdu, int length) {
+  if (length < 5) return true;
+  const uint32_t first = word(pdu + 1);
+  const uint32_t count = word(pdu + 3);
+  switch (pdu[0]) {
+    case MODBUS_FC_READ_COILS:
+      return may(PointTable::kCoil, false, first, count);
+    case MODBUS_FC_READ_DISCRETE_INPUTS:
+      return may(PointTable::kDiscrete, false, first, count);
+    case MODBUS_FC_READ_HOLDING_REGISTERS:
+      return may(PointTable::kHolding, false, first, count);
+    case MODBUS_FC_READ_INPUT_REGISTERS:
+      return may(PointTable::kInput, false, first, count);
+    case MODBUS_FC_WRITE_SINGLE_COIL:
+      return may(PointTable::kCoil, true, first, 1);
+    case MODBUS_FC_WRITE_SINGLE_REGISTER:
+    case MODBUS_FC_MASK_WRITE_REGISTER:
+      return may(PointTable::kHolding, true, first, 1);
+    case MODBUS_FC_WRITE_MULTIPLE_COILS:
+      return may(PointTable::kCoil, true, first, count);
+    case MODBUS_FC_WRITE_MULTIPLE_REGISTERS:
+      return may(PointTable::kHolding, true, first, count);
+    case MODBUS_FC_WRITE_AND_READ_REGISTERS:
+      return length >= 9 && may(PointTable::kHolding, false, first, count) &&
+             may(PointTable::kHolding, true, word(pdu + 5), word(pdu + 7));
+    default:
+      return true;
+  }
+}
+
+bool ServerTables::answer(modbus_t* context, const uint8_t* request, int length) {
+  const int header = modbus_get_header_length(context);
+  if (length <= header) return false;
+  if (!permits(request + header, length - header)) {
+    return modbus_reply_exception(context, request, MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS) >= 0;
+  }
+  return modbus_reply(context, request, length, tables_.get()) >= 0;
+}
+
+}  // namespace modbus

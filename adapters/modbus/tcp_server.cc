@@ -1,0 +1,137 @@
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "adapters/modbus/server.h"
+#include "adapters/modbus/serving.h"
+#include "vm/runtime/descriptor.h"
+
+namespace modbus {
+namespace {
+
+constexpr int64_t kHalfFrameNs = 1'000'000'000;
+constexpr size_t kHeader = 6;  // up to and with the length of the rest
+
+class TcpServer : public Serving {
+ public:
+  TcpServer(const ir::Device& device, Context context)
+      : Serving(device, std::move(context)),
+        address_(ir::setting(device, "address")),
+        most_(static_cast<size_t>(ir::number_setting(device, "clients"))) {
+    modbus_set_indication_timeout(this->context(), 0, kSlowestByteUs);
+  }
+  void disconnect() override {
+    clients_.clear();
+    listener_ = vm::Descriptor();
+  }
+  ~TcpServer() override { modbus_set_socket(context(), -1); }  // the sockets are ours
+
+ private:
+  struct Client {
+    vm::Descriptor socket;
+    int64_t active_ns = 0;   // last request
+    int64_t half_ns = 0;     // since when it has sent half a frame; 0: it has not
+    bool looked_at = false;  // in this exchange, and it has no whole frame
+    bool gone = false;
+  };
+
+  base::Status listen() override {
+    if (listener_.valid()) return base::Ok{};
+    listener_ = vm::Descriptor(modbus_tcp_pi_listen(context(), static_cast<int>(most_)));
+    if (listener_.valid()) {
+      ::fcntl(listener_.get(), F_SETFL, O_NONBLOCK);
+      ::fcntl(listener_.get(), F_SETFD, FD_CLOEXEC);
+      return base::Ok{};
+    }
+    return vm::exchange_failed("listening on " + address_ + ": " + reason());
+  }
+
+  base::Status serve(int64_t until_ns) override {
+    for (Client& client : clients_) client.looked_at = false;
+    for (int64_t left = until_ns - steady_ns(); left > 0; left = until_ns - steady_ns()) {
+      std::vector<pollfd> polled{{listener_.get(), POLLIN, 0}};
+      for (const Client& client : clients_) {
+        polled.push_back({client.looked_at ? -1 : client.socket.get(), POLLIN, 0});
+      }
+      const int ready =
+          ::poll(polled.data(), polled.size(), static_cast<int>(left / 1'000'000 + 1));
+      if (ready < 0 && errno != EINTR) return vm::exchange_failed("poll: " + reason());
+      if (ready <= 0) continue;
+      for (size_t i = 0; i < clients_.size(); ++i) {
+        if (polled[i + 1].revents != 0) look_at(clients_[i]);
+      }
+      std::erase_if(clients_, [](const Client& client) { return client.gone; });
+      if (polled[0].revents != 0) accept();
+    }
+    return base::Ok{};
+  }
+
+  // When there are too many, whoever has been silent longest makes room.
+  void accept() {
+    vm::Descriptor socket(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    if (!socket.valid()) return;
+    const timeval patience{0, 100'000};
+    const int on = 1;
+    ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+    ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    if (clients_.size() >= most_) {
+      clients_.erase(std::min_element(
+          clients_.begin(), clients_.end(),
+          [](const Client& a, const Client& b) { return a.active_ns < b.active_ns; }));
+    }
+    Client& client = clients_.emplace_back();
+    client.socket = std::move(socket);
+    client.active_ns = steady_ns();
+  }
+
+  // Length of the frame that waits there; 0: not whole yet; -1: it is none.
+  int waiting_frame(Client& client) const {
+    uint8_t head[MODBUS_TCP_MAX_ADU_LENGTH];
+    const ssize_t got = ::recv(client.socket.get(), head, sizeof head, MSG_PEEK | MSG_DONTWAIT);
+    if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) return -1;
+    if (got < static_cast<ssize_t>(kHeader)) return 0;
+    const int rest = head[4] << 8 | head[5];
+    if (head[2] != 0 || head[3] != 0 || rest < 2) return -1;
+    const int length = static_cast<int>(kHeader) + rest;
+    if (length > MODBUS_TCP_MAX_ADU_LENGTH) return -1;
+    return got < length ? 0 : length;
+  }
+
+  void look_at(Client& client) {
+    const int length = waiting_frame(client);
+    if (length == 0) {
+      client.looked_at = true;
+      if (client.half_ns == 0) client.half_ns = steady_ns();
+      client.gone = steady_ns() - client.half_ns > kHalfFrameNs;
+      return;
+    }
+    client.half_ns = 0;
+    client.active_ns = steady_ns();
+    uint8_t request[MODBUS_TCP_MAX_ADU_LENGTH];
+    modbus_set_socket(context(), client.socket.get());
+    client.gone =
+        length < 0 || modbus_receive(context(), request) != length || !answer(request, length);
+  }
+
+  const std::string address_;
+  const size_t most_;
+  vm::Descriptor listener_;
+  std::vector<Client> clients_;
+};
+
+}  // namespace
+
+base::Result<std::unique_ptr<vm::IoDriver>> make_tcp_server(const ir::Device& device,
+                                                            Context context) {
+  auto server = std::make_unique<TcpServer>(device, std::move(context));
+  if (!server->ok()) return base::Error{base::Refusal::kDeviceFailed, "out of memory"};
+  return std::unique_ptr<vm::IoDriver>(std::move(server));
+}
+
+}  // namespace modbus

@@ -1,0 +1,134 @@
+#!/bin/sh
+# Modbus as people use it: mbpoll reads and writes a running program while it is changed online, and one controller asks
+# another one, which goes away and comes back.
+. "$(dirname "$0")/lib.sh"
+port=$((20000 + $$ % 20000))
+mkdir server client
+cat >server/main.st <<'ST'
+PROGRAM P
+VAR wish AT %IW0 : INT; level AT %QW0 : INT; more AT %QW1 : INT := 7; run AT %QX4.0 : BOOL; n : DINT; END_VAR
+n := n + 1; level := wish * 2; run := wish > 20; more := 7;
+END_PROGRAM
+CONFIGURATION C RESOURCE R ON PLC TASK T(INTERVAL := T#5ms, PRIORITY := 1); PROGRAM Main WITH T : P; END_RESOURCE END_CONFIGURATION
+ST
+cat >server/stc.toml <<T
+[devices.hmi]
+driver = "modbus-tcp-server"
+address = "127.0.0.1:502"
+period_ms = 5
+timeout_ms = 500
+map = ["holding 0 -> %IW0", "input 0 <- %QW0", "coil 0 <- %QX4.0"]
+T
+cat >client/main.st <<'ST'
+PROGRAM P
+VAR level AT %IW0 : INT; good AT %IX10.0 : BOOL; wish AT %QW0 : INT := 30; n : DINT; END_VAR
+n := n + 1;
+END_PROGRAM
+CONFIGURATION C RESOURCE R ON PLC TASK T(INTERVAL := T#5ms, PRIORITY := 1); PROGRAM Main WITH T : P; END_RESOURCE END_CONFIGURATION
+ST
+cat >client/stc.toml <<T
+[devices.press]
+driver = "modbus-tcp"
+address = "127.0.0.1:$port"
+period_ms = 5
+timeout_ms = 300
+on_loss = "zero after 200 ms"
+quality = "%IX10.0"
+map = ["input 0 -> %IW0", "holding 0 <- %QW0"]
+T
+stc build server -o server.img 2>/dev/null
+stc build client -o client.img 2>/dev/null
+expect 0 stvm run client.img --virtual-time --scans 3 --print Main.good  # off: no thread runs in virtual time
+said '^Main.good=FALSE$'
+code=0
+stvm run client.img --scans 1 >out 2>err || code=$?
+if grep -q R0411 err; then
+  said 'R0411: device `press`: driver "modbus-tcp" is not part of this stvm: .*libmodbus-dev'
+  echo "built without libmodbus: refused, as it should be"
+  exit 0
+fi
+[ "$code" -eq 0 ] || fail 'stvm run'
+expect 7 stvm run client.img --scans 1 --device press.address=:
+said 'R0412: device `press`: `:` is no address'
+
+wait_for() {  # wait_for REGEX COMMAND...: until it prints that
+  wanted=$1
+  shift
+  for _ in $(seq 100); do
+    "$@" >out 2>&1 || true
+    grep -qE -- "$wanted" out && return
+    sleep 0.05
+  done
+  fail "never: $wanted from $*"
+}
+value() { stvm get "$1" --dir "$2"; }
+
+serve plc --device hmi.address=127.0.0.1:$port server.img
+serve panel client.img
+wait_for '^Main.level=60' value Main.level panel
+wait_for '^Main.good=TRUE' value Main.good panel
+expect 0 stvm status --dir panel
+said '^press +modbus-tcp +online +[0-9]+ '
+expect 0 stvm status --dir panel --format json
+said '"driver": ?"modbus-tcp"'
+said '"state": ?"online"'
+expect 0 stvm status --dir plc
+said '^hmi +modbus-tcp-server +online '
+
+# The other controller ends: inputs hold for a while, then become zero; its return is noticed.
+expect 0 stvm stop --dir plc
+wait_for '^Main.good=FALSE' value Main.good panel
+wait_for '^Main.level=0' value Main.level panel
+expect 0 stvm status --dir panel
+said '^press +modbus-tcp +lost '
+said 'last error of press: .*(refused|reset|timed out)'
+expect 0 stvm set Main.wish=31 --dir panel
+sleep 0.3
+serve plc --device hmi.address=127.0.0.1:$port
+wait_for '^Main.level=62' value Main.level panel
+wait_for '^Main.good=TRUE' value Main.good panel
+expect 0 stvm stop --dir panel
+
+command -v mbpoll >/dev/null || {
+  echo "mbpoll is not installed: its part is left out"
+  exit 0
+}
+ask() { mbpoll -m tcp -p "$port" -a 1 -0 -1 -q "$@"; }  # ask OPTIONS... HOST [VALUES]
+ask -t 4 -r 0 127.0.0.1 21 >/dev/null || fail 'mbpoll cannot write'
+wait_for ':[[:space:]]+42$' ask -t 3 -r 0 127.0.0.1
+wait_for ':[[:space:]]+1$' ask -t 0 -r 0 127.0.0.1
+wait_for 'Illegal data address' ask -t 3 -r 1 127.0.0.1
+wait_for 'Illegal data address' ask -t 0 -r 0 127.0.0.1 1
+# Reads and writes go on while code and map are changed: no request fails, no value is between the two programs'.
+(
+  while [ ! -e enough ]; do
+    ask -t 4 -r 0 127.0.0.1 21 >>traffic 2>&1 || echo FAILED >>traffic
+    ask -t 3 -r 0 127.0.0.1 >>traffic 2>&1 || echo FAILED >>traffic
+  done
+) &
+traffic=$!
+echo "$traffic" >traffic.pid
+sleep 0.2
+sed -i 's/wish \* 2/wish * 3/' server/main.st
+sed -i 's/"coil 0/"input 1 <- %QW1", "coil 0/' server/stc.toml
+expect 0 stvm change server --dir plc --dry-run
+said '^device +hmi +.now input 1 <- %QW1.'
+expect 0 stvm change server --dir plc --yes
+wait_for ':[[:space:]]+63$' ask -t 3 -r 0 127.0.0.1
+wait_for ':[[:space:]]+7$' ask -t 3 -r 1 127.0.0.1
+expect 0 stvm undo --dir plc
+wait_for ':[[:space:]]+42$' ask -t 3 -r 0 127.0.0.1
+wait_for 'Illegal data address' ask -t 3 -r 1 127.0.0.1
+expect 0 stvm change server --dir plc --yes
+expect 0 stvm accept --dir plc
+wait_for ':[[:space:]]+7$' ask -t 3 -r 1 127.0.0.1
+sleep 1
+touch enough
+wait "$traffic"
+rm traffic.pid
+grep -E 'FAILED|failed' traffic && fail 'a request failed while the program was changed'
+grep -E '^\[0\]: ' traffic | grep -vE ':[[:space:]]+(42|63)$' && fail 'a value that no program made'
+[ "$(grep -cE '^\[0\]: ' traffic)" -gt 20 ] || fail 'too little traffic to say anything'
+expect 0 stvm status --dir plc
+said '^hmi +modbus-tcp-server +online '
+echo "Modbus: two controllers, mbpoll, and a change between its requests"

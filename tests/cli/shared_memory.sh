@@ -1,0 +1,33 @@
+#!/bin/sh
+# Shared memory with another process: examples/shared_memory, which ends and begins again.
+. "$(dirname "$0")/lib.sh"
+name=/stc_test_$$
+trap 'rm -f /dev/shm$name; cleanup' EXIT INT TERM
+serve plc "$source_dir/examples/shared_memory/plc" --device tank.name=$name
+wait_for() {  # wait_for REGEX NAME
+  for _ in $(seq 100); do
+    stvm get "$2" --dir plc >out 2>&1 || true
+    grep -qE -- "$1" out && return
+    sleep 0.05
+  done
+  fail "never: $1"
+}
+"$bin/shared_memory_client" $name 400 &
+echo $! >client.pid
+program=$(stvm get --list --dir plc | sed -n 's/^\([A-Za-z]*\)\.fills.*/\1/p')
+wait_for '=TRUE' "$program.connected"
+wait_for '=TRUE' "$program.pump"
+wait_for '=(29[0-9]|30[0-9]|2[0-8][0-9])' "$program.level"
+wait_for '=[1-9]' "$program.fills"
+wait "$(cat client.pid)" || true  # after two seconds
+rm client.pid
+wait_for '=FALSE' "$program.connected"  # it has ended
+wait_for '=0$' "$program.level"
+expect 0 stvm status --dir plc
+said 'last error of tank: shared memory .*nobody writes the inputs'
+"$bin/shared_memory_client" $name 40 &
+echo $! >client.pid
+wait_for '=TRUE' "$program.connected"
+expect 7 stvm run "$source_dir/examples/shared_memory/plc" --scans 1 --device tank.name=tank
+said 'R0412: device `tank`: `tank` is no name of shared memory'
+echo "shared memory: another process is the tank"

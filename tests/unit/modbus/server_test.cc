@@ -1,0 +1,202 @@
+// Modbus servers against libmodbus' own clients, several at once, and what is no client at all.
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <cerrno>
+#include <chrono>
+
+#include "tests/unit/modbus/lines.h"
+
+namespace modbus_test {
+namespace {
+
+using ir::PointTable;
+
+// A server that runs in a thread of its own.
+class Running {
+ public:
+  explicit Running(int port, const std::string& clients = "8")
+      : rig_(device("modbus-tcp-server",
+                    {{"address", local(port)},
+                     {"clients", clients},
+                     {"period_ms", "5"},
+                     {"timeout_ms", "100"}},
+                    {in(PointTable::kHolding, 0, 4, 16), in(PointTable::kCoil, 100, 8, 1, 64),
+                     out(PointTable::kInput, 0, 2, 16), out(PointTable::kDiscrete, 8, 8, 1, 32),
+                     out(PointTable::kHolding, 10, 2, 32, 64)})),
+        thread_([this] {
+          while (!ending_) online_ = rig_.online();
+        }) {
+    rig_.outputs = {0x34, 0x12, 0x78, 0x56, 0x81, 0xdd, 0xcc, 0xbb, 0xaa};
+  }
+  ~Running() {
+    ending_ = true;
+    thread_.join();
+  }
+  bool eventually(const std::function<bool()>& holds) {
+    for (int i = 0; i < 1000; ++i) {
+      if (holds()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return false;
+  }
+  bool online() const { return online_; }
+  uint8_t input(size_t at) const { return rig_.inputs[at]; }
+
+ private:
+  Rig rig_;
+  std::atomic<bool> ending_{false};
+  std::atomic<bool> online_{false};
+  std::thread thread_;
+};
+
+ClientContext client(Running& server, int port) {
+  ClientContext context;
+  server.eventually([&] { return (context = connect_client(port)) != nullptr; });
+  return context;
+}
+
+uint16_t input_register(modbus_t* context, int at) {
+  uint16_t value = 0;
+  return modbus_read_input_registers(context, at, 1, &value) == 1 ? value : 0;
+}
+
+TEST(Server, ShowsOutputsAndTakesInputs) {
+  const int port = free_port();
+  Running server(port);
+  ClientContext context = client(server, port);
+  ASSERT_TRUE(context);
+  EXPECT_TRUE(server.eventually([&] { return input_register(context.get(), 1) == 0x5678; }));
+  uint16_t words[4] = {1, 2, 3, 0xabcd};
+  EXPECT_EQ(modbus_write_registers(context.get(), 0, 4, words), 4);
+  EXPECT_EQ(modbus_write_bit(context.get(), 107, 1), 1);
+  EXPECT_TRUE(server.eventually([&] {
+    return server.input(6) == 0xcd && server.input(7) == 0xab && server.input(8) == 0x80;
+  }));
+  uint8_t bits[8];
+  EXPECT_EQ(modbus_read_input_bits(context.get(), 8, 8, bits), 8);
+  EXPECT_EQ(bits[0], 1);
+  EXPECT_EQ(bits[7], 1);
+  EXPECT_EQ(modbus_read_registers(context.get(), 10, 2, words), 2);
+  EXPECT_EQ(words[0], 0xaabb);  // high word first
+  EXPECT_EQ(words[1], 0xccdd);
+  EXPECT_EQ(modbus_read_registers(context.get(), 0, 4, words), 4);  // what was written
+  EXPECT_EQ(words[3], 0xabcd);
+  EXPECT_TRUE(server.online());
+  context.reset();
+  EXPECT_TRUE(server.eventually([&] { return !server.online(); }));  // nobody asks any more
+}
+
+TEST(Server, WhatIsNotMappedIsException02) {
+  const int port = free_port();
+  Running server(port);
+  ClientContext context = client(server, port);
+  ASSERT_TRUE(context);
+  uint16_t words[8] = {};
+  uint8_t bits[16] = {};
+  auto refused = [](int result) { return result == -1 && errno == EMBXILADD; };
+  EXPECT_TRUE(refused(modbus_read_registers(context.get(), 4, 1, words)));
+  EXPECT_TRUE(refused(modbus_read_registers(context.get(), 3, 2, words)));  // runs out of it
+  EXPECT_TRUE(refused(modbus_read_registers(context.get(), 65535, 1, words)));
+  EXPECT_TRUE(refused(modbus_write_register(context.get(), 10, 1)));  // the program's to write
+  EXPECT_TRUE(refused(modbus_write_registers(context.get(), 3, 2, words)));
+  EXPECT_TRUE(refused(modbus_mask_write_register(context.get(), 10, 0, 1)));
+  EXPECT_TRUE(refused(modbus_write_and_read_registers(context.get(), 10, 1, words, 0, 1, words)));
+  EXPECT_TRUE(refused(modbus_write_and_read_registers(context.get(), 0, 1, words, 5, 1, words)));
+  EXPECT_TRUE(refused(modbus_read_bits(context.get(), 0, 16, bits)));
+  EXPECT_TRUE(refused(modbus_read_input_bits(context.get(), 7, 2, bits)));
+  EXPECT_TRUE(refused(modbus_write_bits(context.get(), 101, 8, bits)));
+  EXPECT_EQ(modbus_read_registers(context.get(), 0, 4, words), 4);  // the connection is as it was
+}
+
+TEST(Server, SeveralClientsAtOnceAndTheMostSilentMakesRoom) {
+  const int port = free_port();
+  Running server(port, "3");
+  std::vector<ClientContext> clients;
+  for (int i = 0; i < 3; ++i) clients.push_back(client(server, port));
+  for (const ClientContext& context : clients) {
+    ASSERT_TRUE(context);
+    EXPECT_TRUE(server.eventually([&] { return input_register(context.get(), 0) == 0x1234; }));
+  }
+  EXPECT_EQ(input_register(clients[0].get(), 0), 0x1234);  // the second is the most silent now
+  ClientContext fourth = client(server, port);
+  ASSERT_TRUE(fourth);
+  EXPECT_EQ(input_register(fourth.get(), 0), 0x1234);
+  EXPECT_EQ(input_register(clients[0].get(), 0), 0x1234);
+  EXPECT_EQ(input_register(clients[1].get(), 0), 0);
+  EXPECT_EQ(input_register(clients[2].get(), 0), 0x1234);
+}
+
+bool closed_within(const vm::Descriptor& socket, int ms) {
+  pollfd waiting{socket.get(), POLLIN, 0};
+  uint8_t byte[300];
+  while (::poll(&waiting, 1, ms) > 0) {
+    if (::recv(socket.get(), byte, sizeof byte, 0) <= 0) return true;
+  }
+  return false;
+}
+
+TEST(Server, HalfFramesAndGarbageHurtOnlyWhoeverSendsThem) {
+  const int port = free_port();
+  Running server(port);
+  ClientContext good = client(server, port);
+  ASSERT_TRUE(good);
+  ASSERT_TRUE(server.eventually([&] { return input_register(good.get(), 0) == 0x1234; }));
+  vm::Descriptor half = connect_raw(port);
+  send_raw(half, {0, 1, 0, 0, 0, 6, 1, 4});
+  const base::Bytes frames[] = {
+      {0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff},
+      {0, 1, 0, 0, 0, 0, 1, 4, 0, 0, 0, 1},             // no length
+      {0, 1, 0, 0, 0xff, 0, 1, 4, 0, 0, 0, 1},          // too long
+      {0, 1, 0, 0, 0, 2, 1, 16},                        // shorter than its function needs
+      {0, 1, 0, 0, 0, 8, 1, 16, 0, 0, 0, 123, 246, 1},  // fewer registers than it says
+      {0, 1, 0, 0, 0, 20, 1, 4, 0, 0, 0, 1, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9},
+      {0, 1, 0, 0, 0, 2, 1, 0x63},  // no such function
+  };
+  for (const base::Bytes& frame : frames) {
+    vm::Descriptor bad = connect_raw(port);
+    send_raw(bad, frame);
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_EQ(input_register(good.get(), 0), 0x1234);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(500));
+  }
+  EXPECT_TRUE(closed_within(half, 3000));  // nobody waits for its other half for long
+  vm::Descriptor gone = connect_raw(port);
+  gone = vm::Descriptor();
+  EXPECT_EQ(input_register(good.get(), 0), 0x1234);
+}
+
+// It asks and asks, and reads no answer: its connection goes, the others stay.
+TEST(Server, AClientThatReadsNothingIsDropped) {
+  const int port = free_port();
+  Running server(port);
+  ClientContext good = client(server, port);
+  ASSERT_TRUE(good);
+  vm::Descriptor deaf = connect_raw(port);
+  const base::Bytes request{0, 1, 0, 0, 0, 6, 1, 4, 0, 0, 0, 2};
+  int sent = 0;
+  while (sent < 2'000'000 &&
+         ::send(deaf.get(), request.data(), request.size(), MSG_NOSIGNAL | MSG_DONTWAIT) > 0) {
+    ++sent;
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_TRUE(server.eventually([&] { return input_register(good.get(), 0) == 0x1234; }));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+}
+
+TEST(Server, APortThatIsTakenIsAnErrorUntilItIsFree) {
+  const int port = free_port();
+  vm::Descriptor taken = listen_raw(port);
+  Rig rig(device("modbus-tcp-server", {{"address", local(port)}, {"period_ms", "5"}},
+                 {in(PointTable::kHolding, 0, 1, 16)}));
+  const base::Status done = rig.exchange();
+  ASSERT_FALSE(done.ok());
+  EXPECT_NE(done.error().text.find("Address already in use"), std::string::npos);
+  taken = vm::Descriptor();
+  (void)rig.exchange();
+  EXPECT_TRUE(connect_client(port));
+}
+
+}  // namespace
+}  // namespace modbus_test
