@@ -62,12 +62,16 @@ std::string_view read_more(PragmaReader& reader, std::string_view first) {
   return first;
 }
 
-// NAME [word] := 'text' [, inverse]. Whoever looks for it says what is wrong with one that is
-// written otherwise.
+// NAME ['part'] [word] := 'text' [, inverse]. Whoever looks for it says what is wrong with one that
+// is written otherwise.
 PragmaAttribute read_rule(PragmaReader& reader, std::string_view word) {
   PragmaAttribute out;
   out.name = reader.piece();
   reader.next();
+  if (word == "from" && reader.kind() == PragmaReader::Kind::kText) {
+    out.part = reader.piece();
+    reader.next();
+  }
   const bool head = (word.empty() || reader.accept_word(word)) && reader.accept_sign(':') &&
                     reader.accept_sign('=');
   if (!head || reader.kind() != PragmaReader::Kind::kText) return out;

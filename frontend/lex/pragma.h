@@ -33,7 +33,8 @@ struct PragmaAttribute {
   std::string_view name;
   std::string_view value;
   bool has_value = false;
-  bool marked = false;  // `, inverse` behind the value
+  std::string_view part;  // {renamed '.part' from := 'old'}
+  bool marked = false;    // `, inverse` behind the value
 };
 // `{attribute 'name'}`, `{attribute 'name' := 'value'}`, and `{renamed from := 'old'}` as an
 // attribute `renamed`, whose value is missing when it is written in another way, and goes on to the

@@ -49,8 +49,11 @@ void Parser::add_attribute(base::SourceSpan span) {
   if (!found) return;
   auto at = static_cast<uint32_t>(found->name.data() - text_.data()) + base_;
   auto length = static_cast<uint32_t>(found->name.size());
-  tree_.attributes.push_back(
-      {{found->name, {{at}, {at + length}}}, found->has_value, found->value, found->marked});
+  tree_.attributes.push_back({{found->name, {{at}, {at + length}}},
+                              found->has_value,
+                              found->value,
+                              found->marked,
+                              found->part});
 }
 
 // Both lists as one. Beyond the limit only the second: a copy for each of many

@@ -1,11 +1,19 @@
 #include "frontend/sema/old_names.h"
 
+#include <algorithm>
+
+#include "frontend/lex/pragma.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
 #include "ir/types/old_names.h"
 
 namespace frontend {
 namespace {
+
+// Not only a name: `List.x`, `limit.low`, `row[3]`.
+bool is_whole(std::string_view old_name) {
+  return old_name.find_first_of(".[") != std::string_view::npos;
+}
 
 // What may not have been renamed in this step, too.
 std::string with_name(std::string_view rule, std::string_view name) {
@@ -17,11 +25,11 @@ std::string joined_rules(std::string_view fronts, const std::string& between, st
                          std::string_view now) {
   std::vector<std::string> out;
   for (std::string_view end : ir::old_names_of(ends)) {
-    if (end.find('.') != std::string_view::npos) out.emplace_back(end);
+    if (is_whole(end)) out.emplace_back(end);
   }
   for (std::string_view front : ir::old_names_of(fronts)) {
     for (std::string_view end : ir::old_names_of(ends)) {
-      const bool whole = end.find('.') != std::string_view::npos;
+      const bool whole = is_whole(end);
       std::string name = std::string(front) + between + std::string(end);
       if (!whole && !ir::same_name(name, now)) out.push_back(std::move(name));
     }
@@ -39,7 +47,47 @@ ir::OldNameId OldNames::of_rule(Range32 attributes) {
   return add(renamed_from(sema_.tree, attributes));
 }
 
-ir::OldNameId OldNames::of(const Variable& variable) { return add(old_member(variable)); }
+ir::OldNameId OldNames::of(const Variable& variable) {
+  std::string rule = old_member(variable);
+  const bool made = variable.name.text.find('#') != std::string_view::npos;
+  if (variable.decl == nullptr || made) return add(std::move(rule));
+  for (const Attribute* part : part_rules(sema_.tree, variable.decl->attributes)) {
+    if (!part->has_value || !variable.type.valid()) continue;
+    if (!has_part(variable.type, part->part)) {
+      sema_.error(DiagnosticCode::kBadRename, part->name.span,
+                  "`" + std::string(variable.name.text) + std::string(part->part) +
+                      "` is no part of this variable that has a value of its own",
+                  "name a member or element that is in no union and no function block");
+      continue;
+    }
+    std::vector<std::string> names;
+    for (std::string_view name : quoted_texts(part->value)) names.emplace_back(name);
+    std::string before = ir::old_names_rule(names);
+    if (!variable.list.empty()) before = whole_old_names(std::string(variable.list) + ".", before);
+    rule += ";" + std::string(part->part) + "=" + before;
+  }
+  return add(std::move(rule));
+}
+
+bool OldNames::has_part(ir::TypeId type, std::string_view part) const {
+  const ir::TypeTable& types = sema_.program.types;
+  while (!part.empty()) {
+    const size_t end =
+        part[0] == '[' ? part.find(']') + 1 : std::min(part.find_first_of(".[", 1), part.size());
+    if (part[0] == '[') {
+      const auto commas = std::count(part.begin(), part.begin() + static_cast<ptrdiff_t>(end), ',');
+      if (end == 0 || types[type].kind != ir::Kind::kArray) return false;
+      if (types[type].dims.size() != static_cast<size_t>(commas) + 1) return false;
+      type = types[type].base;
+    } else {
+      const int32_t number = types.find_member(type, part.substr(1, end - 1));
+      if (types[type].kind != ir::Kind::kStruct || types.overlaps(type) || number < 0) return false;
+      type = types[type].members[static_cast<size_t>(number)].type;
+    }
+    part.remove_prefix(end);
+  }
+  return !types.is_instance(type);
+}
 
 ir::OldNameId OldNames::of_clone(std::string_view name, std::string_view rule,
                                  std::string_view instance, std::string_view instance_rule) {
@@ -105,8 +153,8 @@ std::string OldNames::old_member(const Variable& variable) const {
   const std::string made = name.substr(std::min(name.find('#'), name.size()));
   std::vector<std::string> ends;
   for (std::string_view end : ir::old_names_of(own)) {
-    const bool whole = end.find('.') != std::string_view::npos;
-    ends.push_back(std::string(end) + (whole ? "" : made));
+    if (!is_whole(end)) ends.push_back(std::string(end) + made);
+    if (is_whole(end) && made.empty()) ends.emplace_back(end);
   }
   if (!before.empty() || own.empty()) ends.push_back(name);
   if (front.empty()) return ir::old_names_rule(ends);

@@ -27,6 +27,7 @@ class OldNames {
  private:
   std::string old_list(const PouInfo& info) const;
   std::string old_member(const Variable& variable) const;
+  bool has_part(ir::TypeId type, std::string_view part) const;
 
   Sema& sema_;
 };

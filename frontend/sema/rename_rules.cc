@@ -17,15 +17,46 @@ using Code = base::DiagnosticCode;
 
 std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
-// Names with dots between them.
-bool is_path(std::string_view text) {
-  bool name = false;
-  for (char c : text) {
-    if (c != '.' && !is_name_part(c)) return false;
-    if (c == '.' && !name) return false;
-    name = c != '.';
+bool is_number(std::string_view text) {
+  if (!text.empty() && text[0] == '-') text.remove_prefix(1);
+  return !text.empty() && text.size() <= 18 &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// `.name`, `[1,-2]`, one behind the other.
+bool is_part(std::string_view text) {
+  if (text.empty()) return false;
+  while (!text.empty()) {
+    const bool index = text[0] == '[';
+    const size_t end = index ? text.find(']') : std::min(text.find_first_of(".[", 1), text.size());
+    if (end == std::string_view::npos || (!index && text[0] != '.')) return false;
+    std::string_view inside = text.substr(1, end - 1);
+    if (inside.empty()) return false;
+    if (!index && !std::all_of(inside.begin(), inside.end(), is_name_part)) return false;
+    for (size_t at = 0; index && at <= inside.size();) {
+      const size_t comma = std::min(inside.find(',', at), inside.size());
+      if (!is_number(inside.substr(at, comma - at))) return false;
+      at = comma + 1;
+    }
+    text.remove_prefix(end + (index ? 1 : 0));
   }
-  return name;
+  return true;
+}
+
+// A name, or one of a part of a variable.
+bool is_path(std::string_view text) {
+  return !text.empty() && is_name_part(text[0]) && is_part("." + std::string(text));
+}
+
+bool has_parts(std::string_view text) { return text.find_first_of(".[") != std::string_view::npos; }
+
+const Attribute* own_rule(const Tree& tree, Range32 attributes) {
+  for (uint32_t i = 0; i < attributes.count; ++i) {
+    const Attribute& attribute = tree.attributes[attributes.first + i];
+    const bool rule = ir::same_name(attribute.name.text, kRenamedAttribute);
+    if (rule && attribute.part.empty()) return &attribute;
+  }
+  return nullptr;
 }
 
 // What of a POU's variables goes on from call to call.
@@ -57,6 +88,11 @@ class Checker {
     for (const ConfigDecl& config : tree_.configs) check_configuration(config);
     for (const Attribute& attribute : tree_.attributes) {
       if (!is_rule(attribute) || seen_.contains(attribute.name.span.begin.offset)) continue;
+      if (!attribute.part.empty()) {
+        report(attribute, "this rule for a part stands before no variable of an area",
+               "put it in front of a variable of a program, a function block or VAR_GLOBAL");
+        continue;
+      }
       report(attribute, "this rule stands before nothing that can be renamed",
              "put it in front of a variable, member, literal, type, POU, step or program instance");
     }
@@ -99,8 +135,13 @@ class Checker {
   void check_variable(const PouDecl& pou, const VarBlock& block, const VarDecl& decl,
                       Scope& variables) {
     if (decl.spec.valid()) check_spec(decl.spec);
-    if (is_kept(pou.kind, block.section)) return check_declaration(decl, variables, false);
-    const Attribute* rule = tree_.find_attribute(decl.attributes, kRenamedAttribute);
+    if (is_kept(pou.kind, block.section)) {
+      const bool plain = block.section == VarSection::kLocal ||
+                         block.section == VarSection::kInput ||
+                         block.section == VarSection::kOutput;
+      return check_declaration(decl, variables, plain);
+    }
+    const Attribute* rule = own_rule(tree_, decl.attributes);
     if (rule == nullptr || decl.names.empty()) return;
     seen_.insert(rule->name.span.begin.offset);
     report(*rule, quoted(decl.names[0].text) + " keeps no value that a rule could carry over",
@@ -150,7 +191,7 @@ class Checker {
 
   // A bit goes on in its place: two of them cannot change names.
   void check_bit(const VarDecl& field, const Spec& structure) {
-    const Attribute* rule = tree_.find_attribute(field.attributes, kRenamedAttribute);
+    const Attribute* rule = own_rule(tree_, field.attributes);
     if (rule == nullptr || field.names.size() != 1) return;
     const std::string old_names = renamed_from(tree_, field.attributes);
     for (const VarDecl& other : structure.fields) {
@@ -165,8 +206,10 @@ class Checker {
     }
   }
 
+  // `paths`: a variable of an area, whose neighbours have parts.
   void check_declaration(const VarDecl& decl, Scope& scope, bool paths) {
-    const Attribute* rule = tree_.find_attribute(decl.attributes, kRenamedAttribute);
+    if (paths) check_parts(decl, scope);
+    const Attribute* rule = own_rule(tree_, decl.attributes);
     if (rule == nullptr || decl.names.empty()) return;
     if (decl.names.size() == 1) return check_rule(decl.attributes, decl.names[0], scope, paths);
     seen_.insert(rule->name.span.begin.offset);
@@ -174,8 +217,28 @@ class Checker {
            "declare the renamed variable by itself");
   }
 
+  void check_parts(const VarDecl& decl, Scope& scope) {
+    for (const Attribute* rule : part_rules(tree_, decl.attributes)) {
+      seen_.insert(rule->name.span.begin.offset);
+      const std::vector<std::string_view> old_names = quoted_texts(rule->value);
+      if (!rule->has_value || !is_part(rule->part) || old_names.size() > kMostOldNames ||
+          !std::all_of(old_names.begin(), old_names.end(), is_path)) {
+        report(*rule, "this rule cannot be read", "write {renamed '.member' from := 'OldName'}");
+      } else if (decl.names.size() != 1) {
+        report(*rule, "this declares several variables, and the rule is for a part of one",
+               "declare the variable by itself");
+      } else {
+        for (std::string_view old_name : old_names) {
+          const bool first = scope.emplace(old_name, decl.names[0].text).second;
+          if (first) continue;
+          report(*rule, quoted(old_name) + " has two rules", "keep the rule of what goes on");
+        }
+      }
+    }
+  }
+
   void check_rule(Range32 attributes, const Name& name, Scope& scope, bool paths) {
-    const Attribute* rule = tree_.find_attribute(attributes, kRenamedAttribute);
+    const Attribute* rule = own_rule(tree_, attributes);
     if (rule == nullptr || name.empty()) return;
     seen_.insert(rule->name.span.begin.offset);
     const std::vector<std::string_view> old_names = quoted_texts(rule->value);
@@ -199,9 +262,11 @@ class Checker {
              "give the name that it had, or take the rule away");
       return false;
     }
-    if (!paths && old_name.find('.') != std::string_view::npos) {
+    if (!paths && has_parts(old_name)) {
       report(rule, quoted(old_name) + " is a variable of another place",
-             "a rule names a variable of the same place; a migration can carry over others");
+             "a rule names something of the same place; one before a variable of a program, a "
+             "function block or VAR_GLOBAL also names parts of its neighbours, and '.member' "
+             "before `from` a part of it; a migration can carry over others");
       return false;
     }
     const auto [other, first] = scope.emplace(old_name, name.text);
@@ -229,11 +294,21 @@ void check_renames(const Tree& tree, base::Diagnostics& diagnostics) {
 }
 
 std::string renamed_from(const Tree& tree, Range32 attributes) {
-  const Attribute* rule = tree.find_attribute(attributes, kRenamedAttribute);
+  const Attribute* rule = own_rule(tree, attributes);
   if (rule == nullptr || !rule->has_value) return {};
   std::vector<std::string> names;
   for (std::string_view name : quoted_texts(rule->value)) names.emplace_back(name);
   return ir::old_names_rule(names);
+}
+
+std::vector<const Attribute*> part_rules(const Tree& tree, Range32 attributes) {
+  std::vector<const Attribute*> out;
+  for (uint32_t i = 0; i < attributes.count; ++i) {
+    const Attribute& attribute = tree.attributes[attributes.first + i];
+    const bool rule = ir::same_name(attribute.name.text, kRenamedAttribute);
+    if (rule && !attribute.part.empty()) out.push_back(&attribute);
+  }
+  return out;
 }
 
 std::string whole_old_names(std::string_view name, std::string_view rule) {

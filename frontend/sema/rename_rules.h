@@ -16,6 +16,8 @@ inline constexpr size_t kMostOldNames = 16;
 
 // The old names that a checked rule gives (ir/types/old_names.h); "" when there is none.
 std::string renamed_from(const Tree& tree, Range32 attributes);
+// Rules for parts of what is declared: {renamed '.x' from := 'old'}.
+std::vector<const Attribute*> part_rules(const Tree& tree, Range32 attributes);
 
 // The old names of what is called `name` now, with everything in front of its last dot; an old name
 // with dots is a whole one.

@@ -21,7 +21,9 @@ void store(uint8_t* memory, uint32_t at, uint64_t handle) {
 }  // namespace
 
 HandleTransfer::HandleTransfer(const ir::Image& old_image, const ir::Image& new_image)
-    : old_(old_image), moves_(old_image, new_image), moves_back_(new_image, old_image) {
+    : old_(old_image),
+      moves_(old_image, new_image),
+      moves_back_(new_image, old_image, PlaceMoves::Way::kBack) {
   if (moves_.trivial() && moves_back_.trivial()) return;
   for (const ReferenceLeaf& leaf : reference_leaves(new_image)) {
     references_.push_back({leaf.at, moves_.target_in_new(new_image, leaf.type),

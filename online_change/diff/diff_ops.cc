@@ -28,6 +28,18 @@ bool joins(const DiffOp& a, const DiffOp& b) {
   return end <= b.to && b.to - end <= kMaxGap;
 }
 
+// Pieces of one value share a row, and only their sum of leaves is known: what one of them lacks is
+// counted with another.
+void take_leaves(std::vector<DiffOp>& ops, uint32_t row, uint64_t missing) {
+  for (DiffOp& op : ops) {
+    if (missing == 0) return;
+    if (op.kind != DiffKind::kInitialise || op.row != row || op.count != 1) continue;
+    const uint64_t taken = std::min(op.leaves, missing);
+    op.leaves -= taken;
+    missing -= taken;
+  }
+}
+
 }  // namespace
 
 FateRow make_row(Fate fate, std::string path, std::string old_type, std::string new_type,
@@ -101,6 +113,38 @@ void join(std::vector<DiffOp>& ops) {
     }
   }
   ops = std::move(out);
+}
+
+bool carve(std::vector<DiffOp>& ops, uint32_t to, uint32_t size, uint64_t leaves) {
+  for (size_t i = 0; i < ops.size(); ++i) {
+    const DiffOp op = ops[i];
+    if (op.kind != DiffKind::kInitialise || op.stamp || to < op.to) continue;
+    const uint32_t number = op.count == 1 ? 0 : (to - op.to) / op.to_stride;
+    const uint32_t begin = op.to + number * op.to_stride;
+    if (number >= op.count || uint64_t{to} + size > uint64_t{begin} + op.size) continue;
+    DiffOp piece = op;
+    const uint64_t each = op.leaves / op.count;
+    std::vector<DiffOp> pieces;
+    const auto add = [&](uint32_t at, uint32_t bytes, uint32_t count, uint64_t all_leaves) {
+      if (bytes == 0 || count == 0) return;
+      piece.to = at;
+      piece.size = bytes;
+      piece.count = count;
+      piece.leaves = all_leaves;
+      pieces.push_back(piece);
+    };
+    const uint64_t rest = each - std::min(each, leaves);
+    add(op.to, op.size, number, each * number);
+    add(begin, to - begin, 1, rest);
+    add(to + size, begin + op.size - (to + size), 1, to == begin ? rest : 0);
+    const uint32_t behind = op.count - number - 1;
+    add(begin + op.to_stride, op.size, behind, each * behind);
+    ops.erase(ops.begin() + static_cast<std::ptrdiff_t>(i));
+    ops.insert(ops.end(), pieces.begin(), pieces.end());
+    take_leaves(ops, op.row, leaves - std::min(each, leaves));
+    return true;
+  }
+  return false;
 }
 
 bool is_identity(const std::vector<DiffOp>& ops) {

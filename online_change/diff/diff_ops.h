@@ -20,6 +20,9 @@ bool repeat(std::vector<DiffOp>& ops, uint64_t count, uint32_t from_stride, uint
 void shift(std::vector<DiffOp>& ops, uint32_t from, uint32_t to);
 // Sorts by target and joins unchanged neighbours that move by the same distance.
 void join(std::vector<DiffOp>& ops);
+// Takes `size` bytes at `to`, with as many leaves, out of an operation that initialises them.
+// False: there is none.
+bool carve(std::vector<DiffOp>& ops, uint32_t to, uint32_t size, uint64_t leaves);
 // Does nothing move, change, come or go?
 bool is_identity(const std::vector<DiffOp>& ops);
 

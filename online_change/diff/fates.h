@@ -25,6 +25,7 @@ struct FateRow {
   bool may_lose = false;  // a value of the old type can be impossible in the new one
   std::string reason;  // "retyped", "new", "no conversion from REAL to STRING[10]", "area outgrown"
   uint64_t count = 1;  // leaf variables that this row stands for (arrays, identical instances)
+  std::string old_path = {};  // of what was moved between variables: its path in the old version
 };
 
 struct FateCounts {

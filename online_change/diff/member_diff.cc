@@ -1,5 +1,9 @@
-// Members whose values come by other ways than A14: by a migration, or from a step that goes.
+// Members whose values come by other ways than by name: by a migration, from a step that goes, or
+// from another place in the area.
+#include <algorithm>
+
 #include "online_change/diff/diff_ops.h"
+#include "online_change/diff/moved_parts.h"
 #include "online_change/diff/steps.h"
 #include "online_change/diff/type_diff.h"
 
@@ -70,6 +74,44 @@ bool TypeDiffer::add_migrated(TypeDiff& diff, const Member* old_member, TypeId o
       old_member == nullptr ? "" : old_.types.text(old_member->type), new_.types.text(member.type),
       "migrated by `" + migrations_.name_of(source->migration) + "`", op.leaves));
   return true;
+}
+
+// What was moved into a structure or out of one takes its value along, by A14. What is left of the
+// row that drops it is what is really gone.
+void TypeDiffer::move_parts(TypeDiff& diff, TypeId old_type, TypeId new_type) {
+  const std::vector<MovedPart> moves = back_ ? moved_parts(new_, new_type, old_, old_type)
+                                             : moved_parts(old_, old_type, new_, new_type);
+  for (const MovedPart& move : moves) {
+    if (back_ && !move.leaves) continue;  // the old place has a value of its own
+    const PartPlace& from = back_ ? move.to : move.from;
+    const PartPlace& to = back_ ? move.from : move.to;
+    const TypeDiff& inner = value(from.type, to.type);
+    if (!inner.has_rule) continue;
+    const uint32_t size = new_.layouts[to.type].size;
+    if (!carve(diff.ops, to.at, size, leaves(new_, to.type))) continue;
+    uint64_t gone = leaves(old_, from.type);
+    for (FateRow& row : diff.rows) {
+      if (row.fate != Fate::kDropped || gone == 0 || !covers(row.path, from.path)) continue;
+      row.count -= std::min(row.count, gone);
+      row.may_lose = row.may_lose && row.count != 0;
+      gone = 0;
+    }
+    diff.moved.insert(from.path);
+    diff.moved.insert(to.path);
+    Member source;
+    source.name = from.path.substr(1);
+    source.type = from.type;
+    Member target;
+    target.name = to.path.substr(1);
+    target.type = to.type;
+    const size_t first = diff.rows.size();
+    append_value(diff, inner, source, from.at, target, to.at, true,
+                 back_ ? "" : "renamed from `" + source.name + "`");
+    for (size_t i = first; i < diff.rows.size(); ++i) {
+      FateRow& row = diff.rows[i];
+      if (row.fate != Fate::kDropped) row.old_path = from.path + row.path.substr(to.path.size());
+    }
+  }
 }
 
 }  // namespace online_change

@@ -5,6 +5,7 @@
 #include "ir/types/handle.h"
 #include "online_change/diff/areas.h"
 #include "online_change/diff/instance_match.h"
+#include "online_change/diff/moved_parts.h"
 #include "online_change/diff/type_diff.h"
 #include "online_change/diff/value_conversion.h"
 
@@ -35,8 +36,8 @@ Target target_of(const ir::Image& image, const std::vector<uint32_t>& names, Typ
 // Makes the tables of a PlaceMoves.
 class PlaceMoves::Maker {
  public:
-  Maker(PlaceMoves& out, const ir::Image& old_image, const ir::Image& new_image)
-      : out_(out), old_(old_image), new_(new_image) {}
+  Maker(PlaceMoves& out, const ir::Image& old_image, const ir::Image& new_image, Way way)
+      : out_(out), old_(old_image), new_(new_image), back_(way == Way::kBack) {}
 
   void run() {
     number_types(old_, out_.old_names_);
@@ -70,7 +71,22 @@ class PlaceMoves::Maker {
     if (!fresh) return found->second;
     Pair pair = named(from, to);
     structure(pair, from, to, 0);
+    add_moved(pair, from, to);
     return areas_[{from.index, to.index}] = put(std::move(pair));
+  }
+
+  void add_moved(Pair& pair, TypeId from, TypeId to) {
+    const std::vector<MovedPart> moves =
+        back_ ? moved_parts(new_, to, old_, from) : moved_parts(old_, from, new_, to);
+    for (const MovedPart& move : moves) {
+      // What stays at its place is still what references mean, there and on the way back.
+      if (!move.leaves) continue;
+      const PartPlace& source = back_ ? move.to : move.from;
+      const PartPlace& target = back_ ? move.from : move.to;
+      pair.moved.push_back({source.at, old_.layouts[source.type].size, target.at,
+                            value(source.type, target.type, 1)});
+      pair.same = false;
+    }
   }
 
   uint32_t value(TypeId from, TypeId to, uint32_t depth) {
@@ -156,13 +172,21 @@ class PlaceMoves::Maker {
   PlaceMoves& out_;
   const ir::Image& old_;
   const ir::Image& new_;
+  bool back_;
   std::unordered_map<std::string, uint32_t> numbers_;
   std::map<Key, uint32_t> areas_;
   std::map<Key, uint32_t> values_;
 };
 
-PlaceMoves::PlaceMoves(const ir::Image& old_image, const ir::Image& new_image) {
-  Maker(*this, old_image, new_image).run();
+PlaceMoves::PlaceMoves(const ir::Image& old_image, const ir::Image& new_image, Way way) {
+  Maker(*this, old_image, new_image, way).run();
+}
+
+const PlaceMoves::Part* PlaceMoves::moved_at(const Pair& area, uint32_t offset) {
+  for (const Part& part : area.moved) {
+    if (offset >= part.begin && offset - part.begin < part.size) return &part;
+  }
+  return nullptr;
 }
 
 Target PlaceMoves::target_in_old(const ir::Image& image, TypeId reference) const {
@@ -209,7 +233,14 @@ Followed PlaceMoves::follow(uint64_t handle, Target target) const {
   }
   uint32_t at = 0;  // in the new area
   uint32_t number = area.pair;
-  for (uint32_t depth = 0; depth <= kMaxDepth + 1; ++depth) {
+  uint32_t depth = 0;
+  if (const Part* moved = moved_at(pairs_[number], rest)) {
+    at = moved->to;
+    rest -= moved->begin;
+    number = moved->pair;
+    depth = 1;
+  }
+  for (; depth <= kMaxDepth + 1; ++depth) {
     const Pair& pair = pairs_[number];
     const bool whole = depth > 0 && rest == 0 && pair.old_name == target.name;
     if (whole && pair.new_name == target.name) {

@@ -37,8 +37,11 @@ std::vector<ReferenceLeaf> reference_leaves(const ir::Image& image);
 
 class PlaceMoves {
  public:
+  // Whose rules say what was moved between variables (moved_parts.h): kBack when the old image is
+  // the one that is changed to, on the way back from it.
+  enum class Way : uint8_t { kThere, kBack };
   // Borrows nothing.
-  PlaceMoves(const ir::Image& old_image, const ir::Image& new_image);
+  PlaceMoves(const ir::Image& old_image, const ir::Image& new_image, Way way = Way::kThere);
 
   // Does every handle mean the same in both versions?
   bool trivial() const { return trivial_; }
@@ -73,6 +76,7 @@ class PlaceMoves {
     uint32_t element = kNone;  // kArray
     std::vector<Bounds> dims;  // kArray
     std::vector<Part> parts;   // kStructure
+    std::vector<Part> moved;   // of an area: to another place than `parts` say; not sorted
   };
   struct Area {
     uint32_t old_segment = 0;  // 0: not live
@@ -88,6 +92,7 @@ class PlaceMoves {
   // The element's number in the new array; nullopt-like: false when it has none.
   static bool element_of(const Pair& array, uint64_t number, uint64_t& out);
   const Part* part_at(const Pair& structure, uint32_t offset) const;
+  static const Part* moved_at(const Pair& area, uint32_t offset);
 
   std::vector<Pair> pairs_;
   std::vector<Area> areas_;  // by old ID

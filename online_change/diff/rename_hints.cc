@@ -49,11 +49,13 @@ void TypeDiffer::propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId
   }
   std::map<std::string, Group> groups;
   for (const Member* member : only_here(old_.types[old_type], new_.types[new_type])) {
-    if (goes_on.contains("." + member->name)) continue;
+    const std::string path = "." + member->name;
+    if (goes_on.contains(path) || diff.moved.contains(path)) continue;
     groups[ir::fold_name(old_.types.text(member->type))].gone.push_back(member);
   }
   if (groups.empty()) return;
   for (const Member* member : only_here(new_.types[new_type], old_.types[old_type])) {
+    if (diff.moved.contains("." + member->name)) continue;
     groups[ir::fold_name(new_.types.text(member->type))].came.push_back(member);
   }
   for (const auto& [type, group] : groups) {

@@ -204,6 +204,7 @@ TypeDiff TypeDiffer::compare_members(TypeId old_type, TypeId new_type, bool is_a
     if (gone && from.members[i].section != Section::kInOut)
       add_dropped_member(diff, old_type, i, new_type);
   }
+  if (is_area) move_parts(diff, old_type, new_type);
   if (!back_) propose_renames(diff, old_type, new_type);
   join(diff.ops);
   uint32_t old_size = is_area ? old_layout.used : old_layout.size;
@@ -267,7 +268,7 @@ void TypeDiffer::add_member(TypeDiff& diff, const Member& old_member, uint32_t f
     diff.rows.back().old_type = old_.types.text(old_member.type);
     return;
   }
-  append_value(diff, inner, old_member, from, new_member, to, is_area);
+  append_value(diff, inner, old_member, from, new_member, to, is_area, rename_note(old_member));
 }
 
 // "renamed from `x`"; "" for a variable that kept its name.
@@ -277,9 +278,9 @@ std::string TypeDiffer::rename_note(const Member& old_member) const {
 }
 
 void TypeDiffer::append_value(TypeDiff& diff, const TypeDiff& inner, const Member& old_member,
-                              uint32_t from, const Member& new_member, uint32_t to, bool is_area) {
+                              uint32_t from, const Member& new_member, uint32_t to, bool is_area,
+                              std::string note) {
   auto first_row = static_cast<uint32_t>(diff.rows.size());
-  std::string note = rename_note(old_member);
   diff.renamed = diff.renamed || inner.renamed || !note.empty();
   for (const FateRow& row : inner.rows) {
     diff.rows.push_back(row);

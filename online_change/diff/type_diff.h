@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,6 +60,8 @@ struct TypeDiff {
   bool has_rule = true;       // false: A14 knows no way; initialise the whole
   uint64_t leaves = 0;        // of the new type
   bool renamed = false;       // some row says that a variable was renamed
+  // Paths of rows whose variables were moved here or away (moved_parts.h).
+  std::set<std::string> moved;
   // Of function blocks that are new here: what they may be called by mistake, by folded name.
   std::map<std::string, std::string> hints;
 };
@@ -107,7 +110,9 @@ class TypeDiffer {
   void add_in_out(TypeDiff& diff, const ir::Member* old_member, uint32_t from,
                   const ir::Member& new_member, uint32_t to);
   void append_value(TypeDiff& diff, const TypeDiff& value, const ir::Member& old_member,
-                    uint32_t from, const ir::Member& new_member, uint32_t to, bool is_area);
+                    uint32_t from, const ir::Member& new_member, uint32_t to, bool is_area,
+                    std::string note);
+  void move_parts(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type);
   uint64_t count_leaves(const ir::Image& image, ir::TypeId type);
   std::string rename_note(const ir::Member& old_member) const;
   void propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const;

@@ -17,7 +17,7 @@ constexpr uint32_t kMagic = 0x47504353;  // "SCPG"
 constexpr uint32_t kVersion = 4;
 constexpr const char* kPartNames[] = {"layout", "program", "commands"};
 constexpr size_t kParts = std::size(kPartNames);
-constexpr size_t kMinRowBytes = 1 + 3 * 4 + 1 + 4 + 8;
+constexpr size_t kMinRowBytes = 1 + 3 * 4 + 1 + 4 + 8 + 4;
 constexpr size_t kMinStepBytes = 2 + 9 * 4 + 4;
 constexpr uint32_t kFateKinds = 5;
 constexpr uint32_t kStepKinds = 5;
@@ -32,6 +32,7 @@ void write_row(ByteWriter& out, const FateRow& row) {
   out.boolean(row.may_lose);
   out.text(row.reason);
   out.u64(row.count);
+  out.text(row.old_path);
 }
 
 FateRow read_row(ByteReader& in) {
@@ -43,6 +44,7 @@ FateRow read_row(ByteReader& in) {
   row.may_lose = in.boolean();
   row.reason = in.text();
   row.count = in.u64();
+  row.old_path = in.text();
   return row;
 }
 

@@ -54,6 +54,7 @@ class Planner {
   uint32_t share(const std::string& key, uint64_t leaves, MakeRow make);
   uint32_t row_of(const Carried& instance, uint32_t diff_row, uint64_t leaves);
   uint32_t constant_row(const Carried& instance, const DiffOp& op);
+  void name_old_place(const Carried& instance, FateRow& row) const;
   void rename_row(const Carried& instance, bool whole);
   std::string rename_note(const Carried& instance, const DiffOp& op) const;
   uint32_t note_row(const Carried& instance, const DiffOp& op);

@@ -34,8 +34,15 @@ uint32_t Planner::row_of(const Carried& instance, uint32_t diff_row, uint64_t le
     row.path = join_path(row.fate == Fate::kDropped ? old_.instance_path(instance.old_id)
                                                     : new_.instance_path(instance.new_id),
                          row.path);
+    name_old_place(instance, row);
     return row;
   });
+}
+
+// Of what was moved, from the path in its area.
+void Planner::name_old_place(const Carried& instance, FateRow& row) const {
+  if (row.old_path.empty()) return;
+  row.old_path = join_path(old_.instance_path(instance.old_id), row.old_path);
 }
 
 uint32_t Planner::constant_row(const Carried& instance, const DiffOp& op) {
@@ -79,6 +86,7 @@ uint32_t Planner::note_row(const Carried& instance, const DiffOp& op) {
     FateRow row = instance.diff->rows[op.row];
     row.fate = Fate::kKept;
     row.path = join_path(new_.instance_path(instance.new_id), row.path);
+    name_old_place(instance, row);
     row.reason = renamed;
     if (stays && !renamed.empty()) row.reason += "; ";
     if (stays) row.reason += "initial value changed, the live value stays";
@@ -98,6 +106,8 @@ uint32_t Planner::moved_row(const Carried& instance, const DiffOp& op) {
     if (alone) {
       const FateRow& member = instance.diff->rows[op.row];
       row.path = join_path(row.path, member.path);
+      row.old_path = member.old_path;
+      name_old_place(instance, row);
       row.old_type = member.old_type;
       row.new_type = member.new_type;
       row.reason = renamed.empty() ? "" : renamed + ", ";

@@ -132,7 +132,8 @@ class Carrier {
   }
 
   void follow_references() {
-    const PlaceMoves moves(from_, to_);
+    const PlaceMoves moves(from_, to_,
+                           back_way_ ? PlaceMoves::Way::kBack : PlaceMoves::Way::kThere);
     if (moves.trivial()) return;
     for (const ReferenceLeaf& leaf : reference_leaves(to_)) {
       uint64_t handle = 0;

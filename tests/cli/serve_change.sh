@@ -10,6 +10,11 @@ cat >v2.st <<'ST'
 FUNCTION_BLOCK Motor VAR_INPUT run : BOOL; END_VAR VAR turns : DINT; hours : REAL := 1.5; END_VAR IF run THEN turns := turns + 1; END_IF END_FUNCTION_BLOCK
 PROGRAM Main VAR m : ARRAY[1..3] OF Motor; count : DINT; added : BOOL := TRUE; END_VAR count := count + 1; m[1](run := TRUE); END_PROGRAM
 ST
+cat >renamed.st <<'ST'
+TYPE Box : STRUCT n : INT; END_STRUCT END_TYPE
+FUNCTION_BLOCK Motor VAR_INPUT run : BOOL; END_VAR VAR turns : DINT; END_VAR IF run THEN turns := turns + 1; END_IF END_FUNCTION_BLOCK
+PROGRAM Main VAR m : ARRAY[1..3] OF Motor; {renamed '.n' from := 'count'} box : Box; {renamed from := 'gone'} stays : INT := 9; END_VAR box.n := box.n + 1; m[1](run := TRUE); END_PROGRAM
+ST
 stc build v1.st -o v1.img 2>/dev/null
 expect 7 stvm status --dir nowhere
 said 'R0404.*nowhere'
@@ -38,6 +43,10 @@ said '"largest_free": *[1-9]'
 expect 0 stvm change v2.st --dir plc --dry-run
 said 'converted'
 said 'Main.gone'
+# X2: the live values of what was renamed or moved.
+expect 0 stvm change renamed.st --dir plc --dry-run
+said 'kept +Main.stays : INT +77'
+said '[0-9]+ +.renamed from .count., moved inside'
 expect 7 stvm get --dir plc Main.added
 expect 0 stvm change v2.st --dir plc --yes --allow-loss
 said 'pause'

@@ -122,7 +122,7 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
   const ir::Image& next_image = back ? previous_->image() : staged_->image();
   if (request.offset == 0 || !live_) {
     live_.reset();
-    auto taken = LiveReport::take(controller_, change_,
+    auto taken = LiveReport::take(controller_, change_, back ? nullptr : &next_image,
                                   [this](const auto& job) { return at_boundary(job); });
     if (!taken.ok()) return taken.error();
     live_.emplace(std::move(*taken));
@@ -159,7 +159,7 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
 // With the resulting value, and its loss when there is one.
 FateLine ControllerService::live_line(const FateRow& row, const ir::Image& next, bool back) const {
   FateLine line{row, {}};
-  if (row.count == 1 && !row.old_type.empty()) line.live.now = live_->value(row.path);
+  if (row.count == 1 && !row.old_type.empty()) line.live.now = live_->value(row);
   if (row.fate == Fate::kMoved || row.fate == Fate::kKept) {
     line.live.after = line.live.now;
   } else if (back && row.fate == Fate::kInitialised) {

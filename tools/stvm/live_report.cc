@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "ir/bytecode/renames.h"
 #include "online_change/apply/losses.h"
 #include "online_change/plan/pause.h"
 
@@ -16,10 +17,12 @@ constexpr uint32_t kSliceBytes = 128u << 10;
 
 base::Result<LiveReport> LiveReport::take(vm::Controller& controller,
                                           const online_change::Change& change,
+                                          const ir::Image* next,
                                           const online_change::AtBoundary& at_boundary) {
   base::Result<vm::Memory> memory = vm::Memory::reserve();
   if (!memory.ok()) return memory.error();
   LiveReport report(std::move(*memory), controller.verified());
+  if (next != nullptr) report.renamed_ = ir::under_new_names(report.image_.image(), *next);
   const uint32_t end = controller.image().data_capacity;
   for (uint32_t at = 0; at < end; at += std::min(kSliceBytes, end - at)) {
     uint8_t* const to = report.memory_.data() + at;
@@ -38,10 +41,11 @@ base::Result<LiveReport> LiveReport::take(vm::Controller& controller,
   return report;
 }
 
-std::string LiveReport::value(const std::string& path) const {
-  base::Result<ir::Symbol> symbol = ir::find_symbol(image_.image(), path);
+std::string LiveReport::value(const online_change::FateRow& row) const {
+  const std::string& path = row.old_path.empty() ? row.path : row.old_path;
+  base::Result<ir::Symbol> symbol = ir::find_symbol(image(), path);
   if (!symbol.ok()) return {};
-  return online_change::shortened(ir::format_value(image_.image(), *symbol, memory_.view()));
+  return online_change::shortened(ir::format_value(image(), *symbol, memory_.view()));
 }
 
 const online_change::LiveLoss* LiveReport::loss(const std::string& path) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -16,12 +17,13 @@ namespace stvm {
 
 class LiveReport {
  public:
+  // `next`: the version whose names the fate rows have, when it is not the one that runs.
   static base::Result<LiveReport> take(vm::Controller& controller,
-                                       const online_change::Change& change,
+                                       const online_change::Change& change, const ir::Image* next,
                                        const online_change::AtBoundary& at_boundary);
 
-  // Of the program that runs; "" when there is no such variable.
-  std::string value(const std::string& path) const;
+  // Of the variable that the row is about, in the program that runs; "" when there is none.
+  std::string value(const online_change::FateRow& row) const;
   const std::vector<online_change::LiveLoss>& losses() const { return losses_; }
   const online_change::LiveLoss* loss(const std::string& path) const;
 
@@ -29,8 +31,11 @@ class LiveReport {
   LiveReport(vm::Memory memory, ir::VerifiedImage image)
       : memory_(std::move(memory)), image_(std::move(image)) {}
 
+  const ir::Image& image() const { return renamed_ ? *renamed_ : image_.image(); }
+
   vm::Memory memory_;
   ir::VerifiedImage image_;
+  std::optional<ir::Image> renamed_;  // the same under the names of the next version
   std::vector<online_change::LiveLoss> losses_;
   std::unordered_map<std::string, size_t> by_path_;  // folded
 };

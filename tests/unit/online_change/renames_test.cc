@@ -100,6 +100,63 @@ TEST(Renames, X2_a_chain_that_begins_with_nothing_applies_where_it_can) {
   EXPECT_EQ(plant.get("Main.b") + plant.get("Main.c") + plant.get("Main.d"), "923");
 }
 
+const std::string kLimit = "TYPE Limit : STRUCT low, high : INT; END_STRUCT END_TYPE ";
+
+// By both strategies, also what is written behind the copy; the rule is applied once.
+TEST(Renames, X2_parts_of_variables_move) {
+  for (Strategy strategy : {Strategy::kInPlace, Strategy::kStandby}) {
+    Plant plant(kLimit + program("low : INT; high : DINT; n : INT;", "n := n + 1;"));
+    plant.use(strategy);
+    plant.set("Main.low", "3");
+    plant.run(1);
+    const std::string next = program(
+        "{renamed '.low' from := 'low'} {renamed '.high' from := 'hi', 'high'} limit : Limit; "
+        "n : INT;",
+        "n := n + 1;");
+    ASSERT_TRUE(plant.stage(plant.package(kLimit + next)).ok());
+    ASSERT_TRUE(plant.driver().arm(true).ok());
+    plant.run(1);
+    plant.set("Main.high", "40000");
+    ASSERT_TRUE(plant.driver().switch_now().ok());
+    EXPECT_EQ(plant.get("Main.limit"), "(low := 3, high := 32767)");
+    plant.set("Main.limit.low", "5");
+    plant.undo();
+    EXPECT_EQ(plant.get("Main.low"), "5") << "it goes on";
+    EXPECT_EQ(plant.get("Main.high"), "40000") << "nobody wrote it";
+    plant.change(kLimit + next, true);
+    EXPECT_EQ(plant.row("Main.limit.low")->reason, "renamed from `low`, moved inside its area");
+    EXPECT_EQ(plant.row("Main.limit.low")->old_path, "Main.low");
+    EXPECT_EQ(plant.plan().counts.dropped, 0u);
+    plant.accept();
+    plant.change(kLimit + program("{renamed '.low' from := 'low'} limit : Limit; low : INT := 9; "
+                                  "n : INT;",
+                                  "n := n + 1;"));
+    EXPECT_EQ(plant.get("Main.limit.low"), "5");
+    EXPECT_EQ(plant.get("Main.low"), "9");
+  }
+}
+
+// Two rules lead to one place, or a variable is renamed already: nothing is written twice.
+TEST(Renames, X2_parts_that_overlap) {
+  Plant plant(kLimit + program("a : Limit; b : INT := 7; c : INT := 8;"));
+  plant.set("Main.a.low", "1");
+  plant.change(kLimit + program("{renamed from := 'a'} {renamed '.low' from := 'b'} x : Limit; "
+                                "{renamed from := 'c', 'a.low'} y : INT;"),
+               true);
+  EXPECT_EQ(plant.get("Main.x.low"), "1") << "it is there under the new name";
+  EXPECT_EQ(plant.get("Main.y"), "8");
+  plant.undo();
+  EXPECT_EQ(plant.get("Main.b"), "7");
+  plant.change(kLimit + "TYPE Two : STRUCT l : Limit; END_STRUCT END_TYPE " +
+                   program("{renamed '.l' from := 'a'} {renamed '.l.low' from := 'b'} t : Two; "
+                           "c : INT := 8;"),
+               true);
+  EXPECT_EQ(plant.get("Main.t.l.low"), "1");
+  plant.undo();
+  EXPECT_EQ(plant.get("Main.a.low"), "1");
+  EXPECT_EQ(plant.get("Main.b"), "7");
+}
+
 TEST(Renames, X2_globals_of_a_list_and_anonymous_structures) {
   const auto source = [](const char* list, const char* x, const char* rule) {
     return std::string("{attribute 'list' := '") + list +

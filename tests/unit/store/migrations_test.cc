@@ -61,6 +61,25 @@ class Start : public ::testing::Test {
   std::unique_ptr<Plc> plc_;
 };
 
+// Only values that are retained as a whole; each names itself when it cannot be.
+TEST_F(Start, X2_EachRetainedValueOfAStructureIsMigrated) {
+  const auto points = [](const char* members, const char* migration) {
+    return "TYPE Point : STRUCT " + std::string(members) + " END_STRUCT END_TYPE " + migration +
+           "VAR_GLOBAL RETAIN row : ARRAY[1..3] OF Point; END_VAR VAR_GLOBAL one : Point; END_VAR "
+           "PROGRAM P END_PROGRAM\n";
+  };
+  begin(points("x : INT := 1;", ""));
+  plc_->set("row[2].x", "20");
+  plc_->set("one.x", "30");
+  start_with(points("pad : INT; mm : DINT;",
+                    "{migration of := 'Point'} FUNCTION F VAR_INPUT x : INT; END_VAR VAR_OUTPUT "
+                    "mm : DINT; END_VAR mm := INT_TO_DINT(x) * 10; END_FUNCTION "));
+  EXPECT_EQ(alarms(), "");
+  EXPECT_EQ(plc_->get("row[1].mm"), "10");
+  EXPECT_EQ(plc_->get("row[2].mm"), "200");
+  EXPECT_EQ(plc_->get("one.mm"), "0") << "not retained";
+}
+
 TEST_F(Start, X2_AnotherProgramMigratesWhatIsRetained) {
   plc_->set("P.a.turns", "600");
   plc_->set("P.b.turns", "90");

@@ -198,6 +198,28 @@ TEST_F(Carried, X2_RenamedVariablesKeepThemBothWays) {
   EXPECT_EQ(plc_->get("velocity"), "13");
 }
 
+TEST_F(Carried, X2_VariablesMovedIntoAStructureKeepThem) {
+  begin(program("speed : DINT;"));
+  plc_->set("speed", "70000");
+  const std::string moved = "TYPE Drive : STRUCT mode, speed : INT; END_STRUCT END_TYPE " +
+                            program("{renamed '.speed' from := 'speed'} drive : Drive;");
+  ASSERT_TRUE(plc_->change(moved).ok());
+  EXPECT_EQ(plc_->get("drive.speed"), "32767");
+  cut();
+  ASSERT_TRUE(plc_->boot().ok());
+  EXPECT_EQ(plc_->get("speed"), "70000") << "nobody wrote it during the trial";
+  ASSERT_TRUE(plc_->change(moved).ok());
+  plc_->set("drive.speed", "12");
+  ASSERT_TRUE(plc_->save().ok());
+  cut();
+  ASSERT_TRUE(plc_->boot().ok());
+  EXPECT_EQ(plc_->get("speed"), "12");
+  plc_->set("speed", "13");
+  boot_with(moved);
+  EXPECT_EQ(plc_->get("drive.speed"), "13");
+  EXPECT_EQ(plc_->get("drive.mode"), "0");
+}
+
 // Retained values are in place before anything of the program runs; then it starts as at a warm
 // restart.
 TEST_F(Carried, StartCodeFindsThem) {
