@@ -62,11 +62,11 @@ int64_t ExchangePort::now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
-// Where points are left for good, they get zero.
+// Where points are left for good, they get zero. A server does not show them any more.
 base::Status ExchangePort::Core::leave_last(ExchangeSet* next, int64_t now) {
   const DevicePoints left =
       outputs_without(last_used->points, next != nullptr ? &next->points : nullptr);
-  if (!left.outputs.empty() && last_used->has_outputs) {
+  if (!server && !left.outputs.empty() && last_used->has_outputs) {
     const base::Bytes zeros(left.output_bytes);
     base::Status done = driver->exchange({left, zeros, {}, now});
     if (!done.ok()) return done;

@@ -1,0 +1,169 @@
+// B8, B9: the exchange of one device beside the control thread, under ThreadSanitizer too
+// (docs/TESTING.md). What the control side calls allocates nothing and waits for nobody.
+#include "vm/io/exchange_port.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+thread_local uint64_t allocations = 0;
+
+}  // namespace
+
+[[gnu::noinline]] void* operator new(size_t size) {
+  ++allocations;
+  if (void* at = std::malloc(size)) return at;
+  std::abort();
+}
+[[gnu::noinline]] void operator delete(void* at) noexcept { std::free(at); }
+[[gnu::noinline]] void operator delete(void* at, size_t) noexcept { std::free(at); }
+
+namespace vm {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Seen {
+  std::atomic<int> hang_ms{0};
+  std::atomic<int> exchanges{0};
+  std::atomic<int> torn{0};
+  std::atomic<int> zeros{0};  // written to points that are left
+  std::atomic<int> last{0};   // written byte
+};
+
+// Inputs count exchanges; outputs must be bytes of one value.
+class Counter : public IoDriver {
+ public:
+  explicit Counter(std::shared_ptr<Seen> seen) : seen_(std::move(seen)) {}
+  base::Status exchange(const Exchange& exchange) override {
+    const int number = ++seen_->exchanges;
+    if (const int ms = seen_->hang_ms) std::this_thread::sleep_for(1ms * ms);
+    for (uint8_t byte : exchange.outputs) seen_->torn += byte != exchange.outputs[0];
+    if (!exchange.outputs.empty()) seen_->last = exchange.outputs[0];
+    if (!exchange.outputs.empty() && exchange.outputs[0] == 0) ++seen_->zeros;
+    for (uint8_t& byte : exchange.inputs) byte = static_cast<uint8_t>(number);
+    return base::Ok{};
+  }
+
+ private:
+  std::shared_ptr<Seen> seen_;
+};
+
+ir::Device device(const char* period_ms) {
+  return {"d", "simulated", {{"period_ms", period_ms}, {"timeout_ms", "20"}}, {}, {}};
+}
+
+DevicePoints points(uint32_t first, uint32_t count) {
+  DevicePoints out;
+  out.inputs = {{ir::PointTable::kByte, first, count, 0, {ir::DirectArea::kInput, 0, 8}}};
+  out.outputs = {{ir::PointTable::kByte, first, count, 0, {ir::DirectArea::kOutput, 0, 8}}};
+  out.input_bytes = out.output_bytes = count;
+  return out;
+}
+
+void send(ExchangeSet& set, uint8_t value) {
+  std::span<uint8_t> work = set.outputs.work();
+  std::fill(work.begin(), work.end(), value);
+  set.outputs.publish();
+}
+
+bool eventually(const std::function<bool()>& holds) {
+  for (int i = 0; i < 5000; ++i, std::this_thread::sleep_for(1ms)) {
+    if (holds()) return true;
+  }
+  return false;
+}
+
+TEST(ExchangePort, B8_TheControlSideNeitherWaitsNorAllocates) {
+  auto seen = std::make_shared<Seen>();
+  seen->hang_ms = 2000;
+  auto port = std::make_unique<ExchangePort>(device("1"), std::make_unique<Counter>(seen), true);
+  const auto set = port->add(points(0, 64));
+  port->use(set.get());
+  ASSERT_TRUE(eventually([&] { return seen->exchanges > 0; }));
+  const uint64_t before = allocations;
+  const int64_t begin = ExchangePort::now_ns();
+  int fresh = 0;
+  uint64_t rounds = 0;
+  for (; ExchangePort::now_ns() - begin < 1'500'000'000; ++rounds) {
+    send(*set, static_cast<uint8_t>(rounds | 1));
+    fresh += port->fresh(ExchangePort::now_ns());
+    if (set->inputs.take()) ++fresh;
+    port->use(set.get());
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(fresh, 0);          // it hung all the time
+  EXPECT_GT(rounds, 100'000u);  // and nobody waited for it
+  seen->hang_ms = 0;
+  EXPECT_TRUE(eventually([&] { return port->fresh(ExchangePort::now_ns()); }));
+}
+
+TEST(ExchangePort, B8_NothingIsTornWhileVersionsComeAndGo) {
+  auto seen = std::make_shared<Seen>();
+  ExchangePort port(device("1"), std::make_unique<Counter>(seen), true);
+  const auto first = port.add(points(0, 64));
+  port.use(first.get());
+  std::atomic<bool> ending{false};
+  std::atomic<ExchangeSet*> wanted{first.get()};
+  int torn = 0;
+  std::thread control([&] {
+    for (uint8_t value = 1; !ending; value = static_cast<uint8_t>(value + 2)) {
+      ExchangeSet* const set = wanted;
+      port.use(set);
+      send(*set, value);
+      if (set->inputs.take()) {
+        const auto now = set->inputs.newest();
+        for (uint8_t byte : now) torn += byte != now[0];
+      }
+    }
+  });
+  std::vector<std::shared_ptr<ExchangeSet>> kept;  // the thread may look at one a little longer
+  for (int round = 0; round < 50; ++round) {
+    const auto next = kept.emplace_back(port.add(points(32, 64)));
+    wanted = next.get();
+    std::this_thread::sleep_for(2ms);
+    EXPECT_EQ(port.status().name, "d");
+    wanted = first.get();  // undo
+    std::this_thread::sleep_for(2ms);
+    port.drop(next);
+  }
+  ending = true;
+  control.join();
+  EXPECT_EQ(torn, 0);
+  EXPECT_EQ(seen->torn, 0);
+  EXPECT_GT(seen->zeros, 0);  // points that only the other version wrote
+}
+
+TEST(ExchangePort, SilenceIsLossEvenWhenTheDriverSaysNothing) {
+  auto seen = std::make_shared<Seen>();
+  ExchangePort port(device("1"), std::make_unique<Counter>(seen), true);
+  const auto set = port.add(points(0, 1));
+  port.use(set.get());
+  ASSERT_TRUE(eventually([&] { return port.fresh(ExchangePort::now_ns()); }));
+  EXPECT_EQ(port.status().state, "online");
+  seen->hang_ms = 300;
+  EXPECT_TRUE(eventually([&] { return !port.fresh(ExchangePort::now_ns()); }));
+  EXPECT_EQ(port.status().state, "lost");
+  seen->hang_ms = 0;
+  EXPECT_TRUE(eventually([&] { return port.fresh(ExchangePort::now_ns()); }));
+}
+
+TEST(ExchangePort, ASetThatIsOnlyPreparedIsReadAndNotWritten) {
+  auto seen = std::make_shared<Seen>();
+  ExchangePort port(device("1"), std::make_unique<Counter>(seen), true);
+  const auto set = port.add(points(0, 4));
+  send(*set, 9);
+  EXPECT_TRUE(eventually([&] { return set->inputs.take(); }));
+  EXPECT_EQ(seen->last, 0);
+  port.use(set.get());
+  EXPECT_TRUE(eventually([&] { return seen->last == 9; }));
+  port.use(nullptr);
+  EXPECT_TRUE(eventually([&] { return seen->last == 0; }));
+}
+
+}  // namespace
+}  // namespace vm
