@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/limits.h"
 #include "ir/types/location.h"
 #include "ir/types/natural_layout.h"
 
@@ -150,12 +151,9 @@ class DataTables {
 
 }  // namespace
 
-// Markers (%M) are variables like others; only inputs and outputs are exchanged.
 void bind_address(ir::Image& image, const ir::DirectAddress& address, uint32_t data,
                   ir::TypeId type) {
-  const bool exchanged =
-      address.area == ir::DirectArea::kInput || address.area == ir::DirectArea::kOutput;
-  if (exchanged) image.io.push_back({address, data, type});
+  if (address.area != ir::DirectArea::kNone) image.io.push_back({address, data, type});
 }
 
 void size_process_image(ir::Image& image) {
@@ -164,10 +162,26 @@ void size_process_image(ir::Image& image) {
   for (const ir::IoBinding& binding : image.io) {
     const uint64_t end = binding.address.bit_offset +
                          ir::located_bits(image.types, natural, binding.type, binding.address);
+    if (binding.address.area == ir::DirectArea::kMarker) continue;
     const bool input = binding.address.area == ir::DirectArea::kInput;
     uint32_t& bytes = input ? image.input_bytes : image.output_bytes;
     bytes = std::max(bytes, static_cast<uint32_t>((end + 7) / 8));
   }
+}
+
+// %M as far as devices can exchange what is there.
+static uint32_t marker_bytes(const ir::Image& image) {
+  uint64_t bytes = 0;
+  const ir::Layouts natural = ir::natural_layouts(image.types);
+  for (const ir::IoBinding& row : image.io) {
+    const bool marker = row.address.area == ir::DirectArea::kMarker;
+    if (!marker || !ir::is_locatable(image.types, row.type)) continue;
+    const uint64_t end = (row.address.bit_offset +
+                          ir::located_bits(image.types, natural, row.type, row.address) + 7) /
+                         8;
+    if (end <= base::kMaxDeviceBytes) bytes = std::max(bytes, end);
+  }
+  return static_cast<uint32_t>(bytes);
 }
 
 base::Status place_devices(ir::Image& image, const std::vector<ir::Device>& devices) {
@@ -175,9 +189,10 @@ base::Status place_devices(ir::Image& image, const std::vector<ir::Device>& devi
     const ir::ProcessImageSize size = ir::process_image_size(image.devices);
     image.input_bytes = std::max(image.input_bytes, size.input_bytes);
     image.output_bytes = std::max(image.output_bytes, size.output_bytes);
-    return ir::ProcessImageSize{image.input_bytes, image.output_bytes};
+    return ir::ProcessImageSize{image.input_bytes, image.output_bytes, marker_bytes(image)};
   };
   image.devices = devices;
+  if (devices.empty()) return base::Ok{};
   const ir::ProcessImageSize located = cover();
   for (ir::Device& device : image.devices) {
     if (device.map.empty()) ir::add_default_map(device, located);

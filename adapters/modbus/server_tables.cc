@@ -7,6 +7,8 @@ namespace {
 
 using ir::PointTable;
 
+constexpr int kRtuHeader = 1;
+
 uint32_t word(const uint8_t* at) { return static_cast<uint32_t>(at[0] << 8 | at[1]); }
 
 }  // namespace
@@ -29,7 +31,7 @@ void ServerTables::use(const vm::DevicePoints& points) {
     }
   };
   for (const vm::PointRange& range : points_.inputs) allow(range, true);
-  for (const vm::PointRange& range : points_.outputs) allow(range, false);
+  for (const vm::PointRange& range : points_.outputs) allow(range, range.writable);
 }
 
 void ServerTables::show(base::ByteSpan outputs) {
@@ -76,10 +78,32 @@ bool ServerTables::may(PointTable table, bool write, uint32_t first, uint32_t co
   return true;
 }
 
-// Function, address and number of a request; numbers that no request may have, and functions that
-// are not served, are libmodbus' to answer.
+ServerTables::Written ServerTables::written_by(const uint8_t* pdu, int length) {
+  if (length < 5) return {};
+  const uint32_t first = word(pdu + 1);
+  switch (pdu[0]) {
+    case MODBUS_FC_WRITE_SINGLE_COIL:
+      return {PointTable::kCoil, first, 1};
+    case MODBUS_FC_WRITE_MULTIPLE_COILS:
+      return {PointTable::kCoil, first, word(pdu + 3)};
+    case MODBUS_FC_WRITE_SINGLE_REGISTER:
+    case MODBUS_FC_MASK_WRITE_REGISTER:
+      return {PointTable::kHolding, first, 1};
+    case MODBUS_FC_WRITE_MULTIPLE_REGISTERS:
+      return {PointTable::kHolding, first, word(pdu + 3)};
+    case MODBUS_FC_WRITE_AND_READ_REGISTERS:
+      if (length < 9) return {};
+      return {PointTable::kHolding, word(pdu + 5), word(pdu + 7)};
+    default:
+      return {};
+  }
+}
+
+// Numbers that no request may have, and functions that are not served, are libmodbus' to answer.
 bool ServerTables::permits(const uint8_t* pdu, int length) {
   if (length < 5) return true;
+  const Written written = written_by(pdu, length);
+  if (!may(written.table, true, written.first, written.count)) return false;
   const uint32_t first = word(pdu + 1);
   const uint32_t count = word(pdu + 3);
   switch (pdu[0]) {
@@ -87,34 +111,54 @@ bool ServerTables::permits(const uint8_t* pdu, int length) {
       return may(PointTable::kCoil, false, first, count);
     case MODBUS_FC_READ_DISCRETE_INPUTS:
       return may(PointTable::kDiscrete, false, first, count);
-    case MODBUS_FC_READ_HOLDING_REGISTERS:
-      return may(PointTable::kHolding, false, first, count);
     case MODBUS_FC_READ_INPUT_REGISTERS:
       return may(PointTable::kInput, false, first, count);
-    case MODBUS_FC_WRITE_SINGLE_COIL:
-      return may(PointTable::kCoil, true, first, 1);
-    case MODBUS_FC_WRITE_SINGLE_REGISTER:
-    case MODBUS_FC_MASK_WRITE_REGISTER:
-      return may(PointTable::kHolding, true, first, 1);
-    case MODBUS_FC_WRITE_MULTIPLE_COILS:
-      return may(PointTable::kCoil, true, first, count);
-    case MODBUS_FC_WRITE_MULTIPLE_REGISTERS:
-      return may(PointTable::kHolding, true, first, count);
+    case MODBUS_FC_READ_HOLDING_REGISTERS:
     case MODBUS_FC_WRITE_AND_READ_REGISTERS:
-      return length >= 9 && may(PointTable::kHolding, false, first, count) &&
-             may(PointTable::kHolding, true, word(pdu + 5), word(pdu + 7));
+      return may(PointTable::kHolding, false, first, count);
     default:
       return true;
   }
 }
 
-bool ServerTables::answer(modbus_t* context, const uint8_t* request, int length) {
+void ServerTables::pass_on(const Written& written, vm::WriteQueue& writes) const {
+  for (const vm::PointRange& range : points_.outputs) {
+    if (!range.writable || range.table != written.table) continue;
+    for (uint32_t i = 0; i < written.count; ++i) {
+      const uint32_t at = written.first + i;
+      if (at < range.first || at - range.first >= range.count) continue;
+      const uint32_t number = at - range.first;
+      const uint32_t bit = range.at.bit_offset;
+      if (range.table == PointTable::kCoil) {
+        writes.put({range.at.area, bit + number, 1, tables_->tab_bits[at]});
+      } else {
+        writes.put({range.at.area, bit + 8 * byte_of_register(range, number, high_first_), 16,
+                    tables_->tab_registers[at]});
+      }
+    }
+  }
+  writes.publish();
+}
+
+bool ServerTables::answer(modbus_t* context, const uint8_t* request, int length,
+                          vm::WriteQueue* writes) {
   const int header = modbus_get_header_length(context);
   if (length <= header) return false;
-  if (!permits(request + header, length - header)) {
+  const uint8_t* const pdu = request + header;
+  if (!permits(pdu, length - header)) {
     return modbus_reply_exception(context, request, MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS) >= 0;
   }
-  return modbus_reply(context, request, length, tables_.get()) >= 0;
+  const Written written = written_by(pdu, length - header);
+  if (writes != nullptr && written.count > writes->room()) {
+    return modbus_reply_exception(context, request, MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY) >= 0;
+  }
+  const int sent = modbus_reply(context, request, length, tables_.get());
+  if (sent < 0) return false;
+  // An exception has two bytes behind its header, and by RTU two more: then nothing was written.
+  // To a broadcast nothing is sent.
+  const bool done = sent == 0 || sent > header + (header == kRtuHeader ? 4 : 2);
+  if (writes != nullptr && written.count != 0 && done) pass_on(written, *writes);
+  return true;
 }
 
 }  // namespace modbus

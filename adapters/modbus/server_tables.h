@@ -1,6 +1,8 @@
 // What a Modbus server shows and takes: libmodbus' tables, and which points of them are mapped.
 // Points with `->` are written by others and read by the program, points with `<-` the other way
-// round; whatever else a request touches is answered with exception 02.
+// round; points with `<->` are the program's and can be written by others: such a write goes to the
+// control thread. Whatever else a request touches is answered with exception 02, and 06 when more
+// is written than a cycle takes.
 #pragma once
 
 #include <modbus.h>
@@ -23,7 +25,7 @@ class ServerTables {
   void show(base::ByteSpan outputs);
   void fetch(std::span<uint8_t> inputs) const;
   // Answers a request that libmodbus received; false: the connection is of no use any more.
-  bool answer(modbus_t* context, const uint8_t* request, int length);
+  bool answer(modbus_t* context, const uint8_t* request, int length, vm::WriteQueue* writes);
 
  private:
   static constexpr uint32_t kPoints = 65536;
@@ -31,12 +33,19 @@ class ServerTables {
     std::vector<bool> read = std::vector<bool>(kPoints);
     std::vector<bool> write = std::vector<bool>(kPoints);
   };
+  struct Written {  // by one request
+    ir::PointTable table = ir::PointTable::kCoil;
+    uint32_t first = 0;
+    uint32_t count = 0;
+  };
+  static Written written_by(const uint8_t* pdu, int length);
   struct Free {
     void operator()(modbus_mapping_t* tables) const { modbus_mapping_free(tables); }
   };
   Permission& of(ir::PointTable table);
   bool may(ir::PointTable table, bool write, uint32_t first, uint32_t count);
   bool permits(const uint8_t* pdu, int length);
+  void pass_on(const Written& written, vm::WriteQueue& writes) const;
 
   const bool high_first_;
   std::unique_ptr<modbus_mapping_t, Free> tables_;

@@ -30,6 +30,7 @@ class Serving : public vm::IoDriver {
     base::Status ready = listen();
     if (!ready.ok()) return ready;
     tables_.use(exchange.points);
+    writes_ = exchange.writes;
     if (!exchange.outputs.empty()) tables_.show(exchange.outputs);
     base::Status served = serve(steady_ns() + period_ns_);
     if (!served.ok()) return served;
@@ -47,7 +48,7 @@ class Serving : public vm::IoDriver {
 
   // False: the connection is of no use any more.
   bool answer(const uint8_t* request, int length) {
-    if (!tables_.answer(context_.get(), request, length)) return false;
+    if (!tables_.answer(context_.get(), request, length, writes_)) return false;
     asked_ns_ = steady_ns();
     return true;
   }
@@ -59,6 +60,7 @@ class Serving : public vm::IoDriver {
   ServerTables tables_;
   const int64_t period_ns_;
   const int64_t timeout_ns_;
+  vm::WriteQueue* writes_ = nullptr;
   int64_t asked_ns_ = INT64_MIN / 2;
 };
 

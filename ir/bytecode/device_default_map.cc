@@ -6,10 +6,11 @@ namespace ir {
 namespace {
 
 constexpr uint32_t kAllPoints = 65536;
+constexpr uint32_t kWords = 1024;  // holding registers for %QW, and as many behind them for %MW
 
 void add(Device& device, PointTable table, uint32_t first, uint32_t count, bool to_device,
-         DirectAddress at) {
-  if (count != 0) device.map.push_back({table, first, count, to_device, at});
+         DirectAddress at, bool writable = false) {
+  if (count != 0) device.map.push_back({table, first, count, to_device, at, writable});
 }
 
 uint32_t points(uint32_t bytes, uint32_t per_byte) {
@@ -33,15 +34,23 @@ void add_default_map(Device& device, const ProcessImageSize& size) {
     add(device, PointTable::kByte, 0, std::min(size.output_bytes, kAllPoints), true, out);
     return;
   }
-  const uint32_t in_words = (size.input_bytes + 1) / 2;
-  const uint32_t out_words = std::min<uint32_t>((size.output_bytes + 1) / 2, 1024);
-  add(device, PointTable::kCoil, 0, points(size.output_bytes, 8), true,
-      {DirectArea::kOutput, 0, 1});
+  const auto registers = [](uint32_t bytes, uint32_t most) {
+    return std::min(bytes / 2 + bytes % 2, most);
+  };
+  add(device, PointTable::kCoil, 0, points(size.output_bytes, 8), true, {DirectArea::kOutput, 0, 1},
+      true);
   add(device, PointTable::kDiscrete, 0, points(size.input_bytes, 8), true,
       {DirectArea::kInput, 0, 1});
-  add(device, PointTable::kInput, 0, std::min(in_words, kAllPoints), true,
+  add(device, PointTable::kInput, 0, registers(size.input_bytes, kAllPoints), true,
       {DirectArea::kInput, 0, 16});
-  add(device, PointTable::kHolding, 0, out_words, true, {DirectArea::kOutput, 0, 16});
+  add(device, PointTable::kHolding, 0, registers(size.output_bytes, kWords), true,
+      {DirectArea::kOutput, 0, 16}, true);
+  add(device, PointTable::kHolding, kWords, registers(size.marker_bytes, kWords), true,
+      {DirectArea::kMarker, 0, 16}, true);
+  const uint32_t doubles = (size.marker_bytes + 3) / 4;
+  add(device, PointTable::kHolding, 2 * kWords,
+      2 * std::min(doubles, (kAllPoints - 2 * kWords) / 2), true, {DirectArea::kMarker, 0, 32},
+      true);
 }
 
 }  // namespace ir

@@ -124,9 +124,6 @@ class Checker {
       return fault(entry, "`" + name + "` ends at " + std::to_string(table.last_point));
     }
     if (map.at.area == DirectArea::kNone || !aligned(map.at)) return fault(entry, "no address");
-    if (map.at.area == DirectArea::kMarker) {
-      return fault(entry, "devices exchange %I and %Q; %M is a variable of the program");
-    }
     check_direction(driver, table, map, entry);
     check_size(table, map, entry);
     check_place(map.at, map.bits(), entry);
@@ -149,6 +146,18 @@ class Checker {
     const bool input = map.at.area == DirectArea::kInput;
     const bool output = map.at.area == DirectArea::kOutput;
     const std::string name = "`" + std::string(table.name) + "`";
+    if (map.at.area == DirectArea::kMarker && !driver.server) {
+      return fault(entry, "devices exchange %I and %Q; %M is a variable of the program");
+    }
+    if (map.writable && !driver.server) {
+      return fault(entry, "`<->` is for servers: others write what the program writes, too");
+    }
+    if (map.writable && (input || !map.to_device)) {
+      return fault(entry, "`<->` needs %Q or %M; use `->` for %I");
+    }
+    if (map.writable && !table.to_device) {
+      return fault(entry, name + " can only be read by others: use `<-`");
+    }
     if (map.to_device && !output && !driver.server) {
       return fault(entry, "`<-` sends to the device: only %Q can stand behind it");
     }
@@ -227,7 +236,11 @@ std::string mapping_text(const DeviceMapping& mapping) {
   std::string out(table_rows()[static_cast<size_t>(mapping.table)].name);
   out += " " + std::to_string(mapping.first);
   if (mapping.count > 1) out += ".." + std::to_string(uint64_t{mapping.first} + mapping.count - 1);
-  return out + (mapping.to_device ? " <- " : " -> ") + address_text(mapping.at);
+  return out +
+         (mapping.writable    ? " <-> "
+          : mapping.to_device ? " <- "
+                              : " -> ") +
+         address_text(mapping.at);
 }
 
 std::optional<DeviceFault> find_fault(const std::vector<Device>& devices,
@@ -241,6 +254,7 @@ ProcessImageSize process_image_size(const std::vector<Device>& devices) {
     const auto end = static_cast<uint32_t>((at.bit_offset + bits + 7) / 8);
     if (at.area == DirectArea::kInput) size.input_bytes = std::max(size.input_bytes, end);
     if (at.area == DirectArea::kOutput) size.output_bytes = std::max(size.output_bytes, end);
+    if (at.area == DirectArea::kMarker) size.marker_bytes = std::max(size.marker_bytes, end);
   };
   for (const Device& device : devices) {
     cover(device.quality, 1);

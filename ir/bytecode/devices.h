@@ -83,6 +83,7 @@ struct DeviceMapping {
   uint32_t count = 0;
   bool to_device = false;
   DirectAddress at;
+  bool writable = false;  // `<->`: others see the program's value and can write it
 
   uint64_t bits() const;
   friend bool operator==(const DeviceMapping&, const DeviceMapping&) = default;
@@ -126,6 +127,7 @@ struct DeviceFault {
 struct ProcessImageSize {
   uint32_t input_bytes = 0;
   uint32_t output_bytes = 0;
+  uint32_t marker_bytes = 0;
 };
 std::optional<DeviceFault> find_fault(const std::vector<Device>& devices,
                                       const ProcessImageSize* size);
@@ -134,7 +136,7 @@ std::optional<DeviceFault> find_fault(const std::vector<Device>& devices,
 bool has_default_map(const Device& device);
 // That map, for a process image of that size.
 void add_default_map(Device& device, const ProcessImageSize& size);
-// Bytes of %I and %Q that the devices need.
+// Bytes of %I, %Q and %M that the devices need.
 ProcessImageSize process_image_size(const std::vector<Device>& devices);
 
 }  // namespace ir

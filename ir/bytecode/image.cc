@@ -12,7 +12,7 @@ namespace ir {
 namespace {
 
 constexpr std::string_view kMagic = "STCIMAGE";
-constexpr uint32_t kVersion = 5;
+constexpr uint32_t kVersion = 6;
 constexpr size_t kDigestAt = 16;
 constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 

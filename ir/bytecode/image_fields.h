@@ -249,12 +249,13 @@ void device_fields(Archive& a, T& v) {
     a(setting.key);
     a(setting.value);
   });
-  a.list(v.map, 19, [&](auto& entry) {
+  a.list(v.map, 20, [&](auto& entry) {
     a.enumerator(entry.table, kPointTableCount);
     a(entry.first);
     a(entry.count);
     a(entry.to_device);
     address_fields(a, entry.at);
+    a(entry.writable);
   });
   address_fields(a, v.quality);
 }

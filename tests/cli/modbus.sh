@@ -131,4 +131,38 @@ grep -E '^\[0\]: ' traffic | grep -vE ':[[:space:]]+(42|63)$' && fail 'a value t
 [ "$(grep -cE '^\[0\]: ' traffic)" -gt 20 ] || fail 'too little traffic to say anything'
 expect 0 stvm status --dir plc
 said '^hmi +modbus-tcp-server +online '
+expect 0 stvm stop --dir plc
+
+# Without a map: %Q and %M as people who come from other soft PLCs know them, to read and to write.
+mkdir plain
+cat >plain/main.st <<'ST'
+VAR_GLOBAL speed AT %MW3 : INT := 17; total AT %MD5 : DINT := 70000; END_VAR
+PROGRAM P
+VAR lamp AT %QX1.2 : BOOL; level AT %QW2 : INT := 33; key AT %IX0.0 : BOOL; n : DINT; END_VAR
+n := n + 1;
+END_PROGRAM
+ST
+printf '[devices.hmi]\ndriver = "modbus-tcp-server"\naddress = "127.0.0.1:%s"\n' "$port" >plain/stc.toml
+serve plain_plc plain
+expect 0 stc dump plain --image
+said 'coil 0..47 <-> %QX0.0$'
+said 'discrete 0..7 <- %IX0.0$'
+said 'holding 0..2 <-> %QW0$'
+said 'holding 1024..1035 <-> %MW0$'
+said 'holding 2048..2059 <-> %MD0$'
+wait_for ':[[:space:]]+33$' ask -t 4 -r 2 127.0.0.1
+wait_for ':[[:space:]]+17$' ask -t 4 -r 1027 127.0.0.1
+wait_for ':[[:space:]]+70000$' ask -t 4:int -B -r 2058 127.0.0.1
+ask -t 4:int -B -r 2058 127.0.0.1 -- -80000 >/dev/null || fail 'cannot write %MD5'
+ask -t 4 -r 1027 127.0.0.1 55 >/dev/null || fail 'cannot write %MW3'
+ask -t 0 -r 10 127.0.0.1 1 >/dev/null || fail 'cannot write %QX1.2'
+value_is() { wait_for "^$1=$2" stvm get "$1" --dir plain_plc; }
+value_is total -80000
+value_is speed 55
+program=$(stvm get --list --dir plain_plc | sed -n 's/^\([A-Za-z]*\)\.lamp.*/\1/p')
+value_is "$program.lamp" TRUE
+wait_for ':[[:space:]]+55$' ask -t 4 -r 1027 127.0.0.1
+wait_for 'Illegal data address' ask -t 4 -r 1036 127.0.0.1
+wait_for 'Illegal data address' ask -t 4 -r 3 127.0.0.1
+expect 0 stvm stop --dir plain_plc
 echo "Modbus: two controllers, mbpoll, and a change between its requests"

@@ -72,6 +72,11 @@ class Entry {
 
   bool arrow() {
     blanks();
+    if (text_.substr(at_).starts_with("<->")) {
+      mapping_.to_device = mapping_.writable = true;
+      at_ += 3;
+      return true;
+    }
     const std::string_view sign = text_.substr(at_, 2);
     if (sign != "->" && sign != "<-") {
       return fail(at_, "expected `->` (into the program) or `<-` (to the device)");

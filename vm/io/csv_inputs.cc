@@ -26,6 +26,7 @@ bool parse_whole(std::string_view text, T& value, int base = 10) {
 
 // "12", "12.5": six digits behind the point are nanoseconds.
 bool parse_time(std::string_view text, int64_t& ns) {
+  if (text.starts_with('-')) return false;
   const size_t point = std::min(text.find('.'), text.size());
   int64_t ms = 0;
   if (!parse_whole(text.substr(0, point), ms) || ms < 0 || ms >= kMostMs) return false;

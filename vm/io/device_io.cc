@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "vm/io/bit_copy.h"
+#include "vm/runtime/process_image.h"
 
 namespace vm {
 namespace {
@@ -32,9 +33,23 @@ struct DeviceIo::Binding {
   std::shared_ptr<ExchangeSet> set;
 };
 
+bool DeviceIo::has_quality(const Binding& binding) {
+  return binding.device.quality.area != ir::DirectArea::kNone;
+}
+
 struct DeviceIo::Tables {
   explicit Tables(const ir::VerifiedImage& of)
-      : version(of), mapped_inputs(of.image().input_bytes), received(of.image().input_bytes) {}
+      : version(of),
+        mapped_inputs(of.image().input_bytes),
+        received(of.image().input_bytes),
+        markers(ir::process_image_size(of.image().devices).marker_bytes),
+        outputs(of.image().output_bytes) {}
+
+  // The bytes behind an address, as sent next.
+  std::span<const uint8_t> area(ir::DirectArea wanted, std::span<const uint8_t> sent) const {
+    if (wanted == ir::DirectArea::kInput) return received;
+    return wanted == ir::DirectArea::kMarker ? std::span<const uint8_t>(markers) : sent;
+  }
 
   const Binding* of(const ExchangePort& port) const {
     for (const Binding& binding : bindings) {
@@ -47,6 +62,9 @@ struct DeviceIo::Tables {
   std::vector<Binding> bindings;
   base::Bytes mapped_inputs;  // bits that some device provides
   base::Bytes received;       // %I as received last, for devices that show it
+  base::Bytes markers;        // %M at the last boundary
+  base::Bytes outputs;        // where others' writes meet the variables
+  bool writable = false;      // others write %Q or %M
 };
 
 base::Result<DeviceOverride> parse_device_override(const std::string& text) {
@@ -133,6 +151,7 @@ base::Result<std::unique_ptr<DeviceIo::Tables>> DeviceIo::build(const ir::Verifi
       const Binding* running = running_ != nullptr ? running_->of(**port) : nullptr;
       const bool same = running != nullptr && running->set->points == points;
       binding.port = *port;
+      for (const PointRange& range : points.outputs) tables->writable |= range.writable;
       binding.set = same ? running->set : (*port)->add(std::move(points));
     }
     binding.device = std::move(device);
@@ -160,6 +179,9 @@ void DeviceIo::use(const base::Digest& version) {
   base::check(next != tables_.end(), "devices of a version are used that were not prepared");
   running_ = next->get();
   switched_ = true;
+  for (const Binding& binding : running_->bindings) {  // what was written to it before
+    if (binding.set && binding.set->writes) binding.set->writes->take([](const auto&) {});
+  }
   for (const auto& port : ports_) {
     const Binding* binding = running_->of(*port);
     port->use(binding != nullptr ? binding->set.get() : nullptr);
@@ -198,20 +220,22 @@ void DeviceIo::receive(std::span<uint8_t> inputs) {
   if (running_->bindings.empty()) return;
   const int64_t now = now_ns();
   for (const Binding& binding : running_->bindings) {
-    const bool fresh = binding.port != nullptr && binding.port->fresh(now);
-    if (binding.device.quality.area != ir::DirectArea::kNone) {
-      set_bit(inputs, binding.device.quality.bit_offset, fresh);
+    if (binding.port == nullptr) {
+      if (has_quality(binding)) set_bit(inputs, binding.device.quality.bit_offset, false);
+      continue;
     }
-    if (binding.port == nullptr) continue;
     ExchangeSet& set = *binding.set;
+    bool fresh = binding.port->fresh(now);
     if (fresh && set.inputs.take()) set.received = true;
+    fresh = fresh && (set.received || set.points.inputs.empty());  // of this version's points
+    if (has_quality(binding)) set_bit(inputs, binding.device.quality.bit_offset, fresh);
     const int64_t received = binding.port->received_ns();
     const bool zero = !fresh && !binding.loss.hold &&
                       (received == INT64_MIN || now - received >= binding.loss.zero_after_ns);
     for (const PointRange& range : set.points.inputs) {
       if (zero) {
         clear_bits(inputs, range.at.bit_offset, range.bits());
-      } else if (fresh && set.received) {
+      } else if (fresh) {
         copy_bits(set.inputs.newest(), range.byte * 8, inputs, range.at.bit_offset, range.bits());
       }
     }
@@ -226,13 +250,37 @@ void DeviceIo::send(std::span<const uint8_t> outputs) {
     ExchangeSet& set = *binding.set;
     const std::span<uint8_t> work = set.outputs.work();
     for (const PointRange& range : set.points.outputs) {
-      const bool input = range.at.area == ir::DirectArea::kInput;
-      copy_bits(input ? std::span<const uint8_t>(running_->received) : outputs, range.at.bit_offset,
-                work, range.byte * 8, range.bits());
+      copy_bits(running_->area(range.at.area, outputs), range.at.bit_offset, work, range.byte * 8,
+                range.bits());
     }
     set.outputs.publish();
     if (options_.virtual_clock != nullptr) binding.port->exchange_now(now_ns());
   }
+}
+
+// What others wrote becomes the variables' values, as if a task had written it between two cycles.
+bool DeviceIo::take_writes() {
+  bool any = false;
+  for (const Binding& binding : running_->bindings) {
+    if (!binding.set || !binding.set->writes) continue;
+    any |= binding.set->writes->take([&](const OutsideWrite& write) {
+      const bool marker = write.area == ir::DirectArea::kMarker;
+      const uint8_t value[2] = {static_cast<uint8_t>(write.value),
+                                static_cast<uint8_t>(write.value >> 8)};
+      copy_bits(value, 0, marker ? running_->markers : running_->outputs, write.bit, write.bits);
+    });
+  }
+  return any;
+}
+
+void DeviceIo::at_boundary(const ProcessImage& image, uint8_t* memory) {
+  if (running_ == nullptr || (running_->markers.empty() && !running_->writable)) return;
+  image.variables_to_markers(memory, running_->markers);
+  if (!running_->writable) return;
+  image.variables_to_outputs(memory, running_->outputs);
+  if (!take_writes()) return;
+  image.markers_to_variables(running_->markers, memory);
+  image.outputs_to_variables(running_->outputs, memory);
 }
 
 std::vector<DeviceStatus> DeviceIo::status() const {

@@ -45,6 +45,7 @@ class DeviceIo : public IoPort {
 
   void receive(std::span<uint8_t> inputs) override;
   void send(std::span<const uint8_t> outputs) override;
+  void at_boundary(const ProcessImage& image, uint8_t* memory) override;
 
  private:
   struct Binding;
@@ -54,6 +55,8 @@ class DeviceIo : public IoPort {
   base::Result<ExchangePort*> port_for(const ir::Device& device);
   base::Result<std::unique_ptr<Tables>> build(const ir::VerifiedImage& version);
   int64_t now_ns() const;
+  bool take_writes();
+  static bool has_quality(const Binding& binding);
   void keep_running_only();
 
   Options options_;

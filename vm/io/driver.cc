@@ -6,7 +6,8 @@ namespace vm {
 namespace {
 
 PointRange place(const ir::DeviceMapping& mapping, uint32_t& bytes) {
-  PointRange range{mapping.table, mapping.first, mapping.count, bytes, mapping.at};
+  PointRange range{mapping.table, mapping.first, mapping.count,
+                   bytes,         mapping.at,    mapping.writable};
   bytes += (range.bits() + 7) / 8;
   return range;
 }
@@ -29,7 +30,7 @@ std::vector<PointRange> rest_of(const PointRange& range, const std::vector<Point
     if (free && !open) {
       ir::DirectAddress address = range.at;
       address.bit_offset += at * point_bits;
-      rest.push_back({range.table, range.first + at, 0, 0, address});
+      rest.push_back({range.table, range.first + at, 0, 0, address, range.writable});
     }
     if (free) rest.back().count += step;
     open = free;

@@ -11,6 +11,7 @@
 #include "base/bytes.h"
 #include "base/result.h"
 #include "ir/bytecode/devices.h"
+#include "vm/io/write_queue.h"
 
 namespace vm {
 
@@ -21,7 +22,8 @@ struct PointRange {
   uint32_t first = 0;
   uint32_t count = 0;
   uint32_t byte = 0;
-  ir::DirectAddress at;  // at.bit_size: of one value
+  ir::DirectAddress at;   // at.bit_size: of one value
+  bool writable = false;  // an output that others write, too
 
   uint32_t bits() const;
   friend bool operator==(const PointRange&, const PointRange&) = default;
@@ -42,9 +44,10 @@ DevicePoints outputs_without(const DevicePoints& old, const DevicePoints* next);
 
 struct Exchange {
   const DevicePoints& points;
-  base::ByteSpan outputs;     // empty: nothing is written
-  std::span<uint8_t> inputs;  // as they were; empty: nothing is read
-  int64_t now_ns = 0;         // since the controller began
+  base::ByteSpan outputs;        // empty: nothing is written
+  std::span<uint8_t> inputs;     // as they were; empty: nothing is read
+  int64_t now_ns = 0;            // since the controller began
+  WriteQueue* writes = nullptr;  // of what others write to outputs; null: there are none to write
 };
 
 class IoDriver {

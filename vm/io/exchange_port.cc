@@ -10,8 +10,17 @@ constexpr int64_t kNever = INT64_MIN;
 constexpr int64_t kMs = 1'000'000;
 constexpr int64_t kLongestRetryNs = 2000 * kMs;
 constexpr int64_t kCloseSlackNs = 1000 * kMs;
+constexpr size_t kMostWrites = 4096;  // from one boundary to the next
 
 }  // namespace
+
+ExchangeSet::ExchangeSet(DevicePoints what)
+    : points(std::move(what)), inputs(points.input_bytes), outputs(points.output_bytes) {
+  const auto writable = [](const PointRange& range) { return range.writable; };
+  if (std::any_of(points.outputs.begin(), points.outputs.end(), writable)) {
+    writes = std::make_unique<WriteQueue>(kMostWrites);
+  }
+}
 
 // What port and thread share; the thread may outlive the port.
 struct ExchangePort::Core {
@@ -68,7 +77,7 @@ base::Status ExchangePort::Core::leave_last(ExchangeSet* next, int64_t now) {
       outputs_without(last_used->points, next != nullptr ? &next->points : nullptr);
   if (!server && !left.outputs.empty() && last_used->has_outputs) {
     const base::Bytes zeros(left.output_bytes);
-    base::Status done = driver->exchange({left, zeros, {}, now});
+    base::Status done = driver->exchange({left, zeros, {}, now, nullptr});
     if (!done.ok()) return done;
   }
   last_used.reset();
@@ -80,7 +89,8 @@ base::Status ExchangePort::Core::exchange(ExchangeSet& set, bool is_used, int64_
   if (is_used && set.outputs.take()) set.has_outputs = true;
   const base::ByteSpan outputs =
       is_used && set.has_outputs ? base::ByteSpan(set.outputs.newest()) : base::ByteSpan();
-  base::Status done = driver->exchange({set.points, outputs, set.inputs.work(), now});
+  base::Status done =
+      driver->exchange({set.points, outputs, set.inputs.work(), now, set.writes.get()});
   if (done.ok()) set.inputs.publish();
   return done;
 }
@@ -99,7 +109,7 @@ void ExchangePort::Core::round(int64_t now) {
     base::Status left = leave_last(wanted, now);
     if (!left.ok()) return note(left, now);
   }
-  if (wanted == nullptr && exclusive) return;
+  if (current.empty() || (wanted == nullptr && exclusive)) return;
   base::Status result = base::Ok{};
   for (const std::shared_ptr<ExchangeSet>& set : current) {
     const bool is_used = set.get() == wanted;

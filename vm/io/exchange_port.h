@@ -24,12 +24,12 @@ namespace vm {
 
 class ExchangeSet {
  public:
-  explicit ExchangeSet(DevicePoints what)
-      : points(std::move(what)), inputs(points.input_bytes), outputs(points.output_bytes) {}
+  explicit ExchangeSet(DevicePoints what);
 
   const DevicePoints points;
-  TripleBuffer inputs;   // written by the exchange
-  TripleBuffer outputs;  // written by the control thread
+  TripleBuffer inputs;                 // written by the exchange
+  TripleBuffer outputs;                // written by the control thread
+  std::unique_ptr<WriteQueue> writes;  // by the exchange; null: no output is writable
   // Control thread: the inputs have been received, the outputs sent, at least once.
   bool received = false;
   // Exchange: the same of the other side.

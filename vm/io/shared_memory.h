@@ -1,6 +1,6 @@
 // Layout of the shared memory that a controller exchanges with another process (docs/IO.md): a
 // header, then two blocks. Each block has one writer and any number of readers, and a sequence
-// lock: odd while it is written, two more behind each write. Plain C, for both sides.
+// lock: odd while it is written, two more behind each write. For both sides.
 #pragma once
 
 #include <atomic>
@@ -27,25 +27,33 @@ static_assert(std::atomic<uint64_t>::is_always_lock_free && sizeof(SharedBlock) 
 // Bytes of a block with its data, which follow it; a multiple of 8.
 inline size_t shared_block_size(size_t bytes) { return sizeof(SharedBlock) + (bytes + 7) / 8 * 8; }
 
-inline uint8_t* shared_data(SharedBlock* block) { return reinterpret_cast<uint8_t*>(block + 1); }
+inline uint64_t* shared_words(SharedBlock* block) { return reinterpret_cast<uint64_t*>(block + 1); }
 
+// The first `size` bytes of the block. Each word is released behind the odd sequence.
 inline void shared_write(SharedBlock* block, const uint8_t* bytes, size_t size, uint64_t now_ns) {
   const uint64_t sequence = block->sequence.load(std::memory_order_relaxed) | 1;
   block->sequence.store(sequence, std::memory_order_relaxed);
-  std::atomic_thread_fence(std::memory_order_release);
-  std::memcpy(shared_data(block), bytes, size);
-  block->written_ns.store(now_ns, std::memory_order_relaxed);
+  uint64_t* words = shared_words(block);
+  for (size_t at = 0; at < size; at += 8, ++words) {
+    std::atomic_ref<uint64_t> shared(*words);
+    uint64_t word = shared.load(std::memory_order_relaxed);
+    std::memcpy(&word, bytes + at, size - at < 8 ? size - at : 8);
+    shared.store(word, std::memory_order_release);
+  }
+  block->written_ns.store(now_ns, std::memory_order_release);
   block->sequence.store(sequence + 1, std::memory_order_release);
 }
 
 // One attempt; false: it is being written. `written_ns` 0: it never was.
-inline bool shared_read(const SharedBlock* block, uint8_t* bytes, size_t size,
-                        uint64_t& written_ns) {
+inline bool shared_read(SharedBlock* block, uint8_t* bytes, size_t size, uint64_t& written_ns) {
   const uint64_t before = block->sequence.load(std::memory_order_acquire);
   if ((before & 1) != 0) return false;
-  std::memcpy(bytes, block + 1, size);
-  written_ns = block->written_ns.load(std::memory_order_relaxed);
-  std::atomic_thread_fence(std::memory_order_acquire);
+  uint64_t* words = shared_words(block);
+  for (size_t at = 0; at < size; at += 8, ++words) {
+    const uint64_t word = std::atomic_ref<uint64_t>(*words).load(std::memory_order_acquire);
+    std::memcpy(bytes + at, &word, size - at < 8 ? size - at : 8);
+  }
+  written_ns = block->written_ns.load(std::memory_order_acquire);
   return block->sequence.load(std::memory_order_relaxed) == before;
 }
 

@@ -63,8 +63,7 @@ class SharedMemoryDriver : public IoDriver {
     auto* header = reinterpret_cast<SharedHeader*>(memory_);
     header->header_bytes = sizeof(SharedHeader);
     header->input_bytes = header->output_bytes = kBytes;
-    std::atomic_thread_fence(std::memory_order_release);
-    header->magic = kSharedMagic;
+    std::atomic_ref<uint32_t>(header->magic).store(kSharedMagic, std::memory_order_release);
     return base::Ok{};
   }
 

@@ -78,7 +78,11 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
   return controller;
 }
 
-void Controller::cycle() { impl_->scheduler.run_cycle(); }
+void Controller::cycle() {
+  impl_->scheduler.run_cycle();
+  if (!at_boundary() || faulted()) return;
+  impl_->io_port.at_boundary(impl_->scheduler.tables().process_image, impl_->memory.data());
+}
 void Controller::run_idle(const std::function<bool()>& unit) { impl_->scheduler.run_idle(unit); }
 void Controller::worked(int64_t expected_ns) { impl_->scheduler.worked(expected_ns); }
 uint64_t Controller::cycles() const { return impl_->scheduler.cycles(); }

@@ -18,6 +18,8 @@ class VerifiedImage;
 
 namespace vm {
 
+class ProcessImage;
+
 // Time in ns since the controller started; never goes back.
 class Clock {
  public:
@@ -55,6 +57,9 @@ class IoPort {
   virtual void use(const base::Digest& /*version*/) {}
   // Off the control thread: nothing but what is used will be needed any more.
   virtual void settle() {}
+  // Control thread, at a boundary behind each cycle: for devices that exchange %M, or let others
+  // write %Q. `memory` is data memory, `image` says where variables are in it.
+  virtual void at_boundary(const ProcessImage& /*image*/, uint8_t* /*memory*/) {}
   // Off the control thread.
   virtual std::vector<DeviceStatus> status() const;
 

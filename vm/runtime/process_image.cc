@@ -72,7 +72,9 @@ class ProcessImage::Collector {
 };
 
 ProcessImage::ProcessImage(const ir::Image& image)
-    : input_bytes_(image.input_bytes), output_bytes_(image.output_bytes) {
+    : input_bytes_(image.input_bytes),
+      output_bytes_(image.output_bytes),
+      marker_bytes_(ir::process_image_size(image.devices).marker_bytes) {
   if (image.io.empty()) return;
   Collector collector(image);
   for (const ir::IoBinding& binding : image.io) {
@@ -83,8 +85,13 @@ ProcessImage::ProcessImage(const ir::Image& image)
       case ir::DirectArea::kOutput:
         collector.add(outputs_, binding, output_bytes_);
         break;
-      default:
-        break;  // markers are plain variables
+      case ir::DirectArea::kMarker:
+        if (ir::is_locatable(image.types, binding.type)) {
+          collector.add(markers_, binding, marker_bytes_);
+        }
+        break;
+      case ir::DirectArea::kNone:
+        break;
     }
   }
 }
@@ -107,16 +114,28 @@ void ProcessImage::outputs_to_variables(std::span<const uint8_t> outputs, uint8_
   unpack(outputs_, outputs, memory);
 }
 
+void ProcessImage::markers_to_variables(std::span<const uint8_t> markers, uint8_t* memory) const {
+  unpack(markers_, markers, memory);
+}
+
 void ProcessImage::variables_to_outputs(const uint8_t* memory, std::span<uint8_t> outputs) const {
-  for (const Point& point : outputs_) {
+  pack(outputs_, memory, outputs);
+}
+
+void ProcessImage::variables_to_markers(const uint8_t* memory, std::span<uint8_t> markers) const {
+  pack(markers_, memory, markers);
+}
+
+void ProcessImage::pack(const Points& points, const uint8_t* memory, std::span<uint8_t> to) {
+  for (const Point& point : points) {
     if (point.size != 0) {
-      std::memcpy(outputs.data() + point.byte, memory + point.data, point.size);
+      std::memcpy(to.data() + point.byte, memory + point.data, point.size);
     } else if (point.mask == kWholeByte) {
-      outputs[point.byte] = memory[point.data] != 0;
+      to[point.byte] = memory[point.data] != 0;
     } else if (memory[point.data] != 0) {
-      outputs[point.byte] |= point.mask;
+      to[point.byte] |= point.mask;
     } else {
-      outputs[point.byte] &= static_cast<uint8_t>(~point.mask);
+      to[point.byte] &= static_cast<uint8_t>(~point.mask);
     }
   }
 }

@@ -19,10 +19,14 @@ class ProcessImage {
 
   uint32_t input_bytes() const { return input_bytes_; }
   uint32_t output_bytes() const { return output_bytes_; }
+  uint32_t marker_bytes() const { return marker_bytes_; }  // 0: no device exchanges any
 
-  // `inputs` has input_bytes(), `outputs` output_bytes().
+  // `inputs` has input_bytes(), `outputs` output_bytes(), `markers` marker_bytes().
   void inputs_to_variables(std::span<const uint8_t> inputs, uint8_t* memory) const;
   void variables_to_outputs(const uint8_t* memory, std::span<uint8_t> outputs) const;
+  // %M as devices see it: the variables that lie inside `markers`, and can be exchanged.
+  void markers_to_variables(std::span<const uint8_t> markers, uint8_t* memory) const;
+  void variables_to_markers(const uint8_t* memory, std::span<uint8_t> markers) const;
   void outputs_to_variables(std::span<const uint8_t> outputs, uint8_t* memory) const;
 
  private:
@@ -35,12 +39,15 @@ class ProcessImage {
   static constexpr uint8_t kWholeByte = 0xff;
   using Points = std::vector<Point>;
   class Collector;
+  static void pack(const Points& points, const uint8_t* memory, std::span<uint8_t> to);
   static void unpack(const Points& points, std::span<const uint8_t> from, uint8_t* memory);
 
   Points inputs_;
   Points outputs_;
+  Points markers_;
   uint32_t input_bytes_;
   uint32_t output_bytes_;
+  uint32_t marker_bytes_;
 };
 
 }  // namespace vm

@@ -83,11 +83,12 @@ TEST(InitialData, BindsInputsAndOutputsAndSizesTheProcessImage) {
       simple("  member global i : BOOL at input 19 1\n  member global q : WORD at output 64 16\n"
              "  member global m : WORD at marker 0 16\n",
              "  member local o : BOOL at output 3 1\n"));
-  ASSERT_EQ(image.io.size(), 3u);
+  ASSERT_EQ(image.io.size(), 4u);
   EXPECT_EQ(image.input_bytes, 3u);
   EXPECT_EQ(image.output_bytes, 10u);
   EXPECT_EQ(image.io[1].data, image.instances[0].data + offset_of(image, "G", "q"));
-  EXPECT_EQ(image.io[2].data, area_of(image, "Main") + offset_of(image, "Main", "o"));
+  EXPECT_EQ(image.io[2].data, image.instances[0].data + offset_of(image, "G", "m"));
+  EXPECT_EQ(image.io[3].data, area_of(image, "Main") + offset_of(image, "Main", "o"));
 }
 
 TEST(InitialData, RetainsVariablesAndWholeInstances) {

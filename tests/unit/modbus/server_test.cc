@@ -185,6 +185,57 @@ TEST(Server, AClientThatReadsNothingIsDropped) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
 }
 
+// `<->`: others see the program's value and can write it; the write goes on to the control thread.
+TEST(Server, WritesToTheProgramsPointsArePassedOnWhole) {
+  const int port = free_port();
+  ir::DeviceMapping words = out(PointTable::kHolding, 0, 4, 32);
+  ir::DeviceMapping coils = out(PointTable::kCoil, 0, 8, 1, 64);
+  words.writable = coils.writable = true;
+  Rig rig(device("modbus-tcp-server", {{"address", local(port)}, {"period_ms", "5"}},
+                 {words, coils, out(PointTable::kHolding, 4, 1, 16, 128)}));
+  vm::WriteQueue queue(6);
+  std::vector<vm::OutsideWrite> taken;
+  std::atomic<bool> taking{true};
+  std::atomic<bool> ending{false};
+  std::thread serving([&] {
+    while (!ending) {
+      (void)rig.driver->exchange({rig.points, rig.outputs, rig.inputs, 0, &queue});
+      if (taking) queue.take([&](const vm::OutsideWrite& write) { taken.push_back(write); });
+    }
+  });
+  ClientContext context;
+  for (int i = 0; i < 500 && !context; ++i) {
+    context = connect_client(port);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  ASSERT_TRUE(context);
+  const uint16_t values[2] = {0x1111, 0x2222};
+  EXPECT_EQ(modbus_write_registers(context.get(), 2, 2, values), 2);
+  EXPECT_EQ(modbus_write_bit(context.get(), 5, 1), 1);
+  EXPECT_EQ(modbus_write_register(context.get(), 4, 1), -1);  // `<-` only
+  EXPECT_EQ(errno, EMBXILADD);
+  const uint8_t request[] = {1, 16, 0, 0, 0, 0, 0};  // none at all is libmodbus' to refuse
+  EXPECT_GT(modbus_send_raw_request(context.get(), request, sizeof request), 0);
+  uint8_t answer[MODBUS_TCP_MAX_ADU_LENGTH];
+  EXPECT_EQ(modbus_receive_confirmation(context.get(), answer), 9);
+  taking = false;
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const uint16_t many[4] = {1, 2, 3, 4};
+  EXPECT_EQ(modbus_write_registers(context.get(), 0, 4, many), 4);
+  EXPECT_EQ(modbus_write_registers(context.get(), 0, 4, many), -1);  // no room until a boundary
+  EXPECT_EQ(errno, EMBXSBUSY);
+  ending = true;
+  serving.join();
+  ASSERT_EQ(taken.size(), 3u);
+  EXPECT_EQ(taken[0].bit, 32u + 16u);  // the high word comes first
+  EXPECT_EQ(taken[0].value, 0x1111);
+  EXPECT_EQ(taken[1].bit, 32u);
+  EXPECT_EQ(taken[1].value, 0x2222);
+  EXPECT_EQ(taken[2].bit, 64u + 5u);
+  EXPECT_EQ(taken[2].bits, 1u);
+  EXPECT_EQ(taken[2].value, 1);
+}
+
 TEST(Server, APortThatIsTakenIsAnErrorUntilItIsFree) {
   const int port = free_port();
   vm::Descriptor taken = listen_raw(port);
