@@ -102,7 +102,10 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   base::Status staged = change_.stage(
       package, standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace,
       [this](const auto& job) { return at_boundary(job); });
-  if (!staged.ok()) return refused(staged.error());
+  if (!staged.ok()) {
+    change_.collect();  // devices that it opened
+    return refused(staged.error());
+  }
   staged_ = image_of(package);
   online_change::JournalEntry done = entry(online_change::Event::kStaged);
   done.counts = change_.plan().counts;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "base/limits.h"
 #include "ir/bytecode/verify.h"
 #include "ir/types/address_text.h"
@@ -108,6 +110,36 @@ TEST(Devices, AtTheLimitAndAbove) {
   EXPECT_FALSE(find_fault({simulated(map)}, nullptr).has_value());
   map.push_back(input(base::kMaxMappings, 1, base::kMaxMappings));
   ASSERT_TRUE(find_fault({simulated(map)}, nullptr).has_value());
+}
+
+// Whatever the numbers are: an answer, and what is accepted lies inside the limits.
+TEST(Devices, SurviveNonsense) {
+  std::mt19937 random(3);
+  const uint32_t numbers[] = {0, 1, 7, 8, 16, 31, 32, 64, 65535, 65536, 1u << 23, UINT32_MAX};
+  const auto number = [&] { return numbers[random() % std::size(numbers)]; };
+  const char* drivers[] = {"simulated", "modbus-tcp-server", "modbus-rtu-server", "shared-memory"};
+  int good = 0;
+  for (int round = 0; round < 20'000; ++round) {
+    Device device{"d", drivers[random() % 4], {}, {}, {}};
+    if (random() % 2 == 0) device.settings = {{"name", "/x"}};
+    if (device.driver == "modbus-rtu-server") device.settings = {{"port", "/dev/x"}};
+    for (uint32_t i = random() % 3; i != 0; --i) {
+      device.map.push_back({static_cast<PointTable>(random() % kPointTableCount),
+                            number(),
+                            number(),
+                            random() % 2 == 0,
+                            {static_cast<DirectArea>(random() % 4), number(), number()},
+                            random() % 2 == 0});
+    }
+    device.quality = {static_cast<DirectArea>(random() % 4), number(), number()};
+    if (find_fault({device}, nullptr)) continue;
+    ++good;
+    const ProcessImageSize size = process_image_size({device});
+    EXPECT_LE(size.input_bytes, base::kMaxDeviceBytes);
+    EXPECT_LE(size.output_bytes, base::kMaxDeviceBytes);
+    EXPECT_LE(size.marker_bytes, base::kMaxDeviceBytes);
+  }
+  EXPECT_GT(good, 100);
 }
 
 TEST(Devices, AddressesAsText) {

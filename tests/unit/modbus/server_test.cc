@@ -25,10 +25,14 @@ class Running {
                     {in(PointTable::kHolding, 0, 4, 16), in(PointTable::kCoil, 100, 8, 1, 64),
                      out(PointTable::kInput, 0, 2, 16), out(PointTable::kDiscrete, 8, 8, 1, 32),
                      out(PointTable::kHolding, 10, 2, 32, 64)})),
-        thread_([this] {
-          while (!ending_) online_ = rig_.online();
-        }) {
+        seen_(rig_.inputs.size()) {
     rig_.outputs = {0x34, 0x12, 0x78, 0x56, 0x81, 0xdd, 0xcc, 0xbb, 0xaa};
+    thread_ = std::thread([this] {
+      while (!ending_) {
+        online_ = rig_.online();
+        for (size_t i = 0; i < seen_.size(); ++i) seen_[i] = rig_.inputs[i];
+      }
+    });
   }
   ~Running() {
     ending_ = true;
@@ -42,10 +46,11 @@ class Running {
     return false;
   }
   bool online() const { return online_; }
-  uint8_t input(size_t at) const { return rig_.inputs[at]; }
+  uint8_t input(size_t at) const { return seen_[at]; }
 
  private:
   Rig rig_;
+  std::vector<std::atomic<uint8_t>> seen_;  // the inputs of the last exchange
   std::atomic<bool> ending_{false};
   std::atomic<bool> online_{false};
   std::thread thread_;
@@ -196,11 +201,13 @@ TEST(Server, WritesToTheProgramsPointsArePassedOnWhole) {
   vm::WriteQueue queue(6);
   std::vector<vm::OutsideWrite> taken;
   std::atomic<bool> taking{true};
+  std::atomic<size_t> count{0};
   std::atomic<bool> ending{false};
   std::thread serving([&] {
     while (!ending) {
       (void)rig.driver->exchange({rig.points, rig.outputs, rig.inputs, 0, &queue});
       if (taking) queue.take([&](const vm::OutsideWrite& write) { taken.push_back(write); });
+      count = taken.size();
     }
   });
   ClientContext context;
@@ -218,6 +225,9 @@ TEST(Server, WritesToTheProgramsPointsArePassedOnWhole) {
   EXPECT_GT(modbus_send_raw_request(context.get(), request, sizeof request), 0);
   uint8_t answer[MODBUS_TCP_MAX_ADU_LENGTH];
   EXPECT_EQ(modbus_receive_confirmation(context.get(), answer), 9);
+  for (int i = 0; i < 1000 && count < 3; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
   taking = false;
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   const uint16_t many[4] = {1, 2, 3, 4};
