@@ -34,8 +34,8 @@ bool is_choice(std::string_view choices, std::string_view value) {
 
 }  // namespace
 
-const std::vector<DriverRow>& driver_rows() {
-  static const std::vector<DriverRow> rows = {
+std::span<const DriverRow> driver_rows() {
+  static constexpr DriverRow rows[] = {
 #define DRIVER(id, name, family, server, exclusive, meaning) \
   {DriverId::id, name, family, server, exclusive, meaning},
 #define TABLE(...)
@@ -48,8 +48,8 @@ const std::vector<DriverRow>& driver_rows() {
   return rows;
 }
 
-const std::vector<TableRow>& table_rows() {
-  static const std::vector<TableRow> rows = {
+std::span<const TableRow> table_rows() {
+  static constexpr TableRow rows[] = {
 #define DRIVER(...)
 #define TABLE(id, name, families, point_bits, last_point, to_program, to_device, meaning) \
   {PointTable::id, name, families, point_bits, last_point, to_program, to_device, meaning},
@@ -62,8 +62,8 @@ const std::vector<TableRow>& table_rows() {
   return rows;
 }
 
-const std::vector<SettingRow>& setting_rows() {
-  static const std::vector<SettingRow> rows = {
+std::span<const SettingRow> setting_rows() {
+  static constexpr SettingRow rows[] = {
 #define DRIVER(...)
 #define TABLE(...)
 #define SETTING(key, families, kind, fallback, low, high, meaning) \

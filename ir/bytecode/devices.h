@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -63,9 +64,9 @@ struct SettingRow {
   int64_t high;
   std::string_view meaning;
 };
-const std::vector<DriverRow>& driver_rows();
-const std::vector<TableRow>& table_rows();
-const std::vector<SettingRow>& setting_rows();
+std::span<const DriverRow> driver_rows();
+std::span<const TableRow> table_rows();
+std::span<const SettingRow> setting_rows();
 const DriverRow* find_driver(std::string_view name);  // null: there is none
 const SettingRow* find_setting(const DriverRow& driver, std::string_view key);
 

@@ -14,6 +14,11 @@ bool same_line(const ir::Device& a, const ir::Device& b) {
   return a.name == b.name && a.driver == b.driver && a.settings == b.settings;
 }
 
+// What the version's outputs become when another one does not exchange them any more.
+LeftOutputs left_outputs(const ir::Image& /*image*/, const DevicePoints& points) {
+  return {base::Bytes(points.output_bytes), base::Bytes(points.output_bytes)};
+}
+
 void set_bit(std::span<uint8_t> bytes, uint32_t bit, bool value) {
   const auto mask = static_cast<uint8_t>(1u << (bit % 8));
   if (value) {
@@ -149,10 +154,12 @@ base::Result<std::unique_ptr<DeviceIo::Tables>> DeviceIo::build(const ir::Verifi
       if (!port.ok()) return port.error();
       DevicePoints points = points_of(device);
       const Binding* running = running_ != nullptr ? running_->of(**port) : nullptr;
-      const bool same = running != nullptr && running->set->points == points;
+      LeftOutputs left = left_outputs(version.image(), points);
+      const bool same =
+          running != nullptr && running->set->points == points && running->set->left == left;
       binding.port = *port;
       for (const PointRange& range : points.outputs) tables->writable |= range.writable;
-      binding.set = same ? running->set : (*port)->add(std::move(points));
+      binding.set = same ? running->set : (*port)->add(std::move(points), std::move(left));
     }
     binding.device = std::move(device);
     tables->bindings.push_back(std::move(binding));

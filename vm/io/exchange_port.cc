@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/check.h"
+#include "vm/io/bit_copy.h"
+
 namespace vm {
 namespace {
 
@@ -14,8 +17,13 @@ constexpr size_t kMostWrites = 4096;  // from one boundary to the next
 
 }  // namespace
 
-ExchangeSet::ExchangeSet(DevicePoints what)
-    : points(std::move(what)), inputs(points.input_bytes), outputs(points.output_bytes) {
+ExchangeSet::ExchangeSet(DevicePoints what, LeftOutputs behind)
+    : points(std::move(what)),
+      left(std::move(behind)),
+      inputs(points.input_bytes),
+      outputs(points.output_bytes) {
+  base::check(left.value.size() == points.output_bytes && left.held.size() == points.output_bytes,
+              "values are left for other points");
   const auto writable = [](const PointRange& range) { return range.writable; };
   if (std::any_of(points.outputs.begin(), points.outputs.end(), writable)) {
     writes = std::make_unique<WriteQueue>(kMostWrites);
@@ -71,13 +79,33 @@ int64_t ExchangePort::now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
-// Where points are left for good, they get zero. A server does not show them any more.
+// What `points`, a part of the set's, become.
+static base::Bytes values_left(ExchangeSet& set, const DevicePoints& points) {
+  base::Bytes all(set.outputs.newest().begin(), set.outputs.newest().end());
+  for (size_t i = 0; i < all.size(); ++i) {
+    all[i] =
+        static_cast<uint8_t>((all[i] & set.left.held[i]) | (set.left.value[i] & ~set.left.held[i]));
+  }
+  base::Bytes values(points.output_bytes);
+  for (const PointRange& part : points.outputs) {
+    for (const PointRange& range : set.points.outputs) {
+      const bool inside = range.table == part.table && part.first >= range.first &&
+                          part.first - range.first < range.count;
+      if (!inside) continue;
+      const uint32_t bit = (part.first - range.first) * (range.bits() / range.count);
+      copy_bits(all, range.byte * 8 + bit, values, part.byte * 8, part.bits());
+    }
+  }
+  return values;
+}
+
+// Where points are left for good. A server does not show them any more.
 base::Status ExchangePort::Core::leave_last(ExchangeSet* next, int64_t now) {
-  const DevicePoints left =
+  const DevicePoints points =
       outputs_without(last_used->points, next != nullptr ? &next->points : nullptr);
-  if (!server && !left.outputs.empty() && last_used->has_outputs) {
-    const base::Bytes zeros(left.output_bytes);
-    base::Status done = driver->exchange({left, zeros, {}, now, nullptr});
+  if (!server && !points.outputs.empty() && last_used->has_outputs) {
+    base::Status done =
+        driver->exchange({points, values_left(*last_used, points), {}, now, nullptr});
     if (!done.ok()) return done;
   }
   last_used.reset();
@@ -191,8 +219,8 @@ ExchangePort::~ExchangePort() {
 
 const ir::Device& ExchangePort::device() const { return core_->device; }
 
-std::shared_ptr<ExchangeSet> ExchangePort::add(DevicePoints points) {
-  auto set = std::make_shared<ExchangeSet>(std::move(points));
+std::shared_ptr<ExchangeSet> ExchangePort::add(DevicePoints points, LeftOutputs left) {
+  auto set = std::make_shared<ExchangeSet>(std::move(points), std::move(left));
   std::lock_guard lock(core_->mutex);
   core_->sets.push_back(set);
   return set;

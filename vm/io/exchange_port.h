@@ -4,8 +4,8 @@
 //
 // A set is what the device exchanges for one version of the program. At most one is in use: its
 // outputs are written. The others are read only, so that a version which is about to run, or to
-// come back, finds inputs at once. When a set is used no more, the points that only it wrote get
-// zero in one exchange.
+// come back, finds inputs at once. When a set is used no more, the points that only it wrote
+// become what LeftOutputs says, in one exchange.
 #pragma once
 
 #include <atomic>
@@ -22,11 +22,20 @@
 
 namespace vm {
 
+// What outputs become when no version writes them any more, in the bytes of its points: bits of
+// `held` stay as they are, the others become those of `value`.
+struct LeftOutputs {
+  base::Bytes value;
+  base::Bytes held;
+  friend bool operator==(const LeftOutputs&, const LeftOutputs&) = default;
+};
+
 class ExchangeSet {
  public:
-  explicit ExchangeSet(DevicePoints what);
+  ExchangeSet(DevicePoints what, LeftOutputs behind);
 
   const DevicePoints points;
+  const LeftOutputs left;
   TripleBuffer inputs;                 // written by the exchange
   TripleBuffer outputs;                // written by the control thread
   std::unique_ptr<WriteQueue> writes;  // by the exchange; null: no output is writable
@@ -47,7 +56,7 @@ class ExchangePort {
   const ir::Device& device() const;
 
   // --- off the control thread
-  std::shared_ptr<ExchangeSet> add(DevicePoints points);
+  std::shared_ptr<ExchangeSet> add(DevicePoints points, LeftOutputs left);
   void drop(const std::shared_ptr<ExchangeSet>& set);  // not the one in use
   DeviceStatus status() const;
 

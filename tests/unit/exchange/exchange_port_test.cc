@@ -65,6 +65,8 @@ DevicePoints points(uint32_t first, uint32_t count) {
   return out;
 }
 
+LeftOutputs zeros(uint32_t count) { return {base::Bytes(count), base::Bytes(count)}; }
+
 void send(ExchangeSet& set, uint8_t value) {
   std::span<uint8_t> work = set.outputs.work();
   std::fill(work.begin(), work.end(), value);
@@ -82,7 +84,7 @@ TEST(ExchangePort, B8_TheControlSideNeitherWaitsNorAllocates) {
   auto seen = std::make_shared<Seen>();
   seen->hang_ms = 2000;
   auto port = std::make_unique<ExchangePort>(device("1"), std::make_unique<Counter>(seen), true);
-  const auto set = port->add(points(0, 64));
+  const auto set = port->add(points(0, 64), zeros(64));
   port->use(set.get());
   ASSERT_TRUE(eventually([&] { return seen->exchanges > 0; }));
   const uint64_t before = allocations;
@@ -105,7 +107,7 @@ TEST(ExchangePort, B8_TheControlSideNeitherWaitsNorAllocates) {
 TEST(ExchangePort, B8_NothingIsTornWhileVersionsComeAndGo) {
   auto seen = std::make_shared<Seen>();
   ExchangePort port(device("1"), std::make_unique<Counter>(seen), true);
-  const auto first = port.add(points(0, 64));
+  const auto first = port.add(points(0, 64), zeros(64));
   port.use(first.get());
   std::atomic<bool> ending{false};
   std::atomic<ExchangeSet*> wanted{first.get()};
@@ -123,7 +125,7 @@ TEST(ExchangePort, B8_NothingIsTornWhileVersionsComeAndGo) {
   });
   std::vector<std::shared_ptr<ExchangeSet>> kept;  // the thread may look at one a little longer
   for (int round = 0; round < 50; ++round) {
-    const auto next = kept.emplace_back(port.add(points(32, 64)));
+    const auto next = kept.emplace_back(port.add(points(32, 64), zeros(64)));
     wanted = next.get();
     std::this_thread::sleep_for(2ms);
     EXPECT_EQ(port.status().name, "d");
@@ -141,7 +143,7 @@ TEST(ExchangePort, B8_NothingIsTornWhileVersionsComeAndGo) {
 TEST(ExchangePort, SilenceIsLossEvenWhenTheDriverSaysNothing) {
   auto seen = std::make_shared<Seen>();
   ExchangePort port(device("1"), std::make_unique<Counter>(seen), true);
-  const auto set = port.add(points(0, 1));
+  const auto set = port.add(points(0, 1), zeros(1));
   port.use(set.get());
   ASSERT_TRUE(eventually([&] { return port.fresh(ExchangePort::now_ns()); }));
   EXPECT_EQ(port.status().state, "online");
@@ -155,7 +157,7 @@ TEST(ExchangePort, SilenceIsLossEvenWhenTheDriverSaysNothing) {
 TEST(ExchangePort, ASetThatIsOnlyPreparedIsReadAndNotWritten) {
   auto seen = std::make_shared<Seen>();
   ExchangePort port(device("1"), std::make_unique<Counter>(seen), true);
-  const auto set = port.add(points(0, 4));
+  const auto set = port.add(points(0, 4), zeros(4));
   send(*set, 9);
   EXPECT_TRUE(eventually([&] { return set->inputs.take(); }));
   EXPECT_EQ(seen->last, 0);
@@ -163,6 +165,17 @@ TEST(ExchangePort, ASetThatIsOnlyPreparedIsReadAndNotWritten) {
   EXPECT_TRUE(eventually([&] { return seen->last == 9; }));
   port.use(nullptr);
   EXPECT_TRUE(eventually([&] { return seen->last == 0; }));
+}
+
+TEST(ExchangePort, WhatIsLeftBecomesSafeOrStays) {
+  auto seen = std::make_shared<Seen>();
+  ExchangePort port(device("1"), std::make_unique<Counter>(seen), true);
+  const auto first = port.add(points(0, 2), {{0x11, 0x11}, {0xf0, 0xf0}});
+  send(*first, 0xee);
+  port.use(first.get());
+  ASSERT_TRUE(eventually([&] { return seen->last == 0xee; }));
+  port.use(nullptr);
+  EXPECT_TRUE(eventually([&] { return seen->last == 0xe1; }));
 }
 
 }  // namespace

@@ -134,6 +134,27 @@ TEST(DeviceIo, B8_ADriverThatHangsDelaysNoScan) {
   hangs.hang_ms = 0;
 }
 
+// The same on virtual time, where a release is missed only by what the controller itself does.
+TEST(DeviceIo, B8_NoReleaseIsMissedWhileADriverHangs) {
+  static FakeDevice hangs;  // its thread may outlive the test
+  VirtualClock clock;
+  DeviceIo io({fakes({{"d", &hangs}})});
+  auto image = io_test::build(
+      std::string(kEcho) + kFast,
+      {with_quality(device("d", {to_program(0, 1, 0), to_device(0, 1, 0)}), "hold")});
+  ASSERT_TRUE(image);
+  hangs.hang_ms = 2000;
+  auto controller = Controller::start(*image, {}, clock, io);
+  ASSERT_TRUE(controller.ok());
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(1800);
+  while (std::chrono::steady_clock::now() < end) (*controller)->cycle();
+  EXPECT_EQ((*controller)->missed_releases(), 0u);
+  EXPECT_GT((*controller)->cycles(), 20'000u);  // nobody waited for it
+  EXPECT_EQ(*(*controller)->get("Main.ok"), "FALSE");
+  RecordProperty("cycles", static_cast<int>((*controller)->cycles()));
+  hangs.hang_ms = 0;
+}
+
 TEST(DeviceIo, AnotherVersionKeepsTheConnectionAndUndoComesBack) {
   FakeDevice fake;
   DeviceIo io({fakes({{"d", &fake}})});
