@@ -12,6 +12,12 @@ constexpr const char* kProgram =
     "text AT %MB40 : STRING[3] := 'abc'; lamp AT %QX0.1 : BOOL; level AT %QW1 : INT; END_VAR "
     "PROGRAM P VAR n : DINT; own AT %QW2 : INT; END_VAR n := n + 1; own := 9; END_PROGRAM";
 
+constexpr const char* kTwoTasks =
+    " PROGRAM Other VAR m : DINT; mine AT %QW3 : INT; END_VAR m := m + 1; mine := 3; END_PROGRAM "
+    "CONFIGURATION C RESOURCE R ON PLC TASK A(INTERVAL := T#10ms, PRIORITY := 1); "
+    "TASK B(INTERVAL := T#20ms, PRIORITY := 2); PROGRAM P WITH A : P; "
+    "PROGRAM O WITH B : Other; END_RESOURCE END_CONFIGURATION";
+
 // Puts what the test wants at the next exchange, and keeps what it was given.
 struct Outside {
   std::mutex mutex;
@@ -48,11 +54,11 @@ ir::Device server(std::vector<ir::DeviceMapping> map) {
 }
 
 struct Plant {
-  explicit Plant(const std::vector<ir::Device>& devices)
+  explicit Plant(const std::vector<ir::Device>& devices, const std::string& more = "")
       : io({[this](const ir::Device&) -> base::Result<std::unique_ptr<IoDriver>> {
           return std::unique_ptr<IoDriver>(std::make_unique<OutsideDriver>(outside));
         }}) {
-    auto image = io_test::build(kProgram, devices);
+    auto image = io_test::build(kProgram + more, devices);
     if (!image) return;
     auto started = Controller::start(*image, {}, clock, io);
     EXPECT_TRUE(started.ok());
@@ -106,6 +112,18 @@ TEST(Window, OutputsKeepWhatOthersWriteUntilTheProgramWrites) {
   EXPECT_TRUE(plant.until([&] { return plant.outside.word(2) == 1234; }));
   EXPECT_EQ(plant.outside.word(0), 2);
   EXPECT_TRUE(plant.until([&] { return plant.get("P.own") == "9"; }));  // the program's last word
+}
+
+// An output that no task writes is still sent when others write it.
+TEST(Window, OutputsOfNoTaskAreSentToo) {
+  const ir::DeviceMapping outputs{ir::PointTable::kHolding,         0,   4, true,
+                                  {ir::DirectArea::kOutput, 0, 16}, true};
+  Plant plant({server({outputs})}, kTwoTasks);
+  ASSERT_TRUE(plant.controller);
+  ASSERT_TRUE(plant.until([&] { return plant.outside.word(6) == 3; }));
+  plant.outside.write({{ir::DirectArea::kOutput, 16, 16, 1234}});
+  EXPECT_TRUE(plant.until([&] { return plant.outside.word(2) == 1234; }));
+  EXPECT_EQ(plant.outside.word(4), 9);
 }
 
 TEST(Window, TheQueueIsBoundedAndTakenTogether) {
