@@ -231,13 +231,14 @@ class Linker {
                                                                  : task.period_ns * 10;
       image_.tasks.push_back({task.name,
                               task.period_ns,
-                              watchdog != 0 ? watchdog
-                              : task.once   ? kStartWatchdogNs
-                                            : kEventWatchdogNs,
+                              watchdog != 0                           ? watchdog
+                              : task.once || task.policy.freewheeling ? kStartWatchdogNs
+                                                                      : kEventWatchdogNs,
                               task.priority,
                               event_of(task),
                               {},
-                              task.once});
+                              task.once,
+                              task.policy});
     }
     for (size_t i = 0; i < program_.instances.size(); ++i) {
       const ir::ProgramInstance& instance = program_.instances[i];
@@ -311,6 +312,7 @@ class Linker {
     }
     size_process_image(image_);
     if (base::Status placed = place_devices(image_, options_.devices); !placed.ok()) return placed;
+    image_.safe = options_.safe;
     image_.access = program_.access;
     return base::Ok{};
   }

@@ -19,6 +19,7 @@ struct Options {
   const ir::Image* base = nullptr;       // the running version, or null
   bool move_all = false;                 // hard mode: give every instance a new area
   std::vector<ir::Device> devices = {};  // of stc.toml, checked (ir/bytecode/devices.h)
+  std::vector<ir::SafeOutput> safe = {};  // Image::safe; the caller checks that they fit
   // Tests ask for less, so that the limits can be reached.
   uint32_t max_instances = base::kMaxInstances;
   uint32_t max_code_units = base::kMaxCodeUnits;

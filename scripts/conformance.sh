@@ -23,7 +23,7 @@ fail() {
 # The file of a test; nothing when there is none.
 file_of() {
   case $1 in
-    '#'*) grep -rlE "^TEST(_F)?\([A-Za-z0-9_]+, ${1#?}\)" "$root/tests/unit" "$root/tests/sim" 2>/dev/null | head -n 1 ;;
+    '#'*) grep -rlE "^TEST(_F|_P)?\([A-Za-z0-9_]+, ${1#?}\)" "$root/tests/unit" "$root/tests/sim" 2>/dev/null | head -n 1 ;;
     cli/* | sim/* | differential/* | meta/* | fuzz/*) ls "$root/tests/$1" 2>/dev/null ;;
     *) ls "$root/tests/golden/$1" 2>/dev/null ;;
   esac

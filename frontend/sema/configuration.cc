@@ -6,6 +6,7 @@
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/task_attributes.h"
 
 namespace frontend {
 namespace {
@@ -93,6 +94,7 @@ void Sema::configure_resource(const ResourceDecl& resource) {
     return;
   }
   for (const TaskDecl& task : resource.tasks) add_task(task);
+  check_base_cycle(*this, resource.tasks);
   for (const ProgramDecl& decl : resource.programs) add_instance(decl, resource);
 }
 

@@ -1,5 +1,7 @@
 // TASK: when the programs run.
 #include "frontend/sema/sema.h"
+#include "frontend/sema/task_attributes.h"
+#include "ir/types/longest_time.h"
 
 namespace frontend {
 namespace {
@@ -25,7 +27,8 @@ void Sema::add_task(const TaskDecl& decl) {
     auto period = fold_bits(decl.interval, program.types.elementary(ir::Kind::kTime));
     task.period_ns = period ? static_cast<int64_t>(*period) : kDefaultPeriodNs;
     // With SINGLE, an interval of 0 means that edges alone release the task.
-    if (task.period_ns < 0 || (task.period_ns == 0 && task.event == ir::kNoEvent)) {
+    const bool too_long = task.period_ns > ir::kLongestTimeNs;
+    if (too_long || task.period_ns < 0 || (task.period_ns == 0 && task.event == ir::kNoEvent)) {
       error(DiagnosticCode::kBadInterval, decl.span,
             "task " + quoted(decl.name) + " has the interval " + std::to_string(task.period_ns) +
                 " ns");
@@ -42,6 +45,7 @@ void Sema::add_task(const TaskDecl& decl) {
     }
     task.priority = static_cast<uint32_t>(priority);
   }
+  apply_task_attributes(*this, decl, task);
   program.tasks.push_back(std::move(task));
 }
 

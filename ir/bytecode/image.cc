@@ -106,7 +106,7 @@ void tables_section(Archive& a, I& image) {
     a(extent.offset);
     a(extent.size);
   });
-  a.list(image.tasks, 33, [&](auto& task) { task_fields(a, task); });
+  a.list(image.tasks, 38, [&](auto& task) { task_fields(a, task); });
   a.list(image.access, 9, [&](auto& access) { access_fields(a, access); });
   a.list(image.migrations, 13, [&](auto& row) { migration_fields(a, row); });
   a.list(image.io, 17, [&](auto& binding) {
@@ -114,6 +114,7 @@ void tables_section(Archive& a, I& image) {
     a(binding.data);
     a(binding.type);
   });
+  a.list(image.safe, 25, [&](auto& row) { safe_fields(a, row); });
   a.list(image.retain, 8, [&](auto& range) {
     a(range.data);
     a(range.size);

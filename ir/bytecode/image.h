@@ -105,6 +105,7 @@ struct ImageTask {
   uint32_t event = 0;  // data offset of the BOOL whose edges release it; 0: none (ir::Task)
   std::vector<uint32_t> programs = {};  // instance IDs, in order of execution
   bool once = false;                    // at cold start, before the first scan; period 0
+  TaskPolicy policy = {};
 };
 
 // CALL_VIRTUAL of POU `prototype` runs POU `target` on instances of `type`.
@@ -119,6 +120,17 @@ struct IoBinding {
   DirectAddress address;
   uint32_t data = 0;  // offset of the variable
   TypeId type;
+};
+
+// What some bits of the process image become when their task stops, and when everything does:
+// a value, or what they are, or that for a time. Outputs without a row become 0.
+enum class SafeKind : uint8_t { kValue, kHold, kHoldThenValue };
+struct SafeOutput {
+  uint32_t bit_offset = 0;  // of %Q
+  uint32_t bits = 0;        // 1, or whole bytes up to 64
+  SafeKind kind = SafeKind::kValue;
+  uint64_t value = 0;
+  int64_t hold_ns = 0;
 };
 
 struct RetainRange {
@@ -152,6 +164,7 @@ struct Image {
   std::vector<AccessPath> access;
   std::vector<LinkedMigration> migrations;
   std::vector<IoBinding> io;
+  std::vector<SafeOutput> safe;  // sorted by bit_offset, disjoint
   std::vector<RetainRange> retain;
   std::vector<DataRun> data;  // sorted by offset
   uint32_t data_capacity = 0;

@@ -220,6 +220,20 @@ void task_fields(Archive& a, T& v) {
   a(v.event);
   a.list(v.programs, 4, a);
   a(v.once);
+  a.enumerator(v.policy.io, 2);
+  a.enumerator(v.policy.input_buffer, 5);
+  a.enumerator(v.policy.overrun, 3);
+  a.enumerator(v.policy.on_trap, 4);
+  a(v.policy.freewheeling);
+}
+
+template <class Archive, class T>
+void safe_fields(Archive& a, T& v) {
+  a(v.bit_offset);
+  a(v.bits);
+  a.enumerator(v.kind, 3);
+  a(v.value);
+  a(v.hold_ns);
 }
 
 template <class Archive, class T>

@@ -15,17 +15,26 @@
 
 namespace ir {
 
+// A scalar %Q variable of the globals, and the task whose code writes it by name.
+struct OutputWriter {
+  uint32_t data = 0;
+  uint32_t size = 0;
+  uint32_t task = 0;
+};
+
 class VerifiedImage {
  public:
   const Image& image() const { return *image_; }
   const base::Digest& digest() const { return digest_; }
   const base::Bytes& encoded() const { return *encoded_; }
+  const std::vector<OutputWriter>& output_writers() const { return *output_writers_; }
 
  private:
   friend base::Result<VerifiedImage> verify(base::ByteSpan encoded);
   VerifiedImage() = default;
   std::shared_ptr<const Image> image_;
   std::shared_ptr<const base::Bytes> encoded_;
+  std::shared_ptr<const std::vector<OutputWriter>> output_writers_;
   base::Digest digest_{};
 };
 

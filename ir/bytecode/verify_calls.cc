@@ -21,10 +21,10 @@ class CallGraph {
     DynamicCalls(image_).add_nodes(image_, context.pou_of_type, nodes_);
   }
 
-  base::Status run() {
-    if (base::Status s = measure(); !s) return s;
-    if (base::Status s = check_stack(); !s) return s;
-    return check_writers();
+  base::Result<std::vector<OutputWriter>> run() {
+    if (base::Status s = measure(); !s) return s.error();
+    if (base::Status s = check_stack(); !s) return s.error();
+    return writers();
   }
 
  private:
@@ -69,22 +69,25 @@ class CallGraph {
     return base::Ok{};
   }
 
-  base::Status check_writers() const {
-    std::map<uint32_t, uint32_t> writer;  // data offset of an output -> task
+  base::Result<std::vector<OutputWriter>> writers() const {
+    std::map<uint32_t, OutputWriter> writer;  // by the offset of the output
     for (uint32_t t = 0; t < image_.tasks.size(); ++t) {
       if (image_.tasks[t].once) continue;  // it is over before others begin
       for (uint32_t pou : reachable(image_.tasks[t])) {
-        for (uint32_t output : code_[pou].written_outputs) {
-          const auto [entry, added] = writer.try_emplace(output, t);
-          if (entry->second == t) continue;
+        for (const Extent& output : code_[pou].written_outputs) {
+          const auto [entry, added] =
+              writer.try_emplace(output.offset, OutputWriter{output.offset, output.size, t});
+          if (entry->second.task == t) continue;
           return refuse(Refusal::kBadIoAccess,
-                        "the output at data offset " + std::to_string(output) +
-                            " is written by task `" + image_.tasks[entry->second].name +
+                        "the output at data offset " + std::to_string(output.offset) +
+                            " is written by task `" + image_.tasks[entry->second.task].name +
                             "` and by task `" + image_.tasks[t].name + "`");
         }
       }
     }
-    return base::Ok{};
+    std::vector<OutputWriter> rows;
+    for (const auto& [data, row] : writer) rows.push_back(row);
+    return rows;
   }
 
   std::vector<uint32_t> reachable(const ImageTask& task) const {
@@ -111,7 +114,8 @@ class CallGraph {
 
 }  // namespace
 
-base::Status verify_calls(const Context& context, const std::vector<CodeFacts>& code) {
+base::Result<std::vector<OutputWriter>> verify_calls(const Context& context,
+                                                     const std::vector<CodeFacts>& code) {
   return CallGraph(context, code).run();
 }
 

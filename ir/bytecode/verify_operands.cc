@@ -44,7 +44,7 @@ bool CodeVerifier::scalar_access(Place place, Class cls, bool write) {
   if (!leaf_access(*root, place.offset, cls, write, self ? "self" : "global")) return false;
   if (write && !self) {
     const auto leaf = context_.regions.leaf_at(*root, place.offset);
-    if (leaf && leaf->output) facts_.written_outputs.push_back(shown);
+    if (leaf && leaf->output) facts_.written_outputs.push_back({shown, class_size(cls)});
   }
   return true;
 }

@@ -9,6 +9,7 @@
 #include "base/result.h"
 #include "ir/bytecode/image.h"
 #include "ir/bytecode/regions.h"
+#include "ir/bytecode/verify.h"
 
 namespace ir::verification {
 
@@ -57,12 +58,13 @@ base::Status verify_resources(const Context& context);
 // --- verify_code.cc: one POU in one pass (V3 to V10, V12, V19, V20) -------------
 struct CodeFacts {
   std::vector<uint32_t> callees;          // nodes of the call graph, each once per call
-  std::vector<uint32_t> written_outputs;  // data offsets of %Q globals
+  std::vector<Extent> written_outputs;    // %Q globals in data memory
   uint32_t native_bytes = 0;              // argument area of native calls
 };
 base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou);
 
 // --- verify_calls.cc: call graph, stack, output writers (V11, V14) --------------
-base::Status verify_calls(const Context& context, const std::vector<CodeFacts>& code);
+base::Result<std::vector<OutputWriter>> verify_calls(const Context& context,
+                                                     const std::vector<CodeFacts>& code);
 
 }  // namespace ir::verification

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <numeric>
 
 #include "base/limits.h"
 #include "ir/bytecode/verify_parts.h"
 #include "ir/types/location.h"
+#include "ir/types/longest_time.h"
 #include "ir/types/natural_layout.h"
 
 namespace ir::verification {
@@ -20,6 +22,7 @@ class ResourcesVerifier {
       if (base::Status s = check_binding(natural, i); !s) return s;
     }
     if (base::Status s = check_devices(); !s) return s;
+    if (base::Status s = check_safe_outputs(); !s) return s;
     for (uint32_t i = 0; i < image_.retain.size(); ++i) {
       const RetainRange& range = image_.retain[i];
       if (inside_one_area(range.data, range.size)) continue;
@@ -34,15 +37,28 @@ class ResourcesVerifier {
   base::Status check_tasks() const {
     std::vector<bool> taken(image_.instances.size());
     if (image_.tasks.empty()) return refuse(Refusal::kBadTask, "there is no task");
+    int64_t base_cycle = 0;
+    for (const ImageTask& task : image_.tasks) {
+      base_cycle = std::gcd(base_cycle, std::max<int64_t>(task.period_ns, 0));
+    }
+    if (base_cycle != 0 && base_cycle < static_cast<int64_t>(base::kMinBaseCycleNs)) {
+      return refuse(Refusal::kBadTask,
+                    "the control cycle has " + std::to_string(base_cycle) + " ns");
+    }
     for (const ImageTask& task : image_.tasks) {
       const auto bad = [&](const std::string& why) {
         return refuse(Refusal::kBadTask, "task `" + task.name + "`: " + why);
       };
-      const bool period = task.once
-                              ? task.period_ns == 0 && task.event == 0
+      const bool free = task.policy.freewheeling;
+      const bool period = task.once || free
+                              ? task.period_ns == 0 && task.event == 0 && !(task.once && free)
                               : task.period_ns > 0 || (task.period_ns == 0 && task.event != 0);
+      if (task.policy.io == TaskIo::kSynchronous && (task.period_ns == 0 || task.event != 0)) {
+        return bad("no period that its inputs and outputs could be synchronous with");
+      }
       if (!period) return bad("period of " + std::to_string(task.period_ns) + " ns");
       if (task.event != 0 && !is_event(task.event)) return bad("its event is no BOOL global");
+      if (task.period_ns > kLongestTimeNs) return bad("a period of more than a year");
       if (task.watchdog_ns <= 0) {
         return bad("watchdog of " + std::to_string(task.watchdog_ns) + " ns");
       }
@@ -121,6 +137,24 @@ class ResourcesVerifier {
     const uint32_t limit = input ? image_.input_bytes : image_.output_bytes;
     if (end > limit) {
       return bad("ends at byte " + std::to_string(end) + " of " + std::to_string(limit));
+    }
+    return base::Ok{};
+  }
+
+  base::Status check_safe_outputs() const {
+    uint64_t end = 0;
+    for (const SafeOutput& row : image_.safe) {
+      const bool bytes = row.bits % 8 == 0 && row.bits <= 64 && row.bit_offset % 8 == 0;
+      const bool width = row.bits != 0 && (row.bits == 1 || bytes);
+      const bool sane = width && (row.bits == 64 || row.value >> row.bits == 0) &&
+                        row.hold_ns >= 0 && row.hold_ns <= kLongestTimeNs;
+      const bool placed = row.bit_offset >= end &&
+                          uint64_t{row.bit_offset} + row.bits <= uint64_t{image_.output_bytes} * 8;
+      end = uint64_t{row.bit_offset} + row.bits;
+      if (sane && placed) continue;
+      return refuse(Refusal::kBadIoAccess, "the safe value at bit " +
+                                               std::to_string(row.bit_offset) +
+                                               " of the outputs does not fit there");
     }
     return base::Ok{};
   }

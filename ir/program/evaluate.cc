@@ -26,7 +26,7 @@ struct Evaluator::Impl {
   std::vector<Variable> instances;  // parallel to Program::instances; never moved
   struct Output {
     Variable* variable;  // a scalar, or what overlaps
-    uint64_t bits = 0;   // as after the last complete scan
+    uint64_t bits = 0;   // as when the scan began
     std::string bytes = {};
   };
   std::vector<Output> outputs;  // at %Q
@@ -163,34 +163,20 @@ struct Evaluator::Impl {
     return due;
   }
 
-  // What a task that traps has written to outputs goes back to what the last complete scan left
-  // (vm/runtime/scheduler.cc); before that, to zero.
+  // What a task that traps has written to outputs goes back to what it was when the scan began
+  // (vm/runtime/scheduler_scan.cc).
   std::optional<EvalTrap> run_task(uint32_t task, int64_t now_ns, uint64_t budget) {
-    std::vector<Output> before;
-    for (const Output& output : outputs) {
-      before.push_back({output.variable, output.variable->bits, output.variable->bytes});
+    for (Output& output : outputs) {
+      output.bits = output.variable->bits;
+      output.bytes = output.variable->bytes;
     }
     std::optional<EvalTrap> trap = run_programs(task, now_ns, budget);
-    for (size_t i = 0; i < outputs.size(); ++i) {
-      Variable& now = *outputs[i].variable;
-      if (trap) {
-        restore(now.bits, before[i].bits, outputs[i].bits);
-        for (size_t b = 0; b < now.bytes.size(); ++b) {
-          restore(now.bytes[b], before[i].bytes[b], outputs[i].bytes[b]);
-        }
-      } else {
-        outputs[i].bits = now.bits;
-        outputs[i].bytes = now.bytes;
-      }
+    for (const Output& output : outputs) {
+      if (!trap) break;
+      output.variable->bits = output.bits;
+      output.variable->bytes = output.bytes;
     }
     return trap;
-  }
-
-  // The bits that differ from `before` become those of `published`.
-  template <class T>
-  static void restore(T& now, T before, T published) {
-    const T written = static_cast<T>(now ^ before);
-    now = static_cast<T>((now & ~written) | (published & written));
   }
 
   // What leaves traps in nobody's scan.
@@ -201,10 +187,6 @@ struct Evaluator::Impl {
       run_start_code(unreported, 0);
     }
     data.reset(warm);
-    for (Output& output : outputs) {
-      output.bits = output.variable->bits;
-      output.bytes = output.variable->bytes;
-    }
     released.assign(released.size(), false);
     level.assign(level.size(), false);
     start_pending = true;
@@ -230,7 +212,8 @@ struct Evaluator::Impl {
   void release_due(int64_t now_ns) {
     for (uint32_t i = 0; i < program.tasks.size(); ++i) {
       const Task& task = program.tasks[i];
-      const bool due = task.period_ns > 0 && now_ns % task.period_ns == 0;
+      const bool due = task.policy.freewheeling ||
+                       (task.period_ns > 0 && now_ns % task.period_ns == 0);
       if (due && !(task.event != kNoEvent && level[i])) released[i] = true;
     }
   }

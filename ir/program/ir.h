@@ -94,6 +94,7 @@
 
 #include "base/hash.h"
 #include "base/ids.h"
+#include "ir/program/task_policy.h"
 #include "ir/types/constants.h"
 #include "ir/types/types.h"
 
@@ -117,11 +118,12 @@ enum class TrapKind : uint8_t {
 #include "ir/program/traps.def"
 #undef TRAP
 };
-inline constexpr uint32_t kTrapCount = 12;
+inline constexpr uint32_t kTrapCount = 14;
 const char* trap_name(TrapKind kind);  // "division-by-zero"
 // By a `try`; the others end the scan of their task, whatever is around them.
 constexpr bool can_be_caught(TrapKind kind) {
-  return kind != TrapKind::kFuel && kind != TrapKind::kWatchdog && kind != TrapKind::kStack;
+  return kind != TrapKind::kFuel && kind != TrapKind::kWatchdog && kind != TrapKind::kStack &&
+         kind != TrapKind::kOverrun && kind != TrapKind::kNotANumber;
 }
 const char* trap_title(TrapKind kind);
 const char* trap_help(TrapKind kind);
@@ -235,6 +237,7 @@ struct Task {
   // level before the first look is FALSE. A task begins once in a cycle at most. While the
   // event is TRUE, the period rests; with period 0 only edges release the task.
   uint32_t event = 0xffffffff;
+  TaskPolicy policy = {};
 };
 inline constexpr uint32_t kNoEvent = 0xffffffff;
 // Of a program instance that runs when others call it, and only then.

@@ -152,7 +152,7 @@ class ProgramPrinter {
       const std::vector<Member>& globals = program_.types[program_.globals].members;
       text_ += task.event < globals.size() ? " event " + name_text(globals[task.event].name) : "";
       text_ += task.watchdog_ns != 0 ? " watchdog " + std::to_string(task.watchdog_ns) : "";
-      text_ += " priority " + std::to_string(task.priority) + "\n";
+      text_ += " priority " + std::to_string(task.priority) + policy_text(task.policy) + "\n";
     }
   }
 

@@ -99,7 +99,8 @@ class ProgramVerifier {
             "a program has at least one task with a period");
     for (const Task& task : program_.tasks) {
       const bool event = task.event != kNoEvent;
-      require((task.once ? task.period_ns == 0 : task.period_ns > 0 || event) &&
+      const bool no_period = task.once || task.policy.freewheeling;
+      require((no_period ? task.period_ns == 0 : task.period_ns > 0 || event) &&
                   task.period_ns >= 0 && task.watchdog_ns >= 0,
               "task " + task.name + " has no period, or a negative watchdog time");
       const std::vector<Member>& globals = program_.types[program_.globals].members;

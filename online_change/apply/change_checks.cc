@@ -134,7 +134,7 @@ base::Status Change::admit(bool allow_overrun) const {
   const int64_t pause_ns = predicted_pause_ns();
   for (const vm::TaskStatus& task : controller_.tasks()) {
     if (task.stopped || task.period_ns == 0) continue;  // events leave as much time as there is
-    int64_t free_ns = task.period_ns - task.max_ns;
+    int64_t free_ns = task.period_ns - task.run.max;
     if (pause_ns <= free_ns) continue;
     return base::Error{base::Refusal::kPauseTooLong,
                        "the switch is expected to take " + std::to_string(pause_ns) +

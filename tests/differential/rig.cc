@@ -13,7 +13,7 @@ base::Result<std::unique_ptr<Rig>> Rig::start(const golden::Program& program,
   rig->strategy_ = strategy;
   vm::ControllerOptions options;
   options.fuel_budget = 20'000'000;
-  options.on_trap = vm::TrapPolicy::kStopTask;
+  options.on_trap = ir::OnTrap::kGoOn;
   auto controller = vm::Controller::start(*image, options, rig->clock_, rig->devices_);
   if (!controller.ok()) return controller.error();
   rig->controller_ = std::move(*controller);

@@ -29,7 +29,7 @@ SimStorage what_is_left(const SimStorage& disk, differential::Random& random) {
 void World::boot(const std::optional<ir::VerifiedImage>& given) {
   vm::ControllerOptions options;
   options.fuel_budget = 20'000'000;
-  options.on_trap = vm::TrapPolicy::kStopTask;
+  options.on_trap = ir::OnTrap::kStopTask;
   store_ = std::make_unique<online_change::Store>(disk_);
   base::Result<online_change::Boot> boot = online_change::boot(*store_, given, "sim", 0);
   require(boot.ok(), "a program boots");

@@ -31,9 +31,12 @@ base::Result<Compiled> lower_all(ir::Program program) {
 
 base::Result<Version> link(const Compiled& compiled, const Project& project,
                            const BuildOptions& options) {
-  linker::Options link_options{project.slack, options.base, options.move_all, project.devices};
+  linker::Options link_options{project.slack, options.base, options.move_all, project.devices,
+                               project.safe.rows};
   base::Result<ir::Image> image = linker::link(compiled.program, compiled.objects, link_options);
   if (!image.ok()) return image.error();
+  base::Status safe = check_safe_settings(project.safe, image->output_bytes);
+  if (!safe.ok()) return safe.error();
   Version out{std::move(*image), {}};
   out.bytes = ir::encode(out.image);
   return out;

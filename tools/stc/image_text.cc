@@ -34,6 +34,20 @@ std::string pous_text(const ir::Image& image) {
   return table.text();
 }
 
+// Attributes that differ from the default.
+std::string policies_text(const ir::Image& image) {
+  tools::Table table({"task", "attribute", "value"});
+  bool any = false;
+  for (const ir::ImageTask& task : image.tasks) {
+    for (const ir::TaskChoice& choice : ir::task_choices()) {
+      if (!choice.holds(task.policy) || choice.holds(ir::TaskPolicy{})) continue;
+      table.row({task.name, std::string(choice.attribute), std::string(choice.text)});
+      any = true;
+    }
+  }
+  return any ? table.text() : "";
+}
+
 std::string tasks_text(const ir::Image& image) {
   tools::Table table({"task", "> period us", "> priority", "programs"});
   for (const ir::ImageTask& task : image.tasks) {
@@ -44,9 +58,10 @@ std::string tasks_text(const ir::Image& image) {
     std::string period =
         task.period_ns == 0 ? "event" : number(static_cast<uint64_t>(task.period_ns / 1000));
     if (task.once) period = "once";
+    if (task.policy.freewheeling) period = "free";
     table.row({task.name, period, number(task.priority), programs});
   }
-  return table.text();
+  return table.text() + policies_text(image);
 }
 
 std::string overrides_text(const ir::Image& image) {

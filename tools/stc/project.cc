@@ -76,7 +76,7 @@ base::Status apply_slack(const std::string& file, const std::string& key,
       file, value.line, value.column,
       "unknown key `" + key +
           "`; known are name, dialect, resource, sources, defines and the tables "
-          "[slack], [change], [format] and [devices.NAME]");
+          "[slack], [change], [outputs], [format] and [devices.NAME]");
 }
 
 // Applies stc.toml of `folder`; `sources` is replaced when the file lists its own.
@@ -126,6 +126,10 @@ base::Status apply_project_file(const std::string& folder, Project& project,
       auto list = typed<std::vector<std::string>>(file, key, value, "a list of texts");
       if (!list.ok()) return list.error();
       project.compile.defines = *list;
+    } else if (key == "outputs.safe") {
+      base::Result<SafeSettings> safe = parse_safe_settings(file, value);
+      if (!safe.ok()) return safe.error();
+      project.safe = std::move(*safe);
     } else if (base::Status status = apply_slack(file, key, value, project.slack); !status.ok()) {
       return status;
     }

@@ -10,6 +10,7 @@
 #include "base/source.h"
 #include "frontend/compile.h"
 #include "linker/layout.h"
+#include "tools/stc/safe_settings.h"
 
 namespace stc {
 
@@ -19,6 +20,7 @@ struct Project {
   frontend::CompileOptions compile;
   linker::Slack slack;
   std::vector<ir::Device> devices;
+  SafeSettings safe;
 };
 
 // `path` itself, or the sources in that folder and below it, sorted. Errors: kFileNotFound,

@@ -27,6 +27,9 @@ extern const Entry kRestart;
 extern const Entry kJournal;
 extern const Entry kImage;
 extern const Entry kBridge;
+extern const Entry kReplay;
+extern const Entry kTop;
+extern const Entry kDoctor;
 
 #define STVM_DIR_OPTION \
   { "--dir", "STATE", "state directory of the controller (default: $STVM_DIR, else .stvm)" }

@@ -50,6 +50,12 @@ base::Result<vm::StatusReport> ControllerClient::status() {
   return report;
 }
 
+base::Result<vm::TaskTimes> ControllerClient::task_times(const std::string& task) {
+  base::Result<base::Bytes> body = call({.command = vm::Command::kTimes, .names = {task}});
+  if (!body.ok()) return body.error();
+  return vm::decode_task_times(*body);
+}
+
 base::Result<vm::Values> ControllerClient::get(std::vector<std::string> names) {
   vm::Request request{.command = vm::Command::kGet};
   size_t wanted = names.size();

@@ -24,6 +24,7 @@ class ControllerClient {
   // Requests that change state name the version that the last status() or image() saw.
   base::Result<base::Bytes> call(vm::Request request);
   base::Result<vm::StatusReport> status();
+  base::Result<vm::TaskTimes> task_times(const std::string& task);
   base::Result<vm::Values> get(std::vector<std::string> names);
   base::Result<vm::Values> list(const std::string& pattern);
   base::Result<vm::Values> forces();

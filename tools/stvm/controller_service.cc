@@ -50,6 +50,11 @@ base::Bytes ControllerService::answer_within_memory(base::ByteSpan bytes, bool& 
   base::Status expected = check_expected(*request);
   if (!expected.ok()) return vm::encode_answer(expected.error());
   Answer body = dispatch(*request);
+  if (recorder_ != nullptr) {
+    const bool done =
+        vm::changes_state(request->command) && (body.ok() || recorder_->switched());
+    done ? recorder_->note(bytes) : recorder_->forget_jobs();
+  }
   if (!body.ok()) return vm::encode_answer(body.error());
   if (body->size() + 16 > vm::kMaxMessageBytes) {
     return vm::encode_answer({base::Refusal::kTooMany, "the answer is too long; ask for less"});
@@ -61,6 +66,8 @@ base::Result<base::Bytes> ControllerService::dispatch(const vm::Request& request
   switch (request.command) {
     case vm::Command::kStatus:
       return status(request);
+    case vm::Command::kTimes:
+      return times(request);
     case vm::Command::kGet:
       return get(request);
     case vm::Command::kSet:
@@ -113,7 +120,9 @@ base::Status ControllerService::check_expected(const vm::Request& request) const
 base::Status ControllerService::at_boundary(const std::function<void()>& job) {
   bool had_memory = true;
   const auto guarded = [&] {
+    if (recorder_ != nullptr) recorder_->begin_job(controller_);
     had_memory = base::within_memory([&] { return job(), true; }, [] { return false; });
+    if (recorder_ != nullptr) recorder_->end_job(controller_);
   };
   switch (boundary_.run(guarded, kBoundaryPatienceNs)) {
     case vm::Boundary::Outcome::kDone:
@@ -153,6 +162,15 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.devices = controller_.devices();
   report.memory = vm::memory_report(controller_.image());
   return vm::encode(report);
+}
+
+base::Result<base::Bytes> ControllerService::times(const vm::Request& request) {
+  const std::string name = request.names.empty() ? "" : request.names.front();
+  std::optional<vm::TaskTimes> times;
+  base::Status taken = at_boundary([&] { times = controller_.task_times(name); });
+  if (!taken.ok()) return taken.error();
+  if (!times) return base::Error{base::Refusal::kNoSuchTask, "`" + name + "`"};
+  return vm::encode(*times);
 }
 
 base::Result<base::Bytes> ControllerService::get(const vm::Request& request) {

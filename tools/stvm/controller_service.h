@@ -13,6 +13,7 @@
 #include "tools/stvm/live_report.h"
 #include "vm/runtime/boundary.h"
 #include "vm/runtime/protocol.h"
+#include "vm/runtime/recorder.h"
 #include "vm/runtime/socket_server.h"
 
 namespace stvm {
@@ -30,6 +31,8 @@ class ControllerService : public vm::Service {
   ControllerService(vm::Controller& controller, vm::Clock& clock, online_change::Store& store,
                     vm::Boundary& boundary, StartReport start = {},
                     online_change::RetainKeeper::WallTime wall_time = wall_time_ns);
+  // What changes something from now on is noted there; it must outlive this.
+  void record(vm::Recorder& recorder) { recorder_ = &recorder; }
   void asked_by(const std::string& user) override { who_ = user; }
   base::Bytes answer(base::ByteSpan request, bool& keep_open) override;
   bool stop_wanted() const { return stop_wanted_.load(std::memory_order_relaxed); }
@@ -41,6 +44,7 @@ class ControllerService : public vm::Service {
 
   Answer dispatch(const vm::Request& request);
   Answer status(const vm::Request& request);
+  Answer times(const vm::Request& request);
   Answer get(const vm::Request& request);
   Answer set(const vm::Request& request);
   Answer force(const vm::Request& request);
@@ -96,6 +100,7 @@ class ControllerService : public vm::Service {
   vm::Clock& clock_;
   online_change::Store& store_;
   vm::Boundary& boundary_;
+  vm::Recorder* recorder_ = nullptr;
   StartReport start_;
   online_change::RetainKeeper::WallTime wall_time_;
   online_change::RetainKeeper keeper_;

@@ -5,11 +5,14 @@
 #include <optional>
 
 #include "tools/common/exit.h"
+#include "tools/common/files.h"
 #include "tools/common/json.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/compiler.h"
 #include "tools/stvm/device_drivers.h"
 #include "tools/stvm/hard_mode.h"
+#include "tools/stvm/plot.h"
+#include "tools/stvm/record.h"
 #include "tools/stvm/stop_signal.h"
 #include "tools/stvm/trace.h"
 #include "tools/stvm/trap_text.h"
@@ -24,7 +27,9 @@ constexpr tools::OptionRow kOptions[] = {
     {"--set", "NAME=VALUE", "write a variable before the first scan; repeatable"},
     {"--force", "NAME=VALUE", "impose a value in every scan; repeatable"},
     {"--print", "NAMES", "print these variables at the end: A,B.c"},
+    {"--plot", "FILE", "SVG picture of the variables of --print over the run"},
     {"--trace", "FILE", "CSV: values after every scan, of --print or of all variables"},
+    {"--record", "FILE", "record the run, for `stvm replay`"},
     {"--state", nullptr, "print every variable at the end"},
     {"--hash", nullptr, "print the hash of the state at the end"},
     {"--hard-mode", "MODE", "fuel1, identity or move: nothing may come out differently"},
@@ -62,7 +67,21 @@ base::Result<Settings> read_settings(const tools::Options& options) {
   return out;
 }
 
-base::Status apply_assignments(const tools::Options& options, vm::Controller& controller) {
+// As `stvm set` and `stvm force` would ask for it.
+void note_assignment(vm::Recorder& recorder, const vm::Controller& controller, bool set,
+                     const Assignment& row) {
+  vm::Request request;
+  request.command = set ? vm::Command::kSet : vm::Command::kForce;
+  request.expected = controller.verified().digest();
+  request.names = {row.name};
+  request.values = {row.value};
+  recorder.begin_job(controller);
+  recorder.end_job(controller);
+  recorder.note(vm::encode(request));
+}
+
+base::Status apply_assignments(const tools::Options& options, vm::Controller& controller,
+                               vm::Recorder* recorder) {
   for (const char* option : {"--set", "--force"}) {
     base::Result<std::vector<Assignment>> rows = parse_assignments(options.all(option));
     if (!rows.ok()) return rows.error();
@@ -71,9 +90,16 @@ base::Status apply_assignments(const tools::Options& options, vm::Controller& co
       base::Status status =
           set ? controller.set(row.name, row.value) : controller.force(row.name, row.value);
       if (!status.ok()) return status;
+      if (recorder != nullptr) note_assignment(*recorder, controller, set, row);
     }
   }
   return base::Ok{};
+}
+
+void run_cycle(vm::Controller& controller, vm::Recorder* recorder) {
+  if (recorder != nullptr) recorder->begin();
+  controller.cycle();
+  if (recorder != nullptr) recorder->end(controller);
 }
 
 // A name that is not there shall be said before the first scan, not after the last.
@@ -86,7 +112,7 @@ base::Status check_names(const std::vector<std::string>& names, const vm::Contro
 }
 
 base::Status run_scans(const Settings& settings, const tools::Options& options,
-                       vm::Controller& controller) {
+                       vm::Controller& controller, vm::Recorder* recorder) {
   std::optional<Trace> trace;
   if (options.has("--trace")) {
     base::Result<Trace> opened =
@@ -94,10 +120,17 @@ base::Status run_scans(const Settings& settings, const tools::Options& options,
     if (!opened.ok()) return opened.error();
     trace.emplace(std::move(*opened));
   }
+  std::optional<Plot> plot;
+  if (options.has("--plot")) {
+    base::Result<Plot> begun = Plot::of(controller, settings.print);
+    if (!begun.ok()) return begun.error();
+    plot.emplace(std::move(*begun));
+  }
   while (!controller.faulted() && !StopSignal::received()) {
     if (settings.scans && controller.cycles() >= *settings.scans) break;
-    controller.cycle();
+    run_cycle(controller, recorder);
     if (!controller.at_boundary()) continue;
+    if (plot) plot->sample(controller);
     if (trace) {
       base::Status written = trace->write(controller);
       if (!written.ok()) return written;
@@ -106,12 +139,17 @@ base::Status run_scans(const Settings& settings, const tools::Options& options,
     base::Status changed = apply_hard_mode(settings.hard_mode, sources_of(options), controller);
     if (!changed.ok()) return changed;
   }
+  if (plot) {
+    const std::string picture = plot->svg(controller.image().name);
+    base::Status drawn = tools::write_file(options.text("--plot"), base::as_bytes(picture));
+    if (!drawn.ok()) return drawn;
+  }
   return trace ? trace->close() : base::Status(base::Ok{});
 }
 
 // A task that is still inside its scan would show half of its results.
-void finish_scan(vm::Controller& controller) {
-  while (!controller.at_boundary()) controller.cycle();
+void finish_scan(vm::Controller& controller, vm::Recorder* recorder) {
+  while (!controller.at_boundary()) run_cycle(controller, recorder);
 }
 
 std::string value_of(const vm::Controller& controller, const std::string& name) {
@@ -158,6 +196,9 @@ void print_json(const Settings& settings, const tools::Options& options,
 base::Result<int> run_program(const tools::Options& options) {
   base::Result<Settings> settings = read_settings(options);
   if (!settings.ok()) return settings.error();
+  if (options.has("--record") && settings->hard_mode != HardMode::kNone) {
+    return base::Error{base::Refusal::kUsage, "--record cannot be combined with --hard-mode"};
+  }
   base::Status possible = check_hard_mode(settings->hard_mode, sources_of(options));
   if (!possible.ok()) return possible.error();
   base::Result<ir::VerifiedImage> image = load_program(sources_of(options));
@@ -171,18 +212,26 @@ base::Result<int> run_program(const tools::Options& options) {
   auto devices = device_options(options, clock == &virtual_clock ? clock : nullptr);
   if (!devices.ok()) return devices.error();
   vm::DeviceIo io(std::move(*devices));
-  auto controller = vm::Controller::start(*image, controller_options, *clock, io);
+  base::Result<std::unique_ptr<vm::Recorder>> recorder =
+      open_recorder(options, *image, {}, controller_options, *clock, io);
+  if (!recorder.ok()) return recorder.error();
+  auto controller = start_recorded(*image, controller_options, *clock, io, {}, recorder->get());
   if (!controller.ok()) return controller.error();
-  base::Status assigned = apply_assignments(options, **controller);
+  base::Status assigned = apply_assignments(options, **controller, recorder->get());
   if (!assigned.ok()) return assigned.error();
   base::Status known = check_names(settings->print, **controller);
   if (!known.ok()) return known.error();
   StopSignal::install();
-  base::Status done = run_scans(*settings, options, **controller);
+  base::Status done = run_scans(*settings, options, **controller, recorder->get());
   if (!done.ok()) return done.error();
-  finish_scan(**controller);
+  finish_scan(**controller, recorder->get());
+  if (*recorder) {
+    base::Status recorded = (*recorder)->close();
+    if (!recorded.ok()) return recorded.error();
+  }
   (settings->json ? print_json : print_text)(*settings, options, **controller);
   base::Status left = (*controller)->leave_all(kExitLimitNs);  // its trap is one of these
+  (*controller)->make_outputs_safe();
   for (const vm::TrapRecord& trap : (*controller)->traps()) {
     std::fprintf(stderr, "stvm: trap: %s\n", trap_text(trap).c_str());
   }

@@ -8,11 +8,14 @@
 #include "tools/stvm/compiler.h"
 #include "tools/stvm/controller_service.h"
 #include "tools/stvm/device_drivers.h"
+#include "tools/stvm/record.h"
+#include "tools/stvm/service_notify.h"
 #include "tools/stvm/state_folder.h"
 #include "tools/stvm/stop_signal.h"
 #include "vm/runtime/clocks.h"
 #include "vm/runtime/file_storage.h"
 #include "vm/runtime/mailbox.h"
+#include "vm/runtime/realtime.h"
 
 namespace stvm {
 namespace {
@@ -22,6 +25,10 @@ constexpr tools::OptionRow kOptions[] = {
     {"--data-limit", "BYTES",
      "of all data areas of a change together (default: no limit, or what the project says)"},
     {"--code-limit", "BYTES", "of all code, two slots for each POU (default: 2 GiB)"},
+    {"--fifo", "PRIORITY", "SCHED_FIFO for the control thread, 1 to 99"},
+    {"--cpu", "N", "keep the control thread on this processor"},
+    {"--lock-memory", nullptr, "keep all memory in RAM, and touch it before the first scan"},
+    {"--record", "FILE", "record the run, for `stvm replay`"},
     {"--virtual-time", nullptr, "cycles as fast as they can run, instead of real time"},
     STVM_DEVICE_OPTION,
     STVM_DIALECT_OPTION,
@@ -56,8 +63,9 @@ base::Result<online_change::Boot> boot_program(const tools::Options& options,
 
 // Until the next cycle begins; what remains at the end is left to the clock's exact wait.
 void idle(vm::Controller& controller, vm::Clock& clock, vm::Mailbox& mailbox,
-          online_change::RetainKeeper& keeper) {
+          online_change::RetainKeeper& keeper, ServiceNotify& notify) {
   while (!StopSignal::received()) {
+    notify.alive();
     int64_t now = clock.now_ns();
     if (controller.next_cycle_ns() - now <= kLookNs) return;
     clock.wait_until(std::min(now + kLookNs, controller.next_cycle_ns() - kLookNs));
@@ -67,17 +75,20 @@ void idle(vm::Controller& controller, vm::Clock& clock, vm::Mailbox& mailbox,
 }
 
 void control_loop(vm::Controller& controller, vm::Clock& clock, vm::Mailbox& mailbox,
-                  ControllerService& service) {
+                  ControllerService& service, vm::Recorder* recorder, ServiceNotify& notify) {
   online_change::RetainKeeper& keeper = service.keeper();
   while (!StopSignal::received() && !service.stop_wanted()) {
+    if (recorder != nullptr) recorder->begin();
     controller.cycle();
+    if (recorder != nullptr) recorder->end(controller);
+    notify.alive();
     if (!controller.at_boundary()) continue;
     mailbox.serve();
     keeper.serve(controller.next_cycle_ns() - clock.now_ns());
     if (controller.faulted()) {
       clock.wait_until(clock.now_ns() + kFaultLookNs);
     } else {
-      idle(controller, clock, mailbox, keeper);
+      idle(controller, clock, mailbox, keeper, notify);
     }
   }
   if (!controller.at_boundary()) return;
@@ -123,6 +134,21 @@ base::Result<vm::ControllerOptions> limits_of(const tools::Options& options) {
   return limits;
 }
 
+base::Result<vm::RealTimeOptions> real_time_options(const tools::Options& options) {
+  vm::RealTimeOptions out;
+  base::Result<uint64_t> fifo = options.number("--fifo", 0);
+  if (!fifo.ok()) return fifo.error();
+  base::Result<uint64_t> cpu = options.number("--cpu", 0);
+  if (!cpu.ok()) return cpu.error();
+  if (*fifo > 99 || *cpu > 4096 || (options.has("--fifo") && *fifo == 0)) {
+    return base::Error{base::Refusal::kUsage, "--fifo is 1 to 99, --cpu the number of a processor"};
+  }
+  out.fifo_priority = static_cast<uint32_t>(*fifo);
+  if (options.has("--cpu")) out.cpu = static_cast<uint32_t>(*cpu);
+  out.lock_memory = options.has("--lock-memory");
+  return out;
+}
+
 void print_ready(const vm::Controller& controller, const std::string& directory) {
   std::printf("ready: %s %s in %s\n", controller.image().name.c_str(),
               base::short_hex(controller.verified().digest()).c_str(), directory.c_str());
@@ -133,6 +159,8 @@ base::Status serve(const tools::Options& options) {
   std::string directory = state_directory(options);
   base::Result<vm::ControllerOptions> limits = limits_of(options);
   if (!limits.ok()) return limits.error();
+  base::Result<vm::RealTimeOptions> real_time = real_time_options(options);
+  if (!real_time.ok()) return real_time.error();
   StopSignal::install();
   base::Result<StateFolder> folder = StateFolder::open(directory);
   if (!folder.ok()) return folder.error();
@@ -148,18 +176,33 @@ base::Status serve(const tools::Options& options) {
   auto devices = device_options(options, clock == &virtual_clock ? clock : nullptr);
   if (!devices.ok()) return devices.error();
   vm::DeviceIo io(std::move(*devices));
-  auto controller = vm::Controller::start(boot->image, *limits, *clock, io, boot->retained);
+  auto recorder = open_recorder(options, boot->image, boot->retained, *limits, *clock, io);
+  if (!recorder.ok()) return recorder.error();
+  auto controller =
+      start_recorded(boot->image, *limits, *clock, io, boot->retained, recorder->get());
   if (!controller.ok()) return controller.error();
   vm::Mailbox mailbox;
   ControllerService service(**controller, *clock, store, mailbox, {boot->trial_lost, boot->alarms});
+  if (*recorder) service.record(**recorder);
   auto server = vm::SocketServer::open(directory, service);
   if (!server.ok()) return server.error();
   service.keeper().start();
+  // Behind all other threads, which stay as they are.
+  base::Status fit = vm::make_real_time(*real_time);
+  if (!fit.ok()) {
+    mailbox.close();
+    return fit;
+  }
+  if (real_time->lock_memory) vm::prefault(**controller);
+  ServiceNotify notify;
   print_ready(**controller, directory);
-  control_loop(**controller, *clock, mailbox, service);
+  notify.ready(base::short_hex((*controller)->verified().digest()));
+  control_loop(**controller, *clock, mailbox, service, recorder->get(), notify);
+  notify.stopping();
+  (*controller)->make_outputs_safe();
   mailbox.close();
   end(**controller, store, service);
-  return base::Ok{};
+  return *recorder ? (*recorder)->close() : base::Status(base::Ok{});
 }
 
 int run(const tools::Options& options) {

@@ -8,12 +8,16 @@
 #include "tools/common/table.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
+#include "tools/stvm/times_text.h"
 #include "tools/stvm/trap_text.h"
 
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
+constexpr tools::OptionRow kOptions[] = {
+    STVM_CONTROLLER_OPTIONS,
+    STVM_FORMAT_OPTION,
+    {"--task", "NAME", "histograms of a task: run times, and delays of its start"}};
 constexpr tools::Command kCommand{"status", "", "Shows what a controller runs and how it is.",
                                   kOptions, 0,  0};
 
@@ -90,18 +94,27 @@ void device_json(tools::JsonWriter& json, const vm::DeviceStatus& device) {
   json.field("error", device.error).end_object();
 }
 
+std::string period_text(const vm::TaskStatus& task) {
+  if (task.once) return "once";
+  if (task.freewheeling) return "free";
+  return task.period_ns == 0 ? "event" : tools::duration(task.period_ns);
+}
+
+std::string state_text(const vm::TaskStatus& task) {
+  if (task.stopped) return "stopped";
+  return task.overruns == 0 ? "ok" : "overran";
+}
+
 void print_text(const vm::StatusReport& report) {
   print_versions(report);
   print_memory(report.memory);
-  tools::Table tasks(
-      {"task", "> period", "> priority", "> scans", "> missed", "> last", "> longest", "state"});
+  tools::Table tasks({"task", "> period", "> prio", "> scans", "> missed", "> average", "> p99",
+                      "> longest", "> delay", "state"});
   for (const vm::TaskStatus& task : report.tasks) {
-    std::string period = task.once             ? "once"
-                         : task.period_ns == 0 ? "event"
-                                               : tools::duration(task.period_ns);
-    tasks.row({task.name, period, std::to_string(task.priority), std::to_string(task.scans),
-               std::to_string(task.missed), tools::duration(task.last_ns),
-               tools::duration(task.max_ns), task.stopped ? "stopped" : "ok"});
+    tasks.row({task.name, period_text(task), std::to_string(task.priority),
+               std::to_string(task.scans), std::to_string(task.missed),
+               tools::duration(task.run.average), tools::duration(task.run.p99),
+               tools::duration(task.run.max), tools::duration(task.delay.p99), state_text(task)});
   }
   std::fputs(tasks.text().c_str(), stdout);
   print_devices(report.devices);
@@ -109,10 +122,17 @@ void print_text(const vm::StatusReport& report) {
   for (const vm::TrapRow& trap : report.traps) std::printf("trap: %s\n", trap_text(trap).c_str());
 }
 
+void summary_json(tools::JsonWriter& json, const char* name, const vm::TimeSummary& times) {
+  json.key(name).begin_object().field("min", times.min).field("average", times.average);
+  json.field("p99", times.p99).field("max", times.max).end_object();
+}
+
 void task_json(tools::JsonWriter& json, const vm::TaskStatus& task) {
   json.begin_object().field("name", task.name).field("period_ns", task.period_ns);
   json.field("priority", task.priority).field("scans", task.scans).field("missed", task.missed);
-  json.field("last_ns", task.last_ns).field("max_ns", task.max_ns);
+  json.field("overruns", task.overruns).field("last_ns", task.last_ns);
+  summary_json(json, "run_ns", task.run);
+  summary_json(json, "start_delay_ns", task.delay);
   json.field("stopped", task.stopped).end_object();
 }
 
@@ -151,6 +171,12 @@ base::Status show(const tools::Options& options) {
   if (!json.ok()) return json.error();
   base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
+  if (options.has("--task")) {
+    base::Result<vm::TaskTimes> times = client->task_times(options.text("--task"));
+    if (!times.ok()) return times.error();
+    std::fputs((*json ? times_json(*times) : times_text(*times)).c_str(), stdout);
+    return base::Ok{};
+  }
   base::Result<vm::StatusReport> report = client->status();
   if (!report.ok()) return report.error();
   (*json ? print_json : print_text)(*report);

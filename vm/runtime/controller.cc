@@ -26,6 +26,18 @@ void write_retained(const ir::Image& image, base::ByteSpan values, uint8_t* memo
   }
 }
 
+TimeSummary summary_of(const Histogram& times) {
+  return {times.min(), times.average(), times.quantile(0.99), times.max(), times.total()};
+}
+
+std::vector<TimeClass> classes_of(const Histogram& times) {
+  std::vector<TimeClass> rows;
+  for (uint32_t i = 0; i < Histogram::kClasses; ++i) {
+    if (times.in_class(i) != 0) rows.push_back({Histogram::class_end(i), times.in_class(i)});
+  }
+  return rows;
+}
+
 }  // namespace
 
 struct Controller::Impl {
@@ -101,8 +113,20 @@ uint64_t Controller::data_limit() const { return impl_->data_limit; }
 
 std::vector<TaskStatus> Controller::tasks() const {
   std::vector<TaskStatus> rows;
-  for (const TaskSlot& task : impl_->scheduler.tables().tasks) rows.push_back(task.status);
+  for (const TaskSlot& task : impl_->scheduler.tables().tasks) {
+    rows.push_back(task.status);
+    rows.back().run = summary_of(task.times->run);
+    rows.back().delay = summary_of(task.times->delay);
+  }
   return rows;
+}
+
+std::optional<TaskTimes> Controller::task_times(std::string_view name) const {
+  for (const TaskSlot& task : impl_->scheduler.tables().tasks) {
+    if (!ir::same_name(task.status.name, name)) continue;
+    return TaskTimes{task.status.name, classes_of(task.times->run), classes_of(task.times->delay)};
+  }
+  return std::nullopt;
 }
 
 uint64_t Controller::missed_releases() const {
@@ -128,6 +152,9 @@ base::Status Controller::set(std::string_view path, std::string_view value) {
   base::Result<base::Bytes> bytes = ir::parse_value(image(), symbol->type, value);
   if (!bytes.ok()) return bytes.error();
   std::memcpy(impl_->memory.data() + symbol->data, bytes->data(), bytes->size());
+  if (symbol->output) {
+    impl_->scheduler.variable_set(symbol->data, static_cast<uint32_t>(bytes->size()));
+  }
   return base::Ok{};
 }
 
@@ -173,6 +200,7 @@ base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage 
   if (!devices.ok()) return devices.error();
   auto tables = std::make_unique<TaskTables>(**next, 0);
   tables->adopt_forces(image(), forces());
+  TaskTables::compare_outputs(impl_->scheduler.tables(), *tables);
   impl_->tables[next->get()] = std::move(tables);
   return next;
 }
@@ -213,6 +241,8 @@ base::Status Controller::leave_all(int64_t limit_ns) {
   impl_->scheduler.send_outputs();
   return left;
 }
+
+void Controller::make_outputs_safe() { impl_->scheduler.leave_outputs_safe(); }
 
 base::Status Controller::restart(Restart kind, int64_t exit_limit_ns) {
   base::Status left = base::Ok{};

@@ -31,26 +31,46 @@ enum class Restart : uint8_t { kCold, kWarm, kHot };
 // What a unit of idle work takes at most; where less is left before a cycle, none is begun.
 inline constexpr int64_t kIdleUnitNs = 20'000;
 
-enum class TrapPolicy : uint8_t { kStopTask, kStopAll };
-
 struct ControllerOptions {
-  TrapPolicy on_trap = TrapPolicy::kStopAll;
+  ir::OnTrap on_trap = ir::OnTrap::kStopAll;  // of tasks that do not state it; not kUnstated
   uint64_t fuel_slice = 1000;         // safe points between two looks at the clock; hard mode: 1
   uint64_t fuel_budget = 50'000'000;  // safe points of one scan of one task before kFuel
   uint64_t code_limit = uint64_t{2} << 30;  // bytes of all code slots (two for each POU)
   uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit
 };
 
+// Times of all scans of a task so far, in ns; p99: 99 % took no longer (histogram.h).
+struct TimeSummary {
+  int64_t min = 0;
+  int64_t average = 0;
+  int64_t p99 = 0;
+  int64_t max = 0;
+  int64_t total = 0;
+};
+// One class of a histogram: so many took less than `end_ns`, and not less than the class before.
+struct TimeClass {
+  int64_t end_ns = 0;
+  uint64_t count = 0;
+};
+struct TaskTimes {
+  std::string name;
+  std::vector<TimeClass> run;  // classes with something in them
+  std::vector<TimeClass> delay;
+};
+
 struct TaskStatus {
   std::string name;
   int64_t period_ns = 0;
   uint32_t priority = 0;
-  uint64_t scans = 0;   // completed
-  uint64_t missed = 0;  // releases that found the task still running
-  int64_t last_ns = 0;  // run time of the last scan
-  int64_t max_ns = 0;
-  bool stopped = false;  // by a trap
-  bool once = false;     // start code: at cold start and behind changes
+  uint64_t scans = 0;     // completed
+  uint64_t overruns = 0;  // releases that found the scan before not done
+  uint64_t missed = 0;    // releases without a scan
+  int64_t last_ns = 0;    // run time of the last scan
+  TimeSummary run;        // of its own run time, without that of tasks above it
+  TimeSummary delay;      // from the release to the start: jitter
+  bool stopped = false;   // by a trap
+  bool freewheeling = false;
+  bool once = false;  // start code: at cold start and behind changes
 };
 
 struct TrapRecord {
@@ -99,6 +119,8 @@ class Controller {
   Memory& memory();
   uint64_t data_limit() const;
   std::vector<TaskStatus> tasks() const;
+  // Histograms of a task; nullopt: there is none of this name.
+  std::optional<TaskTimes> task_times(std::string_view name) const;
   uint64_t missed_releases() const;              // of all tasks
   const std::vector<TrapRecord>& traps() const;  // the last 32
   uint64_t trap_count() const;                   // all that there were
@@ -134,6 +156,10 @@ class Controller {
   base::Status leave(const std::vector<uint32_t>& ids, int64_t limit_ns);
   // The same of all there are, and their outputs are sent: nothing runs behind it.
   base::Status leave_all(int64_t limit_ns);
+
+  // The last thing before a controller ends, also in the middle of a scan. What would be held for
+  // a time takes its value: nobody is there when it is over.
+  void make_outputs_safe();
 
   // At a boundary, also behind a fault: all tasks run again. Cold and warm: instances leave first,
   // unless a fault ended everything, and start code makes them anew in the next cycle. Forces stay.

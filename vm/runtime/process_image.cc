@@ -1,6 +1,7 @@
 #include "vm/runtime/process_image.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "ir/types/location.h"
@@ -11,8 +12,10 @@ namespace vm {
 // Walks located variables down to what is copied in one piece.
 class ProcessImage::Collector {
  public:
-  explicit Collector(const ir::Image& image)
-      : image_(image), natural_(ir::natural_layouts(image.types)) {}
+  // `values`: where single values of several bytes are noted too, and `reals` where REAL and LREAL
+  // are; or nullptr.
+  Collector(const ir::Image& image, Points* values, Points* reals)
+      : image_(image), natural_(ir::natural_layouts(image.types)), values_(values), reals_(reals) {}
 
   void add(Points& points, const ir::IoBinding& binding, uint32_t limit) {
     uint64_t first_bit = binding.address.bit_offset;
@@ -37,6 +40,7 @@ class ProcessImage::Collector {
     const ir::TypeId element = array ? type.base : id;
     if (image_.types.is_scalar(element) && image_.types.scalar(element) != ir::Scalar::kBool) {
       add_run(points, {data, byte, natural_[id].size, 0});
+      note_values(element, {data, byte, natural_[id].size, 0});
     } else if (array) {
       uint64_t count = 1;
       for (const ir::Dimension& dim : type.dims) count *= dim.count();
@@ -56,6 +60,16 @@ class ProcessImage::Collector {
     }
   }
 
+  void note_values(ir::TypeId type, Point run) {
+    const ir::Scalar scalar = image_.types.scalar(type);
+    const uint32_t size = ir::scalar_size(scalar);
+    if (values_ == nullptr) return;
+    for (uint32_t at = 0; at < run.size; at += size) {
+      values_->push_back({run.data + at, run.byte + at, size, 0});
+      if (ir::is_float(scalar)) reals_->push_back(values_->back());
+    }
+  }
+
   static void add_run(Points& points, Point run) {
     Point* last = points.empty() ? nullptr : &points.back();
     bool next = last != nullptr && last->size != 0 && last->data + last->size == run.data &&
@@ -69,6 +83,8 @@ class ProcessImage::Collector {
 
   const ir::Image& image_;
   ir::Layouts natural_;
+  Points* values_;
+  Points* reals_;
 };
 
 ProcessImage::ProcessImage(const ir::Image& image)
@@ -76,18 +92,20 @@ ProcessImage::ProcessImage(const ir::Image& image)
       output_bytes_(image.output_bytes),
       marker_bytes_(ir::process_image_size(image.devices).marker_bytes) {
   if (image.io.empty()) return;
-  Collector collector(image);
+  Collector inputs(image, nullptr, nullptr);
+  Collector outputs(image, &values_, &reals_);
+  Collector markers(image, nullptr, nullptr);
   for (const ir::IoBinding& binding : image.io) {
     switch (binding.address.area) {
       case ir::DirectArea::kInput:
-        collector.add(inputs_, binding, input_bytes_);
+        inputs.add(inputs_, binding, input_bytes_);
         break;
       case ir::DirectArea::kOutput:
-        collector.add(outputs_, binding, output_bytes_);
+        outputs.add(outputs_, binding, output_bytes_);
         break;
       case ir::DirectArea::kMarker:
         if (ir::is_locatable(image.types, binding.type)) {
-          collector.add(markers_, binding, marker_bytes_);
+          markers.add(markers_, binding, marker_bytes_);
         }
         break;
       case ir::DirectArea::kNone:
@@ -116,6 +134,52 @@ void ProcessImage::outputs_to_variables(std::span<const uint8_t> outputs, uint8_
 
 void ProcessImage::markers_to_variables(std::span<const uint8_t> markers, uint8_t* memory) const {
   unpack(markers_, markers, memory);
+}
+
+void ProcessImage::mark_outputs(uint32_t begin, uint32_t end, std::span<uint8_t> mask) const {
+  for (const Point& point : outputs_) {
+    const uint32_t size = std::max(point.size, 1u);
+    if (point.data >= end || point.data + size <= begin) continue;
+    if (point.size == 0) {
+      mask[point.byte] |= point.mask;
+      continue;
+    }
+    const uint32_t first = std::max(begin, point.data) - point.data;
+    const uint32_t last = std::min(end - point.data, size);
+    std::fill(mask.begin() + point.byte + first, mask.begin() + point.byte + last, uint8_t{0xff});
+  }
+}
+
+void ProcessImage::widen(std::span<uint8_t> mask) const {
+  for (const Point& value : values_) {
+    const auto begin = mask.begin() + value.byte;
+    const bool any = std::any_of(begin, begin + value.size, [](uint8_t bits) { return bits != 0; });
+    if (any) std::fill_n(begin, value.size, uint8_t{0xff});
+  }
+}
+
+bool ProcessImage::has_nan(std::span<const uint8_t> outputs, std::span<const uint8_t> mask) const {
+  for (const Point& point : reals_) {
+    const auto begin = mask.begin() + point.byte;
+    if (std::all_of(begin, begin + point.size, [](uint8_t bits) { return bits == 0; })) continue;
+    double value = 0;
+    if (point.size == 4) {
+      float single = 0;
+      std::memcpy(&single, outputs.data() + point.byte, 4);
+      value = single;
+    } else {
+      std::memcpy(&value, outputs.data() + point.byte, 8);
+    }
+    if (std::isnan(value)) return true;
+  }
+  return false;
+}
+
+bool ProcessImage::same_outputs(const ProcessImage& other) const {
+  return std::equal(outputs_.begin(), outputs_.end(), other.outputs_.begin(), other.outputs_.end(),
+                    [](const Point& a, const Point& b) {
+                      return a.byte == b.byte && a.size == b.size && a.mask == b.mask;
+                    });
 }
 
 void ProcessImage::variables_to_outputs(const uint8_t* memory, std::span<uint8_t> outputs) const {

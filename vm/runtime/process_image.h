@@ -29,6 +29,15 @@ class ProcessImage {
   void variables_to_markers(const uint8_t* memory, std::span<uint8_t> markers) const;
   void outputs_to_variables(std::span<const uint8_t> outputs, uint8_t* memory) const;
 
+  // Sets the bits that the variables at [begin, end) of data memory are sent as.
+  void mark_outputs(uint32_t begin, uint32_t end, std::span<uint8_t> mask) const;
+  // Whole values instead of some bits of them.
+  void widen(std::span<uint8_t> mask) const;
+  // Is an output among those of `mask` NaN in `outputs`?
+  bool has_nan(std::span<const uint8_t> outputs, std::span<const uint8_t> mask) const;
+  // Do the same bits stand for variables of the same sizes in the same order?
+  bool same_outputs(const ProcessImage& other) const;
+
  private:
   struct Point {
     uint32_t data = 0;  // offset of the variable
@@ -45,6 +54,8 @@ class ProcessImage {
   Points inputs_;
   Points outputs_;
   Points markers_;
+  Points values_;  // of outputs_: each REAL, and each other value of several bytes
+  Points reals_;
   uint32_t input_bytes_;
   uint32_t output_bytes_;
   uint32_t marker_bytes_;

@@ -58,15 +58,40 @@ void request_fields(A& a, R& request) {
 }
 
 template <class A, class T>
+void summary_fields(A& a, T& times) {
+  a(times.min);
+  a(times.average);
+  a(times.p99);
+  a(times.max);
+  a(times.total);
+}
+
+template <class A, class T>
+void class_fields(A& a, T& row) {
+  a(row.end_ns);
+  a(row.count);
+}
+
+template <class A, class T>
+void times_fields(A& a, T& task) {
+  a(task.name);
+  a.list(task.run, 16);
+  a.list(task.delay, 16);
+}
+
+template <class A, class T>
 void task_fields(A& a, T& task) {
   a(task.name);
   a(task.period_ns);
   a(task.priority);
   a(task.scans);
+  a(task.overruns);
   a(task.missed);
   a(task.last_ns);
-  a(task.max_ns);
+  summary_fields(a, task.run);
+  summary_fields(a, task.delay);
   a(task.stopped);
+  a(task.freewheeling);
   a(task.once);
 }
 
@@ -131,7 +156,7 @@ void status_fields(A& a, T& report) {
   a(report.faulted);
   a(report.forces);
   memory_fields(a, report.memory);
-  a.list(report.tasks, 49);
+  a.list(report.tasks, 130);
   a.list(report.traps, 28);
   a.list(report.devices, 40);
 }
@@ -156,6 +181,8 @@ void image_fields(A& a, T& part) {
   static void fields(FieldWriter& a, const type& v) { list(a, v); } \
   static void fields(FieldReader& a, type& v) { list(a, v); }
 FIELDS(TaskStatus, task_fields)
+FIELDS(TimeClass, class_fields)
+FIELDS(TaskTimes, times_fields)
 FIELDS(TrapRow, trap_fields)
 FIELDS(DeviceStatus, device_fields)
 FIELDS(ValueRow, value_fields)
@@ -234,11 +261,15 @@ base::Result<base::Bytes> decode_answer(base::ByteSpan bytes) {
 }
 
 base::Bytes encode(const StatusReport& report) { return write_fields(report); }
+base::Bytes encode(const TaskTimes& times) { return write_fields(times); }
 base::Bytes encode(const Values& values) { return write_fields(values); }
 base::Bytes encode(const ImagePart& part) { return write_fields(part); }
 
 base::Result<StatusReport> decode_status(base::ByteSpan body) {
   return read_fields<StatusReport>(body, "status");
+}
+base::Result<TaskTimes> decode_task_times(base::ByteSpan body) {
+  return read_fields<TaskTimes>(body, "times");
 }
 base::Result<Values> decode_values(base::ByteSpan body) {
   return read_fields<Values>(body, "values");

@@ -105,9 +105,11 @@ struct ImagePart {
 };
 
 base::Bytes encode(const StatusReport& report);
+base::Bytes encode(const TaskTimes& times);
 base::Bytes encode(const Values& values);
 base::Bytes encode(const ImagePart& part);
 base::Result<StatusReport> decode_status(base::ByteSpan body);
+base::Result<TaskTimes> decode_task_times(base::ByteSpan body);
 base::Result<Values> decode_values(base::ByteSpan body);
 base::Result<ImagePart> decode_image_part(base::ByteSpan body);
 

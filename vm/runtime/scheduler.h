@@ -24,7 +24,14 @@ class Scheduler {
   // At a boundary, also behind a fault: every task runs again, in its phase; none has missed a
   // release until then.
   void restart();
+  // All of them, and they are sent.
+  void make_outputs_safe();
+  // The same for good: holds for a time are over at once.
+  void leave_outputs_safe();
+  // The variable at [data, data + size) was written from outside.
+  void variable_set(uint32_t data, uint32_t size);
   void send_outputs() { io_.send(tables_->outputs); }
+  // Behind a fault: only outputs that are held for a time are looked after.
   void run_cycle();
   bool at_boundary() const { return active_.empty(); }
   bool faulted() const { return faulted_; }
@@ -48,8 +55,14 @@ class Scheduler {
 
   void begin_cycle();
   void finish_start_tasks();
+  void pack_outputs();
+  void take_packed();
+  void send_waiting_outputs();
+  void offer_inputs();
   void release_due_tasks();
-  void release(TaskSlot& task);
+  void release_due_task(TaskSlot& task);
+  bool release(TaskSlot& task, int64_t due_ns);
+  bool is_active(const TaskSlot& task) const;
   // Edges of events (ir::Task) release their tasks.
   void look_at_events();
   bool event_level(const TaskSlot& task) const;
@@ -62,13 +75,20 @@ class Scheduler {
   void end_program(TaskSlot& task);
   void end_task(TaskSlot& task);
   void trap_in(TaskSlot& task, const Trap& trap);
+  void find_written(const TaskSlot& task);
+  void hand_down(std::span<const uint8_t> mask);
   void roll_back_outputs(const TaskSlot& task);
+  void stop_outputs(TaskSlot& task);
   void leave(TaskSlot& task);
   void fault();
+  void refresh_safe_outputs();
+  bool end_holds(int64_t now_ns);
+  void outputs_to_variables(std::span<const uint8_t> mask);
 
   void copy_inputs(const TaskSlot& task);
-  void copy_outputs(const TaskSlot& task);
+  void copy_outputs(TaskSlot& task);
   void impose(bool inputs_only);
+  void impose_on_outputs();
   uint64_t fuel_left(const TaskSlot& task) const;
 
   ControllerOptions options_;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/limits.h"
 #include "ir/bytecode/renames.h"
+#include "vm/runtime/own_outputs.h"
 
 namespace vm {
 namespace {
@@ -17,14 +19,21 @@ TaskSlot make_slot(const Generation& generation, uint32_t number, int64_t first_
   const ir::ImageTask& task = image.tasks[number];
   TaskSlot slot;
   slot.status.name = task.name;
-  const bool no_period = task.event != 0 || task.once;
+  const bool no_period = task.event != 0 || task.once || task.policy.freewheeling;
   slot.status.period_ns = std::max<int64_t>(task.period_ns, no_period ? 0 : 1);
   slot.status.priority = task.priority;
   slot.watchdog_ns = task.watchdog_ns > 0 ? task.watchdog_ns : 10 * slot.status.period_ns;
   slot.programs = task.programs;
   slot.execution = std::make_unique<Execution>(image.call_depth, number, try_depth);
-  slot.inputs.resize(image.input_bytes);
+  slot.policy = task.policy;
+  slot.status.freewheeling = task.policy.freewheeling;
+  slot.inputs = InputSync(task.policy.input_buffer, image.input_bytes);
   slot.outputs_at_start.resize(image.output_bytes);
+  slot.own_outputs.resize(image.output_bytes);
+  if (slot.synchronous()) {
+    slot.waiting.resize(image.output_bytes);
+    slot.waiting_mask.resize(image.output_bytes);
+  }
   slot.next_release_ns = first_release_ns;
   slot.once = slot.status.once = task.once;
   slot.event = task.event;
@@ -89,7 +98,10 @@ class RenamedPaths {
 }  // namespace
 
 TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
-    : generation(&made_for), version(made_for.verified()), process_image(made_for.image()) {
+    : generation(&made_for),
+      version(made_for.verified()),
+      process_image(made_for.image()),
+      safe(made_for.image()) {
   const ir::Image& image = made_for.image();
   for (uint32_t number = 0; number < image.tasks.size(); ++number) {
     by_priority.push_back(number);
@@ -100,34 +112,93 @@ TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
   });
   inputs.resize(image.input_bytes);
   outputs.resize(image.output_bytes);
+  unused.resize(image.output_bytes);
+  process_image.mark_outputs(0, UINT32_MAX, unused);
+  for (uint8_t& bits : unused) bits = static_cast<uint8_t>(~bits);
+  waiting_mask.resize(image.output_bytes);
+  written.resize(image.output_bytes);
   scratch.resize(image.output_bytes);
+  if (image.output_bytes != 0) mark_own_outputs(*this);
   set_base_period();
 }
 
-void TaskTables::adopt(const TaskTables& previous, int64_t cycle_start_ns) {
+void TaskTables::adopt(TaskTables& previous, int64_t cycle_start_ns) {
+  std::fill(waiting_mask.begin(), waiting_mask.end(), uint8_t{0});
+  std::copy_n(previous.inputs.begin(), std::min(inputs.size(), previous.inputs.size()),
+              inputs.begin());
+  // What has lost its variable becomes safe with the next refresh; the rest is packed then (case
+  // 46).
+  std::fill(outputs.begin(), outputs.end(), uint8_t{0});
+  std::copy_n(previous.outputs.begin(), std::min(outputs.size(), previous.outputs.size()),
+              outputs.begin());
+  safe.adopt_holds(previous.safe);
+  for (size_t i = 0; i < written.size(); ++i) {
+    const bool there = i < previous.unused.size();
+    written[i] = static_cast<uint8_t>(unused[i] & ~(there ? previous.unused[i] : 0));
+  }
+  safe.apply(written, cycle_start_ns, outputs);
   for (TaskSlot& slot : tasks) {
+    std::fill(slot.waiting_mask.begin(), slot.waiting_mask.end(), uint8_t{0});
     slot.released = false;
     slot.next_release_ns = previous.next_cycle_ns(cycle_start_ns);
-    for (const TaskSlot& old : previous.tasks) {
+    for (TaskSlot& old : previous.tasks) {
       slot.execution->count_on(*old.execution);
       if (!ir::same_name(slot.status.name, old.status.name)) continue;
       // Not as a whole: at a boundary nothing is allocated, and a name can be long.
       slot.status.scans = old.status.scans;
+      slot.status.overruns = old.status.overruns;
       slot.status.missed = old.status.missed;
       slot.status.last_ns = old.status.last_ns;
-      slot.status.max_ns = old.status.max_ns;
+      std::swap(slot.times, old.times);
       slot.status.stopped = old.status.stopped;
       slot.released = old.released;
       slot.event_level = old.event_level;
+      slot.released_ns = old.released_ns;
+      slot.stretched = slot.overran = false;
       keep_phase(slot, old, cycle_start_ns);
+      if (same_outputs) keep_outputs(slot, old);
+      keep_inputs(slot, old);
     }
   }
-  std::copy_n(previous.inputs.begin(), std::min(inputs.size(), previous.inputs.size()),
-              inputs.begin());
   set_base_period();
 }
 
+// At a boundary, where nothing is allocated. Without it, what waits goes out with the first cycle.
+void TaskTables::keep_outputs(TaskSlot& slot, const TaskSlot& old) {
+  for (size_t i = 0; i < waiting_mask.size(); ++i) slot.own_outputs[i] |= old.own_outputs[i];
+  if (!slot.synchronous() || !old.synchronous()) return;
+  std::copy(old.waiting.begin(), old.waiting.end(), slot.waiting.begin());
+  std::copy(old.waiting_mask.begin(), old.waiting_mask.end(), slot.waiting_mask.begin());
+  for (size_t i = 0; i < waiting_mask.size(); ++i) waiting_mask[i] |= slot.waiting_mask[i];
+}
+
+// What has been received for a scan that is still to come. Tables that rested have old inputs.
+void TaskTables::keep_inputs(TaskSlot& slot, TaskSlot& old) {
+  if (slot.inputs.like(old.inputs)) {
+    std::swap(slot.inputs, old.inputs);
+  } else {
+    slot.inputs.restart();
+    slot.inputs.write(inputs);
+  }
+}
+
+void TaskTables::compare_outputs(TaskTables& a, TaskTables& b) {
+  const bool same =
+      a.outputs.size() == b.outputs.size() && a.process_image.same_outputs(b.process_image);
+  a.same_outputs = b.same_outputs = same;
+}
+
+// Phases that a change left between periods that do not fit could make the cycle too short: then
+// all tasks get one phase.
 void TaskTables::set_base_period() {
+  find_base_period();
+  if (base_period_ns >= static_cast<int64_t>(base::kMinBaseCycleNs)) return;
+  const int64_t first = next_release_ns();
+  for (TaskSlot& slot : tasks) slot.next_release_ns = first;
+  find_base_period();
+}
+
+void TaskTables::find_base_period() {
   base_period_ns = 0;
   for (const TaskSlot& slot : tasks) {
     if (slot.status.period_ns == 0) continue;

@@ -8,9 +8,18 @@
 #include <vector>
 
 #include "vm/runtime/controller.h"
+#include "vm/runtime/histogram.h"
+#include "vm/runtime/input_sync.h"
 #include "vm/runtime/process_image.h"
+#include "vm/runtime/safe_outputs.h"
 
 namespace vm {
+
+// In memory of its own: a change hands it on.
+struct TaskHistory {
+  Histogram run;
+  Histogram delay;
+};
 
 // A task, and its activation while it has one. At most one activation exists for each task.
 struct TaskSlot {
@@ -18,11 +27,19 @@ struct TaskSlot {
   int64_t watchdog_ns = 0;
   std::vector<uint32_t> programs;  // instance IDs
   std::unique_ptr<Execution> execution;
-  base::Bytes inputs;            // what this activation sees of %I, from start to end (B3)
+  std::unique_ptr<TaskHistory> times = std::make_unique<TaskHistory>();
+  ir::TaskPolicy policy;
+  InputSync inputs;              // what an activation sees of %I, from start to end (B3)
   base::Bytes outputs_at_start;  // %Q variables when it began, to know what it wrote
+  base::Bytes own_outputs;       // mask: what it writes, as far as is known
+  base::Bytes waiting;           // its outputs until its next period begins (B6)
+  base::Bytes waiting_mask;      // which they are; empty without TaskIo::kSynchronous
   int64_t next_release_ns = 0;
+  int64_t released_ns = 0;      // when the release was due that it begins with
   bool once = false;            // start code
   bool released = false;        // due, not yet begun
+  bool stretched = false;       // due again, to be released when its scan is done
+  bool overran = false;         // due again, to be ended by a trap
   uint64_t begun_in_cycle = 0;  // number of the cycle, from 1: once in each at most
 
   uint32_t event = 0;        // data offset of the BOOL whose edges release it; 0: none
@@ -35,19 +52,23 @@ struct TaskSlot {
   int64_t time_ns = 0;  // the one timestamp of the scan
   int64_t run_ns = 0;
   uint64_t fuel_used = 0;  // by the programs that are done
+
+  bool synchronous() const { return policy.io == ir::TaskIo::kSynchronous; }
 };
 
 struct TaskTables {
   TaskTables(const Generation& made_for, int64_t first_release_ns);
 
   // Scans, statistics and phase of tasks of the same name go on (change case 42).
-  void adopt(const TaskTables& previous, int64_t cycle_start_ns);
+  void adopt(TaskTables& previous, int64_t cycle_start_ns);
   // Greatest common divisor of periods and phases: every release falls on a cycle (B1).
   void set_base_period();
   // The first cycle after `cycle_start_ns`.
   int64_t next_cycle_ns(int64_t cycle_start_ns) const;
   int64_t next_release_ns() const;
   // Forces of another image by path; what has no place of its kind here ends.
+  // Of the version that runs and one that is prepared, or the other way round.
+  static void compare_outputs(TaskTables& a, TaskTables& b);
   void adopt_forces(const ir::Image& from, const std::vector<Force>& forces);
 
   const Generation* generation;
@@ -56,11 +77,22 @@ struct TaskTables {
   std::vector<uint32_t> by_priority;  // highest first, then as declared
   int64_t base_period_ns = 0;
   ProcessImage process_image;
-  base::Bytes inputs;   // as received last
-  base::Bytes outputs;  // as sent next: complete results only (B5)
+  SafeOutputs safe;
+  base::Bytes inputs;        // as received last
+  base::Bytes outputs;       // as sent next: complete results only (B5)
+  base::Bytes unused;        // mask: outputs that no variable stands for
+  base::Bytes waiting_mask;  // of all tasks
+  base::Bytes written;       // by the task that ends
   base::Bytes scratch;
+  // Of this version and the other one: then what waits is kept, and what is known of its writers.
+  bool same_outputs = false;
   std::vector<Force> forces;
   std::vector<std::string> ended_forces;  // paths of those that were not adopted
+
+ private:
+  void find_base_period();
+  void keep_outputs(TaskSlot& slot, const TaskSlot& old);
+  void keep_inputs(TaskSlot& slot, TaskSlot& old);
 };
 
 }  // namespace vm

@@ -43,8 +43,8 @@ class MachineEngine : public Engine {
     if (!image.ok()) return image.error();
     vm::ControllerOptions options;
     options.fuel_budget = 20'000'000;
-    // As in the evaluator: a trap ends its task, the others finish the scan.
-    options.on_trap = vm::TrapPolicy::kStopTask;
+    // As in the evaluator: a trap ends the scan of its task, and nothing else.
+    options.on_trap = ir::OnTrap::kGoOn;
     if (tier_ == Tier::kFuelOne) options.fuel_slice = 1;
     auto controller = vm::Controller::start(*image, options, clock_, devices_);
     if (!controller.ok()) return controller.error();

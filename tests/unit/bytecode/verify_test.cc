@@ -446,6 +446,32 @@ TEST(Verify, V15_Tasks) {
   expect_refused(Refusal::kBadTask, "the globals", [](Image& i) { i.tasks[0].programs = {0}; });
   expect_refused(Refusal::kBadTask, "a program in two tasks",
                  [](Image& i) { i.tasks.push_back(i.tasks[0]); });
+  expect_refused(Refusal::kBadTask, "a cycle of 1 us", [](Image& i) {
+    i.tasks.push_back({"Slow", 10'001'000, 100'000'000, 1, 0, {}});
+  });
+  expect_refused(Refusal::kBadTask, "a freewheeling task with a period",
+                 [](Image& i) { i.tasks[0].policy.freewheeling = true; });
+  expect_refused(Refusal::kBadTask, "synchronous without a period", [](Image& i) {
+    i.tasks[0].period_ns = 0;
+    i.tasks[0].policy.freewheeling = true;
+    i.tasks[0].policy.io = ir::TaskIo::kSynchronous;
+  });
+}
+
+TEST(Verify, V14_SafeOutputs) {
+  const auto refuse = [](const char* what, std::vector<ir::SafeOutput> rows) {
+    expect_refused(Refusal::kBadIoAccess, what, [&](Image& i) { i.safe = std::move(rows); });
+  };
+  constexpr auto kValue = ir::SafeKind::kValue;
+  refuse("behind the outputs", {{8, 1, kValue, 1, 0}});
+  refuse("no bits", {{0, 0, kValue, 0, 0}});
+  refuse("two bits", {{0, 2, kValue, 0, 0}});
+  refuse("a byte across two", {{1, 8, kValue, 0, 0}});
+  refuse("more bytes than there are", {{0, 64, kValue, 0, 0}});
+  refuse("a value that is too large", {{0, 1, kValue, 2, 0}});
+  refuse("a negative hold", {{0, 1, ir::SafeKind::kHoldThenValue, 1, -1}});
+  refuse("twice the same", {{0, 1, kValue, 1, 0}, {0, 1, kValue, 1, 0}});
+  refuse("not sorted", {{1, 1, kValue, 1, 0}, {0, 1, kValue, 1, 0}});
 }
 
 TEST(Verify, V16_Retain) {

@@ -7,7 +7,8 @@
 namespace runtime_test {
 namespace {
 
-base::Result<ir::VerifiedImage> image_of(const ir::Program& program, const ir::Image* base) {
+base::Result<ir::VerifiedImage> image_of(const ir::Program& program, const ir::Image* base,
+                                         const std::vector<ir::SafeOutput>& safe) {
   std::vector<ir::Object> objects;
   for (uint32_t i = 0; i < program.pous.size(); ++i) {
     base::Result<ir::Object> object = ir::lower(program, ir::PouId(i));
@@ -16,6 +17,7 @@ base::Result<ir::VerifiedImage> image_of(const ir::Program& program, const ir::I
   }
   linker::Options options;
   options.base = base;
+  options.safe = safe;
   base::Result<ir::Image> image = linker::link(program, objects, options);
   if (!image.ok()) return image.error();
   return ir::verify(ir::encode(*image));
@@ -23,7 +25,8 @@ base::Result<ir::VerifiedImage> image_of(const ir::Program& program, const ir::I
 
 }  // namespace
 
-std::optional<ir::VerifiedImage> build(const std::string& source, const ir::Image* base) {
+std::optional<ir::VerifiedImage> build(const std::string& source, const ir::Image* base,
+                                       const std::vector<ir::SafeOutput>& safe) {
   base::SourceMap sources;
   sources.add("plant.st", source);
   base::Diagnostics diagnostics;
@@ -32,7 +35,7 @@ std::optional<ir::VerifiedImage> build(const std::string& source, const ir::Imag
     ADD_FAILURE() << base::render(diagnostics, sources, base::DiagnosticFormat::kText, false);
     return std::nullopt;
   }
-  base::Result<ir::VerifiedImage> image = image_of(*program, base);
+  base::Result<ir::VerifiedImage> image = image_of(*program, base, safe);
   if (!image.ok()) {
     ADD_FAILURE() << base::to_string(image.error());
     return std::nullopt;
@@ -40,9 +43,10 @@ std::optional<ir::VerifiedImage> build(const std::string& source, const ir::Imag
   return *image;
 }
 
-Plant::Plant(const std::string& source, vm::ControllerOptions options, int64_t ns_per_safe_point)
+Plant::Plant(const std::string& source, vm::ControllerOptions options, int64_t ns_per_safe_point,
+             const std::vector<ir::SafeOutput>& safe)
     : clock(ns_per_safe_point) {
-  std::optional<ir::VerifiedImage> image = build(source);
+  std::optional<ir::VerifiedImage> image = build(source, nullptr, safe);
   if (!image) return;
   auto started = vm::Controller::start(*image, options, clock, io);
   if (!started.ok()) {

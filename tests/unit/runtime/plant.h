@@ -14,12 +14,14 @@
 namespace runtime_test {
 
 // Fails the test and returns nothing when the source does not compile.
-std::optional<ir::VerifiedImage> build(const std::string& source, const ir::Image* base = nullptr);
+std::optional<ir::VerifiedImage> build(const std::string& source, const ir::Image* base = nullptr,
+                                       const std::vector<ir::SafeOutput>& safe = {});
 
 class Plant {
  public:
   explicit Plant(const std::string& source, vm::ControllerOptions options = {},
-                 int64_t ns_per_safe_point = 0);
+                 int64_t ns_per_safe_point = 0,
+                 const std::vector<ir::SafeOutput>& safe = {});
 
   vm::Controller& operator*() { return *controller; }
   vm::Controller* operator->() { return controller.get(); }

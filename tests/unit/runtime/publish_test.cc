@@ -101,5 +101,40 @@ TEST(Publish, ForcesFollowByNameAndValue) {
   EXPECT_EQ(plant.get("P.a"), "1");
 }
 
+// An output that moves is at its new place, and what has no variable any more is safe, both in the
+// first refresh behind the switch; what is held stays, and later gets its value.
+TEST(Publish, case46_removed_outputs_become_safe_without_a_glitch) {
+  const std::vector<ir::SafeOutput> safe = {
+      {1, 1, ir::SafeKind::kValue, 1, 0},
+      {8, 8, ir::SafeKind::kHold, 0, 0},
+      {16, 8, ir::SafeKind::kHoldThenValue, 9, 20 * kMs},
+  };
+  const auto source = [](const std::string& variables, const std::string& body) {
+    return "PROGRAM P VAR " + variables + " last AT %QB4 : BYTE; END_VAR " + body +
+           " last := 1; END_PROGRAM";
+  };
+  Plant plant(source("lamp AT %QX0.0 : BOOL; gone AT %QX0.1 : BOOL; kept AT %QB1 : BYTE; timed AT "
+                     "%QB2 : BYTE; plain AT %QB3 : BYTE;",
+                     "lamp := TRUE; gone := FALSE; kept := 5; timed := 6; plain := 7;"),
+              {}, 0, safe);
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(3);
+  auto next = build(source("lamp AT %QX0.2 : BOOL;", "lamp := TRUE;"), &plant->image(), safe);
+  ASSERT_TRUE(next);
+  auto generation = plant->prepare(*next);
+  ASSERT_TRUE(generation.ok());
+  auto old = plant->publish(std::move(*generation));
+  const auto outputs = [&] {
+    plant.cycles(1);
+    std::string text;
+    for (size_t i = 0; i < 5; ++i) text += std::to_string(plant.io.output(i)) + " ";
+    return text;
+  };
+  EXPECT_EQ(outputs(), "6 5 6 0 1 ");  // 10 ms behind the switch
+  EXPECT_EQ(outputs(), "6 5 9 0 1 ");  // 20 ms
+  plant->publish(std::move(old));
+  EXPECT_EQ(outputs(), "1 5 6 7 1 ");
+}
+
 }  // namespace
 }  // namespace runtime_test

@@ -78,7 +78,7 @@ TEST(Scheduling, ReleasesThatFindTheTaskRunningAreMissed) {
   plant.cycles(3);
   EXPECT_EQ(plant.task("Fast").scans, 2u);
   EXPECT_EQ(plant.task("Fast").missed, 4u);
-  EXPECT_NEAR(static_cast<double>(plant.task("Fast").max_ns), 25e6, 0.2e6);
+  EXPECT_NEAR(static_cast<double>(plant.task("Fast").run.max), 25e6, 0.2e6);
 }
 
 TEST(Scheduling, CyclesThatNobodyCouldStartAreSkippedAndCounted) {
@@ -161,7 +161,7 @@ TEST(Scheduling, TrapStopsAllAndOutputsGoToZeroInTheSameCycle) {
 
 TEST(Scheduling, TrapStopsOneTaskWhenThePolicySaysSo) {
   vm::ControllerOptions options;
-  options.on_trap = vm::TrapPolicy::kStopTask;
+  options.on_trap = ir::OnTrap::kStopTask;
   Plant plant(kTrapsInThird, options);
   ASSERT_TRUE(plant.ok());
   plant.cycles(8);

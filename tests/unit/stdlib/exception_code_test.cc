@@ -19,7 +19,8 @@ TEST(ExceptionCode, HasEveryTrap) {
   const std::string text(found->text);
   const char* const names[] = {
       "DivisionByZero",  "ArrayIndex", "Subrange", "Conversion", "ForStepZero", "InvalidReference",
-      "MissingInstance", "OutOfFuel",  "Watchdog", "CallDepth",  "StringRange", "AssertionFailed"};
+      "MissingInstance", "OutOfFuel",  "Watchdog", "CallDepth",  "StringRange", "AssertionFailed",
+      "Overrun", "NotANumber"};
   ASSERT_EQ(std::size(names), ir::kTrapCount);
   for (uint32_t kind = 0; kind < ir::kTrapCount; ++kind) {
     const std::string line = std::string(names[kind]) + " := " + std::to_string(kind + 1);

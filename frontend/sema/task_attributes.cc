@@ -1,0 +1,89 @@
+#include "frontend/sema/task_attributes.h"
+
+#include <numeric>
+
+#include "base/limits.h"
+#include "frontend/lex/literals.h"
+
+namespace frontend {
+namespace {
+
+using Code = base::DiagnosticCode;
+
+std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
+
+void apply_watchdog(Sema& sema, const TaskDecl& decl, const Attribute& attribute, ir::Task& task) {
+  const DecodedTime time = decode_duration(attribute.value);
+  if (!time.problem && !time.negative && time.ns > 0 && time.ns <= INT64_MAX) {
+    task.watchdog_ns = static_cast<int64_t>(time.ns);
+    return;
+  }
+  sema.error(Code::kBadTaskPolicy, attribute.name.span,
+             "the watchdog of task " + quoted(decl.name.text) + " is no duration above zero",
+             "write it as in {attribute 'watchdog' := 'T#50ms'}");
+}
+
+void apply_choice(Sema& sema, const TaskDecl& decl, const Attribute& attribute, ir::Task& task) {
+  if (ir::apply_policy(task.policy, attribute.name.text, attribute.value)) return;
+  std::string known;
+  bool is_policy = false;
+  for (const ir::TaskChoice& choice : ir::task_choices()) {
+    if (!ir::same_name(choice.attribute, attribute.name.text)) continue;
+    is_policy = true;
+    known += (known.empty() ? "" : ", ") + std::string(choice.text);
+  }
+  if (!is_policy) return;
+  sema.error(Code::kBadTaskPolicy, attribute.name.span,
+             "the attribute " + quoted(attribute.name.text) + " of task " + quoted(decl.name.text) +
+                 " cannot be " + quoted(attribute.value),
+             known.empty() ? "it takes no value" : "write one of " + known);
+}
+
+}  // namespace
+
+void apply_task_attributes(Sema& sema, const TaskDecl& decl, ir::Task& task) {
+  for (uint32_t i = 0; i < decl.attributes.count; ++i) {
+    const Attribute& attribute = sema.tree.attributes[decl.attributes.first + i];
+    if (ir::same_name(attribute.name.text, "watchdog")) {
+      apply_watchdog(sema, decl, attribute, task);
+    } else {
+      apply_choice(sema, decl, attribute, task);
+    }
+  }
+  const bool periodic = !decl.single.valid() && !task.policy.freewheeling;
+  if (task.policy.io == ir::TaskIo::kSynchronous && !periodic) {
+    sema.error(Code::kBadTaskPolicy, decl.span,
+               "task " + quoted(decl.name.text) +
+                   " has no period that its inputs and outputs could be synchronous with",
+               "give it an INTERVAL alone, or leave the attribute `io` out");
+    task.policy.io = ir::TaskIo::kNewest;
+  }
+  if (!task.policy.freewheeling) return;
+  if (decl.interval.valid() || decl.single.valid()) {
+    sema.error(Code::kBadTaskPolicy, decl.span,
+               "task " + quoted(decl.name.text) + " is freewheeling and has INTERVAL or SINGLE",
+               "leave one of them out");
+  }
+  task.period_ns = 0;
+  task.event = ir::kNoEvent;
+}
+
+void check_base_cycle(Sema& sema, const std::vector<TaskDecl>& decls) {
+  constexpr auto kLeast = static_cast<int64_t>(base::kMinBaseCycleNs);
+  const size_t first = sema.program.tasks.size() - decls.size();
+  int64_t base = 0;
+  for (size_t i = 0; i < decls.size(); ++i) {
+    const ir::Task& task = sema.program.tasks[first + i];
+    if (task.period_ns <= 0) continue;
+    base = std::gcd(base, task.period_ns);
+    if (base >= kLeast) continue;
+    sema.error(Code::kBadInterval, decls[i].span,
+               "with the interval of task " + quoted(task.name) + " the control cycle has " +
+                   std::to_string(base) + " ns",
+               "let all intervals be multiples of one that is at least " +
+                   std::to_string(kLeast / 1000) + " us");
+    return;
+  }
+}
+
+}  // namespace frontend

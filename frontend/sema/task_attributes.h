@@ -1,0 +1,15 @@
+// Attributes in front of TASK: its policies (ir/program/task_policy.h) and its watchdog time.
+#pragma once
+
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+
+// Reports values that are none (E5009); attributes with other names are somebody else's.
+void apply_task_attributes(Sema& sema, const TaskDecl& decl, ir::Task& task);
+
+// What all periods are multiples of is the control cycle; a period that fits no other would make it
+// so short that nothing could keep up with it (E5002). `decls` are the newest of Program::tasks.
+void check_base_cycle(Sema& sema, const std::vector<TaskDecl>& decls);
+
+}  // namespace frontend

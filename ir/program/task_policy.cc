@@ -1,0 +1,76 @@
+#include "ir/program/task_policy.h"
+
+#include <iterator>
+
+#include "base/name_case.h"
+
+namespace ir {
+namespace {
+
+#define CHOICE(attribute, member, value, text, meaning)                          \
+  {                                                                              \
+    attribute, text, meaning, [](TaskPolicy& policy) { policy.member = value; }, \
+        [](const TaskPolicy& policy) { return policy.member == value; }          \
+  }
+
+constexpr TaskChoice kChoices[] = {
+    CHOICE("io", io, TaskIo::kNewest, "newest",
+           "inputs as at the start of the scan; outputs are sent when it is done"),
+    CHOICE("io", io, TaskIo::kSynchronous, "synchronous",
+           "inputs of the first cycle of the period; outputs are sent in the first of the next"),
+    CHOICE("input_buffer", input_buffer, InputBuffer::kCopied, "copied",
+           "two buffers: what is received is copied to the other one when a scan starts"),
+    CHOICE("input_buffer", input_buffer, InputBuffer::kLocked, "locked",
+           "one buffer, which takes nothing new while a scan lasts"),
+    CHOICE("input_buffer", input_buffer, InputBuffer::kSwapped, "swapped",
+           "two buffers that change places when a scan starts: it sees the newest inputs"),
+    CHOICE("input_buffer", input_buffer, InputBuffer::kSwappedWithFlag, "swapped_with_flag",
+           "the same, but inputs that no scan has seen stay until one has"),
+    CHOICE("input_buffer", input_buffer, InputBuffer::kThree, "three",
+           "three buffers: one is received into, one waits, one is read"),
+    CHOICE("overrun", overrun, Overrun::kSkip, "skip",
+           "it is left out and counted; the next one is on time"),
+    CHOICE("overrun", overrun, Overrun::kStretch, "stretch",
+           "it waits for the end of the scan, and the period counts from there"),
+    CHOICE("overrun", overrun, Overrun::kFault, "fault", "it ends the scan as a trap does"),
+    CHOICE("on_trap", on_trap, OnTrap::kStopAll, "stop_all",
+           "all tasks stop; all outputs take their safe values"),
+    CHOICE("on_trap", on_trap, OnTrap::kStopTask, "stop_task",
+           "this task stops; its outputs take their safe values"),
+    CHOICE("on_trap", on_trap, OnTrap::kGoOn, "go_on",
+           "the scan is given up, its outputs stay as they were; the next release runs"),
+    CHOICE(kFreewheeling, freewheeling, true, "",
+           "released again in the first cycle behind its scan, without a period"),
+};
+
+#undef CHOICE
+
+}  // namespace
+
+TaskChoices task_choices() { return {std::begin(kChoices), std::end(kChoices)}; }
+
+const TaskChoice* find_task_choice(std::string_view attribute, std::string_view value) {
+  for (const TaskChoice& choice : kChoices) {
+    if (base::same_name(choice.attribute, attribute) && base::same_name(choice.text, value))
+      return &choice;
+  }
+  return nullptr;
+}
+
+bool apply_policy(TaskPolicy& policy, std::string_view attribute, std::string_view value) {
+  const TaskChoice* choice = find_task_choice(attribute, value);
+  if (choice != nullptr) choice->apply(policy);
+  return choice != nullptr;
+}
+
+std::string policy_text(const TaskPolicy& policy) {
+  std::string text;
+  for (const TaskChoice& choice : kChoices) {
+    if (!choice.holds(policy) || choice.holds(TaskPolicy{})) continue;
+    text += " " + std::string(choice.attribute);
+    if (!choice.text.empty()) text += " " + std::string(choice.text);
+  }
+  return text;
+}
+
+}  // namespace ir

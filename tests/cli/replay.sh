@@ -1,0 +1,68 @@
+#!/bin/sh
+# A run that was recorded comes out the same again, cycle by cycle, with everything that people did to it.
+. "$(dirname "$0")/lib.sh"
+
+cat >v1.st <<'ST'
+PROGRAM Main VAR n, i, sum : DINT; k : DINT := 1; gone : INT := 9; END_VAR n := n + k; FOR i := 1 TO 2000 DO sum := sum + i; END_FOR END_PROGRAM
+PROGRAM Fast VAR n : DINT; END_VAR n := n + 1; END_PROGRAM
+CONFIGURATION c RESOURCE r ON cpu TASK a (INTERVAL := T#1ms, PRIORITY := 1); TASK b (INTERVAL := T#10ms, PRIORITY := 2);
+PROGRAM F WITH a : Fast; PROGRAM M WITH b : Main; END_RESOURCE END_CONFIGURATION
+ST
+sed 's/gone : INT := 9/added : LREAL := 2.5/; s/n + k;/n + 2 * k; added := added * 1.5;/' v1.st >v2.st
+
+# In this process, in real time.
+expect 0 stvm run v1.st --scans 300 --set M.k=3 --force M.gone=4 --record run.rec --print M.n,M.sum
+cp out was
+expect 0 stvm replay run.rec --print M.n,M.sum
+said '^300 cycles replayed, the state is identical'
+head -2 out >again
+cmp -s was again || fail "other values: $(cat was again)"
+expect 0 stvm replay run.rec --scans 100 --print F.n --format json
+said '"F.n": *"100"'
+said '"whole": *false'
+expect 0 stvm replay run.rec --trace t.csv --print F.n
+[ "$(wc -l <t.csv)" -gt 250 ] || fail "the trace has too few lines"
+expect 7 stvm replay run.rec --print F.nope
+said 'R0401'
+
+# A controller that is set, forced, changed, undone, changed by the other strategy and restarted.
+serve plc v1.st --record plc.rec
+expect 0 stvm set --dir plc M.k=5
+expect 0 stvm force --dir plc F.n=7
+expect 0 stvm change v2.st --dir plc --yes --allow-loss
+sleep 0.1
+expect 0 stvm undo --dir plc --yes
+expect 0 stvm unforce --dir plc F.n
+expect 0 stvm change v2.st --dir plc --yes --allow-loss --strategy standby
+expect 0 stvm accept --dir plc
+expect 0 stvm restart --dir plc warm
+sleep 0.1
+expect 0 stvm get --dir plc M.k
+cp out was
+expect 0 stvm stop --dir plc
+for try in 1 2 3 4 5 6 7 8 9 10; do stvm status --dir plc >/dev/null 2>&1 || break; sleep 0.2; done
+expect 0 stvm replay plc.rec --print M.k,M.added
+said 'the state is identical'
+said 'M.added=[0-9]'
+
+# What is damaged is said, and what is whole before it is replayed.
+head -c 20000 plc.rec >cut.rec
+expect 0 stvm replay cut.rec
+said 'the end of the recording is lost'
+echo nonsense >bad.rec
+expect 7 stvm replay bad.rec
+said 'R0416'
+expect 7 stvm replay missing.rec
+said 'R0501'
+expect 2 stvm run v1.st --scans 3 --record x.rec --hard-mode identity
+expect 7 stvm run v1.st --scans 3 --record /nowhere/x.rec
+said 'R0503'
+
+# A picture of a run.
+expect 0 stvm run v1.st --virtual-time --scans 5000 --print M.n,F.n --plot p.svg
+grep -q '<svg' p.svg || fail "no picture"
+grep -c '<path' p.svg | grep -qx 2 || fail "not one line for each variable"
+[ "$(wc -c <p.svg)" -lt 300000 ] || fail "the picture grows with the run"
+expect 0 stvm replay run.rec --print M.n --plot q.svg
+grep -q 'M.n' q.svg || fail "no name in the picture"
+expect 2 stvm run v1.st --virtual-time --scans 5 --plot p.svg

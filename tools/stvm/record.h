@@ -1,0 +1,22 @@
+// `--record FILE` of `stvm run` and `stvm serve`.
+#pragma once
+
+#include <memory>
+
+#include "tools/common/options.h"
+#include "vm/runtime/recorder.h"
+
+namespace stvm {
+
+// Nothing without the option. `clock` and `io` must outlive it.
+base::Result<std::unique_ptr<vm::Recorder>> open_recorder(const tools::Options& options,
+                                                          const ir::VerifiedImage& image,
+                                                          base::ByteSpan retained,
+                                                          const vm::ControllerOptions& limits,
+                                                          vm::Clock& clock, vm::IoPort& io);
+// Controller::start(), recorded when `recorder` is one.
+base::Result<std::unique_ptr<vm::Controller>> start_recorded(
+    const ir::VerifiedImage& image, const vm::ControllerOptions& limits, vm::Clock& clock,
+    vm::IoPort& io, base::ByteSpan retained, vm::Recorder* recorder);
+
+}  // namespace stvm

@@ -1,0 +1,218 @@
+// stvm replay: a recorded run again, cycle by cycle, compared with what it was.
+#include <cstdio>
+#include <optional>
+
+#include "online_change/store/boot.h"
+#include "tools/common/exit.h"
+#include "tools/common/files.h"
+#include "tools/common/json.h"
+#include "tools/stvm/commands.h"
+#include "tools/stvm/controller_service.h"
+#include "tools/stvm/memory_storage.h"
+#include "tools/stvm/plot.h"
+#include "tools/stvm/trace.h"
+#include "tools/stvm/trap_text.h"
+#include "vm/runtime/clocks.h"
+#include "vm/runtime/replay.h"
+
+namespace stvm {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {
+    {"--scans", "N", "stop behind this control cycle"},
+    {"--print", "NAMES", "print these variables at the end: A,B.c"},
+    {"--plot", "FILE", "SVG picture of the variables of --print over the run"},
+    {"--trace", "FILE", "CSV: values after every scan, of --print or of all variables"},
+    STVM_FORMAT_OPTION,
+};
+constexpr tools::Command kCommand{
+    "replay", "RECORDING", "Runs a recorded run again and compares every cycle.", kOptions, 1, 1};
+
+// Every job is done at once: between two cycles of a replay there is nobody else.
+class AtOnce : public vm::Boundary {
+ public:
+  Outcome run(const std::function<void()>& job, int64_t) override {
+    job();
+    return Outcome::kDone;
+  }
+  void pause(int64_t) override {}
+};
+
+class Player {
+ public:
+  explicit Player(vm::Recording recording) : recording_(std::move(recording)), store_(storage_) {}
+
+  base::Status start() {
+    const vm::RecordedStart& start = recording_.start;
+    base::Result<ir::VerifiedImage> image = ir::verify(start.image);
+    if (!image.ok()) return unusable(image.error().text);
+    vm::ControllerOptions options;
+    options.fuel_slice = start.fuel_slice;
+    options.fuel_budget = start.fuel_budget;
+    options.code_limit = start.code_limit;
+    options.data_limit = start.data_limit;
+    options.on_trap = start.on_trap;
+    uint64_t retained = 0;
+    for (const ir::RetainRange& range : image->image().retain) retained += range.size;
+    if (!start.retained.empty() && start.retained.size() != retained) {
+      return unusable("its retained values are of another program");
+    }
+    if (recording_.cycles.empty()) return unusable("it ends before the program had started");
+    replay_.see(recording_.cycles.front().observed);
+    auto controller = vm::Controller::start(*image, options, replay_, replay_, start.retained);
+    if (!controller.ok()) return controller.error();
+    controller_ = std::move(*controller);
+    base::Result<online_change::Boot> boot = online_change::boot(store_, *image, "replay", 0);
+    if (!boot.ok()) return boot.error();
+    service_.emplace(*controller_, idle_clock_, store_, boundary_);
+    return compare_and_ask(recording_.cycles.front());
+  }
+
+  bool at_end() const { return next_ == recording_.cycles.size(); }
+
+  base::Status cycle() {
+    const vm::RecordedCycle& cycle = recording_.cycles[next_++];
+    replay_.see(cycle.observed);
+    controller_->cycle();
+    return compare_and_ask(cycle);
+  }
+
+  vm::Controller& controller() { return *controller_; }
+  const vm::Recording& recording() const { return recording_; }
+
+ private:
+  static base::Error unusable(const std::string& why) {
+    return {base::Refusal::kBadRecording, why};
+  }
+
+  // The cycle came out as it was, and behind it is done what was asked for then.
+  base::Status compare_and_ask(const vm::RecordedCycle& cycle) {
+    if (vm::state_checksum(*controller_) != cycle.state || !replay_.exact()) {
+      return base::Error{base::Refusal::kReplayDiffers,
+                         "behind cycle " + std::to_string(cycle.number)};
+    }
+    for (; request_ < recording_.requests.size(); ++request_) {
+      const vm::RecordedRequest& request = recording_.requests[request_];
+      if (request.cycle > cycle.number) break;
+      if (base::Status done = ask(request); !done.ok()) return done;
+    }
+    return base::Ok{};
+  }
+
+  // It was carried out then, whatever time was left; so it is now.
+  base::Status ask(const vm::RecordedRequest& recorded) {
+    base::Result<vm::Request> request = vm::decode_request(recorded.bytes);
+    if (!request.ok()) return unusable(request.error().text);
+    if (request->command == vm::Command::kSwitch) request->flags |= vm::kAllowOverrun;
+    replay_.see(recorded.clock);
+    bool keep_open = true;
+    base::Result<base::Bytes> answer =
+        vm::decode_answer(service_->answer(vm::encode(*request), keep_open));
+    if (answer.ok()) return base::Ok{};
+    return base::Error{
+        base::Refusal::kReplayDiffers,
+        std::string(vm::command_name(request->command)) + " behind cycle " +
+            std::to_string(recorded.cycle) +
+            " was carried out then, and is refused: " + base::to_string(answer.error())};
+  }
+
+  vm::Recording recording_;
+  vm::Replay replay_;
+  vm::VirtualClock idle_clock_;
+  MemoryStorage storage_;
+  online_change::Store store_;
+  AtOnce boundary_;
+  std::unique_ptr<vm::Controller> controller_;
+  std::optional<ControllerService> service_;
+  size_t next_ = 1;
+  size_t request_ = 0;
+};
+
+void print_result(const Player& player, vm::Controller& controller,
+                  const std::vector<std::string>& names, bool json) {
+  const bool whole = player.at_end() && !player.recording().cut_off;
+  if (json) {
+    tools::JsonWriter out;
+    out.begin_object().field("cycles", controller.cycles()).field("identical", true);
+    out.field("requests", player.recording().requests.size()).field("whole", whole);
+    out.key("values").begin_object();
+    for (const std::string& name : names) {
+      base::Result<std::string> value = controller.get(name);
+      out.field(name, value.ok() ? *value : "?");
+    }
+    out.end_object().end_object();
+    std::fputs(out.finish().c_str(), stdout);
+    return;
+  }
+  for (const std::string& name : names) {
+    base::Result<std::string> value = controller.get(name);
+    std::printf("%s=%s\n", name.c_str(), value.ok() ? value->c_str() : "?");
+  }
+  std::printf("%llu cycles replayed, the state is identical behind each of them\n",
+              static_cast<unsigned long long>(controller.cycles()));
+  if (player.recording().cut_off) std::printf("the end of the recording is lost\n");
+}
+
+base::Status replay(const tools::Options& options) {
+  base::Result<bool> json = wants_json(options);
+  if (!json.ok()) return json.error();
+  base::Result<uint64_t> scans = options.number("--scans", UINT64_MAX);
+  if (!scans.ok()) return scans.error();
+  const std::string& file = options.arguments().front();
+  base::Result<base::Bytes> bytes = tools::read_bytes(file);
+  if (!bytes.ok()) return bytes.error();
+  base::Result<vm::Recording> recording = vm::decode_recording(*bytes);
+  if (!recording.ok()) {
+    return base::Error{recording.error().refusal, file + ": " + recording.error().text};
+  }
+  Player player(std::move(*recording));
+  if (base::Status started = player.start(); !started.ok()) return started;
+  const std::vector<std::string> names = split_names(options.all("--print"));
+  for (const std::string& name : names) {
+    base::Result<ir::Symbol> symbol = ir::find_symbol(player.controller().image(), name);
+    if (!symbol.ok()) return symbol.error();
+  }
+  std::optional<Trace> trace;
+  if (options.has("--trace")) {
+    base::Result<Trace> opened =
+        Trace::open(options.text("--trace"), player.controller().image(), names);
+    if (!opened.ok()) return opened.error();
+    trace.emplace(std::move(*opened));
+  }
+  std::optional<Plot> plot;
+  if (options.has("--plot")) {
+    base::Result<Plot> begun = Plot::of(player.controller(), names);
+    if (!begun.ok()) return begun.error();
+    plot.emplace(std::move(*begun));
+  }
+  while (!player.at_end() && player.controller().cycles() < *scans) {
+    if (base::Status same = player.cycle(); !same.ok()) return same;
+    if (!player.controller().at_boundary()) continue;
+    if (plot) plot->sample(player.controller());
+    if (!trace) continue;
+    if (base::Status written = trace->write(player.controller()); !written.ok()) return written;
+  }
+  if (trace) {
+    if (base::Status closed = trace->close(); !closed.ok()) return closed;
+  }
+  if (plot) {
+    const std::string picture = plot->svg(player.controller().image().name);
+    base::Status drawn = tools::write_file(options.text("--plot"), base::as_bytes(picture));
+    if (!drawn.ok()) return drawn;
+  }
+  print_result(player, player.controller(), names, *json);
+  return base::Ok{};
+}
+
+int run(const tools::Options& options) {
+  base::Status done = replay(options);
+  if (done.ok()) return tools::kOk;
+  const int code = refuse(done.error());
+  return done.error().refusal == base::Refusal::kReplayDiffers ? tools::kFindings : code;
+}
+
+}  // namespace
+
+const Entry kReplay{&kCommand, run};
+
+}  // namespace stvm

@@ -1,0 +1,44 @@
+#include "vm/runtime/input_sync.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace vm {
+
+using ir::InputBuffer;
+
+InputSync::InputSync(InputBuffer strategy, size_t bytes) : strategy_(strategy) {
+  const int count = strategy == InputBuffer::kLocked ? 1 : strategy == InputBuffer::kThree ? 3 : 2;
+  for (int i = 0; i < count; ++i) buffers_[i].resize(bytes);
+  if (strategy == InputBuffer::kLocked) read_ = write_;
+}
+
+void InputSync::write(std::span<const uint8_t> received) {
+  if (strategy_ == InputBuffer::kLocked && locked_) return;
+  if (strategy_ == InputBuffer::kSwappedWithFlag && fresh_) return;
+  std::copy(received.begin(), received.end(), buffers_[write_].begin());
+  fresh_ = true;
+  if (strategy_ == InputBuffer::kThree) std::swap(write_, wait_);
+}
+
+void InputSync::begin() {
+  locked_ = true;
+  if (!fresh_) return;
+  fresh_ = false;
+  switch (strategy_) {
+    case InputBuffer::kLocked:
+      break;
+    case InputBuffer::kCopied:
+      buffers_[read_] = buffers_[write_];  // equal sizes: allocates nothing
+      break;
+    case InputBuffer::kSwapped:
+    case InputBuffer::kSwappedWithFlag:
+      std::swap(read_, write_);
+      break;
+    case InputBuffer::kThree:
+      std::swap(read_, wait_);
+      break;
+  }
+}
+
+}  // namespace vm

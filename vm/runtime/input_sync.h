@@ -1,0 +1,42 @@
+// The inputs of one task apart from what is received meanwhile, by the strategy of its policy
+// (systems.md B3, B4). What a scan reads does not change from begin() to end().
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "base/bytes.h"
+#include "ir/program/task_policy.h"
+
+namespace vm {
+
+class InputSync {
+ public:
+  InputSync() = default;
+  InputSync(ir::InputBuffer strategy, size_t bytes);
+
+  // Offers what was received; `received` has the bytes of the constructor.
+  void write(std::span<const uint8_t> received);
+  void begin();
+  // No scan is going on, and what no scan has seen is old.
+  void restart() { fresh_ = locked_ = false; }
+  bool like(const InputSync& other) const {
+    return strategy_ == other.strategy_ && buffers_[0].size() == other.buffers_[0].size();
+  }
+  void end() { locked_ = false; }
+  std::span<const uint8_t> inputs() const { return buffers_[read_]; }
+  // Does a scan see what was received last when nobody writes until just before it begins? Then
+  // there is no need to write in every cycle.
+  bool reads_last_written() const { return strategy_ == ir::InputBuffer::kCopied; }
+
+ private:
+  ir::InputBuffer strategy_ = ir::InputBuffer::kCopied;
+  base::Bytes buffers_[3];
+  uint8_t write_ = 0;
+  uint8_t wait_ = 2;
+  uint8_t read_ = 1;
+  bool fresh_ = false;  // written, not yet seen by a scan
+  bool locked_ = false;
+};
+
+}  // namespace vm

@@ -1,0 +1,190 @@
+#include "vm/runtime/recorder.h"
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "vm/runtime/process_image.h"
+
+namespace vm {
+namespace {
+
+constexpr size_t kMaxReads = 1u << 16;            // of the clock in one cycle
+constexpr size_t kMaxChanged = 1u << 16;          // input bytes in one cycle
+constexpr size_t kMaxWaiting = size_t{64} << 20;  // bytes that the disk is behind
+
+}  // namespace
+
+base::Result<std::unique_ptr<Recorder>> Recorder::create(const std::string& path, Clock& clock,
+                                                         IoPort& io, const RecordedStart& start) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr) {
+    return base::Error{base::Refusal::kFileUnwritable, path + ": " + std::strerror(errno)};
+  }
+  std::unique_ptr<Recorder> recorder(new Recorder(file, clock, io));
+  recorder->hand_over(encode_record(start));
+  return recorder;
+}
+
+Recorder::Recorder(std::FILE* file, Clock& clock, IoPort& io)
+    : clock_(clock), io_(io), file_(file), writer_([this] { write_to_file(); }) {
+  now_.observed.clock.reserve(kMaxReads);
+  now_.observed.changed.reserve(kMaxChanged);
+  job_clock_.reserve(kMaxReads);
+}
+
+Recorder::~Recorder() {
+  [[maybe_unused]] const base::Status closed = close();  // whoever wants to know has closed it
+}
+
+int64_t Recorder::now_ns() {
+  const int64_t now = clock_.now_ns();
+  std::vector<int64_t>* reads = in_job_ ? &job_clock_ : in_cycle_ ? &now_.observed.clock : nullptr;
+  if (reads == nullptr) return now;
+  if (reads->size() < kMaxReads) {
+    reads->push_back(now);
+  } else {
+    overflow_ = true;
+  }
+  return now;
+}
+
+void Recorder::receive(std::span<uint8_t> inputs) {
+  io_.receive(inputs);
+  if (inputs_.size() < inputs.size()) inputs_.resize(inputs.size());  // a change made them more
+  for (uint32_t i = 0; i < inputs.size(); ++i) {
+    if (inputs_[i] == inputs[i]) continue;
+    inputs_[i] = inputs[i];
+    if (now_.observed.changed.size() < kMaxChanged) {
+      now_.observed.changed.push_back({i, inputs[i]});
+    } else {
+      overflow_ = true;
+    }
+  }
+}
+
+void Recorder::note_changes(const base::Bytes& before, const base::Bytes& after,
+                            ByteChanges& changes) {
+  for (uint32_t i = 0; i < after.size(); ++i) {
+    if (before[i] == after[i]) continue;
+    if (changes.size() < kMaxChanged) {
+      changes.push_back({i, after[i]});
+    } else {
+      overflow_ = true;
+    }
+  }
+}
+
+void Recorder::at_boundary(const ProcessImage& image, uint8_t* memory) {
+  const size_t outputs = image.output_bytes();
+  const size_t markers = image.marker_bytes();
+  const auto take = [&](base::Bytes& bytes) {
+    bytes.assign(outputs + markers, 0);
+    image.variables_to_outputs(memory, std::span(bytes).first(outputs));
+    image.variables_to_markers(memory, std::span(bytes).subspan(outputs));
+  };
+  take(before_);
+  io_.at_boundary(image, memory);
+  take(after_);
+  if (before_ == after_) return;
+  const auto part = [](const base::Bytes& bytes, size_t begin, size_t size) {
+    const auto first = bytes.begin() + static_cast<std::ptrdiff_t>(begin);
+    return base::Bytes(first, first + static_cast<std::ptrdiff_t>(size));
+  };
+  note_changes(part(before_, 0, outputs), part(after_, 0, outputs), now_.observed.outputs);
+  note_changes(part(before_, outputs, markers), part(after_, outputs, markers),
+               now_.observed.markers);
+}
+
+void Recorder::begin() { in_cycle_ = true; }
+
+void Recorder::end(const Controller& controller) {
+  in_cycle_ = false;
+  now_.state = state_checksum(controller);
+  if (!overflow_) hand_over(encode_record(now_));
+  ++now_.number;
+  now_.observed.clock.clear();
+  now_.observed.changed.clear();
+  now_.observed.outputs.clear();
+  now_.observed.markers.clear();
+}
+
+void Recorder::begin_job(const Controller& controller) {
+  in_job_ = true;
+  job_clock_.clear();
+  before_job_ = &controller.generation();
+}
+
+void Recorder::end_job(const Controller& controller) {
+  in_job_ = false;
+  if (switched_) return;
+  switched_ = before_job_ != &controller.generation();
+  request_.cycle = now_.number - 1;  // of the last one that ended
+  request_.clock = job_clock_;
+}
+
+void Recorder::note(base::ByteSpan request) {
+  switched_ = false;
+  request_.bytes.assign(request.begin(), request.end());
+  if (overflow_) return;
+  const base::Bytes record = encode_record(request_);
+  const std::lock_guard lock(mutex_);
+  waiting_.insert(waiting_.end(), record.begin(), record.end());
+  work_.notify_one();
+}
+
+// By the control thread: never waits; what cannot be handed over now is with the next record.
+void Recorder::hand_over(const base::Bytes& record) {
+  local_.insert(local_.end(), record.begin(), record.end());
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (lock.owns_lock()) take_local();
+  if (local_.size() > kMaxWaiting) overflow_ = true;
+}
+
+void Recorder::take_local() {
+  if (waiting_.empty()) {
+    std::swap(waiting_, local_);
+  } else {
+    waiting_.insert(waiting_.end(), local_.begin(), local_.end());
+  }
+  local_.clear();
+  work_.notify_one();
+}
+
+void Recorder::write_to_file() {
+  base::Bytes batch;
+  uint64_t size = 0;
+  std::unique_lock lock(mutex_);
+  while (!closing_ || !waiting_.empty()) {
+    work_.wait(lock, [&] { return closing_ || !waiting_.empty(); });
+    std::swap(batch, waiting_);
+    lock.unlock();
+    const bool room = size + batch.size() <= kMaxRecordingBytes;
+    const bool written =
+        room && !failed_ && std::fwrite(batch.data(), 1, batch.size(), file_) == batch.size();
+    size += batch.size();
+    batch.clear();
+    if (!written) overflow_ = true;
+    lock.lock();
+    failed_ = failed_ || !written;
+  }
+}
+
+base::Status Recorder::close() {
+  if (file_ == nullptr) return base::Ok{};
+  {
+    const std::lock_guard lock(mutex_);
+    take_local();
+    closing_ = true;
+    work_.notify_one();
+  }
+  writer_.join();
+  const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+  if (closed && !failed_ && !overflow_) return base::Ok{};
+  return base::Error{
+      base::Refusal::kFileUnwritable,
+      "the recording ended before the run: the disk failed or was too slow, the file "
+      "reached 1 GiB, or one cycle saw too much; it can be replayed up to there"};
+}
+
+}  // namespace vm

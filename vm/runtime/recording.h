@@ -1,0 +1,68 @@
+// The file of a recorded run: everything from outside that its state depends on, so that a replay
+// comes to the same bytes in every cycle (invariant 5). A header, then records in the order in
+// which they happened; each has a checksum, so that a file whose end is lost can still be replayed
+// up to there.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/result.h"
+#include "vm/runtime/controller.h"
+
+namespace vm {
+
+// A recording that reaches this size ends; 1 ms cycles fill it in about half a day.
+inline constexpr uint64_t kMaxRecordingBytes = (uint64_t{1} << 30) - (1u << 20);
+
+struct RecordedStart {
+  base::Bytes image;     // encoded
+  base::Bytes retained;  // as given to Controller::start()
+  uint64_t fuel_slice = 0;
+  uint64_t fuel_budget = 0;
+  uint64_t code_limit = 0;
+  uint64_t data_limit = 0;
+  ir::OnTrap on_trap = ir::OnTrap::kStopAll;
+};
+
+using ByteChanges = std::vector<std::pair<uint32_t, uint8_t>>;  // offsets in order, new bytes
+
+// What the controller saw of the clock and of its devices.
+struct Observed {
+  std::vector<int64_t> clock;  // results of Clock::now_ns(), in order
+  ByteChanges changed;         // input bytes that differ from before
+  ByteChanges outputs;         // %Q and %M that others wrote at the boundary
+  ByteChanges markers;
+};
+// Number 0 is the start; then one for each call of Controller::cycle().
+struct RecordedCycle {
+  uint64_t number = 0;
+  Observed observed;
+  uint32_t state = 0;  // state_checksum() behind it
+};
+// A request of the control channel that changed something, behind that cycle.
+struct RecordedRequest {
+  uint64_t cycle = 0;
+  std::vector<int64_t> clock;
+  base::Bytes bytes;
+};
+
+// Of all data areas, as they lie in memory.
+uint32_t state_checksum(const Controller& controller);
+
+base::Bytes encode_record(const RecordedStart& start);
+base::Bytes encode_record(const RecordedCycle& cycle);
+base::Bytes encode_record(const RecordedRequest& request);
+
+struct Recording {
+  RecordedStart start;
+  std::vector<RecordedCycle> cycles;
+  std::vector<RecordedRequest> requests;  // by the number of the cycle
+  bool cut_off = false;                   // the end of the file was lost
+};
+// kBadRecording when the header is none.
+base::Result<Recording> decode_recording(base::ByteSpan bytes);
+
+}  // namespace vm

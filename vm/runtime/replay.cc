@@ -1,0 +1,60 @@
+#include "vm/runtime/replay.h"
+
+#include <algorithm>
+
+#include "vm/runtime/process_image.h"
+
+namespace vm {
+
+int64_t Replay::now_ns() {
+  if (at_ == clock_.size()) {
+    asked_too_often_ = true;
+    return last_ns_;
+  }
+  last_ns_ = clock_[at_++];
+  return last_ns_;
+}
+
+void Replay::receive(std::span<uint8_t> inputs) {
+  if (inputs_.size() < inputs.size()) inputs_.resize(inputs.size());
+  std::copy_n(inputs_.begin(), inputs.size(), inputs.begin());
+}
+
+void Replay::at_boundary(const ProcessImage& image, uint8_t* memory) {
+  const auto change = [](base::Bytes& bytes, ByteChanges& changes) {
+    for (const auto& [offset, value] : changes) {
+      if (offset < bytes.size()) bytes[offset] = value;
+    }
+    changes.clear();
+  };
+  if (!outputs_.empty()) {
+    base::Bytes bytes(image.output_bytes());
+    image.variables_to_outputs(memory, bytes);
+    change(bytes, outputs_);
+    image.outputs_to_variables(bytes, memory);
+  }
+  if (!markers_.empty()) {
+    base::Bytes bytes(image.marker_bytes());
+    image.variables_to_markers(memory, bytes);
+    change(bytes, markers_);
+    image.markers_to_variables(bytes, memory);
+  }
+}
+
+void Replay::see(const Observed& observed) {
+  see(observed.clock);
+  outputs_ = observed.outputs;
+  markers_ = observed.markers;
+  for (const auto& [offset, value] : observed.changed) {
+    if (offset >= inputs_.size()) inputs_.resize(size_t{offset} + 1);
+    inputs_[offset] = value;
+  }
+}
+
+void Replay::see(const std::vector<int64_t>& clock) {
+  clock_ = clock;
+  at_ = 0;
+  asked_too_often_ = false;
+}
+
+}  // namespace vm

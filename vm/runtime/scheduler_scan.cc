@@ -1,0 +1,320 @@
+// The scans of tasks: begun, run in slices, ended, trapped; and what becomes of their outputs.
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "base/check.h"
+#include "vm/runtime/scheduler.h"
+
+namespace vm {
+namespace {
+
+constexpr size_t kKeptTraps = 32;
+
+}  // namespace
+
+TaskSlot* Scheduler::next_released() {
+  for (uint32_t index : tables_->by_priority) {
+    TaskSlot& task = tables_->tasks[index];
+    if (starting_ && !task.once) continue;
+    if (task.released && task.begun_in_cycle != cycles_ + 1) return &task;
+  }
+  return nullptr;
+}
+
+TaskSlot* Scheduler::choose() {
+  TaskSlot* running = active_.empty() ? nullptr : active_.back();
+  TaskSlot* released = next_released();
+  if (released == nullptr) return running;
+  if (running != nullptr && running->status.priority <= released->status.priority) return running;
+  begin_task(*released);
+  return active_.empty() ? choose() : active_.back();
+}
+
+void Scheduler::begin_task(TaskSlot& task) {
+  task.released = false;
+  task.begun_in_cycle = cycles_ + 1;
+  if (task.programs.empty()) {
+    ++task.status.scans;
+    return;
+  }
+  task.stack = active_.empty() ? ir::kStackBegin : active_.back()->execution->stack_top();
+  task.time_ns = cycle_start_ns_;
+  task.times->delay.add(looked_ns_ - task.released_ns);
+  task.run_ns = 0;
+  task.fuel_used = 0;
+  task.program = 0;
+  if (!task.synchronous() && task.inputs.reads_last_written()) task.inputs.write(tables_->inputs);
+  task.inputs.begin();
+  active_.push_back(&task);
+  copy_inputs(task);
+  impose(false);
+  tables_->process_image.variables_to_outputs(memory_, task.outputs_at_start);
+  begin_program(task);
+}
+
+void Scheduler::begin_program(TaskSlot& task) {
+  task.execution->start(*tables_->generation, memory_, task.programs[task.program], task.stack,
+                        task.time_ns);
+}
+
+uint64_t Scheduler::fuel_left(const TaskSlot& task) const {
+  uint64_t used = task.fuel_used + task.execution->fuel_used();
+  return options_.fuel_budget > used ? options_.fuel_budget - used : 0;
+}
+
+void Scheduler::run_slice(TaskSlot& task) {
+  if (std::exchange(task.overran, false)) {
+    return trap_in(task, task.execution->interrupted(ir::TrapKind::kOverrun));
+  }
+  uint64_t slice = std::min(std::max<uint64_t>(options_.fuel_slice, 1), fuel_left(task));
+  uint64_t used_before = task.execution->fuel_used();
+  Exit exit = task.execution->run(slice);
+  clock_.consumed(task.execution->fuel_used() - used_before);
+  int64_t now = clock_.now_ns();
+  task.run_ns += now - looked_ns_;
+  looked_ns_ = now;
+
+  const int64_t limit_ns = leaving_ ? exit_limit_ns_ : task.watchdog_ns;
+  bool too_long = limit_ns > 0 && task.run_ns > limit_ns;
+  if (exit == Exit::kTrap) {
+    trap_in(task, task.execution->trap());
+  } else if (too_long) {
+    trap_in(task, task.execution->interrupted(ir::TrapKind::kWatchdog));
+  } else if (exit == Exit::kDone) {
+    end_program(task);
+  } else if (fuel_left(task) == 0) {
+    trap_in(task, task.execution->interrupted(ir::TrapKind::kFuel));
+  }
+}
+
+void Scheduler::end_program(TaskSlot& task) {
+  task.fuel_used += task.execution->fuel_used();
+  if (++task.program < task.programs.size()) {
+    begin_program(task);
+  } else {
+    end_task(task);
+  }
+}
+
+void Scheduler::end_task(TaskSlot& task) {
+  impose(false);
+  find_written(task);
+  if (tables_->process_image.has_nan(tables_->scratch, tables_->written)) {
+    return trap_in(task, task.execution->interrupted(ir::TrapKind::kNotANumber));
+  }
+  copy_outputs(task);
+  ++task.status.scans;
+  task.status.last_ns = task.run_ns;
+  task.times->run.add(task.run_ns);
+  leave(task);
+}
+
+void Scheduler::leave(TaskSlot& task) {
+  base::check(active_.back() == &task, "only the topmost activation can end");
+  active_.pop_back();
+  task.inputs.end();
+  const bool again = std::exchange(task.stretched, false) && !task.status.stopped;
+  if (again && task.status.period_ns != 0) {
+    task.next_release_ns = next_cycle_ns_;
+  } else if (again) {
+    release(task, looked_ns_);
+  }
+  if (!active_.empty()) copy_inputs(*active_.back());
+  look_at_events();
+}
+
+void Scheduler::trap_in(TaskSlot& task, const Trap& trap) {
+  ++trap_count_;
+  if (traps_.size() == kKeptTraps) traps_.erase(traps_.begin());
+  traps_.push_back({cycles_, task.status.name, trap, describe(tables_->generation->image(), trap)});
+  if (leaving_) {
+    exit_failed_ = true;
+    roll_back_outputs(task);
+    leave(task);
+    return;
+  }
+  const ir::OnTrap stated = task.policy.on_trap;
+  switch (stated == ir::OnTrap::kUnstated ? options_.on_trap : stated) {
+    case ir::OnTrap::kGoOn:
+      roll_back_outputs(task);
+      break;
+    case ir::OnTrap::kStopTask:
+      task.status.stopped = true;
+      stop_outputs(task);
+      break;
+    default:
+      task.status.stopped = true;
+      return fault();
+  }
+  leave(task);
+}
+
+// Half of what was written is nowhere any more, so a hot restart cannot send it.
+void Scheduler::fault() {
+  faulted_ = true;
+  active_.clear();
+  for (TaskSlot& task : tables_->tasks) task.released = false;
+  make_outputs_safe();
+  outputs_to_variables(tables_->written);
+}
+
+void Scheduler::make_outputs_safe() {
+  base::Bytes& all = tables_->written;
+  std::fill(all.begin(), all.end(), uint8_t{0xff});
+  tables_->safe.apply(all, looked_ns_, tables_->outputs);
+  io_.send(tables_->outputs);
+}
+
+void Scheduler::leave_outputs_safe() {
+  base::Bytes& all = tables_->written;
+  std::fill(all.begin(), all.end(), uint8_t{0xff});
+  tables_->safe.apply(all, looked_ns_, tables_->outputs);
+  tables_->safe.expire(INT64_MAX, tables_->outputs, all);
+  io_.send(tables_->outputs);
+}
+
+void Scheduler::refresh_safe_outputs() {
+  const int64_t now = clock_.now_ns();
+  if (end_holds(now)) io_.send(tables_->outputs);
+}
+
+bool Scheduler::end_holds(int64_t now_ns) {
+  if (tables_->safe.next_ns() > now_ns) return false;
+  base::Bytes& mask = tables_->written;
+  std::fill(mask.begin(), mask.end(), uint8_t{0});
+  tables_->safe.expire(now_ns, tables_->outputs, mask);
+  outputs_to_variables(mask);
+  return true;
+}
+
+// Variables of the outputs in `mask` become what is sent.
+void Scheduler::outputs_to_variables(std::span<const uint8_t> mask) {
+  base::Bytes& now = tables_->scratch;
+  tables_->process_image.variables_to_outputs(memory_, now);
+  for (size_t i = 0; i < now.size(); ++i) {
+    now[i] = static_cast<uint8_t>((now[i] & ~mask[i]) | (tables_->outputs[i] & mask[i]));
+  }
+  tables_->process_image.outputs_to_variables(now, memory_);
+  hand_down(mask);
+}
+
+// The bits of `mask` in `scratch` are not of the scans below.
+void Scheduler::hand_down(std::span<const uint8_t> mask) {
+  const base::Bytes& now = tables_->scratch;
+  for (TaskSlot* below : active_) {
+    for (size_t i = 0; i < now.size(); ++i) {
+      uint8_t& start = below->outputs_at_start[i];
+      start = static_cast<uint8_t>((start & ~mask[i]) | (now[i] & mask[i]));
+    }
+  }
+}
+
+// Outputs as they are in the variables now, to `scratch`, and those among them that differ from
+// when the scan began, to `written`: they are its own, since each output has one writer (V14).
+void Scheduler::find_written(const TaskSlot& task) {
+  base::Bytes& now = tables_->scratch;
+  tables_->process_image.variables_to_outputs(memory_, now);
+  for (size_t i = 0; i < now.size(); ++i) {
+    tables_->written[i] = static_cast<uint8_t>(now[i] ^ task.outputs_at_start[i]);
+  }
+}
+
+// What the task wrote before it trapped never reaches the devices: its outputs are what they were
+// when its scan began.
+void Scheduler::roll_back_outputs(const TaskSlot& task) {
+  find_written(task);
+  base::Bytes& now = tables_->scratch;
+  for (size_t i = 0; i < now.size(); ++i) {
+    const uint8_t written = tables_->written[i];
+    now[i] = static_cast<uint8_t>((now[i] & ~written) | (task.outputs_at_start[i] & written));
+  }
+  tables_->process_image.outputs_to_variables(now, memory_);
+}
+
+// In this cycle still, and in the variables too.
+void Scheduler::stop_outputs(TaskSlot& task) {
+  find_written(task);
+  base::Bytes& mask = tables_->written;
+  for (size_t i = 0; i < mask.size(); ++i) {
+    mask[i] |= task.own_outputs[i];
+  }
+  tables_->process_image.widen(mask);
+  for (size_t i = 0; i < mask.size(); ++i) {
+    tables_->waiting_mask[i] &= static_cast<uint8_t>(~mask[i]);
+  }
+  std::fill(task.waiting_mask.begin(), task.waiting_mask.end(), uint8_t{0});
+  tables_->safe.apply(mask, looked_ns_, tables_->outputs);
+  outputs_to_variables(mask);
+  io_.send(tables_->outputs);
+}
+
+void Scheduler::copy_inputs(const TaskSlot& task) {
+  tables_->process_image.inputs_to_variables(task.inputs.inputs(), memory_);
+  impose(true);
+}
+
+// Complete results only (B5): a task below may have written half of its outputs.
+void Scheduler::copy_outputs(TaskSlot& task) {
+  const base::Bytes& now = tables_->scratch;
+  const base::Bytes& written = tables_->written;
+  const bool wait = task.synchronous();
+  for (size_t i = 0; i < now.size(); ++i) {
+    const uint8_t mask = written[i];
+    task.own_outputs[i] |= mask;
+    if (wait) {
+      task.waiting_mask[i] |= mask;
+      task.waiting[i] = static_cast<uint8_t>((task.waiting[i] & ~mask) | (now[i] & mask));
+      tables_->waiting_mask[i] |= mask;
+    } else {
+      tables_->outputs[i] = static_cast<uint8_t>((tables_->outputs[i] & ~mask) | (now[i] & mask));
+    }
+  }
+  hand_down(written);
+  if (active_.size() == 1) take_packed();  // also what no task has written
+}
+
+void Scheduler::impose(bool inputs_only) {
+  for (const Force& force : tables_->forces) {
+    if (inputs_only && !force.symbol.input) continue;
+    std::memcpy(memory_ + force.symbol.data, force.value.data(), force.value.size());
+  }
+}
+
+// Forced outputs do not wait for anything.
+void Scheduler::impose_on_outputs() {
+  bool any = false;
+  base::Bytes& mask = tables_->written;
+  for (const Force& force : tables_->forces) {
+    if (!force.symbol.output) continue;
+    if (!any) std::fill(mask.begin(), mask.end(), uint8_t{0});
+    any = true;
+    const auto size = static_cast<uint32_t>(force.value.size());
+    std::memcpy(memory_ + force.symbol.data, force.value.data(), size);
+    tables_->process_image.mark_outputs(force.symbol.data, force.symbol.data + size, mask);
+  }
+  if (!any) return;
+  base::Bytes& now = tables_->scratch;
+  tables_->process_image.variables_to_outputs(memory_, now);
+  for (size_t i = 0; i < now.size(); ++i) {
+    tables_->outputs[i] =
+        static_cast<uint8_t>((tables_->outputs[i] & ~mask[i]) | (now[i] & mask[i]));
+  }
+}
+
+void Scheduler::variable_set(uint32_t data, uint32_t size) {
+  base::Bytes& mask = tables_->written;
+  std::fill(mask.begin(), mask.end(), uint8_t{0});
+  tables_->process_image.mark_outputs(data, data + size, mask);
+  for (TaskSlot& task : tables_->tasks) {
+    for (size_t i = 0; i < task.waiting_mask.size(); ++i) {
+      task.waiting_mask[i] &= static_cast<uint8_t>(~mask[i]);
+    }
+  }
+  for (size_t i = 0; i < mask.size(); ++i) {
+    tables_->waiting_mask[i] &= static_cast<uint8_t>(~mask[i]);
+  }
+  outputs_stale_ = true;
+}
+
+}  // namespace vm
