@@ -21,7 +21,7 @@ said '^task +period +prio +scans +missed +average +p99 +longest +delay +state'
 said '^Quick +2 ms +1 '
 said '^Idle +free +20 '
 said '^Bad .*stopped'
-said 'trap: .*Trapper:2'
+said 'trap: .*plant.st:2 .Trapper.'
 expect 0 stvm status --dir state --format json
 said '"run_ns": *\{'
 said '"start_delay_ns"'
@@ -34,7 +34,7 @@ expect 7 stvm status --dir state --task nobody
 said 'R0415'
 
 expect 0 stvm top --dir state --interval 100 --count 2
-said 'plant: running'
+said 'c: running'
 said '^TASK +PERIOD +PRIO +SCANS/S'
 said '^Quick +2 ms'
 said 'Bad .*STOPPED'

@@ -14,6 +14,7 @@
 #include "tools/stvm/trap_text.h"
 #include "vm/runtime/clocks.h"
 #include "vm/runtime/replay.h"
+#include "vm/runtime/state_sum.h"
 
 namespace stvm {
 namespace {
@@ -87,7 +88,7 @@ class Player {
 
   // The cycle came out as it was, and behind it is done what was asked for then.
   base::Status compare_and_ask(const vm::RecordedCycle& cycle) {
-    if (vm::state_checksum(*controller_) != cycle.state || !replay_.exact()) {
+    if (sum_.of(*controller_) != cycle.state || !replay_.exact()) {
       return base::Error{base::Refusal::kReplayDiffers,
                          "behind cycle " + std::to_string(cycle.number)};
     }
@@ -118,6 +119,7 @@ class Player {
 
   vm::Recording recording_;
   vm::Replay replay_;
+  vm::StateSum sum_;
   vm::VirtualClock idle_clock_;
   MemoryStorage storage_;
   online_change::Store store_;
@@ -168,10 +170,6 @@ base::Status replay(const tools::Options& options) {
   Player player(std::move(*recording));
   if (base::Status started = player.start(); !started.ok()) return started;
   const std::vector<std::string> names = split_names(options.all("--print"));
-  for (const std::string& name : names) {
-    base::Result<ir::Symbol> symbol = ir::find_symbol(player.controller().image(), name);
-    if (!symbol.ok()) return symbol.error();
-  }
   std::optional<Trace> trace;
   if (options.has("--trace")) {
     base::Result<Trace> opened =
@@ -194,6 +192,11 @@ base::Status replay(const tools::Options& options) {
   }
   if (trace) {
     if (base::Status closed = trace->close(); !closed.ok()) return closed;
+  }
+  // Only now: a change can have brought them.
+  for (const std::string& name : names) {
+    base::Result<ir::Symbol> symbol = ir::find_symbol(player.controller().image(), name);
+    if (!symbol.ok()) return symbol.error();
   }
   if (plot) {
     const std::string picture = plot->svg(player.controller().image().name);

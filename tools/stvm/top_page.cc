@@ -113,55 +113,51 @@ class Page {
 
   void tasks() {
     const bool wide = view_.width >= 110;
-    const size_t name_width = wide ? 32 : 16;
-    const size_t bar_width = wide ? 20 : 0;
+    const int name_width = wide ? 32 : 13;
     char text[256];
-    std::snprintf(text, sizeof text, "%-*s %8s %5s %8s %6s %8s %8s %8s",
-                  static_cast<int>(name_width), "TASK", "PERIOD", "PRIO", "SCANS/S", "LOAD%",
-                  "AVERAGE", "P99", "LONGEST");
-    std::string title = text;
-    if (wide) {
-      std::snprintf(text, sizeof text, " %10s %10s  %-20s", "DELAY P99", "MISSED", "");
-      title += text;
-    }
-    line(title, kReverse);
-    const size_t room = left() > 8 ? left() - 8 : left();
+    std::snprintf(text, sizeof text, "%-*s %7s %4s %7s %5s %7s %7s %7s %6s", name_width, "TASK",
+                  "PERIOD", "PRIO", "SCANS/S", "LOAD%", "AVERAGE", "P99", "LONGEST", "MISSED");
+    line(text + std::string(wide ? "  DELAY P99" : ""), kReverse);
+    // Devices, change and an alarm shall be seen too.
+    const size_t others = 4 + (now_.devices.empty() ? 0 : now_.devices.size() + 2);
+    const size_t room = std::max<size_t>(left() > others ? left() - others : 0, 3);
     size_t shown = 0;
     for (const vm::TaskStatus& task : now_.tasks) {
       if (task.once) continue;
-      if (++shown >= room && now_.tasks.size() > room) {
-        line("... " + std::to_string(now_.tasks.size() - shown + 1) + " more tasks");
+      if (++shown == room && now_.tasks.size() > room) {
+        line("... and " + std::to_string(now_.tasks.size() - shown + 1) + " more");
         break;
       }
-      task_line(task, name_width, bar_width);
+      task_line(task, name_width, wide);
     }
     line("");
   }
 
-  void task_line(const vm::TaskStatus& task, size_t name_width, size_t bar_width) {
+  void task_line(const vm::TaskStatus& task, int name_width, bool wide) {
     const Rate rate = rate_of(task);
-    std::string name = task.name;
-    if (name.size() > name_width) name = name.substr(0, name_width - 2) + "..";
     const std::string period = task.freewheeling     ? "free"
                                : task.period_ns == 0 ? "event"
                                                      : tools::duration(task.period_ns);
     char text[256];
-    std::snprintf(text, sizeof text, "%-*s %8s %5u %8.1f %6.1f %8s %8s %8s",
-                  static_cast<int>(name_width), name.c_str(), period.c_str(), task.priority,
-                  rate.scans_per_s, rate.load * 100, tools::duration(task.run.average).c_str(),
-                  tools::duration(task.run.p99).c_str(), tools::duration(task.run.max).c_str());
+    std::snprintf(text, sizeof text, "%-*.*s %7s %4u %7.1f %5.1f %7s %7s %7s %6s", name_width,
+                  name_width, task.name.c_str(), period.c_str(), task.priority, rate.scans_per_s,
+                  rate.load * 100, tools::duration(task.run.average).c_str(),
+                  tools::duration(task.run.p99).c_str(), tools::duration(task.run.max).c_str(),
+                  short_count(task.missed).c_str());
     std::string row = text;
-    if (bar_width != 0) {
-      std::snprintf(text, sizeof text, " %10s %10llu  ", tools::duration(task.delay.p99).c_str(),
-                    static_cast<unsigned long long>(task.missed));
-      row += text + bar(rate.load, bar_width);
-    } else if (task.missed != 0) {
-      row.resize(view_.width - 8, ' ');
-      row += " !" + std::to_string(task.missed);
+    if (wide) {
+      std::snprintf(text, sizeof text, "  %9s  ", tools::duration(task.delay.p99).c_str());
+      row += text + bar(rate.load, 20);
     }
-    line(row + (task.stopped ? " STOPPED" : ""), task.stopped       ? kRed
-                                                 : task.missed != 0 ? kYellow
-                                                                    : nullptr);
+    const char* style = task.stopped ? kRed : task.missed != 0 ? kYellow : nullptr;
+    line(row + (task.stopped ? " STOPPED" : ""), style);
+  }
+
+  // At most six columns.
+  static std::string short_count(uint64_t value) {
+    if (value < 1'000'000) return std::to_string(value);
+    if (value < 10'000'000'000) return std::to_string(value / 1'000'000) + "M";
+    return std::to_string(value / 1'000'000'000) + "G";
   }
 
   void devices() {

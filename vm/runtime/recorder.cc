@@ -98,9 +98,9 @@ void Recorder::at_boundary(const ProcessImage& image, uint8_t* memory) {
 
 void Recorder::begin() { in_cycle_ = true; }
 
-void Recorder::end(const Controller& controller) {
+void Recorder::end(Controller& controller) {
   in_cycle_ = false;
-  now_.state = state_checksum(controller);
+  now_.state = sum_.of(controller);
   if (!overflow_) hand_over(encode_record(now_));
   ++now_.number;
   now_.observed.clock.clear();

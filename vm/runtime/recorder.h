@@ -12,6 +12,7 @@
 
 #include "vm/runtime/ports.h"
 #include "vm/runtime/recording.h"
+#include "vm/runtime/state_sum.h"
 
 namespace vm {
 
@@ -37,7 +38,7 @@ class Recorder : public Clock, public IoPort {
 
   // Around Controller::start() (cycle 0), and around each Controller::cycle().
   void begin();
-  void end(const Controller& controller);
+  void end(Controller& controller);
   // Around each job at a boundary. A request can take several: what it does counts as done by the
   // one that switched to another program, else by the last one.
   void begin_job(const Controller& controller);
@@ -60,6 +61,7 @@ class Recorder : public Clock, public IoPort {
   Clock& clock_;
   IoPort& io_;
   RecordedCycle now_;
+  StateSum sum_;
   void note_changes(const base::Bytes& before, const base::Bytes& after, ByteChanges& changes);
 
   base::Bytes inputs_;          // as seen last

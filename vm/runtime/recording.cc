@@ -139,12 +139,6 @@ bool read_record(base::ByteSpan& rest, Recording& recording) {
 
 }  // namespace
 
-uint32_t state_checksum(const Controller& controller) {
-  const auto memory = const_cast<Controller&>(controller).memory().view();
-  const uint32_t end = controller.image().data_capacity;
-  return base::crc32c(memory.subspan(ir::kDataBegin, end - ir::kDataBegin));
-}
-
 base::Bytes encode_record(const RecordedStart& start) {
   base::ByteWriter payload;
   payload.blob(start.image);

@@ -40,7 +40,7 @@ struct Observed {
 struct RecordedCycle {
   uint64_t number = 0;
   Observed observed;
-  uint32_t state = 0;  // state_checksum() behind it
+  uint32_t state = 0;  // StateSum behind it
 };
 // A request of the control channel that changed something, behind that cycle.
 struct RecordedRequest {
@@ -48,9 +48,6 @@ struct RecordedRequest {
   std::vector<int64_t> clock;
   base::Bytes bytes;
 };
-
-// Of all data areas, as they lie in memory.
-uint32_t state_checksum(const Controller& controller);
 
 base::Bytes encode_record(const RecordedStart& start);
 base::Bytes encode_record(const RecordedCycle& cycle);

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/unit/runtime/plant.h"
+#include "vm/runtime/process_image.h"
 #include "vm/runtime/recorder.h"
 #include "vm/runtime/replay.h"
 
@@ -114,6 +115,7 @@ TEST_F(RecordingTest, ReplayIsBitIdentical) {
     ASSERT_EQ(recording->cycles.size(), 201u);
     EXPECT_FALSE(recording->cut_off);
     vm::Replay replay;
+    vm::StateSum sum;
     auto image = ir::verify(recording->start.image);
     ASSERT_TRUE(image.ok());
     replay.see(recording->cycles[0].observed);
@@ -122,7 +124,7 @@ TEST_F(RecordingTest, ReplayIsBitIdentical) {
     for (size_t i = 1; i < recording->cycles.size(); ++i) {
       replay.see(recording->cycles[i].observed);
       (*controller)->cycle();
-      ASSERT_EQ(vm::state_checksum(**controller), recording->cycles[i].state) << "cycle " << i;
+      ASSERT_EQ(sum.of(**controller), recording->cycles[i].state) << "cycle " << i;
       ASSERT_TRUE(replay.exact()) << "cycle " << i;
     }
     EXPECT_EQ((*controller)->get("S.n").value() + " " + (*controller)->get("S.seen").value(),
@@ -168,8 +170,8 @@ TEST(Recording, RoundTripOfRecords) {
   const auto add = [&](const base::Bytes& more) {
     bytes.insert(bytes.end(), more.begin(), more.end());
   };
-  vm::RecordedCycle cycle{
-      UINT64_MAX, {{0, 1, int64_t{1} << 62}, {{0, 9}, {70'000, 255}}}, 0xdeadbeef};
+  vm::RecordedCycle cycle{UINT64_MAX, {}, 0xdeadbeef};
+  cycle.observed = {{0, 1, int64_t{1} << 62}, {{0, 9}, {70'000, 255}}, {{3, 1}}, {{0, 2}}};
   add(vm::encode_record(cycle));
   add(vm::encode_record(vm::RecordedRequest{9, {5}, base::Bytes(100'000, 7)}));
   add(vm::encode_record(vm::RecordedRequest{3, {}, {}}));
@@ -181,6 +183,8 @@ TEST(Recording, RoundTripOfRecords) {
   EXPECT_EQ(back->cycles[0].number, UINT64_MAX);
   EXPECT_EQ(back->cycles[0].observed.clock, cycle.observed.clock);
   EXPECT_EQ(back->cycles[0].observed.changed, cycle.observed.changed);
+  EXPECT_EQ(back->cycles[0].observed.outputs, cycle.observed.outputs);
+  EXPECT_EQ(back->cycles[0].observed.markers, cycle.observed.markers);
   EXPECT_EQ(back->cycles[0].state, 0xdeadbeefu);
   ASSERT_EQ(back->requests.size(), 2u);
   EXPECT_EQ(back->requests[0].cycle, 3u);
