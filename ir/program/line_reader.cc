@@ -233,4 +233,11 @@ Scalar LineReader::scalar() {
   return static_cast<Scalar>(choice(kNames));
 }
 
+void LineReader::policy(TaskPolicy& policy) {
+  const std::string_view attribute = word();
+  const bool has_value = !at_end() && attribute != kFreewheeling;
+  const std::string_view value = has_value ? word() : "";
+  if (!apply_policy(policy, attribute, value)) fail("unknown task policy");
+}
+
 }  // namespace ir

@@ -43,6 +43,7 @@ class LineReader {
   // Position of the next word in `words`.
   uint32_t choice(std::span<const std::string_view> words);
   Scalar scalar();
+  void policy(TaskPolicy& policy);  // an attribute, with its value if it has one
 
  private:
   enum class Kind : uint8_t { kWord, kNumber, kString, kPunctuation };

@@ -302,15 +302,8 @@ class ProgramParser {
     task.watchdog_ns = line.take("watchdog") ? line.signed_number() : 0;
     line.expect("priority");
     task.priority = line.index();
-    while (!line.at_end() && !line.failed()) parse_policy(line, task.policy);
+    while (!line.at_end() && !line.failed()) line.policy(task.policy);
     program_.tasks.push_back(std::move(task));
-  }
-
-  void parse_policy(LineReader& line, TaskPolicy& policy) {
-    const std::string_view attribute = line.word();
-    const bool has_value = !line.at_end() && attribute != kFreewheeling;
-    const std::string_view value = has_value ? line.word() : "";
-    if (!apply_policy(policy, attribute, value)) line.fail("unknown task policy");
   }
 
   void parse_instance(LineReader& line) {

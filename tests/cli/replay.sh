@@ -66,3 +66,30 @@ grep -c '<path' p.svg | grep -qx 2 || fail "not one line for each variable"
 expect 0 stvm replay run.rec --print M.n --plot q.svg
 grep -q 'M.n' q.svg || fail "no name in the picture"
 expect 2 stvm run v1.st --virtual-time --scans 5 --plot p.svg
+
+# A recording that says something else than what comes out is found at its cycle.
+if command -v python3 >/dev/null; then
+  python3 - <<'PY'
+import struct
+def crc32c(data):
+    crc = 0xffffffff
+    for byte in data:
+        crc ^= byte
+        for _ in range(8): crc = crc >> 1 ^ (0x82f63b78 if crc & 1 else 0)
+    return crc ^ 0xffffffff
+data = bytearray(open("run.rec", "rb").read())
+at = 8
+cycles = 0
+while at < len(data):
+    size = struct.unpack_from("<I", data, at + 1)[0]
+    if data[at] == 2:
+        cycles += 1
+        if cycles == 42:
+            data[at + 5 + size - 1] ^= 1  # the checksum of the state
+            struct.pack_into("<I", data, at + 5 + size, crc32c(data[at:at + 5 + size]))
+    at += size + 9
+open("other.rec", "wb").write(data)
+PY
+  expect 1 stvm replay other.rec
+  said 'R0417.*behind cycle 41'
+fi

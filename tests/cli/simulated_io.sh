@@ -38,7 +38,9 @@ time_ms,%QX0.0,%QW4
 50,TRUE,200
 120,FALSE,0
 130,TRUE,200
+150,FALSE,0
 T
+# The last row: at the end of a run outputs are safe.
 cmp -s out.csv wanted.csv || fail "$(cat out.csv)"
 said '^Main.good=TRUE$'
 said '^Main.speed=100$'

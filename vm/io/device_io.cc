@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "vm/io/bit_copy.h"
 #include "vm/runtime/process_image.h"
+#include "vm/runtime/safe_outputs.h"
 
 namespace vm {
 namespace {
@@ -14,11 +15,6 @@ bool same_line(const ir::Device& a, const ir::Device& b) {
   return a.name == b.name && a.driver == b.driver && a.settings == b.settings;
 }
 
-// What the version's outputs become when another one does not exchange them any more.
-LeftOutputs left_outputs(const ir::Image& /*image*/, const DevicePoints& points) {
-  return {base::Bytes(points.output_bytes), base::Bytes(points.output_bytes)};
-}
-
 void set_bit(std::span<uint8_t> bytes, uint32_t bit, bool value) {
   const auto mask = static_cast<uint8_t>(1u << (bit % 8));
   if (value) {
@@ -26,6 +22,19 @@ void set_bit(std::span<uint8_t> bytes, uint32_t bit, bool value) {
   } else {
     bytes[bit / 8] &= static_cast<uint8_t>(~mask);
   }
+}
+
+// What the version's outputs become when another one does not exchange them any more: safe, for
+// good (vm/runtime/safe_outputs.h).
+LeftOutputs left_outputs(const ir::Image& image, const DevicePoints& points) {
+  LeftOutputs left{base::Bytes(points.output_bytes), base::Bytes(points.output_bytes)};
+  const SafeOutputs::AtTheEnd safe = SafeOutputs::at_the_end(image);
+  for (const PointRange& range : points.outputs) {
+    if (range.at.area != ir::DirectArea::kOutput) continue;
+    copy_bits(safe.value, range.at.bit_offset, left.value, range.byte * 8, range.bits());
+    copy_bits(safe.held, range.at.bit_offset, left.held, range.byte * 8, range.bits());
+  }
+  return left;
 }
 
 }  // namespace

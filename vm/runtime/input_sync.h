@@ -6,7 +6,7 @@
 #include <span>
 
 #include "base/bytes.h"
-#include "ir/program/task_policy.h"
+#include "ir/bytecode/image.h"
 
 namespace vm {
 

@@ -21,7 +21,7 @@ base::Result<std::unique_ptr<Recorder>> Recorder::create(const std::string& path
   if (file == nullptr) {
     return base::Error{base::Refusal::kFileUnwritable, path + ": " + std::strerror(errno)};
   }
-  std::unique_ptr<Recorder> recorder(new Recorder(file, clock, io));
+  auto recorder = std::make_unique<Recorder>(file, clock, io);
   recorder->hand_over(encode_record(start));
   return recorder;
 }

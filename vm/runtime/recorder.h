@@ -21,6 +21,7 @@ class Recorder : public Clock, public IoPort {
   // Begins the file at `path`; kFileUnwritable.
   static base::Result<std::unique_ptr<Recorder>> create(const std::string& path, Clock& clock,
                                                         IoPort& io, const RecordedStart& start);
+  Recorder(std::FILE* file, Clock& clock, IoPort& io);  // closes the file
   ~Recorder() override;
 
   // To a Controller instead of the clock and the devices themselves.
@@ -53,7 +54,6 @@ class Recorder : public Clock, public IoPort {
   base::Status close();
 
  private:
-  Recorder(std::FILE* file, Clock& clock, IoPort& io);
   void hand_over(const base::Bytes& record);
   void take_local();
   void write_to_file();

@@ -119,21 +119,19 @@ bool read_record(base::ByteSpan& rest, Recording& recording) {
   const size_t size = payload.size() + kFrameBytes;
   const uint32_t checksum = frame.u32();
   if (frame.failed() || checksum != base::crc32c(rest.first(size - 4))) return false;
-  base::ByteReader in(payload);
-  switch (static_cast<Tag>(tag)) {
-    case Tag::kStart:
-      read_start(in, recording.start);
-      break;
-    case Tag::kCycle:
-      recording.cycles.push_back(read_cycle(in));
-      break;
-    case Tag::kRequest:
-      recording.requests.push_back(read_request(in));
-      break;
-    default:
-      return false;
-  }
   rest = rest.subspan(size);
+  base::ByteReader in(payload);
+  if (tag == static_cast<uint8_t>(Tag::kStart)) {
+    read_start(in, recording.start);
+  } else if (tag == static_cast<uint8_t>(Tag::kCycle)) {
+    RecordedCycle cycle = read_cycle(in);
+    if (in.done()) recording.cycles.push_back(std::move(cycle));
+  } else if (tag == static_cast<uint8_t>(Tag::kRequest)) {
+    RecordedRequest request = read_request(in);
+    if (in.done()) recording.requests.push_back(std::move(request));
+  } else {
+    return false;
+  }
   return in.done();
 }
 

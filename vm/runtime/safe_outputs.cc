@@ -86,4 +86,16 @@ void SafeOutputs::adopt_holds(const SafeOutputs& previous) {
   }
 }
 
+SafeOutputs::AtTheEnd SafeOutputs::at_the_end(const ir::Image& image) {
+  AtTheEnd end{base::Bytes(image.output_bytes), base::Bytes(image.output_bytes)};
+  for (const ir::SafeOutput& row : image.safe) {
+    if (row.kind == ir::SafeKind::kHold) {
+      put(row, UINT64_MAX, UINT64_MAX, end.held);
+    } else {
+      put(row, row.value, UINT64_MAX, end.value);
+    }
+  }
+  return end;
+}
+
 }  // namespace vm

@@ -23,6 +23,12 @@ class SafeOutputs {
   // When the next hold is over; INT64_MAX: none runs.
   int64_t next_ns() const;
   void forget_holds();
+  // What outputs become when nobody is there any more: holds for a time are over.
+  struct AtTheEnd {
+    base::Bytes value;
+    base::Bytes held;  // mask of what stays as it is
+  };
+  static AtTheEnd at_the_end(const ir::Image& image);
   // Holds that run there go on here, where the rows are the same.
   void adopt_holds(const SafeOutputs& previous);
 

@@ -449,6 +449,11 @@ TEST(Verify, V15_Tasks) {
   expect_refused(Refusal::kBadTask, "a cycle of 1 us", [](Image& i) {
     i.tasks.push_back({"Slow", 10'001'000, 100'000'000, 1, 0, {}});
   });
+  expect_refused(Refusal::kBadTask, "a cycle that is shorter than the least",
+                 [](Image& i) { i.tasks[0].period_ns = base::kMinBaseCycleNs - 1; });
+  Image least = sample::busy_image();
+  least.tasks[0].period_ns = base::kMinBaseCycleNs;
+  EXPECT_TRUE(ir::verify(ir::encode(least)).ok());
   expect_refused(Refusal::kBadTask, "a freewheeling task with a period",
                  [](Image& i) { i.tasks[0].policy.freewheeling = true; });
   expect_refused(Refusal::kBadTask, "synchronous without a period", [](Image& i) {

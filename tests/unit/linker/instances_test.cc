@@ -13,7 +13,7 @@ std::string worked_case(std::string_view fbdef2, std::string_view prog1) {
          "type Prog1 = program\n" +
          std::string(prog1) +
          "type Prog2 = program\n  member local inst1 : FBDef3\n"
-         "type G = globals\nglobals G\ntask T period 1000 priority 0\n"
+         "type G = globals\nglobals G\ntask T period 1000000 priority 0\n"
          "instance Prog1 : Prog1 task 0\ninstance Prog2 : Prog2 task 0\n" +
          empty_pou("function_block", "FBDef3") + empty_pou("function_block", "FBDef2") +
          empty_pou("function_block", "FBDef1") + empty_pou("program", "Prog1") +

@@ -94,7 +94,7 @@ inline std::string simple(std::string_view globals, std::string_view members,
                           std::string_view body = "  b0:\n    return\n") {
   return "program P\n" + std::string(types) + "type G = globals\n" + std::string(globals) +
          "type Main = program\n" + std::string(members) +
-         "globals G\ntask T period 1000 priority 0\ninstance Main : Main task 0\n" +
+         "globals G\ntask T period 1000000 priority 0\ninstance Main : Main task 0\n" +
          std::string(pous) + "pou program Main self Main\n" + std::string(body);
 }
 

@@ -71,7 +71,7 @@ TEST(ObjectLinking, AProgramAmongTheGlobalsIsTheProgramInstance) {
   const ir::Image image = linked(
       "program P\ntype G = globals\n  member global n : INT\n  member global Second : Second\n"
       "type Main = program\ntype Second = program\n  member local runs : INT\nglobals G\n"
-      "task T period 1000 priority 0\ninstance Main : Main task 0\n"
+      "task T period 1000000 priority 0\ninstance Main : Main task 0\n"
       "instance Second : Second task 0\n" +
       empty_pou("program", "Main") + empty_pou("program", "Second"));
   EXPECT_EQ(image.instances.size(), 3u);  // the globals, Main, Second

@@ -48,7 +48,7 @@ inline std::string main_with(std::string_view members, std::string_view body,
                              std::string_view types = "", std::string_view pous = "") {
   return "program P\n" + std::string(types) + "type G = globals\n  member global g1 : INT\n" +
          "type Main = program\n" + std::string(members) +
-         "globals G\ntask T period 1000 priority 0\ninstance Main : Main task 0\n" +
+         "globals G\ntask T period 1000000 priority 0\ninstance Main : Main task 0\n" +
          std::string(pous) + "pou program Main self Main\n" + std::string(body);
 }
 

@@ -269,7 +269,7 @@ std::string program(uint32_t seed) {
          "type Leaf = function_block extends Mid\n  member local n : DINT\n"
          "  member local m : DINT\n  member local k : DINT\n"
          "type Main = program\n  member local base : Base\n  member local mid : Mid\n"
-         "  member local leaf : Leaf\nglobals G\ntask T period 1000 priority 0\n"
+         "  member local leaf : Leaf\nglobals G\ntask T period 1000000 priority 0\n"
          "instance Main : Main task 0\noverride Base : 'Base.go' = 'Base.go'\n"
          "override Mid : 'Base.go' = 'Mid.go'\noverride Leaf : 'Base.go' = 'Mid.go'\n" +
          pous + linker::empty_pou("function_block", "Base") +
