@@ -122,6 +122,7 @@ bool read_record(base::ByteSpan& rest, Recording& recording) {
   rest = rest.subspan(size);
   base::ByteReader in(payload);
   if (tag == static_cast<uint8_t>(Tag::kStart)) {
+    if (!recording.start.image.empty()) return false;  // the first record, and only that
     read_start(in, recording.start);
   } else if (tag == static_cast<uint8_t>(Tag::kCycle)) {
     RecordedCycle cycle = read_cycle(in);

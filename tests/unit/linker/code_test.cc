@@ -228,7 +228,7 @@ TEST(Linking, StackIsTheDeepestChainOfEveryPriority) {
   const ir::Image image =
       linked("program P\ntype G = globals\n" + std::string(kSome) +
              "type P1 = program\ntype P2 = program\ntype P3 = program\n"
-             "globals G\ntask Fast period 1000000 priority 0\ntask Slow period 1000 priority 7\n"
+             "globals G\ntask Fast period 1000000 priority 0\ntask Slow period 1000000 priority 7\n"
              "task Slow2 period 1000000 priority 7\ninstance a : P1 task 0\ninstance b : P2 task 1\n"
              "instance c : P3 task 2\n" +
              pous);
