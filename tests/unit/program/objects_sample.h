@@ -103,7 +103,7 @@ inline std::string object_program(std::string_view globals, std::string_view bod
          "type Main = program\n  member local base : Base\n  member local middle : Middle\n"
          "  member local leaf : Leaf\n  member local leaves : %33\n  member local other : Other\n"
          "type %33 = array Leaf [1..3]\n"
-         "globals G\ntask T period 1000 priority 0\ninstance Main : Main task 0\n" +
+         "globals G\ntask T period 1000000 priority 0\ninstance Main : Main task 0\n" +
          std::string(overrides) + std::string(kObjectPous) + std::string(more_pous) +
          "pou program Main self Main\n" + std::string(body);
 }

@@ -156,7 +156,7 @@ type Main = program
 type Second = program
   member local runs : INT
 globals G
-task T period 1000 priority 0
+task T period 1000000 priority 0
 instance Main : Main task 0
 instance Second : Second task 0
 pou program Main self Main
@@ -184,7 +184,7 @@ type Init = program
 type Main = program
 globals G
 task Start once priority 0
-task T period 1000 priority 0
+task T period 1000000 priority 0
 instance __START : Init task 0
 instance Main : Main task 1
 pou program Init self Init
@@ -204,7 +204,7 @@ pou program Main self Main
   Evaluator evaluator(program);
   EXPECT_EQ(evaluator.state(), "n=100\n");
   EXPECT_EQ(evaluator.scan(0, kBudget).size(), 1u);
-  EXPECT_EQ(evaluator.scan(1000, kBudget).size(), 0u);
+  EXPECT_EQ(evaluator.scan(1000000, kBudget).size(), 0u);
   EXPECT_EQ(evaluator.state(), "n=102\n");
 }
 

@@ -150,7 +150,7 @@ inline Program verified(std::string_view text) {
 inline std::string small_program(std::string_view globals, std::string_view body,
                                  std::string_view more = "") {
   return "program P\ntype G = globals\n" + std::string(globals) +
-         "type Main = program\nglobals G\ntask T period 1000 priority 0\n"
+         "type Main = program\nglobals G\ntask T period 1000000 priority 0\n"
          "instance Main : Main task 0\n" +
          "pou program Main self Main\n" + std::string(body) + std::string(more);
 }
