@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include "frontend/lex/characters.h"
 #include "frontend/lex/literals.h"
+#include "ir/types/address_text.h"
 
 namespace frontend {
 
@@ -14,37 +15,6 @@ constexpr uint64_t kMaxBits = uint64_t{1} << 32;
 
 LiteralProblem bad_address(std::string text, std::string fix = {}) {
   return {DiagnosticCode::kBadDirectAddress, 0, 0, std::move(text), std::move(fix)};
-}
-
-// 0 when `letter` is not a size.
-uint32_t bits_of(char letter) {
-  switch (to_upper(letter)) {
-    case 'X':
-      return 1;
-    case 'B':
-      return 8;
-    case 'W':
-      return 16;
-    case 'D':
-      return 32;
-    case 'L':
-      return 64;
-    default:
-      return 0;
-  }
-}
-
-ir::DirectArea area_of(char letter) {
-  switch (to_upper(letter)) {
-    case 'I':
-      return ir::DirectArea::kInput;
-    case 'Q':
-      return ir::DirectArea::kOutput;
-    case 'M':
-      return ir::DirectArea::kMarker;
-    default:
-      return ir::DirectArea::kNone;
-  }
 }
 
 // Reads a decimal number off the front of `text`.
@@ -88,7 +58,7 @@ MaybeProblem read_levels(std::string_view rest, std::vector<uint32_t>& levels) {
 
 MaybeProblem decode_size(std::string_view& rest, ir::DirectAddress& address) {
   bool written = !rest.empty() && !is_digit(rest[0]);
-  address.bit_size = written ? bits_of(rest[0]) : 1;
+  address.bit_size = written ? ir::bits_of_letter(rest[0]) : 1;
   if (address.bit_size == 0) return bad_address("the size of an address is X, B, W, D or L");
   if (written) rest.remove_prefix(1);
   return {};
@@ -97,9 +67,9 @@ MaybeProblem decode_size(std::string_view& rest, ir::DirectAddress& address) {
 // `text` without the `%`.
 MaybeProblem decode_address_text(std::string_view rest, DecodedAddress& out) {
   ir::DirectAddress& address = out.address;
-  address.area = area_of(rest[0]);
+  address.area = ir::area_of_letter(rest[0]);
   if (address.area != ir::DirectArea::kNone) rest.remove_prefix(1);
-  if (address.area == ir::DirectArea::kNone && bits_of(rest[0]) == 0) {
+  if (address.area == ir::DirectArea::kNone && ir::bits_of_letter(rest[0]) == 0) {
     return bad_address("a direct address starts with %I, %Q or %M");
   }
   if (rest == "*") {
@@ -136,7 +106,7 @@ DecodedAddress decode_address(std::string_view text) {
 
 DecodedModule decode_module(std::string_view text) {
   DecodedModule out;
-  if (text.size() > 2 && text[0] == '%') out.area = area_of(text[1]);
+  if (text.size() > 2 && text[0] == '%') out.area = ir::area_of_letter(text[1]);
   if (out.area == ir::DirectArea::kNone) {
     out.problem = bad_address("a module of I/O is written %I2.5, %Q2.5 or %M2.5");
     return out;
@@ -147,7 +117,7 @@ DecodedModule decode_module(std::string_view text) {
 
 DecodedPart decode_part(std::string_view text) {
   DecodedPart out;
-  uint32_t bits = bits_of(text[1]);
+  uint32_t bits = ir::bits_of_letter(text[1]);
   std::string_view rest = text.substr(2);
   if (bits == 0 || bits == 64 || !read_number(rest, out.number) || !rest.empty()) {
     out.problem = bad_address("a part of a value is written .%X3, .%B1, .%W1 or .%D0");

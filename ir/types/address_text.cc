@@ -7,7 +7,17 @@ namespace {
 
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
-DirectArea area_of(char letter) {
+bool take_number(std::string_view& text, uint64_t& value) {
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto used = static_cast<size_t>(end - text.data());
+  if (code != std::errc() || used == 0 || value > UINT32_MAX) return false;
+  text.remove_prefix(used);
+  return true;
+}
+
+}  // namespace
+
+DirectArea area_of_letter(char letter) {
   switch (upper(letter)) {
     case 'I':
       return DirectArea::kInput;
@@ -20,7 +30,7 @@ DirectArea area_of(char letter) {
   }
 }
 
-uint32_t size_of(char letter) {
+uint32_t bits_of_letter(char letter) {
   switch (upper(letter)) {
     case 'X':
       return 1;
@@ -37,23 +47,13 @@ uint32_t size_of(char letter) {
   }
 }
 
-bool take_number(std::string_view& text, uint64_t& value) {
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const auto used = static_cast<size_t>(end - text.data());
-  if (code != std::errc() || used == 0 || value > UINT32_MAX) return false;
-  text.remove_prefix(used);
-  return true;
-}
-
-}  // namespace
-
 std::optional<DirectAddress> parse_address(std::string_view text) {
   if (text.size() < 3 || text[0] != '%') return std::nullopt;
   DirectAddress out;
-  out.area = area_of(text[1]);
+  out.area = area_of_letter(text[1]);
   if (out.area == DirectArea::kNone) return std::nullopt;
   text.remove_prefix(2);
-  out.bit_size = size_of(text[0]);
+  out.bit_size = bits_of_letter(text[0]);
   if (out.bit_size == 0) {
     out.bit_size = 1;
   } else {

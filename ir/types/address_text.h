@@ -9,6 +9,10 @@
 
 namespace ir {
 
+// I, Q, M; kNone for any other letter. Case does not matter.
+DirectArea area_of_letter(char letter);
+// X, B, W, D, L: 1 to 64; 0 for any other letter.
+uint32_t bits_of_letter(char letter);
 // The whole of `text`; nullopt where it is none, or lies beyond 2^32 bits. `%I0.3` is `%IX0.3`.
 std::optional<DirectAddress> parse_address(std::string_view text);
 // As parse_address() reads it.

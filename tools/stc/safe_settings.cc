@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "frontend/lex/literals.h"
+#include "ir/types/address_text.h"
 #include "ir/types/longest_time.h"
 #include "ir/types/types.h"
 
@@ -79,12 +80,9 @@ std::optional<int64_t> duration_of(const std::string& text) {
 std::optional<ir::SafeOutput> parse_entry(const std::string& text) {
   const std::vector<std::string> words = words_of(text);
   if (words.size() < 3 || words[1] != "=") return std::nullopt;
-  if (words[0].size() < 3 || words[0].front() != '%') return std::nullopt;
-  const frontend::DecodedAddress at = frontend::decode_address(words[0]);
-  const bool output = !at.problem && !at.incomplete && at.levels.empty() &&
-                      at.address.area == ir::DirectArea::kOutput;
-  if (!output) return std::nullopt;
-  ir::SafeOutput row{at.address.bit_offset, at.address.bit_size, ir::SafeKind::kValue, 0, 0};
+  const std::optional<ir::DirectAddress> at = ir::parse_address(words[0]);
+  if (!at || at->area != ir::DirectArea::kOutput) return std::nullopt;
+  ir::SafeOutput row{at->bit_offset, at->bit_size, ir::SafeKind::kValue, 0, 0};
   std::optional<uint64_t> value = uint64_t{0};
   if (!ir::same_name(words[2], "hold")) {
     value = value_of(words[2], row.bits);
