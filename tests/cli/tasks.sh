@@ -90,3 +90,14 @@ said 'SCHED_FIFO'
 stvm doctor --seconds 1 --format json >out 2>err || true
 said '"findings"'
 expect 2 stvm doctor --period 0
+
+# Forces are released all or none.
+serve forced plant/plant.st
+expect 0 stvm force --dir forced M.n=7 T.n=8
+expect 7 stvm unforce --dir forced M.n M.i
+said 'R0401.*M.i'
+expect 0 stvm status --dir forced
+said 'forces +2'
+expect 0 stvm unforce --dir forced M.n M.n
+expect 0 stvm status --dir forced
+said 'forces +1'

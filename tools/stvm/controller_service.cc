@@ -51,8 +51,7 @@ base::Bytes ControllerService::answer_within_memory(base::ByteSpan bytes, bool& 
   if (!expected.ok()) return vm::encode_answer(expected.error());
   Answer body = dispatch(*request);
   if (recorder_ != nullptr) {
-    const bool done =
-        vm::changes_state(request->command) && (body.ok() || recorder_->switched());
+    const bool done = vm::changes_state(request->command) && (body.ok() || recorder_->switched());
     done ? recorder_->note(bytes) : recorder_->forget_jobs();
   }
   if (!body.ok()) return vm::encode_answer(body.error());
@@ -247,15 +246,23 @@ base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request)
   if (names.empty()) {
     for (const vm::Force& force : controller_.forces()) names.push_back(force.path);
   }
-  base::Status done = base::Ok{};
+  // All or none; only this thread's commands change forces, so they can be read here.
+  for (const std::string& name : names) {
+    base::Result<ir::Symbol> symbol = ir::find_symbol(controller_.image(), name);
+    if (!symbol.ok()) return symbol.error();
+    const std::vector<vm::Force>& forces = controller_.forces();
+    const bool forced = std::any_of(forces.begin(), forces.end(), [&](const vm::Force& force) {
+      return force.symbol.data == symbol->data;
+    });
+    if (forced) continue;
+    return base::Error{base::Refusal::kNoSuchVariable, "`" + name + "` is not forced"};
+  }
   base::Status taken = at_boundary([&] {
     for (const std::string& name : names) {
-      base::Status one = controller_.unforce(name);
-      if (!one.ok() && done.ok()) done = one;
+      [[maybe_unused]] const base::Status twice = controller_.unforce(name);
     }
   });
   if (!taken.ok()) return taken.error();
-  if (!done.ok()) return done.error();
   return nothing();
 }
 
