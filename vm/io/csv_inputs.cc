@@ -51,7 +51,7 @@ bool parse_cell(std::string_view text, uint32_t bits, uint64_t& value) {
   if (!text.starts_with('-')) return parse_whole(text, value) && value <= most;
   int64_t negative = 0;
   if (bits == 1 || !parse_whole(text, negative)) return false;
-  if (negative < -static_cast<int64_t>(uint64_t{1} << (bits - 1)) && bits != 64) return false;
+  if (bits != 64 && negative < -(int64_t{1} << (bits - 1))) return false;
   value = static_cast<uint64_t>(negative) & most;
   return true;
 }
