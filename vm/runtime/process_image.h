@@ -33,6 +33,7 @@ class ProcessImage {
   void mark_outputs(uint32_t begin, uint32_t end, std::span<uint8_t> mask) const;
   // Whole values instead of some bits of them.
   void widen(std::span<uint8_t> mask) const;
+  bool has_reals() const { return !reals_.empty(); }
   // Is an output among those of `mask` NaN in `outputs`?
   bool has_nan(std::span<const uint8_t> outputs, std::span<const uint8_t> mask) const;
   // Do the same bits stand for variables of the same sizes in the same order?

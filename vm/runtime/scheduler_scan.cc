@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "vm/runtime/byte_masks.h"
 #include "vm/runtime/scheduler.h"
 
 namespace vm {
@@ -99,11 +100,16 @@ void Scheduler::end_program(TaskSlot& task) {
 
 void Scheduler::end_task(TaskSlot& task) {
   impose(false);
-  find_written(task);
-  if (tables_->process_image.has_nan(tables_->scratch, tables_->written)) {
-    return trap_in(task, task.execution->interrupted(ir::TrapKind::kNotANumber));
+  if (active_.size() == 1 && tables_->plain_outputs) {
+    tables_->process_image.variables_to_outputs(memory_, tables_->outputs);
+    add_differences(task.own_outputs, tables_->outputs, task.outputs_at_start);
+  } else {
+    find_written(task);
+    if (tables_->process_image.has_nan(tables_->scratch, tables_->written)) {
+      return trap_in(task, task.execution->interrupted(ir::TrapKind::kNotANumber));
+    }
+    copy_outputs(task);
   }
-  copy_outputs(task);
   ++task.status.scans;
   task.status.last_ns = task.run_ns;
   task.times->run.add(task.run_ns);
@@ -202,12 +208,7 @@ void Scheduler::outputs_to_variables(std::span<const uint8_t> mask) {
 // The bits of `mask` in `scratch` are not of the scans below.
 void Scheduler::hand_down(std::span<const uint8_t> mask) {
   const base::Bytes& now = tables_->scratch;
-  for (TaskSlot* below : active_) {
-    for (size_t i = 0; i < now.size(); ++i) {
-      uint8_t& start = below->outputs_at_start[i];
-      start = static_cast<uint8_t>((start & ~mask[i]) | (now[i] & mask[i]));
-    }
-  }
+  for (TaskSlot* below : active_) merge(below->outputs_at_start, now, mask);
 }
 
 // Outputs as they are in the variables now, to `scratch`, and those among them that differ from
@@ -215,9 +216,8 @@ void Scheduler::hand_down(std::span<const uint8_t> mask) {
 void Scheduler::find_written(const TaskSlot& task) {
   base::Bytes& now = tables_->scratch;
   tables_->process_image.variables_to_outputs(memory_, now);
-  for (size_t i = 0; i < now.size(); ++i) {
-    tables_->written[i] = static_cast<uint8_t>(now[i] ^ task.outputs_at_start[i]);
-  }
+  std::fill(tables_->written.begin(), tables_->written.end(), uint8_t{0});
+  add_differences(tables_->written, now, task.outputs_at_start);
 }
 
 // What the task wrote before it trapped never reaches the devices: its outputs are what they were
@@ -258,17 +258,13 @@ void Scheduler::copy_inputs(const TaskSlot& task) {
 void Scheduler::copy_outputs(TaskSlot& task) {
   const base::Bytes& now = tables_->scratch;
   const base::Bytes& written = tables_->written;
-  const bool wait = task.synchronous();
-  for (size_t i = 0; i < now.size(); ++i) {
-    const uint8_t mask = written[i];
-    task.own_outputs[i] |= mask;
-    if (wait) {
-      task.waiting_mask[i] |= mask;
-      task.waiting[i] = static_cast<uint8_t>((task.waiting[i] & ~mask) | (now[i] & mask));
-      tables_->waiting_mask[i] |= mask;
-    } else {
-      tables_->outputs[i] = static_cast<uint8_t>((tables_->outputs[i] & ~mask) | (now[i] & mask));
-    }
+  merge(task.own_outputs, written, written);
+  if (task.synchronous()) {
+    merge(task.waiting, now, written);
+    merge(task.waiting_mask, written, written);
+    merge(tables_->waiting_mask, written, written);
+  } else {
+    merge(tables_->outputs, now, written);
   }
   hand_down(written);
   if (active_.size() == 1) take_packed();  // also what no task has written

@@ -112,6 +112,8 @@ TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
   });
   inputs.resize(image.input_bytes);
   outputs.resize(image.output_bytes);
+  plain_outputs = !process_image.has_reals();
+  for (const TaskSlot& slot : tasks) plain_outputs = plain_outputs && !slot.synchronous();
   unused.resize(image.output_bytes);
   process_image.mark_outputs(0, UINT32_MAX, unused);
   for (uint8_t& bits : unused) bits = static_cast<uint8_t>(~bits);

@@ -84,6 +84,8 @@ struct TaskTables {
   base::Bytes waiting_mask;  // of all tasks
   base::Bytes written;       // by the task that ends
   base::Bytes scratch;
+  // No outputs wait, and none can be NaN: a scan that nobody is suspended below just packs them.
+  bool plain_outputs = false;
   // Of this version and the other one: then what waits is kept, and what is known of its writers.
   bool same_outputs = false;
   std::vector<Force> forces;
