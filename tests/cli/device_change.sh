@@ -1,5 +1,5 @@
 #!/bin/sh
-# Devices across online changes: outputs that go get zero, what cannot be opened is refused, undo brings all back.
+# Devices across online changes: outputs that go become safe, what cannot be opened is refused, undo brings all back.
 . "$(dirname "$0")/lib.sh"
 mkdir v1 v2 bad
 for v in v1 v2 bad; do
@@ -13,6 +13,8 @@ ST
 done
 printf 'time_ms,%%IB0\n0,77\n' >in.csv
 cat >v1/stc.toml <<'T'
+[outputs]
+safe = ["%QB1 = 9"]
 [devices.left]
 driver = "simulated"
 outputs = "left.csv"
@@ -59,7 +61,7 @@ expect 0 stvm change v2 --dir plc --dry-run
 said '^device +left +.no longer byte 0..1 <- %QB0.'
 said '^device +right +.new, simulated.'
 expect 0 stvm change v2 --dir plc --yes
-wait_for ',5,0$' left.csv   # %QB1 is not written there any more
+wait_for ',5,9$' left.csv   # %QB1 is not written there any more: it is safe
 wait_for ',6$' right.csv    # but here
 wait_value '16#00'          # nobody provides %IB0 any more
 expect 0 stvm status --dir plc

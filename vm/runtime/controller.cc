@@ -242,7 +242,7 @@ base::Status Controller::leave_all(int64_t limit_ns) {
   return left;
 }
 
-void Controller::make_outputs_safe() { impl_->scheduler.leave_outputs_safe(); }
+void Controller::make_outputs_safe() { impl_->scheduler.make_outputs_safe(true); }
 
 base::Status Controller::restart(Restart kind, int64_t exit_limit_ns) {
   base::Status left = base::Ok{};

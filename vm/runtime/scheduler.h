@@ -24,10 +24,8 @@ class Scheduler {
   // At a boundary, also behind a fault: every task runs again, in its phase; none has missed a
   // release until then.
   void restart();
-  // All of them, and they are sent.
-  void make_outputs_safe();
-  // The same for good: holds for a time are over at once.
-  void leave_outputs_safe();
+  // All of them, and they are sent. `for_good`: holds for a time are over at once.
+  void make_outputs_safe(bool for_good);
   // The variable at [data, data + size) was written from outside.
   void variable_set(uint32_t data, uint32_t size);
   void send_outputs() { io_.send(tables_->outputs); }

@@ -161,22 +161,15 @@ void Scheduler::fault() {
   faulted_ = true;
   active_.clear();
   for (TaskSlot& task : tables_->tasks) task.released = false;
-  make_outputs_safe();
+  make_outputs_safe(false);
   outputs_to_variables(tables_->written);
 }
 
-void Scheduler::make_outputs_safe() {
+void Scheduler::make_outputs_safe(bool for_good) {
   base::Bytes& all = tables_->written;
   std::fill(all.begin(), all.end(), uint8_t{0xff});
   tables_->safe.apply(all, looked_ns_, tables_->outputs);
-  io_.send(tables_->outputs);
-}
-
-void Scheduler::leave_outputs_safe() {
-  base::Bytes& all = tables_->written;
-  std::fill(all.begin(), all.end(), uint8_t{0xff});
-  tables_->safe.apply(all, looked_ns_, tables_->outputs);
-  tables_->safe.expire(INT64_MAX, tables_->outputs, all);
+  if (for_good) tables_->safe.expire(INT64_MAX, tables_->outputs, all);
   io_.send(tables_->outputs);
 }
 
