@@ -1,0 +1,20 @@
+// Networks -> the text forms, drawn as `stc fmt` draws them. What read() makes of the text is
+// the same body again, but for positions, ids and spans.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "frontend/network/network.h"
+
+namespace frontend::network {
+
+// The rows between LADDER and END_LADDER, each with `indent` spaces. nullopt when a network
+// cannot be drawn as series and parallel branches of what ladder/read.h has, or `body` is FBD:
+// write_fbd() can write it then.
+std::optional<std::string> write_ladder(const Body& body, uint32_t indent);
+
+// The rows between FBD and END_FBD; of ladder, too: contacts become AND, joins OR, power TRUE.
+std::string write_fbd(const Body& body, uint32_t indent);
+
+}  // namespace frontend::network
