@@ -2,9 +2,9 @@
 //
 //   FBD
 //     (* holds the room at 20 degrees *)
-//     delay : TON(IN := [/ Door ], PT := T#30s);   // a box of the instance `delay`
-//     cold  : LT(Temperature, 20.0);               // a box of a function: `cold` names it here
-//     both  : AND(delay.Q, cold);
+//     delay : TON(IN := [/ Door ], PT := T#30s);   // the box of the instance `delay`
+//     WIRE cold := LT(Temperature, 20.0);          // the box of a function; `cold` is its result
+//     WIRE both := AND(delay.Q, cold);
 //     Heater := both;
 //     Lamp S= both;
 //     JMP Quiet IF both;
@@ -13,12 +13,12 @@
 //     Beep := FALSE;
 //   END_FBD
 //
-// Boxes are executed as they stand. An operand is a box (its result, or the output behind a
-// `.`) or an expression without boxes. `NOT x`, `[/ x]`, `[P x]`, `[N x]` are pins that are
-// negated or see edges. EN and ENO are pins as others: while EN is FALSE, variables that a
-// box writes stay as they are. The output of a function block may be used above its box:
-// then it is that of the last scan. That of a function may not: it is kept nowhere. Names of
-// functions' boxes are known in the whole body, and not outside.
+// Boxes are executed as they stand. An operand is a wire, an output of a box behind a `.`
+// (delay.Q, cold.ENO), or an expression without wires. `NOT x`, `[/ x]`, `[P x]`, `[N x]` are
+// pins that are negated or see edges. EN and ENO are pins as others: while EN is FALSE,
+// variables that a box writes stay as they are. The output of a function block may be used above
+// its box: then it is that of the last scan. A wire may not: it is kept nowhere. Wires are known
+// in their network, and not outside.
 #pragma once
 
 #include "base/diagnostics.h"
@@ -26,7 +26,7 @@
 
 namespace frontend::fbd {
 
-// As ladder::read; of what stands between FBD and END_FBD. Messages: E1060..E1069.
+// As ladder::read; of what stands between FBD and END_FBD. Messages: E1060..E1063.
 network::Body read(std::string_view text, base::SourcePos begin, base::Diagnostics& diagnostics);
 
 }  // namespace frontend::fbd

@@ -18,9 +18,9 @@
 //   [ a ]  [/ a ]  [P a ]  [N a ]       contact of any BOOL expression: plain, negated, edges
 //   ( a )  (/ a )  (S a )  (R a )  (P a )  (N a )       coil of a variable; power goes on
 //   ( JMP label )  ( RETURN )           only when power arrives
-//   [ inst: TYPE  IN:=_, PT:=t, ET=>e ] function block; also  [ inst(IN:=_, PT:=t, ET=>e) ]
+//   [ inst: TYPE  IN:=_, PT:=t, ET=>e ] function block
 //   [ v := F(a, b) ]  [ v := a + b ]    done when power arrives: EN; power goes on by ENO
-//   [ F(EN:=_, a, OUT=>v) ]  [ F(a, _) ]  function
+//   [ F(EN:=_, a, =>v) ]  [ F(a, _) ]   function; `=>v`: its result
 //
 // `_` is the pin where power arrives; without it that is EN. `=>_` is where it goes on; without it
 // that is ENO for EN, Q of a function block, the result of a function. Arguments may be in

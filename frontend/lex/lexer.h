@@ -38,6 +38,9 @@ struct LexOptions {
 TokenList lex(const base::SourceMap& sources, uint32_t file, base::Diagnostics& diagnostics,
               const LexOptions& options = {});
 
+// The tokens of a piece of text that begins at `begin` of a SourceMap. Pragmas have no effect.
+TokenList lex(std::string_view text, base::SourcePos begin, base::Diagnostics& diagnostics);
+
 // One line per token, "line:column kind text", for `stc dump --tokens` and golden tests.
 std::string print_tokens(const TokenList& list, const base::SourceMap& sources);
 

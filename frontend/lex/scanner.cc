@@ -14,7 +14,6 @@ using base::DiagnosticCode;
 
 namespace {
 
-constexpr std::string_view kEndLadder = "END_LADDER";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 // Bytes per token in ordinary sources, comments and blanks included, rounded down.
 constexpr size_t kBytesPerToken = 5;
@@ -33,6 +32,11 @@ TokenList lex(const base::SourceMap& sources, uint32_t file, base::Diagnostics& 
   return Scanner(sources.text(file), sources.begin(file).offset, diagnostics, options).run();
 }
 
+TokenList lex(std::string_view text, base::SourcePos begin, base::Diagnostics& diagnostics) {
+  const LexOptions all = LexOptions::all_text();
+  return Scanner(text, begin.offset, diagnostics, all).run();
+}
+
 TokenList Scanner::run() {
   list_.latin1 = is_latin1(text_);
   list_.tokens.reserve(text_.size() / kBytesPerToken + 16);
@@ -45,7 +49,7 @@ TokenList Scanner::run() {
     if (kind == TokenKind::kEnd) continue;  // nothing usable, reported
     list_.tokens.push_back(
         {base_ + static_cast<uint32_t>(begin), static_cast<uint32_t>(at_ - begin), kind});
-    if (kind == TokenKind::kLadder) skip_ladder();
+    if (kind == TokenKind::kLadder || kind == TokenKind::kFbd) skip_diagram(begin, kind);
   }
   list_.tokens.push_back({base_ + static_cast<uint32_t>(text_.size()), 0, TokenKind::kEnd});
   for (base::SourceSpan open : conditions_.open_spans()) {
@@ -53,14 +57,6 @@ TokenList Scanner::run() {
                      "write {END_IF} behind the last line that depends on it");
   }
   return std::move(list_);
-}
-
-// The text form of ladder has tokens of its own: behind LADDER, a rung's `|`
-// tells, and everything up to END_LADDER is left out.
-void Scanner::skip_ladder() {
-  skip_trivia();
-  if (peek() != '|') return;
-  while (!at_end() && !ir::same_name(text_.substr(at_, kEndLadder.size()), kEndLadder)) ++at_;
 }
 
 TokenKind Scanner::scan() {

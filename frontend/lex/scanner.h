@@ -39,7 +39,6 @@ class Scanner {
   // scanner.cc
   TokenKind scan();
   TokenKind scan_word();
-  void skip_ladder();
   std::optional<TokenKind> end_name(size_t begin);
   TokenKind dash(size_t begin);
   TokenKind scan_prefixed(std::string_view prefix);
@@ -49,6 +48,9 @@ class Scanner {
   void scan_exponent();
   // Consumes characters of a date or duration; `.`, `:` and `-` only before a digit.
   void scan_time_text(std::string_view joiners);
+
+  // diagram.cc
+  void skip_diagram(size_t word, TokenKind kind);
 
   // punctuation.cc
   TokenKind scan_punctuation();

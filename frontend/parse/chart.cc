@@ -267,7 +267,7 @@ void Parser::take_actions(PouDecl& pou) {
   for (PouDecl& member : pou.members) {
     if (member.kind == PouKind::kAction) {
       tree_.charts[pou.chart].actions.push_back(
-          {member.name, member.body, member.span, member.attributes});
+          {member.name, member.body, member.span, member.attributes, member.diagram});
     } else {
       others.push_back(std::move(member));
     }

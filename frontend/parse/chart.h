@@ -59,6 +59,7 @@ struct ChartAction {
   Range32 body;  // Tree::stmt_lists
   base::SourceSpan span;
   Range32 attributes;
+  uint32_t diagram = 0xffffffffu;  // as in PouDecl
 };
 
 // Never without any step or transition; actions in source order.

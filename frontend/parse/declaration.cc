@@ -50,7 +50,7 @@ void Parser::parse_declaration() {
     skip_block(TokenKind::kEndVar);
     return;
   }
-  if (skip_unsupported_block() || skip_stray_chart_element()) return;
+  if (skip_stray_diagram() || skip_stray_chart_element()) return;
   report_here(is_closing(kind()) ? Code::kUnexpectedEnd : Code::kExpectedDeclaration,
               is_closing(kind())
                   ? describe(*current_) + " stands here, but nothing that it belongs to is open"

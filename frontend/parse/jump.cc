@@ -17,7 +17,7 @@ bool Parser::parse_soft_statement() {
              is_name(next_kind())) {
     parse_mock();
   } else {
-    return skip_unsupported_block();
+    return false;
   }
   return true;
 }

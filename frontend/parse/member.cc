@@ -26,6 +26,7 @@ void Parser::parse_member(PouDecl& owner, Range32 attributes) {
   PouDecl pou = parse_pou(member, attributes);
   open_ = open;
   pou.scope = owner.scope;
+  move_memory(pou, owner);
   if (!pou.name.empty()) owner.members.push_back(std::move(pou));
 }
 

@@ -69,7 +69,6 @@ class Parser {
   void skip_to(TokenKind wanted);  // within the statement
   void skip_past(TokenKind end);   // a construct that is not supported
   void skip_block(TokenKind end);  // the same, but not out of the POU
-  bool skip_unsupported_block();
 
   // --- attributes.cc
   Range32 take_attributes();
@@ -188,6 +187,14 @@ class Parser {
   bool at_instruction_list() const;
   bool at_instruction_argument() const;
   bool at_instruction(size_t ahead) const;
+
+  // --- diagram*.cc, diagram_body.cc
+  class Diagram;
+  bool at_diagram() const;
+  void parse_diagram(PouDecl& pou);
+  void report_mixed_body();
+  bool skip_stray_diagram();
+  void move_memory(PouDecl& action, PouDecl& owner);
 
   // --- case.cc
   void parse_case();

@@ -215,7 +215,14 @@ void Parser::parse_pou_body(PouDecl& pou) {
   base::SourcePos begin = here();
   for (;;) {
     if (parse_inner(pou) || parse_chart_element(pou)) continue;
+    bool drawn = pou.diagram != kNoDiagram;
+    if (at_diagram()) {
+      if (statement_stack_.size() != mark || drawn || pou.chart != kNoChart) report_mixed_body();
+      parse_diagram(pou);
+      continue;
+    }
     if (!list_ends(false)) {
+      if (drawn && kind() != TokenKind::kSemicolon) report_mixed_body();
       bool first = statement_stack_.size() == mark;
       first&& at_instruction_list() ? InstructionList(*this).body() : parse_statement();
     } else if (!parse_inner(pou) && !parse_chart_element(pou)) {  // behind a stray END_x

@@ -97,25 +97,4 @@ void Parser::skip_block(TokenKind end) {
   accept(end);
 }
 
-// Blocks of later languages: one message, skipped to their end. They begin with soft
-// keywords, so what follows decides.
-bool Parser::skip_unsupported_block() {
-  struct Block {
-    TokenKind begin;
-    TokenKind end;
-    const char* what;
-  };
-  static constexpr Block kBlocks[] = {
-      {TokenKind::kLadder, TokenKind::kEndLadder, "ladder networks are"},
-  };
-  for (const Block& block : kBlocks) {
-    if (kind() != block.begin) continue;
-    if (!is_name(next_kind()) && next_kind() != block.end) return false;
-    not_supported(take().span(), block.what);
-    skip_block(block.end);
-    return true;
-  }
-  return false;
-}
-
 }  // namespace frontend

@@ -1,11 +1,11 @@
 // The syntax tree of one compilation: what the sources say, nothing resolved.
 // One Tree owns all nodes of all files in flat stores; nodes refer to each other
 // by id and to text by views into the SourceMap, which must outlive the tree.
-// Immutable once parsing ends. Later languages (ladder, FBD, IL) lower to
-// the same nodes; sequential function charts are a model of their own (chart.h). IL has a single
-// node of its own: kResult, a variable without a name whose type is that of the values assigned
-// to it. Damaged input still gives a tree: kError nodes stand where nothing could be understood,
-// and a diagnostic was reported for each.
+// Immutable once parsing ends. Ladder, FBD and IL lower to the same nodes (diagrams are kept
+// beside them, for tools); sequential function charts are a model of their own (chart.h). The
+// former have a single node of their own: kResult, a variable without a name whose type is that
+// of the values assigned to it. Damaged input still gives a tree: kError nodes stand where nothing
+// could be understood, and a diagnostic was reported for each.
 //
 // Attributes (`{attribute 'name' := 'value'}`) stay with the declaration that they
 // stand before. Namespaces do not nest in the tree: each declaration names its scope.
@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "frontend/network/network.h"
 #include "frontend/parse/chart.h"
 #include "frontend/parse/code_nodes.h"
 
@@ -153,6 +154,7 @@ enum class PouKind : uint8_t {
 };
 
 inline constexpr uint32_t kNoChart = 0xffffffffu;
+inline constexpr uint32_t kNoDiagram = 0xffffffffu;
 
 struct PouDecl {
   PouKind kind = PouKind::kFunction;
@@ -160,9 +162,10 @@ struct PouDecl {
   Range32 qualifiers;  // kMockFunction: A, B of A.B.Name; Tree::names
   SpecId result;       // functions, methods, properties; may be invalid
   std::vector<VarBlock> blocks;
-  Range32 body;               // Tree::stmt_lists
-  uint32_t chart = kNoChart;  // Tree::charts: the body is that chart, `body` is empty
-  base::SourceSpan span;      // PROGRAM ... END_PROGRAM
+  Range32 body;                   // Tree::stmt_lists
+  uint32_t chart = kNoChart;      // Tree::charts: the body is that chart, `body` is empty
+  uint32_t diagram = kNoDiagram;  // Tree::diagrams: what `body` was made of
+  base::SourceSpan span;          // PROGRAM ... END_PROGRAM
   Access access = Access::kDefault;
   bool is_abstract = false;
   bool is_final = false;
@@ -243,6 +246,7 @@ struct Tree {
   std::vector<KeptResult> results;  // of kResult
   std::vector<Scope> scopes;
   std::vector<Chart> charts;
+  std::vector<network::Body> diagrams;
   std::deque<std::string> made_names;  // of implied variables, which no source spells
 
   std::vector<TypeDecl> types;

@@ -8,6 +8,12 @@ namespace {
 
 std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
+// C of A.B.C
+std::string_view last_name(const Name& path) {
+  size_t dot = path.text.rfind('.');
+  return dot == std::string_view::npos ? path.text : path.text.substr(dot + 1);
+}
+
 }  // namespace
 
 Callee Sema::callee(const Expr& call) {
@@ -52,6 +58,14 @@ Callee Sema::callee(const Expr& call) {
     error(DiagnosticCode::kNotCallable, head.span,
           quoted(block->decl->name) + " is a class and has no body", "call a method of it");
     return {};
+  }
+  if (std::string_view type = last_name(call.prefix);
+      !type.empty() && !ir::same_name(type, block->decl->name.text) && !types_.contains(type)) {
+    error(
+        DiagnosticCode::kOtherBoxType, call.prefix.span,
+        "the instance is a " + quoted(block->decl->name) + ", its box says " + quoted(call.prefix),
+        "write " + quoted(block->decl->name) + ", or declare the instance as " +
+            quoted(call.prefix));
   }
   Callee callee;
   callee.kind = Callee::Kind::kInstance;

@@ -1,0 +1,455 @@
+#include "frontend/fbd/read.h"
+
+#include <optional>
+#include <unordered_map>
+
+#include "frontend/network/comments.h"
+#include "frontend/network/pins.h"
+#include "ir/types/types.h"
+
+namespace frontend::fbd {
+namespace {
+
+using Code = base::DiagnosticCode;
+using network::Cursor;
+using network::Element;
+using network::Input;
+using network::Kind;
+using network::Link;
+using network::Modifier;
+using network::Pin;
+using network::PinValue;
+using network::Text;
+
+constexpr uint32_t kOperand = 0xffffffffu;  // Use::pin: the element has but one input
+
+class Reader {
+ public:
+  Reader(std::string_view text, base::SourcePos begin, base::Diagnostics& diagnostics)
+      : text_(text), begin_(begin), cursor_(text, begin, diagnostics), diagnostics_(diagnostics) {}
+
+  network::Body run() {
+    body_.language = network::Language::kFbd;
+    body_.span = {begin_, {begin_.offset + static_cast<uint32_t>(text_.size())}};
+    body_.networks.emplace_back();
+    while (!cursor_.at_end()) {
+      take_comments(cursor_.token().begin);
+      size_t before = cursor_.place();
+      row();
+      end_row(before);
+    }
+    take_comments(begin_.offset + static_cast<uint32_t>(text_.size()));
+    attach(false);
+    finish_network();
+    return std::move(body_);
+  }
+
+ private:
+  struct Box {
+    uint32_t element = 0;
+    bool wire = false;
+    Text name;
+  };
+  struct Use {  // an operand that is linked when all boxes are known
+    uint32_t element = 0;
+    uint32_t input = 0;
+    Text operand;
+  };
+
+  network::Network& current() { return body_.networks.back(); }
+
+  void bad(std::string text, std::string fix =
+                                 "write a box `name : TYPE(pin := operand);`, "
+                                 "`WIRE name := F(a, b);` or `variable := wire;`") {
+    cursor_.report(Code::kBadDiagramRow, cursor_.token().span(), std::move(text), std::move(fix));
+  }
+
+  // Comments up to there belong to the next row, or to the last one when they stand in its line.
+  void take_comments(uint32_t until) {
+    size_t from = behind_;
+    size_t to = until - begin_.offset;
+    behind_ = to;
+    if (from >= to) return;
+    for (network::Comment& comment : network::comments_in(text_.substr(from, to - from))) {
+      bool same_line = text_.substr(from, comment.begin).find('\n') == std::string_view::npos;
+      if (same_line && last_row_ != kOperand) {
+        add_comment(current().elements[last_row_].comment, comment.text);
+      } else {
+        pending_.push_back(std::move(comment.text));
+      }
+    }
+  }
+  static void add_comment(std::string& to, const std::string& comment) {
+    if (!to.empty()) to += '\n';
+    to += comment;
+  }
+  // Gives what is pending to the row that was read, or to the network.
+  void attach(bool row) {
+    for (std::string& comment : pending_) {
+      if (row && last_row_ != kOperand) {
+        add_comment(current().elements[last_row_].comment, comment);
+      } else {
+        current().comments.push_back(std::move(comment));
+      }
+    }
+    pending_.clear();
+  }
+
+  void row() {
+    if (cursor_.accept(TokenKind::kSemicolon)) return;
+    if (cursor_.is_word("JMP") && is_name(cursor_.kind(1))) return jump();
+    if (cursor_.kind() == TokenKind::kReturn) return leave();
+    if (cursor_.is_word("WIRE") && is_name(cursor_.kind(1))) return wire();
+    if (size_t colon = colon_of_row(); colon != 0) {
+      return is_box(colon) ? block(colon) : label(colon);
+    }
+    assignment();
+  }
+
+  // Rows end with `;`, labels with their `:`. What is left of a bad row is skipped.
+  void end_row(size_t before) {
+    if (!label_) {
+      if (cursor_.good() && !cursor_.accept(TokenKind::kSemicolon) && cursor_.place() != before) {
+        bad("expected `;` at the end of the row, found " + cursor_.found(), "write `;`");
+      }
+      if (!cursor_.good()) {
+        while (!cursor_.at_end() && !cursor_.accept(TokenKind::kSemicolon)) cursor_.take();
+      }
+      if (cursor_.place() == before) cursor_.take();
+    }
+    cursor_.forget();
+    const Token& last = cursor_.token_before();
+    size_t row = behind_;
+    behind_ = last.begin + last.length - begin_.offset;
+    for (network::Comment& comment : network::comments_in(text_.substr(row, behind_ - row))) {
+      pending_.push_back(std::move(comment.text));  // inside of the row
+    }
+    attach(!label_);
+    label_ = false;
+  }
+
+  // The place of the `:` that the row has before any `:=`; 0: none.
+  size_t colon_of_row() {
+    size_t begin = cursor_.place();
+    size_t found = 0;
+    for (uint32_t depth = 0; !cursor_.at_end() && found == 0; cursor_.take()) {
+      TokenKind k = cursor_.kind();
+      if (k == TokenKind::kSemicolon || (k == TokenKind::kAssign && depth == 0)) break;
+      if (k == TokenKind::kLeftBracket || k == TokenKind::kLeftParen) ++depth;
+      if (k == TokenKind::kRightBracket || k == TokenKind::kRightParen) depth -= depth > 0 ? 1 : 0;
+      if (k == TokenKind::kColon && depth == 0) found = cursor_.place();
+    }
+    cursor_.go_to(begin);
+    return found;
+  }
+
+  // Behind the `:` of a box stand a type and its parenthesis.
+  bool is_box(size_t colon) {
+    size_t begin = cursor_.place();
+    cursor_.go_to(colon + 1);
+    bool box = !cursor_.name().empty() && cursor_.kind() == TokenKind::kLeftParen;
+    cursor_.go_to(begin);
+    return box;
+  }
+
+  void label(size_t colon) {
+    size_t begin = cursor_.place();
+    Text name = cursor_.name();
+    if (cursor_.place() != colon || name.empty()) {
+      bad("this is neither a label nor a box");
+      return;
+    }
+    finish_network();
+    body_.networks.emplace_back();
+    cursor_.take();
+    current().label = std::move(name);
+    current().span = cursor_.span_from(begin);
+    label_ = true;
+    last_row_ = kOperand;
+    attach(false);
+  }
+
+  uint32_t add(Element element, size_t begin) {
+    element.span = cursor_.span_from(begin);
+    current().elements.push_back(std::move(element));
+    return last_row_ = static_cast<uint32_t>(current().elements.size() - 1);
+  }
+
+  void condition(Element& element, Text& operand) {
+    element.inputs.resize(1);
+    if (!cursor_.is_word("IF") && cursor_.kind() != TokenKind::kIf) {
+      operand.text = "TRUE";
+      operand.span = cursor_.token().span();
+      return;
+    }
+    cursor_.take();
+    PinValue value = network::read_value(cursor_, TokenKind::kSemicolon);
+    if (value.operand.empty()) bad("there is no operand behind IF");
+    element.inputs[0].modifier = value.modifier;
+    operand = std::move(value.operand);
+  }
+
+  void conditional(Kind kind, Text name, size_t begin) {
+    Element element;
+    element.kind = kind;
+    element.operand = std::move(name);
+    Text operand;
+    condition(element, operand);
+    connect(add_with_source(std::move(element), {operand}, begin), 0, operand);
+  }
+  void jump() {
+    size_t begin = cursor_.place();
+    cursor_.take();
+    conditional(Kind::kJump, cursor_.name(), begin);
+  }
+  void leave() {
+    size_t begin = cursor_.place();
+    cursor_.take();
+    conditional(Kind::kReturn, {}, begin);
+  }
+
+  // inst : TYPE(pins)
+  void block(size_t colon) {
+    size_t begin = cursor_.place();
+    while (cursor_.place() < colon) cursor_.take();
+    Element element;
+    element.operand = cursor_.text_from(begin);
+    cursor_.take();
+    Text name = element.operand;
+    finish_block(std::move(element), begin, name, false);
+  }
+
+  // WIRE name := F(pins)
+  void wire() {
+    size_t begin = cursor_.place();
+    cursor_.take();
+    Text name = cursor_.name();
+    if (!cursor_.accept(TokenKind::kAssign)) return bad("expected `:=` behind the wire's name");
+    size_t value = cursor_.place();
+    bool call = !cursor_.name().empty() && cursor_.kind() == TokenKind::kLeftParen;
+    cursor_.go_to(value);
+    if (!call)
+      return bad("a wire comes from the box of a function", "write `WIRE name := F(a, b);`");
+    Element element;
+    element.outputs.emplace_back();
+    finish_block(std::move(element), begin, name, true);
+  }
+
+  void finish_block(Element element, size_t begin, const Text& name, bool wire) {
+    element.kind = Kind::kBlock;
+    element.type = cursor_.name();
+    cursor_.take();  // the parenthesis
+    std::vector<Pin> pins = network::read_pins(cursor_, TokenKind::kRightParen);
+    if (cursor_.good() && !cursor_.accept(TokenKind::kRightParen)) {
+      bad("expected `)` behind the pins, found " + cursor_.found(), "write `)`");
+    }
+    if (!cursor_.good()) return;
+    std::vector<Text> operands;
+    for (const Pin& pin : pins) {
+      if (pin.output || pin.power) {
+        cursor_.report(Code::kBadDiagramRow, pin.span,
+                       pin.output ? "outputs are connected in rows of their own"
+                                  : "`_` is a pin of ladder; here operands have names",
+                       pin.output ? "write `variable := box.output;` below the box"
+                                  : "write a wire, an output of a box or an expression");
+        return;
+      }
+      operands.push_back(pin.value.operand);
+      Input input;
+      input.name = pin.name.text;
+      input.modifier = pin.value.modifier;
+      input.span = pin.span;
+      element.inputs.push_back(std::move(input));
+    }
+    uint32_t number = add_with_source(std::move(element), operands, begin);
+    for (uint32_t i = 0; i < operands.size(); ++i) connect(number, i, operands[i]);
+    std::string key = ir::fold_name(name.text);
+    auto [found, fresh] = boxes_.emplace(std::move(key), Box{number, wire, name});
+    if (!fresh && (wire || found->second.wire)) {
+      diagnostics_.add(Code::kBoxTwice, name.span, "there is another box named `" + name.text + "`",
+                       "choose another name");
+    }
+  }
+
+  // v := operand;  v S= operand;  v R= operand;
+  void assignment() {
+    size_t begin = cursor_.place();
+    Element element;
+    element.kind = Kind::kSink;
+    while (!cursor_.at_end() && cursor_.kind() != TokenKind::kAssign &&
+           cursor_.kind() != TokenKind::kSemicolon) {
+      bool set = cursor_.is_word("S"), reset = cursor_.is_word("R");
+      if ((set || reset) && cursor_.kind(1) == TokenKind::kEqual && cursor_.place() != begin) {
+        element.modifier = set ? Modifier::kSet : Modifier::kReset;
+        break;
+      }
+      cursor_.take();
+    }
+    element.operand = cursor_.text_from(begin);
+    if (element.modifier != Modifier::kNone) cursor_.take();
+    if (cursor_.place() == begin || cursor_.at_end() || cursor_.kind() == TokenKind::kSemicolon) {
+      cursor_.go_to(begin);
+      return bad("this is no row of a diagram");
+    }
+    cursor_.take();
+    PinValue value = network::read_value(cursor_, TokenKind::kSemicolon);
+    if (value.operand.empty()) return bad("there is no operand behind `:=`");
+    element.inputs.resize(1);
+    element.inputs[0].modifier = value.modifier;
+    element.inputs[0].span = value.operand.span;
+    connect(add_with_source(std::move(element), {value.operand}, begin), 0, value.operand);
+  }
+
+  // Sources of what is no box stand in front of the element; which those are is known at the end
+  // of the network, so every operand gets one, and those of boxes are dropped then.
+  uint32_t add_with_source(Element element, const std::vector<Text>& operands, size_t begin) {
+    for (const Text& operand : operands) {
+      if (operand.empty()) continue;
+      Element source;
+      source.kind = Kind::kSource;
+      source.operand = operand;
+      source.outputs.resize(1);
+      source.span = operand.span;
+      current().elements.push_back(std::move(source));
+    }
+    return add(std::move(element), begin);
+  }
+  void connect(uint32_t element, uint32_t input, const Text& operand) {
+    if (!operand.empty()) uses_.push_back({element, input, operand});
+  }
+
+  // Links operands to boxes or to their sources, and drops sources of boxes.
+  void finish_network() {
+    std::vector<Element>& elements = current().elements;
+    std::vector<bool> dropped(elements.size());
+    for (const Use& use : uses_) {
+      uint32_t source = source_of(use);
+      auto link = link_of(use);
+      if (link) dropped[source] = true;
+      elements[use.element].inputs[use.input].from.push_back(link.value_or(Link{source, 0}));
+    }
+    std::vector<uint32_t> numbers(elements.size());
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < elements.size(); ++i) {
+      numbers[i] = kept;
+      if (dropped[i]) continue;
+      if (kept != i) elements[kept] = std::move(elements[i]);
+      ++kept;
+    }
+    elements.resize(kept);
+    for (Element& element : elements) {
+      for (Input& input : element.inputs) {
+        for (Link& link : input.from) link.element = numbers[link.element];
+      }
+    }
+    boxes_.clear();
+    uses_.clear();
+  }
+
+  // The source that add_with_source() has made for this operand.
+  uint32_t source_of(const Use& use) {
+    const std::vector<Element>& elements = current().elements;
+    uint32_t at = use.element;
+    while (at-- > 0) {
+      bool same =
+          elements[at].kind == Kind::kSource && elements[at].span.begin == use.operand.span.begin;
+      if (same) return at;
+    }
+    return 0;
+  }
+
+  std::optional<Link> link_of(const Use& use) {
+    base::Diagnostics unheard;
+    Cursor operand(use.operand.text, {0}, unheard);
+    std::string name;
+    Box* box = nullptr;
+    std::string output;
+    size_t behind = 0;
+    // The longest beginning that names a box.
+    for (; !operand.at_end(); operand.take()) {
+      const Token& token = operand.token();
+      std::string_view whole = use.operand.text;
+      auto found = boxes_.find(ir::fold_name(whole.substr(0, token.begin + token.length)));
+      if (found == boxes_.end()) continue;
+      box = &found->second;
+      behind = token.begin + token.length;
+    }
+    if (box == nullptr) {
+      check_no_box(use);
+      return std::nullopt;
+    }
+    std::string_view rest = std::string_view(use.operand.text).substr(behind);
+    Element& element = current().elements[box->element];
+    if (rest.empty()) return whole_box(use, *box);
+    bool member = rest[0] == '.' && rest.size() > 1 && is_plain_name(rest.substr(1));
+    if (!member) {
+      check_no_box(use);
+      return std::nullopt;
+    }
+    if (box->wire && box->element >= use.element) return feedback(use, *box);
+    return Link{box->element, output_number(element, rest.substr(1))};
+  }
+
+  static bool is_plain_name(std::string_view text) {
+    return text.find_first_of(".[](){}^ +-*/<>=,;:'\"") == std::string_view::npos;
+  }
+
+  std::optional<Link> whole_box(const Use& use, const Box& box) {
+    if (!box.wire) return std::nullopt;  // the instance itself, as an argument
+    if (box.element >= use.element) return feedback(use, box);
+    return Link{box.element, 0};
+  }
+
+  std::optional<Link> feedback(const Use& use, const Box& box) {
+    diagnostics_.add(Code::kFeedback, use.operand.span,
+                     "`" + box.name.text + "` is used above its box, and a wire keeps nothing",
+                     "give it to a variable, and use that here");
+    return std::nullopt;
+  }
+
+  // Wires inside of an expression have no value that the expression could use.
+  void check_no_box(const Use& use) {
+    base::Diagnostics unheard;
+    Cursor operand(use.operand.text, {0}, unheard);
+    bool member = false;
+    for (; !operand.at_end(); operand.take()) {
+      bool named = is_name(operand.kind()) && !member;
+      member = operand.kind() == TokenKind::kDot;
+      if (!named) continue;
+      auto found = boxes_.find(ir::fold_name(operand.text(operand.token())));
+      if (found == boxes_.end() || !found->second.wire) continue;
+      diagnostics_.add(Code::kBoxInExpression, use.operand.span,
+                       "the wire `" + found->second.name.text + "` stands in an expression",
+                       "make a box of the expression: `WIRE name := F(...);`");
+      return;
+    }
+  }
+
+  static uint32_t output_number(Element& element, std::string_view name) {
+    for (uint32_t i = 0; i < element.outputs.size(); ++i) {
+      if (ir::same_name(element.outputs[i].name, name)) return i;
+    }
+    element.outputs.push_back({std::string(name), false});
+    return static_cast<uint32_t>(element.outputs.size() - 1);
+  }
+
+  std::string_view text_;
+  base::SourcePos begin_;
+  Cursor cursor_;
+  base::Diagnostics& diagnostics_;
+  network::Body body_;
+  std::unordered_map<std::string, Box> boxes_;  // of the current network, by folded name
+  std::vector<Use> uses_;
+  std::vector<std::string> pending_;  // comments in front of the next row
+  size_t behind_ = 0;                 // the last row, in text_
+  uint32_t last_row_ = kOperand;      // its element
+  bool label_ = false;                // the last row is a label
+};
+
+}  // namespace
+
+network::Body read(std::string_view text, base::SourcePos begin, base::Diagnostics& diagnostics) {
+  return Reader(text, begin.valid() ? begin : base::SourcePos{0}, diagnostics).run();
+}
+
+}  // namespace frontend::fbd

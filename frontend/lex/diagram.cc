@@ -1,0 +1,51 @@
+// The text forms of ladder and FBD have readers of their own (ladder/read.h, fbd/read.h). Behind
+// LADDER or FBD in a line of its own, everything up to its end gives no tokens.
+#include "frontend/lex/characters.h"
+#include "frontend/lex/scanner.h"
+#include "ir/types/types.h"
+
+namespace frontend {
+namespace {
+
+constexpr std::string_view kEnd = "END_";
+
+size_t behind_blanks(std::string_view text, size_t at) {
+  while (at < text.size() && is_space(text[at]) && text[at] != '\n') ++at;
+  return at;
+}
+
+bool begins_line(std::string_view text, size_t at) {
+  while (at > 0 && is_space(text[at - 1]) && text[at - 1] != '\n') --at;
+  return at == 0 || text[at - 1] == '\n';
+}
+
+bool ends_line(std::string_view text, size_t at) {
+  at = behind_blanks(text, at);
+  std::string_view rest = text.substr(at, 2);
+  return rest.empty() || rest[0] == '\n' || rest == "//" || rest == "(*" || rest == "/*";
+}
+
+// The next line that begins with END_; no row of a diagram does.
+size_t next_end(std::string_view text, size_t at) {
+  while ((at = text.find('\n', at)) != std::string_view::npos) {
+    at = behind_blanks(text, at + 1);
+    if (ir::same_name(text.substr(at, kEnd.size()), kEnd)) return at;
+  }
+  return text.size();
+}
+
+}  // namespace
+
+// These words are names elsewhere. Where the end is missing, a rung tells that a drawing began.
+void Scanner::skip_diagram(size_t word, TokenKind kind) {
+  if (!begins_line(text_, word) || !ends_line(text_, at_)) return;
+  size_t end = next_end(text_, at_);
+  size_t name = end + kEnd.size();
+  std::string_view begun = text_.substr(word, at_ - word);
+  bool closed = name < text_.size() && ir::same_name(text_.substr(name, begun.size()), begun);
+  std::string_view between = text_.substr(at_, end - at_);
+  bool drawn = kind == TokenKind::kLadder && between.find("|--") != std::string_view::npos;
+  if (closed || drawn) at_ = end;
+}
+
+}  // namespace frontend

@@ -1,0 +1,233 @@
+#include "frontend/parse/diagram.h"
+
+#include <algorithm>
+
+#include "ir/types/types.h"
+
+namespace frontend {
+
+using network::Kind;
+using network::Modifier;
+
+void Parser::Diagram::run(const network::Body& body) {
+  for (const network::Network& each : body.networks) network(each);
+  if (kept_.vars.empty()) return;
+  kept_.section = pou_.kind == PouKind::kMethod ? VarSection::kInstance : VarSection::kLocal;
+  kept_.scope = p_.scope_;
+  kept_.span = body.span;
+  pou_.blocks.push_back(std::move(kept_));
+}
+
+void Parser::Diagram::network(const network::Network& network) {
+  network_ = &network;
+  if (!network.label.empty()) {
+    Stmt label;
+    label.kind = StmtKind::kLabel;
+    label.name = {made(network.label.text), network.label.span};
+    emit(label, network.label.span);
+  }
+  count_uses();
+  for (uint32_t i = 0; i < network.elements.size(); ++i) {
+    if (!done_[i]) element(i);
+  }
+}
+
+void Parser::Diagram::count_uses() {
+  const size_t count = network_->elements.size();
+  outputs_.assign(count, {});
+  conditions_.assign(count, {});
+  done_.assign(count, false);
+  joins_.clear();
+  for (size_t i = 0; i < count; ++i) outputs_[i].resize(network_->elements[i].outputs.size());
+  for (const Element& element : network_->elements) {
+    for (const network::Input& input : element.inputs) {
+      for (network::Link link : input.from) ++outputs_[link.element][link.output].uses;
+    }
+  }
+}
+
+void Parser::Diagram::element(uint32_t number) {
+  const Element& element = network_->elements[number];
+  switch (element.kind) {
+    case Kind::kContact:
+      return contact(number, element);
+    case Kind::kCoil:
+      return coil(number, element);
+    case Kind::kSink:
+      return sink(element);
+    case Kind::kBlock:
+      return block(number, element);
+    case Kind::kJump:
+    case Kind::kReturn:
+      return jump(element);
+    case Kind::kLeftRail:
+    case Kind::kRightRail:
+    case Kind::kSource:
+      return;
+  }
+}
+
+void Parser::Diagram::contact(uint32_t number, const Element& element) {
+  Value left = linked(element.inputs[0]);
+  ExprId value = parse(element.operand);
+  if (element.modifier == Modifier::kNegated) value = negated(value, element.span);
+  value = edge(value, element.modifier, element.operand.text, element.span);
+  if (!left.expr.valid()) left.expr = boolean(false, element.span);
+  if (!left.power) value = binary(BinaryOp::kAnd, left.expr, value, element.span);
+  if (outputs_[number][0].uses > 0) outputs_[number][0].kept = keep(value, element.span);
+}
+
+void Parser::Diagram::coil(uint32_t number, const Element& element) {
+  ExprId value = linked(element.inputs[0]).expr;
+  if (!value.valid()) value = boolean(false, element.span);
+  if (!element.outputs.empty() && outputs_[number][0].uses > 0) {
+    value = keep(value, element.span);
+    outputs_[number][0].kept = value;
+  }
+  assign(element, value, element.modifier);
+}
+
+void Parser::Diagram::sink(const Element& element) {
+  ExprId value = input(element.inputs[0], element.operand.text).expr;
+  if (value.valid()) assign(element, value, element.modifier);
+}
+
+// What a block with EN gives is stored only when it ran.
+void Parser::Diagram::assign(const Element& element, ExprId value, Modifier modifier) {
+  AssignOp op = modifier == Modifier::kSet     ? AssignOp::kSet
+                : modifier == Modifier::kReset ? AssignOp::kReset
+                                               : AssignOp::kAssign;
+  if (modifier == Modifier::kNegated) value = negated(value, element.span);
+  value = edge(value, modifier, element.operand.text + "#coil", element.span);
+  Stmt stmt;
+  stmt.kind = StmtKind::kAssign;
+  stmt.target = parse(element.operand);
+  stmt.value = value;
+  stmt.assign = op;
+  stmt.span = element.span;
+  ExprId enabled = enabled_by(element);
+  if (enabled.valid()) {
+    emit_if(copy(enabled, element.span), stmt, element.span);
+  } else {
+    emit(stmt, element.span);
+  }
+}
+
+ExprId Parser::Diagram::enabled_by(const Element& element) const {
+  if (element.kind != Kind::kSink) return {};
+  for (network::Link link : element.inputs[0].from) {
+    const network::Output& from = network_->elements[link.element].outputs[link.output];
+    bool eno = ir::same_name(from.name, "ENO");
+    if (conditions_[link.element].valid() && !eno) return conditions_[link.element];
+  }
+  return {};
+}
+
+void Parser::Diagram::jump(const Element& element) {
+  Stmt stmt;
+  stmt.kind = element.kind == Kind::kJump ? StmtKind::kJump : StmtKind::kReturn;
+  stmt.span = element.span;
+  stmt.name = {made(element.operand.text), element.operand.span};
+  Value condition = input(element.inputs[0], element.operand.text);
+  if (!condition.expr.valid()) condition.expr = boolean(false, element.span);
+  if (condition.power) return emit(stmt, element.span);
+  emit_if(condition.expr, stmt, element.span);
+}
+
+// Everything that is linked, as one value.
+Parser::Diagram::Value Parser::Diagram::linked(const network::Input& input) {
+  Value out;
+  std::vector<std::pair<uint32_t, uint32_t>> links;
+  for (network::Link link : input.from) {
+    if (network_->elements[link.element].kind == Kind::kLeftRail) {
+      return {boolean(true, input.span), true};
+    }
+    links.emplace_back(link.element, link.output);
+  }
+  if (links.size() == 1) {
+    out.expr = output(input.from[0]);
+  } else if (!links.empty()) {
+    ExprId& join = joins_[links];
+    if (!join.valid()) {
+      ExprId value = output(input.from[0]);
+      for (size_t i = 1; i < input.from.size(); ++i) {
+        value = binary(BinaryOp::kOr, value, output(input.from[i]), input.span);
+      }
+      join = keep(value, input.span);
+    }
+    out.expr = copy(join, input.span);
+  }
+  return out;
+}
+
+Parser::Diagram::Value Parser::Diagram::input(const network::Input& input,
+                                              const std::string& owner) {
+  Value out = linked(input);
+  if (!out.expr.valid() || input.modifier == Modifier::kNone) return out;
+  if (input.modifier == Modifier::kNegated) out.expr = negated(out.expr, input.span);
+  std::string of = owner + (input.name.empty() ? "" : "." + input.name);
+  out.expr = edge(out.expr, input.modifier, of, input.span);
+  out.power = false;
+  return out;
+}
+
+ExprId Parser::Diagram::output(network::Link link) {
+  const Element& from = network_->elements[link.element];
+  const network::Output& output = from.outputs[link.output];
+  ExprId value;
+  if (from.kind == Kind::kSource) {
+    value = parse(from.operand);
+  } else if (ExprId kept = outputs_[link.element][link.output].kept; kept.valid()) {
+    value = copy(kept, from.span);
+  } else if (from.kind == Kind::kBlock && !from.operand.empty()) {
+    value = member(parse(from.operand), output.name, from.span);
+  } else {
+    value = boolean(false, from.span);  // reported by the reader
+  }
+  return output.negated ? negated(value, from.span) : value;
+}
+
+// TRUE in the scan in which `value` rises or falls.
+ExprId Parser::Diagram::edge(ExprId value, Modifier modifier, const std::string& of,
+                             base::SourceSpan span) {
+  if (modifier != Modifier::kRising && modifier != Modifier::kFalling) return value;
+  if (pou_.kind == PouKind::kFunction) {
+    p_.note_only(Code::kNoEdgeMemory, span,
+                 "a function keeps nothing from call to call, so it sees no edge",
+                 "make it a FUNCTION_BLOCK, or give the edge as an input");
+    return value;
+  }
+  Name last = memory(of, modifier, span);
+  ExprId now = keep(value, span);
+  ExprId before = name(last);
+  bool rising = modifier == Modifier::kRising;
+  ExprId changed = rising ? binary(BinaryOp::kAnd, copy(now, span), negated(before, span), span)
+                          : binary(BinaryOp::kAnd, negated(copy(now, span), span), before, span);
+  ExprId seen = keep(changed, span);
+  emit_assign(name(last), copy(now, span), AssignOp::kAssign, span);
+  return seen;
+}
+
+Name Parser::Diagram::memory(const std::string& of, Modifier modifier, base::SourceSpan span) {
+  std::string stem;
+  if (pou_.kind == PouKind::kAction) stem = std::string(pou_.name.text) + '.';
+  stem += of + (modifier == Modifier::kRising ? "#rising" : "#falling");
+  std::string text = stem;
+  auto taken = [&] {
+    return std::find(memories_.begin(), memories_.end(), ir::fold_name(text)) != memories_.end();
+  };
+  for (uint32_t number = 2; taken(); ++number) text = stem + std::to_string(number);
+  memories_.push_back(ir::fold_name(text));
+  Spec spec;
+  spec.kind = SpecKind::kNamed;
+  spec.name = {"BOOL", span};
+  spec.span = span;
+  VarDecl decl;
+  decl.names = {{made(std::move(text)), span}};
+  decl.spec = p_.add_spec(std::move(spec));
+  decl.span = span;
+  kept_.vars.push_back(decl);
+  return decl.names[0];
+}
+
+}  // namespace frontend

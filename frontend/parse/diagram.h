@@ -1,0 +1,88 @@
+// Inside of the parser: bodies in ladder and FBD. Their readers make networks (network/network.h);
+// here statements are made of them, element by element in the order of execution. Power that
+// arrives anywhere is a kResult, as in instruction lists: a value without a variable. What an edge
+// remembers is a variable `operand#rising` or `operand#falling` of the POU, found again by name in
+// an online change. Everything here is syntax: types are sema's.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "frontend/network/network.h"
+#include "frontend/parse/parser.h"
+
+namespace frontend {
+
+class Parser::Diagram {
+ public:
+  Diagram(Parser& parser, PouDecl& pou) : p_(parser), tree_(parser.tree_), pou_(pou) {}
+  void run(const network::Body& body);  // adds statements, and variables to the POU
+
+ private:
+  using Element = network::Element;
+  struct Value {
+    ExprId expr;         // invalid: not connected
+    bool power = false;  // connected with the left rail: TRUE
+  };
+  struct Output {
+    uint32_t uses = 0;
+    ExprId kept;  // a kResult; invalid: read from the instance, or not made yet
+  };
+  struct Enabled {     // a block with EN
+    ExprId condition;  // kept; invalid: always
+  };
+
+  // --- diagram.cc
+  void network(const network::Network& network);
+  void count_uses();
+  void element(uint32_t number);
+  void contact(uint32_t number, const Element& element);
+  void coil(uint32_t number, const Element& element);
+  void sink(const Element& element);
+  void assign(const Element& element, ExprId value, network::Modifier modifier);
+  void jump(const Element& element);
+  Value input(const network::Input& input, const std::string& owner);
+  Value linked(const network::Input& input);
+  ExprId output(network::Link link);
+  ExprId edge(ExprId value, network::Modifier modifier, const std::string& of,
+              base::SourceSpan span);
+  Name memory(const std::string& of, network::Modifier modifier, base::SourceSpan span);
+  ExprId enabled_by(const Element& element) const;
+
+  // --- diagram_block.cc
+  void block(uint32_t number, const Element& element);
+  ExprId callee(const Element& element);
+  Range32 arguments(uint32_t number, const Element& element, Value* enable);
+  void add_eno(uint32_t number, const Element& element);
+  void add_outputs(uint32_t number, const Element& element);
+  const Element* only_sink(network::Link link) const;
+  bool is_result(const Element& element, uint32_t output) const;
+
+  // --- expressions and statements
+  ExprId parse(const network::Text& text);
+  ExprId boolean(bool value, base::SourceSpan span);
+  ExprId name(const Name& name);
+  ExprId negated(ExprId operand, base::SourceSpan span);
+  ExprId binary(BinaryOp op, ExprId left, ExprId right, base::SourceSpan span);
+  ExprId member(ExprId operand, const std::string& name, base::SourceSpan span);
+  ExprId keep(ExprId value, base::SourceSpan span);
+  ExprId new_result(ExprId value, base::SourceSpan span);
+  ExprId copy(ExprId result, base::SourceSpan span);
+  void emit(Stmt stmt, base::SourceSpan span);
+  void emit_assign(ExprId target, ExprId value, AssignOp op, base::SourceSpan span);
+  void emit_if(ExprId condition, const Stmt& then, base::SourceSpan span);
+  std::string_view made(std::string text);
+
+  Parser& p_;
+  Tree& tree_;
+  PouDecl& pou_;
+  const network::Network* network_ = nullptr;
+  std::vector<std::vector<Output>> outputs_;                            // by element and output
+  std::map<std::vector<std::pair<uint32_t, uint32_t>>, ExprId> joins_;  // several links, kept
+  std::vector<ExprId> conditions_;     // by element: when its outputs are stored
+  std::vector<bool> done_;             // sinks that a call has written
+  std::vector<std::string> memories_;  // folded names
+  VarBlock kept_;                      // what edges remember
+};
+
+}  // namespace frontend

@@ -1,0 +1,256 @@
+// Boxes of a diagram: calls of functions and function blocks.
+#include "frontend/parse/diagram.h"
+#include "ir/types/types.h"
+
+namespace frontend {
+
+using network::Kind;
+using network::Link;
+
+bool Parser::Diagram::is_result(const Element& element, uint32_t output) const {
+  if (!element.operand.empty()) return false;
+  for (uint32_t i = 0; i < output; ++i) {
+    if (!ir::same_name(element.outputs[i].name, "ENO")) return false;
+  }
+  return !ir::same_name(element.outputs[output].name, "ENO");
+}
+
+// A function block's outputs are read from its instance; a function's are kept.
+void Parser::Diagram::block(uint32_t number, const Element& element) {
+  bool function = element.operand.empty();
+  Expr call;
+  call.kind = ExprKind::kCall;
+  call.span = element.span;
+  call.operand = callee(element);
+  Value enable;
+  call.args = arguments(number, element, &enable);
+  if (!function) call.prefix = {made(element.type.text), element.type.span};
+  ExprId value = p_.add_expression(call);
+  bool result = false;
+  for (uint32_t i = 0; i < element.outputs.size(); ++i) {
+    if (!is_result(element, i) || outputs_[number][i].uses == 0) continue;
+    outputs_[number][i].kept = keep(value, element.span);
+    result = true;
+  }
+  if (!result) {
+    Stmt stmt;
+    stmt.kind = StmtKind::kCall;
+    stmt.value = value;
+    emit(stmt, element.span);
+  }
+  if (!enable.expr.valid() || enable.power) return;
+  conditions_[number] = enable.expr;
+  for (uint32_t i = 0; i < element.outputs.size(); ++i) {
+    bool eno = ir::same_name(element.outputs[i].name, "ENO");
+    if (eno && outputs_[number][i].kept.valid()) conditions_[number] = outputs_[number][i].kept;
+  }
+}
+
+ExprId Parser::Diagram::callee(const Element& element) {
+  if (!element.operand.empty()) return parse(element.operand);
+  if (element.type.text.find('.') != std::string::npos) return parse(element.type);
+  return name({made(element.type.text), element.type.span});
+}
+
+Range32 Parser::Diagram::arguments(uint32_t number, const Element& element, Value* enable) {
+  const std::string owner = element.operand.empty() ? element.type.text : element.operand.text;
+  std::vector<Arg> args;
+  for (const network::Input& each : element.inputs) {
+    Value value = input(each, owner);
+    if (!value.expr.valid()) continue;
+    if (ir::same_name(each.name, "EN")) {
+      if (value.power) continue;  // always
+      value.expr = keep(value.expr, each.span);
+      *enable = value;
+      value.expr = copy(value.expr, each.span);
+    }
+    Arg arg;
+    arg.span = each.span;
+    if (!each.name.empty()) arg.name = {made(each.name), each.span};
+    arg.value = value.expr;
+    args.push_back(arg);
+  }
+  size_t mark = p_.arg_stack_.size();
+  for (const Arg& arg : args) p_.arg_stack_.push_back(arg);
+  add_eno(number, element);
+  if (element.operand.empty()) add_outputs(number, element);
+  return move_tail(p_.arg_stack_, mark, tree_.args);
+}
+
+void Parser::Diagram::add_eno(uint32_t number, const Element& element) {
+  for (uint32_t i = 0; i < element.outputs.size(); ++i) {
+    if (!ir::same_name(element.outputs[i].name, "ENO") || outputs_[number][i].uses == 0) continue;
+    Arg arg;
+    arg.span = element.span;
+    arg.name = {"ENO", element.span};
+    arg.output = true;
+    ExprId kept = new_result(boolean(true, element.span), element.span);
+    arg.value = copy(kept, element.span);
+    outputs_[number][i].kept = kept;
+    p_.arg_stack_.push_back(arg);
+  }
+}
+
+// Outputs of a function beside its result: the call itself writes the variables behind them.
+void Parser::Diagram::add_outputs(uint32_t number, const Element& element) {
+  for (uint32_t i = 0; i < element.outputs.size(); ++i) {
+    bool eno = ir::same_name(element.outputs[i].name, "ENO");
+    if (eno || is_result(element, i) || outputs_[number][i].uses == 0) continue;
+    const Element* to = only_sink({number, i});
+    if (to == nullptr) {
+      p_.note_only(Code::kOutputNeedsVariable, element.span,
+                   "the output `" + element.outputs[i].name + "` of `" + element.type.text +
+                       "` goes to more than one variable",
+                   "connect it with one variable, and use that elsewhere");
+      continue;
+    }
+    Arg arg;
+    arg.span = to->span;
+    arg.name = {made(element.outputs[i].name), element.span};
+    arg.output = true;
+    arg.negated = (to->modifier == network::Modifier::kNegated) != element.outputs[i].negated;
+    arg.value = parse(to->operand);
+    done_[static_cast<size_t>(to - network_->elements.data())] = true;
+    p_.arg_stack_.push_back(arg);
+  }
+}
+
+// The variable behind an output, when that is all it goes to and stores it as it is.
+const network::Element* Parser::Diagram::only_sink(Link link) const {
+  if (outputs_[link.element][link.output].uses != 1) return nullptr;
+  for (const Element& element : network_->elements) {
+    if (element.inputs.size() != 1 || element.inputs[0].from != std::vector<Link>{link}) continue;
+    bool plain = element.modifier <= network::Modifier::kNegated &&
+                 element.inputs[0].modifier == network::Modifier::kNone;
+    return element.kind == Kind::kSink && plain ? &element : nullptr;
+  }
+  return nullptr;
+}
+
+// --- expressions and statements
+
+// The tokens of an operand, in the place where it is written.
+ExprId Parser::Diagram::parse(const network::Text& operand) {
+  base::Diagnostics unheard;  // the reader has reported what no token is
+  std::string_view text = p_.text_.substr(operand.span.begin.offset - p_.base_,
+                                          operand.span.end.offset - operand.span.begin.offset);
+  TokenList tokens = lex(text, operand.span.begin, unheard);
+  const Token* first = p_.first_;
+  const Token* current = p_.current_;
+  const Token* last = p_.last_;
+  p_.first_ = p_.current_ = tokens.tokens.data();
+  p_.last_ = p_.first_ + tokens.tokens.size() - 1;
+  ExprId out = p_.parse_expression();
+  if (p_.kind() != TokenKind::kEnd) {
+    p_.report_here(Code::kExpected,
+                   "expected the end of the operand, found " + p_.describe(*p_.current_));
+  }
+  p_.panic_ = false;
+  p_.first_ = first;
+  p_.current_ = current;
+  p_.last_ = last;
+  return out;
+}
+
+ExprId Parser::Diagram::boolean(bool value, base::SourceSpan span) {
+  Literal literal;
+  literal.kind = LiteralKind::kBool;
+  literal.integer = value ? 1 : 0;
+  return p_.add_literal(std::move(literal), span);
+}
+
+ExprId Parser::Diagram::name(const Name& name) {
+  Expr expr;
+  expr.kind = ExprKind::kName;
+  expr.name = name;
+  expr.span = name.span;
+  return p_.add_expression(expr);
+}
+
+ExprId Parser::Diagram::negated(ExprId operand, base::SourceSpan span) {
+  Expr expr;
+  expr.kind = ExprKind::kUnary;
+  expr.unary = UnaryOp::kNot;
+  expr.operand = operand;
+  expr.op_span = expr.span = span;
+  return p_.add_expression(expr);
+}
+
+ExprId Parser::Diagram::binary(BinaryOp op, ExprId left, ExprId right, base::SourceSpan span) {
+  Expr expr;
+  expr.kind = ExprKind::kBinary;
+  expr.binary = op;
+  expr.operand = left;
+  expr.right = right;
+  expr.op_span = expr.span = span;
+  return p_.add_expression(expr);
+}
+
+ExprId Parser::Diagram::member(ExprId operand, const std::string& name, base::SourceSpan span) {
+  Expr expr;
+  expr.kind = ExprKind::kMember;
+  expr.operand = operand;
+  expr.name = {made(name), span};
+  expr.span = span;
+  return p_.add_expression(expr);
+}
+
+ExprId Parser::Diagram::new_result(ExprId value, base::SourceSpan span) {
+  Expr expr;
+  expr.kind = ExprKind::kResult;
+  expr.number = static_cast<uint32_t>(tree_.results.size());
+  expr.span = span;
+  tree_.results.push_back({{static_cast<uint32_t>(tree_.expr_lists.size()), 1}, false});
+  tree_.expr_lists.push_back(value);
+  return p_.add_expression(expr);
+}
+
+ExprId Parser::Diagram::copy(ExprId result, base::SourceSpan span) {
+  Expr copy = tree_[result];
+  copy.span = span;
+  if (copy.kind == ExprKind::kResult && !copy.operand.valid()) copy.operand = result;
+  return p_.add_expression(copy);
+}
+
+// A value that is used later, or in several places.
+ExprId Parser::Diagram::keep(ExprId value, base::SourceSpan span) {
+  if (tree_[value].kind == ExprKind::kResult) return value;
+  ExprId result = new_result(value, span);
+  emit_assign(copy(result, span), value, AssignOp::kAssign, span);
+  return result;
+}
+
+void Parser::Diagram::emit(Stmt stmt, base::SourceSpan span) {
+  if (!stmt.span.begin.valid()) stmt.span = span;
+  stmt.instruction = true;
+  p_.add_statement(stmt);
+}
+
+void Parser::Diagram::emit_assign(ExprId target, ExprId value, AssignOp op, base::SourceSpan span) {
+  Stmt stmt;
+  stmt.kind = StmtKind::kAssign;
+  stmt.target = target;
+  stmt.value = value;
+  stmt.assign = op;
+  emit(stmt, span);
+}
+
+void Parser::Diagram::emit_if(ExprId condition, const Stmt& then, base::SourceSpan span) {
+  size_t mark = p_.statement_stack_.size();
+  emit(then, span);
+  Branch branch;
+  branch.condition = condition;
+  branch.body = move_tail(p_.statement_stack_, mark, tree_.stmt_lists);
+  Stmt stmt;
+  stmt.kind = StmtKind::kIf;
+  stmt.branches = {static_cast<uint32_t>(tree_.branches.size()), 1};
+  tree_.branches.push_back(branch);
+  emit(stmt, span);
+}
+
+std::string_view Parser::Diagram::made(std::string text) {
+  tree_.made_names.push_back(std::move(text));
+  return tree_.made_names.back();
+}
+
+}  // namespace frontend
