@@ -35,6 +35,8 @@ class Reader {
     while (!cursor_.at_end()) {
       take_comments(cursor_.token().begin);
       size_t before = cursor_.place();
+      elements_before_ = current().elements.size();
+      uses_before_ = uses_.size();
       row();
       end_row(before);
     }
@@ -113,6 +115,7 @@ class Reader {
         bad("expected `;` at the end of the row, found " + cursor_.found(), "write `;`");
       }
       if (!cursor_.good()) {
+        forget_row();
         while (!cursor_.at_end() && !cursor_.accept(TokenKind::kSemicolon)) cursor_.take();
       }
       if (cursor_.place() == before) cursor_.take();
@@ -126,6 +129,14 @@ class Reader {
     }
     attach(!label_);
     label_ = false;
+  }
+
+  // What a bad row has made is not worth more messages.
+  void forget_row() {
+    current().elements.resize(elements_before_);
+    uses_.resize(uses_before_);
+    std::erase_if(boxes_, [&](const auto& box) { return box.second.element >= elements_before_; });
+    last_row_ = kOperand;
   }
 
   // The place of the `:` that the row has before any `:=`; 0: none.
@@ -324,8 +335,10 @@ class Reader {
     std::vector<bool> dropped(elements.size());
     for (const Use& use : uses_) {
       uint32_t source = source_of(use);
+      good_ = true;
       auto link = link_of(use);
-      if (link) dropped[source] = true;
+      if (link || !good_) dropped[source] = true;
+      if (!good_) continue;
       elements[use.element].inputs[use.input].from.push_back(link.value_or(Link{source, 0}));
     }
     std::vector<uint32_t> numbers(elements.size());
@@ -401,6 +414,7 @@ class Reader {
   }
 
   std::optional<Link> feedback(const Use& use, const Box& box) {
+    good_ = false;
     diagnostics_.add(Code::kFeedback, use.operand.span,
                      "`" + box.name.text + "` is used above its box, and a wire keeps nothing",
                      "give it to a variable, and use that here");
@@ -418,6 +432,7 @@ class Reader {
       if (!named) continue;
       auto found = boxes_.find(ir::fold_name(operand.text(operand.token())));
       if (found == boxes_.end() || !found->second.wire) continue;
+      good_ = false;
       diagnostics_.add(Code::kBoxInExpression, use.operand.span,
                        "the wire `" + found->second.name.text + "` stands in an expression",
                        "make a box of the expression: `WIRE name := F(...);`");
@@ -441,9 +456,12 @@ class Reader {
   std::unordered_map<std::string, Box> boxes_;  // of the current network, by folded name
   std::vector<Use> uses_;
   std::vector<std::string> pending_;  // comments in front of the next row
-  size_t behind_ = 0;                 // the last row, in text_
-  uint32_t last_row_ = kOperand;      // its element
-  bool label_ = false;                // the last row is a label
+  size_t elements_before_ = 0;        // the current row
+  size_t uses_before_ = 0;
+  size_t behind_ = 0;             // the last row, in text_
+  uint32_t last_row_ = kOperand;  // its element
+  bool label_ = false;            // the last row is a label
+  bool good_ = true;              // the operand that is linked
 };
 
 }  // namespace

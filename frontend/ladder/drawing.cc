@@ -48,6 +48,7 @@ class RowReader {
     if (!continuation) ++column_;
   }
   void report(Code code, size_t from, size_t to, std::string text, std::string fix) {
+    current().damaged = true;
     diagnostics_.add(code,
                      {{begin_ + static_cast<uint32_t>(from)}, {begin_ + static_cast<uint32_t>(to)}},
                      std::move(text), std::move(fix));
@@ -181,8 +182,6 @@ class RowReader {
     std::string shown = base::printable(text_.substr(begin, at_ - begin));
     report(Code::kBadDrawing, begin, at_, "`" + shown + "` is no part of a drawing",
            "contacts stand in [ ], coils in ( ), wires are made of - + |");
-    current().kind = RowKind::kDrawing;
-    if (current().segments.empty()) current().kind = RowKind::kComment;
   }
 
   std::string_view text_;

@@ -35,6 +35,7 @@ struct Row {
   RowKind kind = RowKind::kBlank;
   std::vector<Segment> segments;      // kDrawing: not empty, by column
   std::vector<std::string> comments;  // without marks; also behind a drawing or a label
+  bool damaged = false;               // something of it was reported
   uint32_t label = 0;                 // kLabel: its byte
   uint32_t label_bytes = 0;
 };

@@ -27,12 +27,14 @@ class ElementReader {
         network_(network) {}
 
   std::optional<Made> run() {
+    size_t before = network_.elements.size();
     Made made = piece_.kind == SegmentKind::kCoil ? coil() : contact_or_box();
     if (cursor_.good() && !cursor_.at_end()) {
       bad("expected its end, found " + cursor_.found());
     }
-    if (!cursor_.good()) return std::nullopt;
-    return made;
+    if (cursor_.good()) return made;
+    network_.elements.resize(before);
+    return std::nullopt;
   }
 
  private:

@@ -22,7 +22,7 @@ class RungReader {
         made_(rung.pieces.size()) {}
 
   void run() {
-    if (!check_nodes() || !check_pieces()) return;
+    if (rung_.damaged || !check_pieces() || !check_nodes()) return;
     network::Element rail;
     rail.kind = network::Kind::kLeftRail;
     rail.outputs.resize(1);

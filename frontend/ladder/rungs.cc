@@ -42,6 +42,7 @@ class Finder {
 
   std::vector<Rung> run() {
     wires_.resize(rows_.size());
+    for (const Row& row : rows_) damaged_.push_back(row.damaged);
     find_left_rail();
     for (uint32_t r = 0; r < rows_.size(); ++r) wires_[r].resize(rows_[r].segments.size());
     find_rails();
@@ -58,22 +59,28 @@ class Finder {
   }
 
  private:
-  void report(Code code, const Segment& at, std::string text, std::string fix) {
+  // What is wrong with a row is said once.
+  void report(Code code, uint32_t row, const Segment& at, std::string text, std::string fix) {
+    if (damaged_[row]) return;
+    damaged_[row] = true;
     diagnostics_.add(code, {{begin_ + at.byte}, {begin_ + at.byte + at.bytes}}, std::move(text),
                      std::move(fix));
   }
 
   void find_left_rail() {
-    for (const Row& row : rows_) {
-      if (row.segments.empty()) continue;
-      const Segment& first = row.segments.front();
-      left_rail_ = first.column;
-      if (first.kind != SegmentKind::kBar) {
-        report(Code::kBadDrawing, first, "the drawing does not begin with the left rail",
-               "write `|` in front of every rung");
-        left_rail_ = kNoNode;
+    bool first_drawn = true;
+    for (uint32_t r = 0; r < rows_.size(); ++r) {
+      if (rows_[r].segments.empty()) continue;
+      const Segment& first = rows_[r].segments.front();
+      if (first.kind == SegmentKind::kBar) {
+        left_rail_ = first.column;
+        return;
       }
-      return;
+      if (first_drawn) {
+        report(Code::kBadDrawing, r, first, "the drawing does not begin with the left rail",
+               "write `|` in front of every rung");
+      }
+      first_drawn = false;
     }
   }
 
@@ -114,8 +121,8 @@ class Finder {
       if (i == 0 || row[i - 1].end != row[i].column) continue;
       Wire& before = wires_[r][i - 1];
       Wire& here = wires_[r][i];
-      check_side(row[i - 1], before);
-      check_side(row[i], here);
+      check_side(r, row[i - 1], before);
+      check_side(r, row[i], here);
       bool element_before = row[i - 1].is_element();
       bool element_here = row[i].is_element();
       if (element_before && element_here) {
@@ -131,10 +138,9 @@ class Finder {
   }
 
   // A `|` between rungs goes up and down only.
-  void check_side(const Segment& segment, const Wire& wire) {
+  void check_side(uint32_t r, const Segment& segment, const Wire& wire) {
     if (segment.kind != SegmentKind::kBar || wire.rail != Rail::kNone) return;
-    if (!reported_.insert({segment.byte, true}).second) return;
-    report(Code::kBadDrawing, segment, "a wire touches `|` from its side",
+    report(Code::kBadDrawing, r, segment, "a wire touches `|` from its side",
            "write `+` where wires meet");
   }
 
@@ -163,17 +169,17 @@ class Finder {
           met[j] = true;
         }
       }
-      if (!found && row[i].kind == SegmentKind::kBar) loose_bar(row[i], "below");
+      if (!found && row[i].kind == SegmentKind::kBar) loose_bar(r, row[i], "below");
     }
     for (uint32_t k = 0; k < met.size(); ++k) {
       const Segment& below = rows_[r + 1].segments[k];
       bool bar = below.kind == SegmentKind::kBar && goes_vertical(r + 1, k);
-      if (bar && !met[k]) loose_bar(below, "above");
+      if (bar && !met[k]) loose_bar(r + 1, below, "above");
     }
   }
 
-  void loose_bar(const Segment& bar, const char* where) {
-    report(Code::kOpenBranch, bar, std::string("this wire joins nothing ") + where + " it",
+  void loose_bar(uint32_t r, const Segment& bar, const char* where) {
+    report(Code::kOpenBranch, r, bar, std::string("this wire joins nothing ") + where + " it",
            "put `+` into the same column where it ends");
   }
 
@@ -190,6 +196,7 @@ class Finder {
       return found->second;
     };
     for (uint32_t r = first; r <= last; ++r) {
+      rung.damaged = rung.damaged || damaged_[r];
       const std::vector<Segment>& row = rows_[r].segments;
       for (uint32_t i = 0; i < row.size(); ++i) {
         const Wire& wire = wires_[r][i];
@@ -219,7 +226,7 @@ class Finder {
     for (uint32_t r = rung.first_row; r <= rung.last_row; ++r) {
       for (const Segment& segment : rows_[r].segments) {
         if (segment.kind == SegmentKind::kBar) continue;
-        report(Code::kRungWithoutCoil, segment, "this rung has no element",
+        report(Code::kRungWithoutCoil, r, segment, "this rung has no element",
                "put a contact and a coil on the wire, or take it away");
         rungs_.pop_back();
         return;
@@ -234,7 +241,7 @@ class Finder {
   uint32_t left_rail_ = kNoNode;
   std::vector<std::vector<Wire>> wires_;  // by row and segment
   std::vector<bool> joined_;              // with the row below
-  std::unordered_map<uint32_t, bool> reported_;
+  std::vector<bool> damaged_;             // by row
   Sets sets_;
   std::vector<Rung> rungs_;
 };

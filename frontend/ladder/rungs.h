@@ -33,6 +33,7 @@ struct Node {
 struct Rung {
   uint32_t first_row = 0;
   uint32_t last_row = 0;
+  bool damaged = false;       // something of its rows was reported: more would be guessed
   std::vector<Piece> pieces;  // by row, then from left to right
   std::vector<Node> nodes;
 };
