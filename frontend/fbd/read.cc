@@ -243,6 +243,7 @@ class Reader {
       return bad("a wire comes from the box of a function", "write `WIRE name := F(a, b);`");
     Element element;
     element.outputs.emplace_back();
+    element.wire = name;
     finish_block(std::move(element), begin, name, true);
   }
 

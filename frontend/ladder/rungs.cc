@@ -218,7 +218,31 @@ class Finder {
         }
       }
     }
-    if (rung.pieces.empty()) drop_empty(rung);
+    if (rung.pieces.empty()) return drop_empty(rung);
+    if (!rung.damaged) warn_of_joined(rung);
+  }
+
+  // Two rungs below each other, without a blank row, are one when a `+` stands under a `+`. Rarely
+  // that is meant, and it can be drawn otherwise.
+  void warn_of_joined(const Rung& rung) {
+    uint32_t complete = 0;
+    for (uint32_t r = rung.first_row; r <= rung.last_row; ++r) {
+      const std::vector<Segment>& row = rows_[r].segments;
+      bool coil = row.front().kind == SegmentKind::kCoil;
+      bool joined = row.front().kind == SegmentKind::kJoint;
+      uint32_t i = 1;
+      for (; i < row.size() && row[i].column == row[i - 1].end; ++i) {
+        coil = coil || row[i].kind == SegmentKind::kCoil;
+        joined = joined || row[i].kind == SegmentKind::kJoint;
+      }
+      if (row.front().column != left_rail_ || !coil || !joined || ++complete != 2) continue;
+      const Segment& at = row[1];
+      diagnostics_.add(Code::kJoinedRungs,
+                       {{begin_ + at.byte}, {begin_ + row[i - 1].byte + row[i - 1].bytes}},
+                       "this row is joined with the rung above, where `+` stands under `+`",
+                       "leave a blank row between two rungs; if it is one, let the branch with "
+                       "the second coil begin at its `+`");
+    }
   }
 
   // Rails alone are blank rows; a wire alone is not.

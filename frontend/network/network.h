@@ -77,6 +77,7 @@ struct Element {
   Modifier modifier = Modifier::kNone;
   Text operand;
   Text type;  // of blocks; A.B.Name where it stands in a namespace
+  Text wire;  // of functions' blocks: what FBD as text calls the result; may be empty
   std::vector<Input> inputs;
   std::vector<Output> outputs;
   std::string comment;

@@ -1,7 +1,5 @@
 #include "frontend/parse/diagram.h"
 
-#include <algorithm>
-
 #include "ir/types/types.h"
 
 namespace frontend {
@@ -9,13 +7,39 @@ namespace frontend {
 using network::Kind;
 using network::Modifier;
 
+namespace {
+
+// Beyond it a value is kept: a join may have more branches than an expression is high.
+constexpr size_t kHighest = 100;
+
+}  // namespace
+
 void Parser::Diagram::run(const network::Body& body) {
+  check_wires(body);
   for (const network::Network& each : body.networks) network(each);
   if (kept_.vars.empty()) return;
   kept_.section = pou_.kind == PouKind::kMethod ? VarSection::kInstance : VarSection::kLocal;
   kept_.scope = p_.scope_;
   kept_.span = body.span;
   pou_.blocks.push_back(std::move(kept_));
+}
+
+// A wire of a variable's name would be read where the variable is meant.
+void Parser::Diagram::check_wires(const network::Body& body) {
+  std::unordered_set<std::string> variables;
+  for (const VarBlock& block : pou_.blocks) {
+    for (const VarDecl& decl : block.vars) {
+      for (const Name& each : decl.names) variables.insert(ir::fold_name(each.text));
+    }
+  }
+  for (const network::Network& each : body.networks) {
+    for (const Element& element : each.elements) {
+      if (element.wire.empty() || !variables.contains(ir::fold_name(element.wire.text))) continue;
+      p_.note_only(
+          Code::kBoxTwice, element.wire.span, "`" + element.wire.text + "` is a variable, too",
+          "give the wire a name of its own, or assign: `" + element.wire.text + " := wire;`");
+    }
+  }
 }
 
 void Parser::Diagram::network(const network::Network& network) {
@@ -39,9 +63,13 @@ void Parser::Diagram::count_uses() {
   done_.assign(count, false);
   joins_.clear();
   for (size_t i = 0; i < count; ++i) outputs_[i].resize(network_->elements[i].outputs.size());
-  for (const Element& element : network_->elements) {
-    for (const network::Input& input : element.inputs) {
-      for (network::Link link : input.from) ++outputs_[link.element][link.output].uses;
+  for (uint32_t i = 0; i < count; ++i) {
+    for (const network::Input& input : network_->elements[i].inputs) {
+      for (network::Link link : input.from) {
+        Output& output = outputs_[link.element][link.output];
+        ++output.uses;
+        output.user = i;
+      }
     }
   }
 }
@@ -152,6 +180,7 @@ Parser::Diagram::Value Parser::Diagram::linked(const network::Input& input) {
       ExprId value = output(input.from[0]);
       for (size_t i = 1; i < input.from.size(); ++i) {
         value = binary(BinaryOp::kOr, value, output(input.from[i]), input.span);
+        if (i % kHighest == 0) value = copy(keep(value, input.span), input.span);
       }
       join = keep(value, input.span);
     }
@@ -213,11 +242,9 @@ Name Parser::Diagram::memory(const std::string& of, Modifier modifier, base::Sou
   if (pou_.kind == PouKind::kAction) stem = std::string(pou_.name.text) + '.';
   stem += of + (modifier == Modifier::kRising ? "#rising" : "#falling");
   std::string text = stem;
-  auto taken = [&] {
-    return std::find(memories_.begin(), memories_.end(), ir::fold_name(text)) != memories_.end();
-  };
-  for (uint32_t number = 2; taken(); ++number) text = stem + std::to_string(number);
-  memories_.push_back(ir::fold_name(text));
+  for (uint32_t number = 2; !memories_.insert(ir::fold_name(text)).second; ++number) {
+    text = stem + std::to_string(number);
+  }
   Spec spec;
   spec.kind = SpecKind::kNamed;
   spec.name = {"BOOL", span};

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <map>
+#include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "frontend/network/network.h"
@@ -26,13 +28,15 @@ class Parser::Diagram {
   };
   struct Output {
     uint32_t uses = 0;
-    ExprId kept;  // a kResult; invalid: read from the instance, or not made yet
+    uint32_t user = 0;  // an element that uses it
+    ExprId kept;        // a kResult; invalid: read from the instance, or not made yet
   };
   struct Enabled {     // a block with EN
     ExprId condition;  // kept; invalid: always
   };
 
   // --- diagram.cc
+  void check_wires(const network::Body& body);
   void network(const network::Network& network);
   void count_uses();
   void element(uint32_t number);
@@ -79,10 +83,10 @@ class Parser::Diagram {
   const network::Network* network_ = nullptr;
   std::vector<std::vector<Output>> outputs_;                            // by element and output
   std::map<std::vector<std::pair<uint32_t, uint32_t>>, ExprId> joins_;  // several links, kept
-  std::vector<ExprId> conditions_;     // by element: when its outputs are stored
-  std::vector<bool> done_;             // sinks that a call has written
-  std::vector<std::string> memories_;  // folded names
-  VarBlock kept_;                      // what edges remember
+  std::vector<ExprId> conditions_;            // by element: when its outputs are stored
+  std::vector<bool> done_;                    // sinks that a call has written
+  std::unordered_set<std::string> memories_;  // folded names
+  VarBlock kept_;                             // what edges remember
 };
 
 }  // namespace frontend

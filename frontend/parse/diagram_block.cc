@@ -102,6 +102,7 @@ void Parser::Diagram::add_outputs(uint32_t number, const Element& element) {
                    "the output `" + element.outputs[i].name + "` of `" + element.type.text +
                        "` goes to more than one variable",
                    "connect it with one variable, and use that elsewhere");
+      outputs_[number][i].kept = p_.add_expression({});
       continue;
     }
     Arg arg;
@@ -117,14 +118,13 @@ void Parser::Diagram::add_outputs(uint32_t number, const Element& element) {
 
 // The variable behind an output, when that is all it goes to and stores it as it is.
 const network::Element* Parser::Diagram::only_sink(Link link) const {
-  if (outputs_[link.element][link.output].uses != 1) return nullptr;
-  for (const Element& element : network_->elements) {
-    if (element.inputs.size() != 1 || element.inputs[0].from != std::vector<Link>{link}) continue;
-    bool plain = element.modifier <= network::Modifier::kNegated &&
-                 element.inputs[0].modifier == network::Modifier::kNone;
-    return element.kind == Kind::kSink && plain ? &element : nullptr;
-  }
-  return nullptr;
+  const Output& output = outputs_[link.element][link.output];
+  const Element& element = network_->elements[output.user];
+  if (output.uses != 1 || element.kind != Kind::kSink) return nullptr;
+  bool plain = element.modifier <= network::Modifier::kNegated &&
+               element.inputs[0].from.size() == 1 &&
+               element.inputs[0].modifier == network::Modifier::kNone;
+  return plain ? &element : nullptr;
 }
 
 // --- expressions and statements
