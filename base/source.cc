@@ -4,11 +4,11 @@
 
 namespace base {
 
-SourcePos SourceMap::add(std::string name, std::string text) {
+SourcePos SourceMap::add(std::string name, std::string text, TextUse use) {
   SourcePos begin{next_base_};
   // One byte between files, so that an end position is never the next file's begin.
   next_base_ += static_cast<uint32_t>(text.size()) + 1;
-  files_.push_back({std::move(name), std::move(text), begin.offset, {}});
+  files_.push_back({std::move(name), std::move(text), begin.offset, use, {}});
   return begin;
 }
 

@@ -29,12 +29,17 @@ struct SourceLocation {
   std::string_view line_text;
 };
 
+// What a text is to the language: a source, or what messages point into and nothing parses (XML
+// that sources were made of).
+enum class TextUse : uint8_t { kSource, kQuoted };
+
 class SourceMap {
  public:
   // Takes the text; returns the position of its first byte. Texts over 2^31
   // bytes in all are refused by the caller (limits.def).
-  SourcePos add(std::string name, std::string text);
+  SourcePos add(std::string name, std::string text, TextUse use = TextUse::kSource);
 
+  bool is_source(uint32_t file) const { return files_[file].use == TextUse::kSource; }
   uint32_t file_count() const { return static_cast<uint32_t>(files_.size()); }
   std::string_view file_name(uint32_t file) const { return files_[file].name; }
   std::string_view text(uint32_t file) const { return files_[file].text; }
@@ -48,6 +53,7 @@ class SourceMap {
     std::string name;
     std::string text;
     uint32_t base;
+    TextUse use;
     mutable std::vector<uint32_t> line_starts;  // filled by the first locate()
   };
   std::vector<File> files_;

@@ -20,7 +20,7 @@ void parse_all(const base::SourceMap& sources, const CompileOptions& options, Tr
   lexing.defines = options.defines;
   lexing.declarations = &declarations;
   for (uint32_t file = 0; file < sources.file_count(); ++file) {
-    parse(sources, file, tree, diagnostics, lexing);
+    if (sources.is_source(file)) parse(sources, file, tree, diagnostics, lexing);
   }
 }
 

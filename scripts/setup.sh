@@ -14,6 +14,7 @@ need ccache ccache
 [ -e /usr/include/gtest/gtest.h ] || missing="$missing libgtest-dev"
 [ -e /usr/include/modbus/modbus.h ] || missing="$missing libmodbus-dev"
 need mbpoll mbpoll
+[ -e /usr/include/pugixml.hpp ] || missing="$missing libpugixml-dev"
 for package in "$@"; do  # extra packages of one make target
   dpkg -s "$package" >/dev/null 2>&1 || missing="$missing $package"
 done

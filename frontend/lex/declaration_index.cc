@@ -171,7 +171,7 @@ const DeclarationIndex::Table& DeclarationIndex::table() const {
   if (table_) return *table_;
   table_ = std::make_unique<Table>();
   for (uint32_t file = 0; file < sources_.file_count(); ++file) {
-    Collector(sources_, file, table_->kinds).run();
+    if (sources_.is_source(file)) Collector(sources_, file, table_->kinds).run();
   }
   return *table_;
 }

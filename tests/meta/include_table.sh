@@ -21,13 +21,16 @@ linker: ir/types ir/program ir/bytecode stdlib/native
 vm: ir/types ir/program/ir.h ir/bytecode stdlib/native
 vm/io: ir/types ir/bytecode vm/runtime
 adapters/modbus: ir/types ir/bytecode vm/io vm/runtime
+adapters/xml: frontend/lex
+adapters/twincat: adapters/xml
+adapters/plcopen: adapters/xml frontend/network frontend/ladder frontend/fbd frontend/lex frontend/parse ir/types
 online_change/diff: ir linker
 online_change/plan: ir linker online_change/diff
 online_change/package: ir linker online_change/diff online_change/plan
 online_change/apply: ir/types ir/program/ir.h ir/bytecode online_change vm
 online_change/store: ir/types ir/program/ir.h ir/bytecode online_change/diff online_change/plan online_change/apply vm
 tools/common: ir online_change/diff online_change/plan
-tools/stc: ir frontend linker online_change/diff online_change/plan online_change/package stdlib vm/exec vm/load tools/common
+tools/stc: ir frontend linker online_change/diff online_change/plan online_change/package stdlib vm/exec vm/load tools/common adapters/xml adapters/plcopen adapters/twincat
 tools/stvm: ir/types ir/program/ir.h ir/bytecode vm online_change tools/common adapters
 '
 

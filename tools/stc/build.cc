@@ -5,6 +5,7 @@
 #include "ir/program/verify.h"
 #include "linker/link.h"
 #include "tools/common/files.h"
+#include "tools/stc/importer.h"
 
 namespace stc {
 
@@ -45,6 +46,8 @@ base::Result<Version> link(const Compiled& compiled, const Project& project,
 }  // namespace
 
 base::Result<Compiled> compile(const Project& project, base::Diagnostics& diagnostics) {
+  add_findings(diagnostics, project.imported, false);
+  if (diagnostics.has_errors()) return source_errors(diagnostics);
   std::optional<ir::Program> program =
       frontend::compile(project.sources, project.compile, diagnostics);
   if (!program) return source_errors(diagnostics);
@@ -59,6 +62,8 @@ base::Result<Version> build(const Project& project, const BuildOptions& options,
 }
 
 base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics& diagnostics) {
+  add_findings(diagnostics, project.imported, false);
+  if (diagnostics.has_errors()) return source_errors(diagnostics);
   std::optional<frontend::TestProgram> tests =
       frontend::compile_tests(project.sources, project.compile, diagnostics);
   if (!tests) return source_errors(diagnostics);

@@ -13,6 +13,7 @@ extern const Entry kTest;
 extern const Entry kPackage;
 extern const Entry kDiff;
 extern const Entry kFormat;
+extern const Entry kImport;
 extern const Entry kDump;
 extern const Entry kExplain;
 

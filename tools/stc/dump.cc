@@ -31,6 +31,7 @@ std::string tokens_text(const Project& project, base::Diagnostics& diagnostics) 
   frontend::LexOptions lexing;
   lexing.defines = project.compile.defines;
   for (uint32_t file = 0; file < project.sources.file_count(); ++file) {
+    if (!project.sources.is_source(file)) continue;
     out += frontend::print_tokens(frontend::lex(project.sources, file, diagnostics, lexing),
                                   project.sources);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 
 #include "base/limits.h"
 #include "tools/common/change_settings.h"
@@ -9,6 +10,7 @@
 #include "tools/common/toml.h"
 #include "tools/stc/device_tables.h"
 #include "tools/stc/format_settings.h"
+#include "tools/stc/importer.h"
 
 namespace stc {
 namespace {
@@ -21,12 +23,13 @@ bool is_source(const fs::path& path) {
   return extension == ".st" || extension == ".iecst" || extension == ".exp";
 }
 
-base::Result<std::vector<std::string>> sources_below(const std::string& folder) {
+base::Result<std::vector<std::string>> files_below(
+    const std::string& folder, const std::function<bool(const fs::path&)>& wanted) {
   std::vector<std::string> found;
   std::error_code error;
   fs::recursive_directory_iterator walk(folder, error);
   for (; !error && walk != fs::recursive_directory_iterator(); walk.increment(error)) {
-    if (walk->is_regular_file() && is_source(walk->path())) found.push_back(walk->path().string());
+    if (walk->is_regular_file() && wanted(walk->path())) found.push_back(walk->path().string());
   }
   if (error) {
     return base::Error{base::Refusal::kFileUnreadable, folder + ": " + error.message()};
@@ -144,9 +147,20 @@ std::string project_name(const std::string& path) {
   return name.empty() || name == "." ? "project" : name;
 }
 
+base::Status count_bytes(uint64_t& bytes, const std::string& file, const std::string& text) {
+  bytes += text.size();
+  if (bytes <= base::kMaxSourceBytes) return base::Ok{};
+  return base::Error{base::Refusal::kTooMany, file + ": the sources are larger than " +
+                                                  std::to_string(base::kMaxSourceBytes) +
+                                                  " bytes in all"};
+}
+
 base::Result<std::vector<std::string>> expand(const std::string& path, Project& project) {
   base::Result<std::vector<std::string>> found = source_files(path);
   if (!found.ok() || !fs::is_directory(path)) return found;
+  base::Result<std::vector<std::string>> others = importable_files(path, false);
+  if (!others.ok()) return others;
+  found->insert(found->end(), others->begin(), others->end());
   base::Status status = apply_project_file(path, project, *found);
   if (!status.ok()) return status.error();
   if (found->empty()) {
@@ -163,33 +177,51 @@ base::Result<std::vector<std::string>> source_files(const std::string& path) {
     return base::Error{base::Refusal::kFileNotFound, path + ": no such file or directory"};
   }
   if (!fs::is_directory(path)) return std::vector<std::string>{path};
-  return sources_below(path);
+  return files_below(path, is_source);
+}
+
+base::Result<std::vector<std::string>> importable_files(const std::string& path, bool any_xml) {
+  auto found = files_below(path, [&](const fs::path& file) {
+    return any_xml ? is_importable(file.string()) : is_twincat(file.string());
+  });
+  if (!found.ok()) return found;
+  return without_listed(*found);
 }
 
 base::Result<Project> load_project(const std::vector<std::string>& paths,
                                    std::optional<frontend::Dialect> dialect) {
   Project project;
   project.name = project_name(paths.front());
+  Importer importer(project.sources);
   uint64_t bytes = 0;
   for (const std::string& path : paths) {
     base::Result<std::vector<std::string>> files = expand(path, project);
     if (!files.ok()) return files.error();
     for (const std::string& file : *files) {
+      if (is_importable(file)) {
+        base::Status status = importer.add(file);
+        if (!status.ok()) return status.error();
+        continue;
+      }
       base::Result<std::string> text = tools::read_text(file);
       if (!text.ok()) return text.error();
       if (text->find('\0') != std::string::npos) {
         return base::Error{base::Refusal::kFileUnreadable,
                            file + ": neither a source text nor an image of this version"};
       }
-      bytes += text->size();
-      if (bytes > base::kMaxSourceBytes) {
-        return base::Error{base::Refusal::kTooMany, file + ": the sources are larger than " +
-                                                        std::to_string(base::kMaxSourceBytes) +
-                                                        " bytes in all"};
-      }
+      base::Status fits = count_bytes(bytes, file, *text);
+      if (!fits.ok()) return fits.error();
       project.sources.add(file, std::move(*text));
     }
   }
+  importer.finish();
+  for (Importer::Made& made : importer.made) {
+    const std::string name = made.origin + "/" + made.source.name;
+    base::Status fits = count_bytes(bytes, name, made.source.text);
+    if (!fits.ok()) return fits.error();
+    project.sources.add(name, std::move(made.source.text));
+  }
+  project.imported = std::move(importer.findings);
   if (dialect) project.compile.dialect = *dialect;
   project.compile.name = project.name;
   return project;

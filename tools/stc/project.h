@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/xml/imported.h"
 #include "base/result.h"
 #include "base/source.h"
 #include "frontend/compile.h"
@@ -16,7 +17,8 @@ namespace stc {
 
 struct Project {
   std::string name;
-  base::SourceMap sources;
+  base::SourceMap sources;             // also documents that were imported (kQuoted)
+  std::vector<xml::Finding> imported;  // what was found in them; errors too
   frontend::CompileOptions compile;
   linker::Slack slack;
   std::vector<ir::Device> devices;
@@ -26,10 +28,12 @@ struct Project {
 // `path` itself, or the sources in that folder and below it, sorted. Errors: kFileNotFound,
 // kFileUnreadable.
 base::Result<std::vector<std::string>> source_files(const std::string& path);
+// The same for files of other tools (importer.h); of `.xml` only with `any_xml`.
+base::Result<std::vector<std::string>> importable_files(const std::string& path, bool any_xml);
 
-// Reads every source: files as given, folders recursively (*.st, sorted by path).
-// File names in messages are the paths as typed. Errors: kFileNotFound,
-// kFileUnreadable, kBadProject, kBadMapping, kTooMany (kMaxSourceBytes).
+// Reads every source: files as given, folders recursively (*.st and objects of TwinCAT, sorted by
+// path); what other tools wrote is imported. File names in messages are the paths as typed. Errors:
+// kFileNotFound, kFileUnreadable, kBadProject, kBadMapping, kTooMany (kMaxSourceBytes).
 base::Result<Project> load_project(const std::vector<std::string>& paths,
                                    std::optional<frontend::Dialect> dialect);
 

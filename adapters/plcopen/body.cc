@@ -1,0 +1,104 @@
+// Bodies and conditions by language.
+#include "adapters/plcopen/reader.h"
+#include "base/name_case.h"
+
+namespace plcopen {
+namespace {
+
+bool is_language(Node node) {
+  for (const char* name : {"ST", "IL", "LD", "FBD", "SFC"}) {
+    if (xml::is(node, name)) return true;
+  }
+  return false;
+}
+
+std::string failed(Node node, const std::string& text, Reporter& report) {
+  report.add(Code::kXmlBody, node, text);
+  return error_text(text);
+}
+
+}  // namespace
+
+std::string error_text(const std::string& text) {
+  std::string safe = text;
+  for (char& c : safe) {
+    if (c == '\'' || c == '"' || c == '{' || c == '}' || c == '$' || c == '\n') c = ' ';
+  }
+  return "{error '" + safe + "'}\n";
+}
+
+std::string language_text(Node body, Node owner, const std::string& name, Reporter& report) {
+  std::string out;
+  std::string_view language;
+  for (Node node : xml::children(body)) {
+    const std::string_view kind = xml::local_name(node);
+    if (kind == "documentation") {
+      out += xml::comment(xml::text_of(node), "");
+    } else if (kind == "addData") {
+      for (Node data : xml::children(node, "data")) report_data(data, report);
+    } else if (!is_language(node)) {
+      out += failed(node,
+                    "the body of " + name + " is in <" + std::string(kind) + ">, which is " +
+                        "none of ST, IL, LD, FBD, SFC",
+                    report);
+    } else if (!language.empty() && language != kind) {
+      out += failed(node, "the body of " + name + " is in two languages", report);
+    } else {
+      language = kind;
+      if (kind == "ST" || kind == "IL") {
+        std::string text = xml::text_of(node);
+        if (!text.empty()) out += text + "\n";
+      } else if (kind == "SFC") {
+        out += chart_text(node, owner, report);
+      } else {
+        out += failed(node, "the body of " + name + " is in " + std::string(kind), report);
+      }
+    }
+  }
+  return out;
+}
+
+std::string body_text(Node owner, const std::string& name, Reporter& report) {
+  std::string out;
+  for (Node body : xml::children(owner, "body")) {
+    out += language_text(body, owner, name, report);
+  }
+  return out;
+}
+
+namespace {
+
+// `name := a AND b;`, `:= a AND b`, `a AND b` -> a AND b. Empty: these are statements.
+std::string expression_of(std::string_view text, const std::string& name) {
+  text = xml::trimmed(text);
+  if (!name.empty() && text.size() > name.size() &&
+      base::same_name(text.substr(0, name.size()), name)) {
+    std::string_view rest = xml::trimmed(text.substr(name.size()));
+    if (rest.starts_with(":=")) text = rest;
+  }
+  if (text.starts_with(":=")) text = xml::trimmed(text.substr(2));
+  while (text.ends_with(";")) text = xml::trimmed(text.substr(0, text.size() - 1));
+  if (text.find(';') != std::string_view::npos || text.find(":=") != std::string_view::npos) {
+    return {};
+  }
+  return std::string(text);
+}
+
+}  // namespace
+
+std::string condition_text(Node body, const std::string& name, Reporter& report) {
+  for (Node node : xml::children(body)) {
+    if (xml::is(node, "IL")) return ":\n" + xml::indented(xml::text_of(node), kIndent);
+    if (xml::is(node, "ST")) {
+      std::string text = expression_of(xml::text_of(node), name);
+      if (!text.empty()) return " := " + text + ";\n";
+      return failed(node, "the condition is no single expression", report);
+    }
+    if (is_language(node)) {
+      return failed(node, "the condition is in " + std::string(xml::local_name(node)), report);
+    }
+  }
+  return failed(body, "a transition has no condition", report);
+}
+
+}  // namespace plcopen

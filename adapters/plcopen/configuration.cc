@@ -1,0 +1,191 @@
+// Configurations, resources, tasks and instances; the project as a whole.
+#include "adapters/plcopen/plcopen.h"
+#include "adapters/plcopen/reader.h"
+#include "base/name_case.h"
+
+namespace plcopen {
+namespace {
+
+// xsd:duration (PT0.02S) or a literal of the standard (T#20ms, t#1s, 20ms). Empty: neither.
+std::string interval_text(std::string_view text) {
+  text = xml::trimmed(text);
+  const size_t mark = text.find('#');
+  const std::string_view allowed = "0123456789._dhmsunDHMSUN";
+  std::string_view amount = mark == std::string_view::npos ? text : text.substr(mark + 1);
+  if (!amount.empty() && amount.find_first_not_of(allowed) == std::string_view::npos &&
+      amount.find_first_of("smhdSMHD") != std::string_view::npos) {
+    return "T#" + std::string(amount);
+  }
+  if (!text.starts_with("P")) return {};
+  std::string out = "T#";
+  bool time = false;
+  std::string number;
+  for (char c : text.substr(1)) {
+    if (c == 'T') {
+      time = true;
+    } else if ((c >= '0' && c <= '9') || c == '.') {
+      number += c;
+    } else {
+      const bool known = time ? c == 'H' || c == 'M' || c == 'S' : c == 'D';
+      if (!known || number.empty()) return {};
+      out += number + static_cast<char>(c + ('a' - 'A'));
+      number.clear();
+    }
+  }
+  return out.size() > 2 && number.empty() ? out : std::string();
+}
+
+std::string task_text(Node task, Reporter& report) {
+  const std::string name(report.required_name(task));
+  if (name.empty()) return {};
+  std::string parameters;
+  auto add = [&](const std::string& text) {
+    parameters += (parameters.empty() ? "" : ", ") + text;
+  };
+  std::string_view interval = xml::attribute(task, "interval");
+  if (!interval.empty()) {
+    const std::string text = interval_text(interval);
+    if (text.empty()) {
+      report.add(Code::kXmlBadValue, task, "interval `" + std::string(interval) + "` is no time",
+                 "write it like T#20ms or PT0.02S");
+    } else {
+      add("INTERVAL := " + text);
+    }
+  }
+  std::string_view single = xml::trimmed(xml::attribute(task, "single"));
+  if (!single.empty() && !xml::boolean(single)) add("SINGLE := " + std::string(single));
+  std::string_view priority = xml::trimmed(xml::attribute(task, "priority"));
+  if (!priority.empty()) {
+    if (priority.find_first_not_of("0123456789") != std::string_view::npos) {
+      report.add(Code::kXmlBadValue, task, "priority `" + std::string(priority) + "` is no number");
+    } else {
+      add("PRIORITY := " + std::string(priority));
+    }
+  }
+  vendor_data(task, report);
+  return documentation(task, "") + "TASK " + name + "(" + parameters + ");\n";
+}
+
+std::string instance_text(Node node, const std::string& task, Reporter& report) {
+  const std::string name(report.required_name(node));
+  if (name.empty()) return {};
+  std::string type(xml::trimmed(xml::attribute(node, "typeName")));
+  if (type.empty()) type = name;  // CODESYS: the program itself
+  vendor_data(node, report);
+  return "PROGRAM " + name + (task.empty() ? "" : " WITH " + task) + " : " + type + ";\n";
+}
+
+void add_named_lists(Node parent, Reporter& report) {
+  for (Node list : xml::children(parent, "globalVars")) {
+    if (!is_named_list(list)) continue;
+    const std::string name(report.required_name(list));
+    if (name.empty()) continue;
+    std::string text = variable_list(list, report);
+    const std::string file = report.out().add_source(name, text);
+    // The file's name is that of the list; another needs to be said.
+    if (file != name) {
+      report.out().sources.back().text = "{attribute 'list' := '" + name + "'}\n" + text;
+    }
+  }
+}
+
+void import_parts(Node owner, Reporter& report);
+
+std::string resource_text(Node resource, Reporter& report) {
+  const std::string name(report.required_name(resource));
+  add_named_lists(resource, report);
+  std::string tasks, programs;
+  for (Node node : xml::children(resource)) {
+    if (xml::is(node, "task")) {
+      tasks += task_text(node, report);
+      const std::string task(xml::attribute(node, "name"));
+      for (Node each : xml::children(node, "pouInstance")) {
+        programs += instance_text(each, task, report);
+      }
+    } else if (xml::is(node, "pouInstance")) {
+      programs += instance_text(node, {}, report);
+    }
+  }
+  import_parts(resource, report);
+  std::string text = xml::indented(variable_lists(resource, report) + tasks + programs, kIndent);
+  if (text.empty() || name.empty()) return {};
+  return documentation(resource, "") + "RESOURCE " + name + " ON PLC\n" + text + "END_RESOURCE\n";
+}
+
+// What CODESYS keeps in addData: POUs, types, lists and whole applications.
+void import_part(Node data, Reporter& report) {
+  bool taken = false;
+  for (Node node : xml::children(data)) {
+    taken = true;
+    if (xml::is(node, "pou")) {
+      import_pou(node, report);
+    } else if (xml::is(node, "dataType")) {
+      std::string text = data_type(node, report);
+      if (!text.empty()) report.out().add_source(xml::attribute(node, "name"), text);
+    } else if (xml::is(node, "Interface") || xml::is(node, "interface")) {
+      import_interface(node, report);
+    } else if (xml::is(node, "resource")) {
+      import_resource(node, report);
+    } else if (!xml::is(node, "globalVars")) {
+      taken = false;
+    }
+  }
+  add_named_lists(data, report);
+  if (!taken) report_data(data, report);
+}
+
+void import_parts(Node owner, Reporter& report) {
+  for (Node data : vendor_parts(owner)) import_part(data, report);
+}
+
+}  // namespace
+
+void import_configuration(Node configuration, Reporter& report) {
+  const std::string name(report.required_name(configuration));
+  add_named_lists(configuration, report);
+  std::string text = variable_lists(configuration, report);
+  for (Node resource : xml::children(configuration, "resource")) {
+    text += resource_text(resource, report);
+  }
+  import_parts(configuration, report);
+  if (name.empty() || text.empty()) return;
+  report.out().add_source(name, documentation(configuration, "") + "CONFIGURATION " + name + "\n" +
+                                    xml::indented(text, kIndent) + "END_CONFIGURATION\n");
+}
+
+void import_resource(Node resource, Reporter& report) {
+  std::string text = resource_text(resource, report);
+  if (text.empty()) return;
+  report.out().add_source("Configuration", "CONFIGURATION Config\n" + xml::indented(text, kIndent) +
+                                               "END_CONFIGURATION\n");
+}
+
+bool is_document(const xml::Document& document) {
+  return xml::is(document.root(), "project") || xml::is(document.root(), "pou");
+}
+
+void import(const xml::Document& document, xml::Imported& out) {
+  Reporter report(document, out);
+  Node project = document.root();
+  if (xml::is(project, "pou")) return import_pou(project, report);
+  for (Node type : xml::children(xml::find(project, {"types", "dataTypes"}), "dataType")) {
+    std::string text = data_type(type, report);
+    if (!text.empty()) out.add_source(xml::attribute(type, "name"), text);
+  }
+  for (Node pou : xml::children(xml::find(project, {"types", "pous"}), "pou")) {
+    import_pou(pou, report);
+  }
+  Node configurations = xml::find(project, {"instances", "configurations"});
+  for (Node node : xml::children(configurations, "configuration")) {
+    import_configuration(node, report);
+  }
+  for (Node part : {project, xml::child(project, "contentHeader"), xml::child(project, "types"),
+                    xml::child(project, "instances")}) {
+    import_parts(part, report);
+  }
+  if (out.sources.empty() && !out.failed()) {
+    report.add(Code::kUnknownXml, project, "the project has no POU, type or variable");
+  }
+}
+
+}  // namespace plcopen

@@ -1,0 +1,14 @@
+// PLCopen XML (TC6, 1.0 to 2.01) -> sources: one text per POU, type and list of global variables,
+// and one per configuration. Elements are taken by local name, so every version's namespace will
+// do. What a body does is never changed: what is not understood inside of one is an error (E1083);
+// elsewhere it is a warning (W0070).
+#pragma once
+
+#include "adapters/xml/document.h"
+
+namespace plcopen {
+
+bool is_document(const xml::Document& document);
+void import(const xml::Document& document, xml::Imported& out);
+
+}  // namespace plcopen

@@ -1,0 +1,73 @@
+// Inside of the import: pieces of PLCopen XML as pieces of text. Each returns text that stands for
+// itself, ended by a newline where it is lines; empty where there is nothing or, after a report,
+// where nothing could be understood.
+#pragma once
+
+#include <string>
+
+#include "adapters/xml/document.h"
+
+namespace plcopen {
+
+using xml::Code;
+using xml::Node;
+using xml::Reporter;
+
+inline constexpr const char* kIndent = "  ";
+
+// --- types.cc
+std::string type_text(Node type, Reporter& report);       // <type>, <baseType>: ARRAY[1..5] OF INT
+std::string data_type(Node data_type, Reporter& report);  // <dataType>: TYPE ... END_TYPE
+
+// --- values.cc
+std::string value_text(Node value, Reporter& report);  // <initialValue>: [1, 2(0)]
+
+// --- variables.cc
+// All lists of <interface>, <resource> or <configuration>, in order, but those that have a name.
+std::string variable_lists(Node parent, Reporter& report);
+std::string variable_list(Node list, Reporter& report);
+// What lists of global variables with a name declare is found by it: GVL.x.
+bool is_named_list(Node list);
+std::string documentation(Node owner, std::string_view indent);
+
+// --- vendor.cc
+// What vendors say in the addData of a POU, method or variable.
+struct Vendor {
+  std::string attributes;   // {attribute 'x' := 'y'} lines
+  std::string declaration;  // the interface as text, with its head or without
+  std::string access;       // "PRIVATE "
+  std::string extends;      // " EXTENDS A"
+  std::string implements;   // " IMPLEMENTS B, C"
+  std::vector<Node> methods;
+  std::vector<Node> properties;
+};
+Vendor vendor_data(Node owner, Reporter& report);
+// The element inside of each <data> that is not understood or of an editor; the others go to
+// `take`.
+void report_data(Node data, Reporter& report);
+std::vector<Node> vendor_parts(Node owner);        // its <data>, with those of its <interface>
+bool is_vendor(Node data, std::string_view name);  // last part of its name, in any case
+
+// --- pou.cc
+void import_pou(Node pou, Reporter& report);
+void import_interface(Node interface, Reporter& report);
+
+// --- body.cc
+// The bodies of `owner` (<pou>, <action> ...) as text. `name` says whose in messages.
+std::string body_text(Node owner, const std::string& name, Reporter& report);
+// The same of the element that holds <ST>, <IL>, <LD>, <FBD> or <SFC>.
+std::string language_text(Node body, Node owner, const std::string& name, Reporter& report);
+// Statements in the place of a body that could not be imported: nothing takes it for empty.
+std::string error_text(const std::string& text);
+// A condition behind FROM ... TO ...: `:= expression;`, or an instruction list behind a colon.
+// `name` is that of the transition, to which a body may assign its value; it may be empty.
+std::string condition_text(Node body, const std::string& name, Reporter& report);
+
+// --- chart.cc
+std::string chart_text(Node sfc, Node pou, Reporter& report);
+
+// --- configuration.cc
+void import_configuration(Node configuration, Reporter& report);
+void import_resource(Node resource, Reporter& report);  // that stands in no configuration
+
+}  // namespace plcopen

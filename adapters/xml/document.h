@@ -1,0 +1,101 @@
+// One XML document, safe to walk: of limited size and depth, in UTF-8 whatever it was in. Its
+// text stands in a SourceMap (kQuoted), so every node has a place that messages can show.
+// Elements are found by their local name: `ppx:Variable` and `Variable` are the same, because
+// tools declare the namespaces as they like.
+#pragma once
+
+#include <optional>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adapters/xml/imported.h"
+#include "base/result.h"
+
+namespace xml {
+
+using Node = pugi::xml_node;
+using Code = base::DiagnosticCode;
+
+// UTF-8 of bytes in UTF-8, UTF-16, ISO-8859-1 or windows-1252, by byte order mark, first bytes and
+// declaration. A file in UTF-8 that declares UTF-16 is taken for what it is: that is what comes
+// out of text writers. Errors: the text says which byte or encoding.
+struct Decoded {
+  std::string text;   // without byte order mark
+  std::string error;  // empty: none
+};
+Decoded to_utf8(std::string_view bytes);
+
+class Document {
+ public:
+  // Adds the text to `sources` under `name` and parses it. What is wrong becomes a finding of
+  // `out` (E1070, E1072); root() is empty then.
+  Document(std::string name, std::string_view bytes, base::SourceMap& sources, Imported& out);
+
+  Node root() const { return root_; }
+  // Of the element's name, or of the text of another node.
+  base::SourceSpan span(Node node) const;
+
+ private:
+  bool parse(const std::string& text, Imported& out);
+  bool within_depth(Imported& out);
+
+  pugi::xml_document parsed_;
+  Node root_;
+  base::SourcePos begin_;
+  size_t size_ = 0;
+};
+
+// What is inside of it stands in the POU or network named so.
+class Reporter {
+ public:
+  Reporter(const Document& document, Imported& out) : document_(document), out_(out) {}
+
+  void add(Code code, Node at, std::string text, std::string fix = {});
+  void set_pou(std::string pou) { pou_ = std::move(pou), network_ = 0; }
+  const std::string& pou() const { return pou_; }
+  void set_network(uint32_t network) { network_ = network; }
+  // An attribute that has to be there; empty, after a report, when it is not.
+  std::string_view required(Node node, const char* attribute);
+  // The same for a name of Structured Text.
+  std::string_view required_name(Node node, const char* attribute = "name");
+
+  const Document& document() const { return document_; }
+  Imported& out() { return out_; }
+
+ private:
+  const Document& document_;
+  Imported& out_;
+  std::string pou_;
+  uint32_t network_ = 0;
+};
+
+// --- walking
+std::string_view local_name(Node node);
+std::string_view local_name(std::string_view name);  // behind the last `:`
+bool is(Node node, std::string_view name);
+Node child(Node node, std::string_view name);
+// `names`: child of child ...
+Node find(Node node, std::initializer_list<std::string_view> names);
+std::vector<Node> children(Node node);  // elements
+std::vector<Node> children(Node node, std::string_view name);
+Node first_element(Node node);
+std::string_view attribute(Node node, std::string_view name);  // by local name; empty: none
+// xsd:boolean; nullopt: neither
+std::optional<bool> boolean(std::string_view text);
+
+// All text below, in order: paragraphs and `br` end lines. Empty lines at both ends are dropped.
+std::string text_of(Node node);
+std::string_view trimmed(std::string_view text);
+
+// Letters, digits and `_`, as the lexer takes them (frontend/lex/characters.h).
+bool is_name(std::string_view text);
+// `(* text *)`, which nothing in `text` ends.
+std::string comment(std::string_view text, std::string_view indent);
+// The lines of `text`, each behind `indent` unless empty, each ended.
+std::string indented(std::string_view text, std::string_view indent);
+// Of the first element that has it, in a message: <variable name="x">
+std::string shown(Node node);
+
+}  // namespace xml

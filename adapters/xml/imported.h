@@ -1,0 +1,45 @@
+// What an import makes of a document: sources as text, and findings about everything that is
+// wrong in it or was left out. Nothing of pugixml here, so tools can hold results of an import
+// whose library is missing.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/source.h"
+
+namespace xml {
+
+struct Finding {
+  base::DiagnosticCode code;
+  base::SourceSpan span;  // in the text of the document
+  std::string pou;        // empty: outside of any
+  uint32_t network = 0;   // of its body, from 1; 0: of none
+  std::string text;
+  std::string fix;
+};
+
+// `name` is that of a file, without folders: a POU, type or list of global variables and `.st`.
+struct MadeSource {
+  std::string name;
+  std::string text;
+};
+
+struct Imported {
+  std::vector<MadeSource> sources;
+  std::vector<Finding> findings;
+
+  // `name.st`, or `name_2.st` when there is such a file already, in any case of letters.
+  // The same name as returned, for sources that say it (lists of global variables).
+  std::string add_source(std::string_view name, std::string text);
+
+  bool failed() const;  // is one of the findings an error?
+
+  std::unordered_set<std::string> names;  // of `sources`, folded
+};
+
+}  // namespace xml

@@ -1,0 +1,244 @@
+#!/bin/sh
+# TwinCAT projects and objects: imported in memory by check, build and test, and to files by import.
+. "$(dirname "$0")/lib.sh"
+
+object() {  # object FILE KIND NAME: the inside from standard input
+  printf '\357\273\277<?xml version="1.0" encoding="utf-8"?>\r\n<TcPlcObject Version="1.1.0.1" ProductVersion="3.1.4024.12">\n' >"$1"
+  printf '  <%s Name="%s" Id="{0b7e4bd5-7f5c-4b0e-9d0e-1f5d2c3b4a5e}" SpecialFunc="None">\n' "$2" "$3" >>"$1"
+  cat >>"$1"
+  printf '  </%s>\n</TcPlcObject>\n' "$2" >>"$1"
+}
+mkdir -p plc/POUs/Drives plc/DUTs plc/GVLs
+object plc/POUs/MAIN.TcPOU POU MAIN <<'X'
+    <Declaration><![CDATA[{attribute 'TcLinkTo' := 'x'}
+PROGRAM MAIN // the only one
+VAR
+	pump : FB_Pump;
+	state : E_State;
+	data : ST_Data;
+	speed : LREAL;
+END_VAR
+]]></Declaration>
+    <Implementation><ST><![CDATA[pump.Limit := 5.0;
+pump.Start(factor := 3);
+Count();
+IF pump.Speed < 5 AND GVL_Io.n >= 1 THEN
+	state := E_State.Running;
+END_IF
+speed := pump.Speed; // no line end behind this]]></ST></Implementation>
+    <Folder Name="Work" Id="{1}" />
+    <Action Name="Count" Id="{2}" FolderPath="Work\">
+      <Implementation><ST><![CDATA[GVL_Io.n := GVL_Io.n + 1;
+data.n := GVL_Io.n;]]></ST></Implementation>
+    </Action>
+    <LineIds Name="MAIN"><LineId Id="3" Count="0" /></LineIds>
+X
+object plc/POUs/Drives/FB_Pump.TcPOU POU FB_Pump <<'X'
+    <Declaration><![CDATA[(* PROGRAM in a comment *)
+FUNCTION_BLOCK FINAL FB_Pump EXTENDS FB_Base IMPLEMENTS I_Run
+VAR
+	limit_ : LREAL := 100;
+END_VAR
+]]></Declaration>
+    <Implementation><ST><![CDATA[]]></ST></Implementation>
+    <Method Name="Start" Id="{4}">
+      <Declaration><![CDATA[METHOD PUBLIC Start : BOOL
+VAR_INPUT
+	factor : INT;
+END_VAR
+]]></Declaration>
+      <Implementation><ST><![CDATA[speed_ := MIN(factor * 1.5, limit_);
+Start := TRUE;]]></ST></Implementation>
+    </Method>
+    <Property Name="Limit" Id="{5}">
+      <Declaration><![CDATA[PROPERTY PUBLIC Limit : LREAL]]></Declaration>
+      <Get Name="Get" Id="{6}"><Declaration><![CDATA[VAR
+END_VAR
+]]></Declaration><Implementation><ST><![CDATA[Limit := limit_;]]></ST></Implementation></Get>
+      <Set Name="Set" Id="{7}"><Declaration><![CDATA[]]></Declaration><Implementation><ST><![CDATA[limit_ := Limit;]]></ST></Implementation></Set>
+    </Property>
+    <Property Name="Speed" Id="{8}">
+      <Declaration><![CDATA[PROPERTY PUBLIC Speed : LREAL]]></Declaration>
+      <Get Name="Get" Id="{9}"><Declaration><![CDATA[]]></Declaration><Implementation><ST><![CDATA[Speed := speed_;]]></ST></Implementation></Get>
+    </Property>
+X
+object plc/POUs/Drives/FB_Base.TcPOU POU FB_Base <<'X'
+    <Declaration><![CDATA[FUNCTION_BLOCK FB_Base
+VAR
+	speed_ : LREAL;
+END_VAR
+]]></Declaration>
+    <Implementation><ST><![CDATA[]]></ST></Implementation>
+X
+object plc/POUs/I_Run.TcIO Itf I_Run <<'X'
+    <Declaration><![CDATA[INTERFACE I_Run
+]]></Declaration>
+    <Method Name="Start" Id="{10}"><Declaration><![CDATA[METHOD Start : BOOL
+VAR_INPUT
+	factor : INT;
+END_VAR
+]]></Declaration></Method>
+    <Property Name="Speed" Id="{11}"><Declaration><![CDATA[PROPERTY Speed : LREAL]]></Declaration>
+      <Get Name="Get" Id="{12}"><Declaration><![CDATA[]]></Declaration></Get></Property>
+X
+object plc/DUTs/E_State.TcDUT DUT E_State <<'X'
+    <Declaration><![CDATA[{attribute 'qualified_only'}
+TYPE E_State : (Idle := 0, Running := 10) INT; END_TYPE
+]]></Declaration>
+X
+object plc/DUTs/ST_Data.TcDUT DUT ST_Data <<'X'
+    <Declaration><![CDATA[TYPE ST_Data :
+STRUCT
+	n : DINT; // größer
+END_STRUCT
+END_TYPE
+]]></Declaration>
+X
+object plc/GVLs/GVL_Io.TcGVL GVL GVL_Io <<'X'
+    <Declaration><![CDATA[{attribute 'qualified_only'}
+VAR_GLOBAL
+	n : DINT;
+END_VAR]]></Declaration>
+X
+cat >plc/PlcTask.TcTTO <<'X'
+<?xml version="1.0" encoding="utf-8"?>
+<TcPlcObject Version="1.1.0.1" ProductVersion="3.1.4024.12">
+  <Task Name="PlcTask" Id="{13}">
+    <!--CycleTime in micro seconds.-->
+    <CycleTime>5000</CycleTime>
+    <Priority>20</Priority>
+    <PouCall><Name>MAIN</Name></PouCall>
+    <ObjectProperties />
+  </Task>
+</TcPlcObject>
+X
+cat >plc/Plant.plcproj <<'X'
+<?xml version="1.0" encoding="utf-8"?>
+<Project DefaultTargets="Build" xmlns="http://schemas.microsoft.com/developer/msbuild/2003">
+  <PropertyGroup><Name>Plant</Name></PropertyGroup>
+  <ItemGroup>
+    <Compile Include="DUTs\E_State.TcDUT"><SubType>Code</SubType></Compile>
+    <Compile Include="DUTs\ST_Data.TcDUT"><SubType>Code</SubType></Compile>
+    <Compile Include="GVLs\GVL_Io.TcGVL"><SubType>Code</SubType></Compile>
+    <Compile Include="PlcTask.TcTTO"><SubType>Code</SubType></Compile>
+    <Compile Include="POUs\drives\FB_Base.TcPOU"><SubType>Code</SubType></Compile>
+    <Compile Include="POUs\Drives\FB_Pump.TcPOU"><SubType>Code</SubType></Compile>
+    <Compile Include="POUs\I_Run.TcIO"><SubType>Code</SubType></Compile>
+    <Compile Include="POUs\MAIN.TcPOU"><SubType>Code</SubType></Compile>
+    <Compile Include="POUs\Old.TcPOU"><ExcludeFromBuild>True</ExcludeFromBuild></Compile>
+    <Compile Include="Visu\Start.TcVIS"><SubType>Code</SubType></Compile>
+  </ItemGroup>
+  <ItemGroup>
+    <PlaceholderReference Include="Tc2_Standard"><DefaultResolution>Tc2_Standard, * (Beckhoff Automation GmbH)</DefaultResolution></PlaceholderReference>
+  </ItemGroup>
+</Project>
+X
+
+code=0
+stc check plc/Plant.plcproj >out 2>err || code=$?
+if grep -q 'built without pugixml' err; then
+  [ "$code" -eq 7 ] || fail "refused with $code"
+  said 'libpugixml-dev'
+  echo "built without pugixml: refused, as it should be"
+  exit 0
+fi
+[ "$code" -eq 0 ] || fail "check: $code"
+said 'Plant\.plcproj:[0-9]+:[0-9]+: warning\[W0070\]: `Visu/Start\.TcVIS` is of a kind not known here'
+# As files of its own, as a folder, and by the project, it is the same program.
+expect 0 stc build plc -o folder.img
+expect 0 stc build plc/Plant.plcproj --name plc -o project.img
+expect 0 stc build plc/*.TcTTO plc/*/*.Tc* plc/*/*/*.Tc* --name plc -o files.img
+for image in folder project files; do
+  expect 0 stvm run $image.img --scans 3 --virtual-time --print MAIN.speed --print MAIN.state \
+    --print MAIN.data.n --print GVL_Io.n
+  said '^MAIN.speed=4\.5$'
+  said '^MAIN.state=.*Running|^MAIN.state=10$'
+  said '^MAIN.data.n=3$'
+  said '^GVL_Io.n=3$'
+done
+expect 0 stc dump project.img
+said '^PlcTask +5000 +20 +MAIN'
+
+# What is not in the project is not taken from its folder.
+object plc/POUs/Stray.TcPOU POU Stray <<'X'
+    <Declaration>nonsense</Declaration>
+X
+expect 0 stc check plc
+
+# To files, with a report.
+expect 0 stc import plc/Plant.plcproj -o st
+said '^plc/POUs/MAIN\.TcPOU -> st/MAIN\.st$'
+said 'note\[W0071\]: <PlaceholderReference> `Tc2_Standard`'
+said '`POUs/Old\.TcPOU` is excluded from the build'
+said 'MAIN\.TcPOU:[0-9]+:[0-9]+: note\[W0071\]: POU MAIN: <LineIds name="MAIN">|note\[W0071\]: POU MAIN: <LineIds> is of the editor only'
+said '^8 source\(s\), 0 error\(s\), 1 warning\(s\)'
+expect 0 stc build st --name plc -o st.img
+expect 0 stvm run st.img --scans 3 --virtual-time --print MAIN.speed
+said '^MAIN.speed=4\.5$'
+expect 0 stc import plc/Plant.plcproj -o st  # the same again is no overwriting
+echo '// edited' >>st/MAIN.st
+expect 7 stc import plc/Plant.plcproj -o st
+said 'R0503: st/MAIN\.st: is there and differs; nothing was written'
+expect 0 stc import plc/Plant.plcproj -o st --force --format json
+said '"file":"st/MAIN\.st"'
+said '"severity":"warning","code":"W0070","file":"plc/Plant\.plcproj","line":14'
+
+# Messages show the text that was made.
+object bad.TcPOU POU Bad <<'X'
+    <Declaration><![CDATA[PROGRAM Bad
+VAR n : INT; END_VAR]]></Declaration>
+    <Implementation><ST><![CDATA[n := missing;]]></ST></Implementation>
+X
+expect 1 stc check bad.TcPOU
+said 'bad\.TcPOU/Bad\.st:4:6: error\[E2001\]'
+
+# Graphical bodies: an error, and never an empty body.
+object ladder.TcPOU POU Ladder <<'X'
+    <Declaration><![CDATA[PROGRAM Ladder
+VAR END_VAR]]></Declaration>
+    <Implementation><NWL><XmlArchive><Data><o t="NWLImplementationObject" /></Data></XmlArchive></NWL></Implementation>
+X
+expect 1 stc check ladder.TcPOU
+said "ladder\.TcPOU:6:[0-9]+: error\[E1080\]: POU Ladder: the body of Ladder is in NWL"
+expect 1 stc import ladder.TcPOU -o nwl
+expect 1 stc check nwl
+said 'nwl/Ladder\.st:[0-9]+:[0-9]+: error\[E[0-9]+\]: the body of Ladder is in NWL'
+
+# Files that are missing, of another kind, or no XML.
+sed 's/ST_Data/ST_Gone/' plc/Plant.plcproj >plc/Gone.plcproj
+expect 1 stc import plc/Gone.plcproj -o gone
+said 'Gone\.plcproj:6:[0-9]+: error\[E1081\]: `DUTs/ST_Gone\.TcDUT` is listed, but there is no such file'
+printf '<a><b></a>' >broken.TcPOU
+expect 1 stc check broken.TcPOU
+said 'broken\.TcPOU:1:[0-9]+: error\[E1070\]'
+printf '<library/>' >other.xml
+expect 1 stc check other.xml
+said 'other\.xml:1:2: error\[E1071\]: <library> begins nothing'
+printf '<?xml version="1.0" encoding="EBCDIC"?><a/>' >strange.xml
+expect 1 stc check strange.xml
+said 'E1070.*`ebcdic` is not read'
+printf '<TcPlcObject><POU Name="../evil"><Declaration>PROGRAM x</Declaration></POU></TcPlcObject>' >evil.TcPOU
+expect 1 stc import evil.TcPOU -o evil
+said 'E1074.*`\.\./evil` is no name'
+printf '<TcPlcObject><POU><Declaration>PROGRAM x</Declaration></POU></TcPlcObject>' >anonymous.TcPOU
+expect 1 stc import anonymous.TcPOU -o evil
+said 'E1073.*<POU> has no attribute `Name`'
+# kMaxXmlDepth: 256 levels are allowed, one more is not.
+nested() { printf '<TcPlcObject>'; yes '<a>' | head -n "$1" | tr -d '\n'; yes '</a>' | head -n "$1" | tr -d '\n'; printf '</TcPlcObject>'; }
+nested 255 >deep.TcPOU
+expect 1 stc check deep.TcPOU
+said 'W0070'
+nested 256 >deep.TcPOU
+expect 1 stc check deep.TcPOU
+said 'E1072.*deeper than 256 levels'
+nested 400000 >deep.TcPOU
+expect 1 stc check deep.TcPOU
+said E1072
+head -c 67108865 /dev/zero | tr '\0' ' ' >large.xml  # kMaxXmlBytes and one
+expect 1 stc check large.xml
+said 'E1072.*67108865 bytes; the limit is 67108864'
+# Usage.
+expect 2 stc import plc
+expect 2 stc import plc -o x --format sarif
+expect 2 stc import st/MAIN.st -o x
+expect 7 stc import nothing.xml -o x

@@ -1,0 +1,190 @@
+#include "tools/stc/importer.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "base/limits.h"
+#include "base/name_case.h"
+#include "tools/common/files.h"
+#ifdef STC_HAS_XML
+#include "adapters/plcopen/plcopen.h"
+#include "adapters/twincat/twincat.h"
+#endif
+
+namespace stc {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_extension(const std::string& path, std::initializer_list<const char*> extensions) {
+  const std::string own = fs::path(path).extension().string();
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const char* extension) { return base::same_name(own, extension); });
+}
+
+#ifdef STC_HAS_XML
+// `listed` from `folder` on. Projects come from machines that do not tell letters of different
+// case apart. Empty: there is no such file.
+std::string find_listed(const fs::path& folder, const std::string& listed) {
+  std::error_code error;
+  if (fs::is_regular_file(folder / listed, error)) return (folder / listed).string();
+  fs::path at = folder;
+  for (const fs::path& part : fs::path(listed)) {
+    if (part == "." || part == ".." || fs::exists(at / part, error)) {
+      at /= part;
+      continue;
+    }
+    fs::path found;
+    for (const auto& entry : fs::directory_iterator(at, error)) {
+      if (base::same_name(entry.path().filename().string(), part.string())) found = entry.path();
+    }
+    if (found.empty()) return {};
+    at = found;
+  }
+  return fs::is_regular_file(at, error) ? at.string() : std::string();
+}
+#endif
+
+}  // namespace
+
+bool is_twincat(const std::string& path) {
+  return has_extension(path, {".TcPOU", ".TcDUT", ".TcGVL", ".TcIO", ".TcTTO", ".plcproj"});
+}
+
+bool is_importable(const std::string& path) {
+  return is_twincat(path) || has_extension(path, {".xml"});
+}
+
+std::vector<std::string> without_listed(const std::vector<std::string>& paths) {
+  std::set<fs::path> projects;
+  for (const std::string& path : paths) {
+    if (has_extension(path, {".plcproj"})) projects.insert(fs::path(path).parent_path());
+  }
+  std::vector<std::string> out;
+  for (const std::string& path : paths) {
+    bool in_project = false;
+    if (is_twincat(path) && !has_extension(path, {".plcproj"})) {
+      for (fs::path folder = fs::path(path).parent_path();; folder = folder.parent_path()) {
+        in_project = in_project || projects.count(folder) != 0;
+        if (in_project || folder.empty() || folder == folder.parent_path()) break;
+      }
+    }
+    if (!in_project) out.push_back(path);
+  }
+  return out;
+}
+
+std::string located_text(const xml::Finding& finding) {
+  std::string out;
+  if (!finding.pou.empty()) out += "POU " + finding.pou;
+  if (finding.network != 0) {
+    out += (out.empty() ? "network " : ", network ") + std::to_string(finding.network);
+  }
+  return out.empty() ? finding.text : out + ": " + finding.text;
+}
+
+void add_findings(base::Diagnostics& diagnostics, const std::vector<xml::Finding>& findings,
+                  bool notes) {
+  std::set<std::pair<uint32_t, std::string>> said;
+  for (const xml::Finding& finding : findings) {
+    const base::Severity severity = base::diagnostic_row(finding.code).severity;
+    if (severity == base::Severity::kNote && !notes) continue;
+    const bool again = severity != base::Severity::kError &&
+                       !said.emplace(static_cast<uint32_t>(finding.code), finding.text).second;
+    if (!again) diagnostics.add(finding.code, finding.span, located_text(finding), finding.fix);
+  }
+}
+
+struct Importer::Readers {
+  std::set<std::string> seen;  // canonical paths
+#ifdef STC_HAS_XML
+  xml::Imported current;
+  twincat::Importer twincat{current};
+#endif
+};
+
+Importer::Importer(base::SourceMap& sources)
+    : sources_(sources), readers_(std::make_unique<Readers>()) {}
+Importer::~Importer() = default;
+
+base::Status Importer::add(const std::string& path) {
+  std::error_code error;
+  const fs::path canonical = fs::canonical(path, error);
+  if (!readers_->seen.insert(error ? path : canonical.string()).second) return base::Ok{};
+#ifdef STC_HAS_XML
+  // A byte more than allowed, so that the limit has its own message.
+  base::Result<std::string> bytes = tools::read_text(path, 2ull * base::kMaxXmlBytes);
+  if (!bytes.ok()) return bytes.error();
+  read(path, *bytes);
+  return base::Ok{};
+#else
+  return base::Error{base::Refusal::kFileUnreadable,
+                     path +
+                         ": XML is not part of this stc: it was built without pugixml (package "
+                         "libpugixml-dev)"};
+#endif
+}
+
+#ifdef STC_HAS_XML
+
+void Importer::take(const std::string& origin, xml::Imported& out) {
+  for (xml::MadeSource& source : out.sources) made.push_back({origin, std::move(source)});
+  findings.insert(findings.end(), std::make_move_iterator(out.findings.begin()),
+                  std::make_move_iterator(out.findings.end()));
+  // A name is taken in all documents that are imported together.
+  std::unordered_set<std::string> names = std::move(out.names);
+  out = {};
+  out.names = std::move(names);
+}
+
+void Importer::read(const std::string& path, const std::string& bytes) {
+  xml::Imported& out = readers_->current;
+  const xml::Document document(path, bytes, sources_, out);
+  if (!document.root()) return take(path, out);
+  if (twincat::is_object(document)) {
+    readers_->twincat.add_object(document);
+  } else if (twincat::is_project(document)) {
+    std::vector<twincat::ListedFile> files = twincat::listed_files(document, out);
+    const fs::path folder = fs::path(path).parent_path();
+    for (const twincat::ListedFile& file : files) {
+      const std::string found = find_listed(folder, file.path);
+      base::Status status = base::Ok{};
+      if (!found.empty()) {
+        xml::Imported own;
+        std::swap(own, out);
+        out.names = std::move(own.names);
+        status = add(found);
+        own.names = std::move(out.names);
+        std::swap(own, out);
+      }
+      if (found.empty() || !status.ok()) {
+        xml::Reporter(document, out)
+            .add(xml::Code::kProjectFileMissing, file.node,
+                 "`" + file.path + "` is listed, but " +
+                     (found.empty() ? "there is no such file" : "it cannot be read"));
+      }
+    }
+  } else if (plcopen::is_document(document)) {
+    plcopen::import(document, out);
+  } else {
+    xml::Reporter(document, out)
+        .add(xml::Code::kUnknownXml, document.root(),
+             "<" + std::string(xml::local_name(document.root())) +
+                 "> begins nothing that can be imported");
+  }
+  take(path, out);
+}
+
+void Importer::finish() {
+  readers_->twincat.add_tasks();
+  take("tasks", readers_->current);
+}
+
+#else
+
+void Importer::finish() {}
+
+#endif
+
+}  // namespace stc
