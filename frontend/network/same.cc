@@ -1,0 +1,146 @@
+#include "frontend/network/same.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/hash.h"
+#include "frontend/network/element_text.h"
+#include "ir/types/types.h"
+
+namespace frontend::network {
+
+namespace {
+
+class Printer {
+ public:
+  explicit Printer(bool fbd) : fbd_(fbd) {}
+
+  std::string run(const Body& body) {
+    std::string before;  // comments of networks that have nothing else: they belong to the next
+    for (const Network& network : body.networks) {
+      std::string comments = std::exchange(before, {});
+      for (const std::string& comment : network.comments) comments += "// " + comment + '\n';
+      if (network.elements.empty() && network.label.empty()) {
+        before = std::move(comments);
+        continue;
+      }
+      // In FBD what has no label is drawn together with what stands in front of it.
+      if (out_.empty() || !fbd_ || !network.label.empty()) {
+        out_ += std::exchange(comments_, {}) + "network " + network.label.text + '\n';
+        done_ = 0;
+      }
+      comments_ += comments;
+      for (const Element& element : network.elements) {
+        if (!element.comment.empty()) comments_ += "// " + element.comment + '\n';
+      }
+      network_ = &network;
+      text_.assign(network.elements.size(), {});
+      for (uint32_t i = 0; i < network.elements.size(); ++i) element(i);
+    }
+    return out_ + comments_ + before;
+  }
+
+ private:
+  void element(uint32_t i) {
+    const Element& element = network_->elements[i];
+    switch (element.kind) {
+      case Kind::kLeftRail:
+        text_[i] = fbd_ ? "{TRUE}" : "|";
+        break;
+      case Kind::kRightRail:
+        break;
+      case Kind::kSource:
+        text_[i] = '{' + element.operand.text + '}';
+        break;
+      case Kind::kContact: {
+        // It is read behind what was done before it, and that may have written its operand.
+        std::string own = std::to_string(done_) + ' ' + print(element);
+        text_[i] = base::to_hex(base::sha256(base::as_bytes(own)));
+        break;
+      }
+      default:
+        text_[i] = '#' + std::to_string(++done_);
+        out_ += "  " + text_[i] + ' ' + print(element) + '\n';
+        break;
+    }
+  }
+
+  std::string print(const Element& element) const;
+  std::string print(const Input& input) const;
+  std::string link(Link link, bool& negated) const;
+
+  const bool fbd_;
+  const Network* network_ = nullptr;
+  std::vector<std::string> text_;  // of links to an element
+  std::string out_;
+  std::string comments_;  // of the network that is being printed
+  uint32_t done_ = 0;     // elements that write something
+};
+
+std::string Printer::print(const Element& element) const {
+  // What negates a variable that a box writes may stand in front of the variable, too.
+  Modifier modifier = element.modifier;
+  bool sink = element.kind == Kind::kSink || element.kind == Kind::kCoil;
+  Input only = element.inputs.empty() ? Input{} : element.inputs[0];
+  if (sink && modifier == Modifier::kNegated && only.modifier <= Modifier::kNegated) {
+    bool twice = only.modifier == Modifier::kNegated;
+    only.modifier = twice ? Modifier::kNone : Modifier::kNegated;
+    modifier = Modifier::kNone;
+  }
+  std::string out = std::to_string(static_cast<uint32_t>(element.kind)) + ' ' +
+                    std::to_string(static_cast<uint32_t>(modifier)) + ' ' + element.operand.text +
+                    " : " + element.type.text;
+  if (sink) return out + ' ' + print(only);
+  std::string nothing;  // inputs by position that nothing is connected to, unless others follow
+  for (const Input& input : element.inputs) {
+    if (!input.from.empty()) {
+      out += nothing + ' ' + print(input);
+      nothing.clear();
+    } else if (input.name.empty()) {
+      nothing += " <";
+    }
+  }
+  return out;
+}
+
+std::string Printer::print(const Input& input) const {
+  bool negated = input.modifier == Modifier::kNegated;
+  std::vector<std::string> links;
+  for (Link from : input.from) {
+    bool inverted = false;
+    std::string text = link(from, inverted);
+    if (inverted && input.from.size() != 1) text = '!' + text;
+    if (inverted && input.from.size() == 1) negated = !negated;
+    links.push_back(std::move(text));
+  }
+  std::sort(links.begin(), links.end());
+  links.erase(std::unique(links.begin(), links.end()), links.end());
+  std::string out = input.name + '<' + (negated ? "!" : "");
+  if (input.modifier > Modifier::kNegated) {
+    out += '^' + std::to_string(static_cast<uint32_t>(input.modifier));
+  }
+  for (const std::string& text : links) out += ' ' + text;
+  return out;
+}
+
+std::string Printer::link(Link link, bool& negated) const {
+  const Element& from = network_->elements[link.element];
+  if (from.kind == Kind::kSource && from.operand.text.starts_with("NOT ") &&
+      is_plain_name(from.operand.text.substr(4))) {
+    negated = true;  // as a pin that is negated
+    return '{' + from.operand.text.substr(4) + '}';
+  }
+  if (link.output < from.outputs.size()) negated = from.outputs[link.output].negated;
+  // An output of a box below is that of the last scan.
+  std::string of = text_[link.element].empty() ? '?' + from.operand.text : text_[link.element];
+  if (from.kind != Kind::kBlock || is_result(from, link.output)) return of;
+  return of + '.' + from.outputs[link.output].name;
+}
+
+}  // namespace
+
+std::string canonical(const Body& body) {
+  return Printer(body.language == Language::kFbd).run(body);
+}
+
+}  // namespace frontend::network

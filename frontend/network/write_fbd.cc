@@ -1,0 +1,281 @@
+#include <algorithm>
+#include <map>
+#include <unordered_set>
+
+#include "frontend/lex/characters.h"
+#include "frontend/network/element_text.h"
+#include "frontend/network/write.h"
+#include "ir/types/types.h"
+
+namespace frontend::network {
+
+namespace {
+
+struct Value {
+  Modifier modifier = Modifier::kNone;
+  std::string text;
+  bool steady = true;  // a wire or a constant: what is written later does not change it
+};
+
+bool writes(Kind kind) {
+  return kind == Kind::kCoil || kind == Kind::kSink || kind == Kind::kBlock;
+}
+
+class Writer {
+ public:
+  Writer(const Body& body, uint32_t indent) : body_(body), indent_(indent) { collect_names(); }
+
+  std::string run() {
+    for (size_t n = 0; n < body_.networks.size(); ++n) {
+      if (n > 0) out_ += '\n';
+      network_ = &body_.networks[n];
+      find_uses();
+      for (const std::string& comment : network_->comments) row(comment_rows(comment, indent_));
+      if (!network_->label.empty()) row(network_->label.text + ':');
+      for (uint32_t i = 0; i < network_->elements.size(); ++i) element(i);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  void collect_names();
+  void add_names(std::string_view text);
+  void find_uses();
+  void use(Link link, uint32_t user);
+  void element(uint32_t i);
+  void contact(uint32_t i);
+  void coil(uint32_t i);
+  void block(uint32_t i);
+  void conditional(uint32_t i, std::string_view words);
+  void assign(const Element& to, Value value);
+
+  Value value(const Input& input);
+  Value value(Link link);
+  Value with(Value value, Modifier modifier);
+  Value joined(std::vector<Value> terms);
+  Value wire(const char* type, const std::vector<Value>& pins);
+  std::string new_name(std::string_view type);
+  void row(const std::string& text) { out_ += std::string(indent_, ' ') + text + '\n'; }
+
+  const Body& body_;
+  uint32_t indent_;
+  const Network* network_ = nullptr;
+  std::string out_;
+  std::unordered_set<std::string> names_;  // everything that could be a name, folded
+  std::vector<uint32_t> written_;          // by element: those before it that write something
+  std::vector<uint32_t> users_;            // how many inputs use it
+  std::vector<uint32_t> last_user_;
+  // What is known of power behind an element; of a contact that is used at once, its operands.
+  std::vector<std::vector<Value>> terms_;
+  std::vector<std::string> wires_;                                      // of boxes of functions
+  std::map<std::vector<std::pair<uint32_t, uint32_t>>, Value> joints_;  // wires of ORs, by links
+};
+
+void Writer::collect_names() {
+  for (const Network& network : body_.networks) {
+    add_names(network.label.text);
+    for (const Element& element : network.elements) {
+      add_names(element.operand.text);
+      add_names(element.type.text);
+    }
+  }
+}
+
+void Writer::add_names(std::string_view text) {
+  for (size_t i = 0; i < text.size();) {
+    size_t end = i;
+    while (end < text.size() && is_name_part(text[end])) ++end;
+    if (end > i) names_.insert(ir::fold_name(text.substr(i, end - i)));
+    i = end + 1;
+  }
+}
+
+std::string Writer::new_name(std::string_view type) {
+  std::string stem;
+  for (char c : type.substr(type.rfind('.') + 1)) {
+    stem += static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
+  }
+  for (uint32_t n = 1;; ++n) {
+    std::string name = stem + std::to_string(n);
+    if (names_.insert(ir::fold_name(name)).second) return name;
+  }
+}
+
+void Writer::find_uses() {
+  size_t count = network_->elements.size();
+  written_.assign(count, 0);
+  users_.assign(count, 0);
+  last_user_.assign(count, 0);
+  terms_.assign(count, {});
+  wires_.assign(count, {});
+  joints_.clear();
+  uint32_t written = 0;
+  for (uint32_t i = 0; i < count; ++i) {
+    const Element& element = network_->elements[i];
+    written_[i] = written;
+    if (writes(element.kind)) ++written;
+    if (element.kind == Kind::kRightRail) continue;
+    for (const Input& input : element.inputs) {
+      for (Link link : input.from) use(link, i);
+    }
+  }
+}
+
+void Writer::use(Link link, uint32_t user) {
+  ++users_[link.element];
+  last_user_[link.element] = user;
+}
+
+void Writer::element(uint32_t i) {
+  const Element& element = network_->elements[i];
+  if (!element.comment.empty()) row(comment_rows(element.comment, indent_));
+  switch (element.kind) {
+    case Kind::kLeftRail:
+      terms_[i] = {{Modifier::kNone, "TRUE", true}};
+      return;
+    case Kind::kRightRail:
+      return;
+    case Kind::kSource:
+      terms_[i] = {{Modifier::kNone, element.operand.text, false}};
+      return;
+    case Kind::kContact:
+      return contact(i);
+    case Kind::kCoil:
+      return coil(i);
+    case Kind::kSink: {
+      Value from = value(element.inputs[0]);
+      return assign(element, std::move(from));
+    }
+    case Kind::kBlock:
+      return block(i);
+    case Kind::kJump:
+      return conditional(i, "JMP " + element.operand.text);
+    case Kind::kReturn:
+      return conditional(i, "RETURN");
+  }
+}
+
+// A contact is one more pin of the AND that its user makes, or has a wire of its own.
+void Writer::contact(uint32_t i) {
+  const Element& element = network_->elements[i];
+  std::vector<Value> terms;
+  const Input& input = element.inputs[0];
+  if (input.from.size() == 1 && input.modifier == Modifier::kNone) {
+    terms = terms_[input.from[0].element];
+  }
+  if (terms.empty()) terms = {value(input)};
+  if (terms.size() == 1 && terms[0].text == "TRUE" && terms[0].steady) terms.clear();
+  terms.push_back({element.modifier, element.operand.text, false});
+  bool edge = element.modifier > Modifier::kNegated;
+  bool once = users_[i] <= 1 || (terms.size() == 1 && !edge);
+  bool unchanged = users_[i] == 0 || written_[last_user_[i]] == written_[i];
+  if (!once || !unchanged) {
+    if (terms.size() == 1) terms.insert(terms.begin(), {Modifier::kNone, "TRUE", true});
+    terms = {joined(std::move(terms))};
+  }
+  terms_[i] = std::move(terms);
+}
+
+void Writer::coil(uint32_t i) {
+  const Element& element = network_->elements[i];
+  Value power = value(element.inputs[0]);
+  if (users_[i] > 0 && !power.steady) {
+    power = wire("AND", {{Modifier::kNone, "TRUE", true}, power});
+  }
+  assign(element, power);
+  terms_[i] = {power};
+}
+
+void Writer::assign(const Element& to, Value value) {
+  bool set = to.modifier == Modifier::kSet || to.modifier == Modifier::kReset;
+  if (!set) value = with(std::move(value), to.modifier);
+  const char* sign = !set ? " := " : to.modifier == Modifier::kSet ? " S= " : " R= ";
+  row(to.operand.text + sign + pin_value(value.modifier, value.text) + ';');
+}
+
+void Writer::conditional(uint32_t i, std::string_view words) {
+  const Element& element = network_->elements[i];
+  Value condition = value(element.inputs[0]);
+  std::string text(words);
+  bool always = condition.text == "TRUE" && condition.modifier == Modifier::kNone;
+  if (!always) text += " IF " + pin_value(condition.modifier, condition.text);
+  row(text + ';');
+}
+
+void Writer::block(uint32_t i) {
+  const Element& element = network_->elements[i];
+  std::string pins;
+  for (const Input& input : element.inputs) {
+    if (input.from.empty()) continue;
+    Value from = value(input);
+    if (!pins.empty()) pins += ", ";
+    if (!input.name.empty()) pins += input.name + " := ";
+    pins += pin_value(from.modifier, from.text);
+  }
+  std::string call = element.type.text + '(' + pins + ");";
+  if (!element.operand.empty()) return row(element.operand.text + " : " + call);
+  wires_[i] = new_name(element.type.text);
+  row("WIRE " + wires_[i] + " := " + call);
+}
+
+Value Writer::value(const Input& input) {
+  if (input.from.empty()) return with({Modifier::kNone, "FALSE", true}, input.modifier);
+  if (input.from.size() == 1) return with(value(input.from[0]), input.modifier);
+  std::vector<std::pair<uint32_t, uint32_t>> key;
+  for (Link link : input.from) key.emplace_back(link.element, link.output);
+  std::sort(key.begin(), key.end());
+  auto [joint, is_new] = joints_.try_emplace(std::move(key));
+  if (is_new) {
+    std::vector<Value> pins;
+    for (Link link : input.from) pins.push_back(value(link));
+    joint->second = wire("OR", pins);
+  }
+  return with(joint->second, input.modifier);
+}
+
+Value Writer::value(Link link) {
+  const Element& from = network_->elements[link.element];
+  if (from.kind != Kind::kBlock) return joined(terms_[link.element]);
+  const Output& output = from.outputs[link.output];
+  Value value;
+  value.text = from.operand.empty() ? wires_[link.element] : from.operand.text;
+  if (!is_result(from, link.output)) value.text += '.' + output.name;
+  if (output.negated) value.modifier = Modifier::kNegated;
+  return value;
+}
+
+Value Writer::with(Value value, Modifier modifier) {
+  if (modifier == Modifier::kNone) return value;
+  if (value.modifier == Modifier::kNone) {
+    value.modifier = modifier;
+    return value;
+  }
+  if (value.modifier == Modifier::kNegated && modifier == Modifier::kNegated) {
+    value.modifier = Modifier::kNone;
+    return value;
+  }
+  value = wire("AND", {{Modifier::kNone, "TRUE", true}, value});
+  value.modifier = modifier;
+  return value;
+}
+
+Value Writer::joined(std::vector<Value> terms) {
+  if (terms.empty()) return {Modifier::kNone, "FALSE", true};
+  return terms.size() == 1 ? std::move(terms[0]) : wire("AND", terms);
+}
+
+Value Writer::wire(const char* type, const std::vector<Value>& pins) {
+  std::string name = new_name(type);
+  std::string text;
+  for (const Value& pin : pins) {
+    text += (text.empty() ? "" : ", ") + pin_value(pin.modifier, pin.text);
+  }
+  row("WIRE " + name + " := " + type + '(' + text + ");");
+  return {Modifier::kNone, name, true};
+}
+
+}  // namespace
+
+std::string write_fbd(const Body& body, uint32_t indent) { return Writer(body, indent).run(); }
+
+}  // namespace frontend::network
