@@ -6,6 +6,7 @@
 #include "frontend/format/same_program.h"
 #include "frontend/format/writer.h"
 #include "frontend/parse/parse.h"
+#include "ir/types/types.h"
 
 namespace frontend {
 
@@ -71,11 +72,13 @@ base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,
   base::Diagnostics other;
   Tree after;
   parse(result, 0, after, other);
-  if (print(after) == print(tree)) return formatted;
-  return base::Error{base::Refusal::kInternal,
-                     std::string(sources.file_name(file)) +
-                         ": formatting would have changed an instruction list; the text was left "
-                         "as it is"};
+  // Words of diagrams may change their case.
+  if (ir::same_name(print(after), print(tree))) return formatted;
+  return base::Error{
+      base::Refusal::kInternal,
+      std::string(sources.file_name(file)) +
+          ": formatting would have changed an instruction list or a diagram; the text was left "
+          "as it is"};
 }
 
 }  // namespace frontend

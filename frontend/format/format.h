@@ -7,7 +7,8 @@
 // changes nothing; byte order mark, line endings and charset stay. A text with lexical or syntax
 // errors is not formatted, nor one whose branches of conditional compilation are no sound text.
 // What stands between `(* stc:off *)` and `(* stc:on *)` stays as it is, and so do instruction
-// lists and ladders.
+// lists. Ladder is drawn again, as network/write.h says; there comments stand in front of their
+// rung. A drawing that cannot be drawn stays as it is.
 #pragma once
 
 #include <cstdint>

@@ -1,3 +1,4 @@
+#include "frontend/format/diagrams.h"
 #include "frontend/format/outliner.h"
 #include "frontend/format/spacing.h"
 
@@ -74,10 +75,11 @@ bool Outliner::soft_head() {
       if (next == TokenKind::kString) test();
       return next == TokenKind::kString;
     case TokenKind::kLadder:
-      if (text_.kind(at_ + 1) != TokenKind::kEndLadder) return false;
+    case TokenKind::kFbd:
+      if (!ends_diagram(k, next)) return false;
       soft_keyword(at_);
       add_head(at_ + 1);
-      push(TokenKind::kEndLadder, BlockKind::kGroup, top().inner + 1);
+      push(next, BlockKind::kGroup, top().inner + 1);
       return true;
     case TokenKind::kGet:
     case TokenKind::kSet:

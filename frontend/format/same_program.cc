@@ -1,5 +1,6 @@
 #include "frontend/format/same_program.h"
 
+#include "frontend/format/diagrams.h"
 #include "frontend/format/spacing.h"
 #include "frontend/format/text.h"
 #include "frontend/lex/characters.h"
@@ -39,7 +40,17 @@ bool same_token(const Text& a, const Text& b, uint32_t i) {
   return (is_keyword(a.kind(i)) || is_name(a.kind(i))) && ir::same_name(a.token(i), b.token(i));
 }
 
+// Of two gaps in front of the same token.
+bool same_drawing(const Text& a, const Text& b, uint32_t i) {
+  if (i == 0 || !ends_diagram(a.kind(i - 1), a.kind(i))) return false;
+  auto between = [i](const Text& text) {
+    return text.text().substr(text.end(i - 1), text.begin(i) - text.end(i - 1));
+  };
+  return same_diagram(a.kind(i - 1), between(a), between(b));
+}
+
 bool same_gap(const Text& a, const Text& b, uint32_t i) {
+  if (same_drawing(a, b, i)) return true;
   if (a.gap(i).count != b.gap(i).count) return false;
   for (uint32_t p = 0; p < a.gap(i).count; ++p) {
     const Piece& piece_a = a.piece(a.gap(i).first + p);

@@ -38,11 +38,20 @@ bool is_sign(const Text& text, uint32_t i, uint32_t first) {
          (i == first || !ends_operand(text.kind(i - 1)));
 }
 
+// `AND(a, b)`: the function, where the operator would need an operand in front of it.
+bool is_function_word(const Text& text, uint32_t i, uint32_t first) {
+  TokenKind kind = text.kind(i);
+  bool word = kind == TokenKind::kAnd || kind == TokenKind::kOr || kind == TokenKind::kXor ||
+              kind == TokenKind::kMod;
+  return word && (i == first || !ends_operand(text.kind(i - 1)));
+}
+
 bool adjacent(const Text& text, uint32_t i) { return text.end(i - 1) == text.begin(i); }
 
 bool blank_before_bracket(const Text& text, const Line& line, uint32_t i, uint32_t first) {
   TokenKind before = text.kind(i - 1);
   if (before == TokenKind::kArray || before == TokenKind::kTypePrefix) return false;
+  if (is_function_word(text, i - 1, first)) return false;
   if (!ends_operand(before)) return !is_sign(text, i - 1, first);
   // TRANSITION name (PRIORITY := 1) FROM (a, b)
   bool transition = line.kind == LineKind::kHead && text.kind(first) == TokenKind::kTransition;

@@ -1,5 +1,7 @@
 #include "frontend/format/writer.h"
 
+#include "frontend/format/diagrams.h"
+
 namespace frontend::formatting {
 
 Rows Writer::run() {
@@ -99,6 +101,7 @@ void Writer::open_line(const Line& line, uint32_t newlines) {
 // their own, and what stays in the row of the token.
 void Writer::boundary(const Line& line) {
   prefix_.clear();
+  if (write_diagram(line)) return;
   const Gap& gap = text_.gap(line.first);
   uint32_t last = gap.first + gap.count;
   uint32_t next = trailing(gap);
@@ -119,6 +122,35 @@ void Writer::boundary(const Line& line) {
   // A region takes the row of the token.
   own_rows(line, own_end, last);
   while (has_region_before(text_.begin(line.first))) write_region();
+}
+
+// What stands between LADDER or FBD and its end, when `line` is that end.
+bool Writer::write_diagram(const Line& line) {
+  if (line.first == 0) return false;
+  TokenKind head = text_.kind(line.first - 1);
+  if (!ends_diagram(head, text_.kind(line.first))) return false;
+  uint32_t begin = text_.end(line.first - 1);
+  uint32_t end = text_.begin(line.first);
+  if (in_region(begin) || has_region_before(end)) return false;
+  std::string_view text = text_.text().substr(begin, end - begin);
+  std::optional<std::string> rows = drawn(head, text, layout_.columns_of(line.level + 1), options_);
+  fresh_ = false;
+  if (rows) {
+    if (rows->empty()) return true;
+    layout_.open_row(0, RowKind::kVerbatim, false);
+    layout_.put(*rows);
+    return true;
+  }
+  // As it is, from the first row to the last one.
+  while (!text.empty() && text.back() != '\n') text.remove_suffix(1);
+  if (!text.empty()) text.remove_suffix(1);
+  size_t first = text.find_first_not_of(" \t\r");
+  bool in_row = first != std::string_view::npos && text[first] != '\n';
+  if (!in_row) text.remove_prefix(first == std::string_view::npos ? text.size() : first + 1);
+  if (text.empty()) return true;
+  layout_.open_row(0, in_row ? RowKind::kJoined : RowKind::kVerbatim, false);
+  layout_.put(text);
+  return true;
 }
 
 // Comments in the row of the line before are its own; a pragma there belongs to what follows,

@@ -32,6 +32,7 @@ class Writer {
   uint32_t trailing(const Gap& gap);
   void own_rows(const Line& line, uint32_t from, uint32_t to);
   bool blank(uint32_t newlines) const;
+  bool write_diagram(const Line& line);
   // regions.cc
   void find_regions();
   void write_region();

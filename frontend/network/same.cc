@@ -4,12 +4,26 @@
 #include <utility>
 
 #include "base/hash.h"
+#include "frontend/lex/lexer.h"
 #include "frontend/network/element_text.h"
 #include "ir/types/types.h"
 
 namespace frontend::network {
 
 namespace {
+
+// An operand but for blanks and case.
+std::string normal(std::string_view text) {
+  base::Diagnostics unheard;
+  std::string out;
+  for (const Token& token : lex(text, base::SourcePos{0}, unheard).tokens) {
+    if (token.length == 0) continue;
+    std::string_view part = text.substr(token.begin, token.length);
+    bool string = part.find_first_of("'\"") != std::string_view::npos;
+    out += (out.empty() ? "" : " ") + (string ? std::string(part) : ir::fold_name(part));
+  }
+  return out;
+}
 
 class Printer {
  public:
@@ -26,7 +40,8 @@ class Printer {
       }
       // In FBD what has no label is drawn together with what stands in front of it.
       if (out_.empty() || !fbd_ || !network.label.empty()) {
-        out_ += std::exchange(comments_, {}) + "network " + network.label.text + '\n';
+        out_ +=
+            std::exchange(comments_, {}) + "network " + ir::fold_name(network.label.text) + '\n';
         done_ = 0;
       }
       comments_ += comments;
@@ -50,7 +65,7 @@ class Printer {
       case Kind::kRightRail:
         break;
       case Kind::kSource:
-        text_[i] = '{' + element.operand.text + '}';
+        text_[i] = '{' + normal(element.operand.text) + '}';
         break;
       case Kind::kContact: {
         // It is read behind what was done before it, and that may have written its operand.
@@ -88,8 +103,8 @@ std::string Printer::print(const Element& element) const {
     modifier = Modifier::kNone;
   }
   std::string out = std::to_string(static_cast<uint32_t>(element.kind)) + ' ' +
-                    std::to_string(static_cast<uint32_t>(modifier)) + ' ' + element.operand.text +
-                    " : " + element.type.text;
+                    std::to_string(static_cast<uint32_t>(modifier)) + ' ' +
+                    normal(element.operand.text) + " : " + normal(element.type.text);
   if (sink) return out + ' ' + print(only);
   std::string nothing;  // inputs by position that nothing is connected to, unless others follow
   for (const Input& input : element.inputs) {
@@ -115,7 +130,7 @@ std::string Printer::print(const Input& input) const {
   }
   std::sort(links.begin(), links.end());
   links.erase(std::unique(links.begin(), links.end()), links.end());
-  std::string out = input.name + '<' + (negated ? "!" : "");
+  std::string out = ir::fold_name(input.name) + '<' + (negated ? "!" : "");
   if (input.modifier > Modifier::kNegated) {
     out += '^' + std::to_string(static_cast<uint32_t>(input.modifier));
   }
@@ -125,16 +140,20 @@ std::string Printer::print(const Input& input) const {
 
 std::string Printer::link(Link link, bool& negated) const {
   const Element& from = network_->elements[link.element];
-  if (from.kind == Kind::kSource && from.operand.text.starts_with("NOT ") &&
-      is_plain_name(from.operand.text.substr(4))) {
-    negated = true;  // as a pin that is negated
-    return '{' + from.operand.text.substr(4) + '}';
+  std::string operand = normal(from.operand.text);
+  if (from.kind == Kind::kSource && ir::same_name(operand.substr(0, 4), "NOT ")) {
+    std::string name = operand.substr(4);
+    std::erase(name, ' ');
+    if (is_plain_name(name)) {  // as a pin that is negated
+      negated = true;
+      return '{' + operand.substr(4) + '}';
+    }
   }
   if (link.output < from.outputs.size()) negated = from.outputs[link.output].negated;
   // An output of a box below is that of the last scan.
-  std::string of = text_[link.element].empty() ? '?' + from.operand.text : text_[link.element];
+  std::string of = text_[link.element].empty() ? '?' + operand : text_[link.element];
   if (from.kind != Kind::kBlock || is_result(from, link.output)) return of;
-  return of + '.' + from.outputs[link.output].name;
+  return of + '.' + ir::fold_name(from.outputs[link.output].name);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ ir/opt: ir/types ir/program
 ir/bytecode: ir/types ir/program/ir.h stdlib/native
 ir/lower: ir/types ir/program ir/bytecode
 frontend: ir/types ir/program stdlib
-frontend/format: ir/types/types.h frontend/lex frontend/parse/il_operators.h frontend/parse/parse.h
+frontend/format: ir/types/types.h frontend/lex frontend/network frontend/ladder frontend/fbd frontend/parse/il_operators.h frontend/parse/parse.h
 linker: ir/types ir/program ir/bytecode stdlib/native
 vm: ir/types ir/program/ir.h ir/bytecode stdlib/native
 vm/io: ir/types ir/bytecode vm/runtime
