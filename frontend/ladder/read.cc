@@ -143,7 +143,13 @@ class RungReader {
     const Node& node = rung_.nodes[piece.left];
     if (node.powered) input.from.push_back({0, 0});
     for (uint32_t driver : node.drivers) {
-      if (made_[driver]) input.from.push_back(made_[driver]->out);
+      if (!made_[driver]) continue;
+      if (network_.elements[made_[driver]->element].outputs.empty()) {
+        report(Code::kBadElement, piece, "no power goes on behind JMP and RETURN",
+               "put it into a branch of its own, or in front of them");
+        continue;
+      }
+      input.from.push_back(made_[driver]->out);
     }
   }
 

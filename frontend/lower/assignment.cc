@@ -14,7 +14,7 @@ void Body::assign(const Stmt& stmt) {
     if (!stmt.instruction) {
       allow_set_or_reset(stmt.span);
     } else if (ir::TypeId type = sema_.infer(stmt.target).type;
-               type.valid() && types().is_instance(type)) {
+               stmt.from.valid() && type.valid() && types().is_instance(type)) {
       Stmt call = stmt;
       call.value = stmt.from;
       return call_statement(call);

@@ -76,6 +76,7 @@ void Parser::Diagram::count_uses() {
 
 void Parser::Diagram::element(uint32_t number) {
   const Element& element = network_->elements[number];
+  here_ = element.span;
   switch (element.kind) {
     case Kind::kContact:
       return contact(number, element);
@@ -165,10 +166,11 @@ void Parser::Diagram::jump(const Element& element) {
 // Everything that is linked, as one value.
 Parser::Diagram::Value Parser::Diagram::linked(const network::Input& input) {
   Value out;
+  base::SourceSpan span = input.span.begin.valid() ? input.span : here_;
   std::vector<std::pair<uint32_t, uint32_t>> links;
   for (network::Link link : input.from) {
     if (network_->elements[link.element].kind == Kind::kLeftRail) {
-      return {boolean(true, input.span), true};
+      return {boolean(true, span), true};
     }
     links.emplace_back(link.element, link.output);
   }
@@ -179,12 +181,12 @@ Parser::Diagram::Value Parser::Diagram::linked(const network::Input& input) {
     if (!join.valid()) {
       ExprId value = output(input.from[0]);
       for (size_t i = 1; i < input.from.size(); ++i) {
-        value = binary(BinaryOp::kOr, value, output(input.from[i]), input.span);
-        if (i % kHighest == 0) value = copy(keep(value, input.span), input.span);
+        value = binary(BinaryOp::kOr, value, output(input.from[i]), span);
+        if (i % kHighest == 0) value = copy(keep(value, span), span);
       }
-      join = keep(value, input.span);
+      join = keep(value, span);
     }
-    out.expr = copy(join, input.span);
+    out.expr = copy(join, span);
   }
   return out;
 }
@@ -192,10 +194,11 @@ Parser::Diagram::Value Parser::Diagram::linked(const network::Input& input) {
 Parser::Diagram::Value Parser::Diagram::input(const network::Input& input,
                                               const std::string& owner) {
   Value out = linked(input);
+  base::SourceSpan span = input.span.begin.valid() ? input.span : here_;
   if (!out.expr.valid() || input.modifier == Modifier::kNone) return out;
-  if (input.modifier == Modifier::kNegated) out.expr = negated(out.expr, input.span);
+  if (input.modifier == Modifier::kNegated) out.expr = negated(out.expr, span);
   std::string of = owner + (input.name.empty() ? "" : "." + input.name);
-  out.expr = edge(out.expr, input.modifier, of, input.span);
+  out.expr = edge(out.expr, input.modifier, of, span);
   out.power = false;
   return out;
 }

@@ -81,6 +81,7 @@ class Parser::Diagram {
   Tree& tree_;
   PouDecl& pou_;
   const network::Network* network_ = nullptr;
+  base::SourceSpan here_;  // the element that is made
   std::vector<std::vector<Output>> outputs_;                            // by element and output
   std::map<std::vector<std::pair<uint32_t, uint32_t>>, ExprId> joins_;  // several links, kept
   std::vector<ExprId> conditions_;            // by element: when its outputs are stored

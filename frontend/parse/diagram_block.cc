@@ -57,16 +57,17 @@ Range32 Parser::Diagram::arguments(uint32_t number, const Element& element, Valu
   std::vector<Arg> args;
   for (const network::Input& each : element.inputs) {
     Value value = input(each, owner);
+    base::SourceSpan span = each.span.begin.valid() ? each.span : here_;
     if (!value.expr.valid()) continue;
     if (ir::same_name(each.name, "EN")) {
       if (value.power) continue;  // always
-      value.expr = keep(value.expr, each.span);
+      value.expr = keep(value.expr, span);
       *enable = value;
-      value.expr = copy(value.expr, each.span);
+      value.expr = copy(value.expr, span);
     }
     Arg arg;
-    arg.span = each.span;
-    if (!each.name.empty()) arg.name = {made(each.name), each.span};
+    arg.span = span;
+    if (!each.name.empty()) arg.name = {made(each.name), span};
     arg.value = value.expr;
     args.push_back(arg);
   }
@@ -102,7 +103,9 @@ void Parser::Diagram::add_outputs(uint32_t number, const Element& element) {
                    "the output `" + element.outputs[i].name + "` of `" + element.type.text +
                        "` goes to more than one variable",
                    "connect it with one variable, and use that elsewhere");
-      outputs_[number][i].kept = p_.add_expression({});
+      Expr error;
+      error.span = element.span;
+      outputs_[number][i].kept = p_.add_expression(error);
       continue;
     }
     Arg arg;

@@ -22,7 +22,23 @@ void check_tokens(const frontend::TokenList& list, size_t size) {
   base::check(list.tokens.back().kind == frontend::TokenKind::kEnd, "the list ends with kEnd");
 }
 
+// What network.h promises of every reader.
+void check_diagram(const frontend::network::Body& body) {
+  for (const frontend::network::Network& network : body.networks) {
+    for (const frontend::network::Element& element : network.elements) {
+      for (const frontend::network::Input& input : element.inputs) {
+        for (frontend::network::Link link : input.from) {
+          base::check(link.element < network.elements.size(), "a link names an element");
+          base::check(link.output < network.elements[link.element].outputs.size(),
+                      "a link names an output");
+        }
+      }
+    }
+  }
+}
+
 void check_tree(const frontend::Tree& tree, size_t size) {
+  for (const frontend::network::Body& body : tree.diagrams) check_diagram(body);
   for (const frontend::Expr& expr : tree.exprs) {
     base::check(expr.span.begin.offset <= size, "an expression begins inside its file");
     base::check(expr.height >= 1 && expr.height <= base::kMaxExpressionHeight, "height is limited");
