@@ -1,0 +1,136 @@
+#!/bin/sh
+# PLCopen XML: declarations, text bodies, charts and the objects of CODESYS come in and run.
+. "$(dirname "$0")/lib.sh"
+samples=$source_dir/tests/fuzz/corpus/plcopen
+cp "$samples"/*.xml .
+code=0
+stc check declarations.xml >out 2>err || code=$?
+if grep -q 'built without pugixml' err; then
+  [ "$code" -eq 7 ] || fail "refused with $code"
+  echo "built without pugixml: refused, as it should be"
+  exit 0
+fi
+[ "$code" -eq 0 ] || fail "check: $code"
+
+# run FILE SCANS VARIABLE=VALUE...: from the document, and from the sources that import writes.
+run() {
+  file=$1
+  scans=$2
+  shift 2
+  rm -rf made
+  expect 0 stc build "$file.xml" -o "$file.img"
+  expect 0 stc import "$file.xml" -o made
+  cp out report
+  expect 0 stc build made -o made.img
+  for image in "$file" made; do
+    for pair in "$@"; do
+      expect 0 stvm run $image.img --scans "$scans" --virtual-time --print "${pair%%=*}"
+      grep -qxF "$pair" out || fail "$image: $pair"
+    done
+  done
+}
+
+run declarations 3 Line.sum=24 Line.ramp1.value=9 'shared=22' Line.motor.speed=2.5 'Line.motor.limits[1]=8' \
+  'Line.list[1]=1' 'Line.list[5]=9' "Line.text='ready'" Line.part=50
+grep -q '^  speed : REAL := 1.5; (\* in rpm ( \* or \* ) so \*)$' made/Motor.st || fail "comment of a member"
+grep -q '^VAR RETAIN$' made/Ramp.st || fail RETAIN
+grep -q 'TYPE Percent : INT (0..100) := 50;' made/Percent.st || fail subrange
+grep -q 'lamp AT %QX0.0 : BOOL;' made/Plant.st || fail address
+grep -q 'Sum : Cpu.Line.sum : DINT READ_ONLY;' made/Plant.st || fail access
+said() { cat out err report | grep -qE -- "$1" || fail "not said: $1"; }
+said '^10 source\(s\), 0 error\(s\), 0 warning\(s\), 0 note\(s\)'
+
+run chart 5 B.n=4 B.left=2 B.right=2 B.valve=TRUE
+run chart 12 B.n=6 B.done=21 B.left=3 B.valve=FALSE
+grep -q 'TRANSITION (PRIORITY := 2) FROM Choose TO Slow := TRUE;' made/Batch.st || fail priority
+grep -q 'TRANSITION (PRIORITY := 1) FROM Choose TO Quick := NOT (n < 0 OR done > 50);' made/Batch.st || fail negated
+grep -q 'TRANSITION FROM Start TO (Fill_left, FillRight) := n >= 3;' made/Batch.st || fail divergence
+grep -q 'valve(L, T#1h);' made/Batch.st || fail qualifier
+said 'warning\[W0073\]: POU Batch: step `Fill left` became `Fill_left`'
+
+run objects 2 PLC_PRG.position=102 GVL.count=244 PLC_PRG.acts=2 PLC_PRG.drive1.calls=2
+said 'objects.xml:[0-9]+:[0-9]+: warning\[W0070\]: POU PLC_PRG: addData `http://vendor.example/xml/trend` is not understood'
+said 'note\[W0071\]: addData `http://www.3s-software.com/plcopenxml/projectstructure`'
+grep -q 'METHOD PRIVATE Note' made/Drive.st || fail access
+expect 0 stc check objects.xml
+grep -q projectstructure err && fail "notes are for import"
+
+# The same in other encodings.
+mkdir utf16
+iconv -f UTF-8 -t UTF-16 declarations.xml >utf16/declarations.xml
+cd utf16
+expect 0 stc build declarations.xml -o ../utf16.img
+cd ..
+expect 0 stc build declarations.xml -o utf8.img
+cmp utf8.img utf16.img || fail "UTF-16 is another program"
+small() {  # small BODY [INTERFACE] [OTHER]
+  printf '<?xml version="1.0" encoding="%s"?><project><types><pous><pou name="P" pouType="program"><interface>%s</interface>%s%s</pou></pous></types></project>' \
+    "${encoding:-UTF-8}" "${2:-}" "$1" "${3:-}" >small.xml
+}
+encoding=ISO-8859-1
+small "<body><ST>(* gr$(printf '\374')n *)</ST></body>"
+expect 0 stc import small.xml -o latin
+grep -q 'grün' latin/P.st || fail Latin-1
+encoding=UTF-8
+small "<body><ST>(* gr$(printf '\374')n *)</ST></body>"
+expect 1 stc check small.xml
+said 'E1070.*byte [0-9]+ is no UTF-8'
+encoding=utf-16
+small '<body><ST>;</ST></body>'
+expect 0 stc check small.xml
+encoding=UTF-8
+
+# wrong CODE TEXT: what small.xml now says is that error, at a place in it.
+wrong() {
+  expect 1 stc check small.xml
+  said "small\.xml:1:[0-9]+: error\[$1\]: .*$2"
+}
+small '' '<localVars><variable><type><INT/></type></variable></localVars>'
+wrong E1073 'POU P: <variable> has no attribute `name`'
+small '' '<localVars><variable name="a b"><type><INT/></type></variable></localVars>'
+wrong E1074 '`a b` is no name of Structured Text'
+small '' '<localVars><variable name="a"><type><FLOAT/></type></variable></localVars>'
+wrong E1074 '<FLOAT> is no type'
+small '' '<localVars><variable name="a"/></localVars>'
+wrong E1073 'a type is missing'
+small '' '<localVars retain="maybe"><variable name="a"><type><INT/></type></variable></localVars>'
+wrong E1074 'neither true nor false'
+small '' '<localVars><variable name="a" address="QX; b"><type><INT/></type></variable></localVars>'
+wrong E1074 'is no address'
+small '' '<localVars><variable name="a"><type><derived name="INT; b : INT"/></type></variable></localVars>'
+wrong E1074 'is no type or bound'
+small '<body><CFC/></body>'
+wrong E1083 'the body of P is in <CFC>'
+small '<body><ST>;</ST></body><body><IL>LD 1</IL></body>' '' ''
+sed -i 's/pouType="program"/pouType="gadget"/' small.xml
+wrong E1074 'pouType `gadget` is unknown'
+printf '<project/>' >small.xml
+wrong E1071 'has no POU, type or variable'
+
+sfc() { small "<body><SFC><step localId=\"1\" name=\"A\" initialStep=\"true\"><connectionPointIn><connection refLocalId=\"2\"/></connectionPointIn></step>$1</SFC></body>"; }
+transition() { printf '<transition localId="%s"><connectionPointIn><connection refLocalId="%s"/></connectionPointIn><condition>%s</condition></transition>' "$1" "$2" "$3"; }
+good='<inline name=""><ST>TRUE</ST></inline>'
+sfc "$(transition 2 1 "$good")"
+expect 0 stc check small.xml
+sfc "$(transition 1 1 "$good")"
+wrong E1075 'localId 1 is there twice'
+sfc "$(transition 2 7 "$good")"
+wrong E1076 'hangs at `7`'
+sfc "$(transition 2 1 "$good")$(transition 3 2 "$good")"
+wrong E1082 'without a step between them'
+sfc "$(transition 2 1 "$good")<jumpStep localId=\"4\" targetName=\"Nowhere\"><connectionPointIn><connection refLocalId=\"2\"/></connectionPointIn></jumpStep>"
+wrong E1082 'a jump leads to `Nowhere`'
+sfc "$(transition 2 1 '<inline name=""><ST>a := 1; b := 2;</ST></inline>')"
+wrong E1083 'no single expression'
+sfc "$(transition 2 1 '')"
+wrong E1083 'has no condition'
+sfc "$(transition 2 1 "$good")<macroStep localId=\"9\"/>"
+wrong E1083 'macroStep.*is not understood'
+# A document type is read over, and nothing in it is expanded.
+printf '<!DOCTYPE p [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]><project><types><pous><pou name="P" pouType="program"><interface/><body><ST>(* &b; *)</ST></body></pou></pous></types></project>' >small.xml
+expect 0 stc import small.xml -o bomb
+grep -q aaaa bomb/P.st && fail "an entity was expanded"
+# Names stay in their folder.
+printf '<project><types><pous><pou name="../../x" pouType="program"><interface/></pou></pous></types></project>' >small.xml
+wrong E1074 'is no name'
+exit 0
