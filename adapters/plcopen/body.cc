@@ -1,4 +1,5 @@
 // Bodies and conditions by language.
+#include "adapters/plcopen/drawing.h"
 #include "adapters/plcopen/reader.h"
 #include "base/name_case.h"
 
@@ -51,7 +52,7 @@ std::string language_text(Node body, Node owner, const std::string& name, Report
       } else if (kind == "SFC") {
         out += chart_text(node, owner, report);
       } else {
-        out += failed(node, "the body of " + name + " is in " + std::string(kind), report);
+        out += diagram_text(node, name, report);
       }
     }
   }
@@ -94,9 +95,11 @@ std::string condition_text(Node body, const std::string& name, Reporter& report)
       if (!text.empty()) return " := " + text + ";\n";
       return failed(node, "the condition is no single expression", report);
     }
-    if (is_language(node)) {
-      return failed(node, "the condition is in " + std::string(xml::local_name(node)), report);
+    if (xml::is(node, "LD") || xml::is(node, "FBD")) {
+      std::string text = diagram_condition(node, name, report);
+      return text.empty() ? error_text("the condition was not imported") : " := " + text + ";\n";
     }
+    if (is_language(node)) return failed(node, "the condition is a chart", report);
   }
   return failed(body, "a transition has no condition", report);
 }

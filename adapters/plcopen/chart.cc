@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "adapters/plcopen/drawing.h"
 #include "adapters/plcopen/reader.h"
 #include "base/name_case.h"
 
@@ -26,11 +27,13 @@ struct Element {
 
 class Chart {
  public:
-  Chart(Node sfc, Node pou, Reporter& report) : sfc_(sfc), pou_(pou), report_(report) {}
+  Chart(Node sfc, Node pou, Reporter& report)
+      : sfc_(sfc), pou_(pou), report_(report), drawing_(true, report) {}
   std::string text();
 
  private:
   void collect();
+  void add_condition_element(Node node);
   void connect();
   void add_actions(Node block);
   std::string step_name(Node node);
@@ -47,6 +50,7 @@ class Chart {
   Node sfc_;
   Node pou_;
   Reporter& report_;
+  Drawing drawing_;                // conditions
   std::vector<Element> elements_;  // in the order of the drawing
   std::map<uint64_t, size_t> by_id_;
   std::set<std::string> names_;  // folded
@@ -99,7 +103,7 @@ void Chart::collect() {
     }
     if (xml::is(node, "comment")) continue;
     if (!step && !xml::is(node, "transition") && !xml::is(node, "jumpStep") && !is_between(node)) {
-      report_.add(Code::kXmlBody, node, xml::shown(node) + " in a chart is not understood");
+      add_condition_element(node);
       continue;
     }
     Element element{node, {}, {}, {}, {}};
@@ -129,7 +133,19 @@ void Chart::collect() {
     if (xml::is(node, "transition") && !order.empty() && order != "0") prioritised_ = true;
   }
   connect();
+  drawing_.connect();
   for (Node block : blocks) add_actions(block);
+}
+
+// What conditions are made of. Nothing else of it would ever be executed.
+void Chart::add_condition_element(Node node) {
+  const bool reads = xml::is(node, "contact") || xml::is(node, "inVariable") ||
+                     xml::is(node, "leftPowerRail") || xml::is(node, "connector") ||
+                     xml::is(node, "continuation") ||
+                     (xml::is(node, "block") && xml::attribute(node, "instanceName").empty());
+  if (!reads || !drawing_.add(node)) {
+    report_.add(Code::kXmlBody, node, xml::shown(node) + " in a chart is not understood");
+  }
 }
 
 // Points at which an element hangs: several of divergences and convergences.
@@ -297,6 +313,11 @@ std::string Chart::condition(const Element& transition) {
     }
     // Without a transition of that name it is a variable.
     out = named ? condition_text(xml::child(named, "body"), name, report_) : " := " + name + ";\n";
+  } else if (Node point = xml::child(condition, "connectionPointIn")) {
+    std::vector<network::Link> links = drawing_.links_of(point);
+    if (drawing_.failed()) return error_text("a condition was not imported");
+    out = links_text(drawing_.elements(), links, transition.node, report_);
+    out = out.empty() ? error_text("a condition was not imported") : " := " + out + ";\n";
   } else {
     report_.add(Code::kXmlBody, transition.node, "a transition has no condition");
     return error_text("a transition has no condition");

@@ -1,0 +1,165 @@
+// Diagrams as text: whole bodies, and what arrives somewhere as an expression.
+#include "adapters/plcopen/drawing.h"
+#include "base/name_case.h"
+#include "frontend/network/write.h"
+
+namespace plcopen {
+namespace {
+
+using network::Element;
+using network::Kind;
+using network::Link;
+using network::Modifier;
+
+constexpr size_t kMaxExpression = 20'000;  // shared parts of a network are written out each time
+
+// What a link carries, as an expression of Structured Text.
+class Expression {
+ public:
+  Expression(const network::Network& all) : all_(all) {}
+
+  std::string text(const std::vector<Link>& links) {
+    std::string out;
+    for (Link link : links) out += (out.empty() ? "" : " OR ") + text(link);
+    return links.size() > 1 ? "(" + out + ")" : out;
+  }
+  const std::string& problem() const { return problem_; }
+
+ private:
+  std::string fail(std::string problem) {
+    if (problem_.empty()) problem_ = std::move(problem);
+    return {};
+  }
+
+  std::string text(Link link) {
+    written_ += 8;
+    if (depth_ > 60 || written_ > kMaxExpression) return fail("is too long for an expression");
+    const Element& from = all_.elements[link.element];
+    written_ += from.operand.text.size();
+    ++depth_;
+    std::string out = element(from, link.output);
+    --depth_;
+    const bool negated = link.output < from.outputs.size() && from.outputs[link.output].negated;
+    return negated ? "NOT (" + out + ")" : out;
+  }
+
+  std::string element(const Element& from, uint32_t output) {
+    switch (from.kind) {
+      case Kind::kLeftRail:
+        return "TRUE";
+      case Kind::kSource:
+        return "(" + from.operand.text + ")";
+      case Kind::kContact:
+        return contact(from);
+      case Kind::kBlock:
+        return block(from, output);
+      case Kind::kCoil:
+        return text(from.inputs[0].from);
+      default:
+        return fail("is no expression");
+    }
+  }
+
+  std::string contact(const Element& from) {
+    if (from.modifier > Modifier::kNegated) return fail("sees an edge, which needs a memory");
+    std::string own = "(" + from.operand.text + ")";
+    if (from.modifier == Modifier::kNegated) own = "NOT " + own;
+    std::string before = text(from.inputs[0].from);
+    return before == "TRUE" ? own : "(" + before + " AND " + own + ")";
+  }
+
+  std::string block(const Element& from, uint32_t output) {
+    if (!from.operand.empty()) {  // its value of now; something else calls it
+      return from.operand.text + "." + from.outputs[output].name;
+    }
+    for (uint32_t i = 0; i < output; ++i) {
+      if (!base::same_name(from.outputs[i].name, "ENO")) return fail("needs a second output");
+    }
+    std::string arguments;
+    for (const network::Input& input : from.inputs) {
+      if (input.from.empty()) continue;
+      if (input.modifier > Modifier::kNegated) return fail("sees an edge, which needs a memory");
+      std::string value = text(input.from);
+      if (input.modifier == Modifier::kNegated) value = "NOT " + value;
+      if (!input.name.empty()) value = input.name + " := " + value;
+      arguments += (arguments.empty() ? "" : ", ") + value;
+    }
+    return from.type.text + "(" + arguments + ")";
+  }
+
+  const network::Network& all_;
+  std::string problem_;
+  uint32_t depth_ = 0;
+  size_t written_ = 0;
+};
+
+// Instances are called somewhere; a condition only reads.
+bool calls_instances(const network::Network& all) {
+  for (const Element& element : all.elements) {
+    if (element.kind == Kind::kBlock && !element.operand.empty()) return true;
+  }
+  return false;
+}
+
+bool add_all(Node body, Drawing& drawing, const std::string& name, Reporter& report) {
+  bool good = true;
+  for (Node node : xml::children(body)) {
+    if (xml::is(node, "addData") || xml::is(node, "documentation")) continue;
+    if (drawing.add(node)) continue;
+    report.add(Code::kXmlBody, node,
+               xml::shown(node) + " in the body of " + name + " is not understood");
+    good = false;
+  }
+  return drawing.connect() && good;
+}
+
+}  // namespace
+
+std::string diagram_text(Node body, const std::string& name, Reporter& report) {
+  const bool ladder = xml::is(body, "LD");
+  Drawing drawing(ladder, report);
+  const bool added = add_all(body, drawing, name, report);
+  network::Body made = added ? drawing.body() : network::Body();
+  if (!added || drawing.failed()) return error_text("the body of " + name + " was not imported");
+  if (made.networks.empty()) return {};
+  if (auto text = network::write_ladder(made, 2)) {
+    return "LADDER\n" + *text + "END_LADDER\n";
+  }
+  return "FBD\n" + network::write_fbd(made, 2) + "END_FBD\n";
+}
+
+std::string links_text(const network::Network& all, const std::vector<Link>& links, Node at,
+                       Reporter& report) {
+  Expression expression(all);
+  std::string text = expression.text(links);
+  if (expression.problem().empty() && !links.empty()) return text;
+  report.add(Code::kXmlBody, at,
+             links.empty() ? "nothing is connected to a condition"
+                           : "what is connected to a condition " + expression.problem(),
+             "compute it in an action, and make a variable the condition");
+  return {};
+}
+
+std::string diagram_condition(Node body, const std::string& name, Reporter& report) {
+  Drawing drawing(xml::is(body, "LD"), report);
+  if (!add_all(body, drawing, "a condition", report)) return {};
+  const network::Network& all = drawing.elements();
+  const Element* end = nullptr;
+  uint32_t ends = 0;
+  for (const Element& element : all.elements) {
+    if (element.kind != Kind::kCoil && element.kind != Kind::kSink) continue;
+    ++ends;
+    if (end == nullptr || base::same_name(element.operand.text, name)) end = &element;
+  }
+  const bool plain = ends == 1 && end->modifier <= Modifier::kNegated && !calls_instances(all);
+  if (!plain) {
+    report.add(Code::kXmlBody, body,
+               "a condition ends in one coil or variable, and calls no function blocks",
+               "compute it in an action, and make a variable the condition");
+    return {};
+  }
+  std::string text = links_text(all, end->inputs[0].from, body, report);
+  return end->modifier == Modifier::kNegated && !text.empty() ? "NOT (" + text + ")" : text;
+}
+
+}  // namespace plcopen

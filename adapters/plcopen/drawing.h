@@ -1,0 +1,124 @@
+// <LD>, <FBD> and what of them stands in <SFC>: elements with local ids -> the model of networks.
+// Connectors, continuations and variables that are written and read at once are gone behind it.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "adapters/plcopen/reader.h"
+#include "frontend/network/order.h"
+
+namespace plcopen {
+
+namespace network = frontend::network;
+
+class Drawing {
+ public:
+  Drawing(bool ladder, Reporter& report) : ladder_(ladder), report_(report) {}
+
+  // False: it is no element of a diagram.
+  bool add(Node node);
+  // Behind the last element: what connections name. False when anything was wrong.
+  bool connect();
+  // What a <connectionPointIn> outside of these elements is connected to.
+  std::vector<network::Link> links_of(Node point);
+  // Networks in the order of execution; empty, after reports, when there is none. Networks without
+  // effect are left out with a warning.
+  network::Body body();
+
+  const network::Network& elements() const { return all_; }
+  bool failed() const { return failed_; }
+
+ private:
+  enum class What : uint8_t { kElement, kConnector, kContinuation, kInOut };
+  struct Passed {  // an in-out parameter of a block, to be read behind it
+    std::string name;
+    Node point;
+    uint32_t source = kNone;
+  };
+  struct Raw {
+    Node node;
+    What what = What::kElement;
+    uint32_t element = kNone;                           // in all_; of kInOut the source
+    network::Modifier edge = network::Modifier::kNone;  // of a variable that is read
+    std::vector<Passed> passed;
+  };
+  struct Pending {
+    uint32_t element;
+    uint32_t input;
+    Node point;
+    bool required;
+  };
+  struct Remark {
+    int32_t y;
+    std::string text;
+    Node node;
+    bool label;
+    size_t before;  // the element of all_ that follows it in the document
+  };
+  static constexpr uint32_t kNone = 0xffffffffu;
+
+  void fail(Code code, Node node, std::string text, std::string fix = {});
+  void report_inside(Node node);
+
+  // --- drawing_elements.cc
+  network::Element made(Node node, network::Kind kind);
+  Raw& record(Node node, What what, uint32_t element);
+  void wait_for(uint32_t element, uint32_t input, Node owner, bool required);
+  bool negated(Node node);
+  network::Modifier edge_of(Node node);
+  network::Modifier modifier_of(Node node, bool stores);
+  std::string operand(Node node, const char* child);
+  uint32_t push(network::Element element);
+  void add_rail(Node node, network::Kind kind);
+  void add_contact(Node node, network::Kind kind);
+  void add_read(Node node, network::Kind kind);
+  void add_written(Node node, network::Kind kind);
+  void add_both(Node node, network::Kind kind);
+  void add_block(Node node, network::Kind kind);
+  void add_pins(Node node, uint32_t block, Raw& raw);
+  void add_end(Node node, network::Kind kind);
+  void add_connector(Node node, network::Kind kind);
+  void add_remark(Node node, network::Kind kind);
+
+  // --- drawing_links.cc
+  void connect(const Pending& pending);
+  void append_links(Node point, std::vector<network::Link>& out, network::Modifier* edge);
+  void append_link(Node connection, std::vector<network::Link>& out, network::Modifier* edge);
+  bool link_block(Raw& raw, Node connection, std::vector<network::Link>& out);
+  uint32_t read_back(Raw& raw, Passed& passed);
+  void forget_places();
+  void place_remarks(const std::vector<network::Part>& parts, network::Body& body);
+  static void drop_idle(network::Body& body);
+  Node node_of(const network::Part& part) const;
+  std::string loop_text(const network::Network& part, const std::vector<uint32_t>& loop) const;
+
+  bool ladder_;
+  Reporter& report_;
+  bool failed_ = false;
+  network::Network all_;
+  std::vector<Raw> raws_;
+  std::map<uint32_t, Node> nodes_;  // by element
+  std::vector<Pending> pending_;
+  std::vector<network::Precedence> precedences_;
+  std::vector<Remark> remarks_;
+  std::map<uint64_t, size_t> by_id_;
+  std::map<std::string, size_t> connectors_;  // by name
+  std::set<const void*> followed_;            // points that are being resolved
+};
+
+// 0: none, or no number; otherwise one more than the id, which may be 0.
+uint64_t id_of(std::string_view text);
+
+// --- diagram.cc
+// A body in LADDER or FBD as text.
+std::string diagram_text(Node body, const std::string& name, Reporter& report);
+// What arrives at `name`, in a body that ends in that coil or variable, as an expression.
+std::string diagram_condition(Node body, const std::string& name, Reporter& report);
+// The same of links in a chart. Empty, after a report: it is none.
+std::string links_text(const network::Network& all, const std::vector<network::Link>& links,
+                       Node at, Reporter& report);
+
+}  // namespace plcopen

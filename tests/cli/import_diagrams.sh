@@ -1,0 +1,177 @@
+#!/bin/sh
+# Ladder and FBD of PLCopen XML: as text of this language, in the right order, and running.
+. "$(dirname "$0")/lib.sh"
+samples=$source_dir/tests/fuzz/corpus/plcopen
+cp "$samples"/ladder.xml "$samples"/blocks.xml .
+code=0
+stc check ladder.xml >out 2>err || code=$?
+if grep -q 'built without pugixml' err; then
+  echo "built without pugixml: refused, as it should be"
+  exit 0
+fi
+[ "$code" -eq 0 ] || fail "check: $code"
+# values IMAGE SCANS NAME=VALUE...
+values() {
+  image=$1
+  scans=$2
+  shift 2
+  for pair in "$@"; do
+    expect 0 stvm run "$image" --scans "$scans" --virtual-time --print "${pair%%=*}"
+    grep -qxF "$pair" out || fail "$image after $scans scans: $pair"
+  done
+}
+
+expect 0 stc import ladder.xml -o made
+cat >wanted <<'T'
+LADDER
+  (* seal-in *)
+  |--[ Start ]--+--[/ Stop ]------------------------( Run )--|
+  |--[ Run ]----+
+
+  |--[ Run ]--[ delay: TON  IN:=_, PT:=T#20ms ]----( Late )--|
+
+  |--[P Run ]-------------------------------------(S Once )--|
+
+  |--[ Late ]---------------------------------( JMP Quiet )--|
+
+  |--[/ Late ]----------------------------------( Skipped )--|
+
+  Quiet:
+  |--[ n > 1 ]------------------------------------(/ Lamp )--|
+
+  |--[ n := ADD(IN1:=n, IN2:=1) ]----------------------------|
+END_LADDER
+T
+sed -n '/^LADDER/,/^END_LADDER/p' made/Line.st | cmp - wanted || fail "the ladder is drawn differently"
+expect 0 stc build ladder.xml -o ladder.img
+expect 0 stc build made -o made.img
+for image in ladder.img made.img; do
+  values $image 2 L.Run=TRUE L.Late=FALSE L.Once=TRUE L.n=2 L.Lamp=TRUE
+  values $image 5 L.Late=TRUE L.Skipped=TRUE L.n=5 L.Lamp=FALSE  # jumped over, so it stays TRUE
+done
+
+expect 0 stc build blocks.xml -o blocks.img
+values blocks.img 1 M.both=FALSE M.total=5 M.seen=5 M.pulses=0 M.b=2 M.c=6 M.a=2
+values blocks.img 6 M.total=30 M.seen=30 M.pulses=2 M.a=2
+rm -r made
+expect 0 stc import blocks.xml -o made
+grep -q 'clock : TON(IN := NOT clock.Q, PT := T#10ms);' made/Main.st || fail feedback
+grep -q 'both of (\* these \*)' made/Main.st || fail comment
+
+# fbd ELEMENTS, ld ELEMENTS: a program of them.
+body() {
+  printf '<project><types><pous><pou name="P" pouType="program"><interface><localVars><variable name="a"><type><INT/></type></variable><variable name="b"><type><BOOL/></type></variable><variable name="c"><type><BOOL/></type></variable><variable name="t"><type><derived name="TON"/></type></variable></localVars></interface><body><%s>%s</%s></body></pou></pous></types></project>' "$1" "$2" "$1" >small.xml
+}
+in_variable() { printf '<inVariable localId="%s"><expression>%s</expression></inVariable>' "$1" "$2"; }
+out_variable() { printf '<outVariable localId="%s"><connectionPointIn>%s</connectionPointIn><expression>%s</expression></outVariable>' "$1" "${3:-}" "$2"; }
+from() { printf '<connection refLocalId="%s"/>' "$1"; }
+add() { printf '<block localId="%s" typeName="ADD"><inputVariables><variable formalParameter="IN1"><connectionPointIn>%s</connectionPointIn></variable><variable formalParameter="IN2"><connectionPointIn>%s</connectionPointIn></variable></inputVariables><outputVariables><variable formalParameter="OUT"/></outputVariables></block>' "$1" "$2" "$3"; }
+wrong() {
+  expect 1 stc check small.xml
+  said "small\.xml:1:[0-9]+: error\[$1\]: POU P.*$2"
+  rm -rf bad
+  expect 1 stc import small.xml -o bad
+  expect 1 stc check bad
+  said "bad/P\.st:[0-9]+:[0-9]+: error.*the body of P was not imported"
+}
+good() { expect 0 stc check small.xml; }
+
+body FBD "$(in_variable 0 1)$(out_variable 5 a "$(from 0)")"  # ids begin at 0, in any order
+good
+body FBD "$(in_variable 1 1)$(out_variable 1 a "$(from 1)")"
+wrong E1075 'localId 1 is there twice'
+body FBD '<inVariable><expression>1</expression></inVariable>'
+wrong E1073 'has no attribute `localId`'
+body FBD '<inVariable localId="x"><expression>1</expression></inVariable>'
+wrong E1074 'localId `x` is no number'
+body FBD "$(out_variable 1 a "$(from 7)")"
+wrong E1076 'localId `7`, which is no element'
+body FBD "$(add 1 "$(from 2)" "$(from 2)")$(in_variable 2 1)$(out_variable 3 a '<connection refLocalId="1" formalParameter="SUM"/>')"
+wrong E1076 'has no output `SUM`'
+body FBD "$(out_variable 1 a "$(from 2)")$(out_variable 2 a '')"
+wrong E1076 '<outVariable localId="2"> has no output'
+body FBD "<continuation localId=\"1\" name=\"K\"/>$(out_variable 2 a "$(from 1)")"
+wrong E1076 'there is no connector `K`'
+connector() { printf '<connector localId="%s" name="K"><connectionPointIn>%s</connectionPointIn></connector>' "$1" "$2"; }
+body FBD "$(in_variable 1 1)$(connector 2 "$(from 1)")$(connector 3 "$(from 1)")"
+wrong E1077 'two connectors `K`'
+body FBD "<continuation localId=\"1\" name=\"K\"/>$(connector 2 "$(from 1)")$(out_variable 3 a "$(from 1)")"
+wrong E1078 'connectors lead in a circle'
+body FBD "$(in_variable 1 1)$(add 2 "$(from 1)" "$(from 3)")$(add 3 "$(from 1)" "$(from 2)")$(out_variable 4 a "$(from 3)")"
+wrong E1078 'network 1: the value of `ADD`, `ADD` goes in a circle'
+body FBD "$(in_variable 1 1)$(add 2 "$(from 1)$(from 1)" "$(from 1)")"
+wrong E1079 'several connections lead to the input `IN1`'
+body FBD "$(in_variable 1 b)$(in_variable 2 c)$(out_variable 3 b "$(from 1)$(from 2)")"
+wrong E1079 'several connections lead to one input'
+body FBD '<cfcElement localId="1"/>'
+wrong E1083 '<cfcElement localId="1"> in the body of P is not understood'
+body FBD '<block localId="1" typeName="EXECUTE"><addData><data name="http://www.3s-software.com/plcopenxml/stcode" handleUnknown="implementation"><STCode>a := 1;</STCode></data></addData></block>'
+wrong E1083 'holds statements of its own'
+body FBD '<block localId="1" typeName="a; b"/>'
+wrong E1074 'no type or instance that is a name'
+body FBD "$(in_variable 1 'a; b := 1')"
+wrong E1074 'is no operand'
+body FBD '<inVariable localId="1" negated="perhaps"><expression>b</expression></inVariable>'
+wrong E1074 'neither true nor false'
+body FBD "$(in_variable 1 b)<outVariable localId=\"2\" negated=\"true\" storage=\"set\"><connectionPointIn>$(from 1)</connectionPointIn><expression>c</expression></outVariable>"
+wrong E1083 'several of negated, edge and storage at once'
+body FBD '<jump localId="1" label="no name"/>'
+wrong E1074 '`no name` is no name'
+body FBD '<label localId="1" label="A"/><label localId="2" label="B"/><jump localId="3" label="A"/>'
+wrong E1083 'the labels `A` and `B` belong to one network'
+body FBD "$(in_variable 1 b)"
+good
+said 'warning\[W0072\]: POU P, network 1: nothing takes what this network computes'
+body FBD ''
+good
+body FBD '<block localId="1" typeName="Unheard_of" instanceName="t"/>'  # comes in; the compiler knows
+expect 1 stc check small.xml
+said 'small\.xml/P\.st:'
+
+rail='<leftPowerRail localId="1"/>'
+contact() { printf '<contact localId="%s" %s><connectionPointIn>%s</connectionPointIn><variable>b</variable></contact>' "$1" "${3:-}" "$2"; }
+coil() { printf '<coil localId="%s" %s><connectionPointIn>%s</connectionPointIn><variable>c</variable></coil>' "$1" "${3:-}" "$2"; }
+body LD "$rail$(contact 2 "$(from 1)")$(contact 3 "$(from 1)")$(coil 4 "$(from 2)$(from 3)")"
+good  # an OR
+body LD "$rail$(contact 2 '')$(coil 3 "$(from 2)")"
+wrong E1076 'nothing is connected to <contact localId="2">'
+body LD "$rail$(contact 2 "$(from 3)")$(contact 3 "$(from 2)")$(coil 4 "$(from 3)")"
+wrong E1078 'goes in a circle'
+body LD "$rail$(contact 2 "$(from 1)" 'edge="sideways"')$(coil 3 "$(from 2)")"
+wrong E1074 'edge `sideways` is unknown'
+body LD "$rail$(contact 2 "$(from 1)")$(coil 3 "$(from 2)" 'storage="latch"')"
+wrong E1074 'storage `latch` is unknown'
+body LD "$rail$(contact 2 "$(from 1)" 'storage="set"')$(coil 3 "$(from 2)")"
+wrong E1083 'cannot set or reset'
+body LD "$rail$(contact 2 "$(from 1)")"
+good
+said 'W0072.*network 1'
+# A bridge between two branches is no ladder of series and parallel: it comes as FBD.
+body LD "$rail$(contact 2 "$(from 1)")$(contact 3 "$(from 1)")$(contact 4 "$(from 2)$(from 3)")$(contact 5 "$(from 3)")$(coil 6 "$(from 4)")$(coil 7 "$(from 5)" 'negated="true"')"
+rm -rf made
+expect 0 stc import small.xml -o made
+grep -q '^FBD$' made/P.st || grep -q '^LADDER$' made/P.st || fail "no diagram"
+expect 0 stc check made
+
+# Conditions of charts: a network, and wires in the chart itself.
+chart() {
+  printf '<project><types><pous><pou name="P" pouType="program"><interface><localVars><variable name="a"><type><INT/></type></variable><variable name="b"><type><BOOL/></type><initialValue><simpleValue value="TRUE"/></initialValue></variable><variable name="n"><type><INT/></type></variable></localVars></interface><transitions>%s</transitions><body><SFC><step localId="1" name="First" initialStep="true"/><transition localId="2"><connectionPointIn><connection refLocalId="1"/></connectionPointIn><condition>%s</condition></transition><step localId="3" name="Second"><connectionPointIn><connection refLocalId="2"/></connectionPointIn></step><actionBlock localId="4"><connectionPointIn><connection refLocalId="3"/></connectionPointIn><action qualifier="P1"><inline><FBD>%s%s</FBD></inline></action></actionBlock>%s</SFC></body></pou></pous></types></project>' "$1" "$2" "$(in_variable 8 7)" "$(out_variable 9 n "$(from 8)")" "$3" >small.xml
+}
+reaches_b() {
+  expect 0 stc build small.xml -o chart.img
+  values chart.img 3 "P.n=$1"
+}
+wire="<connectionPointIn>$(from 11)</connectionPointIn>"
+chart '' "$wire" "$(in_variable 10 a)<block localId=\"11\" typeName=\"EQ\"><inputVariables><variable formalParameter=\"IN1\"><connectionPointIn>$(from 10)</connectionPointIn></variable><variable formalParameter=\"IN2\"><connectionPointIn><expression>0</expression></connectionPointIn></variable></inputVariables><outputVariables><variable formalParameter=\"OUT\"/></outputVariables></block>"
+reaches_b 7
+chart "<transition name=\"Go\"><body><LD>$rail$(contact 2 "$(from 1)")$(contact 3 "$(from 2)" 'negated="true"')<coil localId=\"4\"><connectionPointIn>$(from 3)</connectionPointIn><variable>Go</variable></coil></LD></body></transition>" '<reference name="Go"/>' ''
+reaches_b 0
+chart "<transition name=\"Go\"><body><LD>$rail$(contact 2 "$(from 1)")<coil localId=\"4\"><connectionPointIn>$(from 2)</connectionPointIn><variable>Go</variable></coil></LD></body></transition>" '<reference name="Go"/>' ''
+reaches_b 7
+chart '' "$wire" "$(contact 11 "$(from 12)" 'edge="rising"')<leftPowerRail localId=\"12\"/>"
+expect 1 stc check small.xml
+said 'E1083.*sees an edge, which needs a memory'
+chart '' "$wire" '<block localId="11" typeName="TON" instanceName="t"/>'
+expect 1 stc check small.xml
+said 'E1083.*in a chart is not understood'
+exit 0
