@@ -1,10 +1,14 @@
 #include "frontend/compile.h"
 
+#include <algorithm>
+#include <memory>
+
 #include "base/limits.h"
 #include "frontend/lex/declaration_index.h"
 #include "frontend/lower/body.h"
 #include "frontend/parse/address_map.h"
 #include "frontend/parse/parse.h"
+#include "frontend/sema/common_uses.h"
 #include "frontend/sema/migrations.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
@@ -45,19 +49,33 @@ base::SourceMap with_library(const base::SourceMap& sources) {
   return all;
 }
 
-std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& sources,
-                                      const CompileOptions& options,
-                                      base::Diagnostics& diagnostics) {
-  if (!fits(sources, options.max_source_bytes, diagnostics)) return std::nullopt;
-  base::SourceMap all = with_library(sources);
+// All sources as one tree; nullopt when there is nothing to be found in it.
+struct Parsed {
+  base::SourceMap sources;  // with the library
+  uint32_t library_file = 0;
   Tree tree;
-  parse_all(all, options, tree, diagnostics);
-  if (has_open_comment(diagnostics)) return std::nullopt;
-  map_addresses(tree, diagnostics);
-  sfc::declare_charts(tree, diagnostics);
-  check_renames(tree, diagnostics);
+};
+std::unique_ptr<Parsed> parse_project(const base::SourceMap& sources, const CompileOptions& options,
+                                      base::Diagnostics& diagnostics) {
+  if (!fits(sources, options.max_source_bytes, diagnostics)) return nullptr;
+  auto parsed = std::make_unique<Parsed>();
+  parsed->sources = with_library(sources);
+  parsed->library_file = sources.file_count();
+  parse_all(parsed->sources, options, parsed->tree, diagnostics);
+  if (has_open_comment(diagnostics)) return nullptr;
+  map_addresses(parsed->tree, diagnostics);
+  sfc::declare_charts(parsed->tree, diagnostics);
+  check_renames(parsed->tree, diagnostics);
+  return parsed;
+}
 
-  Sema sema(all, tree, sources.file_count(), options, purpose, diagnostics);
+struct Analysed {
+  TestProgram made;
+  ResourceUses uses;
+};
+std::optional<Analysed> analyse(Purpose purpose, const Parsed& parsed,
+                                const CompileOptions& options, base::Diagnostics& diagnostics) {
+  Sema sema(parsed.sources, parsed.tree, parsed.library_file, options, purpose, diagnostics);
   sema.report_not_supported();
   sema.collect();
   sema.resolve_declarations();
@@ -72,11 +90,27 @@ std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& so
   Migrations(sema).check_code();
   sema.objects.check_recursion();
   sema.program.overrides = ir::find_overrides(sema.program);
-  sema.check_output_tasks();
+  CommonUses(sema).check_output_tasks();
   sema.check_direct_addresses();
   sema.report_unused();
   if (diagnostics.has_errors()) return std::nullopt;
-  return TestProgram{std::move(sema.program), std::move(sema.test_cases)};
+  ResourceUses uses = CommonUses(sema).of_resource();
+  return Analysed{{std::move(sema.program), std::move(sema.test_cases)}, std::move(uses)};
+}
+
+std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& sources,
+                                      const CompileOptions& options,
+                                      base::Diagnostics& diagnostics) {
+  const std::unique_ptr<Parsed> parsed = parse_project(sources, options, diagnostics);
+  if (parsed == nullptr) return std::nullopt;
+  std::optional<Analysed> analysed = analyse(purpose, *parsed, options, diagnostics);
+  if (!analysed) return std::nullopt;
+  return std::move(analysed->made);
+}
+
+const std::vector<ResourceDecl>& resources_of(const Tree& tree) {
+  static const std::vector<ResourceDecl> kNone;
+  return tree.configs.size() == 1 ? tree.configs[0].resources : kNone;
 }
 
 }  // namespace
@@ -86,6 +120,45 @@ std::optional<ir::Program> compile(const base::SourceMap& sources, const Compile
   auto made = compile_as(Purpose::kRun, sources, options, diagnostics);
   if (!made) return std::nullopt;
   return std::move(made->program);
+}
+
+std::optional<Resources> compile_resources(const base::SourceMap& sources,
+                                           const CompileOptions& options,
+                                           base::Diagnostics& diagnostics) {
+  const std::unique_ptr<Parsed> parsed = parse_project(sources, options, diagnostics);
+  if (parsed == nullptr) return std::nullopt;
+  CompileOptions of_one = options;
+  const auto named = [&](const std::string& name) {
+    const auto& all = resources_of(parsed->tree);
+    return std::any_of(all.begin(), all.end(), [&](const ResourceDecl& resource) {
+      return ir::same_name(resource.name.text, name);
+    });
+  };
+  if (options.resource.empty() && named(options.likely_resource)) {
+    of_one.resource = options.likely_resource;
+  }
+  const std::string wanted = of_one.resource;
+  Resources out;
+  const bool several = resources_of(parsed->tree).size() > 1;
+  if (!several || (!wanted.empty() && !named(wanted))) {
+    std::optional<Analysed> only = analyse(Purpose::kRun, *parsed, of_one, diagnostics);
+    if (!only) return std::nullopt;
+    out.programs.push_back({"", {}, std::move(only->made.program)});
+    return out;
+  }
+  std::vector<ResourceUses> uses;
+  for (const ResourceDecl& resource : resources_of(parsed->tree)) {
+    of_one.resource = resource.name.text;
+    std::optional<Analysed> one = analyse(Purpose::kRun, *parsed, of_one, diagnostics);
+    if (!one) return std::nullopt;
+    out.names.push_back(of_one.resource);
+    uses.push_back(std::move(one->uses));
+    if (!wanted.empty() && !ir::same_name(wanted, of_one.resource)) continue;
+    out.programs.push_back({of_one.resource, resource.name.span, std::move(one->made.program)});
+  }
+  check_resources(uses, diagnostics);
+  if (diagnostics.has_errors()) return std::nullopt;
+  return out;
 }
 
 std::optional<TestProgram> compile_tests(const base::SourceMap& sources,

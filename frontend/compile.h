@@ -18,8 +18,9 @@ namespace frontend {
 struct CompileOptions {
   Dialect dialect = Dialect::kCodesys;
   std::string name = "project";  // used when there is no CONFIGURATION
+  std::string resource;          // of several; empty: the first
+  std::string likely_resource;   // instead of the first, if there is one of that name
   // Conditional compilation: NAME or NAME=VALUE, as if {define NAME 'VALUE'} headed each file.
-  std::string resource;  // of several; empty: the first
   std::vector<std::string> defines;
   uint64_t max_source_bytes = base::kMaxSourceBytes;  // tests ask for less
 };
@@ -35,6 +36,21 @@ void parse_all(const base::SourceMap& sources, const CompileOptions& options, Tr
 // under its own name, in source order.
 std::optional<ir::Program> compile(const base::SourceMap& sources, const CompileOptions& options,
                                    base::Diagnostics& diagnostics);
+
+// Every RESOURCE of the CONFIGURATION as a program of its own, or only the one that the options
+// name; they are checked against each other in any case.
+struct ResourceProgram {
+  std::string resource;  // "" where the project has one at most
+  base::SourceSpan declared;
+  ir::Program program;
+};
+struct Resources {
+  std::vector<std::string> names;  // of all; none where the project has one at most
+  std::vector<ResourceProgram> programs;
+};
+std::optional<Resources> compile_resources(const base::SourceMap& sources,
+                                           const CompileOptions& options,
+                                           base::Diagnostics& diagnostics);
 
 // TEST blocks (language.md, "Unit tests in the language"), made into one program each; the
 // project's own tasks and programs do not run.

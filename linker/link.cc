@@ -314,6 +314,7 @@ class Linker {
     if (base::Status placed = place_devices(image_, options_.devices); !placed.ok()) return placed;
     image_.safe = options_.safe;
     image_.access = program_.access;
+    image_.shared = program_.shared;
     return base::Ok{};
   }
 

@@ -123,6 +123,7 @@ class Body {
   bool check_writable_variable(const Expr& expr, VarId variable);
   bool check_writable_field(const Expr& expr);
   void note_output(const ir::DirectAddress& address, ir::TypeId type, base::SourceSpan span);
+  void note_outer_use(VarId global, bool written, base::SourceSpan span);
   std::optional<Target> target(ExprId expr);
   void store(const Target& target, ir::ValueId value);
   ir::Scalar base_scalar(const Target& target) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "frontend/lower/body.h"
+#include "frontend/sema/common_uses.h"
 
 namespace frontend {
 namespace {
@@ -37,7 +38,10 @@ ir::Place Body::global_place(uint32_t member) {
 
 ir::Place Body::variable_place(VarId id) {
   const Variable& variable = sema_.resolve(id);
-  if (variable.storage == Storage::kGlobal) return global_place(variable.index);
+  if (variable.storage == Storage::kGlobal) {
+    note_outer_use(id, false, {});
+    return global_place(variable.index);
+  }
   // Methods see the input itself.
   bool body = variable.pou == pou_number_ ||
               (variable.pou == info_.owner && info_.decl->kind == PouKind::kAction);
@@ -235,6 +239,10 @@ void Body::note_output(const ir::DirectAddress& address, ir::TypeId type, base::
   }
 }
 
+void Body::note_outer_use(VarId global, bool written, base::SourceSpan span) {
+  if (CommonUses(sema_).is_outer(global)) info_.outer_uses.push_back({global, written, span});
+}
+
 bool Body::check_writable_name(const Expr& expr) {
   VarId id = sema_.find_variable(expr);
   if (id.valid()) return check_writable_variable(expr, id);
@@ -271,6 +279,7 @@ bool Body::check_writable_variable(const Expr& expr, VarId id) {
     return false;
   }
   sema_.mark_written(id);
+  note_outer_use(id, true, expr.span);
   if (variable->decl != nullptr && variable->decl->has_address) {
     note_output(variable->decl->address, variable->type, expr.span);
   }

@@ -46,6 +46,7 @@ ir::Place Body::addressable_place(ExprId id) {
   }
   if (VarId variable = sema_.infer(whole).variable; variable.valid()) {
     sema_.mark_written(variable);  // who has the address can
+    note_outer_use(variable, true, expr.span);
   }
   const Note& note = sema_.infer(id);
   const bool part = note.bit_size != 0;

@@ -22,6 +22,29 @@ ir::Task main_task() {
   return task;
 }
 
+// By which people address them, and folders are called.
+bool check_resource_names(Sema& sema, const ConfigDecl& config) {
+  if (config.resources.size() < 2) return true;
+  bool good = true;
+  NameMap<const ResourceDecl*> names;
+  for (const ResourceDecl& resource : config.resources) {
+    const bool first =
+        !resource.name.empty() && names.emplace(resource.name.text, &resource).second;
+    good = good && first;
+    if (first) continue;
+    if (resource.name.empty()) {
+      sema.error(DiagnosticCode::kTwoConfigurations, config.name.span,
+                 "CONFIGURATION " + quoted(config.name) +
+                     " has tasks or programs of its own beside its RESOURCEs",
+                 "move them into a RESOURCE");
+    } else {
+      sema.error(DiagnosticCode::kDuplicateName, resource.name.span,
+                 "RESOURCE " + quoted(resource.name) + " is declared twice");
+    }
+  }
+  return good;
+}
+
 }  // namespace
 
 // One image runs one resource: the one that was asked for, else the first.
@@ -33,6 +56,7 @@ void Sema::choose_resource() {
           "a second CONFIGURATION " + quoted(tree.configs[1].name));
   }
   NearestName nearest(options.resource);
+  const bool named = check_resource_names(*this, config);
   for (const ResourceDecl& resource : config.resources) {
     nearest.offer(resource.name.text);
     bool wanted = options.resource.empty() || ir::same_name(resource.name.text, options.resource);
@@ -41,7 +65,7 @@ void Sema::choose_resource() {
   if (resource_ == nullptr && !options.resource.empty()) {
     error(DiagnosticCode::kUnknownResource, config.span,
           "there is no RESOURCE `" + options.resource + "`", nearest.fix());
-  } else if (options.resource.empty() && config.resources.size() > 1) {
+  } else if (named && options.resource.empty() && config.resources.size() > 1) {
     warning(DiagnosticCode::kResourceChosen, config.resources[1].name.span,
             "RESOURCE " + quoted(resource_->name) + " is compiled, " +
                 quoted(config.resources[1].name) + " is left out",

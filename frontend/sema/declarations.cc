@@ -52,6 +52,7 @@ void Sema::collect() {
             "a CONFIGURATION stands in a namespace", "put it outside");
     }
     collect_globals(config.globals, config.name.text);
+    if (config.resources.size() > 1) outer_globals_ = global_order_.size();
     for (const ResourceDecl& resource : config.resources) {
       if (&resource == resource_) collect_globals(resource.globals, resource.name.text);
     }

@@ -83,6 +83,14 @@ struct OutputWrite {
   base::SourceSpan span;
 };
 
+// A body names a global that is declared outside every RESOURCE of several; `span` where it writes
+// it, or takes its address.
+struct OuterUse {
+  VarId global;
+  bool written = false;
+  base::SourceSpan span = {};
+};
+
 // A type expression after resolution. `init` is the default of a derived type.
 struct TypeUse {
   ir::TypeId type;
@@ -210,6 +218,7 @@ struct PouInfo {
   bool called = false;                  // by other POUs
   std::vector<OutputWrite> writes;      // filled by lowering, like callees
   std::vector<uint32_t> callees;
+  std::vector<OuterUse> outer_uses;
 };
 
 }  // namespace frontend

@@ -40,7 +40,7 @@ class Sema {
   void collect();
   void resolve_declarations();
   void configure();
-  void finish_programs();  // after all bodies, as check_output_tasks
+  void finish_programs();  // after all bodies
   void report_unused();
   void mark_written(VarId id) { variables_[id.index].written = true; }
   bool for_tests() const { return purpose_ == Purpose::kTest; }
@@ -49,7 +49,6 @@ class Sema {
   std::vector<const PouInfo*> mocked_functions() const;
   // Is the body of a MOCK_FUNCTION active in this test?
   bool mock_applies(uint32_t pou, const PouDecl& test) const;
-  void check_output_tasks();      // after all bodies
   void check_direct_addresses();  // located.cc; after all bodies
 
   // --- types (types.cc, enumeration.cc, containment.cc)
@@ -162,6 +161,7 @@ class Sema {
   Pools pools{*this};
 
  private:
+  friend class CommonUses;
   friend class OldNames;
   friend class Folder;
   friend class Namespaces;
@@ -333,10 +333,6 @@ class Sema {
   std::optional<TypeUse> initial_member(const Expr& expr);
   std::optional<TypeUse> initial_element(const Expr& expr);
 
-  // output_tasks.cc
-  void check_instance_outputs(const ir::ProgramInstance& instance, const ir::Layouts& natural,
-                              std::unordered_map<uint32_t, uint32_t>& owner);
-
   // configuration.cc
   void choose_resource();
   void default_configuration();
@@ -370,6 +366,7 @@ class Sema {
   std::vector<MockBody> mock_bodies_;
   uint32_t library_file_;
   const ResourceDecl* resource_ = nullptr;  // the one that is compiled
+  size_t outer_globals_ = 0;  // of global_order_: outside every RESOURCE, when there are several
   uint32_t current_pou_ = kNoPou;
   uint32_t depth_ = 0;
   std::deque<Variable> variables_;  // stable addresses, as pous

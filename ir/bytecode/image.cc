@@ -12,7 +12,7 @@ namespace ir {
 namespace {
 
 constexpr std::string_view kMagic = "STCIMAGE";
-constexpr uint32_t kVersion = 6;
+constexpr uint32_t kVersion = 7;
 constexpr size_t kDigestAt = 16;
 constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 
@@ -118,6 +118,10 @@ void tables_section(Archive& a, I& image) {
   a.list(image.retain, 8, [&](auto& range) {
     a(range.data);
     a(range.size);
+  });
+  a.list(image.shared, 5, [&](auto& global) {
+    a(global.member);
+    a(global.written);
   });
 }
 

@@ -166,7 +166,8 @@ struct Image {
   std::vector<IoBinding> io;
   std::vector<SafeOutput> safe;  // sorted by bit_offset, disjoint
   std::vector<RetainRange> retain;
-  std::vector<DataRun> data;  // sorted by offset
+  std::vector<SharedGlobal> shared;  // by member
+  std::vector<DataRun> data;         // sorted by offset
   uint32_t data_capacity = 0;
   uint32_t stack_bytes = 0;  // for the deepest chain, over all priorities
   uint32_t call_depth = 0;

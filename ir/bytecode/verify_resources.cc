@@ -6,6 +6,7 @@
 #include "ir/types/location.h"
 #include "ir/types/longest_time.h"
 #include "ir/types/natural_layout.h"
+#include "ir/types/plain_data.h"
 
 namespace ir::verification {
 namespace {
@@ -23,6 +24,7 @@ class ResourcesVerifier {
     }
     if (base::Status s = check_devices(); !s) return s;
     if (base::Status s = check_safe_outputs(); !s) return s;
+    if (base::Status s = check_shared(); !s) return s;
     for (uint32_t i = 0; i < image_.retain.size(); ++i) {
       const RetainRange& range = image_.retain[i];
       if (inside_one_area(range.data, range.size)) continue;
@@ -155,6 +157,23 @@ class ResourcesVerifier {
       return refuse(Refusal::kBadIoAccess, "the safe value at bit " +
                                                std::to_string(row.bit_offset) +
                                                " of the outputs does not fit there");
+    }
+    return base::Ok{};
+  }
+
+  base::Status check_shared() const {
+    const std::vector<Member>& members = image_.types[image_.globals].members;
+    uint64_t least = 0;
+    for (const SharedGlobal& row : image_.shared) {
+      const bool there = row.member >= least && row.member < members.size();
+      least = uint64_t{row.member} + 1;
+      if (there) {
+        const Member& member = members[row.member];
+        const bool variable = member.section != Section::kStamp && !member.constant &&
+                              member.address.area == DirectArea::kNone;
+        if (variable && is_plain_data(image_.types, member.type)) continue;
+      }
+      return refuse(Refusal::kBadSharedGlobal, "global number " + std::to_string(row.member));
     }
     return base::Ok{};
   }

@@ -294,8 +294,15 @@ struct Migration {
   std::vector<MigratedName> values;
 };
 
+// A global that is declared outside every RESOURCE of several, and that code of this one names: its
+// value is exchanged with the others (docs/adr/0017-resources.md).
+struct SharedGlobal {
+  uint32_t member = 0;   // of the globals; plain data, not located
+  bool written = false;  // by code of this resource, and so by no other
+};
+
 struct Program {
-  std::string name;  // configuration or project name
+  std::string name;  // configuration or project name; of several resources: "Plant.Line"
   TypeTable types;
   ConstTable constants;
   TypeId globals;  // Kind::kGlobals; always valid
@@ -307,6 +314,7 @@ struct Program {
   std::vector<LocatedPath> located;
   std::vector<Override> overrides;  // sorted by type, then prototype; no pair twice
   std::vector<Migration> migrations;
+  std::vector<SharedGlobal> shared;  // by member; none where there is one resource
 
   PouId find_pou(std::string_view name) const;    // without case
   PouId pou_of_instance_type(TypeId type) const;  // its body

@@ -22,7 +22,7 @@ T
 refused 2:1 'device `press` has no `driver`' <<'T'
 period_ms = 10
 T
-refused 3:1 'unknown key `adress`; driver "modbus-tcp" knows map, quality, period_ms' <<'T'
+refused 3:1 'unknown key `adress`; driver "modbus-tcp" knows map, quality, resource, period_ms' <<'T'
 driver = "modbus-tcp"
 adress = "plc:502"
 map = ["coil 0 <- %QX0.0"]

@@ -1,5 +1,7 @@
 #include "tools/stc/build.h"
 
+#include <algorithm>
+
 #include "frontend/compile.h"
 #include "ir/lower/lower.h"
 #include "ir/program/verify.h"
@@ -30,17 +32,30 @@ base::Result<Compiled> lower_all(ir::Program program) {
   return out;
 }
 
+// Safe values of outputs that another resource has are left out when `several` are built.
 base::Result<Version> link(const Compiled& compiled, const Project& project,
+                           std::vector<ir::Device> devices, bool several,
                            const BuildOptions& options) {
-  linker::Options link_options{project.slack, options.base, options.move_all, project.devices,
+  linker::Options link_options{project.slack, options.base, options.move_all, std::move(devices),
                                project.safe.rows};
   base::Result<ir::Image> image = linker::link(compiled.program, compiled.objects, link_options);
   if (!image.ok()) return image.error();
-  base::Status safe = check_safe_settings(project.safe, image->output_bytes);
-  if (!safe.ok()) return safe.error();
+  if (several) {
+    image->safe = safe_rows_inside(project.safe, image->output_bytes);
+  } else if (base::Status safe = check_safe_settings(project.safe, image->output_bytes);
+             !safe.ok()) {
+    return safe.error();
+  }
   Version out{std::move(*image), {}};
   out.bytes = ir::encode(out.image);
   return out;
+}
+
+// "Plant.Line" of several resources.
+std::string resource_of(const ir::Image* base) {
+  if (base == nullptr) return {};
+  const size_t dot = base->name.rfind('.');
+  return dot == std::string::npos ? std::string() : base->name.substr(dot + 1);
 }
 
 }  // namespace
@@ -54,11 +69,48 @@ base::Result<Compiled> compile(const Project& project, base::Diagnostics& diagno
   return lower_all(std::move(*program));
 }
 
+base::Result<std::vector<ResourceVersion>> build_resources(const Project& project,
+                                                           const BuildOptions& options,
+                                                           base::Diagnostics& diagnostics) {
+  add_findings(diagnostics, project.imported, false);
+  if (diagnostics.has_errors()) return source_errors(diagnostics);
+  frontend::CompileOptions compile_options = project.compile;
+  compile_options.likely_resource = resource_of(options.base);
+  std::optional<frontend::Resources> resources =
+      frontend::compile_resources(project.sources, compile_options, diagnostics);
+  if (!resources) return source_errors(diagnostics);
+  const bool several = !resources->names.empty();
+  std::vector<ResourceVersion> versions;
+  uint32_t output_bytes = 0;
+  for (frontend::ResourceProgram& made : resources->programs) {
+    base::Result<Compiled> compiled = lower_all(std::move(made.program));
+    if (!compiled.ok()) return compiled.error();
+    auto devices = devices_of(project.devices, made.resource, resources->names);
+    if (!devices.ok()) return devices.error();
+    base::Result<Version> version = link(*compiled, project, std::move(*devices), several, options);
+    if (!version.ok()) return version.error();
+    output_bytes = std::max(output_bytes, version->image.output_bytes);
+    versions.push_back({std::move(made.resource), made.declared, std::move(*version)});
+  }
+  if (several && versions.size() == resources->names.size()) {
+    base::Status safe = check_safe_settings(project.safe, output_bytes);
+    if (!safe.ok()) return safe.error();
+  }
+  return versions;
+}
+
 base::Result<Version> build(const Project& project, const BuildOptions& options,
                             base::Diagnostics& diagnostics) {
-  base::Result<Compiled> compiled = compile(project, diagnostics);
-  if (!compiled.ok()) return compiled.error();
-  return link(*compiled, project, options);
+  auto versions = build_resources(project, options, diagnostics);
+  if (!versions.ok()) return versions.error();
+  if (versions->size() > 1) {
+    const ResourceVersion& other = (*versions)[1];
+    diagnostics.add(base::DiagnosticCode::kResourceChosen, other.declared,
+                    "RESOURCE `" + versions->front().resource + "` is taken, `" + other.resource +
+                        "` is left out",
+                    "say which one is meant: --resource NAME");
+  }
+  return std::move(versions->front().version);
 }
 
 base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics& diagnostics) {
@@ -69,7 +121,9 @@ base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics&
   if (!tests) return source_errors(diagnostics);
   base::Result<Compiled> compiled = lower_all(std::move(tests->program));
   if (!compiled.ok()) return compiled.error();
-  base::Result<Version> version = link(*compiled, project, {});
+  auto devices = devices_of(project.devices, {}, {});
+  if (!devices.ok()) return devices.error();
+  base::Result<Version> version = link(*compiled, project, std::move(*devices), false, {});
   if (!version.ok()) return version.error();
   return TestVersion{std::move(*version), std::move(tests->cases)};
 }

@@ -32,8 +32,19 @@ struct BuildOptions {
   const ir::Image* base = nullptr;
   bool move_all = false;
 };
+// One resource: the one that the project's options name, else that of the base, else the first.
 base::Result<Version> build(const Project& project, const BuildOptions& options,
                             base::Diagnostics& diagnostics);
+
+// Each resource, or only the one that the options name or the base is of.
+struct ResourceVersion {
+  std::string resource;  // "" where the project has one at most
+  base::SourceSpan declared;
+  Version version;
+};
+base::Result<std::vector<ResourceVersion>> build_resources(const Project& project,
+                                                           const BuildOptions& options,
+                                                           base::Diagnostics& diagnostics);
 
 // The TEST blocks of a project, one program instance each (frontend/compile.h).
 struct TestVersion {

@@ -17,9 +17,9 @@ int run(const tools::Options& options) {
   if (!project.ok()) return tools::refuse("stc", project.error());
   base::Diagnostics diagnostics;
   // Linking too: recursion and memory limits are findings of a check.
-  base::Result<Version> version = build(*project, {}, diagnostics);
+  auto versions = build_resources(*project, {}, diagnostics);
   report(*project, diagnostics, *format);
-  if (!version.ok()) return tools::refuse("stc", version.error());
+  if (!versions.ok()) return tools::refuse("stc", versions.error());
   return tools::kOk;
 }
 

@@ -1,5 +1,6 @@
 #include "tools/stc/device_tables.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "ir/types/address_text.h"
@@ -17,13 +18,14 @@ struct Places {
   tools::TomlPlace device;  // its driver
   std::vector<tools::TomlPlace> map;
   tools::TomlPlace quality;
+  std::string resource;
 };
 
 class Reader {
  public:
   Reader(std::string_view file, const tools::TomlTable& table) : file_(file), table_(table) {}
 
-  base::Result<std::vector<ir::Device>> run() {
+  base::Result<std::vector<ProjectDevice>> run() {
     for (const auto& [key, value] : table_) {
       if (!key.starts_with(kDeviceTables)) continue;
       const std::string_view rest = std::string_view(key).substr(kDeviceTables.size());
@@ -37,7 +39,14 @@ class Reader {
       }
     }
     if (base::Status whole = check_whole(); !whole.ok()) return whole.error();
-    return std::move(devices_);
+    std::vector<ProjectDevice> out;
+    for (size_t i = 0; i < devices_.size(); ++i) {
+      const tools::TomlPlace place = places_[i].device;
+      out.push_back({std::move(devices_[i]), std::move(places_[i].resource),
+                     std::string(file_) + ":" + std::to_string(place.line) + ":" +
+                         std::to_string(place.column)});
+    }
+    return out;
   }
 
  private:
@@ -50,6 +59,7 @@ class Reader {
     if (key == "driver") return add_driver(value);
     if (key == "map") return add_map(value);
     if (key == "quality") return add_quality(value);
+    if (key == "resource") return add_resource(value);
     return add_setting(key, value);
   }
 
@@ -96,6 +106,15 @@ class Reader {
     return base::Ok{};
   }
 
+  base::Status add_resource(const tools::TomlValue& value) {
+    const auto* name = std::get_if<std::string>(&value.data);
+    if (name == nullptr || name->empty()) {
+      return at(file_, value.place, "`resource` must be the name of a RESOURCE");
+    }
+    places_.back().resource = *name;
+    return base::Ok{};
+  }
+
   base::Status add_setting(std::string_view key, const tools::TomlValue& value) {
     ir::DeviceSetting& setting = devices_.back().settings.emplace_back();
     setting.key = key;
@@ -133,7 +152,7 @@ class Reader {
   }
 
   static std::string known_keys(const ir::DriverRow& driver) {
-    std::string known = "driver \"" + std::string(driver.name) + "\" knows map, quality";
+    std::string known = "driver \"" + std::string(driver.name) + "\" knows map, quality, resource";
     for (const ir::SettingRow& row : ir::setting_rows()) {
       if ((row.families & driver.family) != 0) known += ", " + std::string(row.key);
     }
@@ -174,9 +193,30 @@ class Reader {
 
 }  // namespace
 
-base::Result<std::vector<ir::Device>> read_devices(std::string_view file,
-                                                   const tools::TomlTable& table) {
+base::Result<std::vector<ProjectDevice>> read_devices(std::string_view file,
+                                                      const tools::TomlTable& table) {
   return Reader(file, table).run();
+}
+
+base::Result<std::vector<ir::Device>> devices_of(const std::vector<ProjectDevice>& devices,
+                                                 const std::string& resource,
+                                                 const std::vector<std::string>& all) {
+  std::vector<ir::Device> own;
+  for (const ProjectDevice& row : devices) {
+    const bool known = std::any_of(all.begin(), all.end(), [&](const std::string& name) {
+      return ir::same_name(name, row.resource);
+    });
+    if (!all.empty() && !known) {
+      return base::Error{
+          base::Refusal::kBadMapping,
+          row.where + ": device `" + row.device.name + "`: " +
+              (row.resource.empty() ? std::string("there are several RESOURCEs")
+                                    : "there is no RESOURCE `" + row.resource + "`") +
+              "; say which one has it: resource = \"" + all.front() + "\""};
+    }
+    if (all.empty() || ir::same_name(row.resource, resource)) own.push_back(row.device);
+  }
+  return own;
 }
 
 }  // namespace stc

@@ -2,6 +2,7 @@
 // process image. Every mistake is kBadMapping with the line and column of what is wrong.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,8 +14,20 @@ namespace stc {
 
 inline constexpr std::string_view kDeviceTables = "devices.";
 
+struct ProjectDevice {
+  ir::Device device;
+  std::string resource;  // which has it; "": not said
+  std::string where;     // "stc.toml:3:1"
+};
+
 // Sorted by name. Other keys of `table` are left alone.
-base::Result<std::vector<ir::Device>> read_devices(std::string_view file,
-                                                   const tools::TomlTable& table);
+base::Result<std::vector<ProjectDevice>> read_devices(std::string_view file,
+                                                      const tools::TomlTable& table);
+
+// Those of one of the resources `all`; of a project with one resource at most (`all` is empty), all
+// devices. kBadMapping for a device that does not say which resource has it.
+base::Result<std::vector<ir::Device>> devices_of(const std::vector<ProjectDevice>& devices,
+                                                 const std::string& resource,
+                                                 const std::vector<std::string>& all);
 
 }  // namespace stc

@@ -91,7 +91,7 @@ base::Status apply_project_file(const std::string& folder, Project& project,
   if (!text.ok()) return text.error();
   base::Result<tools::TomlTable> table = tools::parse_toml(file, *text);
   if (!table.ok()) return table.error();
-  base::Result<std::vector<ir::Device>> devices = read_devices(file, *table);
+  base::Result<std::vector<ProjectDevice>> devices = read_devices(file, *table);
   if (!devices.ok()) return devices.error();
   project.devices = std::move(*devices);
   for (const auto& [key, value] : *table) {

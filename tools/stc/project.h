@@ -11,6 +11,7 @@
 #include "base/source.h"
 #include "frontend/compile.h"
 #include "linker/layout.h"
+#include "tools/stc/device_tables.h"
 #include "tools/stc/safe_settings.h"
 
 namespace stc {
@@ -21,7 +22,7 @@ struct Project {
   std::vector<xml::Finding> imported;  // what was found in them; errors too
   frontend::CompileOptions compile;
   linker::Slack slack;
-  std::vector<ir::Device> devices;
+  std::vector<ProjectDevice> devices;
   SafeSettings safe;
 };
 

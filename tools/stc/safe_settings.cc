@@ -129,6 +129,14 @@ base::Result<SafeSettings> parse_safe_settings(const std::string& file,
   return settings;
 }
 
+std::vector<ir::SafeOutput> safe_rows_inside(const SafeSettings& settings, uint32_t output_bytes) {
+  std::vector<ir::SafeOutput> rows;
+  for (const ir::SafeOutput& row : settings.rows) {
+    if (uint64_t{row.bit_offset} + row.bits <= uint64_t{output_bytes} * 8) rows.push_back(row);
+  }
+  return rows;
+}
+
 base::Status check_safe_settings(const SafeSettings& settings, uint32_t output_bytes) {
   for (const ir::SafeOutput& row : settings.rows) {
     if (uint64_t{row.bit_offset} + row.bits <= uint64_t{output_bytes} * 8) continue;

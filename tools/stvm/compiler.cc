@@ -35,18 +35,38 @@ bool is_image(const std::string& path) {
 }
 
 base::Result<ir::VerifiedImage> load_program(const Sources& sources) {
-  std::string path = sources.paths.front();
+  auto images = load_programs(sources);
+  if (!images.ok()) return images.error();
+  if (images->size() == 1) return std::move(images->front());
+  return base::Error{base::Refusal::kUsage,
+                     "the sources have several RESOURCEs; build them with stc, and name one image"};
+}
+
+base::Result<std::vector<ir::VerifiedImage>> load_programs(const Sources& sources) {
   base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
   if (!folder.ok()) return folder.error();
-  if (sources.paths.size() != 1 || !is_image(path)) {
-    path = folder->file("program.img");
+  std::vector<std::string> paths = sources.paths;
+  if (!std::all_of(paths.begin(), paths.end(), is_image)) {
+    const std::string made = folder->file("images/");
     base::Status built =
-        tools::run_beside("stc", stc_arguments({"build", "--quiet", "-o", path}, sources));
+        tools::run_beside("stc", stc_arguments({"build", "--quiet", "-o", made}, sources));
     if (!built.ok()) return built.error();
+    paths.clear();
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(made, error)) {
+      paths.push_back(entry.path().string());
+    }
+    std::sort(paths.begin(), paths.end());
   }
-  base::Result<base::Bytes> bytes = tools::read_bytes(path);
-  if (!bytes.ok()) return bytes.error();
-  return ir::verify(*bytes);
+  std::vector<ir::VerifiedImage> images;
+  for (const std::string& path : paths) {
+    base::Result<base::Bytes> bytes = tools::read_bytes(path);
+    if (!bytes.ok()) return bytes.error();
+    base::Result<ir::VerifiedImage> image = ir::verify(*bytes);
+    if (!image.ok()) return image.error();
+    images.push_back(std::move(*image));
+  }
+  return images;
 }
 
 }  // namespace stvm

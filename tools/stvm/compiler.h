@@ -23,6 +23,8 @@ std::vector<std::string> stc_arguments(std::vector<std::string> command, const S
 
 // An image file, or sources that are compiled first. Verified, so it can run.
 base::Result<ir::VerifiedImage> load_program(const Sources& sources);
+// Image files, or sources that are compiled first: an image for each RESOURCE, by name.
+base::Result<std::vector<ir::VerifiedImage>> load_programs(const Sources& sources);
 
 // The file begins as an image does.
 bool is_image(const std::string& path);

@@ -6,6 +6,7 @@
 #include "online_change/store/record.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/remote_client.h"
+#include "tools/stvm/state_folder.h"
 #include "vm/runtime/socket_client.h"
 
 namespace stvm {
@@ -26,7 +27,15 @@ base::Result<ControllerClient> ControllerClient::connect(const tools::Options& o
     if (!transport.ok()) return transport.error();
     return ControllerClient(std::move(*transport));
   }
-  auto transport = vm::SocketClient::connect(state_directory(options));
+  const std::string directory = state_directory(options);
+  auto transport = vm::SocketClient::connect(directory);
+  const std::vector<std::string> resources =
+      transport.ok() ? std::vector<std::string>() : stored_resources(directory);
+  if (!resources.empty()) {
+    return base::Error{base::Refusal::kNotRunning,
+                       directory + " is of several resources; name one: --dir " + directory + "/" +
+                           resources.front()};
+  }
   if (!transport.ok()) return transport.error();
   return ControllerClient(std::move(*transport));
 }

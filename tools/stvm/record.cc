@@ -3,6 +3,7 @@
 namespace stvm {
 
 base::Result<std::unique_ptr<vm::Recorder>> open_recorder(const tools::Options& options,
+                                                          const std::string& resource,
                                                           const ir::VerifiedImage& image,
                                                           base::ByteSpan retained,
                                                           const vm::ControllerOptions& limits,
@@ -16,7 +17,9 @@ base::Result<std::unique_ptr<vm::Recorder>> open_recorder(const tools::Options& 
   start.code_limit = limits.code_limit;
   start.data_limit = limits.data_limit;
   start.on_trap = limits.on_trap;
-  return vm::Recorder::create(options.text("--record"), clock, io, start);
+  std::string file = options.text("--record");
+  if (!resource.empty()) file += "." + resource;
+  return vm::Recorder::create(file, clock, io, start);
 }
 
 base::Result<std::unique_ptr<vm::Controller>> start_recorded(const ir::VerifiedImage& image,

@@ -8,15 +8,16 @@
 
 namespace stvm {
 
-// Nothing without the option. `clock` and `io` must outlive it.
-base::Result<std::unique_ptr<vm::Recorder>> open_recorder(const tools::Options& options,
-                                                          const ir::VerifiedImage& image,
-                                                          base::ByteSpan retained,
-                                                          const vm::ControllerOptions& limits,
-                                                          vm::Clock& clock, vm::IoPort& io);
+// Nothing without the option. To FILE.NAME for a resource of several. `clock` and `io` must outlive
+// it.
+base::Result<std::unique_ptr<vm::Recorder>> open_recorder(
+    const tools::Options& options, const std::string& resource, const ir::VerifiedImage& image,
+    base::ByteSpan retained, const vm::ControllerOptions& limits, vm::Clock& clock, vm::IoPort& io);
 // Controller::start(), recorded when `recorder` is one.
-base::Result<std::unique_ptr<vm::Controller>> start_recorded(
-    const ir::VerifiedImage& image, const vm::ControllerOptions& limits, vm::Clock& clock,
-    vm::IoPort& io, base::ByteSpan retained, vm::Recorder* recorder);
+base::Result<std::unique_ptr<vm::Controller>> start_recorded(const ir::VerifiedImage& image,
+                                                             const vm::ControllerOptions& limits,
+                                                             vm::Clock& clock, vm::IoPort& io,
+                                                             base::ByteSpan retained,
+                                                             vm::Recorder* recorder);
 
 }  // namespace stvm

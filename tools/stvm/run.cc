@@ -1,6 +1,5 @@
 // stvm run: a program in this process, without state directory and control channel.
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <optional>
 
@@ -12,7 +11,7 @@
 #include "tools/stvm/device_drivers.h"
 #include "tools/stvm/hard_mode.h"
 #include "tools/stvm/plot.h"
-#include "tools/stvm/record.h"
+#include "tools/stvm/run_resources.h"
 #include "tools/stvm/stop_signal.h"
 #include "tools/stvm/trace.h"
 #include "tools/stvm/trap_text.h"
@@ -38,7 +37,7 @@ constexpr tools::OptionRow kOptions[] = {
     STVM_DIALECT_OPTION,
     STVM_FORMAT_OPTION,
 };
-constexpr tools::Command kCommand{"run", "IMAGE|SOURCES...", "Runs a program scan by scan.",
+constexpr tools::Command kCommand{"run", "IMAGES|SOURCES...", "Runs a program scan by scan.",
                                   kOptions, 1};
 
 struct Settings {
@@ -67,41 +66,6 @@ base::Result<Settings> read_settings(const tools::Options& options) {
   return out;
 }
 
-// As `stvm set` and `stvm force` would ask for it.
-void note_assignment(vm::Recorder& recorder, const vm::Controller& controller, bool set,
-                     const Assignment& row) {
-  vm::Request request;
-  request.command = set ? vm::Command::kSet : vm::Command::kForce;
-  request.expected = controller.verified().digest();
-  request.names = {row.name};
-  request.values = {row.value};
-  recorder.begin_job(controller);
-  recorder.end_job(controller);
-  recorder.note(vm::encode(request));
-}
-
-base::Status apply_assignments(const tools::Options& options, vm::Controller& controller,
-                               vm::Recorder* recorder) {
-  for (const char* option : {"--set", "--force"}) {
-    base::Result<std::vector<Assignment>> rows = parse_assignments(options.all(option));
-    if (!rows.ok()) return rows.error();
-    for (const Assignment& row : *rows) {
-      bool set = std::string_view(option) == "--set";
-      base::Status status =
-          set ? controller.set(row.name, row.value) : controller.force(row.name, row.value);
-      if (!status.ok()) return status;
-      if (recorder != nullptr) note_assignment(*recorder, controller, set, row);
-    }
-  }
-  return base::Ok{};
-}
-
-void run_cycle(vm::Controller& controller, vm::Recorder* recorder) {
-  if (recorder != nullptr) recorder->begin();
-  controller.cycle();
-  if (recorder != nullptr) recorder->end(controller);
-}
-
 // A name that is not there shall be said before the first scan, not after the last.
 base::Status check_names(const std::vector<std::string>& names, const vm::Controller& controller) {
   for (const std::string& name : names) {
@@ -112,7 +76,8 @@ base::Status check_names(const std::vector<std::string>& names, const vm::Contro
 }
 
 base::Status run_scans(const Settings& settings, const tools::Options& options,
-                       vm::Controller& controller, vm::Recorder* recorder) {
+                       ResourceController& running) {
+  vm::Controller& controller = running.controller();
   std::optional<Trace> trace;
   if (options.has("--trace")) {
     base::Result<Trace> opened =
@@ -128,7 +93,7 @@ base::Status run_scans(const Settings& settings, const tools::Options& options,
   }
   while (!controller.faulted() && !StopSignal::received()) {
     if (settings.scans && controller.cycles() >= *settings.scans) break;
-    run_cycle(controller, recorder);
+    running.cycle();
     if (!controller.at_boundary()) continue;
     if (plot) plot->sample(controller);
     if (trace) {
@@ -145,16 +110,6 @@ base::Status run_scans(const Settings& settings, const tools::Options& options,
     if (!drawn.ok()) return drawn;
   }
   return trace ? trace->close() : base::Status(base::Ok{});
-}
-
-// A task that is still inside its scan would show half of its results.
-void finish_scan(vm::Controller& controller, vm::Recorder* recorder) {
-  while (!controller.at_boundary()) run_cycle(controller, recorder);
-}
-
-std::string value_of(const vm::Controller& controller, const std::string& name) {
-  base::Result<std::string> value = controller.get(name);
-  return value.ok() ? *value : "?";
 }
 
 void print_text(const Settings& settings, const tools::Options& options,
@@ -193,6 +148,31 @@ void print_json(const Settings& settings, const tools::Options& options,
   std::fputs(json.finish().c_str(), stdout);
 }
 
+base::Result<int> run_alone(const Settings& settings,
+                            const std::vector<vm::GlobalExchange::Resource>& program,
+                            const tools::Options& options) {
+  vm::VirtualClock virtual_clock;
+  vm::RealClock real_clock;
+  const bool virtual_time = options.has("--virtual-time");
+  vm::Clock& clock = virtual_time ? static_cast<vm::Clock&>(virtual_clock) : real_clock;
+  ResourceController::Settings start{options, {}, virtual_time, nullptr, program, 0};
+  if (settings.hard_mode == HardMode::kFuel1) start.limits.fuel_slice = 1;
+  auto running = ResourceController::start(start, clock, {});
+  if (!running.ok()) return running.error();
+  vm::Controller& controller = (*running)->controller();
+  base::Status assigned = apply_assignments(options, "", controller, (*running)->recorder());
+  if (!assigned.ok()) return assigned.error();
+  base::Status known = check_names(settings.print, controller);
+  if (!known.ok()) return known.error();
+  StopSignal::install();
+  base::Status done = run_scans(settings, options, **running);
+  if (!done.ok()) return done.error();
+  finish_scan(**running);
+  if (base::Status recorded = (*running)->close(); !recorded.ok()) return recorded.error();
+  (settings.json ? print_json : print_text)(settings, options, controller);
+  return end_run(**running) ? tools::kOk : tools::kFindings;
+}
+
 base::Result<int> run_program(const tools::Options& options) {
   base::Result<Settings> settings = read_settings(options);
   if (!settings.ok()) return settings.error();
@@ -201,41 +181,14 @@ base::Result<int> run_program(const tools::Options& options) {
   }
   base::Status possible = check_hard_mode(settings->hard_mode, sources_of(options));
   if (!possible.ok()) return possible.error();
-  base::Result<ir::VerifiedImage> image = load_program(sources_of(options));
-  if (!image.ok()) return image.error();
-  vm::ControllerOptions controller_options;
-  if (settings->hard_mode == HardMode::kFuel1) controller_options.fuel_slice = 1;
-  vm::VirtualClock virtual_clock;
-  vm::RealClock real_clock;
-  vm::Clock* clock = &real_clock;
-  if (options.has("--virtual-time")) clock = &virtual_clock;
-  auto devices = device_options(options, clock == &virtual_clock ? clock : nullptr);
-  if (!devices.ok()) return devices.error();
-  vm::DeviceIo io(std::move(*devices));
-  base::Result<std::unique_ptr<vm::Recorder>> recorder =
-      open_recorder(options, *image, {}, controller_options, *clock, io);
-  if (!recorder.ok()) return recorder.error();
-  auto controller = start_recorded(*image, controller_options, *clock, io, {}, recorder->get());
-  if (!controller.ok()) return controller.error();
-  base::Status assigned = apply_assignments(options, **controller, recorder->get());
-  if (!assigned.ok()) return assigned.error();
-  base::Status known = check_names(settings->print, **controller);
-  if (!known.ok()) return known.error();
-  StopSignal::install();
-  base::Status done = run_scans(*settings, options, **controller, recorder->get());
-  if (!done.ok()) return done.error();
-  finish_scan(**controller, recorder->get());
-  if (*recorder) {
-    base::Status recorded = (*recorder)->close();
-    if (!recorded.ok()) return recorded.error();
+  auto images = load_programs(sources_of(options));
+  if (!images.ok()) return images.error();
+  auto resources = name_resources(std::move(*images));
+  if (!resources.ok()) return resources.error();
+  if (resources->size() > 1) {
+    return run_resources(*resources, {settings->json, settings->scans, settings->print}, options);
   }
-  (settings->json ? print_json : print_text)(*settings, options, **controller);
-  base::Status left = (*controller)->leave_all(kExitLimitNs);  // its trap is one of these
-  (*controller)->make_outputs_safe();
-  for (const vm::TrapRecord& trap : (*controller)->traps()) {
-    std::fprintf(stderr, "stvm: trap: %s\n", trap_text(trap).c_str());
-  }
-  return left.ok() && (*controller)->traps().empty() ? tools::kOk : tools::kFindings;
+  return run_alone(*settings, *resources, options);
 }
 
 int run(const tools::Options& options) {

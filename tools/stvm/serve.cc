@@ -1,24 +1,24 @@
 // stvm serve: a controller with state directory and control channel.
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstdio>
+#include <thread>
 
 #include "tools/common/change_settings.h"
 #include "tools/common/exit.h"
 #include "tools/stvm/commands.h"
-#include "tools/stvm/compiler.h"
-#include "tools/stvm/controller_service.h"
 #include "tools/stvm/device_drivers.h"
-#include "tools/stvm/record.h"
+#include "tools/stvm/served_resource.h"
 #include "tools/stvm/service_notify.h"
 #include "tools/stvm/state_folder.h"
 #include "tools/stvm/stop_signal.h"
 #include "vm/runtime/clocks.h"
-#include "vm/runtime/file_storage.h"
-#include "vm/runtime/mailbox.h"
-#include "vm/runtime/realtime.h"
 
 namespace stvm {
 namespace {
+
+constexpr std::chrono::milliseconds kAliveLook{20};
 
 constexpr tools::OptionRow kOptions[] = {
     STVM_DIR_OPTION,
@@ -34,91 +34,56 @@ constexpr tools::OptionRow kOptions[] = {
     STVM_DIALECT_OPTION,
 };
 constexpr tools::Command kCommand{
-    "serve", "[IMAGE|SOURCES...]",
-    "Runs a controller that can be watched and changed. Without IMAGE: the one stored last.",
+    "serve", "[IMAGES|SOURCES...]",
+    "Runs a controller that can be watched and changed. Without IMAGE: the one stored last.\n"
+    "Of several RESOURCEs each has a control thread, and its state in STATE/NAME.",
     kOptions};
 
-// Commands are answered between cycles too, so a long period does not make them slow.
-constexpr int64_t kLookNs = 2'000'000;
-constexpr int64_t kFaultLookNs = 10'000'000;
+using Served = std::vector<std::unique_ptr<ServedResource>>;
+using Resource = vm::GlobalExchange::Resource;
 
-// What runs, and the reason when it is not what was asked for.
-base::Result<online_change::Boot> boot_program(const tools::Options& options,
-                                               online_change::Store& store) {
-  std::optional<ir::VerifiedImage> given;
-  if (!options.arguments().empty()) {
-    base::Result<ir::VerifiedImage> image = load_program(sources_of(options));
-    if (!image.ok()) return image.error();
-    given = *image;
+base::Status open_one(const std::string& directory, const std::optional<ir::VerifiedImage>& given,
+                      Served& served) {
+  auto opened = ServedResource::open(directory, given);
+  if (!opened.ok()) return opened.error();
+  served.push_back(std::move(*opened));
+  return base::Ok{};
+}
+
+base::Status open_given(const std::string& directory, const std::vector<Resource>& given,
+                        Served& served) {
+  if (given.size() > 1 && holds_program(directory)) {
+    return base::Error{
+        base::Refusal::kUsage,
+        directory + " holds the program of a single resource; use another directory"};
   }
-  auto boot = online_change::boot(store, given, "serve", wall_time_ns());
-  if (boot.ok()) return boot;
+  for (const Resource& resource : given) {
+    const std::string folder = resource.name.empty() ? directory : directory + "/" + resource.name;
+    if (base::Status opened = open_one(folder, resource.image, served); !opened.ok()) return opened;
+  }
+  return base::Ok{};
+}
+
+// What is named, or what is stored: by a single resource, or by several.
+base::Result<Served> open_all(const tools::Options& options) {
   const std::string directory = state_directory(options);
-  if (boot.error().refusal == base::Refusal::kFileNotFound) {
-    return base::Error{base::Refusal::kFileNotFound,
-                       directory + " holds no program yet; name an image or sources"};
-  }
-  return base::Error{boot.error().refusal, directory + ": " + boot.error().text};
-}
-
-// Until the next cycle begins; what remains at the end is left to the clock's exact wait.
-void idle(vm::Controller& controller, vm::Clock& clock, vm::Mailbox& mailbox,
-          online_change::RetainKeeper& keeper, ServiceNotify& notify) {
-  while (!StopSignal::received()) {
-    notify.alive();
-    int64_t now = clock.now_ns();
-    if (controller.next_cycle_ns() - now <= kLookNs) return;
-    clock.wait_until(std::min(now + kLookNs, controller.next_cycle_ns() - kLookNs));
-    mailbox.serve();
-    keeper.serve(controller.next_cycle_ns() - clock.now_ns());
-  }
-}
-
-void control_loop(vm::Controller& controller, vm::Clock& clock, vm::Mailbox& mailbox,
-                  ControllerService& service, vm::Recorder* recorder, ServiceNotify& notify) {
-  online_change::RetainKeeper& keeper = service.keeper();
-  while (!StopSignal::received() && !service.stop_wanted()) {
-    if (recorder != nullptr) recorder->begin();
-    controller.cycle();
-    if (recorder != nullptr) recorder->end(controller);
-    notify.alive();
-    if (!controller.at_boundary()) continue;
-    mailbox.serve();
-    keeper.serve(controller.next_cycle_ns() - clock.now_ns());
-    if (controller.faulted()) {
-      clock.wait_until(clock.now_ns() + kFaultLookNs);
-    } else {
-      idle(controller, clock, mailbox, keeper, notify);
+  Served served;
+  base::Status opened = base::Ok{};
+  if (!options.arguments().empty()) {
+    auto images = load_programs(sources_of(options));
+    if (!images.ok()) return images.error();
+    auto given = name_resources(std::move(*images));
+    if (!given.ok()) return given.error();
+    opened = open_given(directory, *given, served);
+  } else {
+    const std::vector<std::string> stored = stored_resources(directory);
+    if (stored.empty()) opened = open_one(directory, std::nullopt, served);
+    for (size_t i = 0; i < stored.size() && opened.ok(); ++i) {
+      opened = open_one(directory + "/" + stored[i], std::nullopt, served);
     }
   }
-  if (!controller.at_boundary()) return;
-  base::Status left = controller.leave_all(kExitLimitNs);
-  if (!left.ok()) refuse(left.error());
-}
-
-// A clean end costs nothing of the retained values. In the middle of a scan there is no boundary:
-// then the last one's are stored.
-void end(vm::Controller& controller, online_change::Store& store, ControllerService& service) {
-  if (controller.at_boundary()) {
-    online_change::Snapshot last;
-    service.keeper().take(last);
-    base::Status saved = service.keeper().save(last);
-    if (!saved.ok()) refuse(saved.error());
-  }
-  online_change::JournalEntry entry;
-  entry.time_ns = wall_time_ns();
-  entry.event = online_change::Event::kStopped;
-  entry.who = "serve";
-  entry.from = controller.verified().digest();
-  store.note(std::move(entry));
-}
-
-void print_boot(const online_change::Boot& boot) {
-  for (const std::string& alarm : boot.alarms) std::fprintf(stderr, "alarm: %s\n", alarm.c_str());
-  if (!boot.trial_lost) return;
-  std::fprintf(stderr, "the trial of %s was lost; %s runs\n",
-               base::short_hex(*boot.trial_lost).c_str(),
-               base::short_hex(boot.image.digest()).c_str());
+  if (!opened.ok()) return opened.error();
+  return served;
 }
 
 base::Result<vm::ControllerOptions> limits_of(const tools::Options& options) {
@@ -149,60 +114,109 @@ base::Result<vm::RealTimeOptions> real_time_options(const tools::Options& option
   return out;
 }
 
-void print_ready(const vm::Controller& controller, const std::string& directory) {
+void print_ready(ServedResource& resource) {
+  const vm::Controller& controller = resource.controller();
   std::printf("ready: %s %s in %s\n", controller.image().name.c_str(),
-              base::short_hex(controller.verified().digest()).c_str(), directory.c_str());
+              base::short_hex(controller.verified().digest()).c_str(),
+              resource.directory().c_str());
   std::fflush(stdout);
 }
 
+// This thread is the control thread.
+base::Status run_one(ServedResource& resource, const vm::RealTimeOptions& real_time,
+                     ServiceNotify& notify) {
+  // Behind all other threads, which stay as they are.
+  if (base::Status fit = resource.make_real_time(real_time); !fit.ok()) {
+    resource.give_up();
+    return fit;
+  }
+  print_ready(resource);
+  notify.ready(base::short_hex(resource.controller().verified().digest()));
+  resource.run(StopSignal::received, [&] { notify.alive(); });
+  notify.stopping();
+  return resource.end();
+}
+
+// A control thread each; this one tells the service manager that all of them live. When one ends,
+// all end.
+base::Status run_several(Served& served, const vm::RealTimeOptions& real_time,
+                         ServiceNotify& notify) {
+  std::atomic<bool> stop{false};
+  std::atomic<size_t> ended{0};
+  std::vector<std::atomic<bool>> alive(served.size());
+  std::vector<base::Status> results(served.size(), base::Ok{});
+  std::vector<std::thread> threads;
+  for (size_t i = 0; i < served.size(); ++i) {
+    threads.emplace_back([&, i] {
+      vm::RealTimeOptions own = real_time;
+      if (own.cpu) *own.cpu += static_cast<uint32_t>(i);
+      results[i] = served[i]->make_real_time(own);
+      if (results[i].ok()) {
+        served[i]->run([&] { return stop || StopSignal::received(); }, [&] { alive[i] = true; });
+      } else {
+        served[i]->give_up();
+      }
+      stop = true;
+      ++ended;
+    });
+  }
+  for (const auto& resource : served) print_ready(*resource);
+  notify.ready(std::to_string(served.size()) + " resources");
+  while (ended < served.size()) {
+    std::this_thread::sleep_for(kAliveLook);
+    if (!std::all_of(alive.begin(), alive.end(), [](const auto& one) { return one.load(); })) {
+      continue;
+    }
+    notify.alive();
+    for (std::atomic<bool>& one : alive) one = false;
+  }
+  notify.stopping();
+  base::Status out = base::Ok{};
+  for (size_t i = 0; i < served.size(); ++i) {
+    threads[i].join();
+    const bool ran = results[i].ok();
+    base::Status ending = ran ? served[i]->end() : results[i];
+    if (out.ok()) out = ending;
+  }
+  return out;
+}
+
 base::Status serve(const tools::Options& options) {
-  std::string directory = state_directory(options);
   base::Result<vm::ControllerOptions> limits = limits_of(options);
   if (!limits.ok()) return limits.error();
   base::Result<vm::RealTimeOptions> real_time = real_time_options(options);
   if (!real_time.ok()) return real_time.error();
   StopSignal::install();
-  base::Result<StateFolder> folder = StateFolder::open(directory);
-  if (!folder.ok()) return folder.error();
-  vm::FileStorage storage(directory);
-  online_change::Store store(storage);
-  base::Result<online_change::Boot> boot = boot_program(options, store);
-  if (!boot.ok()) return boot.error();
-  print_boot(*boot);
+  // What the resources use outlives them.
   vm::RealClock real_clock;
   vm::VirtualClock virtual_clock;
-  vm::Clock* clock = &real_clock;
-  if (options.has("--virtual-time")) clock = &virtual_clock;
-  auto devices = device_options(options, clock == &virtual_clock ? clock : nullptr);
-  if (!devices.ok()) return devices.error();
-  vm::DeviceIo io(std::move(*devices));
-  auto recorder = open_recorder(options, boot->image, boot->retained, *limits, *clock, io);
-  if (!recorder.ok()) return recorder.error();
-  auto controller =
-      start_recorded(boot->image, *limits, *clock, io, boot->retained, recorder->get());
-  if (!controller.ok()) return controller.error();
-  vm::Mailbox mailbox;
-  ControllerService service(**controller, *clock, store, mailbox, {boot->trial_lost, boot->alarms});
-  if (*recorder) service.record(**recorder);
-  auto server = vm::SocketServer::open(directory, service);
-  if (!server.ok()) return server.error();
-  service.keeper().start();
-  // Behind all other threads, which stay as they are.
-  base::Status fit = vm::make_real_time(*real_time);
-  if (!fit.ok()) {
-    mailbox.close();
-    return fit;
+  std::unique_ptr<vm::GlobalExchange> exchange;
+  base::Result<Served> served = open_all(options);
+  if (!served.ok()) return served.error();
+  const bool virtual_time = options.has("--virtual-time");
+  if (virtual_time && served->size() > 1) {
+    return base::Error{base::Refusal::kUsage,
+                       "--virtual-time serves one resource; `stvm run` takes turns"};
   }
-  if (real_time->lock_memory) vm::prefault(**controller);
+  std::vector<ir::VerifiedImage> programs;
+  for (const auto& resource : *served) programs.push_back(resource->program());
+  auto resources = name_resources(std::move(programs));
+  if (!resources.ok()) return resources.error();
+  auto made = make_exchange(*resources);
+  if (!made.ok()) return made.error();
+  exchange = std::move(*made);
+  vm::Clock& clock = virtual_time ? static_cast<vm::Clock&>(virtual_clock) : real_clock;
+  for (size_t i = 0; i < served->size(); ++i) {
+    base::Status started =
+        (*served)[i]->start({options, *limits, virtual_time, exchange.get(), *resources, i}, clock);
+    if (!started.ok()) {
+      for (size_t k = 0; k < i; ++k) (*served)[k]->give_up();
+      return started;
+    }
+  }
   ServiceNotify notify;
-  print_ready(**controller, directory);
-  notify.ready(base::short_hex((*controller)->verified().digest()));
-  control_loop(**controller, *clock, mailbox, service, recorder->get(), notify);
-  notify.stopping();
-  (*controller)->make_outputs_safe();
-  mailbox.close();
-  end(**controller, store, service);
-  return *recorder ? (*recorder)->close() : base::Status(base::Ok{});
+  return served->size() == 1 ? run_one(*served->front(), *real_time, notify)
+                             : run_several(*served, *real_time, notify);
 }
 
 int run(const tools::Options& options) {

@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -36,6 +37,24 @@ base::Result<StateFolder> StateFolder::open(const std::string& path) {
     return base::Error{base::Refusal::kAlreadyRunning, "a controller already runs in " + path};
   }
   return StateFolder(std::move(lock));
+}
+
+bool holds_program(const std::string& directory) {
+  std::error_code error;
+  const std::filesystem::path folder(directory);
+  return std::filesystem::exists(folder / "control_0", error) ||
+         std::filesystem::exists(folder / "control_1", error);
+}
+
+std::vector<std::string> stored_resources(const std::string& directory) {
+  std::vector<std::string> names;
+  std::error_code error;
+  if (holds_program(directory)) return names;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
+    if (holds_program(entry.path().string())) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 }  // namespace stvm

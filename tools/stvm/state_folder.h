@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 #include "vm/runtime/descriptor.h"
@@ -18,5 +19,10 @@ class StateFolder {
   explicit StateFolder(vm::Descriptor lock) : lock_(std::move(lock)) {}
   vm::Descriptor lock_;
 };
+
+// Is a program stored there?
+bool holds_program(const std::string& directory);
+// Names of the resources whose state folders lie below, sorted; none where a single one is.
+std::vector<std::string> stored_resources(const std::string& directory);
 
 }  // namespace stvm

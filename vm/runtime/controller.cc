@@ -86,6 +86,7 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
   auto tables = std::make_unique<TaskTables>(*impl.running, impl.scheduler.next_cycle_ns());
   impl.scheduler.use(*tables, impl.memory.data());
   impl.scheduler.run_start_tasks();
+  if (!impl.scheduler.faulted()) io.publish_globals(tables->shared, impl.memory.data());
   impl.tables[impl.running.get()] = std::move(tables);
   return controller;
 }
@@ -93,7 +94,9 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
 void Controller::cycle() {
   impl_->scheduler.run_cycle();
   if (!at_boundary() || faulted()) return;
-  impl_->io_port.at_boundary(impl_->scheduler.tables().process_image, impl_->memory.data());
+  const TaskTables& tables = impl_->scheduler.tables();
+  impl_->io_port.at_boundary(tables.process_image, impl_->memory.data());
+  impl_->io_port.publish_globals(tables.shared, impl_->memory.data());
 }
 void Controller::run_idle(const std::function<bool()>& unit) { impl_->scheduler.run_idle(unit); }
 void Controller::worked(int64_t expected_ns) { impl_->scheduler.worked(expected_ns); }

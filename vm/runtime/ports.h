@@ -19,6 +19,7 @@ class VerifiedImage;
 namespace vm {
 
 class ProcessImage;
+class SharedGlobals;
 
 // Time in ns since the controller started; never goes back.
 class Clock {
@@ -60,6 +61,10 @@ class IoPort {
   // Control thread, at a boundary behind each cycle: for devices that exchange %M, or let others
   // write %Q. `memory` is data memory, `image` says where variables are in it.
   virtual void at_boundary(const ProcessImage& /*image*/, uint8_t* /*memory*/) {}
+  // Control thread, at a boundary: when a cycle begins, values of globals that other resources
+  // write; behind it, those that this one writes (shared_globals.h).
+  virtual void take_globals(const SharedGlobals& /*globals*/, uint8_t* /*memory*/) {}
+  virtual void publish_globals(const SharedGlobals& /*globals*/, const uint8_t* /*memory*/) {}
   // Off the control thread.
   virtual std::vector<DeviceStatus> status() const;
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "vm/runtime/process_image.h"
+#include "vm/runtime/shared_globals.h"
 
 namespace vm {
 namespace {
@@ -96,6 +97,15 @@ void Recorder::at_boundary(const ProcessImage& image, uint8_t* memory) {
                now_.observed.markers);
 }
 
+void Recorder::take_globals(const SharedGlobals& globals, uint8_t* memory) {
+  before_.resize(globals.read_bytes());
+  after_.resize(globals.read_bytes());
+  globals.gather_read(memory, before_);
+  io_.take_globals(globals, memory);
+  globals.gather_read(memory, after_);
+  if (before_ != after_) note_changes(before_, after_, now_.observed.globals);
+}
+
 void Recorder::begin() { in_cycle_ = true; }
 
 void Recorder::end(Controller& controller) {
@@ -107,6 +117,7 @@ void Recorder::end(Controller& controller) {
   now_.observed.changed.clear();
   now_.observed.outputs.clear();
   now_.observed.markers.clear();
+  now_.observed.globals.clear();
 }
 
 void Recorder::begin_job(const Controller& controller) {

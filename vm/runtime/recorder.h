@@ -34,6 +34,10 @@ class Recorder : public Clock, public IoPort {
   void settle() override { io_.settle(); }
   std::vector<DeviceStatus> status() const override { return io_.status(); }
   void at_boundary(const ProcessImage& image, uint8_t* memory) override;
+  void take_globals(const SharedGlobals& globals, uint8_t* memory) override;
+  void publish_globals(const SharedGlobals& globals, const uint8_t* memory) override {
+    io_.publish_globals(globals, memory);
+  }
   void receive(std::span<uint8_t> inputs) override;
   void send(std::span<const uint8_t> outputs) override { io_.send(outputs); }
 

@@ -35,6 +35,7 @@ struct Observed {
   ByteChanges changed;         // input bytes that differ from before
   ByteChanges outputs;         // %Q and %M that others wrote at the boundary
   ByteChanges markers;
+  ByteChanges globals;  // that other resources write, in the order of SharedGlobals::gather_read
 };
 // Number 0 is the start; then one for each call of Controller::cycle().
 struct RecordedCycle {

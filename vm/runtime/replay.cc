@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "vm/runtime/process_image.h"
+#include "vm/runtime/shared_globals.h"
 
 namespace vm {
 
@@ -20,13 +21,26 @@ void Replay::receive(std::span<uint8_t> inputs) {
   std::copy_n(inputs_.begin(), inputs.size(), inputs.begin());
 }
 
+namespace {
+
+void change(base::Bytes& bytes, ByteChanges& changes) {
+  for (const auto& [offset, value] : changes) {
+    if (offset < bytes.size()) bytes[offset] = value;
+  }
+  changes.clear();
+}
+
+}  // namespace
+
+void Replay::take_globals(const SharedGlobals& globals, uint8_t* memory) {
+  if (globals_.empty()) return;
+  base::Bytes bytes(globals.read_bytes());
+  globals.gather_read(memory, bytes);
+  change(bytes, globals_);
+  globals.scatter_read(bytes, memory);
+}
+
 void Replay::at_boundary(const ProcessImage& image, uint8_t* memory) {
-  const auto change = [](base::Bytes& bytes, ByteChanges& changes) {
-    for (const auto& [offset, value] : changes) {
-      if (offset < bytes.size()) bytes[offset] = value;
-    }
-    changes.clear();
-  };
   if (!outputs_.empty()) {
     base::Bytes bytes(image.output_bytes());
     image.variables_to_outputs(memory, bytes);
@@ -45,6 +59,7 @@ void Replay::see(const Observed& observed) {
   see(observed.clock);
   outputs_ = observed.outputs;
   markers_ = observed.markers;
+  globals_ = observed.globals;
   for (const auto& [offset, value] : observed.changed) {
     if (offset >= inputs_.size()) inputs_.resize(size_t{offset} + 1);
     inputs_[offset] = value;

@@ -16,6 +16,8 @@ class Replay : public Clock, public IoPort {
   void send(std::span<const uint8_t>) override {}
   void at_boundary(const ProcessImage& image, uint8_t* memory) override;
 
+  void take_globals(const SharedGlobals& globals, uint8_t* memory) override;
+
   // What is seen from now on.
   void see(const Observed& observed);
   void see(const std::vector<int64_t>& clock);
@@ -29,6 +31,7 @@ class Replay : public Clock, public IoPort {
   bool asked_too_often_ = false;
   base::Bytes inputs_;
   ByteChanges outputs_, markers_;  // to be written at the next boundary
+  ByteChanges globals_;            // when the next cycle begins
 };
 
 }  // namespace vm

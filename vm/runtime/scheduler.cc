@@ -113,6 +113,7 @@ void Scheduler::begin_cycle() {
   impose_on_outputs();
   io_.send(tables_->outputs);
   io_.receive(tables_->inputs);
+  if (at_boundary()) io_.take_globals(tables_->shared, memory_);
   offer_inputs();
   look_at_events();
   release_due_tasks();

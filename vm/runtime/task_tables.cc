@@ -101,6 +101,7 @@ TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
     : generation(&made_for),
       version(made_for.verified()),
       process_image(made_for.image()),
+      shared(made_for.image()),
       safe(made_for.image()) {
   const ir::Image& image = made_for.image();
   for (uint32_t number = 0; number < image.tasks.size(); ++number) {

@@ -12,6 +12,7 @@
 #include "vm/runtime/input_sync.h"
 #include "vm/runtime/process_image.h"
 #include "vm/runtime/safe_outputs.h"
+#include "vm/runtime/shared_globals.h"
 
 namespace vm {
 
@@ -77,6 +78,7 @@ struct TaskTables {
   std::vector<uint32_t> by_priority;  // highest first, then as declared
   int64_t base_period_ns = 0;
   ProcessImage process_image;
+  SharedGlobals shared;
   SafeOutputs safe;
   base::Bytes inputs;        // as received last
   base::Bytes outputs;       // as sent next: complete results only (B5)

@@ -60,7 +60,13 @@ base::Result<Program> compile(const TestFile& test, size_t version, Outcome& out
   sources.add(test.name, test.versions[version]);
   for (const Source& used : test.used) sources.add(used.name, used.text);
   base::Diagnostics diagnostics;
-  std::optional<ir::Program> program = frontend::compile(sources, options_of(test), diagnostics);
+  std::optional<ir::Program> program;
+  if (test.has_option("--all-resources")) {
+    auto all = frontend::compile_resources(sources, options_of(test), diagnostics);
+    if (all) program = std::move(all->programs.front().program);
+  } else {
+    program = frontend::compile(sources, options_of(test), diagnostics);
+  }
   collect(sources, diagnostics, outcome);
   if (!program) {
     std::string all;

@@ -321,6 +321,7 @@ Image image(Code code, std::vector<ir::Merge> merges) {
   image.io = {{{ir::DirectArea::kInput, 0, 1}, kIn, image.types.elementary(Kind::kBool)},
               {{ir::DirectArea::kOutput, 0, 1}, kOut, image.types.elementary(Kind::kBool)}};
   image.retain = {{kCount, 4}};
+  image.shared = {{0, true}};
   image.stack_bytes = 4096;
   image.call_depth = 8;
   image.input_bytes = 1;

@@ -485,6 +485,20 @@ TEST(Verify, V16_Retain) {
   expect_refused(Refusal::kBadRetain, "beyond its area", [](Image& i) { i.retain[0].size = 65; });
 }
 
+// What is exchanged with other resources is a plain variable, once.
+TEST(Verify, SharedGlobals) {
+  const auto refuse = [](const char* what, std::vector<ir::SharedGlobal> rows) {
+    expect_refused(Refusal::kBadSharedGlobal, what, [&](Image& i) { i.shared = rows; });
+  };
+  refuse("there are five globals", {{5, false}});
+  refuse("far outside", {{UINT32_MAX, false}});
+  refuse("an input", {{1, false}});
+  refuse("an output", {{2, true}});
+  refuse("a constant", {{3, false}});
+  refuse("a function block", {{4, true}});
+  refuse("twice the same", {{0, true}, {0, true}});
+}
+
 TEST(Verify, V18_Memory) {
   expect_refused(Refusal::kTooLarge, "data memory",
                  [](Image& i) { i.data_capacity = base::kMaxDataBytes + 1; });

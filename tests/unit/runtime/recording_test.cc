@@ -171,7 +171,8 @@ TEST(Recording, RoundTripOfRecords) {
     bytes.insert(bytes.end(), more.begin(), more.end());
   };
   vm::RecordedCycle cycle{UINT64_MAX, {}, 0xdeadbeef};
-  cycle.observed = {{0, 1, int64_t{1} << 62}, {{0, 9}, {70'000, 255}}, {{3, 1}}, {{0, 2}}};
+  cycle.observed = {
+      {0, 1, int64_t{1} << 62}, {{0, 9}, {70'000, 255}}, {{3, 1}}, {{0, 2}}, {{7, 4}}};
   add(vm::encode_record(cycle));
   add(vm::encode_record(vm::RecordedRequest{9, {5}, base::Bytes(100'000, 7)}));
   add(vm::encode_record(vm::RecordedRequest{3, {}, {}}));
@@ -185,6 +186,7 @@ TEST(Recording, RoundTripOfRecords) {
   EXPECT_EQ(back->cycles[0].observed.changed, cycle.observed.changed);
   EXPECT_EQ(back->cycles[0].observed.outputs, cycle.observed.outputs);
   EXPECT_EQ(back->cycles[0].observed.markers, cycle.observed.markers);
+  EXPECT_EQ(back->cycles[0].observed.globals, cycle.observed.globals);
   EXPECT_EQ(back->cycles[0].state, 0xdeadbeefu);
   ASSERT_EQ(back->requests.size(), 2u);
   EXPECT_EQ(back->requests[0].cycle, 3u);

@@ -1,0 +1,60 @@
+// What the programs of one RESOURCE have in common: with each other %Q, with the programs of other
+// RESOURCEs the globals that are declared outside all of them, and %Q. After all bodies.
+#pragma once
+
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "frontend/sema/model.h"
+#include "ir/program/ir.h"
+#include "ir/types/layout.h"
+
+namespace frontend {
+
+class Sema;
+
+struct CommonGlobal {
+  std::string name;
+  std::string type;  // as people read it
+  base::SourceSpan declared;
+  bool plain = false;    // it can be exchanged
+  bool written = false;  // by the resource's code, at `at`; or its address is taken there
+  base::SourceSpan at = {};
+};
+
+struct ResourceUses {
+  std::string resource;
+  std::map<uint32_t, CommonGlobal> globals;      // that its code names; by member of the globals
+  std::map<uint32_t, base::SourceSpan> outputs;  // bytes of %Q that it writes, and where
+};
+
+class CommonUses {
+ public:
+  explicit CommonUses(Sema& sema) : sema_(sema) {}
+
+  // Each byte of %Q has one writer among the tasks (E5003).
+  void check_output_tasks();
+  // Of the resource that is compiled; nothing where there is but one. Marks the globals that are
+  // exchanged: ir::Program::shared.
+  ResourceUses of_resource();
+  // Is the variable declared outside every RESOURCE of several, and not a constant?
+  bool is_outer(VarId global) const;
+
+ private:
+  // The bodies of these types, and everything that they can reach through calls.
+  std::vector<uint32_t> reached_from(const std::vector<ir::TypeId>& starts) const;
+  void check_instance_outputs(const ir::ProgramInstance& instance, const ir::Layouts& natural,
+                              std::unordered_map<uint32_t, uint32_t>& owner);
+  void add_outputs(const std::vector<OutputWrite>& writes, const ir::Layouts& natural,
+                   ResourceUses& out) const;
+
+  Sema& sema_;
+};
+
+// One writer for each global and each output (E5010, E5003); W0014 for what is not exchanged.
+void check_resources(const std::vector<ResourceUses>& resources, base::Diagnostics& diagnostics);
+
+}  // namespace frontend

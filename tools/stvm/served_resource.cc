@@ -1,0 +1,122 @@
+#include "tools/stvm/served_resource.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "tools/stvm/commands.h"
+
+namespace stvm {
+namespace {
+
+// Commands are answered between cycles too, so a long period does not make them slow.
+constexpr int64_t kLookNs = 2'000'000;
+constexpr int64_t kFaultLookNs = 10'000'000;
+
+void print_boot(const online_change::Boot& boot) {
+  for (const std::string& alarm : boot.alarms) std::fprintf(stderr, "alarm: %s\n", alarm.c_str());
+  if (!boot.trial_lost) return;
+  std::fprintf(stderr, "the trial of %s was lost; %s runs\n",
+               base::short_hex(*boot.trial_lost).c_str(),
+               base::short_hex(boot.image.digest()).c_str());
+}
+
+}  // namespace
+
+ServedResource::ServedResource(const std::string& directory, StateFolder folder)
+    : directory_(directory), folder_(std::move(folder)), storage_(directory), store_(storage_) {}
+ServedResource::~ServedResource() = default;
+
+base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
+    const std::string& directory, const std::optional<ir::VerifiedImage>& given) {
+  base::Result<StateFolder> folder = StateFolder::open(directory);
+  if (!folder.ok()) return folder.error();
+  auto out = std::make_unique<ServedResource>(directory, std::move(*folder));
+  auto boot = online_change::boot(out->store_, given, "serve", wall_time_ns());
+  if (!boot.ok() && boot.error().refusal == base::Refusal::kFileNotFound) {
+    return base::Error{base::Refusal::kFileNotFound,
+                       directory + " holds no program yet; name an image or sources"};
+  }
+  if (!boot.ok()) {
+    return base::Error{boot.error().refusal, directory + ": " + boot.error().text};
+  }
+  out->boot_ = std::move(*boot);
+  print_boot(*out->boot_);
+  return out;
+}
+
+base::Status ServedResource::start(const ResourceController::Settings& settings, vm::Clock& clock) {
+  clock_ = &clock;
+  auto running = ResourceController::start(settings, clock, boot_->retained);
+  if (!running.ok()) return running.error();
+  running_ = std::move(*running);
+  service_ = std::make_unique<ControllerService>(controller(), clock, store_, mailbox_,
+                                                 StartReport{boot_->trial_lost, boot_->alarms});
+  if (running_->recorder() != nullptr) service_->record(*running_->recorder());
+  auto server = vm::SocketServer::open(directory_, *service_);
+  if (!server.ok()) return server.error();
+  server_ = std::move(*server);
+  service_->keeper().start();
+  return base::Ok{};
+}
+
+base::Status ServedResource::make_real_time(const vm::RealTimeOptions& options) {
+  base::Status fit = vm::make_real_time(options);
+  if (fit.ok() && options.lock_memory) vm::prefault(controller());
+  return fit;
+}
+
+// Until the next cycle begins; what remains at the end is left to the clock's exact wait.
+void ServedResource::idle(const std::function<bool()>& stop, const std::function<void()>& alive) {
+  while (!stop()) {
+    alive();
+    const int64_t now = clock_->now_ns();
+    const int64_t next = controller().next_cycle_ns();
+    if (next - now <= kLookNs) return;
+    clock_->wait_until(std::min(now + kLookNs, next - kLookNs));
+    mailbox_.serve();
+    service_->keeper().serve(controller().next_cycle_ns() - clock_->now_ns());
+  }
+}
+
+void ServedResource::run(const std::function<bool()>& stop, const std::function<void()>& alive) {
+  while (!stop() && !service_->stop_wanted()) {
+    running_->cycle();
+    alive();
+    if (!controller().at_boundary()) continue;
+    mailbox_.serve();
+    service_->keeper().serve(controller().next_cycle_ns() - clock_->now_ns());
+    if (controller().faulted()) {
+      clock_->wait_until(clock_->now_ns() + kFaultLookNs);
+    } else {
+      idle(stop, alive);
+    }
+  }
+  if (controller().at_boundary()) {
+    base::Status left = controller().leave_all(kExitLimitNs);
+    if (!left.ok()) refuse(left.error());
+  }
+  controller().make_outputs_safe();
+  mailbox_.close();
+}
+
+// A clean end costs nothing of the retained values. In the middle of a scan there is no boundary:
+// then the last one's are stored.
+base::Status ServedResource::end() {
+  if (controller().at_boundary()) {
+    online_change::Snapshot last;
+    service_->keeper().take(last);
+    base::Status saved = service_->keeper().save(last);
+    if (!saved.ok()) refuse(saved.error());
+  }
+  online_change::JournalEntry entry;
+  entry.time_ns = wall_time_ns();
+  entry.event = online_change::Event::kStopped;
+  entry.who = "serve";
+  entry.from = controller().verified().digest();
+  store_.note(std::move(entry));
+  return running_->close();
+}
+
+void ServedResource::give_up() { mailbox_.close(); }
+
+}  // namespace stvm

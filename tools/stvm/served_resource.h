@@ -1,0 +1,59 @@
+// One resource that is served: state folder, stored program, controller, control channel, and its
+// control loop. Opened and started by one thread, run by another, its control thread.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "tools/stvm/controller_service.h"
+#include "tools/stvm/resource_controller.h"
+#include "tools/stvm/state_folder.h"
+#include "vm/runtime/file_storage.h"
+#include "vm/runtime/mailbox.h"
+#include "vm/runtime/realtime.h"
+
+namespace stvm {
+
+class ServedResource {
+ public:
+  // Locks the folder and decides what runs: `given`, or what is stored there. Prints what is wrong.
+  static base::Result<std::unique_ptr<ServedResource>> open(
+      const std::string& directory, const std::optional<ir::VerifiedImage>& given);
+  ServedResource(const std::string& directory, StateFolder folder);
+  ~ServedResource();
+
+  const ir::VerifiedImage& program() const { return boot_->image; }
+  const std::string& directory() const { return directory_; }
+
+  // The controller with its first scan's state, its service and its socket.
+  base::Status start(const ResourceController::Settings& settings, vm::Clock& clock);
+  // Of the calling thread, behind start(): it will be the control thread.
+  base::Status make_real_time(const vm::RealTimeOptions& options);
+  // Until `stop` says so, or somebody asks this resource to; `alive` in each cycle and while it
+  // waits. Then instances leave and outputs are safe.
+  void run(const std::function<bool()>& stop, const std::function<void()>& alive);
+  // Behind run(), or instead of it: retained values, journal, recording.
+  base::Status end();
+  // Nobody is served any more, and run() was never called.
+  void give_up();
+
+  vm::Controller& controller() { return running_->controller(); }
+
+ private:
+  void idle(const std::function<bool()>& stop, const std::function<void()>& alive);
+
+  std::string directory_;
+  StateFolder folder_;
+  vm::FileStorage storage_;
+  online_change::Store store_;
+  std::optional<online_change::Boot> boot_;
+  vm::Clock* clock_ = nullptr;
+  std::unique_ptr<ResourceController> running_;
+  vm::Mailbox mailbox_;
+  std::unique_ptr<ControllerService> service_;
+  std::unique_ptr<vm::SocketServer> server_;
+};
+
+}  // namespace stvm
