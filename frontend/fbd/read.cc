@@ -1,8 +1,6 @@
 #include "frontend/fbd/read.h"
 
-#include <optional>
-#include <unordered_map>
-
+#include "frontend/fbd/links.h"
 #include "frontend/network/comments.h"
 #include "frontend/network/pins.h"
 #include "ir/types/types.h"
@@ -15,18 +13,17 @@ using network::Cursor;
 using network::Element;
 using network::Input;
 using network::Kind;
-using network::Link;
 using network::Modifier;
 using network::Pin;
 using network::PinValue;
 using network::Text;
 
-constexpr uint32_t kOperand = 0xffffffffu;  // Use::pin: the element has but one input
+constexpr uint32_t kNoRow = 0xffffffffu;
 
 class Reader {
  public:
   Reader(std::string_view text, base::SourcePos begin, base::Diagnostics& diagnostics)
-      : text_(text), begin_(begin), cursor_(text, begin, diagnostics), diagnostics_(diagnostics) {}
+      : text_(text), begin_(begin), cursor_(text, begin, diagnostics), links_(diagnostics) {}
 
   network::Body run() {
     body_.language = network::Language::kFbd;
@@ -36,28 +33,17 @@ class Reader {
       take_comments(cursor_.token().begin);
       size_t before = cursor_.place();
       elements_before_ = current().elements.size();
-      uses_before_ = uses_.size();
+      uses_before_ = links_.uses();
       row();
       end_row(before);
     }
     take_comments(begin_.offset + static_cast<uint32_t>(text_.size()));
     attach(false);
-    finish_network();
+    links_.finish(current());
     return std::move(body_);
   }
 
  private:
-  struct Box {
-    uint32_t element = 0;
-    bool wire = false;
-    Text name;
-  };
-  struct Use {  // an operand that is linked when all boxes are known
-    uint32_t element = 0;
-    uint32_t input = 0;
-    Text operand;
-  };
-
   network::Network& current() { return body_.networks.back(); }
 
   void bad(std::string text, std::string fix =
@@ -74,7 +60,7 @@ class Reader {
     if (from >= to) return;
     for (network::Comment& comment : network::comments_in(text_.substr(from, to - from))) {
       bool same_line = text_.substr(from, comment.begin).find('\n') == std::string_view::npos;
-      if (same_line && last_row_ != kOperand) {
+      if (same_line && last_row_ != kNoRow) {
         add_comment(current().elements[last_row_].comment, comment.text);
       } else {
         pending_.push_back(std::move(comment.text));
@@ -88,7 +74,7 @@ class Reader {
   // Gives what is pending to the row that was read, or to the network.
   void attach(bool row) {
     for (std::string& comment : pending_) {
-      if (row && last_row_ != kOperand) {
+      if (row && last_row_ != kNoRow) {
         add_comment(current().elements[last_row_].comment, comment);
       } else {
         current().comments.push_back(std::move(comment));
@@ -134,9 +120,8 @@ class Reader {
   // What a bad row has made is not worth more messages.
   void forget_row() {
     current().elements.resize(elements_before_);
-    uses_.resize(uses_before_);
-    std::erase_if(boxes_, [&](const auto& box) { return box.second.element >= elements_before_; });
-    last_row_ = kOperand;
+    links_.forget(uses_before_, elements_before_);
+    last_row_ = kNoRow;
   }
 
   // The place of the `:` that the row has before any `:=`; 0: none.
@@ -170,13 +155,13 @@ class Reader {
       bad("this is neither a label nor a box");
       return;
     }
-    finish_network();
+    links_.finish(current());
     body_.networks.emplace_back();
     cursor_.take();
     current().label = std::move(name);
     current().span = cursor_.span_from(begin);
     label_ = true;
-    last_row_ = kOperand;
+    last_row_ = kNoRow;
     attach(false);
   }
 
@@ -206,7 +191,7 @@ class Reader {
     element.operand = std::move(name);
     Text operand;
     condition(element, operand);
-    connect(add_with_source(std::move(element), {operand}, begin), 0, operand);
+    links_.add_use(add_with_source(std::move(element), {operand}, begin), 0, operand);
   }
   void jump() {
     size_t begin = cursor_.place();
@@ -274,13 +259,8 @@ class Reader {
       element.inputs.push_back(std::move(input));
     }
     uint32_t number = add_with_source(std::move(element), operands, begin);
-    for (uint32_t i = 0; i < operands.size(); ++i) connect(number, i, operands[i]);
-    std::string key = ir::fold_name(name.text);
-    auto [found, fresh] = boxes_.emplace(std::move(key), Box{number, wire, name});
-    if (!fresh && (wire || found->second.wire)) {
-      diagnostics_.add(Code::kBoxTwice, name.span, "there is another box named `" + name.text + "`",
-                       "choose another name");
-    }
+    for (uint32_t i = 0; i < operands.size(); ++i) links_.add_use(number, i, operands[i]);
+    links_.add_box(name, number, wire);
   }
 
   // v := operand;  v S= operand;  v R= operand;
@@ -309,7 +289,7 @@ class Reader {
     element.inputs.resize(1);
     element.inputs[0].modifier = value.modifier;
     element.inputs[0].span = value.operand.span;
-    connect(add_with_source(std::move(element), {value.operand}, begin), 0, value.operand);
+    links_.add_use(add_with_source(std::move(element), {value.operand}, begin), 0, value.operand);
   }
 
   // Sources of what is no box stand in front of the element; which those are is known at the end
@@ -326,143 +306,18 @@ class Reader {
     }
     return add(std::move(element), begin);
   }
-  void connect(uint32_t element, uint32_t input, const Text& operand) {
-    if (!operand.empty()) uses_.push_back({element, input, operand});
-  }
-
-  // Links operands to boxes or to their sources, and drops sources of boxes.
-  void finish_network() {
-    std::vector<Element>& elements = current().elements;
-    std::vector<bool> dropped(elements.size());
-    for (const Use& use : uses_) {
-      uint32_t source = source_of(use);
-      good_ = true;
-      auto link = link_of(use);
-      if (link || !good_) dropped[source] = true;
-      if (!good_) continue;
-      elements[use.element].inputs[use.input].from.push_back(link.value_or(Link{source, 0}));
-    }
-    std::vector<uint32_t> numbers(elements.size());
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < elements.size(); ++i) {
-      numbers[i] = kept;
-      if (dropped[i]) continue;
-      if (kept != i) elements[kept] = std::move(elements[i]);
-      ++kept;
-    }
-    elements.resize(kept);
-    for (Element& element : elements) {
-      for (Input& input : element.inputs) {
-        for (Link& link : input.from) link.element = numbers[link.element];
-      }
-    }
-    boxes_.clear();
-    uses_.clear();
-  }
-
-  // The source that add_with_source() has made for this operand.
-  uint32_t source_of(const Use& use) {
-    const std::vector<Element>& elements = current().elements;
-    uint32_t at = use.element;
-    while (at-- > 0) {
-      bool same =
-          elements[at].kind == Kind::kSource && elements[at].span.begin == use.operand.span.begin;
-      if (same) return at;
-    }
-    return 0;
-  }
-
-  std::optional<Link> link_of(const Use& use) {
-    base::Diagnostics unheard;
-    Cursor operand(use.operand.text, {0}, unheard);
-    std::string name;
-    Box* box = nullptr;
-    std::string output;
-    size_t behind = 0;
-    // The longest beginning that names a box.
-    for (; !operand.at_end(); operand.take()) {
-      const Token& token = operand.token();
-      std::string_view whole = use.operand.text;
-      auto found = boxes_.find(ir::fold_name(whole.substr(0, token.begin + token.length)));
-      if (found == boxes_.end()) continue;
-      box = &found->second;
-      behind = token.begin + token.length;
-    }
-    if (box == nullptr) {
-      check_no_box(use);
-      return std::nullopt;
-    }
-    std::string_view rest = std::string_view(use.operand.text).substr(behind);
-    Element& element = current().elements[box->element];
-    if (rest.empty()) return whole_box(use, *box);
-    bool member = rest[0] == '.' && rest.size() > 1 && is_plain_name(rest.substr(1));
-    if (!member) {
-      check_no_box(use);
-      return std::nullopt;
-    }
-    if (box->wire && box->element >= use.element) return feedback(use, *box);
-    return Link{box->element, output_number(element, rest.substr(1))};
-  }
-
-  static bool is_plain_name(std::string_view text) {
-    return text.find_first_of(".[](){}^ +-*/<>=,;:'\"") == std::string_view::npos;
-  }
-
-  std::optional<Link> whole_box(const Use& use, const Box& box) {
-    if (!box.wire) return std::nullopt;  // the instance itself, as an argument
-    if (box.element >= use.element) return feedback(use, box);
-    return Link{box.element, 0};
-  }
-
-  std::optional<Link> feedback(const Use& use, const Box& box) {
-    good_ = false;
-    diagnostics_.add(Code::kFeedback, use.operand.span,
-                     "`" + box.name.text + "` is used above its box, and a wire keeps nothing",
-                     "give it to a variable, and use that here");
-    return std::nullopt;
-  }
-
-  // Wires inside of an expression have no value that the expression could use.
-  void check_no_box(const Use& use) {
-    base::Diagnostics unheard;
-    Cursor operand(use.operand.text, {0}, unheard);
-    bool member = false;
-    for (; !operand.at_end(); operand.take()) {
-      bool named = is_name(operand.kind()) && !member;
-      member = operand.kind() == TokenKind::kDot;
-      if (!named) continue;
-      auto found = boxes_.find(ir::fold_name(operand.text(operand.token())));
-      if (found == boxes_.end() || !found->second.wire) continue;
-      good_ = false;
-      diagnostics_.add(Code::kBoxInExpression, use.operand.span,
-                       "the wire `" + found->second.name.text + "` stands in an expression",
-                       "make a box of the expression: `WIRE name := F(...);`");
-      return;
-    }
-  }
-
-  static uint32_t output_number(Element& element, std::string_view name) {
-    for (uint32_t i = 0; i < element.outputs.size(); ++i) {
-      if (ir::same_name(element.outputs[i].name, name)) return i;
-    }
-    element.outputs.push_back({std::string(name), false});
-    return static_cast<uint32_t>(element.outputs.size() - 1);
-  }
-
   std::string_view text_;
   base::SourcePos begin_;
   Cursor cursor_;
-  base::Diagnostics& diagnostics_;
   network::Body body_;
-  std::unordered_map<std::string, Box> boxes_;  // of the current network, by folded name
-  std::vector<Use> uses_;
+  Links links_;
   std::vector<std::string> pending_;  // comments in front of the next row
   size_t elements_before_ = 0;        // the current row
   size_t uses_before_ = 0;
-  size_t behind_ = 0;             // the last row, in text_
-  uint32_t last_row_ = kOperand;  // its element
-  bool label_ = false;            // the last row is a label
-  bool good_ = true;              // the operand that is linked
+  size_t behind_ = 0;           // the last row, in text_
+  uint32_t last_row_ = kNoRow;  // its element
+  bool label_ = false;          // the last row is a label
+  bool good_ = true;            // the operand that is linked
 };
 
 }  // namespace

@@ -36,15 +36,23 @@ size_t next_end(std::string_view text, size_t at) {
 
 }  // namespace
 
-// These words are names elsewhere. Where the end is missing, a rung tells that a drawing began.
+// These words are names elsewhere. Where the end is missing, a rung tells that a drawing began; so
+// it does in the line of the word.
 void Scanner::skip_diagram(size_t word, TokenKind kind) {
-  if (!begins_line(text_, word) || !ends_line(text_, at_)) return;
+  bool rung_behind =
+      kind == TokenKind::kLadder && text_.substr(behind_blanks(text_, at_), 3) == "|--";
+  bool alone = begins_line(text_, word) && ends_line(text_, at_);
+  if (!alone && !rung_behind) return;
   size_t end = next_end(text_, at_);
-  size_t name = end + kEnd.size();
   std::string_view begun = text_.substr(word, at_ - word);
+  if (size_t line = text_.find('\n', at_); rung_behind && !alone) {
+    size_t same = text_.substr(0, line).find(kEnd, at_);
+    if (same != std::string_view::npos) end = same;
+  }
+  size_t name = end + kEnd.size();
   bool closed = name < text_.size() && ir::same_name(text_.substr(name, begun.size()), begun);
-  std::string_view between = text_.substr(at_, end - at_);
-  bool drawn = kind == TokenKind::kLadder && between.find("|--") != std::string_view::npos;
+  bool drawn = rung_behind || (kind == TokenKind::kLadder &&
+                               text_.substr(at_, end - at_).find("|--") != std::string_view::npos);
   if (closed || drawn) at_ = end;
 }
 

@@ -130,16 +130,15 @@ TEST(Recovery, Configuration) {
             "1:24 E5008\n1:60 E5008\n2:1 E1001\n2:6 E1018\n2:37 E1001\n");
 }
 
-TEST(Recovery, UnsupportedConstructsAreSkippedWithOneMessage) {
-  const char* const kSources[] = {
-      "PROGRAM b LADDER |--[ a ]--( b )--| END_LADDER END_PROGRAM",
-  };
-  for (const char* source : kSources) {
-    Parsed parsed = parse_text(std::string(source) + "\nPROGRAM last x := 1; END_PROGRAM");
-    EXPECT_EQ(parsed.diagnostics.error_count(), 1u) << source << '\n' << messages(parsed);
-    EXPECT_NE(parsed.codes.find("E1090"), std::string::npos) << source;
-    EXPECT_NE(parsed.text.find("PROGRAM last\n  x := 1\n"), std::string::npos) << source;
-  }
+TEST(Recovery, DrawingInOneLineOrWithoutEnd) {
+  Parsed line = parse_text("PROGRAM b LADDER |--[ a ]--( b )--| END_LADDER END_PROGRAM\n"
+                           "PROGRAM last x := 1; END_PROGRAM");
+  EXPECT_EQ(line.diagnostics.error_count(), 0u) << messages(line);
+  EXPECT_NE(line.text.find("PROGRAM last\n  x := 1\n"), std::string::npos);
+  Parsed open = parse_text("PROGRAM b\nLADDER\n|--[ a ]--( b )--|\nEND_PROGRAM\n"
+                           "PROGRAM last x := 1; END_PROGRAM");
+  EXPECT_EQ(open.codes, "2:1 E1003\n") << messages(open);
+  EXPECT_NE(open.text.find("PROGRAM last\n  x := 1\n"), std::string::npos);
 }
 
 // One mistake in each of twenty statements.

@@ -1,0 +1,143 @@
+#include "frontend/fbd/links.h"
+
+#include "frontend/network/pins.h"
+#include "ir/types/types.h"
+
+namespace frontend::fbd {
+namespace {
+
+using Code = base::DiagnosticCode;
+using network::Cursor;
+using network::Element;
+using network::Kind;
+using network::Link;
+
+bool is_plain_name(std::string_view text) {
+  return text.find_first_of(".[](){}^ +-*/<>=,;:'\"") == std::string_view::npos;
+}
+
+uint32_t output_number(Element& element, std::string_view name) {
+  for (uint32_t i = 0; i < element.outputs.size(); ++i) {
+    if (ir::same_name(element.outputs[i].name, name)) return i;
+  }
+  element.outputs.push_back({std::string(name), false});
+  return static_cast<uint32_t>(element.outputs.size() - 1);
+}
+
+// The source that stands for this operand, in front of its element.
+uint32_t source_of(const std::vector<Element>& elements, uint32_t element,
+                   const network::Text& operand) {
+  while (element-- > 0) {
+    bool same = elements[element].kind == Kind::kSource &&
+                elements[element].span.begin == operand.span.begin;
+    if (same) return element;
+  }
+  return 0;
+}
+
+void drop(std::vector<Element>& elements, const std::vector<bool>& dropped) {
+  std::vector<uint32_t> numbers(elements.size());
+  uint32_t kept = 0;
+  for (uint32_t i = 0; i < elements.size(); ++i) {
+    numbers[i] = kept;
+    if (dropped[i]) continue;
+    if (kept != i) elements[kept] = std::move(elements[i]);
+    ++kept;
+  }
+  elements.resize(kept);
+  for (Element& element : elements) {
+    for (network::Input& input : element.inputs) {
+      for (Link& link : input.from) link.element = numbers[link.element];
+    }
+  }
+}
+
+}  // namespace
+
+void Links::add_box(const network::Text& name, uint32_t element, bool wire) {
+  auto [found, fresh] = boxes_.emplace(ir::fold_name(name.text), Box{element, wire, name});
+  if (fresh || (!wire && !found->second.wire)) return;
+  diagnostics_.add(Code::kBoxTwice, name.span, "there is another box named `" + name.text + "`",
+                   "choose another name");
+}
+
+void Links::add_use(uint32_t element, uint32_t input, const network::Text& operand) {
+  if (!operand.empty()) uses_.push_back({element, input, operand});
+}
+
+void Links::forget(size_t uses, size_t elements) {
+  uses_.resize(uses);
+  std::erase_if(boxes_, [&](const auto& box) { return box.second.element >= elements; });
+}
+
+void Links::finish(network::Network& network) {
+  std::vector<Element>& elements = network.elements;
+  std::vector<bool> dropped(elements.size());
+  for (const Use& use : uses_) {
+    uint32_t source = source_of(elements, use.element, use.operand);
+    Found found = find(use, network);
+    dropped[source] = found.link || found.reported;
+    if (found.reported) continue;
+    std::vector<Link>& from = elements[use.element].inputs[use.input].from;
+    from.push_back(found.link.value_or(Link{source, 0}));
+  }
+  drop(elements, dropped);
+  boxes_.clear();
+  uses_.clear();
+}
+
+Links::Found Links::find(const Use& use, network::Network& network) {
+  base::Diagnostics unheard;
+  const std::string_view whole = use.operand.text;
+  Cursor operand(whole, {0}, unheard);
+  const Box* box = nullptr;
+  size_t behind = 0;
+  for (; !operand.at_end(); operand.take()) {  // the longest beginning that names a box
+    size_t end = operand.token().begin + operand.token().length;
+    auto found = boxes_.find(ir::fold_name(whole.substr(0, end)));
+    if (found == boxes_.end()) continue;
+    box = &found->second;
+    behind = end;
+  }
+  if (box == nullptr) return expression(use);
+  std::string_view rest = whole.substr(behind);
+  if (rest.empty()) return whole_box(use, *box);
+  if (rest[0] != '.' || rest.size() == 1 || !is_plain_name(rest.substr(1))) return expression(use);
+  if (box->wire && box->element >= use.element) return feedback(use, *box);
+  uint32_t output = output_number(network.elements[box->element], rest.substr(1));
+  return {Link{box->element, output}, false};
+}
+
+Links::Found Links::whole_box(const Use& use, const Box& box) {
+  if (!box.wire) return {};  // the instance itself, as an argument
+  if (box.element >= use.element) return feedback(use, box);
+  return {Link{box.element, 0}, false};
+}
+
+Links::Found Links::feedback(const Use& use, const Box& box) {
+  diagnostics_.add(Code::kFeedback, use.operand.span,
+                   "`" + box.name.text + "` is used above its box, and a wire keeps nothing",
+                   "give it to a variable, and use that here");
+  return {{}, true};
+}
+
+// Wires inside of an expression have no value that the expression could use.
+Links::Found Links::expression(const Use& use) {
+  base::Diagnostics unheard;
+  Cursor operand(use.operand.text, {0}, unheard);
+  bool member = false;
+  for (; !operand.at_end(); operand.take()) {
+    bool named = is_name(operand.kind()) && !member;
+    member = operand.kind() == TokenKind::kDot;
+    if (!named) continue;
+    auto found = boxes_.find(ir::fold_name(operand.text(operand.token())));
+    if (found == boxes_.end() || !found->second.wire) continue;
+    diagnostics_.add(Code::kBoxInExpression, use.operand.span,
+                     "the wire `" + found->second.name.text + "` stands in an expression",
+                     "make a box of the expression: `WIRE name := F(...);`");
+    return {{}, true};
+  }
+  return {};
+}
+
+}  // namespace frontend::fbd
