@@ -62,8 +62,8 @@ std::string task_text(Node task, Reporter& report) {
       add("PRIORITY := " + std::string(priority));
     }
   }
-  vendor_data(task, report);
-  return documentation(task, "") + "TASK " + name + "(" + parameters + ");\n";
+  return documentation(task, "") + vendor_data(task, report).attributes + "TASK " + name + "(" +
+         parameters + ");\n";
 }
 
 std::string instance_text(Node node, const std::string& task, Reporter& report) {
@@ -147,17 +147,25 @@ void import_configuration(Node configuration, Reporter& report) {
   for (Node resource : xml::children(configuration, "resource")) {
     text += resource_text(resource, report);
   }
-  import_parts(configuration, report);
+  std::string attributes;
+  for (Node data : vendor_parts(configuration)) {
+    if (is_vendor(data, "attributes")) {
+      attributes += attribute_lines(data);
+    } else {
+      import_part(data, report);
+    }
+  }
   if (name.empty() || text.empty()) return;
-  report.out().add_source(name, documentation(configuration, "") + "CONFIGURATION " + name + "\n" +
-                                    xml::indented(text, kIndent) + "END_CONFIGURATION\n");
+  report.out().add_source(name, documentation(configuration, "") + attributes + "CONFIGURATION " +
+                                    name + "\n" + xml::indented(text, kIndent) +
+                                    "END_CONFIGURATION\n");
 }
 
 void import_resource(Node resource, Reporter& report) {
   std::string text = resource_text(resource, report);
   if (text.empty()) return;
-  report.out().add_source("Configuration", "CONFIGURATION Config\n" + xml::indented(text, kIndent) +
-                                               "END_CONFIGURATION\n");
+  report.out().add_source(
+      "Config", "CONFIGURATION Config\n" + xml::indented(text, kIndent) + "END_CONFIGURATION\n");
 }
 
 bool is_document(const xml::Document& document) {

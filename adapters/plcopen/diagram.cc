@@ -122,6 +122,9 @@ std::string diagram_text(Node body, const std::string& name, Reporter& report) {
   network::Body made = added ? drawing.body() : network::Body();
   if (!added || drawing.failed()) return error_text("the body of " + name + " was not imported");
   if (made.networks.empty()) return {};
+  const std::string own = name.substr(name.rfind(' ') + 1);
+  const bool whole = base::same_name(own, report.pou());
+  report.out().kept.drawings[base::fold_name(whole ? own : report.pou() + "." + own)] = made;
   if (auto text = network::write_ladder(made, 2)) {
     return "LADDER\n" + *text + "END_LADDER\n";
   }

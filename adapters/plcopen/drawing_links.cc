@@ -184,6 +184,12 @@ void Drawing::place_remarks(const std::vector<network::Part>& parts, network::Bo
   const std::vector<int32_t> ends = network::ends_of(parts);
   if (parts.empty() && !remarks_.empty()) body.networks.emplace_back();
   for (Remark& remark : remarks_) {
+    // A label below everything is the end of the body.
+    if (remark.label && !ends.empty() && remark.y > ends.back()) {
+      body.networks.emplace_back();
+      body.networks.back().label.text = std::move(remark.text);
+      continue;
+    }
     network::Network& own = body.networks[network::place_between(ends, remark.y)];
     if (!remark.label) {
       own.comments.push_back(std::move(remark.text));

@@ -46,6 +46,7 @@ Vendor vendor_data(Node owner, Reporter& report);
 // `take`.
 void report_data(Node data, Reporter& report);
 std::vector<Node> vendor_parts(Node owner);        // its <data>, with those of its <interface>
+std::string attribute_lines(Node data);            // {attribute 'x' := 'y'} of each
 bool is_vendor(Node data, std::string_view name);  // last part of its name, in any case
 
 // --- pou.cc

@@ -22,7 +22,8 @@ bool is_simple(std::string_view text) {
          std::all_of(text.begin(), text.end(),
                      [](char c) {
                        return xml::is_name(std::string_view(&c, 1)) || (c >= '0' && c <= '9') ||
-                              std::string_view(" .,#()[]+-*/").find(c) != std::string_view::npos;
+                              std::string_view(" .,#()[]+-*/:='\"%&<>^$").find(c) !=
+                                  std::string_view::npos;
                      }) &&
          text.find("(*") == std::string_view::npos && text.find("//") == std::string_view::npos;
 }

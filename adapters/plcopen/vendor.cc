@@ -1,6 +1,7 @@
 // What vendors keep in addData. Understood is what CODESYS and its kin write of objects: methods,
 // properties, inheritance, access, attributes, and declarations as text.
 #include <algorithm>
+#include <sstream>
 
 #include "adapters/plcopen/reader.h"
 #include "base/name_case.h"
@@ -24,18 +25,6 @@ constexpr const char* kEditor[] = {"objectid",
                                    "property",
                                    "action",
                                    "libraries"};
-
-std::string attribute_lines(Node data) {
-  std::string out;
-  for (Node each : xml::children(xml::child(data, "Attributes"), "Attribute")) {
-    std::string name(xml::attribute(each, "Name"));
-    std::string value(xml::attribute(each, "Value"));
-    for (char& c : name) c = c == '\'' || c == '}' || c == '{' ? '_' : c;
-    for (char& c : value) c = c == '\'' || c == '}' || c == '{' ? '_' : c;
-    out += "{attribute '" + name + "'" + (value.empty() ? "" : " := '" + value + "'") + "}\n";
-  }
-  return out;
-}
 
 // The names below `node` in elements `kind`, and whether all of them are names.
 std::string names(Node node, const char* kind, const char* word, Reporter& report) {
@@ -77,6 +66,18 @@ std::string declaration_of(Node node) {
 
 }  // namespace
 
+std::string attribute_lines(Node data) {
+  std::string out;
+  for (Node each : xml::children(xml::child(data, "Attributes"), "Attribute")) {
+    std::string name(xml::attribute(each, "Name"));
+    std::string value(xml::attribute(each, "Value"));
+    for (char& c : name) c = c == '\'' || c == '}' || c == '{' ? '_' : c;
+    for (char& c : value) c = c == '\'' || c == '}' || c == '{' ? '_' : c;
+    out += "{attribute '" + name + "'" + (value.empty() ? "" : " := '" + value + "'") + "}\n";
+  }
+  return out;
+}
+
 bool is_vendor(Node data, std::string_view name) {
   std::string_view own = xml::attribute(data, "name");
   const size_t slash = own.rfind('/');
@@ -105,6 +106,11 @@ void report_data(Node data, Reporter& report) {
                       "addData `" + name + "` is not needed by others, as it says itself");
   }
   report.add(Code::kXmlNotUnderstood, data, "addData `" + name + "` is not understood");
+  // Prefixes of namespaces would be declared by nobody elsewhere.
+  if (std::string_view(data.name()).find(':') != std::string_view::npos) return;
+  std::ostringstream text;
+  data.print(text, "", pugi::format_raw, pugi::encoding_utf8);
+  report.out().kept.data[base::fold_name(report.pou())].push_back(text.str());
 }
 
 Vendor vendor_data(Node owner, Reporter& report) {

@@ -125,6 +125,20 @@ Decoded decode(std::string_view bytes) {
 
 }  // namespace
 
+std::string as_utf8(std::string_view bytes) {
+  std::string out;
+  for (size_t at = 0; at < bytes.size();) {
+    const uint32_t length = base::character_bytes(bytes, at);
+    if (length == 1) {
+      append(out, static_cast<uint8_t>(bytes[at]));
+    } else {
+      out += bytes.substr(at, length);
+    }
+    at += length;
+  }
+  return out;
+}
+
 Decoded to_utf8(std::string_view bytes) {
   Decoded out = decode(bytes);
   if (!out.error.empty()) return out;

@@ -26,6 +26,8 @@ struct Decoded {
   std::string error;  // empty: none
 };
 Decoded to_utf8(std::string_view bytes);
+// Bytes that are no UTF-8 are read as Latin-1, as the compiler reads sources.
+std::string as_utf8(std::string_view bytes);
 
 class Document {
  public:

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <unordered_set>
@@ -11,6 +12,7 @@
 
 #include "base/diagnostics.h"
 #include "base/source.h"
+#include "frontend/network/network.h"
 
 namespace xml {
 
@@ -29,9 +31,16 @@ struct MadeSource {
   std::string text;
 };
 
+// What an export of the same writes again as it was.
+struct Kept {
+  std::map<std::string, frontend::network::Body> drawings;  // by POU or POU.Member
+  std::map<std::string, std::vector<std::string>> data;     // <data> of nobody, by POU
+};
+
 struct Imported {
   std::vector<MadeSource> sources;
   std::vector<Finding> findings;
+  Kept kept;
 
   // `name.st`, or `name_2.st` when there is such a file already, in any case of letters.
   // The same name as returned, for sources that say it (lists of global variables).

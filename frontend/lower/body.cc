@@ -73,11 +73,12 @@ void Body::leave() { go({}, 0); }
 void Body::set_line(base::SourceSpan span) {
   if (!span.begin.valid()) return;
   uint32_t offset = span.begin.offset;
-  if (offset < line_offset_) {
+  uint32_t file = sema_.sources.file_of(span.begin);
+  uint32_t base = sema_.sources.begin(file).offset;
+  // A type's initial values may stand in another file than the variable.
+  if (offset < line_offset_ || line_offset_ < base) {
     line_ = sema_.sources.locate(span.begin).line;
   } else {
-    uint32_t file = sema_.sources.file_of(span.begin);
-    uint32_t base = sema_.sources.begin(file).offset;
     std::string_view text = sema_.sources.text(file);
     const char* at = text.data() + (line_offset_ - base);
     const char* end = text.data() + (offset - base);

@@ -17,10 +17,11 @@ struct Precedence {
 };
 
 // The connected parts of `all` as networks of their own, from top to bottom (by the upmost element
-// of each, then by the order in which elements stand in `all`). Rails connect nothing: each network
-// gets one of each side that it uses, the left one first. Links come from left rails or from
-// other elements, and lead to right rails or others. `all` may have its elements in any order;
-// links are kept. Labels and comments stay with nobody: see place_between().
+// of each, then by the order in which elements stand in `all`); where each has an Element::order,
+// by that, and those that it mixes are one. Rails connect nothing: each network gets one of each
+// side that it uses, the left one first. Links come from left rails or from other elements, and
+// lead to right rails or others. `all` may have its elements in any order; links are kept. Labels
+// and comments stay with nobody: see place_between().
 struct Part {
   Network network;
   std::vector<uint32_t> from;           // its elements in `all`

@@ -45,8 +45,12 @@ class Splitter {
 
   std::vector<Part> run() {
     find_parts();
-    std::stable_sort(parts_.begin(), parts_.end(),
-                     [](const Group& a, const Group& b) { return a.top < b.top; });
+    const bool given = std::all_of(parts_.begin(), parts_.end(),
+                                   [](const Group& group) { return group.last_order != 0; });
+    std::stable_sort(parts_.begin(), parts_.end(), [given](const Group& a, const Group& b) {
+      return given ? a.first_order < b.first_order : a.top < b.top;
+    });
+    if (given) merge_overlapping();
     std::vector<Part> out;
     out.reserve(parts_.size());
     for (const Group& group : parts_) out.push_back(part(group));
@@ -57,6 +61,8 @@ class Splitter {
   struct Group {
     std::vector<uint32_t> members;  // without rails
     int32_t top = 0;
+    uint32_t first_order = kNone;  // of those that have one
+    uint32_t last_order = 0;
     uint32_t left = kNone;  // rails of the drawing
     uint32_t right = kNone;
     std::vector<Link> ends;  // what is linked to the right rail
@@ -80,11 +86,16 @@ class Splitter {
       uint32_t& index = part_of[sets_.find(i)];
       if (index == kNone) {
         index = static_cast<uint32_t>(parts_.size());
-        parts_.push_back({{}, element.position.y, kNone, kNone, {}, {}});
+        parts_.emplace_back();
+        parts_.back().top = element.position.y;
       }
       Group& group = parts_[index];
       group.top = std::min(group.top, element.position.y);
       group.members.push_back(i);
+      if (element.order != 0) {
+        group.first_order = std::min(group.first_order, element.order);
+        group.last_order = std::max(group.last_order, element.order);
+      }
       for (const Input& input : element.inputs) {
         for (Link link : input.from) {
           if (is_rail(all_.elements[link.element])) group.left = link.element;
@@ -105,6 +116,27 @@ class Splitter {
         }
       }
     }
+  }
+
+  // Parts that are executed in turns are one.
+  void merge_overlapping() {
+    std::vector<Group> merged;
+    for (Group& group : parts_) {
+      if (merged.empty() || merged.back().last_order < group.first_order) {
+        merged.push_back(std::move(group));
+        continue;
+      }
+      Group& into = merged.back();
+      into.last_order = std::max(into.last_order, group.last_order);
+      into.left = std::min(into.left, group.left);
+      into.right = std::min(into.right, group.right);
+      into.members.insert(into.members.end(), group.members.begin(), group.members.end());
+      into.ends.insert(into.ends.end(), group.ends.begin(), group.ends.end());
+      into.precedences.insert(into.precedences.end(), group.precedences.begin(),
+                              group.precedences.end());
+    }
+    for (Group& group : merged) std::sort(group.members.begin(), group.members.end());
+    parts_ = std::move(merged);
   }
 
   Part part(const Group& group) {

@@ -21,7 +21,7 @@ linker: ir/types ir/program ir/bytecode stdlib/native
 vm: ir/types ir/program/ir.h ir/bytecode stdlib/native
 vm/io: ir/types ir/bytecode vm/runtime
 adapters/modbus: ir/types ir/bytecode vm/io vm/runtime
-adapters/xml: frontend/lex
+adapters/xml: frontend/lex frontend/network
 adapters/twincat: adapters/xml
 adapters/plcopen: adapters/xml frontend/network frontend/ladder frontend/fbd frontend/lex frontend/parse ir/types
 online_change/diff: ir linker

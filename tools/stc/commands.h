@@ -14,6 +14,7 @@ extern const Entry kPackage;
 extern const Entry kDiff;
 extern const Entry kFormat;
 extern const Entry kImport;
+extern const Entry kExport;
 extern const Entry kDump;
 extern const Entry kExplain;
 

@@ -132,6 +132,8 @@ void Importer::take(const std::string& origin, xml::Imported& out) {
   for (xml::MadeSource& source : out.sources) made.push_back({origin, std::move(source)});
   findings.insert(findings.end(), std::make_move_iterator(out.findings.begin()),
                   std::make_move_iterator(out.findings.end()));
+  kept.drawings.merge(out.kept.drawings);
+  kept.data.merge(out.kept.data);
   // A name is taken in all documents that are imported together.
   std::unordered_set<std::string> names = std::move(out.names);
   out = {};

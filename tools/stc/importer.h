@@ -36,6 +36,7 @@ class Importer {
   };
   std::vector<Made> made;
   std::vector<xml::Finding> findings;
+  xml::Kept kept;
 
  private:
   struct Readers;  // of what is read together

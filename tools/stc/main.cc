@@ -20,9 +20,9 @@ std::string dialects() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const tools::Entry* const entries[] = {&stc::kCheck,  &stc::kBuild, &stc::kTest,
-                                         &stc::kFormat, &stc::kDiff,  &stc::kPackage,
-                                         &stc::kImport, &stc::kDump,  &stc::kExplain};
+  const tools::Entry* const entries[] = {&stc::kCheck, &stc::kBuild,   &stc::kTest,   &stc::kFormat,
+                                         &stc::kDiff,  &stc::kPackage, &stc::kImport, &stc::kExport,
+                                         &stc::kDump,  &stc::kExplain};
   return tools::dispatch("stc", "Compiles IEC 61131-3 programs to images for stvm.", entries, argc,
                          argv, dialects());
 }

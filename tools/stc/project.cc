@@ -222,6 +222,7 @@ base::Result<Project> load_project(const std::vector<std::string>& paths,
     project.sources.add(name, std::move(made.source.text));
   }
   project.imported = std::move(importer.findings);
+  project.kept = std::move(importer.kept);
   if (dialect) project.compile.dialect = *dialect;
   project.compile.name = project.name;
   return project;

@@ -20,6 +20,7 @@ struct Project {
   std::string name;
   base::SourceMap sources;             // also documents that were imported (kQuoted)
   std::vector<xml::Finding> imported;  // what was found in them; errors too
+  xml::Kept kept;                      // of them, for an export
   frontend::CompileOptions compile;
   linker::Slack slack;
   std::vector<ProjectDevice> devices;

@@ -157,6 +157,28 @@ TEST(Split, RailsConnectNothing) {
   EXPECT_EQ(ordered(parts[1].network), "| a low  ");
 }
 
+TEST(Split, IdsOfExecutionGoBeforePlaces) {
+  Network all;
+  all.elements = {element(Kind::kSink, "third", 0, 0), element(Kind::kSink, "first", 0, 40),
+                  block("T", "second", 0, 90)};
+  all.elements[0].order = 3;
+  all.elements[1].order = 1;
+  EXPECT_EQ(split(all, {})[0].network.elements[0].operand.text, "third");  // one has none
+  all.elements[2].order = 2;
+  std::vector<Part> parts = split(all, {});
+  ASSERT_EQ(parts.size(), 3u);
+  EXPECT_EQ(parts[0].network.elements[0].operand.text, "first");
+  EXPECT_EQ(parts[2].network.elements[0].operand.text, "third");
+  // Executed in turns: one network.
+  all.elements.push_back(element(Kind::kContact, "fourth", 0, 200));
+  all.elements[3].order = 4;
+  link(all, 3, 1);
+  parts = split(all, {});
+  ASSERT_EQ(parts.size(), 1u);
+  EXPECT_EQ(ordered(parts[0].network),
+            "loop: third first second fourth");  // ids against the flow of data
+}
+
 TEST(Split, PrecedencesKeepTogether) {
   Network all;
   all.elements = {element(Kind::kSink, "v", 0, 0), element(Kind::kSource, "v", 0, 90),

@@ -1,0 +1,183 @@
+// The project as a whole: types, POUs, configurations, lists of globals.
+#include "adapters/plcopen/export.h"
+
+#include <algorithm>
+#include <ctime>
+#include <sstream>
+
+#include "adapters/plcopen/writer.h"
+#include "base/name_case.h"
+
+namespace plcopen {
+
+using frontend::ConfigDecl;
+using frontend::ResourceDecl;
+using frontend::VarBlock;
+using frontend::VarSection;
+
+std::optional<Form> form_of_name(std::string_view name) {
+  if (name == "tc6-2.0") return Form::kTc6v200;
+  if (name == "tc6-2.01") return Form::kTc6v201;
+  return std::nullopt;
+}
+
+// Those of one file and name are one list.
+std::vector<Writer::Globals> Writer::global_lists() {
+  std::vector<Globals> out;
+  for (const VarBlock& block : tree_.globals) {
+    if (block.section != VarSection::kGlobal) {
+      fail(block.span, "VAR_CONFIG outside of a CONFIGURATION has no element in PLCopen XML");
+      continue;
+    }
+    if (tree_.in_namespace(block.scope)) {
+      fail(block.span, "a NAMESPACE has no element in PLCopen XML");
+      continue;
+    }
+    const frontend::Attribute* named = tree_.find_attribute(block.attributes, "list");
+    std::string_view file = in_.sources.file_name(in_.sources.file_of(block.span.begin));
+    file.remove_prefix(file.find_last_of("/\\") + 1);
+    std::string name(named != nullptr && !named->value.empty() ? named->value
+                                                               : file.substr(0, file.find('.')));
+    out.push_back({std::move(name), {&block}});
+  }
+  return out;
+}
+
+void Writer::put_global_list(Node parent, const Globals& list) {
+  for (const VarBlock* block : list.blocks) {
+    if (put_list(parent, *block, list.name)) continue;
+    fail(block->span,
+         "this list of global variables has something that PLCopen XML has no element "
+         "for");
+  }
+}
+
+void Writer::resource(Node parent, const ResourceDecl& resource,
+                      const std::vector<Globals>& lists) {
+  Node node = parent.append_child("resource");
+  node.append_attribute("name") =
+      resource.name.empty() ? "Resource" : std::string(resource.name.text).c_str();
+  std::vector<Node> tasks;
+  for (const frontend::TaskDecl& task : resource.tasks) {
+    Node each = node.append_child("task");
+    each.append_attribute("name") = std::string(task.name.text).c_str();
+    auto put = [&](ExprId value, const char* name) {
+      if (value.valid()) each.append_attribute(name) = flat(tree_[value].span).c_str();
+    };
+    put(task.single, "single");
+    put(task.interval, "interval");
+    put(task.priority, "priority");
+    if (!task.priority.valid()) each.append_attribute("priority") = "0";
+    put_attributes(each, task.attributes);
+    tasks.push_back(each);
+  }
+  for (const VarBlock& block : resource.globals) put_list(node, block, {});
+  for (const Globals& list : lists) put_global_list(node, list);
+  for (const frontend::ProgramDecl& program : resource.programs) {
+    if (program.args.count != 0 || !program.block_tasks.empty()) {
+      fail(program.span, "connections of a program instance have no element in PLCopen XML");
+    }
+    Node owner = node;
+    for (size_t i = 0; i < resource.tasks.size(); ++i) {
+      if (base::same_name(resource.tasks[i].name.text, program.task.text)) owner = tasks[i];
+    }
+    Node each = owner.append_child("pouInstance");
+    each.append_attribute("name") = std::string(program.name.text).c_str();
+    each.append_attribute("typeName") = std::string(program.type.text).c_str();
+  }
+}
+
+void Writer::configuration(Node parent, const ConfigDecl& config,
+                           const std::vector<Globals>& lists) {
+  Node node = parent.append_child("configuration");
+  node.append_attribute("name") = std::string(config.name.text).c_str();
+  bool first = true;
+  for (const ResourceDecl& each : config.resources) {
+    resource(node, each, first ? lists : std::vector<Globals>());
+    first = false;
+  }
+  if (config.resources.empty() && !lists.empty()) {
+    fail(config.span, "a configuration without a resource cannot hold lists of global variables");
+  }
+  for (VarSection section : {VarSection::kGlobal, VarSection::kAccess, VarSection::kConfig}) {
+    for (const VarBlock& block : config.globals) {
+      if (block.section == section) put_list(node, block, {});
+    }
+  }
+  put_attributes(node, config.attributes);
+}
+
+void Writer::project(Node project) {
+  Node types = project.append_child("types");
+  Node data_types = types.append_child("dataTypes");
+  for (const frontend::TypeDecl& type : tree_.types) data_type(data_types, type);
+  Node pous = types.append_child("pous");
+  for (const Pou& each : tree_.pous) {
+    if (each.kind != frontend::PouKind::kInterface) pou(pous, each);
+  }
+  Node configurations = project.append_child("instances").append_child("configurations");
+  std::vector<Globals> lists = global_lists();
+  bool first = true;
+  for (const ConfigDecl& config : tree_.configs) {
+    configuration(configurations, config, first ? lists : std::vector<Globals>());
+    first = false;
+  }
+  if (tree_.configs.empty()) {
+    for (const Globals& list : lists) put_global_list(data(project, "globalvars"), list);
+  }
+  for (const Pou& each : tree_.pous) {
+    if (each.kind != frontend::PouKind::kInterface) continue;
+    Node node = data(project, "interface").append_child("Interface");
+    node.append_attribute("name") = std::string(each.name.text).c_str();
+    interface(node, each, "INTERFACE");
+    members(node, each);
+    put_documentation(node, comment_before(each.span.begin));
+  }
+  put_kept(project, {});
+}
+
+namespace {
+
+const char* name_space(Form form) {
+  return form == Form::kTc6v200 ? "http://www.plcopen.org/xml/tc6_0200"
+                                : "http://www.plcopen.org/xml/tc6_0201";
+}
+
+void put_headers(Node project, const std::string& name) {
+  // No clock: the same sources give the same document.
+  const char* when = "1970-01-01T00:00:00";
+  Node file = project.append_child("fileHeader");
+  file.append_attribute("companyName") = "";
+  file.append_attribute("productName") = "stc";
+  file.append_attribute("productVersion") = "0.1.0";
+  file.append_attribute("creationDateTime") = when;
+  Node content = project.append_child("contentHeader");
+  content.append_attribute("name") = name.c_str();
+  Node coordinates = content.append_child("coordinateInfo");
+  for (const char* language : {"fbd", "ld", "sfc"}) {
+    Node scaling = coordinates.append_child(language).append_child("scaling");
+    scaling.append_attribute("x") = "1";
+    scaling.append_attribute("y") = "1";
+  }
+}
+
+}  // namespace
+
+std::optional<std::string> export_document(const ExportInput& input,
+                                           base::Diagnostics& diagnostics) {
+  pugi::xml_document document;
+  Node declaration = document.append_child(pugi::node_declaration);
+  declaration.append_attribute("version") = "1.0";
+  declaration.append_attribute("encoding") = "utf-8";
+  Node project = document.append_child("project");
+  project.append_attribute("xmlns") = name_space(input.form);
+  put_headers(project, input.name);
+  const uint32_t before = diagnostics.error_count();
+  Writer(input, diagnostics).project(project);
+  if (diagnostics.error_count() != before) return std::nullopt;
+  std::ostringstream out;
+  document.save(out, "  ", pugi::format_default, pugi::encoding_utf8);
+  return xml::as_utf8(out.str());
+}
+
+}  // namespace plcopen

@@ -1,0 +1,34 @@
+// Sources -> PLCopen XML: what the syntax tree says, with bodies as they stand in the sources.
+// What elements of the standard cannot say is written as CODESYS writes it, in addData (methods,
+// properties, inheritance, attributes), and where that is not enough the declaration stands there
+// as text, so that import() of the document gives the same program. What neither can say is an
+// error (E1084), and there is no document then.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "adapters/xml/imported.h"
+#include "frontend/parse/tree.h"
+
+namespace plcopen {
+
+enum class Form : uint8_t { kTc6v200, kTc6v201, kIec10 };
+std::optional<Form> form_of_name(std::string_view name);  // tc6-2.0, tc6-2.01, 61131-10
+
+struct ExportInput {
+  const base::SourceMap& sources;
+  const frontend::Tree& tree;
+  std::string name;  // of the project
+  Form form = Form::kTc6v201;
+  // Of what was imported and is written again: drawings with their places and ids, by POU or
+  // POU.Action, and addData that nobody understood, by POU.
+  const xml::Kept* kept = nullptr;
+};
+
+// The whole document, in UTF-8.
+std::optional<std::string> export_document(const ExportInput& input,
+                                           base::Diagnostics& diagnostics);
+
+}  // namespace plcopen

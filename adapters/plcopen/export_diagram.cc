@@ -1,0 +1,331 @@
+// Networks as elements. The order of execution is written down; places are those of the drawing
+// that was imported, or are laid out: inputs left of what uses them, networks below each other.
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "adapters/plcopen/writer.h"
+#include "base/name_case.h"
+#include "frontend/network/same.h"
+
+namespace plcopen {
+
+namespace network = frontend::network;
+using network::Element;
+using network::Kind;
+using network::Link;
+using network::Modifier;
+
+class DiagramWriter {
+ public:
+  DiagramWriter(Writer& writer, const network::Body& body, Node parent)
+      : writer_(writer), body_(body), parent_(parent) {}
+
+  void run() {
+    placed_ = true;
+    for (const network::Network& each : body_.networks) {
+      for (const Element& element : each.elements) {
+        placed_ = placed_ && element.position.known;
+        next_id_ = std::max(next_id_, element.id);
+      }
+    }
+    if (next_id_ > kMaxId) placed_ = false;
+    for (const network::Network& each : body_.networks) put(each);
+  }
+
+ private:
+  static constexpr uint64_t kMaxId = 1'000'000'000'000;
+
+  struct Place {
+    int32_t x = 0;
+    int32_t y = 0;
+  };
+
+  void put(const network::Network& network);
+  void put_head(const network::Network& network, int32_t y);
+  std::vector<Place> places(const network::Network& network);
+  void put_element(const network::Network& network, uint32_t number, Place place);
+  void put_block(const network::Network& network, const Element& element, Node node);
+  void put_pin(const network::Network& network, Node list, const network::Input& input);
+  void put_links(const network::Network& network, Node owner, const network::Input& input);
+  uint64_t inverted(const network::Network& network, const network::Input& input, Place place);
+  void put_connection(const network::Network& network, Node point, Link link);
+  Node node(const char* name, Place place, uint64_t id);
+  static std::string output_name(const Element& element, uint32_t output);
+  uint64_t new_id() { return ++next_id_; }
+
+  Writer& writer_;
+  const network::Body& body_;
+  Node parent_;
+  bool placed_ = false;
+  std::set<uint64_t> used_;  // ids
+  uint64_t next_id_ = 0;
+  uint32_t order_ = 0;
+  int32_t y_ = 20;  // where the next network begins
+  std::vector<uint64_t> ids_;
+};
+
+Node DiagramWriter::node(const char* name, Place place, uint64_t id) {
+  Node out = parent_.append_child(name);
+  out.append_attribute("localId") = static_cast<unsigned long long>(id);
+  Node position = out.append_child("position");
+  position.append_attribute("x") = place.x;
+  position.append_attribute("y") = place.y;
+  return out;
+}
+
+// Columns by the longest way from an input, rows one below the other.
+std::vector<DiagramWriter::Place> DiagramWriter::places(const network::Network& network) {
+  const size_t count = network.elements.size();
+  std::vector<Place> out(count);
+  if (placed_) {
+    for (size_t i = 0; i < count; ++i) {
+      out[i] = {network.elements[i].position.x, network.elements[i].position.y};
+    }
+    return out;
+  }
+  std::vector<int32_t> column(count, 0);
+  std::vector<int32_t> free;  // by column
+  int32_t bottom = y_;
+  for (size_t i = 0; i < count; ++i) {
+    int32_t y = y_;
+    for (const network::Input& input : network.elements[i].inputs) {
+      for (Link link : input.from) {
+        if (link.element >= i) continue;
+        column[i] = std::max(column[i], column[link.element] + 1);
+        y = std::max(y, out[link.element].y);
+      }
+    }
+    const size_t at = static_cast<size_t>(column[i]);
+    if (free.size() <= at) free.resize(at + 1, y_);
+    y = std::max(y_, free[at]);
+    out[i] = {20 + 150 * column[i], y};
+    const int32_t pins = static_cast<int32_t>(
+        std::max(network.elements[i].inputs.size(), network.elements[i].outputs.size()));
+    free[at] = y + 40 + 20 * pins;
+    bottom = std::max(bottom, free[at]);
+  }
+  y_ = bottom + 40;
+  return out;
+}
+
+void DiagramWriter::put_head(const network::Network& network, int32_t y) {
+  for (const std::string& comment : network.comments) {
+    Node out = node("comment", {20, y}, new_id());
+    out.append_attribute("height") = 20;
+    out.append_attribute("width") = 200;
+    Node text = out.append_child("content").append_child("xhtml");
+    text.append_attribute("xmlns") = "http://www.w3.org/1999/xhtml";
+    text.append_child(pugi::node_pcdata).set_value(comment.c_str());
+  }
+  if (!network.label.empty()) {
+    node("label", {20, y}, new_id()).append_attribute("label") = network.label.text.c_str();
+  }
+}
+
+void DiagramWriter::put(const network::Network& network) {
+  const int32_t top = y_;
+  if (!placed_ && (!network.comments.empty() || !network.label.empty())) y_ += 20;
+  std::vector<Place> at = places(network);
+  int32_t first = placed_ ? std::numeric_limits<int32_t>::max() : top;
+  for (size_t i = 0; i < at.size() && placed_; ++i) {
+    const Kind kind = network.elements[i].kind;
+    if (kind != Kind::kLeftRail && kind != Kind::kRightRail) first = std::min(first, at[i].y);
+  }
+  if (first == std::numeric_limits<int32_t>::max()) first = y_;  // no elements
+  for (size_t i = 0; i < at.size() && placed_; ++i) {
+    y_ = std::max(y_, at[i].y + std::max(network.elements[i].position.height, 0) + 40);
+  }
+  put_head(network, first);
+  ids_.assign(network.elements.size(), 0);
+  for (size_t i = 0; i < ids_.size(); ++i) {
+    const uint64_t own = network.elements[i].id;
+    // A rail of the drawing may stand in several networks.
+    const bool keep = placed_ && own != 0 && used_.insert(own).second;
+    ids_[i] = keep ? own : new_id();
+  }
+  for (uint32_t i = 0; i < network.elements.size(); ++i) put_element(network, i, at[i]);
+}
+
+std::string DiagramWriter::output_name(const Element& element, uint32_t output) {
+  const std::string& name = element.outputs[output].name;
+  return name.empty() ? "OUT" : name;
+}
+
+void DiagramWriter::put_connection(const network::Network& network, Node point, Link link) {
+  const Element& from = network.elements[link.element];
+  Node out = point.append_child("connection");
+  out.append_attribute("refLocalId") = static_cast<unsigned long long>(ids_[link.element]);
+  if (from.kind == Kind::kBlock) {
+    out.append_attribute("formalParameter") = output_name(from, link.output).c_str();
+  }
+}
+
+void DiagramWriter::put_links(const network::Network& network, Node owner,
+                              const network::Input& input) {
+  Node point = owner.append_child("connectionPointIn");
+  for (Link link : input.from) put_connection(network, point, link);
+}
+
+// A block NOT for what no attribute of the element says.
+uint64_t DiagramWriter::inverted(const network::Network& network, const network::Input& input,
+                                 Place place) {
+  const uint64_t id = new_id();
+  Node block = node("block", {place.x - 10, place.y}, id);
+  block.append_attribute("typeName") = "NOT";
+  block.append_attribute("executionOrderId") = ++order_;
+  Node pin = block.append_child("inputVariables").append_child("variable");
+  pin.append_attribute("formalParameter") = "";
+  put_links(network, pin, input);
+  Node out = block.append_child("outputVariables").append_child("variable");
+  out.append_attribute("formalParameter") = "OUT";
+  out.append_child("connectionPointOut");
+  return id;
+}
+
+namespace {
+
+void put_modifier(Node node, Modifier modifier) {
+  if (modifier == Modifier::kNegated) node.append_attribute("negated") = "true";
+  if (modifier == Modifier::kRising) node.append_attribute("edge") = "rising";
+  if (modifier == Modifier::kFalling) node.append_attribute("edge") = "falling";
+  if (modifier == Modifier::kSet) node.append_attribute("storage") = "set";
+  if (modifier == Modifier::kReset) node.append_attribute("storage") = "reset";
+}
+
+const char* element_name(Kind kind) {
+  switch (kind) {
+    case Kind::kLeftRail:
+      return "leftPowerRail";
+    case Kind::kRightRail:
+      return "rightPowerRail";
+    case Kind::kContact:
+      return "contact";
+    case Kind::kCoil:
+      return "coil";
+    case Kind::kSource:
+      return "inVariable";
+    case Kind::kSink:
+      return "outVariable";
+    case Kind::kBlock:
+      return "block";
+    case Kind::kJump:
+      return "jump";
+    default:
+      return "return";
+  }
+}
+
+void put_operand(Node node, const char* name, const std::string& text) {
+  node.append_child(name).append_child(pugi::node_pcdata).set_value(text.c_str());
+}
+
+}  // namespace
+
+void DiagramWriter::put_pin(const network::Network& network, Node list,
+                            const network::Input& input) {
+  Node pin = list.append_child("variable");
+  pin.append_attribute("formalParameter") = input.name.c_str();
+  put_modifier(pin, input.modifier);
+  put_links(network, pin, input);
+}
+
+void DiagramWriter::put_block(const network::Network& network, const Element& element, Node out) {
+  out.append_attribute("typeName") = element.type.text.c_str();
+  if (!element.operand.empty()) {
+    out.append_attribute("instanceName") = element.operand.text.c_str();
+  }
+  Node inputs = out.append_child("inputVariables");
+  Node in_outs = out.append_child("inOutVariables");
+  for (const network::Input& input : element.inputs) {
+    const bool both = writer_.is_in_out(element.type.text, input.name);
+    put_pin(network, both ? in_outs : inputs, input);
+  }
+  Node outputs = out.append_child("outputVariables");
+  for (uint32_t i = 0; i < element.outputs.size(); ++i) {
+    Node pin = outputs.append_child("variable");
+    pin.append_attribute("formalParameter") = output_name(element, i).c_str();
+    if (element.outputs[i].negated) pin.append_attribute("negated") = "true";
+    pin.append_child("connectionPointOut");
+  }
+}
+
+void DiagramWriter::put_element(const network::Network& network, uint32_t number, Place place) {
+  const Element& element = network.elements[number];
+  const bool single = element.inputs.size() == 1 && element.kind != Kind::kBlock;
+  Modifier modifier = element.modifier;
+  uint64_t through = 0;  // a block in front of the input
+  if (single && element.inputs[0].modifier != Modifier::kNone) {
+    const Modifier own = element.inputs[0].modifier;
+    const bool sink = element.kind == Kind::kSink;
+    if (sink && modifier == Modifier::kNone) {
+      modifier = own;
+    } else if (own == Modifier::kNegated) {
+      through = inverted(network, element.inputs[0], place);
+    } else {
+      writer_.fail(element.span,
+                   "an edge in front of this element has no attribute in PLCopen XML");
+    }
+  }
+  const bool inline_negation = element.kind == Kind::kSource;
+  Node out = node(element_name(element.kind), place, ids_[number]);
+  if (element.position.known && element.position.width > 0) {
+    out.append_attribute("width") = element.position.width;
+    out.append_attribute("height") = element.position.height;
+  }
+  const bool acts = element.kind == Kind::kCoil || element.kind == Kind::kSink ||
+                    element.kind == Kind::kBlock || element.kind == Kind::kJump ||
+                    element.kind == Kind::kReturn;
+  if (acts) out.append_attribute("executionOrderId") = ++order_;
+  if (!inline_negation) put_modifier(out, modifier);
+  if (element.kind == Kind::kJump) out.append_attribute("label") = element.operand.text.c_str();
+  if (element.kind == Kind::kBlock) {
+    put_block(network, element, out);
+  } else if (through != 0) {
+    Node connection = out.append_child("connectionPointIn").append_child("connection");
+    connection.append_attribute("refLocalId") = static_cast<unsigned long long>(through);
+    connection.append_attribute("formalParameter") = "OUT";
+  } else {
+    for (const network::Input& input : element.inputs) put_links(network, out, input);
+  }
+  if (element.kind != Kind::kBlock && !element.outputs.empty()) {
+    Node point = out.append_child("connectionPointOut");
+    if (element.kind == Kind::kLeftRail) point.append_attribute("formalParameter") = "";
+  }
+  if (element.kind == Kind::kContact || element.kind == Kind::kCoil) {
+    put_operand(out, "variable", element.operand.text);
+  } else if (element.kind == Kind::kSource || element.kind == Kind::kSink) {
+    put_operand(out, "expression", element.operand.text);
+  }
+  Writer::put_documentation(out, element.comment);
+}
+
+bool Writer::is_in_out(const std::string& type, const std::string& pin) const {
+  for (const Pou& pou : tree_.pous) {
+    if (!base::same_name(pou.name.text, type)) continue;
+    for (const frontend::VarBlock& block : pou.blocks) {
+      if (block.section != frontend::VarSection::kInOut) continue;
+      for (const frontend::VarDecl& decl : block.vars) {
+        for (const frontend::Name& name : decl.names) {
+          if (base::same_name(name.text, pin)) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+void Writer::diagram(Node body, const network::Body& drawn, const std::string& path) {
+  Node parent = body.append_child(drawn.language == network::Language::kLadder ? "LD" : "FBD");
+  const network::Body* best = &drawn;
+  if (in_.kept != nullptr) {
+    auto found = in_.kept->drawings.find(base::fold_name(path));
+    const bool same = found != in_.kept->drawings.end() &&
+                      found->second.language == drawn.language &&
+                      network::canonical(found->second) == network::canonical(drawn);
+    if (same) best = &found->second;
+  }
+  DiagramWriter(*this, *best, parent).run();
+}
+
+}  // namespace plcopen

@@ -1,0 +1,229 @@
+// Pieces of sources for the export.
+#include <algorithm>
+
+#include "adapters/plcopen/writer.h"
+#include "frontend/lex/lexer.h"
+
+namespace plcopen {
+
+using frontend::Token;
+using frontend::TokenKind;
+
+void Writer::fail(base::SourceSpan at, std::string text) {
+  diagnostics_.add(base::DiagnosticCode::kCannotExport, at, std::move(text),
+                   "write it in another way, or export with another --as");
+}
+
+std::string_view Writer::slice(base::SourceSpan span) const {
+  const uint32_t file = in_.sources.file_of(span.begin);
+  if (file == in_.sources.file_count() || span.end < span.begin) return {};
+  std::string_view text = in_.sources.text(file);
+  const uint32_t begin = span.begin.offset - in_.sources.begin(file).offset;
+  return text.substr(begin, span.end.offset - span.begin.offset);
+}
+
+std::string Writer::flat(base::SourceSpan span) const {
+  std::string_view text = slice(span);
+  base::Diagnostics unheard;
+  frontend::TokenList list = frontend::lex(text, {0}, unheard);
+  std::string out;
+  uint32_t end = 0;
+  for (const Token& token : list.tokens) {
+    if (token.kind == TokenKind::kEnd) break;
+    if (!out.empty() && token.begin > end) out += ' ';
+    out += text.substr(token.begin, token.length);
+    end = token.begin + token.length;
+  }
+  return out;
+}
+
+// (* text *) directly in front, on lines of its own or not.
+std::string Writer::comment_before(base::SourcePos begin) const {
+  const uint32_t file = in_.sources.file_of(begin);
+  if (file == in_.sources.file_count()) return {};
+  std::string_view text = in_.sources.text(file);
+  text = text.substr(0, begin.offset - in_.sources.begin(file).offset);
+  text = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
+  if (text.ends_with("TYPE")) {
+    text = text.substr(0, text.size() - 4);
+    text = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
+  }
+  if (!text.ends_with("*)")) return {};
+  const size_t open = text.rfind("(*");
+  if (open == std::string_view::npos) return {};
+  return std::string(xml::trimmed(text.substr(open + 2, text.size() - open - 4)));
+}
+
+// A comment behind `end` in its line.
+std::string Writer::comment_behind(base::SourcePos end) const {
+  const uint32_t file = in_.sources.file_of(end);
+  if (file == in_.sources.file_count()) return {};
+  std::string_view text = in_.sources.text(file);
+  text = text.substr(std::min<size_t>(end.offset - in_.sources.begin(file).offset, text.size()));
+  std::string_view line = text.substr(0, text.find('\n'));
+  line = xml::trimmed(line);
+  if (line.starts_with(";")) line = xml::trimmed(line.substr(1));
+  if (line.starts_with("//")) return std::string(xml::trimmed(line.substr(2)));
+  if (!line.starts_with("(*")) return {};
+  const size_t close = line.find("*)");
+  if (close == std::string_view::npos) return {};
+  return std::string(xml::trimmed(line.substr(2, close - 2)));
+}
+
+std::string Writer::address_of(const frontend::VarDecl& decl) const {
+  if (!decl.has_address) return {};
+  std::string_view text = slice(decl.span);
+  base::Diagnostics unheard;
+  for (const Token& token : frontend::lex(text, {0}, unheard).tokens) {
+    if (token.kind == TokenKind::kDirect) {
+      return std::string(text.substr(token.begin, token.length));
+    }
+  }
+  return {};
+}
+
+namespace {
+
+bool is_var(TokenKind kind) { return kind >= TokenKind::kVar && kind <= TokenKind::kVarTemp; }
+
+TokenKind end_of_member(TokenKind kind) {
+  switch (kind) {
+    case TokenKind::kMethod:
+      return TokenKind::kEndMethod;
+    case TokenKind::kProperty:
+      return TokenKind::kEndProperty;
+    case TokenKind::kAction:
+      return TokenKind::kEndAction;
+    default:
+      return TokenKind::kEnd;
+  }
+}
+
+}  // namespace
+
+// Tokens tell: members end with their END.
+Writer::Pieces Writer::pieces(base::SourceSpan span, base::SourcePos head_end) const {
+  std::string_view text = slice(span);
+  base::Diagnostics unheard;
+  const std::vector<Token> tokens = frontend::lex(text, {0}, unheard).tokens;
+  Pieces out;
+  if (tokens.size() < 2) return out;
+  size_t last = tokens.size() - 2;  // END_PROGRAM, perhaps with a semicolon
+  if (tokens[last].kind == TokenKind::kSemicolon && last > 0) --last;
+  size_t body_from = 0;  // bytes
+  size_t at = 0;
+  auto in_head = [&](const Token& token) {
+    const bool sign = token.kind == TokenKind::kSemicolon || token.kind == TokenKind::kColon;
+    const bool accessor = token.kind == TokenKind::kGet || token.kind == TokenKind::kSet;
+    return span.begin.offset + token.begin < head_end.offset || (sign && at > 0) ||
+           (accessor && at == 0);
+  };
+  for (; at < last && in_head(tokens[at]); ++at) {
+    body_from = tokens[at].begin + tokens[at].length;
+  }
+  for (; at < last && is_var(tokens[at].kind); ++at) {
+    while (at < last && tokens[at].kind != TokenKind::kEndVar) ++at;
+    if (at + 1 < last && tokens[at + 1].kind == TokenKind::kSemicolon) ++at;
+    body_from = tokens[at].begin + tokens[at].length;
+  }
+  out.head = text.substr(0, body_from);
+  const size_t end = tokens[last].begin;
+  for (; at < last; ++at) {
+    const TokenKind member_end = end_of_member(tokens[at].kind);
+    const bool member = member_end != TokenKind::kEnd && frontend::is_name(tokens[at + 1].kind);
+    if (!member) continue;
+    out.body += text.substr(body_from, tokens[at].begin - body_from);
+    while (at < last && tokens[at].kind != member_end) ++at;
+    if (at + 1 < last && tokens[at + 1].kind == TokenKind::kSemicolon) ++at;
+    body_from = tokens[at].begin + tokens[at].length;
+  }
+  if (end > body_from) out.body += text.substr(body_from, end - body_from);
+  return out;
+}
+
+// Behind the head, up to END_TRANSITION. `list`: instructions.
+std::string Writer::condition_of(const frontend::ChartTransition& transition, bool& list) const {
+  const uint32_t file = in_.sources.file_of(transition.span.end);
+  std::string_view text = in_.sources.text(file);
+  text = text.substr(transition.span.end.offset - in_.sources.begin(file).offset);
+  base::Diagnostics unheard;
+  // A condition is short; the rest of the file is not looked at.
+  const std::vector<Token> tokens = frontend::lex(text.substr(0, 100'000), {0}, unheard).tokens;
+  list = tokens[0].kind == TokenKind::kColon;
+  for (const Token& token : tokens) {
+    if (token.kind != TokenKind::kEndTransition) continue;
+    const size_t from = tokens[0].begin + tokens[0].length;
+    if (list) return std::string(text.substr(from, token.begin - from));
+    const base::SourcePos begin = transition.span.end;
+    std::string inside =
+        flat({{begin.offset + static_cast<uint32_t>(from)}, {begin.offset + token.begin}});
+    while (inside.ends_with(";") || inside.ends_with(" ")) inside.pop_back();
+    return inside;
+  }
+  return {};
+}
+
+void Writer::put_text(Node parent, const char* language, const std::string& text) {
+  // Lines keep their distances from each other.
+  std::string_view all = text;
+  while (!all.empty() && xml::trimmed(all.substr(0, all.find('\n'))).empty() &&
+         all.find('\n') != std::string_view::npos) {
+    all.remove_prefix(all.find('\n') + 1);
+  }
+  while (!all.empty() && xml::trimmed(all.substr(all.size() - 1)).empty()) all.remove_suffix(1);
+  size_t least = all.size();
+  for (std::string_view rest = all; !rest.empty();) {
+    std::string_view line = rest.substr(0, rest.find('\n'));
+    const size_t first = line.find_first_not_of(" \t");
+    if (first != std::string_view::npos) least = std::min(least, first);
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+  }
+  std::string out;
+  for (std::string_view rest = all; !rest.empty();) {
+    std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    if (line.ends_with("\r")) line.remove_suffix(1);
+    out += std::string(line.substr(std::min(least, line.size()))) + (rest.empty() ? "" : "\n");
+  }
+  Node xhtml = parent.append_child(language).append_child("xhtml");
+  xhtml.append_attribute("xmlns") = "http://www.w3.org/1999/xhtml";
+  if (!out.empty()) xhtml.append_child(pugi::node_pcdata).set_value(out.c_str());
+}
+
+void Writer::put_documentation(Node owner, const std::string& text) {
+  if (text.empty()) return;
+  Node xhtml = owner.append_child("documentation").append_child("xhtml");
+  xhtml.append_attribute("xmlns") = "http://www.w3.org/1999/xhtml";
+  xhtml.append_child(pugi::node_pcdata).set_value(text.c_str());
+}
+
+Node Writer::data(Node owner, const char* name) {
+  Node add = owner.child("addData");
+  if (!add) add = owner.append_child("addData");
+  Node out = add.append_child("data");
+  out.append_attribute("name") =
+      ("http://www.3s-software.com/plcopenxml/" + std::string(name)).c_str();
+  out.append_attribute("handleUnknown") = "implementation";
+  return out;
+}
+
+void Writer::put_declaration(Node owner, const std::string& text) {
+  Node xhtml = data(owner, "interfaceasplaintext")
+                   .append_child("InterfaceAsPlainText")
+                   .append_child("xhtml");
+  xhtml.append_attribute("xmlns") = "http://www.w3.org/1999/xhtml";
+  xhtml.append_child(pugi::node_pcdata).set_value(text.c_str());
+}
+
+void Writer::put_attributes(Node owner, frontend::Range32 attributes) {
+  if (attributes.count == 0) return;
+  Node list = data(owner, "attributes").append_child("Attributes");
+  for (uint32_t i = 0; i < attributes.count; ++i) {
+    const frontend::Attribute& attribute = tree_.attributes[attributes.first + i];
+    Node each = list.append_child("Attribute");
+    each.append_attribute("Name") = std::string(attribute.name.text).c_str();
+    each.append_attribute("Value") = std::string(attribute.value).c_str();
+  }
+}
+
+}  // namespace plcopen

@@ -1,0 +1,98 @@
+// Inside of the export: nodes of PLCopen XML for pieces of the tree.
+#pragma once
+
+#include <string>
+
+#include "adapters/plcopen/export.h"
+#include "adapters/xml/document.h"
+
+namespace plcopen {
+
+using xml::Node;
+
+class Writer {
+ public:
+  Writer(const ExportInput& input, base::Diagnostics& diagnostics)
+      : in_(input), tree_(input.tree), diagnostics_(diagnostics) {}
+
+  void project(Node project);
+
+ private:
+  using Pou = frontend::PouDecl;
+  using SpecId = frontend::SpecId;
+  using ExprId = frontend::ExprId;
+
+  struct Globals {  // a list of global variables: its name and the blocks of it
+    std::string name;
+    std::vector<const frontend::VarBlock*> blocks;
+  };
+
+  void fail(base::SourceSpan at, std::string text);
+
+  // --- export_text.cc
+  std::string_view slice(base::SourceSpan span) const;
+  std::string flat(base::SourceSpan span) const;  // on one line, without comments
+  std::string comment_before(base::SourcePos begin) const;
+  std::string comment_behind(base::SourcePos end) const;
+  std::string address_of(const frontend::VarDecl& decl) const;
+  // Of a POU, method, action or accessor: its own text without head, variables, members and END.
+  // `head_end` is where name, result and bases end.
+  struct Pieces {
+    std::string head;  // with the variables
+    std::string body;
+  };
+  Pieces pieces(base::SourceSpan span, base::SourcePos head_end) const;
+  base::SourcePos head_end(const Pou& pou) const;
+  std::string condition_of(const frontend::ChartTransition& transition, bool& list) const;
+  static void put_text(Node parent, const char* language, const std::string& text);
+  static void put_documentation(Node owner, const std::string& text);
+  static void put_declaration(Node owner, const std::string& text);
+  static Node data(Node owner, const char* name);
+  void put_attributes(Node owner, frontend::Range32 attributes);
+
+  // --- export_types.cc
+  void put_type(Node parent, SpecId spec);  // an element inside of <type>, <baseType>
+  bool put_plain_type(Node parent, const frontend::Spec& spec);
+  void put_value(Node parent, ExprId value);
+  bool has_elements(const frontend::Expr& value) const;
+  bool needs_text(const frontend::Spec& spec) const;
+  void data_type(Node parent, const frontend::TypeDecl& type);
+
+  // --- export_variables.cc
+  bool put_lists(Node parent, const std::vector<frontend::VarBlock>& blocks);  // false: lossy
+  bool put_list(Node parent, const frontend::VarBlock& block, const std::string& name);
+  bool put_variable(Node list, const frontend::VarBlock& block, const frontend::VarDecl& decl);
+
+  // --- export_pou.cc
+  void pou(Node parent, const Pou& pou);
+  void interface(Node owner, const Pou& pou, const char* kind);
+  void members(Node owner, const Pou& pou);
+  void body(Node owner, const Pou& pou, const std::string& path);
+  void put_body(Node body, const std::string& text, bool list, uint32_t diagram,
+                const std::string& path);
+  void put_kept(Node owner, const std::string& path);
+
+  // --- export_chart.cc
+  void chart(Node body, const frontend::Chart& chart);
+
+  // --- export_diagram.cc
+  void diagram(Node body, const frontend::network::Body& drawn, const std::string& path);
+  bool is_in_out(const std::string& type, const std::string& pin) const;
+
+  // --- export.cc
+  void configuration(Node parent, const frontend::ConfigDecl& config,
+                     const std::vector<Globals>& lists);
+  void resource(Node parent, const frontend::ResourceDecl& resource,
+                const std::vector<Globals>& lists);
+  std::vector<Globals> global_lists();
+  void put_global_list(Node parent, const Globals& list);
+
+  friend class ChartWriter;
+  friend class DiagramWriter;
+
+  const ExportInput& in_;
+  const frontend::Tree& tree_;
+  base::Diagnostics& diagnostics_;
+};
+
+}  // namespace plcopen

@@ -1,0 +1,96 @@
+#!/bin/sh
+# stc export: PLCopen XML of sources, and of documents again. What is imported from it is the same program.
+. "$(dirname "$0")/lib.sh"
+samples=$source_dir/tests/fuzz/corpus/plcopen
+cp "$samples"/ladder.xml "$samples"/blocks.xml "$samples"/objects.xml "$samples"/declarations.xml "$samples"/chart.xml .
+printf 'PROGRAM P\nVAR n : INT; END_VAR\n  n := n + 1;\nEND_PROGRAM\n' >p.st
+code=0
+stc export p.st -o p.xml >out 2>err || code=$?
+if grep -q 'built without pugixml' err; then
+  [ "$code" -eq 7 ] || fail "refused with $code"
+  echo "built without pugixml: refused, as it should be"
+  exit 0
+fi
+[ "$code" -eq 0 ] || fail "export: $code"
+silent_on out
+grep -q 'xmlns="http://www.plcopen.org/xml/tc6_0201"' p.xml || fail "namespace"
+expect 0 stc export p.st -o old.xml --as tc6-2.0
+grep -q 'xmlns="http://www.plcopen.org/xml/tc6_0200"' old.xml || fail "namespace of 2.0"
+expect 0 stc export p.st -o again.xml
+cmp p.xml again.xml || fail "not the same twice"
+expect 2 stc export p.st
+expect 2 stc export p.st -o x.xml --as tc6-9
+said 'known are tc6-2.01, tc6-2.0'
+expect 7 stc export nothing.st -o x.xml
+printf 'PROGRAM P n := ; END_PROGRAM\n' >bad.st
+expect 1 stc export bad.st -o x.xml
+said 'bad\.st:1:16: error\[E1005\]'
+printf 'NAMESPACE N FUNCTION f : INT f := 1; END_FUNCTION END_NAMESPACE\nPROGRAM P VAR n : INT; END_VAR n := N.f(); END_PROGRAM\n' >space.st
+expect 1 stc export space.st -o x.xml
+said 'space\.st:1:22: error\[E1084\]'
+printf 'FUNCTION_BLOCK F VAR_INPUT a : INT; END_VAR END_FUNCTION_BLOCK PROGRAM P VAR_INPUT i : INT; END_VAR END_PROGRAM CONFIGURATION C VAR_GLOBAL g : INT; END_VAR RESOURCE R ON PLC TASK T(INTERVAL := T#1s, PRIORITY := 1); PROGRAM p1 WITH T : P(i := g); END_RESOURCE END_CONFIGURATION' >connected.st
+expect 1 stc export connected.st -o x.xml
+said 'E1084.*connections of a program instance'
+[ ! -e x.xml ] || fail "a document was written in spite of errors"
+
+# Documents again: the same sources, with places, ids and addData of the first.
+again() {  # again NAME DIFFERENT_FILES
+  rm -rf first second
+  expect 0 stc import "$1.xml" -o first
+  expect 0 stc export "$1.xml" -o "$1.new.xml"
+  expect 0 stc import "$1.new.xml" -o second
+  if diff -rq first second >differs; then :; fi
+  [ "$(wc -l <differs)" -le "$2" ] || fail "$1 is another program: $(cat differs)"
+}
+again declarations 0
+again ladder 0
+again blocks 1  # variables that are read and written are two elements now
+again objects 1 # a declaration that was text is elements now
+again chart 1   # actions in steps have names now
+expect 0 stc build blocks.new.xml -o blocks.img
+expect 0 stvm run blocks.img --scans 6 --virtual-time --print M.total --print M.seen --print M.pulses --print M.c
+said '^M.total=30$'
+said '^M.seen=30$'
+said '^M.pulses=2$'
+said '^M.c=6$'
+grep -q '<contact localId="4" ' ladder.new.xml || fail "ids are lost"
+grep -A1 '<contact localId="4" ' ladder.new.xml | grep -q '<position x="200" y="20" />' || fail "places are lost"
+grep -q '<data name="http://vendor.example/xml/trend" handleUnknown="implementation">' objects.new.xml || fail "addData is lost"
+# What was written once is written the same again.
+for name in declarations ladder blocks objects chart; do
+  expect 0 stc export $name.new.xml --name $name -o $name.third.xml
+  expect 0 stc export $name.third.xml --name $name -o $name.fourth.xml
+  cmp $name.third.xml $name.fourth.xml || fail "$name changes with every export"
+done
+
+# Types and variables in files of their own: initial values of the one in the other.
+mkdir files
+printf 'TYPE Link : STRUCT at : POINTER TO INT := ADR(shared); n : INT := 4; END_STRUCT END_TYPE\n' >files/a.st
+printf 'VAR_GLOBAL\n  shared : INT := 7;\n  links : ARRAY[1..2] OF Link := [(n := 1), (at := ADR(other))];\n  other : INT := 8;\nEND_VAR\nPROGRAM P VAR x : INT; END_VAR x := links[1].at^ + links[2].at^; END_PROGRAM\n' >files/b.st
+expect 0 stc export files -o files.xml
+expect 0 stc build files.xml -o files.img
+expect 0 stvm run files.img --scans 1 --virtual-time --print P.x
+said '^P.x=15$'
+
+# Programs of the golden files: what comes back does the same.
+count=0
+for file in "$source_dir"/tests/golden/sfc/*.st "$source_dir"/tests/golden/il/*.st "$source_dir"/tests/golden/ladder/*.st \
+  "$source_dir"/tests/golden/fbd/*.st "$source_dir"/tests/golden/run/*.st; do
+  name=$(basename "$file" .st)
+  [ "$name" != latin1 ] || continue  # its strings have other bytes in UTF-8
+  cp "$file" one.st
+  stc build one.st -o one.img >out 2>err || continue
+  code=0
+  stc export one.st -o one.xml >out 2>err || code=$?
+  if [ "$code" -ne 0 ]; then
+    grep -q E1084 err || fail "$name: export"
+    continue
+  fi
+  mkdir -p back
+  stc build one.xml -o back/one.img >out 2>err || fail "$name: what was exported does not build"
+  stvm run one.img --scans 20 --virtual-time --state 2>/dev/null | sort >state || true
+  stvm run back/one.img --scans 20 --virtual-time --state 2>/dev/null | sort | cmp -s - state || fail "$name: another state"
+  count=$((count + 1))
+done
+[ "$count" -ge 90 ] || fail "only $count programs were compared"
+echo "$count programs went there and back"

@@ -1,0 +1,83 @@
+// stc export: sources -> XML for other tools.
+#include <cstdio>
+
+#include "frontend/compile.h"
+#include "tools/common/exit.h"
+#include "tools/common/files.h"
+#include "tools/stc/commands.h"
+#include "tools/stc/importer.h"
+#include "tools/stc/session.h"
+#ifdef STC_HAS_XML
+#include "adapters/plcopen/export.h"
+#endif
+
+namespace stc {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {
+    STC_SOURCE_OPTIONS,
+    {"--output|-o", "FILE", "document to write (needed)"},
+    {"--as", "FORM", "tc6-2.01 (default), tc6-2.0 or 61131-10"},
+};
+constexpr tools::Command kCommand{
+    "export", "PATHS...", "Writes PLCopen XML or IEC 61131-10 of the sources.", kOptions, 1};
+
+#ifdef STC_HAS_XML
+
+base::Status write_document(const tools::Options& options, plcopen::Form form) {
+  base::Result<base::DiagnosticFormat> format = diagnostic_format(options);
+  if (!format.ok()) return format.error();
+  base::Result<Project> project = open_project(options, options.arguments());
+  if (!project.ok()) return project.error();
+  base::Diagnostics diagnostics;
+  add_findings(diagnostics, project->imported, false);
+  frontend::Tree tree;
+  std::optional<std::string> text;
+  if (!diagnostics.has_errors()) {
+    frontend::parse_all(project->sources, project->compile, tree, diagnostics);
+  }
+  if (!diagnostics.has_errors()) {
+    plcopen::ExportInput input{project->sources, tree, project->name, form, &project->kept};
+    text = plcopen::export_document(input, diagnostics);
+  }
+  report(*project, diagnostics, *format);
+  if (!text) {
+    return base::Error{base::Refusal::kSourceErrors,
+                       std::to_string(diagnostics.error_count()) + " error(s)"};
+  }
+  return tools::write_file(options.text("--output"), base::as_bytes(*text));
+}
+
+base::Status export_sources(const tools::Options& options) {
+  const std::string name = options.text("--as", "tc6-2.01");
+  std::optional<plcopen::Form> form = plcopen::form_of_name(name);
+  if (!form) {
+    return base::Error{base::Refusal::kUsage,
+                       "unknown form `" + name + "`; known are tc6-2.01, tc6-2.0, 61131-10"};
+  }
+  return write_document(options, *form);
+}
+
+#else
+
+base::Status export_sources(const tools::Options&) {
+  return base::Error{base::Refusal::kFileUnwritable,
+                     "XML is not part of this stc: it was built without pugixml (package "
+                     "libpugixml-dev)"};
+}
+
+#endif
+
+int run(const tools::Options& options) {
+  if (!options.has("--output")) {
+    return tools::refuse("stc", {base::Refusal::kUsage, "export: needs -o FILE"});
+  }
+  base::Status status = export_sources(options);
+  return status.ok() ? tools::kOk : tools::refuse("stc", status.error());
+}
+
+}  // namespace
+
+const Entry kExport{&kCommand, run};
+
+}  // namespace stc
