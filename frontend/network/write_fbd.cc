@@ -61,7 +61,8 @@ class Writer {
   uint32_t indent_;
   const Network* network_ = nullptr;
   std::string out_;
-  std::unordered_set<std::string> names_;  // everything that could be a name, folded
+  std::unordered_set<std::string> names_;    // everything that could be a name, folded
+  std::unordered_set<std::string> claimed_;  // wires of the body that kept their names
   std::vector<uint32_t> written_;          // by element: those before it that write something
   std::vector<uint32_t> users_;            // how many inputs use it
   std::vector<uint32_t> last_user_;
@@ -77,6 +78,7 @@ void Writer::collect_names() {
     for (const Element& element : network.elements) {
       add_names(element.operand.text);
       add_names(element.type.text);
+      add_names(element.wire.text);
     }
   }
 }
@@ -214,7 +216,9 @@ void Writer::block(uint32_t i) {
   }
   std::string call = element.type.text + '(' + pins + ");";
   if (!element.operand.empty()) return row(element.operand.text + " : " + call);
-  wires_[i] = new_name(element.type.text);
+  // Networks without a label between them are one in text.
+  bool free = !element.wire.empty() && claimed_.insert(ir::fold_name(element.wire.text)).second;
+  wires_[i] = free ? element.wire.text : new_name(element.type.text);
   row("WIRE " + wires_[i] + " := " + call);
 }
 

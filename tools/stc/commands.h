@@ -15,6 +15,7 @@ extern const Entry kDiff;
 extern const Entry kFormat;
 extern const Entry kImport;
 extern const Entry kExport;
+extern const Entry kDraw;
 extern const Entry kDump;
 extern const Entry kExplain;
 

@@ -22,7 +22,7 @@ std::string dialects() {
 int main(int argc, char** argv) {
   const tools::Entry* const entries[] = {&stc::kCheck, &stc::kBuild,   &stc::kTest,   &stc::kFormat,
                                          &stc::kDiff,  &stc::kPackage, &stc::kImport, &stc::kExport,
-                                         &stc::kDump,  &stc::kExplain};
+                                         &stc::kDraw,  &stc::kDump,    &stc::kExplain};
   return tools::dispatch("stc", "Compiles IEC 61131-3 programs to images for stvm.", entries, argc,
                          argv, dialects());
 }

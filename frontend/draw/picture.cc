@@ -1,0 +1,99 @@
+#include "frontend/draw/picture.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "frontend/draw/pictures.h"
+#include "frontend/draw/shapes.h"
+
+namespace frontend::draw {
+
+namespace {
+
+constexpr double kLineHeight = 17;
+constexpr double kMinWidth = 480;
+
+// Lines of a comment, those of a text of any length.
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> out;
+  for (size_t begin = 0; begin <= text.size();) {
+    size_t end = std::min(text.find('\n', begin), text.size());
+    out.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return out;
+}
+
+double heading(Svg& svg, const network::Network& network, size_t number, double y) {
+  std::string head = std::to_string(number);
+  svg.text(kLeft, y + 12, head, Type::kBold);
+  double x = kLeft + text_width(head) + 12;
+  if (!network.label.empty()) {
+    svg.text(x, y + 12, network.label.text + ':', Type::kBold);
+    x += text_width(network.label.text) + 20;
+  }
+  double at = y;
+  auto comment = [&](const std::string& text) {
+    for (const std::string& line : lines_of(text)) {
+      svg.text(x, at + 12, line, Type::kComment);
+      at += kLineHeight;
+    }
+  };
+  for (const std::string& text : network.comments) comment(text);
+  for (const network::Element& element : network.elements) {
+    if (!element.comment.empty()) comment(element.comment);
+  }
+  return std::max(at, y + kLineHeight) + 4;
+}
+
+}  // namespace
+
+std::vector<std::string> variables(const network::Body& body) {
+  std::vector<std::string> out;
+  for (const network::Network& network : body.networks) {
+    for (const network::Element& element : network.elements) {
+      if (element.kind == network::Kind::kBlock && !element.operand.empty()) {
+        for (const network::Output& output : element.outputs) {
+          out.push_back(element.operand.text + '.' + output.name);
+        }
+      } else if (element.kind != network::Kind::kJump) {
+        for (std::string& path : variables_in(element.operand.text)) out.push_back(std::move(path));
+      }
+    }
+  }
+  return out;
+}
+
+std::string draw_body(const network::Body& body, std::string_view title, const Live* live) {
+  Svg svg;
+  svg.text(kLeft, 28, title, Type::kTitle);
+  std::vector<std::optional<Rung>> rungs;
+  double width = kMinWidth;
+  for (const network::Network& network : body.networks) {
+    std::optional<network::Placement> placement;
+    if (body.language == network::Language::kLadder) placement = network::place(network);
+    rungs.emplace_back();
+    if (!placement) continue;
+    rungs.back().emplace(network, std::move(*placement), live);
+    width = std::max(width, rungs.back()->width());
+  }
+  double y = 46;
+  for (size_t n = 0; n < body.networks.size(); ++n) {
+    const network::Network& network = body.networks[n];
+    y = heading(svg, network, n + 1, y);
+    bool empty = true;
+    for (const network::Element& element : network.elements) {
+      empty = empty && !network::is_placed(element.kind) && element.kind != network::Kind::kSink;
+    }
+    if (empty) continue;
+    if (rungs[n]) {
+      rungs[n]->draw(svg, y, width);
+      y += rungs[n]->height() + 22;
+    } else {
+      y += draw_boxes(svg, network, y, live) + 22;
+    }
+  }
+  return svg.finish(title);
+}
+
+}  // namespace frontend::draw

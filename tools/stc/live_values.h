@@ -1,0 +1,20 @@
+// Values for pictures: of a running controller, all of one boundary, or of a file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "frontend/draw/live.h"
+
+namespace stc {
+
+// Of those of `names` that the controller at `place` (a state directory, or a host to ssh to) has,
+// by the stvm beside this tool. Errors: what that one refuses.
+base::Status fetch_values(const std::string& place, const std::vector<std::string>& names,
+                          frontend::draw::Live& live);
+
+// `NAME=VALUE` a line, as `stvm get` and `stvm run --print` write them.
+base::Status read_values(const std::string& file, frontend::draw::Live& live);
+
+}  // namespace stc
