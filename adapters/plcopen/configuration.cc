@@ -1,4 +1,5 @@
 // Configurations, resources, tasks and instances; the project as a whole.
+#include "adapters/plcopen/iec10.h"
 #include "adapters/plcopen/plcopen.h"
 #include "adapters/plcopen/reader.h"
 #include "base/name_case.h"
@@ -169,20 +170,42 @@ void import_resource(Node resource, Reporter& report) {
 }
 
 bool is_document(const xml::Document& document) {
-  return xml::is(document.root(), "project") || xml::is(document.root(), "pou");
+  return xml::is(document.root(), "project") || xml::is(document.root(), "pou") ||
+         is_iec10(document);
 }
 
-void import(const xml::Document& document, xml::Imported& out) {
-  Reporter report(document, out);
-  Node project = document.root();
-  if (xml::is(project, "pou")) return import_pou(project, report);
-  for (Node type : xml::children(xml::find(project, {"types", "dataTypes"}), "dataType")) {
+namespace {
+
+// <types>, and what vendors add beside it.
+void import_types(Node owner, Reporter& report) {
+  for (Node type : xml::children(xml::find(owner, {"types", "dataTypes"}), "dataType")) {
     std::string text = data_type(type, report);
-    if (!text.empty()) out.add_source(xml::attribute(type, "name"), text);
+    if (!text.empty()) report.out().add_source(xml::attribute(type, "name"), text);
   }
-  for (Node pou : xml::children(xml::find(project, {"types", "pous"}), "pou")) {
+  for (Node pou : xml::children(xml::find(owner, {"types", "pous"}), "pou")) {
     import_pou(pou, report);
   }
+}
+
+// Of IEC 61131-10: everything that is made inside of it stands in it.
+void import_namespaces(Node owner, Reporter& report) {
+  for (Node space : xml::children(owner, "namespace")) {
+    const std::string name(report.required_name(space));
+    const size_t first = report.out().sources.size();
+    import_types(space, report);
+    import_parts(space, report);
+    import_namespaces(space, report);
+    for (size_t i = first; i < report.out().sources.size(); ++i) {
+      std::string& text = report.out().sources[i].text;
+      text = "NAMESPACE " + name + "\n" + xml::indented(text, kIndent) + "END_NAMESPACE\n";
+    }
+  }
+}
+
+void import_project(Node project, Reporter& report) {
+  if (xml::is(project, "pou")) return import_pou(project, report);
+  import_types(project, report);
+  import_namespaces(project, report);
   Node configurations = xml::find(project, {"instances", "configurations"});
   for (Node node : xml::children(configurations, "configuration")) {
     import_configuration(node, report);
@@ -191,9 +214,20 @@ void import(const xml::Document& document, xml::Imported& out) {
                     xml::child(project, "instances")}) {
     import_parts(part, report);
   }
-  if (out.sources.empty() && !out.failed()) {
+  if (report.out().sources.empty() && !report.out().failed()) {
     report.add(Code::kUnknownXml, project, "the project has no POU, type or variable");
   }
+}
+
+}  // namespace
+
+void import(const xml::Document& document, xml::Imported& out) {
+  Reporter report(document, out);
+  if (!is_iec10(document)) return import_project(document.root(), report);
+  Converted converted;
+  report.set_origins(&converted.origins);
+  from_iec10(document.root(), converted, report);
+  import_project(converted.project.document_element(), report);
 }
 
 }  // namespace plcopen

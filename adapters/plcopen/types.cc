@@ -37,6 +37,7 @@ std::string simple(Node node, std::string_view text, Reporter& report) {
 }
 
 std::string range(Node node, Reporter& report) {
+  if (xml::attribute(node, "lower") == "*") return "*";  // ARRAY[*]
   std::string low = simple(node, report.required(node, "lower"), report);
   std::string high = simple(node, report.required(node, "upper"), report);
   return low + ".." + high;

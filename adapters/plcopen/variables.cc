@@ -74,6 +74,9 @@ std::string variable(Node node, Reporter& report) {
                                           : std::string(report.required_name(node));
     if (out.empty()) return {};
     out += location(node, report) + " : " + type_text(xml::child(node, "type"), report);
+    const std::string_view edge = xml::attribute(node, "edge");  // IEC 61131-10
+    if (edge == "rising") out += " R_EDGE";
+    if (edge == "falling") out += " F_EDGE";
     std::string value = value_text(xml::child(node, "initialValue"), report);
     if (!value.empty()) out += " := " + value;
   }

@@ -8,6 +8,7 @@
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "adapters/xml/imported.h"
@@ -55,6 +56,8 @@ class Reporter {
   Reporter(const Document& document, Imported& out) : document_(document), out_(out) {}
 
   void add(Code code, Node at, std::string text, std::string fix = {});
+  // Nodes that were made of others stand where these do.
+  void set_origins(const std::unordered_map<const void*, Node>* origins) { origins_ = origins; }
   void set_pou(std::string pou) { pou_ = std::move(pou), network_ = 0; }
   const std::string& pou() const { return pou_; }
   void set_network(uint32_t network) { network_ = network; }
@@ -67,8 +70,11 @@ class Reporter {
   Imported& out() { return out_; }
 
  private:
+  base::SourceSpan span_of(Node node) const;
+
   const Document& document_;
   Imported& out_;
+  const std::unordered_map<const void*, Node>* origins_ = nullptr;
   std::string pou_;
   uint32_t network_ = 0;
 };

@@ -55,6 +55,37 @@ grep -q 'METHOD PRIVATE Note' made/Drive.st || fail access
 expect 0 stc check objects.xml
 grep -q projectstructure err && fail "notes are for import"
 
+# IEC 61131-10: other names, networks with numbers, connections by pin.
+run iec10 3 M.a=18 M.sum=9 M.loop=9 M.pump.speed=2.5 L.out=TRUE L.edges.n=1
+said '^7 source\(s\), 0 error\(s\), 0 warning\(s\)'
+grep -q '^NAMESPACE Tools$' made/Twice.st || fail namespace
+grep -q 'go : BOOL R_EDGE;' made/Counter.st || fail "order or edge of parameters"
+sed -n '/^FBD/,/^END_FBD/p' made/Main.st | grep -n 'IN2 := loop' | grep -q '^3:' || fail "order of networks"
+grep -q '^  Top:$' made/Rungs.st || fail label
+# ten BODY: a program of 61131-10.
+ten() { printf '<Project xmlns="www.iec.ch/public/TC65SC65BWG7TF10" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"><Types><GlobalNamespace><Program name="P"><Vars><Variable name="a"><Type>%s</Type></Variable></Vars><MainBody>%s</MainBody></Program></GlobalNamespace></Types></Project>' "${2:-<TypeName>INT</TypeName>}" "$1" >ten.xml; }
+ten_wrong() {
+  expect 1 stc check ten.xml
+  said "ten\.xml:1:[0-9]+: error\[$1\]: .*$2"
+}
+network() { ten "<BodyContent xsi:type=\"FBD\"><Network evaluationOrder=\"1\">$1</Network></BodyContent>"; }
+sink() { printf '<FbdObject xsi:type="DataSink" identifier="a"><ConnectionPointIn><Connection refConnectionPointOutId="%s"/></ConnectionPointIn></FbdObject>' "$1"; }
+source_of() { printf '<FbdObject xsi:type="DataSource" identifier="1"><ConnectionPointOut connectionPointOutId="%s"/></FbdObject>' "$1"; }
+network "$(source_of 1)$(sink 1)"
+expect 0 stc check ten.xml
+network "$(source_of 1)$(sink 2)"
+ten_wrong E1076 'a connection leads to localId `pin 2`'
+network "$(source_of 1)$(source_of 1)$(sink 1)"
+ten_wrong E1075 'connectionPointOutId 1 is there twice'
+network '<FbdObject xsi:type="v:InlineST"/>'
+ten_wrong E1083 'InlineST.* is not understood'
+ten '<BodyContent xsi:type="SFC"><Step/></BodyContent>'
+ten_wrong E1083 'charts of IEC 61131-10 are not read'
+ten '' '<InstantlyDefinedType xsi:type="OddTypeSpec"/>'
+ten_wrong E1074 '`OddTypeSpec` is not known'
+ten '<BodyContent xsi:type="ST"><ST>a := 2;</ST></BodyContent>' '<x/>'
+ten_wrong E1073 'has no <TypeName>'
+
 # The same in other encodings.
 mkdir utf16
 iconv -f UTF-8 -t UTF-16 declarations.xml >utf16/declarations.xml

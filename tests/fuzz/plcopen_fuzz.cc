@@ -1,4 +1,4 @@
-// The import of PLCopen XML over arbitrary bytes: no crash, no hang; what is made has names that
+// The import of PLCopen XML and IEC 61131-10 over arbitrary bytes: no crash, no hang; what is made has names that
 // stay in their folder, and nothing is made of a document that is no XML.
 #include <cstddef>
 #include <cstdint>
