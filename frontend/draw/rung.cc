@@ -2,6 +2,7 @@
 
 #include "frontend/draw/pictures.h"
 #include "frontend/draw/shapes.h"
+#include "ir/types/types.h"
 
 namespace frontend::draw {
 
@@ -16,6 +17,17 @@ namespace {
 constexpr double kGap = 14;       // wire between columns
 constexpr double kJointGap = 28;  // the same with a joint in the middle
 constexpr double kRowGap = 6;
+
+// Where power goes on, or would if something followed the box.
+uint32_t power_output(const network::Element& block, const Cell& cell) {
+  if (cell.output != kNoPin) return cell.output;
+  bool enabled = ir::same_name(block.inputs[cell.input].name, "EN");
+  const char* usual = enabled ? "ENO" : block.operand.empty() ? "" : "Q";
+  for (uint32_t pin = 0; pin < block.outputs.size(); ++pin) {
+    if (ir::same_name(block.outputs[pin].name, usual)) return pin;
+  }
+  return kNoPin;
+}
 
 }  // namespace
 
@@ -40,7 +52,7 @@ void Rung::measure() {
       shape.box = true;
       shape.number = static_cast<uint32_t>(boxes_.size());
       std::vector<bool> attached(element.outputs.size(), true);
-      BoxStyle style{cell.input, cell.output, live_, &power_};
+      BoxStyle style{cell.input, power_output(element, cell), live_, &power_};
       boxes_.push_back(make_box(network_, sinks, cell.element, attached, style));
       const Box& box = boxes_.back();
       shape.width = box.before + box.width + box.behind;
@@ -162,12 +174,22 @@ class Rung::Pen {
     }
   }
 
+  // The last box of the row has no output that power could leave by.
+  bool ends_in_box(uint32_t row) const {
+    for (size_t c = p_.cells.size(); c-- > 0;) {
+      const Cell& cell = p_.cells[c];
+      if (cell.row != row) continue;
+      const network::Element& element = rung_.network_.elements[cell.element];
+      return rung_.shapes_[c].box && power_output(element, cell) == kNoPin;
+    }
+    return false;
+  }
+
   // What stands at the right rail, or the wire there.
   void end(uint32_t row) {
     double at = kLeft + width_;
     for (size_t c : right_[row]) at -= rung_.right_columns_[p_.cells[c].column] + kGap;
-    // Behind a box that nothing follows the wire says nothing.
-    if (right_[row].empty()) now_[row] = Truth::kUnknown;
+    if (right_[row].empty() && ends_in_box(row)) return;
     line(row, boundary(p_.columns), at);
     for (size_t c : right_[row]) {
       double width = rung_.right_columns_[p_.cells[c].column];
@@ -186,7 +208,9 @@ class Rung::Pen {
     Truth& now = now_[cell.row];
     Ink in = ink(now);
     double y = row_y(cell.row);
-    uint32_t output = shape.box ? cell.output : element.outputs.empty() ? kNoPin : 0;
+    uint32_t output = shape.box                 ? power_output(element, cell)
+                      : element.outputs.empty() ? kNoPin
+                                                : 0;
     if (output != kNoPin) now = rung_.power_.output({cell.element, output});
     if (!shape.box) {
       draw_symbol(svg_, rung_.symbols_[shape.number], x, width, y, in, ink(now));
