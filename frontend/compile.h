@@ -22,6 +22,7 @@ struct CompileOptions {
   std::string likely_resource;   // instead of the first, if there is one of that name
   // Conditional compilation: NAME or NAME=VALUE, as if {define NAME 'VALUE'} headed each file.
   std::vector<std::string> defines;
+  bool strict_strings = false;  // LEFT, MID, INSERT, ... out of range trap, instead of being cut
   uint64_t max_source_bytes = base::kMaxSourceBytes;  // tests ask for less
 };
 

@@ -85,7 +85,8 @@ ir::Place Body::string_function(const std::vector<ExprId>& args, const stdlib::F
       operands.push_back(machine_convert(number.value, scalar(number.type), ir::Scalar::kI64));
     }
   }
-  if (!tries_.empty() && tries_.back().eno) {
+  bool strict = sema_.options.strict_strings && !info_.library;
+  if (strict || (!tries_.empty() && tries_.back().eno)) {
     constexpr ir::Scalar kI64 = ir::Scalar::kI64;
     ir::ValueId length = native(string_native(FunctionId::kLen, is_wide), {operands[1]});
     length = machine_convert(length, ir::Scalar::kI32, kI64);

@@ -30,6 +30,11 @@ expect 0 stc check --dialect codesys p
 printf 'dialect = "pascal"\n' >p/stc.toml
 expect 7 stc check p
 said 'stc.toml:1:1: unknown dialect .pascal.; known are iec, codesys, twincat'
+printf 'strict_strings = 1\n' >p/stc.toml
+expect 7 stc check p
+said 'stc.toml:1:1: .*strict_strings'
+printf 'strict_strings = true\n' >p/stc.toml
+expect 0 stc check --dialect codesys p
 rm p/stc.toml
 expect 2 stc check --dialect pascal p
 said 'unknown dialect .pascal.; known are iec, codesys, twincat'

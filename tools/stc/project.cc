@@ -78,7 +78,7 @@ base::Status apply_slack(const std::string& file, const std::string& key,
   return tools::toml_error(
       file, value.line, value.column,
       "unknown key `" + key +
-          "`; known are name, dialect, resource, sources, defines and the tables "
+          "`; known are name, dialect, resource, sources, defines, strict_strings and the tables "
           "[slack], [change], [outputs], [format] and [devices.NAME]");
 }
 
@@ -129,6 +129,10 @@ base::Status apply_project_file(const std::string& folder, Project& project,
       auto list = typed<std::vector<std::string>>(file, key, value, "a list of texts");
       if (!list.ok()) return list.error();
       project.compile.defines = *list;
+    } else if (key == "strict_strings") {
+      auto strict = typed<bool>(file, key, value, "true or false");
+      if (!strict.ok()) return strict.error();
+      project.compile.strict_strings = *strict;
     } else if (key == "outputs.safe") {
       base::Result<SafeSettings> safe = parse_safe_settings(file, value);
       if (!safe.ok()) return safe.error();

@@ -1,5 +1,7 @@
 #include "tests/golden/runner/compile.h"
 
+#include <algorithm>
+
 #include "frontend/compile.h"
 #include "frontend/lex/lexer.h"
 #include "frontend/parse/tree.h"
@@ -30,6 +32,8 @@ void collect(const base::SourceMap& sources, base::Diagnostics& diagnostics, Out
 frontend::CompileOptions options_of(const TestFile& test) {
   frontend::CompileOptions options;
   options.name = "golden";
+  options.strict_strings =
+      std::find(test.options.begin(), test.options.end(), "--strict-strings") != test.options.end();
   std::string dialect = test.option("--dialect", "codesys");
   if (dialect == "iec") options.dialect = frontend::Dialect::kIec;
   if (dialect == "twincat") options.dialect = frontend::Dialect::kTwincat;
