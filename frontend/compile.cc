@@ -143,7 +143,7 @@ std::optional<Resources> compile_resources(const base::SourceMap& sources,
   if (!several || (!wanted.empty() && !named(wanted))) {
     std::optional<Analysed> only = analyse(Purpose::kRun, *parsed, of_one, diagnostics);
     if (!only) return std::nullopt;
-    out.programs.push_back({"", {}, std::move(only->made.program)});
+    out.programs.push_back({"", {}, std::move(only->made.program), {}});
     return out;
   }
   std::vector<ResourceUses> uses;
@@ -154,7 +154,8 @@ std::optional<Resources> compile_resources(const base::SourceMap& sources,
     out.names.push_back(of_one.resource);
     uses.push_back(std::move(one->uses));
     if (!wanted.empty() && !ir::same_name(wanted, of_one.resource)) continue;
-    out.programs.push_back({of_one.resource, resource.name.span, std::move(one->made.program)});
+    out.programs.push_back({of_one.resource, resource.name.span, std::move(one->made.program),
+                            std::move(uses.back().other_code)});
   }
   check_resources(uses, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;

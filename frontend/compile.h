@@ -44,6 +44,7 @@ struct ResourceProgram {
   std::string resource;  // "" where the project has one at most
   base::SourceSpan declared;
   ir::Program program;
+  std::vector<bool> other_code = {};  // by PouId: only other resources can reach it; may be empty
 };
 struct Resources {
   std::vector<std::string> names;  // of all; none where the project has one at most

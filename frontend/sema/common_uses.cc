@@ -77,6 +77,46 @@ std::vector<uint32_t> CommonUses::reached_from(const std::vector<ir::TypeId>& st
   return found;
 }
 
+// Code runs when somebody calls it, or an instance of its type exists.
+std::vector<bool> CommonUses::other_code() const {
+  const ir::Program& program = sema_.program;
+  std::vector<bool> seen(sema_.pous.size());
+  std::vector<bool> seen_types(program.types.size());
+  std::vector<uint32_t> found;
+  std::vector<ir::TypeId> types{program.globals};
+  const auto add = [&](uint32_t pou) {
+    if (!seen[pou]) found.push_back(pou);
+    seen[pou] = true;
+  };
+  for (const ir::ProgramInstance& instance : program.instances) types.push_back(instance.type);
+  for (const PouInfo& info : sema_.pous) {
+    for (const ir::Migration& row : program.migrations) {
+      if (info.id == row.function) add(info.number);
+    }
+  }
+  for (size_t next = 0; next < found.size() || !types.empty();) {
+    while (!types.empty()) {
+      const ir::TypeId type = types.back();
+      types.pop_back();
+      if (!type.valid() || seen_types[type.index]) continue;
+      seen_types[type.index] = true;
+      const auto pou = sema_.pou_by_type_.find(type);
+      if (pou != sema_.pou_by_type_.end()) add(pou->second);
+      if (program.types[type].kind == ir::Kind::kArray) types.push_back(program.types[type].base);
+      for (const ir::Member& member : program.types[type].members) types.push_back(member.type);
+    }
+    if (next == found.size()) break;
+    for (uint32_t callee : sema_.pous[found[next]].callees) add(callee);
+    ++next;
+  }
+  std::vector<bool> others(program.pous.size(), true);
+  for (uint32_t pou : found) {
+    const ir::PouId id = sema_.pous[pou].id;
+    if (id.valid()) others[id.index] = false;
+  }
+  return others;
+}
+
 ResourceUses CommonUses::of_resource() {
   ResourceUses out;
   ir::Program& program = sema_.program;
@@ -116,6 +156,10 @@ ResourceUses CommonUses::of_resource() {
     }
     add_outputs(sema_.pous[pou].writes, natural, out);
   }
+  out.other_code = other_code();
+  std::erase_if(program.overrides, [&](const ir::Override& row) {
+    return out.other_code[row.prototype.index] || out.other_code[row.target.index];
+  });
   for (const auto& [member, global] : out.globals) {
     if (global.plain) program.shared.push_back({member, global.written});
   }

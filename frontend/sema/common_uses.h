@@ -29,6 +29,7 @@ struct ResourceUses {
   std::string resource;
   std::map<uint32_t, CommonGlobal> globals;      // that its code names; by member of the globals
   std::map<uint32_t, base::SourceSpan> outputs;  // bytes of %Q that it writes, and where
+  std::vector<bool> other_code;                  // by PouId: only other resources can reach it
 };
 
 class CommonUses {
@@ -38,7 +39,7 @@ class CommonUses {
   // Each byte of %Q has one writer among the tasks (E5003).
   void check_output_tasks();
   // Of the resource that is compiled; nothing where there is but one. Marks the globals that are
-  // exchanged: ir::Program::shared.
+  // exchanged (ir::Program::shared), and leaves overrides out that only others can reach.
   ResourceUses of_resource();
   // Is the variable declared outside every RESOURCE of several, and not a constant?
   bool is_outer(VarId global) const;
@@ -46,6 +47,7 @@ class CommonUses {
  private:
   // The bodies of these types, and everything that they can reach through calls.
   std::vector<uint32_t> reached_from(const std::vector<ir::TypeId>& starts) const;
+  std::vector<bool> other_code() const;
   void check_instance_outputs(const ir::ProgramInstance& instance, const ir::Layouts& natural,
                               std::unordered_map<uint32_t, uint32_t>& owner);
   void add_outputs(const std::vector<OutputWrite>& writes, const ir::Layouts& natural,

@@ -7,19 +7,20 @@ namespace {
 
 constexpr uint32_t kMaxDepth = 200;
 
-bool plain(const TypeTable& types, TypeId id, uint32_t depth) {
-  if (!types.contains(id) || depth > kMaxDepth) return false;
+// `visited` counts the parts, so that types which hold others many times end too.
+bool plain(const TypeTable& types, TypeId id, uint32_t depth, uint32_t& visited) {
+  if (!types.contains(id) || depth > kMaxDepth || ++visited > kMaxPlainParts) return false;
   const Type& type = types[id];
   switch (type.kind) {
     case Kind::kArray:
     case Kind::kSubrange:
     case Kind::kEnum:
-      return plain(types, type.base, depth + 1);
+      return plain(types, type.base, depth + 1, visited);
     case Kind::kStruct:
     case Kind::kUnion:
       for (const Member& member : type.members) {
         if (member.address.area != DirectArea::kNone) return false;
-        if (!plain(types, member.type, depth + 1)) return false;
+        if (!plain(types, member.type, depth + 1, visited)) return false;
       }
       return true;
     case Kind::kString:
@@ -119,7 +120,10 @@ class Runs {
 
 }  // namespace
 
-bool is_plain_data(const TypeTable& types, TypeId id) { return plain(types, id, 0); }
+bool is_plain_data(const TypeTable& types, TypeId id) {
+  uint32_t visited = 0;
+  return plain(types, id, 0, visited);
+}
 
 std::optional<base::Digest> plain_signature(const TypeTable& types, const Layouts& layouts,
                                             TypeId id) {

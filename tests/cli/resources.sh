@@ -157,9 +157,20 @@ expect 0 stvm change --dir state/Line v2.st --yes
 await state/Pack speed 63
 expect 0 stvm undo --dir state/Line
 await state/Pack speed 42
+# What only the other one runs is not in its image: nothing to change there.
+cp plant/plant.st original.st
+sed -i 's/seen := seen + 1/seen := seen + 2/' plant/plant.st
+expect 7 stvm change --dir state/Line plant --yes
+said 'R0308'
+expect 0 stvm change --dir state/Pack plant --yes
+expect 0 stvm accept --dir state/Pack
+mv original.st plant/plant.st
 # Another type on one side only: never read, and said.
 sed 's/speed, wanted : INT/wanted : INT/; s/VAR_GLOBAL block : Block;/VAR_GLOBAL block : Block; speed : REAL;/; s/speed := wanted \* 2/speed := 2.5/; s/VAR_EXTERNAL block : Block;/VAR_EXTERNAL block : Block; speed : REAL;/' plant/plant.st >v3.st
+expect 0 stvm change --dir state/Line v3.st --dry-run --format json
+said '"exchange": *\["`speed` is REAL here and INT in RESOURCE `Pack`'
 expect 0 stvm change --dir state/Line v3.st --allow-loss --yes --permanent
+said '^exchange: `speed` is REAL here and INT in RESOURCE `Pack`, which reads it: not exchanged until both are the same'
 expect 0 stvm status --dir state/Pack
 said '`speed` is INT here and REAL in RESOURCE `Line`: not exchanged until both are the same'
 expect 0 stvm get --dir state/Pack speed p.torn
@@ -169,6 +180,8 @@ expect 0 stvm change --dir state/Pack v3.st --allow-loss --yes --permanent
 await state/Pack speed 2.5
 expect 7 stvm change --dir state/Pack moved.st --allow-loss --yes
 said 'R0314'
+sed 's/CONFIGURATION Plant$/CONFIGURATION Works/' v3.st >v4.st
+expect 0 stvm change --dir state/Line v4.st --yes --permanent
 expect 0 stvm stop --dir state/Line
 for _ in $(seq 100); do kill -0 "$(cat state.pid)" 2>/dev/null || break; sleep 0.05; done
 kill -0 "$(cat state.pid)" 2>/dev/null && fail "one that is stopped ends all"
@@ -183,4 +196,6 @@ serve alone plant.Line.img
 expect 0 stvm stop --dir alone
 expect 2 stvm serve --dir alone plant
 said 'alone holds the program of a single resource'
+expect 2 stvm serve --dir state plant.Line.img
+said 'state holds RESOURCE Line, which is not among these'
 echo "resources: all as expected"

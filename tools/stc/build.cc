@@ -17,7 +17,8 @@ base::Error source_errors(const base::Diagnostics& diagnostics) {
   return {base::Refusal::kSourceErrors, std::to_string(diagnostics.error_count()) + " error(s)"};
 }
 
-base::Result<Compiled> lower_all(ir::Program program) {
+// Without the POUs in `left_out`, by PouId.
+base::Result<Compiled> lower_all(ir::Program program, const std::vector<bool>& left_out = {}) {
 #ifndef NDEBUG
   base::Status sound = ir::verify(program);
   if (!sound.ok()) return sound.error();
@@ -25,6 +26,7 @@ base::Result<Compiled> lower_all(ir::Program program) {
   Compiled out{std::move(program), {}};
   out.objects.reserve(out.program.pous.size());
   for (uint32_t i = 0; i < out.program.pous.size(); ++i) {
+    if (i < left_out.size() && left_out[i]) continue;
     base::Result<ir::Object> object = ir::lower(out.program, ir::PouId(i));
     if (!object.ok()) return object.error();
     out.objects.push_back(std::move(*object));
@@ -83,7 +85,7 @@ base::Result<std::vector<ResourceVersion>> build_resources(const Project& projec
   std::vector<ResourceVersion> versions;
   uint32_t output_bytes = 0;
   for (frontend::ResourceProgram& made : resources->programs) {
-    base::Result<Compiled> compiled = lower_all(std::move(made.program));
+    base::Result<Compiled> compiled = lower_all(std::move(made.program), made.other_code);
     if (!compiled.ok()) return compiled.error();
     auto devices = devices_of(project.devices, made.resource, resources->names);
     if (!devices.ok()) return devices.error();

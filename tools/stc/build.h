@@ -17,7 +17,7 @@ namespace stc {
 
 struct Compiled {
   ir::Program program;
-  std::vector<ir::Object> objects;  // parallel to program.pous
+  std::vector<ir::Object> objects;  // of its POUs; of several resources, those that it can reach
 };
 
 // kSourceErrors when `diagnostics` got errors; they are the message.

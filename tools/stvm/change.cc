@@ -17,6 +17,7 @@
 #include "tools/stvm/controller_client.h"
 #include "tools/stvm/fate_view.h"
 #include "tools/stvm/switch_text.h"
+#include "vm/io/global_exchange.h"
 
 namespace stvm {
 namespace {
@@ -99,8 +100,20 @@ base::Status may_switch(const tools::Options& options, const FatePage& page) {
   return options.has("--yes") ? base::Status(base::Ok{}) : ask();
 }
 
+// Variables that the staged version would no longer exchange with other resources.
+base::Result<std::vector<std::string>> exchange_notes(ControllerClient& client) {
+  base::Result<vm::StatusReport> status = client.status();
+  if (!status.ok()) return status.error();
+  std::vector<std::string> notes;
+  for (vm::DeviceStatus& row : status->devices) {
+    if (row.state == vm::kStagedState) notes.push_back(std::move(row.error));
+  }
+  return notes;
+}
+
 struct Outcome {
   FatePage page;
+  std::vector<std::string> exchange;
   std::optional<online_change::SwitchReport> report;
   std::optional<base::Error> refused;  // after the report was made
 };
@@ -118,6 +131,9 @@ void print_json(const Outcome& outcome) {
   json.begin_object();
   fates_json(outcome.page, json);
   losses_json(outcome.page, json);
+  json.key("exchange").begin_array();
+  for (const std::string& note : outcome.exchange) json.value(note);
+  json.end_array();
   json.field("switched", outcome.report.has_value());
   if (outcome.report) switch_json(*outcome.report, json);
   if (outcome.refused) json.field("refused", base::refusal_code(outcome.refused->refusal));
@@ -164,10 +180,13 @@ base::Result<Outcome> change(const tools::Options& options, ControllerClient& cl
   if (!staged.ok()) return staged.error();
   base::Result<FatePage> page = client.fates();
   if (!page.ok()) return page.error();
-  Outcome outcome{std::move(*page), {}, {}};
+  base::Result<std::vector<std::string>> notes = exchange_notes(client);
+  if (!notes.ok()) return notes.error();
+  Outcome outcome{std::move(*page), std::move(*notes), {}, {}};
   if (!json) {
     std::string report = fates_text(outcome.page);
     std::fputs((report + losses_text(outcome.page)).c_str(), stdout);
+    for (const std::string& note : outcome.exchange) std::printf("exchange: %s\n", note.c_str());
     std::fflush(stdout);
   }
   base::Status go = base::Ok{};

@@ -42,26 +42,42 @@ constexpr tools::Command kCommand{
 using Served = std::vector<std::unique_ptr<ServedResource>>;
 using Resource = vm::GlobalExchange::Resource;
 
-base::Status open_one(const std::string& directory, const std::optional<ir::VerifiedImage>& given,
-                      Served& served) {
-  auto opened = ServedResource::open(directory, given);
+base::Status open_one(const std::string& directory, const std::string& name,
+                      const std::optional<ir::VerifiedImage>& given, Served& served) {
+  const std::string folder = name.empty() ? directory : directory + "/" + name;
+  auto opened = ServedResource::open(folder, name, given);
   if (!opened.ok()) return opened.error();
   served.push_back(std::move(*opened));
   return base::Ok{};
 }
 
-base::Status open_given(const std::string& directory, const std::vector<Resource>& given,
-                        Served& served) {
+// What is stored there must not come back beside what is given, when nothing is named.
+base::Status check_stored(const std::string& directory, const std::vector<Resource>& given) {
   if (given.size() > 1 && holds_program(directory)) {
     return base::Error{
         base::Refusal::kUsage,
         directory + " holds the program of a single resource; use another directory"};
   }
-  for (const Resource& resource : given) {
-    const std::string folder = resource.name.empty() ? directory : directory + "/" + resource.name;
-    if (base::Status opened = open_one(folder, resource.image, served); !opened.ok()) return opened;
+  for (const std::string& stored : stored_resources(directory)) {
+    const bool known = std::any_of(given.begin(), given.end(), [&](const Resource& resource) {
+      return resource.name == stored;
+    });
+    if (known) continue;
+    return base::Error{
+        base::Refusal::kUsage,
+        directory + " holds RESOURCE " + stored +
+            ", which is not among these; remove its folder, or use another directory"};
   }
   return base::Ok{};
+}
+
+base::Status open_given(const std::string& directory, const std::vector<Resource>& given,
+                        Served& served) {
+  base::Status opened = check_stored(directory, given);
+  for (size_t i = 0; i < given.size() && opened.ok(); ++i) {
+    opened = open_one(directory, given[i].name, given[i].image, served);
+  }
+  return opened;
 }
 
 // What is named, or what is stored: by a single resource, or by several.
@@ -77,9 +93,9 @@ base::Result<Served> open_all(const tools::Options& options) {
     opened = open_given(directory, *given, served);
   } else {
     const std::vector<std::string> stored = stored_resources(directory);
-    if (stored.empty()) opened = open_one(directory, std::nullopt, served);
+    if (stored.empty()) opened = open_one(directory, "", std::nullopt, served);
     for (size_t i = 0; i < stored.size() && opened.ok(); ++i) {
-      opened = open_one(directory + "/" + stored[i], std::nullopt, served);
+      opened = open_one(directory, stored[i], std::nullopt, served);
     }
   }
   if (!opened.ok()) return opened.error();
@@ -198,17 +214,15 @@ base::Status serve(const tools::Options& options) {
     return base::Error{base::Refusal::kUsage,
                        "--virtual-time serves one resource; `stvm run` takes turns"};
   }
-  std::vector<ir::VerifiedImage> programs;
-  for (const auto& resource : *served) programs.push_back(resource->program());
-  auto resources = name_resources(std::move(programs));
-  if (!resources.ok()) return resources.error();
-  auto made = make_exchange(*resources);
+  std::vector<Resource> resources;
+  for (const auto& one : *served) resources.push_back({one->name(), one->program()});
+  auto made = make_exchange(resources);
   if (!made.ok()) return made.error();
   exchange = std::move(*made);
   vm::Clock& clock = virtual_time ? static_cast<vm::Clock&>(virtual_clock) : real_clock;
   for (size_t i = 0; i < served->size(); ++i) {
     base::Status started =
-        (*served)[i]->start({options, *limits, virtual_time, exchange.get(), *resources, i}, clock);
+        (*served)[i]->start({options, *limits, virtual_time, exchange.get(), resources, i}, clock);
     if (!started.ok()) {
       for (size_t k = 0; k < i; ++k) (*served)[k]->give_up();
       return started;

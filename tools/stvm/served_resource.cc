@@ -22,15 +22,21 @@ void print_boot(const online_change::Boot& boot) {
 
 }  // namespace
 
-ServedResource::ServedResource(const std::string& directory, StateFolder folder)
-    : directory_(directory), folder_(std::move(folder)), storage_(directory), store_(storage_) {}
+ServedResource::ServedResource(const std::string& directory, const std::string& name,
+                               StateFolder folder)
+    : directory_(directory),
+      name_(name),
+      folder_(std::move(folder)),
+      storage_(directory),
+      store_(storage_) {}
 ServedResource::~ServedResource() = default;
 
 base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
-    const std::string& directory, const std::optional<ir::VerifiedImage>& given) {
+    const std::string& directory, const std::string& name,
+    const std::optional<ir::VerifiedImage>& given) {
   base::Result<StateFolder> folder = StateFolder::open(directory);
   if (!folder.ok()) return folder.error();
-  auto out = std::make_unique<ServedResource>(directory, std::move(*folder));
+  auto out = std::make_unique<ServedResource>(directory, name, std::move(*folder));
   auto boot = online_change::boot(out->store_, given, "serve", wall_time_ns());
   if (!boot.ok() && boot.error().refusal == base::Refusal::kFileNotFound) {
     return base::Error{base::Refusal::kFileNotFound,

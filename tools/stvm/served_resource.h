@@ -20,12 +20,14 @@ class ServedResource {
  public:
   // Locks the folder and decides what runs: `given`, or what is stored there. Prints what is wrong.
   static base::Result<std::unique_ptr<ServedResource>> open(
-      const std::string& directory, const std::optional<ir::VerifiedImage>& given);
-  ServedResource(const std::string& directory, StateFolder folder);
+      const std::string& directory, const std::string& name,
+      const std::optional<ir::VerifiedImage>& given);
+  ServedResource(const std::string& directory, const std::string& name, StateFolder folder);
   ~ServedResource();
 
   const ir::VerifiedImage& program() const { return boot_->image; }
   const std::string& directory() const { return directory_; }
+  const std::string& name() const { return name_; }  // "": there is no other
 
   // The controller with its first scan's state, its service and its socket.
   base::Status start(const ResourceController::Settings& settings, vm::Clock& clock);
@@ -45,6 +47,7 @@ class ServedResource {
   void idle(const std::function<bool()>& stop, const std::function<void()>& alive);
 
   std::string directory_;
+  std::string name_;
   StateFolder folder_;
   vm::FileStorage storage_;
   online_change::Store store_;

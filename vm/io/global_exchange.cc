@@ -27,29 +27,26 @@ struct GlobalExchange::Edition {
 // What one version of a resource writes and one version of another reads. `buffer` has one thread
 // on each side: the control threads of the two.
 struct GlobalExchange::Link {
-  Link(const Edition& writer, const Edition& reader, const std::string& writer_name);
+  Link(const Edition& writer, const Edition& reader);
 
   uint32_t writer = 0;  // numbers of the editions
   uint32_t reader = 0;
   std::vector<ir::PlainRun> from, to;
   uint32_t bytes = 0;
-  std::vector<std::string> faults;       // variables that are not exchanged, though they should
+  struct Fault {
+    std::string variable, written_type, read_type;
+  };
+  std::vector<Fault> faults;             // variables that are not exchanged, though they should
   std::unique_ptr<TripleBuffer> buffer;  // none where there is nothing to exchange
 };
 
-GlobalExchange::Link::Link(const Edition& writing, const Edition& reading,
-                           const std::string& writer_name)
+GlobalExchange::Link::Link(const Edition& writing, const Edition& reading)
     : writer(writing.number), reader(reading.number) {
   for (const SharedVariable& target : reading.globals.variables()) {
     const SharedVariable* source = writing.globals.find(target.name);
     if (target.written || source == nullptr || !source->written) continue;
     if (source->signature != target.signature) {
-      const bool same_name = source->type == target.type;
-      faults.push_back(
-          quoted(target.name) +
-          (same_name ? " is another " + target.type + " in RESOURCE "
-                     : " is " + target.type + " here and " + source->type + " in RESOURCE ") +
-          quoted(writer_name) + ": not exchanged until both are the same");
+      faults.push_back({target.name, source->type, target.type});
       continue;
     }
     from.insert(from.end(), source->runs.begin(), source->runs.end());
@@ -190,7 +187,7 @@ void GlobalExchange::connect() {
           for (const auto& old : owned_ ? owned_->links[at] : Network::Links()) {
             if (old->writer == writes->number && old->reader == reads->number) link = old;
           }
-          if (!link) link = std::make_shared<Link>(*writes, *reads, members_[writer]->name);
+          if (!link) link = std::make_shared<Link>(*writes, *reads);
           next->links[at].push_back(std::move(link));
         }
       }
@@ -250,28 +247,55 @@ void GlobalExchange::publish(size_t resource, const uint8_t* memory) {
   }
 }
 
+// What is wrong between two versions, as the one says that has the number `mine`.
+std::vector<std::string> GlobalExchange::faults(size_t resource, uint32_t mine,
+                                                size_t other) const {
+  std::vector<std::string> texts;
+  const uint32_t theirs = members_[other]->running;
+  const auto add = [&](const Link* link, bool reads) {
+    if (link == nullptr) return;
+    for (const Link::Fault& fault : link->faults) {
+      const std::string& here = reads ? fault.read_type : fault.written_type;
+      const std::string& there = reads ? fault.written_type : fault.read_type;
+      const std::string types = here == there
+                                    ? " is another " + here + " in RESOURCE "
+                                    : " is " + here + " here and " + there + " in RESOURCE ";
+      texts.push_back(quoted(fault.variable) + types + quoted(members_[other]->name) +
+                      (reads ? "" : ", which reads it") +
+                      ": not exchanged until both are the same");
+    }
+  };
+  add(owned_->find(other, theirs, resource, mine), true);
+  add(owned_->find(resource, mine, other, theirs), false);
+  return texts;
+}
+
 std::vector<DeviceStatus> GlobalExchange::status(size_t resource, int64_t now_ns) const {
   const std::lock_guard lock(mutex_);
   const Member& member = *members_[resource];
+  const uint32_t running = member.running;
   std::vector<DeviceStatus> rows;
-  for (size_t writer = 0; writer < members_.size(); ++writer) {
-    if (writer == resource) continue;
-    const Link* link = owned_->find(writer, members_[writer]->running, resource, member.running);
-    if (link == nullptr || (!link->buffer && link->faults.empty())) continue;
-    DeviceStatus row;
-    row.name = members_[writer]->name;
-    row.driver = "resource";
-    row.exchanges = member.blocks[writer].load(std::memory_order_relaxed);
-    row.errors = link->faults.size();
-    row.state = row.exchanges == 0 ? "waiting" : "online";
-    if (row.exchanges != 0) {
-      row.age_ns = now_ns - member.taken_ns[writer].load(std::memory_order_relaxed);
+  for (size_t other = 0; other < members_.size(); ++other) {
+    if (other == resource) continue;
+    const Link* link = owned_->find(other, members_[other]->running, resource, running);
+    const std::vector<std::string> now = faults(resource, running, other);
+    DeviceStatus row{members_[other]->name, "resource", "online", 0, now.size(), -1, {}};
+    if ((link != nullptr && link->buffer) || !now.empty()) {
+      row.exchanges = member.blocks[other].load(std::memory_order_relaxed);
+      const int64_t taken_ns = member.taken_ns[other].load(std::memory_order_relaxed);
+      if (row.exchanges != 0) row.age_ns = now_ns - taken_ns;
+      if (row.exchanges == 0) row.state = "waiting";
+      if (!now.empty()) row.error = now.front();
+      if (now.size() > 1) row.error += " (and " + std::to_string(now.size() - 1) + " more)";
+      rows.push_back(row);
     }
-    if (!link->faults.empty()) row.error = link->faults.front();
-    if (link->faults.size() > 1) {
-      row.error += " (and " + std::to_string(link->faults.size() - 1) + " more)";
+    for (const auto& edition : member.editions) {
+      if (edition->number <= running) continue;  // it runs, or undo would bring it back
+      for (std::string& text : faults(resource, edition->number, other)) {
+        if (std::find(now.begin(), now.end(), text) != now.end()) continue;
+        rows.push_back({row.name, row.driver, kStagedState, 0, 1, -1, std::move(text)});
+      }
     }
-    rows.push_back(std::move(row));
   }
   return rows;
 }

@@ -24,6 +24,8 @@
 
 namespace vm {
 
+inline constexpr const char* kStagedState = "staged";
+
 class GlobalExchange {
  public:
   struct Resource {
@@ -49,6 +51,7 @@ class GlobalExchange {
   base::Status prepare(size_t resource, const ir::VerifiedImage& version);
   void settle(size_t resource);
   std::vector<DeviceStatus> status(size_t resource, int64_t now_ns) const;
+  std::vector<std::string> faults(size_t resource, uint32_t mine, size_t other) const;
   base::Status check_writers(size_t resource, const Edition& edition) const;
   void forget_unused(size_t resource);
   void connect();
@@ -83,7 +86,9 @@ class ResourcePort : public IoPort {
   void publish_globals(const SharedGlobals&, const uint8_t* memory) override {
     exchange_.publish(resource_, memory);
   }
-  // A row for each other resource that it takes values from, behind those of the devices.
+  // Behind the rows of the devices, with the driver "resource": one for each other resource that it
+  // takes values from or has a type in common with that differs; and one, in the state
+  // kStagedState, for each variable that a prepared version would no longer exchange.
   std::vector<DeviceStatus> status() const override;
   void receive(std::span<uint8_t> inputs) override { devices_.receive(inputs); }
   void send(std::span<const uint8_t> outputs) override { devices_.send(outputs); }

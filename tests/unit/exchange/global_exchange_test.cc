@@ -162,6 +162,12 @@ TEST(GlobalExchange, AnotherTypeIsLeftAloneAndSaid) {
   const ir::VerifiedImage next = image_of("P.W", true, 0, ir::Kind::kLint);
   ASSERT_TRUE(pair.writer->port.prepare(next).ok());
   EXPECT_EQ(pair.reader->port.status()[0].error, "");
+  // Known beforehand where the change is made.
+  ASSERT_EQ(pair.writer->port.status().size(), 1u);
+  EXPECT_EQ(pair.writer->port.status()[0].state, kStagedState);
+  EXPECT_EQ(pair.writer->port.status()[0].error,
+            "`tail` is ARRAY[1..3] OF LINT here and ARRAY[1..3] OF LWORD in RESOURCE `R`, which "
+            "reads it: not exchanged until both are the same");
   pair.writer->port.use(next.digest());
   pair.writer->run(next);
   pair.publish(2);
@@ -178,6 +184,7 @@ TEST(GlobalExchange, AnotherTypeIsLeftAloneAndSaid) {
   EXPECT_EQ(pair.take(), 3u);
   EXPECT_EQ(pair.reader->word(1, 0), 3u);
   EXPECT_EQ(pair.reader->port.status()[0].error, "");
+  EXPECT_TRUE(pair.writer->port.status().empty());
 }
 
 TEST(GlobalExchange, ASecondWriterIsRefused) {

@@ -22,6 +22,7 @@ std::vector<ir::VerifiedImage> build(const std::string& source,
   for (const frontend::ResourceProgram& made : compiled->programs) {
     std::vector<ir::Object> objects;
     for (uint32_t i = 0; i < made.program.pous.size(); ++i) {
+      if (made.other_code[i]) continue;
       objects.push_back(*ir::lower(made.program, ir::PouId(i)));
     }
     linker::Options options;
