@@ -238,6 +238,11 @@ void Parser::parse_transition_condition(ChartTransition& transition) {
   if (kind() == TokenKind::kColon) {
     not_supported(take().span(), "conditions as a network are",
                   "write `:= condition;` in Structured Text");
+    if (at_diagram()) {
+      take();
+      take();
+      return;
+    }
     panic_ = true;  // skips to the end, silently
     return;
   }

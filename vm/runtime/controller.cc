@@ -1,6 +1,7 @@
 #include "vm/runtime/controller.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 
@@ -147,6 +148,28 @@ base::Result<std::string> Controller::get(std::string_view path) const {
   return ir::format_value(image(), *symbol, impl_->memory.view());
 }
 
+namespace {
+
+// NaN is sent to no device: a drive would take it for some number.
+base::Status fits_output(const ir::Image& image, const ir::Symbol& symbol,
+                         const base::Bytes& bytes) {
+  if (!symbol.output || !image.types.is_scalar(symbol.type)) return base::Ok{};
+  const ir::Scalar scalar = image.types.scalar(symbol.type);
+  if (!ir::is_float(scalar)) return base::Ok{};
+  float single = 0;
+  double number = 0;
+  if (bytes.size() == sizeof single) {
+    std::memcpy(&single, bytes.data(), sizeof single);
+    number = single;
+  } else {
+    std::memcpy(&number, bytes.data(), sizeof number);
+  }
+  if (!std::isnan(number)) return base::Ok{};
+  return base::Error{base::Refusal::kBadValue, "an output cannot be NaN"};
+}
+
+}  // namespace
+
 base::Status Controller::set(std::string_view path, std::string_view value) {
   base::check(at_boundary(), "a value is set while a task is inside a scan");
   base::Result<ir::Symbol> symbol = impl_->writable(path);
@@ -154,6 +177,7 @@ base::Status Controller::set(std::string_view path, std::string_view value) {
   if (symbol->input) return read_only(path, "an input; force it instead");
   base::Result<base::Bytes> bytes = ir::parse_value(image(), symbol->type, value);
   if (!bytes.ok()) return bytes.error();
+  if (base::Status fits = fits_output(image(), *symbol, *bytes); !fits.ok()) return fits;
   std::memcpy(impl_->memory.data() + symbol->data, bytes->data(), bytes->size());
   if (symbol->output) {
     impl_->scheduler.variable_set(symbol->data, static_cast<uint32_t>(bytes->size()));
@@ -167,6 +191,7 @@ base::Status Controller::force(std::string_view path, std::string_view value) {
   if (!symbol.ok()) return symbol.error();
   base::Result<base::Bytes> bytes = ir::parse_value(image(), symbol->type, value);
   if (!bytes.ok()) return bytes.error();
+  if (base::Status fits = fits_output(image(), *symbol, *bytes); !fits.ok()) return fits;
   std::vector<Force>& forces = impl_->scheduler.tables().forces;
   auto same_place = [&](const Force& force) { return force.symbol.data == symbol->data; };
   std::erase_if(forces, same_place);

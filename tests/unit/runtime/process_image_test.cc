@@ -151,5 +151,17 @@ PROGRAM P VAR CONSTANT k : INT := 3; END_VAR VAR i AT %IB0 : BYTE; n : INT; END_
   EXPECT_EQ(plant.get("P.n"), "-5");
 }
 
+// A drive would take NaN for some number; arithmetic inside may give it.
+TEST(ProcessImage, NanReachesNoOutputByHand) {
+  Plant plant(R"(
+PROGRAM P VAR q AT %QD0 : REAL; l AT %QL8 : LREAL; n : REAL; END_VAR n := n; END_PROGRAM)");
+  ASSERT_TRUE(plant.ok());
+  EXPECT_EQ(plant->set("P.q", "NaN").error().refusal, base::Refusal::kBadValue);
+  EXPECT_EQ(plant->force("P.q", "NaN").error().refusal, base::Refusal::kBadValue);
+  EXPECT_EQ(plant->force("P.l", "NaN").error().refusal, base::Refusal::kBadValue);
+  EXPECT_TRUE(plant->force("P.l", "2.5").ok());
+  EXPECT_TRUE(plant->set("P.n", "NaN").ok());
+}
+
 }  // namespace
 }  // namespace runtime_test
