@@ -5,6 +5,7 @@
 #include <ctime>
 #include <sstream>
 
+#include "adapters/plcopen/iec10.h"
 #include "adapters/plcopen/writer.h"
 #include "base/name_case.h"
 
@@ -18,6 +19,7 @@ using frontend::VarSection;
 std::optional<Form> form_of_name(std::string_view name) {
   if (name == "tc6-2.0") return Form::kTc6v200;
   if (name == "tc6-2.01") return Form::kTc6v201;
+  if (name == "61131-10") return Form::kIec10;
   return std::nullopt;
 }
 
@@ -161,6 +163,22 @@ void put_headers(Node project, const std::string& name) {
   }
 }
 
+// One message for each POU or type.
+void report_unsaid(const frontend::Tree& tree, const std::string& owner,
+                   const std::vector<std::string>& texts, base::Diagnostics& diagnostics) {
+  base::SourceSpan at;
+  for (const frontend::PouDecl& pou : tree.pous) {
+    if (base::same_name(pou.name.text, owner)) at = pou.name.span;
+  }
+  for (const frontend::TypeDecl& type : tree.types) {
+    if (base::same_name(type.name.text, owner)) at = type.name.span;
+  }
+  std::string text = owner.empty() ? std::string() : "`" + owner + "`: ";
+  for (size_t i = 0; i < texts.size() && i < 5; ++i) text += (i == 0 ? "" : "; ") + texts[i];
+  if (texts.size() > 5) text += "; and " + std::to_string(texts.size() - 5) + " more";
+  diagnostics.add(base::DiagnosticCode::kCannotExport, at, text, "export as tc6-2.01");
+}
+
 }  // namespace
 
 std::optional<std::string> export_document(const ExportInput& input,
@@ -174,9 +192,16 @@ std::optional<std::string> export_document(const ExportInput& input,
   put_headers(project, input.name);
   const uint32_t before = diagnostics.error_count();
   Writer(input, diagnostics).project(project);
+  pugi::xml_document other;
+  if (input.form == Form::kIec10) {
+    for (const auto& [owner, texts] : to_iec10(project, other)) {
+      report_unsaid(input.tree, owner, texts, diagnostics);
+    }
+  }
   if (diagnostics.error_count() != before) return std::nullopt;
   std::ostringstream out;
-  document.save(out, "  ", pugi::format_default, pugi::encoding_utf8);
+  (input.form == Form::kIec10 ? other : document)
+      .save(out, "  ", pugi::format_default, pugi::encoding_utf8);
   return xml::as_utf8(out.str());
 }
 

@@ -6,6 +6,7 @@
 
 #include "adapters/plcopen/writer.h"
 #include "base/name_case.h"
+#include "frontend/network/order.h"
 #include "frontend/network/same.h"
 
 namespace plcopen {
@@ -19,10 +20,14 @@ using network::Modifier;
 class DiagramWriter {
  public:
   DiagramWriter(Writer& writer, const network::Body& body, Node parent)
-      : writer_(writer), body_(body), parent_(parent) {}
+      : writer_(writer),
+        body_(body),
+        body_node_(parent),
+        parent_(parent),
+        by_order_(writer.in_.form == Form::kIec10) {}
 
   void run() {
-    placed_ = true;
+    placed_ = !by_order_;
     for (const network::Network& each : body_.networks) {
       for (const Element& element : each.elements) {
         placed_ = placed_ && element.position.known;
@@ -44,6 +49,7 @@ class DiagramWriter {
   void put(const network::Network& network);
   void put_head(const network::Network& network, int32_t y);
   std::vector<Place> places(const network::Network& network);
+  static bool in_order(const network::Network& network, const std::vector<Place>& at);
   void put_element(const network::Network& network, uint32_t number, Place place);
   void put_block(const network::Network& network, const Element& element, Node node);
   void put_pin(const network::Network& network, Node list, const network::Input& input);
@@ -56,7 +62,9 @@ class DiagramWriter {
 
   Writer& writer_;
   const network::Body& body_;
+  Node body_node_;
   Node parent_;
+  bool by_order_;  // IEC 61131-10 has networks, and no order within one but that of places
   bool placed_ = false;
   std::set<uint64_t> used_;  // ids
   uint64_t next_id_ = 0;
@@ -98,7 +106,7 @@ std::vector<DiagramWriter::Place> DiagramWriter::places(const network::Network& 
     }
     const size_t at = static_cast<size_t>(column[i]);
     if (free.size() <= at) free.resize(at + 1, y_);
-    y = std::max(y_, free[at]);
+    y = by_order_ ? y_ + 50 * static_cast<int32_t>(i) : std::max(y_, free[at]);
     out[i] = {20 + 150 * column[i], y};
     const int32_t pins = static_cast<int32_t>(
         std::max(network.elements[i].inputs.size(), network.elements[i].outputs.size()));
@@ -106,7 +114,41 @@ std::vector<DiagramWriter::Place> DiagramWriter::places(const network::Network& 
     bottom = std::max(bottom, free[at]);
   }
   y_ = bottom + 40;
+  if (by_order_ && !in_order(network, out)) {
+    writer_.fail(network.span,
+                 "the order of execution of this network follows from nothing that "
+                 "IEC 61131-10 has an element for");
+  }
   return out;
+}
+
+namespace {
+
+bool acts(Kind kind) {
+  return kind == Kind::kCoil || kind == Kind::kSink || kind == Kind::kBlock ||
+         kind == Kind::kJump || kind == Kind::kReturn;
+}
+
+}  // namespace
+
+// Is the order of places the order of `network`?
+bool DiagramWriter::in_order(const network::Network& network, const std::vector<Place>& at) {
+  network::Network probe = network;
+  for (size_t i = 0; i < at.size(); ++i) {
+    probe.elements[i].position = {at[i].x, at[i].y, 0, 0, true};
+    probe.elements[i].order = 0;
+    probe.elements[i].id = i;
+  }
+  uint64_t last = 0;
+  for (network::Part& part : network::split(probe, {})) {
+    if (!network::order(part.network, {}).empty()) return false;
+    for (const Element& element : part.network.elements) {
+      if (!acts(element.kind)) continue;
+      if (element.id < last) return false;
+      last = element.id;
+    }
+  }
+  return true;
 }
 
 void DiagramWriter::put_head(const network::Network& network, int32_t y) {
@@ -124,6 +166,10 @@ void DiagramWriter::put_head(const network::Network& network, int32_t y) {
 }
 
 void DiagramWriter::put(const network::Network& network) {
+  if (by_order_) {
+    parent_ = body_node_.append_child("network");
+    y_ = 20;
+  }
   const int32_t top = y_;
   if (!placed_ && (!network.comments.empty() || !network.label.empty())) y_ += 20;
   std::vector<Place> at = places(network);
@@ -273,10 +319,7 @@ void DiagramWriter::put_element(const network::Network& network, uint32_t number
     out.append_attribute("width") = element.position.width;
     out.append_attribute("height") = element.position.height;
   }
-  const bool acts = element.kind == Kind::kCoil || element.kind == Kind::kSink ||
-                    element.kind == Kind::kBlock || element.kind == Kind::kJump ||
-                    element.kind == Kind::kReturn;
-  if (acts) out.append_attribute("executionOrderId") = ++order_;
+  if (acts(element.kind)) out.append_attribute("executionOrderId") = ++order_;
   if (!inline_negation) put_modifier(out, modifier);
   if (element.kind == Kind::kJump) out.append_attribute("label") = element.operand.text.c_str();
   if (element.kind == Kind::kBlock) {

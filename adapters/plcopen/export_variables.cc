@@ -68,10 +68,14 @@ bool Writer::put_variable(Node list, const VarBlock& block, const VarDecl& decl)
     } else if (!address.empty()) {
       node.append_attribute("address") = address.c_str();
     }
+    if (in_.form == Form::kIec10 && decl.edge != frontend::Edge::kNone) {
+      node.append_attribute("edge") = decl.edge == frontend::Edge::kRising ? "rising" : "falling";
+    }
     common(node);
   }
   const bool unnamed = !decl.names.empty() && decl.names[0].text.starts_with("%");
-  return decl.edge == frontend::Edge::kNone && !decl.binds && !unnamed;
+  const bool edge = decl.edge != frontend::Edge::kNone && in_.form != Form::kIec10;
+  return !edge && !decl.binds && !unnamed;
 }
 
 bool Writer::put_list(Node parent, const VarBlock& block, const std::string& name) {

@@ -146,7 +146,7 @@ void Iec10Reader::variable(Node list, Node from) {
   common(out, from);
 }
 
-void Iec10Reader::list(Node to, const char* name, Node from) {
+void Iec10Reader::list(Node to, const char* name, Node from, const std::vector<Node>& variables) {
   Node out = made(to, name, from);
   copy(out, "name", from, "name");
   copy(out, "constant", from, "constant");
@@ -155,13 +155,41 @@ void Iec10Reader::list(Node to, const char* name, Node from) {
   for (const char* word : {"nonRetain", "non_retain", "nonretain"}) {
     copy(out, "nonretain", from, word);
   }
-  std::vector<Node> variables = xml::children(from, "Variable");
-  std::stable_sort(variables.begin(), variables.end(), [](Node a, Node b) {
-    return a.attribute("orderWithinParamSet").as_int() <
-           b.attribute("orderWithinParamSet").as_int();
-  });
   for (Node each : variables) variable(out, each);
   common(out, from);
+}
+
+// Their order goes through all sections, and calls without names depend on it.
+void Iec10Reader::parameters(Node to, Node from) {
+  static constexpr std::pair<const char*, const char*> kForms[] = {{"InputVars", "inputVars"},
+                                                                   {"OutputVars", "outputVars"},
+                                                                   {"InoutVars", "inOutVars"},
+                                                                   {"InOutVars", "inOutVars"}};
+  struct Parameter {
+    int order;
+    const char* name;
+    Node section;
+    Node variable;
+  };
+  std::vector<Parameter> all;
+  for (Node section : xml::children(from)) {
+    for (auto [element, name] : kForms) {
+      if (!xml::is(section, element)) continue;
+      for (Node each : xml::children(section, "Variable")) {
+        all.push_back({each.attribute("orderWithinParamSet").as_int(), name, section, each});
+      }
+    }
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Parameter& a, const Parameter& b) { return a.order < b.order; });
+  for (size_t i = 0; i < all.size();) {
+    std::vector<Node> run;
+    const size_t first = i;
+    for (; i < all.size() && all[i].section == all[first].section; ++i) {
+      run.push_back(all[i].variable);
+    }
+    list(to, all[first].name, all[first].section, run);
+  }
 }
 
 // Variables, result, bases: <interface>.
@@ -170,19 +198,18 @@ void Iec10Reader::interface(Node to, Node from) {
     const char* from;
     const char* to;
   };
-  static constexpr Form kForms[] = {{"InputVars", "inputVars"},       {"OutputVars", "outputVars"},
-                                    {"InoutVars", "inOutVars"},       {"InOutVars", "inOutVars"},
-                                    {"ExternalVars", "externalVars"}, {"Vars", "localVars"},
-                                    {"TempVars", "tempVars"},         {"GlobalVars", "globalVars"}};
+  static constexpr Form kForms[] = {{"ExternalVars", "externalVars"},
+                                    {"Vars", "localVars"},
+                                    {"TempVars", "tempVars"},
+                                    {"GlobalVars", "globalVars"}};
   Node out = made(to, "interface", from);
   if (Node result = xml::child(from, "ResultType")) {
     type(made(out, "returnType", result), result);
   }
-  for (Node part : {xml::child(from, "Parameters"), from}) {
-    for (Node node : xml::children(part)) {
-      for (const Form& form : kForms) {
-        if (xml::is(node, form.from)) list(out, form.to, node);
-      }
+  parameters(out, xml::child(from, "Parameters"));
+  for (Node node : xml::children(from)) {
+    for (const Form& form : kForms) {
+      if (xml::is(node, form.from)) list(out, form.to, node, xml::children(node, "Variable"));
     }
   }
   for (auto [element, name] :
@@ -302,7 +329,7 @@ void Iec10Reader::resource(Node to, Node from) {
   common(out, from);
   for (Node node : xml::children(from)) {
     if (xml::is(node, "GlobalVars")) {
-      list(out, "globalVars", node);
+      list(out, "globalVars", node, xml::children(node, "Variable"));
     } else if (xml::is(node, "Task")) {
       Node task = made(out, "task", node);
       for (const char* name : {"name", "interval", "priority", "single"}) {
@@ -343,7 +370,7 @@ void Iec10Reader::project(Node from) {
       if (xml::is(node, "Resource")) {
         resource(configuration, node);
       } else if (xml::is(node, "GlobalVars")) {
-        list(configuration, "globalVars", node);
+        list(configuration, "globalVars", node, xml::children(node, "Variable"));
       } else if (!xml::is(node, "AddData") && !xml::is(node, "Documentation")) {
         unknown(node, xml::shown(node));
       }

@@ -4,7 +4,10 @@
 // properties is not known; documents that have them get an error (E1083, E1084).
 #pragma once
 
+#include <map>
+#include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "adapters/xml/document.h"
 
@@ -19,7 +22,9 @@ struct Converted {
 };
 void from_iec10(xml::Node project, Converted& out, xml::Reporter& report);
 
-// `project` in the namespace of 61131-10, appended to `out`. What it cannot say: a text each.
-std::vector<std::string> to_iec10(xml::Node project, pugi::xml_document& out);
+// `project` in the namespace of 61131-10, appended to `out`. What it cannot say, by the POU or type
+// that it stands in; empty: in none.
+using Unsaid = std::map<std::string, std::vector<std::string>>;
+Unsaid to_iec10(xml::Node project, pugi::xml_document& out);
 
 }  // namespace plcopen

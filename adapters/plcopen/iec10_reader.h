@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "adapters/plcopen/iec10.h"
 
@@ -27,7 +28,8 @@ class Iec10Reader {
   void specification(Node to, Node from);
   void value(Node to, Node from);
   void variable(Node list, Node from);
-  void list(Node to, const char* name, Node from);
+  void list(Node to, const char* name, Node from, const std::vector<Node>& variables);
+  void parameters(Node to, Node from);
   void interface(Node to, Node from);
   Node data(Node owner, const char* name, const char* element, Node from);
   void pou(Node to, Node from, const char* type);
