@@ -2,6 +2,7 @@
 #include <string_view>
 
 #include "base/limits.h"
+#include "frontend/format/diagrams.h"
 #include "frontend/format/outliner.h"
 #include "ir/types/types.h"
 
@@ -51,8 +52,24 @@ void Outliner::push(TokenKind end, BlockKind kind, uint32_t inner) {
   blocks_.push_back({end, kind, line.level, inner, next_id_++, head, 0, false, false});
 }
 
+// What begins and ends a diagram stands in a row of its own, whatever is around it.
+uint32_t Outliner::before_diagram(uint32_t end) const {
+  for (uint32_t i = at_; i < end; ++i) {
+    bool word = text_.kind(i) == TokenKind::kLadder || text_.kind(i) == TokenKind::kFbd;
+    if (!word || i + 1 >= text_.token_count()) continue;
+    const Gap& gap = text_.gap(i + 1);
+    bool drawn = ends_diagram(text_.kind(i), text_.kind(i + 1));
+    for (uint32_t p = gap.first; p < gap.first + gap.count; ++p) {
+      drawn = drawn || text_.piece(p).kind == PieceKind::kForeign;
+    }
+    if (drawn) return i == at_ ? i + 1 : i;
+  }
+  return end;
+}
+
 // The line of tokens [at_, end), at least one.
 Line& Outliner::add(LineKind kind, uint32_t end, uint32_t level) {
+  end = before_diagram(end);
   Line line;
   line.first = at_;
   line.end = end > at_ ? end : at_ + 1;

@@ -4,6 +4,7 @@
 #include "frontend/format/same_program.h"
 #include "frontend/format/writer.h"
 #include "frontend/ladder/read.h"
+#include "frontend/network/element_text.h"
 #include "frontend/network/same.h"
 #include "frontend/network/write.h"
 #include "ir/types/types.h"
@@ -103,6 +104,8 @@ std::optional<std::string> drawn(TokenKind head, std::string_view text, uint32_t
     uint32_t tabs = options.tabs && options.indent != 0 ? indent / options.indent : 0;
     std::string margin = std::string(tabs, '\t') + std::string(indent - tabs * options.indent, ' ');
     out = with_margin(laid_out_fbd(text, inner), margin);
+    bool whole = network::is_one_diagram(network::Language::kFbd, out);
+    if (!whole || !same_diagram(head, text, out)) return std::nullopt;
   }
   while (out.ends_with('\n')) out.pop_back();
   return out;

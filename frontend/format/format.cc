@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "frontend/format/diagrams.h"
 #include "frontend/format/same_program.h"
 #include "frontend/format/writer.h"
 #include "frontend/parse/parse.h"
@@ -30,6 +31,20 @@ uint32_t copy_errors(const base::Diagnostics& from, base::Diagnostics& to) {
   return errors;
 }
 
+// A drawing that the lexer has left out although its end is missing: its first token, or the number
+// of tokens.
+uint32_t open_diagram(const base::SourceMap& sources, uint32_t file, const TokenList& tokens) {
+  formatting::Text text(sources, file, tokens);
+  for (uint32_t i = 1; i < text.token_count(); ++i) {
+    if (formatting::ends_diagram(text.kind(i - 1), text.kind(i))) continue;
+    const formatting::Gap& gap = text.gap(i);
+    for (uint32_t p = gap.first; p < gap.first + gap.count; ++p) {
+      if (text.piece(p).kind == formatting::PieceKind::kForeign) return i - 1;
+    }
+  }
+  return text.token_count();
+}
+
 std::string laid_out(const base::SourceMap& sources, uint32_t file, const TokenList& tokens,
                      const FormatOptions& options) {
   formatting::Text text(sources, file, tokens);
@@ -47,11 +62,23 @@ base::Result<std::string> format_tokens(const base::SourceMap& sources, uint32_t
   TokenList tokens = lex(sources, file, lexical, LexOptions::all_text());
   uint32_t errors = copy_errors(lexical, diagnostics);
   if (errors != 0) return errors_in(sources, file, errors);
+  if (uint32_t open = open_diagram(sources, file, tokens); open < tokens.tokens.size()) {
+    diagnostics.add(base::DiagnosticCode::kMissingEnd, tokens.tokens[open].span(),
+                    "this drawing has no end", "write END_LADDER behind it");
+    return errors_in(sources, file, 1);
+  }
   base::SourceMap result;
   result.add(std::string(sources.file_name(file)), laid_out(sources, file, tokens, options));
   base::Status same = formatting::same_program(sources, file, result, 0);
-  if (!same.ok()) return same.error();
-  return std::string(result.text(0));
+  if (same.ok()) return std::string(result.text(0));
+  // A word that begins no drawing in its row would begin one in a row of its own.
+  for (const Token& token : tokens.tokens) {
+    if (token.kind != TokenKind::kLadder && token.kind != TokenKind::kFbd) continue;
+    diagnostics.add(base::DiagnosticCode::kMissingEnd, token.span(), "this drawing has no end",
+                    "write LADDER or FBD in a row of its own, and its end behind it");
+    return errors_in(sources, file, 1);
+  }
+  return same.error();
 }
 
 base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,

@@ -43,6 +43,7 @@ class Outliner {
     return line;
   }
   void close();
+  uint32_t before_diagram(uint32_t end) const;
   uint32_t behind_semicolons(uint32_t end) const;
   void soft_keyword(uint32_t i) { out_.soft_keywords[i] = true; }
 

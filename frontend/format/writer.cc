@@ -1,6 +1,7 @@
 #include "frontend/format/writer.h"
 
 #include "frontend/format/diagrams.h"
+#include "frontend/lex/characters.h"
 
 namespace frontend::formatting {
 
@@ -142,8 +143,10 @@ bool Writer::write_diagram(const Line& line) {
     return true;
   }
   // As it is, from the first row to the last one.
-  while (!text.empty() && text.back() != '\n') text.remove_suffix(1);
-  if (!text.empty()) text.remove_suffix(1);
+  bool one_line = text.find('\n') == std::string_view::npos;
+  while (!text.empty() && (one_line ? is_space(text.back()) : text.back() != '\n')) {
+    text.remove_suffix(1);
+  }
   size_t first = text.find_first_not_of(" \t\r");
   bool in_row = first != std::string_view::npos && text[first] != '\n';
   if (!in_row) text.remove_prefix(first == std::string_view::npos ? text.size() : first + 1);

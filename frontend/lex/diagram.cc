@@ -1,6 +1,7 @@
 // The text forms of ladder and FBD have readers of their own (ladder/read.h, fbd/read.h). Behind
 // LADDER or FBD in a line of its own, everything up to its end gives no tokens.
 #include "frontend/lex/characters.h"
+#include "frontend/lex/keywords.h"
 #include "frontend/lex/scanner.h"
 #include "ir/types/types.h"
 
@@ -25,11 +26,15 @@ bool ends_line(std::string_view text, size_t at) {
   return rest.empty() || rest[0] == '\n' || rest == "//" || rest == "(*" || rest == "/*";
 }
 
-// The next line that begins with END_; no row of a diagram does.
+// The next line that begins with an END_... word; no row of a diagram does. Names may:
+// End_Position.
 size_t next_end(std::string_view text, size_t at) {
   while ((at = text.find('\n', at)) != std::string_view::npos) {
     at = behind_blanks(text, at + 1);
-    if (ir::same_name(text.substr(at, kEnd.size()), kEnd)) return at;
+    size_t end = at;
+    while (end < text.size() && is_name_part(text[end])) ++end;
+    bool closing = ir::same_name(text.substr(at, kEnd.size()), kEnd);
+    if (closing && keyword(text.substr(at, end - at)) != TokenKind::kName) return at;
   }
   return text.size();
 }

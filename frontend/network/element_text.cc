@@ -1,6 +1,7 @@
 #include "frontend/network/element_text.h"
 
 #include "frontend/lex/characters.h"
+#include "frontend/lex/lexer.h"
 #include "ir/types/types.h"
 #include "ir/types/utf.h"
 
@@ -241,6 +242,15 @@ bool fits_between(std::string_view text, std::string_view open, std::string_view
   return depth == 0;
 }
 
+// A line that the lexer would take for the end of the diagram.
+bool has_end_line(std::string_view comment) {
+  for (size_t at = comment.find('\n'); at != std::string_view::npos; at = comment.find('\n', at)) {
+    while (at < comment.size() && is_space(comment[at])) ++at;
+    if (ir::same_name(comment.substr(at, 4), "END_")) return true;
+  }
+  return false;
+}
+
 std::string with_lines(std::string_view text, std::string_view before) {
   std::string out;
   bool fresh = false;
@@ -257,11 +267,18 @@ std::string with_lines(std::string_view text, std::string_view before) {
 
 std::string comment_rows(std::string_view comment, uint32_t indent) {
   std::string margin(indent, ' ');
-  if (fits_between(comment, "(*", "*)")) {
+  if (fits_between(comment, "(*", "*)") && !has_end_line(comment)) {
     if (comment.empty()) return "(* *)";
     return "(* " + with_lines(comment, margin + "   ") + " *)";
   }
   return "// " + with_lines(comment, margin + "// ");
+}
+
+bool is_one_diagram(Language language, std::string_view rows) {
+  std::string word = language == Language::kLadder ? "LADDER" : "FBD";
+  std::string text = word + '\n' + std::string(rows) + "\nEND_" + word + '\n';
+  base::Diagnostics unheard;
+  return lex(text, base::SourcePos{0}, unheard).tokens.size() == 3;
 }
 
 bool is_utf8(std::string_view text) {

@@ -37,6 +37,9 @@ bool is_result(const Element& block, uint32_t output);
 // A comment with its marks; its further lines begin with `indent` spaces.
 std::string comment_rows(std::string_view comment, uint32_t indent);
 
+// Does the lexer take `rows` between LADDER and END_LADDER, or FBD and END_FBD, for one diagram?
+bool is_one_diagram(Language language, std::string_view rows);
+
 bool is_utf8(std::string_view text);
 // Characters when `wide`, otherwise bytes.
 uint32_t count_columns(std::string_view text, bool wide);

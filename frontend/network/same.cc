@@ -30,29 +30,19 @@ class Printer {
   explicit Printer(bool fbd) : fbd_(fbd) {}
 
   std::string run(const Body& body) {
-    std::string before;  // comments of networks that have nothing else: they belong to the next
-    for (const Network& network : body.networks) {
-      std::string comments = std::exchange(before, {});
-      for (const std::string& comment : network.comments) comments += "// " + comment + '\n';
-      if (network.elements.empty() && network.label.empty()) {
-        before = std::move(comments);
-        continue;
-      }
+    for (const Headed& headed : with_heads(body)) {
       // In FBD what has no label is drawn together with what stands in front of it.
-      if (out_.empty() || !fbd_ || !network.label.empty()) {
-        out_ +=
-            std::exchange(comments_, {}) + "network " + ir::fold_name(network.label.text) + '\n';
+      if (out_.empty() || !fbd_ || !headed.label.empty()) {
+        out_ += std::exchange(comments_, {}) + "network " + ir::fold_name(headed.label) + '\n';
         done_ = 0;
       }
-      comments_ += comments;
-      for (const Element& element : network.elements) {
-        if (!element.comment.empty()) comments_ += "// " + element.comment + '\n';
-      }
-      network_ = &network;
-      text_.assign(network.elements.size(), {});
-      for (uint32_t i = 0; i < network.elements.size(); ++i) element(i);
+      for (const std::string& comment : headed.comments) comments_ += "// " + comment + '\n';
+      network_ = headed.network;
+      if (network_ == nullptr) continue;
+      text_.assign(network_->elements.size(), {});
+      for (uint32_t i = 0; i < network_->elements.size(); ++i) element(i);
     }
-    return out_ + comments_ + before;
+    return out_ + comments_;
   }
 
  private:
@@ -157,6 +147,32 @@ std::string Printer::link(Link link, bool& negated) const {
 }
 
 }  // namespace
+
+namespace {
+
+bool is_rail(const Element& element) {
+  return element.kind == Kind::kLeftRail || element.kind == Kind::kRightRail;
+}
+
+}  // namespace
+
+std::vector<Headed> with_heads(const Body& body) {
+  std::vector<Headed> out;
+  Headed next;
+  for (const Network& network : body.networks) {
+    if (!network.label.empty() && !next.label.empty()) out.push_back(std::exchange(next, {}));
+    if (!network.label.empty()) next.label = network.label.text;
+    for (const std::string& comment : network.comments) next.comments.push_back(comment);
+    for (const Element& element : network.elements) {
+      if (!element.comment.empty()) next.comments.push_back(element.comment);
+    }
+    if (std::all_of(network.elements.begin(), network.elements.end(), is_rail)) continue;
+    next.network = &network;
+    out.push_back(std::exchange(next, {}));
+  }
+  if (!next.label.empty() || !next.comments.empty()) out.push_back(std::move(next));
+  return out;
+}
 
 std::string canonical(const Body& body) {
   return Printer(body.language == Language::kFbd).run(body);

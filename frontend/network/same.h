@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "frontend/network/network.h"
 
@@ -12,5 +13,14 @@ namespace frontend::network {
 // elements that write something, pins that nothing is connected to, and rails. Contacts without
 // use are left out.
 std::string canonical(const Body& body);
+
+// A rung with what stands in front of it in text: comments and labels of networks without
+// elements belong to what follows them.
+struct Headed {
+  std::string label;
+  std::vector<std::string> comments;
+  const Network* network = nullptr;  // null: nothing follows
+};
+std::vector<Headed> with_heads(const Body& body);
 
 }  // namespace frontend::network

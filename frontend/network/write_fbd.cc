@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <unordered_set>
+#include <utility>
 
 #include "frontend/lex/characters.h"
 #include "frontend/network/element_text.h"
@@ -26,15 +27,17 @@ class Writer {
   Writer(const Body& body, uint32_t indent) : body_(body), indent_(indent) { collect_names(); }
 
   std::string run() {
-    for (size_t n = 0; n < body_.networks.size(); ++n) {
-      if (n > 0) out_ += '\n';
-      network_ = &body_.networks[n];
+    std::string all;
+    for (const Network& network : body_.networks) {
+      network_ = &network;
       find_uses();
-      for (const std::string& comment : network_->comments) row(comment_rows(comment, indent_));
-      if (!network_->label.empty()) row(network_->label.text + ':');
-      for (uint32_t i = 0; i < network_->elements.size(); ++i) element(i);
+      for (const std::string& comment : network.comments) row(comment_rows(comment, indent_));
+      if (!network.label.empty()) row(network.label.text + ':');
+      for (uint32_t i = 0; i < network.elements.size(); ++i) element(i);
+      if (!all.empty() && !out_.empty()) all += '\n';
+      all += std::exchange(out_, {});
     }
-    return std::move(out_);
+    return all;
   }
 
  private:
@@ -63,8 +66,8 @@ class Writer {
   std::string out_;
   std::unordered_set<std::string> names_;    // everything that could be a name, folded
   std::unordered_set<std::string> claimed_;  // wires of the body that kept their names
-  std::vector<uint32_t> written_;          // by element: those before it that write something
-  std::vector<uint32_t> users_;            // how many inputs use it
+  std::vector<uint32_t> written_;            // by element: those before it that write something
+  std::vector<uint32_t> users_;              // how many inputs use it
   std::vector<uint32_t> last_user_;
   // What is known of power behind an element; of a contact that is used at once, its operands.
   std::vector<std::vector<Value>> terms_;

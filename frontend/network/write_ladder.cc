@@ -73,19 +73,19 @@ class Drawer {
   Drawer(const Body& body, uint32_t indent) : body_(body), indent_(indent), wide_(is_wide(body)) {}
 
   std::optional<std::string> run() {
+    const std::vector<Headed> rungs = with_heads(body_);
     std::vector<Drawing> drawings;
     uint32_t rail = kMinColumns;
-    for (const Network& network : body_.networks) {
-      std::optional<Drawing> drawing = measure(network);
+    for (const Headed& rung : rungs) {
+      std::optional<Drawing> drawing = measure(rung.network != nullptr ? *rung.network : Network{});
       if (!drawing) return std::nullopt;
       if (drawing->width <= kMaxColumns) rail = std::max(rail, drawing->width);
       drawings.push_back(std::move(*drawing));
     }
     for (size_t n = 0; n < drawings.size(); ++n) {
-      if (n > 0) out_ += '\n';
-      write_comments(body_.networks[n]);
-      const Text& label = body_.networks[n].label;
-      if (!label.empty()) row(label.text + ":");
+      if (!out_.empty()) out_ += '\n';
+      for (const std::string& comment : rungs[n].comments) row(comment_rows(comment, indent_));
+      if (!rungs[n].label.empty()) row(rungs[n].label + ":");
       if (!drawings[n].texts.empty()) draw(drawings[n], rail);
     }
     return std::move(out_);
@@ -94,7 +94,6 @@ class Drawer {
  private:
   std::optional<Drawing> measure(const Network& network);
   void draw(const Drawing& drawing, uint32_t rail);
-  void write_comments(const Network& network);
   void row(std::string_view text) {
     out_.append(indent_, ' ');
     out_ += text;
@@ -178,17 +177,6 @@ void Drawer::draw(const Drawing& drawing, uint32_t rail) {
   for (uint32_t r = 0; r < p.rows; ++r) row(rows.text(r));
 }
 
-void Drawer::write_comments(const Network& network) {
-  auto write = [&](const std::string& comment) {
-    std::string text = comment_rows(comment, indent_);
-    row(text);
-  };
-  for (const std::string& comment : network.comments) write(comment);
-  for (const Element& element : network.elements) {
-    if (!element.comment.empty()) write(element.comment);
-  }
-}
-
 }  // namespace
 
 std::optional<std::string> write_ladder(const Body& body, uint32_t indent) {
@@ -199,6 +187,7 @@ std::optional<std::string> write_ladder(const Body& body, uint32_t indent) {
   base::Diagnostics diagnostics;
   Body again = ladder::read(*text, base::SourcePos{0}, diagnostics);
   if (!diagnostics.all().empty() || canonical(again) != canonical(body)) return std::nullopt;
+  if (!is_one_diagram(Language::kLadder, *text)) return std::nullopt;
   return text;
 }
 
