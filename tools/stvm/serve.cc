@@ -158,6 +158,7 @@ base::Status run_one(ServedResource& resource, const vm::RealTimeOptions& real_t
 base::Status run_several(Served& served, const vm::RealTimeOptions& real_time,
                          ServiceNotify& notify) {
   std::atomic<bool> stop{false};
+  std::atomic<size_t> ready{0};
   std::atomic<size_t> ended{0};
   std::vector<std::atomic<bool>> alive(served.size());
   std::vector<base::Status> results(served.size(), base::Ok{});
@@ -168,6 +169,8 @@ base::Status run_several(Served& served, const vm::RealTimeOptions& real_time,
       if (own.cpu) *own.cpu += static_cast<uint32_t>(i);
       results[i] = served[i]->make_real_time(own);
       if (results[i].ok()) {
+        print_ready(*served[i]);
+        ++ready;
         served[i]->run([&] { return stop || StopSignal::received(); }, [&] { alive[i] = true; });
       } else {
         served[i]->give_up();
@@ -176,10 +179,13 @@ base::Status run_several(Served& served, const vm::RealTimeOptions& real_time,
       ++ended;
     });
   }
-  for (const auto& resource : served) print_ready(*resource);
-  notify.ready(std::to_string(served.size()) + " resources");
+  bool told = false;
   while (ended < served.size()) {
     std::this_thread::sleep_for(kAliveLook);
+    if (!told && ready == served.size()) {
+      notify.ready(std::to_string(served.size()) + " resources");
+      told = true;
+    }
     if (!std::all_of(alive.begin(), alive.end(), [](const auto& one) { return one.load(); })) {
       continue;
     }
