@@ -18,11 +18,10 @@ base::Error errors_in(const base::SourceMap& sources, uint32_t file, uint32_t co
           std::string(sources.file_name(file)) + ": " + std::to_string(count) + " error(s)"};
 }
 
-// Syntax that is known but not compiled yet is no reason to leave a text alone, nor is `{error}`.
+// `{error}` is no reason to leave a text alone.
 uint32_t copy_errors(const base::Diagnostics& from, base::Diagnostics& to) {
   uint32_t errors = 0;
   for (const base::Diagnostic& diagnostic : from.all()) {
-    if (diagnostic.code == base::DiagnosticCode::kNotSupported) continue;
     if (diagnostic.code == base::DiagnosticCode::kErrorPragma) continue;
     if (base::diagnostic_row(diagnostic.code).severity != base::Severity::kError) continue;
     to.add(diagnostic);
