@@ -111,7 +111,10 @@ ExprId Parser::Diagram::callee(const Element& element) {
 }
 
 Range32 Parser::Diagram::arguments(uint32_t number, const Element& element, Value* enable) {
-  const std::string owner = element.operand.empty() ? element.type.text : element.operand.text;
+  // What an edge of a pin is called by: names that stay when boxes come and go in front.
+  const std::string& owner = !element.operand.empty() ? element.operand.text
+                             : !element.wire.empty()  ? element.wire.text
+                                                      : element.type.text;
   std::vector<Arg> args;
   for (const network::Input& each : element.inputs) {
     Value value = input(each, owner);
