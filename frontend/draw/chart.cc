@@ -1,10 +1,8 @@
 #include <algorithm>
-#include <utility>
 
 #include "frontend/draw/chart_parts.h"
 #include "frontend/draw/pictures.h"
 #include "frontend/draw/shapes.h"
-#include "frontend/lex/characters.h"
 
 namespace frontend::draw {
 
@@ -20,29 +18,6 @@ const char* qualifier_text(ActionQualifier qualifier) {
   static constexpr const char* kTexts[] = {"N",  "R",  "S",  "L",  "D", "P",
                                            "P0", "P1", "SD", "DS", "SL"};
   return kTexts[static_cast<size_t>(qualifier)];
-}
-
-// Broken at blanks; blanks and line ends in a row are one blank.
-std::vector<std::string> wrapped(std::string_view text) {
-  std::vector<std::string> out;
-  std::string line;
-  std::string word;
-  auto end_word = [&] {
-    if (word.empty()) return;
-    if (!line.empty() && line.size() + 1 + word.size() > kWrap)
-      out.push_back(std::exchange(line, {}));
-    line += (line.empty() ? "" : " ") + std::exchange(word, {});
-  };
-  for (char c : text) {
-    if (is_space(c)) {
-      end_word();
-    } else {
-      word += c;
-    }
-  }
-  end_word();
-  if (!line.empty()) out.push_back(line);
-  return out;
 }
 
 std::string text_of(const base::SourceMap& sources, base::SourceSpan span) {
@@ -135,7 +110,7 @@ std::vector<std::string> ChartPicture::condition(const sfc::Transition& transiti
   if (decl.has_priority) {
     head += (head.empty() ? "" : " ") + ("[" + std::to_string(decl.priority) + "]");
   }
-  std::vector<std::string> out = wrapped(text(decl.condition));
+  std::vector<std::string> out = wrapped(text(decl.condition), kWrap);
   if (!head.empty()) out.insert(out.begin(), head);
   if (out.empty()) out.push_back("?");
   return out;

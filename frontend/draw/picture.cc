@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kLineHeight = 17;
 constexpr double kMinWidth = 480;
+constexpr size_t kCommentColumns = 100;
+constexpr double kMaxCoil = 200;  // what is wider does not move the coils of other rungs
 
 // Lines of a comment, those of a text of any length.
 std::vector<std::string> lines_of(const std::string& text) {
@@ -34,9 +36,11 @@ double heading(Svg& svg, const network::Network& network, size_t number, double 
   }
   double at = y;
   auto comment = [&](const std::string& text) {
-    for (const std::string& line : lines_of(text)) {
-      svg.text(x, at + 12, line, Type::kComment);
-      at += kLineHeight;
+    for (const std::string& paragraph : lines_of(text)) {
+      for (const std::string& line : wrapped(paragraph, kCommentColumns)) {
+        svg.text(x, at + 12, line, Type::kComment);
+        at += kLineHeight;
+      }
     }
   };
   for (const std::string& text : network.comments) comment(text);
@@ -69,13 +73,19 @@ std::string draw_body(const network::Body& body, std::string_view title, const L
   svg.text(kLeft, 28, title, Type::kTitle);
   std::vector<std::optional<Rung>> rungs;
   double width = kMinWidth;
+  double coil = 0;  // room for the last one of each rung: they stand below each other
   for (const network::Network& network : body.networks) {
     std::optional<network::Placement> placement;
     if (body.language == network::Language::kLadder) placement = network::place(network);
     rungs.emplace_back();
     if (!placement) continue;
     rungs.back().emplace(network, std::move(*placement), live);
-    width = std::max(width, rungs.back()->width());
+    if (rungs.back()->coil() <= kMaxCoil) coil = std::max(coil, rungs.back()->coil());
+  }
+  for (std::optional<Rung>& rung : rungs) {
+    if (!rung) continue;
+    rung->widen_coil(coil);
+    width = std::max(width, rung->width());
   }
   double y = 46;
   for (size_t n = 0; n < body.networks.size(); ++n) {

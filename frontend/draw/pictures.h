@@ -14,6 +14,9 @@ class Rung {
   Rung(const network::Network& network, network::Placement placement, const Live* live);
   double width() const { return width_; }
   double height() const { return height_; }
+  // Room for what stands beside the right rail; 0: nothing does.
+  double coil() const { return right_columns_.empty() ? 0 : right_columns_[0]; }
+  void widen_coil(double room);
   // The right rail is `width` behind kLeft.
   void draw(Svg& svg, double y, double width) const;
 

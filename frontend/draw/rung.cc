@@ -89,6 +89,12 @@ void Rung::measure() {
   height_ = y;
 }
 
+void Rung::widen_coil(double room) {
+  if (right_columns_.empty() || right_columns_[0] >= room) return;
+  width_ += room - right_columns_[0];
+  right_columns_[0] = room;
+}
+
 // Draws one rung from left to right, boundary by boundary: `now_` is the power on each row's wire.
 class Rung::Pen {
  public:

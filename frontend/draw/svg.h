@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace frontend::draw {
 
@@ -51,6 +52,10 @@ class Svg {
   double width_ = 0;
   double height_ = 0;
 };
+
+// Broken at blanks into lines of at most so many bytes, but for longer words; blanks and line ends
+// in a row are one blank.
+std::vector<std::string> wrapped(std::string_view text, size_t columns);
 
 // Columns of a text: East Asian characters take two.
 double text_columns(std::string_view text);

@@ -9,6 +9,7 @@ head -c 4 starter.svg | grep -q '<svg' || fail "starter.svg is no SVG"
 grep -q 'PROGRAM Starter' starter.svg || fail "no title"
 expect 0 stc draw "$examples/motor_starter" Starter
 cmp -s out starter.svg || fail "standard output is another picture"
+cmp -s "$source_dir/docs/ladder.svg" starter.svg || fail "docs/ladder.svg is an older picture"
 expect 0 stc draw "$examples/palletiser" layers -o layers.svg
 grep -q 'squeeze it' layers.svg || fail "no comment in layers.svg"
 
