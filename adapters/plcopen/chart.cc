@@ -37,6 +37,7 @@ class Chart {
   void connect();
   void add_actions(Node block);
   std::string step_name(Node node);
+  void reserve_names();
   const Element* at(uint64_t id) const;
   // Names of the steps that a transition leaves or enters, through what lies between.
   void steps_above(const Element& element, bool joined, std::vector<std::string>& out);
@@ -53,7 +54,9 @@ class Chart {
   Drawing drawing_;                // conditions
   std::vector<Element> elements_;  // in the order of the drawing
   std::map<uint64_t, size_t> by_id_;
-  std::set<std::string> names_;  // folded
+  xml::Names steps_;
+  std::map<std::string, std::string> renamed_;  // steps, by their folded names in XML
+  xml::Names actions_;                          // and what else actions may not be called
   bool prioritised_ = false;
   std::set<const Element*> followed_;  // for one transition: each once, so loops end
 };
@@ -81,16 +84,38 @@ double place(Node node, const char* axis) {
   return xml::child(node, "position").attribute(axis).as_double();
 }
 
+// Empty, after a report, when it has none, or that of another step.
 std::string Chart::step_name(Node node) {
-  std::string name(report_.required(node, "name"));
-  if (name.empty() || xml::is_name(name)) return name;
-  std::string changed;
-  for (char c : name)
-    changed += changed.empty() || !xml::is_name("x" + std::string(1, c)) ? '_' : c;
-  if (xml::is_name(name.substr(0, 1))) changed[0] = name[0];
-  while (names_.count(base::fold_name(changed)) != 0) changed += '_';
-  report_.add(Code::kXmlRenamed, node, "step `" + name + "` became `" + changed + "`");
-  return changed;
+  const std::string name(report_.required(node, "name"));
+  if (name.empty()) return name;
+  if (renamed_.count(base::fold_name(name)) != 0) {
+    report_.add(Code::kBadXmlChart, node, "there are two steps `" + name + "`");
+    return {};
+  }
+  std::string own = name;
+  for (char& c : own) {
+    if (!xml::is_name("x" + std::string(1, c))) c = '_';
+  }
+  if (!xml::is_name(own)) own = "_" + own;
+  own = steps_.take(own);
+  renamed_.emplace(base::fold_name(name), own);
+  if (own != name) {
+    report_.add(Code::kXmlRenamed, node, "step `" + name + "` became `" + own + "`");
+  }
+  return own;
+}
+
+// Actions that stand in steps get names; these are taken.
+void Chart::reserve_names() {
+  for (Node action : xml::children(xml::child(pou_, "actions"), "action")) {
+    actions_.take(xml::attribute(action, "name"));
+  }
+  for (Node list : xml::children(xml::child(pou_, "interface"))) {
+    for (Node each : xml::children(list, "variable")) actions_.take(xml::attribute(each, "name"));
+  }
+  for (const Element& element : elements_) {
+    if (!element.name.empty()) actions_.take(element.name);
+  }
 }
 
 void Chart::collect() {
@@ -110,9 +135,6 @@ void Chart::collect() {
     if (step) {
       element.name = step_name(node);
       if (element.name.empty()) continue;
-      if (!names_.insert(base::fold_name(element.name)).second) {
-        report_.add(Code::kBadXmlChart, node, "there are two steps `" + element.name + "`");
-      }
     }
     elements_.push_back(std::move(element));
   }
@@ -134,6 +156,7 @@ void Chart::collect() {
   }
   connect();
   drawing_.connect();
+  reserve_names();
   for (Node block : blocks) add_actions(block);
 }
 
@@ -189,11 +212,7 @@ void Chart::add_actions(Node block) {
     if (reference) {
       action.name = std::string(xml::trimmed(report_.required(reference, "name")));
     } else if (inside) {
-      std::string base = step.name + "_action";
-      action.name = base;
-      for (uint32_t n = 2; !names_.insert(base::fold_name(action.name)).second; ++n) {
-        action.name = base + std::to_string(n);
-      }
+      action.name = actions_.take(step.name + "_action");
       action.body =
           "ACTION " + action.name + ":\n" +
           xml::indented(language_text(inside, pou_, "action " + action.name, report_), kIndent) +
@@ -241,9 +260,10 @@ void Chart::steps_below(const Element& element, bool joined, std::vector<std::st
       out.push_back(below.name);
     } else if (xml::is(below.node, "jumpStep")) {
       std::string target(report_.required(below.node, "targetName"));
-      const bool known = names_.count(base::fold_name(target)) != 0;
-      if (known) out.push_back(target);
-      if (!known && !target.empty()) {
+      auto known = renamed_.find(base::fold_name(target));
+      if (known != renamed_.end()) {
+        out.push_back(known->second);
+      } else if (!target.empty()) {
         report_.add(Code::kBadXmlChart, below.node,
                     "a jump leads to `" + target + "`, which is no step of this chart");
       }

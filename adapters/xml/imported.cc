@@ -6,13 +6,25 @@
 
 namespace xml {
 
-std::string Imported::add_source(std::string_view name, std::string text) {
-  std::string free(name);
-  for (uint32_t n = 2; !names.insert(base::fold_name(free)).second; ++n) {
-    free = std::string(name) + "_" + std::to_string(n);
+std::string Names::take(std::string_view name) {
+  uint32_t& next = taken_[base::fold_name(name)];
+  std::string out(name);
+  if (next == 0) {
+    next = 2;
+    return out;
   }
-  sources.push_back({free + ".st", std::move(text)});
-  return free;
+  do {
+    out = std::string(name) + "_" + std::to_string(next++);
+  } while (!taken_.emplace(base::fold_name(out), 2).second);
+  return out;
+}
+
+bool Names::has(std::string_view name) const { return taken_.count(base::fold_name(name)) != 0; }
+
+std::string Imported::add_source(std::string_view name, std::string text) {
+  std::string own = names.take(name);
+  sources.push_back({own + ".st", std::move(text)});
+  return own;
 }
 
 bool Imported::failed() const {

@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <unordered_set>
+#include <unordered_map>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -37,6 +37,17 @@ struct Kept {
   std::map<std::string, std::vector<std::string>> data;     // <data> of nobody, by POU
 };
 
+// Names that are taken, in any case of letters.
+class Names {
+ public:
+  // `name`, or `name_2` and so on when that is taken. Costs no more when many are alike.
+  std::string take(std::string_view name);
+  bool has(std::string_view name) const;
+
+ private:
+  std::unordered_map<std::string, uint32_t> taken_;  // folded; the next number to try
+};
+
 struct Imported {
   std::vector<MadeSource> sources;
   std::vector<Finding> findings;
@@ -48,7 +59,7 @@ struct Imported {
 
   bool failed() const;  // is one of the findings an error?
 
-  std::unordered_set<std::string> names;  // of `sources`, folded
+  Names names;  // of `sources`
 };
 
 }  // namespace xml

@@ -151,6 +151,16 @@ sfc "$(transition 2 1 "$good")$(transition 3 2 "$good")"
 wrong E1082 'without a step between them'
 sfc "$(transition 2 1 "$good")<jumpStep localId=\"4\" targetName=\"Nowhere\"><connectionPointIn><connection refLocalId=\"2\"/></connectionPointIn></jumpStep>"
 wrong E1082 'a jump leads to `Nowhere`'
+# A jump to a step whose name had to be changed; actions get names that are free.
+sfc "$(transition 2 1 "$good")<step localId=\"5\" name=\"Go on\"><connectionPointIn><connection refLocalId=\"2\"/></connectionPointIn></step>$(transition 6 5 "$good")<jumpStep localId=\"7\" targetName=\"Go on\"><connectionPointIn><connection refLocalId=\"6\"/></connectionPointIn></jumpStep><actionBlock localId=\"8\"><connectionPointIn><connection refLocalId=\"5\"/></connectionPointIn><action><inline><ST>;</ST></inline></action><action><inline><ST>;</ST></inline></action></actionBlock>"
+rm -rf jump
+expect 0 stc import small.xml -o jump
+said 'W0073.*step `Go on` became `Go_on`'
+grep -q 'TRANSITION FROM Go_on TO Go_on' jump/P.st || fail "jump to a renamed step"
+grep -q '  Go_on_action_2(N);' jump/P.st || fail "names of actions"
+expect 0 stc check jump
+sfc "$(transition 2 1 "$good")<step localId=\"5\" name=\"a\"/>"
+wrong E1082 'there are two steps `a`'
 sfc "$(transition 2 1 '<inline name=""><ST>a := 1; b := 2;</ST></inline>')"
 wrong E1083 'no single expression'
 sfc "$(transition 2 1 '')"

@@ -135,7 +135,7 @@ void Importer::take(const std::string& origin, xml::Imported& out) {
   kept.drawings.merge(out.kept.drawings);
   kept.data.merge(out.kept.data);
   // A name is taken in all documents that are imported together.
-  std::unordered_set<std::string> names = std::move(out.names);
+  xml::Names names = std::move(out.names);
   out = {};
   out.names = std::move(names);
 }
