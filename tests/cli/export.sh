@@ -109,8 +109,9 @@ there() {
     fi
     mkdir -p back
     stc build one.xml -o back/one.img >out 2>err || fail "$name: what was exported does not build"
-    stvm run one.img --scans 20 --virtual-time --state 2>/dev/null | sort >state || true
-    stvm run back/one.img --scans 20 --virtual-time --state 2>/dev/null | sort | cmp -s - state || fail "$name: another state"
+    # What edges remember has the names of wires, and XML has none.
+    stvm run one.img --scans 20 --virtual-time --state 2>/dev/null | grep -v '#' | sort >state || true
+    stvm run back/one.img --scans 20 --virtual-time --state 2>/dev/null | grep -v '#' | sort | cmp -s - state || fail "$name: another state"
     count=$((count + 1))
   done
 }

@@ -152,7 +152,7 @@ wrong E1082 'without a step between them'
 sfc "$(transition 2 1 "$good")<jumpStep localId=\"4\" targetName=\"Nowhere\"><connectionPointIn><connection refLocalId=\"2\"/></connectionPointIn></jumpStep>"
 wrong E1082 'a jump leads to `Nowhere`'
 # A jump to a step whose name had to be changed; actions get names that are free.
-sfc "$(transition 2 1 "$good")<step localId=\"5\" name=\"Go on\"><connectionPointIn><connection refLocalId=\"2\"/></connectionPointIn></step>$(transition 6 5 "$good")<jumpStep localId=\"7\" targetName=\"Go on\"><connectionPointIn><connection refLocalId=\"6\"/></connectionPointIn></jumpStep><actionBlock localId=\"8\"><connectionPointIn><connection refLocalId=\"5\"/></connectionPointIn><action><inline><ST>;</ST></inline></action><action><inline><ST>;</ST></inline></action></actionBlock>"
+sfc "$(transition 2 1 "$good")$(transition 9 1 "$good")<step localId=\"5\" name=\"Go on\"><connectionPointIn><connection refLocalId=\"9\"/></connectionPointIn></step>$(transition 6 5 "$good")<jumpStep localId=\"7\" targetName=\"Go on\"><connectionPointIn><connection refLocalId=\"6\"/></connectionPointIn></jumpStep><actionBlock localId=\"8\"><connectionPointIn><connection refLocalId=\"5\"/></connectionPointIn><action><inline><ST>;</ST></inline></action><action><inline><ST>;</ST></inline></action></actionBlock>"
 rm -rf jump
 expect 0 stc import small.xml -o jump
 said 'W0073.*step `Go on` became `Go_on`'
