@@ -25,6 +25,10 @@ ir::Task main_task() {
 // By which people address them, and folders are called.
 bool check_resource_names(Sema& sema, const ConfigDecl& config) {
   if (config.resources.size() < 2) return true;
+  if (config.resources.size() > base::kMaxResources) {
+    sema.error(DiagnosticCode::kTooComplex, config.resources[base::kMaxResources].name.span,
+               "more than " + std::to_string(base::kMaxResources) + " RESOURCEs");
+  }
   bool good = true;
   NameMap<const ResourceDecl*> names;
   for (const ResourceDecl& resource : config.resources) {

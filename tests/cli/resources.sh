@@ -72,6 +72,8 @@ said '"p.seen": *"1[0-9][0-9]"'
 expect 0 stvm run plant --scans 200 --print Pack.p.torn --state
 said '^Pack.p.torn=0'
 said '^Line.block.a\[0\]=200'
+expect 0 stvm run plant --virtual-time --scans 0 --print Line.block.n,Pack.p.seen
+said '^Pack.p.seen=0'
 expect 7 stvm run plant --scans 1 --print speed
 said 'R0401: `speed`: with several resources, names begin with one: Line, Pack'
 expect 7 stvm run plant --scans 1 --set Pack.nothing=1
@@ -84,6 +86,19 @@ echo 'PROGRAM Main END_PROGRAM' >main.st
 expect 0 stc build main.st -o main.img
 expect 2 stvm run plant.Line.img main.img --scans 1
 said 'not the resources of one CONFIGURATION'
+# As many as a process runs, and one more.
+resources() {
+  echo 'PROGRAM P VAR n : INT; END_VAR n := n + g; END_PROGRAM PROGRAM W g := g + 1; END_PROGRAM CONFIGURATION Many VAR_GLOBAL g : INT; END_VAR'
+  echo 'RESOURCE w ON c TASK t (INTERVAL := T#10ms); PROGRAM p WITH t : W; END_RESOURCE'
+  for i in $(seq "$1"); do echo "RESOURCE r$i ON c TASK t (INTERVAL := T#10ms); PROGRAM p WITH t : P; END_RESOURCE"; done
+  echo END_CONFIGURATION
+}
+resources 63 >many.st
+expect 0 stvm run many.st --virtual-time --scans 20 --print w.g,r1.p.n,r63.g
+said '^r63.g=19'
+resources 64 >many.st
+expect 1 stc check many.st
+said 'E6003.*more than 64 RESOURCEs'
 # Two images that were built at different times can both write it.
 sed 's/speed := wanted \* 2;//; s/  wanted := 21;/  wanted := 21; speed := 1;/' plant/plant.st >moved.st
 expect 0 stc build moved.st -o moved.img

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/limits.h"
 #include "tools/stvm/device_drivers.h"
 #include "tools/stvm/record.h"
 
@@ -39,6 +40,11 @@ base::Result<std::vector<Resource>> name_resources(std::vector<ir::VerifiedImage
   if (images.size() == 1) {
     out.push_back({"", std::move(images.front())});
     return out;
+  }
+  if (images.size() > base::kMaxResources) {
+    return base::Error{base::Refusal::kTooMany,
+                       std::to_string(images.size()) + " images; one process runs " +
+                           std::to_string(base::kMaxResources) + " resources"};
   }
   for (ir::VerifiedImage& image : images) {
     const std::string& name = image.image().name;

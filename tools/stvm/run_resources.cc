@@ -81,18 +81,25 @@ bool enough(const Running& running, const RunSettings& settings) {
   return settings.scans && running.front()->controller().cycles() >= *settings.scans;
 }
 
+// Ends when the first has had its cycles, and the others theirs up to the same instant.
 void take_turns(const Running& running, const RunSettings& settings) {
-  while (!StopSignal::received() && !enough(running, settings)) {
+  int64_t last_ns = settings.scans == uint64_t{0} ? -1 : INT64_MAX;
+  while (!StopSignal::received()) {
+    const vm::Controller& first = running.front()->controller();
+    const bool counted = enough(running, settings);
     ResourceController* next = nullptr;
     for (const auto& resource : running) {
       const vm::Controller& controller = resource->controller();
-      if (controller.faulted()) continue;
+      if (controller.faulted() || (counted && &controller == &first)) continue;
       if (next == nullptr || controller.next_cycle_ns() < next->controller().next_cycle_ns()) {
         next = resource.get();
       }
     }
     // Who counts the cycles counts no more when it has stopped.
-    if (next == nullptr || (settings.scans && running.front()->controller().faulted())) return;
+    if (next == nullptr || (settings.scans && first.faulted())) return;
+    const int64_t begin_ns = next->controller().next_cycle_ns();
+    if (counted && begin_ns > last_ns) return;
+    if (&next->controller() == &first) last_ns = begin_ns;
     next->cycle();
   }
 }

@@ -104,6 +104,18 @@ TEST(Limits, Tasks) {
   EXPECT_EQ(compile(tasks(base::kMaxTasks + 1)).errors(), "E6003");
 }
 
+TEST(Limits, Resources) {
+  auto resources = [](uint32_t count) {
+    std::string text = "PROGRAM P END_PROGRAM CONFIGURATION c ";
+    for (uint32_t i = 0; i < count; ++i) {
+      text += "RESOURCE r" + std::to_string(i) + " ON cpu PROGRAM p : P; END_RESOURCE ";
+    }
+    return text + "END_CONFIGURATION";
+  };
+  EXPECT_EQ(compile(resources(base::kMaxResources)).errors(), "");
+  EXPECT_EQ(compile(resources(base::kMaxResources + 1)).errors(), "E6003");
+}
+
 TEST(Limits, Identifier) {
   auto variable = [](size_t length) { return std::string(length, 'v') + " : INT;"; };
   EXPECT_EQ(errors("", variable(base::kMaxIdentifier)), "");
