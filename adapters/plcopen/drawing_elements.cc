@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "adapters/plcopen/drawing.h"
+#include "adapters/plcopen/plcopen.h"
 #include "base/name_case.h"
 
 namespace plcopen {
@@ -83,6 +84,7 @@ Drawing::Raw& Drawing::record(Node node, What what, uint32_t element) {
 void Drawing::report_inside(Node node) {
   for (Node add : xml::children(node, "addData")) {
     for (Node data : xml::children(add, "data")) {
+      if (is_vendor(data, kWireData)) continue;  // add_block() has read it
       if (is_vendor(data, "stcode")) {
         fail(Code::kXmlBody, data, xml::shown(node) + " holds statements of its own");
       } else {
@@ -273,6 +275,10 @@ void Drawing::add_block(Node node, Kind kind) {
   });
   if (type.empty() || !named || ends_statement(element.operand.text)) {
     fail(Code::kXmlBadValue, node, xml::shown(node) + " has no type or instance that is a name");
+  }
+  for (Node data : xml::children(xml::child(node, "addData"), "data")) {
+    const std::string wire(xml::trimmed(xml::text_of(data)));
+    if (is_vendor(data, kWireData) && xml::is_name(wire)) element.wire.text = wire;
   }
   const uint32_t number = push(std::move(element));
   Raw raw;

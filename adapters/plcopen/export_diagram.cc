@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "adapters/plcopen/plcopen.h"
 #include "adapters/plcopen/writer.h"
 #include "base/name_case.h"
 #include "frontend/network/order.h"
@@ -294,6 +295,11 @@ void DiagramWriter::put_block(const network::Network& network, const Element& el
     if (element.outputs[i].negated) pin.append_attribute("negated") = "true";
     pin.append_child("connectionPointOut");
   }
+  if (element.wire.empty()) return;
+  Node data = out.append_child("addData").append_child("data");
+  data.append_attribute("name") = kWireData;
+  data.append_attribute("handleUnknown") = "discard";
+  data.append_child("wire").append_child(pugi::node_pcdata).set_value(element.wire.text.c_str());
 }
 
 void DiagramWriter::put_element(const network::Network& network, uint32_t number, Place place) {

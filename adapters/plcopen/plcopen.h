@@ -11,4 +11,7 @@ namespace plcopen {
 bool is_document(const xml::Document& document);
 void import(const xml::Document& document, xml::Imported& out);
 
+// addData of a block: what FBD as text calls the result of its function (WIRE name := ...).
+inline constexpr const char* kWireData = "stc-wire";
+
 }  // namespace plcopen
