@@ -171,11 +171,15 @@ class Reader {
     return last_row_ = static_cast<uint32_t>(current().elements.size() - 1);
   }
 
+  // Without IF it is linked to power.
   void condition(Element& element, Text& operand) {
     element.inputs.resize(1);
     if (!cursor_.is_word("IF") && cursor_.kind() != TokenKind::kIf) {
-      operand.text = "TRUE";
-      operand.span = cursor_.token().span();
+      Element rail;
+      rail.kind = Kind::kLeftRail;
+      rail.outputs.resize(1);
+      current().elements.push_back(std::move(rail));
+      element.inputs[0].from.push_back({static_cast<uint32_t>(current().elements.size() - 1), 0});
       return;
     }
     cursor_.take();
@@ -191,7 +195,8 @@ class Reader {
     element.operand = std::move(name);
     Text operand;
     condition(element, operand);
-    links_.add_use(add_with_source(std::move(element), {operand}, begin), 0, operand);
+    uint32_t number = add_with_source(std::move(element), {operand}, begin);
+    if (!operand.empty()) links_.add_use(number, 0, operand);
   }
   void jump() {
     size_t begin = cursor_.place();
