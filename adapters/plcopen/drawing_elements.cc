@@ -234,11 +234,27 @@ void Drawing::add_both(Node node, Kind kind) {
   precedences_.push_back({written, number});
 }
 
+namespace {
+
+// CODESYS numbers the pins of operators with EN as the first: In2 and In3 behind it.
+bool is_operator(Node block) {
+  for (Node data : xml::children(xml::child(block, "addData"), "data")) {
+    if (is_vendor(data, "fbdcalltype") && xml::trimmed(xml::text_of(data)) == "operator") {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
 void Drawing::add_pins(Node node, uint32_t block, Raw& raw) {
+  const bool by_position = is_operator(node);
   for (const char* list : {"inputVariables", "inOutVariables"}) {
     for (Node pin : xml::children(xml::child(node, list), "variable")) {
       network::Input input;
       input.name = xml::attribute(pin, "formalParameter");
+      if (by_position && !base::same_name(input.name, "EN")) input.name.clear();
       input.modifier = modifier_of(pin, false);
       all_.elements[block].inputs.push_back(std::move(input));
       const uint32_t number = static_cast<uint32_t>(all_.elements[block].inputs.size() - 1);
@@ -261,7 +277,8 @@ void Drawing::add_pins(Node node, uint32_t block, Raw& raw) {
     sink.inputs.resize(1);
     sink.inputs[0].from.push_back(
         {block, static_cast<uint32_t>(all_.elements[block].outputs.size() - 1)});
-    if (!sink.operand.empty()) push(std::move(sink));
+    const bool open = sink.operand.empty() || sink.operand.text == "???";  // of an editor
+    if (!open) push(std::move(sink));
   }
 }
 

@@ -38,6 +38,7 @@ struct Vendor {
   std::string access;       // "PRIVATE "
   std::string extends;      // " EXTENDS A"
   std::string implements;   // " IMPLEMENTS B, C"
+  Node mixed;  // lists of variables with different qualifiers, in place of the one around them
   std::vector<Node> methods;
   std::vector<Node> properties;
 };

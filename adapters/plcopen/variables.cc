@@ -99,6 +99,13 @@ std::string documentation(Node owner, std::string_view indent) {
 std::string variable_list(Node list, Reporter& report) {
   Vendor vendor = vendor_data(list, report);
   if (!vendor.declaration.empty()) return vendor.declaration;
+  if (vendor.mixed) {
+    std::string out;
+    for (Node each : xml::children(vendor.mixed)) {
+      if (form_of(each) != nullptr) out += vendor.attributes + variable_list(each, report);
+    }
+    return documentation(list, "") + out;
+  }
   std::string lines;
   for (Node below : xml::children(list)) {
     if (xml::is(below, "variable") || xml::is(below, "accessVariable") ||

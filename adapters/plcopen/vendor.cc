@@ -10,21 +10,11 @@ namespace plcopen {
 namespace {
 
 // Of the editor or the project's tree; the program is the same without.
-constexpr const char* kEditor[] = {"objectid",
-                                   "projectstructure",
-                                   "projectinformation",
-                                   "buildproperties",
-                                   "tasksettings",
-                                   "fbdelementtype",
-                                   "pou",
-                                   "datatype",
-                                   "globalvars",
-                                   "application",
-                                   "interface",
-                                   "method",
-                                   "property",
-                                   "action",
-                                   "libraries"};
+constexpr const char* kEditor[] = {
+    "objectid",       "projectstructure", "projectinformation", "buildproperties",  "tasksettings",
+    "fbdelementtype", "fbdcalltype",      "inputparamtypes",    "outputparamtypes", "pou",
+    "datatype",       "globalvars",       "application",        "interface",        "method",
+    "property",       "action",           "libraries"};
 
 // The names below `node` in elements `kind`, and whether all of them are names.
 std::string names(Node node, const char* kind, const char* word, Reporter& report) {
@@ -121,6 +111,8 @@ Vendor vendor_data(Node owner, Reporter& report) {
       out.attributes += attribute_lines(data);
     } else if (is_vendor(data, "interfaceasplaintext")) {
       out.declaration = declaration_of(data);
+    } else if (is_vendor(data, "mixedattrsvarlist")) {
+      out.mixed = xml::child(data, "MixedAttrsVarList");
     } else if (is_vendor(data, "accessmodifiers")) {
       out.access += access_words(data);
     } else if (is_vendor(data, "pouinheritance")) {

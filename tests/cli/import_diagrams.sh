@@ -146,6 +146,25 @@ wrong E1083 'cannot set or reset'
 body LD "$rail$(contact 2 "$(from 1)")"
 good
 said 'W0072.*network 1'
+# As CODESYS writes it: no places, titles, operators whose pins are counted from EN, open pins.
+title='<vendorElement localId="100"><position x="0" y="0"/><alternativeText><xhtml>%s</xhtml></alternativeText><addData><data name="http://www.3s-software.com/plcopenxml/fbdelementtype"><ElementType>networktitle</ElementType></data></addData></vendorElement>'
+operator='<addData><data name="http://www.3s-software.com/plcopenxml/fbdcalltype"><CallType xmlns="">operator</CallType></data></addData>'
+body LD "<leftPowerRail localId=\"0\"/>$(printf "$title" first)$(contact 3 "$(from 0)")<inVariable localId=\"4\"><expression>a</expression></inVariable><inVariable localId=\"5\"><expression>7</expression></inVariable><block localId=\"6\" typeName=\"ADD\"><inputVariables><variable formalParameter=\"EN\"><connectionPointIn>$(from 3)</connectionPointIn></variable><variable formalParameter=\"In2\"><connectionPointIn>$(from 4)</connectionPointIn></variable><variable formalParameter=\"In3\"><connectionPointIn>$(from 5)</connectionPointIn></variable></inputVariables><outputVariables><variable formalParameter=\"ENO\"><connectionPointOut/></variable><variable formalParameter=\"Out2\"><connectionPointOut><expression>a</expression></connectionPointOut></variable></outputVariables>$operator</block><label localId=\"7\" label=\"Second\"/>$(printf "$title" second | sed s/100/101/)<contact localId=\"8\" negated=\"true\"><connectionPointIn>$(from 0)</connectionPointIn><variable>b</variable></contact><block localId=\"9\" typeName=\"TON\" instanceName=\"t\"><inputVariables><variable formalParameter=\"IN\"><connectionPointIn>$(from 8)</connectionPointIn></variable></inputVariables><outputVariables><variable formalParameter=\"Q\"><connectionPointOut/></variable><variable formalParameter=\"ET\"><connectionPointOut><expression>???</expression></connectionPointOut></variable></outputVariables></block><coil localId=\"10\" storage=\"none\" edge=\"none\"><connectionPointIn><connection refLocalId=\"9\" formalParameter=\"Q\"/></connectionPointIn><variable>b</variable></coil><rightPowerRail localId=\"2147483646\"><connectionPointIn>$(from 10)</connectionPointIn></rightPowerRail>"
+rm -rf made
+expect 0 stc import small.xml -o made
+cat >wanted <<'T'
+LADDER
+  (* first *)
+  |--[ b ]--[ a := ADD(a, 7) ]-------------------------------|
+
+  (* second *)
+  Second:
+  |--[/ b ]--[ t: TON  IN:=_ ]------------------------( b )--|
+END_LADDER
+T
+sed -n '/^LADDER/,/^END_LADDER/p' made/P.st | cmp - wanted || fail "a ladder of CODESYS is drawn differently"
+expect 0 stc build small.xml -o small.img
+values small.img 4 P.a=0 P.b=FALSE
 # A bridge between two branches is no ladder of series and parallel: it comes as FBD.
 body LD "$rail$(contact 2 "$(from 1)")$(contact 3 "$(from 1)")$(contact 4 "$(from 2)$(from 3)")$(contact 5 "$(from 3)")$(coil 6 "$(from 4)")$(coil 7 "$(from 5)" 'negated="true"')"
 rm -rf made

@@ -86,6 +86,12 @@ ten_wrong E1074 '`OddTypeSpec` is not known'
 ten '<BodyContent xsi:type="ST"><ST>a := 2;</ST></BodyContent>' '<x/>'
 ten_wrong E1073 'has no <TypeName>'
 
+# Qualifiers of a list that CODESYS keeps beside it.
+printf '<project><types><pous><pou name="P" pouType="program"><interface/><body><ST>G.b := G.a;</ST></body></pou></pous></types><addData><data name="http://www.3s-software.com/plcopenxml/globalvars"><globalVars name="G"><variable name="a"><type><INT/></type></variable><variable name="b"><type><INT/></type></variable><addData><data name="http://www.3s-software.com/plcopenxml/mixedattrsvarlist"><MixedAttrsVarList><globalVars name="G" constant="true"><variable name="a"><type><INT/></type><initialValue><simpleValue value="6"/></initialValue></variable></globalVars><globalVars name="G" retain="true"><variable name="b"><type><INT/></type></variable></globalVars></MixedAttrsVarList></data></addData></globalVars></data></addData></project>' >mixed.xml
+run mixed 1 b=6
+grep -q '^VAR_GLOBAL CONSTANT$' made/G.st || fail "qualifiers of mixed lists"
+grep -q '^VAR_GLOBAL RETAIN$' made/G.st || fail "qualifiers of mixed lists"
+
 # The same in other encodings.
 mkdir utf16
 iconv -f UTF-8 -t UTF-16 declarations.xml >utf16/declarations.xml
