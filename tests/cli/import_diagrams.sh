@@ -164,7 +164,7 @@ END_LADDER
 T
 sed -n '/^LADDER/,/^END_LADDER/p' made/P.st | cmp - wanted || fail "a ladder of CODESYS is drawn differently"
 expect 0 stc build small.xml -o small.img
-values small.img 4 P.a=0 P.b=FALSE
+values small.img 4 P.a=14 P.b=FALSE  # the timer without PT lets b toggle
 # A bridge between two branches is no ladder of series and parallel: it comes as FBD.
 body LD "$rail$(contact 2 "$(from 1)")$(contact 3 "$(from 1)")$(contact 4 "$(from 2)$(from 3)")$(contact 5 "$(from 3)")$(coil 6 "$(from 4)")$(coil 7 "$(from 5)" 'negated="true"')"
 rm -rf made
