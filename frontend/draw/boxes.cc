@@ -3,6 +3,7 @@
 // over several layers has a lane in each of those between. Links to what is executed later are
 // written, not drawn.
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 

@@ -1,6 +1,7 @@
 #include "frontend/network/branches.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "frontend/network/layout.h"

@@ -1,6 +1,7 @@
 #include "frontend/network/layout.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "frontend/network/branches.h"
 

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "frontend/parse/parse.h"
 

@@ -2,6 +2,7 @@
 // writes the expected files anew: look at what it wrote.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
