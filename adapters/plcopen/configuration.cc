@@ -72,8 +72,8 @@ std::string instance_text(Node node, const std::string& task, Reporter& report) 
   if (name.empty()) return {};
   std::string type(xml::trimmed(xml::attribute(node, "typeName")));
   if (type.empty()) type = name;  // CODESYS: the program itself
-  vendor_data(node, report);
-  return "PROGRAM " + name + (task.empty() ? "" : " WITH " + task) + " : " + type + ";\n";
+  return vendor_data(node, report).attributes + "PROGRAM " + name +
+         (task.empty() ? "" : " WITH " + task) + " : " + type + ";\n";
 }
 
 void add_named_lists(Node parent, Reporter& report) {

@@ -79,6 +79,9 @@ void Writer::resource(Node parent, const ResourceDecl& resource,
     if (program.args.count != 0 || !program.block_tasks.empty()) {
       fail(program.span, "connections of a program instance have no element in PLCopen XML");
     }
+    if (program.retain || program.non_retain) {
+      fail(program.span, "RETAIN of a program instance has no element in PLCopen XML");
+    }
     Node owner = node;
     for (size_t i = 0; i < resource.tasks.size(); ++i) {
       if (base::same_name(resource.tasks[i].name.text, program.task.text)) owner = tasks[i];
@@ -86,6 +89,7 @@ void Writer::resource(Node parent, const ResourceDecl& resource,
     Node each = owner.append_child("pouInstance");
     each.append_attribute("name") = std::string(program.name.text).c_str();
     each.append_attribute("typeName") = std::string(program.type.text).c_str();
+    put_attributes(each, program.attributes);
   }
 }
 
@@ -110,6 +114,10 @@ void Writer::configuration(Node parent, const ConfigDecl& config,
 }
 
 void Writer::project(Node project) {
+  if (!tree_.tests.empty()) {
+    diagnostics_.add(base::DiagnosticCode::kXmlLeftOut, tree_.tests.front().name.span,
+                     "tests are left out: XML has no element for them");
+  }
   Node types = project.append_child("types");
   Node data_types = types.append_child("dataTypes");
   for (const frontend::TypeDecl& type : tree_.types) data_type(data_types, type);

@@ -62,15 +62,11 @@ void Writer::interface(Node owner, const Pou& pou, const char* kind) {
     if (pou.is_final) words.append_attribute("Final") = "true";
   }
   put_attributes(node, pou.attributes);
-  if (whole || is_property(pou.kind)) return;
+  // OVERRIDE and PUBLIC have no element either.
+  const bool said = whole && !pou.is_override && pou.access != frontend::Access::kPublic;
+  if (said || is_property(pou.kind)) return;
   // Sections that no element has: the text goes first when this is read.
-  std::string head;
-  for (uint32_t i = 0; i < pou.attributes.count; ++i) {
-    const frontend::Attribute& each = tree_.attributes[pou.attributes.first + i];
-    head += "{attribute '" + std::string(each.name.text) + "'";
-    if (each.has_value) head += " := '" + std::string(each.value) + "'";
-    head += "}\n";
-  }
+  std::string head = attribute_text(pou.attributes);
   head += pieces(pou.span, head_end(pou)).head;
   if (*kind != 0) put_declaration(owner, head);
 }

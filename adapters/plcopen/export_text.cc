@@ -215,6 +215,17 @@ void Writer::put_declaration(Node owner, const std::string& text) {
   xhtml.append_child(pugi::node_pcdata).set_value(text.c_str());
 }
 
+std::string Writer::attribute_text(frontend::Range32 attributes) const {
+  std::string out;
+  for (uint32_t i = 0; i < attributes.count; ++i) {
+    const frontend::Attribute& each = tree_.attributes[attributes.first + i];
+    out += "{attribute '" + std::string(each.name.text) + "'";
+    if (each.has_value) out += " := '" + std::string(each.value) + "'";
+    out += "}\n";
+  }
+  return out;
+}
+
 void Writer::put_attributes(Node owner, frontend::Range32 attributes) {
   if (attributes.count == 0) return;
   Node list = data(owner, "attributes").append_child("Attributes");

@@ -1,4 +1,6 @@
 // Types and initial values as elements.
+#include <algorithm>
+
 #include "adapters/plcopen/writer.h"
 #include "base/name_case.h"
 #include "ir/types/types.h"
@@ -34,6 +36,10 @@ bool Writer::needs_text(const Spec& spec) const {
       return false;
     case SpecKind::kArray:
       return needs_text(tree_[spec.element]);
+    case SpecKind::kEnum:
+      return std::any_of(
+          spec.enumerators.begin(), spec.enumerators.end(),
+          [](const frontend::Enumerator& each) { return each.attributes.count != 0; });
     default:
       return false;
   }
@@ -181,7 +187,8 @@ void Writer::data_type(Node parent, const frontend::TypeDecl& type) {
       declaration =
           "TYPE " + joined(type.name.text) + " EXTENDS " + flat(tree_[spec.element].span) + " :";
     }
-    put_declaration(node, declaration + " " + text + ";\nEND_TYPE");
+    put_declaration(node,
+                    attribute_text(type.attributes) + declaration + " " + text + ";\nEND_TYPE");
   } else {
     put_type(base, type.spec);
     if (type.init.valid()) put_value(node.append_child("initialValue"), type.init);

@@ -84,6 +84,7 @@ std::string struct_text(Node node, Reporter& report) {
     std::string address(xml::attribute(member, "address"));
     std::string name(report.required_name(member));
     if (name.empty()) continue;
+    out += xml::indented(vendor_data(member, report).attributes, kIndent);
     out += kIndent + name + (address.empty() ? "" : " AT " + address) + " : " +
            type_text(xml::child(member, "type"), report);
     std::string value = value_text(xml::child(member, "initialValue"), report);

@@ -48,6 +48,7 @@ class Writer {
   static void put_documentation(Node owner, const std::string& text);
   static void put_declaration(Node owner, const std::string& text);
   static Node data(Node owner, const char* name);
+  std::string attribute_text(frontend::Range32 attributes) const;
   void put_attributes(Node owner, frontend::Range32 attributes);
 
   // --- export_types.cc

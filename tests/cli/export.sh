@@ -33,6 +33,25 @@ expect 1 stc export connected.st -o x.xml
 said 'E1084.*connections of a program instance'
 [ ! -e x.xml ] || fail "a document was written in spite of errors"
 
+# Attributes of members, of enumerators and instances, and words that have no element, stay.
+cat >words.st <<'S'
+TYPE Mode : ({attribute 'shown' := 'off'} Off, On); END_TYPE
+TYPE Box : STRUCT {attribute 'unit' := 'mm'} size : INT; END_STRUCT END_TYPE
+INTERFACE Moves METHOD Go END_METHOD END_INTERFACE
+FUNCTION_BLOCK Base METHOD PUBLIC Go END_METHOD END_FUNCTION_BLOCK
+FUNCTION_BLOCK Part EXTENDS Base IMPLEMENTS Moves METHOD PUBLIC OVERRIDE Go END_METHOD END_FUNCTION_BLOCK
+PROGRAM P VAR m : Mode; b : Box; p : Part; END_VAR p.Go(); END_PROGRAM
+TEST 'nothing' ASSERT_TRUE(TRUE); END_TEST
+S
+expect 0 stc export words.st -o words.xml
+said 'words\.st:7:[0-9]+: note\[W0071\]: tests are left out'
+rm -rf first
+expect 0 stc import words.xml -o first
+grep -q "{attribute 'shown' := 'off'} Off" first/Mode.st || fail "attributes of enumerators"
+grep -q "^  {attribute 'unit' := 'mm'}$" first/Box.st || fail "attributes of members"
+grep -q 'METHOD PUBLIC OVERRIDE Go' first/Part.st || fail OVERRIDE
+expect 0 stc check first
+
 # Documents again: the same sources, with places, ids and addData of the first.
 again() {  # again NAME DIFFERENT_FILES
   rm -rf first second
