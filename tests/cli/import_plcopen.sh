@@ -55,6 +55,13 @@ grep -q 'METHOD PRIVATE Note' made/Drive.st || fail access
 expect 0 stc check objects.xml
 grep -q projectstructure err && fail "notes are for import"
 
+# Tests in the language, of blocks that come from XML; messages for tools.
+printf "TEST 'imported' VAR d : Drive; END_VAR d.Position := 5; ASSERT_EQ(d.Go(2), 7); END_TEST\n" >t.st
+expect 0 stc test objects.xml t.st
+said '1 passed'
+expect 0 stc check objects.xml --format json
+said '"file": ?"objects\.xml"'
+
 # IEC 61131-10: other names, networks with numbers, connections by pin.
 run iec10 3 M.a=18 M.sum=9 M.loop=9 M.pump.speed=2.5 L.out=TRUE L.edges.n=1
 said '^7 source\(s\), 0 error\(s\), 0 warning\(s\)'
