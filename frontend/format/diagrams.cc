@@ -98,6 +98,7 @@ std::optional<std::string> drawn(TokenKind head, std::string_view text, uint32_t
     std::optional<std::string> ladder = network::write_ladder(body, indent);
     if (!ladder) return std::nullopt;
     out = std::move(*ladder);
+    if (!same_diagram(head, text, out)) return std::nullopt;
   } else {
     FormatOptions inner = options;
     inner.width = options.width > indent ? options.width - indent : 1;

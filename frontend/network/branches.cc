@@ -138,7 +138,8 @@ uint32_t Finder::point_of(const std::vector<Link>& links) {
 void Finder::append(Branch& branch, const Edge& edge) {
   if (edge.element == kNone) return;
   ++passed_;
-  branch.items.push_back({edge.element, {}, false, edge.element});
+  bool contact = network_.elements[edge.element].kind == Kind::kContact;
+  branch.items.push_back({edge.element, {}, false, edge.element, contact ? kNone : edge.element});
 }
 
 void put_before(Series& items, Branch& branch) {
@@ -187,19 +188,34 @@ std::optional<Branch> Finder::from(uint32_t point, uint32_t depth) {
   }
 }
 
-uint32_t first_of(const Series& series) {
-  uint32_t first = kNone;
-  for (const Item& item : series) first = std::min(first, item.first);
-  return first;
+// The smallest element of a series; the smallest that is no contact.
+std::pair<uint32_t, uint32_t> first_of(const Series& series) {
+  std::pair<uint32_t, uint32_t> out{kNone, kNone};
+  for (const Item& item : series) {
+    out.first = std::min(out.first, item.first);
+    out.second = std::min(out.second, item.does);
+  }
+  return out;
+}
+
+// What is done in a branch is done in its order; contacts may be read whenever.
+uint32_t rank(const Series& series) {
+  auto [first, does] = first_of(series);
+  return does != kNone ? does : first;
 }
 
 Item side_by_side(std::vector<Branch>& branches, bool end) {
   Item item;
   item.end = end;
-  for (Branch& branch : branches) item.branches.push_back(std::move(branch.items));
+  item.first = kNone;
+  for (Branch& branch : branches) {
+    auto [first, does] = first_of(branch.items);
+    item.first = std::min(item.first, first);
+    item.does = std::min(item.does, does);
+    item.branches.push_back(std::move(branch.items));
+  }
   std::stable_sort(item.branches.begin(), item.branches.end(),
-                   [](const Series& a, const Series& b) { return first_of(a) < first_of(b); });
-  item.first = first_of(item.branches.front());
+                   [](const Series& a, const Series& b) { return rank(a) < rank(b); });
   return item;
 }
 

@@ -17,7 +17,8 @@ struct Item {
   uint32_t element = 0;
   std::vector<Series> branches;  // empty: this is an element
   bool end = false;
-  uint32_t first = 0;  // smallest element in it: branches are in this order
+  uint32_t first = 0;          // smallest element in it
+  uint32_t does = 0xffffffff;  // the smallest that is no contact: branches are in this order
 };
 
 struct PowerPins {  // of an element that is placed

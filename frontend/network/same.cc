@@ -1,9 +1,11 @@
 #include "frontend/network/same.h"
 
 #include <algorithm>
+#include <unordered_map>
 #include <utility>
 
 #include "base/hash.h"
+#include "frontend/lex/characters.h"
 #include "frontend/lex/lexer.h"
 #include "frontend/network/element_text.h"
 #include "ir/types/types.h"
@@ -25,9 +27,21 @@ std::string normal(std::string_view text) {
   return out;
 }
 
+// Folded names in an operand.
+std::vector<std::string> words(std::string_view text) {
+  std::vector<std::string> out;
+  for (size_t i = 0; i < text.size();) {
+    size_t end = i;
+    while (end < text.size() && is_name_part(text[end])) ++end;
+    if (end > i) out.push_back(ir::fold_name(text.substr(i, end - i)));
+    i = end + 1;
+  }
+  return out;
+}
+
 class Printer {
  public:
-  explicit Printer(bool fbd) : fbd_(fbd) {}
+  Printer(bool fbd, Timing timing) : fbd_(fbd), timing_(timing) {}
 
   std::string run(const Body& body) {
     for (const Headed& headed : with_heads(body)) {
@@ -35,6 +49,8 @@ class Printer {
       if (out_.empty() || !fbd_ || !headed.label.empty()) {
         out_ += std::exchange(comments_, {}) + "network " + ir::fold_name(headed.label) + '\n';
         done_ = 0;
+        unknown_ = 0;
+        written_.clear();
       }
       for (const std::string& comment : headed.comments) comments_ += "// " + comment + '\n';
       network_ = headed.network;
@@ -58,29 +74,60 @@ class Printer {
         text_[i] = '{' + normal(element.operand.text) + '}';
         break;
       case Kind::kContact: {
-        // It is read behind what was done before it, and that may have written its operand.
-        std::string own = std::to_string(done_) + ' ' + print(element);
+        std::string own = std::to_string(read_behind(element)) + ' ' + print(element);
         text_[i] = base::to_hex(base::sha256(base::as_bytes(own)));
         break;
       }
       default:
         text_[i] = '#' + std::to_string(++done_);
         out_ += "  " + text_[i] + ' ' + print(element) + '\n';
+        note_written(element);
         break;
     }
   }
 
+  uint32_t read_behind(const Element& contact) const;
+  void note_written(const Element& element);
   std::string print(const Element& element) const;
   std::string print(const Input& input) const;
   std::string link(Link link, bool& negated) const;
 
   const bool fbd_;
+  const Timing timing_;
   const Network* network_ = nullptr;
   std::vector<std::string> text_;  // of links to an element
   std::string out_;
   std::string comments_;  // of the network that is being printed
   uint32_t done_ = 0;     // elements that write something
+  // With kAsRead: the last of them that wrote a variable, by folded name, or nobody knows what.
+  std::unordered_map<std::string, uint32_t> written_;
+  uint32_t unknown_ = 0;
 };
+
+// The number of the last element that may have written what the contact reads.
+uint32_t Printer::read_behind(const Element& contact) const {
+  const std::string& operand = contact.operand.text;
+  bool plain = operand.find_first_of("^%(#") == std::string::npos;
+  if (timing_ == Timing::kExact || !plain) return done_;
+  uint32_t behind = unknown_;
+  for (const std::string& word : words(operand)) {
+    auto at = written_.find(word);
+    if (at != written_.end()) behind = std::max(behind, at->second);
+  }
+  return behind;
+}
+
+void Printer::note_written(const Element& element) {
+  // Behind a jump an edge may not see its operand.
+  bool leaves = element.kind == Kind::kJump || element.kind == Kind::kReturn;
+  if (leaves) unknown_ = done_;
+  if (leaves) return;
+  const std::string& operand = element.operand.text;
+  bool box = element.kind == Kind::kBlock;
+  bool move = box && operand.empty() && ir::same_name(element.type.text, "MOVE");
+  if (box ? !move : operand.find_first_of("^%(#") != std::string::npos) unknown_ = done_;
+  for (const std::string& word : words(operand)) written_[word] = done_;
+}
 
 std::string Printer::print(const Element& element) const {
   // What negates a variable that a box writes may stand in front of the variable, too.
@@ -174,8 +221,8 @@ std::vector<Headed> with_heads(const Body& body) {
   return out;
 }
 
-std::string canonical(const Body& body) {
-  return Printer(body.language == Language::kFbd).run(body);
+std::string canonical(const Body& body, Timing timing) {
+  return Printer(body.language == Language::kFbd, timing).run(body);
 }
 
 }  // namespace frontend::network

@@ -12,7 +12,13 @@ namespace frontend::network {
 // and comments, whatever the positions, the ids, the order of parallel contacts between two
 // elements that write something, pins that nothing is connected to, and rails. Contacts without
 // use are left out.
-std::string canonical(const Body& body);
+//
+// A contact is read behind what was done before it. With kExact it has to stay there; with kAsRead
+// only behind what may have written its operand: a coil or variable of that name, a box that is not
+// a MOVE, anything through `^` or at an address. Other names of the same memory (AT, references)
+// are not seen.
+enum class Timing : uint8_t { kExact, kAsRead };
+std::string canonical(const Body& body, Timing timing = Timing::kExact);
 
 // A rung with what stands in front of it in text: comments and labels of networks without
 // elements belong to what follows them.

@@ -11,7 +11,8 @@ namespace frontend::network {
 
 // The rows between LADDER and END_LADDER, each with `indent` spaces. nullopt when a network
 // cannot be drawn as series and parallel branches of what ladder/read.h has, or `body` is FBD:
-// write_fbd() can write it then.
+// write_fbd() can write it then. Contacts may be read earlier or later than in `body`, but not on
+// the other side of what writes them (same.h, kAsRead).
 std::optional<std::string> write_ladder(const Body& body, uint32_t indent);
 
 // The rows between FBD and END_FBD; of ladder, too: contacts become AND, joins OR, power TRUE.

@@ -186,7 +186,9 @@ std::optional<std::string> write_ladder(const Body& body, uint32_t indent) {
   // What an operand says may look like something else between the brackets of an element.
   base::Diagnostics diagnostics;
   Body again = ladder::read(*text, base::SourcePos{0}, diagnostics);
-  if (!diagnostics.all().empty() || canonical(again) != canonical(body)) return std::nullopt;
+  if (!diagnostics.all().empty() ||
+      canonical(again, Timing::kAsRead) != canonical(body, Timing::kAsRead))
+    return std::nullopt;
   if (!is_one_diagram(Language::kLadder, *text)) return std::nullopt;
   return text;
 }

@@ -158,6 +158,21 @@ TEST(LadderText, WhatIsNoSeriesAndParallelRungIsRefused) {
   EXPECT_FALSE(place(one_rung({element(Kind::kCoil, "x", {})}).networks[0]).has_value());
 }
 
+// Where contacts are read may differ, but for what writes them.
+TEST(LadderText, ContactsAreReadOnTheSameSideOfWhatWritesThem) {
+  auto rungs = [](const std::string& contact) {
+    return one_rung({element(Kind::kContact, "a", {{0, 0}}),
+                     element(Kind::kContact, contact, {{0, 0}}),
+                     element(Kind::kCoil, "x", {{1, 0}}), element(Kind::kCoil, "y", {{2, 0}})});
+  };
+  // As text, the second contact is read behind the first coil.
+  EXPECT_TRUE(write_ladder(rungs("b"), 0).has_value());
+  EXPECT_NE(canonical(rungs("b")), canonical(read(*write_ladder(rungs("b"), 0))));
+  for (const char* contact : {"x", "NOT x", "p^", "X.Q", "F(b)", "%IX0.0"}) {
+    EXPECT_FALSE(write_ladder(rungs(contact), 0).has_value()) << contact;
+  }
+}
+
 TEST(LadderText, AnOperandThatWouldReadAsSomethingElseIsRefused) {
   for (const char* operand : {"a ] b", "t : TON", "P x", "a := b", "F(_)", "a\nb"}) {
     Body body =
