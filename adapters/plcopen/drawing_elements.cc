@@ -29,7 +29,7 @@ int32_t whole(double value) {
   return value >= -kMost && value <= kMost ? static_cast<int32_t>(value) : 0;
 }
 
-// A signed number of the network, the blocks of a vendor ... by its name: `-5` is an operand, too.
+// An operand is an expression: nothing behind it may begin a statement or a comment.
 bool ends_statement(std::string_view text) {
   return text.find(';') != std::string_view::npos || text.find("(*") != std::string_view::npos;
 }

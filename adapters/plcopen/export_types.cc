@@ -19,8 +19,6 @@ constexpr const char* kElementary[] = {"BOOL",  "BYTE", "WORD",  "DWORD", "LWORD
                                        "LREAL", "TIME", "DATE",  "TOD",   "DT",    "LTIME", "LDATE",
                                        "LTOD",  "LDT",  "CHAR",  "WCHAR"};
 
-std::string joined(std::string_view text) { return std::string(text); }
-
 }  // namespace
 
 // No element says these.
@@ -93,7 +91,7 @@ bool Writer::put_plain_type(Node parent, const Spec& spec) {
       Node values = node.append_child("values");
       for (const frontend::Enumerator& each : spec.enumerators) {
         Node value = values.append_child("value");
-        value.append_attribute("name") = joined(each.name.text).c_str();
+        value.append_attribute("name") = std::string(each.name.text).c_str();
         if (each.value.valid()) {
           value.append_attribute("value") = flat(tree_[each.value].span).c_str();
         }
@@ -166,7 +164,7 @@ void Writer::put_value(Node parent, ExprId id) {
   for (uint32_t i = 0; i < value.args.count; ++i) {
     const frontend::Arg& arg = tree_.args[value.args.first + i];
     Node node = list.append_child("value");
-    node.append_attribute("member") = joined(arg.name.text).c_str();
+    node.append_attribute("member") = std::string(arg.name.text).c_str();
     if (arg.value.valid()) put_value(node, arg.value);
   }
 }
@@ -176,16 +174,16 @@ void Writer::data_type(Node parent, const frontend::TypeDecl& type) {
     return fail(type.name.span, "a NAMESPACE has no element in PLCopen XML");
   }
   Node node = parent.append_child("dataType");
-  node.append_attribute("name") = joined(type.name.text).c_str();
+  node.append_attribute("name") = std::string(type.name.text).c_str();
   const Spec& spec = tree_[type.spec];
   Node base = node.append_child("baseType");
   const std::string text(slice(spec.span));
   if (needs_text(spec)) {
     base.append_child("struct");
-    std::string declaration = "TYPE " + joined(type.name.text) + " :";
+    std::string declaration = "TYPE " + std::string(type.name.text) + " :";
     if (spec.kind == SpecKind::kStruct && spec.element.valid()) {
-      declaration =
-          "TYPE " + joined(type.name.text) + " EXTENDS " + flat(tree_[spec.element].span) + " :";
+      declaration = "TYPE " + std::string(type.name.text) + " EXTENDS " +
+                    flat(tree_[spec.element].span) + " :";
     }
     put_declaration(node,
                     attribute_text(type.attributes) + declaration + " " + text + ";\nEND_TYPE");

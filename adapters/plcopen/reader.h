@@ -43,8 +43,7 @@ struct Vendor {
   std::vector<Node> properties;
 };
 Vendor vendor_data(Node owner, Reporter& report);
-// The element inside of each <data> that is not understood or of an editor; the others go to
-// `take`.
+// A <data> that nothing takes: a note when it is known to be of an editor, else a warning.
 void report_data(Node data, Reporter& report);
 std::vector<Node> vendor_parts(Node owner);        // its <data>, with those of its <interface>
 std::string attribute_lines(Node data);            // {attribute 'x' := 'y'} of each
