@@ -75,8 +75,10 @@ void Body::set_line(base::SourceSpan span) {
   uint32_t offset = span.begin.offset;
   uint32_t file = sema_.sources.file_of(span.begin);
   uint32_t base = sema_.sources.begin(file).offset;
-  // A type's initial values may stand in another file than the variable.
-  if (offset < line_offset_ || line_offset_ < base) {
+  // A type's initial values may stand in another file than the variable; a drawing goes up and
+  // down in its rows.
+  constexpr uint32_t kFar = 4096;
+  if (offset < line_offset_ || line_offset_ < base || offset - line_offset_ > kFar) {
     line_ = sema_.sources.locate(span.begin).line;
   } else {
     std::string_view text = sema_.sources.text(file);
