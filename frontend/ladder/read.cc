@@ -10,6 +10,8 @@ namespace {
 
 using Code = base::DiagnosticCode;
 
+constexpr uint64_t kMostLinks = 1u << 20;  // of one rung
+
 class RungReader {
  public:
   RungReader(std::string_view text, base::SourcePos begin, const Rung& rung,
@@ -22,7 +24,7 @@ class RungReader {
         made_(rung.pieces.size()) {}
 
   void run() {
-    if (rung_.damaged || !check_pieces() || !check_nodes()) return;
+    if (rung_.damaged || !check_pieces() || !check_nodes() || !check_size()) return;
     network::Element rail;
     rail.kind = network::Kind::kLeftRail;
     rail.outputs.resize(1);
@@ -99,6 +101,19 @@ class RungReader {
       }
     }
     return good;
+  }
+
+  // Every element behind a wire has a link to every one in front of it.
+  bool check_size() {
+    uint64_t links = 0;
+    for (const Node& node : rung_.nodes) links += uint64_t{node.drivers.size()} * node.users.size();
+    if (links <= kMostLinks) return true;
+    const Piece& first = rung_.pieces.front();
+    report(Code::kTooComplex, first,
+           "the wires of this rung connect " + std::to_string(links) +
+               " pairs of elements; the limit is " + std::to_string(kMostLinks),
+           "give what a wire carries to a coil, and begin new rungs with its contact");
+    return false;
   }
 
   // From left to right along power, otherwise as they are drawn: row by row.

@@ -70,5 +70,17 @@ TEST(Limits, Conditions) {
   EXPECT_EQ(codes(repeated("{IF defined(A)}", 100000) + repeated("{END_IF}", 100000)), "");
 }
 
+// A thousand contacts in front of a wire with a thousand coils are a million links.
+TEST(Limits, LinksOfARung) {
+  auto rung = [](size_t count) {
+    std::string out = "PROGRAM p\nLADDER\n";
+    for (size_t i = 0; i < count; ++i) out += "|--[ a ]--+--+--( b )--|\n";
+    return out + "END_LADDER\nEND_PROGRAM\n";
+  };
+  EXPECT_EQ(codes(rung(1000)), "4:2 W0034\n");
+  EXPECT_EQ(codes(rung(1025)), "3:4 E6003\n4:2 W0034\n");
+  EXPECT_EQ(codes(rung(100000)), "3:4 E6003\n4:2 W0034\n");
+}
+
 }  // namespace
 }  // namespace frontend::test
