@@ -55,7 +55,6 @@ class Parser::Diagram {
 
   // --- diagram_block.cc
   void block(uint32_t number, const Element& element);
-  bool move_literal(uint32_t number, const Element& element);
   ExprId callee(const Element& element);
   Range32 arguments(uint32_t number, const Element& element, Value* enable);
   void add_eno(uint32_t number, const Element& element);

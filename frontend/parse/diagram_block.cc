@@ -7,22 +7,6 @@ namespace frontend {
 using network::Kind;
 using network::Link;
 
-namespace {
-
-// A number or a string without a type, perhaps with a sign.
-bool is_literal(const network::Element& source) {
-  if (source.kind != Kind::kSource) return false;
-  base::Diagnostics unheard;
-  std::vector<Token> tokens = lex(source.operand.text, base::SourcePos{0}, unheard).tokens;
-  size_t at = !tokens.empty() && tokens[0].kind == TokenKind::kMinus ? 1 : 0;
-  if (tokens.size() != at + 2) return false;
-  TokenKind kind = tokens[at].kind;
-  return kind == TokenKind::kInteger || kind == TokenKind::kReal || kind == TokenKind::kString ||
-         kind == TokenKind::kWideString;
-}
-
-}  // namespace
-
 bool Parser::Diagram::is_result(const Element& element, uint32_t output) const {
   if (!element.operand.empty()) return false;
   for (uint32_t i = 0; i < output; ++i) {
@@ -31,50 +15,8 @@ bool Parser::Diagram::is_result(const Element& element, uint32_t output) const {
   return !ir::same_name(element.outputs[output].name, "ENO");
 }
 
-// A literal has the type of the variable that it goes to, which the result of a call does not see:
-// a MOVE of one is an assignment.
-bool Parser::Diagram::move_literal(uint32_t number, const Element& element) {
-  if (!element.operand.empty() || !ir::same_name(element.type.text, "MOVE")) return false;
-  const network::Input* value = nullptr;
-  const network::Input* enable = nullptr;
-  for (const network::Input& each : element.inputs) {
-    const network::Input*& place = ir::same_name(each.name, "EN") ? enable : value;
-    if (place != nullptr) return false;
-    place = &each;
-  }
-  if (value == nullptr || value->from.size() != 1) return false;
-  const Element& source = network_->elements[value->from[0].element];
-  if (value->modifier != network::Modifier::kNone || !is_literal(source)) return false;
-  const Element* to = nullptr;
-  for (uint32_t i = 0; i < element.outputs.size() && to == nullptr; ++i) {
-    if (is_result(element, i) && !element.outputs[i].negated) to = only_sink({number, i});
-  }
-  bool next = to != nullptr && to == &network_->elements[number] + 1;
-  if (!next || to->modifier != network::Modifier::kNone) return false;
-  Value on;
-  if (enable != nullptr) on = input(*enable, element.type.text);
-  bool always = !on.expr.valid() || on.power;
-  ExprId kept = keep(always ? boolean(true, element.span) : on.expr, element.span);
-  for (uint32_t i = 0; i < element.outputs.size(); ++i) {
-    if (ir::same_name(element.outputs[i].name, "ENO")) outputs_[number][i].kept = kept;
-  }
-  Stmt stmt;
-  stmt.kind = StmtKind::kAssign;
-  stmt.target = parse(to->operand);
-  stmt.value = parse(source.operand);
-  if (always) {
-    emit(stmt, element.span);
-  } else {
-    stmt.span = element.span;
-    emit_if(copy(kept, element.span), stmt, element.span);
-  }
-  done_[number + 1] = true;
-  return true;
-}
-
 // A function block's outputs are read from its instance; a function's are kept.
 void Parser::Diagram::block(uint32_t number, const Element& element) {
-  if (move_literal(number, element)) return;
   bool function = element.operand.empty();
   Expr call;
   call.kind = ExprKind::kCall;
@@ -87,7 +29,12 @@ void Parser::Diagram::block(uint32_t number, const Element& element) {
   bool result = false;
   for (uint32_t i = 0; i < element.outputs.size(); ++i) {
     if (!is_result(element, i) || outputs_[number][i].uses == 0) continue;
-    outputs_[number][i].kept = keep(value, element.span);
+    ExprId kept = keep(value, element.span);
+    const Element& user = network_->elements[outputs_[number][i].user];
+    if (user.kind == Kind::kSink && !element.outputs[i].negated) {
+      tree_.results[tree_[kept].number].target = parse(user.operand);
+    }
+    outputs_[number][i].kept = kept;
     result = true;
   }
   if (!result) {

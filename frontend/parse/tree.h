@@ -222,11 +222,12 @@ struct ConfigDecl {
   base::SourceSpan span;
 };
 
-// What an instruction list keeps of its current result. `values` are those that come from above;
-// at a label, jumps from below assign others.
+// What an instruction list keeps of its current result, or a diagram of power and values. `values`
+// are those that come from above; at a label, jumps from below assign others.
 struct KeptResult {
   Range32 values;  // Tree::expr_lists
   bool at_label = false;
+  ExprId target = {};  // of a diagram: the variable it goes to, whose type literals take
 };
 
 struct Tree {

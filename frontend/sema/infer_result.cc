@@ -1,5 +1,5 @@
-// What an instruction list keeps of its current result: a variable without a name, whose
-// type comes from the values that reach it from above.
+// What an instruction list keeps of its current result, or a diagram of a value: a variable
+// without a name, whose type comes from the values that reach it from above.
 #include "frontend/sema/operators.h"
 #include "frontend/sema/sema.h"
 
@@ -42,6 +42,11 @@ Note Sema::infer_result(const Expr& expr) {
     return {};
   }
   note.type = without_range(types, best.type);
+  if (ExprId target = tree.results[expr.number].target;
+      target.valid() && best.flex != Flex::kNone) {
+    ir::TypeId wanted = infer(target).type;
+    if (wanted.valid() && !types.is_instance(wanted)) note.type = without_range(types, wanted);
+  }
   return note;
 }
 
