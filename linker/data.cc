@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "ir/bytecode/device_tasks.h"
 #include "ir/types/location.h"
 #include "ir/types/natural_layout.h"
 
@@ -198,7 +199,8 @@ base::Status place_devices(ir::Image& image, const std::vector<ir::Device>& devi
     if (device.map.empty()) ir::add_default_map(device, located);
   }
   const ir::ProcessImageSize all = cover();
-  const std::optional<ir::DeviceFault> fault = ir::find_fault(image.devices, &all);
+  std::optional<ir::DeviceFault> fault = ir::find_fault(image.devices, &all);
+  if (!fault) fault = ir::find_task_fault(image);
   if (!fault) return base::Ok{};
   return base::Error{base::Refusal::kBadMapping,
                      "device `" + image.devices[fault->device].name + "`: " + fault->text};

@@ -93,8 +93,16 @@ const SettingRow* find_setting(const DriverRow& driver, std::string_view key) {
 std::optional<LossPolicy> parse_loss(std::string_view text) {
   constexpr std::string_view kAfter = "zero after ";
   constexpr std::string_view kUnit = " ms";
+  constexpr std::string_view kTrap = "trap ";
+  constexpr std::string_view kNoName(" \t\0", 3);
   if (text == "hold") return LossPolicy{};
   if (text == "zero") return LossPolicy{false, 0};
+  if (text.starts_with(kTrap)) {
+    text.remove_prefix(kTrap.size());
+    const bool name = !text.empty() && text.size() <= base::kMaxIdentifier &&
+                      text.find_first_of(kNoName) == std::string_view::npos;
+    return name ? std::optional(LossPolicy{true, 0, std::string(text)}) : std::nullopt;
+  }
   if (!text.starts_with(kAfter) || !text.ends_with(kUnit)) return std::nullopt;
   text.remove_prefix(kAfter.size());
   if (text.size() <= kUnit.size()) return std::nullopt;
@@ -116,7 +124,9 @@ std::string bad_value(const SettingRow& row, std::string_view value) {
       return "must be a whole number from " + std::to_string(row.low) + " to " +
              std::to_string(row.high);
     case SettingKind::kLoss:
-      return parse_loss(value) ? "" : "must be \"hold\", \"zero\" or \"zero after 500 ms\"";
+      return parse_loss(value)
+                 ? ""
+                 : "must be \"hold\", \"zero\", \"zero after 500 ms\" or \"trap TASK\"";
     case SettingKind::kChoice:
       break;
   }

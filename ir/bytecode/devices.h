@@ -103,10 +103,12 @@ struct Device {
 // "input 0..3 -> %IW2"
 std::string mapping_text(const DeviceMapping& mapping);
 
-// What on_loss says: inputs stay, or become zero so long after the loss.
+// What on_loss says: inputs stay, or become zero so long after the loss; or they stay, and the next
+// scan of a task begins with the trap `io-lost`.
 struct LossPolicy {
   bool hold = true;
   int64_t zero_after_ns = 0;
+  std::string task = {};  // "": none
 };
 std::optional<LossPolicy> parse_loss(std::string_view text);
 

@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "base/limits.h"
+#include "ir/bytecode/device_tasks.h"
 #include "ir/bytecode/verify_parts.h"
 #include "ir/types/location.h"
 #include "ir/types/longest_time.h"
@@ -78,7 +79,8 @@ class ResourcesVerifier {
 
   base::Status check_devices() const {
     const ProcessImageSize size{image_.input_bytes, image_.output_bytes};
-    const std::optional<DeviceFault> fault = find_fault(image_.devices, &size);
+    std::optional<DeviceFault> fault = find_fault(image_.devices, &size);
+    if (!fault) fault = find_task_fault(image_);
     if (!fault) return base::Ok{};
     return refuse(Refusal::kBadDevice,
                   "device `" + image_.devices[fault->device].name + "`: " + fault->text);

@@ -118,12 +118,12 @@ enum class TrapKind : uint8_t {
 #include "ir/program/traps.def"
 #undef TRAP
 };
-inline constexpr uint32_t kTrapCount = 14;
+inline constexpr uint32_t kTrapCount = 15;
 const char* trap_name(TrapKind kind);  // "division-by-zero"
 // By a `try`; the others end the scan of their task, whatever is around them.
 constexpr bool can_be_caught(TrapKind kind) {
   return kind != TrapKind::kFuel && kind != TrapKind::kWatchdog && kind != TrapKind::kStack &&
-         kind != TrapKind::kOverrun && kind != TrapKind::kNotANumber;
+         kind != TrapKind::kOverrun && kind != TrapKind::kNotANumber && kind != TrapKind::kIoLost;
 }
 const char* trap_title(TrapKind kind);
 const char* trap_help(TrapKind kind);

@@ -39,9 +39,17 @@ refused 3:13 '`period_ms` must be a whole number from 1 to 3600000' <<'T'
 driver = "simulated"
 period_ms = 0
 T
-refused 3:11 '`on_loss` must be "hold", "zero" or "zero after 500 ms"' <<'T'
+refused 3:11 '`on_loss` must be "hold", "zero", "zero after 500 ms" or "trap TASK"' <<'T'
 driver = "simulated"
 on_loss = "zero after 5 s"
+T
+refused 3:11 '`on_loss` must be "hold", "zero", "zero after 500 ms" or "trap TASK"' <<'T'
+driver = "simulated"
+on_loss = "trap"
+T
+refused 2:10 'device `press`: `on_loss` names `Fast`, which is no task that runs a program; there is `' <<'T'
+driver = "simulated"
+on_loss = "trap Fast"
 T
 refused 3:11 '`on_loss` must be a text or a whole number' <<'T'
 driver = "simulated"

@@ -136,6 +136,13 @@ safe = ["%QX0.0 = TRUE"]'
 expect 0 stc build wired -o wired.img
 expect 0 stvm run wired.Line.img wired.Pack.img --virtual-time --scans 5 --device d.period_ms=20
 expect 2 stvm run wired.Line.img wired.Pack.img --virtual-time --scans 5 --device e.period_ms=20
+device 'resource = "pack"
+on_loss = "trap Slow"'
+expect 7 stc check wired
+said 'stc.toml:2:10: device `d`: `on_loss` names `Slow`, which is no task that runs a program; there is `'
+device 'resource = "pack"
+[outputs]
+safe = ["%QX0.0 = TRUE"]'
 sed -i 's/%QX0.0 = TRUE/%QX9.0 = TRUE/' wired/stc.toml
 expect 7 stc build wired -o wired.img
 said 'the outputs of this program end before'

@@ -52,6 +52,33 @@ expect 0 stvm run p.img --virtual-time --scans 9 --print Main.speed
 said '^Main.speed=0$'
 expect 0 stvm run p.img --virtual-time --scans 16
 cmp -s out.csv first.csv || fail 'another run gave other outputs'
+# A loss can be a trap: `io-lost`, at the start of the task's next scan, and again in the replay.
+sed 's/zero after 20 ms/trap T/' p/stc.toml >p/new.toml && mv p/new.toml p/stc.toml
+expect 1 stvm run p --virtual-time --scans 16 --record lost.rec --print Main.speed,Main.run
+said 'trap: cycle 7, task T: .*: a device that the task needs was lost'
+said '^Main.run=FALSE$'
+expect 0 stvm replay lost.rec --print Main.speed,Main.run
+said 'the state is identical'
+said '^Main.run=FALSE$'
+sed "s/RESOURCE R ON PLC TASK/RESOURCE R ON PLC {attribute 'on_trap' := 'go_on'} TASK/" p/main.st >go_on.st
+mv go_on.st p/main.st
+expect 1 stvm run p --virtual-time --scans 16 --record lost.rec --print Main.speed,Main.run
+said '^Main.speed=100$'
+said '^Main.run=TRUE$'
+expect 0 stvm replay lost.rec --print Main.run
+said 'the state is identical'
+said '^Main.run=TRUE$'
+expect 1 stvm run p --virtual-time --scans 16 --device press.on_loss='trap t'
+expect 2 stvm run p --virtual-time --scans 16 --device press.on_loss='trap U'
+said -- '--device press.on_loss: `on_loss` names `U`'
+# Tests of the project have a task of their own.
+cat >p/t.st <<'ST'
+TEST 'adds'
+ASSERT_EQ(1 + 1, 2);
+END_TEST
+ST
+expect 0 stc test p
+rm p/t.st
 # Another setting here; mistakes in it.
 cp in.csv other.csv
 rm in.csv

@@ -34,6 +34,26 @@ base::Result<Compiled> lower_all(ir::Program program, const std::vector<bool>& l
   return out;
 }
 
+// What only shows when all is linked, with the place of the device that it is about.
+base::Error with_place(base::Error error, const std::vector<ProjectDevice>& devices) {
+  for (const ProjectDevice& row : devices) {
+    const bool about = error.refusal == base::Refusal::kBadMapping &&
+                       error.text.starts_with("device `" + row.device.name + "`: ");
+    if (about) return {error.refusal, row.where + ": " + error.text};
+  }
+  return error;
+}
+
+// The only task of a test image runs the tests.
+std::vector<ir::Device> without_lost_tasks(std::vector<ir::Device> devices) {
+  for (ir::Device& device : devices) {
+    std::erase_if(device.settings, [](const ir::DeviceSetting& setting) {
+      return setting.key == "on_loss" && setting.value.starts_with("trap ");
+    });
+  }
+  return devices;
+}
+
 // Safe values of outputs that another resource has are left out when `several` are built.
 base::Result<Version> link(const Compiled& compiled, const Project& project,
                            std::vector<ir::Device> devices, bool several,
@@ -41,7 +61,7 @@ base::Result<Version> link(const Compiled& compiled, const Project& project,
   linker::Options link_options{project.slack, options.base, options.move_all, std::move(devices),
                                project.safe.rows};
   base::Result<ir::Image> image = linker::link(compiled.program, compiled.objects, link_options);
-  if (!image.ok()) return image.error();
+  if (!image.ok()) return with_place(image.error(), project.devices);
   if (several) {
     image->safe = safe_rows_inside(project.safe, image->output_bytes);
   } else if (base::Status safe = check_safe_settings(project.safe, image->output_bytes);
@@ -125,7 +145,8 @@ base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics&
   if (!compiled.ok()) return compiled.error();
   auto devices = devices_of(project.devices, {}, {});
   if (!devices.ok()) return devices.error();
-  base::Result<Version> version = link(*compiled, project, std::move(*devices), false, {});
+  base::Result<Version> version =
+      link(*compiled, project, without_lost_tasks(std::move(*devices)), false, {});
   if (!version.ok()) return version.error();
   return TestVersion{std::move(*version), std::move(tests->cases)};
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "ir/bytecode/device_tasks.h"
 #include "vm/io/bit_copy.h"
 #include "vm/runtime/process_image.h"
 #include "vm/runtime/safe_outputs.h"
@@ -43,6 +44,9 @@ LeftOutputs left_outputs(const ir::Image& image, const DevicePoints& points) {
 struct DeviceIo::Binding {
   ir::Device device;
   ir::LossPolicy loss;
+  std::optional<uint32_t> task = {};  // of the version; nothing: none is trapped by a loss
+  bool online = false;                // at the last receive()
+  bool lost = false;                  // between it and the one before
   ExchangePort* port = nullptr;
   std::shared_ptr<ExchangeSet> set;
 };
@@ -156,6 +160,12 @@ base::Result<std::unique_ptr<DeviceIo::Tables>> DeviceIo::build(const ir::Verifi
       set_bit(tables->mapped_inputs, device.quality.bit_offset, true);
     }
     binding.loss = *ir::parse_loss(ir::setting(device, "on_loss"));
+    const std::string bad_task = ir::bad_loss_task(version.image(), binding.loss.task);
+    if (!bad_task.empty()) {  // the image's own has been verified
+      return base::Error{base::Refusal::kUsage,
+                         "--device " + device.name + ".on_loss: " + bad_task};
+    }
+    binding.task = ir::loss_task(version.image(), binding.loss.task);
     const bool off = options_.virtual_clock != nullptr &&
                      ir::find_driver(device.driver)->id != ir::DriverId::kSimulated;
     if (!off) {
@@ -193,6 +203,12 @@ void DeviceIo::use(const base::Digest& version) {
     return tables->version.digest() == version;
   });
   base::check(next != tables_.end(), "devices of a version are used that were not prepared");
+  for (Binding& binding : (*next)->bindings) {  // the connection goes on, and so does what is seen
+    const Binding* before =
+        running_ != nullptr && binding.port != nullptr ? running_->of(*binding.port) : nullptr;
+    binding.online = before != nullptr && before->online;
+    binding.lost = false;
+  }
   running_ = next->get();
   switched_ = true;
   for (const Binding& binding : running_->bindings) {  // what was written to it before
@@ -235,13 +251,15 @@ void DeviceIo::receive(std::span<uint8_t> inputs) {
   }
   if (running_->bindings.empty()) return;
   const int64_t now = now_ns();
-  for (const Binding& binding : running_->bindings) {
+  for (Binding& binding : running_->bindings) {
     if (binding.port == nullptr) {
       if (has_quality(binding)) set_bit(inputs, binding.device.quality.bit_offset, false);
       continue;
     }
     ExchangeSet& set = *binding.set;
     bool fresh = binding.port->fresh(now);
+    binding.lost = binding.online && !fresh;
+    binding.online = fresh;
     if (fresh && set.inputs.take()) set.received = true;
     fresh = fresh && (set.received || set.points.inputs.empty());  // of this version's points
     if (has_quality(binding)) set_bit(inputs, binding.device.quality.bit_offset, fresh);
@@ -257,6 +275,13 @@ void DeviceIo::receive(std::span<uint8_t> inputs) {
     }
   }
   std::copy(inputs.begin(), inputs.end(), running_->received.begin());
+}
+
+void DeviceIo::lost_tasks(std::span<uint8_t> tasks) {
+  if (running_ == nullptr) return;
+  for (const Binding& binding : running_->bindings) {
+    if (binding.lost && binding.task && *binding.task < tasks.size()) tasks[*binding.task] = 1;
+  }
 }
 
 void DeviceIo::send(std::span<const uint8_t> outputs) {

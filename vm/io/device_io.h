@@ -44,6 +44,7 @@ class DeviceIo : public IoPort {
   std::vector<DeviceStatus> status() const override;
 
   void receive(std::span<uint8_t> inputs) override;
+  void lost_tasks(std::span<uint8_t> tasks) override;
   void send(std::span<const uint8_t> outputs) override;
   void at_boundary(const ProcessImage& image, uint8_t* memory) override;
 

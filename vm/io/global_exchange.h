@@ -91,6 +91,7 @@ class ResourcePort : public IoPort {
   // kStagedState, for each variable that a prepared version would no longer exchange.
   std::vector<DeviceStatus> status() const override;
   void receive(std::span<uint8_t> inputs) override { devices_.receive(inputs); }
+  void lost_tasks(std::span<uint8_t> tasks) override { devices_.lost_tasks(tasks); }
   void send(std::span<const uint8_t> outputs) override { devices_.send(outputs); }
 
  private:

@@ -22,12 +22,17 @@ class SimulatedIo : public IoPort {
   const base::Bytes& outputs() const { return outputs_; }
   uint64_t sends() const { return sends_; }
 
+  // The next receive() finds a device lost whose loss is a trap of that task of the version.
+  void lose(uint32_t task);
+
   void receive(std::span<uint8_t> inputs) override;
+  void lost_tasks(std::span<uint8_t> tasks) override;
   void send(std::span<const uint8_t> outputs) override;
 
  private:
   base::Bytes inputs_;
   base::Bytes outputs_;
+  base::Bytes lost_;  // by task
   uint64_t sends_ = 0;
 };
 

@@ -70,6 +70,9 @@ class IoPort {
 
   // Fills `inputs` (%I bytes) with the newest values.
   virtual void receive(std::span<uint8_t> inputs) = 0;
+  // Control thread, behind each receive(): the byte of each task whose device was online and has
+  // been lost since becomes 1; `tasks` are those of the version that is used, in its order.
+  virtual void lost_tasks(std::span<uint8_t> /*tasks*/) {}
   // Takes a consistent copy of `outputs` (%Q bytes).
   virtual void send(std::span<const uint8_t> outputs) = 0;
 };

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "base/limits.h"
 #include "vm/runtime/process_image.h"
 #include "vm/runtime/shared_globals.h"
 
@@ -31,6 +32,7 @@ Recorder::Recorder(std::FILE* file, Clock& clock, IoPort& io)
     : clock_(clock), io_(io), file_(file), writer_([this] { write_to_file(); }) {
   now_.observed.clock.reserve(kMaxReads);
   now_.observed.changed.reserve(kMaxChanged);
+  now_.observed.lost.reserve(base::kMaxTasks);
   job_clock_.reserve(kMaxReads);
 }
 
@@ -61,6 +63,13 @@ void Recorder::receive(std::span<uint8_t> inputs) {
     } else {
       overflow_ = true;
     }
+  }
+}
+
+void Recorder::lost_tasks(std::span<uint8_t> tasks) {
+  io_.lost_tasks(tasks);
+  for (uint32_t i = 0; i < tasks.size(); ++i) {
+    if (tasks[i] != 0) now_.observed.lost.push_back({i, tasks[i]});
   }
 }
 
@@ -118,6 +127,7 @@ void Recorder::end(Controller& controller) {
   now_.observed.outputs.clear();
   now_.observed.markers.clear();
   now_.observed.globals.clear();
+  now_.observed.lost.clear();
 }
 
 void Recorder::begin_job(const Controller& controller) {

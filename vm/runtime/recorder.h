@@ -39,6 +39,7 @@ class Recorder : public Clock, public IoPort {
     io_.publish_globals(globals, memory);
   }
   void receive(std::span<uint8_t> inputs) override;
+  void lost_tasks(std::span<uint8_t> tasks) override;
   void send(std::span<const uint8_t> outputs) override { io_.send(outputs); }
 
   // Around Controller::start() (cycle 0), and around each Controller::cycle().

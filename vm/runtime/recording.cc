@@ -7,7 +7,7 @@
 namespace vm {
 namespace {
 
-constexpr char kMagic[] = {'S', 'T', 'C', 'R', 'E', 'C', '0', '2'};
+constexpr char kMagic[] = {'S', 'T', 'C', 'R', 'E', 'C', '0', '3'};
 enum class Tag : uint8_t { kStart = 1, kCycle = 2, kRequest = 3 };
 constexpr size_t kFrameBytes = 9;                  // tag, length, checksum
 constexpr uint64_t kMaxClock = uint64_t{1} << 62;  // ns: 146 years
@@ -98,6 +98,7 @@ RecordedCycle read_cycle(base::ByteReader& in) {
   read_changes(in, cycle.observed.outputs);
   read_changes(in, cycle.observed.markers);
   read_changes(in, cycle.observed.globals);
+  read_changes(in, cycle.observed.lost);
   cycle.state = in.u32();
   return cycle;
 }
@@ -162,6 +163,7 @@ base::Bytes encode_record(const RecordedCycle& cycle) {
   write_changes(payload, cycle.observed.outputs);
   write_changes(payload, cycle.observed.markers);
   write_changes(payload, cycle.observed.globals);
+  write_changes(payload, cycle.observed.lost);
   payload.u32(cycle.state);
   return framed(Tag::kCycle, payload);
 }

@@ -36,6 +36,7 @@ struct Observed {
   ByteChanges outputs;         // %Q and %M that others wrote at the boundary
   ByteChanges markers;
   ByteChanges globals;  // that other resources write, in the order of SharedGlobals::gather_read
+  ByteChanges lost;     // tasks whose device was lost (IoPort::lost_tasks)
 };
 // Number 0 is the start; then one for each call of Controller::cycle().
 struct RecordedCycle {

@@ -32,6 +32,13 @@ void change(base::Bytes& bytes, ByteChanges& changes) {
 
 }  // namespace
 
+void Replay::lost_tasks(std::span<uint8_t> tasks) {
+  for (const auto& [task, byte] : lost_) {
+    if (task < tasks.size()) tasks[task] = byte;
+  }
+  lost_.clear();
+}
+
 void Replay::take_globals(const SharedGlobals& globals, uint8_t* memory) {
   if (globals_.empty()) return;
   base::Bytes bytes(globals.read_bytes());
@@ -60,6 +67,7 @@ void Replay::see(const Observed& observed) {
   outputs_ = observed.outputs;
   markers_ = observed.markers;
   globals_ = observed.globals;
+  lost_ = observed.lost;
   for (const auto& [offset, value] : observed.changed) {
     if (offset >= inputs_.size()) inputs_.resize(size_t{offset} + 1);
     inputs_[offset] = value;

@@ -13,6 +13,7 @@ class Replay : public Clock, public IoPort {
   void consumed(uint64_t) override {}
   void worked(int64_t) override {}
   void receive(std::span<uint8_t> inputs) override;
+  void lost_tasks(std::span<uint8_t> tasks) override;
   void send(std::span<const uint8_t>) override {}
   void at_boundary(const ProcessImage& image, uint8_t* memory) override;
 
@@ -32,6 +33,7 @@ class Replay : public Clock, public IoPort {
   base::Bytes inputs_;
   ByteChanges outputs_, markers_;  // to be written at the next boundary
   ByteChanges globals_;            // when the next cycle begins
+  ByteChanges lost_;               // behind the next receive()
 };
 
 }  // namespace vm

@@ -67,7 +67,7 @@ void Scheduler::restart() {
   next_cycle_ns_ = next(next_cycle_ns_, tables_->base_period_ns, clock_.now_ns());
   for (TaskSlot& task : tables_->tasks) {
     task.status.stopped = task.released = task.event_level = false;
-    task.stretched = task.overran = false;
+    task.stretched = task.overran = task.io_lost = false;
     task.inputs.restart();
     std::fill(task.waiting_mask.begin(), task.waiting_mask.end(), uint8_t{0});
     const int64_t period = task.status.period_ns;
@@ -113,6 +113,7 @@ void Scheduler::begin_cycle() {
   impose_on_outputs();
   io_.send(tables_->outputs);
   io_.receive(tables_->inputs);
+  look_at_losses();
   if (at_boundary()) io_.take_globals(tables_->shared, memory_);
   offer_inputs();
   look_at_events();
@@ -135,6 +136,15 @@ void Scheduler::look_at_events() {
     bool level = event_level(task);
     if (level && !task.event_level) release(task, looked_ns_);
     task.event_level = level;
+  }
+}
+
+// Once for each loss: the flag stays until a scan begins.
+void Scheduler::look_at_losses() {
+  std::fill(tables_->lost.begin(), tables_->lost.end(), uint8_t{0});
+  io_.lost_tasks(tables_->lost);
+  for (size_t i = 0; i < tables_->lost.size(); ++i) {
+    if (tables_->lost[i] != 0) tables_->tasks[i].io_lost = true;
   }
 }
 

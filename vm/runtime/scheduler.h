@@ -63,6 +63,7 @@ class Scheduler {
   bool is_active(const TaskSlot& task) const;
   // Edges of events (ir::Task) release their tasks.
   void look_at_events();
+  void look_at_losses();
   bool event_level(const TaskSlot& task) const;
   TaskSlot* next_released();
   // The activation that has the processor now: a newly begun one or the topmost; nullptr when idle.

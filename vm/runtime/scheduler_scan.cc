@@ -52,6 +52,9 @@ void Scheduler::begin_task(TaskSlot& task) {
   impose(false);
   tables_->process_image.variables_to_outputs(memory_, task.outputs_at_start);
   begin_program(task);
+  if (std::exchange(task.io_lost, false)) {
+    trap_in(task, task.execution->interrupted(ir::TrapKind::kIoLost));
+  }
 }
 
 void Scheduler::begin_program(TaskSlot& task) {

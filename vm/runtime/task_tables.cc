@@ -102,7 +102,8 @@ TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
       version(made_for.verified()),
       process_image(made_for.image()),
       shared(made_for.image()),
-      safe(made_for.image()) {
+      safe(made_for.image()),
+      lost(made_for.image().tasks.size()) {
   const ir::Image& image = made_for.image();
   for (uint32_t number = 0; number < image.tasks.size(); ++number) {
     by_priority.push_back(number);
@@ -142,7 +143,7 @@ void TaskTables::adopt(TaskTables& previous, int64_t cycle_start_ns) {
   safe.apply(written, cycle_start_ns, outputs);
   for (TaskSlot& slot : tasks) {
     std::fill(slot.waiting_mask.begin(), slot.waiting_mask.end(), uint8_t{0});
-    slot.released = false;
+    slot.released = slot.io_lost = false;
     slot.next_release_ns = previous.next_cycle_ns(cycle_start_ns);
     for (TaskSlot& old : previous.tasks) {
       slot.execution->count_on(*old.execution);
@@ -158,6 +159,7 @@ void TaskTables::adopt(TaskTables& previous, int64_t cycle_start_ns) {
       slot.event_level = old.event_level;
       slot.released_ns = old.released_ns;
       slot.stretched = slot.overran = false;
+      slot.io_lost = old.io_lost;
       keep_phase(slot, old, cycle_start_ns);
       if (same_outputs) keep_outputs(slot, old);
       keep_inputs(slot, old);

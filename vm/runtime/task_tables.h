@@ -41,6 +41,7 @@ struct TaskSlot {
   bool released = false;        // due, not yet begun
   bool stretched = false;       // due again, to be released when its scan is done
   bool overran = false;         // due again, to be ended by a trap
+  bool io_lost = false;         // its next scan begins with a trap
   uint64_t begun_in_cycle = 0;  // number of the cycle, from 1: once in each at most
 
   uint32_t event = 0;        // data offset of the BOOL whose edges release it; 0: none
@@ -85,6 +86,7 @@ struct TaskTables {
   base::Bytes unused;        // mask: outputs that no variable stands for
   base::Bytes waiting_mask;  // of all tasks
   base::Bytes written;       // by the task that ends
+  base::Bytes lost;          // IoPort::lost_tasks
   base::Bytes scratch;
   // No outputs wait, and none can be NaN: a scan that nobody is suspended below just packs them.
   bool plain_outputs = false;

@@ -84,6 +84,40 @@ TEST(Devices, V14_WhatHasNoMeaningIsRefused) {
   expect_refused({{"m", "modbus-tcp", {}, {}, {}}}, "needs `address`");
 }
 
+TEST(Devices, V14_ALossThatTrapsNoTaskIsRefused) {
+  Device device = simulated({input(0, 4, 0)});
+  for (const char* good : {"trap Fast", "trap FAST"}) {
+    device.settings = {{"on_loss", good}};
+    EXPECT_TRUE(verified({device}).ok()) << good;
+  }
+  device.settings = {{"on_loss", "trap Fas"}};
+  expect_refused({device},
+                 "`on_loss` names `Fas`, which is no task that runs a program; there is `Fast`");
+  for (const char* bad : {"trap", "trap ", "trap  Fast", "trap Fast ", "trapFast"}) {
+    device.settings = {{"on_loss", bad}};
+    expect_refused({device}, "or \"trap TASK\"");
+  }
+  device.settings = {{"on_loss", "trap " + std::string(base::kMaxIdentifier, 'x')}};
+  expect_refused({device}, "is no task");
+  device.settings = {{"on_loss", "trap " + std::string(base::kMaxIdentifier + 1, 'x')}};
+  expect_refused({device}, "or \"trap TASK\"");
+  device.settings = {{"on_loss", std::string("trap F\0", 7)}};
+  expect_refused({device}, "or \"trap TASK\"");
+}
+
+// What has no scans of its own cannot be trapped.
+TEST(Devices, V14_ALossTrapsATaskWithAProgram) {
+  Image image = sample::busy_image();
+  image.input_bytes = 16;
+  image.tasks.push_back({"Empty", 10'000'000, 100'000'000, 2, 0, {}});
+  image.devices = {simulated({input(0, 4, 0)})};
+  EXPECT_TRUE(verify(encode(image)).ok());
+  image.devices[0].settings = {{"on_loss", "trap Empty"}};
+  const base::Result<VerifiedImage> refused = verify(encode(image));
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().refusal, base::Refusal::kBadDevice);
+}
+
 TEST(Devices, OverlapsAreRefused) {
   EXPECT_TRUE(verified({simulated({input(0, 4, 0), input(4, 4, 4)})}).ok());
   expect_refused({simulated({input(0, 4, 0), input(8, 4, 3)})}, "provides the same bits of %I");

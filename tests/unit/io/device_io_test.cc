@@ -99,6 +99,112 @@ TEST(DeviceIo, LossHoldsOrClearsInputsAndTheQualityBitFalls) {
   }
 }
 
+// Two tasks; the device traps the one whose scans go on behind it.
+constexpr const char* kTwoTasks =
+    " CONFIGURATION C RESOURCE R ON PLC TASK U(INTERVAL := T#10ms, PRIORITY := 1); "
+    "{attribute 'on_trap' := 'go_on'} TASK T(INTERVAL := T#10ms, PRIORITY := 2); "
+    "PROGRAM Main WITH T : P; PROGRAM Other WITH U : Q; END_RESOURCE END_CONFIGURATION "
+    "PROGRAM Q VAR n : DINT; END_VAR n := n + 1; END_PROGRAM";
+
+ir::Device trapping(const std::string& task) {
+  return with_quality(device("d", {to_program(0, 1, 0)}, {{"period_ms", "10"}}), "trap " + task);
+}
+
+// On virtual time. Before the device was ever online there is no loss; each loss is one trap, the
+// inputs stay, and the other task sees nothing of it.
+TEST(DeviceIo, EachLossTrapsTheTaskOnce) {
+  FakeDevice fake;
+  VirtualClock clock;
+  DeviceIo io({fakes({{"d", &fake}}), {}, &clock});
+  auto image = io_test::build(std::string(kEcho) + kTwoTasks, {trapping("t")});
+  ASSERT_TRUE(image);
+  fake.broken = true;
+  fake.set(32, 5);
+  auto controller = Controller::start(*image, {}, clock, io);
+  ASSERT_TRUE(controller.ok());
+  const auto cycles = [&](int count) {
+    for (int i = 0; i < count; ++i) (*controller)->cycle();
+  };
+  const auto value = [&](const char* name) { return *(*controller)->get(name); };
+  cycles(5);
+  EXPECT_EQ((*controller)->trap_count(), 0u);
+  EXPECT_EQ(value("Main.n"), "5");
+  for (uint64_t loss = 1; loss <= 3; ++loss) {
+    fake.broken = false;
+    cycles(5);
+    EXPECT_EQ((*controller)->trap_count(), loss - 1);
+    EXPECT_EQ(value("Main.ok"), "TRUE");
+    fake.broken = true;
+    cycles(1);
+    ASSERT_EQ((*controller)->trap_count(), loss);  // in the scan that would not see it
+    EXPECT_EQ((*controller)->traps().back().trap.kind, ir::TrapKind::kIoLost);
+    EXPECT_EQ((*controller)->traps().back().task, "T");
+    cycles(4);
+    EXPECT_EQ((*controller)->trap_count(), loss);
+    EXPECT_EQ(value("Main.i"), "16#05");
+    EXPECT_EQ(value("Main.ok"), "FALSE");
+    EXPECT_EQ(value("Main.n"), std::to_string(5 + loss * 9));
+    EXPECT_EQ(value("Other.n"), std::to_string(5 + loss * 10));
+  }
+}
+
+// The task is the one of that name in the version that runs; a loss at the switch is none less.
+TEST(DeviceIo, ALossIsOfTheTaskOfThatNameInTheRunningVersion) {
+  FakeDevice fake;
+  VirtualClock clock;
+  DeviceIo io({fakes({{"d", &fake}}), {}, &clock});
+  auto first = io_test::build(std::string(kEcho) + kFast, {trapping("T")});
+  auto second = io_test::build(std::string(kEcho) + kTwoTasks, {trapping("T")});
+  ASSERT_TRUE(first && second);
+  const auto number = [](const ir::VerifiedImage& image) {
+    uint32_t at = 0;
+    while (image.image().tasks[at].name != "T") ++at;
+    return at;
+  };
+  ASSERT_NE(number(*first), number(*second));
+  ASSERT_TRUE(io.prepare(*first).ok());
+  io.use(first->digest());
+  base::Bytes inputs(16);
+  const auto lost = [&] {
+    clock.advance(10'000'000);
+    io.send(base::Bytes(2));
+    io.receive(inputs);
+    base::Bytes tasks(2);
+    io.lost_tasks(tasks);
+    return tasks;
+  };
+  const auto only = [](uint32_t at) {
+    base::Bytes tasks(2);
+    tasks[at] = 1;
+    return tasks;
+  };
+  EXPECT_EQ(lost(), base::Bytes(2));
+  ASSERT_TRUE(io.prepare(*second).ok());
+  io.use(second->digest());
+  fake.broken = true;
+  EXPECT_EQ(lost(), only(number(*second)));
+  EXPECT_EQ(lost(), base::Bytes(2));
+  io.use(first->digest());  // undo: lost as it was
+  EXPECT_EQ(lost(), base::Bytes(2));
+  fake.broken = false;
+  EXPECT_EQ(lost(), base::Bytes(2));
+  fake.broken = true;
+  EXPECT_EQ(lost(), only(number(*first)));
+}
+
+TEST(DeviceIo, AnOverrideThatNamesNoTaskIsRefused) {
+  FakeDevice fake;
+  auto image = io_test::build(std::string(kEcho) + kFast, {device("d", {to_program(0, 1, 0)})});
+  ASSERT_TRUE(image);
+  DeviceIo io({fakes({{"d", &fake}}), {{"d", "on_loss", "trap Fast"}}});
+  const base::Status refused = io.prepare(*image);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().refusal, base::Refusal::kUsage);
+  EXPECT_EQ(refused.error().text,
+            "--device d.on_loss: `on_loss` names `Fast`, which is no task that runs a program; "
+            "there is `T`");
+}
+
 TEST(DeviceIo, B8_ADriverThatHangsDelaysNoScan) {
   static FakeDevice hangs;  // its thread may outlive the test
   FakeDevice works;

@@ -35,6 +35,11 @@ class NoisyDevices : public vm::IoPort {
       if (random_() % 3 == 0) byte = static_cast<uint8_t>(random_());
     }
   }
+  void lost_tasks(std::span<uint8_t> tasks) override {
+    for (uint8_t& task : tasks) {
+      if (random_() % 16 == 0) task = 1;
+    }
+  }
   void send(std::span<const uint8_t>) override {}
   // As others do through a server.
   void at_boundary(const vm::ProcessImage& image, uint8_t* memory) override {
@@ -89,6 +94,7 @@ class RecordingTest : public testing::Test {
       (*recorder)->end(**controller);
     }
     final_ = (*controller)->get("S.n").value() + " " + (*controller)->get("S.seen").value();
+    losses_ = (*controller)->trap_count();
     EXPECT_TRUE((*recorder)->close().ok());
     std::ifstream file(folder_ / "run", std::ios::binary);
     return base::Bytes(std::istreambuf_iterator<char>(file), {});
@@ -97,11 +103,13 @@ class RecordingTest : public testing::Test {
   static vm::ControllerOptions options() {
     vm::ControllerOptions options;
     options.fuel_slice = 10;
+    options.on_trap = ir::OnTrap::kGoOn;
     return options;
   }
 
   std::filesystem::path folder_;
   std::string final_;
+  uint64_t losses_ = 0;
 };
 
 TEST_F(RecordingTest, ReplayIsBitIdentical) {
@@ -129,6 +137,8 @@ TEST_F(RecordingTest, ReplayIsBitIdentical) {
     }
     EXPECT_EQ((*controller)->get("S.n").value() + " " + (*controller)->get("S.seen").value(),
               final_);
+    EXPECT_GT(losses_, 0u) << "no device was lost, so this shows nothing of it";
+    EXPECT_EQ((*controller)->trap_count(), losses_);
   }
 }
 
@@ -172,7 +182,7 @@ TEST(Recording, RoundTripOfRecords) {
   };
   vm::RecordedCycle cycle{UINT64_MAX, {}, 0xdeadbeef};
   cycle.observed = {
-      {0, 1, int64_t{1} << 62}, {{0, 9}, {70'000, 255}}, {{3, 1}}, {{0, 2}}, {{7, 4}}};
+      {0, 1, int64_t{1} << 62}, {{0, 9}, {70'000, 255}}, {{3, 1}}, {{0, 2}}, {{7, 4}}, {{2, 1}}};
   add(vm::encode_record(cycle));
   add(vm::encode_record(vm::RecordedRequest{9, {5}, base::Bytes(100'000, 7)}));
   add(vm::encode_record(vm::RecordedRequest{3, {}, {}}));
@@ -187,6 +197,7 @@ TEST(Recording, RoundTripOfRecords) {
   EXPECT_EQ(back->cycles[0].observed.outputs, cycle.observed.outputs);
   EXPECT_EQ(back->cycles[0].observed.markers, cycle.observed.markers);
   EXPECT_EQ(back->cycles[0].observed.globals, cycle.observed.globals);
+  EXPECT_EQ(back->cycles[0].observed.lost, cycle.observed.lost);
   EXPECT_EQ(back->cycles[0].state, 0xdeadbeefu);
   ASSERT_EQ(back->requests.size(), 2u);
   EXPECT_EQ(back->requests[0].cycle, 3u);

@@ -179,6 +179,7 @@ constexpr Fault kFaults[] = {
     {"fuel", "WHILE TRUE DO ; END_WHILE", ir::TrapKind::kFuel},
     {"watchdog", "FOR n := 1 TO 60000 DO ; END_FOR", ir::TrapKind::kWatchdog},
     {"overrun", "FOR n := 1 TO 12000 DO ; END_FOR", ir::TrapKind::kOverrun},
+    {"io lost", "n := n + 1;", ir::TrapKind::kIoLost},  // a device of T1, before each of its scans
     {"NaN", "level := SQRT(INT_TO_REAL(-1 + zero));", ir::TrapKind::kNotANumber},
 };
 
@@ -223,9 +224,19 @@ class FaultMatrix : public testing::TestWithParam<Fault> {
  protected:
   // Until something has trapped, in the cycle in which it has.
   static void run_into(Plant& plant) {
-    for (int i = 0; i < 20 && plant->trap_count() == 0; ++i) plant.cycles(1);
+    for (int i = 0; i < 20 && plant->trap_count() == 0; ++i) cycles(plant, 1);
     ASSERT_EQ(plant->trap_count(), 1u);
     EXPECT_EQ(plant->traps()[0].trap.kind, GetParam().kind);
+  }
+  static void cycles(Plant& plant, int count) {
+    const auto& tasks = plant->verified().image().tasks;
+    for (; count > 0; --count) {
+      for (uint32_t i = 0; i < tasks.size(); ++i) {
+        const bool its = GetParam().kind == ir::TrapKind::kIoLost && tasks[i].name == "T1";
+        if (its && plant.task("T1").scans >= 2) plant.io.lose(i);
+      }
+      plant.cycles(1);
+    }
   }
   static vm::ControllerOptions options() {
     vm::ControllerOptions options = small_slices();
@@ -245,10 +256,10 @@ TEST_P(FaultMatrix, StopAll) {
   EXPECT_EQ(plant.io.output(3), 0x00);
   EXPECT_EQ(plant.io.output(8), 0x80);
   plant.clock.advance(19 * kMs);
-  plant.cycles(1);
+  cycles(plant, 1);
   EXPECT_EQ(plant.io.output(2), 0x22);
   plant.clock.advance(2 * kMs);
-  plant.cycles(1);
+  cycles(plant, 1);
   EXPECT_EQ(plant.io.output(2), 0x07);
   EXPECT_EQ(plant.io.output(1), 0x11);
 }
@@ -267,7 +278,7 @@ TEST_P(FaultMatrix, StopTask) {
   EXPECT_EQ(plant.io.output(8), 0x0f);
   EXPECT_EQ(plant.get("B.lamp"), "TRUE");
   EXPECT_EQ(plant.get("B.kept"), "16#11");
-  plant.cycles(4);
+  cycles(plant, 4);
   EXPECT_EQ(plant.io.output(0), 0x01);
   EXPECT_EQ(plant.io.output(2), 0x07);
   EXPECT_EQ(plant.io.output(8), 0x0f);
@@ -289,7 +300,7 @@ TEST_P(FaultMatrix, GoOn) {
   unchanged();
   EXPECT_FALSE(plant->faulted());
   EXPECT_FALSE(plant.task("T1").stopped);
-  plant.cycles(20);
+  cycles(plant, 20);
   unchanged();
   EXPECT_GT(plant->trap_count(), 1u);
   EXPECT_EQ(plant.task("T1").scans, 2u);
@@ -301,6 +312,61 @@ INSTANTIATE_TEST_SUITE_P(EveryClass, FaultMatrix, testing::ValuesIn(kFaults),
                            std::erase(name, ' ');
                            return name;
                          });
+
+// The scan that is under way is done with what it has; the next one begins with the trap, once.
+TEST(TaskPolicy, ALossTrapsTheNextScanAndOnlyThatOne) {
+  Plant plant(too_long("{attribute 'on_trap' := 'go_on'}"), small_slices(), 1000);
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(2);  // 20 ms of 25
+  uint32_t number = 0;
+  while (plant->verified().image().tasks[number].name != "Long") ++number;
+  plant.io.lose(number);
+  plant.cycles(1);
+  EXPECT_EQ(plant.task("Long").scans, 1u);
+  EXPECT_EQ(plant->trap_count(), 0u);
+  plant.cycles(1);
+  ASSERT_EQ(plant->trap_count(), 1u);
+  EXPECT_EQ(plant->traps()[0].trap.kind, ir::TrapKind::kIoLost);
+  EXPECT_EQ(plant->traps()[0].task, "Long");
+  EXPECT_EQ(plant->traps()[0].text.pou, "Work");
+  EXPECT_EQ(plant.get("W.n"), "1");
+  plant.cycles(9);
+  EXPECT_EQ(plant->trap_count(), 1u);
+  EXPECT_EQ(plant.get("W.n"), "4");
+}
+
+// What was to be trapped is not known any more behind a restart; a change keeps it for the task of
+// that name.
+TEST(TaskPolicy, ALossIsKeptThroughAChangeAndForgottenByARestart) {
+  const std::string source = R"(
+PROGRAM Count VAR n : DINT; END_VAR n := n + 1; END_PROGRAM
+CONFIGURATION c RESOURCE r ON cpu
+  TASK Fast (INTERVAL := T#10ms, PRIORITY := 1);
+  {attribute 'on_trap' := 'go_on'} TASK Slow (INTERVAL := T#30ms, PRIORITY := 2);
+  PROGRAM F WITH Fast : Count; PROGRAM S WITH Slow : Count;
+END_RESOURCE END_CONFIGURATION
+)";
+  for (const bool restart : {false, true}) {
+    SCOPED_TRACE(restart);
+    Plant plant(source, small_slices(), 1000);
+    ASSERT_TRUE(plant.ok());
+    plant.cycles(1);
+    uint32_t number = 0;
+    while (plant->verified().image().tasks[number].name != "Slow") ++number;
+    plant.io.lose(number);
+    plant.cycles(1);
+    std::unique_ptr<vm::Generation> before;
+    if (restart) {
+      ASSERT_TRUE(plant->restart(vm::Restart::kHot, kMs).ok());
+    } else {
+      auto next = plant->prepare(plant->verified());
+      ASSERT_TRUE(next.ok());
+      before = plant->publish(std::move(*next));
+    }
+    plant.cycles(6);
+    EXPECT_EQ(plant->trap_count(), restart ? 0u : 1u);
+  }
+}
 
 // --- what is whose -------------------------------------------------------------------------------
 
@@ -390,7 +456,7 @@ TEST(SafeOutputs, AtTheEndHoldsTakeTheirValue) {
                                             {8, 8, ir::SafeKind::kHold, 0, 0}};
   Plant plant(
       "PROGRAM P VAR a AT %QB0 : BYTE; b AT %QB1 : BYTE; c AT %QB2 : BYTE; END_VAR a := 1; b "
-              ":= 2; c := 3; END_PROGRAM",
+      ":= 2; c := 3; END_PROGRAM",
       {}, 0, rows);
   ASSERT_TRUE(plant.ok());
   plant.cycles(2);
