@@ -1,5 +1,7 @@
 #include "frontend/fbd/links.h"
 
+#include <algorithm>
+
 #include "frontend/network/pins.h"
 #include "ir/types/types.h"
 
@@ -56,6 +58,8 @@ void drop(std::vector<Element>& elements, const std::vector<bool>& dropped) {
 
 void Links::add_box(const network::Text& name, uint32_t element, bool wire) {
   auto [found, fresh] = boxes_.emplace(ir::fold_name(name.text), Box{element, wire, name});
+  if (fresh) names_.push_back(found->first);
+  longest_ = std::max({longest_, found->first.size(), name.text.size()});
   if (fresh || (!wire && !found->second.wire)) return;
   diagnostics_.add(Code::kBoxTwice, name.span, "there is another box named `" + name.text + "`",
                    "choose another name");
@@ -67,7 +71,10 @@ void Links::add_use(uint32_t element, uint32_t input, const network::Text& opera
 
 void Links::forget(size_t uses, size_t elements) {
   uses_.resize(uses);
-  std::erase_if(boxes_, [&](const auto& box) { return box.second.element >= elements; });
+  while (!names_.empty() && boxes_.at(names_.back()).element >= elements) {
+    boxes_.erase(names_.back());
+    names_.pop_back();
+  }
 }
 
 void Links::finish(network::Network& network) {
@@ -83,6 +90,8 @@ void Links::finish(network::Network& network) {
   }
   drop(elements, dropped);
   boxes_.clear();
+  names_.clear();
+  longest_ = 0;
   uses_.clear();
 }
 
@@ -94,6 +103,7 @@ Links::Found Links::find(const Use& use, network::Network& network) {
   size_t behind = 0;
   for (; !operand.at_end(); operand.take()) {  // the longest beginning that names a box
     size_t end = operand.token().begin + operand.token().length;
+    if (end > longest_) break;
     auto found = boxes_.find(ir::fold_name(whole.substr(0, end)));
     if (found == boxes_.end()) continue;
     box = &found->second;

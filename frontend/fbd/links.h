@@ -53,6 +53,8 @@ class Links {
 
   base::Diagnostics& diagnostics_;
   std::unordered_map<std::string, Box> boxes_;  // by folded name
+  std::vector<std::string> names_;              // of boxes_, as they were added
+  size_t longest_ = 0;                          // of these names
   std::vector<Use> uses_;
 };
 

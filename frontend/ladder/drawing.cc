@@ -179,6 +179,7 @@ class RowReader {
     while (!at_line_end() && !is_space(peek()) && std::string_view("-+|[(").find(peek()) > 4) {
       take();
     }
+    if (current().damaged) return;
     std::string shown = base::printable(text_.substr(begin, at_ - begin));
     report(Code::kBadDrawing, begin, at_, "`" + shown + "` is no part of a drawing",
            "contacts stand in [ ], coils in ( ), wires are made of - + |");

@@ -4,6 +4,7 @@
 
 #include "frontend/ladder/element.h"
 #include "frontend/lex/characters.h"
+#include "frontend/network/comments.h"
 
 namespace frontend::ladder {
 namespace {
@@ -48,11 +49,22 @@ class RungReader {
     if (piece.kind != SegmentKind::kContact) return false;
     std::string_view inside = text_.substr(piece.byte, piece.bytes);
     bool word = false;
+    bool colon = false;
+    char quote = '\0';
+    for (char c : inside) {
+      if (quote != '\0') {
+        if (c == quote) quote = '\0';
+      } else if (c == '\'' || c == '"') {
+        quote = c;
+      } else {
+        colon = colon || c == ':';
+      }
+    }
     for (size_t i = 1; i + 1 < inside.size() && !word; ++i) {
       bool alone = !is_name_part(inside[i - 1]) && !is_name_part(inside[i + 1]);
       word = inside[i] == '_' && alone;
     }
-    return !word && inside.find(':') == std::string_view::npos;
+    return !word && !colon;
   }
 
   // Every wire gets power from somewhere, and somebody uses it.
@@ -153,6 +165,9 @@ class RungReader {
     const Piece& piece = rung_.pieces[number];
     auto made = make_element(text_, begin_, piece, network_, diagnostics_);
     if (!made) return;
+    for (network::Comment& comment : network::comments_in(text_.substr(piece.byte, piece.bytes))) {
+      network_.comments.push_back(std::move(comment.text));
+    }
     made_[number] = made;
     network::Input& input = network_.elements[made->element].inputs[made->input];
     const Node& node = rung_.nodes[piece.left];

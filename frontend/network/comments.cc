@@ -38,7 +38,7 @@ std::string comment_text(std::string_view comment) {
     if (c == '\r' || (fresh && is_space(c) && c != '\n')) continue;
     fresh = c == '\n';
     if (fresh) trim_end();
-    out += c;
+    out += c == '\t' ? ' ' : c;
   }
   while (!out.empty() && is_space(out.back())) out.pop_back();
   size_t first = 0;

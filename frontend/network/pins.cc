@@ -1,5 +1,6 @@
 #include "frontend/network/pins.h"
 
+#include "frontend/network/comments.h"
 #include "ir/types/types.h"
 
 namespace frontend::network {
@@ -32,7 +33,8 @@ Text Cursor::text_from(size_t place) const {
   out.span = span_from(place);
   out.text =
       text_.substr(out.span.begin.offset - begin_, out.span.end.offset - out.span.begin.offset);
-  if (out.text.find_first_of("\n\r\t") == std::string::npos) return out;
+  bool plain = out.text.find_first_of("\n\r\t") == std::string::npos;
+  if (plain && comments_in(out.text).empty()) return out;  // readers keep comments elsewhere
   out.text.clear();
   for (size_t i = place; i < at_; ++i) {
     bool apart = i > place && tokens_[i].begin != tokens_[i - 1].begin + tokens_[i - 1].length;

@@ -1,5 +1,6 @@
 #include "frontend/parse/diagram.h"
 
+#include "frontend/lex/characters.h"
 #include "ir/types/types.h"
 
 namespace frontend {
@@ -11,6 +12,21 @@ namespace {
 
 // Beyond it a value is kept: a join may have more branches than an expression is high.
 constexpr size_t kHighest = 100;
+
+// An operand, however its tokens were set apart.
+std::string without_blanks(const std::string& operand) {
+  base::Diagnostics unheard;
+  std::string out;
+  bool word = false;
+  for (const Token& token : lex(operand, base::SourcePos{0}, unheard).tokens) {
+    std::string text = operand.substr(token.begin, token.length);
+    bool begins = !text.empty() && (is_name_part(text[0]) || text[0] == '%');
+    if (word && begins) out += ' ';
+    word = !text.empty() && is_name_part(text.back());
+    out += text;
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -63,13 +79,31 @@ void Parser::Diagram::count_uses() {
   done_.assign(count, false);
   joins_.clear();
   for (size_t i = 0; i < count; ++i) outputs_[i].resize(network_->elements[i].outputs.size());
+  std::map<std::string, uint32_t> calls;
   for (uint32_t i = 0; i < count; ++i) {
-    for (const network::Input& input : network_->elements[i].inputs) {
+    const Element& element = network_->elements[i];
+    for (const network::Input& input : element.inputs) {
       for (network::Link link : input.from) {
         Output& output = outputs_[link.element][link.output];
         ++output.uses;
         output.user = i;
       }
+    }
+    bool instance = element.kind == Kind::kBlock && !element.operand.empty();
+    if (instance) ++calls[ir::fold_name(element.operand.text)];
+  }
+  called_again_.assign(count, false);
+  targets_.assign(count, 0);
+  for (uint32_t i = static_cast<uint32_t>(count); i-- > 0;) {
+    const Element& element = network_->elements[i];
+    bool instance = element.kind == Kind::kBlock && !element.operand.empty();
+    if (instance) called_again_[i] = calls[ir::fold_name(element.operand.text)] > 1;
+    targets_[i] = i;
+    bool passes = element.kind == Kind::kContact || (element.kind == Kind::kBlock && !instance);
+    for (size_t o = 0; passes && o < outputs_[i].size(); ++o) {
+      if (outputs_[i][o].uses == 0 || outputs_[i][o].user <= i) continue;
+      targets_[i] = targets_[outputs_[i][o].user];
+      break;
     }
   }
 }
@@ -77,6 +111,7 @@ void Parser::Diagram::count_uses() {
 void Parser::Diagram::element(uint32_t number) {
   const Element& element = network_->elements[number];
   here_ = element.span;
+  number_ = number;
   switch (element.kind) {
     case Kind::kContact:
       return contact(number, element);
@@ -117,7 +152,7 @@ void Parser::Diagram::coil(uint32_t number, const Element& element) {
 }
 
 void Parser::Diagram::sink(const Element& element) {
-  ExprId value = input(element.inputs[0], element.operand.text).expr;
+  ExprId value = input(element.inputs[0]).expr;
   if (value.valid()) assign(element, value, element.modifier);
 }
 
@@ -157,7 +192,7 @@ void Parser::Diagram::jump(const Element& element) {
   stmt.kind = element.kind == Kind::kJump ? StmtKind::kJump : StmtKind::kReturn;
   stmt.span = element.span;
   stmt.name = {made(element.operand.text), element.operand.span};
-  Value condition = input(element.inputs[0], element.operand.text);
+  Value condition = input(element.inputs[0]);
   if (!condition.expr.valid()) condition.expr = boolean(false, element.span);
   if (condition.power) return emit(stmt, element.span);
   emit_if(condition.expr, stmt, element.span);
@@ -191,13 +226,15 @@ Parser::Diagram::Value Parser::Diagram::linked(const network::Input& input) {
   return out;
 }
 
-Parser::Diagram::Value Parser::Diagram::input(const network::Input& input,
-                                              const std::string& owner) {
+Parser::Diagram::Value Parser::Diagram::input(const network::Input& input) {
   Value out = linked(input);
   base::SourceSpan span = input.span.begin.valid() ? input.span : here_;
   if (!out.expr.valid() || input.modifier == Modifier::kNone) return out;
   if (input.modifier == Modifier::kNegated) out.expr = negated(out.expr, span);
-  std::string of = owner + (input.name.empty() ? "" : "." + input.name);
+  const Element* from =
+      input.from.size() == 1 ? &network_->elements[input.from[0].element] : nullptr;
+  bool source = from != nullptr && from->kind == Kind::kSource;
+  const std::string& of = source ? from->operand.text : input.name;
   out.expr = edge(out.expr, input.modifier, of, span);
   out.power = false;
   return out;
@@ -240,14 +277,18 @@ ExprId Parser::Diagram::edge(ExprId value, Modifier modifier, const std::string&
   return seen;
 }
 
+// What is compared, and what the edge acts on: both stay when rungs come and go around it.
 Name Parser::Diagram::memory(const std::string& of, Modifier modifier, base::SourceSpan span) {
-  std::string stem;
-  if (pou_.kind == PouKind::kAction) stem = std::string(pou_.name.text) + '.';
-  stem += of + (modifier == Modifier::kRising ? "#rising" : "#falling");
-  std::string text = stem;
-  for (uint32_t number = 2; !memories_.insert(ir::fold_name(text)).second; ++number) {
-    text = stem + std::to_string(number);
-  }
+  std::string text;
+  if (pou_.kind == PouKind::kAction) text = std::string(pou_.name.text) + '.';
+  text += without_blanks(of) + (modifier == Modifier::kRising ? "#rising" : "#falling");
+  const Element& target = network_->elements[targets_[number_]];
+  bool acts = target.kind == Kind::kCoil || target.kind == Kind::kSink ||
+              target.kind == Kind::kJump || target.kind == Kind::kBlock;
+  const std::string& name = target.operand.empty() ? target.type.text : target.operand.text;
+  if (acts && !name.empty()) text += '#' + without_blanks(name);
+  uint32_t times = ++memories_[ir::fold_name(text)];
+  if (times > 1) text += '#' + std::to_string(times);
   Spec spec;
   spec.kind = SpecKind::kNamed;
   spec.name = {"BOOL", span};

@@ -1,12 +1,13 @@
 // Inside of the parser: bodies in ladder and FBD. Their readers make networks (network/network.h);
 // here statements are made of them, element by element in the order of execution. Power that
 // arrives anywhere is a kResult, as in instruction lists: a value without a variable. What an edge
-// remembers is a variable `operand#rising` or `operand#falling` of the POU, found again by name in
-// an online change. Everything here is syntax: types are sema's.
+// remembers is a variable of the POU, `operand#rising#target`, found again by name in an online
+// change. Everything here is syntax: types are sema's.
 #pragma once
 
 #include <map>
 #include <string>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -45,7 +46,7 @@ class Parser::Diagram {
   void sink(const Element& element);
   void assign(const Element& element, ExprId value, network::Modifier modifier);
   void jump(const Element& element);
-  Value input(const network::Input& input, const std::string& owner);
+  Value input(const network::Input& input);
   Value linked(const network::Input& input);
   ExprId output(network::Link link);
   ExprId edge(ExprId value, network::Modifier modifier, const std::string& of,
@@ -63,7 +64,8 @@ class Parser::Diagram {
   bool is_result(const Element& element, uint32_t output) const;
 
   // --- expressions and statements
-  ExprId parse(const network::Text& text);
+  // `quiet`: what is wrong is said in another place.
+  ExprId parse(const network::Text& text, bool quiet = false);
   ExprId boolean(bool value, base::SourceSpan span);
   ExprId name(const Name& name);
   ExprId negated(ExprId operand, base::SourceSpan span);
@@ -81,13 +83,16 @@ class Parser::Diagram {
   Tree& tree_;
   PouDecl& pou_;
   const network::Network* network_ = nullptr;
-  base::SourceSpan here_;  // the element that is made
+  base::SourceSpan here_;           // the element that is made
+  uint32_t number_ = 0;             // the same, by number
+  std::vector<uint32_t> targets_;   // by element: the first behind it that writes or calls
+  std::vector<bool> called_again_;  // blocks whose instance has several boxes in the network
   std::vector<std::vector<Output>> outputs_;                            // by element and output
   std::map<std::vector<std::pair<uint32_t, uint32_t>>, ExprId> joins_;  // several links, kept
-  std::vector<ExprId> conditions_;            // by element: when its outputs are stored
-  std::vector<bool> done_;                    // sinks that a call has written
-  std::unordered_set<std::string> memories_;  // folded names
-  VarBlock kept_;                             // what edges remember
+  std::vector<ExprId> conditions_;                      // by element: when its outputs are stored
+  std::vector<bool> done_;                              // sinks that a call has written
+  std::unordered_map<std::string, uint32_t> memories_;  // folded names
+  VarBlock kept_;                                       // what edges remember
 };
 
 }  // namespace frontend

@@ -32,7 +32,7 @@ void Parser::Diagram::block(uint32_t number, const Element& element) {
     ExprId kept = keep(value, element.span);
     const Element& user = network_->elements[outputs_[number][i].user];
     if (user.kind == Kind::kSink && !element.outputs[i].negated) {
-      tree_.results[tree_[kept].number].target = parse(user.operand);
+      tree_.results[tree_[kept].number].target = parse(user.operand, true);
     }
     outputs_[number][i].kept = kept;
     result = true;
@@ -42,6 +42,13 @@ void Parser::Diagram::block(uint32_t number, const Element& element) {
     stmt.kind = StmtKind::kCall;
     stmt.value = value;
     emit(stmt, element.span);
+  }
+  // Another box of the instance would change what this one has given.
+  for (uint32_t i = 0; called_again_[number] && i < element.outputs.size(); ++i) {
+    Output& output = outputs_[number][i];
+    if (output.uses == 0 || output.kept.valid()) continue;
+    ExprId now = member(parse(element.operand, true), element.outputs[i].name, element.span);
+    output.kept = keep(now, element.span);
   }
   if (!enable.expr.valid() || enable.power) return;
   conditions_[number] = enable.expr;
@@ -58,13 +65,9 @@ ExprId Parser::Diagram::callee(const Element& element) {
 }
 
 Range32 Parser::Diagram::arguments(uint32_t number, const Element& element, Value* enable) {
-  // What an edge of a pin is called by: names that stay when boxes come and go in front.
-  const std::string& owner = !element.operand.empty() ? element.operand.text
-                             : !element.wire.empty()  ? element.wire.text
-                                                      : element.type.text;
   std::vector<Arg> args;
   for (const network::Input& each : element.inputs) {
-    Value value = input(each, owner);
+    Value value = input(each);
     base::SourceSpan span = each.span.begin.valid() ? each.span : here_;
     if (!value.expr.valid()) continue;
     if (ir::same_name(each.name, "EN")) {
@@ -141,7 +144,7 @@ const network::Element* Parser::Diagram::only_sink(Link link) const {
 // --- expressions and statements
 
 // The tokens of an operand, in the place where it is written.
-ExprId Parser::Diagram::parse(const network::Text& operand) {
+ExprId Parser::Diagram::parse(const network::Text& operand, bool quiet) {
   base::Diagnostics unheard;  // the reader has reported what no token is
   std::string_view text = p_.text_.substr(operand.span.begin.offset - p_.base_,
                                           operand.span.end.offset - operand.span.begin.offset);
@@ -151,6 +154,7 @@ ExprId Parser::Diagram::parse(const network::Text& operand) {
   const Token* last = p_.last_;
   p_.first_ = p_.current_ = tokens.tokens.data();
   p_.last_ = p_.first_ + tokens.tokens.size() - 1;
+  p_.panic_ = quiet;
   ExprId out = p_.parse_expression();
   if (p_.kind() != TokenKind::kEnd) {
     p_.report_here(Code::kExpected,
