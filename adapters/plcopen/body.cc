@@ -92,7 +92,8 @@ std::string condition_text(Node body, const std::string& name, Reporter& report)
     if (xml::is(node, "IL")) return ":\n" + xml::indented(xml::text_of(node), kIndent);
     if (xml::is(node, "ST")) {
       std::string text = expression_of(xml::text_of(node), name);
-      if (!text.empty()) return " := " + text + ";\n";
+      const bool open = text.find("//") != std::string::npos;  // a comment ends with its line
+      if (!text.empty()) return " := " + text + (open ? "\n;\n" : ";\n");
       return failed(node, "the condition is no single expression", report);
     }
     if (xml::is(node, "LD") || xml::is(node, "FBD")) {

@@ -19,10 +19,18 @@ struct Action {
 
 struct Element {
   Node node;
-  std::string name;             // steps: as the text has it
-  std::vector<uint64_t> above;  // ids
-  std::vector<size_t> below;    // elements
+  std::string name;           // steps: as the text has it
+  std::vector<size_t> above;  // elements
+  std::vector<size_t> below;
   std::vector<Action> actions;  // steps
+};
+
+// From an element to the next one; `joined`: behind a convergence or divergence of simultaneous
+// branches, so several are meant.
+struct Way {
+  const Element* from;
+  const Element* to;
+  bool joined;
 };
 
 class Chart {
@@ -38,14 +46,15 @@ class Chart {
   void add_actions(Node block);
   std::string step_name(Node node);
   void reserve_names();
-  const Element* at(uint64_t id) const;
-  // Names of the steps that a transition leaves or enters, through what lies between.
-  void steps_above(const Element& element, bool joined, std::vector<std::string>& out);
-  void steps_below(const Element& element, bool joined, std::vector<std::string>& out);
+  // Names of the steps that a transition leaves (`up`) or enters, through what lies between.
+  std::vector<std::string> steps_beside(const Element& transition, bool up);
+  void push_neighbours(const Element& element, bool up, bool joined, std::vector<Way>& todo);
+  std::string jump_target(const Element& jump);
   std::string step_text(const Element& step);
-  std::string use_text(const Action& action);
   std::string transition_text(const Element& transition);
   std::string condition(const Element& transition);
+  std::string plain_condition(const Element& transition);
+  bool is_negated(Node node);
   std::string priority(Node transition);
 
   Node sfc_;
@@ -54,6 +63,8 @@ class Chart {
   Drawing drawing_;                // conditions
   std::vector<Element> elements_;  // in the order of the drawing
   std::map<uint64_t, size_t> by_id_;
+  std::map<std::string, Node> transitions_;  // that have names, folded
+  std::string comments_;
   xml::Names steps_;
   std::map<std::string, std::string> renamed_;  // steps, by their folded names in XML
   xml::Names actions_;                          // and what else actions may not be called
@@ -67,17 +78,6 @@ const char* const kBetween[] = {"selectionDivergence", "selectionConvergence",
 bool is_between(Node node) {
   return std::any_of(std::begin(kBetween), std::end(kBetween),
                      [&](const char* name) { return xml::is(node, name); });
-}
-
-// 0: none, or no number.
-uint64_t number_of(std::string_view text) {
-  uint64_t out = 0;
-  if (text.empty() || text.size() > 19) return 0;
-  for (char c : text) {
-    if (c < '0' || c > '9') return 0;
-    out = out * 10 + static_cast<uint64_t>(c - '0');
-  }
-  return out + 1;  // ids begin at 0
 }
 
 double place(Node node, const char* axis) {
@@ -126,7 +126,11 @@ void Chart::collect() {
       blocks.push_back(node);
       continue;
     }
-    if (xml::is(node, "comment")) continue;
+    if (xml::is(node, "comment")) {
+      const std::string text = xml::text_of(xml::child(node, "content"));
+      if (!text.empty()) comments_ += xml::comment(text, "");
+      continue;
+    }
     if (!step && !xml::is(node, "transition") && !xml::is(node, "jumpStep") && !is_between(node)) {
       add_condition_element(node);
       continue;
@@ -144,7 +148,7 @@ void Chart::collect() {
   });
   for (size_t i = 0; i < elements_.size(); ++i) {
     Node node = elements_[i].node;
-    const uint64_t id = number_of(report_.required(node, "localId"));
+    const uint64_t id = id_of(report_.required(node, "localId"));
     if (id == 0) {
       report_.add(Code::kXmlBadValue, node, "localId of " + xml::shown(node) + " is no number");
     } else if (!by_id_.emplace(id, i).second) {
@@ -153,6 +157,9 @@ void Chart::collect() {
     }
     std::string_view order = xml::attribute(node, "priority");
     if (xml::is(node, "transition") && !order.empty() && order != "0") prioritised_ = true;
+  }
+  for (Node named : xml::children(xml::child(pou_, "transitions"), "transition")) {
+    transitions_[base::fold_name(xml::attribute(named, "name"))] = named;
   }
   connect();
   drawing_.connect();
@@ -177,7 +184,7 @@ void Chart::connect() {
     Element& element = elements_[i];
     for (Node point : xml::children(element.node, "connectionPointIn")) {
       for (Node connection : xml::children(point, "connection")) {
-        const uint64_t id = number_of(xml::attribute(connection, "refLocalId"));
+        const uint64_t id = id_of(xml::attribute(connection, "refLocalId"));
         auto found = by_id_.find(id);
         if (found == by_id_.end()) {
           report_.add(Code::kDanglingConnection, connection,
@@ -186,23 +193,22 @@ void Chart::connect() {
                           "`, which is no element of the chart");
           continue;
         }
-        element.above.push_back(id);
+        element.above.push_back(found->second);
         elements_[found->second].below.push_back(i);
       }
     }
   }
 }
 
-const Element* Chart::at(uint64_t id) const {
-  auto found = by_id_.find(id);
-  return found == by_id_.end() ? nullptr : &elements_[found->second];
-}
-
 void Chart::add_actions(Node block) {
   Node connection = xml::find(block, {"connectionPointIn", "connection"});
-  auto found = by_id_.find(number_of(xml::attribute(connection, "refLocalId")));
+  auto found = by_id_.find(id_of(xml::attribute(connection, "refLocalId")));
   if (found == by_id_.end() || !xml::is(elements_[found->second].node, "step")) {
     return report_.add(Code::kDanglingConnection, block, "an action block hangs at no step");
+  }
+  if (is_negated(block)) {
+    report_.add(Code::kXmlBody, block, "an action block is negated",
+                "negate the variables in the actions");
   }
   Element& step = elements_[found->second];
   for (Node node : xml::children(block, "action")) {
@@ -224,87 +230,63 @@ void Chart::add_actions(Node block) {
   }
 }
 
-// `joined`: behind a convergence of simultaneous branches, so several are meant.
-void Chart::steps_above(const Element& element, bool joined, std::vector<std::string>& out) {
+// The first one on top; each element once, so loops end.
+void Chart::push_neighbours(const Element& element, bool up, bool joined, std::vector<Way>& todo) {
   if (!followed_.insert(&element).second) return;
-  const bool many = joined || xml::is(element.node, "simultaneousConvergence");
-  if (element.above.size() > 1 && !many && !xml::is(element.node, "selectionConvergence")) {
+  const bool many =
+      joined || xml::is(element.node, up ? "simultaneousConvergence" : "simultaneousDivergence");
+  const std::vector<size_t>& next = up ? element.above : element.below;
+  if (next.size() > 1 && !many && !(up && xml::is(element.node, "selectionConvergence"))) {
     report_.add(Code::kBadXmlChart, element.node,
-                xml::shown(element.node) + " hangs at several elements");
+                up ? xml::shown(element.node) + " hangs at several elements"
+                   : "several elements follow " + xml::shown(element.node) +
+                         " without a divergence of simultaneous branches");
   }
-  for (uint64_t id : element.above) {
-    const Element* above = at(id);
-    if (xml::is(above->node, "step")) {
-      out.push_back(above->name);
-    } else if (is_between(above->node)) {
-      steps_above(*above, many, out);
+  for (size_t i = next.size(); i-- > 0;) todo.push_back({&element, &elements_[next[i]], many});
+}
+
+std::string Chart::jump_target(const Element& jump) {
+  const std::string target(report_.required(jump.node, "targetName"));
+  auto known = renamed_.find(base::fold_name(target));
+  if (known != renamed_.end()) return known->second;
+  if (!target.empty()) {
+    report_.add(Code::kBadXmlChart, jump.node,
+                "a jump leads to `" + target + "`, which is no step of this chart");
+  }
+  return {};
+}
+
+std::vector<std::string> Chart::steps_beside(const Element& transition, bool up) {
+  std::vector<std::string> out;
+  std::vector<Way> todo;
+  followed_.clear();
+  push_neighbours(transition, up, false, todo);
+  while (!todo.empty()) {
+    const Way way = todo.back();
+    todo.pop_back();
+    if (xml::is(way.to->node, "step")) {
+      out.push_back(way.to->name);
+    } else if (is_between(way.to->node)) {
+      push_neighbours(*way.to, up, way.joined, todo);
+    } else if (!up && xml::is(way.to->node, "jumpStep")) {
+      if (std::string target = jump_target(*way.to); !target.empty()) out.push_back(target);
     } else {
-      report_.add(Code::kBadXmlChart, element.node,
-                  xml::shown(above->node) + " is followed by " + xml::shown(element.node) +
+      const Element* first = up ? way.to : way.from;
+      const Element* second = up ? way.from : way.to;
+      report_.add(Code::kBadXmlChart, second->node,
+                  xml::shown(second->node) + " follows " + xml::shown(first->node) +
                       " without a step between them");
     }
   }
-}
-
-void Chart::steps_below(const Element& element, bool joined, std::vector<std::string>& out) {
-  if (!followed_.insert(&element).second) return;
-  const bool many = joined || xml::is(element.node, "simultaneousDivergence");
-  if (element.below.size() > 1 && !many) {
-    report_.add(Code::kBadXmlChart, element.node,
-                "several elements follow " + xml::shown(element.node) +
-                    " without a divergence of simultaneous branches");
-  }
-  for (size_t index : element.below) {
-    const Element& below = elements_[index];
-    if (xml::is(below.node, "step")) {
-      out.push_back(below.name);
-    } else if (xml::is(below.node, "jumpStep")) {
-      std::string target(report_.required(below.node, "targetName"));
-      auto known = renamed_.find(base::fold_name(target));
-      if (known != renamed_.end()) {
-        out.push_back(known->second);
-      } else if (!target.empty()) {
-        report_.add(Code::kBadXmlChart, below.node,
-                    "a jump leads to `" + target + "`, which is no step of this chart");
-      }
-    } else if (is_between(below.node)) {
-      steps_below(below, many, out);
-    } else {
-      report_.add(Code::kBadXmlChart, below.node,
-                  xml::shown(below.node) + " follows " + xml::shown(element.node) +
-                      " without a step between them");
-    }
-  }
-}
-
-std::string Chart::use_text(const Action& action) {
-  static constexpr const char* kQualifiers[] = {"N",  "R",  "S",  "L",  "D", "P",
-                                                "P0", "P1", "SD", "DS", "SL"};
-  std::string qualifier(xml::trimmed(xml::attribute(action.node, "qualifier")));
-  if (qualifier.empty()) qualifier = "N";
-  const bool known = std::any_of(std::begin(kQualifiers), std::end(kQualifiers),
-                                 [&](const char* each) { return qualifier == each; });
-  if (!known) {
-    report_.add(Code::kXmlBadValue, action.node, "`" + qualifier + "` is no action qualifier",
-                "known are N R S L D P P0 P1 SD DS SL");
-  }
-  std::string out = action.name + "(" + qualifier;
-  std::string time(xml::trimmed(xml::attribute(action.node, "duration")));
-  const bool timed = qualifier == "L" || qualifier == "D" || qualifier.size() == 2;
-  if (!time.empty() && timed && qualifier[0] != 'P') {
-    const bool bare = time[0] >= '0' && time[0] <= '9';
-    out += ", " + (bare ? "T#" + time : time);
-  }
-  std::string indicator(xml::trimmed(xml::attribute(action.node, "indicator")));
-  if (!indicator.empty()) out += ", " + indicator;
-  return out + ");";
+  return out;
 }
 
 std::string Chart::step_text(const Element& step) {
   const bool initial = xml::boolean(xml::attribute(step.node, "initialStep")).value_or(false);
   std::string out = documentation(step.node, "");
   out += (initial ? "INITIAL_STEP " : "STEP ") + step.name + ":\n";
-  for (const Action& action : step.actions) out += kIndent + use_text(action) + "\n";
+  for (const Action& action : step.actions)
+    out += kIndent + action_use(action.node, action.name, report_) + "\n";
   vendor_data(step.node, report_);
   return out + "END_STEP\n";
 }
@@ -312,46 +294,60 @@ std::string Chart::step_text(const Element& step) {
 std::string Chart::priority(Node transition) {
   std::string text(xml::trimmed(xml::attribute(transition, "priority")));
   if (!prioritised_ || text.empty()) return {};
-  if (number_of(text) != 0) return " (PRIORITY := " + text + ")";
+  if (id_of(text) != 0) return " (PRIORITY := " + text + ")";
   report_.add(Code::kXmlBadValue, transition, "priority `" + text + "` is no number");
   return {};
 }
 
-std::string Chart::condition(const Element& transition) {
-  Node condition = xml::child(transition.node, "condition");
-  const std::string negated = xml::attribute(condition, "negated") == "true" ? "NOT " : "";
-  Node inside = xml::child(condition, "inline");
-  Node reference = xml::child(condition, "reference");
-  std::string out;
-  if (inside) {
-    out = condition_text(inside, std::string(xml::attribute(inside, "name")), report_);
-  } else if (reference) {
-    const std::string name(report_.required(reference, "name"));
-    Node named;
-    for (Node each : xml::children(xml::child(pou_, "transitions"), "transition")) {
-      if (base::same_name(xml::attribute(each, "name"), name)) named = each;
-    }
-    // Without a transition of that name it is a variable.
-    out = named ? condition_text(xml::child(named, "body"), name, report_) : " := " + name + ";\n";
-  } else if (Node point = xml::child(condition, "connectionPointIn")) {
-    std::vector<network::Link> links = drawing_.links_of(point);
-    if (drawing_.failed()) return error_text("a condition was not imported");
-    out = links_text(drawing_.elements(), links, transition.node, report_);
-    out = out.empty() ? error_text("a condition was not imported") : " := " + out + ";\n";
-  } else {
-    report_.add(Code::kXmlBody, transition.node, "a transition has no condition");
-    return error_text("a transition has no condition");
+bool Chart::is_negated(Node node) {
+  const std::string text(xml::attribute(node, "negated"));
+  const std::optional<bool> value = xml::boolean(text);
+  if (!text.empty() && !value) {
+    report_.add(Code::kXmlBadValue, node, "negated=\"" + text + "\" is neither true nor false");
   }
-  if (negated.empty() || !out.starts_with(" := ")) return out;
-  return " := NOT (" + out.substr(4, out.size() - 6) + ");\n";
+  return value.value_or(false);
+}
+
+std::string Chart::plain_condition(const Element& transition) {
+  Node condition = xml::child(transition.node, "condition");
+  if (Node inside = xml::child(condition, "inline")) {
+    return condition_text(inside, std::string(xml::attribute(inside, "name")), report_);
+  }
+  if (Node reference = xml::child(condition, "reference")) {
+    const std::string name(report_.required(reference, "name"));
+    auto named = transitions_.find(base::fold_name(name));
+    // Without a transition of that name it is a variable.
+    if (named == transitions_.end() && !name.empty() && !is_operand(name)) {
+      report_.add(Code::kXmlBadValue, reference, "`" + name + "` is no variable");
+      return error_text("a condition was not imported");
+    }
+    return named != transitions_.end()
+               ? condition_text(xml::child(named->second, "body"), name, report_)
+               : " := " + name + ";\n";
+  }
+  if (Node point = xml::child(condition, "connectionPointIn")) {
+    std::vector<network::Link> links = drawing_.links_of(point);
+    std::string out =
+        drawing_.failed() ? "" : links_text(drawing_.elements(), links, transition.node, report_);
+    return out.empty() ? error_text("a condition was not imported") : " := " + out + ";\n";
+  }
+  report_.add(Code::kXmlBody, transition.node, "a transition has no condition");
+  return error_text("a transition has no condition");
+}
+
+std::string Chart::condition(const Element& transition) {
+  const std::string out = plain_condition(transition);
+  if (!is_negated(xml::child(transition.node, "condition"))) return out;
+  if (out.starts_with(" := ")) return " := NOT (" + out.substr(4, out.size() - 6) + ");\n";
+  if (!out.starts_with(":")) return out;  // an error already
+  report_.add(Code::kXmlBody, transition.node, "a condition in IL is negated",
+              "end it with NOT, or write it as an expression");
+  return error_text("a negated condition was not imported");
 }
 
 std::string Chart::transition_text(const Element& transition) {
-  std::vector<std::string> from, to;
-  followed_.clear();
-  steps_above(transition, false, from);
-  followed_.clear();
-  steps_below(transition, false, to);
+  std::vector<std::string> from = steps_beside(transition, true);
+  std::vector<std::string> to = steps_beside(transition, false);
   if (from.empty() || to.empty()) {
     const char* side = from.empty() ? "leaves" : "enters";
     report_.add(Code::kBadXmlChart, transition.node,
@@ -379,7 +375,7 @@ std::string Chart::text() {
       transitions += transition_text(element);
     }
   }
-  return steps + transitions + actions;
+  return comments_ + steps + transitions + actions;
 }
 
 }  // namespace

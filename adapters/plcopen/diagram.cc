@@ -23,6 +23,10 @@ class Expression {
     for (Link link : links) out += (out.empty() ? "" : " OR ") + text(link);
     return links.size() > 1 ? "(" + out + ")" : out;
   }
+  std::string arrives(const network::Input& input) {
+    if (input.modifier > Modifier::kNegated) return fail("sees an edge, which needs a memory");
+    return (input.modifier == Modifier::kNegated ? "NOT " : "") + text(input.from);
+  }
   const std::string& problem() const { return problem_; }
 
  private:
@@ -54,7 +58,7 @@ class Expression {
       case Kind::kBlock:
         return block(from, output);
       case Kind::kCoil:
-        return text(from.inputs[0].from);
+        return arrives(from.inputs[0]);
       default:
         return fail("is no expression");
     }
@@ -64,7 +68,7 @@ class Expression {
     if (from.modifier > Modifier::kNegated) return fail("sees an edge, which needs a memory");
     std::string own = "(" + from.operand.text + ")";
     if (from.modifier == Modifier::kNegated) own = "NOT " + own;
-    std::string before = text(from.inputs[0].from);
+    std::string before = arrives(from.inputs[0]);
     return before == "TRUE" ? own : "(" + before + " AND " + own + ")";
   }
 
@@ -78,9 +82,7 @@ class Expression {
     std::string arguments;
     for (const network::Input& input : from.inputs) {
       if (input.from.empty()) continue;
-      if (input.modifier > Modifier::kNegated) return fail("sees an edge, which needs a memory");
-      std::string value = text(input.from);
-      if (input.modifier == Modifier::kNegated) value = "NOT " + value;
+      std::string value = arrives(input);
       if (!input.name.empty()) value = input.name + " := " + value;
       arguments += (arguments.empty() ? "" : ", ") + value;
     }
@@ -149,16 +151,20 @@ std::string diagram_condition(Node body, const std::string& name, Reporter& repo
   const network::Network& all = drawing.elements();
   const Element* end = nullptr;
   uint32_t ends = 0;
+  bool edge = false;  // needs a memory
   for (const Element& element : all.elements) {
+    for (const network::Input& input : element.inputs) edge |= input.modifier > Modifier::kNegated;
     if (element.kind != Kind::kCoil && element.kind != Kind::kSink) continue;
     ++ends;
     if (end == nullptr || base::same_name(element.operand.text, name)) end = &element;
   }
-  const bool plain = ends == 1 && end->modifier <= Modifier::kNegated && !calls_instances(all);
+  const bool plain =
+      ends == 1 && !edge && end->modifier <= Modifier::kNegated && !calls_instances(all);
   if (!plain) {
-    report.add(Code::kXmlBody, body,
-               "a condition ends in one coil or variable, and calls no function blocks",
-               "compute it in an action, and make a variable the condition");
+    report.add(
+        Code::kXmlBody, body,
+        "a condition ends in one coil or variable, sees no edges, and calls no function blocks",
+        "compute it in an action, and make a variable the condition");
     return {};
   }
   std::string text = links_text(all, end->inputs[0].from, body, report);

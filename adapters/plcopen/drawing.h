@@ -51,6 +51,10 @@ class Drawing {
     Node point;
     bool required;
   };
+  struct Stored {  // what an output does to the variables behind it
+    network::Modifier modifier;
+    Node pin;
+  };
   struct Remark {
     int32_t y;
     std::string text;
@@ -70,7 +74,9 @@ class Drawing {
   bool negated(Node node);
   network::Modifier edge_of(Node node);
   network::Modifier modifier_of(Node node, bool stores);
+  network::Modifier storage_of(Node node);
   std::string operand(Node node, const char* child);
+  std::string expression(Node node);
   uint32_t push(network::Element element);
   void add_rail(Node node, network::Kind kind);
   void add_contact(Node node, network::Kind kind);
@@ -78,13 +84,18 @@ class Drawing {
   void add_written(Node node, network::Kind kind);
   void add_both(Node node, network::Kind kind);
   void add_block(Node node, network::Kind kind);
-  void add_pins(Node node, uint32_t block, Raw& raw);
   void add_end(Node node, network::Kind kind);
   void add_connector(Node node, network::Kind kind);
   void add_remark(Node node, network::Kind kind);
 
+  // --- drawing_pins.cc
+  void add_pins(Node node, uint32_t block, Raw& raw);
+  void add_storage(Node pin, uint32_t block);
+
   // --- drawing_links.cc
   void connect(const Pending& pending);
+  void store();
+  void ignore(uint32_t sink);
   void append_links(Node point, std::vector<network::Link>& out, network::Modifier* edge);
   void append_link(Node connection, std::vector<network::Link>& out, network::Modifier* edge);
   bool link_block(Raw& raw, Node connection, std::vector<network::Link>& out);
@@ -103,6 +114,7 @@ class Drawing {
   std::map<uint32_t, Node> nodes_;  // by element
   std::vector<Pending> pending_;
   std::vector<network::Precedence> precedences_;
+  std::map<std::pair<uint32_t, uint32_t>, Stored> stored_;  // by element and output
   std::vector<Remark> remarks_;
   std::map<uint64_t, size_t> by_id_;
   std::map<std::string, size_t> connectors_;  // by name

@@ -29,11 +29,6 @@ int32_t whole(double value) {
   return value >= -kMost && value <= kMost ? static_cast<int32_t>(value) : 0;
 }
 
-// An operand is an expression: nothing behind it may begin a statement or a comment.
-bool ends_statement(std::string_view text) {
-  return text.find(';') != std::string_view::npos || text.find("(*") != std::string_view::npos;
-}
-
 }  // namespace
 
 void Drawing::fail(Code code, Node node, std::string text, std::string fix) {
@@ -125,6 +120,17 @@ Modifier Drawing::edge_of(Node node) {
   return Modifier::kNone;
 }
 
+Modifier Drawing::storage_of(Node node) {
+  std::string_view storage = xml::attribute(node, "storage");
+  if (storage == "set") return Modifier::kSet;
+  if (storage == "reset") return Modifier::kReset;
+  if (!storage.empty() && storage != "none") {
+    fail(Code::kXmlBadValue, node, "storage `" + std::string(storage) + "` is unknown",
+         "known are none, set and reset");
+  }
+  return Modifier::kNone;
+}
+
 // negated, edge and, where it `stores`, storage: at most one of them.
 Modifier Drawing::modifier_of(Node node, bool stores) {
   Modifier out = negated(node) ? Modifier::kNegated : Modifier::kNone;
@@ -134,14 +140,11 @@ Modifier Drawing::modifier_of(Node node, bool stores) {
     out = edge;
     ++count;
   }
-  std::string_view storage = xml::attribute(node, "storage");
-  if (storage == "set" || storage == "reset") {
-    out = storage == "set" ? Modifier::kSet : Modifier::kReset;
+  const Modifier storage = storage_of(node);
+  if (storage != Modifier::kNone) {
+    out = storage;
     ++count;
     if (!stores) fail(Code::kXmlBody, node, xml::shown(node) + " cannot set or reset anything");
-  } else if (!storage.empty() && storage != "none") {
-    fail(Code::kXmlBadValue, node, "storage `" + std::string(storage) + "` is unknown",
-         "known are none, set and reset");
   }
   if (count > 1) {
     fail(Code::kXmlBody, node,
@@ -152,13 +155,21 @@ Modifier Drawing::modifier_of(Node node, bool stores) {
 }
 
 std::string Drawing::operand(Node node, const char* name) {
-  std::string text(xml::trimmed(xml::text_of(xml::child(node, name))));
+  Node child = xml::child(node, name);
+  std::string text = expression(child);
   if (text.empty()) {
     fail(Code::kXmlMissing, node, xml::shown(node) + " has no <" + std::string(name) + ">");
-  } else if (ends_statement(text)) {
-    fail(Code::kXmlBadValue, node, "`" + text + "` is no operand");
   }
+  return text;
+}
+
+// What stands at an element or pin; empty when there is nothing.
+std::string Drawing::expression(Node node) {
+  std::string text(xml::trimmed(xml::text_of(node)));
+  if (text.empty() || text == "???") return text;  // nothing yet, as an editor says it
+  const bool good = is_operand(text);
   std::replace(text.begin(), text.end(), '\n', ' ');
+  if (!good) fail(Code::kXmlBadValue, node, "`" + text + "` is no operand");
   return text;
 }
 
@@ -234,54 +245,6 @@ void Drawing::add_both(Node node, Kind kind) {
   precedences_.push_back({written, number});
 }
 
-namespace {
-
-// CODESYS numbers the pins of operators with EN as the first: In2 and In3 behind it.
-bool is_operator(Node block) {
-  for (Node data : xml::children(xml::child(block, "addData"), "data")) {
-    if (is_vendor(data, "fbdcalltype") && xml::trimmed(xml::text_of(data)) == "operator") {
-      return true;
-    }
-  }
-  return false;
-}
-
-}  // namespace
-
-void Drawing::add_pins(Node node, uint32_t block, Raw& raw) {
-  const bool by_position = is_operator(node);
-  for (const char* list : {"inputVariables", "inOutVariables"}) {
-    for (Node pin : xml::children(xml::child(node, list), "variable")) {
-      network::Input input;
-      input.name = xml::attribute(pin, "formalParameter");
-      if (by_position && !base::same_name(input.name, "EN")) input.name.clear();
-      input.modifier = modifier_of(pin, false);
-      all_.elements[block].inputs.push_back(std::move(input));
-      const uint32_t number = static_cast<uint32_t>(all_.elements[block].inputs.size() - 1);
-      wait_for(block, number, pin, false);
-      if (list[2] == 'O') {
-        raw.passed.push_back({std::string(xml::attribute(pin, "formalParameter")),
-                              xml::child(pin, "connectionPointIn"), kNone});
-      }
-    }
-  }
-  for (Node pin : xml::children(xml::child(node, "outputVariables"), "variable")) {
-    all_.elements[block].outputs.push_back(
-        {std::string(xml::attribute(pin, "formalParameter")), negated(pin)});
-    Node written = xml::find(pin, {"connectionPointOut", "expression"});
-    if (!written) continue;  // a variable that stands at the pin
-    Element sink;
-    sink.kind = Kind::kSink;
-    sink.position = all_.elements[block].position;
-    sink.operand.text = xml::trimmed(xml::text_of(written));
-    sink.inputs.resize(1);
-    sink.inputs[0].from.push_back(
-        {block, static_cast<uint32_t>(all_.elements[block].outputs.size() - 1)});
-    const bool open = sink.operand.empty() || sink.operand.text == "???";  // of an editor
-    if (!open) push(std::move(sink));
-  }
-}
-
 void Drawing::add_block(Node node, Kind kind) {
   Element element = made(node, kind);
   element.type.text = xml::trimmed(report_.required(node, "typeName"));
@@ -290,7 +253,8 @@ void Drawing::add_block(Node node, Kind kind) {
   const bool named = std::all_of(type.begin(), type.end(), [](char c) {
     return c == '.' || xml::is_name("x" + std::string(1, c));
   });
-  if (type.empty() || !named || ends_statement(element.operand.text)) {
+  const bool instance_is_name = element.operand.empty() || is_operand(element.operand.text);
+  if (type.empty() || !named || !instance_is_name) {
     fail(Code::kXmlBadValue, node, xml::shown(node) + " has no type or instance that is a name");
   }
   for (Node data : xml::children(xml::child(node, "addData"), "data")) {

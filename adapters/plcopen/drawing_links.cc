@@ -23,7 +23,30 @@ bool Drawing::connect() {
     connect(pending);
   }
   pending_.clear();
+  if (!failed_) store();
   return !failed_;
+}
+
+// Outputs that set or reset: the variables behind them do, where they do nothing else.
+void Drawing::store() {
+  if (stored_.empty()) return;
+  for (Element& element : all_.elements) {
+    for (network::Input& input : element.inputs) {
+      for (Link link : input.from) {
+        auto found = stored_.find({link.element, link.output});
+        if (found == stored_.end()) continue;
+        const bool takes = element.kind == Kind::kSink || element.kind == Kind::kCoil;
+        if (takes && input.from.size() == 1 && input.modifier == Modifier::kNone &&
+            element.modifier == Modifier::kNone) {
+          element.modifier = found->second.modifier;
+        } else {
+          fail(Code::kXmlBody, found->second.pin,
+               "an output sets or resets something else than a plain variable",
+               "connect it to a coil or <outVariable>, and read that variable");
+        }
+      }
+    }
+  }
 }
 
 void Drawing::connect(const Pending& pending) {
@@ -50,6 +73,9 @@ void Drawing::connect(const Pending& pending) {
              (pin.empty() ? std::string("one input") : "the input `" + pin + "`"),
          "make a block OR of them");
   }
+  if (links.empty() && element.kind == Kind::kSink && !failed_) {
+    return ignore(pending.element);
+  }
   network::Input& input = all_.elements[pending.element].inputs[pending.input];
   if (edge != Modifier::kNone) {
     if (links.size() != 1 || input.modifier != Modifier::kNone) {
@@ -61,11 +87,27 @@ void Drawing::connect(const Pending& pending) {
   input.from.insert(input.from.end(), links.begin(), links.end());
 }
 
+// A variable that nothing is connected to keeps its value: rails do nothing, and go nowhere.
+void Drawing::ignore(uint32_t sink) {
+  Element& element = all_.elements[sink];
+  report_.add(
+      Code::kXmlNotUnderstood, nodes_[sink],
+      "nothing is connected to `" + element.operand.text + "`, so nothing is written to it");
+  element.kind = Kind::kRightRail;
+  element.operand = {};
+  element.modifier = Modifier::kNone;
+  element.inputs[0].modifier = Modifier::kNone;
+}
+
 std::vector<Link> Drawing::links_of(Node point) {
   std::vector<Link> out;
   Modifier edge = Modifier::kNone;
   append_links(point, out, &edge);
   if (edge != Modifier::kNone) fail(Code::kXmlBody, point, "an edge cannot stand here");
+  for (Link link : out) {
+    if (stored_.count({link.element, link.output}) == 0) continue;
+    fail(Code::kXmlBody, point, "an output that sets or resets is no condition");
+  }
   return out;
 }
 
@@ -80,7 +122,7 @@ void Drawing::append_links(Node point, std::vector<Link>& out, Modifier* edge) {
     if (!xml::is(node, "expression")) continue;
     Element source;  // TC6 lets an expression stand at the pin
     source.kind = Kind::kSource;
-    source.operand.text = xml::trimmed(xml::text_of(node));
+    source.operand.text = expression(node);
     source.outputs.resize(1);
     if (!source.operand.empty()) out.push_back({push(std::move(source)), 0});
   }

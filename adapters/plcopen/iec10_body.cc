@@ -133,6 +133,7 @@ void Iec10Reader::pin(Node list, Node from) {
       std::string(xml::attribute(from, "parameterName")).c_str();
   copy(out, "negated", from, "negated");
   copy(out, "edge", from, "edge");
+  copy(out, "storage", from, "latch");
   connect(out, from, list.parent().parent());
 }
 

@@ -64,6 +64,15 @@ std::string error_text(const std::string& text);
 // `name` is that of the transition, to which a body may assign its value; it may be empty.
 std::string condition_text(Node body, const std::string& name, Reporter& report);
 
+// --- action.cc
+// `Fill(D, T#2s);` as it stands in a step.
+std::string action_use(Node action, const std::string& name, Reporter& report);
+
+// --- operand.cc
+// Is `text` one expression, without comments, pragmas, statements or open brackets? It can stand
+// between other text then and change nothing of that.
+bool is_operand(std::string_view text);
+
 // --- chart.cc
 std::string chart_text(Node sfc, Node pou, Reporter& report);
 

@@ -148,6 +148,7 @@ void Writer::element(uint32_t i) {
     case Kind::kCoil:
       return coil(i);
     case Kind::kSink: {
+      if (element.inputs[0].from.empty()) return;  // the variable keeps its value
       Value from = value(element.inputs[0]);
       return assign(element, std::move(from));
     }
@@ -184,6 +185,8 @@ void Writer::contact(uint32_t i) {
 void Writer::coil(uint32_t i) {
   const Element& element = network_->elements[i];
   Value power = value(element.inputs[0]);
+  terms_[i] = {power};
+  if (element.inputs[0].from.empty()) return;  // the variable keeps its value
   if (users_[i] > 0 && !power.steady) {
     power = wire("AND", {{Modifier::kNone, "TRUE", true}, power});
   }

@@ -111,6 +111,37 @@ body FBD '<block localId="1" typeName="a; b"/>'
 wrong E1074 'no type or instance that is a name'
 body FBD "$(in_variable 1 'a; b := 1')"
 wrong E1074 'is no operand'
+# Operands are one expression: nothing in them reaches the text around them.
+for operand in 'a /*' 'a //' '(* a' 'a (* b *)' 'a {x}' '(a' 'a)' 'a ]--[ b' 'a, b' 'a := b' 'P b' '[/ b]' 'JMP b' \
+  '/ b' 'END_FBD' '_'; do
+  body FBD "$(in_variable 1 "$operand")$(out_variable 2 b "$(from 1)")"
+  wrong E1074 'is no operand'
+  body FBD "$(in_variable 1 b)$(out_variable 2 "$operand" "$(from 1)")"
+  wrong E1074 'is no operand'
+  body FBD "<outVariable localId=\"2\"><connectionPointIn><expression>$operand</expression></connectionPointIn><expression>b</expression></outVariable>"
+  wrong E1074 'is no operand'
+done
+for operand in '(a + 1) * 2' '-a' 'MAX(a, IN2 := 3)' '16#FF' 'INT#5 MOD 2' 'NOT_a[1, a].x^' ; do
+  body FBD "$(in_variable 1 "$operand")$(out_variable 2 a "$(from 1)")"
+  expect 0 stc import small.xml -o operand --force
+done
+# output PIN: a block whose output has these attributes, into two variables.
+output() { body FBD "$(in_variable 1 b)<block localId=\"2\" typeName=\"NOT\"><inputVariables><variable formalParameter=\"IN\"><connectionPointIn>$(from 1)</connectionPointIn></variable></inputVariables><outputVariables><variable formalParameter=\"OUT\" $1><connectionPointOut>${2:-}</connectionPointOut></variable></outputVariables></block>$(out_variable 3 c "$(from 2)")$(out_variable 4 b "$(from 2)")${3:-}"; }
+output 'storage="set"'
+expect 0 stc import small.xml -o operand --force
+grep -q '^  c S= not1;$' operand/P.st && grep -q '^  b S= not1;$' operand/P.st || fail "outputs that set"
+output 'edge="rising"'
+wrong E1083 'an output sees edges'
+output 'storage="reset"' '' "$(out_variable 5 b "$(from 6)")<block localId=\"6\" typeName=\"NOT\"><inputVariables><variable formalParameter=\"IN\"><connectionPointIn>$(from 2)</connectionPointIn></variable></inputVariables><outputVariables><variable formalParameter=\"OUT\"/></outputVariables></block>"
+wrong E1083 'sets or resets something else than a plain variable'
+output '' '<expression>c := TRUE; b</expression>'
+wrong E1074 'is no operand'
+# A variable that nothing is connected to keeps its value.
+body FBD "$(out_variable 1 c)$(in_variable 2 TRUE)$(out_variable 3 b "$(from 2)")"
+good
+said 'warning\[W0070\]: POU P: nothing is connected to `c`'
+expect 0 stc import small.xml -o operand --force
+[ "$(sed -n '/^FBD/,/^END_FBD/p' operand/P.st | grep -c ':=')" -eq 1 ] || fail "an open variable is written"
 body FBD '<inVariable localId="1" negated="perhaps"><expression>b</expression></inVariable>'
 wrong E1074 'neither true nor false'
 body FBD "$(in_variable 1 b)<outVariable localId=\"2\" negated=\"true\" storage=\"set\"><connectionPointIn>$(from 1)</connectionPointIn><expression>c</expression></outVariable>"
@@ -190,6 +221,15 @@ reaches_b 7
 chart '' "$wire" "$(contact 11 "$(from 12)" 'edge="rising"')<leftPowerRail localId=\"12\"/>"
 expect 1 stc check small.xml
 said 'E1083.*sees an edge, which needs a memory'
+chart '' "$wire" '<block localId="11" typeName="NOT"><outputVariables><variable formalParameter="OUT" storage="set"/></outputVariables></block>'
+expect 1 stc check small.xml
+said 'E1083.*an output that sets or resets is no condition'
+for network in "<inVariable localId=\"1\" edge=\"rising\"><expression>b</expression></inVariable>$(out_variable 2 Go "$(from 1)")" \
+  "$(in_variable 1 b)<outVariable localId=\"2\" edge=\"falling\"><connectionPointIn>$(from 1)</connectionPointIn><expression>Go</expression></outVariable>"; do
+  chart "<transition name=\"Go\"><body><FBD>$network</FBD></body></transition>" '<reference name="Go"/>' ''
+  expect 1 stc check small.xml
+  said 'E1083.*sees no edges'
+done
 chart '' "$wire" '<block localId="11" typeName="TON" instanceName="t"/>'
 expect 1 stc check small.xml
 said 'E1083.*in a chart is not understood'

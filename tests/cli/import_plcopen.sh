@@ -178,6 +178,32 @@ sfc "$(transition 2 1 '<inline name=""><ST>a := 1; b := 2;</ST></inline>')"
 wrong E1083 'no single expression'
 sfc "$(transition 2 1 '')"
 wrong E1083 'has no condition'
+# Negated conditions, and actions; comments.
+negated() { sfc "$(transition 2 1 "$2" | sed "s/<condition>/<condition negated=\"$1\">/")"; }
+negated 1 '<inline name=""><ST>TRUE // always</ST></inline>'
+rm -rf negated
+expect 0 stc import small.xml -o negated
+grep -q ':= NOT (TRUE // always$' negated/P.st || fail "a negated condition"
+expect 0 stc check negated
+negated maybe "$good"
+wrong E1074 'neither true nor false'
+negated true '<inline name=""><IL>LD TRUE</IL></inline>'
+wrong E1083 'a condition in IL is negated'
+sfc "$(transition 2 1 '<reference name="a; b"/>')"
+wrong E1074 '`a; b` is no variable'
+sfc "$(transition 2 1 "$good")<actionBlock localId=\"3\" negated=\"true\"><connectionPointIn><connection refLocalId=\"1\"/></connectionPointIn></actionBlock>"
+wrong E1083 'an action block is negated'
+sfc "$(transition 2 1 "$good")<comment localId=\"3\"><content><p>What it is for</p></content></comment>"
+rm -rf negated
+expect 0 stc import small.xml -o negated
+grep -B1 'INITIAL_STEP' negated/P.st | grep -qF '(* What it is for *)' || fail "comment of a chart"
+# Divergences that follow each other are no deeper than others.
+{
+  printf '<project><types><pous><pou name="P" pouType="program"><interface/><body><SFC><step localId="1" name="A" initialStep="true"/>%s' "$(transition 2 1 "$good")"
+  seq 3 40002 | sed 's/.*/<selectionDivergence localId="&"><connectionPointIn><connection refLocalId="#"\/><\/connectionPointIn><\/selectionDivergence>/' | awk '{ sub("#", NR + 1); print }'
+  printf '<jumpStep localId="50000" targetName="A"><connectionPointIn><connection refLocalId="40002"/></connectionPointIn></jumpStep></SFC></body></pou></pous></types></project>'
+} >small.xml
+expect 0 stc check small.xml
 sfc "$(transition 2 1 "$good")<macroStep localId=\"9\"/>"
 wrong E1083 'macroStep.*is not understood'
 # A document type is read over, and nothing in it is expanded.

@@ -1,0 +1,31 @@
+// <action> of an action block: how a step uses it.
+#include <algorithm>
+
+#include "adapters/plcopen/reader.h"
+
+namespace plcopen {
+
+std::string action_use(Node action, const std::string& name, Reporter& report) {
+  static constexpr const char* kQualifiers[] = {"N",  "R",  "S",  "L",  "D", "P",
+                                                "P0", "P1", "SD", "DS", "SL"};
+  std::string qualifier(xml::trimmed(xml::attribute(action, "qualifier")));
+  if (qualifier.empty()) qualifier = "N";
+  const bool known = std::any_of(std::begin(kQualifiers), std::end(kQualifiers),
+                                 [&](const char* each) { return qualifier == each; });
+  if (!known) {
+    report.add(Code::kXmlBadValue, action, "`" + qualifier + "` is no action qualifier",
+               "known are N R S L D P P0 P1 SD DS SL");
+  }
+  std::string out = name + "(" + qualifier;
+  std::string time(xml::trimmed(xml::attribute(action, "duration")));
+  const bool timed = qualifier == "L" || qualifier == "D" || qualifier.size() == 2;
+  if (!time.empty() && timed && qualifier[0] != 'P') {
+    const bool bare = time[0] >= '0' && time[0] <= '9';
+    out += ", " + (bare ? "T#" + time : time);
+  }
+  std::string indicator(xml::trimmed(xml::attribute(action, "indicator")));
+  if (!indicator.empty()) out += ", " + indicator;
+  return out + ");";
+}
+
+}  // namespace plcopen

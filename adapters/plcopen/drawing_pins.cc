@@ -1,0 +1,70 @@
+// Pins of blocks -> inputs and outputs of elements of the model, not linked yet.
+#include "adapters/plcopen/drawing.h"
+#include "base/name_case.h"
+
+namespace plcopen {
+
+using network::Element;
+using network::Kind;
+using network::Modifier;
+
+namespace {
+
+// CODESYS numbers the pins of operators with EN as the first: In2 and In3 behind it.
+bool is_operator(Node block) {
+  for (Node data : xml::children(xml::child(block, "addData"), "data")) {
+    if (is_vendor(data, "fbdcalltype") && xml::trimmed(xml::text_of(data)) == "operator") {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+void Drawing::add_pins(Node node, uint32_t block, Raw& raw) {
+  const bool by_position = is_operator(node);
+  for (const char* list : {"inputVariables", "inOutVariables"}) {
+    for (Node pin : xml::children(xml::child(node, list), "variable")) {
+      network::Input input;
+      input.name = xml::attribute(pin, "formalParameter");
+      if (by_position && !base::same_name(input.name, "EN")) input.name.clear();
+      input.modifier = modifier_of(pin, false);
+      all_.elements[block].inputs.push_back(std::move(input));
+      const uint32_t number = static_cast<uint32_t>(all_.elements[block].inputs.size() - 1);
+      wait_for(block, number, pin, false);
+      if (list[2] == 'O') {
+        raw.passed.push_back({std::string(xml::attribute(pin, "formalParameter")),
+                              xml::child(pin, "connectionPointIn"), kNone});
+      }
+    }
+  }
+  for (Node pin : xml::children(xml::child(node, "outputVariables"), "variable")) {
+    all_.elements[block].outputs.push_back(
+        {std::string(xml::attribute(pin, "formalParameter")), negated(pin)});
+    add_storage(pin, block);
+    Node written = xml::find(pin, {"connectionPointOut", "expression"});
+    if (!written) continue;  // a variable that stands at the pin
+    Element sink;
+    sink.kind = Kind::kSink;
+    sink.position = all_.elements[block].position;
+    sink.operand.text = expression(written);
+    sink.inputs.resize(1);
+    sink.inputs[0].from.push_back(
+        {block, static_cast<uint32_t>(all_.elements[block].outputs.size() - 1)});
+    const bool open = sink.operand.empty() || sink.operand.text == "???";  // of an editor
+    if (!open) push(std::move(sink));
+  }
+}
+
+// A pin that sets or resets does so with what stands behind it; see store().
+void Drawing::add_storage(Node pin, uint32_t block) {
+  if (edge_of(pin) != Modifier::kNone) {
+    fail(Code::kXmlBody, pin, "an output sees edges", "use a block R_TRIG or F_TRIG");
+  }
+  const Modifier modifier = storage_of(pin);
+  const uint32_t output = static_cast<uint32_t>(all_.elements[block].outputs.size() - 1);
+  if (modifier != Modifier::kNone) stored_.emplace(std::pair(block, output), Stored{modifier, pin});
+}
+
+}  // namespace plcopen

@@ -1,0 +1,88 @@
+// Text of XML that becomes an operand between other text: one expression and nothing else.
+#include "adapters/plcopen/reader.h"
+#include "frontend/lex/lexer.h"
+
+namespace plcopen {
+namespace {
+
+using frontend::Token;
+using frontend::TokenKind;
+
+bool is_word(TokenKind kind) {
+  switch (kind) {
+    case TokenKind::kInteger:
+    case TokenKind::kReal:
+    case TokenKind::kString:
+    case TokenKind::kWideString:
+    case TokenKind::kDuration:
+    case TokenKind::kDate:
+    case TokenKind::kDirect:
+    case TokenKind::kTrue:
+    case TokenKind::kFalse:
+      return true;
+    default:
+      return frontend::is_name(kind);
+  }
+}
+
+bool is_operator_word(TokenKind kind) {
+  return kind == TokenKind::kAnd || kind == TokenKind::kAndThen || kind == TokenKind::kMod ||
+         kind == TokenKind::kNot || kind == TokenKind::kOr || kind == TokenKind::kOrElse ||
+         kind == TokenKind::kXor;
+}
+
+// May an operand begin with it?
+bool begins(TokenKind kind) {
+  return is_word(kind) || kind == TokenKind::kNot || kind == TokenKind::kLeftParen ||
+         kind == TokenKind::kTypePrefix || kind == TokenKind::kMinus || kind == TokenKind::kPlus;
+}
+
+bool ends(TokenKind kind) {
+  return is_word(kind) || kind == TokenKind::kRightParen || kind == TokenKind::kRightBracket ||
+         kind == TokenKind::kCaret;
+}
+
+// `P a`, `[/ a]` and `JMP a` mean something else where text of a network is read.
+bool may_follow(TokenKind before, TokenKind kind) {
+  if (kind == TokenKind::kLeftBracket) return ends(before);
+  const bool starts = is_word(kind) || kind == TokenKind::kTypePrefix || kind == TokenKind::kNot;
+  return !(starts && ends(before));
+}
+
+bool is_blank(std::string_view text) {
+  return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
+}
+
+}  // namespace
+
+bool is_operand(std::string_view text) {
+  base::Diagnostics diagnostics;
+  const std::vector<Token> tokens = frontend::lex(text, {0}, diagnostics).tokens;
+  if (diagnostics.has_errors() || !begins(tokens[0].kind)) return false;
+  if (tokens.size() == 2 && text.substr(tokens[0].begin, tokens[0].length) == "_") return false;
+  std::string open;  // brackets
+  size_t end = 0;    // of the token before
+  for (size_t i = 0; i < tokens.size(); ++i) {
+    const TokenKind kind = tokens[i].kind;
+    const size_t begin = kind == TokenKind::kEnd ? text.size() : tokens[i].begin;
+    if (!is_blank(text.substr(end, begin - end))) return false;  // comments and pragmas
+    end = begin + tokens[i].length;
+    if (i > 0 && !may_follow(tokens[i - 1].kind, kind)) return false;
+    if (kind == TokenKind::kEnd) break;
+    if (frontend::is_keyword(kind) && !is_operator_word(kind) && !is_word(kind)) return false;
+    const bool inside_only = kind == TokenKind::kComma || kind == TokenKind::kAssign ||
+                             kind == TokenKind::kArrow || kind == TokenKind::kRange;
+    if (inside_only && open.empty()) return false;
+    if (kind == TokenKind::kSemicolon || kind == TokenKind::kColon || kind == TokenKind::kAttempt) {
+      return false;
+    }
+    if (kind == TokenKind::kLeftParen) open += ')';
+    if (kind == TokenKind::kLeftBracket) open += ']';
+    if (kind != TokenKind::kRightParen && kind != TokenKind::kRightBracket) continue;
+    if (open.empty() || open.back() != (kind == TokenKind::kRightParen ? ')' : ']')) return false;
+    open.pop_back();
+  }
+  return open.empty();
+}
+
+}  // namespace plcopen
