@@ -41,13 +41,15 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   base::Bytes again = vm::encode_record(read->start);
   for (const vm::RecordedCycle& cycle : read->cycles) append(again, vm::encode_record(cycle));
   for (const vm::RecordedRequest& row : read->requests) append(again, vm::encode_record(row));
+  append(again, vm::encode_end());
   const base::Result<vm::Recording> same = vm::decode_recording(again);
   base::check(same.ok() && !same->cut_off, "what was read is written whole");
   base::check(same->cycles.size() == read->cycles.size(), "no cycle is lost");
   for (size_t i = 0; i < read->cycles.size(); ++i) {
     const vm::Observed& a = read->cycles[i].observed;
     const vm::Observed& b = same->cycles[i].observed;
-    base::check(a.clock == b.clock && a.changed == b.changed, "what the cycle saw is the same");
+    const bool devices = a.changed == b.changed && a.lost == b.lost;
+    base::check(a.clock == b.clock && devices, "what the cycle saw is the same");
   }
   return 0;
 }

@@ -38,7 +38,10 @@ ControllerService::ControllerService(vm::Controller& controller, vm::Clock& cloc
 base::Bytes ControllerService::answer(base::ByteSpan bytes, bool& keep_open) {
   if (no_memory_.empty()) no_memory_ = vm::encode_answer({base::Refusal::kNoMemory, {}});
   return base::within_memory([&] { return answer_within_memory(bytes, keep_open); },
-                             [&] { return std::exchange(no_memory_, {}); });
+                             [&] {
+                               if (recorder_ != nullptr) recorder_->forget_jobs();
+                               return std::exchange(no_memory_, {});
+                             });
 }
 
 base::Bytes ControllerService::answer_within_memory(base::ByteSpan bytes, bool& keep_open) {

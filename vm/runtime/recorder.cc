@@ -138,6 +138,7 @@ void Recorder::begin_job(const Controller& controller) {
 
 void Recorder::end_job(const Controller& controller) {
   in_job_ = false;
+  holding_ = true;
   if (switched_) return;
   switched_ = before_job_ != &controller.generation();
   request_.cycle = now_.number - 1;  // of the last one that ended
@@ -147,18 +148,23 @@ void Recorder::end_job(const Controller& controller) {
 void Recorder::note(base::ByteSpan request) {
   switched_ = false;
   request_.bytes.assign(request.begin(), request.end());
-  if (overflow_) return;
-  const base::Bytes record = encode_record(request_);
+  const base::Bytes record = overflow_ ? base::Bytes() : encode_record(request_);
   const std::lock_guard lock(mutex_);
   waiting_.insert(waiting_.end(), record.begin(), record.end());
+  holding_ = false;
   work_.notify_one();
+}
+
+void Recorder::forget_jobs() {
+  switched_ = false;
+  holding_ = false;
 }
 
 // By the control thread: never waits; what cannot be handed over now is with the next record.
 void Recorder::hand_over(const base::Bytes& record) {
   local_.insert(local_.end(), record.begin(), record.end());
   const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (lock.owns_lock()) take_local();
+  if (lock.owns_lock() && !holding_) take_local();
   if (local_.size() > kMaxWaiting) overflow_ = true;
 }
 
@@ -195,6 +201,10 @@ base::Status Recorder::close() {
   if (file_ == nullptr) return base::Ok{};
   {
     const std::lock_guard lock(mutex_);
+    if (!overflow_) {
+      const base::Bytes end = encode_end();
+      local_.insert(local_.end(), end.begin(), end.end());
+    }
     take_local();
     closing_ = true;
     work_.notify_one();

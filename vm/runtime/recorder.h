@@ -52,7 +52,7 @@ class Recorder : public Clock, public IoPort {
   // The jobs since the last call were of this request (protocol.h), and it was carried out.
   void note(base::ByteSpan request);
   // They were of one that changed nothing.
-  void forget_jobs() { switched_ = false; }
+  void forget_jobs();
   bool switched() const { return switched_; }
 
   // Everything that was recorded is in the file; kFileUnwritable when it is not.
@@ -80,6 +80,9 @@ class Recorder : public Clock, public IoPort {
   std::atomic<bool> overflow_{false};
 
   base::Bytes local_;  // of the control thread, not yet handed over
+  // A request's first job is done, and note() or forget_jobs() is still to come: what it did is in
+  // the cycles behind it, so they are not handed over before it.
+  std::atomic<bool> holding_{false};
 
   std::mutex mutex_;  // of what follows; never held while the file is written
   std::condition_variable work_;

@@ -8,7 +8,7 @@ namespace vm {
 namespace {
 
 constexpr char kMagic[] = {'S', 'T', 'C', 'R', 'E', 'C', '0', '3'};
-enum class Tag : uint8_t { kStart = 1, kCycle = 2, kRequest = 3 };
+enum class Tag : uint8_t { kStart = 1, kCycle = 2, kRequest = 3, kEnd = 4 };
 constexpr size_t kFrameBytes = 9;                  // tag, length, checksum
 constexpr uint64_t kMaxClock = uint64_t{1} << 62;  // ns: 146 years
 constexpr uint32_t kMaxImageBytes = uint32_t{1} << 24;
@@ -112,7 +112,8 @@ RecordedRequest read_request(base::ByteReader& in) {
   return request;
 }
 
-// One record from the front of `rest`, which is shortened by it; false: it is not whole.
+// One record from the front of `rest`, which is shortened by it; false: it is not whole, or it is
+// the end.
 bool read_record(base::ByteSpan& rest, Recording& recording) {
   if (rest.size() < kFrameBytes) return false;
   base::ByteReader frame(rest);
@@ -133,6 +134,7 @@ bool read_record(base::ByteSpan& rest, Recording& recording) {
     RecordedRequest request = read_request(in);
     if (in.done()) recording.requests.push_back(std::move(request));
   } else {
+    recording.cut_off = tag != static_cast<uint8_t>(Tag::kEnd) || !in.done() || !rest.empty();
     return false;
   }
   return in.done();
@@ -176,6 +178,11 @@ base::Bytes encode_record(const RecordedRequest& request) {
   return framed(Tag::kRequest, payload);
 }
 
+base::Bytes encode_end() {
+  base::ByteWriter nothing;
+  return framed(Tag::kEnd, nothing);
+}
+
 base::Result<Recording> decode_recording(base::ByteSpan bytes) {
   Recording recording;
   const bool magic = bytes.size() >= sizeof kMagic &&
@@ -184,10 +191,8 @@ base::Result<Recording> decode_recording(base::ByteSpan bytes) {
   if (!read_record(rest, recording) || recording.start.image.empty()) {
     return base::Error{base::Refusal::kBadRecording, "it does not begin as a recording does"};
   }
-  while (!rest.empty()) {
-    if (read_record(rest, recording)) continue;
-    recording.cut_off = true;
-    break;
+  recording.cut_off = true;  // until the end is seen
+  while (read_record(rest, recording)) {
   }
   std::stable_sort(
       recording.requests.begin(), recording.requests.end(),

@@ -1,7 +1,8 @@
 // The file of a recorded run: everything from outside that its state depends on, so that a replay
 // comes to the same bytes in every cycle (invariant 5). A header, then records in the order in
 // which they happened; each has a checksum, so that a file whose end is lost can still be replayed
-// up to there.
+// up to there. A request stands before the first cycle that saw what it did, so a cut loses no
+// request that a cycle before it needs; a record of its own says that the end is there.
 #pragma once
 
 #include <cstdint>
@@ -54,6 +55,7 @@ struct RecordedRequest {
 base::Bytes encode_record(const RecordedStart& start);
 base::Bytes encode_record(const RecordedCycle& cycle);
 base::Bytes encode_record(const RecordedRequest& request);
+base::Bytes encode_end();
 
 struct Recording {
   RecordedStart start;

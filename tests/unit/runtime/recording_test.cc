@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <thread>
 
 #include "tests/unit/runtime/plant.h"
 #include "vm/runtime/process_image.h"
@@ -154,12 +155,65 @@ TEST_F(RecordingTest, EveryCutIsFoundAndTheRestIsWhole) {
       continue;
     }
     ++usable;
-    ASSERT_LT(cut->cycles.size(), whole->cycles.size());
+    ASSERT_TRUE(cut->cut_off) << size;  // also between two records
+    ASSERT_LE(cut->cycles.size(), whole->cycles.size());
     for (size_t i = 0; i < cut->cycles.size(); ++i) {
       ASSERT_EQ(cut->cycles[i].state, whole->cycles[i].state);
     }
   }
   EXPECT_GT(usable, 10u);
+}
+
+// What a request did is in the cycles behind it; whoever noted it was slow.
+TEST_F(RecordingTest, NoCutLosesARequestThatAnEarlierCycleNeeds) {
+  auto image = build(kRacing);
+  ASSERT_TRUE(image);
+  vm::VirtualClock clock;
+  vm::NullIo devices;
+  vm::RecordedStart start;
+  start.image = {1};
+  auto recorder = vm::Recorder::create((folder_ / "run").string(), clock, devices, start);
+  ASSERT_TRUE(recorder.ok());
+  auto controller = vm::Controller::start(*image, options(), **recorder, **recorder);
+  ASSERT_TRUE(controller.ok());
+  const auto cycles = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      (*recorder)->begin();
+      (*controller)->cycle();
+      (*recorder)->end(**controller);
+    }
+  };
+  const auto job = [&] {
+    (*recorder)->begin_job(**controller);
+    (*recorder)->end_job(**controller);
+  };
+  cycles(3);
+  for (int request = 0; request < 3; ++request) {
+    job();
+    cycles(20);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // for the thread that writes
+    if (request == 1) {
+      (*recorder)->forget_jobs();  // it changed nothing
+    } else {
+      (*recorder)->note(base::Bytes{static_cast<uint8_t>(request)});
+    }
+    cycles(20);
+  }
+  ASSERT_TRUE((*recorder)->close().ok());
+  std::ifstream file(folder_ / "run", std::ios::binary);
+  const base::Bytes bytes(std::istreambuf_iterator<char>(file), {});
+  const base::Result<vm::Recording> whole = vm::decode_recording(bytes);
+  ASSERT_TRUE(whole.ok());
+  EXPECT_FALSE(whole->cut_off);
+  EXPECT_EQ(whole->cycles.size(), 3u + 3 * 40);
+  ASSERT_EQ(whole->requests.size(), 2u);
+  for (size_t size = 0; size < bytes.size(); ++size) {
+    base::Result<vm::Recording> cut = vm::decode_recording(base::ByteSpan(bytes).first(size));
+    if (!cut.ok() || cut->cycles.empty()) continue;
+    for (size_t i = cut->requests.size(); i < 2; ++i) {
+      ASSERT_LE(cut->cycles.back().number, whole->requests[i].cycle) << "request " << i;
+    }
+  }
 }
 
 TEST_F(RecordingTest, FlippedBitsAreFound) {
@@ -186,6 +240,7 @@ TEST(Recording, RoundTripOfRecords) {
   add(vm::encode_record(cycle));
   add(vm::encode_record(vm::RecordedRequest{9, {5}, base::Bytes(100'000, 7)}));
   add(vm::encode_record(vm::RecordedRequest{3, {}, {}}));
+  add(vm::encode_end());
   base::Result<vm::Recording> back = vm::decode_recording(bytes);
   ASSERT_TRUE(back.ok());
   EXPECT_FALSE(back->cut_off);
