@@ -115,6 +115,23 @@ bool add_all(Node body, Drawing& drawing, const std::string& name, Reporter& rep
   return drawing.connect() && good;
 }
 
+// Variables and actions that a body sees, between blanks.
+std::string names_around(Node body) {
+  std::string out;
+  auto add = [&](Node list, const char* kind) {
+    for (Node each : xml::children(list, kind)) {
+      out += ' ' + std::string(xml::attribute(each, "name"));
+    }
+  };
+  for (Node owner = body.parent(); owner; owner = owner.parent()) {
+    add(xml::child(owner, "actions"), "action");
+    Node interface = xml::child(owner, "interface");
+    for (Node list : xml::children(interface)) add(list, "variable");
+    if (interface) out += ' ' + xml::text_of(interface);  // as CODESYS keeps it
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string diagram_text(Node body, const std::string& name, Reporter& report) {
@@ -130,7 +147,7 @@ std::string diagram_text(Node body, const std::string& name, Reporter& report) {
   if (auto text = network::write_ladder(made, 2)) {
     return "LADDER\n" + *text + "END_LADDER\n";
   }
-  return "FBD\n" + network::write_fbd(made, 2) + "END_FBD\n";
+  return "FBD\n" + network::write_fbd(made, 2, names_around(body)) + "END_FBD\n";
 }
 
 std::string links_text(const network::Network& all, const std::vector<Link>& links, Node at,

@@ -1,6 +1,7 @@
 // IEC 61131-10 -> PLCopen XML: bodies. Networks have numbers there and none here, so they are put
 // below each other; connections lead to pins there and to elements here.
 #include <algorithm>
+#include <cmath>
 
 #include "adapters/plcopen/iec10_reader.h"
 
@@ -9,11 +10,34 @@ namespace plcopen {
 namespace {
 
 constexpr double kNetworkHeight = 100'000;
+constexpr double kBodyHeight = 1'000'000'000;  // more is no place in a drawing
+
+double y_of(Node object) {
+  return std::clamp(xml::child(object, "RelPosition").attribute("y").as_double(), 0.0, kBodyHeight);
+}
+
+// 0: none
+uint64_t order_of(Node object) { return object.attribute("evaluationOrder").as_ullong(); }
 
 }  // namespace
 
+// Room for each network, and how much smaller they are drawn where there are too many.
+void Iec10Reader::measure(Node from) {
+  double count = 1;
+  double highest = 0;
+  for (Node content : xml::children(from)) {
+    for (Node network : xml::children(content)) {
+      ++count;
+      for (Node object : xml::children(network)) highest = std::max(highest, y_of(object));
+    }
+  }
+  height_ = std::max(1.0, std::floor(std::min(kNetworkHeight, kBodyHeight / count)));
+  scale_ = highest < height_ ? 1 : (height_ - 1) / highest;
+}
+
 void Iec10Reader::body(Node to, Node from) {
-  ids_ = network_ = 0;
+  ids_ = network_ = order_ = 0;
+  measure(from);
   Node last;  // <body>
   for (Node content : xml::children(from)) {
     if (!xml::is(content, "BodyContent")) {
@@ -45,6 +69,7 @@ void Iec10Reader::body(Node to, Node from) {
     for (Node network : networks) {
       ++network_;
       find_pins(network);
+      find_orders(network);
       if (std::string_view label = xml::attribute(network, "label"); !label.empty()) {
         Node node = made(out, "label", network);
         node.append_attribute("label") = std::string(label).c_str();
@@ -52,6 +77,19 @@ void Iec10Reader::body(Node to, Node from) {
       }
       for (Node object : xml::children(network)) this->object(out, object);
     }
+  }
+}
+
+// Each network counts its own elements; here, one counts on from the other.
+void Iec10Reader::find_orders(Node network) {
+  std::map<uint64_t, uint32_t> ranks;
+  for (Node object : xml::children(network)) {
+    if (uint64_t order = order_of(object)) ranks[order] = 0;
+  }
+  for (auto& [order, rank] : ranks) rank = ++order_;
+  orders_.clear();
+  for (Node object : xml::children(network)) {
+    if (uint64_t order = order_of(object)) orders_[object.internal_object()] = ranks[order];
   }
 }
 
@@ -83,8 +121,8 @@ void Iec10Reader::place(Node out, Node from) {
   const bool network = xml::is(from, "Rung") || xml::is(from, "Network");
   Node position = made(out, "position", from);
   position.append_attribute("x") = network ? 0 : at.attribute("x").as_double();
-  const double y = network ? 0 : std::clamp(at.attribute("y").as_double(), 0.0, kNetworkHeight - 1);
-  position.append_attribute("y") = std::min(network_, 9'000u) * kNetworkHeight + y;
+  const double y = network ? 0 : std::floor(y_of(from) * scale_);
+  position.append_attribute("y") = network_ * height_ + y;
 }
 
 void Iec10Reader::connect(Node out, Node from, Node body) {
@@ -192,7 +230,9 @@ void Iec10Reader::object(Node to, Node from) {
   if (!known) return;  // reported where elements are read
   for (const char* name : {"negated", "edge"}) copy(out, name, from, name);
   copy(out, "storage", from, "latch");
-  copy(out, "executionOrderId", from, "evaluationOrder");
+  if (auto order = orders_.find(from.internal_object()); order != orders_.end()) {
+    out.append_attribute("executionOrderId") = order->second;
+  }
   place(out, from);
   if (kind == "Block") {
     block(out, from);

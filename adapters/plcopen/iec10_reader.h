@@ -43,6 +43,8 @@ class Iec10Reader {
     std::string name;
   };
   void body(Node to, Node from);
+  void measure(Node from);
+  void find_orders(Node network);
   void find_pins(Node network);
   void object(Node to, Node from);
   void block(Node out, Node from);
@@ -53,10 +55,14 @@ class Iec10Reader {
 
   Converted& out_;
   xml::Reporter& report_;
-  uint32_t ids_ = 0;                       // local ids of the body
-  uint32_t network_ = 0;                   // of the body
-  std::map<std::string, Pin> pins_;        // of the network, by connectionPointOutId
-  std::map<const void*, uint32_t> id_of_;  // local id of each object of the network
+  uint32_t ids_ = 0;                        // local ids of the body
+  uint32_t network_ = 0;                    // of the body
+  uint32_t order_ = 0;                      // of the last element with one, in the body
+  double height_ = 1;                       // of each network of the body
+  double scale_ = 1;                        // of places in them
+  std::map<std::string, Pin> pins_;         // of the network, by connectionPointOutId
+  std::map<const void*, uint32_t> id_of_;   // local id of each object of the network
+  std::map<const void*, uint32_t> orders_;  // in the body, of those objects that have one
 };
 
 }  // namespace plcopen

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "frontend/network/network.h"
 
@@ -16,6 +17,8 @@ namespace frontend::network {
 std::optional<std::string> write_ladder(const Body& body, uint32_t indent);
 
 // The rows between FBD and END_FBD; of ladder, too: contacts become AND, joins OR, power TRUE.
-std::string write_fbd(const Body& body, uint32_t indent);
+// Coils and sinks that nothing is connected to are left out. No wire is called like a name in
+// `taken`, which may be any text: the variables around the body.
+std::string write_fbd(const Body& body, uint32_t indent, std::string_view taken = {});
 
 }  // namespace frontend::network

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
@@ -24,7 +25,11 @@ bool writes(Kind kind) {
 
 class Writer {
  public:
-  Writer(const Body& body, uint32_t indent) : body_(body), indent_(indent) { collect_names(); }
+  Writer(const Body& body, uint32_t indent, std::string_view taken) : body_(body), indent_(indent) {
+    add_names(taken);
+    claimed_ = names_;
+    collect_names();
+  }
 
   std::string run() {
     std::string all;
@@ -65,9 +70,10 @@ class Writer {
   const Network* network_ = nullptr;
   std::string out_;
   std::unordered_set<std::string> names_;    // everything that could be a name, folded
-  std::unordered_set<std::string> claimed_;  // wires of the body that kept their names
-  std::vector<uint32_t> written_;            // by element: those before it that write something
-  std::vector<uint32_t> users_;              // how many inputs use it
+  std::unordered_set<std::string> claimed_;  // taken, or wires of the body that kept their names
+  std::unordered_map<std::string, uint32_t> numbers_;  // of the last name, by what it begins with
+  std::vector<uint32_t> written_;  // by element: those before it that write something
+  std::vector<uint32_t> users_;    // how many inputs use it
   std::vector<uint32_t> last_user_;
   // What is known of power behind an element; of a contact that is used at once, its operands.
   std::vector<std::vector<Value>> terms_;
@@ -100,8 +106,9 @@ std::string Writer::new_name(std::string_view type) {
   for (char c : type.substr(type.rfind('.') + 1)) {
     stem += static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
   }
-  for (uint32_t n = 1;; ++n) {
-    std::string name = stem + std::to_string(n);
+  uint32_t& number = numbers_[stem];
+  for (;;) {
+    std::string name = stem + std::to_string(++number);
     if (names_.insert(ir::fold_name(name)).second) return name;
   }
 }
@@ -286,6 +293,8 @@ Value Writer::wire(const char* type, const std::vector<Value>& pins) {
 
 }  // namespace
 
-std::string write_fbd(const Body& body, uint32_t indent) { return Writer(body, indent).run(); }
+std::string write_fbd(const Body& body, uint32_t indent, std::string_view taken) {
+  return Writer(body, indent, taken).run();
+}
 
 }  // namespace frontend::network

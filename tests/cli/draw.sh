@@ -30,6 +30,13 @@ grep -q 'nothing there is drawn' err || fail "blink.st has no drawing"
 printf 'PROGRAM p\nLADDER\n  |--[ a \nEND_LADDER\nEND_PROGRAM\n' > bad.st
 expect 1 stc draw bad.st
 
+# Names in namespaces.
+printf 'NAMESPACE A FUNCTION_BLOCK M VAR x : BOOL; END_VAR\nFBD\n  x := TRUE;\nEND_FBD\nEND_FUNCTION_BLOCK END_NAMESPACE\n' >spaces.st
+sed 's/SPACE A/SPACE B.C/; s/TRUE/FALSE/' spaces.st >spaces2.st
+expect 0 stc draw spaces.st spaces2.st -o spaces
+[ "$(ls spaces | tr '\n' ' ')" = "A.M.svg B.C.M.svg " ] || fail "other pictures: $(ls spaces)"
+expect 0 stc draw spaces.st spaces2.st A.M -o one.svg
+
 # With values of a file.
 printf 'Starter.Motor=TRUE\nStarter.Stop=FALSE\nStarter.Tripped=FALSE\nStarter.Starts.CV=3\n' > values
 expect 0 stc draw "$examples/motor_starter" --values values -o live.svg

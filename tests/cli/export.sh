@@ -22,6 +22,17 @@ expect 2 stc export p.st
 expect 2 stc export p.st -o x.xml --as tc6-9
 said 'known are tc6-2.01, tc6-2.0'
 expect 7 stc export nothing.st -o x.xml
+# What is there is only overwritten when it is a document, and never a source.
+cp p.st q.st
+expect 7 stc export q.st -o ./q.st --force
+said 'is one of the sources; nothing was written'
+cp p.xml q.xml
+expect 7 stc export q.xml -o q.xml
+cmp p.st q.st && cmp p.xml q.xml || fail "a source was overwritten"
+expect 7 stc export p.st -o q.st
+said 'is there and no XML; nothing was written. --force overwrites'
+expect 0 stc export p.st -o q.xml
+expect 0 stc export p.st -o q.st --force
 printf 'PROGRAM P n := ; END_PROGRAM\n' >bad.st
 expect 1 stc export bad.st -o x.xml
 said 'bad\.st:1:16: error\[E1005\]'

@@ -203,6 +203,14 @@ expect 0 stc import small.xml -o made
 grep -q '^FBD$' made/P.st || grep -q '^LADDER$' made/P.st || fail "no diagram"
 expect 0 stc check made
 
+# Wires get names that no variable has.
+sed 's/name="t"/name="or1"/; s/<derived name="TON"\/>/<BOOL\/>/' small.xml >clash.xml
+sed -i 's/<localVars>/<localVars><variable name="and1"><type><BOOL\/><\/type><\/variable>/' clash.xml
+rm -rf made
+expect 0 stc import clash.xml -o made
+grep -q 'WIRE or2 := OR' made/P.st || fail "names of wires"
+expect 0 stc check made
+
 # Conditions of charts: a network, and wires in the chart itself.
 chart() {
   printf '<project><types><pous><pou name="P" pouType="program"><interface><localVars><variable name="a"><type><INT/></type></variable><variable name="b"><type><BOOL/></type><initialValue><simpleValue value="TRUE"/></initialValue></variable><variable name="n"><type><INT/></type></variable></localVars></interface><transitions>%s</transitions><body><SFC><step localId="1" name="First" initialStep="true"/><transition localId="2"><connectionPointIn><connection refLocalId="1"/></connectionPointIn><condition>%s</condition></transition><step localId="3" name="Second"><connectionPointIn><connection refLocalId="2"/></connectionPointIn></step><actionBlock localId="4"><connectionPointIn><connection refLocalId="3"/></connectionPointIn><action qualifier="P1"><inline><FBD>%s%s</FBD></inline></action></actionBlock>%s</SFC></body></pou></pous></types></project>' "$1" "$2" "$(in_variable 8 7)" "$(out_variable 9 n "$(from 8)")" "$3" >small.xml

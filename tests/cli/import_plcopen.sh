@@ -84,6 +84,17 @@ network "$(source_of 1)$(sink 2)"
 ten_wrong E1076 'a connection leads to localId `pin 2`'
 network "$(source_of 1)$(source_of 1)$(sink 1)"
 ten_wrong E1075 'connectionPointOutId 1 is there twice'
+# Numbers of elements count in their network, and networks keep their order however many there are.
+moves() { for pair in 1 2; do printf '<FbdObject xsi:type="DataSource" identifier="%s%s"><RelPosition x="0" y="%s"/><ConnectionPointOut connectionPointOutId="%s"/></FbdObject>' "$1" "$pair" "$((pair * 20))" "$pair"; sink "$pair" | sed "s/identifier/evaluationOrder=\"$((3 - pair))\" identifier/"; done; }
+ten "<BodyContent xsi:type=\"FBD\"><Network evaluationOrder=\"2\">$(moves 2)</Network><Network evaluationOrder=\"1\">$(moves 1)</Network></BodyContent>"
+rm -rf order
+expect 0 stc import ten.xml -o order
+[ "$(sed -n 's/^  a := \(.*\);/\1/p' order/P.st | tr '\n' ' ')" = '12 11 22 21 ' ] || fail "evaluationOrder of several networks: $(cat order/P.st)"
+ten "<BodyContent xsi:type=\"FBD\">$(seq 1 10100 | awk '{ print "<Network evaluationOrder=\"" $1 "\"><FbdObject xsi:type=\"DataSource\" identifier=\"" $1 "\"><RelPosition x=\"0\" y=\"" 200000 - 10 * $1 "\"/><ConnectionPointOut connectionPointOutId=\"1\"/></FbdObject><FbdObject xsi:type=\"DataSink\" identifier=\"a\"><ConnectionPointIn><Connection refConnectionPointOutId=\"1\"/></ConnectionPointIn></FbdObject></Network>" }')</BodyContent>"
+rm -rf order
+expect 0 stc import ten.xml -o order
+sed -n 's/^  a := \(.*\);/\1/p' order/P.st >numbers
+seq 1 10100 | cmp -s - numbers || fail "order of many networks"
 network '<FbdObject xsi:type="v:InlineST"/>'
 ten_wrong E1083 'InlineST.* is not understood'
 ten '<BodyContent xsi:type="SFC"><Step/></BodyContent>'

@@ -26,7 +26,7 @@ constexpr tools::Command kCommand{"draw", "PATHS... [POU]",
 
 // A POU, action or method whose body is a drawing.
 struct Drawn {
-  std::string name;  // Motor, Motor.Reset
+  std::string name;  // Motor, Motor.Reset, Drives.Motor
   const frontend::PouDecl* pou = nullptr;
   const frontend::PouDecl* owner = nullptr;
 };
@@ -39,6 +39,15 @@ void collect(const frontend::PouDecl& pou, const frontend::PouDecl* owner,
   for (const frontend::PouDecl& member : pou.members) {
     collect(member, owner == nullptr ? &pou : owner, name + '.', out);
   }
+}
+
+// "A.B." in NAMESPACE A.B.
+std::string space_of(const frontend::Tree& tree, frontend::ScopeId scope) {
+  std::string out;
+  for (; tree.in_namespace(scope); scope = tree[scope].parent) {
+    out = std::string(tree[scope].name.text) + '.' + out;
+  }
+  return out;
 }
 
 const char* kind_word(frontend::PouKind kind) {
@@ -174,7 +183,9 @@ base::Status draw(const tools::Options& options) {
     return base::Error{base::Refusal::kSourceErrors, "draw: the sources have errors"};
   }
   std::vector<Drawn> drawn;
-  for (const frontend::PouDecl& pou : tree.pous) collect(pou, nullptr, {}, drawn);
+  for (const frontend::PouDecl& pou : tree.pous) {
+    collect(pou, nullptr, space_of(tree, pou.scope), drawn);
+  }
   std::vector<Drawn> all = drawn;
   if (!chosen.pou.empty()) {
     std::erase_if(drawn, [&](const Drawn& one) { return !ir::same_name(one.name, chosen.pou); });

@@ -1,5 +1,6 @@
 // stc export: sources -> XML for other tools.
 #include <cstdio>
+#include <filesystem>
 
 #include "frontend/compile.h"
 #include "tools/common/exit.h"
@@ -9,6 +10,7 @@
 #include "tools/stc/session.h"
 #ifdef STC_HAS_XML
 #include "adapters/plcopen/export.h"
+#include "adapters/xml/document.h"
 #endif
 
 namespace stc {
@@ -17,6 +19,7 @@ namespace {
 constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
     {"--output|-o", "FILE", "document to write (needed)"},
+    {"--force", nullptr, "overwrite a file that is no XML"},
     {"--as", "FORM", "tc6-2.01 (default), tc6-2.0 or 61131-10"},
 };
 constexpr tools::Command kCommand{
@@ -24,11 +27,36 @@ constexpr tools::Command kCommand{
 
 #ifdef STC_HAS_XML
 
+namespace fs = std::filesystem;
+
+// A source is never the document; what else is there has to look like one.
+base::Status refuse_to_overwrite(const tools::Options& options, const Project& project) {
+  const std::string output = options.text("--output");
+  std::error_code none;
+  if (!fs::is_regular_file(output, none)) return base::Ok{};
+  for (uint32_t file = 0; file < project.sources.file_count(); ++file) {
+    if (!fs::equivalent(output, std::string(project.sources.file_name(file)), none)) continue;
+    return base::Error{base::Refusal::kFileUnwritable,
+                       output + ": is one of the sources; nothing was written"};
+  }
+  if (options.has("--force")) return base::Ok{};
+  base::Result<std::string> old = tools::read_text(output);
+  if (!old.ok()) return old.error();
+  xml::Decoded text = xml::to_utf8(*old);
+  if (text.error.empty() && (old->empty() || xml::trimmed(text.text).starts_with("<"))) {
+    return base::Ok{};
+  }
+  return base::Error{base::Refusal::kFileUnwritable,
+                     output + ": is there and no XML; nothing was written. --force overwrites"};
+}
+
 base::Status write_document(const tools::Options& options, plcopen::Form form) {
   base::Result<base::DiagnosticFormat> format = diagnostic_format(options);
   if (!format.ok()) return format.error();
   base::Result<Project> project = open_project(options, options.arguments());
   if (!project.ok()) return project.error();
+  base::Status free = refuse_to_overwrite(options, *project);
+  if (!free.ok()) return free;
   base::Diagnostics diagnostics;
   add_findings(diagnostics, project->imported, false);
   frontend::Tree tree;
