@@ -18,9 +18,9 @@ TEST(ExceptionCode, HasEveryTrap) {
   ASSERT_NE(found, sources.end());
   const std::string text(found->text);
   const char* const names[] = {
-      "DivisionByZero",  "ArrayIndex", "Subrange", "Conversion", "ForStepZero", "InvalidReference",
-      "MissingInstance", "OutOfFuel",  "Watchdog", "CallDepth",  "StringRange", "AssertionFailed",
-      "Overrun", "NotANumber"};
+      "DivisionByZero",   "ArrayIndex",      "Subrange",  "Conversion", "ForStepZero",
+      "InvalidReference", "MissingInstance", "OutOfFuel", "Watchdog",   "CallDepth",
+      "StringRange",      "AssertionFailed", "Overrun",   "NotANumber", "IoLost"};
   ASSERT_EQ(std::size(names), ir::kTrapCount);
   for (uint32_t kind = 0; kind < ir::kTrapCount; ++kind) {
     const std::string line = std::string(names[kind]) + " := " + std::to_string(kind + 1);
