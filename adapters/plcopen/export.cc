@@ -207,6 +207,7 @@ std::optional<std::string> export_document(const ExportInput& input,
     }
   }
   if (diagnostics.error_count() != before) return std::nullopt;
+  report_lost_comments(input, input.form == Form::kIec10 ? other.root() : project, diagnostics);
   std::ostringstream out;
   (input.form == Form::kIec10 ? other : document)
       .save(out, "  ", pugi::format_default, pugi::encoding_utf8);

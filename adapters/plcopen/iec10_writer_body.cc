@@ -116,6 +116,7 @@ void Iec10Writer::object(Node to, Node from) {
     copy(out, "targetNetworkLabel", from, "label");
     copy(out, "typeName", from, "typeName");
     copy(out, "instanceName", from, "instanceName");
+    documentation(out, from);
     Node position = out.append_child("RelPosition");
     copy(position, "x", from.child("position"), "x");
     copy(position, "y", from.child("position"), "y");

@@ -96,4 +96,7 @@ class Writer {
   base::Diagnostics& diagnostics_;
 };
 
+// A note for each source of which comments are nowhere below `root`.
+void report_lost_comments(const ExportInput& input, Node root, base::Diagnostics& diagnostics);
+
 }  // namespace plcopen

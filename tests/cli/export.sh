@@ -93,6 +93,30 @@ for name in declarations ladder blocks objects chart; do
   cmp $name.third.xml $name.fourth.xml || fail "$name changes with every export"
 done
 
+# Comments that XML has no place for are named; others are not.
+cat >comments.st <<'S'
+(* what it is *)
+PROGRAM P
+VAR
+  // in front of a variable
+  n : INT;  // behind a variable
+END_VAR
+  n := n + 1;  (* in a body *) // twice
+END_PROGRAM
+// at the end
+(* nested (* and *) more *)
+TEST 'nothing' ASSERT_TRUE(TRUE); (* of a test *) END_TEST
+S
+expect 0 stc export comments.st -o comments.xml
+said 'comments\.st:4:3: note\[W0071\]: 3 comment\(s\) are left out, in line\(s\) 4, 9, 10: XML has no place'
+for form in tc6-2.01 61131-10; do
+  rm -rf first
+  expect 0 stc export "$source_dir/examples/heating" -o heating.xml --as $form
+  said 'note\[W0071\]: 1 comment\(s\) are left out, in line\(s\) 1:'
+  expect 0 stc import heating.xml -o first
+  grep -rqF 'frost: whatever is switched and open' first || fail "comment of an element by $form"
+done
+
 # Types and variables in files of their own: initial values of the one in the other.
 mkdir files
 printf 'TYPE Link : STRUCT at : POINTER TO INT := ADR(shared); n : INT := 4; END_STRUCT END_TYPE\n' >files/a.st
