@@ -69,8 +69,11 @@ class Chart {
   std::map<std::string, std::string> renamed_;  // steps, by their folded names in XML
   xml::Names actions_;                          // and what else actions may not be called
   bool prioritised_ = false;
+  size_t ways_ = 0;                    // that were followed
   std::set<const Element*> followed_;  // for one transition: each once, so loops end
 };
+
+constexpr size_t kMaxWays = 5'000'000;  // of all transitions together
 
 const char* const kBetween[] = {"selectionDivergence", "selectionConvergence",
                                 "simultaneousDivergence", "simultaneousConvergence"};
@@ -262,6 +265,13 @@ std::vector<std::string> Chart::steps_beside(const Element& transition, bool up)
   followed_.clear();
   push_neighbours(transition, up, false, todo);
   while (!todo.empty()) {
+    if (++ways_ > kMaxWays) {
+      if (ways_ == kMaxWays + 1) {
+        report_.add(Code::kBadXmlChart, transition.node,
+                    "there are too many ways through divergences and convergences");
+      }
+      return {};
+    }
     const Way way = todo.back();
     todo.pop_back();
     if (xml::is(way.to->node, "step")) {
@@ -348,6 +358,7 @@ std::string Chart::condition(const Element& transition) {
 std::string Chart::transition_text(const Element& transition) {
   std::vector<std::string> from = steps_beside(transition, true);
   std::vector<std::string> to = steps_beside(transition, false);
+  if (ways_ > kMaxWays) return {};
   if (from.empty() || to.empty()) {
     const char* side = from.empty() ? "leaves" : "enters";
     report_.add(Code::kBadXmlChart, transition.node,

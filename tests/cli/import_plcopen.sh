@@ -215,6 +215,14 @@ grep -B1 'INITIAL_STEP' negated/P.st | grep -qF '(* What it is for *)' || fail "
   printf '<jumpStep localId="50000" targetName="A"><connectionPointIn><connection refLocalId="40002"/></connectionPointIn></jumpStep></SFC></body></pou></pous></types></project>'
 } >small.xml
 expect 0 stc check small.xml
+{
+  printf '<project><types><pous><pou name="P" pouType="program"><interface/><body><SFC><step localId="2" name="A" initialStep="true"/>'
+  seq 3 3002 | awk '{ print "<selectionDivergence localId=\"" $1 "\"><connectionPointIn><connection refLocalId=\"" $1 - 1 "\"/></connectionPointIn></selectionDivergence>" }'
+  seq 5000 6999 | awk '{ print "<transition localId=\"" $1 "\"><connectionPointIn><connection refLocalId=\"3002\"/></connectionPointIn><condition><reference name=\"b\"/></condition></transition><jumpStep localId=\"" $1 + 5000 "\" targetName=\"A\"><connectionPointIn><connection refLocalId=\"" $1 "\"/></connectionPointIn></jumpStep>" }'
+  printf '</SFC></body></pou></pous></types></project>'
+} >small.xml
+expect 1 stc check small.xml
+said 'E1082.*there are too many ways through divergences'
 sfc "$(transition 2 1 "$good")<macroStep localId=\"9\"/>"
 wrong E1083 'macroStep.*is not understood'
 # A document type is read over, and nothing in it is expanded.
