@@ -18,6 +18,11 @@ bool is_plain_name(std::string_view text) {
   return text.find_first_of(".[](){}^ +-*/<>=,;:'\"") == std::string_view::npos;
 }
 
+std::string_view without_blanks(std::string_view text) {
+  size_t first = text.find_first_not_of(" \t");
+  return first == std::string_view::npos ? std::string_view() : text.substr(first);
+}
+
 uint32_t output_number(Element& element, std::string_view name) {
   for (uint32_t i = 0; i < element.outputs.size(); ++i) {
     if (ir::same_name(element.outputs[i].name, name)) return i;
@@ -110,11 +115,13 @@ Links::Found Links::find(const Use& use, network::Network& network) {
     behind = end;
   }
   if (box == nullptr) return expression(use);
-  std::string_view rest = whole.substr(behind);
+  std::string_view rest = without_blanks(whole.substr(behind));
   if (rest.empty()) return whole_box(use, *box);
-  if (rest[0] != '.' || rest.size() == 1 || !is_plain_name(rest.substr(1))) return expression(use);
+  if (rest[0] != '.') return expression(use);
+  rest = without_blanks(rest.substr(1));
+  if (rest.empty() || !is_plain_name(rest)) return expression(use);
   if (box->wire && box->element >= use.element) return feedback(use, *box);
-  uint32_t output = output_number(network.elements[box->element], rest.substr(1));
+  uint32_t output = output_number(network.elements[box->element], rest);
   return {Link{box->element, output}, false};
 }
 

@@ -134,7 +134,7 @@ void Parser::Diagram::element(uint32_t number) {
 void Parser::Diagram::contact(uint32_t number, const Element& element) {
   Value left = linked(element.inputs[0]);
   ExprId value = parse(element.operand);
-  if (element.modifier == Modifier::kNegated) value = negated(value, element.span);
+  if (element.modifier == Modifier::kNegated) value = p_.negated(value, element.span);
   value = edge(value, element.modifier, element.operand.text, element.span);
   if (!left.expr.valid()) left.expr = boolean(false, element.span);
   if (!left.power) value = binary(BinaryOp::kAnd, left.expr, value, element.span);
@@ -161,7 +161,7 @@ void Parser::Diagram::assign(const Element& element, ExprId value, Modifier modi
   AssignOp op = modifier == Modifier::kSet     ? AssignOp::kSet
                 : modifier == Modifier::kReset ? AssignOp::kReset
                                                : AssignOp::kAssign;
-  if (modifier == Modifier::kNegated) value = negated(value, element.span);
+  if (modifier == Modifier::kNegated) value = p_.negated(value, element.span);
   value = edge(value, modifier, element.operand.text + "#coil", element.span);
   Stmt stmt;
   stmt.kind = StmtKind::kAssign;
@@ -171,7 +171,7 @@ void Parser::Diagram::assign(const Element& element, ExprId value, Modifier modi
   stmt.span = element.span;
   ExprId enabled = enabled_by(element);
   if (enabled.valid()) {
-    emit_if(copy(enabled, element.span), stmt, element.span);
+    emit_if(p_.copy_of(enabled, element.span), stmt, element.span);
   } else {
     emit(stmt, element.span);
   }
@@ -217,11 +217,11 @@ Parser::Diagram::Value Parser::Diagram::linked(const network::Input& input) {
       ExprId value = output(input.from[0]);
       for (size_t i = 1; i < input.from.size(); ++i) {
         value = binary(BinaryOp::kOr, value, output(input.from[i]), span);
-        if (i % kHighest == 0) value = copy(keep(value, span), span);
+        if (i % kHighest == 0) value = p_.copy_of(keep(value, span), span);
       }
       join = keep(value, span);
     }
-    out.expr = copy(join, span);
+    out.expr = p_.copy_of(join, span);
   }
   return out;
 }
@@ -230,7 +230,7 @@ Parser::Diagram::Value Parser::Diagram::input(const network::Input& input) {
   Value out = linked(input);
   base::SourceSpan span = input.span.begin.valid() ? input.span : here_;
   if (!out.expr.valid() || input.modifier == Modifier::kNone) return out;
-  if (input.modifier == Modifier::kNegated) out.expr = negated(out.expr, span);
+  if (input.modifier == Modifier::kNegated) out.expr = p_.negated(out.expr, span);
   const Element* from =
       input.from.size() == 1 ? &network_->elements[input.from[0].element] : nullptr;
   bool source = from != nullptr && from->kind == Kind::kSource;
@@ -247,13 +247,13 @@ ExprId Parser::Diagram::output(network::Link link) {
   if (from.kind == Kind::kSource) {
     value = parse(from.operand);
   } else if (ExprId kept = outputs_[link.element][link.output].kept; kept.valid()) {
-    value = copy(kept, from.span);
+    value = p_.copy_of(kept, from.span);
   } else if (from.kind == Kind::kBlock && !from.operand.empty()) {
     value = member(parse(from.operand), output.name, from.span);
   } else {
     value = boolean(false, from.span);  // reported by the reader
   }
-  return output.negated ? negated(value, from.span) : value;
+  return output.negated ? p_.negated(value, from.span) : value;
 }
 
 // TRUE in the scan in which `value` rises or falls.
@@ -270,10 +270,11 @@ ExprId Parser::Diagram::edge(ExprId value, Modifier modifier, const std::string&
   ExprId now = keep(value, span);
   ExprId before = name(last);
   bool rising = modifier == Modifier::kRising;
-  ExprId changed = rising ? binary(BinaryOp::kAnd, copy(now, span), negated(before, span), span)
-                          : binary(BinaryOp::kAnd, negated(copy(now, span), span), before, span);
+  ExprId changed =
+      rising ? binary(BinaryOp::kAnd, p_.copy_of(now, span), p_.negated(before, span), span)
+             : binary(BinaryOp::kAnd, p_.negated(p_.copy_of(now, span), span), before, span);
   ExprId seen = keep(changed, span);
-  emit_assign(name(last), copy(now, span), AssignOp::kAssign, span);
+  emit_assign(name(last), p_.copy_of(now, span), AssignOp::kAssign, span);
   return seen;
 }
 

@@ -68,12 +68,10 @@ class Parser::Diagram {
   ExprId parse(const network::Text& text, bool quiet = false);
   ExprId boolean(bool value, base::SourceSpan span);
   ExprId name(const Name& name);
-  ExprId negated(ExprId operand, base::SourceSpan span);
   ExprId binary(BinaryOp op, ExprId left, ExprId right, base::SourceSpan span);
   ExprId member(ExprId operand, const std::string& name, base::SourceSpan span);
   ExprId keep(ExprId value, base::SourceSpan span);
   ExprId new_result(ExprId value, base::SourceSpan span);
-  ExprId copy(ExprId result, base::SourceSpan span);
   void emit(Stmt stmt, base::SourceSpan span);
   void emit_assign(ExprId target, ExprId value, AssignOp op, base::SourceSpan span);
   void emit_if(ExprId condition, const Stmt& then, base::SourceSpan span);

@@ -74,7 +74,7 @@ Range32 Parser::Diagram::arguments(uint32_t number, const Element& element, Valu
       if (value.power) continue;  // always
       value.expr = keep(value.expr, span);
       *enable = value;
-      value.expr = copy(value.expr, span);
+      value.expr = p_.copy_of(value.expr, span);
     }
     Arg arg;
     arg.span = span;
@@ -97,7 +97,7 @@ void Parser::Diagram::add_eno(uint32_t number, const Element& element) {
     arg.name = {"ENO", element.span};
     arg.output = true;
     ExprId kept = new_result(boolean(true, element.span), element.span);
-    arg.value = copy(kept, element.span);
+    arg.value = p_.copy_of(kept, element.span);
     outputs_[number][i].kept = kept;
     p_.arg_stack_.push_back(arg);
   }
@@ -182,15 +182,6 @@ ExprId Parser::Diagram::name(const Name& name) {
   return p_.add_expression(expr);
 }
 
-ExprId Parser::Diagram::negated(ExprId operand, base::SourceSpan span) {
-  Expr expr;
-  expr.kind = ExprKind::kUnary;
-  expr.unary = UnaryOp::kNot;
-  expr.operand = operand;
-  expr.op_span = expr.span = span;
-  return p_.add_expression(expr);
-}
-
 ExprId Parser::Diagram::binary(BinaryOp op, ExprId left, ExprId right, base::SourceSpan span) {
   Expr expr;
   expr.kind = ExprKind::kBinary;
@@ -211,27 +202,16 @@ ExprId Parser::Diagram::member(ExprId operand, const std::string& name, base::So
 }
 
 ExprId Parser::Diagram::new_result(ExprId value, base::SourceSpan span) {
-  Expr expr;
-  expr.kind = ExprKind::kResult;
-  expr.number = static_cast<uint32_t>(tree_.results.size());
-  expr.span = span;
-  tree_.results.push_back({{static_cast<uint32_t>(tree_.expr_lists.size()), 1}, false});
-  tree_.expr_lists.push_back(value);
-  return p_.add_expression(expr);
-}
-
-ExprId Parser::Diagram::copy(ExprId result, base::SourceSpan span) {
-  Expr copy = tree_[result];
-  copy.span = span;
-  if (copy.kind == ExprKind::kResult && !copy.operand.valid()) copy.operand = result;
-  return p_.add_expression(copy);
+  ExprId result = p_.add_result(span, false);
+  p_.set_values(result, {value});
+  return result;
 }
 
 // A value that is used later, or in several places.
 ExprId Parser::Diagram::keep(ExprId value, base::SourceSpan span) {
   if (tree_[value].kind == ExprKind::kResult) return value;
   ExprId result = new_result(value, span);
-  emit_assign(copy(result, span), value, AssignOp::kAssign, span);
+  emit_assign(p_.copy_of(result, span), value, AssignOp::kAssign, span);
   return result;
 }
 

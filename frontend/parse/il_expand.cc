@@ -43,7 +43,7 @@ void Parser::InstructionList::expand_operator(size_t i) {
     case IlAction::kLoad: {
       discard();
       bool literal = is_literal(in.operand);
-      return define(in.op->negated ? negated(in.operand, in.span) : in.operand, literal);
+      return define(in.op->negated ? p_.negated(in.operand, in.span) : in.operand, literal);
     }
     case IlAction::kStore:
       return store(in, last);
@@ -55,12 +55,12 @@ void Parser::InstructionList::expand_operator(size_t i) {
     case IlAction::kBinary: {
       bool literal = result_.literal && is_literal(in.operand);
       ExprId left = use(in, true);
-      ExprId right = in.op->negated ? negated(in.operand, in.span) : in.operand;
+      ExprId right = in.op->negated ? p_.negated(in.operand, in.span) : in.operand;
       return apply(in, left, right, literal);
     }
     case IlAction::kNot: {
       bool literal = result_.literal;
-      return define(negated(use(in, true), in.span), literal);
+      return define(p_.negated(use(in, true), in.span), literal);
     }
     case IlAction::kJump:
       return jump(i);
@@ -78,7 +78,7 @@ void Parser::InstructionList::store(const Instruction& in, bool last) {
   Stmt stmt;
   stmt.kind = StmtKind::kAssign;
   stmt.target = in.operand;
-  stmt.value = in.op->negated ? negated(value, in.span) : value;
+  stmt.value = in.op->negated ? p_.negated(value, in.span) : value;
   stmt.span = in.span;
   emit(stmt);
 }
@@ -147,7 +147,7 @@ void Parser::InstructionList::apply(const Instruction& in, ExprId left, ExprId r
 void Parser::InstructionList::close(size_t i) {
   ExprId right = use(list_[i], true);
   const Instruction& open = list_[opens_.back()];
-  if (open.op->negated) right = negated(right, open.span);
+  if (open.op->negated) right = p_.negated(right, open.span);
   result_ = outer_.back();
   outer_.pop_back();
   opens_.pop_back();

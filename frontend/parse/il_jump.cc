@@ -28,7 +28,7 @@ void Parser::InstructionList::label(size_t i) {
   found->passed = true;
   if (!needed || undefined) return undefine(needed ? why : "the label did not need it");
   if (!found->result.valid()) return undefine("jumps from below only lead to this label");
-  set_values(found->result, found->ways);
+  p_.set_values(found->result, found->ways);
   result_ = {Result::State::kKept, false, found->result, ""};
 }
 
@@ -39,7 +39,7 @@ void Parser::InstructionList::pass_to(const Instruction& in, const Name& name, b
   if (target == nullptr || needs_[target->index] != Need::kYes) return;
   ExprId value = use(in, last);
   if (target->passed && !target->result.valid()) return;  // was reported there
-  if (!target->result.valid()) target->result = add_result(tree_[value].span, true);
+  if (!target->result.valid()) target->result = p_.add_result(tree_[value].span, true);
   if (!target->passed) target->ways.push_back(value);
   Stmt assign = keep_statement(target->result, value);
   assign.span = in.span;
@@ -105,7 +105,7 @@ void Parser::InstructionList::guard(const Instruction& in, ExprId condition,
   size_t mark = p_.statement_stack_.size();
   for (const Stmt& stmt : body) p_.add_statement(stmt);
   Branch branch;
-  branch.condition = in.op->negated ? negated(condition, in.span) : condition;
+  branch.condition = in.op->negated ? p_.negated(condition, in.span) : condition;
   branch.body = move_tail(p_.statement_stack_, mark, tree_.stmt_lists);
   Stmt stmt;
   stmt.kind = StmtKind::kIf;

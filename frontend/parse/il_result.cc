@@ -15,7 +15,7 @@ ExprId Parser::InstructionList::use(const Instruction& in, bool last) {
   }
   if (!last) keep_result();
   ExprId value = result_.value;
-  if (result_.state == Result::State::kKept) return copy_of(value, in.word.span);
+  if (result_.state == Result::State::kKept) return p_.copy_of(value, in.word.span);
   if (last) undefine("it was used up");
   return value;
 }
@@ -46,8 +46,8 @@ void Parser::InstructionList::discard() {
 
 void Parser::InstructionList::keep(Result& result) {
   if (result.state != Result::State::kValue || result.literal) return;
-  ExprId kept = add_result(tree_[result.value].span, false);
-  set_values(kept, {result.value});
+  ExprId kept = p_.add_result(tree_[result.value].span, false);
+  p_.set_values(kept, {result.value});
   p_.add_statement(keep_statement(kept, result.value));
   result.state = Result::State::kKept;
   result.value = kept;
@@ -72,46 +72,14 @@ void Parser::InstructionList::emit(Stmt stmt) {
   p_.add_statement(stmt);
 }
 
-ExprId Parser::InstructionList::add_result(base::SourceSpan span, bool at_label) {
-  Expr expr;
-  expr.kind = ExprKind::kResult;
-  expr.number = static_cast<uint32_t>(tree_.results.size());
-  expr.span = span;
-  tree_.results.push_back({{}, at_label});
-  return p_.add_expression(expr);
-}
-
-void Parser::InstructionList::set_values(ExprId result, const std::vector<ExprId>& values) {
-  tree_.results[tree_[result].number].values = {static_cast<uint32_t>(tree_.expr_lists.size()),
-                                                static_cast<uint32_t>(values.size())};
-  tree_.expr_lists.insert(tree_.expr_lists.end(), values.begin(), values.end());
-}
-
-// Another place where the result stands; `operand` is the first one.
-ExprId Parser::InstructionList::copy_of(ExprId result, base::SourceSpan span) {
-  Expr copy = tree_[result];
-  copy.span = span;
-  if (copy.kind == ExprKind::kResult && !copy.operand.valid()) copy.operand = result;
-  return p_.add_expression(copy);
-}
-
 Stmt Parser::InstructionList::keep_statement(ExprId result, ExprId value) {
   Stmt assign;
   assign.kind = StmtKind::kAssign;
   assign.span = tree_[value].span;
-  assign.target = copy_of(result, assign.span);
+  assign.target = p_.copy_of(result, assign.span);
   assign.value = value;
   assign.instruction = true;
   return assign;
-}
-
-ExprId Parser::InstructionList::negated(ExprId operand, base::SourceSpan span) {
-  Expr expr;
-  expr.kind = ExprKind::kUnary;
-  expr.unary = UnaryOp::kNot;
-  expr.operand = operand;
-  expr.op_span = expr.span = span;
-  return p_.add_expression(expr);
 }
 
 bool Parser::InstructionList::is_literal(ExprId id) const {

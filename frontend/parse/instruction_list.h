@@ -114,12 +114,8 @@ class Parser::InstructionList {
   void keep(Result& result);
   void keep_result();
   void keep_outer();
-  ExprId add_result(base::SourceSpan span, bool at_label);
-  void set_values(ExprId result, const std::vector<ExprId>& values);
-  ExprId copy_of(ExprId result, base::SourceSpan span);
   Stmt keep_statement(ExprId result, ExprId value);
   void emit(Stmt stmt);
-  ExprId negated(ExprId operand, base::SourceSpan span);
   bool is_literal(ExprId id) const;
   bool is_plain(ExprId id) const;
 

@@ -188,6 +188,12 @@ class Parser {
   bool at_instruction_argument() const;
   bool at_instruction(size_t ahead) const;
 
+  // --- results.cc
+  ExprId add_result(base::SourceSpan span, bool at_label);
+  void set_values(ExprId result, const std::vector<ExprId>& values);
+  ExprId copy_of(ExprId result, base::SourceSpan span);
+  ExprId negated(ExprId operand, base::SourceSpan span);
+
   // --- diagram*.cc, diagram_body.cc
   class Diagram;
   bool at_diagram() const;

@@ -173,6 +173,18 @@ TEST(LadderText, ContactsAreReadOnTheSameSideOfWhatWritesThem) {
   }
 }
 
+// 30,000 columns in 1,000 rows: it would be painted in gigabytes, and nobody could read it.
+TEST(LadderText, AnEndlessDrawingIsRefused) {
+  std::vector<Element> elements;
+  for (uint32_t i = 0; i < 3000; ++i) {
+    elements.push_back(element(Kind::kContact, "a", {{i, 0}}));
+  }
+  for (uint32_t i = 0; i < 1000; ++i) {
+    elements.push_back(element(Kind::kCoil, "x" + std::to_string(i), {{3000, 0}}));
+  }
+  EXPECT_FALSE(write_ladder(one_rung(std::move(elements)), 0).has_value());
+}
+
 TEST(LadderText, AnOperandThatWouldReadAsSomethingElseIsRefused) {
   for (const char* operand : {"a ] b", "t : TON", "P x", "a := b", "F(_)", "a\nb"}) {
     Body body =
