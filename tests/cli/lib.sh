@@ -9,6 +9,7 @@ cleanup() {
   for pid_file in "$work"/*.pid; do
     [ -e "$pid_file" ] && kill "$(cat "$pid_file")" 2>/dev/null || true
   done
+  wait || true  # a controller that stops still writes into its folder
   rm -rf "$work"
 }
 trap cleanup EXIT INT TERM
