@@ -34,7 +34,10 @@ void Parser::Diagram::run(const network::Body& body) {
   check_wires(body);
   for (const network::Network& each : body.networks) network(each);
   if (kept_.vars.empty()) return;
-  kept_.section = pou_.kind == PouKind::kMethod ? VarSection::kInstance : VarSection::kLocal;
+  // The variables of a call are gone behind it; these live in the instance.
+  const bool call = pou_.kind == PouKind::kMethod || pou_.kind == PouKind::kGetter ||
+                    pou_.kind == PouKind::kSetter;
+  kept_.section = call ? VarSection::kInstance : VarSection::kLocal;
   kept_.scope = p_.scope_;
   kept_.span = body.span;
   pou_.blocks.push_back(std::move(kept_));
@@ -260,7 +263,7 @@ ExprId Parser::Diagram::output(network::Link link) {
 ExprId Parser::Diagram::edge(ExprId value, Modifier modifier, const std::string& of,
                              base::SourceSpan span) {
   if (modifier != Modifier::kRising && modifier != Modifier::kFalling) return value;
-  if (pou_.kind == PouKind::kFunction) {
+  if (pou_.kind == PouKind::kFunction || pou_.kind == PouKind::kMockFunction) {
     p_.note_only(Code::kNoEdgeMemory, span,
                  "a function keeps nothing from call to call, so it sees no edge",
                  "make it a FUNCTION_BLOCK, or give the edge as an input");

@@ -32,9 +32,6 @@ class Parser::Diagram {
     uint32_t user = 0;  // an element that uses it
     ExprId kept;        // a kResult; invalid: read from the instance, or not made yet
   };
-  struct Enabled {     // a block with EN
-    ExprId condition;  // kept; invalid: always
-  };
 
   // --- diagram.cc
   void check_wires(const network::Body& body);
