@@ -4,7 +4,7 @@
 #   make          build/release/bin/stc and stvm
 #   make demo     a bottling line, changed while it runs
 #   make test     everything that has to hold, some minutes
-#   make bench    ST against C
+#   make bench    ST against C, and the compiler; writes docs/performance.md
 #   make bench-pause   how long online changes stop the tasks; writes docs/pause.md
 #   make asan     tests under AddressSanitizer and UBSan (also: ubsan, tsan)
 #   make fuzz     a million executions of each fuzz target under sanitizers
@@ -50,11 +50,12 @@ coverage: setup
 	@cmake --build build/coverage -j $(JOBS)
 	@ctest --test-dir build/coverage --output-on-failure -j $(JOBS)
 
+MACHINE := $(shell sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(shell nproc) cores
 bench: setup
 	@cmake --preset release >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target bench
+	@bench/page.sh $(BUILD)/bench . "$(MACHINE)"
 
-MACHINE := $(shell sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(shell nproc) cores
 bench-pause: setup
 	@cmake --preset release >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target bench_pause

@@ -11,7 +11,7 @@ static float process[50];
 static float setpoint;
 static uint32_t seed = 1, scans, checksum;
 
-static __attribute__((noinline)) void pid_loop(PidLoop* p) {
+static void pid_loop(PidLoop* p) {
   p->error = p->setpoint - p->actual;
   p->integral = p->integral + p->error * 0.05f;
   p->output = p->gain * p->error + p->integral - (p->actual - p->last) * 0.3f;

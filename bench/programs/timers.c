@@ -2,6 +2,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#ifndef EVERY
+#define EVERY 1
+#endif
+
 typedef struct {
   bool in;
   int64_t pt;
@@ -26,9 +30,10 @@ typedef struct {
 static Ton timer[100];
 static Ctu counter[100];
 static RTrig edge[100];
+static uint32_t inputs[100];
 static uint32_t seed = 1, scans, checksum, fired, edges;
 
-static __attribute__((noinline)) void ton(Ton* t, int64_t now) {
+static void ton(Ton* t, int64_t now) {
   if (!t->in) {
     t->running = false;
     t->q = false;
@@ -46,7 +51,7 @@ static __attribute__((noinline)) void ton(Ton* t, int64_t now) {
   }
 }
 
-static __attribute__((noinline)) void ctu(Ctu* c) {
+static void ctu(Ctu* c) {
   if (c->r) {
     c->cv = 0;
   } else if (c->cu && !c->last_up && c->cv < 32767) {
@@ -56,16 +61,21 @@ static __attribute__((noinline)) void ctu(Ctu* c) {
   c->q = c->cv >= c->pv;
 }
 
-static __attribute__((noinline)) void r_trig(RTrig* e) {
+static void r_trig(RTrig* e) {
   e->q = e->clk & !e->m;
   e->m = e->clk;
 }
 
 void timers_scan(int64_t now_ns) {
+  if (scans % EVERY == 0) {
+    for (int i = 0; i <= 99; ++i) {
+      seed = seed * 1664525u + 1013904223u;
+      inputs[i] = seed;
+    }
+  }
   for (int i = 0; i <= 99; ++i) {
-    seed = seed * 1664525u + 1013904223u;
-    const bool input = (seed & 0xE0000000u) != 0;
-    const bool clear = (seed & 0x1FF00000u) == 0;
+    const bool input = (inputs[i] & 0xE0000000u) != 0;
+    const bool clear = (inputs[i] & 0x1FF00000u) == 0;
     timer[i].in = input;
     timer[i].pt = 100000000;
     ton(&timer[i], now_ns);

@@ -16,7 +16,8 @@ namespace {
 
 constexpr tools::OptionRow kOptions[] = {
     {"--program", "P", "program instance (default: the first)"},
-    {"--scans", "N", "scans that are measured (default 10000); a tenth more is run before"},
+    {"--scans", "N", "scans that are measured (default 10000); a tenth more run before"},
+    {"--batch", "N", "scans between two looks at the clock (default 1); the quotient counts"},
     {"--period", "NS", "virtual time between two scans (default 10000000)"},
     STVM_DIALECT_OPTION,
     STVM_FORMAT_OPTION,
@@ -49,12 +50,12 @@ base::Result<uint32_t> find_program(const ir::Image& image, const std::string& n
 }
 
 struct Timing {
-  int64_t min = 0;
-  int64_t median = 0;
-  int64_t p99 = 0;
+  double min = 0;
+  double median = 0;
+  double p99 = 0;
 };
 
-Timing summarise(std::vector<int64_t>& times) {
+Timing summarise(std::vector<double>& times) {
   std::sort(times.begin(), times.end());
   return {times.front(), times[times.size() / 2], times[times.size() * 99 / 100]};
 }
@@ -77,6 +78,7 @@ base::Status one_scan(vm::Controller& controller, vm::Execution& execution, uint
 struct Settings {
   bool json = false;
   uint64_t scans = 0;
+  uint64_t batch = 1;
   int64_t period_ns = 0;
 };
 
@@ -85,38 +87,46 @@ base::Result<Settings> read_settings(const tools::Options& options) {
   if (!json.ok()) return json.error();
   base::Result<uint64_t> scans = options.number("--scans", 10'000);
   if (!scans.ok()) return scans.error();
+  base::Result<uint64_t> batch = options.number("--batch", 1);
+  if (!batch.ok()) return batch.error();
   base::Result<uint64_t> period = options.number("--period", 10'000'000);
   if (!period.ok()) return period.error();
   constexpr uint64_t kMost = 100'000'000;
   if (*scans == 0 || *scans > kMost) {
     return base::Error{base::Refusal::kUsage, "--scans is 1 to 100000000"};
   }
-  return Settings{*json, *scans, static_cast<int64_t>(*period)};
+  if (*batch == 0 || *batch > *scans) {
+    return base::Error{base::Refusal::kUsage, "--batch is 1 to the number of scans"};
+  }
+  return Settings{*json, *scans, *batch, static_cast<int64_t>(*period)};
 }
 
 base::Result<Timing> measure(const Settings& settings, vm::Controller& controller,
                              uint32_t program) {
   vm::Execution execution(controller.image().call_depth);
-  std::vector<int64_t> times;
-  times.reserve(settings.scans);
-  int64_t cost = clock_cost();
-  uint64_t warm_up = settings.scans / 10;
-  for (uint64_t i = 0; i < warm_up + settings.scans; ++i) {
-    auto begin = SteadyClock::now();
-    base::Status done =
-        one_scan(controller, execution, program, static_cast<int64_t>(i) * settings.period_ns);
-    int64_t ns = since(begin);
-    if (!done.ok()) return done.error();
-    if (i >= warm_up) times.push_back(std::max<int64_t>(ns - cost, 0));
+  const uint64_t warm_up = (settings.scans / 10 / settings.batch + 1) * settings.batch;
+  const uint64_t all = warm_up + settings.scans;
+  std::vector<double> times;
+  times.reserve(settings.scans / settings.batch);
+  const int64_t cost = clock_cost();
+  for (uint64_t scan = 0; scan + settings.batch <= all;) {
+    const bool counts = scan >= warm_up;
+    const auto begin = SteadyClock::now();
+    for (uint64_t end = scan + settings.batch; scan < end; ++scan) {
+      base::Status done =
+          one_scan(controller, execution, program, static_cast<int64_t>(scan) * settings.period_ns);
+      if (!done.ok()) return done.error();
+    }
+    const auto ns = static_cast<double>(std::max<int64_t>(since(begin) - cost, 0));
+    if (counts) times.push_back(ns / static_cast<double>(settings.batch));
   }
   return summarise(times);
 }
 
 void print(const Settings& settings, const std::string& program, const Timing& timing) {
   if (!settings.json) {
-    std::printf("%s: %lld ns min, %lld ns median, %lld ns p99 of %llu scans\n", program.c_str(),
-                static_cast<long long>(timing.min), static_cast<long long>(timing.median),
-                static_cast<long long>(timing.p99),
+    std::printf("%s: %.0f ns min, %.0f ns median, %.0f ns p99 of %llu scans\n", program.c_str(),
+                timing.min, timing.median, timing.p99,
                 static_cast<unsigned long long>(settings.scans));
     return;
   }
