@@ -5,6 +5,7 @@
 #   make demo     a bottling line, changed while it runs
 #   make test     everything that has to hold, some minutes
 #   make bench    ST against C, and the compiler; writes docs/performance.md
+#   make bench-large   the compiler on a million lines
 #   make bench-pause   how long online changes stop the tasks; writes docs/pause.md
 #   make asan     tests under AddressSanitizer and UBSan (also: ubsan, tsan)
 #   make fuzz     a million executions of each fuzz target under sanitizers
@@ -16,7 +17,7 @@
 BUILD := build/release
 JOBS := $(shell nproc)
 
-.PHONY: all build setup demo test test-minimal minimal bench bench-pause format asan ubsan tsan fuzz differential soak coverage docs clean
+.PHONY: all build setup demo test test-minimal minimal bench bench-large bench-pause format asan ubsan tsan fuzz differential soak coverage docs clean
 
 all: build
 
@@ -54,6 +55,11 @@ MACHINE := $(shell sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(
 bench: setup
 	@cmake --preset release >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target bench
+	@bench/page.sh $(BUILD)/bench . "$(MACHINE)"
+
+bench-large: setup
+	@cmake --preset release >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS) --target bench_large
 	@bench/page.sh $(BUILD)/bench . "$(MACHINE)"
 
 bench-pause: setup

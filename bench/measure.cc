@@ -3,11 +3,13 @@
 #include <fcntl.h>
 #include <sched.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
 
 extern char** environ;
@@ -26,10 +28,11 @@ std::string read_all(int file) {
 
 }  // namespace
 
-std::string output_of(const std::vector<std::string>& command) {
+Child run_child(const std::vector<std::string>& command, bool quiet) {
+  Child made;
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {
-    return "";
+    return made;
   }
   std::vector<char*> arguments;
   for (const std::string& word : command) {
@@ -39,23 +42,38 @@ std::string output_of(const std::vector<std::string>& command) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  if (quiet) {
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  }
+  const auto begin = std::chrono::steady_clock::now();
   pid_t child = 0;
   const int failed =
       posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
-  std::string text = failed != 0 ? "" : read_all(ends[0]);
+  if (failed == 0) made.output = read_all(ends[0]);
   close(ends[0]);
   int status = 0;
-  if (failed != 0 || waitpid(child, &status, 0) != child || status != 0) {
-    return "";
-  }
-  return text;
+  rusage usage{};
+  made.ok = failed == 0 && wait4(child, &status, 0, &usage) == child && status == 0;
+  const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - begin;
+  made.wall_ms = wall.count();
+  made.peak_kib = static_cast<uint64_t>(usage.ru_maxrss);
+  return made;
+}
+
+std::string output_of(const std::vector<std::string>& command) {
+  Child child = run_child(command);
+  return child.ok ? std::move(child.output) : "";
 }
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values.empty() ? 0 : values[values.size() / 2];
+}
+
+double fastest(const std::vector<double>& values) {
+  return values.empty() ? 0 : *std::min_element(values.begin(), values.end());
 }
 
 int pin_to_one_core() {
