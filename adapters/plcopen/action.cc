@@ -21,10 +21,20 @@ std::string action_use(Node action, const std::string& name, Reporter& report) {
   const bool timed = qualifier == "L" || qualifier == "D" || qualifier.size() == 2;
   if (!time.empty() && timed && qualifier[0] != 'P') {
     const bool bare = time[0] >= '0' && time[0] <= '9';
-    out += ", " + (bare ? "T#" + time : time);
+    if (bare) time = "T#" + time;
+    if (is_plain_operand(time)) {
+      out += ", " + time;
+    } else {
+      report.add(Code::kXmlBadValue, action, "duration `" + time + "` is neither time nor variable",
+                 "write it like T#5s");
+    }
   }
   std::string indicator(xml::trimmed(xml::attribute(action, "indicator")));
-  if (!indicator.empty()) out += ", " + indicator;
+  if (!indicator.empty() && !is_plain_operand(indicator)) {
+    report.add(Code::kXmlBadValue, action, "indicator `" + indicator + "` is no variable");
+  } else if (!indicator.empty()) {
+    out += ", " + indicator;
+  }
   return out + ");";
 }
 

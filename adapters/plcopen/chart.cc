@@ -95,12 +95,7 @@ std::string Chart::step_name(Node node) {
     report_.add(Code::kBadXmlChart, node, "there are two steps `" + name + "`");
     return {};
   }
-  std::string own = name;
-  for (char& c : own) {
-    if (!xml::is_name("x" + std::string(1, c))) c = '_';
-  }
-  if (!xml::is_name(own)) own = "_" + own;
-  own = steps_.take(own);
+  const std::string own = steps_.take(xml::as_name(name));
   renamed_.emplace(base::fold_name(name), own);
   if (own != name) {
     report_.add(Code::kXmlRenamed, node, "step `" + name + "` became `" + own + "`");
@@ -220,6 +215,11 @@ void Chart::add_actions(Node block) {
     Node inside = xml::child(node, "inline");
     if (reference) {
       action.name = std::string(xml::trimmed(report_.required(reference, "name")));
+      if (!action.name.empty() && !is_plain_operand(action.name)) {
+        report_.add(Code::kXmlBadValue, reference,
+                    "`" + action.name + "` is no action or variable");
+        action.name.clear();
+      }
     } else if (inside) {
       action.name = actions_.take(step.name + "_action");
       action.body =

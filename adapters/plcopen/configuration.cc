@@ -2,9 +2,17 @@
 #include "adapters/plcopen/iec10.h"
 #include "adapters/plcopen/plcopen.h"
 #include "adapters/plcopen/reader.h"
+#include "adapters/plcopen/source_text.h"
 #include "base/name_case.h"
 
 namespace plcopen {
+
+std::string add_declaration(Node element, std::string_view name, std::string text,
+                            Reporter& report) {
+  if (report.take(element, std::string(name), text)) return std::string(name);
+  return report.out().add_source(name, std::move(text));
+}
+
 namespace {
 
 // xsd:duration (PT0.02S) or a literal of the standard (T#20ms, t#1s, 20ms). Empty: neither.
@@ -82,7 +90,7 @@ void add_named_lists(Node parent, Reporter& report) {
     const std::string name(report.required_name(list));
     if (name.empty()) continue;
     std::string text = variable_list(list, report);
-    const std::string file = report.out().add_source(name, text);
+    const std::string file = add_declaration(list, name, text, report);
     // The file's name is that of the list; another needs to be said.
     if (file != name) {
       report.out().sources.back().text = "{attribute 'list' := '" + name + "'}\n" + text;
@@ -122,7 +130,7 @@ void import_part(Node data, Reporter& report) {
       import_pou(node, report);
     } else if (xml::is(node, "dataType")) {
       std::string text = data_type(node, report);
-      if (!text.empty()) report.out().add_source(xml::attribute(node, "name"), text);
+      if (!text.empty()) add_declaration(node, xml::attribute(node, "name"), text, report);
     } else if (xml::is(node, "Interface") || xml::is(node, "interface")) {
       import_interface(node, report);
     } else if (xml::is(node, "resource")) {
@@ -157,9 +165,10 @@ void import_configuration(Node configuration, Reporter& report) {
     }
   }
   if (name.empty() || text.empty()) return;
-  report.out().add_source(name, documentation(configuration, "") + attributes + "CONFIGURATION " +
-                                    name + "\n" + xml::indented(text, kIndent) +
-                                    "END_CONFIGURATION\n");
+  add_declaration(configuration, name,
+                  documentation(configuration, "") + attributes + "CONFIGURATION " + name + "\n" +
+                      xml::indented(text, kIndent) + "END_CONFIGURATION\n",
+                  report);
 }
 
 void import_resource(Node resource, Reporter& report) {
@@ -180,7 +189,7 @@ namespace {
 void import_types(Node owner, Reporter& report) {
   for (Node type : xml::children(xml::find(owner, {"types", "dataTypes"}), "dataType")) {
     std::string text = data_type(type, report);
-    if (!text.empty()) report.out().add_source(xml::attribute(type, "name"), text);
+    if (!text.empty()) add_declaration(type, xml::attribute(type, "name"), text, report);
   }
   for (Node pou : xml::children(xml::find(owner, {"types", "pous"}), "pou")) {
     import_pou(pou, report);
@@ -214,20 +223,30 @@ void import_project(Node project, Reporter& report) {
                     xml::child(project, "instances")}) {
     import_parts(part, report);
   }
-  if (report.out().sources.empty() && !report.out().failed()) {
-    report.add(Code::kUnknownXml, project, "the project has no POU, type or variable");
-  }
 }
 
 }  // namespace
 
 void import(const xml::Document& document, xml::Imported& out) {
   Reporter report(document, out);
-  if (!is_iec10(document)) return import_project(document.root(), report);
+  SourceTexts texts(document.root(), out);
+  const Reporter::Taker taker = [&](Node element, const std::string& name, std::string& text) {
+    return texts.take(document, report.origin(element), name, text);
+  };
+  report.set_taker(&taker);
   Converted converted;
-  report.set_origins(&converted.origins);
-  from_iec10(document.root(), converted, report);
-  import_project(converted.project.document_element(), report);
+  if (is_iec10(document)) {
+    report.set_origins(&converted.origins);
+    from_iec10(document.root(), converted, report);
+    import_project(converted.project.document_element(), report);
+  } else {
+    import_project(document.root(), report);
+  }
+  report.set_taker(nullptr);
+  texts.finish(report);
+  if (out.sources.empty() && !out.failed() && !xml::is(document.root(), "pou")) {
+    report.add(Code::kUnknownXml, document.root(), "the project has no POU, type or variable");
+  }
 }
 
 }  // namespace plcopen

@@ -1,6 +1,8 @@
 // Diagrams as text: whole bodies, and what arrives somewhere as an expression.
 #include "adapters/plcopen/drawing.h"
 #include "base/name_case.h"
+#include "frontend/fbd/read.h"
+#include "frontend/network/same.h"
 #include "frontend/network/write.h"
 
 namespace plcopen {
@@ -132,6 +134,23 @@ std::string names_around(Node body) {
   return out;
 }
 
+// One network makes the whole body FBD.
+void report_as_fbd(const network::Body& made, Node body, Reporter& report) {
+  bool found = false;
+  for (uint32_t i = 0; i < made.networks.size(); ++i) {
+    const std::string why = network::ladder_problem(made.networks[i]);
+    if (why.empty()) continue;
+    found = true;
+    report.set_network(i + 1);
+    report.add(Code::kLadderAsFbd, body, "the ladder became FBD: " + why);
+  }
+  report.set_network(0);
+  if (!found) {
+    report.add(Code::kLadderAsFbd, body,
+               "the ladder became FBD: its labels and comments would say something else as text");
+  }
+}
+
 }  // namespace
 
 std::string diagram_text(Node body, const std::string& name, Reporter& report) {
@@ -143,11 +162,19 @@ std::string diagram_text(Node body, const std::string& name, Reporter& report) {
   if (made.networks.empty()) return {};
   const std::string own = name.substr(name.rfind(' ') + 1);
   const bool whole = base::same_name(own, report.pou());
-  report.out().kept.drawings[base::fold_name(whole ? own : report.pou() + "." + own)] = made;
+  xml::KeptDrawing& kept =
+      report.out().kept.drawings[base::fold_name(whole ? own : report.pou() + "." + own)];
+  kept = {made, {}};
   if (auto text = network::write_ladder(made, 2)) {
     return "LADDER\n" + *text + "END_LADDER\n";
   }
-  return "FBD\n" + network::write_fbd(made, 2, names_around(body)) + "END_FBD\n";
+  const std::string rows = network::write_fbd(made, 2, names_around(body));
+  if (ladder) {
+    base::Diagnostics unheard;
+    kept.text = network::canonical(frontend::fbd::read(rows, base::SourcePos{0}, unheard));
+    report_as_fbd(made, body, report);
+  }
+  return "FBD\n" + rows + "END_FBD\n";
 }
 
 std::string links_text(const network::Network& all, const std::vector<Link>& links, Node at,

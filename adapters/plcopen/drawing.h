@@ -97,6 +97,7 @@ class Drawing {
   void store();
   void ignore(uint32_t sink);
   void append_links(Node point, std::vector<network::Link>& out, network::Modifier* edge);
+  bool count_link(Node at);
   void append_link(Node connection, std::vector<network::Link>& out, network::Modifier* edge);
   bool link_block(Raw& raw, Node connection, std::vector<network::Link>& out);
   uint32_t read_back(Raw& raw, Passed& passed);
@@ -118,6 +119,7 @@ class Drawing {
   std::vector<Remark> remarks_;
   std::map<uint64_t, size_t> by_id_;
   std::map<std::string, size_t> connectors_;  // by name
+  uint64_t links_ = 0;                        // through connectors, too
   std::set<const void*> followed_;            // points that are being resolved
 };
 

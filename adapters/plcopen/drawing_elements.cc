@@ -5,6 +5,7 @@
 #include "adapters/plcopen/drawing.h"
 #include "adapters/plcopen/plcopen.h"
 #include "base/name_case.h"
+#include "frontend/network/comments.h"
 
 namespace plcopen {
 
@@ -29,6 +30,9 @@ int32_t whole(double value) {
   return value >= -kMost && value <= kMost ? static_cast<int32_t>(value) : 0;
 }
 
+// As text keeps a comment: blanks around its lines are layout.
+std::string remark_of(Node node) { return network::comment_text("(*" + xml::text_of(node) + "*)"); }
+
 }  // namespace
 
 void Drawing::fail(Code code, Node node, std::string text, std::string fix) {
@@ -51,7 +55,7 @@ Element Drawing::made(Node node, Kind kind) {
     out.order = static_cast<uint32_t>(order - 1);
   }
   Node note = xml::child(node, "documentation");
-  if (note) out.comment = xml::text_of(note);
+  if (note) out.comment = remark_of(note);
   return out;
 }
 
@@ -304,7 +308,7 @@ void Drawing::add_remark(Node node, Kind) {
     text = report_.required_name(node, "label");
     if (text.empty()) failed_ = true;
   } else {
-    text = xml::text_of(xml::child(node, xml::is(node, "comment") ? "content" : "alternativeText"));
+    text = remark_of(xml::child(node, xml::is(node, "comment") ? "content" : "alternativeText"));
   }
   if (!text.empty()) remarks_.push_back({y, std::move(text), node, label, all_.elements.size()});
 }

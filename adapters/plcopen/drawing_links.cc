@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "adapters/plcopen/drawing.h"
+#include "base/limits.h"
 #include "base/name_case.h"
 
 namespace plcopen {
@@ -117,7 +118,8 @@ void Drawing::append_links(Node point, std::vector<Link>& out, Modifier* edge) {
     return fail(Code::kLoopWithoutVariable, point,
                 fresh ? "too many connectors lead to each other" : "connectors lead in a circle");
   }
-  for (Node node : xml::children(point)) {
+  for (Node node : point) {
+    if (node.type() == pugi::node_element && !count_link(point)) break;
     if (xml::is(node, "connection")) append_link(node, out, edge);
     if (!xml::is(node, "expression")) continue;
     Element source;  // TC6 lets an expression stand at the pin
@@ -127,6 +129,18 @@ void Drawing::append_links(Node point, std::vector<Link>& out, Modifier* edge) {
     if (!source.operand.empty()) out.push_back({push(std::move(source)), 0});
   }
   followed_.erase(point.internal_object());
+}
+
+// False, after one report: there are too many.
+bool Drawing::count_link(Node at) {
+  if (++links_ <= base::kMaxLinks) return true;
+  if (links_ == base::kMaxLinks + 1) {
+    fail(Code::kXmlLimit, at,
+         "the connections of this body connect more than " + std::to_string(base::kMaxLinks) +
+             " pairs of elements",
+         "give what a connector carries to a variable");
+  }
+  return false;
 }
 
 void Drawing::append_link(Node connection, std::vector<Link>& out, Modifier* edge) {

@@ -38,16 +38,19 @@ std::vector<Writer::Globals> Writer::global_lists() {
     const frontend::Attribute* named = tree_.find_attribute(block.attributes, "list");
     std::string_view file = in_.sources.file_name(in_.sources.file_of(block.span.begin));
     file.remove_prefix(file.find_last_of("/\\") + 1);
-    std::string name(named != nullptr && !named->value.empty() ? named->value
-                                                               : file.substr(0, file.find('.')));
-    out.push_back({std::move(name), {&block}});
+    const bool own = named != nullptr && !named->value.empty();
+    out.push_back(
+        {own ? std::string(named->value) : xml::as_name(file.substr(0, file.find('.'))), {&block}});
   }
   return out;
 }
 
 void Writer::put_global_list(Node parent, const Globals& list) {
   for (const VarBlock* block : list.blocks) {
-    if (put_list(parent, *block, list.name)) continue;
+    const Node last = parent.last_child();
+    const bool whole = put_list(parent, *block, list.name);
+    if (parent.last_child() != last) tag(parent.last_child(), block->span.begin);
+    if (whole) continue;
     fail(block->span,
          "this list of global variables has something that PLCopen XML has no element "
          "for");
@@ -111,10 +114,11 @@ void Writer::configuration(Node parent, const ConfigDecl& config,
     }
   }
   put_attributes(node, config.attributes);
+  tag(node, config.span.begin);
 }
 
 void Writer::project(Node project) {
-  if (!tree_.tests.empty()) {
+  if (!tree_.tests.empty() && !parts_) {
     diagnostics_.add(base::DiagnosticCode::kXmlLeftOut, tree_.tests.front().name.span,
                      "tests are left out: XML has no element for them");
   }
@@ -141,9 +145,11 @@ void Writer::project(Node project) {
     node.append_attribute("name") = std::string(each.name.text).c_str();
     interface(node, each, "INTERFACE");
     members(node, each);
+    tag(node, each.span.begin);
     put_documentation(node, comment_before(each.span.begin));
   }
   put_kept(project, {});
+  if (parts_) parts_->put(project);
 }
 
 namespace {
@@ -172,8 +178,9 @@ void put_headers(Node project, const std::string& name) {
 }
 
 // One message for each POU or type.
-void report_unsaid(const frontend::Tree& tree, const std::string& owner,
+void report_unsaid(const ExportInput& input, const std::string& owner,
                    const std::vector<std::string>& texts, base::Diagnostics& diagnostics) {
+  const frontend::Tree& tree = input.tree;
   base::SourceSpan at;
   for (const frontend::PouDecl& pou : tree.pous) {
     if (base::same_name(pou.name.text, owner)) at = pou.name.span;
@@ -184,7 +191,9 @@ void report_unsaid(const frontend::Tree& tree, const std::string& owner,
   std::string text = owner.empty() ? std::string() : "`" + owner + "`: ";
   for (size_t i = 0; i < texts.size() && i < 5; ++i) text += (i == 0 ? "" : "; ") + texts[i];
   if (texts.size() > 5) text += "; and " + std::to_string(texts.size() - 5) + " more";
-  diagnostics.add(base::DiagnosticCode::kCannotExport, at, text, "export as tc6-2.01");
+  diagnostics.add(
+      input.with_sources ? base::DiagnosticCode::kXmlTextOnly : base::DiagnosticCode::kCannotExport,
+      at, text, "export as tc6-2.01");
 }
 
 }  // namespace
@@ -203,11 +212,16 @@ std::optional<std::string> export_document(const ExportInput& input,
   pugi::xml_document other;
   if (input.form == Form::kIec10) {
     for (const auto& [owner, texts] : to_iec10(project, other)) {
-      report_unsaid(input.tree, owner, texts, diagnostics);
+      report_unsaid(input, owner, texts, diagnostics);
     }
   }
   if (diagnostics.error_count() != before) return std::nullopt;
-  report_lost_comments(input, input.form == Form::kIec10 ? other.root() : project, diagnostics);
+  const Node whole = input.form == Form::kIec10 ? other.document_element() : project;
+  if (input.with_sources) {
+    seal_sources(whole);
+  } else {
+    report_lost_comments(input, whole, diagnostics);
+  }
   std::ostringstream out;
   (input.form == Form::kIec10 ? other : document)
       .save(out, "  ", pugi::format_default, pugi::encoding_utf8);

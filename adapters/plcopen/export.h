@@ -1,8 +1,9 @@
 // Sources -> PLCopen XML: what the syntax tree says, with bodies as they stand in the sources.
 // What elements of the standard cannot say is written as CODESYS writes it, in addData (methods,
 // properties, inheritance, attributes), and where that is not enough the declaration stands there
-// as text, so that import() of the document gives the same program. What neither can say is an
-// error (E1084), and there is no document then.
+// as text, so that import() of the document gives the same program. The sources themselves stand
+// in addData of our own (source_text.h); what only they say is a warning (W0074). Without them it
+// is an error (E1084), and there is no document then.
 #pragma once
 
 #include <map>
@@ -25,6 +26,7 @@ struct ExportInput {
   // Of what was imported and is written again: drawings with their places and ids, by POU or
   // POU.Action, and addData that nobody understood, by POU.
   const xml::Kept* kept = nullptr;
+  bool with_sources = true;  // their text, for import() alone
 };
 
 // The whole document, in UTF-8.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "adapters/plcopen/iec10.h"
 #include "adapters/plcopen/plcopen.h"
 #include "adapters/plcopen/writer.h"
 #include "base/name_case.h"
@@ -27,7 +28,8 @@ class DiagramWriter {
         parent_(parent),
         by_order_(writer.in_.form == Form::kIec10) {}
 
-  void run() {
+  // False: its elements would do something else.
+  bool run() {
     placed_ = !by_order_;
     for (const network::Network& each : body_.networks) {
       for (const Element& element : each.elements) {
@@ -37,6 +39,7 @@ class DiagramWriter {
     }
     if (next_id_ > kMaxId) placed_ = false;
     for (const network::Network& each : body_.networks) put(each);
+    return said_;
   }
 
  private:
@@ -47,6 +50,10 @@ class DiagramWriter {
     int32_t y = 0;
   };
 
+  void fail(base::SourceSpan at, const char* text) {
+    said_ = false;
+    writer_.fail(at, text);
+  }
   void put(const network::Network& network);
   void put_head(const network::Network& network, int32_t y);
   std::vector<Place> places(const network::Network& network);
@@ -67,6 +74,7 @@ class DiagramWriter {
   Node parent_;
   bool by_order_;  // IEC 61131-10 has networks, and no order within one but that of places
   bool placed_ = false;
+  bool said_ = true;
   std::set<uint64_t> used_;  // ids
   uint64_t next_id_ = 0;
   uint32_t order_ = 0;
@@ -116,9 +124,9 @@ std::vector<DiagramWriter::Place> DiagramWriter::places(const network::Network& 
   }
   y_ = bottom + 40;
   if (by_order_ && !in_order(network, out)) {
-    writer_.fail(network.span,
-                 "the order of execution of this network follows from nothing that "
-                 "IEC 61131-10 has an element for");
+    fail(network.span,
+         "the order of execution of this network follows from nothing that IEC 61131-10 has an "
+         "element for");
   }
   return out;
 }
@@ -315,8 +323,7 @@ void DiagramWriter::put_element(const network::Network& network, uint32_t number
     } else if (own == Modifier::kNegated) {
       through = inverted(network, element.inputs[0], place);
     } else {
-      writer_.fail(element.span,
-                   "an edge in front of this element has no attribute in PLCopen XML");
+      fail(element.span, "an edge in front of this element has no attribute in PLCopen XML");
     }
   }
   const bool inline_negation = element.kind == Kind::kSource;
@@ -365,16 +372,22 @@ bool Writer::is_in_out(const std::string& type, const std::string& pin) const {
 }
 
 void Writer::diagram(Node body, const network::Body& drawn, const std::string& path) {
-  Node parent = body.append_child(drawn.language == network::Language::kLadder ? "LD" : "FBD");
   const network::Body* best = &drawn;
   if (in_.kept != nullptr) {
     auto found = in_.kept->drawings.find(base::fold_name(path));
-    const bool same = found != in_.kept->drawings.end() &&
-                      found->second.language == drawn.language &&
-                      network::canonical(found->second) == network::canonical(drawn);
-    if (same) best = &found->second;
+    if (found != in_.kept->drawings.end()) {
+      const auto& [kept, text] = found->second;
+      const bool same = text.empty() ? kept.language == drawn.language &&
+                                           network::canonical(kept) == network::canonical(drawn)
+                                     : drawn.language == network::Language::kFbd &&
+                                           text == network::canonical(drawn);
+      if (same) best = &kept;
+    }
   }
-  DiagramWriter(*this, *best, parent).run();
+  Node parent = body.append_child(best->language == network::Language::kLadder ? "LD" : "FBD");
+  if (DiagramWriter(*this, *best, parent).run()) return;
+  body.remove_child(parent);
+  put_text(body, "ST", kTextOnlyBody);
 }
 
 }  // namespace plcopen

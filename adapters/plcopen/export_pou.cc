@@ -175,6 +175,7 @@ void Writer::pou(Node parent, const Pou& pou) {
   body(node, pou, name);
   members(node, pou);
   put_kept(node, name);
+  tag(node, pou.span.begin);
   put_documentation(node, comment_before(pou.span.begin));
 }
 

@@ -10,8 +10,12 @@ using frontend::Token;
 using frontend::TokenKind;
 
 void Writer::fail(base::SourceSpan at, std::string text) {
+  if (parts_) {
+    return diagnostics_.add(base::DiagnosticCode::kXmlTextOnly, at, std::move(text),
+                            "other tools leave it out; stc reads it back");
+  }
   diagnostics_.add(base::DiagnosticCode::kCannotExport, at, std::move(text),
-                   "write it in another way, or export with another --as");
+                   "write it in another way, or export without --without-sources");
 }
 
 std::string_view Writer::slice(base::SourceSpan span) const {

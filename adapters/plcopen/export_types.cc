@@ -192,6 +192,7 @@ void Writer::data_type(Node parent, const frontend::TypeDecl& type) {
     if (type.init.valid()) put_value(node.append_child("initialValue"), type.init);
     put_attributes(node, type.attributes);
   }
+  tag(node, type.name.span.begin);
   put_documentation(node, comment_before({type.name.span.begin.offset}));
 }
 

@@ -13,6 +13,9 @@
 
 namespace plcopen {
 
+// Statements for other tools in the place of a body that no element says: an error, not nothing.
+inline constexpr const char* kTextOnlyBody = "{error 'this body stands in the addData of stc'}";
+
 bool is_iec10(const xml::Document& document);
 
 // The document as PLCopen XML. Nodes of the result come from nodes of the document.

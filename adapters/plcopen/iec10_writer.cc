@@ -8,6 +8,27 @@ void Iec10Writer::documentation(Node to, Node from) {
   if (node) set(text(to, "Documentation", xml::text_of(node)), "xsi:type", "SimpleText");
 }
 
+namespace {
+
+// Of CODESYS: it has elements of its own there, or none.
+bool is_codesys(Node data) {
+  return xml::attribute(data, "name").starts_with("http://www.3s-software.com/plcopenxml/");
+}
+
+}  // namespace
+
+void Iec10Writer::other_data(Node to, Node from) {
+  for (Node data : from.child("addData").children("data")) {
+    if (is_codesys(data)) continue;
+    Node add = to.child("AddData");
+    if (!add) add = to.prepend_child("AddData");
+    Node out = add.append_child("Data");
+    copy(out, "name", data, "name");
+    copy(out, "handleUnknown", data, "handleUnknown");
+    for (Node below : data.children()) out.append_copy(below);
+  }
+}
+
 void Iec10Writer::array(Node to, Node from) {
   set(to, "xsi:type", "ArrayTypeSpec");
   type(to.append_child("BaseType"), from.child("baseType"));
@@ -116,6 +137,7 @@ void Iec10Writer::list(Node to, const char* name, Node from, uint32_t order) {
     variable(out.append_child("Variable"), each, order);
     if (order != 0) ++order;
   }
+  other_data(out, from);
 }
 
 void Iec10Writer::bases(Node to, Node interface) {
@@ -172,7 +194,7 @@ void Iec10Writer::members(Node to, Node from, bool program) {
       Node out = to.append_child("Method");
       copy(out, "name", method, "name");
       members(out, method, false);
-    } else {
+    } else if (is_codesys(data)) {
       problem(from, "what stands in addData `" + std::string(xml::attribute(data, "name")) +
                         "` has no known element");
     }
@@ -183,6 +205,7 @@ void Iec10Writer::members(Node to, Node from, bool program) {
     body(out, "Body", action.child("body"));
   }
   if (from.child("body")) body(to, "MainBody", from.child("body"));
+  other_data(to, from);
 }
 
 void Iec10Writer::pou(Node to, Node from, const char* element) {
@@ -229,9 +252,12 @@ void Iec10Writer::project(Node from, Node to) {
     Node out = space.append_child("DataTypeDecl");
     copy(out, "name", type, "name");
     documentation(out, type);
-    if (type.child("addData")) problem(type, "this type has no known element");
+    for (Node data : type.child("addData").children("data")) {
+      if (is_codesys(data)) problem(type, "this type has no known element");
+    }
     if (type.child("initialValue")) problem(type, "initial values of types have no known element");
     specification(out.append_child("UserDefinedTypeSpec"), type.child("baseType"));
+    other_data(out, type);
   }
   for (Node each : from.child("types").child("pous").children("pou")) {
     owner_ = xml::attribute(each, "name");
@@ -246,7 +272,7 @@ void Iec10Writer::project(Node from, Node to) {
   for (Node data : from.child("addData").children("data")) {
     if (data.child("globalVars")) {
       lists.push_back(data.child("globalVars"));
-    } else {
+    } else if (is_codesys(data)) {
       problem(from, "what stands in addData `" + std::string(xml::attribute(data, "name")) +
                         "` has no known element");
     }
@@ -257,10 +283,15 @@ void Iec10Writer::project(Node from, Node to) {
     copy(out, "name", each, "name");
     for (Node node : each.children("globalVars")) list(out, "GlobalVars", node, 0);
     for (Node node : each.children("resource")) resource(out, node);
-    for (const char* other : {"accessVars", "configVars", "addData"}) {
+    for (const char* other : {"accessVars", "configVars"}) {
       if (each.child(other)) problem(each, std::string(other) + " has no known element");
     }
+    for (Node data : each.child("addData").children("data")) {
+      if (is_codesys(data)) problem(each, "attributes have no known element");
+    }
+    other_data(out, each);
   }
+  other_data(content, from);
   if (lists.empty()) return;
   // They stand in a configuration that runs nothing.
   Node configuration = instances.append_child("Configuration");

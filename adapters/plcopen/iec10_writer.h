@@ -20,6 +20,7 @@ class Iec10Writer {
 
  private:
   void problem(Node at, const std::string& text) {
+    ++count_;
     std::string name(xml::attribute(at, "name"));
     problems[owner_].push_back(name.empty() || name == owner_ ? text : "`" + name + "`: " + text);
   }
@@ -36,6 +37,8 @@ class Iec10Writer {
     return out;
   }
   void documentation(Node to, Node from);
+  // addData that nothing else takes. `to` is complete.
+  void other_data(Node to, Node from);
   void type(Node to, Node from);
   void array(Node to, Node from);
   void specification(Node to, Node from);
@@ -54,6 +57,7 @@ class Iec10Writer {
   void connection_out(Node to, Node from, const std::string& pin);
   void resource(Node to, Node from);
 
+  uint32_t count_ = 0;                    // of problems
   std::string owner_;                     // the POU or type that is written
   std::map<std::string, uint32_t> pins_;  // connectionPointOutId by "localId|formalParameter"
 };

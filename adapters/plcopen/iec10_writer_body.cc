@@ -6,14 +6,20 @@ namespace plcopen {
 void Iec10Writer::body(Node to, const char* name, Node from) {
   Node language = xml::first_element(from);
   const std::string kind(xml::local_name(language));
-  if (kind == "SFC") return problem(from.parent(), "charts have no known elements");
   Node content = to.append_child(name).append_child("BodyContent");
   set(content, "xsi:type", kind);
+  const uint32_t before = count_;
+  if (kind == "SFC") problem(from.parent(), "charts have no known elements");
   if (kind == "ST" || kind == "IL") {
     text(content, kind.c_str(), xml::text_of(language));
-  } else {
+  } else if (kind != "SFC") {
     diagram(content, language, kind == "LD");
   }
+  if (count_ == before) return;
+  to.child(name).remove_child(content);
+  content = to.child(name).append_child("BodyContent");
+  set(content, "xsi:type", "ST");
+  text(content, "ST", kTextOnlyBody);
 }
 
 void Iec10Writer::diagram(Node to, Node from, bool ladder) {

@@ -1,29 +1,15 @@
 // Text of XML that becomes an operand between other text: one expression and nothing else.
 #include "adapters/plcopen/reader.h"
 #include "frontend/lex/lexer.h"
+#include "frontend/lex/operands.h"
 
 namespace plcopen {
 namespace {
 
+using frontend::ends_operand;
+using frontend::is_operand_word;
 using frontend::Token;
 using frontend::TokenKind;
-
-bool is_word(TokenKind kind) {
-  switch (kind) {
-    case TokenKind::kInteger:
-    case TokenKind::kReal:
-    case TokenKind::kString:
-    case TokenKind::kWideString:
-    case TokenKind::kDuration:
-    case TokenKind::kDate:
-    case TokenKind::kDirect:
-    case TokenKind::kTrue:
-    case TokenKind::kFalse:
-      return true;
-    default:
-      return frontend::is_name(kind);
-  }
-}
 
 bool is_operator_word(TokenKind kind) {
   return kind == TokenKind::kAnd || kind == TokenKind::kAndThen || kind == TokenKind::kMod ||
@@ -33,20 +19,16 @@ bool is_operator_word(TokenKind kind) {
 
 // May an operand begin with it?
 bool begins(TokenKind kind) {
-  return is_word(kind) || kind == TokenKind::kNot || kind == TokenKind::kLeftParen ||
+  return is_operand_word(kind) || kind == TokenKind::kNot || kind == TokenKind::kLeftParen ||
          kind == TokenKind::kTypePrefix || kind == TokenKind::kMinus || kind == TokenKind::kPlus;
-}
-
-bool ends(TokenKind kind) {
-  return is_word(kind) || kind == TokenKind::kRightParen || kind == TokenKind::kRightBracket ||
-         kind == TokenKind::kCaret;
 }
 
 // `P a`, `[/ a]` and `JMP a` mean something else where text of a network is read.
 bool may_follow(TokenKind before, TokenKind kind) {
-  if (kind == TokenKind::kLeftBracket) return ends(before);
-  const bool starts = is_word(kind) || kind == TokenKind::kTypePrefix || kind == TokenKind::kNot;
-  return !(starts && ends(before));
+  if (kind == TokenKind::kLeftBracket) return ends_operand(before);
+  const bool starts =
+      is_operand_word(kind) || kind == TokenKind::kTypePrefix || kind == TokenKind::kNot;
+  return !(starts && ends_operand(before));
 }
 
 bool is_blank(std::string_view text) {
@@ -69,7 +51,8 @@ bool is_operand(std::string_view text) {
     end = begin + tokens[i].length;
     if (i > 0 && !may_follow(tokens[i - 1].kind, kind)) return false;
     if (kind == TokenKind::kEnd) break;
-    if (frontend::is_keyword(kind) && !is_operator_word(kind) && !is_word(kind)) return false;
+    if (frontend::is_keyword(kind) && !is_operator_word(kind) && !is_operand_word(kind))
+      return false;
     const bool inside_only = kind == TokenKind::kComma || kind == TokenKind::kAssign ||
                              kind == TokenKind::kArrow || kind == TokenKind::kRange;
     if (inside_only && open.empty()) return false;
@@ -83,6 +66,10 @@ bool is_operand(std::string_view text) {
     open.pop_back();
   }
   return open.empty();
+}
+
+bool is_plain_operand(std::string_view text) {
+  return text.find('(') == std::string_view::npos && is_operand(text);
 }
 
 }  // namespace plcopen

@@ -128,7 +128,7 @@ void import_pou(Node pou, Reporter& report) {
     out += members(vendor, pou, report);
     std::string body = body_text(pou, name, report);
     if (!body.empty()) out += "\n" + body;
-    report.out().add_source(name, out + "END_" + form->word + "\n");
+    add_declaration(pou, name, out + "END_" + form->word + "\n", report);
   }
   report.set_pou({});
 }
@@ -138,9 +138,11 @@ void import_interface(Node interface, Reporter& report) {
   report.set_pou(name);
   if (!name.empty()) {
     Vendor vendor = vendor_data(interface, report);
-    report.out().add_source(name, documentation(interface, "") +
-                                      head(interface, "INTERFACE", name, vendor, report) +
-                                      members(vendor, interface, report) + "END_INTERFACE\n");
+    add_declaration(interface, name,
+                    documentation(interface, "") +
+                        head(interface, "INTERFACE", name, vendor, report) +
+                        members(vendor, interface, report) + "END_INTERFACE\n",
+                    report);
   }
   report.set_pou({});
 }

@@ -15,6 +15,12 @@ using xml::Reporter;
 
 inline constexpr const char* kIndent = "  ";
 
+// --- configuration.cc
+// What `element` declares: a source of its own under that name, or in the place where it was
+// exported from. Returns the name of the source.
+std::string add_declaration(Node element, std::string_view name, std::string text,
+                            Reporter& report);
+
 // --- types.cc
 std::string type_text(Node type, Reporter& report);       // <type>, <baseType>: ARRAY[1..5] OF INT
 std::string data_type(Node data_type, Reporter& report);  // <dataType>: TYPE ... END_TYPE
@@ -72,6 +78,7 @@ std::string action_use(Node action, const std::string& name, Reporter& report);
 // Is `text` one expression, without comments, pragmas, statements or open brackets? It can stand
 // between other text then and change nothing of that.
 bool is_operand(std::string_view text);
+bool is_plain_operand(std::string_view text);  // the same without calls and brackets
 
 // --- chart.cc
 std::string chart_text(Node sfc, Node pou, Reporter& report);

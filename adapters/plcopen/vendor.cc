@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "adapters/plcopen/reader.h"
+#include "adapters/plcopen/source_text.h"
 #include "base/name_case.h"
 
 namespace plcopen {
@@ -86,6 +87,7 @@ std::vector<Node> vendor_parts(Node owner) {
 }
 
 void report_data(Node data, Reporter& report) {
+  if (is_source_data(data)) return;
   const std::string name(xml::attribute(data, "name"));
   for (const char* known : kEditor) {
     if (!is_vendor(data, known)) continue;

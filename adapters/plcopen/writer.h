@@ -4,6 +4,7 @@
 #include <string>
 
 #include "adapters/plcopen/export.h"
+#include "adapters/plcopen/source_text.h"
 #include "adapters/xml/document.h"
 
 namespace plcopen {
@@ -13,7 +14,9 @@ using xml::Node;
 class Writer {
  public:
   Writer(const ExportInput& input, base::Diagnostics& diagnostics)
-      : in_(input), tree_(input.tree), diagnostics_(diagnostics) {}
+      : in_(input), tree_(input.tree), diagnostics_(diagnostics) {
+    if (in_.with_sources) parts_.emplace(in_.sources);
+  }
 
   void project(Node project);
 
@@ -27,7 +30,12 @@ class Writer {
     std::vector<const frontend::VarBlock*> blocks;
   };
 
+  // No element says it: an error, or a warning where the text of the sources does.
   void fail(base::SourceSpan at, std::string text);
+  // `element` is what is declared at `at`; behind everything else of it but documentation.
+  void tag(Node element, base::SourcePos at) {
+    if (parts_) parts_->tag(element, at);
+  }
 
   // --- export_text.cc
   std::string_view slice(base::SourceSpan span) const;
@@ -94,6 +102,7 @@ class Writer {
   const ExportInput& in_;
   const frontend::Tree& tree_;
   base::Diagnostics& diagnostics_;
+  std::optional<SourceParts> parts_;
 };
 
 // A note for each source of which comments are nowhere below `root`.

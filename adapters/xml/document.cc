@@ -88,12 +88,12 @@ base::SourceSpan Document::span(Node node) const {
   return {place, {place.offset + static_cast<uint32_t>(length)}};
 }
 
-base::SourceSpan Reporter::span_of(Node node) const {
+Node Reporter::origin(Node node) const {
   for (Node at = node; origins_ != nullptr && at; at = at.parent()) {
     auto found = origins_->find(at.internal_object());
-    if (found != origins_->end()) return document_.span(found->second);
+    if (found != origins_->end()) return found->second;
   }
-  return document_.span(node);
+  return node;
 }
 
 void Reporter::add(Code code, Node at, std::string text, std::string fix) {
@@ -106,7 +106,7 @@ void Reporter::add(Code code, Node at, std::string text, std::string fix) {
     if (!error || out_.findings.size() > 2 * kMaxFindings) return;
   }
   out_.findings.push_back(
-      {code, span_of(at), pou_, network_, base::printable(text), std::move(fix)});
+      {code, document_.span(origin(at)), pou_, network_, base::printable(text), std::move(fix)});
 }
 
 std::string_view Reporter::required(Node node, const char* name) {

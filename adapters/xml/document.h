@@ -4,6 +4,7 @@
 // tools declare the namespaces as they like.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <pugixml.hpp>
 #include <string>
@@ -58,6 +59,7 @@ class Reporter {
   void add(Code code, Node at, std::string text, std::string fix = {});
   // Nodes that were made of others stand where these do.
   void set_origins(const std::unordered_map<const void*, Node>* origins) { origins_ = origins; }
+  Node origin(Node node) const;
   void set_pou(std::string pou) { pou_ = std::move(pou), network_ = 0; }
   const std::string& pou() const { return pou_; }
   void set_network(uint32_t network) { network_ = network; }
@@ -66,15 +68,21 @@ class Reporter {
   // The same for a name of Structured Text.
   std::string_view required_name(Node node, const char* attribute = "name");
 
+  // Takes declarations in the place of sources of their own; null: none does.
+  using Taker = std::function<bool(Node element, const std::string& name, std::string& text)>;
+  void set_taker(const Taker* taker) { taker_ = taker; }
+  bool take(Node element, const std::string& name, std::string& text) const {
+    return taker_ != nullptr && (*taker_)(element, name, text);
+  }
+
   const Document& document() const { return document_; }
   Imported& out() { return out_; }
 
  private:
-  base::SourceSpan span_of(Node node) const;
-
   const Document& document_;
   Imported& out_;
   const std::unordered_map<const void*, Node>* origins_ = nullptr;
+  const Taker* taker_ = nullptr;
   std::string pou_;
   uint32_t network_ = 0;
 };
@@ -99,6 +107,8 @@ std::string_view trimmed(std::string_view text);
 
 // Letters, digits and `_`, as the lexer takes them (frontend/lex/characters.h).
 bool is_name(std::string_view text);
+// `text` as such a name: other characters become `_`.
+std::string as_name(std::string_view text);
 // `(* text *)`, which nothing in `text` ends.
 std::string comment(std::string_view text, std::string_view indent);
 // The lines of `text`, each behind `indent` unless empty, each ended.

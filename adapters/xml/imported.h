@@ -31,10 +31,17 @@ struct MadeSource {
   std::string text;
 };
 
+// A body as it was drawn.
+struct KeptDrawing {
+  frontend::network::Body body;
+  // Of a ladder that became FBD: what the text says, as network::canonical() has it.
+  std::string text;
+};
+
 // What an export of the same writes again as it was.
 struct Kept {
-  std::map<std::string, frontend::network::Body> drawings;  // by POU or POU.Member
-  std::map<std::string, std::vector<std::string>> data;     // <data> of nobody, by POU
+  std::map<std::string, KeptDrawing> drawings;           // by POU or POU.Member
+  std::map<std::string, std::vector<std::string>> data;  // <data> of nobody, by POU
 };
 
 // Names that are taken, in any case of letters.

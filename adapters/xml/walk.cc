@@ -110,6 +110,14 @@ bool is_name(std::string_view text) {
          std::all_of(text.begin(), text.end(), frontend::is_name_part);
 }
 
+std::string as_name(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) {
+    if (!frontend::is_name_part(c)) c = '_';
+  }
+  return is_name(out) ? out : "_" + out;
+}
+
 std::string comment(std::string_view text, std::string_view indent) {
   std::string inside;
   for (char c : trimmed(text)) {

@@ -23,14 +23,6 @@ std::string_view without_blanks(std::string_view text) {
   return first == std::string_view::npos ? std::string_view() : text.substr(first);
 }
 
-uint32_t output_number(Element& element, std::string_view name) {
-  for (uint32_t i = 0; i < element.outputs.size(); ++i) {
-    if (ir::same_name(element.outputs[i].name, name)) return i;
-  }
-  element.outputs.push_back({std::string(name), false});
-  return static_cast<uint32_t>(element.outputs.size() - 1);
-}
-
 // The source that stands for this operand, in front of its element.
 uint32_t source_of(const std::vector<Element>& elements, uint32_t element,
                    const network::Text& operand) {
@@ -98,6 +90,20 @@ void Links::finish(network::Network& network) {
   names_.clear();
   longest_ = 0;
   uses_.clear();
+  outputs_.clear();
+}
+
+// An output that no other use has named yet is a new one.
+uint32_t Links::output_number(network::Network& network, uint32_t box, std::string_view name) {
+  std::vector<network::Output>& outputs = network.elements[box].outputs;
+  auto [found, fresh] = outputs_.try_emplace(box);
+  for (uint32_t i = 0; fresh && i < outputs.size(); ++i) {
+    found->second.emplace(ir::fold_name(outputs[i].name), i);
+  }
+  const uint32_t next = static_cast<uint32_t>(outputs.size());
+  auto [number, added] = found->second.emplace(ir::fold_name(name), next);
+  if (added) outputs.push_back({std::string(name), false});
+  return number->second;
 }
 
 Links::Found Links::find(const Use& use, network::Network& network) {
@@ -121,7 +127,7 @@ Links::Found Links::find(const Use& use, network::Network& network) {
   rest = without_blanks(rest.substr(1));
   if (rest.empty() || !is_plain_name(rest)) return expression(use);
   if (box->wire && box->element >= use.element) return feedback(use, *box);
-  uint32_t output = output_number(network.elements[box->element], rest);
+  uint32_t output = output_number(network, box->element, rest);
   return {Link{box->element, output}, false};
 }
 

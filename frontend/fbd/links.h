@@ -47,6 +47,7 @@ class Links {
   };
 
   Found find(const Use& use, network::Network& network);
+  uint32_t output_number(network::Network& network, uint32_t box, std::string_view name);
   Found whole_box(const Use& use, const Box& box);
   Found feedback(const Use& use, const Box& box);
   Found expression(const Use& use);
@@ -56,6 +57,8 @@ class Links {
   std::vector<std::string> names_;              // of boxes_, as they were added
   size_t longest_ = 0;                          // of these names
   std::vector<Use> uses_;
+  // Of boxes whose outputs are used, by element: numbers by folded name.
+  std::unordered_map<uint32_t, std::unordered_map<std::string, uint32_t>> outputs_;
 };
 
 }  // namespace frontend::fbd

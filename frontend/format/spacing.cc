@@ -1,31 +1,11 @@
 #include "frontend/format/spacing.h"
 
 #include "frontend/format/outliner.h"
+#include "frontend/lex/operands.h"
 
 namespace frontend::formatting {
 
 namespace {
-
-// Can an operand end with this token?
-bool ends_operand(TokenKind kind) {
-  switch (kind) {
-    case TokenKind::kInteger:
-    case TokenKind::kReal:
-    case TokenKind::kString:
-    case TokenKind::kWideString:
-    case TokenKind::kDuration:
-    case TokenKind::kDate:
-    case TokenKind::kDirect:
-    case TokenKind::kRightParen:
-    case TokenKind::kRightBracket:
-    case TokenKind::kCaret:
-    case TokenKind::kTrue:
-    case TokenKind::kFalse:
-      return true;
-    default:
-      return is_name(kind);
-  }
-}
 
 bool is_number(TokenKind kind) {
   return kind == TokenKind::kInteger || kind == TokenKind::kReal || kind == TokenKind::kDirect ||

@@ -2,6 +2,7 @@
 
 #include <queue>
 
+#include "base/limits.h"
 #include "frontend/ladder/element.h"
 #include "frontend/lex/characters.h"
 #include "frontend/network/comments.h"
@@ -10,8 +11,6 @@ namespace frontend::ladder {
 namespace {
 
 using Code = base::DiagnosticCode;
-
-constexpr uint64_t kMostLinks = 1u << 20;  // of one rung
 
 class RungReader {
  public:
@@ -119,11 +118,11 @@ class RungReader {
   bool check_size() {
     uint64_t links = 0;
     for (const Node& node : rung_.nodes) links += uint64_t{node.drivers.size()} * node.users.size();
-    if (links <= kMostLinks) return true;
+    if (links <= base::kMaxLinks) return true;
     const Piece& first = rung_.pieces.front();
     report(Code::kTooComplex, first,
            "the wires of this rung connect " + std::to_string(links) +
-               " pairs of elements; the limit is " + std::to_string(kMostLinks),
+               " pairs of elements; the limit is " + std::to_string(base::kMaxLinks),
            "give what a wire carries to a coil, and begin new rungs with its contact");
     return false;
   }

@@ -16,6 +16,9 @@ namespace frontend::network {
 // the other side of what writes them (same.h, kAsRead).
 std::optional<std::string> write_ladder(const Body& body, uint32_t indent);
 
+// Why write_ladder() refuses a ladder of this network alone. Empty: it does not.
+std::string ladder_problem(const Network& network);
+
 // The rows between FBD and END_FBD; of ladder, too: contacts become AND, joins OR, power TRUE.
 // Coils and sinks that nothing is connected to are left out. No wire is called like a name in
 // `taken`, which may be any text: the variables around the body.

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "base/limits.h"
 #include "frontend/ladder/read.h"
 #include "frontend/network/element_text.h"
 #include "frontend/network/layout.h"
@@ -12,9 +13,6 @@ namespace {
 
 constexpr uint32_t kMinColumns = 60;   // of a rung, rails included
 constexpr uint32_t kMaxColumns = 100;  // what is wider does not move the rail of other rungs
-
-// Of one rung's canvas: nobody reads a larger drawing.
-constexpr uint64_t kMostCells = 1u << 23;
 
 // A rung with the text of its elements.
 struct Drawing {
@@ -136,7 +134,7 @@ std::optional<Drawing> Drawer::measure(const Network& network) {
   drawing.width = 2 + right;  // rails
   for (uint32_t width : drawing.column_widths) drawing.width += width;
   for (bool joint : drawing.has_joint) drawing.width += joint ? 5 : 2;
-  if (uint64_t{drawing.width} * p.rows > kMostCells) return std::nullopt;
+  if (uint64_t{drawing.width} * p.rows > base::kMaxRungCells) return std::nullopt;
   return drawing;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "frontend/lex/operands.h"
 #include "frontend/parse/token_sets.h"
 #include "ir/types/types.h"
 
@@ -63,23 +64,8 @@ constexpr IlOperator kOperators[] = {
 };
 
 bool begins_operand(TokenKind kind) {
-  switch (kind) {
-    case TokenKind::kInteger:
-    case TokenKind::kReal:
-    case TokenKind::kString:
-    case TokenKind::kWideString:
-    case TokenKind::kDuration:
-    case TokenKind::kDate:
-    case TokenKind::kTypePrefix:
-    case TokenKind::kDirect:
-    case TokenKind::kTrue:
-    case TokenKind::kFalse:
-    case TokenKind::kMinus:
-    case TokenKind::kPlus:
-      return true;
-    default:
-      return is_name(kind);
-  }
+  return is_operand_word(kind) || kind == TokenKind::kTypePrefix || kind == TokenKind::kMinus ||
+         kind == TokenKind::kPlus;
 }
 
 // Is one of the two the other with a letter changed, added or left out?

@@ -198,10 +198,79 @@ expect 0 stc build small.xml -o small.img
 values small.img 4 P.a=14 P.b=FALSE  # the timer without PT lets b toggle
 # A bridge between two branches is no ladder of series and parallel: it comes as FBD.
 body LD "$rail$(contact 2 "$(from 1)")$(contact 3 "$(from 1)")$(contact 4 "$(from 2)$(from 3)")$(contact 5 "$(from 3)")$(coil 6 "$(from 4)")$(coil 7 "$(from 5)" 'negated="true"')"
+cp small.xml bridge.xml
+# as_fbd WHY: it comes in as FBD, the report names network and reason, and exported again it is the ladder with its places.
+as_fbd() {
+  rm -rf made
+  expect 0 stc import small.xml -o made
+  said "note\[W0075\]: POU P, network 1: the ladder became FBD: $1"
+  grep -q '^FBD$' made/P.st || fail "no FBD"
+  expect 0 stc check made
+  expect 0 stc export small.xml -o again.xml --without-sources
+  grep -q '<LD>' again.xml || fail "no ladder any more"
+  grep -A1 '<coil localId="9"' again.xml | grep -q '<position x="440" y="60" />' || fail "places are lost"
+  rm -rf second
+  expect 0 stc import again.xml -o second
+  diff -r made second || fail "another program"
+  expect 0 stc export made -o text.xml --without-sources  # of the text alone it is FBD
+  grep -q '<FBD>' text.xml || fail "of text"
+}
+sed -i 's/coil localId="6"/coil localId="9"/; s/refLocalId="6"/refLocalId="9"/' small.xml
+placed() { sed 's/<\(contact\|coil\|block\) localId="\([0-9]*\)"[^>]*>/&<position x="\2" y="60"\/>/g; s/x="9" y/x="440" y/; s/<leftPowerRail localId="1"\/>/<leftPowerRail localId="1"><position x="0" y="0"\/><\/leftPowerRail>/; s/<outVariable[^>]*>/&<position x="500" y="90"\/>/' small.xml >placed.xml && mv placed.xml small.xml; }
+placed
+as_fbd 'its wires are no series and parallel branches'
+body LD "$rail$(contact 2 "$(from 1)")$(contact 3 "$(from 1)")$(contact 4 "$(from 2)")$(contact 5 "$(from 3)")$(contact 6 "$(from 2)")$(coil 9 "$(from 4)$(from 5)$(from 6)")$(coil 8 "$(from 6)$(from 3)")"
+placed
+as_fbd 'its wires are no series and parallel branches'
+pinned() { printf '<block localId="5" typeName="TON" instanceName="t"><inputVariables><variable formalParameter="IN"%s><connectionPointIn>%s</connectionPointIn></variable></inputVariables><outputVariables><variable formalParameter="Q"%s><connectionPointOut/></variable></outputVariables></block>' "$1" "$(from 1)" "$2"; }
+from_q='<connection refLocalId="5" formalParameter="Q"/>'
+body LD "$rail$(pinned ' negated="true"' '')$(coil 9 "$from_q")"
+placed
+as_fbd 'the pin of `t` where power arrives is negated or sees an edge'
+body LD "$rail$(pinned '' '')$(coil 9 "$from_q")$(out_variable 6 b "$from_q" | sed 's/localId="6"/& storage="set"/')"
+placed
+as_fbd 'a variable at an output of a box is set, reset or sees an edge'
+# More branches inside each other than are looked for (kMaxBranchNesting).
+deep() { printf '%s' "$rail"; seq 1 "$1" | awk '{ print "<contact localId=\"" 10 + $1 "\"><connectionPointIn><connection refLocalId=\"" ($1 == 1 ? 1 : 9 + $1) "\"/></connectionPointIn><variable>b</variable></contact><coil localId=\"" 1000 + $1 "\"><connectionPointIn><connection refLocalId=\"" 10 + $1 "\"/></connectionPointIn><variable>c</variable></coil>" }'; coil 9 "$(from $((10 + $1)))"; }
+body LD "$(deep 64)"
 rm -rf made
 expect 0 stc import small.xml -o made
-grep -q '^FBD$' made/P.st || grep -q '^LADDER$' made/P.st || fail "no diagram"
-expect 0 stc check made
+grep -q '^LADDER$' made/P.st || fail "64 branches"
+body LD "$(deep 70)"
+placed
+as_fbd 'its wires are no series and parallel branches .*more than 64'
+# Blanks around the lines of a comment are layout.
+body LD "<comment localId=\"7\"><content><xhtml>one  &#10;    indented &#10;&#10;&#9;tab  </xhtml></content></comment>$rail$(contact 2 "$(from 1)")<coil localId=\"3\"><documentation><xhtml>  behind &#10;   the coil </xhtml></documentation><connectionPointIn>$(from 2)</connectionPointIn><variable>c</variable></coil>"
+rm -rf made
+expect 0 stc import small.xml -o made
+grep -q '^LADDER$' made/P.st || fail "a comment made the ladder FBD: $(cat out)"
+# kMaxRungCells: columns times rows.
+wide() {
+  contact 2 "$(from 1)" | sed "s/<variable>b/<variable>$(yes 'b AND' | head -n 166 | tr '\n' ' ')b/"
+  seq 1 "$1" | awk '{ print "<coil localId=\"" 10 + $1 "\"><connectionPointIn><connection refLocalId=\"2\"/></connectionPointIn><variable>c</variable></coil>" }'
+}
+for rows in 8000 9000; do
+  printf '<project><types><pous><pou name="P" pouType="program"><interface/><body><LD>%s%s</LD></body></pou></pous></types></project>' "$rail" "$(wide $rows)" >small.xml
+  rm -rf made
+  expect 0 stc import small.xml -o made
+  grep -m 1 -E '^(LADDER|FBD)$' made/P.st >>languages
+done
+said 'W0075.*larger than 8388608 columns times rows'
+[ "$(tr '\n' ' ' <languages)" = 'LADDER FBD ' ] || fail "a large rung"
+# kMaxLinks, also where connectors multiply connections.
+through() {
+  printf '%s<connector name="all" localId="2"><connectionPointIn>' "$rail"
+  seq 1 "$1" | awk '{ print "<connection refLocalId=\"" 100000 + $1 "\"/>" }'
+  printf '</connectionPointIn></connector><continuation name="all" localId="3"/>'
+  seq 1 "$1" | awk '{ print "<contact localId=\"" 100000 + $1 "\"><connectionPointIn><connection refLocalId=\"1\"/></connectionPointIn><variable>b</variable></contact>" }'
+  seq 1 "$2" | awk '{ print "<coil localId=\"" 200000 + $1 "\"><connectionPointIn><connection refLocalId=\"3\"/></connectionPointIn><variable>c</variable></coil>" }'
+}
+body LD "$(through 100 100)"
+expect 0 stc check small.xml
+printf '<project><types><pous><pou name="P" pouType="program"><interface/><body><LD>%s</LD></body></pou></pous></types></project>' "$(through 10000 10000)" >small.xml
+expect 1 timeout 20 "$bin/stc" check small.xml
+said 'E1072.*connect more than 1048576 pairs'
+cp bridge.xml small.xml
 
 # Wires get names that no variable has.
 sed 's/name="t"/name="or1"/; s/<derived name="TON"\/>/<BOOL\/>/' small.xml >clash.xml

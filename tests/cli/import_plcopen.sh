@@ -208,6 +208,20 @@ sfc "$(transition 2 1 "$good")<comment localId=\"3\"><content><p>What it is for<
 rm -rf negated
 expect 0 stc import small.xml -o negated
 grep -B1 'INITIAL_STEP' negated/P.st | grep -qF '(* What it is for *)' || fail "comment of a chart"
+# Uses of actions are names, times and variables, and nothing else.
+uses() { sfc "$(transition 2 1 "$good")<actionBlock localId=\"3\"><connectionPointIn><connection refLocalId=\"1\"/></connectionPointIn><action $2><reference name=\"$1\"/></action></actionBlock>"; }
+uses 'P (a)' ''
+wrong E1074 '`P \(a\)` is no action or variable'
+uses 'a(N); b' ''
+wrong E1074 'is no action or variable'
+uses a 'qualifier="P (a)"'
+wrong E1074 '`P \(a\)` is no action qualifier'
+uses a 'qualifier="D" duration="P (a)"'
+wrong E1074 'duration `P \(a\)` is neither time nor variable'
+uses a 'qualifier="D" duration="T#1s); b(N"'
+wrong E1074 'is neither time nor variable'
+uses a 'qualifier="N" indicator="P (a)"'
+wrong E1074 'indicator `P \(a\)` is no variable'
 # Divergences that follow each other are no deeper than others.
 {
   printf '<project><types><pous><pou name="P" pouType="program"><interface/><body><SFC><step localId="1" name="A" initialStep="true"/>%s' "$(transition 2 1 "$good")"

@@ -5,29 +5,19 @@
 #include <string>
 
 #include "adapters/twincat/twincat.h"
-#include "base/check.h"
+#include "tests/fuzz/imported.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   base::SourceMap sources;
   xml::Imported out;
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   const xml::Document document("fuzz.TcPOU", bytes, sources, out);
-  base::check(document.root() || out.failed(), "a document that is not read has an error");
   if (document.root()) {
     twincat::Importer importer(out);
     importer.add_object(document);
     importer.add_tasks();
     twincat::listed_files(document, out);
   }
-  for (const xml::MadeSource& made : out.sources) {
-    base::check(made.name.ends_with(".st") &&
-                    xml::is_name(std::string_view(made.name).substr(0, made.name.size() - 3)),
-                "a source has the name of what is in it");
-    base::check(made.text.find('\0') == std::string::npos, "a source is text");
-  }
-  for (const xml::Finding& finding : out.findings) {
-    base::check(finding.span.begin.offset <= sources.text(0).size(), "a finding has a place");
-    base::check(!finding.text.empty(), "a finding says something");
-  }
+  check_imported(document, out, sources);
   return 0;
 }

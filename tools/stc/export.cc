@@ -21,6 +21,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--output|-o", "FILE", "document to write (needed)"},
     {"--force", nullptr, "overwrite a file that is no XML"},
     {"--as", "FORM", "tc6-2.01 (default), tc6-2.0 or 61131-10"},
+    {"--without-sources", nullptr, "only what XML has elements for, not the text of the sources"},
 };
 constexpr tools::Command kCommand{
     "export", "PATHS...", "Writes PLCopen XML or IEC 61131-10 of the sources.", kOptions, 1};
@@ -65,7 +66,9 @@ base::Status write_document(const tools::Options& options, plcopen::Form form) {
     frontend::parse_all(project->sources, project->compile, tree, diagnostics);
   }
   if (!diagnostics.has_errors()) {
-    plcopen::ExportInput input{project->sources, tree, project->name, form, &project->kept};
+    plcopen::ExportInput input{project->sources, tree,
+                               project->name,    form,
+                               &project->kept,   !options.has("--without-sources")};
     text = plcopen::export_document(input, diagnostics);
   }
   report(*project, diagnostics, *format);
