@@ -28,6 +28,31 @@ bool Outliner::head() {
   }
 }
 
+// Does a member or part of a chart begin at `i`? As soft_head() sees it.
+bool Outliner::begins_member(uint32_t i) const {
+  const TokenKind next = text_.kind(i + 1);
+  const bool named = is_name(next) && text_.kind(i + 2) != TokenKind::kEqual;
+  switch (text_.kind(i)) {
+    case TokenKind::kMethod:
+    case TokenKind::kProperty:
+    case TokenKind::kInterface:
+    case TokenKind::kClass:
+    case TokenKind::kAction:
+    case TokenKind::kNamespace:
+    case TokenKind::kResource:
+    case TokenKind::kStep:
+    case TokenKind::kInitialStep:
+    case TokenKind::kMockFunction:
+      return named;
+    case TokenKind::kTransition:
+      return named || next == TokenKind::kLeftParen;
+    case TokenKind::kTest:
+      return next == TokenKind::kString;
+    default:
+      return false;
+  }
+}
+
 // Words that are names elsewhere: they open something only before another name. Never so in a
 // statement, except `step S= x`.
 bool Outliner::soft_head() {

@@ -58,7 +58,7 @@ void Outliner::instruction() {
   }
   if (is_deferred(behind)) ++operand;
   bool call = !is_deferred(behind) && is_opening(text_.kind(operand));
-  bool name = text_.kind(operand) == TokenKind::kDot;
+  bool name = text_.kind(operand) == TokenKind::kDot || text_.kind(operand) == TokenKind::kEqual;
   line.operand = operand < end && !call && !name ? operand : 0;
 }
 
@@ -96,9 +96,15 @@ uint32_t Outliner::label_levels() const {
   bool any = false;
   bool nested = false;
   for (uint32_t i = at_; text_.kind(i) != TokenKind::kEnd && !is_structural(text_.kind(i));) {
+    if (begins_member(i)) break;
     uint32_t behind = behind_labels(i);
     any = any || behind != i;
-    if (behind != i && text_.row(behind) == text_.row(behind - 1)) {
+    if (text_.kind(behind) == TokenKind::kEnd || is_structural(text_.kind(behind))) break;
+    if (behind != i && text_.row(behind) != text_.row(behind - 1)) {  // a row of its own
+      i = behind;
+      continue;
+    }
+    if (behind != i) {
       uint32_t width = (behind - i) / 2 - 1;  // blanks between several
       for (uint32_t k = i; k < behind; ++k) width += text_.columns(text_.token(k));
       if (width <= kWidestLabel) widest = std::max(widest, width);

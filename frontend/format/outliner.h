@@ -50,6 +50,7 @@ class Outliner {
   // --- heads.cc
   bool head();
   bool soft_head();
+  bool begins_member(uint32_t i) const;
   void pou(TokenKind end, BlockKind kind);
   void named_group(TokenKind end, BlockKind kind);
   void property_part(TokenKind end);
