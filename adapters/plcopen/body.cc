@@ -13,9 +13,18 @@ bool is_language(Node node) {
   return false;
 }
 
-std::string failed(Node node, const std::string& text, Reporter& report) {
-  report.add(Code::kXmlBody, node, text);
+std::string failed(Node node, const std::string& text, Reporter& report,
+                   const char* fix = "write it in ST, ladder or FBD where it was made") {
+  report.add(Code::kXmlBody, node, text, fix);
   return error_text(text);
+}
+
+// CODESYS keeps bodies in CFC and others beside an empty <ST>.
+Node body_in_data(Node add) {
+  for (Node data : xml::children(add, "data")) {
+    if (is_vendor(data, "cfc") || xml::child(data, "CFC")) return data;
+  }
+  return {};
 }
 
 }  // namespace
@@ -35,6 +44,8 @@ std::string language_text(Node body, Node owner, const std::string& name, Report
     const std::string_view kind = xml::local_name(node);
     if (kind == "documentation") {
       out += xml::comment(xml::text_of(node), "");
+    } else if (Node cfc = kind == "addData" ? body_in_data(node) : Node()) {
+      out += failed(cfc, "the body of " + name + " is in CFC, which does not come in", report);
     } else if (kind == "addData") {
       for (Node data : xml::children(node, "data")) report_data(data, report);
     } else if (!is_language(node)) {

@@ -172,7 +172,7 @@ void Chart::add_condition_element(Node node) {
                      xml::is(node, "continuation") ||
                      (xml::is(node, "block") && xml::attribute(node, "instanceName").empty());
   if (!reads || !drawing_.add(node)) {
-    report_.add(Code::kXmlBody, node, xml::shown(node) + " in a chart is not understood");
+    report_in_chart(node, report_);
   }
 }
 

@@ -97,13 +97,25 @@ class Expression {
   size_t written_ = 0;
 };
 
-// Instances are called somewhere; a condition only reads.
-bool calls_instances(const network::Network& all) {
+// Why a network is no condition; empty: it is one. Instances are called somewhere; a condition
+// only reads.
+std::string condition_problem(const network::Network& all, uint32_t ends) {
+  bool edge = false;
   for (const Element& element : all.elements) {
-    if (element.kind == Kind::kBlock && !element.operand.empty()) return true;
+    if (element.kind == Kind::kBlock && !element.operand.empty()) {
+      return "the condition calls `" + element.operand.text + "`, and conditions only read";
+    }
+    const bool end = element.kind == Kind::kCoil || element.kind == Kind::kSink;
+    edge = edge || (end && element.modifier > Modifier::kNegated);
+    for (const network::Input& input : element.inputs) edge |= input.modifier > Modifier::kNegated;
   }
-  return false;
+  if (edge) return "the condition sees an edge or sets something, which needs a memory";
+  if (ends == 1) return {};
+  return "the condition ends in " + std::to_string(ends) + " coils and variables instead of one";
 }
+
+constexpr const char* kComputeInAction =
+    "compute it in an action, and make a variable the condition";
 
 bool add_all(Node body, Drawing& drawing, const std::string& name, Reporter& report) {
   bool good = true;
@@ -185,8 +197,29 @@ std::string links_text(const network::Network& all, const std::vector<Link>& lin
   report.add(Code::kXmlBody, at,
              links.empty() ? "nothing is connected to a condition"
                            : "what is connected to a condition " + expression.problem(),
-             "compute it in an action, and make a variable the condition");
+             kComputeInAction);
   return {};
+}
+
+void report_in_chart(Node node, Reporter& report) {
+  const std::string instance(xml::trimmed(xml::attribute(node, "instanceName")));
+  const std::string what = xml::shown(node);
+  if (xml::is(node, "macroStep")) {
+    return report.add(
+        Code::kXmlBody, node, what + ": steps of a chart inside of a step do not come in",
+        "draw its steps into the chart itself, or into a function block of their own");
+  }
+  if (xml::is(node, "block") && !instance.empty()) {
+    return report.add(Code::kXmlBody, node,
+                      what + " calls `" + instance + "`, and conditions of a chart only read",
+                      "call it in an action, and make its output the condition");
+  }
+  for (const char* name : {"coil", "outVariable", "inOutVariable", "jump", "return"}) {
+    if (!xml::is(node, name)) continue;
+    return report.add(Code::kXmlBody, node, what + " does something, and a chart has it nowhere",
+                      "put it into an action");
+  }
+  report.add(Code::kXmlBody, node, what + " in a chart is not understood");
 }
 
 std::string diagram_condition(Node body, const std::string& name, Reporter& report) {
@@ -195,20 +228,14 @@ std::string diagram_condition(Node body, const std::string& name, Reporter& repo
   const network::Network& all = drawing.elements();
   const Element* end = nullptr;
   uint32_t ends = 0;
-  bool edge = false;  // needs a memory
   for (const Element& element : all.elements) {
-    for (const network::Input& input : element.inputs) edge |= input.modifier > Modifier::kNegated;
     if (element.kind != Kind::kCoil && element.kind != Kind::kSink) continue;
     ++ends;
     if (end == nullptr || base::same_name(element.operand.text, name)) end = &element;
   }
-  const bool plain =
-      ends == 1 && !edge && end->modifier <= Modifier::kNegated && !calls_instances(all);
-  if (!plain) {
-    report.add(
-        Code::kXmlBody, body,
-        "a condition ends in one coil or variable, sees no edges, and calls no function blocks",
-        "compute it in an action, and make a variable the condition");
+  const std::string problem = condition_problem(all, ends);
+  if (!problem.empty()) {
+    report.add(Code::kXmlBody, body, problem, kComputeInAction);
     return {};
   }
   std::string text = links_text(all, end->inputs[0].from, body, report);

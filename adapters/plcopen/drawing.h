@@ -134,5 +134,7 @@ std::string diagram_condition(Node body, const std::string& name, Reporter& repo
 // The same of links in a chart. Empty, after a report: it is none.
 std::string links_text(const network::Network& all, const std::vector<network::Link>& links,
                        Node at, Reporter& report);
+// An element in a chart that no condition is made of: what to do with it.
+void report_in_chart(Node node, Reporter& report);
 
 }  // namespace plcopen

@@ -85,7 +85,8 @@ void Drawing::report_inside(Node node) {
     for (Node data : xml::children(add, "data")) {
       if (is_vendor(data, kWireData)) continue;  // add_block() has read it
       if (is_vendor(data, "stcode")) {
-        fail(Code::kXmlBody, data, xml::shown(node) + " holds statements of its own");
+        fail(Code::kXmlBody, data, xml::shown(node) + " holds statements of its own",
+             "make them an ACTION, a function or a function block, and call that here");
       } else {
         report_data(data, report_);
       }

@@ -105,17 +105,18 @@ std::vector<DiagramWriter::Place> DiagramWriter::places(const network::Network& 
   std::vector<int32_t> free;  // by column
   int32_t bottom = y_;
   for (size_t i = 0; i < count; ++i) {
-    int32_t y = y_;
+    int32_t y = std::numeric_limits<int32_t>::max();  // the highest of what feeds it
     for (const network::Input& input : network.elements[i].inputs) {
       for (Link link : input.from) {
         if (link.element >= i) continue;
         column[i] = std::max(column[i], column[link.element] + 1);
-        y = std::max(y, out[link.element].y);
+        y = std::min(y, out[link.element].y);
       }
     }
+    if (y == std::numeric_limits<int32_t>::max()) y = y_;
     const size_t at = static_cast<size_t>(column[i]);
     if (free.size() <= at) free.resize(at + 1, y_);
-    y = by_order_ ? y_ + 50 * static_cast<int32_t>(i) : std::max(y_, free[at]);
+    y = by_order_ ? y_ + 50 * static_cast<int32_t>(i) : std::max(y, free[at]);
     out[i] = {20 + 150 * column[i], y};
     const int32_t pins = static_cast<int32_t>(
         std::max(network.elements[i].inputs.size(), network.elements[i].outputs.size()));

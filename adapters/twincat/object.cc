@@ -19,6 +19,20 @@ std::string error_pragma(std::string text) {
   return "{error '" + text + "'}\n";
 }
 
+// As people call it, with the word of the file.
+std::string language_of(Node form) {
+  const std::string word(xml::local_name(form));
+  if (word == "NWL") return "ladder, FBD or IL (NWL)";
+  if (word == "SFC") return "a chart (SFC)";
+  return word;
+}
+
+// The export of TwinCAT has CFC in a form of its own, too.
+std::string way_out(Node form) {
+  if (xml::is(form, "CFC")) return "write it in ST, ladder or FBD in TwinCAT";
+  return "export the POU as PLCopen XML in TwinCAT (Export PLCopenXML), and import that file";
+}
+
 class ObjectWriter {
  public:
   ObjectWriter(Node object, Reporter& report) : object_(object), report_(report) {}
@@ -87,12 +101,11 @@ std::string ObjectWriter::body(Node owner, const std::string& what) {
       if (!out.empty()) out += "\n";
       continue;
     }
-    const std::string text = "the body of " + what + " is in " +
-                             std::string(xml::local_name(form)) +
+    const std::string text = "the body of " + what + " is in " + language_of(form) +
                              ", which is documented nowhere and cannot be imported";
-    report_.add(Code::kGraphicalBody, form, text,
-                "export it as PLCopen XML in TwinCAT and import that");
-    out += error_pragma(text + "; export it as PLCopen XML in TwinCAT and import that");
+    const std::string fix = way_out(form);
+    report_.add(Code::kGraphicalBody, form, text, fix);
+    out += error_pragma(text + "; " + fix);
   }
   return out;
 }

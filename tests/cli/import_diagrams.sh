@@ -305,9 +305,21 @@ for network in "<inVariable localId=\"1\" edge=\"rising\"><expression>b</express
   "$(in_variable 1 b)<outVariable localId=\"2\" edge=\"falling\"><connectionPointIn>$(from 1)</connectionPointIn><expression>Go</expression></outVariable>"; do
   chart "<transition name=\"Go\"><body><FBD>$network</FBD></body></transition>" '<reference name="Go"/>' ''
   expect 1 stc check small.xml
-  said 'E1083.*sees no edges'
+  said 'E1083.*the condition sees an edge'
+  said 'help: compute it in an action, and make a variable the condition'
 done
 chart '' "$wire" '<block localId="11" typeName="TON" instanceName="t"/>'
 expect 1 stc check small.xml
-said 'E1083.*in a chart is not understood'
+said 'E1083.*calls `t`, and conditions of a chart only read'
+said 'help: call it in an action, and make its output the condition'
+chart "<transition name=\"Go\"><body><FBD><block localId=\"1\" typeName=\"TON\" instanceName=\"t\"><outputVariables><variable formalParameter=\"Q\"/></outputVariables></block>$(out_variable 2 Go '<connection refLocalId="1" formalParameter="Q"/>')</FBD></body></transition>" '<reference name="Go"/>' ''
+expect 1 stc check small.xml
+said 'E1083.*the condition calls `t`, and conditions only read'
+chart "<transition name=\"Go\"><body><FBD>$(in_variable 1 b)$(out_variable 2 Go "$(from 1)")$(out_variable 3 b "$(from 1)")</FBD></body></transition>" '<reference name="Go"/>' ''
+expect 1 stc check small.xml
+said 'E1083.*the condition ends in 2 coils and variables instead of one'
+body FBD '<block localId="1" typeName="EXECUTE"><inputVariables><variable formalParameter="EN"/></inputVariables><addData><data name="http://www.3s-software.com/plcopenxml/stcode" handleUnknown="implementation"><STCode>a := 1;</STCode></data></addData></block>'
+wrong E1083 'holds statements of its own'
+expect 1 stc check small.xml
+said 'help: make them an ACTION, a function or a function block, and call that here'
 exit 0

@@ -156,6 +156,12 @@ small '' '<localVars><variable name="a"><type><derived name="INT; b : INT"/></ty
 wrong E1074 'is no type or bound'
 small '<body><CFC/></body>'
 wrong E1083 'the body of P is in <CFC>'
+small '<body><ST><xhtml/></ST><addData><data name="http://www.3s-software.com/plcopenxml/cfc" handleUnknown="implementation"><CFC/></data></addData></body>'
+wrong E1083 'the body of P is in CFC, which does not come in'
+said 'help: write it in ST, ladder or FBD where it was made'
+rm -rf cfc
+expect 1 stc import small.xml -o cfc
+expect 1 stc check cfc  # no empty body
 small '<body><ST>;</ST></body><body><IL>LD 1</IL></body>' '' ''
 sed -i 's/pouType="program"/pouType="gadget"/' small.xml
 wrong E1074 'pouType `gadget` is unknown'
@@ -238,7 +244,12 @@ expect 0 stc check small.xml
 expect 1 stc check small.xml
 said 'E1082.*there are too many ways through divergences'
 sfc "$(transition 2 1 "$good")<macroStep localId=\"9\"/>"
-wrong E1083 'macroStep.*is not understood'
+wrong E1083 'macroStep.*: steps of a chart inside of a step do not come in'
+said 'help: draw its steps into the chart itself'
+sfc "$(transition 2 1 "$good")<coil localId=\"9\"/>"
+wrong E1083 'does something, and a chart has it nowhere'
+sfc "$(transition 2 1 "$good")<gadget localId=\"9\"/>"
+wrong E1083 'in a chart is not understood'
 # A document type is read over, and nothing in it is expanded.
 printf '<!DOCTYPE p [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]><project><types><pous><pou name="P" pouType="program"><interface/><body><ST>(* &b; *)</ST></body></pou></pous></types></project>' >small.xml
 expect 0 stc import small.xml -o bomb

@@ -199,10 +199,19 @@ VAR END_VAR]]></Declaration>
     <Implementation><NWL><XmlArchive><Data><o t="NWLImplementationObject" /></Data></XmlArchive></NWL></Implementation>
 X
 expect 1 stc check ladder.TcPOU
-said "ladder\.TcPOU:6:[0-9]+: error\[E1080\]: POU Ladder: the body of Ladder is in NWL"
+said "ladder\.TcPOU:6:[0-9]+: error\[E1080\]: POU Ladder: the body of Ladder is in ladder, FBD or IL \(NWL\)"
+said 'export the POU as PLCopen XML in TwinCAT \(Export PLCopenXML\), and import that file'
 expect 1 stc import ladder.TcPOU -o nwl
 expect 1 stc check nwl
-said 'nwl/Ladder\.st:[0-9]+:[0-9]+: error\[E[0-9]+\]: the body of Ladder is in NWL'
+said 'nwl/Ladder\.st:[0-9]+:[0-9]+: error\[E[0-9]+\]: the body of Ladder is in ladder, FBD or IL .NWL.'
+for word in SFC CFC IL Other; do
+  sed "s/NWL>/$word>/g" ladder.TcPOU >other.TcPOU
+  expect 1 stc check other.TcPOU
+  said "other\.TcPOU:6:[0-9]+: error\[E1080\]: POU Ladder: the body of Ladder is in .*$word"
+done
+sed 's/NWL>/CFC>/g' ladder.TcPOU >other.TcPOU
+expect 1 stc check other.TcPOU
+said 'write it in ST, ladder or FBD in TwinCAT'
 
 # Files that are missing, of another kind, or no XML.
 sed 's/ST_Data/ST_Gone/' plc/Plant.plcproj >plc/Gone.plcproj
