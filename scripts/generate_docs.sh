@@ -5,7 +5,7 @@ bin=$1
 root=$(cd "$(dirname "$0")/.." && pwd)
 out=${2:-docs/reference}
 mkdir -p "$out"
-for table in opcodes diagnostics refusals traps limits functions dialects devices; do
+for table in opcodes diagnostics refusals traps limits functions dialects devices passes; do
   {
     echo "# $table"
     echo

@@ -119,6 +119,11 @@ class Emitter {
 
   void go(uint32_t from, uint32_t to) {
     if (to == from + 1) return;
+    const MachineBlock& next = machine_.blocks[to];
+    if (next.insts.empty() && next.end.kind == EndKind::kReturn) {
+      object_.code.push_back(Unit::make(Opcode::RET));
+      return;
+    }
     jump(Unit::make(to > from ? Opcode::JMP : Opcode::LOOP), to);
   }
 

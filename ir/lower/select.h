@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "base/result.h"
-#include "ir/lower/alias.h"
 #include "ir/lower/flow.h"
 #include "ir/lower/machine.h"
 #include "ir/lower/tables.h"
 #include "ir/lower/values.h"
+#include "ir/program/alias.h"
 
 namespace ir::codegen {
 

@@ -23,7 +23,7 @@ bool changes_nothing(const Inst& inst, Scalar operand) {
 }
 
 Values::Values(const TypeTable& types, const Pou& pou, const Flow& flow)
-    : types_(types), facts_(pou.values.size()), local_escapes_(pou.locals.size()) {
+    : AliasFacts(types), facts_(pou.values.size()), local_escapes_(pou.locals.size()) {
   define(pou, flow);
   count_uses(pou, flow);
   drop_dead(pou, flow);
@@ -79,6 +79,11 @@ bool Values::is_constant(ValueId id) const {
 
 uint64_t Values::constant_bits(ValueId id) const { return facts_[root(id).index].definition->imm; }
 
+std::optional<int64_t> Values::constant_index(ValueId id) const {
+  if (!is_constant(id)) return std::nullopt;
+  return static_cast<int64_t>(constant_bits(id));
+}
+
 void Values::define(const Pou& pou, const Flow& flow) {
   for (uint32_t position = 0; position < flow.blocks.size(); ++position) {
     const FlowBlock& flow_block = flow.blocks[position];
@@ -132,10 +137,7 @@ void Values::count_uses(const Pou& pou, const Flow& flow) {
       if (inst.op == Op::kJump || inst.op == Op::kEndTry) {
         for (ValueId arg : inst.targets[0].args) use(arg, position);
       }
-      if (inst.op != Op::kAddress && inst.op != Op::kHandle) continue;
-      const Place& place = pou.places[inst.place.index];
-      const bool behind = !place.steps.empty() && place.steps[0].kind == StepKind::kDeref;
-      if (place.base == PlaceBase::kLocal && !behind) local_escapes_[place.base_index] = true;
+      if (const auto local = exposed_local(inst, pou)) local_escapes_[*local] = true;
     }
   }
 }

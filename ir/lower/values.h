@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ir/lower/flow.h"
+#include "ir/program/alias.h"
 #include "ir/program/ir.h"
 
 namespace ir::codegen {
@@ -19,7 +20,7 @@ struct ValueFacts {
   ValueId same_as;       // valid: this value is that one
 };
 
-class Values {
+class Values : public AliasFacts {
  public:
   Values(const TypeTable& types, const Pou& pou, const Flow& flow);
 
@@ -32,9 +33,8 @@ class Values {
   bool is_pure(const Inst& inst) const;
   // A pure value that nothing live uses.
   bool is_dead(const Inst& inst) const;
-  // Was the address of local number `local` taken?
-  const TypeTable& types() const { return types_; }
-  bool local_escapes(uint32_t local) const { return local_escapes_[local]; }
+  std::optional<int64_t> constant_index(ValueId id) const override;
+  bool local_escapes(uint32_t local) const override { return local_escapes_[local]; }
 
  private:
   void define(const Pou& pou, const Flow& flow);
@@ -43,7 +43,6 @@ class Values {
   void use(ValueId id, uint32_t block);
   void use_place(const Pou& pou, PlaceId place, uint32_t block);
 
-  const TypeTable& types_;
   std::vector<ValueFacts> facts_;
   std::vector<bool> local_escapes_;
 };

@@ -1,6 +1,7 @@
 #include "ir/program/eval_machine.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/limits.h"
 #include "ir/program/ops.h"
@@ -207,34 +208,12 @@ Outcome EvalMachine::compute(const Frame& frame, const Inst& inst) const {
       const bool area = program_.types.is_instance(inst.type);
       return {area ? layout.used : layout.size, {}, {}};
     }
-    case Op::kNeg:
-    case Op::kAbs:
-    case Op::kSqrt:
-    case Op::kNot:
-      return {eval_unary(inst.op, inst.scalar, operand(0)), {}, {}};
-    case Op::kShl:
-    case Op::kShr:
-    case Op::kRol:
-    case Op::kRor:
-      return {
-          eval_shift(inst.op, inst.scalar, operand(0), static_cast<uint32_t>(operand(1))), {}, {}};
-    case Op::kSelect:
-      return {operand(operand(0) != 0 ? 2 : 1), {}, {}};
-    case Op::kWrap:
-    case Op::kToFloat:
-    case Op::kRound:
-    case Op::kTrunc:
-    case Op::kToBool:
-    case Op::kBits:
-      return eval_conversion(inst.op, frame.pou->values[inst.operands[0].index].scalar, inst.scalar,
-                             operand(0));
-    case Op::kCheckRange:
-      return eval_check_range(inst.scalar, operand(0), inst.low, inst.high);
-    case Op::kCheckStep:
-      return operand(0) != 0 ? Outcome{operand(0), {}, {}} : Outcome{0, TrapKind::kForStep, "BY 0"};
     default:
-      return eval_binary(inst.op, inst.scalar, operand(0), operand(1));
+      break;
   }
+  std::array<uint64_t, 3> operands{};
+  for (size_t i = 0; i < inst.operands.size(); ++i) operands[i] = operand(i);
+  return eval_operation(inst, frame.pou->values[inst.operands[0].index].scalar, operands);
 }
 
 bool EvalMachine::too_deep(const Pou& pou) const {

@@ -239,4 +239,37 @@ Outcome eval_check_range(Scalar scalar, uint64_t a, int64_t low, int64_t high) {
               ".." + integer_text(scalar, static_cast<uint64_t>(high))};
 }
 
+bool is_scalar_operation(Op op) { return op >= Op::kAdd && op <= Op::kCheckStep; }
+
+Outcome eval_operation(const Inst& inst, Scalar from, std::span<const uint64_t> operands) {
+  const uint64_t a = operands[0];
+  switch (inst.op) {
+    case Op::kNeg:
+    case Op::kAbs:
+    case Op::kSqrt:
+    case Op::kNot:
+      return {eval_unary(inst.op, inst.scalar, a), {}, {}};
+    case Op::kShl:
+    case Op::kShr:
+    case Op::kRol:
+    case Op::kRor:
+      return {eval_shift(inst.op, inst.scalar, a, static_cast<uint32_t>(operands[1])), {}, {}};
+    case Op::kSelect:
+      return {operands[a != 0 ? 2 : 1], {}, {}};
+    case Op::kWrap:
+    case Op::kToFloat:
+    case Op::kRound:
+    case Op::kTrunc:
+    case Op::kToBool:
+    case Op::kBits:
+      return eval_conversion(inst.op, from, inst.scalar, a);
+    case Op::kCheckRange:
+      return eval_check_range(inst.scalar, a, inst.low, inst.high);
+    case Op::kCheckStep:
+      return a != 0 ? Outcome{a, {}, {}} : Outcome{0, TrapKind::kForStep, "BY 0"};
+    default:
+      return eval_binary(inst.op, inst.scalar, a, operands[1]);
+  }
+}
+
 }  // namespace ir

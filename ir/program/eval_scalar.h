@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "ir/program/ir.h"
@@ -31,5 +32,11 @@ uint64_t eval_shift(Op op, Scalar scalar, uint64_t a, uint32_t count);
 // wrap tofloat round trunc tobool bits
 Outcome eval_conversion(Op op, Scalar from, Scalar to, uint64_t a);
 Outcome eval_check_range(Scalar scalar, uint64_t a, int64_t low, int64_t high);
+
+// Does `op` make its result from its operands alone? The arithmetic, conversions and checks of
+// ops.def.
+bool is_scalar_operation(Op op);
+// Any of them. `from`: the scalar of the first operand.
+Outcome eval_operation(const Inst& inst, Scalar from, std::span<const uint64_t> operands);
 
 }  // namespace ir

@@ -33,10 +33,11 @@ Finding skipped() {
   return out;
 }
 
-std::optional<golden::Program> compiled(const std::string& source) {
+std::optional<golden::Program> compiled(const std::string& source, const std::string& passes) {
   golden::TestFile test;
   test.name = "random.st";
   test.versions.push_back(source);
+  test.options = {"--passes", passes};
   golden::Outcome outcome;
   base::Result<golden::Program> program = golden::compile(test, 0, outcome);
   if (!program.ok()) return std::nullopt;
@@ -358,10 +359,10 @@ ChangeScript change_script(uint64_t seed) {
 }
 
 Finding examine_change(const std::string& first, const std::string& second,
-                       const ChangeScript& script) {
+                       const ChangeScript& script, const std::string& passes) {
   if (first == second) return skipped();
-  std::optional<golden::Program> a = compiled(first);
-  std::optional<golden::Program> b = compiled(second);
+  std::optional<golden::Program> a = compiled(first, passes);
+  std::optional<golden::Program> b = compiled(second, passes);
   if (!a || !b) return skipped();
   Finding found = Examination(*a, *b, online_change::Strategy::kInPlace).run(script);
   if (found.failed) return found;

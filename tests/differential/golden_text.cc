@@ -10,16 +10,19 @@ std::string heading(const std::string& mode, uint64_t seed, const Finding& findi
 
 }  // namespace
 
-std::string run_text(const std::string& source, uint64_t seed, const Finding& finding, int scans) {
+std::string run_text(const std::string& source, uint64_t seed, const Finding& finding, int scans,
+                     const std::string& passes) {
   std::string last = std::to_string(finding.scan != 0 ? static_cast<int>(finding.scan) : scans);
-  std::string text = heading("run --scans " + last, seed, finding) + source;
+  std::string text = heading("run --scans " + last + " --passes " + passes, seed, finding) + source;
   if (!finding.expected.empty()) text += "// CHECK:SCAN " + last + ": " + finding.expected + "\n";
   return text;
 }
 
 std::string change_text(const std::string& first, const std::string& second, uint64_t seed,
-                        const Finding& finding, const ChangeScript& script) {
-  std::string text = heading("change", seed, finding) + first + "// --- v2\n" + second;
+                        const Finding& finding, const ChangeScript& script,
+                        const std::string& passes) {
+  std::string text =
+      heading("change --passes " + passes, seed, finding) + first + "// --- v2\n" + second;
   text += "// > run " + std::to_string(script.scans_before) + "\n// > change 2 --allow-loss\n";
   if (script.scans_after > 0) text += "// > run " + std::to_string(script.scans_after) + "\n";
   if (finding.key.starts_with("undo")) text += "// > undo\n";

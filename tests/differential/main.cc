@@ -1,9 +1,10 @@
 // differential FIRST COUNT [--scans N] [--jobs N] [--shrink] [--write DIR]: random programs of
 // seeds FIRST.. on every tier, in N processes at a time. With --changes: random changes of them
 // while they run. --shrink makes failing programs small and prints each as a golden file; --write
-// puts them into DIR instead. differential --print SEED [--changes]: the program of a seed, its
-// second version behind it. With --constructs: no program runs; how many have each construct, and
-// an error when one has none. Ends with "N passed, N failed".
+// puts them into DIR instead. --passes LIST: optimised by these, whatever the seed says.
+// differential --print SEED [--changes]: the program of a seed, its second version behind it. With
+// --constructs: no program runs; how many have each construct, and an error when one has none. Ends
+// with "N passed, N failed".
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -39,6 +40,7 @@ struct Options {
   bool changes = false;
   bool shrink = false;
   std::string folder;
+  std::string passes;
 };
 
 Options parse_options(int argc, char** argv) {
@@ -57,6 +59,8 @@ Options parse_options(int argc, char** argv) {
     } else if (word == "--write" && more) {
       out.shrink = true;
       out.folder = argv[++i];
+    } else if (word == "--passes" && more) {
+      out.passes = argv[++i];
     } else if (word == "--scans" && more) {
       out.scans = std::atoi(argv[++i]);
     } else if (word == "--jobs" && more) {
@@ -75,6 +79,7 @@ class Case {
       : seed_(seed),
         options_(options),
         script_(differential::change_script(seed)),
+        passes_(options.passes.empty() ? differential::random_passes(seed) : options.passes),
         first_(differential::random_program(seed, !options.changes)),
         second_(options.changes ? differential::edited(first_, seed) : Program()) {}
 
@@ -91,9 +96,9 @@ class Case {
     }
     Finding now = examine();
     std::string first = differential::print(first_);
-    return options_.changes
-               ? differential::change_text(first, differential::print(second_), seed_, now, script_)
-               : differential::run_text(first, seed_, now, options_.scans);
+    return options_.changes ? differential::change_text(first, differential::print(second_), seed_,
+                                                        now, script_, passes_)
+                            : differential::run_text(first, seed_, now, options_.scans, passes_);
   }
 
   void print() const {
@@ -108,8 +113,8 @@ class Case {
     std::string next = differential::print(second);
     return differential::isolated(
         [&] {
-          return options_.changes ? differential::examine_change(source, next, script_)
-                                  : differential::examine(source, options_.scans);
+          return options_.changes ? differential::examine_change(source, next, script_, passes_)
+                                  : differential::examine(source, options_.scans, passes_);
         },
         kSecondsPerProgram);
   }
@@ -117,6 +122,7 @@ class Case {
   uint64_t seed_;
   const Options& options_;
   differential::ChangeScript script_;
+  std::string passes_;
   Program first_;
   Program second_;
 };
@@ -245,6 +251,7 @@ int main(int argc, char** argv) {
   if (options.numbers.size() != 2) {
     std::fprintf(stderr,
                  "usage: differential FIRST COUNT [--scans N] [--jobs N] [--changes] [--shrink] "
+                 "[--passes LIST] "
                  "[--write DIR] | --constructs | --print SEED [--changes]\n");
     return 2;
   }

@@ -2,6 +2,8 @@
 
 #include <string_view>
 
+#include "ir/opt/optimise.h"
+#include "tests/differential/random.h"
 #include "tests/golden/runner/engine.h"
 
 namespace differential {
@@ -71,10 +73,18 @@ Finding first_difference(const std::string& oracle, const std::string& other) {
   return out;
 }
 
-Finding examine(const std::string& source, int scans) {
+std::string random_passes(uint64_t seed) {
+  Random random(seed ^ 0x0b71);
+  const uint32_t kind = random.below(8);
+  const uint32_t bits = static_cast<uint32_t>(random.next());
+  return kind < 4 ? "all" : kind == 4 ? "none" : ir::PassSet::from_bits(bits).text();
+}
+
+Finding examine(const std::string& source, int scans, const std::string& passes) {
   golden::TestFile test;
   test.name = "random.st";
   test.versions.push_back(source);
+  test.options = {"--passes", passes};
   golden::Outcome outcome;
   Finding out;
   base::Result<golden::Program> program = golden::compile(test, 0, outcome);

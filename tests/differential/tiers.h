@@ -2,6 +2,7 @@
 // after every scan.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace differential {
@@ -15,7 +16,10 @@ struct Finding {
   std::string expected;  // line of state that the evaluator has there
 };
 
-Finding examine(const std::string& source, int scans);
+// Optimised by `passes`, apart from the evaluator's program (ir::PassSet::parse()).
+Finding examine(const std::string& source, int scans, const std::string& passes);
+// The passes for the program of a seed: all, none, or some.
+std::string random_passes(uint64_t seed);
 // The first line in which two states differ.
 Finding first_difference(const std::string& oracle, const std::string& other);
 

@@ -12,7 +12,7 @@ ir/types:
 stdlib/native: ir/types
 stdlib: ir/types
 ir/program: ir/types stdlib/native
-ir/opt: ir/types ir/program
+ir/opt: ir/types ir/program stdlib/native
 ir/bytecode: ir/types ir/program/ir.h stdlib/native
 ir/lower: ir/types ir/program ir/bytecode
 frontend: ir/types ir/program stdlib

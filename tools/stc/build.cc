@@ -4,6 +4,7 @@
 
 #include "frontend/compile.h"
 #include "ir/lower/lower.h"
+#include "ir/opt/optimise.h"
 #include "ir/program/verify.h"
 #include "linker/link.h"
 #include "tools/common/files.h"
@@ -18,11 +19,17 @@ base::Error source_errors(const base::Diagnostics& diagnostics) {
 }
 
 // Without the POUs in `left_out`, by PouId.
-base::Result<Compiled> lower_all(ir::Program program, const std::vector<bool>& left_out = {}) {
-#ifndef NDEBUG
+base::Result<Compiled> lower_all(ir::Program program, ir::PassSet passes,
+                                 const std::vector<bool>& left_out = {}) {
+#ifdef NDEBUG
+  constexpr bool verify_each = false;
+#else
+  constexpr bool verify_each = true;
   base::Status sound = ir::verify(program);
   if (!sound.ok()) return sound.error();
 #endif
+  base::Status optimised = ir::optimise(program, passes, verify_each);
+  if (!optimised.ok()) return optimised.error();
   Compiled out{std::move(program), {}};
   out.objects.reserve(out.program.pous.size());
   for (uint32_t i = 0; i < out.program.pous.size(); ++i) {
@@ -88,7 +95,7 @@ base::Result<Compiled> compile(const Project& project, base::Diagnostics& diagno
   std::optional<ir::Program> program =
       frontend::compile(project.sources, project.compile, diagnostics);
   if (!program) return source_errors(diagnostics);
-  return lower_all(std::move(*program));
+  return lower_all(std::move(*program), project.passes);
 }
 
 base::Result<std::vector<ResourceVersion>> build_resources(const Project& project,
@@ -105,7 +112,8 @@ base::Result<std::vector<ResourceVersion>> build_resources(const Project& projec
   std::vector<ResourceVersion> versions;
   uint32_t output_bytes = 0;
   for (frontend::ResourceProgram& made : resources->programs) {
-    base::Result<Compiled> compiled = lower_all(std::move(made.program), made.other_code);
+    base::Result<Compiled> compiled =
+        lower_all(std::move(made.program), project.passes, made.other_code);
     if (!compiled.ok()) return compiled.error();
     auto devices = devices_of(project.devices, made.resource, resources->names);
     if (!devices.ok()) return devices.error();
@@ -141,7 +149,7 @@ base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics&
   std::optional<frontend::TestProgram> tests =
       frontend::compile_tests(project.sources, project.compile, diagnostics);
   if (!tests) return source_errors(diagnostics);
-  base::Result<Compiled> compiled = lower_all(std::move(tests->program));
+  base::Result<Compiled> compiled = lower_all(std::move(tests->program), project.passes);
   if (!compiled.ok()) return compiled.error();
   auto devices = devices_of(project.devices, {}, {});
   if (!devices.ok()) return devices.error();

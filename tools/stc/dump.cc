@@ -15,9 +15,11 @@ namespace {
 
 constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
+    STC_PASS_OPTIONS,
     {"--tokens", nullptr, "tokens of the sources"},
     {"--tree", nullptr, "syntax tree"},
-    {"--ir", nullptr, "intermediate representation (default for sources)"},
+    {"--ir", nullptr,
+     "intermediate representation (default for sources), not optimised without --passes"},
     {"--object", nullptr, "relocatable objects"},
     {"--code", nullptr, "linked code"},
     {"--image", nullptr, "tables of the image (default for images)"},
@@ -55,10 +57,12 @@ base::Result<std::string> dump_sources(const tools::Options& options) {
     report(*project, diagnostics, base::DiagnosticFormat::kText);
     return out;
   }
+  const bool objects = options.has("--object");
+  if (!objects && !options.has("--passes")) project->passes = ir::PassSet::none();
   base::Result<Compiled> compiled = compile(*project, diagnostics);
   report(*project, diagnostics, base::DiagnosticFormat::kText);
   if (!compiled.ok()) return compiled.error();
-  if (!options.has("--object")) return ir::print(compiled->program);
+  if (!objects) return ir::print(compiled->program);
   std::string out;
   for (const ir::Object& object : compiled->objects) {
     out += ir::disassemble(object, compiled->program) + "\n";

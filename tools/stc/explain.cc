@@ -10,6 +10,7 @@
 #include "frontend/dialect.h"
 #include "ir/bytecode/code.h"
 #include "ir/bytecode/devices.h"
+#include "ir/opt/optimise.h"
 #include "ir/program/ir.h"
 #include "stdlib/registry.h"
 #include "tools/common/table.h"
@@ -147,14 +148,22 @@ std::string dialects_page() {
   return page + fitted(table);
 }
 
+std::string passes_page() {
+  tools::Table table({"pass", "what it does"});
+  for (const ir::PassRow& row : ir::pass_rows()) {
+    table.row({std::string(row.name), std::string(row.what)});
+  }
+  return fitted(table);
+}
+
 struct Page {
   const char* name;
   std::string (*text)();
 };
-constexpr Page kPages[] = {{"limits", limits_page},     {"functions", functions_page},
-                           {"opcodes", opcodes_page},   {"refusals", refusals_page},
-                           {"traps", traps_page},       {"diagnostics", diagnostics_page},
-                           {"dialects", dialects_page}, {"devices", devices_page}};
+constexpr Page kPages[] = {
+    {"limits", limits_page},     {"functions", functions_page}, {"opcodes", opcodes_page},
+    {"refusals", refusals_page}, {"traps", traps_page},         {"diagnostics", diagnostics_page},
+    {"dialects", dialects_page}, {"devices", devices_page},     {"passes", passes_page}};
 
 std::optional<std::string> page_of(const std::string& what) {
   for (const Page& page : kPages) {

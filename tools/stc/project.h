@@ -10,6 +10,7 @@
 #include "base/result.h"
 #include "base/source.h"
 #include "frontend/compile.h"
+#include "ir/opt/optimise.h"
 #include "linker/layout.h"
 #include "tools/stc/device_tables.h"
 #include "tools/stc/safe_settings.h"
@@ -22,6 +23,7 @@ struct Project {
   std::vector<xml::Finding> imported;  // what was found in them; errors too
   xml::Kept kept;                      // of them, for an export
   frontend::CompileOptions compile;
+  ir::PassSet passes = ir::PassSet::all();
   linker::Slack slack;
   std::vector<ProjectDevice> devices;
   SafeSettings safe;

@@ -15,6 +15,12 @@ base::Result<std::optional<frontend::Dialect>> dialect_option(const tools::Optio
   return dialect;
 }
 
+base::Result<ir::PassSet> passes_option(const tools::Options& options) {
+  if (!options.has("--no-opt")) return ir::PassSet::parse(options.text("--passes", "all"));
+  if (!options.has("--passes")) return ir::PassSet::none();
+  return base::Error{base::Refusal::kUsage, "--no-opt is no pass at all; leave out --passes"};
+}
+
 }  // namespace
 
 base::Result<Project> open_project(const tools::Options& options,
@@ -31,6 +37,9 @@ base::Result<Project> open_project(const tools::Options& options,
     project->name = options.text("--name");
     project->compile.name = project->name;
   }
+  auto passes = passes_option(options);
+  if (!passes.ok()) return passes.error();
+  project->passes = *passes;
   return project;
 }
 

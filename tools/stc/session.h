@@ -16,6 +16,11 @@ namespace stc {
     "--name", "NAME", "name of the program, instead of the folder's or file's"   \
   }
 
+#define STC_PASS_OPTIONS                                                        \
+  {"--no-opt", nullptr, "compile without optimising"}, {                        \
+    "--passes", "LIST", "optimise with these passes only; `stc explain passes`" \
+  }
+
 #define STC_RESTRICTED_OPTION \
   { "--restricted", nullptr, "refuse when the interface of a POU is edited" }
 

@@ -6,6 +6,7 @@
 #include "frontend/lex/lexer.h"
 #include "frontend/parse/tree.h"
 #include "ir/lower/lower.h"
+#include "ir/opt/optimise.h"
 #include "ir/program/verify.h"
 #include "linker/link.h"
 
@@ -42,6 +43,12 @@ frontend::CompileOptions options_of(const TestFile& test) {
     if (test.options[i] == "--define") options.defines.push_back(test.options[i + 1]);
   }
   return options;
+}
+
+// What runs is optimised; texts of a phase show what comes out of the phases before it.
+base::Result<ir::PassSet> passes_of(const TestFile& test) {
+  const bool text = test.mode == "ir" || test.mode == "bytecode" || test.mode == "link";
+  return ir::PassSet::parse(test.option("--passes", text ? "none" : "all"));
 }
 
 }  // namespace
@@ -82,9 +89,14 @@ base::Result<Program> compile(const TestFile& test, size_t version, Outcome& out
   // The runner checks the IR of every golden file, whatever its mode.
   base::Status sound = ir::verify(*program);
   if (!sound.ok()) return sound.error();
-  Program out{std::move(*program), {}, {}};
+  Program out{std::move(*program), {}, {}, {}};
+  base::Result<ir::PassSet> passes = passes_of(test);
+  if (!passes.ok()) return passes.error();
+  out.optimised = out.program;
+  base::Status optimised = ir::optimise(out.optimised, *passes, true);
+  if (!optimised.ok()) return optimised.error();
   for (uint32_t i = 0; i < out.program.pous.size(); ++i) {
-    base::Result<ir::Object> object = ir::lower(out.program, ir::PouId(i));
+    base::Result<ir::Object> object = ir::lower(out.optimised, ir::PouId(i));
     if (!object.ok()) return object.error();
     out.objects.push_back(std::move(*object));
   }

@@ -17,8 +17,9 @@
 namespace golden {
 
 struct Program {
-  ir::Program program;
-  std::vector<ir::Object> objects;
+  ir::Program program;  // as the front end made it: what the evaluator runs
+  ir::Program optimised;
+  std::vector<ir::Object> objects;  // of `optimised`
   // Of a link without a base, which every tier begins with: made once.
   mutable std::optional<ir::VerifiedImage> cold;
 };

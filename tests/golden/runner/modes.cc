@@ -30,8 +30,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 // Only POUs of the file itself: the library's are tested on their own.
 std::string ir_text(const Program& program) {
   std::string out;
-  for (const ir::Pou& pou : program.program.pous) {
-    if (pou.file[0] != '<') out += ir::print(program.program, pou);
+  for (const ir::Pou& pou : program.optimised.pous) {
+    if (pou.file[0] != '<') out += ir::print(program.optimised, pou);
   }
   return out;
 }
@@ -40,7 +40,7 @@ std::string object_text(const Program& program) {
   std::string out;
   for (size_t i = 0; i < program.objects.size(); ++i) {
     if (program.objects[i].file[0] != '<') {
-      out += ir::disassemble(program.objects[i], program.program);
+      out += ir::disassemble(program.objects[i], program.optimised);
     }
   }
   return out;

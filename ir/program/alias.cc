@@ -1,8 +1,8 @@
-#include "ir/lower/alias.h"
+#include "ir/program/alias.h"
 
 #include <algorithm>
 
-namespace ir::codegen {
+namespace ir {
 namespace {
 
 bool follows_reference(const Place& place) {
@@ -16,10 +16,10 @@ bool enters(const Place& place) {
                      [](const Step& step) { return step.kind == StepKind::kEnter; });
 }
 
-bool is_private(const Place& place, const Values& values) {
+bool is_private(const Place& place, const AliasFacts& facts) {
   return place.base == PlaceBase::kConst ||
          (place.base == PlaceBase::kLocal && !follows_reference(place) &&
-          !values.local_escapes(place.base_index));
+          !facts.local_escapes(place.base_index));
 }
 
 bool same_root(const Place& a, const Place& b) {
@@ -27,19 +27,15 @@ bool same_root(const Place& a, const Place& b) {
          a.constant == b.constant;
 }
 
-bool is_constant_step(const Step& step, const Values& values) {
-  return !step.value.valid() || values.is_constant(step.value);
-}
-
-int64_t index_of(const Step& step, const Values& values) {
-  return step.value.valid() ? static_cast<int64_t>(values.constant_bits(step.value))
-                            : step.constant_index;
+// nullopt: known at run time only.
+std::optional<int64_t> index_of(const Step& step, const AliasFacts& facts) {
+  return step.value.valid() ? facts.constant_index(step.value) : step.constant_index;
 }
 
 // From one root: apart as soon as members or constant indices differ.
 // Members of a union always meet.
-bool steps_may_meet(const Place& a, const Place& b, const Values& values) {
-  const TypeTable& types = values.types();
+bool steps_may_meet(const Place& a, const Place& b, const AliasFacts& facts) {
+  const TypeTable& types = facts.types();
   TypeId at = a.base_type;
   uint32_t dims = 0;
   const size_t common = std::min(a.steps.size(), b.steps.size());
@@ -48,9 +44,10 @@ bool steps_may_meet(const Place& a, const Place& b, const Values& values) {
     const Step& right = b.steps[i];
     if (left.kind != right.kind || types.overlaps(at)) return true;
     if (left.kind == StepKind::kMember && left.index != right.index) return false;
-    if (left.kind == StepKind::kIndex && is_constant_step(left, values) &&
-        is_constant_step(right, values) && index_of(left, values) != index_of(right, values)) {
-      return false;
+    if (left.kind == StepKind::kIndex) {
+      const std::optional<int64_t> l = index_of(left, facts);
+      const std::optional<int64_t> r = index_of(right, facts);
+      if (l && r && *l != *r) return false;
     }
     if (left.kind == StepKind::kMember) at = types[at].members[left.index].type;
     if (left.kind == StepKind::kIndex && ++dims == types[at].dims.size()) {
@@ -63,12 +60,12 @@ bool steps_may_meet(const Place& a, const Place& b, const Values& values) {
 
 }  // namespace
 
-bool may_alias(const Place& a, const Place& b, const Values& values) {
-  const bool a_private = is_private(a, values);
-  if (a_private != is_private(b, values)) return false;
-  if (a_private) return same_root(a, b) && steps_may_meet(a, b, values);
+bool may_alias(const Place& a, const Place& b, const AliasFacts& facts) {
+  const bool a_private = is_private(a, facts);
+  if (a_private != is_private(b, facts)) return false;
+  if (a_private) return same_root(a, b) && steps_may_meet(a, b, facts);
   if (follows_reference(a) || follows_reference(b)) return true;
-  if (same_root(a, b)) return steps_may_meet(a, b, values);
+  if (same_root(a, b)) return steps_may_meet(a, b, facts);
   // Argument frames of different callees are the same memory.
   if (a.base == PlaceBase::kArg && b.base == PlaceBase::kArg) return a.pou != b.pou;
   // An instance among the globals may be the one whose code this is.
@@ -77,16 +74,24 @@ bool may_alias(const Place& a, const Place& b, const Values& values) {
   return (a_global && b.base == PlaceBase::kSelf) || (b_global && a.base == PlaceBase::kSelf);
 }
 
-bool calls_may_change(const Place& place, const Values& values) {
-  return !is_private(place, values);
+bool calls_may_change(const Place& place, const AliasFacts& facts) {
+  return !is_private(place, facts);
 }
 
-bool is_static(const Place& place, const Values& values) {
+bool is_static(const Place& place, const AliasFacts& facts) {
   if (place.base == PlaceBase::kPointee || place.base == PlaceBase::kTarget) return false;
   return std::all_of(place.steps.begin(), place.steps.end(), [&](const Step& step) {
     return step.kind == StepKind::kMember ||
-           (step.kind == StepKind::kIndex && is_constant_step(step, values));
+           (step.kind == StepKind::kIndex && index_of(step, facts).has_value());
   });
 }
 
-}  // namespace ir::codegen
+std::optional<uint32_t> exposed_local(const Inst& inst, const Pou& pou) {
+  if (inst.op != Op::kAddress && inst.op != Op::kHandle) return std::nullopt;
+  const Place& place = pou.places[inst.place.index];
+  const bool behind = !place.steps.empty() && place.steps[0].kind == StepKind::kDeref;
+  if (place.base != PlaceBase::kLocal || behind) return std::nullopt;
+  return place.base_index;
+}
+
+}  // namespace ir

@@ -1,0 +1,308 @@
+// Value numbering. Each value gets a number; values of one number are equal. Along blocks
+// that have one way in, an operation on the same numbers, and a load of the same place without a
+// write in between, is not done again.
+//
+// In bytecode a variable at a fixed place is an operand, so loading it again costs nothing while
+// keeping it in a temporary does. Such loads only share a number; they are replaced inside one
+// block, where no temporary is made, or by constants. What takes an instruction to reach (an index,
+// an instance, a reference) is replaced by what was loaded before. Likewise a cheap operation
+// whose result goes into a variable is done there, as fast as a move.
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+
+#include "ir/opt/body.h"
+#include "ir/opt/passes.h"
+#include "ir/program/dominators.h"
+#include "ir/program/eval_scalar.h"
+
+namespace ir::opt {
+namespace {
+
+constexpr size_t kMaxKnown = 48;  // places that a block remembers; the oldest go
+constexpr int kMaxWay = 12;       // blocks to look back for operations
+constexpr uint32_t kNobody = 0xffffffffu;
+
+struct Key {
+  Op op = Op::kConst;
+  Scalar scalar = Scalar::kBool;
+  std::array<uint32_t, 3> operands{};
+  uint64_t low = 0;
+  uint64_t high = 0;
+  friend bool operator==(const Key&, const Key&) = default;
+};
+
+struct KeyHash {
+  size_t operator()(const Key& key) const {
+    uint64_t hash = static_cast<uint64_t>(key.op) << 8 | static_cast<uint64_t>(key.scalar);
+    for (const uint64_t part : {uint64_t{key.operands[0]}, uint64_t{key.operands[1]},
+                                uint64_t{key.operands[2]}, key.low, key.high}) {
+      hash = (hash ^ part) * 0x9e3779b97f4a7c15u;
+      hash ^= hash >> 29;
+    }
+    return hash;
+  }
+};
+
+struct Known {
+  PlaceId place;
+  ValueId value;
+  bool stored = false;  // by a store; else loaded
+  uint32_t block = 0;
+};
+
+bool commutes(Op op) {
+  return op == Op::kAdd || op == Op::kMul || op == Op::kAnd || op == Op::kOr || op == Op::kXor ||
+         op == Op::kEq || op == Op::kNe;
+}
+
+class Numbers {
+ public:
+  Numbers(const Program& program, Pou& pou)
+      : pou_(pou),
+        facts_(program, pou),
+        uses_(count_uses(pou)),
+        goes_to_memory_(pou.values.size()),
+        number_(pou.values.size()),
+        same_(pou),
+        states_(pou.blocks.size()) {
+    for (uint32_t v = 0; v < number_.size(); ++v) number_[v] = v;
+  }
+
+  void run() {
+    find_destinations();
+    const Entries entries = count_entries(pou_);
+    for (const uint32_t b : reverse_post_order(pou_)) {
+      block_ = b;
+      state_ = &states_[b];
+      if (entries.count[b] == 1 && !is_handler_entry(entries.from[b], b)) inherit(entries.from[b]);
+      for (const Inst& inst : pou_.blocks[b].insts) look_at(inst);
+    }
+    if (same_.empty()) return;
+    // Those that could trap, too: they did not, the first time.
+    for (Block& block : pou_.blocks) {
+      std::erase_if(block.insts, [this](const Inst& inst) {
+        return inst.result.valid() && same_(inst.result) != inst.result;
+      });
+    }
+    same_.apply(pou_);
+  }
+
+ private:
+  struct State {
+    std::unordered_map<Key, ValueId, KeyHash> operations;
+    std::vector<Known> known;
+    uint32_t before = kNobody;  // the block that leads here
+  };
+
+  bool is_handler_entry(uint32_t from, uint32_t to) const {
+    const Inst& end = pou_.blocks[from].insts.back();
+    return end.op == Op::kTry && end.targets[1].block.index == to;
+  }
+
+  void inherit(uint32_t from) {
+    state_->before = from;
+    state_->known = states_[from].known;
+  }
+
+  // Values that are computed right where they are wanted: stored, or passed to a parameter.
+  void find_destinations() {
+    for (const Block& block : pou_.blocks) {
+      for (const Inst& inst : block.insts) {
+        if (inst.op == Op::kStore && is_static(pou_.places[inst.place.index], facts_)) {
+          goes_to_memory_[inst.operands[0].index] = true;
+        }
+        for (const Target& target : inst.targets) {
+          for (const ValueId arg : target.args) goes_to_memory_[arg.index] = true;
+        }
+      }
+    }
+  }
+
+  void look_at(const Inst& inst) {
+    if (inst.op == Op::kConst) return number_constant(inst);
+    if (inst.op == Op::kLoad) return load(inst);
+    if (inst.op == Op::kStore) return store(inst);
+    if (inst.op == Op::kCopy || inst.op == Op::kInit) return forget(inst.place);
+    if (inst.op == Op::kCallNative) native(inst);
+    if (is_call(inst.op)) {
+      std::erase_if(state_->known, [this](const Known& known) {
+        return calls_may_change(place(known.place), facts_);
+      });
+    }
+    if (is_scalar_operation(inst.op) || inst.op == Op::kSizeOf || is_pure_native(inst)) {
+      operation(inst);
+    }
+  }
+
+  const Place& place(PlaceId id) const { return pou_.places[id.index]; }
+  uint32_t number(ValueId value) const { return number_[value.index]; }
+
+  void number_constant(const Inst& inst) {
+    Key key{Op::kConst, inst.scalar, {}, *facts_.constants[inst.result], 0};
+    number_[inst.result.index] = constants_.emplace(key, inst.result).first->second.index;
+  }
+
+  // --- operations -------------------------------------------------------------------
+
+  void operation(const Inst& inst) {
+    if (inst.operands.size() > 3) return;
+    Key key{inst.op,
+            inst.scalar,
+            {},
+            static_cast<uint64_t>(inst.low),
+            static_cast<uint64_t>(inst.high)};
+    for (size_t i = 0; i < inst.operands.size(); ++i) key.operands[i] = number(inst.operands[i]);
+    if (commutes(inst.op) && key.operands[0] > key.operands[1]) {
+      std::swap(key.operands[0], key.operands[1]);
+    }
+    if (inst.op == Op::kSizeOf) key.low = inst.type.index;
+    if (inst.op == Op::kCallNative) key.low = uint64_t{inst.native} << 8 | inst.operands.size();
+    // A conversion's meaning depends on what it converts from.
+    if (!inst.operands.empty()) {
+      key.high ^= static_cast<uint64_t>(pou_.values[inst.operands[0].index].scalar) << 56;
+    }
+    const ValueId leader = find(key);
+    if (!leader.valid()) {
+      state_->operations.emplace(key, inst.result);
+      return;
+    }
+    number_[inst.result.index] = number(leader);
+    if (pays(inst, leader)) replace(inst.result, leader);
+  }
+
+  ValueId find(const Key& key) const {
+    const State* state = state_;
+    for (int back = 0; back < kMaxWay; ++back) {
+      const auto found = state->operations.find(key);
+      if (found != state->operations.end()) return found->second;
+      if (state->before == kNobody) break;
+      state = &states_[state->before];
+    }
+    return {};
+  }
+
+  static bool is_expensive(const Inst& inst) {
+    switch (inst.op) {
+      case Op::kDiv:
+      case Op::kMod:
+      case Op::kSqrt:
+      case Op::kCallNative:
+      case Op::kCheckRange:
+      case Op::kCheckStep:
+      case Op::kRound:
+      case Op::kTrunc:
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  // Does it take fewer instructions to keep `leader` than to compute it again?
+  bool pays(const Inst& inst, ValueId leader) const {
+    if (is_expensive(inst)) return true;
+    // NOT becomes a part of what uses it.
+    if (inst.op == Op::kNot && inst.scalar == Scalar::kBool) return false;
+    if (uses_[leader.index] > 1) return true;
+    return !goes_to_memory_[leader.index] && !goes_to_memory_[inst.result.index];
+  }
+
+  void replace(ValueId value, ValueId by) {
+    same_.replace(value, by);
+    uses_[by.index] += uses_[value.index];
+    goes_to_memory_[by.index] = goes_to_memory_[by.index] || goes_to_memory_[value.index];
+  }
+
+  // --- memory -----------------------------------------------------------------------
+
+  std::optional<int64_t> index_of(const Step& step) const {
+    return step.value.valid() ? facts_.constant_index(step.value) : step.constant_index;
+  }
+
+  bool same_step(const Step& a, const Step& b) const {
+    if (a.kind != b.kind || a.index != b.index) return false;
+    if (a.kind != StepKind::kIndex) return true;
+    if (a.value.valid() && b.value.valid() && number(a.value) == number(b.value)) return true;
+    const std::optional<int64_t> left = index_of(a);
+    return left && left == index_of(b);
+  }
+
+  bool same_place(const Place& a, const Place& b) const {
+    const bool root = a.base == b.base && a.base_index == b.base_index && a.pou == b.pou &&
+                      a.constant == b.constant && a.base_type == b.base_type && a.type == b.type &&
+                      a.value.valid() == b.value.valid() && a.steps.size() == b.steps.size();
+    if (!root || (a.value.valid() && number(a.value) != number(b.value))) return false;
+    for (size_t i = 0; i < a.steps.size(); ++i) {
+      if (!same_step(a.steps[i], b.steps[i])) return false;
+    }
+    return true;
+  }
+
+  void load(const Inst& inst) {
+    if (inst.scalar == Scalar::kAddr) return;
+    for (Known& known : state_->known) {
+      if (!same_place(place(known.place), place(inst.place))) continue;
+      if (pou_.values[known.value.index].scalar != inst.scalar) return;
+      number_[inst.result.index] = number(known.value);
+      const bool here = known.block == block_;
+      const bool fixed = is_static(place(inst.place), facts_);
+      const bool pays = facts_.constants.known(known.value) ||
+                        (fixed ? here && !known.stored : here || !known.stored);
+      if (pays) return replace(inst.result, known.value);
+      known = {inst.place, inst.result, false, block_};
+      return;
+    }
+    remember({inst.place, inst.result, false, block_});
+  }
+
+  void remember(const Known& known) {
+    std::vector<Known>& all = state_->known;
+    if (all.size() >= kMaxKnown) all.erase(all.begin());
+    all.push_back(known);
+  }
+
+  void store(const Inst& inst) {
+    const Place& written = place(inst.place);
+    if (inst.scalar == Scalar::kAddr) {
+      // Another target: places behind in-outs are others now.
+      if (written.base != PlaceBase::kArg) state_->known.clear();
+      return;
+    }
+    forget(inst.place);
+    remember({inst.place, inst.operands[0], true, block_});
+  }
+
+  void forget(PlaceId written) {
+    std::erase_if(state_->known, [&](const Known& known) {
+      return may_alias(place(known.place), place(written), facts_);
+    });
+  }
+
+  // A native function uses the next frame, and writes into the string that it is given.
+  void native(const Inst& inst) {
+    const bool strings = !is_pure_native(inst);
+    std::erase_if(state_->known, [&](const Known& known) {
+      const Place& at = place(known.place);
+      if (at.base == PlaceBase::kArg) return true;
+      return strings &&
+             (calls_may_change(at, facts_) || (at.base == PlaceBase::kLocal && !at.steps.empty()));
+    });
+  }
+
+  Pou& pou_;
+  Facts facts_;
+  std::vector<uint32_t> uses_;
+  std::vector<bool> goes_to_memory_;
+  std::vector<uint32_t> number_;
+  Replacements same_;
+  std::vector<State> states_;
+  std::unordered_map<Key, ValueId, KeyHash> constants_;
+  uint32_t block_ = 0;
+  State* state_ = nullptr;
+};
+
+}  // namespace
+
+void number_values(const Program& program, Pou& pou) { Numbers(program, pou).run(); }
+
+}  // namespace ir::opt

@@ -1,0 +1,13 @@
+// The functions of passes.def, one file each. A pass may rely on a verified POU, and changes
+// nothing but the POU that it is given.
+#pragma once
+
+#include "ir/program/ir.h"
+
+namespace ir::opt {
+
+#define PASS(id, name, function, what) void function(const Program& program, Pou& pou);
+#include "ir/opt/passes.def"
+#undef PASS
+
+}  // namespace ir::opt
