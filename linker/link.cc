@@ -192,13 +192,14 @@ class Linker {
       if (!frame.ok()) return frame.error();
       context_.parameter_offsets.back() = std::move(frame->offsets);
     }
+    const ir::PouNames names = ir::pou_names(program_);
     for (const ir::Object* object : context_.objects) {
       if (object == nullptr) {
         add_pou(unused_pou());
       } else {
         base::Result<LinkedCode> linked = relocate(context_, *object);
         if (!linked.ok()) return linked.error();
-        linked->pou.identity = ir::identity(*object, program_);
+        linked->pou.identity = ir::identity(*object, program_, names);
         add_pou(std::move(linked).value());
       }
       if (image_.code.size() <= options_.max_code_units) continue;

@@ -10,8 +10,8 @@ constexpr uint32_t kMaxDepth = 1000;
 
 class Canonical {
  public:
-  Canonical(const Object& object, const Program& program)
-      : object_(object), program_(program), types_(program.types) {}
+  Canonical(const Object& object, const Program& program, const PouNames& names)
+      : object_(object), program_(program), names_(names), types_(program.types) {}
 
   base::Bytes bytes() {
     out_.text(fold_name(object_.name));
@@ -45,10 +45,8 @@ class Canonical {
   }
 
   const Pou* callee_of(const Slot& slot) const {
-    for (const Pou& pou : program_.pous) {
-      if (same_name(pou.name, object_.callees[slot.callee])) return &pou;
-    }
-    return nullptr;
+    const auto found = names_.find(fold_name(object_.callees[slot.callee]));
+    return found == names_.end() ? nullptr : &program_.pous[found->second.index];
   }
 
   void slot(const Slot& slot) {
@@ -152,18 +150,28 @@ class Canonical {
 
   const Object& object_;
   const Program& program_;
+  const PouNames& names_;
   const TypeTable& types_;
   base::ByteWriter out_;
 };
 
 }  // namespace
 
-base::Bytes canonical_bytes(const Object& object, const Program& program) {
-  return Canonical(object, program).bytes();
+PouNames pou_names(const Program& program) {
+  PouNames names;
+  names.reserve(program.pous.size());
+  for (uint32_t i = 0; i < program.pous.size(); ++i) {
+    names.try_emplace(fold_name(program.pous[i].name), PouId(i));
+  }
+  return names;
 }
 
-base::Digest identity(const Object& object, const Program& program) {
-  return base::sha256(canonical_bytes(object, program));
+base::Bytes canonical_bytes(const Object& object, const Program& program) {
+  return Canonical(object, program, pou_names(program)).bytes();
+}
+
+base::Digest identity(const Object& object, const Program& program, const PouNames& names) {
+  return base::sha256(Canonical(object, program, names).bytes());
 }
 
 }  // namespace ir

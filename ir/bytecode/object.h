@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "base/hash.h"
@@ -107,10 +108,15 @@ struct Object {
   std::vector<LineEntry> lines;  // sorted by unit
 };
 
+// POUs by folded name.
+using PouNames = std::unordered_map<std::string, PouId>;
+PouNames pou_names(const Program& program);
+
 // Canonical bytes: types, members, globals and callees by name and text, so equal
 // objects of different compilations are equal bytes.
 base::Bytes canonical_bytes(const Object& object, const Program& program);
-base::Digest identity(const Object& object, const Program& program);
+// Their digest; `names` are those of the program.
+base::Digest identity(const Object& object, const Program& program, const PouNames& names);
 // For `stc dump --object`.
 std::string disassemble(const Object& object, const Program& program);
 
