@@ -98,11 +98,11 @@ class Analysis {
     for_each_successor(machine_.blocks[b].end,
                        [&](uint32_t next) { out.unite(liveness_.live_in[next]); });
     if (handler != kNoNumber) out.unite(liveness_.live_in[handler]);
-    RegisterSet in = out;
-    in.subtract(effects_[b].writes);
-    in.unite(effects_[b].reads);
-    if (handler != kNoNumber) in.unite(liveness_.live_in[handler]);
-    return liveness_.live_in[b].unite(in);
+    scratch_ = out;
+    scratch_.subtract(effects_[b].writes);
+    scratch_.unite(effects_[b].reads);
+    if (handler != kNoNumber) scratch_.unite(liveness_.live_in[handler]);
+    return liveness_.live_in[b].unite(scratch_);
   }
 
   void find_assigned(RegisterSet at_entry) {
@@ -110,10 +110,10 @@ class Analysis {
     for (bool changed = true; changed;) {
       changed = false;
       for (size_t b = 0; b < blocks_; ++b) {
-        RegisterSet out = liveness_.assigned_in[b];
-        out.unite(effects_[b].writes);
+        scratch_ = liveness_.assigned_in[b];
+        scratch_.unite(effects_[b].writes);
         for_each_successor(machine_.blocks[b].end, [&](uint32_t next) {
-          changed |= liveness_.assigned_in[next].intersect(out);
+          changed |= liveness_.assigned_in[next].intersect(scratch_);
         });
       }
     }
@@ -123,6 +123,7 @@ class Analysis {
   size_t blocks_;
   std::vector<uint32_t> number_;  // register -> element of the sets
   std::vector<Effects> effects_;
+  RegisterSet scratch_;  // keeps its memory
   Liveness liveness_;
 };
 

@@ -1,118 +1,119 @@
 #include "ir/lower/tables.h"
 
-#include "base/bytes.h"
+#include <cstring>
 
 namespace ir::codegen {
 namespace {
 
-std::string key_of(char table, base::ByteWriter& writer) {
-  const base::Bytes& bytes = writer.bytes();
-  return table + std::string(bytes.begin(), bytes.end());
-}
+// Writes the parts of an entry, so that equal entries and no others have the same key.
+class Key {
+ public:
+  Key(std::string& out, char table) : out_(out) { out_.assign(1, table); }
+  template <class T>
+  Key& add(T v) {
+    static_assert(std::is_integral_v<T> || std::is_enum_v<T>);
+    char bytes[sizeof v];
+    std::memcpy(bytes, &v, sizeof v);
+    out_.append(bytes, sizeof v);
+    return *this;
+  }
+  Key& add(const Region& region) { return add(region.type.index).add(region.dim); }
+  Key& text(const std::string& v) {  // the last part
+    out_ += v;
+    return *this;
+  }
 
-void add(base::ByteWriter& writer, Region region) {
-  writer.u32(region.type.index);
-  writer.u8(region.dim);
-}
+ private:
+  std::string& out_;
+};
 
 }  // namespace
 
-template <class T>
-uint32_t Tables::intern(std::string key, std::vector<T>& table, T value) {
-  const auto [entry, added] =
-      numbers_.try_emplace(std::move(key), static_cast<uint32_t>(table.size()));
-  if (added) table.push_back(std::move(value));
+// `make` gives the entry whose key was written, if it is a new one.
+template <class T, class Make>
+uint32_t Tables::intern(std::vector<T>& table, const Make& make) {
+  const auto [entry, added] = numbers_.try_emplace(key_, static_cast<uint32_t>(table.size()));
+  if (added) table.push_back(make());
   return entry->second;
 }
 
 uint32_t Tables::place(const ObjectPlace& place) {
-  base::ByteWriter key;
-  key.u8(static_cast<uint8_t>(place.root));
-  key.u32(place.slot);
-  add(key, place.region);
-  add(key, place.result);
+  Key key(key_, 'p');
+  key.add(place.root).add(place.slot).add(place.region).add(place.result);
   for (const Step& step : place.steps) {
-    key.u8(static_cast<uint8_t>(step.kind));
-    key.u32(step.index);
-    key.i64(step.constant_index);
+    key.add(step.kind).add(step.index).add(step.constant_index);
   }
-  return intern(key_of('p', key), object_.places, place);
+  return intern(object_.places, [&] { return place; });
 }
 
 uint32_t Tables::scalar(Class cls, uint64_t bits) {
-  ObjectConstant constant;
-  constant.cls = cls;
-  for (uint32_t i = 0; i < class_size(cls); ++i) {
-    constant.bytes.push_back(static_cast<uint8_t>(bits >> (8 * i)));
-  }
-  base::ByteWriter key;
-  key.u8(static_cast<uint8_t>(cls));
-  key.raw(constant.bytes);
-  return intern(key_of('c', key), object_.constants, std::move(constant));
+  const uint32_t size = class_size(cls);
+  const uint64_t mask = size < 8 ? (uint64_t{1} << (8 * size)) - 1 : ~uint64_t{0};
+  Key(key_, 'c').add(cls).add(bits & mask);
+  return intern(object_.constants, [&] {
+    ObjectConstant constant;
+    constant.cls = cls;
+    for (uint32_t i = 0; i < size; ++i) {
+      constant.bytes.push_back(static_cast<uint8_t>(bits >> (8 * i)));
+    }
+    return constant;
+  });
 }
 
 uint32_t Tables::initial_value(TypeId type, ConstId value) {
-  base::ByteWriter key;
-  key.u32(type.index);
-  key.u32(value.index);
-  ObjectConstant constant;
-  constant.type = type;
-  constant.value = value;
-  return intern(key_of('i', key), object_.constants, std::move(constant));
+  Key(key_, 'i').add(type.index).add(value.index);
+  return intern(object_.constants, [&] {
+    ObjectConstant constant;
+    constant.type = type;
+    constant.value = value;
+    return constant;
+  });
 }
 
 uint32_t Tables::region(Region region) {
-  base::ByteWriter key;
-  add(key, region);
-  return intern(key_of('r', key), object_.regions, region);
+  Key(key_, 'r').add(region);
+  return intern(object_.regions, [&] { return region; });
 }
 
 uint32_t Tables::bound(TypeId array, uint8_t dim, const std::string& name) {
-  base::ByteWriter key;
-  key.u32(array.index);
-  key.u8(dim);
-  key.text(name);
-  return intern(key_of('b', key), object_.bounds, Bound{array, dim, name});
+  Key(key_, 'b').add(array.index).add(dim).text(name);
+  return intern(object_.bounds, [&] { return Bound{array, dim, name}; });
 }
 
 uint32_t Tables::range(int64_t low, int64_t high, const std::string& name) {
-  base::ByteWriter key;
-  key.i64(low);
-  key.i64(high);
-  key.text(name);
-  return intern(key_of('g', key), object_.ranges, Range{low, high, name});
+  Key(key_, 'g').add(low).add(high).text(name);
+  return intern(object_.ranges, [&] { return Range{low, high, name}; });
 }
 
 uint32_t Tables::callee(const std::string& name) {
-  base::ByteWriter key;
-  key.text(fold_name(name));
-  return intern(key_of('f', key), object_.callees, name);
+  Key(key_, 'f').text(fold_name(name));
+  return intern(object_.callees, [&] { return name; });
 }
 
 uint32_t Tables::argument_slot(uint32_t callee, uint32_t param, Class cls, bool aggregate,
                                Region region) {
-  base::ByteWriter key;
-  key.u32(callee);
-  key.u32(param);
-  Slot slot;
-  slot.kind = SlotKind::kArg;
-  slot.callee = callee;
-  slot.param = param;
-  slot.cls = cls;
-  slot.aggregate = aggregate;
-  slot.region = region;
-  return intern(key_of('a', key), object_.slots, std::move(slot));
+  Key(key_, 'a').add(callee).add(param);
+  return intern(object_.slots, [&] {
+    Slot slot;
+    slot.kind = SlotKind::kArg;
+    slot.callee = callee;
+    slot.param = param;
+    slot.cls = cls;
+    slot.aggregate = aggregate;
+    slot.region = region;
+    return slot;
+  });
 }
 
 uint32_t Tables::native_slot(uint32_t number, Class cls) {
-  base::ByteWriter key;
-  key.u32(number);
-  key.u8(static_cast<uint8_t>(cls));
-  Slot slot;
-  slot.kind = SlotKind::kNativeArg;
-  slot.param = number;
-  slot.cls = cls;
-  return intern(key_of('n', key), object_.slots, std::move(slot));
+  Key(key_, 'n').add(number).add(cls);
+  return intern(object_.slots, [&] {
+    Slot slot;
+    slot.kind = SlotKind::kNativeArg;
+    slot.param = number;
+    slot.cls = cls;
+    return slot;
+  });
 }
 
 }  // namespace ir::codegen

@@ -25,10 +25,11 @@ class Tables {
   uint32_t native_slot(uint32_t number, Class cls);
 
  private:
-  template <class T>
-  uint32_t intern(std::string key, std::vector<T>& table, T value);
+  template <class T, class Make>
+  uint32_t intern(std::vector<T>& table, const Make& make);
 
   Object& object_;
+  std::string key_;  // of the entry that is looked up
   std::unordered_map<std::string, uint32_t> numbers_;
 };
 
