@@ -1,16 +1,16 @@
 #!/bin/sh
 # The optimiser as people meet it: on by default, off with --no-opt, chosen with --passes. Whatever is chosen, a program
-# does the same, and it never becomes longer. The same source is the same image.
+# does the same. It never becomes longer, but for bodies of functions in place of calls. The same source is the same image.
 . "$(dirname "$0")/lib.sh"
 hash_of() { stvm run "$1" --scans 500 --virtual-time --hash 2>/dev/null | tail -1; }
 units_of() { stc dump --code "$@" 2>/dev/null | grep -c '^[0-9]'; }
 
+passes=$(stc explain passes | awk 'NR > 2 && $1 != "inline" { print $1 }')
+all_but_inline=$(echo $passes | tr ' ' ',')
 for project in "$source_dir"/examples/*/ "$source_dir"/bench/programs/*.st; do
   [ -e "$project" ] && stc build "$project" -q -o project.img 2>/dev/null || continue
   plain=$(units_of --no-opt "$project")
-  best=$(units_of "$project")
-  [ "$best" -le "$plain" ] || fail "$project: $best units, without optimising $plain"
-  for pass in $(stc explain passes | awk 'NR > 2 { print $1 }'); do
+  for pass in $passes $all_but_inline; do
     one=$(units_of --passes "$pass" "$project")
     [ "$one" -le "$plain" ] || fail "$project: $one units with pass $pass, without $plain"
   done
