@@ -169,7 +169,8 @@ SourceParts::SourceParts(const base::SourceMap& sources) {
     if (!sources.is_source(file)) continue;
     std::string_view name = sources.file_name(file);
     name.remove_prefix(name.find_last_of("/\\") + 1);
-    sources_.push_back({std::string(name.substr(0, name.rfind('.'))), {}});
+    sources_.push_back(
+        {std::string(name.substr(0, name.rfind('.'))), sources.begin(file).offset, {}});
     cut(sources.text(file), sources.begin(file).offset, sources_.back());
   }
 }
@@ -195,16 +196,15 @@ void SourceParts::cut(std::string_view text, uint32_t begin, Source& out) {
 }
 
 void SourceParts::tag(Node element, base::SourcePos at) const {
-  const Part* found = nullptr;
-  for (const Source& source : sources_) {
-    auto next =
-        std::upper_bound(source.parts.begin(), source.parts.end(), at.offset,
-                         [](uint32_t offset, const Part& part) { return offset < part.begin; });
-    if (next == source.parts.begin()) continue;
-    const Part* own = &*(next - 1);
-    if (found == nullptr || own->begin > found->begin) found = own;
-  }
-  if (found == nullptr || found->number == 0) return;
+  auto source =
+      std::upper_bound(sources_.begin(), sources_.end(), at.offset,
+                       [](uint32_t offset, const Source& each) { return offset < each.begin; });
+  if (source == sources_.begin()) return;
+  const std::vector<Part>& parts = (source - 1)->parts;
+  auto found =
+      std::upper_bound(parts.begin(), parts.end(), at.offset,
+                       [](uint32_t offset, const Part& part) { return offset < part.begin; });
+  if (found == parts.begin() || (--found)->number == 0) return;
   Node add = element.child("addData");
   if (!add) add = element.append_child("addData");
   Node data = add.append_child("data");

@@ -39,6 +39,7 @@ class SourceParts {
   };
   struct Source {
     std::string name;
+    uint32_t begin = 0;  // in the SourceMap, where those of sources ascend
     std::vector<Part> parts;
   };
   void cut(std::string_view text, uint32_t begin, Source& out);

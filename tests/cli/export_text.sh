@@ -164,6 +164,28 @@ expect 0 stc import lies.xml -o back
 said 'W0071.*`A` was changed'
 grep -q 'n + 1;' back/two.st || fail "text against elements"
 
+# Parts as no document of ours has them: everything is somewhere, and nothing outside of the folder.
+sed 's/number="1" elements/number="2" elements/' two.xml >hostile.xml
+rm -rf back
+expect 0 stc import hostile.xml -o back
+grep -q 'm := m + 1' back/two.st && grep -q 'PROGRAM A' back/A.st || fail "a number twice"
+sed 's/<source name="two"/<source name="..\/..\/evil"/' two.xml >hostile.xml
+rm -rf back
+expect 0 stc import hostile.xml -o back
+[ "$(ls back)" = '______evil.st' ] || fail "a name of a file: $(ls back)"
+sed 's/elements="1"/elements="99999999999"/; s/part number="2" digest/part number="77" digest/' two.xml >hostile.xml
+rm -rf back
+expect 0 stc import hostile.xml -o back
+grep -q 'FUNCTION_BLOCK B' back/B.st || fail "an unknown number"
+grep -q 'PROGRAM A' back/two.st || fail "a number of elements"
+# In front of a section of variables, XML itself has a place.
+printf 'PROGRAM P\n(* the counters *)\nVAR n : INT; END_VAR\n  n := n + 1;\nEND_PROGRAM\n' >section.st
+expect 0 stc export section.st -o section.xml --without-sources
+silent_on err
+rm -rf back
+expect 0 stc import section.xml -o back
+grep -q '^(\* the counters \*)$' back/P.st || fail "the comment of a section"
+
 # Places of drawings stay, and so does addData of others.
 samples=$source_dir/tests/fuzz/corpus/plcopen
 for name in ladder blocks chart objects declarations; do
