@@ -177,9 +177,10 @@ void put_headers(Node project, const std::string& name) {
   }
 }
 
-// One message for each POU or type.
+// One message for each POU or type; for nobody's, what is said of configurations.
 void report_unsaid(const ExportInput& input, const std::string& owner,
-                   const std::vector<std::string>& texts, base::Diagnostics& diagnostics) {
+                   const std::vector<std::string>& texts, SourceParts* parts,
+                   base::Diagnostics& diagnostics) {
   const frontend::Tree& tree = input.tree;
   base::SourceSpan at;
   for (const frontend::PouDecl& pou : tree.pous) {
@@ -187,6 +188,10 @@ void report_unsaid(const ExportInput& input, const std::string& owner,
   }
   for (const frontend::TypeDecl& type : tree.types) {
     if (base::same_name(type.name.text, owner)) at = type.name.span;
+  }
+  if (parts != nullptr && !owner.empty()) parts->mark_partial(at.begin);
+  for (const ConfigDecl& config : tree.configs) {
+    if (parts != nullptr && owner.empty()) parts->mark_partial(config.span.begin);
   }
   std::string text = owner.empty() ? std::string() : "`" + owner + "`: ";
   for (size_t i = 0; i < texts.size() && i < 5; ++i) text += (i == 0 ? "" : "; ") + texts[i];
@@ -208,17 +213,18 @@ std::optional<std::string> export_document(const ExportInput& input,
   project.append_attribute("xmlns") = name_space(input.form);
   put_headers(project, input.name);
   const uint32_t before = diagnostics.error_count();
-  Writer(input, diagnostics).project(project);
+  Writer writer(input, diagnostics);
+  writer.project(project);
   pugi::xml_document other;
   if (input.form == Form::kIec10) {
     for (const auto& [owner, texts] : to_iec10(project, other)) {
-      report_unsaid(input, owner, texts, diagnostics);
+      report_unsaid(input, owner, texts, writer.parts(), diagnostics);
     }
   }
   if (diagnostics.error_count() != before) return std::nullopt;
   const Node whole = input.form == Form::kIec10 ? other.document_element() : project;
-  if (input.with_sources) {
-    seal_sources(whole);
+  if (writer.parts() != nullptr) {
+    writer.parts()->seal(whole);
   } else {
     report_lost_comments(input, whole, diagnostics);
   }

@@ -11,6 +11,7 @@ using frontend::TokenKind;
 
 void Writer::fail(base::SourceSpan at, std::string text) {
   if (parts_) {
+    parts_->mark_partial(at.begin);
     return diagnostics_.add(base::DiagnosticCode::kXmlTextOnly, at, std::move(text),
                             "other tools leave it out; stc reads it back");
   }

@@ -195,22 +195,29 @@ void SourceParts::cut(std::string_view text, uint32_t begin, Source& out) {
   add(text.size(), 0);
 }
 
-void SourceParts::tag(Node element, base::SourcePos at) const {
+uint32_t SourceParts::number_at(base::SourcePos at) const {
   auto source =
       std::upper_bound(sources_.begin(), sources_.end(), at.offset,
                        [](uint32_t offset, const Source& each) { return offset < each.begin; });
-  if (source == sources_.begin()) return;
+  if (source == sources_.begin()) return 0;
   const std::vector<Part>& parts = (source - 1)->parts;
   auto found =
       std::upper_bound(parts.begin(), parts.end(), at.offset,
                        [](uint32_t offset, const Part& part) { return offset < part.begin; });
-  if (found == parts.begin() || (--found)->number == 0) return;
+  return found == parts.begin() ? 0 : (found - 1)->number;
+}
+
+void SourceParts::mark_partial(base::SourcePos at) { partial_.insert(number_at(at)); }
+
+void SourceParts::tag(Node element, base::SourcePos at) const {
+  const uint32_t number = number_at(at);
+  if (number == 0) return;
   Node add = element.child("addData");
   if (!add) add = element.append_child("addData");
   Node data = add.append_child("data");
   data.append_attribute("name") = kPartData;
   data.append_attribute("handleUnknown") = "implementation";
-  data.append_child("part").append_attribute("number") = found->number;
+  data.append_child("part").append_attribute("number") = number;
 }
 
 void SourceParts::put(Node project) const {
@@ -231,7 +238,7 @@ void SourceParts::put(Node project) const {
   }
 }
 
-void seal_sources(Node root) {
+void SourceParts::seal(Node root) const {
   std::map<uint64_t, std::pair<Node, uint32_t>> parts;
   for (Node source : xml::children(sources_of(root))) {
     for (Node part : xml::children(source)) {
@@ -250,7 +257,10 @@ void seal_sources(Node root) {
     part.append_attribute("digest") =
         digest_of(node, hash_of(raw_text(found->second.first))).c_str();
   }
-  for (auto& [number, part] : parts) part.first.append_attribute("elements") = part.second;
+  for (auto& [number, part] : parts) {
+    part.first.append_attribute("elements") = part.second;
+    if (partial_.count(number) != 0) part.first.append_attribute("partial") = "true";
+  }
 }
 
 // --- reading
@@ -328,6 +338,25 @@ void SourceTexts::drop_findings(xml::Imported& out) {
   out.findings.resize(kept);
 }
 
+namespace {
+
+// `names` of changed elements; empty: there are none left.
+void report_changed(Node part, const std::string& names, xml::Reporter& report) {
+  if (names.empty()) {
+    return report.add(xml::Code::kXmlLeftOut, part,
+                      "a declaration that was written here is no longer there");
+  }
+  const std::string text = names + " was changed since it was exported, so its elements count, ";
+  if (xml::boolean(xml::attribute(part, "partial")).value_or(false)) {
+    return report.add(xml::Code::kXmlNotUnderstood, part, text + "which say less than its text did",
+                      "compare it with the text, which stands here, and export it again");
+  }
+  report.add(xml::Code::kXmlLeftOut, part,
+             text + "and comments that only its text had are left out");
+}
+
+}  // namespace
+
 void SourceTexts::finish(xml::Reporter& report) {
   if (!extents_.empty()) drop_findings(report.out());
   for (const Source& source : sources_) {
@@ -345,12 +374,7 @@ void SourceTexts::finish(xml::Reporter& report) {
       }
       if (!text.empty() && text.back() != '\n') text += '\n';
       text += part.found;
-      report.add(xml::Code::kXmlLeftOut, node,
-                 part.names.empty()
-                     ? "a declaration that was written here is no longer there"
-                     : part.names +
-                           " was changed since it was exported, so its elements count, "
-                           "and comments that only its text had are left out");
+      report_changed(node, part.names, report);
     }
     report.out().sources.push_back({source.name + ".st", std::move(text)});
   }

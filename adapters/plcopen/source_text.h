@@ -4,11 +4,13 @@
 // addData of the project, <sources>, holds each source as it is, cut into parts: declarations and
 // what stands between them. The elements of a declaration carry the number of its part and a digest
 // of themselves and of that text. On reading, a part whose elements are as they were written gives
-// its text; one that somebody changed gives what its elements say, and one that has no elements in
-// XML always gives its text. Other tools leave all of it out.
+// its text; one that somebody changed gives what its elements say, with a warning (W0070) where
+// that is less than the text said, and one that has no elements in XML always gives its text. Other
+// tools leave all of it out.
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,10 @@ class SourceParts {
   // `element` says what is declared at `at`. Its addData gets the number of the part.
   void tag(xml::Node element, base::SourcePos at) const;
   void put(xml::Node project) const;  // all of them, into its addData
+  // Elements do not say all of what stands at `at`.
+  void mark_partial(base::SourcePos at);
+  // Of the document that is complete: digests, and how many elements each part has.
+  void seal(xml::Node root) const;
 
  private:
   struct Part {
@@ -42,13 +48,13 @@ class SourceParts {
     uint32_t begin = 0;  // in the SourceMap, where those of sources ascend
     std::vector<Part> parts;
   };
+  uint32_t number_at(base::SourcePos at) const;  // 0: none
   void cut(std::string_view text, uint32_t begin, Source& out);
 
   std::vector<Source> sources_;
+  std::set<uint64_t> partial_;  // numbers
   uint32_t last_ = 0;
 };
-// Of a document that is complete: digests, and how many elements each part has.
-void seal_sources(xml::Node root);
 
 // --- reading
 class SourceTexts {

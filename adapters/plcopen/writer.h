@@ -19,6 +19,8 @@ class Writer {
   }
 
   void project(Node project);
+  // The text of the sources; null: none goes into the document.
+  SourceParts* parts() { return parts_ ? &*parts_ : nullptr; }
 
  private:
   using Pou = frontend::PouDecl;

@@ -154,6 +154,16 @@ for form in tc6-2.01 61131-10; do
   expect 0 stc import added.xml -o back
   cmp two.st back/two.st && grep -q 'PROGRAM C' back/C.st || fail "$form: what was added"
 done
+# What its elements do not say is lost then: a warning, not a note.
+for form in tc6-2.01 61131-10; do
+  expect 0 stc export all.st -o all.xml --as $form
+  sed 's/interval="T#10ms"/interval="T#20ms"/' all.xml >changed.xml
+  expect 0 stc check changed.xml
+  said 'changed\.xml:[0-9]+:[0-9]+: warning\[W0070\]: `Conf` was changed since it was exported, so its elements count, which say less than its text did'
+  rm -rf back
+  expect 0 stc import changed.xml -o back
+  grep -q 'INTERVAL := T#20ms' back/all.st || fail "$form: the text of before"
+done
 # Text that somebody edited does not speak against the elements.
 expect 0 stc export two.st -o two.xml
 sed 's/n := n + 1; \/\/ one/n := n + 9; \/\/ one/' two.xml >edited.xml
