@@ -11,6 +11,7 @@
 #include <array>
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 
 extern char** environ;
 
@@ -26,7 +27,17 @@ std::string read_all(int file) {
   return text;
 }
 
+double milliseconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_usec) / 1e3;
+}
+
 }  // namespace
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) / 1e9;
+}
 
 Child run_child(const std::vector<std::string>& command, bool quiet) {
   Child made;
@@ -58,6 +69,7 @@ Child run_child(const std::vector<std::string>& command, bool quiet) {
   made.ok = failed == 0 && wait4(child, &status, 0, &usage) == child && status == 0;
   const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - begin;
   made.wall_ms = wall.count();
+  made.cpu_ms = milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
   made.peak_kib = static_cast<uint64_t>(usage.ru_maxrss);
   return made;
 }

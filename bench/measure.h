@@ -12,6 +12,7 @@ struct Child {
   bool ok = false;  // started, and ended with 0
   std::string output;
   double wall_ms = 0;
+  double cpu_ms = 0;  // its own and the system's for it
   // At most resident at a time. At least what this process itself had when it began the child.
   uint64_t peak_kib = 0;
 };
@@ -19,6 +20,9 @@ Child run_child(const std::vector<std::string>& command, bool quiet = false);
 
 // What a command printed; empty when it could not be started or failed.
 std::string output_of(const std::vector<std::string>& command);
+
+// Of this process; other work on the machine does not count.
+double cpu_seconds();
 
 double median(std::vector<double> values);
 double fastest(const std::vector<double>& values);
