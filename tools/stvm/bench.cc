@@ -7,6 +7,7 @@
 #include "tools/common/json.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/compiler.h"
+#include "tools/stvm/tier.h"
 #include "tools/stvm/trap_text.h"
 #include "vm/runtime/clocks.h"
 #include "vm/runtime/io.h"
@@ -19,6 +20,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--scans", "N", "scans that are measured (default 10000); a tenth more run before"},
     {"--batch", "N", "scans between two looks at the clock (default 1); the quotient counts"},
     {"--period", "NS", "virtual time between two scans (default 10000000)"},
+    STVM_TIER_OPTION,
     STVM_DIALECT_OPTION,
     STVM_FORMAT_OPTION,
 };
@@ -80,6 +82,7 @@ struct Settings {
   uint64_t scans = 0;
   uint64_t batch = 1;
   int64_t period_ns = 0;
+  vm::Tier tier = vm::Tier::kAuto;
 };
 
 base::Result<Settings> read_settings(const tools::Options& options) {
@@ -98,7 +101,9 @@ base::Result<Settings> read_settings(const tools::Options& options) {
   if (*batch == 0 || *batch > *scans) {
     return base::Error{base::Refusal::kUsage, "--batch is 1 to the number of scans"};
   }
-  return Settings{*json, *scans, *batch, static_cast<int64_t>(*period)};
+  base::Result<vm::Tier> tier = tier_of(options);
+  if (!tier.ok()) return tier.error();
+  return Settings{*json, *scans, *batch, static_cast<int64_t>(*period), *tier};
 }
 
 base::Result<Timing> measure(const Settings& settings, vm::Controller& controller,
@@ -123,17 +128,18 @@ base::Result<Timing> measure(const Settings& settings, vm::Controller& controlle
   return summarise(times);
 }
 
-void print(const Settings& settings, const std::string& program, const Timing& timing) {
+void print(const Settings& settings, const std::string& program, const char* tier,
+           const Timing& timing) {
   if (!settings.json) {
-    std::printf("%s: %.0f ns min, %.0f ns median, %.0f ns p99 of %llu scans\n", program.c_str(),
-                timing.min, timing.median, timing.p99,
-                static_cast<unsigned long long>(settings.scans));
+    std::printf("%s: %.0f ns min, %.0f ns median, %.0f ns p99 of %llu scans (%s)\n",
+                program.c_str(), timing.min, timing.median, timing.p99,
+                static_cast<unsigned long long>(settings.scans), tier);
     return;
   }
   tools::JsonWriter json;
   json.begin_object().field("program", program).field("scans", settings.scans);
   json.field("min_ns", timing.min).field("median_ns", timing.median).field("p99_ns", timing.p99);
-  json.field("tier", "interp").end_object();
+  json.field("tier", tier).end_object();
   std::fputs(json.finish().c_str(), stdout);
 }
 
@@ -146,11 +152,14 @@ base::Status bench(const tools::Options& options) {
   if (!program.ok()) return program.error();
   vm::VirtualClock clock;
   vm::NullIo io;
-  auto controller = vm::Controller::start(*image, {}, clock, io);
+  vm::ControllerOptions limits;
+  limits.tier.tier = settings->tier;
+  auto controller = vm::Controller::start(*image, limits, clock, io);
   if (!controller.ok()) return controller.error();
   base::Result<Timing> timing = measure(*settings, **controller, *program);
   if (!timing.ok()) return timing.error();
-  print(*settings, image->image().instances[*program].name, *timing);
+  const bool native = (*controller)->generation().native() != nullptr;
+  print(*settings, image->image().instances[*program].name, native ? "native" : "interp", *timing);
   return base::Ok{};
 }
 

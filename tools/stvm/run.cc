@@ -13,6 +13,7 @@
 #include "tools/stvm/plot.h"
 #include "tools/stvm/run_resources.h"
 #include "tools/stvm/stop_signal.h"
+#include "tools/stvm/tier.h"
 #include "tools/stvm/trace.h"
 #include "tools/stvm/trap_text.h"
 #include "vm/runtime/clocks.h"
@@ -33,6 +34,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--hash", nullptr, "print the hash of the state at the end"},
     {"--hard-mode", "MODE", "fuel1, identity or move: nothing may come out differently"},
     {"--every", "K", "identity, move: change after every K-th scan (default 1)"},
+    STVM_TIER_OPTION,
     STVM_DEVICE_OPTION,
     STVM_DIALECT_OPTION,
     STVM_FORMAT_OPTION,
@@ -44,6 +46,7 @@ struct Settings {
   bool json = false;
   HardMode hard_mode = HardMode::kNone;
   std::optional<uint64_t> scans;
+  vm::Tier tier = vm::Tier::kAuto;
   uint64_t every = 1;
   std::vector<std::string> print;
 };
@@ -58,6 +61,9 @@ base::Result<Settings> read_settings(const tools::Options& options) {
   if (!scans.ok()) return scans.error();
   base::Result<uint64_t> every = options.number("--every", 1);
   if (!every.ok()) return every.error();
+  base::Result<vm::Tier> tier = tier_of(options);
+  if (!tier.ok()) return tier.error();
+  out.tier = *tier;
   out.json = *json;
   out.hard_mode = *hard_mode;
   if (options.has("--scans")) out.scans = *scans;
@@ -156,6 +162,7 @@ base::Result<int> run_alone(const Settings& settings,
   const bool virtual_time = options.has("--virtual-time");
   vm::Clock& clock = virtual_time ? static_cast<vm::Clock&>(virtual_clock) : real_clock;
   ResourceController::Settings start{options, {}, virtual_time, nullptr, program, 0};
+  start.limits.tier.tier = settings.tier;
   if (settings.hard_mode == HardMode::kFuel1) start.limits.fuel_slice = 1;
   auto running = ResourceController::start(start, clock, {});
   if (!running.ok()) return running.error();

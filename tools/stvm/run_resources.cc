@@ -10,6 +10,7 @@
 #include "tools/stvm/commands.h"
 #include "tools/stvm/stop_signal.h"
 #include "tools/stvm/trace.h"
+#include "tools/stvm/tier.h"
 #include "tools/stvm/trap_text.h"
 #include "vm/runtime/clocks.h"
 
@@ -222,6 +223,10 @@ base::Result<int> run_resources(const std::vector<Resource>& resources, const Ru
     return base::Error{base::Refusal::kUsage,
                        std::string(option) + " is for one resource; name one image"};
   }
+  base::Result<vm::Tier> tier = tier_of(options);
+  if (!tier.ok()) return tier.error();
+  vm::ControllerOptions limits;
+  limits.tier.tier = *tier;
   auto exchange = make_exchange(resources);
   if (!exchange.ok()) return exchange.error();
   const bool virtual_time = options.has("--virtual-time");
@@ -229,7 +234,7 @@ base::Result<int> run_resources(const std::vector<Resource>& resources, const Ru
   std::vector<vm::VirtualClock> virtual_clocks(resources.size());
   Running running;
   for (size_t i = 0; i < resources.size(); ++i) {
-    const ResourceController::Settings of_one{options,         {},        virtual_time,
+    const ResourceController::Settings of_one{options,         limits,    virtual_time,
                                               exchange->get(), resources, i};
     vm::Clock& clock = virtual_time ? static_cast<vm::Clock&>(virtual_clocks[i]) : real_clock;
     auto started = ResourceController::start(of_one, clock, {});

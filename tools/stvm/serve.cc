@@ -13,6 +13,7 @@
 #include "tools/stvm/service_notify.h"
 #include "tools/stvm/state_folder.h"
 #include "tools/stvm/stop_signal.h"
+#include "tools/stvm/tier.h"
 #include "vm/runtime/clocks.h"
 
 namespace stvm {
@@ -24,6 +25,7 @@ constexpr tools::OptionRow kOptions[] = {
     STVM_DIR_OPTION,
     {"--data-limit", "BYTES",
      "of all data areas of a change together (default: no limit, or what the project says)"},
+    STVM_TIER_OPTION,
     {"--code-limit", "BYTES", "of all code, two slots for each POU (default: 2 GiB)"},
     {"--fifo", "PRIORITY", "SCHED_FIFO for the control thread, 1 to 99"},
     {"--cpu", "N", "keep the control thread on this processor"},
@@ -112,6 +114,9 @@ base::Result<vm::ControllerOptions> limits_of(const tools::Options& options) {
   base::Result<uint64_t> code_limit = options.number("--code-limit", limits.code_limit);
   if (!code_limit.ok()) return code_limit.error();
   limits.code_limit = *code_limit;
+  base::Result<vm::Tier> tier = tier_of(options);
+  if (!tier.ok()) return tier.error();
+  limits.tier.tier = *tier;
   return limits;
 }
 

@@ -61,6 +61,9 @@ struct Context {
   uint32_t exposures_made = 0;
   uint32_t task = 0;
   const Generation* generation = nullptr;
+  uint8_t* memory = nullptr;
+  const uint8_t* consts = nullptr;
+  void* native_stack = nullptr;  // of the machine, where native code was entered
   const BoundEntry* bounds = nullptr;
   const RangeEntry* ranges = nullptr;
   int64_t task_time_ns = 0;
@@ -86,9 +89,10 @@ struct Context {
 
 using Handler = void (*)(const ir::Unit*, uint8_t*, uint8_t*, uint8_t*, const uint8_t*, Context*);
 
-// By handler number; Generation::build puts these numbers into the op fields.
+// By handler number; Generation::build puts these numbers into the op fields. Behind those of the
+// opcodes come the two of side units (vm/native/emit.h).
 struct HandlerTable {
-  Handler of[kHandlerCount];
+  Handler of[kHandlerCount + 2];
 };
 extern const HandlerTable kHandlers __attribute__((visibility("hidden")));
 

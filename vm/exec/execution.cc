@@ -6,6 +6,7 @@
 #include "base/limits.h"
 #include "vm/exec/context.h"
 #include "vm/exec/references.h"
+#include "vm/native/program.h"
 
 namespace vm {
 
@@ -33,10 +34,13 @@ struct Interpreter {
     ctx.tries_end = e.tries_.data() + e.tries_.size();
     ctx.caught = e.caught_;
     ctx.generation = &generation;
+    ctx.memory = e.memory_;
+    ctx.consts = e.memory_ + generation.pool_offset();
     ctx.bounds = generation.bounds().data();
     ctx.ranges = generation.ranges().data();
     ctx.task_time_ns = e.task_time_ns_;
     ctx.pc = e.pc_;
+    if (generation.native() != nullptr) ctx.pc = generation.native()->entry(e.pou_, e.pc_);
     ctx.frame = e.memory_ + e.frame_;
     ctx.self = e.memory_ + e.self_;
     return ctx;
@@ -55,6 +59,8 @@ struct Interpreter {
     if (ctx.trap_has_place) return;
     ctx.trap.pou = ctx.pou;
     ctx.trap.instance = ctx.instance;
+    const native::Program* const native = e.generation_->native();
+    if (native != nullptr) ctx.pc = native->real_unit(ctx.pou, ctx.pc);
     ctx.trap.unit = static_cast<uint32_t>(ctx.pc - e.generation_->pous()[ctx.pou].code);
     ctx.trap_has_place = true;
   }

@@ -35,8 +35,8 @@ TrapText describe(const ir::Image& image, const Trap& trap);
 
 struct CallRecord {
   const ir::Unit* resume = nullptr;
-  uint32_t frame = 0;
-  uint32_t self = 0;
+  uint8_t* frame = nullptr;
+  uint8_t* self = nullptr;
   uint32_t pou = 0;
   uint32_t instance = 0;
 };

@@ -6,6 +6,7 @@
 #include "stdlib/native/natives.h"
 #include "vm/exec/handle.h"
 #include "vm/exec/references.h"
+#include "vm/native/program.h"
 
 namespace vm {
 namespace {
@@ -156,15 +157,14 @@ struct Semantics<ir::Opcode::ADVANCE_TIME> : Special {
   if (callee.recursion_depth != 0 && is_too_deep(ctx, number)) [[unlikely]] {   \
     return raise(ctx, ir::TrapKind::kStack, pc, frame, self);                   \
   }                                                                             \
-  *ctx->call++ = {pc + (units), static_cast<uint32_t>(frame - mem),             \
-                  static_cast<uint32_t>(self - mem), ctx->pou, ctx->instance};  \
+  *ctx->call++ = {pc + (units), frame, self, ctx->pou, ctx->instance};          \
   ctx->pou = (number);                                                          \
   ctx->instance = (callee_instance);                                            \
   uint8_t* const callee_frame = frame + pc->a * 8u;                             \
   if (--ctx->fuel == 0) [[unlikely]] {                                          \
     return stop(ctx, Exit::kSuspended, callee.code, callee_frame, callee_self); \
   }                                                                             \
-  STC_GO(callee.code, callee_frame, callee_self)
+  STC_GO(callee.entry, callee_frame, callee_self)
 
 template <>
 struct Semantics<ir::Opcode::CALL> : Special {
@@ -292,7 +292,7 @@ struct Semantics<ir::Opcode::RET> : Special {
     const CallRecord& caller = *--ctx->call;
     ctx->pou = caller.pou;
     ctx->instance = caller.instance;
-    STC_GO(caller.resume, mem + caller.frame, mem + caller.self);
+    STC_GO(caller.resume, caller.frame, caller.self);
   }
 };
 template <>
@@ -339,5 +339,26 @@ struct Semantics<ir::Opcode::TRAP_KIND> : Special {
 };
 
 STC_INSTANTIATE_GROUP(kControlHandlers);
+
+// --- side units of native code ----------------------------------------------------------------
+
+// Runs machine code until its POU returns, or the interpreter is to go on somewhere.
+void resume_native(STC_HANDLER_ARGS) {
+  uint64_t unit;
+  std::memcpy(&unit, pc, sizeof unit);
+  const void* const code = reinterpret_cast<const void*>(unit >> 16);
+  if (ctx->generation->native()->enter(code, frame, self, mem, ctx)) {
+    if (ctx->call == ctx->calls_begin) return stop(ctx, Exit::kDone, ctx->pc, frame, self);
+    const CallRecord& caller = *--ctx->call;
+    ctx->pou = caller.pou;
+    ctx->instance = caller.instance;
+    STC_GO(caller.resume, caller.frame, caller.self);
+  }
+  if (!ctx->running) return;
+  STC_GO(ctx->pc, ctx->frame, ctx->self);
+}
+
+// Behind the one instruction that a helper executes.
+void stop_helper(STC_HANDLER_ARGS) {}
 
 }  // namespace vm

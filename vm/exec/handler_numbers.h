@@ -39,7 +39,11 @@ inline constexpr std::array<uint32_t, ir::kOpcodeCount + 1> kFirstHandler = [] {
   return first;
 }();
 inline constexpr uint32_t kHandlerCount = kFirstHandler[ir::kOpcodeCount];
-static_assert(kHandlerCount <= 65536, "a handler number fits the op field");
+// Side units of native code: its bits 16 to 63 are the address of machine code to go on at, and the
+// end of what a helper does.
+inline constexpr uint32_t kResumeHandler = kHandlerCount;
+inline constexpr uint32_t kStopHandler = kHandlerCount + 1;
+static_assert(kStopHandler < 65536, "a handler number fits the op field");
 
 constexpr uint32_t handler_number(ir::Opcode op, ir::Base a, ir::Base b, ir::Base c) {
   const auto i = static_cast<uint32_t>(op);

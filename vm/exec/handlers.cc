@@ -9,6 +9,8 @@ namespace vm {
 
 template <ir::Opcode op, ir::Base A, ir::Base B, ir::Base C>
 void handle(STC_HANDLER_ARGS);
+void resume_native(STC_HANDLER_ARGS);
+void stop_helper(STC_HANDLER_ARGS);
 
 namespace {
 
@@ -21,6 +23,8 @@ constexpr void fill_opcode(HandlerTable& table, std::integer_sequence<uint32_t, 
 
 constexpr HandlerTable all_handlers() {
   HandlerTable table{};
+  table.of[kResumeHandler] = &resume_native;
+  table.of[kStopHandler] = &stop_helper;
 #define OP(name, a, b, c, x, y, flags, meaning) \
   fill_opcode<ir::Opcode::name>(                \
       table, std::make_integer_sequence<        \

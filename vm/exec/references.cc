@@ -153,7 +153,7 @@ std::optional<uint64_t> handle_of(Context& ctx, uint32_t frame, uint32_t address
   uint32_t pou = ctx.pou;
   while (address < frame && depth > 0) {
     const CallRecord& record = ctx.calls_begin[--depth];
-    frame = record.frame;
+    frame = static_cast<uint32_t>(record.frame - ctx.memory);
     pou = record.pou;
   }
   if (address < frame) return ir::make_handle(0, address);

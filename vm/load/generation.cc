@@ -10,6 +10,7 @@
 #include "ir/types/handle.h"
 #include "ir/types/inside.h"
 #include "vm/exec/handler_numbers.h"
+#include "vm/native/program.h"
 
 namespace vm {
 namespace {
@@ -165,7 +166,7 @@ base::Status Generation::place_code(const Generation* running) {
     base::Result<const ir::Unit*> place =
         slots_->place(number, pou.name, code, runs ? running->pous_[number].code : nullptr);
     if (!place.ok()) return place.error();
-    pous_.push_back({*place, pou.frame_size, pou.recursion_depth});
+    pous_.push_back({*place, *place, nullptr, pou.frame_size, pou.recursion_depth});
     try_depth_ = std::max(try_depth_, tries_in(image, pou));
   }
   const size_t in_use = running == nullptr ? 0 : running->pous_.size();
@@ -174,15 +175,16 @@ base::Status Generation::place_code(const Generation* running) {
 }
 
 std::unique_ptr<Generation> Generation::build(ir::VerifiedImage verified, uint32_t number,
-                                              uint8_t* memory) {
+                                              uint8_t* memory, const TierOptions& tier) {
   auto slots = std::make_shared<CodeSlots>(UINT64_MAX / 16);
-  return *build(std::move(verified), number, memory, std::move(slots), nullptr);
+  return *build(std::move(verified), number, memory, std::move(slots), nullptr, tier);
 }
 
 base::Result<std::unique_ptr<Generation>> Generation::build(ir::VerifiedImage verified,
                                                             uint32_t number, uint8_t* memory,
                                                             std::shared_ptr<CodeSlots> slots,
-                                                            const Generation* running) {
+                                                            const Generation* running,
+                                                            const TierOptions& tier) {
   auto made = std::unique_ptr<Generation>(new Generation(std::move(verified)));
   const ir::Image& image = made->image();
   made->number_ = number;
@@ -201,6 +203,10 @@ base::Result<std::unique_ptr<Generation>> Generation::build(ir::VerifiedImage ve
   }
   for (const ir::Range& range : image.ranges) made->ranges_.push_back({range.low, range.high});
   made->write_pool(memory);
+  if (!tier.alternates || number % 2 == 0) {
+    made->native_ = native::Program::make(image, made->pous_, tier,
+                                          running == nullptr ? nullptr : running->native());
+  }
   return made;
 }
 

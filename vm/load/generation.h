@@ -8,12 +8,18 @@
 #include <vector>
 
 #include "ir/bytecode/verify.h"
+#include "vm/exec/tier.h"
 #include "vm/load/code_slots.h"
 
 namespace vm {
+namespace native {
+class Program;
+}
 
 struct PouEntry {
-  const ir::Unit* code = nullptr;  // first unit, decoded
+  const ir::Unit* code = nullptr;   // first unit, decoded
+  const ir::Unit* entry = nullptr;  // where a call goes: `code`, or a unit that goes on in machine code
+  const void* machine = nullptr;    // where a call from machine code goes
   uint32_t frame_size = 0;
   uint32_t recursion_depth = 0;  // 0: never in a circle of calls
 };
@@ -60,14 +66,15 @@ class Generation {
   // `number` decides the constant pool (even A, odd B). Writes the pool into
   // `memory`, which no running code of the other generation reads.
   static std::unique_ptr<Generation> build(ir::VerifiedImage image, uint32_t number,
-                                           uint8_t* memory);
+                                           uint8_t* memory, const TierOptions& tier = {});
   // Shares `slots` with the generations before it: code that is the same as in `running` (null at
   // first) stays where it is. Of these generations only `running` may run from now on. kTooLarge
   // when there is no room for the code.
   static base::Result<std::unique_ptr<Generation>> build(ir::VerifiedImage image, uint32_t number,
                                                          uint8_t* memory,
                                                          std::shared_ptr<CodeSlots> slots,
-                                                         const Generation* running);
+                                                         const Generation* running,
+                                                         const TierOptions& tier = {});
 
   const ir::VerifiedImage& verified() const { return image_; }
   const ir::Image& image() const { return image_.image(); }
@@ -94,6 +101,8 @@ class Generation {
       if (overrides_[at].key == ~uint64_t{0}) return kNoTarget;
     }
   }
+  // Machine code of its POUs; null: everything is interpreted.
+  const native::Program* native() const { return native_.get(); }
   // Tries that one POU can have open at once, at most.
   uint32_t try_depth() const { return try_depth_; }
 
@@ -114,6 +123,7 @@ class Generation {
   uint32_t number_ = 0;
   std::shared_ptr<CodeSlots> slots_;
   std::vector<PouEntry> pous_;
+  std::shared_ptr<const native::Program> native_;
   std::vector<InstanceEntry> instances_;
   std::vector<BoundEntry> bounds_;
   std::vector<RangeEntry> ranges_;

@@ -47,6 +47,7 @@ struct Controller::Impl {
         io_port(io),
         scheduler(options, clock, io),
         data_limit(options.data_limit),
+        tier(options.tier),
         code_slots(std::make_shared<CodeSlots>(options.code_limit / sizeof(ir::Unit))) {}
 
   const ir::Image& image() const { return running->image(); }
@@ -60,6 +61,7 @@ struct Controller::Impl {
   IoPort& io_port;
   Scheduler scheduler;
   uint64_t data_limit;
+  TierOptions tier;
   std::shared_ptr<CodeSlots> code_slots;
   std::unique_ptr<Generation> running;
   // Of the running generation, and of one that is prepared or can come back by undo.
@@ -79,7 +81,8 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
   Impl& impl = *controller->impl_;
   write_initial_data(image.image(), impl.memory.data());
   if (!retained.empty()) write_retained(image.image(), retained, impl.memory.data());
-  auto first = Generation::build(image, 0, impl.memory.data(), impl.code_slots, nullptr);
+  auto first = Generation::build(image, 0, impl.memory.data(), impl.code_slots, nullptr,
+                                 impl.tier);
   if (!first.ok()) return first.error();
   impl.running = std::move(*first);
   if (base::Status devices = io.prepare(image); !devices.ok()) return devices.error();
@@ -222,7 +225,7 @@ base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage 
   const Generation* running = impl_->running.get();
   std::erase_if(impl_->tables, [&](const auto& row) { return row.first != running; });
   auto next = Generation::build(std::move(next_image), running->number() + 1, impl_->memory.data(),
-                                impl_->code_slots, running);
+                                impl_->code_slots, running, impl_->tier);
   if (!next.ok()) return next;
   base::Status devices = impl_->io_port.prepare((*next)->verified());
   if (!devices.ok()) return devices.error();

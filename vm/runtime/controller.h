@@ -20,6 +20,7 @@
 #include "ir/bytecode/verify.h"
 #include "vm/exec/execution.h"
 #include "vm/exec/memory.h"
+#include "vm/exec/tier.h"
 #include "vm/load/generation.h"
 #include "vm/runtime/ports.h"
 
@@ -36,6 +37,7 @@ struct ControllerOptions {
   uint64_t fuel_slice = 1000;         // safe points between two looks at the clock; hard mode: 1
   uint64_t fuel_budget = 50'000'000;  // safe points of one scan of one task before kFuel
   uint64_t code_limit = uint64_t{2} << 30;  // bytes of all code slots (two for each POU)
+  TierOptions tier = {};
   uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit
 };
 

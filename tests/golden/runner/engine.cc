@@ -20,6 +20,16 @@ const char* tier_name(Tier tier) {
       return "every instance moved at every scan";
     case Tier::kStandby:
       return "changes by the standby strategy";
+    case Tier::kNative:
+      return "native";
+    case Tier::kNativeFuelOne:
+      return "native, fuel 1";
+    case Tier::kFewRegisters:
+      return "native, few registers";
+    case Tier::kSpills:
+      return "native, random registers and tiers";
+    case Tier::kAlternating:
+      return "another tier after every scan";
   }
   return "?";
 }

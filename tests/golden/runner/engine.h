@@ -19,9 +19,16 @@ enum class Tier : uint8_t {
   kIdentity,  // an identity change after every scan
   kMoveAll,   // every instance moved after every scan
   kStandby,   // as kIdentity, and the script's changes too, by the standby strategy
+  kNative,
+  kNativeFuelOne,
+  kFewRegisters,  // native with as few registers as it can do with
+  kSpills,        // native; registers are taken from values at random, some POUs interpreted
+  kAlternating,   // as kIdentity; every other generation is interpreted
 };
-inline constexpr Tier kTiers[] = {Tier::kEvaluator, Tier::kInterpreter, Tier::kFuelOne,
-                                  Tier::kIdentity,  Tier::kMoveAll,     Tier::kStandby};
+inline constexpr Tier kTiers[] = {
+    Tier::kEvaluator, Tier::kInterpreter,   Tier::kFuelOne,      Tier::kIdentity,
+    Tier::kMoveAll,   Tier::kStandby,       Tier::kNative,       Tier::kNativeFuelOne,
+    Tier::kFewRegisters, Tier::kSpills,     Tier::kAlternating};
 const char* tier_name(Tier tier);
 
 class Engine {

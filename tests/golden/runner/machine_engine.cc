@@ -34,6 +34,36 @@ std::string fate_text(const online_change::FateRow& row) {
   return row.reason.empty() ? text : text + " (" + row.reason + ")";
 }
 
+// The tiers of changes run native code on both sides, but one.
+vm::TierOptions tier_options(Tier tier) {
+  vm::TierOptions out;
+  switch (tier) {
+    case Tier::kEvaluator:
+    case Tier::kInterpreter:
+    case Tier::kFuelOne:
+    case Tier::kIdentity:
+      out.tier = vm::Tier::kInterpreter;
+      break;
+    case Tier::kMoveAll:
+    case Tier::kStandby:
+    case Tier::kNative:
+    case Tier::kNativeFuelOne:
+      break;
+    case Tier::kFewRegisters:
+      out.integer_registers = 5;
+      out.float_registers = 3;
+      break;
+    case Tier::kSpills:
+      out.spill_seed = 12345;
+      out.pou_seed = 99;
+      break;
+    case Tier::kAlternating:
+      out.alternates = true;
+      break;
+  }
+  return out;
+}
+
 class MachineEngine : public Engine {
  public:
   MachineEngine(Tier tier, const Program& program) : tier_(tier), program_(&program) {}
@@ -45,7 +75,8 @@ class MachineEngine : public Engine {
     options.fuel_budget = 20'000'000;
     // As in the evaluator: a trap ends the scan of its task, and nothing else.
     options.on_trap = ir::OnTrap::kGoOn;
-    if (tier_ == Tier::kFuelOne) options.fuel_slice = 1;
+    if (tier_ == Tier::kFuelOne || tier_ == Tier::kNativeFuelOne) options.fuel_slice = 1;
+    options.tier = tier_options(tier_);
     auto controller = vm::Controller::start(*image, options, clock_, devices_);
     if (!controller.ok()) return controller.error();
     controller_ = std::move(*controller);
@@ -63,7 +94,7 @@ class MachineEngine : public Engine {
       return std::string(ir::trap_name(first.trap.kind)) + " " + first.text.pou + ":" +
              std::to_string(first.text.line);
     }
-    bool hard = tier_ == Tier::kIdentity || tier_ == Tier::kMoveAll || tier_ == Tier::kStandby;
+    bool hard = tier_ == Tier::kIdentity || tier_ == Tier::kAlternating || tier_ == Tier::kMoveAll || tier_ == Tier::kStandby;
     if (!hard || change_->state() == online_change::State::kTrial) return std::string();
     base::Status switched = tier_ == Tier::kStandby ? late_change() : hard_change();
     if (!switched.ok()) return switched.error();

@@ -1,0 +1,15 @@
+// --tier of run, bench, serve and replay.
+#pragma once
+
+#include "tools/common/options.h"
+#include "vm/exec/tier.h"
+
+namespace stvm {
+
+#define STVM_TIER_OPTION \
+  { "--tier", "T", "auto (default), native or interp: the same results, other times" }
+
+// kUsage for other names.
+base::Result<vm::Tier> tier_of(const tools::Options& options);
+
+}  // namespace stvm

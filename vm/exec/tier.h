@@ -1,0 +1,24 @@
+// How code is executed. The tiers do the same, bit for bit.
+#pragma once
+
+#include <cstdint>
+
+namespace vm {
+
+enum class Tier : uint8_t {
+  kAuto,         // native code where the machine has it
+  kInterpreter,
+  kNative,       // the same as kAuto
+};
+
+struct TierOptions {
+  Tier tier = Tier::kAuto;
+  // Hard modes (docs/TESTING.md).
+  uint32_t integer_registers = 0;  // at most so many; 0: all
+  uint32_t float_registers = 0;
+  uint64_t spill_seed = 0;  // not 0: registers are taken from values at random
+  bool alternates = false;  // every other generation is interpreted
+  uint64_t pou_seed = 0;    // not 0: every other POU is interpreted, at random
+};
+
+}  // namespace vm

@@ -1,0 +1,283 @@
+#include "vm/native/build.h"
+
+#include <algorithm>
+
+namespace vm::native {
+namespace {
+
+constexpr size_t kMostHoisted = 24;  // loads in front of one loop
+
+bool has(const std::vector<uint32_t>& sorted, uint32_t v) {
+  return std::binary_search(sorted.begin(), sorted.end(), v);
+}
+
+}  // namespace
+
+Builder::Builder(const Facts& facts) : facts_(facts) {
+  f_.variables = facts.variables();
+  f_.overlaps = facts.overlaps();
+  f_.loops = facts.loops();
+  f_.blocks.resize(facts.blocks().size());
+  ends_.resize(f_.blocks.size());
+  users_.resize(f_.blocks.size(), 0);
+  parameters_.resize(f_.blocks.size());
+  preds_.resize(f_.blocks.size());
+  for (Block b = 0; b < f_.blocks.size(); ++b) {
+    f_.blocks[b].unit = facts.blocks()[b].first;
+    f_.blocks[b].loop = facts.loop_of(b);
+  }
+  for (const Loop& loop : f_.loops) f_.blocks[loop.head].head = true;
+}
+
+void Builder::find_preds() {
+  for (Block b = 0; b < f_.blocks.size(); ++b) {
+    Block next[2];
+    uint32_t count = 0;
+    facts_.successors(b, next, count);
+    for (uint32_t i = 0; i < count; ++i) {
+      if (next[i] <= b) continue;
+      preds_[next[i]].push_back({b, i});
+      ++users_[b];
+    }
+  }
+}
+
+Function Builder::run() {
+  find_preds();
+  for (Block b = 0; b < f_.blocks.size(); ++b) {
+    begin(b);
+    const UnitRange range = facts_.blocks()[b];
+    ended_ = false;
+    for (uint32_t i = range.first; i < range.behind && !ended_; i = facts_.next(i)) unit(i);
+    if (!ended_) end_with_jump(b + 1);
+    finish(b);
+  }
+  simplify(f_);
+  return std::move(f_);
+}
+
+void Builder::begin(Block block) {
+  block_ = block;
+  const size_t count = f_.variables.size();
+  const std::vector<Pred>& preds = preds_[block];
+  const bool head = f_.blocks[block].head;
+  if (block == 0 && !head) {
+    now_.value.assign(count, kNone);
+    now_.dirty.assign(count, 0);
+    forget_everything();
+    return;
+  }
+  if (preds.size() == 1 && !head) {
+    // Values of the only way here hold on.
+    const Block pred = preds[0].block;
+    if (pred + 1 != block) forget_everything();
+    if (users_[pred] == 1) {
+      now_ = std::move(*ends_[pred]);
+    } else {
+      now_ = *ends_[pred];
+    }
+    release(pred);
+    return;
+  }
+  forget_everything();
+  if (head) {
+    // The entry may be a head: then nothing comes before it.
+    if (block == 0) {
+      auto empty = std::make_unique<State>();
+      empty->value.assign(count, kNone);
+      empty->dirty.assign(count, 0);
+      now_ = std::move(*empty);
+    } else {
+      now_.value.assign(count, kNone);
+      now_.dirty.assign(count, 0);
+    }
+    for (uint32_t l = 0; l < f_.loops.size(); ++l) {
+      if (f_.loops[l].head == block) enter_loop(block, l);
+    }
+  } else {
+    now_.value.assign(count, kNone);
+    now_.dirty.assign(count, 0);
+    merge(block);
+  }
+  for (const Pred& pred : preds) release(pred.block);
+}
+
+void Builder::release(Block pred) {
+  if (--users_[pred] == 0) ends_[pred].reset();
+}
+
+// The value of a variable where `pred` ends, loaded there if need be.
+Val Builder::at_end_of(Block pred, uint32_t variable) {
+  Val& value = ends_[pred]->value[variable];
+  if (value != kNone) return value;
+  const Variable& v = f_.variables[variable];
+  Node node;
+  node.op = Op::kLoad;
+  node.width = v.width;
+  node.boolean = v.boolean;
+  node.mem = {v.base, 1, kNone, static_cast<int64_t>(v.offset)};
+  node.variable = variable;
+  node.result = static_cast<Val>(f_.values.size());
+  f_.values.push_back({v.floating, v.width, false, 0, static_cast<uint32_t>(f_.nodes.size()), pred});
+  epoch_of_.push_back(0);
+  f_.blocks[pred].nodes.push_back(static_cast<uint32_t>(f_.nodes.size()));
+  f_.nodes.push_back(node);
+  return value = node.result;
+}
+
+void Builder::make_parameter(Block block, uint32_t variable) {
+  const Variable& v = f_.variables[variable];
+  const Val param = static_cast<Val>(f_.values.size());
+  f_.values.push_back({v.floating, v.width, false, 0, kNone, block});
+  epoch_of_.push_back(0);
+  f_.blocks[block].params.push_back(param);
+  parameters_[block].push_back(variable);
+  for (const Pred& pred : preds_[block]) {
+    f_.blocks[pred.block].end.args[pred.target].push_back(at_end_of(pred.block, variable));
+  }
+  now_.value[variable] = param;
+  now_.dirty[variable] = f_.variables[variable].slot ? 1 : 0;
+}
+
+// The one value that all ways bring; kNone: none or several.
+Val Builder::merged(Block block, uint32_t variable) {
+  Val one = kNone;
+  bool first = true;
+  for (const Pred& pred : preds_[block]) {
+    const Val value = ends_[pred.block]->value[variable];
+    if (first) one = value;
+    if (value != one) return kNone;
+    first = false;
+  }
+  return one;
+}
+
+void Builder::merge(Block block) {
+  for (uint32_t v = 0; v < f_.variables.size(); ++v) {
+    if (!facts_.live_in(block, v)) continue;
+    bool all = true;
+    bool any = false;
+    uint8_t dirty = 0;
+    for (const Pred& pred : preds_[block]) {
+      const bool has_value = ends_[pred.block]->value[v] != kNone;
+      all &= has_value;
+      any |= has_value;
+      dirty |= ends_[pred.block]->dirty[v];
+    }
+    if (!any || (!all && !f_.variables[v].slot)) continue;
+    if (!all && dirty == 0) continue;  // memory is right on every way
+    const Val one = merged(block, v);
+    if (one == kNone) {
+      make_parameter(block, v);
+      continue;
+    }
+    now_.value[v] = one;
+    now_.dirty[v] = dirty;
+  }
+}
+
+// Where a loop begins, what it changes becomes parameters; what it only reads is loaded before.
+void Builder::enter_loop(Block block, uint32_t loop) {
+  const Loop& l = f_.loops[loop];
+  const bool calls = facts_.has_call(loop);
+  const std::vector<uint32_t>& reads = facts_.reads(loop);
+  size_t hoisted = 0;
+  for (uint32_t v = 0; v < f_.variables.size(); ++v) {
+    if (!facts_.live_in(block, v)) continue;
+    const bool slot = f_.variables[v].slot;
+    if (calls) {
+      // Calls want every slot in memory, so it is there from the start.
+      for (const Pred& pred : preds_[block]) {
+        State& end = *ends_[pred.block];
+        if (!slot || end.dirty[v] == 0) continue;
+        Node store;
+        store.op = Op::kStore;
+        store.width = f_.variables[v].width;
+        store.in[0] = end.value[v];
+        store.mem = {MemBase::kFrame, 1, kNone, static_cast<int64_t>(f_.variables[v].offset)};
+        store.variable = v;
+        f_.blocks[pred.block].nodes.push_back(static_cast<uint32_t>(f_.nodes.size()));
+        f_.nodes.push_back(store);
+        end.dirty[v] = 0;
+      }
+      continue;
+    }
+    const bool modified = has(l.modified, v);
+    const bool read = has(reads, v);
+    if (preds_[block].empty()) continue;
+    if (slot) {
+      if (!read && !modified && merged(block, v) == kNone) {
+        bool dirty = false;
+        for (const Pred& pred : preds_[block]) dirty |= ends_[pred.block]->dirty[v] != 0;
+        if (!dirty) continue;
+      }
+    } else {
+      if (!read) continue;
+      // Something that no field names may change it.
+      if (modified && facts_.killed_in(loop, v)) continue;
+      bool known = true;
+      for (const Pred& pred : preds_[block]) known &= ends_[pred.block]->value[v] != kNone;
+      if (!known && ++hoisted > kMostHoisted) continue;
+    }
+    if (modified) {
+      make_parameter(block, v);
+      continue;
+    }
+    uint8_t dirty = 0;
+    for (const Pred& pred : preds_[block]) {
+      at_end_of(pred.block, v);
+      dirty |= ends_[pred.block]->dirty[v];
+    }
+    const Val one = merged(block, v);
+    if (one == kNone) {
+      make_parameter(block, v);
+    } else {
+      now_.value[v] = one;
+      now_.dirty[v] = dirty;
+    }
+  }
+  // How all of that is found again when the interpreter stopped here.
+  for (uint32_t v = 0; v < f_.variables.size(); ++v) {
+    if (now_.value[v] == kNone || is_constant(now_.value[v])) continue;
+    f_.blocks[block].reloads.push_back({v, now_.value[v]});
+  }
+}
+
+void Builder::finish(Block block) {
+  if (users_[block] != 0) ends_[block] = std::make_unique<State>(now_);
+}
+
+void Builder::end_with_jump(Block target) {
+  End& end = f_.blocks[block_].end;
+  end.kind = EndKind::kJump;
+  end.target[0] = target;
+  ended_ = true;
+}
+
+// The values that the head's parameters take in the next turn, and what an interruption stores.
+void Builder::pass_back(Block block, Block head) {
+  Exit exit;
+  exit.unit = unit_;
+  exit.fuel = true;
+  std::vector<Val> args;
+  for (const uint32_t v : parameters_[head]) args.push_back(read(v));
+  const bool in_memory = preds_[head].empty() || facts_.has_call(facts_.loop_of(head));
+  if (in_memory) {
+    for (uint32_t v = 0; v < f_.variables.size(); ++v) {
+      if (now_.dirty[v] != 0 && facts_.live_in(head, v)) store_slot(v);
+    }
+  }
+  for (uint32_t v = 0; v < f_.variables.size(); ++v) {
+    if (now_.dirty[v] == 0 || !facts_.live_in(head, v)) continue;
+    exit.slots.push_back({f_.variables[v].offset, f_.variables[v].width, now_.value[v]});
+  }
+  End& end = f_.blocks[block].end;
+  end.kind = EndKind::kLoop;
+  end.target[0] = head;
+  end.args[0] = std::move(args);
+  end.exit = static_cast<uint32_t>(f_.exits.size());
+  f_.exits.push_back(std::move(exit));
+  ended_ = true;
+}
+
+}  // namespace vm::native

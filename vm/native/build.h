@@ -1,0 +1,119 @@
+// Verified bytecode of one POU -> Function.
+//
+// Blocks are built in their order, so all ways into a block but those back to a loop head are known when
+// it begins; there each live variable is one value or becomes a parameter. A variable that nothing
+// read or wrote yet has no value: its memory is loaded when something wants it, before a
+// loop for what the loop reads.
+#pragma once
+
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "vm/native/facts.h"
+#include "vm/native/recipes.h"
+
+namespace vm::native {
+
+class Builder {
+ public:
+  explicit Builder(const Facts& facts);
+  Function run();
+
+ private:
+  struct Pred {
+    Block block = 0;
+    uint32_t target = 0;  // which of its ways
+  };
+  // What holds where a block ends.
+  struct State {
+    std::vector<Val> value;      // by variable; kNone: in memory only
+    std::vector<uint8_t> dirty;  // by variable: memory is older
+  };
+
+  // build.cc
+  void find_preds();
+  void begin(Block block);
+  void merge(Block block);
+  void enter_loop(Block block, uint32_t loop);
+  Val merged(Block block, uint32_t variable);
+  Val at_end_of(Block pred, uint32_t variable);
+  void make_parameter(Block block, uint32_t variable);
+  void finish(Block block);
+  void pass_back(Block block, Block head);
+  void end_with_jump(Block target);
+  void release(Block pred);
+
+  // build_ops.cc
+  void unit(uint32_t number);
+  void arithmetic(const Recipe& recipe);
+  void divide(const Recipe& recipe);
+  bool divide_by_constant(const Recipe& recipe, Val left, uint64_t divisor);
+  Val quotient_by_constant(bool is_signed, uint8_t width, Val left, uint64_t divisor);
+  void shift(const Recipe& recipe);
+  void convert(const Recipe& recipe);
+  void to_integer(const Recipe& recipe);
+  void check_range(const Recipe& recipe);
+  void index(const Recipe& recipe, bool of_place);
+  void load_at(const Recipe& recipe);
+  void store_at(const Recipe& recipe);
+  void special();
+  void make_string(Val address);
+  Val read_field_id(ir::Base base, uint32_t offset);
+  void instance(Val id);
+  void call(CallKind kind, uint32_t pou, Val id);
+  void helper();
+  void leave();
+
+  // build_values.cc
+  Val constant(uint64_t bits, uint8_t width, bool floating);
+  Val zero() { return constant(0, 8, false); }
+  Node node(Op op, uint8_t width, Val a = kNone, Val b = kNone, Val c = kNone, Val d = kNone) const;
+  Val value_of(Node node, bool floating);  // a pure operation; an equal one before serves
+  Val fold(const Node& node);
+  void append(Node node);
+  Val int_op(Op op, uint8_t width, Val a, Val b = kNone, Val c = kNone, Val d = kNone);
+  Val extended(Val v, uint8_t width, bool is_signed);
+  Val read(uint32_t variable);
+  Val read_field(ir::Base base, uint32_t offset, ir::Class cls);
+  Val read_a();
+  Val read_b();
+  Val read_c();
+  void write(uint32_t variable, Val v);
+  void write_a(Val v);
+  void write_field(ir::Base base, uint32_t offset, ir::Class cls, Val v);
+  Val load(const Mem& mem, uint8_t width, bool floating, bool boolean);
+  Mem behind(Val address, uint32_t offset) const;
+  Mem place(ir::Base base, uint32_t offset) const;
+  Val address_of(const Mem& mem);
+  void kill_memory();
+  void forget_everything();
+  void store_slot(uint32_t variable);
+  uint32_t exit_here(bool everything);
+  void exit_if(Cond cond, uint8_t width, Val a, Val b);
+  bool is_constant(Val v) const { return f_.values[v].constant; }
+  uint64_t bits(Val v) const { return f_.values[v].bits; }
+
+  const Facts& facts_;
+  Function f_;
+  std::vector<std::vector<Pred>> preds_;
+  std::vector<std::unique_ptr<State>> ends_;  // by block, while something needs it
+  std::vector<uint32_t> users_;               // of ends_
+  std::vector<std::vector<uint32_t>> parameters_;  // variables, by block
+  State now_;
+  Block block_ = 0;
+  uint32_t unit_ = 0;
+  ir::Unit u_;
+  ir::Unit x_;
+  bool ended_ = false;
+  uint32_t version_ = 0;  // of memory that no variable names
+  uint32_t epoch_ = 0;    // values of earlier epochs are reached through variables only
+  std::vector<uint32_t> epoch_of_;                   // by value
+  std::unordered_map<uint64_t, uint32_t> known_;     // hash of a pure node -> node
+  std::unordered_map<uint64_t, Val> constants_[3];   // by bits; of 4 or 8 bytes floating, integers
+};
+
+// Comparisons into the branches and selections that alone use them; what nothing uses is dead.
+void simplify(Function& function);
+
+}  // namespace vm::native

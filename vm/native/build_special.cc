@@ -1,0 +1,118 @@
+// Addresses, strings, instances, calls.
+#include "vm/native/build.h"
+
+namespace vm::native {
+
+using ir::Opcode;
+
+void Builder::special() {
+  const Opcode op = u_.opcode();
+  switch (op) {
+    case Opcode::LEA:
+      if (u_.base_b() == ir::Base::kConst) return helper();
+      return write_a(address_of(place(u_.base_b(), x_.x())));
+    case Opcode::LEA_AT:
+      return write_a(address_of(behind(read_b(), x_.x())));
+    case Opcode::LD_REF:
+    case Opcode::LD_REF_AT: {
+      const Val found = op == Opcode::LD_REF ? read_field(u_.base_b(), u_.bc(), ir::Class::kA)
+                                             : load(behind(read_b(), u_.c), 4, false, false);
+      exit_if(Cond::kEq, 4, found, zero());
+      return write_a(found);
+    }
+    case Opcode::ST_REF_AT: {
+      Node made = node(Op::kStore, 4, read_b());
+      made.mem = behind(read_a(), u_.c);
+      append(made);
+      return kill_memory();
+    }
+    case Opcode::STR:
+    case Opcode::WSTR:
+      if (u_.base_b() == ir::Base::kConst) return helper();
+      return make_string(address_of(place(u_.base_b(), x_.x())));
+    case Opcode::STR_AT:
+    case Opcode::WSTR_AT:
+      return make_string(address_of(behind(read_b(), x_.x())));
+    case Opcode::SIZE_OF:
+      return write_a(constant(x_.x(), 4, false));
+    case Opcode::TASK_TIME: {
+      Node made = node(Op::kTaskTime, 8);
+      made.result = static_cast<Val>(f_.values.size());
+      f_.values.push_back({false, 8, false, 0, static_cast<uint32_t>(f_.nodes.size()), block_});
+      epoch_of_.push_back(epoch_);
+      append(made);
+      return write_a(made.result);
+    }
+    case Opcode::ADVANCE_TIME:
+      return append(node(Op::kAdvanceTime, 8, read_b()));
+    case Opcode::INST:
+      return instance(read_field_id(u_.base_b(), u_.bc()));
+    case Opcode::INST_AT:
+      return instance(load(behind(read_b(), u_.c), 4, false, false));
+    case Opcode::CALL:
+      return call(CallKind::kFunction, u_.c, kNone);
+    case Opcode::CALL_OWN:
+      return call(CallKind::kOwn, u_.c, kNone);
+    case Opcode::CALL_INST:
+      return call(CallKind::kBody, 0, read_field_id(u_.base_b(), u_.bc()));
+    case Opcode::CALL_INST_AT:
+      return call(CallKind::kBody, 0, load(behind(read_b(), u_.c), 4, false, false));
+    case Opcode::CALL_METHOD:
+      return call(CallKind::kMethod, x_.x(), read_field_id(u_.base_b(), u_.bc()));
+    case Opcode::CALL_METHOD_AT:
+      return call(CallKind::kMethod, x_.x(), load(behind(read_b(), u_.c), 4, false, false));
+    default:
+      return call(CallKind::kSlow, 0, kNone);
+  }
+}
+
+// {offset:32, capacity:32}
+void Builder::make_string(Val address) {
+  const uint64_t capacity = uint64_t{x_.y()} << 32;
+  write_a(int_op(Op::kOr, 8, address, constant(capacity, 8, false)));
+}
+
+Val Builder::read_field_id(ir::Base base, uint32_t offset) {
+  return read(facts_.variable({base, offset, ir::Class::k32, true, false, true}));
+}
+
+void Builder::instance(Val id) {
+  Node made = node(Op::kInstance, 4, id);
+  const size_t before = f_.nodes.size();
+  const Val area = value_of(made, false);
+  if (f_.nodes.size() != before) f_.nodes.back().exit = exit_here(false);
+  write_a(area);
+}
+
+// Before a call everything is in memory, and behind it everything is read from there again.
+void Builder::call(CallKind kind, uint32_t pou, Val id) {
+  const std::vector<ir::LinkedPou>& pous = facts_.image().pous;
+  if (kind == CallKind::kBody ? facts_.recursive_bodies()
+                              : kind != CallKind::kSlow && pous[pou].recursion_depth != 0) {
+    kind = CallKind::kSlow;
+  }
+  Val area = kNone;
+  if (kind == CallKind::kBody || kind == CallKind::kMethod) {
+    Node made = node(Op::kInstance, 4, id);
+    const size_t before = f_.nodes.size();
+    area = value_of(made, false);
+    if (f_.nodes.size() != before) f_.nodes.back().exit = exit_here(false);
+  }
+  for (const uint32_t v : facts_.live_behind(unit_)) store_slot(v);
+  for (const Access& access : accesses_of(u_, x_)) {
+    const uint32_t v = access.reads ? facts_.variable(access) : kNone;
+    if (v != kNone && f_.variables[v].slot) store_slot(v);
+  }
+  Node made = node(Op::kCall, 0, id, area);
+  if (kind == CallKind::kSlow) made.in[0] = made.in[1] = kNone;
+  made.call = static_cast<uint32_t>(f_.calls.size());
+  f_.calls.push_back({kind, pou, uint32_t{u_.a} * 8, unit_});
+  append(made);
+  for (uint32_t v = 0; v < f_.variables.size(); ++v) {
+    now_.value[v] = kNone;
+    now_.dirty[v] = 0;
+  }
+  forget_everything();
+}
+
+}  // namespace vm::native

@@ -1,0 +1,349 @@
+// Values, variables and memory while a Function is built.
+#include <bit>
+#include <cstring>
+
+#include "vm/native/build.h"
+
+namespace vm::native {
+namespace {
+
+uint64_t mask(uint8_t width) { return width == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * width)) - 1; }
+int64_t as_signed(uint64_t bits, uint8_t width) {
+  const unsigned shift = 64 - 8u * width;
+  return static_cast<int64_t>(bits << shift) >> shift;
+}
+
+bool holds(Cond cond, uint64_t a, uint64_t b, uint8_t width) {
+  const int64_t sa = as_signed(a, width);
+  const int64_t sb = as_signed(b, width);
+  switch (cond) {
+    case Cond::kEq:
+      return a == b;
+    case Cond::kNe:
+      return a != b;
+    case Cond::kLtS:
+      return sa < sb;
+    case Cond::kLeS:
+      return sa <= sb;
+    case Cond::kGtS:
+      return sa > sb;
+    case Cond::kGeS:
+      return sa >= sb;
+    case Cond::kLtU:
+      return a < b;
+    case Cond::kLeU:
+      return a <= b;
+    case Cond::kGtU:
+      return a > b;
+    case Cond::kGeU:
+      return a >= b;
+  }
+  return false;
+}
+
+uint64_t mix(uint64_t hash, uint64_t value) {
+  hash ^= value + 0x9e3779b97f4a7c15u + (hash << 6) + (hash >> 2);
+  return hash * 0xff51afd7ed558ccdu;
+}
+
+uint64_t hash_of(const Node& n, uint32_t version) {
+  uint64_t h = mix(static_cast<uint64_t>(n.op), n.width | n.from << 8 | n.boolean << 16);
+  h = mix(h, static_cast<uint64_t>(n.cond));
+  for (const Val in : n.in) h = mix(h, in);
+  h = mix(h, n.imm);
+  h = mix(h, static_cast<uint64_t>(n.mem.base) | n.mem.scale << 8);
+  h = mix(h, n.mem.index);
+  h = mix(h, static_cast<uint64_t>(n.mem.disp));
+  return mix(h, version);
+}
+
+bool same(const Node& a, const Node& b) {
+  return a.op == b.op && a.width == b.width && a.from == b.from && a.cond == b.cond &&
+         a.boolean == b.boolean && a.imm == b.imm && std::memcmp(a.in, b.in, sizeof a.in) == 0 &&
+         a.mem.base == b.mem.base && a.mem.scale == b.mem.scale && a.mem.index == b.mem.index &&
+         a.mem.disp == b.mem.disp;
+}
+
+MemBase mem_base(ir::Base base) {
+  if (base == ir::Base::kFrame) return MemBase::kFrame;
+  return base == ir::Base::kSelf ? MemBase::kSelf : MemBase::kData;
+}
+
+}  // namespace
+
+Val Builder::constant(uint64_t bits_, uint8_t width, bool floating) {
+  bits_ &= mask(width);
+  auto& known = constants_[floating ? (width == 4 ? 0 : 1) : 2];
+  const auto [at, added] = known.try_emplace(bits_, static_cast<Val>(f_.values.size()));
+  if (added) {
+    f_.values.push_back({floating, width, true, bits_, kNone, 0});
+    epoch_of_.push_back(0);
+  }
+  return at->second;
+}
+
+Node Builder::node(Op op, uint8_t width, Val a, Val b, Val c, Val d) const {
+  Node made;
+  made.op = op;
+  made.width = width;
+  made.in[0] = a;
+  made.in[1] = b;
+  made.in[2] = c;
+  made.in[3] = d;
+  made.unit = unit_;
+  return made;
+}
+
+void Builder::append(Node made) {
+  f_.blocks[block_].nodes.push_back(static_cast<uint32_t>(f_.nodes.size()));
+  f_.nodes.push_back(made);
+}
+
+// Operations on constants, and those that give an operand back. kNone: it must be computed.
+Val Builder::fold(const Node& n) {
+  const Val a = n.in[0];
+  const Val b = n.in[1];
+  const bool ca = a != kNone && is_constant(a);
+  const bool cb = b != kNone && is_constant(b);
+  const uint64_t x = ca ? bits(a) & mask(n.width) : 0;
+  const uint64_t y = cb ? bits(b) & mask(n.width) : 0;
+  switch (n.op) {
+    case Op::kAdd:
+      if (ca && cb) return constant(x + y, n.width, false);
+      return cb && y == 0 ? a : kNone;
+    case Op::kSub:
+      if (ca && cb) return constant(x - y, n.width, false);
+      return cb && y == 0 ? a : kNone;
+    case Op::kMul:
+      if (ca && cb) return constant(x * y, n.width, false);
+      return cb && y == 1 ? a : kNone;
+    case Op::kAnd:
+      if (ca && cb) return constant(x & y, n.width, false);
+      return a == b ? a : kNone;
+    case Op::kOr:
+      if (ca && cb) return constant(x | y, n.width, false);
+      return a == b || (cb && y == 0) ? a : kNone;
+    case Op::kXor:
+      if (ca && cb) return constant(x ^ y, n.width, false);
+      return cb && y == 0 ? a : kNone;
+    case Op::kNotBool:
+      return ca ? constant(bits(a) ^ 1, 1, false) : kNone;
+    case Op::kCompare:
+      return ca && cb ? constant(holds(n.cond, x, y, n.width) ? 1 : 0, 1, false) : kNone;
+    case Op::kSext:
+      return ca ? constant(static_cast<uint64_t>(as_signed(bits(a), n.from)), n.width, false)
+                : kNone;
+    case Op::kZext:
+      if (ca) return constant(bits(a) & mask(n.from), n.width, false);
+      return n.from == 4 ? kNone : kNone;
+    case Op::kSelect:
+      if (ca) return bits(a) != 0 ? n.in[1] : n.in[2];
+      return n.in[1] == n.in[2] ? n.in[1] : kNone;
+    default:
+      return kNone;
+  }
+}
+
+Val Builder::value_of(Node made, bool floating) {
+  // A constant goes to the right.
+  const bool commutes = made.op == Op::kAdd || made.op == Op::kMul || made.op == Op::kAnd ||
+                        made.op == Op::kOr || made.op == Op::kXor;
+  if (commutes && is_constant(made.in[0]) && !is_constant(made.in[1])) {
+    std::swap(made.in[0], made.in[1]);
+  }
+  if (made.op == Op::kCompare && is_constant(made.in[0]) && !is_constant(made.in[1])) {
+    std::swap(made.in[0], made.in[1]);
+    made.cond = swapped(made.cond);
+  }
+  const Val folded = fold(made);
+  if (folded != kNone) return folded;
+  const bool memory = made.op == Op::kLoad;
+  const uint64_t hash = hash_of(made, memory ? version_ : 0);
+  const auto [at, added] = known_.try_emplace(hash, static_cast<uint32_t>(f_.nodes.size()));
+  if (!added) {
+    if (same(f_.nodes[at->second], made)) return f_.nodes[at->second].result;
+    at->second = static_cast<uint32_t>(f_.nodes.size());
+  }
+  made.result = static_cast<Val>(f_.values.size());
+  f_.values.push_back({floating, made.width, false, 0, static_cast<uint32_t>(f_.nodes.size()), block_});
+  epoch_of_.push_back(epoch_);
+  append(made);
+  return made.result;
+}
+
+Val Builder::int_op(Op op, uint8_t width, Val a, Val b, Val c, Val d) {
+  return value_of(node(op, width, a, b, c, d), false);
+}
+
+// To 8 bytes.
+Val Builder::extended(Val v, uint8_t width, bool is_signed) {
+  if (width == 8) return v;
+  Node made = node(is_signed ? Op::kSext : Op::kZext, 8, v);
+  made.from = width;
+  return value_of(made, false);
+}
+
+Val Builder::read(uint32_t variable) {
+  Val& value = now_.value[variable];
+  if (value != kNone) return value;
+  const Variable& v = f_.variables[variable];
+  Node made = node(Op::kLoad, v.width);
+  made.boolean = v.boolean;
+  made.mem = {v.base, 1, kNone, static_cast<int64_t>(v.offset)};
+  made.variable = variable;
+  made.result = static_cast<Val>(f_.values.size());
+  f_.values.push_back({v.floating, v.width, false, 0, static_cast<uint32_t>(f_.nodes.size()), block_});
+  epoch_of_.push_back(epoch_);
+  append(made);
+  return now_.value[variable] = made.result;
+}
+
+Val Builder::read_field(ir::Base base, uint32_t offset, ir::Class cls) {
+  const bool floating = cls == ir::Class::kF32 || cls == ir::Class::kF64;
+  const auto width = static_cast<uint8_t>(ir::class_size(cls));
+  if (base == ir::Base::kConst) {
+    uint64_t raw = 0;
+    std::memcpy(&raw, facts_.image().pool.data() + offset, width);
+    if (cls == ir::Class::kB) raw = raw != 0 ? 1 : 0;
+    return constant(raw, width, floating);
+  }
+  return read(facts_.variable({base, offset, cls, true, false, false}));
+}
+
+Val Builder::read_a() {
+  return read_field(u_.base_a(), u_.a, ir::opcode_row(u_.opcode()).a.cls);
+}
+Val Builder::read_b() {
+  return read_field(u_.base_b(), u_.b, ir::opcode_row(u_.opcode()).b.cls);
+}
+Val Builder::read_c() {
+  return read_field(u_.base_c(), u_.c, ir::opcode_row(u_.opcode()).c.cls);
+}
+
+void Builder::write(uint32_t variable, Val value) {
+  const Variable& v = f_.variables[variable];
+  now_.value[variable] = value;
+  if (v.slot) {
+    now_.dirty[variable] = 1;
+    return;
+  }
+  Node made = node(Op::kStore, v.width, value);
+  made.mem = {v.base, 1, kNone, static_cast<int64_t>(v.offset)};
+  made.variable = variable;
+  append(made);
+  for (const uint32_t other : f_.overlaps[variable]) now_.value[other] = kNone;
+  ++version_;
+}
+
+void Builder::write_a(Val v) { write_field(u_.base_a(), u_.a, ir::opcode_row(u_.opcode()).a.cls, v); }
+
+void Builder::write_field(ir::Base base, uint32_t offset, ir::Class cls, Val v) {
+  write(facts_.variable({base, offset, cls, false, true, false}), v);
+}
+
+Mem Builder::place(ir::Base base, uint32_t offset) const {
+  return {mem_base(base), 1, kNone, static_cast<int64_t>(offset)};
+}
+
+// What lies behind an address: a known place goes into the instruction.
+Mem Builder::behind(Val address, uint32_t offset) const {
+  const Value& value = f_.values[address];
+  if (value.constant) return {MemBase::kData, 1, kNone, static_cast<int64_t>(value.bits + offset)};
+  if (value.node != kNone && epoch_of_[address] == epoch_ && epoch_ != 0) {
+    const Node& made = f_.nodes[value.node];
+    if (made.op == Op::kAddr) {
+      Mem mem = made.mem;
+      mem.disp += offset;
+      return mem;
+    }
+  }
+  return {MemBase::kData, 1, address, static_cast<int64_t>(offset)};
+}
+
+Val Builder::address_of(const Mem& mem) {
+  if (mem.base == MemBase::kData && mem.index == kNone) {
+    return constant(static_cast<uint64_t>(mem.disp), 4, false);
+  }
+  if (mem.base == MemBase::kData && mem.scale == 1 && mem.disp == 0) return mem.index;
+  Node made = node(Op::kAddr, 4);
+  made.mem = mem;
+  return value_of(made, false);
+}
+
+Val Builder::load(const Mem& mem, uint8_t width, bool floating, bool boolean) {
+  Node made = node(Op::kLoad, width);
+  made.mem = mem;
+  made.boolean = boolean;
+  return value_of(made, floating);
+}
+
+// The unit stores where no name says: what may lie there is known no more.
+void Builder::kill_memory() {
+  std::vector<uint32_t> killed;
+  facts_.killed(unit_, killed);
+  ++version_;
+  std::vector<uint32_t> known;
+  for (const uint32_t v : killed) {
+    now_.value[v] = kNone;
+    known.push_back(v);
+  }
+  if (known.empty()) return;
+  Node& last = f_.nodes.back();
+  last.kills = static_cast<uint32_t>(f_.kills.size());
+  f_.kills.push_back(std::move(known));
+}
+
+void Builder::forget_everything() {
+  known_.clear();
+  ++epoch_;
+  ++version_;
+}
+
+void Builder::store_slot(uint32_t variable) {
+  if (now_.dirty[variable] == 0) return;
+  const Variable& v = f_.variables[variable];
+  Node made = node(Op::kStore, v.width, now_.value[variable]);
+  made.mem = {v.base, 1, kNone, static_cast<int64_t>(v.offset)};
+  made.variable = variable;
+  append(made);
+  now_.dirty[variable] = 0;
+}
+
+// The interpreter executes this unit anew. When it surely traps, it needs the unit's own operands;
+// else everything that lives.
+uint32_t Builder::exit_here(bool everything) {
+  Exit exit;
+  exit.unit = unit_;
+  const auto add = [&](uint32_t v) {
+    if (v == kNone || now_.dirty[v] == 0) return;
+    exit.slots.push_back({f_.variables[v].offset, f_.variables[v].width, now_.value[v]});
+  };
+  if (everything) {
+    for (const uint32_t v : facts_.live_behind(unit_)) add(v);
+  }
+  for (const Access& access : accesses_of(u_, x_)) {
+    if (access.reads) add(facts_.variable(access));
+  }
+  f_.exits.push_back(std::move(exit));
+  return static_cast<uint32_t>(f_.exits.size() - 1);
+}
+
+// Leaves when a cond b; the same question is asked once only.
+void Builder::exit_if(Cond cond, uint8_t width, Val a, Val b) {
+  if (is_constant(a) && is_constant(b) &&
+      !holds(cond, bits(a) & mask(width), bits(b) & mask(width), width)) {
+    return;
+  }
+  Node made = node(Op::kExitIf, width, a, b);
+  made.cond = cond;
+  const uint64_t hash = hash_of(made, 0);
+  const auto [at, added] = known_.try_emplace(hash, static_cast<uint32_t>(f_.nodes.size()));
+  if (!added) {
+    if (same(f_.nodes[at->second], made)) return;
+    at->second = static_cast<uint32_t>(f_.nodes.size());
+  }
+  made.exit = exit_here(false);
+  append(made);
+}
+
+}  // namespace vm::native

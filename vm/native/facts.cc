@@ -1,0 +1,490 @@
+#include "vm/native/facts.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "ir/bytecode/regions.h"
+#include "stdlib/native/natives.h"
+
+namespace vm::native {
+namespace {
+
+using ir::Opcode;
+
+constexpr size_t kMostLivenessWords = size_t{8} << 20;
+constexpr size_t kMostParts = 6;
+
+bool is_far(Opcode op) { return op >= Opcode::LDFAR_B && op <= Opcode::STFAR_F64; }
+bool is_far_store(Opcode op) { return op >= Opcode::STFAR_B && op <= Opcode::STFAR_F64; }
+bool names_id(Opcode op) {
+  return op == Opcode::INST || op == Opcode::CALL_INST || op == Opcode::CALL_METHOD ||
+         op == Opcode::HANDLE_INST;
+}
+bool stores_through(Opcode op) {
+  return (op >= Opcode::ST_B && op <= Opcode::ST_F64) || op == Opcode::ST_REF_AT ||
+         op == Opcode::COPY || op == Opcode::SCOPY || op == Opcode::WCOPY;
+}
+bool native_writes(const ir::Unit& unit) {
+  const std::string_view letters = stdlib::native_row(unit.c).arguments;
+  return letters.find_first_of("SW") != std::string_view::npos;
+}
+MemBase base_of(ir::Base base) {
+  if (base == ir::Base::kFrame) return MemBase::kFrame;
+  return base == ir::Base::kSelf ? MemBase::kSelf : MemBase::kData;
+}
+uint64_t key_of(const Access& access) {
+  const bool floating = access.cls == ir::Class::kF32 || access.cls == ir::Class::kF64;
+  const bool boolean = access.cls == ir::Class::kB;
+  return uint64_t{access.offset} << 16 | uint64_t{ir::class_size(access.cls)} << 8 |
+         static_cast<uint64_t>(access.base) << 4 | (floating ? 2u : 0u) | (boolean ? 1u : 0u);
+}
+
+void add(Accesses& out, const ir::Field& field, ir::Base base, uint16_t offset) {
+  if (!field.is_near()) return;
+  out.of[out.count++] = {base, offset, field.cls, field.reads(), field.writes(), false};
+}
+
+}  // namespace
+
+bool is_call(Opcode op) { return ir::opcode_row(op).calls; }
+
+Accesses accesses_of(const ir::Unit& unit, const ir::Unit& extension) {
+  static_cast<void>(extension);
+  const Opcode op = unit.opcode();
+  const ir::OpcodeRow& row = ir::opcode_row(op);
+  Accesses out;
+  add(out, row.a, unit.base_a(), unit.a);
+  add(out, row.b, unit.base_b(), unit.b);
+  add(out, row.c, unit.base_c(), unit.c);
+  if (is_far(op)) {
+    out.of[out.count++] = {unit.base_b(), unit.bc(), row.a.cls, !is_far_store(op),
+                           is_far_store(op), false};
+  } else if (op == Opcode::LD_REF) {
+    out.of[out.count++] = {unit.base_b(), unit.bc(), ir::Class::kA, true, false, false};
+  } else if (names_id(op)) {
+    out.of[out.count++] = {unit.base_b(), unit.bc(), ir::Class::k32, true, false, true};
+  }
+  return out;
+}
+
+bool Reach::join(const Reach& other) {
+  if (everything) return false;
+  if (other.everything) return everything = true;
+  bool changed = other.own_instance && !own_instance;
+  own_instance |= other.own_instance;
+  for (const Part& part : other.parts) {
+    if (std::find(parts.begin(), parts.end(), part) != parts.end()) continue;
+    changed = true;
+    if (parts.size() == kMostParts) return everything = true;
+    parts.push_back(part);
+  }
+  return changed;
+}
+
+base::Result<Facts> Facts::of(const ir::Image& image, const ir::LinkedPou& pou) {
+  Facts facts;
+  facts.image_ = &image;
+  facts.pou_ = &pou;
+  facts.code_ = std::span(image.code).subspan(pou.first_unit, pou.unit_count);
+  for (const ir::LinkedPou& other : image.pous) {
+    facts.recursive_bodies_ |= ir::is_body(other.kind) && other.recursion_depth != 0;
+  }
+  std::string why;
+  if (!facts.find_blocks(why) || !facts.find_loops(why)) {
+    return base::Error{base::Refusal::kTooLarge, why};
+  }
+  facts.find_pinned();
+  facts.find_variables();
+  facts.find_overlaps();
+  facts.find_reach();
+  facts.find_loop_effects();
+  if (!facts.find_liveness(why)) return base::Error{base::Refusal::kTooLarge, why};
+  return facts;
+}
+
+bool Facts::find_blocks(std::string& why) {
+  std::vector<bool> begins(code_.size() + 1, false);
+  begins[0] = true;
+  for (const ir::Merge& merge : pou_->merges) begins[merge.unit] = true;
+  for (uint32_t i = 0; i < code_.size(); i = next(i)) {
+    const Opcode op = code_[i].opcode();
+    if (op == Opcode::TRY || op == Opcode::END_TRY || op == Opcode::TRAP_KIND) {
+      why = "it has __TRY";
+      return false;
+    }
+    if (op == Opcode::JT || op == Opcode::JF || ir::opcode_row(op).ends) begins[i + 1] = true;
+  }
+  block_at_.assign(code_.size(), kNone);
+  for (uint32_t i = 0; i < code_.size(); i = next(i)) {
+    if (begins[i]) blocks_.push_back({i, 0});
+    block_at_[i] = static_cast<Block>(blocks_.size() - 1);
+    blocks_.back().behind = next(i);
+  }
+  return true;
+}
+
+void Facts::successors(Block block, Block out[2], uint32_t& count) const {
+  count = 0;
+  // The last unit of the block.
+  uint32_t last = blocks_[block].behind - 1;
+  if (last > blocks_[block].first && ir::opcode_row(code_[last - 1].opcode()).extended &&
+      block_at_[last] == kNone) {
+    --last;
+  }
+  const Opcode op = code_[last].opcode();
+  if (op == Opcode::JT || op == Opcode::JF) {
+    out[count++] = block_at_[jump_target(last)];
+    out[count++] = block + 1;
+  } else if (op == Opcode::JMP || op == Opcode::LOOP) {
+    out[count++] = block_at_[jump_target(last)];
+  } else if (!ir::opcode_row(op).ends) {
+    out[count++] = block + 1;
+  }
+}
+
+// Back edges make loops; every other way into one must lead through its head.
+bool Facts::find_loops(std::string& why) {
+  std::vector<uint32_t> last_of(blocks_.size(), kNone);
+  for (Block b = 0; b < blocks_.size(); ++b) {
+    Block next_blocks[2];
+    uint32_t count = 0;
+    successors(b, next_blocks, count);
+    for (uint32_t i = 0; i < count; ++i) {
+      if (next_blocks[i] <= b) last_of[next_blocks[i]] = b;
+    }
+  }
+  loop_of_.assign(blocks_.size(), kNone);
+  std::vector<uint32_t> open;
+  for (Block b = 0; b < blocks_.size(); ++b) {
+    while (!open.empty() && loops_[open.back()].last < b) open.pop_back();
+    if (last_of[b] != kNone) {
+      Loop loop;
+      loop.head = b;
+      loop.last = last_of[b];
+      loop.parent = open.empty() ? kNone : open.back();
+      if (loop.parent != kNone) {
+        // Overlapping loops become nested ones.
+        for (uint32_t p = loop.parent; p != kNone; p = loops_[p].parent) {
+          loops_[p].last = std::max(loops_[p].last, loop.last);
+        }
+      }
+      open.push_back(static_cast<uint32_t>(loops_.size()));
+      loops_.push_back(loop);
+    }
+    loop_of_[b] = open.empty() ? kNone : open.back();
+  }
+  for (Block b = 0; b < blocks_.size(); ++b) {
+    Block next_blocks[2];
+    uint32_t count = 0;
+    successors(b, next_blocks, count);
+    for (uint32_t i = 0; i < count; ++i) {
+      for (uint32_t l = loop_of_[next_blocks[i]]; l != kNone; l = loops_[l].parent) {
+        const bool inside = b >= loops_[l].head && b <= loops_[l].last;
+        if (!inside && next_blocks[i] != loops_[l].head) {
+          why = "a jump leads into the middle of a loop";
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+uint32_t Facts::slot_number(uint32_t offset) const {
+  const auto behind = std::upper_bound(
+      pou_->slots.begin(), pou_->slots.end(), offset,
+      [](uint32_t at, const ir::FrameSlot& slot) { return at < slot.offset; });
+  return behind == pou_->slots.begin() ? kNone
+                                       : static_cast<uint32_t>(behind - pou_->slots.begin() - 1);
+}
+
+void Facts::find_pinned() {
+  pinned_.assign(pou_->slots.size(), false);
+  for (uint32_t i = 0; i < code_.size(); i = next(i)) {
+    const ir::OpcodeRow& row = ir::opcode_row(code_[i].opcode());
+    const bool by_b = row.b.kind == ir::FieldKind::kBase;
+    const bool by_c = row.c.kind == ir::FieldKind::kBase;
+    if (!by_b && !by_c) continue;
+    if ((by_b ? code_[i].base_b() : code_[i].base_c()) != ir::Base::kFrame) continue;
+    const uint32_t offset = by_b ? code_[i + 1].x() : code_[i + 1].y();
+    const uint32_t slot = offset < pou_->frame_size ? slot_number(offset) : kNone;
+    if (slot != kNone) pinned_[slot] = true;
+  }
+}
+
+void Facts::find_variables() {
+  for (uint32_t i = 0; i < code_.size(); i = next(i)) {
+    for (const Access& access : accesses_of(code_[i], extension(i))) {
+      if (access.base == ir::Base::kConst) continue;
+      const auto [at, added] =
+          numbers_.try_emplace(key_of(access), static_cast<uint32_t>(variables_.size()));
+      if (!added) {
+        variables_[at->second].constant &= access.id;
+        continue;
+      }
+      Variable v;
+      v.base = base_of(access.base);
+      v.offset = access.offset;
+      v.width = static_cast<uint8_t>(ir::class_size(access.cls));
+      v.floating = access.cls == ir::Class::kF32 || access.cls == ir::Class::kF64;
+      v.boolean = access.cls == ir::Class::kB;
+      v.constant = access.id;
+      if (access.base == ir::Base::kFrame && access.offset < pou_->frame_size) {
+        const uint32_t slot = slot_number(access.offset);
+        v.slot = slot != kNone && !pinned_[slot] && !pou_->slots[slot].aggregate &&
+                 pou_->slots[slot].offset == access.offset;
+      }
+      variables_.push_back(v);
+    }
+  }
+}
+
+uint32_t Facts::variable(const Access& access) const {
+  if (access.base == ir::Base::kConst) return kNone;
+  return numbers_.at(key_of(access));
+}
+
+void Facts::find_overlaps() {
+  overlaps_.resize(variables_.size());
+  std::vector<uint32_t> order(variables_.size());
+  for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    if (variables_[a].base != variables_[b].base) return variables_[a].base < variables_[b].base;
+    return variables_[a].offset < variables_[b].offset;
+  });
+  for (size_t i = 0; i < order.size(); ++i) {
+    const Variable& v = variables_[order[i]];
+    for (size_t k = i + 1; k < order.size(); ++k) {
+      const Variable& w = variables_[order[k]];
+      if (w.base != v.base || w.offset >= v.offset + v.width) break;
+      overlaps_[order[i]].push_back(order[k]);
+      overlaps_[order[k]].push_back(order[i]);
+    }
+  }
+}
+
+// What the address or string that the unit makes may point to.
+Reach Facts::reach_of_unit(uint32_t i) const {
+  const ir::Unit& unit = code_[i];
+  const ir::Unit& more = extension(i);
+  const Opcode op = unit.opcode();
+  Reach reach;
+  const auto of_slot = [&](uint32_t offset) {
+    const auto found = reach_.find(offset);
+    return found == reach_.end() ? Reach{} : found->second;
+  };
+  const auto size_of = [&](uint32_t field) {
+    return uint64_t{ir::region_size(image_->types, image_->layouts, ir::region_of_field(field))};
+  };
+  if (op >= Opcode::INDEX_PLACE_I8 && op <= Opcode::INDEX_PLACE_U64) {
+    const ir::LinkedBound& bound = image_->bounds[more.x()];
+    reach.parts.push_back({unit.base_c(), more.y(), more.y() + bound.count * bound.stride});
+  } else if (op >= Opcode::INDEX_I8 && op <= Opcode::INDEX_U64) {
+    return of_slot(unit.c);
+  } else if (op == Opcode::LEA) {
+    reach.parts.push_back({unit.base_b(), more.x(), more.x() + size_of(more.y())});
+  } else if (op == Opcode::LEA_AT || op == Opcode::MOV_A || op == Opcode::MOV_S ||
+             op == Opcode::MOV_W || op == Opcode::STR_AT || op == Opcode::WSTR_AT) {
+    return of_slot(unit.b);
+  } else if (op == Opcode::STR || op == Opcode::WSTR) {
+    const uint64_t unit_size = op == Opcode::STR ? 1 : 2;
+    reach.parts.push_back(
+        {unit.base_b(), more.x(), more.x() + (uint64_t{more.y()} + 1) * unit_size});
+  } else if (op == Opcode::INST) {
+    // What is inside of an instance is not the instance itself; a global one may be it.
+    reach.own_instance = unit.base_b() != ir::Base::kSelf;
+  } else if (op == Opcode::INST_AT) {
+    const Reach from = of_slot(unit.b);
+    reach.own_instance = from.everything || from.own_instance || from.parts.empty();
+    for (const Reach::Part& part : from.parts) {
+      reach.own_instance |= part.base != ir::Base::kSelf;
+    }
+  } else {
+    reach.everything = true;
+  }
+  return reach;
+}
+
+void Facts::find_reach() {
+  // Addresses that come from outside: in-out parameters.
+  for (const ir::FrameSlot& slot : pou_->slots) {
+    if (slot.kind == ir::SlotKind::kParam && !slot.aggregate) {
+      reach_[slot.offset].everything = true;
+    }
+  }
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (uint32_t i = 0; i < code_.size(); i = next(i)) {
+      const ir::Field& field = ir::opcode_row(code_[i].opcode()).a;
+      if (!field.is_near() || !field.writes()) continue;
+      if (field.cls != ir::Class::kA && field.cls != ir::Class::kS && field.cls != ir::Class::kW) {
+        continue;
+      }
+      if (code_[i].base_a() != ir::Base::kFrame) continue;
+      changed |= reach_[code_[i].a].join(reach_of_unit(i));
+    }
+  }
+}
+
+void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
+  const Opcode op = code_[i].opcode();
+  if (op == Opcode::NATIVE) {
+    const bool all = native_writes(code_[i]);
+    for (uint32_t v = 0; v < variables_.size(); ++v) {
+      const bool next_frame =
+          variables_[v].base == MemBase::kFrame && variables_[v].offset >= pou_->frame_size;
+      if (next_frame || (all && !variables_[v].slot && !variables_[v].constant)) out.push_back(v);
+    }
+    return;
+  }
+  if (!stores_through(op)) return;
+  const auto found = reach_.find(code_[i].a);
+  const bool known = found != reach_.end() && !found->second.everything;
+  for (uint32_t v = 0; v < variables_.size(); ++v) {
+    const Variable& variable = variables_[v];
+    if (variable.slot || variable.constant) continue;
+    bool may = !known || (found->second.own_instance && variable.base == MemBase::kSelf);
+    if (!may) {
+      for (const Reach::Part& part : found->second.parts) {
+        may |= base_of(part.base) == variable.base && variable.offset < part.end &&
+               part.begin < uint64_t{variable.offset} + variable.width;
+      }
+    }
+    if (may) out.push_back(v);
+  }
+}
+
+bool Facts::writes_memory(uint32_t i) const {
+  const Opcode op = code_[i].opcode();
+  return stores_through(op) || op == Opcode::NATIVE;
+}
+
+void Facts::find_loop_effects() {
+  loop_calls_.assign(loops_.size(), false);
+  loop_reads_.resize(loops_.size());
+  loop_killed_.resize(loops_.size());
+  std::vector<uint32_t> changed;
+  const auto make_set = [](std::vector<uint32_t>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  for (uint32_t l = 0; l < loops_.size(); ++l) {
+    Loop& loop = loops_[l];
+    changed.clear();
+    const uint32_t behind = blocks_[loop.last].behind;
+    for (uint32_t i = blocks_[loop.head].first; i < behind; i = next(i)) {
+      if (is_call(code_[i].opcode())) loop_calls_[l] = true;
+      for (const Access& access : accesses_of(code_[i], extension(i))) {
+        const uint32_t v = variable(access);
+        if (v != kNone && access.reads) loop_reads_[l].push_back(v);
+        if (!access.writes) continue;
+        changed.push_back(v);
+        loop_killed_[l].insert(loop_killed_[l].end(), overlaps_[v].begin(), overlaps_[v].end());
+      }
+      if (writes_memory(i)) killed(i, loop_killed_[l]);
+      if (changed.size() > 4 * variables_.size() + 64) make_set(changed);
+      if (loop_reads_[l].size() > 4 * variables_.size() + 64) make_set(loop_reads_[l]);
+      if (loop_killed_[l].size() > 4 * variables_.size() + 64) make_set(loop_killed_[l]);
+    }
+    loop.kills_all = loop_calls_[l];
+    make_set(loop_killed_[l]);
+    changed.insert(changed.end(), loop_killed_[l].begin(), loop_killed_[l].end());
+    make_set(changed);
+    make_set(loop_reads_[l]);
+    loop.modified = changed;
+  }
+}
+
+bool Facts::find_liveness(std::string& why) {
+  words_ = (variables_.size() + 63) / 64;
+  if (words_ * blocks_.size() > kMostLivenessWords) {
+    why = "it has too many variables and branches";
+    return false;
+  }
+  live_in_.assign(words_ * blocks_.size(), 0);
+  std::vector<uint64_t> results(words_, 0);
+  std::vector<uint64_t> slots(words_, 0);
+  for (uint32_t v = 0; v < variables_.size(); ++v) {
+    if (!variables_[v].slot) continue;
+    const ir::FrameSlot& slot = pou_->slots[slot_number(variables_[v].offset)];
+    const bool result = slot.kind == ir::SlotKind::kParam &&
+                        (slot.local == ir::LocalKind::kOutput ||
+                         slot.local == ir::LocalKind::kReturn);
+    slots[v / 64] |= uint64_t{1} << (v % 64);
+    if (!result) continue;
+    results[v / 64] |= uint64_t{1} << (v % 64);
+    results_.push_back(v);
+  }
+  std::vector<uint64_t> live(words_);
+  std::vector<uint32_t> order;
+  const auto walk = [&](Block b, bool record) {
+    Block next_blocks[2];
+    uint32_t count = 0;
+    successors(b, next_blocks, count);
+    std::fill(live.begin(), live.end(), 0);
+    for (uint32_t i = 0; i < count; ++i) {
+      for (size_t w = 0; w < words_; ++w) live[w] |= live_in_[size_t{next_blocks[i]} * words_ + w];
+    }
+    order.clear();
+    for (uint32_t i = blocks_[b].first; i < blocks_[b].behind; i = next(i)) order.push_back(i);
+    for (auto at = order.rbegin(); at != order.rend(); ++at) {
+      const Opcode op = code_[*at].opcode();
+      if (op == Opcode::RET) live = results;
+      if (record && (is_call(op) || ir::opcode_row(op).traps)) {
+        std::vector<uint32_t>& behind = live_behind_[*at];
+        for (size_t w = 0; w < words_; ++w) {
+          for (uint64_t left = live[w] & slots[w]; left != 0; left &= left - 1) {
+            behind.push_back(static_cast<uint32_t>(w * 64) + std::countr_zero(left));
+          }
+        }
+      }
+      const Accesses all = accesses_of(code_[*at], extension(*at));
+      for (const Access& access : all) {
+        if (!access.writes || access.reads) continue;
+        const uint32_t v = variable(access);
+        live[v / 64] &= ~(uint64_t{1} << (v % 64));
+      }
+      for (const Access& access : all) {
+        if (!access.reads || access.base == ir::Base::kConst) continue;
+        const uint32_t v = variable(access);
+        live[v / 64] |= uint64_t{1} << (v % 64);
+      }
+    }
+  };
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (Block b = static_cast<Block>(blocks_.size()); b-- > 0;) {
+      walk(b, false);
+      uint64_t* const in = &live_in_[size_t{b} * words_];
+      for (size_t w = 0; w < words_; ++w) {
+        changed |= in[w] != live[w];
+        in[w] = live[w];
+      }
+    }
+  }
+  for (Block b = 0; b < blocks_.size(); ++b) walk(b, true);
+  return true;
+}
+
+bool Facts::killed_in(uint32_t loop, uint32_t variable) const {
+  const std::vector<uint32_t>& killed = loop_killed_[loop];
+  return std::binary_search(killed.begin(), killed.end(), variable);
+}
+
+const std::vector<uint32_t>& Facts::live_behind(uint32_t unit) const {
+  static const std::vector<uint32_t> kNothing;
+  const auto found = live_behind_.find(unit);
+  return found == live_behind_.end() ? kNothing : found->second;
+}
+
+bool Facts::live_out(Block block, uint32_t variable) const {
+  Block next_blocks[2];
+  uint32_t count = 0;
+  successors(block, next_blocks, count);
+  for (uint32_t i = 0; i < count; ++i) {
+    if (live_in(next_blocks[i], variable)) return true;
+  }
+  return false;
+}
+
+}  // namespace vm::native

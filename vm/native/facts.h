@@ -1,0 +1,138 @@
+// What the bytecode of one POU says before anything is built: its blocks and loops, which scalars it
+// names, and what a store through an address may change. Nothing here depends on order.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "base/result.h"
+#include "ir/bytecode/image.h"
+#include "vm/native/lir.h"
+
+namespace vm::native {
+
+// A scalar that a unit reads or writes where it lies.
+struct Access {
+  ir::Base base = ir::Base::kFrame;
+  uint32_t offset = 0;
+  ir::Class cls = ir::Class::kB;
+  bool reads = false;
+  bool writes = false;
+  bool id = false;  // of an instance
+};
+struct Accesses {
+  Access of[4];
+  uint32_t count = 0;
+  const Access* begin() const { return of; }
+  const Access* end() const { return of + count; }
+};
+Accesses accesses_of(const ir::Unit& unit, const ir::Unit& extension);
+
+// What an address may point to, of the variables that code names directly.
+struct Reach {
+  struct Part {
+    ir::Base base = ir::Base::kFrame;
+    uint64_t begin = 0;
+    uint64_t end = 0;
+    friend bool operator==(const Part&, const Part&) = default;
+  };
+  bool everything = false;
+  bool own_instance = false;  // any variable of it
+  std::vector<Part> parts;
+  bool join(const Reach& other);  // changed?
+};
+
+struct UnitRange {
+  uint32_t first = 0;
+  uint32_t behind = 0;
+};
+
+class Facts {
+ public:
+  // kTooLarge and others: why this POU stays with the interpreter.
+  static base::Result<Facts> of(const ir::Image& image, const ir::LinkedPou& pou);
+
+  const ir::Image& image() const { return *image_; }
+  const ir::LinkedPou& pou() const { return *pou_; }
+  const ir::Unit& unit(uint32_t number) const { return code_[number]; }
+  const ir::Unit& extension(uint32_t number) const {
+    return ir::opcode_row(code_[number].opcode()).extended ? code_[number + 1] : code_[number];
+  }
+  uint32_t next(uint32_t number) const {
+    return number + (ir::opcode_row(code_[number].opcode()).extended ? 2 : 1);
+  }
+  uint32_t jump_target(uint32_t number) const {
+    return static_cast<uint32_t>(number + 1 + static_cast<int32_t>(code_[number].bc()));
+  }
+
+  const std::vector<UnitRange>& blocks() const { return blocks_; }
+  Block block_at(uint32_t unit) const { return block_at_[unit]; }
+  const std::vector<Loop>& loops() const { return loops_; }
+  uint32_t loop_of(Block block) const { return loop_of_[block]; }  // innermost, or kNone
+  bool has_call(uint32_t loop) const { return loop_calls_[loop]; }
+  // Is the variable's memory changed in the loop other than by its name?
+  bool killed_in(uint32_t loop, uint32_t variable) const;
+  // Variables that something in the loop reads, sorted.
+  const std::vector<uint32_t>& reads(uint32_t loop) const { return loop_reads_[loop]; }
+
+  const std::vector<Variable>& variables() const { return variables_; }
+  const std::vector<std::vector<uint32_t>>& overlaps() const { return overlaps_; }
+  uint32_t variable(const Access& access) const;  // kNone: a constant
+  // Variables whose memory the unit may change beside what its fields name.
+  void killed(uint32_t unit, std::vector<uint32_t>& out) const;
+  // Does it change memory that no variable names?
+  bool writes_memory(uint32_t unit) const;
+
+  // Variables whose value at the block's beginning something reads before it is written.
+  bool live_in(Block block, uint32_t variable) const {
+    return live_in_[size_t{block} * words_ + variable / 64] >> (variable % 64) & 1;
+  }
+  bool live_out(Block block, uint32_t variable) const;
+  // Slots that are live behind the unit, which calls or may leave.
+  const std::vector<uint32_t>& live_behind(uint32_t unit) const;
+  // Slots that the caller reads.
+  const std::vector<uint32_t>& results() const { return results_; }
+  bool recursive_bodies() const { return recursive_bodies_; }
+  void successors(Block block, Block out[2], uint32_t& count) const;
+
+ private:
+  bool find_blocks(std::string& why);
+  bool find_loops(std::string& why);
+  void find_pinned();
+  void find_variables();
+  void find_overlaps();
+  void find_reach();
+  Reach reach_of_unit(uint32_t unit) const;
+  void find_loop_effects();
+  bool find_liveness(std::string& why);
+  uint32_t slot_number(uint32_t offset) const;
+
+  const ir::Image* image_ = nullptr;
+  const ir::LinkedPou* pou_ = nullptr;
+  std::span<const ir::Unit> code_;
+  std::vector<UnitRange> blocks_;
+  std::vector<Block> block_at_;
+  std::vector<Loop> loops_;
+  std::vector<uint32_t> loop_of_;
+  std::vector<bool> loop_calls_;
+  std::vector<std::vector<uint32_t>> loop_reads_;
+  std::vector<std::vector<uint32_t>> loop_killed_;
+  std::vector<bool> pinned_;  // by frame slot: something else knows where it is
+  std::vector<Variable> variables_;
+  std::unordered_map<uint64_t, uint32_t> numbers_;
+  std::vector<std::vector<uint32_t>> overlaps_;
+  std::unordered_map<uint32_t, Reach> reach_;  // by offset of a frame slot
+  std::vector<uint32_t> results_;
+  bool recursive_bodies_ = false;  // does any block of the image call itself?
+  size_t words_ = 0;
+  std::vector<uint64_t> live_in_;
+  std::unordered_map<uint32_t, std::vector<uint32_t>> live_behind_;
+};
+
+// Does the unit leave the POU for another, so that all slots must be in memory?
+bool is_call(ir::Opcode op);
+
+}  // namespace vm::native

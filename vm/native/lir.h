@@ -1,0 +1,208 @@
+// What the native tier works on: one POU as SSA over machine-like operations, made
+// from verified bytecode (build.h), given registers (allocate.h), written as machine code
+// (x64/). Values and blocks are numbers; everything lives in flat vectors.
+//
+// Where values are. A *variable* is a scalar that an instruction names directly: a slot of the own
+// frame, a variable of the instance, a global, an argument in the next frame. A slot may be newer
+// in a register than in memory ("dirty"); every other variable is written through at once, so
+// memory is right wherever something else may look: at a trap, at a call, for references.
+//
+// Registers hold the low `width` bytes of a value; what is above is arbitrary, except that values
+// of 4 bytes (addresses among them) are zero-extended to 8. A BOOL is 0 or 1 in its low byte.
+//
+// Leaving. An *exit* gives the POU back to the interpreter at a unit: slots that are dirty are stored
+// first, then the interpreter executes that unit itself. So what traps, suspends or happens
+// seldom has no second meaning here.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ir/bytecode/code.h"
+
+namespace vm::native {
+
+inline constexpr uint32_t kNone = 0xffffffffu;
+using Val = uint32_t;    // index into Function::values
+using Block = uint32_t;  // index into Function::blocks
+
+enum class Op : uint8_t {
+  kConst,  // imm
+  kLoad,   // result := [mem]; a BOOL as 0 or 1
+  kStore,  // [mem] := in[0]
+  kAddr,   // result := data address of mem
+  // a op b, of `width` bytes
+  kAdd,
+  kSub,
+  kMul,
+  kAnd,
+  kOr,
+  kXor,
+  kAndNot,
+  kOrNot,  // BOOL
+  kShl,    // in[1] is 4 bytes wide; 0 from the width on, as the bytecode says
+  kShr,
+  kSar,
+  kRol,
+  kRor,
+  kDivS,  // in[1] is not 0: an exit stands before
+  kDivU,
+  kModS,
+  kModU,
+  kNeg,
+  kNot,
+  kNotBool,
+  kCompare,    // 0 or 1: in[0] cond in[1]
+  kSelect,     // in[0] != 0 ? in[1] : in[2]
+  kSelectCmp,  // in[2] cond in[3] ? in[0] : in[1]; `from` is the width that is compared
+  kSext,       // of `from` bytes to 8
+  kZext,
+  // floating point, `width` 4 or 8
+  kFAdd,
+  kFSub,
+  kFMul,
+  kFDiv,
+  kFMin,
+  kFMax,
+  kFNeg,
+  kFAbs,
+  kFSqrt,
+  kFCompare,
+  kFSelect,      // as kSelect
+  kIntToFloat,   // in[0]: a signed number of 4 or 8 bytes (`from`)
+  kFloatToInt,   // half to even (imm 0) or towards zero (imm 1), to 8 bytes signed; INT64_MIN: none
+  kFloatWidth,   // of `from` to `width`
+  kBitsToFloat,  // an integer's bits
+  kFloatToBits,
+  // leaves at `exit` when in[0] cond in[1]
+  kExitIf,
+  // address of the instance whose ID is in[0]; leaves at `exit` when it is none
+  kInstance,
+  kTaskTime,
+  kAdvanceTime,
+  kHelper,  // `unit` by its handler; every register is lost
+  kCall,    // `call`; nothing but constants lives across
+};
+
+enum class Cond : uint8_t { kEq, kNe, kLtS, kLeS, kGtS, kGeS, kLtU, kLeU, kGtU, kGeU };
+Cond negated(Cond cond);
+Cond swapped(Cond cond);  // for exchanged operands
+
+enum class MemBase : uint8_t { kFrame, kSelf, kData, kContext };
+
+// base + index * scale + disp. kData: data memory; disp is an offset of 32 bits.
+struct Mem {
+  MemBase base = MemBase::kFrame;
+  uint8_t scale = 1;  // 1, 2, 4, 8
+  Val index = kNone;
+  int64_t disp = 0;
+};
+
+struct Node {
+  Op op = Op::kConst;
+  uint8_t width = 0;
+  uint8_t from = 0;
+  Cond cond = Cond::kEq;
+  bool boolean = false;  // kLoad of a BOOL that may be any byte
+  bool dead = false;
+  Val result = kNone;
+  Val in[4] = {kNone, kNone, kNone, kNone};
+  uint64_t imm = 0;
+  Mem mem;
+  uint32_t variable = kNone;  // kLoad, kStore: whose memory it is
+  uint32_t kills = kNone;     // Function::kills: variables whose memory may change; kNone: no other
+  uint32_t exit = kNone;      // Function::exits
+  uint32_t call = kNone;      // Function::calls
+  uint32_t unit = 0;
+};
+
+struct Value {
+  bool floating = false;
+  uint8_t width = 0;
+  bool constant = false;
+  uint64_t bits = 0;      // of a constant
+  uint32_t node = kNone;  // that makes it; kNone: a block parameter
+  Block block = 0;
+};
+
+// Slots that are dirty, and what they hold there.
+struct SlotValue {
+  uint32_t offset = 0;
+  uint8_t width = 0;
+  Val value = kNone;
+};
+struct Exit {
+  uint32_t unit = 0;
+  bool fuel = false;  // its unit takes fuel that has just been taken
+  std::vector<SlotValue> slots;
+};
+
+// kSlow: the interpreter enters the callee, which returns here.
+enum class CallKind : uint8_t { kFunction, kBody, kMethod, kOwn, kSlow };
+struct Call {
+  CallKind kind = CallKind::kFunction;
+  uint32_t pou = 0;         // of kBody the instance says it
+  uint32_t frame_step = 0;  // bytes from this frame to the callee's
+  uint32_t unit = 0;
+};
+
+enum class EndKind : uint8_t { kJump, kLoop, kBranch, kReturn, kExit };
+struct End {
+  EndKind kind = EndKind::kReturn;
+  Op compare = Op::kCompare;  // kBranch: kCompare or kFCompare
+  Cond cond = Cond::kNe;
+  uint8_t width = 1;
+  Val in[2] = {kNone, kNone};
+  Block target[2] = {kNone, kNone};  // kBranch: [0] when it holds, else [1]
+  std::vector<Val> args[2];
+  uint32_t exit = kNone;  // kLoop: out of fuel; kExit
+};
+
+// A loop is its head and all blocks up to the last one that jumps back to it.
+struct Loop {
+  Block head = 0;
+  Block last = 0;
+  uint32_t parent = kNone;
+  bool kills_all = false;
+  std::vector<uint32_t> modified;  // variables, sorted
+};
+
+// At a loop head: how the interpreter's state becomes the one there.
+struct Reload {
+  uint32_t variable = kNone;
+  Val value = kNone;
+};
+
+struct BasicBlock {
+  uint32_t unit = 0;  // first
+  std::vector<Val> params;
+  std::vector<uint32_t> nodes;
+  End end;
+  uint32_t loop = kNone;  // innermost that it is in
+  bool head = false;
+  std::vector<Reload> reloads;  // of a loop head: every value that lives there
+};
+
+struct Variable {
+  MemBase base = MemBase::kFrame;
+  uint32_t offset = 0;
+  uint8_t width = 0;
+  bool floating = false;
+  bool boolean = false;
+  bool slot = false;      // of the own frame: may be dirty
+  bool constant = false;  // an instance's ID: no code writes it
+};
+
+struct Function {
+  std::vector<Value> values;
+  std::vector<Node> nodes;
+  std::vector<BasicBlock> blocks;  // in order of their units; only kLoop goes back
+  std::vector<Loop> loops;
+  std::vector<Variable> variables;
+  std::vector<std::vector<uint32_t>> overlaps;  // by variable: others on the same bytes
+  std::vector<std::vector<uint32_t>> kills;     // sets of variables
+  std::vector<Exit> exits;
+  std::vector<Call> calls;
+};
+
+}  // namespace vm::native

@@ -1,0 +1,293 @@
+#include "vm/native/program.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "ir/bytecode/regions.h"
+#include "vm/exec/context.h"
+#include "vm/native/build.h"
+#include "vm/native/code_memory.h"
+#include "vm/native/emit.h"
+#include "vm/native/x64/emitter.h"
+
+namespace vm::native {
+
+// What belongs to one POU. `facts` is everything outside of its units that its code relies on.
+struct PouNative {
+  std::string reason;  // not empty: there is no code
+  const ir::Unit* units = nullptr;
+  std::vector<uint64_t> facts;
+  std::shared_ptr<const CodeMemory> code;
+  const uint8_t* machine = nullptr;
+  SideUnits side;
+  struct Entry {
+    uint32_t unit = 0;
+    uint32_t side = 0;
+  };
+  std::vector<Entry> entries;  // sorted by unit
+};
+
+namespace {
+
+constexpr uint32_t kMostUnits = 1u << 20;
+constexpr uint32_t kMostSpills = 1024;
+
+ir::Unit resume_unit(const uint8_t* at) {
+  const uint64_t bits = reinterpret_cast<uint64_t>(at) << 16 | kResumeHandler;
+  ir::Unit unit;
+  std::memcpy(static_cast<void*>(&unit), &bits, sizeof unit);
+  return unit;
+}
+
+ir::Unit stop_unit() {
+  ir::Unit unit;
+  unit.op = static_cast<uint16_t>(kStopHandler);
+  return unit;
+}
+
+// Constants, bounds, ranges and callees that the units name by number.
+std::vector<uint64_t> facts_of(const ir::Image& image, const ir::LinkedPou& pou) {
+  std::vector<uint64_t> out = {pou.frame_size, pou.slots.size(), pou.merges.size()};
+  for (const ir::FrameSlot& slot : pou.slots) {
+    out.push_back(uint64_t{slot.offset} << 8 | static_cast<uint64_t>(slot.cls));
+  }
+  const std::span code = std::span(image.code).subspan(pou.first_unit, pou.unit_count);
+  for (uint32_t i = 0; i < code.size(); ++i) {
+    const ir::Unit& u = code[i];
+    const ir::OpcodeRow& row = ir::opcode_row(u.opcode());
+    const ir::Unit& x = row.extended ? code[i + 1] : u;
+    for (const Access& access : accesses_of(u, x)) {
+      if (access.base != ir::Base::kConst) continue;
+      uint64_t bits = 0;
+      std::memcpy(&bits, image.pool.data() + access.offset, ir::class_size(access.cls));
+      out.push_back(bits);
+    }
+    if (row.x.kind == ir::FieldKind::kBounds) {
+      const ir::LinkedBound& bound = image.bounds[x.x()];
+      out.insert(out.end(), {static_cast<uint64_t>(bound.low), bound.count, bound.stride});
+    }
+    if (row.c.kind == ir::FieldKind::kRange) {
+      const ir::Range& range = image.ranges[u.c];
+      out.insert(out.end(), {static_cast<uint64_t>(range.low), static_cast<uint64_t>(range.high)});
+    }
+    if (row.c.kind == ir::FieldKind::kCode) out.push_back(image.pous[u.c].recursion_depth);
+    if (row.x.kind == ir::FieldKind::kCode) out.push_back(image.pous[x.x()].recursion_depth);
+    if (u.opcode() == ir::Opcode::LEA) {
+      out.push_back(ir::region_size(image.types, image.layouts, ir::region_of_field(x.y())));
+    }
+    if (row.extended) ++i;
+  }
+  return out;
+}
+
+// A call's unit goes on with one that comes back, a helper's with a stop.
+SideUnits side_units(const Function& f, const ir::Unit* units, const Facts& facts) {
+  SideUnits side;
+  side.helper.assign(f.nodes.size(), kNone);
+  side.call.assign(f.calls.size(), 0);
+  side.resume.assign(f.calls.size(), 0);
+  std::vector<ir::Unit> all;
+  const auto copy = [&](uint32_t unit) {
+    const auto at = static_cast<uint32_t>(all.size());
+    for (uint32_t i = unit; i < facts.next(unit); ++i) {
+      all.push_back(units[i]);
+      side.real.push_back(unit);
+    }
+    return at;
+  };
+  for (uint32_t n = 0; n < f.nodes.size(); ++n) {
+    const Node& node = f.nodes[n];
+    if (node.dead || (node.op != Op::kHelper && node.op != Op::kCall)) continue;
+    const uint32_t at = copy(node.op == Op::kHelper ? node.unit : f.calls[node.call].unit);
+    if (node.op == Op::kHelper) {
+      side.helper[n] = at;
+    } else {
+      side.call[node.call] = at;
+      side.resume[node.call] = static_cast<uint32_t>(all.size());
+    }
+    all.push_back(stop_unit());
+    side.real.push_back(node.unit);
+  }
+  // The POU's entry and its loops' heads.
+  const size_t more = 1 + f.loops.size();
+  side.count = static_cast<uint32_t>(all.size() + more);
+  side.units = std::make_unique<ir::Unit[]>(side.count);
+  std::copy(all.begin(), all.end(), side.units.get());
+  side.real.resize(side.count, 0);
+  return side;
+}
+
+struct Work {
+  uint32_t number = 0;
+  std::shared_ptr<PouNative> pou;
+  Function function;
+  Allocated places;
+  Entries entries;
+  std::vector<uint32_t> head_units;
+  std::vector<uint32_t> call_units;  // where a call's caller goes on
+  std::vector<uint32_t> call_resume;
+};
+
+bool is_interpreted_at_random(const TierOptions& options, uint32_t number) {
+  if (options.pou_seed == 0) return false;
+  uint64_t h = (options.pou_seed + number) * 0x9e3779b97f4a7c15u;
+  h ^= h >> 29;
+  return (h * 0xbf58476d1ce4e5b9u >> 40 & 1) != 0;
+}
+
+// Everything up to registers; the machine code follows for all POUs together.
+bool prepare(const ir::Image& image, const TierOptions& options, const Target& target, Work& work) {
+  const ir::LinkedPou& pou = image.pous[work.number];
+  if (is_interpreted_at_random(options, work.number)) {
+    work.pou->reason = "the options say so";
+    return false;
+  }
+  if (pou.unit_count > kMostUnits) {
+    work.pou->reason = "it is too large";
+    return false;
+  }
+  base::Result<Facts> facts = Facts::of(image, pou);
+  if (!facts.ok()) {
+    work.pou->reason = facts.error().text;
+    return false;
+  }
+  work.function = Builder(*facts).run();
+  const AllocatorOptions registers{options.integer_registers, options.float_registers,
+                                   options.spill_seed};
+  base::Result<Allocated> places = allocate(work.function, target, registers);
+  if (!places.ok()) {
+    work.pou->reason = places.error().text;
+    return false;
+  }
+  if (places->spill_slots > kMostSpills) {
+    work.pou->reason = "it needs too many registers";
+    return false;
+  }
+  work.places = std::move(*places);
+  work.pou->side = side_units(work.function, work.pou->units, *facts);
+  for (const Call& call : work.function.calls) work.call_units.push_back(facts->next(call.unit));
+  return true;
+}
+
+// Addresses are known: side units that go on in machine code get them.
+void finish(Work& work, const uint8_t* base) {
+  PouNative& pou = *work.pou;
+  SideUnits& side = pou.side;
+  pou.machine = base + work.entries.begin;
+  for (size_t c = 0; c < work.entries.behind_call.size(); ++c) {
+    side.units[side.resume[c]] = resume_unit(base + work.entries.behind_call[c]);
+    side.real[side.resume[c]] = work.call_units[c];
+    pou.entries.push_back({work.call_units[c], side.resume[c]});
+  }
+  uint32_t next = side.count - 1 - static_cast<uint32_t>(work.function.loops.size());
+  side.units[next] = resume_unit(pou.machine);
+  pou.entries.push_back({0, next++});
+  for (const auto& [block, offset] : work.entries.heads) {
+    side.units[next] = resume_unit(base + offset);
+    side.real[next] = work.function.blocks[block].unit;
+    // An entry that is a head is entered as the POU: its memory is right as well.
+    if (work.function.blocks[block].unit != 0) {
+      pou.entries.push_back({work.function.blocks[block].unit, next});
+    }
+    ++next;
+  }
+  std::sort(pou.entries.begin(), pou.entries.end(),
+            [](const auto& a, const auto& b) { return a.unit < b.unit; });
+}
+
+}  // namespace
+
+bool is_available() {
+#if defined(__x86_64__)
+  return true;
+#else
+  return false;
+#endif
+}
+
+Program::~Program() = default;
+
+std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector<PouEntry>& pous,
+                                             const TierOptions& options, const Program* running) {
+  if (options.tier == Tier::kInterpreter || !is_available()) return nullptr;
+  std::shared_ptr<Program> made(new Program);
+  const x64::X64Target target;
+  x64::Assembler assembler;
+  const x64::Shared shared = x64::emit_shared(assembler);
+  std::vector<Work> all;
+  for (uint32_t number = 0; number < pous.size(); ++number) {
+    std::vector<uint64_t> facts = facts_of(image, image.pous[number]);
+    if (running != nullptr && number < running->pous_.size()) {
+      const std::shared_ptr<const PouNative>& old = running->pous_[number];
+      if (old->units == pous[number].code && old->facts == facts && old->machine != nullptr) {
+        made->pous_.push_back(old);
+        continue;
+      }
+    }
+    Work work;
+    work.number = number;
+    work.pou = std::make_shared<PouNative>();
+    work.pou->units = pous[number].code;
+    work.pou->facts = std::move(facts);
+    made->pous_.push_back(work.pou);
+    if (!prepare(image, options, target, work)) continue;
+    const PouCode code{&work.function, &work.places, &work.pou->side, work.pou->units, number};
+    work.entries = x64::Emitter(code, shared, assembler).run();
+    work.places = {};
+    all.push_back(std::move(work));
+  }
+  assembler.patch();
+  made->shared_code_ = CodeMemory::make(assembler.code());
+  if (made->shared_code_ == nullptr) return nullptr;
+  made->code_bytes_ = made->shared_code_->size();
+  const uint8_t* const base = made->shared_code_->data();
+  made->enter_ = base + assembler.offset_of(shared.enter);
+  for (Work& work : all) {
+    work.pou->code = made->shared_code_;
+    finish(work, base);
+  }
+  for (uint32_t number = 0; number < pous.size(); ++number) {
+    const PouNative& pou = *made->pous_[number];
+    pous[number].machine = base + assembler.offset_of(shared.interpret);
+    if (pou.machine == nullptr) continue;
+    pous[number].machine = pou.machine;
+    pous[number].entry = made->entry(number, pous[number].code);
+  }
+  return made;
+}
+
+bool Program::enter(const void* code, uint8_t* frame, uint8_t* self, uint8_t* memory,
+                    Context* ctx) const {
+  using Enter = uint64_t (*)(const void*, uint8_t*, uint8_t*, uint8_t*, Context*);
+  const auto go = reinterpret_cast<Enter>(reinterpret_cast<uintptr_t>(enter_));
+  return go(code, frame, self, memory + (uint64_t{1} << 31), ctx) == 0;
+}
+
+const ir::Unit* Program::entry(uint32_t pou, const ir::Unit* unit) const {
+  const PouNative& native = *pous_[pou];
+  if (native.machine == nullptr) return unit;
+  const auto number = static_cast<uint64_t>(unit - native.units);
+  const auto found = std::lower_bound(native.entries.begin(), native.entries.end(), number,
+                                      [](const auto& e, uint64_t at) { return e.unit < at; });
+  if (found == native.entries.end() || found->unit != number) return unit;
+  return &native.side.units[found->side];
+}
+
+const ir::Unit* Program::real_unit(uint32_t pou, const ir::Unit* unit) const {
+  const PouNative& native = *pous_[pou];
+  const ir::Unit* const first = native.side.units.get();
+  const std::less<const ir::Unit*> before;
+  if (first == nullptr || before(unit, first) || !before(unit, first + native.side.count)) {
+    return unit;
+  }
+  return native.units + native.side.real[static_cast<size_t>(unit - first)];
+}
+
+uint32_t Program::native_pous() const {
+  return static_cast<uint32_t>(std::count_if(
+      pous_.begin(), pous_.end(), [](const auto& pou) { return pou->machine != nullptr; }));
+}
+
+const std::string& Program::reason(uint32_t pou) const { return pous_[pou]->reason; }
+
+}  // namespace vm::native

@@ -1,0 +1,55 @@
+// Machine code of a generation's POUs, made when the generation is built and immutable from then
+// on. What the native tier has no code for is interpreted, and says why.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ir/bytecode/image.h"
+#include "vm/exec/tier.h"
+
+namespace vm {
+struct Context;
+struct PouEntry;
+}  // namespace vm
+
+namespace vm::native {
+
+class CodeMemory;
+struct PouNative;
+
+// Has this machine a native tier?
+bool is_available();
+
+class Program {
+ public:
+  ~Program();
+  // Sets entry and machine of `pous`. Code of `running` that is still right is shared. Null when
+  // everything is interpreted.
+  static std::shared_ptr<const Program> make(const ir::Image& image, std::vector<PouEntry>& pous,
+                                             const TierOptions& options, const Program* running);
+
+  // Runs machine code. True: its POU returned, and the caller's record is on top; else the Context
+  // says where the interpreter goes on, or that it has stopped.
+  bool enter(const void* code, uint8_t* frame, uint8_t* self, uint8_t* memory, Context* ctx) const;
+  // Where to go on at `unit` of POU number `pou`: a side unit when it is an entry of machine code.
+  const ir::Unit* entry(uint32_t pou, const ir::Unit* unit) const;
+  // The POU's own unit that a side unit stands for.
+  const ir::Unit* real_unit(uint32_t pou, const ir::Unit* unit) const;
+
+  uint64_t code_bytes() const { return code_bytes_; }
+  uint32_t native_pous() const;
+  // Why the POU is interpreted; "" when it is not.
+  const std::string& reason(uint32_t pou) const;
+
+ private:
+  Program() = default;
+  std::vector<std::shared_ptr<const PouNative>> pous_;
+  std::shared_ptr<const CodeMemory> shared_code_;
+  const void* enter_ = nullptr;
+  uint64_t code_bytes_ = 0;
+};
+
+}  // namespace vm::native

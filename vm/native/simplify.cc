@@ -1,0 +1,151 @@
+#include "vm/native/build.h"
+
+namespace vm::native {
+namespace {
+
+class Simplifier {
+ public:
+  explicit Simplifier(Function& f) : f_(f), uses_(f.values.size(), 0) {}
+
+  void run() {
+    count();
+    fuse();
+    drop_dead();
+  }
+
+ private:
+  void use(Val v) {
+    if (v != kNone) ++uses_[v];
+  }
+  void count() {
+    for (const Node& node : f_.nodes) each_operand(node, [&](Val v) { use(v); });
+    for (const BasicBlock& block : f_.blocks) {
+      for (const Val v : block.end.in) use(v);
+      for (const auto& args : block.end.args) {
+        for (const Val v : args) use(v);
+      }
+    }
+    for (const Exit& exit : f_.exits) {
+      for (const SlotValue& slot : exit.slots) use(slot.value);
+    }
+  }
+  template <class Visit>
+  static void each_operand(const Node& node, Visit visit) {
+    for (const Val v : node.in) {
+      if (v != kNone) visit(v);
+    }
+    if (node.mem.index != kNone) visit(node.mem.index);
+  }
+
+  // The comparison that makes `v` for one user alone.
+  Node* comparison(Val v, bool floats) {
+    if (v == kNone || f_.values[v].node == kNone || uses_[v] != 1) return nullptr;
+    Node& node = f_.nodes[f_.values[v].node];
+    const bool fits = node.op == Op::kCompare || (floats && node.op == Op::kFCompare);
+    return fits ? &node : nullptr;
+  }
+
+  void fuse() {
+    for (Block b = 0; b < f_.blocks.size(); ++b) {
+      End& end = f_.blocks[b].end;
+      while (end.kind == EndKind::kBranch && end.compare == Op::kCompare && end.width == 1 &&
+             (end.cond == Cond::kNe || end.cond == Cond::kEq) && fuse_end(b, end)) {
+      }
+      for (const uint32_t n : f_.blocks[b].nodes) {
+        Node& node = f_.nodes[n];
+        if (node.op == Op::kSelect) fuse_select(node, b);
+      }
+    }
+  }
+
+  bool fuse_end(Block b, End& end) {
+    const Val v = end.in[0];
+    if (!f_.values[end.in[1]].constant || f_.values[end.in[1]].bits != 0) return false;
+    if (v == kNone || f_.values[v].node == kNone || f_.values[v].block != b) return false;
+    Node& made = f_.nodes[f_.values[v].node];
+    if (made.op == Op::kNotBool) {
+      // Another user may need it too.
+      ++uses_[made.in[0]];
+      --uses_[v];
+      end.in[0] = made.in[0];
+      end.cond = negated(end.cond);
+      return true;
+    }
+    Node* const compare = comparison(v, true);
+    if (compare == nullptr) return false;
+    if (compare->op == Op::kFCompare && end.cond == Cond::kEq) {
+      std::swap(end.target[0], end.target[1]);
+      std::swap(end.args[0], end.args[1]);
+    }
+    end.cond = compare->op == Op::kCompare && end.cond == Cond::kEq ? negated(compare->cond)
+                                                                    : compare->cond;
+    end.compare = compare->op;
+    end.width = compare->width;
+    end.in[0] = compare->in[0];
+    end.in[1] = compare->in[1];
+    compare->dead = true;
+    return true;
+  }
+
+  void fuse_select(Node& node, Block b) {
+    if (f_.values[node.in[0]].block != b) return;
+    Node* const compare = comparison(node.in[0], false);
+    if (compare == nullptr) return;
+    const Val yes = node.in[1];
+    const Val no = node.in[2];
+    node.op = Op::kSelectCmp;
+    node.cond = compare->cond;
+    node.from = compare->width;
+    node.in[0] = yes;
+    node.in[1] = no;
+    node.in[2] = compare->in[0];
+    node.in[3] = compare->in[1];
+    compare->dead = true;
+  }
+
+  static bool is_pure(const Node& node) {
+    return node.op != Op::kStore && node.op != Op::kExitIf && node.op != Op::kInstance &&
+           node.op != Op::kAdvanceTime && node.op != Op::kHelper && node.op != Op::kCall;
+  }
+
+  void drop_dead() {
+    std::vector<uint32_t> work;
+    for (uint32_t n = 0; n < f_.nodes.size(); ++n) {
+      const Node& node = f_.nodes[n];
+      if (!node.dead && is_pure(node) && uses_[node.result] == 0) work.push_back(n);
+    }
+    while (!work.empty()) {
+      Node& node = f_.nodes[work.back()];
+      work.pop_back();
+      if (node.dead) continue;
+      node.dead = true;
+      each_operand(node, [&](Val v) {
+        if (--uses_[v] != 0 || f_.values[v].node == kNone) return;
+        if (is_pure(f_.nodes[f_.values[v].node])) work.push_back(f_.values[v].node);
+      });
+    }
+    for (BasicBlock& block : f_.blocks) {
+      std::erase_if(block.nodes, [&](uint32_t n) { return f_.nodes[n].dead; });
+    }
+  }
+
+  Function& f_;
+  std::vector<uint32_t> uses_;
+};
+
+}  // namespace
+
+Cond negated(Cond cond) {
+  constexpr Cond kOf[] = {Cond::kNe,  Cond::kEq,  Cond::kGeS, Cond::kGtS, Cond::kLeS,
+                          Cond::kLtS, Cond::kGeU, Cond::kGtU, Cond::kLeU, Cond::kLtU};
+  return kOf[static_cast<size_t>(cond)];
+}
+Cond swapped(Cond cond) {
+  constexpr Cond kOf[] = {Cond::kEq,  Cond::kNe,  Cond::kGtS, Cond::kGeS, Cond::kLtS,
+                          Cond::kLeS, Cond::kGtU, Cond::kGeU, Cond::kLtU, Cond::kLeU};
+  return kOf[static_cast<size_t>(cond)];
+}
+
+void simplify(Function& function) { Simplifier(function).run(); }
+
+}  // namespace vm::native

@@ -1,0 +1,85 @@
+#include "vm/native/uses.h"
+
+#include <algorithm>
+
+namespace vm::native {
+
+template <class Visit>
+void Uses::each_use(Visit visit) const {
+  const Function& f = function_;
+  for (Block b = 0; b < f.blocks.size(); ++b) {
+    const BasicBlock& block = f.blocks[b];
+    uint32_t position = begins_[b];
+    const auto exit_uses = [&](uint32_t exit) {
+      if (exit == kNone) return;
+      for (const SlotValue& slot : f.exits[exit].slots) {
+        if (!f.values[slot.value].constant) visit(slot.value, position, b);
+      }
+    };
+    for (const uint32_t n : block.nodes) {
+      ++position;
+      const Node& node = f.nodes[n];
+      for (uint32_t i = 0; i < 4; ++i) {
+        if (node.in[i] == kNone) continue;
+        if (f.values[node.in[i]].constant && target_.takes_constant(f, node, i)) continue;
+        visit(node.in[i], position, b);
+      }
+      if (node.mem.index != kNone) visit(node.mem.index, position, b);
+      exit_uses(node.exit);
+    }
+    ++position;
+    for (uint32_t i = 0; i < 2; ++i) {
+      const Val v = block.end.in[i];
+      if (v == kNone) continue;
+      if (f.values[v].constant && target_.end_takes_constant(f, block.end, i)) continue;
+      visit(v, position, b);
+    }
+    for (const std::vector<Val>& args : block.end.args) {
+      for (const Val v : args) {
+        if (!f.values[v].constant) visit(v, position, b);
+      }
+    }
+    exit_uses(block.end.exit);
+  }
+}
+
+Uses::Uses(const Function& function, const Target& target)
+    : function_(function), target_(target) {
+  const Function& f = function;
+  uint32_t position = 0;
+  std::vector<uint32_t> defined(f.values.size(), 0);
+  for (Block b = 0; b < f.blocks.size(); ++b) {
+    begins_.push_back(position);
+    for (const Val param : f.blocks[b].params) defined[param] = position;
+    for (const uint32_t n : f.blocks[b].nodes) {
+      ++position;
+      if (f.nodes[n].result != kNone) defined[f.nodes[n].result] = position;
+    }
+    ends_.push_back(++position);
+    ++position;
+  }
+  // A value from before a loop that the loop uses lives until the loop ends.
+  const auto each = [&](auto visit) {
+    each_use([&](Val v, uint32_t at, Block b) {
+      visit(v, at);
+      for (uint32_t l = f.blocks[b].loop; l != kNone; l = f.loops[l].parent) {
+        const bool before = f.values[v].constant || defined[v] < begins_[f.loops[l].head];
+        if (!before) break;
+        visit(v, ends_[f.loops[l].last]);
+      }
+    });
+  };
+  first_.assign(f.values.size() + 1, 0);
+  each([&](Val v, uint32_t) { ++first_[v + 1]; });
+  for (size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  uses_.resize(first_.back());
+  std::vector<uint32_t> fill(first_.begin(), first_.end() - 1);
+  each([&](Val v, uint32_t at) { uses_[fill[v]++] = at; });
+  for (Val v = 0; v < f.values.size(); ++v) {
+    std::sort(uses_.begin() + first_[v], uses_.begin() + first_[v + 1]);
+    if (f.values[v].constant && first_[v] != first_[v + 1]) constants_.push_back(v);
+  }
+  cursor_.assign(first_.begin(), first_.end() - 1);
+}
+
+}  // namespace vm::native

@@ -1,0 +1,40 @@
+// When values are used: positions count up through the blocks in their order.
+#pragma once
+
+#include <vector>
+
+#include "vm/native/allocate.h"
+
+namespace vm::native {
+
+class Uses {
+ public:
+  Uses(const Function& function, const Target& target);
+
+  uint32_t begin_of(Block block) const { return begins_[block]; }  // its parameters
+  uint32_t end_of(Block block) const { return ends_[block]; }      // its last instruction
+  uint32_t loop_end(uint32_t loop) const { return ends_[function_.loops[loop].last]; }
+  // The next use at or behind the position that advance() has reached; kNone: none.
+  uint32_t next(Val v) const {
+    const uint32_t at = cursor_[v];
+    return at < first_[v + 1] ? uses_[at] : kNone;
+  }
+  // Uses up to `position` are over.
+  void advance(Val v, uint32_t position) {
+    uint32_t& at = cursor_[v];
+    while (at < first_[v + 1] && uses_[at] <= position) ++at;
+  }
+  const std::vector<Val>& constants() const { return constants_; }  // that want a register
+
+ private:
+  template <class Visit>
+  void each_use(Visit visit) const;
+
+  const Function& function_;
+  const Target& target_;
+  std::vector<uint32_t> begins_, ends_;
+  std::vector<uint32_t> first_, uses_, cursor_;
+  std::vector<Val> constants_;
+};
+
+}  // namespace vm::native

@@ -1,0 +1,122 @@
+// Calls, and the code around all functions.
+#include "vm/exec/context.h"
+#include "vm/native/x64/emitter.h"
+
+namespace vm::native::x64 {
+
+#define CONTEXT(member) context(offsetof(Context, member))
+
+namespace {
+
+constexpr uint8_t kSaved[] = {kRbp, kRbx, kR12, kR13, kR14, kR15};
+
+Address in_context(size_t offset) {
+  return {kContextRegister, 0xff, 1, true, static_cast<int32_t>(offset)};
+}
+constexpr size_t record(size_t member) { return member; }
+
+}  // namespace
+
+Shared emit_shared(Assembler& a) {
+  Shared shared{a.label(), a.label(), a.label()};
+  const Label back = a.label();
+  a.bind(shared.enter);
+  for (const uint8_t reg : kSaved) a.push(reg);
+  a.alu_imm(Alu::kSub, Operand::of(kRsp), 8, 8);
+  a.move(kFrameRegister, kRsi);
+  a.move(kSelfRegister, kRdx);
+  a.move(kDataRegister, kRcx);
+  a.move(kContextRegister, kR8);
+  a.store(in_context(offsetof(Context, native_stack)), kRsp, 8);
+  a.load(kFuelRegister, in_context(offsetof(Context, fuel)), 8);
+  a.call(Operand::of(uint8_t{kRdi}));
+  a.move_imm(kRax, 0);
+  a.bind(back);
+  a.store(in_context(offsetof(Context, fuel)), kFuelRegister, 8);
+  a.alu_imm(Alu::kAdd, Operand::of(kRsp), 8, 8);
+  for (size_t i = sizeof kSaved; i-- > 0;) a.pop(kSaved[i]);
+  a.ret();
+
+  // What the machine's stack holds is forgotten: the call records say it all.
+  a.bind(shared.interpret);
+  a.store(in_context(offsetof(Context, pou)), kRdi, 4);
+  a.load(kRax, in_context(offsetof(Context, pous)), 8);
+  static_assert(sizeof(PouEntry) == 32);
+  a.shift(Shift::kShl, kRdi, 5, 8);
+  a.load(kRax, {kRax, kRdi, 1, true, offsetof(PouEntry, code)}, 8);
+  a.store(in_context(offsetof(Context, pc)), kRax, 8);
+  a.bind(shared.leave);
+  a.store(in_context(offsetof(Context, frame)), kFrameRegister, 8);
+  a.store(in_context(offsetof(Context, self)), kSelfRegister, 8);
+  a.load(kRsp, in_context(offsetof(Context, native_stack)), 8);
+  a.move_imm(kRax, 1);
+  a.jump(back);
+  return shared;
+}
+
+// The record of the call, the callee's frame and instance, and behind the call everything as before.
+void Emitter::call(const Node& n) {
+  const Call& c = f_.calls[n.call];
+  if (c.kind == CallKind::kSlow) return slow_call(c, n.call);
+  const ir::Unit* const resume = &pou_.side->units[pou_.side->resume[n.call]];
+  const Label stub = a_.label();
+  call_stubs_.push_back({stub, pou_.side->call[n.call]});
+  a_.alu_imm(Alu::kSub, Operand::of(kFuelRegister), 1, 8);
+  a_.jump_if(Condition::kEqual, stub);
+  a_.load(kRcx, CONTEXT(call), 8);
+  a_.move_imm(kScratch, reinterpret_cast<uintptr_t>(resume));
+  const auto at_record = [&](size_t member) {
+    return Address{kRcx, 0xff, 1, true, static_cast<int32_t>(record(member))};
+  };
+  a_.store(at_record(offsetof(CallRecord, resume)), kScratch, 8);
+  a_.store(at_record(offsetof(CallRecord, frame)), kFrameRegister, 8);
+  a_.store(at_record(offsetof(CallRecord, self)), kSelfRegister, 8);
+  a_.store_imm(at_record(offsetof(CallRecord, pou)), static_cast<int32_t>(pou_.number), 4);
+  a_.load(kRsi, CONTEXT(instance), 4);
+  a_.store(at_record(offsetof(CallRecord, instance)), kRsi, 4);
+  a_.alu_imm(Alu::kAdd, Operand::of(kRcx), sizeof(CallRecord), 8);
+  a_.store(CONTEXT(call), kRcx, 8);
+  a_.load(kRsi, CONTEXT(pous), 8);
+  if (c.kind == CallKind::kBody) {
+    a_.load(kRdi, CONTEXT(instances), 8);
+    a_.load(kRdi, {kRdi, kRax, 8, true, offsetof(InstanceEntry, pou)}, 4);
+  } else {
+    a_.move_imm(kRdi, c.pou);
+  }
+  if (c.kind == CallKind::kFunction) a_.store_imm(CONTEXT(instance), 0, 4);
+  if (c.kind == CallKind::kBody || c.kind == CallKind::kMethod) {
+    a_.store(CONTEXT(instance), kRax, 4);
+    a_.address(kSelfRegister, {kDataRegister, kRdx, 1, true, INT32_MIN}, 8);
+  }
+  a_.alu_imm(Alu::kAdd, Operand::of(kFrameRegister), static_cast<int32_t>(c.frame_step), 8);
+  Address callee{kRsi, 0xff, 1, true, static_cast<int32_t>(offsetof(PouEntry, machine))};
+  if (c.kind == CallKind::kBody) {
+    a_.move(kR8, kRdi);
+    a_.shift(Shift::kShl, kR8, 5, 8);
+    callee.index = kR8;
+  } else {
+    callee.disp += static_cast<int32_t>(c.pou * sizeof(PouEntry));
+  }
+  a_.call(Operand::of(callee));
+  a_.load(kRcx, CONTEXT(call), 8);
+  a_.alu_imm(Alu::kSub, Operand::of(kRcx), sizeof(CallRecord), 8);
+  a_.store(CONTEXT(call), kRcx, 8);
+  a_.load(kFrameRegister, at_record(offsetof(CallRecord, frame)), 8);
+  a_.load(kSelfRegister, at_record(offsetof(CallRecord, self)), 8);
+  a_.load(kRsi, at_record(offsetof(CallRecord, instance)), 4);
+  a_.store(CONTEXT(instance), kRsi, 4);
+  entries_.behind_call[n.call] = a_.label();
+  a_.bind(entries_.behind_call[n.call]);
+}
+
+// The interpreter calls, and what it calls returns to the resume unit.
+void Emitter::slow_call(const Call&, uint32_t number) {
+  a_.move_imm(kScratch, reinterpret_cast<uintptr_t>(&pou_.side->units[pou_.side->call[number]]));
+  a_.store(CONTEXT(pc), kScratch, 8);
+  a_.store_imm(CONTEXT(pou), static_cast<int32_t>(pou_.number), 4);
+  a_.jump(shared_.leave);
+  entries_.behind_call[number] = a_.label();
+  a_.bind(entries_.behind_call[number]);
+}
+
+}  // namespace vm::native::x64

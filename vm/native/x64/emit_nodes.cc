@@ -1,0 +1,339 @@
+// One operation after the other.
+#include "vm/exec/context.h"
+#include "vm/native/x64/emitter.h"
+
+namespace vm::native::x64 {
+
+#define CONTEXT(member) context(offsetof(Context, member))
+
+namespace {
+
+// As the field of an instruction that works on `width` bytes.
+int32_t field(uint64_t bits, uint8_t width) {
+  if (width == 1) return static_cast<int8_t>(bits);
+  if (width == 2) return static_cast<int16_t>(bits);
+  return static_cast<int32_t>(bits);
+}
+
+uint8_t at_least_four(uint8_t width) { return width < 4 ? uint8_t{4} : width; }
+
+}  // namespace
+
+void Emitter::node(const Step& step) {
+  const Node& n = f_.nodes[step.node];
+  switch (n.op) {
+    case Op::kConst:
+      return;
+    case Op::kLoad:
+      return load(n, step);
+    case Op::kStore:
+      return store(n, step);
+    case Op::kAddr:
+      return data_address(n, step);
+    case Op::kDivS:
+    case Op::kDivU:
+    case Op::kModS:
+    case Op::kModU:
+      return divide(n, step);
+    case Op::kSelect:
+    case Op::kSelectCmp:
+      return select(n, step);
+    case Op::kExitIf:
+      compare(n.width, step.in[0], step.in[1]);
+      return a_.jump_if(condition_of(n.cond), exit_label(n.exit));
+    case Op::kInstance:
+      return instance(n, step);
+    case Op::kTaskTime:
+      return a_.load(integer_register(step.result), CONTEXT(task_time_ns), 8);
+    case Op::kAdvanceTime: {
+      const uint8_t by = integer_register(step.in[0]);
+      a_.load(kScratch, CONTEXT(task_time_ns), 8);
+      a_.alu(Alu::kAdd, kScratch, Operand::of(by), 8);
+      return a_.store(CONTEXT(task_time_ns), kScratch, 8);
+    }
+    case Op::kHelper:
+      return helper(n, step);
+    case Op::kCall:
+      return call(n);
+    case Op::kFCompare:
+      return float_compare(n, step);
+    case Op::kFAdd:
+    case Op::kFSub:
+    case Op::kFMul:
+    case Op::kFDiv:
+    case Op::kFMin:
+    case Op::kFMax:
+    case Op::kFNeg:
+    case Op::kFAbs:
+    case Op::kFSqrt:
+    case Op::kFSelect:
+    case Op::kIntToFloat:
+    case Op::kFloatToInt:
+    case Op::kFloatWidth:
+    case Op::kBitsToFloat:
+    case Op::kFloatToBits:
+      return floating(n, step);
+    default:
+      return integer(n, step);
+  }
+}
+
+void Emitter::integer(const Node& n, const Step& step) {
+  const uint8_t to = integer_register(step.result);
+  switch (n.op) {
+    case Op::kAdd:
+      return three(Alu::kAdd, n, step);
+    case Op::kSub:
+      return three(Alu::kSub, n, step);
+    case Op::kAnd:
+      return three(Alu::kAnd, n, step);
+    case Op::kOr:
+      return three(Alu::kOr, n, step);
+    case Op::kXor:
+      return three(Alu::kXor, n, step);
+    case Op::kMul:
+      return multiply(n, step);
+    case Op::kAndNot:
+    case Op::kOrNot:
+      return bool_not(n, step);
+    case Op::kShl:
+    case Op::kShr:
+    case Op::kSar:
+    case Op::kRol:
+    case Op::kRor:
+      return shift(n, step);
+    case Op::kNeg:
+      a_.move(to, integer_register(step.in[0]));
+      return a_.negate(to, at_least_four(n.width));
+    case Op::kNot:
+      a_.move(to, integer_register(step.in[0]));
+      return a_.complement(to, at_least_four(n.width));
+    case Op::kNotBool:
+      a_.move(to, integer_register(step.in[0]));
+      return a_.alu_imm(Alu::kXor, Operand::of(to), 1, 4);
+    case Op::kCompare:
+      compare(n.width, step.in[0], step.in[1]);
+      return a_.set(condition_of(n.cond), to);
+    case Op::kSext:
+      return a_.load_signed(to, operand(step.in[0]), n.from);
+    case Op::kZext:
+      return a_.zero_extend(to, operand(step.in[0]), n.from);
+    default:
+      return a_.trap();
+  }
+}
+
+// to := a op b, where b may be a constant or in memory.
+void Emitter::three(Alu op, const Node& n, const Step& step) {
+  const uint8_t to = integer_register(step.result);
+  const uint8_t a = integer_register(step.in[0]);
+  const Place& b = step.in[1];
+  const uint8_t width = at_least_four(n.width);
+  if (b.kind == Place::kConstant) {
+    if (op == Alu::kAdd && to != a) {
+      return a_.address(to, {a, 0xff, 1, true, field(b.bits, n.width)}, width);
+    }
+    a_.move(to, a);
+    return a_.alu_imm(op, Operand::of(to), field(b.bits, n.width), width);
+  }
+  const Operand right = operand(b);
+  // Memory is read as wide as it is.
+  const uint8_t wide = right.memory ? n.width : width;
+  if (right.memory || right.reg != to || to == a) {
+    if (op == Alu::kAdd && !right.memory && to != a) {
+      return a_.address(to, {a, right.reg, 1, true, 0}, width);
+    }
+    a_.move(to, a);
+    return a_.alu(op, to, right, wide);
+  }
+  if (op != Alu::kSub) return a_.alu(op, to, Operand::of(a), width);
+  a_.move(kScratch, a);
+  a_.alu(op, kScratch, right, width);
+  a_.move(to, kScratch);
+}
+
+void Emitter::multiply(const Node& n, const Step& step) {
+  const uint8_t to = integer_register(step.result);
+  const uint8_t a = integer_register(step.in[0]);
+  const uint8_t width = at_least_four(n.width);
+  const Place& b = step.in[1];
+  if (b.kind == Place::kConstant) {
+    return a_.multiply_imm(to, Operand::of(a), field(b.bits, n.width), width);
+  }
+  const Operand right = operand(b);
+  if (!right.memory && right.reg == to) return a_.multiply(to, Operand::of(a), width);
+  a_.move(to, a);
+  a_.multiply(to, right, width);
+}
+
+// BOOL: a AND NOT b, a OR NOT b
+void Emitter::bool_not(const Node& n, const Step& step) {
+  const uint8_t to = integer_register(step.result);
+  const uint8_t a = integer_register(step.in[0]);
+  const Alu op = n.op == Op::kAndNot ? Alu::kAnd : Alu::kOr;
+  const Place& b = step.in[1];
+  if (b.kind == Place::kConstant) {
+    a_.move(to, a);
+    return a_.alu_imm(op, Operand::of(to), static_cast<int32_t>((b.bits & 1) ^ 1), 4);
+  }
+  a_.move(kScratch, integer_register(b));
+  a_.alu_imm(Alu::kXor, Operand::of(kScratch), 1, 4);
+  if (to == a) return a_.alu(op, to, Operand::of(kScratch), 4);
+  a_.alu(op, kScratch, Operand::of(a), 4);
+  a_.move(to, kScratch);
+}
+
+void Emitter::shift(const Node& n, const Step& step) {
+  Shift op = Shift::kShl;
+  if (n.op == Op::kShr) op = Shift::kShr;
+  if (n.op == Op::kSar) op = Shift::kSar;
+  if (n.op == Op::kRol) op = Shift::kRol;
+  if (n.op == Op::kRor) op = Shift::kRor;
+  const bool rotates = n.op == Op::kRol || n.op == Op::kRor;
+  const uint8_t to = integer_register(step.result);
+  a_.move(to, integer_register(step.in[0]));
+  if (step.in[1].kind == Place::kConstant) {
+    const uint8_t width = rotates ? n.width : at_least_four(n.width);
+    return a_.shift(op, to, static_cast<uint8_t>(step.in[1].bits), width);
+  }
+  a_.shift_cl(op, to, at_least_four(n.width));
+  if (rotates) return;
+  // The machine takes the count modulo its width; here everything is shifted out.
+  a_.alu_imm(Alu::kCmp, Operand::of(kRcx), 8 * n.width, 4);
+  a_.alu(static_cast<Alu>(3), kScratch, Operand::of(kScratch), 8);  // sbb: all ones if below
+  a_.alu(Alu::kAnd, to, Operand::of(kScratch), 8);
+}
+
+// rdx:rax by a register. The most negative number by -1 faults in the machine and wraps here.
+void Emitter::divide(const Node& n, const Step& step) {
+  const uint8_t by = integer_register(step.in[1]);
+  const bool is_signed = n.op == Op::kDivS || n.op == Op::kModS;
+  if (!is_signed) {
+    a_.move_imm(kRdx, 0);
+    return a_.divide(by, false, n.width);
+  }
+  const Value& divisor = f_.values[n.in[1]];
+  const uint64_t minus_one = n.width == 8 ? ~uint64_t{0} : 0xffffffffu;
+  const bool constant = divisor.constant && divisor.bits != minus_one;
+  const Label normal = a_.label();
+  const Label done = a_.label();
+  if (!constant) {
+    a_.alu_imm(Alu::kCmp, Operand::of(by), -1, n.width);
+    a_.jump_if(Condition::kNotEqual, normal);
+    a_.negate(kRax, n.width);
+    a_.move_imm(kRdx, 0);
+    a_.jump(done);
+    a_.bind(normal);
+  }
+  a_.sign_into_rdx(n.width);
+  a_.divide(by, true, n.width);
+  a_.bind(done);
+}
+
+void Emitter::compare(uint8_t width, const Place& a, const Place& b) {
+  const uint8_t left = integer_register(a);
+  if (b.kind == Place::kConstant) {
+    if (b.bits == 0) return a_.test(left, left, width);
+    return a_.alu_imm(Alu::kCmp, Operand::of(left), field(b.bits, width), width);
+  }
+  a_.alu(Alu::kCmp, left, operand(b), width);
+}
+
+void Emitter::select(const Node& n, const Step& step) {
+  const bool compares = n.op == Op::kSelectCmp;
+  const uint8_t to = integer_register(step.result);
+  const uint8_t yes = integer_register(step.in[compares ? 0 : 1]);
+  const uint8_t no = integer_register(step.in[compares ? 1 : 2]);
+  Condition condition = Condition::kNotEqual;
+  if (compares) {
+    compare(n.from, step.in[2], step.in[3]);
+    condition = condition_of(n.cond);
+  } else {
+    const uint8_t question = integer_register(step.in[0]);
+    a_.test(question, question, 1);
+  }
+  if (to == yes) {
+    // Conditions come in pairs, which differ in the lowest bit.
+    const auto other = static_cast<Condition>(static_cast<uint8_t>(condition) ^ 1);
+    return a_.move_if(other, to, no);
+  }
+  a_.move(to, no);
+  a_.move_if(condition, to, yes);
+}
+
+void Emitter::load(const Node& n, const Step& step) {
+  const Address from = address(n.mem, step.index);
+  if (step.result.floating) return a_.float_load(float_register(step.result), from, n.width);
+  const uint8_t to = integer_register(step.result);
+  if (!n.boolean) return a_.load(to, from, n.width);
+  a_.alu_imm(Alu::kCmp, Operand::of(from), 0, 1);
+  a_.set(Condition::kNotEqual, to);
+}
+
+void Emitter::store(const Node& n, const Step& step) {
+  const Address to = address(n.mem, step.index);
+  const Place& value = step.in[0];
+  if (value.kind == Place::kRegister) {
+    if (value.floating) return a_.float_store(to, float_register(value), n.width);
+    return a_.store(to, integer_register(value), n.width);
+  }
+  const auto wide = static_cast<int64_t>(value.bits);
+  if (n.width < 8 || (wide >= INT32_MIN && wide <= INT32_MAX)) {
+    return a_.store_imm(to, field(value.bits, n.width), n.width);
+  }
+  a_.move_imm(kScratch, value.bits);
+  a_.store(to, kScratch, 8);
+}
+
+// Offsets in data memory are the difference of two addresses.
+void Emitter::data_address(const Node& n, const Step& step) {
+  const uint8_t to = integer_register(step.result);
+  Address at = address(n.mem, step.index);
+  if (n.mem.base == MemBase::kData) {
+    at.has_base = false;
+    at.disp = static_cast<int32_t>(static_cast<uint32_t>(n.mem.disp));
+    if (at.index != 0xff && at.scale == 1) {
+      at.base = at.index;
+      at.index = 0xff;
+      at.has_base = true;
+    }
+    return a_.address(to, at, 4);
+  }
+  at.disp = static_cast<int32_t>(static_cast<uint32_t>(n.mem.disp + (int64_t{1} << 31)));
+  a_.address(to, at, 8);
+  a_.alu(Alu::kSub, to, Operand::of(kDataRegister), 4);
+}
+
+// A row without data is free.
+void Emitter::instance(const Node& n, const Step& step) {
+  const uint8_t id = integer_register(step.in[0]);
+  const Label none = exit_label(n.exit);
+  a_.alu(Alu::kCmp, id, Operand::of(CONTEXT(instance_count)), 4);
+  a_.jump_if(Condition::kAboveOrEqual, none);
+  a_.load(kScratch, CONTEXT(instances), 8);
+  static_assert(sizeof(InstanceEntry) == 8);
+  a_.load(kScratch, {kScratch, id, 8, true, offsetof(InstanceEntry, data)}, 4);
+  a_.test(kScratch, kScratch, 4);
+  a_.jump_if(Condition::kEqual, none);
+  a_.move(integer_register(step.result), kScratch);
+}
+
+void Emitter::helper(const Node& n, const Step& step) {
+  const uint32_t side = pou_.side->helper[step.node];
+  const ir::Unit& unit = pou_.side->units[side];
+  a_.store_imm(CONTEXT(pou), static_cast<int32_t>(pou_.number), 4);
+  a_.move_imm(kRdi, reinterpret_cast<uintptr_t>(&unit));
+  a_.move(kRsi, kFrameRegister);
+  a_.move(kRdx, kSelfRegister);
+  a_.address(kRcx, {kDataRegister, 0xff, 1, true, INT32_MIN}, 8);
+  a_.load(kR8, CONTEXT(consts), 8);
+  a_.move(kR9, kContextRegister);
+  a_.move_imm(kRax, reinterpret_cast<uintptr_t>(kHandlers.of[unit.op]));
+  a_.call(Operand::of(uint8_t{kRax}));
+  const Label stopped = a_.label();
+  stops_.push_back({stopped, n.unit});
+  a_.alu_imm(Alu::kCmp, Operand::of(CONTEXT(running)), 0, 1);
+  a_.jump_if(Condition::kEqual, stopped);
+}
+
+}  // namespace vm::native::x64

@@ -1,0 +1,125 @@
+// One function as x86-64 code. Registers that stay what they are:
+//   rbx  the frame           rbp  the instance       r12  data memory + 2 GiB
+//   r13  the Context         r14  the fuel           r11, xmm15  scratch
+// The rest is the allocator's. Spill slots lie at rsp.
+#pragma once
+
+#include "vm/native/emit.h"
+#include "vm/native/x64/assembler.h"
+
+namespace vm::native::x64 {
+
+inline constexpr uint8_t kIntegers[] = {kRax, kRcx, kRdx, kRsi, kRdi, kR8, kR9, kR10, kR15};
+inline constexpr uint32_t kIntegerCount = sizeof kIntegers;
+inline constexpr uint32_t kFloatCount = 15;
+inline constexpr uint8_t kFrameRegister = kRbx;
+inline constexpr uint8_t kSelfRegister = kRbp;
+inline constexpr uint8_t kDataRegister = kR12;
+inline constexpr uint8_t kContextRegister = kR13;
+inline constexpr uint8_t kFuelRegister = kR14;
+inline constexpr uint8_t kScratch = kR11;
+inline constexpr uint8_t kFloatScratch = 15;
+
+// Code that all functions of one piece of memory share.
+struct Shared {
+  Label enter;      // uint64_t (const void* to, frame, self, data + 2 GiB, Context*)
+  Label leave;      // everything but pc and POU is in its register
+  Label interpret;  // entry of a POU without code: its number is in edi
+};
+Shared emit_shared(Assembler& assembler);
+
+class X64Target : public Target {
+ public:
+  X64Target() {
+    integers = kIntegerCount;
+    floats = kFloatCount;
+  }
+  Demands demands(const Function& f, const Node& node) const override;
+  bool takes_constant(const Function& f, const Node& node, uint32_t operand) const override;
+  bool takes_memory(const Function& f, const Node& node, uint32_t operand) const override;
+  bool end_takes_constant(const Function& f, const End& end, uint32_t operand) const override;
+};
+
+class Emitter {
+ public:
+  Emitter(const PouCode& pou, const Shared& shared, Assembler& assembler);
+  Entries run();
+
+ private:
+  struct Stub {
+    Label label;
+    uint32_t exit;
+  };
+  struct EdgeStub {
+    Label label;
+    Block block;
+    uint32_t target;
+  };
+
+  // emitter.cc: blocks, moves, exits
+  void block(Block b);
+  void end(Block b);
+  void branch(Block b);
+  void loop_end(Block b);
+  void branch_integer(const End& end, const Place in[2], Label yes, Label no, bool yes_is_next);
+  void branch_float(const End& end, const Place in[2], Label yes, Label no, bool yes_is_next);
+  void moves(const std::vector<Move>& all);
+  void move(const Move& m);
+  void move_to_spill(const Move& m);
+  void load_place(uint8_t to, const Place& from, uint8_t width);
+  void load_float(uint8_t to, const Place& from, uint8_t width);
+  void stubs();
+  void store_slot(const SlotValue& slot, const Place& place);
+  Label exit_label(uint32_t exit);
+  void enter_frame();
+  void leave_frame();
+
+  // emit_nodes.cc
+  void node(const Step& step);
+  void integer(const Node& node, const Step& step);
+  void three(Alu op, const Node& node, const Step& step);
+  void multiply(const Node& node, const Step& step);
+  void bool_not(const Node& node, const Step& step);
+  void shift(const Node& node, const Step& step);
+  void divide(const Node& node, const Step& step);
+  void compare(uint8_t width, const Place& a, const Place& b);
+  void select(const Node& node, const Step& step);
+  void load(const Node& node, const Step& step);
+  void store(const Node& node, const Step& step);
+  void data_address(const Node& node, const Step& step);
+  void floating(const Node& node, const Step& step);
+  void float_sign(const Node& node, const Step& step);
+  void float_compare(const Node& node, const Step& step);
+  void instance(const Node& node, const Step& step);
+  void helper(const Node& node, const Step& step);
+
+  // emit_call.cc
+  void call(const Node& node);
+  void slow_call(const Call& call, uint32_t number);
+
+  uint8_t integer_register(const Place& place) const;
+  uint8_t float_register(const Place& place) const;
+  Operand operand(const Place& place) const;
+  Address spill(uint32_t slot) const;
+  Address variable(uint32_t number) const;
+  Address address(const Mem& mem, const Place& index) const;
+  Address context(size_t offset) const;
+
+  const PouCode& pou_;
+  const Function& f_;
+  const Allocated& places_;
+  const Shared& shared_;
+  Assembler& a_;
+  Entries entries_;
+  int32_t frame_bytes_ = 0;
+  std::vector<Label> blocks_;
+  std::vector<Label> exits_;
+  std::vector<EdgeStub> edges_;
+  std::vector<std::pair<Label, uint32_t>> stops_;       // a helper that trapped: its unit
+  std::vector<std::pair<Label, uint32_t>> call_stubs_;  // out of fuel at a call
+  Label leave_ = 0;
+};
+
+Condition condition_of(Cond cond);
+
+}  // namespace vm::native::x64

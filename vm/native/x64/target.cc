@@ -1,0 +1,104 @@
+#include "vm/native/x64/emitter.h"
+
+namespace vm::native::x64 {
+namespace {
+
+bool fits32(uint64_t bits, uint8_t width) {
+  if (width < 8) return true;
+  const auto v = static_cast<int64_t>(bits);
+  return v >= INT32_MIN && v <= INT32_MAX;
+}
+
+}  // namespace
+
+Demands X64Target::demands(const Function& f, const Node& node) const {
+  Demands d;
+  switch (node.op) {
+    case Op::kDivS:
+    case Op::kDivU:
+    case Op::kModS:
+    case Op::kModU:
+      d.in[0] = 0;
+      d.result = node.op == Op::kDivS || node.op == Op::kDivU ? 0 : 2;
+      d.clobbers = 1u << 0 | 1u << 2;
+      break;
+    case Op::kShl:
+    case Op::kShr:
+    case Op::kSar:
+    case Op::kRol:
+    case Op::kRor:
+      if (!f.values[node.in[1]].constant) {
+        d.in[1] = 1;
+        d.shares = 1;
+      }
+      break;
+    case Op::kCall:
+      d.clobbers_all = true;
+      if (node.in[0] != kNone) d.in[0] = 0;
+      if (node.in[1] != kNone) d.in[1] = 2;
+      break;
+    case Op::kHelper:
+      d.clobbers_all = true;
+      break;
+    default:
+      break;
+  }
+  return d;
+}
+
+bool X64Target::takes_constant(const Function& f, const Node& node, uint32_t operand) const {
+  const Value& value = f.values[node.in[operand]];
+  switch (node.op) {
+    case Op::kStore:
+      return operand == 0;
+    case Op::kAdd:
+    case Op::kSub:
+    case Op::kMul:
+    case Op::kAnd:
+    case Op::kOr:
+    case Op::kXor:
+    case Op::kCompare:
+    case Op::kExitIf:
+      return operand == 1 && !value.floating && fits32(value.bits, node.width);
+    case Op::kSelectCmp:
+      return operand == 3 && fits32(value.bits, node.from);
+    case Op::kShl:
+    case Op::kShr:
+    case Op::kSar:
+    case Op::kRol:
+    case Op::kRor:
+    case Op::kAndNot:
+    case Op::kOrNot:
+      return operand == 1;
+    default:
+      return false;
+  }
+}
+
+bool X64Target::takes_memory(const Function&, const Node& node, uint32_t operand) const {
+  switch (node.op) {
+    case Op::kAdd:
+    case Op::kSub:
+    case Op::kAnd:
+    case Op::kOr:
+    case Op::kXor:
+    case Op::kCompare:
+    case Op::kExitIf:
+    case Op::kFAdd:
+    case Op::kFSub:
+    case Op::kFMul:
+    case Op::kFDiv:
+      return operand == 1;
+    case Op::kMul:
+      return operand == 1 && node.width >= 4;
+    default:
+      return false;
+  }
+}
+
+bool X64Target::end_takes_constant(const Function& f, const End& end, uint32_t operand) const {
+  const Value& value = f.values[end.in[operand]];
+  return operand == 1 && end.compare == Op::kCompare && fits32(value.bits, end.width);
+}
+
+}  // namespace vm::native::x64
