@@ -1,5 +1,6 @@
 // Where ways meet: what a block finds in registers, and the moves that bring it there.
 #include <algorithm>
+#include <cstdio>
 
 #include "vm/native/allocator.h"
 
@@ -255,6 +256,7 @@ std::vector<Move> Allocator::resume_moves(Block head, const Snapshot& state) {
       origin = {Place::kHome, floating(held.v), false, reload.variable, 0};
     }
     if (origin.kind == Place::kNowhere) {
+      fprintf(stderr,"DBG head %u unit %u v%u def node %d op %d block %u next %u end %u\n",head,f_.blocks[head].unit,held.v,(int)f_.values[held.v].node,f_.values[held.v].node==kNone?-1:(int)f_.nodes[f_.values[held.v].node].op,f_.values[held.v].block,next_use(held.v,position_),uses_.end_of(head));
       fail("a loop begins with a value that no variable holds");
       return {};
     }

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cstring>
+#include <cstdio>
+#include <cstdlib>
 
 #include "ir/bytecode/regions.h"
 #include "vm/exec/context.h"
 #include "vm/native/build.h"
 #include "vm/native/code_memory.h"
 #include "vm/native/emit.h"
+#include "vm/native/print.h"
 #include "vm/native/x64/emitter.h"
 
 namespace vm::native {
@@ -152,6 +155,7 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
     return false;
   }
   work.function = Builder(*facts).run();
+  if (getenv("STC_PRINT_NATIVE")) fputs(print(work.function).c_str(), stderr);
   const AllocatorOptions registers{options.integer_registers, options.float_registers,
                                    options.spill_seed};
   base::Result<Allocated> places = allocate(work.function, target, registers);
