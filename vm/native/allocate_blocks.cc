@@ -1,6 +1,5 @@
 // Where ways meet: what a block finds in registers, and the moves that bring it there.
 #include <algorithm>
-#include <cstdio>
 
 #include "vm/native/allocator.h"
 
@@ -13,11 +12,19 @@ constexpr Place kFloatScratch{Place::kRegister, true, false, kMostRegisters, 0};
 
 }  // namespace
 
-void Allocator::restore(const Snapshot& snapshot) {
+bool Allocator::lives_into(Block block, Val v, const std::vector<Val>& params) const {
+  if (is_constant(v)) return true;
+  const std::vector<Val>& live = uses_.live_in(block);
+  return std::binary_search(live.begin(), live.end(), v) ||
+         std::find(params.begin(), params.end(), v) != params.end();
+}
+
+void Allocator::restore(const Snapshot& snapshot, Block block) {
   clear_state();
+  const std::vector<Val>& params = f_.blocks[block].params;
   for (const Held& held : snapshot) {
     const Val v = held.v;
-    if (next_use(v, position_) == kNone) continue;
+    if (next_use(v, position_) == kNone || !lives_into(block, v, params)) continue;
     add_live(v);
     if (held.reg >= 0) put(v, static_cast<uint32_t>(held.reg));
     saved_[v] = held.saved ? 1 : 0;
@@ -34,7 +41,7 @@ void Allocator::begin(Block block) {
   const std::vector<Pred>& preds = preds_[block];
   const bool head = f_.blocks[block].head;
   if (preds.size() == 1 && !head) {
-    restore(ends_[preds[0].block]);
+    restore(ends_[preds[0].block], block);
   } else if (!preds.empty() || head) {
     meet(block);
   }
@@ -64,7 +71,8 @@ void Allocator::meet(Block block) {
   Snapshot state;
   if (!preds.empty()) {
     for (const Held& held : ends_[preds.back().block]) {
-      if (next_use(held.v, position_) != kNone) state.push_back(held);
+      if (next_use(held.v, position_) == kNone) continue;
+      if (lives_into(block, held.v, {})) state.push_back(held);
     }
     for (size_t i = 0; i + 1 < preds.size(); ++i) {
       stamp(ends_[preds[i].block]);
@@ -99,7 +107,7 @@ void Allocator::meet(Block block) {
     out_.blocks[block].resume = resume_moves(block, state);
     heads_[block] = state;
   }
-  restore(state);
+  restore(state, block);
 }
 
 // A loop keeps in registers what its body uses, the nearest first.
@@ -256,7 +264,6 @@ std::vector<Move> Allocator::resume_moves(Block head, const Snapshot& state) {
       origin = {Place::kHome, floating(held.v), false, reload.variable, 0};
     }
     if (origin.kind == Place::kNowhere) {
-      fprintf(stderr,"DBG head %u unit %u v%u def node %d op %d block %u next %u end %u\n",head,f_.blocks[head].unit,held.v,(int)f_.values[held.v].node,f_.values[held.v].node==kNone?-1:(int)f_.nodes[f_.values[held.v].node].op,f_.values[held.v].block,next_use(held.v,position_),uses_.end_of(head));
       fail("a loop begins with a value that no variable holds");
       return {};
     }

@@ -68,7 +68,8 @@ class Allocator {
 
   // allocate_blocks.cc: where ways meet
   void begin(Block block);
-  void restore(const Snapshot& snapshot);
+  bool lives_into(Block block, Val v, const std::vector<Val>& params) const;
+  void restore(const Snapshot& snapshot, Block block);
   void meet(Block block);
   Held met(Val v, Block block);
   void choose_for_loop(Block block, Snapshot& state);

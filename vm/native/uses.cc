@@ -80,6 +80,41 @@ Uses::Uses(const Function& function, const Target& target)
     if (f.values[v].constant && first_[v] != first_[v + 1]) constants_.push_back(v);
   }
   cursor_.assign(first_.begin(), first_.end() - 1);
+  find_live(defined);
+}
+
+// From each use back to the definition.
+void Uses::find_live(const std::vector<uint32_t>& defined) {
+  const Function& f = function_;
+  live_in_.resize(f.blocks.size());
+  std::vector<std::vector<Block>> preds(f.blocks.size());
+  for (Block b = 0; b < f.blocks.size(); ++b) {
+    for (const Block to : f.blocks[b].end.target) {
+      if (to != kNone) preds[to].push_back(b);
+    }
+  }
+  std::vector<std::pair<Val, Block>> all;
+  each_use([&](Val v, uint32_t, Block b) {
+    if (!f.values[v].constant && defined[v] < begins_[b]) all.push_back({v, b});
+  });
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  std::vector<Val> seen(f.blocks.size(), kNone);
+  std::vector<Block> work;
+  for (const auto& [v, used_in] : all) {
+    work.push_back(used_in);
+    while (!work.empty()) {
+      const Block b = work.back();
+      work.pop_back();
+      if (seen[b] == v) continue;
+      seen[b] = v;
+      live_in_[b].push_back(v);
+      for (const Block pred : preds[b]) {
+        // Its own block defines it, as a parameter or behind its beginning.
+        if (f.values[v].block != pred) work.push_back(pred);
+      }
+    }
+  }
 }
 
 }  // namespace vm::native

@@ -24,9 +24,13 @@ class Uses {
     uint32_t& at = cursor_[v];
     while (at < first_[v + 1] && uses_[at] <= position) ++at;
   }
+  // Values that something behind the block's beginning uses, whichever way leads there; sorted.
+  // Constants and the block's own parameters are none of them.
+  const std::vector<Val>& live_in(Block block) const { return live_in_[block]; }
   const std::vector<Val>& constants() const { return constants_; }  // that want a register
 
  private:
+  void find_live(const std::vector<uint32_t>& defined);
   template <class Visit>
   void each_use(Visit visit) const;
 
@@ -35,6 +39,7 @@ class Uses {
   std::vector<uint32_t> begins_, ends_;
   std::vector<uint32_t> first_, uses_, cursor_;
   std::vector<Val> constants_;
+  std::vector<std::vector<Val>> live_in_;
 };
 
 }  // namespace vm::native
