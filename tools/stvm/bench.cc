@@ -9,6 +9,7 @@
 #include "tools/stvm/compiler.h"
 #include "tools/stvm/tier.h"
 #include "tools/stvm/trap_text.h"
+#include "vm/native/program.h"
 #include "vm/runtime/clocks.h"
 #include "vm/runtime/io.h"
 
@@ -143,6 +144,15 @@ void print(const Settings& settings, const std::string& program, const char* tie
   std::fputs(json.finish().c_str(), stdout);
 }
 
+// Which POUs have no machine code, and why.
+void print_interpreted(const ir::Image& image, const vm::native::Program& native) {
+  for (uint32_t number = 0; number < image.pous.size(); ++number) {
+    const std::string& reason = native.reason(number);
+    if (reason.empty()) continue;
+    std::printf("%s is interpreted: %s\n", image.pous[number].name.c_str(), reason.c_str());
+  }
+}
+
 base::Status bench(const tools::Options& options) {
   base::Result<Settings> settings = read_settings(options);
   if (!settings.ok()) return settings.error();
@@ -158,8 +168,10 @@ base::Status bench(const tools::Options& options) {
   if (!controller.ok()) return controller.error();
   base::Result<Timing> timing = measure(*settings, **controller, *program);
   if (!timing.ok()) return timing.error();
-  const bool native = (*controller)->generation().native() != nullptr;
-  print(*settings, image->image().instances[*program].name, native ? "native" : "interp", *timing);
+  const vm::native::Program* const native = (*controller)->generation().native();
+  if (native != nullptr && !settings->json) print_interpreted(image->image(), *native);
+  print(*settings, image->image().instances[*program].name, native != nullptr ? "native" : "interp",
+        *timing);
   return base::Ok{};
 }
 
