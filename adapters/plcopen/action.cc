@@ -38,4 +38,13 @@ std::string action_use(Node action, const std::string& name, Reporter& report) {
   return out + ");";
 }
 
+bool is_negated(Node node, Reporter& report) {
+  const std::string text(xml::attribute(node, "negated"));
+  const std::optional<bool> value = xml::boolean(text);
+  if (!text.empty() && !value) {
+    report.add(Code::kXmlBadValue, node, "negated=\"" + text + "\" is neither true nor false");
+  }
+  return value.value_or(false);
+}
+
 }  // namespace plcopen

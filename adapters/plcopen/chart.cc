@@ -38,6 +38,7 @@ class Chart {
   Chart(Node sfc, Node pou, Reporter& report)
       : sfc_(sfc), pou_(pou), report_(report), drawing_(true, report) {}
   std::string text();
+  std::set<std::string> made_actions;  // names of those that stand in steps, folded
 
  private:
   void collect();
@@ -54,7 +55,6 @@ class Chart {
   std::string transition_text(const Element& transition);
   std::string condition(const Element& transition);
   std::string plain_condition(const Element& transition);
-  bool is_negated(Node node);
   std::string priority(Node transition);
 
   Node sfc_;
@@ -204,7 +204,7 @@ void Chart::add_actions(Node block) {
   if (found == by_id_.end() || !xml::is(elements_[found->second].node, "step")) {
     return report_.add(Code::kDanglingConnection, block, "an action block hangs at no step");
   }
-  if (is_negated(block)) {
+  if (is_negated(block, report_)) {
     report_.add(Code::kXmlBody, block, "an action block is negated",
                 "negate the variables in the actions");
   }
@@ -222,6 +222,7 @@ void Chart::add_actions(Node block) {
       }
     } else if (inside) {
       action.name = actions_.take(step.name + "_action");
+      made_actions.insert(base::fold_name(action.name));
       action.body =
           "ACTION " + action.name + ":\n" +
           xml::indented(language_text(inside, pou_, "action " + action.name, report_), kIndent) +
@@ -297,7 +298,10 @@ std::string Chart::step_text(const Element& step) {
   out += (initial ? "INITIAL_STEP " : "STEP ") + step.name + ":\n";
   for (const Action& action : step.actions)
     out += kIndent + action_use(action.node, action.name, report_) + "\n";
+  std::vector<std::string>& kept = report_.out().kept.data[base::fold_name(report_.pou())];
+  const size_t count = kept.size();
   vendor_data(step.node, report_);
+  kept.resize(count);  // the kept chart has it
   return out + "END_STEP\n";
 }
 
@@ -307,15 +311,6 @@ std::string Chart::priority(Node transition) {
   if (id_of(text) != 0) return " (PRIORITY := " + text + ")";
   report_.add(Code::kXmlBadValue, transition, "priority `" + text + "` is no number");
   return {};
-}
-
-bool Chart::is_negated(Node node) {
-  const std::string text(xml::attribute(node, "negated"));
-  const std::optional<bool> value = xml::boolean(text);
-  if (!text.empty() && !value) {
-    report_.add(Code::kXmlBadValue, node, "negated=\"" + text + "\" is neither true nor false");
-  }
-  return value.value_or(false);
 }
 
 std::string Chart::plain_condition(const Element& transition) {
@@ -347,7 +342,7 @@ std::string Chart::plain_condition(const Element& transition) {
 
 std::string Chart::condition(const Element& transition) {
   const std::string out = plain_condition(transition);
-  if (!is_negated(xml::child(transition.node, "condition"))) return out;
+  if (!is_negated(xml::child(transition.node, "condition"), report_)) return out;
   if (out.starts_with(" := ")) return " := NOT (" + out.substr(4, out.size() - 6) + ");\n";
   if (!out.starts_with(":")) return out;  // an error already
   report_.add(Code::kXmlBody, transition.node, "a condition in IL is negated",
@@ -392,7 +387,10 @@ std::string Chart::text() {
 }  // namespace
 
 std::string chart_text(Node sfc, Node pou, Reporter& report) {
-  return Chart(sfc, pou, report).text();
+  Chart chart(sfc, pou, report);
+  const std::string text = chart.text();
+  keep_chart(sfc, pou, text, std::move(chart.made_actions), report);
+  return text;
 }
 
 }  // namespace plcopen

@@ -33,6 +33,9 @@ const char* access_word(frontend::Access access) {
   }
 }
 
+// As documents are read.
+constexpr unsigned kWhole = pugi::parse_default | pugi::parse_ws_pcdata_single;
+
 bool is_property(PouKind kind) { return kind == PouKind::kGetter || kind == PouKind::kSetter; }
 
 }  // namespace
@@ -88,6 +91,10 @@ void Writer::put_body(Node body, const std::string& text, bool list, uint32_t dr
 
 void Writer::body(Node owner, const Pou& pou, const std::string& path) {
   Node node = owner.append_child("body");
+  if (const xml::KeptChart* kept = kept_chart(pou)) {
+    node.append_buffer(kept->chart.data(), kept->chart.size(), kWhole);
+    return;
+  }
   if (pou.chart != frontend::kNoChart) return chart(node, tree_.charts[pou.chart]);
   bool list = false;
   for (uint32_t i = 0; i < pou.body.count; ++i) {
@@ -165,13 +172,18 @@ void Writer::pou(Node parent, const Pou& pou) {
     add_action(member.name, member.span, pieces(member.span, head_end(member)).body, member.body,
                member.diagram);
   }
+  const xml::KeptChart* kept = kept_chart(pou);
   if (pou.chart != frontend::kNoChart) {
     for (const frontend::ChartAction& action : tree_.charts[pou.chart].actions) {
+      if (kept != nullptr && kept->actions.count(base::fold_name(action.name.text)) != 0) continue;
       add_action(action.name, action.span, pieces(action.span, action.name.span.end).body,
                  action.body, action.diagram);
     }
   }
   if (!actions.first_child()) node.remove_child(actions);
+  if (kept != nullptr && !kept->transitions.empty()) {
+    node.append_buffer(kept->transitions.data(), kept->transitions.size(), kWhole);
+  }
   body(node, pou, name);
   members(node, pou);
   put_kept(node, name);

@@ -3,6 +3,7 @@
 // where nothing could be understood.
 #pragma once
 
+#include <set>
 #include <string>
 
 #include "adapters/xml/document.h"
@@ -73,6 +74,8 @@ std::string condition_text(Node body, const std::string& name, Reporter& report)
 // --- action.cc
 // `Fill(D, T#2s);` as it stands in a step.
 std::string action_use(Node action, const std::string& name, Reporter& report);
+// negated="true", of a condition or action block.
+bool is_negated(Node node, Reporter& report);
 
 // --- operand.cc
 // Is `text` one expression, without comments, pragmas, statements or open brackets? It can stand
@@ -82,6 +85,11 @@ bool is_plain_operand(std::string_view text);  // the same without calls and bra
 
 // --- chart.cc
 std::string chart_text(Node sfc, Node pou, Reporter& report);
+
+// --- chart_kept.cc
+// For an export: `text` was made of it, with `actions` that stand in steps.
+void keep_chart(Node sfc, Node pou, const std::string& text, std::set<std::string> actions,
+                Reporter& report);
 
 // --- configuration.cc
 void import_configuration(Node configuration, Reporter& report);

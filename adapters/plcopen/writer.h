@@ -83,6 +83,9 @@ class Writer {
                 const std::string& path);
   void put_kept(Node owner, const std::string& path);
 
+  // --- chart_kept.cc
+  const xml::KeptChart* kept_chart(const Pou& pou) const;  // null: there is none
+
   // --- export_chart.cc
   void chart(Node body, const frontend::Chart& chart);
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -38,8 +39,17 @@ struct KeptDrawing {
   std::string text;
 };
 
+// A chart as it was drawn: elements without prefixes.
+struct KeptChart {
+  std::string chart;              // <SFC>
+  std::string transitions;        // <transitions> of its POU; may be empty
+  std::string text;               // what was made of it
+  std::set<std::string> actions;  // that stood in steps, by the names that they got, folded
+};
+
 // What an export of the same writes again as it was.
 struct Kept {
+  std::map<std::string, KeptChart> charts;               // by POU
   std::map<std::string, KeptDrawing> drawings;           // by POU or POU.Member
   std::map<std::string, std::vector<std::string>> data;  // <data> of nobody, by POU
 };

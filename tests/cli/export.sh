@@ -76,7 +76,7 @@ again declarations 0
 again ladder 0
 again blocks 1  # variables that are read and written are two elements now
 again objects 1 # a declaration that was text is elements now
-again chart 1   # actions in steps have names now
+again chart 0
 expect 0 stc build blocks.new.xml -o blocks.img
 expect 0 stvm run blocks.img --scans 6 --virtual-time --print M.total --print M.seen --print M.pulses --print M.c
 said '^M.total=30$'
@@ -86,6 +86,16 @@ said '^M.c=6$'
 grep -q '<contact localId="4" ' ladder.new.xml || fail "ids are lost"
 grep -A1 '<contact localId="4" ' ladder.new.xml | grep -q '<position x="200" y="20" />' || fail "places are lost"
 grep -q '<data name="http://vendor.example/xml/trend" handleUnknown="implementation">' objects.new.xml || fail "addData is lost"
+# A chart is written as it was drawn: ids, places, divergences, actions in steps, transitions of their own, names, data of vendors.
+for part in '<step localId="5" name="Fill left">' '<simultaneousDivergence localId="4" height="1" width="100">' '<transition name="Both">' '<relPosition x="0" y="0" />' '<p xmlns="http://www.w3.org/1999/xhtml"><!.CDATA.left := 0;'; do
+  grep -q "$part" chart.new.xml || fail "a chart lost $part"
+done
+grep -A1 '<step localId="5"' chart.new.xml | grep -q '<position x="50" y="200" />' || fail "places of a chart are lost"
+grep -q 'Fill_left_action' chart.new.xml && fail "an action in a step is there twice"
+sed 's/<ns1:step localId="6" name="FillRight">/&<ns1:addData><ns1:data name="http:\/\/vendor.example\/xml\/step" handleUnknown="implementation"><v:time xmlns:v="urn:v" v:max="3">7<\/v:time><\/ns1:data><\/ns1:addData>/' chart.xml >vendor.xml
+expect 0 stc export vendor.xml -o vendor.new.xml --without-sources
+grep -q '<time xmlns="urn:v" max="3">7</time>' vendor.new.xml || fail "data of a vendor in a step"
+[ "$(grep -c 'vendor.example/xml/step' vendor.new.xml)" -eq 1 ] || fail "data of a vendor is there twice"
 # What was written once is written the same again.
 for name in declarations ladder blocks objects chart; do
   expect 0 stc export $name.new.xml --name $name -o $name.third.xml --without-sources

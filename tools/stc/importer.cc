@@ -134,6 +134,7 @@ void Importer::take(const std::string& origin, xml::Imported& out) {
                   std::make_move_iterator(out.findings.end()));
   kept.drawings.merge(out.kept.drawings);
   kept.data.merge(out.kept.data);
+  kept.charts.merge(out.kept.charts);
   // A name is taken in all documents that are imported together.
   xml::Names names = std::move(out.names);
   out = {};
