@@ -176,7 +176,7 @@ std::string diagram_text(Node body, const std::string& name, Reporter& report) {
   const bool whole = base::same_name(own, report.pou());
   xml::KeptDrawing& kept =
       report.out().kept.drawings[base::fold_name(whole ? own : report.pou() + "." + own)];
-  kept = {made, {}};
+  kept = {made, {}, report.origin(body) == body ? plain_xml(body) : std::string()};
   if (auto text = network::write_ladder(made, 2)) {
     return "LADDER\n" + *text + "END_LADDER\n";
   }

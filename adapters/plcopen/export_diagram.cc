@@ -377,11 +377,15 @@ void Writer::diagram(Node body, const network::Body& drawn, const std::string& p
   if (in_.kept != nullptr) {
     auto found = in_.kept->drawings.find(base::fold_name(path));
     if (found != in_.kept->drawings.end()) {
-      const auto& [kept, text] = found->second;
+      const auto& [kept, text, elements] = found->second;
       const bool same = text.empty() ? kept.language == drawn.language &&
                                            network::canonical(kept) == network::canonical(drawn)
                                      : drawn.language == network::Language::kFbd &&
                                            text == network::canonical(drawn);
+      if (same && !elements.empty() && in_.form != Form::kIec10) {
+        body.append_buffer(elements.data(), elements.size(), xml::kAsRead);
+        return;
+      }
       if (same) best = &kept;
     }
   }

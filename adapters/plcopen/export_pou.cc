@@ -33,9 +33,6 @@ const char* access_word(frontend::Access access) {
   }
 }
 
-// As documents are read.
-constexpr unsigned kWhole = pugi::parse_default | pugi::parse_ws_pcdata_single;
-
 bool is_property(PouKind kind) { return kind == PouKind::kGetter || kind == PouKind::kSetter; }
 
 }  // namespace
@@ -92,7 +89,7 @@ void Writer::put_body(Node body, const std::string& text, bool list, uint32_t dr
 void Writer::body(Node owner, const Pou& pou, const std::string& path) {
   Node node = owner.append_child("body");
   if (const xml::KeptChart* kept = kept_chart(pou)) {
-    node.append_buffer(kept->chart.data(), kept->chart.size(), kWhole);
+    node.append_buffer(kept->chart.data(), kept->chart.size(), xml::kAsRead);
     return;
   }
   if (pou.chart != frontend::kNoChart) return chart(node, tree_.charts[pou.chart]);
@@ -182,7 +179,7 @@ void Writer::pou(Node parent, const Pou& pou) {
   }
   if (!actions.first_child()) node.remove_child(actions);
   if (kept != nullptr && !kept->transitions.empty()) {
-    node.append_buffer(kept->transitions.data(), kept->transitions.size(), kWhole);
+    node.append_buffer(kept->transitions.data(), kept->transitions.size(), xml::kAsRead);
   }
   body(node, pou, name);
   members(node, pou);

@@ -86,7 +86,9 @@ bool is_plain_operand(std::string_view text);  // the same without calls and bra
 // --- chart.cc
 std::string chart_text(Node sfc, Node pou, Reporter& report);
 
-// --- chart_kept.cc
+// --- kept.cc
+// `node` with everything in it as text that needs no declarations around it.
+std::string plain_xml(Node node);
 // For an export: `text` was made of it, with `actions` that stand in steps.
 void keep_chart(Node sfc, Node pou, const std::string& text, std::set<std::string> actions,
                 Reporter& report);

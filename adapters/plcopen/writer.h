@@ -83,7 +83,7 @@ class Writer {
                 const std::string& path);
   void put_kept(Node owner, const std::string& path);
 
-  // --- chart_kept.cc
+  // --- kept.cc
   const xml::KeptChart* kept_chart(const Pou& pou) const;  // null: there is none
 
   // --- export_chart.cc

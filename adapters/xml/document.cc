@@ -37,8 +37,7 @@ Document::Document(std::string name, std::string_view bytes, base::SourceMap& so
 
 bool Document::parse(const std::string& text, Imported& out) {
   pugi::xml_parse_result result =
-      parsed_.load_buffer(text.data(), text.size(),
-                          pugi::parse_default | pugi::parse_ws_pcdata_single, pugi::encoding_utf8);
+      parsed_.load_buffer(text.data(), text.size(), kAsRead, pugi::encoding_utf8);
   const bool rooted = static_cast<bool>(parsed_.document_element());
   if (result && rooted) return true;
   const size_t at = result ? 0 : static_cast<size_t>(result.offset);

@@ -31,6 +31,9 @@ Decoded to_utf8(std::string_view bytes);
 // Bytes that are no UTF-8 are read as Latin-1, as the compiler reads sources.
 std::string as_utf8(std::string_view bytes);
 
+// How documents and parts of them are parsed.
+inline constexpr unsigned kAsRead = pugi::parse_default | pugi::parse_ws_pcdata_single;
+
 class Document {
  public:
   // Adds the text to `sources` under `name` and parses it. What is wrong becomes a finding of

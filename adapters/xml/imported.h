@@ -37,6 +37,7 @@ struct KeptDrawing {
   frontend::network::Body body;
   // Of a ladder that became FBD: what the text says, as network::canonical() has it.
   std::string text;
+  std::string xml;  // <LD> or <FBD>, without prefixes; of IEC 61131-10 empty
 };
 
 // A chart as it was drawn: elements without prefixes.

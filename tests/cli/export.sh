@@ -74,7 +74,7 @@ again() {  # again NAME DIFFERENT_FILES
 }
 again declarations 0
 again ladder 0
-again blocks 1  # variables that are read and written are two elements now
+again blocks 0
 again objects 1 # a declaration that was text is elements now
 again chart 0
 expect 0 stc build blocks.new.xml -o blocks.img
@@ -86,6 +86,17 @@ said '^M.c=6$'
 grep -q '<contact localId="4" ' ladder.new.xml || fail "ids are lost"
 grep -A1 '<contact localId="4" ' ladder.new.xml | grep -q '<position x="200" y="20" />' || fail "places are lost"
 grep -q '<data name="http://vendor.example/xml/trend" handleUnknown="implementation">' objects.new.xml || fail "addData is lost"
+# Diagrams are written as they were drawn, with comments, connectors, variables that are read and written, data of vendors.
+elements() { sed -n '/<\(LD\|FBD\)>/,/<\/\(LD\|FBD\)>/p' "$1" | grep -o '<[a-zA-Z]*[^>]*localId="[0-9]*"' | sed 's/^<[a-z0-9]*:/</' | sort; }
+for name in ladder blocks; do
+  elements $name.xml >drawn
+  [ -s drawn ] || fail "$name has no elements"
+  elements $name.new.xml | cmp - drawn || fail "$name lost elements"
+done
+sed 's/<contact localId="4"[^>]*>/&<addData><data name="http:\/\/vendor.example\/xml\/contact" handleUnknown="implementation"><lamp\/><\/data><\/addData>/' ladder.xml >vendor.xml
+expect 0 stc export vendor.xml -o vendor.new.xml --without-sources
+expect 0 stc export vendor.new.xml -o vendor.third.xml --without-sources --name vendor
+[ "$(grep -c 'vendor.example/xml/contact' vendor.third.xml)" -eq 1 ] || fail "data of a vendor in a contact"
 # A chart is written as it was drawn: ids, places, divergences, actions in steps, transitions of their own, names, data of vendors.
 for part in '<step localId="5" name="Fill left">' '<simultaneousDivergence localId="4" height="1" width="100">' '<transition name="Both">' '<relPosition x="0" y="0" />' '<p xmlns="http://www.w3.org/1999/xhtml"><!.CDATA.left := 0;'; do
   grep -q "$part" chart.new.xml || fail "a chart lost $part"

@@ -1,4 +1,4 @@
-// Charts as they were drawn: an export writes the elements of the document again, with places, ids,
+// Bodies as they were drawn: an export writes the elements of the document again, with places, ids,
 // divergences and what vendors add, where the text still says what they said.
 #include <algorithm>
 #include <sstream>
@@ -46,7 +46,9 @@ void copy_plain(Node to, Node from, const std::string& around) {
   }
 }
 
-std::string plain_text(Node node) {
+}  // namespace
+
+std::string plain_xml(Node node) {
   pugi::xml_document copy;
   copy_plain(copy, node, space_of(node));
   std::ostringstream text;
@@ -54,14 +56,12 @@ std::string plain_text(Node node) {
   return text.str();
 }
 
-}  // namespace
-
 void keep_chart(Node sfc, Node pou, const std::string& text, std::set<std::string> actions,
                 Reporter& report) {
   if (!xml::is(pou, "pou") || xml::children(pou, "body").size() != 1) return;
   xml::KeptChart& kept = report.out().kept.charts[base::fold_name(report.pou())];
-  kept.chart = plain_text(sfc);
-  if (Node named = xml::child(pou, "transitions")) kept.transitions = plain_text(named);
+  kept.chart = plain_xml(sfc);
+  if (Node named = xml::child(pou, "transitions")) kept.transitions = plain_xml(named);
   kept.text = text;
   kept.actions = std::move(actions);
 }
