@@ -4,6 +4,7 @@
 #include <unordered_set>
 
 #include "base/limits.h"
+#include "base/parallel.h"
 #include "ir/bytecode/renames.h"
 #include "ir/bytecode/symbols.h"
 #include "linker/areas.h"
@@ -16,6 +17,8 @@
 
 namespace linker {
 namespace {
+
+constexpr size_t kBatch = 16;  // POUs that a thread takes at a time
 
 constexpr int64_t kEventWatchdogNs = 100'000'000;     // of a task without a period
 constexpr int64_t kStartWatchdogNs = 10'000'000'000;  // of a task that runs once
@@ -185,28 +188,42 @@ class Linker {
   base::Status link_code() {
     type_numbers_.emplace(program_.types, options_.base);
     fill_tables(context_, options_.base, *type_numbers_);
-    for (const ir::Object* object : context_.objects) {
-      context_.parameter_offsets.emplace_back();
-      if (object == nullptr) continue;
-      base::Result<FrameLayout> frame = lay_out_frame(*object, image_.layouts, {});
-      if (!frame.ok()) return frame.error();
-      context_.parameter_offsets.back() = std::move(frame->offsets);
-    }
+    if (base::Status status = lay_out_parameters(); !status.ok()) return status;
     const ir::PouNames names = ir::pou_names(program_);
-    for (const ir::Object* object : context_.objects) {
-      if (object == nullptr) {
-        add_pou(unused_pou());
-      } else {
-        base::Result<LinkedCode> linked = relocate(context_, *object);
-        if (!linked.ok()) return linked.error();
-        linked->pou.identity = ir::identity(*object, program_, names);
-        add_pou(std::move(linked).value());
-      }
+    std::vector<base::Result<LinkedCode>> codes(context_.objects.size(), LinkedCode{});
+    base::for_each_index(codes.size(), options_.jobs, kBatch, [&](size_t i) {
+      const ir::Object* object = context_.objects[i];
+      codes[i] = object == nullptr ? unused_pou() : relocate(context_, *object);
+      if (object == nullptr || !codes[i].ok()) return;
+      codes[i]->pou.identity = ir::identity(*object, program_, names);
+    });
+    for (base::Result<LinkedCode>& linked : codes) {
+      if (!linked.ok()) return linked.error();
+      add_pou(std::move(linked).value());
       if (image_.code.size() <= options_.max_code_units) continue;
       return base::Error{base::Refusal::kTooMany, "more than " +
                                                       std::to_string(options_.max_code_units) +
                                                       " instructions; `" + image_.pous.back().name +
                                                       "` is one POU too many"};
+    }
+    return base::Ok{};
+  }
+
+  base::Status lay_out_parameters() {
+    const size_t count = context_.objects.size();
+    context_.parameter_offsets.resize(count);
+    std::vector<std::optional<base::Error>> errors(count);
+    base::for_each_index(count, options_.jobs, kBatch, [&](size_t i) {
+      if (context_.objects[i] == nullptr) return;
+      base::Result<FrameLayout> frame = lay_out_frame(*context_.objects[i], image_.layouts, {});
+      if (frame.ok()) {
+        context_.parameter_offsets[i] = std::move(frame->offsets);
+      } else {
+        errors[i] = frame.error();
+      }
+    });
+    for (std::optional<base::Error>& error : errors) {
+      if (error) return std::move(*error);
     }
     return base::Ok{};
   }

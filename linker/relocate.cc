@@ -24,7 +24,7 @@ bool exists(Opcode op) { return static_cast<uint32_t>(op) < ir::kOpcodeCount; }
 // more of them, `missing` says which, and the pass is repeated.
 class Pass {
  public:
-  Pass(LinkContext& context, const ir::Object& object, const FrameLayout& frame,
+  Pass(const LinkContext& context, const ir::Object& object, const FrameLayout& frame,
        const std::vector<Scratch>& scratch)
       : context_(context),
         object_(object),
@@ -191,7 +191,7 @@ class Pass {
     code_.insert(code_.end(), units.begin(), units.end());
   }
 
-  LinkContext& context_;
+  const LinkContext& context_;
   const ir::Object& object_;
   const FrameLayout& frame_;
   const std::vector<Scratch>& scratch_;
@@ -233,7 +233,7 @@ LinkedCode linked_code(Pass& pass, const ir::Object& object, FrameLayout frame) 
 
 }  // namespace
 
-base::Result<LinkedCode> relocate(LinkContext& context, const ir::Object& object) {
+base::Result<LinkedCode> relocate(const LinkContext& context, const ir::Object& object) {
   std::vector<Scratch> scratch;
   for (;;) {
     base::Result<FrameLayout> frame = lay_out_frame(object, context.image.layouts, scratch);

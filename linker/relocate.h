@@ -17,6 +17,6 @@ struct LinkedCode {
   std::vector<ir::Unit> code;
 };
 
-base::Result<LinkedCode> relocate(LinkContext& context, const ir::Object& object);
+base::Result<LinkedCode> relocate(const LinkContext& context, const ir::Object& object);
 
 }  // namespace linker

@@ -1,11 +1,16 @@
 #include "ir/lower/lower.h"
 
+#include <optional>
+
+#include "base/parallel.h"
 #include "ir/lower/allocate.h"
 #include "ir/lower/emit.h"
 #include "ir/lower/select.h"
 
 namespace ir {
 namespace {
+
+constexpr size_t kBatch = 8;  // POUs that a thread takes at a time
 
 std::vector<uint32_t> written_by_caller(const codegen::Machine& machine, const Object& object) {
   std::vector<uint32_t> written;
@@ -38,6 +43,28 @@ base::Result<Object> lower(const Program& program, PouId id) {
     return emitted.error();
   }
   return object;
+}
+
+base::Result<std::vector<Object>> lower_all(const Program& program,
+                                            const std::vector<bool>& left_out, uint32_t jobs) {
+  std::vector<uint32_t> numbers;
+  for (uint32_t i = 0; i < program.pous.size(); ++i) {
+    if (i >= left_out.size() || !left_out[i]) numbers.push_back(i);
+  }
+  std::vector<Object> objects(numbers.size());
+  std::vector<std::optional<base::Error>> errors(numbers.size());
+  base::for_each_index(numbers.size(), jobs, kBatch, [&](size_t i) {
+    base::Result<Object> object = lower(program, PouId(numbers[i]));
+    if (object.ok()) {
+      objects[i] = std::move(*object);
+    } else {
+      errors[i] = object.error();
+    }
+  });
+  for (std::optional<base::Error>& error : errors) {
+    if (error) return std::move(*error);
+  }
+  return objects;
 }
 
 }  // namespace ir

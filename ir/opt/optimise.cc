@@ -1,7 +1,9 @@
 #include "ir/opt/optimise.h"
 
+#include <algorithm>
 #include <array>
 
+#include "base/parallel.h"
 #include "ir/opt/passes.h"
 #include "ir/program/verify.h"
 
@@ -32,29 +34,36 @@ constexpr Pass kOrder[] = {
     Pass::kBranches, Pass::kStores,  Pass::kDead,
 };
 
-// Functions before what calls them, so that bodies are small when they are looked at.
-std::vector<uint32_t> callees_first(const Program& program) {
-  struct Visit {
-    uint32_t pou;
-    std::vector<uint32_t> callees;
-    size_t next = 0;
-  };
-  const auto callees_of = [&program](uint32_t number) {
-    std::vector<uint32_t> callees;
+constexpr size_t kBatch = 8;  // POUs that a thread takes at a time
+
+using Callees = std::vector<std::vector<uint32_t>>;  // functions, by POU
+
+Callees find_callees(const Program& program) {
+  Callees callees(program.pous.size());
+  for (uint32_t number = 0; number < callees.size(); ++number) {
     for (const Block& block : program.pous[number].blocks) {
       for (const Inst& inst : block.insts) {
-        if (inst.op == Op::kCallFunction) callees.push_back(inst.pou.index);
+        if (inst.op == Op::kCallFunction) callees[number].push_back(inst.pou.index);
       }
     }
-    return callees;
+  }
+  return callees;
+}
+
+// Functions before what calls them, so that bodies are small when they are looked at.
+std::vector<uint32_t> callees_first(const Callees& all) {
+  struct Visit {
+    uint32_t pou;
+    const std::vector<uint32_t>& callees;
+    size_t next = 0;
   };
   std::vector<uint32_t> order;
-  std::vector<bool> seen(program.pous.size());
-  for (uint32_t first = 0; first < program.pous.size(); ++first) {
+  std::vector<bool> seen(all.size());
+  for (uint32_t first = 0; first < all.size(); ++first) {
     if (seen[first]) continue;
     seen[first] = true;
     std::vector<Visit> open;
-    open.push_back({first, callees_of(first), 0});
+    open.push_back({first, all[first], 0});
     while (!open.empty()) {
       Visit& visit = open.back();
       if (visit.next == visit.callees.size()) {
@@ -65,10 +74,32 @@ std::vector<uint32_t> callees_first(const Program& program) {
       const uint32_t next = visit.callees[visit.next++];
       if (seen[next]) continue;
       seen[next] = true;
-      open.push_back({next, callees_of(next), 0});
+      open.push_back({next, all[next], 0});
     }
   }
   return order;
+}
+
+// The same order in steps: POUs of one step do not see each other. In a circle of calls somebody
+// comes before its callee, and sees it as it was.
+std::vector<std::vector<uint32_t>> steps_of(const Program& program) {
+  const Callees callees = find_callees(program);
+  const std::vector<uint32_t> order = callees_first(callees);
+  std::vector<uint32_t> step(callees.size());
+  std::vector<bool> placed(callees.size());
+  std::vector<std::vector<uint32_t>> steps;
+  for (const uint32_t pou : order) {
+    for (const uint32_t callee : callees[pou]) {
+      if (placed[callee]) step[pou] = std::max(step[pou], step[callee] + 1);
+    }
+    placed[pou] = true;
+    for (const uint32_t callee : callees[pou]) {
+      if (!placed[callee]) step[callee] = std::max(step[callee], step[pou] + 1);
+    }
+    if (steps.size() <= step[pou]) steps.resize(step[pou] + 1);
+    steps[step[pou]].push_back(pou);
+  }
+  return steps;
 }
 
 base::Status sound_after(const Program& program, const Pou& pou, Pass pass) {
@@ -77,6 +108,16 @@ base::Status sound_after(const Program& program, const Pou& pou, Pass pass) {
   const std::string_view name = kRows[static_cast<size_t>(pass)].name;
   return base::Error{sound.error().refusal,
                      "after pass `" + std::string(name) + "`: " + sound.error().text};
+}
+
+base::Status optimise_pou(const Program& program, Pou& pou, PassSet passes, bool verify_each) {
+  for (const Pass pass : kOrder) {
+    if (!passes.has(pass)) continue;
+    kPasses[static_cast<size_t>(pass)].run(program, pou);
+    if (!verify_each) continue;
+    if (base::Status sound = sound_after(program, pou, pass); !sound.ok()) return sound;
+  }
+  return base::Ok{};
 }
 
 }  // namespace
@@ -121,15 +162,16 @@ base::Result<PassSet> PassSet::parse(std::string_view text) {
   return set;
 }
 
-base::Status optimise(Program& program, PassSet passes, bool verify_each) {
+base::Status optimise(Program& program, PassSet passes, bool verify_each, uint32_t jobs) {
   if (passes.empty()) return base::Ok{};
-  for (const uint32_t number : callees_first(program)) {
-    Pou& pou = program.pous[number];
-    for (const Pass pass : kOrder) {
-      if (!passes.has(pass)) continue;
-      kPasses[static_cast<size_t>(pass)].run(program, pou);
-      if (!verify_each) continue;
-      if (base::Status sound = sound_after(program, pou, pass); !sound.ok()) return sound;
+  for (const std::vector<uint32_t>& step : steps_of(program)) {
+    std::vector<base::Status> done(verify_each ? step.size() : 0, base::Ok{});
+    base::for_each_index(step.size(), jobs, kBatch, [&](size_t i) {
+      base::Status status = optimise_pou(program, program.pous[step[i]], passes, verify_each);
+      if (verify_each) done[i] = std::move(status);
+    });
+    for (base::Status& status : done) {
+      if (!status.ok()) return std::move(status);
     }
   }
   return base::Ok{};

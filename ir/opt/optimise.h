@@ -2,7 +2,7 @@
 // program does stays the same to the bit: values, traps with their POU and line, and every store
 // before a trap, a call or a back edge. No pass makes more bytecode: a load of a variable
 // is an operand in bytecode and costs nothing, so nothing is kept in a temporary to save one.
-// Deterministic: the same program gives the same result.
+// Deterministic: the same program gives the same result, on any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,7 @@ class PassSet {
 };
 
 // kInternal when `verify_each` finds that a pass left a POU unsound, with the name of the pass;
-// nothing else fails.
-base::Status optimise(Program& program, PassSet passes, bool verify_each);
+// nothing else fails. POUs are optimised on up to `jobs` threads.
+base::Status optimise(Program& program, PassSet passes, bool verify_each, uint32_t jobs = 1);
 
 }  // namespace ir

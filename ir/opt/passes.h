@@ -1,5 +1,6 @@
 // The functions of passes.def, one file each. A pass may rely on a verified POU, and changes
-// nothing but the POU that it is given.
+// nothing but the POU that it is given. Other POUs are worked on at the same time: of them it reads
+// the functions that the POU calls, and of the rest nothing that a pass changes.
 #pragma once
 
 #include "ir/program/ir.h"

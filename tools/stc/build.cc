@@ -19,8 +19,8 @@ base::Error source_errors(const base::Diagnostics& diagnostics) {
 }
 
 // Without the POUs in `left_out`, by PouId.
-base::Result<Compiled> lower_all(ir::Program program, ir::PassSet passes,
-                                 const std::vector<bool>& left_out = {}) {
+base::Result<Compiled> to_objects(ir::Program program, const Project& project,
+                                  const std::vector<bool>& left_out = {}) {
 #ifdef NDEBUG
   constexpr bool verify_each = false;
 #else
@@ -28,17 +28,11 @@ base::Result<Compiled> lower_all(ir::Program program, ir::PassSet passes,
   base::Status sound = ir::verify(program);
   if (!sound.ok()) return sound.error();
 #endif
-  base::Status optimised = ir::optimise(program, passes, verify_each);
+  base::Status optimised = ir::optimise(program, project.passes, verify_each, project.jobs);
   if (!optimised.ok()) return optimised.error();
-  Compiled out{std::move(program), {}};
-  out.objects.reserve(out.program.pous.size());
-  for (uint32_t i = 0; i < out.program.pous.size(); ++i) {
-    if (i < left_out.size() && left_out[i]) continue;
-    base::Result<ir::Object> object = ir::lower(out.program, ir::PouId(i));
-    if (!object.ok()) return object.error();
-    out.objects.push_back(std::move(*object));
-  }
-  return out;
+  base::Result<std::vector<ir::Object>> objects = ir::lower_all(program, left_out, project.jobs);
+  if (!objects.ok()) return objects.error();
+  return Compiled{std::move(program), std::move(*objects)};
 }
 
 // What only shows when all is linked, with the place of the device that it is about.
@@ -65,8 +59,8 @@ std::vector<ir::Device> without_lost_tasks(std::vector<ir::Device> devices) {
 base::Result<Version> link(const Compiled& compiled, const Project& project,
                            std::vector<ir::Device> devices, bool several,
                            const BuildOptions& options) {
-  linker::Options link_options{project.slack, options.base, options.move_all, std::move(devices),
-                               project.safe.rows};
+  linker::Options link_options{project.slack,      options.base,      options.move_all,
+                               std::move(devices), project.safe.rows, project.jobs};
   base::Result<ir::Image> image = linker::link(compiled.program, compiled.objects, link_options);
   if (!image.ok()) return with_place(image.error(), project.devices);
   if (several) {
@@ -95,7 +89,7 @@ base::Result<Compiled> compile(const Project& project, base::Diagnostics& diagno
   std::optional<ir::Program> program =
       frontend::compile(project.sources, project.compile, diagnostics);
   if (!program) return source_errors(diagnostics);
-  return lower_all(std::move(*program), project.passes);
+  return to_objects(std::move(*program), project);
 }
 
 base::Result<std::vector<ResourceVersion>> build_resources(const Project& project,
@@ -112,8 +106,7 @@ base::Result<std::vector<ResourceVersion>> build_resources(const Project& projec
   std::vector<ResourceVersion> versions;
   uint32_t output_bytes = 0;
   for (frontend::ResourceProgram& made : resources->programs) {
-    base::Result<Compiled> compiled =
-        lower_all(std::move(made.program), project.passes, made.other_code);
+    base::Result<Compiled> compiled = to_objects(std::move(made.program), project, made.other_code);
     if (!compiled.ok()) return compiled.error();
     auto devices = devices_of(project.devices, made.resource, resources->names);
     if (!devices.ok()) return devices.error();
@@ -149,7 +142,7 @@ base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics&
   std::optional<frontend::TestProgram> tests =
       frontend::compile_tests(project.sources, project.compile, diagnostics);
   if (!tests) return source_errors(diagnostics);
-  base::Result<Compiled> compiled = lower_all(std::move(tests->program), project.passes);
+  base::Result<Compiled> compiled = to_objects(std::move(tests->program), project);
   if (!compiled.ok()) return compiled.error();
   auto devices = devices_of(project.devices, {}, {});
   if (!devices.ok()) return devices.error();

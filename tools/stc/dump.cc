@@ -15,7 +15,7 @@ namespace {
 
 constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
-    STC_PASS_OPTIONS,
+    STC_CODE_OPTIONS,
     {"--tokens", nullptr, "tokens of the sources"},
     {"--tree", nullptr, "syntax tree"},
     {"--ir", nullptr,

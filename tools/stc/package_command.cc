@@ -10,7 +10,7 @@ namespace {
 
 constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
-    STC_PASS_OPTIONS,
+    STC_CODE_OPTIONS,
     {"--base", "IMAGE", "the running version (required)"},
     {"--output|-o", "FILE", "package to write (required)"},
     STC_RESTRICTED_OPTION,

@@ -24,6 +24,7 @@ struct Project {
   xml::Kept kept;                      // of them, for an export
   frontend::CompileOptions compile;
   ir::PassSet passes = ir::PassSet::all();
+  uint32_t jobs = 1;  // threads at most; nothing but the time depends on it
   linker::Slack slack;
   std::vector<ProjectDevice> devices;
   SafeSettings safe;

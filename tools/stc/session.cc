@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+#include "base/parallel.h"
+
 namespace stc {
 namespace {
 
@@ -19,6 +21,15 @@ base::Result<ir::PassSet> passes_option(const tools::Options& options) {
   if (!options.has("--no-opt")) return ir::PassSet::parse(options.text("--passes", "all"));
   if (!options.has("--passes")) return ir::PassSet::none();
   return base::Error{base::Refusal::kUsage, "--no-opt is no pass at all; leave out --passes"};
+}
+
+base::Result<uint32_t> jobs_option(const tools::Options& options) {
+  if (!options.has("--jobs")) return base::usable_cores();
+  auto jobs = options.number("--jobs", 0);
+  if (!jobs.ok()) return jobs.error();
+  if (*jobs >= 1 && *jobs <= base::kMaxJobs) return static_cast<uint32_t>(*jobs);
+  return base::Error{base::Refusal::kUsage, "--jobs " + std::to_string(*jobs) + " is not 1 to " +
+                                                std::to_string(base::kMaxJobs)};
 }
 
 }  // namespace
@@ -40,6 +51,9 @@ base::Result<Project> open_project(const tools::Options& options,
   auto passes = passes_option(options);
   if (!passes.ok()) return passes.error();
   project->passes = *passes;
+  auto jobs = jobs_option(options);
+  if (!jobs.ok()) return jobs.error();
+  project->jobs = *jobs;
   return project;
 }
 

@@ -16,9 +16,10 @@ namespace stc {
     "--name", "NAME", "name of the program, instead of the folder's or file's"   \
   }
 
-#define STC_PASS_OPTIONS                                                        \
-  {"--no-opt", nullptr, "compile without optimising"}, {                        \
-    "--passes", "LIST", "optimise with these passes only; `stc explain passes`" \
+#define STC_CODE_OPTIONS                                                                \
+  {"--no-opt", nullptr, "compile without optimising"},                                  \
+      {"--passes", "LIST", "optimise with these passes only; `stc explain passes`"}, {  \
+    "--jobs|-j", "N", "threads at most (default: one per core); the result is the same" \
   }
 
 #define STC_RESTRICTED_OPTION \

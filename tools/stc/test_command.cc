@@ -20,7 +20,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--list", nullptr, "names and places of the tests, nothing is run"},
     {"--dialect", "NAME", "iec, codesys (default) or twincat"},
     {"--name", "NAME", "name of the program, instead of the folder's or file's"},
-    STC_PASS_OPTIONS,
+    STC_CODE_OPTIONS,
 };
 constexpr tools::Command kCommand{"test", "PATHS...", "Runs the TEST blocks on virtual time.",
                                   kOptions, 1};
