@@ -198,6 +198,7 @@ void Allocator::operands(const Node& n, const Demands& demands, Step& step) {
   };
   for (const Val v : n.in) hold(v);
   if (n.mem.index != kNone) hold(n.mem.index);
+  if (n.mem.pointer != kNone) hold(n.mem.pointer);
   for (uint32_t i = 0; i < 4; ++i) {
     const Val v = n.in[i];
     if (v == kNone || demands.in[i] >= 0) continue;
@@ -239,9 +240,8 @@ void Allocator::operands(const Node& n, const Demands& demands, Step& step) {
     }
     hold(v);
   }
-  if (n.mem.index != kNone) {
-    const Val v = n.mem.index;
-    if (is_constant(v)) ensure(v, locked[0] | held[0]);
+  const auto part_of_address = [&](Val v, Place& place) {
+    if (v == kNone) return;
     if (reg_[v] >= 0 && (locked[0] >> reg_[v] & 1) != 0) {
       const Place from = in_register(v);
       const uint32_t reg = take_register(false, locked[0] | held[0]);
@@ -249,8 +249,11 @@ void Allocator::operands(const Node& n, const Demands& demands, Step& step) {
       put(v, reg);
     }
     ensure(v, locked[0] | held[0]);
-    step.index = in_register(v);
-  }
+    hold(v);
+    place = in_register(v);
+  };
+  part_of_address(n.mem.index, step.index);
+  part_of_address(n.mem.pointer, step.pointer);
 }
 
 void Allocator::clobber(const Demands& demands) {
@@ -298,6 +301,7 @@ void Allocator::result(const Node& n, const Demands& demands, Step& step) {
     if (n.in[i] != kNone) look(step.in[i], i, n.in[i]);
   }
   if (n.mem.index != kNone) look(step.index, 4, n.mem.index);
+  if (n.mem.pointer != kNone) look(step.pointer, 5, n.mem.pointer);
   if (share >= 0 && (locked >> share & 1) != 0) share = -1;
   uint32_t reg;
   if (demands.result >= 0) {
@@ -351,6 +355,7 @@ void Allocator::node(uint32_t number) {
   };
   for (const Val v : n.in) done(v);
   done(n.mem.index);
+  done(n.mem.pointer);
   if (n.exit != kNone) {
     for (const SlotValue& slot : f_.exits[n.exit].slots) done(slot.value);
   }

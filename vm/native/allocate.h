@@ -39,6 +39,7 @@ struct Step {
   Place result;
   Place in[4];
   Place index;
+  Place pointer;
   Move move;
 };
 

@@ -40,10 +40,14 @@ void Allocator::restore(const Snapshot& snapshot, Block block) {
 void Allocator::begin(Block block) {
   const std::vector<Pred>& preds = preds_[block];
   const bool head = f_.blocks[block].head;
-  if (preds.size() == 1 && !head) {
+  if (f_.blocks[block].behind_call != kNone) {
+    clear_state();  // as it is when the interpreter goes on here
+  } else if (preds.size() == 1 && !head && !f_.blocks[block].resumes) {
     restore(ends_[preds[0].block], block);
-  } else if (!preds.empty() || head) {
+  } else if (!preds.empty() || head || f_.blocks[block].resumes) {
     meet(block);
+  } else {
+    clear_state();
   }
   for (const Pred& pred : preds) {
     if (--users_[pred.block] == 0) Snapshot().swap(ends_[pred.block]);
@@ -103,10 +107,8 @@ void Allocator::meet(Block block) {
     out_.blocks[pred.block].edges[pred.target] =
         edge(pred.block, pred.target, ends_[pred.block], state);
   }
-  if (b.head) {
-    out_.blocks[block].resume = resume_moves(block, state);
-    heads_[block] = state;
-  }
+  if (b.resumes) out_.blocks[block].resume = resume_moves(block, state);
+  if (b.head) heads_[block] = state;
   restore(state, block);
 }
 

@@ -238,8 +238,10 @@ void Builder::enter_loop(Block block, uint32_t loop) {
   }
   // How all of that is found again when the interpreter stopped here.
   for (uint32_t v = 0; v < f_.variables.size(); ++v) {
-    if (now_.value[v] == kNone || is_constant(now_.value[v])) continue;
+    if (now_.value[v] == kNone) continue;
     f_.blocks[block].reloads.push_back({v, now_.value[v]});
+    if (now_.dirty[v] == 0) continue;
+    f_.blocks[block].dirty.push_back({f_.variables[v].offset, f_.variables[v].width, now_.value[v]});
   }
 }
 

@@ -83,6 +83,7 @@ class Builder {
   void write_a(Val v);
   void write_field(ir::Base base, uint32_t offset, ir::Class cls, Val v);
   Val load(const Mem& mem, uint8_t width, bool floating, bool boolean);
+  Val load_id(const Mem& mem);
   Mem behind(Val address, uint32_t offset) const;
   Mem place(ir::Base base, uint32_t offset) const;
   Val address_of(const Mem& mem);

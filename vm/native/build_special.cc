@@ -48,7 +48,7 @@ void Builder::special() {
     case Opcode::INST:
       return instance(read_field_id(u_.base_b(), u_.bc()));
     case Opcode::INST_AT:
-      return instance(load(behind(read_b(), u_.c), 4, false, false));
+      return instance(load_id(behind(read_b(), u_.c)));
     case Opcode::CALL:
       return call(CallKind::kFunction, u_.c, kNone);
     case Opcode::CALL_OWN:
@@ -56,11 +56,11 @@ void Builder::special() {
     case Opcode::CALL_INST:
       return call(CallKind::kBody, 0, read_field_id(u_.base_b(), u_.bc()));
     case Opcode::CALL_INST_AT:
-      return call(CallKind::kBody, 0, load(behind(read_b(), u_.c), 4, false, false));
+      return call(CallKind::kBody, 0, load_id(behind(read_b(), u_.c)));
     case Opcode::CALL_METHOD:
       return call(CallKind::kMethod, x_.x(), read_field_id(u_.base_b(), u_.bc()));
     case Opcode::CALL_METHOD_AT:
-      return call(CallKind::kMethod, x_.x(), load(behind(read_b(), u_.c), 4, false, false));
+      return call(CallKind::kMethod, x_.x(), load_id(behind(read_b(), u_.c)));
     default:
       return call(CallKind::kSlow, 0, kNone);
   }
@@ -99,14 +99,20 @@ void Builder::call(CallKind kind, uint32_t pou, Val id) {
     if (f_.nodes.size() != before) f_.nodes.back().exit = exit_here(false);
   }
   for (const uint32_t v : facts_.live_behind(unit_)) store_slot(v);
-  for (const Access& access : accesses_of(u_, x_)) {
-    const uint32_t v = access.reads ? facts_.variable(access) : kNone;
-    if (v != kNone && f_.variables[v].slot) store_slot(v);
-  }
   Node made = node(Op::kCall, 0, id, area);
-  if (kind == CallKind::kSlow) made.in[0] = made.in[1] = kNone;
+  if (kind == CallKind::kSlow) {
+    made.in[0] = made.in[1] = kNone;
+    for (const Access& access : accesses_of(u_, x_)) {
+      const uint32_t v = access.reads ? facts_.variable(access) : kNone;
+      if (v != kNone && f_.variables[v].slot) store_slot(v);
+    }
+  } else {
+    made.exit = exit_here(false);  // what the interpreter reads when it calls in our place
+  }
   made.call = static_cast<uint32_t>(f_.calls.size());
-  f_.calls.push_back({kind, pou, uint32_t{u_.a} * 8, unit_});
+  const uint32_t known = kind == CallKind::kBody ? facts_.called_body(unit_)
+                         : kind == CallKind::kSlow ? kNone : pou;
+  f_.calls.push_back({kind, pou, uint32_t{u_.a} * 8, unit_, known});
   append(made);
   for (uint32_t v = 0; v < f_.variables.size(); ++v) {
     now_.value[v] = kNone;

@@ -157,7 +157,7 @@ Val Builder::value_of(Node made, bool floating) {
   }
   const Val folded = fold(made);
   if (folded != kNone) return folded;
-  const bool memory = made.op == Op::kLoad;
+  const bool memory = made.op == Op::kLoad && !made.immutable;
   const uint64_t hash = hash_of(made, memory ? version_ : 0);
   const auto [at, added] = known_.try_emplace(hash, static_cast<uint32_t>(f_.nodes.size()));
   if (!added) {
@@ -275,6 +275,14 @@ Val Builder::load(const Mem& mem, uint8_t width, bool floating, bool boolean) {
   made.mem = mem;
   made.boolean = boolean;
   return value_of(made, floating);
+}
+
+// No code writes the ID of an instance.
+Val Builder::load_id(const Mem& mem) {
+  Node made = node(Op::kLoad, 4);
+  made.mem = mem;
+  made.immutable = true;
+  return value_of(made, false);
 }
 
 // The unit stores where no name says: what may lie there is known no more.

@@ -487,4 +487,29 @@ bool Facts::live_out(Block block, uint32_t variable) const {
   return false;
 }
 
+uint32_t Facts::called_body(uint32_t i) const {
+  const ir::Unit& u = code_[i];
+  ir::Region region;
+  uint32_t offset = 0;
+  if (u.opcode() == Opcode::CALL_INST_AT) {
+    const uint32_t slot = slot_number(u.b);
+    if (slot == kNone) return kNone;
+    region = pou_->slots[slot].region;
+    offset = u.c;
+  } else if (u.base_b() == ir::Base::kSelf) {
+    region = {pou_->self, 0};
+    offset = u.bc();
+  } else {
+    return kNone;
+  }
+  if (!region.type.valid()) return kNone;
+  const auto is_slot = [](const ir::Leaf& leaf) { return leaf.kind == ir::LeafKind::kInstanceSlot; };
+  const auto leaf = ir::leaf_at(image_->types, image_->layouts, region, offset);
+  if (!leaf || !is_slot(*leaf)) return kNone;
+  for (uint32_t p = 0; p < image_->pous.size(); ++p) {
+    if (ir::is_body(image_->pous[p].kind) && image_->pous[p].self == leaf->type) return p;
+  }
+  return kNone;
+}
+
 }  // namespace vm::native

@@ -95,6 +95,8 @@ class Facts {
   const std::vector<uint32_t>& live_behind(uint32_t unit) const;
   // Slots that the caller reads.
   const std::vector<uint32_t>& results() const { return results_; }
+  // The POU that a CALL_INST or CALL_INST_AT runs; kNone: it depends.
+  uint32_t called_body(uint32_t unit) const;
   bool recursive_bodies() const { return recursive_bodies_; }
   void successors(Block block, Block out[2], uint32_t& count) const;
 

@@ -82,13 +82,15 @@ enum class Op : uint8_t {
   kAdvanceTime,
   kHelper,  // `unit` by its handler; every register is lost
   kCall,    // `call`; nothing but constants lives across
+  kEnter,   // begins the body of `call`, which follows; the result points to its instance
 };
 
 enum class Cond : uint8_t { kEq, kNe, kLtS, kLeS, kGtS, kGeS, kLtU, kLeU, kGtU, kGeU };
 Cond negated(Cond cond);
 Cond swapped(Cond cond);  // for exchanged operands
 
-enum class MemBase : uint8_t { kFrame, kSelf, kData, kContext };
+// kPointer: a machine address, of an instance whose code is inlined; no memory ever holds it.
+enum class MemBase : uint8_t { kFrame, kSelf, kData, kPointer };
 
 // base + index * scale + disp. kData: data memory; disp is an offset of 32 bits.
 struct Mem {
@@ -96,6 +98,7 @@ struct Mem {
   uint8_t scale = 1;  // 1, 2, 4, 8
   Val index = kNone;
   int64_t disp = 0;
+  Val pointer = kNone;
 };
 
 struct Node {
@@ -104,6 +107,7 @@ struct Node {
   uint8_t from = 0;
   Cond cond = Cond::kEq;
   bool boolean = false;  // kLoad of a BOOL that may be any byte
+  bool immutable = false;  // kLoad: no code writes there
   bool dead = false;
   Val result = kNone;
   Val in[4] = {kNone, kNone, kNone, kNone};
@@ -134,6 +138,9 @@ struct SlotValue {
 struct Exit {
   uint32_t unit = 0;
   bool fuel = false;  // its unit takes fuel that has just been taken
+  // Inside of an inlined body (Function::inlined): the activation is made first. Behind its slots come
+  // the instance's ID and area when it has one.
+  uint32_t inlined = kNone;
   std::vector<SlotValue> slots;
 };
 
@@ -144,6 +151,13 @@ struct Call {
   uint32_t pou = 0;         // of kBody the instance says it
   uint32_t frame_step = 0;  // bytes from this frame to the callee's
   uint32_t unit = 0;
+  uint32_t known = kNone;   // the POU, when it is known before
+};
+
+struct Inlined {
+  uint32_t call = 0;
+  const ir::Unit* units = nullptr;  // the callee's
+  bool has_instance = false;
 };
 
 enum class EndKind : uint8_t { kJump, kLoop, kBranch, kReturn, kExit };
@@ -167,7 +181,7 @@ struct Loop {
   std::vector<uint32_t> modified;  // variables, sorted
 };
 
-// At a loop head: how the interpreter's state becomes the one there.
+// In front of a loop: how the interpreter's state becomes the one there.
 struct Reload {
   uint32_t variable = kNone;
   Val value = kNone;
@@ -180,7 +194,12 @@ struct BasicBlock {
   End end;
   uint32_t loop = kNone;  // innermost that it is in
   bool head = false;
-  std::vector<Reload> reloads;  // of a loop head: every value that lives there
+  uint32_t behind_call = kNone;  // an inlined one: the interpreter may go on here
+  // In front of a loop: an interrupted execution goes on here. Every value that lives here, and the
+  // slots that are dirty.
+  bool resumes = false;
+  std::vector<Reload> reloads;
+  std::vector<SlotValue> dirty;
 };
 
 struct Variable {
@@ -203,6 +222,7 @@ struct Function {
   std::vector<std::vector<uint32_t>> kills;     // sets of variables
   std::vector<Exit> exits;
   std::vector<Call> calls;
+  std::vector<Inlined> inlined;
 };
 
 }  // namespace vm::native

@@ -10,6 +10,8 @@
 #include "vm/native/build.h"
 #include "vm/native/code_memory.h"
 #include "vm/native/emit.h"
+#include "vm/native/inline.h"
+#include "vm/native/loops.h"
 #include "vm/native/print.h"
 #include "vm/native/x64/emitter.h"
 
@@ -28,6 +30,7 @@ struct PouNative {
     uint32_t side = 0;
   };
   std::vector<Entry> entries;  // sorted by unit
+  std::vector<uint32_t> inlined;  // POUs whose bodies are in it
 };
 
 namespace {
@@ -100,7 +103,8 @@ SideUnits side_units(const Function& f, const ir::Unit* units, const Facts& fact
   };
   for (uint32_t n = 0; n < f.nodes.size(); ++n) {
     const Node& node = f.nodes[n];
-    if (node.dead || (node.op != Op::kHelper && node.op != Op::kCall)) continue;
+    const bool calls = node.op == Op::kCall || node.op == Op::kEnter;
+    if (node.dead || (node.op != Op::kHelper && !calls)) continue;
     const uint32_t at = copy(node.op == Op::kHelper ? node.unit : f.calls[node.call].unit);
     if (node.op == Op::kHelper) {
       side.helper[n] = at;
@@ -138,8 +142,39 @@ bool is_interpreted_at_random(const TierOptions& options, uint32_t number) {
   return (h * 0xbf58476d1ce4e5b9u >> 40 & 1) != 0;
 }
 
+// Functions of small POUs, made when the first caller asks.
+class Bodies {
+ public:
+  Bodies(const ir::Image& image, const std::vector<PouEntry>& pous, const TierOptions& options)
+      : image_(image), pous_(pous), options_(options), functions_(pous.size()) {}
+
+  Callee callee(uint32_t number, uint32_t caller) {
+    if (number == caller || is_interpreted_at_random(options_, number)) return {};
+    State& state = functions_[number];
+    if (!state.asked) {
+      state.asked = true;
+      if (is_small(image_, image_.pous[number])) {
+        base::Result<Facts> facts = Facts::of(image_, image_.pous[number]);
+        if (facts.ok()) state.function = std::make_unique<Function>(Builder(*facts).run());
+      }
+    }
+    return {state.function.get(), pous_[number].code};
+  }
+
+ private:
+  struct State {
+    bool asked = false;
+    std::unique_ptr<Function> function;
+  };
+  const ir::Image& image_;
+  const std::vector<PouEntry>& pous_;
+  const TierOptions& options_;
+  std::vector<State> functions_;
+};
+
 // Everything up to registers; the machine code follows for all POUs together.
-bool prepare(const ir::Image& image, const TierOptions& options, const Target& target, Work& work) {
+bool prepare(const ir::Image& image, const TierOptions& options, const Target& target,
+             Bodies& bodies, Work& work) {
   const ir::LinkedPou& pou = image.pous[work.number];
   if (is_interpreted_at_random(options, work.number)) {
     work.pou->reason = "the options say so";
@@ -155,6 +190,11 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
     return false;
   }
   work.function = Builder(*facts).run();
+  work.pou->inlined = inline_calls(
+      work.function, [&](uint32_t number) { return bodies.callee(number, work.number); });
+  insert_preheaders(work.function);
+  drop_proven_checks(work.function);
+  hoist(work.function);
   if (getenv("STC_PRINT_NATIVE")) fputs(print(work.function).c_str(), stderr);
   const AllocatorOptions registers{options.integer_registers, options.float_registers,
                                    options.spill_seed};
@@ -219,11 +259,20 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector
   x64::Assembler assembler;
   const x64::Shared shared = x64::emit_shared(assembler);
   std::vector<Work> all;
+  Bodies bodies(image, pous, options);
+  std::vector<std::vector<uint64_t>> facts_by_pou;
+  for (const ir::LinkedPou& pou : image.pous) facts_by_pou.push_back(facts_of(image, pou));
+  // Is what runs of a POU, or was inlined of it, still right?
+  const auto is_same = [&](uint32_t number) {
+    if (running == nullptr || number >= running->pous_.size() || number >= pous.size()) return false;
+    const PouNative& old = *running->pous_[number];
+    return old.units == pous[number].code && old.facts == facts_by_pou[number];
+  };
   for (uint32_t number = 0; number < pous.size(); ++number) {
-    std::vector<uint64_t> facts = facts_of(image, image.pous[number]);
-    if (running != nullptr && number < running->pous_.size()) {
+    if (is_same(number)) {
       const std::shared_ptr<const PouNative>& old = running->pous_[number];
-      if (old->units == pous[number].code && old->facts == facts && old->machine != nullptr) {
+      if (old->machine != nullptr &&
+          std::all_of(old->inlined.begin(), old->inlined.end(), is_same)) {
         made->pous_.push_back(old);
         continue;
       }
@@ -232,9 +281,9 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector
     work.number = number;
     work.pou = std::make_shared<PouNative>();
     work.pou->units = pous[number].code;
-    work.pou->facts = std::move(facts);
+    work.pou->facts = facts_by_pou[number];
     made->pous_.push_back(work.pou);
-    if (!prepare(image, options, target, work)) continue;
+    if (!prepare(image, options, target, bodies, work)) continue;
     const PouCode code{&work.function, &work.places, &work.pou->side, work.pou->units, number};
     work.entries = x64::Emitter(code, shared, assembler).run();
     work.places = {};

@@ -25,6 +25,7 @@ void Uses::each_use(Visit visit) const {
         visit(node.in[i], position, b);
       }
       if (node.mem.index != kNone) visit(node.mem.index, position, b);
+      if (node.mem.pointer != kNone) visit(node.mem.pointer, position, b);
       exit_uses(node.exit);
     }
     ++position;

@@ -13,7 +13,9 @@ constexpr uint8_t kSaved[] = {kRbp, kRbx, kR12, kR13, kR14, kR15};
 Address in_context(size_t offset) {
   return {kContextRegister, 0xff, 1, true, static_cast<int32_t>(offset)};
 }
-constexpr size_t record(size_t member) { return member; }
+Address at_record(size_t member) {
+  return {kRcx, 0xff, 1, true, static_cast<int32_t>(member)};
+}
 
 }  // namespace
 
@@ -54,20 +56,11 @@ Shared emit_shared(Assembler& a) {
   return shared;
 }
 
-// The record of the call, the callee's frame and instance, and behind the call everything as before.
-void Emitter::call(const Node& n) {
-  const Call& c = f_.calls[n.call];
-  if (c.kind == CallKind::kSlow) return slow_call(c, n.call);
-  const ir::Unit* const resume = &pou_.side->units[pou_.side->resume[n.call]];
-  const Label stub = a_.label();
-  call_stubs_.push_back({stub, pou_.side->call[n.call]});
-  a_.alu_imm(Alu::kSub, Operand::of(kFuelRegister), 1, 8);
-  a_.jump_if(Condition::kEqual, stub);
+// By rcx, rsi and the scratch register.
+void Emitter::push_record(uint32_t call) {
+  const ir::Unit* const resume = &pou_.side->units[pou_.side->resume[call]];
   a_.load(kRcx, CONTEXT(call), 8);
   a_.move_imm(kScratch, reinterpret_cast<uintptr_t>(resume));
-  const auto at_record = [&](size_t member) {
-    return Address{kRcx, 0xff, 1, true, static_cast<int32_t>(record(member))};
-  };
   a_.store(at_record(offsetof(CallRecord, resume)), kScratch, 8);
   a_.store(at_record(offsetof(CallRecord, frame)), kFrameRegister, 8);
   a_.store(at_record(offsetof(CallRecord, self)), kSelfRegister, 8);
@@ -76,6 +69,66 @@ void Emitter::call(const Node& n) {
   a_.store(at_record(offsetof(CallRecord, instance)), kRsi, 4);
   a_.alu_imm(Alu::kAdd, Operand::of(kRcx), sizeof(CallRecord), 8);
   a_.store(CONTEXT(call), kRcx, 8);
+}
+
+// An inlined body begins.
+void Emitter::enter(const Node& n, const Step& step) {
+  const Label stub = a_.label();
+  call_stubs_.push_back({stub, pou_.side->call[n.call], n.exit});
+  a_.alu_imm(Alu::kSub, Operand::of(kFuelRegister), 1, 8);
+  a_.jump_if(Condition::kEqual, stub);
+  if (n.result == kNone) return;
+  a_.address(integer_register(step.result),
+             {kDataRegister, integer_register(step.in[1]), 1, true, INT32_MIN}, 8);
+}
+
+// Inside of an inlined body: its slots, then the unit's number in the scratch register.
+void Emitter::inlined_exit(uint32_t exit) {
+  const Exit& e = f_.exits[exit];
+  const bool has_instance = f_.inlined[e.inlined].has_instance;
+  const size_t slots = e.slots.size() - (has_instance ? 2 : 0);
+  for (size_t i = 0; i < slots; ++i) store_slot(e.slots[i], places_.exits[exit][i]);
+  if (has_instance) {
+    load_place(kScratch, places_.exits[exit][slots], 4);
+    a_.store(CONTEXT(native_scratch[0]), kScratch, 8);
+    load_place(kScratch, places_.exits[exit][slots + 1], 4);
+    a_.store(CONTEXT(native_scratch[1]), kScratch, 8);
+  }
+  a_.move_imm(kRdi, e.unit);
+  a_.jump(inlined_[e.inlined]);
+}
+
+// The activation that the interpreter goes on with; the unit's number is in rdi.
+void Emitter::activation(uint32_t number) {
+  const Inlined& inlined = f_.inlined[number];
+  const Call& c = f_.calls[inlined.call];
+  a_.bind(inlined_[number]);
+  push_record(inlined.call);
+  if (inlined.has_instance) {
+    a_.load(kRax, CONTEXT(native_scratch[0]), 4);
+    a_.store(CONTEXT(instance), kRax, 4);
+    a_.load(kRdx, CONTEXT(native_scratch[1]), 4);
+    a_.address(kSelfRegister, {kDataRegister, kRdx, 1, true, INT32_MIN}, 8);
+  } else if (c.kind == CallKind::kFunction) {
+    a_.store_imm(CONTEXT(instance), 0, 4);
+  }
+  a_.alu_imm(Alu::kAdd, Operand::of(kFrameRegister), static_cast<int32_t>(c.frame_step), 8);
+  a_.move_imm(kRax, reinterpret_cast<uintptr_t>(inlined.units));
+  a_.address(kRax, {kRax, kRdi, 8, true, 0}, 8);
+  a_.store(CONTEXT(pc), kRax, 8);
+  a_.store_imm(CONTEXT(pou), static_cast<int32_t>(c.known), 4);
+  a_.jump(shared_.leave);
+}
+
+// The record of the call, the callee's frame and instance, and behind the call everything as before.
+void Emitter::call(const Node& n) {
+  const Call& c = f_.calls[n.call];
+  if (c.kind == CallKind::kSlow) return slow_call(c, n.call);
+  const Label stub = a_.label();
+  call_stubs_.push_back({stub, pou_.side->call[n.call], n.exit});
+  a_.alu_imm(Alu::kSub, Operand::of(kFuelRegister), 1, 8);
+  a_.jump_if(Condition::kEqual, stub);
+  push_record(n.call);
   a_.load(kRsi, CONTEXT(pous), 8);
   if (c.kind == CallKind::kBody) {
     a_.load(kRdi, CONTEXT(instances), 8);

@@ -55,6 +55,8 @@ void Emitter::node(const Step& step) {
       return helper(n, step);
     case Op::kCall:
       return call(n);
+    case Op::kEnter:
+      return enter(n, step);
     case Op::kFCompare:
       return float_compare(n, step);
     case Op::kFAdd:
@@ -262,7 +264,7 @@ void Emitter::select(const Node& n, const Step& step) {
 }
 
 void Emitter::load(const Node& n, const Step& step) {
-  const Address from = address(n.mem, step.index);
+  const Address from = address(n.mem, step.index, step.pointer);
   if (step.result.floating) return a_.float_load(float_register(step.result), from, n.width);
   const uint8_t to = integer_register(step.result);
   if (!n.boolean) return a_.load(to, from, n.width);
@@ -271,7 +273,7 @@ void Emitter::load(const Node& n, const Step& step) {
 }
 
 void Emitter::store(const Node& n, const Step& step) {
-  const Address to = address(n.mem, step.index);
+  const Address to = address(n.mem, step.index, step.pointer);
   const Place& value = step.in[0];
   if (value.kind == Place::kRegister) {
     if (value.floating) return a_.float_store(to, float_register(value), n.width);
@@ -288,7 +290,7 @@ void Emitter::store(const Node& n, const Step& step) {
 // Offsets in data memory are the difference of two addresses.
 void Emitter::data_address(const Node& n, const Step& step) {
   const uint8_t to = integer_register(step.result);
-  Address at = address(n.mem, step.index);
+  Address at = address(n.mem, step.index, step.pointer);
   if (n.mem.base == MemBase::kData) {
     at.has_base = false;
     at.disp = static_cast<int32_t>(static_cast<uint32_t>(n.mem.disp));

@@ -22,6 +22,7 @@ Emitter::Emitter(const PouCode& pou, const Shared& shared, Assembler& assembler)
   if (frame_bytes_ % 16 == 0) frame_bytes_ += 8;
   for (size_t i = 0; i < f_.blocks.size(); ++i) blocks_.push_back(a_.label());
   exits_.assign(f_.exits.size(), kNone);
+  for (size_t i = 0; i < f_.inlined.size(); ++i) inlined_.push_back(a_.label());
   entries_.behind_call.assign(f_.calls.size(), 0);
 }
 
@@ -41,7 +42,7 @@ Address Emitter::variable(uint32_t number) const {
   const Variable& v = f_.variables[number];
   return address({v.base, 1, kNone, static_cast<int64_t>(v.offset)}, {});
 }
-Address Emitter::address(const Mem& mem, const Place& index) const {
+Address Emitter::address(const Mem& mem, const Place& index, const Place& pointer) const {
   Address out;
   out.scale = mem.scale;
   if (mem.index != kNone) out.index = integer_register(index);
@@ -53,8 +54,8 @@ Address Emitter::address(const Mem& mem, const Place& index) const {
     case MemBase::kSelf:
       out.base = kSelfRegister;
       break;
-    case MemBase::kContext:
-      out.base = kContextRegister;
+    case MemBase::kPointer:
+      out.base = integer_register(pointer);
       break;
     case MemBase::kData:
       out.base = kDataRegister;
@@ -79,7 +80,7 @@ Entries Emitter::run() {
   for (Block b = 0; b < f_.blocks.size(); ++b) block(b);
   stubs();
   for (Block b = 0; b < f_.blocks.size(); ++b) {
-    if (!f_.blocks[b].head) continue;
+    if (!f_.blocks[b].resumes) continue;
     entries_.heads.push_back({b, a_.here()});
     enter_frame();
     moves(places_.blocks[b].resume);
@@ -96,6 +97,8 @@ Entries Emitter::run() {
 
 void Emitter::block(Block b) {
   a_.bind(blocks_[b]);
+  const uint32_t call = f_.blocks[b].behind_call;
+  if (call != kNone) entries_.behind_call[call] = blocks_[b];
   for (const Step& step : places_.blocks[b].steps) {
     if (step.node == kNone) {
       move(step.move);
@@ -304,6 +307,10 @@ void Emitter::stubs() {
     if (exits_[exit] == kNone) continue;
     a_.bind(exits_[exit]);
     const Exit& e = f_.exits[exit];
+    if (e.inlined != kNone) {
+      inlined_exit(exit);
+      continue;
+    }
     for (size_t i = 0; i < e.slots.size(); ++i) store_slot(e.slots[i], places_.exits[exit][i]);
     if (e.fuel) a_.move_imm(kFuelRegister, 1);
     a_.move_imm(kScratch, e.unit);
@@ -314,14 +321,17 @@ void Emitter::stubs() {
     a_.move_imm(kScratch, unit);
     a_.jump(leave_);
   }
-  for (const auto& [label, side] : call_stubs_) {
+  for (const auto& [label, side, exit] : call_stubs_) {
     a_.bind(label);
+    const Exit& e = f_.exits[exit];
+    for (size_t i = 0; i < e.slots.size(); ++i) store_slot(e.slots[i], places_.exits[exit][i]);
     a_.move_imm(kFuelRegister, 1);
     a_.move_imm(kScratch, reinterpret_cast<uintptr_t>(pou_.side->units.get() + side));
     a_.store(CONTEXT(pc), kScratch, 8);
     a_.store_imm(CONTEXT(pou), static_cast<int32_t>(pou_.number), 4);
     a_.jump(shared_.leave);
   }
+  for (uint32_t i = 0; i < inlined_.size(); ++i) activation(i);
   a_.bind(leave_);
   a_.shift(Shift::kShl, kScratch, 3, 8);
   a_.move_imm(kRax, reinterpret_cast<uintptr_t>(pou_.units));

@@ -95,6 +95,10 @@ class Emitter {
 
   // emit_call.cc
   void call(const Node& node);
+  void enter(const Node& node, const Step& step);
+  void push_record(uint32_t call);
+  void inlined_exit(uint32_t exit);
+  void activation(uint32_t inlined);
   void slow_call(const Call& call, uint32_t number);
 
   uint8_t integer_register(const Place& place) const;
@@ -102,7 +106,7 @@ class Emitter {
   Operand operand(const Place& place) const;
   Address spill(uint32_t slot) const;
   Address variable(uint32_t number) const;
-  Address address(const Mem& mem, const Place& index) const;
+  Address address(const Mem& mem, const Place& index, const Place& pointer = {}) const;
   Address context(size_t offset) const;
 
   const PouCode& pou_;
@@ -116,7 +120,13 @@ class Emitter {
   std::vector<Label> exits_;
   std::vector<EdgeStub> edges_;
   std::vector<std::pair<Label, uint32_t>> stops_;       // a helper that trapped: its unit
-  std::vector<std::pair<Label, uint32_t>> call_stubs_;  // out of fuel at a call
+  struct CallStub {
+    Label label;
+    uint32_t side;
+    uint32_t exit;
+  };
+  std::vector<CallStub> call_stubs_;  // out of fuel at a call
+  std::vector<Label> inlined_;  // by Function::inlined: makes the activation
   Label leave_ = 0;
 };
 

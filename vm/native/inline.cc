@@ -1,0 +1,221 @@
+#include "vm/native/inline.h"
+
+#include <algorithm>
+
+#include "ir/bytecode/image.h"
+#include "vm/native/recipes.h"
+
+namespace vm::native {
+namespace {
+
+constexpr uint32_t kMostUnits = 96;
+constexpr size_t kMostNodes = 200'000;  // of one POU with everything in it
+
+class Inliner {
+ public:
+  Inliner(Function& f, const std::function<Callee(uint32_t)>& callee_of)
+      : f_(f), callee_of_(callee_of) {}
+
+  std::vector<uint32_t> run() {
+    const auto count = static_cast<Block>(f_.blocks.size());
+    first_.resize(count);
+    last_.resize(count);
+    for (Block b = 0; b < count; ++b) split(b);
+    if (bodies_.empty()) return {};
+    // The blocks' own ways: from their last part to the others' first.
+    for (Block b = 0; b < count; ++b) {
+      BasicBlock& end = blocks_[last_[b]];
+      for (Block& to : end.end.target) {
+        if (to != kNone) to = first_[to];
+      }
+    }
+    for (Value& value : f_.values) {
+      if (value.node == kNone && value.block < count) value.block = first_[value.block];
+    }
+    f_.blocks = std::move(blocks_);
+    for (Loop& loop : f_.loops) {
+      loop.head = first_[loop.head];
+      loop.last = last_[loop.last];
+    }
+    for (Block b = 0; b < f_.blocks.size(); ++b) {
+      for (const uint32_t n : f_.blocks[b].nodes) {
+        if (f_.nodes[n].result != kNone) f_.values[f_.nodes[n].result].block = b;
+      }
+    }
+    for (const auto& [param, block] : parameters_) f_.values[param].block = block;
+    std::sort(bodies_.begin(), bodies_.end());
+    bodies_.erase(std::unique(bodies_.begin(), bodies_.end()), bodies_.end());
+    return std::move(bodies_);
+  }
+
+ private:
+  Callee callee(const Node& node) const {
+    if (node.op != Op::kCall || f_.nodes.size() > kMostNodes) return {};
+    const Call& call = f_.calls[node.call];
+    if (call.kind == CallKind::kSlow || call.known == kNone) return {};
+    return callee_of_(call.known);
+  }
+
+  void split(Block b) {
+    BasicBlock old = std::move(f_.blocks[b]);
+    first_[b] = static_cast<Block>(blocks_.size());
+    BasicBlock part;
+    part.unit = old.unit;
+    part.params = std::move(old.params);
+    part.loop = old.loop;
+    part.head = old.head;
+    part.reloads = std::move(old.reloads);
+    part.dirty = std::move(old.dirty);
+    for (const uint32_t n : old.nodes) {
+      const Callee body = callee(f_.nodes[n]);
+      part.nodes.push_back(n);
+      if (body.function == nullptr) continue;
+      const uint32_t call = f_.nodes[n].call;
+      part.end.kind = EndKind::kJump;
+      part.end.target[0] = static_cast<Block>(blocks_.size()) + 1;
+      blocks_.push_back(std::move(part));
+      copy(n, body, old.loop);
+      part = BasicBlock();
+      part.unit = old.unit;
+      part.loop = old.loop;
+      part.behind_call = call;
+    }
+    part.end = std::move(old.end);
+    last_[b] = static_cast<Block>(blocks_.size());
+    blocks_.push_back(std::move(part));
+  }
+
+  // The callee's blocks; its returns lead to the block that comes next.
+  void copy(uint32_t call_node, const Callee& body, uint32_t loop) {
+    const Function& g = *body.function;
+    bodies_.push_back(f_.calls[f_.nodes[call_node].call].known);
+    Node& call = f_.nodes[call_node];
+    call.op = Op::kEnter;
+    step_ = f_.calls[call.call].frame_step;
+    own_ = f_.calls[call.call].kind == CallKind::kOwn;
+    pointer_ = kNone;
+    if (call.in[1] != kNone) {
+      pointer_ = static_cast<Val>(f_.values.size());
+      f_.values.push_back({false, 8, false, 0, call_node, 0});
+      call.result = pointer_;
+    }
+    Inlined inlined;
+    inlined.call = call.call;
+    inlined.units = body.units;
+    inlined.has_instance = call.in[1] != kNone;
+    f_.inlined.push_back(inlined);
+    const Val id = call.in[0];
+    const Val area = call.in[1];
+    value_of_.assign(g.values.size(), kNone);
+    const auto begin = static_cast<Block>(blocks_.size());
+    const Block behind = begin + static_cast<Block>(g.blocks.size());
+    for (Val v = 0; v < g.values.size(); ++v) {
+      value_of_[v] = static_cast<Val>(f_.values.size());
+      f_.values.push_back(g.values[v]);
+      f_.values.back().node = kNone;
+    }
+    const auto exits = static_cast<uint32_t>(f_.exits.size());
+    for (const Exit& exit : g.exits) {
+      Exit made = exit;
+      for (SlotValue& slot : made.slots) {
+        slot.offset += step_;
+        slot.value = value_of_[slot.value];
+      }
+      made.inlined = static_cast<uint32_t>(f_.inlined.size() - 1);
+      if (inlined.has_instance) {
+        made.slots.push_back({0, 4, id});
+        made.slots.push_back({0, 4, area});
+      }
+      f_.exits.push_back(std::move(made));
+    }
+    for (Block b = 0; b < g.blocks.size(); ++b) {
+      BasicBlock block;
+      block.loop = loop;
+      block.unit = f_.blocks.empty() ? 0 : g.blocks[b].unit;
+      for (const Val param : g.blocks[b].params) {
+        block.params.push_back(value_of_[param]);
+        parameters_.push_back({value_of_[param], begin + b});
+      }
+      for (const uint32_t n : g.blocks[b].nodes) block.nodes.push_back(node(g.nodes[n], exits));
+      block.end = g.blocks[b].end;
+      End& end = block.end;
+      for (Val& v : end.in) v = mapped(v);
+      for (std::vector<Val>& args : end.args) {
+        for (Val& v : args) v = mapped(v);
+      }
+      for (Block& to : end.target) {
+        if (to != kNone) to += begin;
+      }
+      if (end.kind == EndKind::kReturn) {
+        end = End();
+        end.kind = EndKind::kJump;
+        end.target[0] = behind;
+      } else if (end.exit != kNone) {
+        end.exit += exits;
+      }
+      blocks_.push_back(std::move(block));
+    }
+  }
+
+  Val mapped(Val v) const { return v == kNone ? kNone : value_of_[v]; }
+
+  uint32_t node(Node n, uint32_t exits) {
+    for (Val& v : n.in) v = mapped(v);
+    n.mem.index = mapped(n.mem.index);
+    if (n.mem.base == MemBase::kFrame) n.mem.disp += step_;
+    if (n.mem.base == MemBase::kSelf && !own_) {
+      n.mem.base = MemBase::kPointer;
+      n.mem.pointer = pointer_;
+    }
+    n.variable = kNone;
+    n.kills = kNone;
+    if (n.exit != kNone) n.exit += exits;
+    const auto number = static_cast<uint32_t>(f_.nodes.size());
+    if (n.result != kNone) {
+      n.result = value_of_[n.result];
+      f_.values[n.result].node = number;
+    }
+    f_.nodes.push_back(n);
+    return number;
+  }
+
+  Function& f_;
+  const std::function<Callee(uint32_t)>& callee_of_;
+  std::vector<BasicBlock> blocks_;
+  std::vector<Block> first_, last_;
+  std::vector<uint32_t> bodies_;
+  std::vector<std::pair<Val, Block>> parameters_;
+  std::vector<Val> value_of_;
+  uint32_t step_ = 0;
+  bool own_ = false;
+  Val pointer_ = kNone;
+};
+
+}  // namespace
+
+bool is_small(const ir::Image& image, const ir::LinkedPou& pou) {
+  if (pou.unit_count > kMostUnits || pou.recursion_depth != 0) return false;
+  for (uint32_t i = pou.first_unit; i < pou.first_unit + pou.unit_count; ++i) {
+    const ir::Unit& unit = image.code[i];
+    const ir::Opcode op = unit.opcode();
+    const ir::OpcodeRow& row = ir::opcode_row(op);
+    const Shape shape = recipe_of(op).shape;
+    const bool flow = op == ir::Opcode::JT || op == ir::Opcode::JF || op == ir::Opcode::JMP ||
+                      op == ir::Opcode::RET;
+    if (row.calls || row.backward || (shape == Shape::kHelper && !flow)) return false;
+    const bool constant_place =
+        (row.b.kind == ir::FieldKind::kBase && unit.base_b() == ir::Base::kConst) ||
+        (row.c.kind == ir::FieldKind::kBase && unit.base_c() == ir::Base::kConst);
+    const bool narrow_rotation = shape == Shape::kShift && recipe_of(op).width < 4;
+    if (constant_place || narrow_rotation) return false;  // they may need a helper
+    if (row.extended) ++i;
+  }
+  return true;
+}
+
+std::vector<uint32_t> inline_calls(Function& function,
+                                   const std::function<Callee(uint32_t)>& callee_of) {
+  return Inliner(function, callee_of).run();
+}
+
+}  // namespace vm::native

@@ -1,0 +1,159 @@
+#include "vm/native/loops.h"
+
+#include <algorithm>
+
+namespace vm::native {
+namespace {
+
+constexpr uint32_t kMostHoisted = 10;  // values in front of one loop: registers are few
+
+bool is_movable(const Node& n) {
+  switch (n.op) {
+    case Op::kDivS:
+    case Op::kDivU:
+    case Op::kModS:
+    case Op::kModU:  // a check of the divisor stands before
+    case Op::kStore:
+    case Op::kTaskTime:
+    case Op::kAdvanceTime:
+    case Op::kHelper:
+    case Op::kCall:
+    case Op::kEnter:
+      return false;
+    case Op::kLoad:
+      return n.immutable;
+    default:
+      return true;
+  }
+}
+
+class Hoister {
+ public:
+  explicit Hoister(Function& f) : f_(f) {}
+
+  void run() {
+    for (size_t l = f_.loops.size(); l-- > 0;) loop(f_.loops[l]);
+  }
+
+ private:
+  bool outside(Val v, const Loop& loop) const {
+    return v == kNone || f_.values[v].constant || f_.values[v].block < loop.head;
+  }
+
+  // Blocks that every whole turn goes through, from the head on.
+  std::vector<Block> always(const Loop& loop) const {
+    std::vector<Block> out;
+    std::vector<uint32_t> ways(f_.blocks.size(), 0);
+    for (Block b = loop.head; b <= loop.last; ++b) {
+      for (const Block to : f_.blocks[b].end.target) {
+        if (to != kNone && to > b) ++ways[to];
+      }
+    }
+    Block at = loop.head;
+    while (true) {
+      out.push_back(at);
+      Block next = kNone;
+      uint32_t inside = 0;
+      for (const Block to : f_.blocks[at].end.target) {
+        if (to == kNone || to <= at || to > loop.last) continue;
+        ++inside;
+        next = to;
+      }
+      if (inside != 1 || ways[next] != 1) return out;
+      at = next;
+    }
+  }
+
+  void loop(const Loop& l) {
+    const Block front = l.head - 1;
+    const std::vector<Block> sure = always(l);
+    uint32_t values = 0;
+    for (Block b = l.head; b <= l.last; ++b) {
+      const bool is_sure = std::find(sure.begin(), sure.end(), b) != sure.end();
+      std::vector<uint32_t>& nodes = f_.blocks[b].nodes;
+      std::erase_if(nodes, [&](uint32_t number) {
+        Node& n = f_.nodes[number];
+        if (!is_movable(n) || !outside(n.mem.index, l) || !outside(n.mem.pointer, l)) return false;
+        for (const Val v : n.in) {
+          if (!outside(v, l)) return false;
+        }
+        const bool checks = n.exit != kNone;
+        if (checks && f_.exits[n.exit].inlined != kNone) return false;
+        if (checks && !is_sure) return false;
+        if (n.result != kNone && ++values > kMostHoisted) return false;
+        if (checks) n.exit = exit_at(front);
+        if (n.result != kNone) f_.values[n.result].block = front;
+        f_.blocks[front].nodes.push_back(number);
+        return true;
+      });
+    }
+  }
+
+  uint32_t exit_at(Block front) {
+    Exit exit;
+    exit.unit = f_.blocks[front].unit;
+    exit.slots = f_.blocks[front].dirty;
+    f_.exits.push_back(std::move(exit));
+    return static_cast<uint32_t>(f_.exits.size() - 1);
+  }
+
+  Function& f_;
+};
+
+}  // namespace
+
+void insert_preheaders(Function& f) {
+  const auto count = static_cast<Block>(f.blocks.size());
+  std::vector<Block> place(count);  // of the old block
+  Block next = 0;
+  for (Block b = 0; b < count; ++b) {
+    if (f.blocks[b].head) ++next;
+    place[b] = next++;
+  }
+  std::vector<BasicBlock> blocks(next);
+  for (Value& value : f.values) value.block = place[value.block];
+  for (Block b = 0; b < count; ++b) {
+    BasicBlock& old = f.blocks[b];
+    for (Block& to : old.end.target) {
+      if (to == kNone) continue;
+      const bool into = old.end.kind != EndKind::kLoop && f.blocks[to].head;
+      to = place[to] - (into ? 1 : 0);
+    }
+    if (old.head) {
+      BasicBlock& front = blocks[place[b] - 1];
+      front.unit = old.unit;
+      front.resumes = true;
+      front.loop = f.loops[old.loop].parent;
+      front.end.kind = EndKind::kJump;
+      front.end.target[0] = place[b];
+      front.reloads = std::move(old.reloads);
+      front.dirty = std::move(old.dirty);
+      for (const Val param : old.params) {
+        const auto own = static_cast<Val>(f.values.size());
+        Value value = f.values[param];
+        value.block = place[b] - 1;
+        f.values.push_back(value);
+        front.params.push_back(own);
+        front.end.args[0].push_back(own);
+        for (Reload& reload : front.reloads) {
+          if (reload.value == param) reload.value = own;
+        }
+        for (SlotValue& slot : front.dirty) {
+          if (slot.value == param) slot.value = own;
+        }
+      }
+      old.reloads.clear();
+      old.dirty.clear();
+    }
+  }
+  for (Block b = 0; b < count; ++b) blocks[place[b]] = std::move(f.blocks[b]);
+  f.blocks = std::move(blocks);
+  for (Loop& loop : f.loops) {
+    loop.head = place[loop.head];
+    loop.last = place[loop.last];
+  }
+}
+
+void hoist(Function& function) { Hoister(function).run(); }
+
+}  // namespace vm::native

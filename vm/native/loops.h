@@ -1,0 +1,19 @@
+// What a loop need not do in every turn.
+#pragma once
+
+#include "vm/native/lir.h"
+
+namespace vm::native {
+
+// Puts a block in front of every loop head. All ways in lead through it, that of a resumed
+// execution too, so what it computes holds in the whole loop.
+void insert_preheaders(Function& function);
+
+// Drops checks that the ranges of values prove: constants, masks, counted loops.
+void drop_proven_checks(Function& function);
+
+// Moves what does not change in a loop in front of it. A check that fails there leaves to the
+// interpreter at the loop's head, which finds out what is wrong, and when.
+void hoist(Function& function);
+
+}  // namespace vm::native
