@@ -161,7 +161,6 @@ Place Allocator::fixed_operand(Val v, uint32_t reg, const Demands& demands) {
 
 Place Allocator::operand(const Node& n, uint32_t i, uint32_t forbidden) {
   const Val v = n.in[i];
-  if (is_constant(v) && t_.takes_constant(f_, n, i)) return memory_of(v);
   if (reg_[v] < 0 && t_.takes_memory(f_, n, i)) {
     const Place memory = memory_of(v);
     const bool whole = memory.kind == Place::kSpill ||
@@ -209,6 +208,10 @@ void Allocator::operands(const Node& n, const Demands& demands, Step& step) {
       same_as_fixed = true;
     }
     if (same_as_fixed) continue;
+    if (is_constant(v) && t_.takes_constant(f_, n, i)) {
+      step.in[i] = memory_of(v);
+      continue;
+    }
     const bool floats = floating(v);
     const bool misplaced = !floats && reg_[v] >= 0 && (locked[0] >> reg_[v] & 1) != 0;
     if (reg_[v] >= 0 && !misplaced) {
@@ -221,12 +224,9 @@ void Allocator::operands(const Node& n, const Demands& demands, Step& step) {
       const uint32_t keep = locked[floats] | held[floats];
       if (floats) {
         // operand() locks integers; floats are locked here
-        const bool direct = is_constant(v) && t_.takes_constant(f_, n, i);
         const Place memory = memory_of(v);
         const uint32_t next = next_use(v, position_ + 1);
-        if (direct) {
-          step.in[i] = memory;
-        } else if (t_.takes_memory(f_, n, i) &&
+        if (t_.takes_memory(f_, n, i) &&
                    (memory.kind == Place::kSpill || memory.kind == Place::kHome) &&
                    (next == kNone || next > position_ + kFar)) {
           step.in[i] = memory;

@@ -42,7 +42,8 @@ void Allocator::begin(Block block) {
   const bool head = f_.blocks[block].head;
   if (f_.blocks[block].behind_call != kNone) {
     clear_state();  // as it is when the interpreter goes on here
-  } else if (preds.size() == 1 && !head && !f_.blocks[block].resumes) {
+  } else if (preds.size() == 1 && !head && f_.blocks[block].params.empty() &&
+             !f_.blocks[block].resumes) {
     restore(ends_[preds[0].block], block);
   } else if (!preds.empty() || head || f_.blocks[block].resumes) {
     meet(block);

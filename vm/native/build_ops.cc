@@ -352,9 +352,8 @@ void Builder::helper() {
     const uint32_t v = facts_.variable(access);
     now_.value[v] = kNone;
     now_.dirty[v] = 0;
-    if (f_.variables[v].slot) continue;
-    for (const uint32_t other : f_.overlaps[v]) now_.value[other] = kNone;
     f_.nodes.back().variable = v;
+    for (const uint32_t other : f_.overlaps[v]) now_.value[other] = kNone;
   }
   ++version_;
 }

@@ -116,21 +116,17 @@ bool Facts::find_blocks(std::string& why) {
   }
   block_at_.assign(code_.size(), kNone);
   for (uint32_t i = 0; i < code_.size(); i = next(i)) {
-    if (begins[i]) blocks_.push_back({i, 0});
+    if (begins[i]) blocks_.push_back({i, 0, 0});
     block_at_[i] = static_cast<Block>(blocks_.size() - 1);
     blocks_.back().behind = next(i);
+    blocks_.back().last = i;
   }
   return true;
 }
 
 void Facts::successors(Block block, Block out[2], uint32_t& count) const {
   count = 0;
-  // The last unit of the block.
-  uint32_t last = blocks_[block].behind - 1;
-  if (last > blocks_[block].first && ir::opcode_row(code_[last - 1].opcode()).extended &&
-      block_at_[last] == kNone) {
-    --last;
-  }
+  const uint32_t last = blocks_[block].last;
   const Opcode op = code_[last].opcode();
   if (op == Opcode::JT || op == Opcode::JF) {
     out[count++] = block_at_[jump_target(last)];

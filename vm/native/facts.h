@@ -48,6 +48,7 @@ struct Reach {
 struct UnitRange {
   uint32_t first = 0;
   uint32_t behind = 0;
+  uint32_t last = 0;  // the last instruction
 };
 
 class Facts {

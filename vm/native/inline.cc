@@ -21,7 +21,10 @@ class Inliner {
     first_.resize(count);
     last_.resize(count);
     for (Block b = 0; b < count; ++b) split(b);
-    if (bodies_.empty()) return {};
+    if (bodies_.empty()) {
+      f_.blocks = std::move(blocks_);  // as they were
+      return {};
+    }
     // The blocks' own ways: from their last part to the others' first.
     for (Block b = 0; b < count; ++b) {
       BasicBlock& end = blocks_[last_[b]];

@@ -160,7 +160,7 @@ struct Inlined {
   bool has_instance = false;
 };
 
-enum class EndKind : uint8_t { kJump, kLoop, kBranch, kReturn, kExit };
+enum class EndKind : uint8_t { kJump, kLoop, kBranch, kReturn, kExit, kUnreachable };
 struct End {
   EndKind kind = EndKind::kReturn;
   Op compare = Op::kCompare;  // kBranch: kCompare or kFCompare

@@ -32,7 +32,15 @@ class Hoister {
   explicit Hoister(Function& f) : f_(f) {}
 
   void run() {
-    for (size_t l = f_.loops.size(); l-- > 0;) loop(f_.loops[l]);
+    // Only out of innermost loops: what lives through an inner loop must be in a variable, or an
+    // execution that goes on there would not find it.
+    std::vector<bool> has_inner(f_.loops.size(), false);
+    for (const Loop& l : f_.loops) {
+      if (l.parent != kNone) has_inner[l.parent] = true;
+    }
+    for (size_t l = 0; l < f_.loops.size(); ++l) {
+      if (!has_inner[l]) loop(f_.loops[l]);
+    }
   }
 
  private:

@@ -9,6 +9,9 @@ namespace vm::native {
 // execution too, so what it computes holds in the whole loop.
 void insert_preheaders(Function& function);
 
+// Makes selections of branches around a few cheap operations.
+void choose(Function& function);
+
 // Drops checks that the ranges of values prove: constants, masks, counted loops.
 void drop_proven_checks(Function& function);
 

@@ -14,9 +14,9 @@ const char* const kNames[] = {
     "zext",   "fadd",    "fsub",      "fmul",       "fdiv",       "fmin",        "fmax",
     "fneg",   "fabs",    "fsqrt",     "fcompare",   "fselect",    "inttofloat",  "floattoint",
     "fwidth", "bitstof", "ftobits",   "exitif",     "instance",   "tasktime",    "advancetime",
-    "helper", "call"};
+    "helper", "call",   "enter"};
 const char* const kConds[] = {"=", "<>", "<s", "<=s", ">s", ">=s", "<u", "<=u", ">u", ">=u"};
-const char* const kEnds[] = {"jump", "loop", "branch", "return", "exit"};
+const char* const kEnds[] = {"jump", "loop", "branch", "return", "exit", "unreachable"};
 
 std::string name(const Function& f, Val v) {
   if (v == kNone) return "-";

@@ -192,6 +192,7 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
   work.function = Builder(*facts).run();
   work.pou->inlined = inline_calls(
       work.function, [&](uint32_t number) { return bodies.callee(number, work.number); });
+  choose(work.function);
   insert_preheaders(work.function);
   drop_proven_checks(work.function);
   hoist(work.function);
@@ -290,6 +291,11 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector
     all.push_back(std::move(work));
   }
   assembler.patch();
+  if (getenv("STC_PRINT_NATIVE")) {
+    FILE* f = fopen("/tmp/code.bin", "wb");
+    fwrite(assembler.code().data(), 1, assembler.code().size(), f);
+    fclose(f);
+  }
   made->shared_code_ = CodeMemory::make(assembler.code());
   if (made->shared_code_ == nullptr) return nullptr;
   made->code_bytes_ = made->shared_code_->size();

@@ -120,6 +120,8 @@ void Emitter::end(Block b) {
       return loop_end(b);
     case EndKind::kBranch:
       return branch(b);
+    case EndKind::kUnreachable:
+      return;
     case EndKind::kExit:
       return a_.jump(exit_label(e.exit));
     case EndKind::kReturn:
