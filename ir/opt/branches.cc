@@ -16,18 +16,21 @@ class Branches {
  public:
   explicit Branches(Pou& pou) : pou_(pou), constants_(pou) {}
 
-  void run() {
+  bool run() {
+    bool any = false;
     for (int round = 0; round < kRounds; ++round) {
-      changed_ = false;
-      uses_ = count_uses(pou_);
+      uses_.clear();
       find_handlers();
       find_positions();
+      changed_ = false;
       for (Block& block : pou_.blocks) straighten(block);
-      remove_unreachable();
+      const bool straightened = changed_;
+      if (straightened || round == 0) remove_unreachable();
       join_blocks();
-      remove_unreachable();
-      if (!changed_) return;
+      any = any || changed_;
+      if (!straightened) return any;
     }
+    return any;
   }
 
  private:
@@ -87,19 +90,25 @@ class Branches {
   }
 
   // Nothing but a jump, and constants that nobody uses.
-  bool only_jumps(BlockId id) const {
+  bool only_jumps(BlockId id) {
     const Block& block = pou_.blocks[id.index];
     if (id.index == 0 || handlers_[id.index] || !block.params.empty()) return false;
     const Inst& end = block.insts.back();
     return end.op == Op::kJump && end.targets[0].args.empty() && only_unused_before_end(block);
   }
 
-  bool only_unused_before_end(const Block& block) const {
+  bool only_unused_before_end(const Block& block) {
     for (size_t i = 0; i + 1 < block.insts.size(); ++i) {
       const Inst& inst = block.insts[i];
-      if (inst.op != Op::kConst || uses_[inst.result.index] != 0) return false;
+      if (inst.op != Op::kConst || uses_of(inst.result) != 0) return false;
     }
     return true;
+  }
+
+  // Counted when first asked for in a round.
+  uint32_t& uses_of(ValueId value) {
+    if (uses_.empty()) uses_ = count_uses(pou_);
+    return uses_[value.index];
   }
 
   // A jump backwards stays behind the body of its loop, for the verifier of bytecode looks for
@@ -129,8 +138,8 @@ class Branches {
       if (!bits || condition == branch.operands[0]) return;
       Target taken = branch.targets[*bits != 0 ? 0 : 1];
       for (ValueId& arg : taken.args) arg = argument(next, way, arg);
-      for (const ValueId arg : way.args) --uses_[arg.index];
-      for (const ValueId arg : taken.args) ++uses_[arg.index];
+      for (const ValueId arg : way.args) --uses_of(arg);
+      for (const ValueId arg : taken.args) ++uses_of(arg);
       end.targets[0] = std::move(taken);
       changed_ = true;
     }
@@ -144,11 +153,11 @@ class Branches {
   }
 
   // The parameters of `block`, so that a way may lead past it.
-  bool used_only_at_end(const Block& block) const {
+  bool used_only_at_end(const Block& block) {
     for (const ValueId param : block.params) {
       uint32_t here = 0;
       for_each_operand(block.insts.back(), [&](ValueId value) { here += value == param; });
-      if (uses_[param.index] != here) return false;
+      if (uses_of(param) != here) return false;
     }
     return true;
   }
@@ -157,7 +166,7 @@ class Branches {
   void join_blocks() {
     const Entries entries = count_entries(pou_);
     Replacements same(pou_);
-    find_handlers();
+    bool joined = false;
     for (uint32_t b = 0; b < pou_.blocks.size(); ++b) {
       for (;;) {
         Block& block = pou_.blocks[b];
@@ -175,9 +184,12 @@ class Branches {
         block.insts.pop_back();
         move_insts(block, next);
         changed_ = true;
+        joined = true;
       }
     }
+    if (!joined) return;
     same.apply(pou_);
+    remove_unreachable();
   }
 
   // `from` stays as a block that nobody enters.
@@ -221,6 +233,8 @@ class Branches {
 
 }  // namespace
 
-void simplify_branches(const Program&, Pou& pou) { Branches(pou).run(); }
+bool simplify_branches(const Program&, Pou& pou) {
+  return pou.blocks.size() > 1 && Branches(pou).run();
+}
 
 }  // namespace ir::opt

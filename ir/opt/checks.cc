@@ -61,12 +61,13 @@ class Checks {
     }
   }
 
-  void run() {
+  bool run() {
     for (const uint32_t b : reverse_post_order(pou_)) {
       Block& block = pou_.blocks[b];
       std::erase_if(block.insts, [this](const Inst& inst) { return look_at(inst); });
     }
     same_.apply(pou_);
+    return !same_.empty();
   }
 
  private:
@@ -161,6 +162,14 @@ class Checks {
 
 }  // namespace
 
-void remove_checks(const Program&, Pou& pou) { Checks(pou).run(); }
+bool remove_checks(const Program&, Pou& pou) {
+  const auto is_check = [](const Inst& inst) {
+    return inst.op == Op::kCheckRange || inst.op == Op::kCheckStep;
+  };
+  const bool any = std::any_of(pou.blocks.begin(), pou.blocks.end(), [&](const Block& block) {
+    return std::any_of(block.insts.begin(), block.insts.end(), is_check);
+  });
+  return any && Checks(pou).run();
+}
 
 }  // namespace ir::opt

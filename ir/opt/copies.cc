@@ -1,4 +1,6 @@
 // Block parameters that get the same value, or the same constant, on every way.
+#include <algorithm>
+
 #include "ir/opt/body.h"
 #include "ir/opt/passes.h"
 
@@ -11,7 +13,7 @@ class Copies {
  public:
   explicit Copies(Pou& pou) : pou_(pou), constants_(pou), same_(pou), found_(pou.values.size()) {}
 
-  void run() {
+  bool run() {
     bool changed = true;
     for (int round = 0; round < kRounds && changed; ++round) {
       changed = false;
@@ -23,9 +25,10 @@ class Copies {
         for (const ValueId param : block.params) changed |= decide(block, param);
       }
     }
-    if (same_.empty()) return;
+    if (same_.empty()) return false;
     drop_replaced();
     same_.apply(pou_);
+    return true;
   }
 
  private:
@@ -89,6 +92,10 @@ class Copies {
 
 }  // namespace
 
-void propagate_copies(const Program&, Pou& pou) { Copies(pou).run(); }
+bool propagate_copies(const Program&, Pou& pou) {
+  const bool any = std::any_of(pou.blocks.begin(), pou.blocks.end(),
+                               [](const Block& block) { return !block.params.empty(); });
+  return any && Copies(pou).run();
+}
 
 }  // namespace ir::opt

@@ -14,7 +14,7 @@ class Dead {
       : pou_(pou), facts_(program, pou), uses_(count_uses(pou)), places_(pou.values.size()) {}
 
   // A value without uses releases what it used, so backwards and with a list of what is left.
-  void run() {
+  bool run() {
     for (uint32_t b = 0; b < pou_.blocks.size(); ++b) {
       for (uint32_t i = 0; i < pou_.blocks[b].insts.size(); ++i) {
         const ValueId result = pou_.blocks[b].insts[i].result;
@@ -29,10 +29,11 @@ class Dead {
       Inst& inst = pou_.blocks[at.block].insts[at.index];
       if (removable(inst)) release(inst);
     }
-    if (!removed_) return;
+    if (!removed_) return false;
     for (Block& block : pou_.blocks) {
       std::erase_if(block.insts, [](const Inst& inst) { return inst.op == kGone; });
     }
+    return true;
   }
 
  private:
@@ -111,9 +112,10 @@ void remove_unused_locals(Pou& pou) {
 
 }  // namespace
 
-void remove_dead(const Program& program, Pou& pou) {
-  Dead(program, pou).run();
+bool remove_dead(const Program& program, Pou& pou) {
+  const bool removed = Dead(program, pou).run();
   remove_unused_locals(pou);
+  return removed;
 }
 
 }  // namespace ir::opt

@@ -24,7 +24,7 @@ class Folder {
       : pou_(pou), constants_(pou), same_(pou), definitions_(pou.values.size()) {}
 
   // Definitions come before their uses in reverse post order.
-  void run() {
+  bool run() {
     for (const uint32_t b : reverse_post_order(pou_)) {
       for (Inst& inst : pou_.blocks[b].insts) {
         for_each_operand(inst, [this](ValueId& value) { value = same_(value); });
@@ -33,6 +33,7 @@ class Folder {
       }
     }
     same_.apply(pou_);
+    return changed_ || !same_.empty();
   }
 
  private:
@@ -47,9 +48,11 @@ class Folder {
     const ValueId result = inst.result;
     inst = constant_inst(scalar_of(result), result, bits, inst.line);
     constants_.set(result, inst.imm);
+    changed_ = true;
   }
 
   void become_not(Inst& inst, ValueId operand) {
+    changed_ = true;
     inst.op = Op::kNot;
     inst.scalar = Scalar::kBool;
     inst.operands = {operand};
@@ -205,10 +208,11 @@ class Folder {
   Constants constants_;
   Replacements same_;
   std::vector<const Inst*> definitions_;
+  bool changed_ = false;
 };
 
 }  // namespace
 
-void fold_constants(const Program&, Pou& pou) { Folder(pou).run(); }
+bool fold_constants(const Program&, Pou& pou) { return Folder(pou).run(); }
 
 }  // namespace ir::opt

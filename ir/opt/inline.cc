@@ -91,12 +91,13 @@ class Inliner {
  public:
   Inliner(const Program& program, Pou& pou) : program_(program), pou_(pou) {}
 
-  void run() {
+  bool run() {
     find_candidates();
-    if (sizes_.empty()) return;
+    if (sizes_.empty()) return false;
     keep_results_that_travel();
     const size_t blocks = pou_.blocks.size();
     for (size_t b = 0; b < blocks; ++b) take_in(static_cast<uint32_t>(b));
+    return growth_ != 0;
   }
 
  private:
@@ -283,6 +284,6 @@ class Inliner {
 
 }  // namespace
 
-void inline_functions(const Program& program, Pou& pou) { Inliner(program, pou).run(); }
+bool inline_functions(const Program& program, Pou& pou) { return Inliner(program, pou).run(); }
 
 }  // namespace ir::opt

@@ -9,7 +9,8 @@
 // whose result goes into a variable is done there, as fast as a move.
 #include <algorithm>
 #include <array>
-#include <unordered_map>
+#include <bit>
+#include <utility>
 
 #include "ir/opt/body.h"
 #include "ir/opt/passes.h"
@@ -32,19 +33,56 @@ struct Key {
   friend bool operator==(const Key&, const Key&) = default;
 };
 
-struct KeyHash {
-  size_t operator()(const Key& key) const {
-    uint64_t hash = static_cast<uint64_t>(key.op) << 8 | static_cast<uint64_t>(key.scalar);
-    for (const uint64_t part : {uint64_t{key.operands[0]}, uint64_t{key.operands[1]},
-                                uint64_t{key.operands[2]}, key.low, key.high}) {
-      hash = (hash ^ part) * 0x9e3779b97f4a7c15u;
-      hash ^= hash >> 29;
-    }
-    return hash;
+uint64_t hash_of(const Key& key) {
+  uint64_t hash = static_cast<uint64_t>(key.op) << 8 | static_cast<uint64_t>(key.scalar);
+  for (const uint64_t part : {uint64_t{key.operands[0]}, uint64_t{key.operands[1]},
+                              uint64_t{key.operands[2]}, key.low, key.high}) {
+    hash = (hash ^ part) * 0x9e3779b97f4a7c15u;
+    hash ^= hash >> 29;
   }
+  return hash;
+}
+
+// The last value that was computed for each key, and where. Open addressing, of fixed size.
+class Operations {
+ public:
+  struct Row {
+    Key key;
+    ValueId value;
+    uint32_t block = 0;
+  };
+  explicit Operations(size_t most) : rows_(std::bit_ceil(2 * most + 1)) {}
+  // The row of the key; without a value when the key is new.
+  Row& at(const Key& key) {
+    const size_t mask = rows_.size() - 1;
+    for (size_t i = hash_of(key) & mask;; i = (i + 1) & mask) {
+      if (!rows_[i].value.valid()) rows_[i].key = key;
+      if (rows_[i].key == key) return rows_[i];
+    }
+  }
+
+ private:
+  std::vector<Row> rows_;
 };
 
+// Equal for places that are the same, whatever their indices are.
+uint32_t hash_of(const Place& place) {
+  uint32_t hash =
+      static_cast<uint32_t>(place.base) << 16 ^ place.base_index ^ place.type.index << 8;
+  for (const Step& step : place.steps) {
+    hash = (hash << 7 ^ hash >> 25) + static_cast<uint32_t>(step.kind) + 4 * step.index;
+  }
+  return hash;
+}
+
+size_t count_insts(const Pou& pou) {
+  size_t count = 0;
+  for (const Block& block : pou.blocks) count += block.insts.size();
+  return count;
+}
+
 struct Known {
+  uint32_t hash = 0;  // of the place
   PlaceId place;
   ValueId value;
   bool stored = false;  // by a store; else loaded
@@ -65,20 +103,39 @@ class Numbers {
         goes_to_memory_(pou.values.size()),
         number_(pou.values.size()),
         same_(pou),
-        states_(pou.blocks.size()) {
+        operations_(count_insts(pou)),
+        known_at_end_(pou.blocks.size()),
+        before_(pou.blocks.size(), kNobody),
+        apart_(pou.places.size()) {
     for (uint32_t v = 0; v < number_.size(); ++v) number_[v] = v;
+    hashes_.reserve(pou.places.size());
+    for (size_t i = 0; i < apart_.size(); ++i) {
+      apart_[i] = is_apart(pou.places[i]);
+      hashes_.push_back(hash_of(pou.places[i]));
+    }
   }
 
-  void run() {
+  bool run() {
     find_destinations();
     const Entries entries = count_entries(pou_);
+    const auto follows = [&](uint32_t from, uint32_t to) {
+      return entries.count[to] == 1 && !is_handler_entry(from, to);
+    };
     for (const uint32_t b : reverse_post_order(pou_)) {
       block_ = b;
-      state_ = &states_[b];
-      if (entries.count[b] == 1 && !is_handler_entry(entries.from[b], b)) inherit(entries.from[b]);
+      known_.clear();
+      if (const uint32_t from = entries.from[b]; b != 0 && follows(from, b)) {
+        before_[b] = from;
+        known_ = known_at_end_[from];
+      }
       for (const Inst& inst : pou_.blocks[b].insts) look_at(inst);
+      const std::vector<Target>& targets = pou_.blocks[b].insts.back().targets;
+      const bool wanted = std::any_of(targets.begin(), targets.end(), [&](const Target& target) {
+        return follows(b, target.block.index);
+      });
+      if (wanted) known_at_end_[b] = known_;
     }
-    if (same_.empty()) return;
+    if (same_.empty()) return false;
     // Those that could trap, too: they did not, the first time.
     for (Block& block : pou_.blocks) {
       std::erase_if(block.insts, [this](const Inst& inst) {
@@ -86,23 +143,33 @@ class Numbers {
       });
     }
     same_.apply(pou_);
+    return true;
   }
 
  private:
-  struct State {
-    std::unordered_map<Key, ValueId, KeyHash> operations;
-    std::vector<Known> known;
-    uint32_t before = kNobody;  // the block that leads here
-  };
-
   bool is_handler_entry(uint32_t from, uint32_t to) const {
     const Inst& end = pou_.blocks[from].insts.back();
     return end.op == Op::kTry && end.targets[1].block.index == to;
   }
 
-  void inherit(uint32_t from) {
-    state_->before = from;
-    state_->known = states_[from].known;
+  // Begins with a member of the own instance or of the globals, and stays there: such places meet
+  // only when that member is the same.
+  static bool is_apart(const Place& place) {
+    const bool base = place.base == PlaceBase::kSelf || place.base == PlaceBase::kGlobal;
+    return base && !place.steps.empty() && place.steps[0].kind == StepKind::kMember &&
+           std::all_of(place.steps.begin(), place.steps.end(), [](const Step& step) {
+             return step.kind == StepKind::kMember || step.kind == StepKind::kIndex;
+           });
+  }
+
+  bool may_meet(PlaceId a, PlaceId b) const {
+    const Place& left = place(a);
+    const Place& right = place(b);
+    if (apart_[a.index] && apart_[b.index] &&
+        (left.base != right.base || left.steps[0].index != right.steps[0].index)) {
+      return false;
+    }
+    return may_alias(left, right, facts_);
   }
 
   // Values that are computed right where they are wanted: stored, or passed to a parameter.
@@ -126,7 +193,7 @@ class Numbers {
     if (inst.op == Op::kCopy || inst.op == Op::kInit) return forget(inst.place);
     if (inst.op == Op::kCallNative) native(inst);
     if (is_call(inst.op)) {
-      std::erase_if(state_->known, [this](const Known& known) {
+      std::erase_if(known_, [this](const Known& known) {
         return calls_may_change(place(known.place), facts_);
       });
     }
@@ -140,7 +207,9 @@ class Numbers {
 
   void number_constant(const Inst& inst) {
     Key key{Op::kConst, inst.scalar, {}, *facts_.constants[inst.result], 0};
-    number_[inst.result.index] = constants_.emplace(key, inst.result).first->second.index;
+    Operations::Row& row = operations_.at(key);
+    if (!row.value.valid()) row.value = inst.result;
+    number_[inst.result.index] = row.value.index;
   }
 
   // --- operations -------------------------------------------------------------------
@@ -162,24 +231,24 @@ class Numbers {
     if (!inst.operands.empty()) {
       key.high ^= static_cast<uint64_t>(pou_.values[inst.operands[0].index].scalar) << 56;
     }
-    const ValueId leader = find(key);
-    if (!leader.valid()) {
-      state_->operations.emplace(key, inst.result);
+    Operations::Row& row = operations_.at(key);
+    if (!row.value.valid() || !leads_here(row.block)) {
+      row.value = inst.result;
+      row.block = block_;
       return;
     }
+    const ValueId leader = row.value;
     number_[inst.result.index] = number(leader);
     if (pays(inst, leader)) replace(inst.result, leader);
   }
 
-  ValueId find(const Key& key) const {
-    const State* state = state_;
-    for (int back = 0; back < kMaxWay; ++back) {
-      const auto found = state->operations.find(key);
-      if (found != state->operations.end()) return found->second;
-      if (state->before == kNobody) break;
-      state = &states_[state->before];
+  bool leads_here(uint32_t block) const {
+    uint32_t at = block_;
+    for (int back = 0; back < kMaxWay && at != kNobody; ++back) {
+      if (at == block) return true;
+      at = before_[at];
     }
-    return {};
+    return false;
   }
 
   static bool is_expensive(const Inst& inst) {
@@ -240,8 +309,9 @@ class Numbers {
 
   void load(const Inst& inst) {
     if (inst.scalar == Scalar::kAddr) return;
-    for (Known& known : state_->known) {
-      if (!same_place(place(known.place), place(inst.place))) continue;
+    const uint32_t hash = hashes_[inst.place.index];
+    for (Known& known : known_) {
+      if (known.hash != hash || !same_place(place(known.place), place(inst.place))) continue;
       if (pou_.values[known.value.index].scalar != inst.scalar) return;
       number_[inst.result.index] = number(known.value);
       const bool here = known.block == block_;
@@ -249,39 +319,36 @@ class Numbers {
       const bool pays = facts_.constants.known(known.value) ||
                         (fixed ? here && !known.stored : here || !known.stored);
       if (pays) return replace(inst.result, known.value);
-      known = {inst.place, inst.result, false, block_};
+      known = {hash, inst.place, inst.result, false, block_};
       return;
     }
-    remember({inst.place, inst.result, false, block_});
+    remember({hash, inst.place, inst.result, false, block_});
   }
 
   void remember(const Known& known) {
-    std::vector<Known>& all = state_->known;
-    if (all.size() >= kMaxKnown) all.erase(all.begin());
-    all.push_back(known);
+    if (known_.size() >= kMaxKnown) known_.erase(known_.begin(), known_.begin() + kMaxKnown / 4);
+    known_.push_back(known);
   }
 
   void store(const Inst& inst) {
     const Place& written = place(inst.place);
     if (inst.scalar == Scalar::kAddr) {
       // Another target: places behind in-outs are others now.
-      if (written.base != PlaceBase::kArg) state_->known.clear();
+      if (written.base != PlaceBase::kArg) known_.clear();
       return;
     }
     forget(inst.place);
-    remember({inst.place, inst.operands[0], true, block_});
+    remember({hashes_[inst.place.index], inst.place, inst.operands[0], true, block_});
   }
 
   void forget(PlaceId written) {
-    std::erase_if(state_->known, [&](const Known& known) {
-      return may_alias(place(known.place), place(written), facts_);
-    });
+    std::erase_if(known_, [&](const Known& known) { return may_meet(known.place, written); });
   }
 
   // A native function uses the next frame, and writes into the string that it is given.
   void native(const Inst& inst) {
     const bool strings = !is_pure_native(inst);
-    std::erase_if(state_->known, [&](const Known& known) {
+    std::erase_if(known_, [&](const Known& known) {
       const Place& at = place(known.place);
       if (at.base == PlaceBase::kArg) return true;
       return strings &&
@@ -295,14 +362,17 @@ class Numbers {
   std::vector<bool> goes_to_memory_;
   std::vector<uint32_t> number_;
   Replacements same_;
-  std::vector<State> states_;
-  std::unordered_map<Key, ValueId, KeyHash> constants_;
+  Operations operations_;
+  std::vector<Known> known_;                      // at the instruction at hand
+  std::vector<std::vector<Known>> known_at_end_;  // of blocks that others follow
+  std::vector<uint32_t> before_;                  // the block that leads here, or kNobody
+  std::vector<uint32_t> hashes_;                  // by place
+  std::vector<bool> apart_;                       // by place
   uint32_t block_ = 0;
-  State* state_ = nullptr;
 };
 
 }  // namespace
 
-void number_values(const Program& program, Pou& pou) { Numbers(program, pou).run(); }
+bool number_values(const Program& program, Pou& pou) { return Numbers(program, pou).run(); }
 
 }  // namespace ir::opt

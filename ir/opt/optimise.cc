@@ -12,7 +12,7 @@ namespace {
 
 struct Row {
   PassRow row;
-  void (*run)(const Program& program, Pou& pou);
+  bool (*run)(const Program& program, Pou& pou);
 };
 constexpr auto kPasses = std::to_array<Row>({
 #define PASS(id, name, function, what) {{name, what}, opt::function},
@@ -110,10 +110,15 @@ base::Status sound_after(const Program& program, const Pou& pou, Pass pass) {
                      "after pass `" + std::string(name) + "`: " + sound.error().text};
 }
 
+// A pass runs again only when another one has changed the POU since.
 base::Status optimise_pou(const Program& program, Pou& pou, PassSet passes, bool verify_each) {
+  std::array<uint32_t, kPasses.size()> seen{};  // the state that a pass left behind
+  uint32_t state = 1;
   for (const Pass pass : kOrder) {
-    if (!passes.has(pass)) continue;
-    kPasses[static_cast<size_t>(pass)].run(program, pou);
+    const size_t number = static_cast<size_t>(pass);
+    if (!passes.has(pass) || seen[number] == state) continue;
+    if (kPasses[number].run(program, pou)) ++state;
+    seen[number] = state;
     if (!verify_each) continue;
     if (base::Status sound = sound_after(program, pou, pass); !sound.ok()) return sound;
   }

@@ -33,11 +33,12 @@ class Stores {
   Stores(const Program& program, Pou& pou)
       : program_(program), pou_(pou), facts_(program, pou), tracked_(pou.locals.size()) {}
 
-  void run() {
+  bool run() {
     track();
-    if (count_ == 0) return;
+    if (count_ == 0) return false;
     remove_unread();
     use_single_stores();
+    return changed_;
   }
 
  private:
@@ -128,6 +129,7 @@ class Stores {
       std::vector<size_t> unread;
       walk(b, [&unread](size_t i) { unread.push_back(i); });
       if (unread.empty()) continue;
+      changed_ = true;
       std::vector<Inst>& insts = pou_.blocks[b].insts;
       std::vector<Inst> kept;
       for (size_t i = 0; i < insts.size(); ++i) {
@@ -197,6 +199,7 @@ class Stores {
         if (local == kUntracked || writers[local].count != 1 || !writers[local].reaches_all) {
           return false;
         }
+        changed_ = true;
         if (inst.op == Op::kLoad) same.replace(inst.result, writers[local].value);
         return true;
       });
@@ -209,12 +212,15 @@ class Stores {
   Facts facts_;
   std::vector<uint32_t> tracked_;  // number of the local in the sets
   uint32_t count_ = 0;
+  bool changed_ = false;
   LocalSet at_return_;
   std::vector<LocalSet> live_in_;
 };
 
 }  // namespace
 
-void remove_stores(const Program& program, Pou& pou) { Stores(program, pou).run(); }
+bool remove_stores(const Program& program, Pou& pou) {
+  return !pou.locals.empty() && Stores(program, pou).run();
+}
 
 }  // namespace ir::opt

@@ -1,5 +1,6 @@
 // Powers of two: x * 8 is a shift; unsigned x / 8 and x MOD 8 are a shift and a mask, and whether
 // x MOD 8 is zero is a mask for signed x, too.
+#include <algorithm>
 #include <bit>
 
 #include "ir/opt/body.h"
@@ -9,12 +10,17 @@
 namespace ir::opt {
 namespace {
 
+bool is_product(const Inst& inst) {
+  return (inst.op == Op::kMul || inst.op == Op::kDiv || inst.op == Op::kMod) &&
+         is_integer(inst.scalar);
+}
+
 class Strength {
  public:
   explicit Strength(Pou& pou)
       : pou_(pou), constants_(pou), uses_(count_uses(pou)), definitions_(pou.values.size()) {}
 
-  void run() {
+  bool run() {
     for (Block& block : pou_.blocks) {
       made_.clear();
       for (Inst& inst : block.insts) {
@@ -24,6 +30,7 @@ class Strength {
       }
       block.insts.swap(made_);
     }
+    return changed_;
   }
 
  private:
@@ -45,6 +52,7 @@ class Strength {
     made_.push_back(constant_inst(scalar, value, bits, line));
     constants_.set(value, bits);
     definitions_.resize(pou_.values.size());
+    changed_ = true;
     return value;
   }
 
@@ -105,10 +113,16 @@ class Strength {
   std::vector<uint32_t> uses_;
   std::vector<Definition> definitions_;
   std::vector<Inst> made_;  // of the block at hand
+  bool changed_ = false;
 };
 
 }  // namespace
 
-void reduce_strength(const Program&, Pou& pou) { Strength(pou).run(); }
+bool reduce_strength(const Program&, Pou& pou) {
+  const bool any = std::any_of(pou.blocks.begin(), pou.blocks.end(), [](const Block& block) {
+    return std::any_of(block.insts.begin(), block.insts.end(), is_product);
+  });
+  return any && Strength(pou).run();
+}
 
 }  // namespace ir::opt
