@@ -8,6 +8,7 @@
 #include "frontend/compile.h"
 #include "ir/bytecode/verify.h"
 #include "ir/lower/lower.h"
+#include "ir/opt/optimise.h"
 #include "ir/program/verify.h"
 #include "linker/link.h"
 
@@ -21,10 +22,13 @@ void check(bool good, const char* what, const std::string& text) {
   base::check(good, what);
 }
 
-bool compile_further(const ir::Program& program) {
+bool compile_further(ir::Program program) {
   base::Status sound = ir::verify(program);
   check(sound.ok(), "the IR of a program without errors is sound",
         sound.ok() ? "" : base::to_string(sound.error()));
+  base::Status optimised = ir::optimise(program, ir::PassSet::all(), true);
+  check(optimised.ok(), "the optimiser leaves sound IR",
+        optimised.ok() ? "" : base::to_string(optimised.error()));
   std::vector<ir::Object> objects;
   for (uint32_t i = 0; i < program.pous.size(); ++i) {
     base::Result<ir::Object> object = ir::lower(program, ir::PouId(i));
