@@ -11,13 +11,14 @@
 #   make fuzz     a million executions of each fuzz target under sanitizers
 #   make differential  5,000 random programs and changes on every tier; SEED=n begins elsewhere
 #   make soak     long differential and hard mode runs
+#   make test-arm64  golden files and random programs on AArch64, under qemu
 #   make minimal  build and test with every adapter off
 #   make format   clang-format over the whole tree
 
 BUILD := build/release
 JOBS := $(shell nproc)
 
-.PHONY: all build setup demo test test-minimal minimal bench bench-large bench-pause format asan ubsan tsan fuzz differential soak coverage docs clean
+.PHONY: all build setup demo test test-arm64 test-minimal minimal bench bench-large bench-pause format asan ubsan tsan fuzz differential soak coverage docs clean
 
 all: build
 
@@ -45,6 +46,13 @@ asan ubsan tsan: setup
 	@cmake --preset $@ >/dev/null
 	@cmake --build build/$@ -j $(JOBS)
 	@ctest --test-dir build/$@ --output-on-failure -j $(JOBS)
+
+# For another processor, so apart from `make test`: a build of its own, and qemu is slow.
+test-arm64: setup
+	@scripts/setup.sh g++-aarch64-linux-gnu qemu-user
+	@cmake --preset arm64 >/dev/null
+	@cmake --build build/arm64 -j $(JOBS) --target golden differential test_native
+	@ctest --test-dir build/arm64 --output-on-failure -j $(JOBS) -R '^(golden_|differential|unit_native$$)'
 
 coverage: setup
 	@cmake --preset coverage >/dev/null

@@ -10,10 +10,10 @@
 #include "vm/native/build.h"
 #include "vm/native/code_memory.h"
 #include "vm/native/emit.h"
+#include "vm/native/host.h"
 #include "vm/native/inline.h"
 #include "vm/native/loops.h"
 #include "vm/native/print.h"
-#include "vm/native/x64/emitter.h"
 
 namespace vm::native {
 
@@ -242,13 +242,7 @@ void finish(Work& work, const uint8_t* base) {
 
 }  // namespace
 
-bool is_available() {
-#if defined(__x86_64__)
-  return true;
-#else
-  return false;
-#endif
-}
+bool is_available() { return host::kIsAvailable; }
 
 Program::~Program() = default;
 
@@ -256,9 +250,9 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector
                                              const TierOptions& options, const Program* running) {
   if (options.tier == Tier::kInterpreter || !is_available()) return nullptr;
   std::shared_ptr<Program> made(new Program);
-  const x64::X64Target target;
-  x64::Assembler assembler;
-  const x64::Shared shared = x64::emit_shared(assembler);
+  const host::HostTarget target;
+  host::Assembler assembler;
+  const host::Shared shared = host::emit_shared(assembler);
   std::vector<Work> all;
   Bodies bodies(image, pous, options);
   std::vector<std::vector<uint64_t>> facts_by_pou;
@@ -286,7 +280,7 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector
     made->pous_.push_back(work.pou);
     if (!prepare(image, options, target, bodies, work)) continue;
     const PouCode code{&work.function, &work.places, &work.pou->side, work.pou->units, number};
-    work.entries = x64::Emitter(code, shared, assembler).run();
+    work.entries = host::Emitter(code, shared, assembler).run();
     work.places = {};
     all.push_back(std::move(work));
   }

@@ -114,6 +114,7 @@ class Assembler {
   void logical(Logical op, uint8_t to, uint8_t a, uint32_t immediate, uint8_t width);
   void add_imm(uint8_t to, uint8_t a, int64_t value, uint8_t width);  // any; may need x17
   void compare_imm(uint8_t a, int64_t value, uint8_t width);          // a sum immediate
+  void decrement(uint8_t reg);                                        // 8 bytes, sets flags
   // `b` is extended from 1 or 2 bytes.
   void compare_extended(uint8_t a, uint8_t b, uint8_t from, bool is_signed);
   void multiply(uint8_t to, uint8_t a, uint8_t b, uint8_t width);

@@ -1,0 +1,95 @@
+// Floating point.
+#include "vm/native/arm64/emitter.h"
+
+namespace vm::native::arm64 {
+
+Condition float_condition_of(Cond cond) {
+  switch (cond) {
+    case Cond::kEq:
+      return Condition::kEqual;
+    case Cond::kNe:
+      return Condition::kNotEqual;
+    case Cond::kLtS:
+    case Cond::kLtU:
+      return Condition::kMinus;
+    case Cond::kLeS:
+    case Cond::kLeU:
+      return Condition::kBelowOrEqual;
+    case Cond::kGtS:
+    case Cond::kGtU:
+      return Condition::kGreater;
+    case Cond::kGeS:
+    case Cond::kGeU:
+      return Condition::kGreaterOrEqual;
+  }
+  return Condition::kEqual;
+}
+
+void Emitter::floating(const Node& n, const Step& step) {
+  const Place& a = step.in[0];
+  const auto to = [&] { return float_register(step.result); };
+  const auto binary = [&](FloatBinary op) {
+    a_.float_binary(op, to(), float_register(a), float_register(step.in[1]), n.width);
+  };
+  const auto unary = [&](FloatUnary op) { a_.float_unary(op, to(), float_register(a), n.width); };
+  switch (n.op) {
+    case Op::kFAdd:
+      return binary(FloatBinary::kAdd);
+    case Op::kFSub:
+      return binary(FloatBinary::kSub);
+    case Op::kFMul:
+      return binary(FloatBinary::kMul);
+    case Op::kFDiv:
+      return binary(FloatBinary::kDiv);
+    case Op::kFMin:
+    case Op::kFMax: {
+      // c op b ? c : b: what is no number, and equality, give b
+      const uint8_t c = float_register(step.in[1]);
+      a_.float_compare(c, float_register(a), n.width);
+      const Cond cond = n.op == Op::kFMin ? Cond::kLtS : Cond::kGtS;
+      return a_.float_select(float_condition_of(cond), to(), c, float_register(a));
+    }
+    case Op::kFNeg:
+      return unary(FloatUnary::kNeg);
+    case Op::kFAbs:
+      return unary(FloatUnary::kAbs);
+    case Op::kFSqrt:
+      return unary(FloatUnary::kSqrt);
+    case Op::kFSelect:
+      test_bool(integer_register(a));
+      return a_.float_select(Condition::kNotEqual, to(), float_register(step.in[1]),
+                             float_register(step.in[2]));
+    case Op::kIntToFloat:
+      return a_.float_from_integer(to(), integer_register(a), n.width, n.from);
+    case Op::kFloatToInt:
+      return float_to_int(n, step);
+    case Op::kFloatWidth:
+      return a_.float_width(to(), float_register(a), n.from);
+    case Op::kBitsToFloat:
+      return a_.bits_to_float(to(), integer_register(a), n.width);
+    case Op::kFloatToBits:
+      return a_.float_to_bits(integer_register(step.result), float_register(a), n.width);
+    default:
+      return a_.trap();
+  }
+}
+
+// The machine gives the nearest number for what is too large, and 0 for what is no number. Here
+// all of these are the smallest number, as what is too small is already.
+void Emitter::float_to_int(const Node& n, const Step& step) {
+  const uint8_t to = integer_register(step.result);
+  const uint8_t from = float_register(step.in[0]);
+  a_.move_imm(kScratch, n.from == 4 ? 0x5f000000u : 0x43e0000000000000u);  // 2^63
+  a_.bits_to_float(kFloatScratch, kScratch, n.from);
+  a_.float_compare(from, kFloatScratch, n.from);
+  a_.integer_from_float(to, from, n.from, n.imm != 0);
+  a_.move_imm(kScratch, uint64_t{1} << 63);
+  a_.select(Condition::kMinus, to, to, kScratch);
+}
+
+void Emitter::float_compare(const Node& n, const Step& step) {
+  a_.float_compare(float_register(step.in[0]), float_register(step.in[1]), n.width);
+  a_.set(float_condition_of(n.cond), integer_register(step.result));
+}
+
+}  // namespace vm::native::arm64
