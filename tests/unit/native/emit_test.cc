@@ -32,11 +32,11 @@ Function leaves_where_the_frame_says(uint32_t count) {
     leave.exit = i;
     f.values.push_back({false, 4, true, i, kNone, 0});
     f.nodes.push_back(leave);
-    f.exits.push_back({i, false, {}});
+    f.exits.emplace_back().unit = i;
   }
   for (uint32_t n = 0; n < f.nodes.size(); ++n) f.blocks[0].nodes.push_back(n);
   f.blocks[0].end.exit = count;
-  f.exits.push_back({count, false, {}});
+  f.exits.emplace_back().unit = count;
   return f;
 }
 

@@ -210,7 +210,7 @@ class Maker {
   }
   void end(Block block) {
     f_.blocks[block].end.exit = static_cast<uint32_t>(f_.exits.size());
-    f_.exits.push_back({0, false, {}});
+    f_.exits.emplace_back();
   }
   void branch(Val a, Val b) {
     f_.blocks.resize(3);
