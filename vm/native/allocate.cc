@@ -31,6 +31,7 @@ Allocator::Allocator(const Function& function, const Target& target,
   live_at_.assign(values, kNone);
   hint_.assign(values, kNone);
   parameter_.assign(values, -1);
+  live_out_.assign(values, 0);
   stamp_of_.assign(values, 0);
   stamp_index_.assign(values, 0);
   holder_.assign(f_.variables.size(), kNone);
@@ -61,6 +62,7 @@ base::Result<Allocated> Allocator::run() {
   for (Block b = 0; b < f_.blocks.size() && why_ == nullptr; ++b) {
     steps_ = &out_.blocks[b].steps;
     position_ = uses_.begin_of(b);
+    find_live_out(b);
     begin(b);
     for (const uint32_t n : f_.blocks[b].nodes) {
       ++position_;
@@ -96,6 +98,8 @@ void Allocator::lose_homes(const Node& n) {
 
 void Allocator::take_home(Val v, uint32_t variable, bool clean) {
   if (is_constant(v) || home_[v] != kNone || holder_[variable] != kNone) return;
+  // An exit stores the slots that are dirty, whatever their memory held for others.
+  if (f_.variables[variable].slot && f_.variables[variable].written) return;
   if (f_.values[v].width != f_.variables[variable].width) return;
   if (floating(v) != f_.variables[variable].floating) return;
   home_[v] = variable;
@@ -163,9 +167,10 @@ Place Allocator::operand(const Node& n, uint32_t i, uint32_t forbidden) {
   const Val v = n.in[i];
   if (reg_[v] < 0 && t_.takes_memory(f_, n, i)) {
     const Place memory = memory_of(v);
-    const bool whole = memory.kind == Place::kSpill ||
-                       (memory.kind == Place::kHome &&
-                        (!f_.variables[memory.number].boolean || memory.clean));
+    const bool whole =
+        memory.kind == Place::kSpill ||
+        (memory.kind == Place::kHome && (!f_.variables[memory.number].boolean || memory.clean ||
+                                         n.op == Op::kAndNot || n.op == Op::kOrNot));
     const uint32_t next = next_use(v, position_ + 1);
     if (whole && (next == kNone || next > position_ + kFar)) return memory;
   }
@@ -333,11 +338,22 @@ void Allocator::result(const Node& n, const Demands& demands, Step& step) {
   step.result = {Place::kRegister, floats, false, reg, 0};
 }
 
+// A variable is loaded when something wants it in a register, if ever.
+bool Allocator::stays_in_memory(const Node& n) {
+  const Val v = n.result;
+  if (next_use(v, position_ + 1) == kNone) return true;
+  take_home(v, n.variable, !n.boolean);
+  if (home_[v] == kNone) return false;
+  add_live(v);
+  return true;
+}
+
 void Allocator::node(uint32_t number) {
   const Node& n = f_.nodes[number];
   const Demands demands = t_.demands(f_, n);
   Step step;
   step.node = number;
+  if (n.op == Op::kLoad && n.variable != kNone && stays_in_memory(n)) return;
   lose_homes(n);
   operands(n, demands, step);
   record_exit(n.exit);
@@ -371,9 +387,7 @@ void Allocator::node(uint32_t number) {
   for (Val& v : regs_[0]) {
     if (v == kCopy) v = kNone;
   }
-  if (n.op == Op::kLoad && n.variable != kNone) {
-    take_home(n.result, n.variable, !n.boolean);
-  } else if (n.op == Op::kStore && n.variable != kNone && live_at_[n.in[0]] != kNone) {
+  if (n.op == Op::kStore && n.variable != kNone && live_at_[n.in[0]] != kNone) {
     take_home(n.in[0], n.variable, true);
   }
   if (n.result != kNone && next_use(n.result, position_ + 1) == kNone) remove_live(n.result);
@@ -390,6 +404,13 @@ void Allocator::end(Block block) {
     if (v == kNone) continue;
     if (is_constant(v) && t_.end_takes_constant(f_, e, i)) {
       out_.blocks[block].in[i] = memory_of(v);
+      continue;
+    }
+    const Place memory = memory_of(v);
+    const bool in_memory = reg_[v] < 0 && i == 0 && next_use(v, position_ + 1) == kNone &&
+                           (memory.kind == Place::kHome || memory.kind == Place::kSpill);
+    if (in_memory && t_.end_takes_memory(f_, e)) {
+      out_.blocks[block].in[i] = memory;
       continue;
     }
     ensure(v, locked[floating(v)]);

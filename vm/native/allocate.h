@@ -72,6 +72,8 @@ class Target {
   // May the operand be a constant in the instruction, or be read from memory by it?
   virtual bool takes_constant(const Function& f, const Node& node, uint32_t operand) const = 0;
   virtual bool takes_memory(const Function& f, const Node& node, uint32_t operand) const = 0;
+  // May in[0] be read from memory, where a BOOL is any byte?
+  virtual bool end_takes_memory(const Function&, const End&) const { return false; }
   virtual bool end_takes_constant(const Function& f, const End& end, uint32_t operand) const = 0;
   uint32_t integers = 0;  // registers
   uint32_t floats = 0;

@@ -33,6 +33,7 @@ class Allocator {
 
   // allocate.cc: inside of a block
   void node(uint32_t number);
+  bool stays_in_memory(const Node& node);
   void operands(const Node& node, const Demands& demands, Step& step);
   Place fixed_operand(Val v, uint32_t reg, const Demands& demands);
   Place operand(const Node& node, uint32_t i, uint32_t forbidden);
@@ -47,7 +48,9 @@ class Allocator {
   // allocator_state.cc
   bool is_constant(Val v) const { return f_.values[v].constant; }
   bool floating(Val v) const { return f_.values[v].floating; }
+  // kNone: it is used no more on any way from here.
   uint32_t next_use(Val v, uint32_t from);
+  void find_live_out(Block block);
   void add_live(Val v);
   void remove_live(Val v);
   void clear_state();
@@ -110,6 +113,9 @@ class Allocator {
   std::vector<uint32_t> stamp_of_;
   std::vector<uint32_t> stamp_index_;
   uint32_t stamp_ = 0;
+  std::vector<uint32_t> live_out_;  // by value: == block_stamp_
+  uint32_t block_stamp_ = 0;
+  uint32_t block_end_ = 0;
 };
 
 }  // namespace vm::native

@@ -6,7 +6,18 @@ namespace vm::native {
 
 uint32_t Allocator::next_use(Val v, uint32_t from) {
   if (from != 0) uses_.advance(v, from - 1);
-  return uses_.next(v);
+  const uint32_t next = uses_.next(v);
+  if (next == kNone || next <= block_end_ || is_constant(v)) return next;
+  return live_out_[v] == block_stamp_ ? next : kNone;
+}
+
+void Allocator::find_live_out(Block block) {
+  ++block_stamp_;
+  block_end_ = uses_.end_of(block);
+  for (const Block to : f_.blocks[block].end.target) {
+    if (to == kNone) continue;
+    for (const Val v : uses_.live_in(to)) live_out_[v] = block_stamp_;
+  }
 }
 
 void Allocator::add_live(Val v) {
@@ -15,11 +26,13 @@ void Allocator::add_live(Val v) {
   live_.push_back(v);
 }
 
-// It is used no more: its register and spill slot are free.
+// It is used no more: its register is free, and its spill slot when no other way uses it.
 void Allocator::remove_live(Val v) {
   free_register(v);
-  if (slot_[v] != kNone) free_slots_.push_back(slot_[v]);
-  slot_[v] = kNone;
+  if (uses_.next(v) == kNone) {
+    if (slot_[v] != kNone) free_slots_.push_back(slot_[v]);
+    slot_[v] = kNone;
+  }
   saved_[v] = 0;
   if (home_[v] != kNone && holder_[home_[v]] == v) holder_[home_[v]] = kNone;
   home_[v] = kNone;

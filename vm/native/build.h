@@ -71,6 +71,7 @@ class Builder {
   Node node(Op op, uint8_t width, Val a = kNone, Val b = kNone, Val c = kNone, Val d = kNone) const;
   Val value_of(Node node, bool floating);  // a pure operation; an equal one before serves
   Val fold(const Node& node);
+  void add_shifted(Node& node) const;
   void append(Node node);
   Val int_op(Op op, uint8_t width, Val a, Val b = kNone, Val c = kNone, Val d = kNone);
   Val extended(Val v, uint8_t width, bool is_signed);
@@ -116,5 +117,7 @@ class Builder {
 
 // Comparisons into the branches and selections that alone use them; what nothing uses is dead.
 void simplify(Function& function);
+// What nothing uses any more.
+void drop_unused(Function& function);
 
 }  // namespace vm::native

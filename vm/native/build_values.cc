@@ -144,6 +144,23 @@ Val Builder::fold(const Node& n) {
   }
 }
 
+// a + (b << 3) is one address to the machine.
+void Builder::add_shifted(Node& made) const {
+  for (uint32_t i = 0; i < 2; ++i) {
+    const Value& shifted = f_.values[made.in[1 - i]];
+    if (shifted.node == kNone || epoch_of_[made.in[1 - i]] != epoch_) continue;
+    const Node& shift = f_.nodes[shifted.node];
+    if (shift.op != Op::kShl || shift.width != 8 || !is_constant(shift.in[1])) continue;
+    if (bits(shift.in[1]) > 3 || is_constant(made.in[i])) continue;
+    const Val left = made.in[i];
+    made.op = Op::kAddShifted;
+    made.imm = bits(shift.in[1]);
+    made.in[0] = left;
+    made.in[1] = shift.in[0];
+    return;
+  }
+}
+
 Val Builder::value_of(Node made, bool floating) {
   // A constant goes to the right.
   const bool commutes = made.op == Op::kAdd || made.op == Op::kMul || made.op == Op::kAnd ||
@@ -155,6 +172,12 @@ Val Builder::value_of(Node made, bool floating) {
     std::swap(made.in[0], made.in[1]);
     made.cond = swapped(made.cond);
   }
+  if (made.op == Op::kMul && made.width >= 4 && is_constant(made.in[1]) &&
+      std::has_single_bit(bits(made.in[1])) && bits(made.in[1]) != 1) {
+    made.op = Op::kShl;
+    made.in[1] = constant(static_cast<uint64_t>(std::countr_zero(bits(made.in[1]))), 4, false);
+  }
+  if (made.op == Op::kAdd && made.width == 8) add_shifted(made);
   const Val folded = fold(made);
   if (folded != kNone) return folded;
   const bool memory = made.op == Op::kLoad && !made.immutable;

@@ -216,6 +216,7 @@ void Facts::find_variables() {
           numbers_.try_emplace(key_of(access), static_cast<uint32_t>(variables_.size()));
       if (!added) {
         variables_[at->second].constant &= access.id;
+        variables_[at->second].written |= access.writes;
         continue;
       }
       Variable v;
@@ -225,6 +226,7 @@ void Facts::find_variables() {
       v.floating = access.cls == ir::Class::kF32 || access.cls == ir::Class::kF64;
       v.boolean = access.cls == ir::Class::kB;
       v.constant = access.id;
+      v.written = access.writes;
       if (access.base == ir::Base::kFrame && access.offset < pou_->frame_size) {
         const uint32_t slot = slot_number(access.offset);
         v.slot = slot != kNone && !pinned_[slot] && !pou_->slots[slot].aggregate &&

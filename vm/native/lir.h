@@ -33,6 +33,7 @@ enum class Op : uint8_t {
   kAddr,   // result := data address of mem
   // a op b, of `width` bytes
   kAdd,
+  kAddShifted,  // a + (b << imm); imm is 1, 2 or 3, width 8
   kSub,
   kMul,
   kAnd,
@@ -210,6 +211,7 @@ struct Variable {
   bool boolean = false;
   bool slot = false;      // of the own frame: may be dirty
   bool constant = false;  // an instance's ID: no code writes it
+  bool written = false;   // by its name
 };
 
 struct Function {

@@ -7,7 +7,7 @@ namespace vm::native {
 namespace {
 
 const char* const kNames[] = {
-    "const",  "load",    "store",     "addr",       "add",        "sub",         "mul",
+    "const",  "load",    "store",     "addr",       "add", "addsh", "sub",         "mul",
     "and",    "or",      "xor",       "andn",       "orn",        "shl",         "shr",
     "sar",    "rol",     "ror",       "divs",       "divu",       "mods",        "modu",
     "neg",    "not",     "notb",      "compare",    "select",     "selectcmp",   "sext",

@@ -195,6 +195,7 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
   choose(work.function);
   insert_preheaders(work.function);
   drop_proven_checks(work.function);
+  drop_unused(work.function);
   hoist(work.function);
   if (getenv("STC_PRINT_NATIVE")) fputs(print(work.function).c_str(), stderr);
   const AllocatorOptions registers{options.integer_registers, options.float_registers,

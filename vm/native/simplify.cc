@@ -12,22 +12,32 @@ class Simplifier {
     fuse();
     drop_dead();
   }
+  void drop() {
+    count();
+    drop_dead();
+  }
 
  private:
   void use(Val v) {
     if (v != kNone) ++uses_[v];
   }
   void count() {
-    for (const Node& node : f_.nodes) each_operand(node, [&](Val v) { use(v); });
     for (const BasicBlock& block : f_.blocks) {
+      for (const uint32_t n : block.nodes) {
+        each_operand(f_.nodes[n], [&](Val v) { use(v); });
+        count_exit(f_.nodes[n].exit);
+      }
+      count_exit(block.end.exit);
       for (const Val v : block.end.in) use(v);
       for (const auto& args : block.end.args) {
         for (const Val v : args) use(v);
       }
     }
-    for (const Exit& exit : f_.exits) {
-      for (const SlotValue& slot : exit.slots) use(slot.value);
-    }
+  }
+  // An exit that nothing takes any more wants nothing.
+  void count_exit(uint32_t exit) {
+    if (exit == kNone) return;
+    for (const SlotValue& slot : f_.exits[exit].slots) use(slot.value);
   }
   template <class Visit>
   static void each_operand(const Node& node, Visit visit) {
@@ -35,6 +45,7 @@ class Simplifier {
       if (v != kNone) visit(v);
     }
     if (node.mem.index != kNone) visit(node.mem.index);
+    if (node.mem.pointer != kNone) visit(node.mem.pointer);
   }
 
   // The comparison that makes `v` for one user alone.
@@ -105,14 +116,17 @@ class Simplifier {
 
   static bool is_pure(const Node& node) {
     return node.op != Op::kStore && node.op != Op::kExitIf && node.op != Op::kInstance &&
-           node.op != Op::kAdvanceTime && node.op != Op::kHelper && node.op != Op::kCall;
+           node.op != Op::kAdvanceTime && node.op != Op::kHelper && node.op != Op::kCall &&
+           node.op != Op::kEnter;
   }
 
   void drop_dead() {
     std::vector<uint32_t> work;
-    for (uint32_t n = 0; n < f_.nodes.size(); ++n) {
-      const Node& node = f_.nodes[n];
-      if (!node.dead && is_pure(node) && uses_[node.result] == 0) work.push_back(n);
+    for (const BasicBlock& block : f_.blocks) {
+      for (const uint32_t n : block.nodes) {
+        const Node& node = f_.nodes[n];
+        if (!node.dead && is_pure(node) && uses_[node.result] == 0) work.push_back(n);
+      }
     }
     while (!work.empty()) {
       Node& node = f_.nodes[work.back()];
@@ -147,5 +161,6 @@ Cond swapped(Cond cond) {
 }
 
 void simplify(Function& function) { Simplifier(function).run(); }
+void drop_unused(Function& function) { Simplifier(function).drop(); }
 
 }  // namespace vm::native

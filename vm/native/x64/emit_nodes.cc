@@ -8,13 +8,6 @@ namespace vm::native::x64 {
 
 namespace {
 
-// As the field of an instruction that works on `width` bytes.
-int32_t field(uint64_t bits, uint8_t width) {
-  if (width == 1) return static_cast<int8_t>(bits);
-  if (width == 2) return static_cast<int16_t>(bits);
-  return static_cast<int32_t>(bits);
-}
-
 uint8_t at_least_four(uint8_t width) { return width < 4 ? uint8_t{4} : width; }
 
 }  // namespace
@@ -85,6 +78,11 @@ void Emitter::integer(const Node& n, const Step& step) {
   switch (n.op) {
     case Op::kAdd:
       return three(Alu::kAdd, n, step);
+    case Op::kAddShifted:
+      return a_.address(to,
+                        {integer_register(step.in[0]), integer_register(step.in[1]),
+                         static_cast<uint8_t>(1 << n.imm), true, 0},
+                        8);
     case Op::kSub:
       return three(Alu::kSub, n, step);
     case Op::kAnd:
@@ -178,8 +176,13 @@ void Emitter::bool_not(const Node& n, const Step& step) {
     a_.move(to, a);
     return a_.alu_imm(op, Operand::of(to), static_cast<int32_t>((b.bits & 1) ^ 1), 4);
   }
-  a_.move(kScratch, integer_register(b));
-  a_.alu_imm(Alu::kXor, Operand::of(kScratch), 1, 4);
+  if (b.kind == Place::kHome && !b.clean) {
+    a_.alu_imm(Alu::kCmp, operand(b), 0, 1);
+    a_.set(Condition::kEqual, kScratch);
+  } else {
+    load_place(kScratch, b, 1);
+    a_.alu_imm(Alu::kXor, Operand::of(kScratch), 1, 4);
+  }
   if (to == a) return a_.alu(op, to, Operand::of(kScratch), 4);
   a_.alu(op, kScratch, Operand::of(a), 4);
   a_.move(to, kScratch);

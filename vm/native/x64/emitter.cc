@@ -137,13 +137,28 @@ void Emitter::loop_end(Block b) {
   const End& e = f_.blocks[b].end;
   const std::vector<Move>& edge = places_.blocks[b].edges[0];
   a_.alu_imm(Alu::kSub, Operand::of(kFuelRegister), 1, 8);
-  if (edge.empty()) {
+  const BasicBlock& head = f_.blocks[e.target[0]];
+  if (edge.empty() && (head.end.kind != EndKind::kBranch || !places_.blocks[e.target[0]].steps.empty())) {
     a_.jump_if(Condition::kNotEqual, blocks_[e.target[0]]);
     return a_.jump(exit_label(e.exit));
   }
   a_.jump_if(Condition::kEqual, exit_label(e.exit));
   moves(edge);
-  a_.jump(blocks_[e.target[0]]);
+  again(e.target[0]);
+}
+
+// The next turn. A head that does nothing but ask is asked here.
+void Emitter::again(Block head) {
+  const End& e = f_.blocks[head].end;
+  const AllocatedBlock& places = places_.blocks[head];
+  const bool asks = places.steps.empty() && e.kind == EndKind::kBranch &&
+                    e.compare == Op::kCompare && places.edges[0].empty() && places.edges[1].empty();
+  if (!asks) return a_.jump(blocks_[head]);
+  // It goes on with the block behind it.
+  const bool yes_goes_on = e.target[0] == head + 1;
+  if (!yes_goes_on && e.target[1] != head + 1) return a_.jump(blocks_[head]);
+  branch_integer(e, places.in, blocks_[e.target[0]], blocks_[e.target[1]], false);
+  a_.jump(blocks_[e.target[1]]);
 }
 
 // The way that is not the next block, or needs moves, is jumped to.
@@ -183,6 +198,8 @@ void Emitter::branch_integer(const End& e, const Place in[2], Label yes, Label n
                          in[0].kind == Place::kRegister;
   if (with_zero) {
     a_.test(integer_register(in[0]), integer_register(in[0]), e.width);
+  } else if (in[0].kind != Place::kRegister) {
+    a_.alu_imm(Alu::kCmp, operand(in[0]), field(in[1].bits, e.width), e.width);
   } else {
     compare(e.width, in[0], in[1]);
   }

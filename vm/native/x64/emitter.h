@@ -37,6 +37,7 @@ class X64Target : public Target {
   Demands demands(const Function& f, const Node& node) const override;
   bool takes_constant(const Function& f, const Node& node, uint32_t operand) const override;
   bool takes_memory(const Function& f, const Node& node, uint32_t operand) const override;
+  bool end_takes_memory(const Function& f, const End& end) const override;
   bool end_takes_constant(const Function& f, const End& end, uint32_t operand) const override;
 };
 
@@ -61,6 +62,7 @@ class Emitter {
   void end(Block b);
   void branch(Block b);
   void loop_end(Block b);
+  void again(Block head);
   void branch_integer(const End& end, const Place in[2], Label yes, Label no, bool yes_is_next);
   void branch_float(const End& end, const Place in[2], Label yes, Label no, bool yes_is_next);
   void moves(const std::vector<Move>& all);
@@ -131,5 +133,11 @@ class Emitter {
 };
 
 Condition condition_of(Cond cond);
+// As the field of an instruction that works on `width` bytes.
+inline int32_t field(uint64_t bits, uint8_t width) {
+  if (width == 1) return static_cast<int8_t>(bits);
+  if (width == 2) return static_cast<int16_t>(bits);
+  return static_cast<int32_t>(bits);
+}
 
 }  // namespace vm::native::x64

@@ -88,12 +88,25 @@ bool X64Target::takes_memory(const Function&, const Node& node, uint32_t operand
     case Op::kFSub:
     case Op::kFMul:
     case Op::kFDiv:
+    case Op::kAndNot:
+    case Op::kOrNot:
       return operand == 1;
+    case Op::kSext:
+    case Op::kZext:
+      return operand == 0;
     case Op::kMul:
       return operand == 1 && node.width >= 4;
     default:
       return false;
   }
+}
+
+// Compared with a constant; a BOOL with zero only.
+bool X64Target::end_takes_memory(const Function& f, const End& end) const {
+  if (end.compare != Op::kCompare || !f.values[end.in[1]].constant) return false;
+  if (!end_takes_constant(f, end, 1)) return false;
+  const bool equality = end.cond == Cond::kEq || end.cond == Cond::kNe;
+  return end.width != 1 || (equality && f.values[end.in[1]].bits == 0);
 }
 
 bool X64Target::end_takes_constant(const Function& f, const End& end, uint32_t operand) const {
