@@ -94,6 +94,7 @@ void Allocator::meet(Block block) {
   if (b.head) {
     choose_for_loop(block, state);
   }
+  if (b.resumes) keep_homes_of_reloads(b, state);
   for (Held& held : state) {
     // What is in memory on one way must be so on all.
     const bool has_memory = held.saved || held.home != kNone || is_constant(held.v);
@@ -111,6 +112,21 @@ void Allocator::meet(Block block) {
   if (b.resumes) out_.blocks[block].resume = resume_moves(block, state);
   if (b.head) heads_[block] = state;
   restore(state, block);
+}
+
+// An interrupted execution finds a value in the variables that hold it here, and nowhere else.
+void Allocator::keep_homes_of_reloads(const BasicBlock& block, Snapshot& state) {
+  for (Held& held : state) {
+    if (held.home == kNone) continue;
+    uint32_t holders = 0;
+    bool own = false;
+    for (const Reload& reload : block.reloads) {
+      if (reload.value != held.v) continue;
+      ++holders;
+      own |= reload.variable == held.home;
+    }
+    if (holders != 1 || !own) held.home = kNone;
+  }
 }
 
 // A loop keeps in registers what its body uses, the nearest first.

@@ -75,6 +75,7 @@ class Allocator {
   void restore(const Snapshot& snapshot, Block block);
   void meet(Block block);
   Held met(Val v, Block block);
+  static void keep_homes_of_reloads(const BasicBlock& block, Snapshot& state);
   void choose_for_loop(Block block, Snapshot& state);
   void place_parameters(Block block, Snapshot& state);
   void stamp(const Snapshot& snapshot);

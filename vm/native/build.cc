@@ -236,12 +236,29 @@ void Builder::enter_loop(Block block, uint32_t loop) {
       now_.dirty[v] = dirty;
     }
   }
+  forget_shared();
   // How all of that is found again when the interpreter stopped here.
   for (uint32_t v = 0; v < f_.variables.size(); ++v) {
     if (now_.value[v] == kNone) continue;
     f_.blocks[block].reloads.push_back({v, now_.value[v]});
     if (now_.dirty[v] == 0) continue;
     f_.blocks[block].dirty.push_back({f_.variables[v].offset, f_.variables[v].width, now_.value[v]});
+  }
+}
+
+// While an execution is interrupted, another task may write a variable that is not the frame's:
+// what else had its value keeps it.
+void Builder::forget_shared() {
+  std::unordered_map<Val, uint32_t> holders;
+  for (const Val v : now_.value) {
+    if (v != kNone && !is_constant(v)) ++holders[v];
+  }
+  for (uint32_t v = 0; v < f_.variables.size(); ++v) {
+    Val& value = now_.value[v];
+    if (value == kNone || f_.variables[v].slot) continue;
+    const bool parameter = std::find(parameters_[block_].begin(), parameters_[block_].end(), v) !=
+                           parameters_[block_].end();
+    if (is_constant(value) || (!parameter && holders[value] > 1)) value = kNone;
   }
 }
 

@@ -36,6 +36,7 @@ class Builder {
   void begin(Block block);
   void merge(Block block);
   void enter_loop(Block block, uint32_t loop);
+  void forget_shared();
   Val merged(Block block, uint32_t variable);
   Val at_end_of(Block pred, uint32_t variable);
   void make_parameter(Block block, uint32_t variable);
