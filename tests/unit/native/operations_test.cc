@@ -3,12 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstring>
 #include <string>
 
-#include "vm/exec/context.h"
-#include "vm/native/code_memory.h"
-#include "vm/native/host.h"
+#include "tests/unit/native/native_functions.h"
 
 namespace vm::native {
 namespace {
@@ -146,91 +143,41 @@ bool is_division(Op op) {
 }
 
 // frame[16] := frame[0] op frame[8]
-class Maker {
- public:
-  explicit Maker(const Operation& o) : o_(o) {
-    f_.blocks.resize(1);
-    // The upper bits of 1 and 2 bytes may be anything; those of 4 are zero.
-    const uint8_t wide =
-        o.op == Op::kSext || o.op == Op::kZext || o.op == Op::kSelectCmp ? o.from : o.width;
-    const bool extended = wide == 4 || (o.op == Op::kShr && wide < 4);
-    const Val a = load(0, extended ? wide : 8);
-    const Val b = o.constant       ? constant(o.bits, is_shift(o.op) ? 4 : wide)
-                  : is_shift(o.op) ? load(8, 4)
-                                   : load(8, wide == 4 ? 4 : 8);
-    if (o.op == Op::kExitIf) {
-      branch(a, b);
-      return;
-    }
-    Node node;
-    node.op = o.op;
-    node.width = o.width;
-    node.from = o.from;
-    node.cond = o.cond;
-    node.in[0] = a;
-    const bool unary =
-        o.op == Op::kNeg || o.op == Op::kNot || o.op == Op::kSext || o.op == Op::kZext;
-    if (!unary) node.in[1] = b;
-    if (o.op == Op::kSelectCmp) {
-      node.in[2] = a;
-      node.in[3] = b;
-    }
-    store(append(node, o.op == Op::kCompare ? 1 : o.width), o.op == Op::kCompare ? 1 : o.width, 0);
-    end(0);
+Function function_of(const Operation& o) {
+  FunctionMaker maker(o.op == Op::kExitIf ? 3 : 1);
+  // The upper bits of 1 and 2 bytes may be anything; those of 4 are zero.
+  const bool has_from = o.op == Op::kSext || o.op == Op::kZext || o.op == Op::kSelectCmp;
+  const uint8_t wide = has_from ? o.from : o.width;
+  const bool extended = wide == 4 || (o.op == Op::kShr && wide < 4);
+  const Val a = maker.load(0, extended ? wide : 8);
+  Val b = kNone;
+  if (o.constant) {
+    const uint8_t width = is_shift(o.op) ? 4 : wide;
+    b = maker.constant(low(o.bits, width), width);
+  } else {
+    b = maker.load(8, is_shift(o.op) || wide == 4 ? 4 : 8);
   }
-  const Function& function() const { return f_; }
-
- private:
-  Val append(Node node, uint8_t width) {
-    node.result = static_cast<Val>(f_.values.size());
-    f_.values.push_back({false, width, false, 0, static_cast<uint32_t>(f_.nodes.size()), 0});
-    f_.blocks[0].nodes.push_back(static_cast<uint32_t>(f_.nodes.size()));
-    f_.nodes.push_back(node);
-    return node.result;
+  if (o.op == Op::kExitIf) {
+    maker.branch(Op::kCompare, o.cond, o.width, a, b);
+    return maker.function();
   }
-  Val load(int64_t at, uint8_t width) {
-    Node node;
-    node.op = Op::kLoad;
-    node.width = width;
-    node.mem.disp = at;
-    return append(node, width);
+  Node node;
+  node.op = o.op;
+  node.width = o.width;
+  node.from = o.from;
+  node.cond = o.cond;
+  node.in[0] = a;
+  const bool unary = o.op == Op::kNeg || o.op == Op::kNot || o.op == Op::kSext || o.op == Op::kZext;
+  if (!unary) node.in[1] = b;
+  if (o.op == Op::kSelectCmp) {
+    node.in[2] = a;
+    node.in[3] = b;
   }
-  Val constant(uint64_t bits, uint8_t width) {
-    f_.values.push_back({false, width, true, low(bits, width), kNone, 0});
-    return static_cast<Val>(f_.values.size() - 1);
-  }
-  void store(Val v, uint8_t width, Block block) {
-    Node node;
-    node.op = Op::kStore;
-    node.width = width;
-    node.in[0] = v;
-    node.mem.disp = 16;
-    f_.blocks[block].nodes.push_back(static_cast<uint32_t>(f_.nodes.size()));
-    f_.nodes.push_back(node);
-  }
-  void end(Block block) {
-    f_.blocks[block].end.exit = static_cast<uint32_t>(f_.exits.size());
-    f_.exits.emplace_back();
-  }
-  void branch(Val a, Val b) {
-    f_.blocks.resize(3);
-    End& e = f_.blocks[0].end;
-    e.kind = EndKind::kBranch;
-    e.cond = o_.cond;
-    e.width = o_.width;
-    e.in[0] = a;
-    e.in[1] = b;
-    e.target[0] = 1;
-    e.target[1] = 2;
-    store(constant(1, 1), 1, 1);
-    store(constant(0, 1), 1, 2);
-    end(1);
-    end(2);
-  }
-
-  Operation o_;
-  Function f_;
-};
+  const uint8_t width = o.op == Op::kCompare ? 1 : o.width;
+  maker.store(16, maker.append(node, width), width);
+  maker.end();
+  return maker.function();
+}
 
 std::vector<Operation> all_operations() {
   std::vector<Operation> out;
@@ -297,26 +244,9 @@ std::vector<Operation> all_operations() {
 TEST(Operations, GiveWhatTheBytecodeSaysInEveryWidth) {
   if (!host::kIsAvailable) GTEST_SKIP() << "no native tier for this machine";
   const std::vector<Operation> operations = all_operations();
-  host::Assembler a;
-  const host::Shared shared = host::emit_shared(a);
-  const host::HostTarget target;
-  const SideUnits side;
-  std::vector<uint32_t> begins;
-  for (const Operation& o : operations) {
-    const Maker maker(o);
-    const base::Result<Allocated> places = allocate(maker.function(), target, {});
-    ASSERT_TRUE(places.ok()) << o.text();
-    begins.push_back(
-        host::Emitter({&maker.function(), &*places, &side, nullptr, 0}, shared, a).run().begin);
-  }
-  a.patch();
-  const std::shared_ptr<const CodeMemory> code = CodeMemory::make(a.code());
-  using Enter = uint64_t (*)(const void*, uint8_t*, uint8_t*, uint8_t*, Context*);
-  const auto enter = reinterpret_cast<Enter>(
-      reinterpret_cast<uintptr_t>(code->data() + a.offset_of(shared.enter)));
-  CallRecord record;
-  Context context;
-  context.call = &record;
+  NativeFunctions functions;
+  for (const Operation& o : operations) functions.add(function_of(o));
+  functions.finish();
   for (size_t i = 0; i < operations.size(); ++i) {
     const Operation& o = operations[i];
     const uint8_t width = o.op == Op::kCompare || o.op == Op::kExitIf ? uint8_t{1} : o.width;
@@ -324,8 +254,7 @@ TEST(Operations, GiveWhatTheBytecodeSaysInEveryWidth) {
       for (const uint64_t y : kEdges) {
         if (is_division(o.op) && !o.constant && low(y, o.width) == 0) continue;
         std::array<uint64_t, 3> frame = {x, y, 0};
-        enter(code->data() + begins[i], reinterpret_cast<uint8_t*>(frame.data()), nullptr, nullptr,
-              &context);
+        functions.run(static_cast<uint32_t>(i), frame.data());
         const uint64_t right = o.constant ? o.bits : y;
         ASSERT_EQ(low(frame[2], width), low(expected(o, x, right), width))
             << o.text() << " of " << x << " and " << right;
