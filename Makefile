@@ -52,7 +52,7 @@ test-arm64: setup
 	@scripts/setup.sh g++-aarch64-linux-gnu qemu-user
 	@cmake --preset arm64 >/dev/null
 	@cmake --build build/arm64 -j $(JOBS) --target golden differential test_native
-	@ctest --test-dir build/arm64 --output-on-failure -j $(JOBS) -R '^(golden_|differential|unit_native$$)'
+	@ctest --test-dir build/arm64 --output-on-failure --timeout 7200 -j $(JOBS) -R '^(golden_|differential|unit_native$$)'
 
 coverage: setup
 	@cmake --preset coverage >/dev/null
