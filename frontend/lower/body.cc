@@ -27,6 +27,7 @@ void Body::run() {
   out_.file = head.file;
   out_.line = head.line;
   line_offset_ = decl.span.begin.offset;
+  line_begin_ = line_offset_;
   line_ = head.line;
   uint32_t base = sema_.sources.begin(file).offset;
   std::string_view text = sema_.sources.text(file).substr(
@@ -73,13 +74,16 @@ void Body::leave() { go({}, 0); }
 void Body::set_line(base::SourceSpan span) {
   if (!span.begin.valid()) return;
   uint32_t offset = span.begin.offset;
+  if (offset >= line_begin_ && offset <= line_offset_) return build_.set_line(line_);
   uint32_t file = sema_.sources.file_of(span.begin);
   uint32_t base = sema_.sources.begin(file).offset;
   // A type's initial values may stand in another file than the variable; a drawing goes up and
   // down in its rows.
   constexpr uint32_t kFar = 4096;
   if (offset < line_offset_ || line_offset_ < base || offset - line_offset_ > kFar) {
-    line_ = sema_.sources.locate(span.begin).line;
+    const base::SourceLocation location = sema_.sources.locate(span.begin);
+    line_ = location.line;
+    line_begin_ = offset + 1 - location.column;
   } else {
     std::string_view text = sema_.sources.text(file);
     const char* at = text.data() + (line_offset_ - base);
@@ -88,6 +92,7 @@ void Body::set_line(base::SourceSpan span) {
            nullptr) {
       ++line_;
       ++at;
+      line_begin_ = base + static_cast<uint32_t>(at - text.data());
     }
   }
   line_offset_ = offset;

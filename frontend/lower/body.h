@@ -351,7 +351,8 @@ class Body {
   static constexpr uint32_t kNoLocal = 0xffffffffu;
   std::array<uint32_t, 3> message_buffers_{kNoLocal, kNoLocal, kNoLocal};
   // Where the last line was found; positions mostly go forward.
-  uint32_t line_offset_ = 0;
+  uint32_t line_offset_ = 0;  // where the line was last known,
+  uint32_t line_begin_ = 0;   // and from where on it is the same line
   uint32_t line_ = 0;
 };
 

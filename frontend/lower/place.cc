@@ -252,7 +252,7 @@ bool Body::check_writable_name(const Expr& expr) {
 }
 
 bool Body::check_writable_variable(const Expr& expr, VarId id) {
-  std::string name = "`" + std::string(expr.name.text) + "`";
+  const auto name = [&expr] { return "`" + std::string(expr.name.text) + "`"; };
   const Variable* variable = &sema_.resolve(id);
   bool constant = variable->constant;
   if (variable->external.valid()) {
@@ -261,12 +261,12 @@ bool Body::check_writable_variable(const Expr& expr, VarId id) {
   }
   if (variable->decl != nullptr && variable->decl->implied) {
     sema_.error(DiagnosticCode::kNotAssignable, expr.span,
-                name + " belongs to the chart, which alone changes it",
+                name() + " belongs to the chart, which alone changes it",
                 "steps change by transitions, actions by the steps that use them");
     return false;
   }
   if (constant || variable->constant) {
-    sema_.error(DiagnosticCode::kAssignToConstant, expr.span, name + " is a constant");
+    sema_.error(DiagnosticCode::kAssignToConstant, expr.span, name() + " is a constant");
     return false;
   }
   bool located_input = variable->decl != nullptr && variable->decl->has_address &&
@@ -274,7 +274,7 @@ bool Body::check_writable_variable(const Expr& expr, VarId id) {
   bool own_input =
       variable->section == VarSection::kInput && sema_.options.dialect == Dialect::kIec;
   if (located_input || own_input) {
-    sema_.error(DiagnosticCode::kAssignToInput, expr.span, name + " is an input",
+    sema_.error(DiagnosticCode::kAssignToInput, expr.span, name() + " is an input",
                 "copy it to a variable of its own");
     return false;
   }
@@ -285,7 +285,7 @@ bool Body::check_writable_variable(const Expr& expr, VarId id) {
   }
   if (std::find(for_variables_.begin(), for_variables_.end(), id) != for_variables_.end()) {
     sema_.warning(DiagnosticCode::kForVariableAssigned, expr.span,
-                  name + " counts the surrounding FOR loop");
+                  name() + " counts the surrounding FOR loop");
   }
   return true;
 }

@@ -90,12 +90,14 @@ void Builder::finish() {
   std::vector<bool> live = reachable_blocks(pou_);
   std::vector<BlockId> renamed(live.size());
   std::vector<ir::Block> blocks;
+  blocks.reserve(pou_.blocks.size());
   bool in_order = true;
   for (BlockId id : order_) {
     if (!live[id.index]) continue;
     in_order = in_order && id.index == blocks.size();
     renamed[id.index] = BlockId(static_cast<uint32_t>(blocks.size()));
     blocks.push_back(std::move(pou_.blocks[id.index]));
+    blocks.back().insts.shrink_to_fit();  // all POUs are in memory at the same time
   }
   in_order = in_order && blocks.size() == live.size();
   pou_.blocks = std::move(blocks);

@@ -41,8 +41,7 @@ SpecInfo& Sema::spec_info(SpecId id) {
 }
 
 Note& Sema::note(ExprId id) {
-  bool own = current_pou_ != kNoPou && pous[current_pou_].meaning != nullptr;
-  return own ? pous[current_pou_].meaning->notes[id.index] : notes_[id.index];
+  return meaning_ != nullptr ? meaning_->notes[id.index] : notes_[id.index];
 }
 
 const Note& Sema::infer(ExprId id) {

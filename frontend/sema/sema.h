@@ -137,16 +137,22 @@ class Sema {
   // The POU whose names are visible; set while anything of it is resolved.
   class Within {
    public:
-    Within(Sema& sema, uint32_t pou) : sema_(sema), saved_(sema.current_pou_) {
+    Within(Sema& sema, uint32_t pou)
+        : sema_(sema), saved_(sema.current_pou_), saved_meaning_(sema.meaning_) {
       sema_.current_pou_ = pou;
+      sema_.meaning_ = pou == kNoPou ? nullptr : sema_.pous[pou].meaning.get();
     }
-    ~Within() { sema_.current_pou_ = saved_; }
+    ~Within() {
+      sema_.current_pou_ = saved_;
+      sema_.meaning_ = saved_meaning_;
+    }
     Within(const Within&) = delete;
     Within& operator=(const Within&) = delete;
 
    private:
     Sema& sema_;
     uint32_t saved_;
+    Meaning* saved_meaning_;
   };
 
   const base::SourceMap& sources;
@@ -368,6 +374,7 @@ class Sema {
   const ResourceDecl* resource_ = nullptr;  // the one that is compiled
   size_t outer_globals_ = 0;  // of global_order_: outside every RESOURCE, when there are several
   uint32_t current_pou_ = kNoPou;
+  Meaning* meaning_ = nullptr;  // of the current POU, if it has one of its own
   uint32_t depth_ = 0;
   std::deque<Variable> variables_;  // stable addresses, as pous
   SpecInfo& spec_info(SpecId spec);

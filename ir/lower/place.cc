@@ -1,6 +1,7 @@
 // Places become symbolic offsets from a fixed root, or from an address that was
 // computed for the steps that no offset can express.
-#include "base/bytes.h"
+#include <cstring>
+
 #include "ir/lower/opcodes.h"
 #include "ir/lower/select.h"
 
@@ -204,24 +205,27 @@ void Selector::step_dereference(Location& at) {
 
 // --- addresses computed earlier in this block ----------------------------------
 
-std::string Selector::prefix_key(const Place& place, size_t steps) const {
-  base::ByteWriter key;
-  key.u8(static_cast<uint8_t>(place.base));
-  key.u32(place.base_index);
-  key.u32(place.pou.index);
-  key.u32(place.value.valid() ? values_.root(place.value).index : kNoNumber);
-  key.u32(place.constant.index);
+const std::string& Selector::prefix_key(const Place& place, size_t steps) {
+  prefix_key_.clear();
+  const auto add = [this](auto part) {
+    char bytes[sizeof part];
+    std::memcpy(bytes, &part, sizeof part);
+    prefix_key_.append(bytes, sizeof part);
+  };
+  add(place.base);
+  add(place.base_index);
+  add(place.pou.index);
+  add(place.value.valid() ? values_.root(place.value).index : kNoNumber);
+  add(place.constant.index);
   for (size_t i = 0; i < steps; ++i) {
     const Step& step = place.steps[i];
     const bool constant = step.value.valid() && values_.is_constant(step.value);
-    key.u8(static_cast<uint8_t>(step.kind));
-    key.u32(step.index);
-    key.u32(step.value.valid() && !constant ? values_.root(step.value).index : kNoNumber);
-    key.i64(constant ? static_cast<int64_t>(values_.constant_bits(step.value))
-                     : step.constant_index);
+    add(step.kind);
+    add(step.index);
+    add(step.value.valid() && !constant ? values_.root(step.value).index : kNoNumber);
+    add(constant ? static_cast<int64_t>(values_.constant_bits(step.value)) : step.constant_index);
   }
-  const base::Bytes& bytes = key.bytes();
-  return std::string(bytes.begin(), bytes.end());
+  return prefix_key_;
 }
 
 // Number of steps that an earlier address already covers.

@@ -121,7 +121,7 @@ class Selector {
   void step_dereference(Location& at);
   size_t resume_from_cache(Location& at, const Place& place);
   void remember(const Place& place, size_t steps, const Location& at);
-  std::string prefix_key(const Place& place, size_t steps) const;
+  const std::string& prefix_key(const Place& place, size_t steps);  // until the next one
   void behind(Location& at, Operand addr, Region region) const;
   uint32_t offset_of(const Location& at) { return tables_.place(at.place); }
   Operand field_of(const Location& at);
@@ -187,6 +187,7 @@ class Selector {
   std::vector<ValueId> pending_;
   std::vector<uint32_t> local_registers_;                     // kNoNumber for aggregates
   std::unordered_map<std::string, CachedAddress> addresses_;  // of this block
+  std::string prefix_key_;
   uint32_t line_ = 0;
   std::optional<base::Error> error_;
 };

@@ -11,8 +11,11 @@ std::vector<uint32_t> reverse_post_order(const Pou& pou) {
     size_t next_target;
   };
   std::vector<uint32_t> order;
+  order.reserve(pou.blocks.size());
   std::vector<bool> seen(pou.blocks.size());
-  std::vector<Visit> open = {{0, 0}};
+  std::vector<Visit> open;
+  open.reserve(32);
+  open.push_back({0, 0});
   seen[0] = true;
   while (!open.empty()) {
     Visit& visit = open.back();
