@@ -70,6 +70,7 @@ void Emitter::node(const Step& step) {
     case Op::kFloatToBits:
       return floating(n, step);
     case Op::kAdd:
+    case Op::kAddShifted:
     case Op::kSub:
     case Op::kMul:
     case Op::kAnd:
@@ -104,6 +105,9 @@ void Emitter::integer(const Node& n, const Step& step) {
   switch (n.op) {
     case Op::kAdd:
       return three(Alu::kAdd, n, step);
+    case Op::kAddShifted:
+      return a_.alu(Alu::kAdd, to, integer_register(step.in[0]), integer_register(step.in[1]), 8,
+                    static_cast<uint8_t>(n.imm));
     case Op::kSub:
       return three(Alu::kSub, n, step);
     case Op::kAnd:

@@ -156,16 +156,32 @@ void Emitter::end(Block b) {
 }
 
 void Emitter::loop_end(Block b) {
-  const End& e = f_.blocks[b].end;
+  const Label out = exit_label(f_.blocks[b].end.exit);
+  const Block head = f_.blocks[b].end.target[0];
   const std::vector<Move>& edge = places_.blocks[b].edges[0];
   a_.decrement(kFuelRegister);
-  if (edge.empty()) {
-    a_.jump_if(Condition::kNotEqual, blocks_[e.target[0]]);
-    return a_.jump(exit_label(e.exit));
+  if (edge.empty() && !only_asks(head)) {
+    a_.jump_if(Condition::kNotEqual, blocks_[head]);
+    return a_.jump(out);
   }
-  a_.jump_if(Condition::kEqual, exit_label(e.exit));
+  a_.jump_if(Condition::kEqual, out);
   moves(edge);
-  a_.jump(blocks_[e.target[0]]);
+  if (!only_asks(head)) return a_.jump(blocks_[head]);
+  // A head that does nothing but ask is asked here.
+  const End& e = f_.blocks[head].end;
+  const AllocatedBlock& places = places_.blocks[head];
+  const bool yes_goes_on = e.target[0] == head + 1;
+  jump_if(e.width, yes_goes_on ? e.cond : negated(e.cond), places.in[0], places.in[1],
+          blocks_[head + 1]);
+  a_.jump(blocks_[e.target[yes_goes_on ? 1 : 0]]);
+}
+
+bool Emitter::only_asks(Block head) const {
+  const End& e = f_.blocks[head].end;
+  const AllocatedBlock& places = places_.blocks[head];
+  return places.steps.empty() && e.kind == EndKind::kBranch && e.compare == Op::kCompare &&
+         places.edges[0].empty() && places.edges[1].empty() &&
+         (e.target[0] == head + 1 || e.target[1] == head + 1);
 }
 
 // The way that is not the next block, or needs moves, is jumped to.

@@ -66,6 +66,7 @@ class Emitter {
   void end(Block b);
   void branch(Block b);
   void loop_end(Block b);
+  bool only_asks(Block head) const;
   void moves(const std::vector<Move>& all);
   void move(const Move& m);
   void move_to_spill(const Move& m);
