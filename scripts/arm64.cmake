@@ -3,4 +3,5 @@ set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
-set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64 -L /usr/aarch64-linux-gnu)
+# -R: without it qemu keeps tables for every page of data memory (4 GiB) that was ever reserved.
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64 -R 64G -L /usr/aarch64-linux-gnu)

@@ -89,6 +89,8 @@ uint64_t expected(const Operation& o, uint64_t a, uint64_t b) {
   switch (o.op) {
     case Op::kAdd:
       return u + v;
+    case Op::kAddShifted:
+      return u + (v << o.from);
     case Op::kSub:
       return u - v;
     case Op::kMul:
@@ -166,6 +168,7 @@ Function function_of(const Operation& o) {
   node.width = o.width;
   node.from = o.from;
   node.cond = o.cond;
+  node.imm = o.from;
   node.in[0] = a;
   const bool unary = o.op == Op::kNeg || o.op == Op::kNot || o.op == Op::kSext || o.op == Op::kZext;
   if (!unary) node.in[1] = b;
@@ -212,6 +215,7 @@ std::vector<Operation> all_operations() {
       out.push_back(o);
     }
   };
+  for (uint8_t shift = 1; shift <= 3; ++shift) out.push_back({Op::kAddShifted, 8, shift});
   for (const uint8_t width : {uint8_t{1}, uint8_t{2}, uint8_t{4}, uint8_t{8}}) {
     for (const Op op :
          {Op::kAdd, Op::kSub, Op::kMul, Op::kAnd, Op::kOr, Op::kXor, Op::kShl, Op::kShr}) {
