@@ -52,7 +52,9 @@ test-arm64: setup
 	@scripts/setup.sh g++-aarch64-linux-gnu qemu-user
 	@cmake --preset arm64 >/dev/null
 	@cmake --build build/arm64 -j $(JOBS) --target golden differential test_native
-	@ctest --test-dir build/arm64 --output-on-failure --timeout 7200 -j $(JOBS) -R '^(golden_|differential|unit_native$$)'
+	@ctest --test-dir build/arm64 --output-on-failure --timeout 7200 -j $(JOBS) -R '^(golden_|unit_native$$)'
+	@qemu-aarch64 -R 64G -L /usr/aarch64-linux-gnu build/arm64/tests/differential 1 50
+	@qemu-aarch64 -R 64G -L /usr/aarch64-linux-gnu build/arm64/tests/differential 1 50 --changes
 
 coverage: setup
 	@cmake --preset coverage >/dev/null
