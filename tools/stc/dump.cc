@@ -9,6 +9,7 @@
 #include "tools/stc/commands.h"
 #include "tools/stc/image_text.h"
 #include "tools/stc/session.h"
+#include "vm/native/make_function.h"
 
 namespace stc {
 namespace {
@@ -22,6 +23,7 @@ constexpr tools::OptionRow kOptions[] = {
      "intermediate representation (default for sources), not optimised without --passes"},
     {"--object", nullptr, "relocatable objects"},
     {"--code", nullptr, "linked code"},
+    {"--native", nullptr, "what the native tier makes of linked code, before registers"},
     {"--image", nullptr, "tables of the image (default for images)"},
     {"--symbols", nullptr, "every variable with type and offset"},
 };
@@ -80,6 +82,7 @@ base::Result<std::string> dump_image(const tools::Options& options) {
     }
     return out;
   }
+  if (options.has("--native")) return vm::native::functions_text(version->image);
   if (options.has("--symbols")) return symbols_text(version->image);
   return image_text(version->image, ir::digest(version->bytes));
 }
@@ -92,8 +95,8 @@ int run(const tools::Options& options) {
     return tools::refuse("stc", {base::Refusal::kUsage,
                                  "dump: an image has no tokens, tree, ir or objects any more"});
   }
-  bool wants_image =
-      image_given || options.has("--code") || options.has("--image") || options.has("--symbols");
+  bool wants_image = image_given || options.has("--code") || options.has("--native") ||
+                     options.has("--image") || options.has("--symbols");
   base::Result<std::string> out = wants_image ? dump_image(options) : dump_sources(options);
   if (!out.ok()) return tools::refuse("stc", out.error());
   std::fputs(out->c_str(), stdout);

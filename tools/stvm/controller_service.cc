@@ -6,6 +6,7 @@
 #include "base/limits.h"
 #include "base/memory_limit.h"
 #include "tools/stvm/commands.h"
+#include "vm/native/program.h"
 
 namespace stvm {
 namespace {
@@ -138,6 +139,18 @@ base::Status ControllerService::at_boundary(const std::function<void()>& job) {
   return base::Error{base::Refusal::kBusy, "no boundary came within 5 s: a task does not end"};
 }
 
+void report_tier(const vm::Generation& generation, vm::StatusReport& report) {
+  report.pous = generation.pous().size();
+  const vm::native::Program* const native = generation.native();
+  if (native == nullptr) return;
+  report.native_pous = native->native_pous();
+  report.native_bytes = native->code_bytes();
+  for (uint32_t pou = 0; pou < report.pous; ++pou) {
+    if (native->reason(pou).empty() || report.interpreted.size() == vm::kShownInterpreted) continue;
+    report.interpreted.push_back(generation.image().pous[pou].name + ": " + native->reason(pou));
+  }
+}
+
 base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   vm::StatusReport report;
   base::Status taken = at_boundary([&] {
@@ -163,6 +176,7 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.forces = controller_.forces().size();
   report.devices = controller_.devices();
   report.memory = vm::memory_report(controller_.image());
+  report_tier(controller_.generation(), report);
   return vm::encode(report);
 }
 

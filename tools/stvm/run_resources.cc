@@ -9,8 +9,8 @@
 #include "tools/common/json.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/stop_signal.h"
-#include "tools/stvm/trace.h"
 #include "tools/stvm/tier.h"
+#include "tools/stvm/trace.h"
 #include "tools/stvm/trap_text.h"
 #include "vm/runtime/clocks.h"
 

@@ -23,6 +23,20 @@ constexpr tools::Command kCommand{"status", "", "Shows what a controller runs an
 
 bool on_trial(const vm::StatusReport& report) { return report.change == "trial"; }
 
+void print_tier(const vm::StatusReport& report) {
+  if (report.native_pous == 0) {
+    std::printf("  code        interpreted\n");
+    return;
+  }
+  std::printf("  code        native, %llu of %llu POUs, %llu bytes\n",
+              static_cast<unsigned long long>(report.native_pous),
+              static_cast<unsigned long long>(report.pous),
+              static_cast<unsigned long long>(report.native_bytes));
+  for (const std::string& pou : report.interpreted) {
+    std::printf("              interpreted: %s\n", pou.c_str());
+  }
+}
+
 void print_versions(const vm::StatusReport& report) {
   const char* state = report.faulted ? "FAULT" : on_trial(report) ? "running, on trial" : "running";
   std::printf("%s: %s\n", report.name.c_str(), state);
@@ -39,7 +53,9 @@ void print_versions(const vm::StatusReport& report) {
   std::printf("  change      %s\n", report.change.c_str());
   std::printf("  cycles      %llu of %s\n", static_cast<unsigned long long>(report.cycles),
               tools::duration(report.base_period_ns).c_str());
-  std::printf("  forces      %llu\n\n", static_cast<unsigned long long>(report.forces));
+  std::printf("  forces      %llu\n", static_cast<unsigned long long>(report.forces));
+  print_tier(report);
+  std::printf("\n");
 }
 
 // What is left for changes, in bytes.
@@ -151,6 +167,11 @@ void print_json(const vm::StatusReport& report) {
   json.end_array();
   json.field("uptime_ns", report.uptime_ns).field("base_period_ns", report.base_period_ns);
   json.field("faulted", report.faulted).field("forces", report.forces);
+  json.field("pous", report.pous).field("native_pous", report.native_pous);
+  json.field("native_bytes", report.native_bytes);
+  json.key("interpreted").begin_array();
+  for (const std::string& pou : report.interpreted) json.value(pou);
+  json.end_array();
   memory_json(json, report.memory);
   json.key("tasks").begin_array();
   for (const vm::TaskStatus& task : report.tasks) task_json(json, task);

@@ -6,9 +6,9 @@
 namespace vm {
 
 enum class Tier : uint8_t {
-  kAuto,         // native code where the machine has it
+  kAuto,  // native code where the machine has it
   kInterpreter,
-  kNative,       // the same as kAuto
+  kNative,  // the same as kAuto
 };
 
 struct TierOptions {

@@ -17,9 +17,10 @@ class Program;
 }
 
 struct PouEntry {
-  const ir::Unit* code = nullptr;   // first unit, decoded
-  const ir::Unit* entry = nullptr;  // where a call goes: `code`, or a unit that goes on in machine code
-  const void* machine = nullptr;    // where a call from machine code goes
+  const ir::Unit* code = nullptr;  // first unit, decoded
+  const ir::Unit* entry =
+      nullptr;  // where a call goes: `code`, or a unit that goes on in machine code
+  const void* machine = nullptr;  // where a call from machine code goes
   uint32_t frame_size = 0;
   uint32_t recursion_depth = 0;  // 0: never in a circle of calls
 };

@@ -1,9 +1,9 @@
 // Registers for the values of a Function.
 //
-// One pass over the blocks in their order. Inside of a block a register is taken from the value whose
-// next use is farthest away; a value whose variable still holds it in memory, and a constant, need
-// no store for that. A loop begins with the values in registers that its body uses first. Where ways
-// meet, moves on the edges bring every value to where the block expects it.
+// One pass over the blocks in their order. Inside of a block a register is taken from the value
+// whose next use is farthest away; a value whose variable still holds it in memory, and a constant,
+// need no store for that. A loop begins with the values in registers that its body uses first.
+// Where ways meet, moves on the edges bring every value to where the block expects it.
 //
 // A value is in one register at most, and beside that in its spill slot (of the machine's stack),
 // in the memory of its variable ("home"), or nowhere.
@@ -60,8 +60,8 @@ struct Allocated {
 struct Demands {
   int8_t in[4] = {-1, -1, -1, -1};
   int8_t result = -1;
-  uint32_t clobbers = 0;    // integer registers that it destroys
-  uint8_t shares = 0xff;    // operands whose register the result may take: bit i; 0x10: the index
+  uint32_t clobbers = 0;  // integer registers that it destroys
+  uint8_t shares = 0xff;  // operands whose register the result may take: bit i; 0x10: the index
   bool clobbers_all = false;
 };
 

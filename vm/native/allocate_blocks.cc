@@ -137,12 +137,15 @@ void Allocator::choose_for_loop(Block block, Snapshot& state) {
   const Loop& l = f_.loops[loop];
   const uint32_t last = uses_.loop_end(loop);
   for (Held& held : state) {
-    const bool changes = held.home != kNone && (l.kills_all || std::binary_search(l.modified.begin(), l.modified.end(), held.home));
+    const bool changes =
+        held.home != kNone &&
+        (l.kills_all || std::binary_search(l.modified.begin(), l.modified.end(), held.home));
     if (changes) held.home = kNone;
   }
   for (const Val v : uses_.constants()) {
     if (next_use(v, position_) >= last) continue;
-    const bool there = std::any_of(state.begin(), state.end(), [&](const Held& h) { return h.v == v; });
+    const bool there =
+        std::any_of(state.begin(), state.end(), [&](const Held& h) { return h.v == v; });
     if (!there) state.push_back({v, -1, false, false, kNone, kNone});
   }
   std::sort(state.begin(), state.end(), [&](const Held& x, const Held& y) {
@@ -259,7 +262,8 @@ std::vector<Move> Allocator::edge(Block from, uint32_t target, const Snapshot& h
     }
     const uint8_t width = f_.values[source].width;
     if (held.reg >= 0) {
-      const Place reg{Place::kRegister, floating(held.v), false, static_cast<uint32_t>(held.reg), 0};
+      const Place reg{Place::kRegister, floating(held.v), false, static_cast<uint32_t>(held.reg),
+                      0};
       moves.push_back({reg, origin, width});
     }
     const bool stored = !param && there != nullptr && there->saved;
@@ -288,7 +292,10 @@ std::vector<Move> Allocator::resume_moves(Block head, const Snapshot& state) {
     }
     const uint8_t width = f_.values[held.v].width;
     if (held.reg >= 0) {
-      moves.push_back({{Place::kRegister, floating(held.v), false, static_cast<uint32_t>(held.reg), 0}, origin, width});
+      moves.push_back(
+          {{Place::kRegister, floating(held.v), false, static_cast<uint32_t>(held.reg), 0},
+           origin,
+           width});
     }
     if (held.saved && !is_constant(held.v)) {
       moves.push_back({{Place::kSpill, floating(held.v), false, held.slot, 0}, origin, width});

@@ -10,6 +10,7 @@
 namespace vm::native {
 
 inline constexpr uint32_t kMostRegisters = 32;
+inline constexpr Val kCopy = 0xfffffffeu;  // in a register: a second copy of a value for one node
 
 class Allocator {
  public:
@@ -57,7 +58,9 @@ class Allocator {
   Place memory_of(Val v) const;  // kNowhere: it is in a register only
   Place place_of(Val v) const;
   Place place_of(const Held& held) const;
-  Place in_register(Val v) const { return {Place::kRegister, floating(v), false, static_cast<uint32_t>(reg_[v]), 0}; }
+  Place in_register(Val v) const {
+    return {Place::kRegister, floating(v), false, static_cast<uint32_t>(reg_[v]), 0};
+  }
   uint32_t spill_slot(Val v);
   void put(Val v, uint32_t reg);
   void free_register(Val v);

@@ -118,7 +118,8 @@ Val Builder::at_end_of(Block pred, uint32_t variable) {
   node.mem = {v.base, 1, kNone, static_cast<int64_t>(v.offset)};
   node.variable = variable;
   node.result = static_cast<Val>(f_.values.size());
-  f_.values.push_back({v.floating, v.width, false, 0, static_cast<uint32_t>(f_.nodes.size()), pred});
+  f_.values.push_back(
+      {v.floating, v.width, false, 0, static_cast<uint32_t>(f_.nodes.size()), pred});
   epoch_of_.push_back(0);
   f_.blocks[pred].nodes.push_back(static_cast<uint32_t>(f_.nodes.size()));
   f_.nodes.push_back(node);
@@ -242,7 +243,8 @@ void Builder::enter_loop(Block block, uint32_t loop) {
     if (now_.value[v] == kNone) continue;
     f_.blocks[block].reloads.push_back({v, now_.value[v]});
     if (now_.dirty[v] == 0) continue;
-    f_.blocks[block].dirty.push_back({f_.variables[v].offset, f_.variables[v].width, now_.value[v]});
+    f_.blocks[block].dirty.push_back(
+        {f_.variables[v].offset, f_.variables[v].width, now_.value[v]});
   }
 }
 

@@ -1,8 +1,8 @@
 // Verified bytecode of one POU -> Function.
 //
-// Blocks are built in their order, so all ways into a block but those back to a loop head are known when
-// it begins; there each live variable is one value or becomes a parameter. A variable that nothing
-// read or wrote yet has no value: its memory is loaded when something wants it, before a
+// Blocks are built in their order, so all ways into a block but those back to a loop head are known
+// when it begins; there each live variable is one value or becomes a parameter. A variable that
+// nothing read or wrote yet has no value: its memory is loaded when something wants it, before a
 // loop for what the loop reads.
 #pragma once
 
@@ -100,8 +100,8 @@ class Builder {
   const Facts& facts_;
   Function f_;
   std::vector<std::vector<Pred>> preds_;
-  std::vector<std::unique_ptr<State>> ends_;  // by block, while something needs it
-  std::vector<uint32_t> users_;               // of ends_
+  std::vector<std::unique_ptr<State>> ends_;       // by block, while something needs it
+  std::vector<uint32_t> users_;                    // of ends_
   std::vector<std::vector<uint32_t>> parameters_;  // variables, by block
   State now_;
   Block block_ = 0;
@@ -109,11 +109,11 @@ class Builder {
   ir::Unit u_;
   ir::Unit x_;
   bool ended_ = false;
-  uint32_t version_ = 0;  // of memory that no variable names
-  uint32_t epoch_ = 0;    // values of earlier epochs are reached through variables only
-  std::vector<uint32_t> epoch_of_;                   // by value
-  std::unordered_map<uint64_t, uint32_t> known_;     // hash of a pure node -> node
-  std::unordered_map<uint64_t, Val> constants_[3];   // by bits; of 4 or 8 bytes floating, integers
+  uint32_t version_ = 0;            // of memory that no variable names
+  uint32_t epoch_ = 0;              // values of earlier epochs are reached through variables only
+  std::vector<uint32_t> epoch_of_;  // by value
+  std::unordered_map<uint64_t, uint32_t> known_;    // hash of a pure node -> node
+  std::unordered_map<uint64_t, Val> constants_[3];  // by bits; of 4 or 8 bytes floating, integers
 };
 
 // Comparisons into the branches and selections that alone use them; what nothing uses is dead.

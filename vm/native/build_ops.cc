@@ -9,7 +9,9 @@ using ir::Opcode;
 
 namespace {
 
-uint64_t mask(uint8_t width) { return width == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * width)) - 1; }
+uint64_t mask(uint8_t width) {
+  return width == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * width)) - 1;
+}
 
 }  // namespace
 
@@ -162,7 +164,8 @@ Val Builder::quotient_by_constant(bool is_signed, uint8_t width, Val left, uint6
     const unsigned __int128 power = static_cast<unsigned __int128>(1) << (32 + k);
     const uint64_t magic = static_cast<uint64_t>((power + divisor - 1) / divisor);
     if (magic >> 32 != 0) break;
-    const uint64_t error = static_cast<uint64_t>(static_cast<unsigned __int128>(magic) * divisor - power);
+    const uint64_t error =
+        static_cast<uint64_t>(static_cast<unsigned __int128>(magic) * divisor - power);
     if (error > (uint64_t{1} << k)) continue;
     const Val wide = extended(left, 4, false);
     const Val product = int_op(Op::kMul, 8, wide, constant(magic, 8, false));
@@ -241,8 +244,8 @@ void Builder::convert(const Recipe& recipe) {
   }
   if (recipe.shape == Shape::kExtend) {
     if (is_constant(b)) {
-      return write_a(constant(bits(extended(b, recipe.from, recipe.is_signed)), recipe.width,
-                              false));
+      return write_a(
+          constant(bits(extended(b, recipe.from, recipe.is_signed)), recipe.width, false));
     }
     const Val wide = extended(b, recipe.from, recipe.is_signed);
     return write_a(recipe.width == 4 && recipe.is_signed ? extended(wide, 4, false) : wide);
@@ -270,8 +273,8 @@ void Builder::to_integer(const Recipe& recipe) {
   }
   const unsigned width_bits = 8u * recipe.width;
   const int64_t low = recipe.is_signed ? -(int64_t{1} << (width_bits - 1)) : 0;
-  const int64_t high = recipe.is_signed ? (int64_t{1} << (width_bits - 1)) - 1
-                                        : (int64_t{1} << width_bits) - 1;
+  const int64_t high =
+      recipe.is_signed ? (int64_t{1} << (width_bits - 1)) - 1 : (int64_t{1} << width_bits) - 1;
   const Val shifted = int_op(Op::kSub, 8, wide, constant(static_cast<uint64_t>(low), 8, false));
   exit_if(Cond::kGtU, 8, shifted, constant(static_cast<uint64_t>(high - low), 8, false));
   write_a(recipe.width == 4 ? extended(wide, 4, false) : wide);
@@ -291,8 +294,7 @@ void Builder::index(const Recipe& recipe, bool of_place) {
   const ir::LinkedBound& bound = facts_.image().bounds[x_.x()];
   const Val wide = extended(read_b(), recipe.from, recipe.is_signed);
   if (recipe.from == 8 && !recipe.is_signed) exit_if(Cond::kLtS, 8, wide, zero());
-  const Val steps =
-      int_op(Op::kSub, 8, wide, constant(static_cast<uint64_t>(bound.low), 8, false));
+  const Val steps = int_op(Op::kSub, 8, wide, constant(static_cast<uint64_t>(bound.low), 8, false));
   exit_if(Cond::kGeU, 8, steps, constant(bound.count, 8, false));
   Mem mem;
   if (of_place) {
@@ -308,8 +310,8 @@ void Builder::index(const Recipe& recipe, bool of_place) {
     }
     if (mem.index != kNone) {
       const Val scaled = int_op(Op::kMul, 8, mem.index, constant(mem.scale, 8, false));
-      mem.index = int_op(Op::kAdd, 8, scaled,
-                         int_op(Op::kMul, 8, steps, constant(bound.stride, 8, false)));
+      mem.index =
+          int_op(Op::kAdd, 8, scaled, int_op(Op::kMul, 8, steps, constant(bound.stride, 8, false)));
       mem.scale = 1;
       return write_a(address_of(mem));
     }

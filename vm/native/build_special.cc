@@ -110,8 +110,9 @@ void Builder::call(CallKind kind, uint32_t pou, Val id) {
     made.exit = exit_here(false);  // what the interpreter reads when it calls in our place
   }
   made.call = static_cast<uint32_t>(f_.calls.size());
-  const uint32_t known = kind == CallKind::kBody ? facts_.called_body(unit_)
-                         : kind == CallKind::kSlow ? kNone : pou;
+  const uint32_t known = kind == CallKind::kBody   ? facts_.called_body(unit_)
+                         : kind == CallKind::kSlow ? kNone
+                                                   : pou;
   f_.calls.push_back({kind, pou, uint32_t{u_.a} * 8, unit_, known});
   append(made);
   for (uint32_t v = 0; v < f_.variables.size(); ++v) {

@@ -7,7 +7,9 @@
 namespace vm::native {
 namespace {
 
-uint64_t mask(uint8_t width) { return width == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * width)) - 1; }
+uint64_t mask(uint8_t width) {
+  return width == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * width)) - 1;
+}
 int64_t as_signed(uint64_t bits, uint8_t width) {
   const unsigned shift = 64 - 8u * width;
   return static_cast<int64_t>(bits << shift) >> shift;
@@ -188,7 +190,8 @@ Val Builder::value_of(Node made, bool floating) {
     at->second = static_cast<uint32_t>(f_.nodes.size());
   }
   made.result = static_cast<Val>(f_.values.size());
-  f_.values.push_back({floating, made.width, false, 0, static_cast<uint32_t>(f_.nodes.size()), block_});
+  f_.values.push_back(
+      {floating, made.width, false, 0, static_cast<uint32_t>(f_.nodes.size()), block_});
   epoch_of_.push_back(epoch_);
   append(made);
   return made.result;
@@ -215,7 +218,8 @@ Val Builder::read(uint32_t variable) {
   made.mem = {v.base, 1, kNone, static_cast<int64_t>(v.offset)};
   made.variable = variable;
   made.result = static_cast<Val>(f_.values.size());
-  f_.values.push_back({v.floating, v.width, false, 0, static_cast<uint32_t>(f_.nodes.size()), block_});
+  f_.values.push_back(
+      {v.floating, v.width, false, 0, static_cast<uint32_t>(f_.nodes.size()), block_});
   epoch_of_.push_back(epoch_);
   append(made);
   return now_.value[variable] = made.result;
@@ -233,15 +237,9 @@ Val Builder::read_field(ir::Base base, uint32_t offset, ir::Class cls) {
   return read(facts_.variable({base, offset, cls, true, false, false}));
 }
 
-Val Builder::read_a() {
-  return read_field(u_.base_a(), u_.a, ir::opcode_row(u_.opcode()).a.cls);
-}
-Val Builder::read_b() {
-  return read_field(u_.base_b(), u_.b, ir::opcode_row(u_.opcode()).b.cls);
-}
-Val Builder::read_c() {
-  return read_field(u_.base_c(), u_.c, ir::opcode_row(u_.opcode()).c.cls);
-}
+Val Builder::read_a() { return read_field(u_.base_a(), u_.a, ir::opcode_row(u_.opcode()).a.cls); }
+Val Builder::read_b() { return read_field(u_.base_b(), u_.b, ir::opcode_row(u_.opcode()).b.cls); }
+Val Builder::read_c() { return read_field(u_.base_c(), u_.c, ir::opcode_row(u_.opcode()).c.cls); }
 
 void Builder::write(uint32_t variable, Val value) {
   const Variable& v = f_.variables[variable];
@@ -258,7 +256,9 @@ void Builder::write(uint32_t variable, Val value) {
   ++version_;
 }
 
-void Builder::write_a(Val v) { write_field(u_.base_a(), u_.a, ir::opcode_row(u_.opcode()).a.cls, v); }
+void Builder::write_a(Val v) {
+  write_field(u_.base_a(), u_.a, ir::opcode_row(u_.opcode()).a.cls, v);
+}
 
 void Builder::write_field(ir::Base base, uint32_t offset, ir::Class cls, Val v) {
   write(facts_.variable({base, offset, cls, false, true, false}), v);

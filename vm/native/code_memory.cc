@@ -17,8 +17,7 @@ std::shared_ptr<const CodeMemory> CodeMemory::make(std::span<const uint8_t> code
     return nullptr;
   }
   __builtin___clear_cache(static_cast<char*>(at), static_cast<char*>(at) + code.size());
-  return std::shared_ptr<const CodeMemory>(
-      new CodeMemory(static_cast<uint8_t*>(at), code.size()));
+  return std::make_shared<const CodeMemory>(Key(), static_cast<uint8_t*>(at), code.size());
 }
 
 CodeMemory::~CodeMemory() { munmap(data_, size_); }

@@ -8,7 +8,10 @@
 namespace vm::native {
 
 class CodeMemory {
+  struct Key {};
+
  public:
+  CodeMemory(Key, uint8_t* data, size_t size) : data_(data), size_(size) {}
   // Null when the system gives none.
   static std::shared_ptr<const CodeMemory> make(std::span<const uint8_t> code);
   ~CodeMemory();
@@ -19,7 +22,6 @@ class CodeMemory {
   size_t size() const { return size_; }
 
  private:
-  CodeMemory(uint8_t* data, size_t size) : data_(data), size_(size) {}
   uint8_t* data_ = nullptr;
   size_t size_ = 0;
 };

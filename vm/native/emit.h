@@ -24,7 +24,7 @@ struct SideUnits {
 // Where machine code can be entered, in bytes from the beginning of the code.
 struct Entries {
   uint32_t begin = 0;
-  std::vector<uint32_t> behind_call;           // by call
+  std::vector<uint32_t> behind_call;              // by call
   std::vector<std::pair<Block, uint32_t>> heads;  // of loops
 };
 

@@ -4,7 +4,6 @@
 #include <bit>
 
 #include "ir/bytecode/regions.h"
-#include "stdlib/native/natives.h"
 
 namespace vm::native {
 namespace {
@@ -12,21 +11,12 @@ namespace {
 using ir::Opcode;
 
 constexpr size_t kMostLivenessWords = size_t{8} << 20;
-constexpr size_t kMostParts = 6;
 
 bool is_far(Opcode op) { return op >= Opcode::LDFAR_B && op <= Opcode::STFAR_F64; }
 bool is_far_store(Opcode op) { return op >= Opcode::STFAR_B && op <= Opcode::STFAR_F64; }
 bool names_id(Opcode op) {
   return op == Opcode::INST || op == Opcode::CALL_INST || op == Opcode::CALL_METHOD ||
          op == Opcode::HANDLE_INST;
-}
-bool stores_through(Opcode op) {
-  return (op >= Opcode::ST_B && op <= Opcode::ST_F64) || op == Opcode::ST_REF_AT ||
-         op == Opcode::COPY || op == Opcode::SCOPY || op == Opcode::WCOPY;
-}
-bool native_writes(const ir::Unit& unit) {
-  const std::string_view letters = stdlib::native_row(unit.c).arguments;
-  return letters.find_first_of("SW") != std::string_view::npos;
 }
 MemBase base_of(ir::Base base) {
   if (base == ir::Base::kFrame) return MemBase::kFrame;
@@ -57,28 +47,14 @@ Accesses accesses_of(const ir::Unit& unit, const ir::Unit& extension) {
   add(out, row.b, unit.base_b(), unit.b);
   add(out, row.c, unit.base_c(), unit.c);
   if (is_far(op)) {
-    out.of[out.count++] = {unit.base_b(), unit.bc(), row.a.cls, !is_far_store(op),
-                           is_far_store(op), false};
+    out.of[out.count++] = {unit.base_b(),     unit.bc(),        row.a.cls,
+                           !is_far_store(op), is_far_store(op), false};
   } else if (op == Opcode::LD_REF) {
     out.of[out.count++] = {unit.base_b(), unit.bc(), ir::Class::kA, true, false, false};
   } else if (names_id(op)) {
     out.of[out.count++] = {unit.base_b(), unit.bc(), ir::Class::k32, true, false, true};
   }
   return out;
-}
-
-bool Reach::join(const Reach& other) {
-  if (everything) return false;
-  if (other.everything) return everything = true;
-  bool changed = other.own_instance && !own_instance;
-  own_instance |= other.own_instance;
-  for (const Part& part : other.parts) {
-    if (std::find(parts.begin(), parts.end(), part) != parts.end()) continue;
-    changed = true;
-    if (parts.size() == kMostParts) return everything = true;
-    parts.push_back(part);
-  }
-  return changed;
 }
 
 base::Result<Facts> Facts::of(const ir::Image& image, const ir::LinkedPou& pou) {
@@ -187,9 +163,9 @@ bool Facts::find_loops(std::string& why) {
 }
 
 uint32_t Facts::slot_number(uint32_t offset) const {
-  const auto behind = std::upper_bound(
-      pou_->slots.begin(), pou_->slots.end(), offset,
-      [](uint32_t at, const ir::FrameSlot& slot) { return at < slot.offset; });
+  const auto behind =
+      std::upper_bound(pou_->slots.begin(), pou_->slots.end(), offset,
+                       [](uint32_t at, const ir::FrameSlot& slot) { return at < slot.offset; });
   return behind == pou_->slots.begin() ? kNone
                                        : static_cast<uint32_t>(behind - pou_->slots.begin() - 1);
 }
@@ -261,102 +237,6 @@ void Facts::find_overlaps() {
   }
 }
 
-// What the address or string that the unit makes may point to.
-Reach Facts::reach_of_unit(uint32_t i) const {
-  const ir::Unit& unit = code_[i];
-  const ir::Unit& more = extension(i);
-  const Opcode op = unit.opcode();
-  Reach reach;
-  const auto of_slot = [&](uint32_t offset) {
-    const auto found = reach_.find(offset);
-    return found == reach_.end() ? Reach{} : found->second;
-  };
-  const auto size_of = [&](uint32_t field) {
-    return uint64_t{ir::region_size(image_->types, image_->layouts, ir::region_of_field(field))};
-  };
-  if (op >= Opcode::INDEX_PLACE_I8 && op <= Opcode::INDEX_PLACE_U64) {
-    const ir::LinkedBound& bound = image_->bounds[more.x()];
-    reach.parts.push_back({unit.base_c(), more.y(), more.y() + bound.count * bound.stride});
-  } else if (op >= Opcode::INDEX_I8 && op <= Opcode::INDEX_U64) {
-    return of_slot(unit.c);
-  } else if (op == Opcode::LEA) {
-    reach.parts.push_back({unit.base_b(), more.x(), more.x() + size_of(more.y())});
-  } else if (op == Opcode::LEA_AT || op == Opcode::MOV_A || op == Opcode::MOV_S ||
-             op == Opcode::MOV_W || op == Opcode::STR_AT || op == Opcode::WSTR_AT) {
-    return of_slot(unit.b);
-  } else if (op == Opcode::STR || op == Opcode::WSTR) {
-    const uint64_t unit_size = op == Opcode::STR ? 1 : 2;
-    reach.parts.push_back(
-        {unit.base_b(), more.x(), more.x() + (uint64_t{more.y()} + 1) * unit_size});
-  } else if (op == Opcode::INST) {
-    // What is inside of an instance is not the instance itself; a global one may be it.
-    reach.own_instance = unit.base_b() != ir::Base::kSelf;
-  } else if (op == Opcode::INST_AT) {
-    const Reach from = of_slot(unit.b);
-    reach.own_instance = from.everything || from.own_instance || from.parts.empty();
-    for (const Reach::Part& part : from.parts) {
-      reach.own_instance |= part.base != ir::Base::kSelf;
-    }
-  } else {
-    reach.everything = true;
-  }
-  return reach;
-}
-
-void Facts::find_reach() {
-  // Addresses that come from outside: in-out parameters.
-  for (const ir::FrameSlot& slot : pou_->slots) {
-    if (slot.kind == ir::SlotKind::kParam && !slot.aggregate) {
-      reach_[slot.offset].everything = true;
-    }
-  }
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (uint32_t i = 0; i < code_.size(); i = next(i)) {
-      const ir::Field& field = ir::opcode_row(code_[i].opcode()).a;
-      if (!field.is_near() || !field.writes()) continue;
-      if (field.cls != ir::Class::kA && field.cls != ir::Class::kS && field.cls != ir::Class::kW) {
-        continue;
-      }
-      if (code_[i].base_a() != ir::Base::kFrame) continue;
-      changed |= reach_[code_[i].a].join(reach_of_unit(i));
-    }
-  }
-}
-
-void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
-  const Opcode op = code_[i].opcode();
-  if (op == Opcode::NATIVE) {
-    const bool all = native_writes(code_[i]);
-    for (uint32_t v = 0; v < variables_.size(); ++v) {
-      const bool next_frame =
-          variables_[v].base == MemBase::kFrame && variables_[v].offset >= pou_->frame_size;
-      if (next_frame || (all && !variables_[v].slot && !variables_[v].constant)) out.push_back(v);
-    }
-    return;
-  }
-  if (!stores_through(op)) return;
-  const auto found = reach_.find(code_[i].a);
-  const bool known = found != reach_.end() && !found->second.everything;
-  for (uint32_t v = 0; v < variables_.size(); ++v) {
-    const Variable& variable = variables_[v];
-    if (variable.slot || variable.constant) continue;
-    bool may = !known || (found->second.own_instance && variable.base == MemBase::kSelf);
-    if (!may) {
-      for (const Reach::Part& part : found->second.parts) {
-        may |= base_of(part.base) == variable.base && variable.offset < part.end &&
-               part.begin < uint64_t{variable.offset} + variable.width;
-      }
-    }
-    if (may) out.push_back(v);
-  }
-}
-
-bool Facts::writes_memory(uint32_t i) const {
-  const Opcode op = code_[i].opcode();
-  return stores_through(op) || op == Opcode::NATIVE;
-}
-
 void Facts::find_loop_effects() {
   loop_calls_.assign(loops_.size(), false);
   loop_reads_.resize(loops_.size());
@@ -405,9 +285,9 @@ bool Facts::find_liveness(std::string& why) {
   for (uint32_t v = 0; v < variables_.size(); ++v) {
     if (!variables_[v].slot) continue;
     const ir::FrameSlot& slot = pou_->slots[slot_number(variables_[v].offset)];
-    const bool result = slot.kind == ir::SlotKind::kParam &&
-                        (slot.local == ir::LocalKind::kOutput ||
-                         slot.local == ir::LocalKind::kReturn);
+    const bool result =
+        slot.kind == ir::SlotKind::kParam &&
+        (slot.local == ir::LocalKind::kOutput || slot.local == ir::LocalKind::kReturn);
     slots[v / 64] |= uint64_t{1} << (v % 64);
     if (!result) continue;
     results[v / 64] |= uint64_t{1} << (v % 64);
@@ -501,7 +381,9 @@ uint32_t Facts::called_body(uint32_t i) const {
     return kNone;
   }
   if (!region.type.valid()) return kNone;
-  const auto is_slot = [](const ir::Leaf& leaf) { return leaf.kind == ir::LeafKind::kInstanceSlot; };
+  const auto is_slot = [](const ir::Leaf& leaf) {
+    return leaf.kind == ir::LeafKind::kInstanceSlot;
+  };
   const auto leaf = ir::leaf_at(image_->types, image_->layouts, region, offset);
   if (!leaf || !is_slot(*leaf)) return kNone;
   for (uint32_t p = 0; p < image_->pous.size(); ++p) {

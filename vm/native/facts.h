@@ -1,5 +1,5 @@
-// What the bytecode of one POU says before anything is built: its blocks and loops, which scalars it
-// names, and what a store through an address may change. Nothing here depends on order.
+// What the bytecode of one POU says before anything is built: its blocks and loops, which scalars
+// it names, and what a store through an address may change. Nothing here depends on order.
 #pragma once
 
 #include <cstdint>

@@ -18,7 +18,8 @@ struct Callee {
   const ir::Unit* units = nullptr;
 };
 
-// May the POU be a callee's body at all? No loops, no calls, nothing that the interpreter does for it.
+// May the POU be a callee's body at all? No loops, no calls, nothing that the interpreter does for
+// it.
 bool is_small(const ir::Image& image, const ir::LinkedPou& pou);
 
 // Returns the numbers of the POUs whose bodies are in `function` now.

@@ -10,8 +10,8 @@
 // Registers hold the low `width` bytes of a value; what is above is arbitrary, except that values
 // of 4 bytes (addresses among them) are zero-extended to 8. A BOOL is 0 or 1 in its low byte.
 //
-// Leaving. An *exit* gives the POU back to the interpreter at a unit: slots that are dirty are stored
-// first, then the interpreter executes that unit itself. So what traps, suspends or happens
+// Leaving. An *exit* gives the POU back to the interpreter at a unit: slots that are dirty are
+// stored first, then the interpreter executes that unit itself. So what traps, suspends or happens
 // seldom has no second meaning here.
 #pragma once
 
@@ -107,7 +107,7 @@ struct Node {
   uint8_t width = 0;
   uint8_t from = 0;
   Cond cond = Cond::kEq;
-  bool boolean = false;  // kLoad of a BOOL that may be any byte
+  bool boolean = false;    // kLoad of a BOOL that may be any byte
   bool immutable = false;  // kLoad: no code writes there
   bool dead = false;
   Val result = kNone;
@@ -139,8 +139,8 @@ struct SlotValue {
 struct Exit {
   uint32_t unit = 0;
   bool fuel = false;  // its unit takes fuel that has just been taken
-  // Inside of an inlined body (Function::inlined): the activation is made first. Behind its slots come
-  // the instance's ID and area when it has one.
+  // Inside of an inlined body (Function::inlined): the activation is made first. Behind its slots
+  // come the instance's ID and area when it has one.
   uint32_t inlined = kNone;
   std::vector<SlotValue> slots;
 };
@@ -152,7 +152,7 @@ struct Call {
   uint32_t pou = 0;         // of kBody the instance says it
   uint32_t frame_step = 0;  // bytes from this frame to the callee's
   uint32_t unit = 0;
-  uint32_t known = kNone;   // the POU, when it is known before
+  uint32_t known = kNone;  // the POU, when it is known before
 };
 
 struct Inlined {

@@ -7,14 +7,14 @@ namespace vm::native {
 namespace {
 
 const char* const kNames[] = {
-    "const",  "load",    "store",     "addr",       "add", "addsh", "sub",         "mul",
-    "and",    "or",      "xor",       "andn",       "orn",        "shl",         "shr",
-    "sar",    "rol",     "ror",       "divs",       "divu",       "mods",        "modu",
-    "neg",    "not",     "notb",      "compare",    "select",     "selectcmp",   "sext",
-    "zext",   "fadd",    "fsub",      "fmul",       "fdiv",       "fmin",        "fmax",
-    "fneg",   "fabs",    "fsqrt",     "fcompare",   "fselect",    "inttofloat",  "floattoint",
-    "fwidth", "bitstof", "ftobits",   "exitif",     "instance",   "tasktime",    "advancetime",
-    "helper", "call",   "enter"};
+    "const",       "load",   "store",   "addr",    "add",      "addsh",    "sub",
+    "mul",         "and",    "or",      "xor",     "andn",     "orn",      "shl",
+    "shr",         "sar",    "rol",     "ror",     "divs",     "divu",     "mods",
+    "modu",        "neg",    "not",     "notb",    "compare",  "select",   "selectcmp",
+    "sext",        "zext",   "fadd",    "fsub",    "fmul",     "fdiv",     "fmin",
+    "fmax",        "fneg",   "fabs",    "fsqrt",   "fcompare", "fselect",  "inttofloat",
+    "floattoint",  "fwidth", "bitstof", "ftobits", "exitif",   "instance", "tasktime",
+    "advancetime", "helper", "call",    "enter"};
 const char* const kConds[] = {"=", "<>", "<s", "<=s", ">s", ">=s", "<u", "<=u", ">u", ">=u"};
 const char* const kEnds[] = {"jump", "loop", "branch", "return", "exit", "unreachable"};
 
@@ -59,7 +59,8 @@ std::string print(const Function& f) {
   std::string out;
   for (Block b = 0; b < f.blocks.size(); ++b) {
     const BasicBlock& block = f.blocks[b];
-    out += "block " + std::to_string(b) + list(f, block.params) + (block.head ? " head" : "") + "\n";
+    out +=
+        "block " + std::to_string(b) + list(f, block.params) + (block.head ? " head" : "") + "\n";
     for (const uint32_t n : block.nodes) out += line(f, f.nodes[n]) + "\n";
     const End& e = block.end;
     out += std::string("  ") + kEnds[static_cast<size_t>(e.kind)];

@@ -2,18 +2,13 @@
 
 #include <algorithm>
 #include <cstring>
-#include <cstdio>
-#include <cstdlib>
 
 #include "ir/bytecode/regions.h"
 #include "vm/exec/context.h"
-#include "vm/native/build.h"
 #include "vm/native/code_memory.h"
 #include "vm/native/emit.h"
 #include "vm/native/host.h"
-#include "vm/native/inline.h"
-#include "vm/native/loops.h"
-#include "vm/native/print.h"
+#include "vm/native/make_function.h"
 
 namespace vm::native {
 
@@ -29,7 +24,7 @@ struct PouNative {
     uint32_t unit = 0;
     uint32_t side = 0;
   };
-  std::vector<Entry> entries;  // sorted by unit
+  std::vector<Entry> entries;     // sorted by unit
   std::vector<uint32_t> inlined;  // POUs whose bodies are in it
 };
 
@@ -130,46 +125,7 @@ struct Work {
   Function function;
   Allocated places;
   Entries entries;
-  std::vector<uint32_t> head_units;
   std::vector<uint32_t> call_units;  // where a call's caller goes on
-  std::vector<uint32_t> call_resume;
-};
-
-bool is_interpreted_at_random(const TierOptions& options, uint32_t number) {
-  if (options.pou_seed == 0) return false;
-  uint64_t h = (options.pou_seed + number) * 0x9e3779b97f4a7c15u;
-  h ^= h >> 29;
-  return (h * 0xbf58476d1ce4e5b9u >> 40 & 1) != 0;
-}
-
-// Functions of small POUs, made when the first caller asks.
-class Bodies {
- public:
-  Bodies(const ir::Image& image, const std::vector<PouEntry>& pous, const TierOptions& options)
-      : image_(image), pous_(pous), options_(options), functions_(pous.size()) {}
-
-  Callee callee(uint32_t number, uint32_t caller) {
-    if (number == caller || is_interpreted_at_random(options_, number)) return {};
-    State& state = functions_[number];
-    if (!state.asked) {
-      state.asked = true;
-      if (is_small(image_, image_.pous[number])) {
-        base::Result<Facts> facts = Facts::of(image_, image_.pous[number]);
-        if (facts.ok()) state.function = std::make_unique<Function>(Builder(*facts).run());
-      }
-    }
-    return {state.function.get(), pous_[number].code};
-  }
-
- private:
-  struct State {
-    bool asked = false;
-    std::unique_ptr<Function> function;
-  };
-  const ir::Image& image_;
-  const std::vector<PouEntry>& pous_;
-  const TierOptions& options_;
-  std::vector<State> functions_;
 };
 
 // Everything up to registers; the machine code follows for all POUs together.
@@ -189,15 +145,7 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
     work.pou->reason = facts.error().text;
     return false;
   }
-  work.function = Builder(*facts).run();
-  work.pou->inlined = inline_calls(
-      work.function, [&](uint32_t number) { return bodies.callee(number, work.number); });
-  choose(work.function);
-  insert_preheaders(work.function);
-  drop_proven_checks(work.function);
-  drop_unused(work.function);
-  hoist(work.function);
-  if (getenv("STC_PRINT_NATIVE")) fputs(print(work.function).c_str(), stderr);
+  work.function = make_function(*facts, bodies, work.number, work.pou->inlined);
   const AllocatorOptions registers{options.integer_registers, options.float_registers,
                                    options.spill_seed};
   base::Result<Allocated> places = allocate(work.function, target, registers);
@@ -250,7 +198,7 @@ Program::~Program() = default;
 std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector<PouEntry>& pous,
                                              const TierOptions& options, const Program* running) {
   if (options.tier == Tier::kInterpreter || !is_available()) return nullptr;
-  std::shared_ptr<Program> made(new Program);
+  const auto made = std::make_shared<Program>(Key());
   const host::HostTarget target;
   host::Assembler assembler;
   const host::Shared shared = host::emit_shared(assembler);
@@ -260,7 +208,8 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector
   for (const ir::LinkedPou& pou : image.pous) facts_by_pou.push_back(facts_of(image, pou));
   // Is what runs of a POU, or was inlined of it, still right?
   const auto is_same = [&](uint32_t number) {
-    if (running == nullptr || number >= running->pous_.size() || number >= pous.size()) return false;
+    if (running == nullptr || number >= running->pous_.size() || number >= pous.size())
+      return false;
     const PouNative& old = *running->pous_[number];
     return old.units == pous[number].code && old.facts == facts_by_pou[number];
   };
@@ -286,11 +235,6 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector
     all.push_back(std::move(work));
   }
   assembler.patch();
-  if (getenv("STC_PRINT_NATIVE")) {
-    FILE* f = fopen("/tmp/code.bin", "wb");
-    fwrite(assembler.code().data(), 1, assembler.code().size(), f);
-    fclose(f);
-  }
   made->shared_code_ = CodeMemory::make(assembler.code());
   if (made->shared_code_ == nullptr) return nullptr;
   made->code_bytes_ = made->shared_code_->size();

@@ -24,7 +24,10 @@ struct PouNative;
 bool is_available();
 
 class Program {
+  struct Key {};
+
  public:
+  explicit Program(Key) {}
   ~Program();
   // Sets entry and machine of `pous`. Code of `running` that is still right is shared. Null when
   // everything is interpreted.
@@ -45,7 +48,6 @@ class Program {
   const std::string& reason(uint32_t pou) const;
 
  private:
-  Program() = default;
   std::vector<std::shared_ptr<const PouNative>> pous_;
   std::shared_ptr<const CodeMemory> shared_code_;
   const void* enter_ = nullptr;

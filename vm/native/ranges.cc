@@ -69,8 +69,8 @@ class Ranges {
         return of(n.in[0], at, depth + 1);
       }
       case Op::kZext: {
-        const Range from = n.from == f_.values[n.in[0]].width ? of(n.in[0], at, depth + 1)
-                                                              : whole(n.from);
+        const Range from =
+            n.from == f_.values[n.in[0]].width ? of(n.in[0], at, depth + 1) : whole(n.from);
         if (from.low >= 0) return from;
         return n.from == 8 ? all : Range{0, (int64_t{1} << (8 * n.from)) - 1};
       }
@@ -115,11 +115,10 @@ class Ranges {
     if (!contains(all, a) || !contains(all, b)) return all;
     Range out;
     const bool minus = n.op == Op::kSub;
-    const bool wraps =
-        minus ? __builtin_sub_overflow(a.low, b.high, &out.low) ||
-                    __builtin_sub_overflow(a.high, b.low, &out.high)
-              : __builtin_add_overflow(a.low, b.low, &out.low) ||
-                    __builtin_add_overflow(a.high, b.high, &out.high);
+    const bool wraps = minus ? __builtin_sub_overflow(a.low, b.high, &out.low) ||
+                                   __builtin_sub_overflow(a.high, b.low, &out.high)
+                             : __builtin_add_overflow(a.low, b.low, &out.low) ||
+                                   __builtin_add_overflow(a.high, b.high, &out.high);
     return wraps || !contains(all, out) ? all : out;
   }
 
@@ -141,8 +140,8 @@ class Ranges {
     const Block block = f_.values[v].block;
     const Range all = whole(f_.values[v].width);
     const std::vector<Val>& params = f_.blocks[block].params;
-    const auto index = static_cast<size_t>(
-        std::find(params.begin(), params.end(), v) - params.begin());
+    const auto index =
+        static_cast<size_t>(std::find(params.begin(), params.end(), v) - params.begin());
     if (index == params.size()) return all;
     if (f_.blocks[block].resumes) return all;  // what an interrupted execution brings
     if (!f_.blocks[block].head) return join(block, index, depth);

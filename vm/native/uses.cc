@@ -44,8 +44,7 @@ void Uses::each_use(Visit visit) const {
   }
 }
 
-Uses::Uses(const Function& function, const Target& target)
-    : function_(function), target_(target) {
+Uses::Uses(const Function& function, const Target& target) : function_(function), target_(target) {
   const Function& f = function;
   uint32_t position = 0;
   std::vector<uint32_t> defined(f.values.size(), 0);

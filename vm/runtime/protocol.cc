@@ -156,6 +156,10 @@ void status_fields(A& a, T& report) {
   a(report.faulted);
   a(report.forces);
   memory_fields(a, report.memory);
+  a(report.pous);
+  a(report.native_pous);
+  a(report.native_bytes);
+  a.list(report.interpreted, kTextBytes);
   a.list(report.tasks, 130);
   a.list(report.traps, 28);
   a.list(report.devices, 40);

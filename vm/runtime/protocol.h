@@ -82,10 +82,15 @@ struct StatusReport {
   bool faulted = false;
   uint64_t forces = 0;
   MemoryReport memory;
+  uint64_t pous = 0;
+  uint64_t native_pous = 0;  // that run as machine code; 0: everything is interpreted
+  uint64_t native_bytes = 0;
+  std::vector<std::string> interpreted;  // "POU: why", the first few, where there is machine code
   std::vector<TaskStatus> tasks;
   std::vector<TrapRow> traps;
   std::vector<DeviceStatus> devices;
 };
+inline constexpr size_t kShownInterpreted = 8;
 
 struct ValueRow {
   std::string path;

@@ -66,8 +66,8 @@ ir::EvalMemory memory_of(const ir::Image& image, const ir::TypeTable& types) {
 base::Result<std::unique_ptr<Engine>> make_evaluator_engine(const Program& program) {
   base::Result<ir::VerifiedImage> image = link(program, nullptr, false);
   if (!image) return image.error();
-  return std::unique_ptr<Engine>(
-      std::make_unique<EvaluatorEngine>(program.program, memory_of(image->image(), program.program.types)));
+  return std::unique_ptr<Engine>(std::make_unique<EvaluatorEngine>(
+      program.program, memory_of(image->image(), program.program.types)));
 }
 
 }  // namespace golden

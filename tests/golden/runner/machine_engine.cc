@@ -94,7 +94,8 @@ class MachineEngine : public Engine {
       return std::string(ir::trap_name(first.trap.kind)) + " " + first.text.pou + ":" +
              std::to_string(first.text.line);
     }
-    bool hard = tier_ == Tier::kIdentity || tier_ == Tier::kAlternating || tier_ == Tier::kMoveAll || tier_ == Tier::kStandby;
+    bool hard = tier_ == Tier::kIdentity || tier_ == Tier::kAlternating ||
+                tier_ == Tier::kMoveAll || tier_ == Tier::kStandby;
     if (!hard || change_->state() == online_change::State::kTrial) return std::string();
     base::Status switched = tier_ == Tier::kStandby ? late_change() : hard_change();
     if (!switched.ok()) return switched.error();

@@ -8,7 +8,22 @@
 namespace vm::native::x64 {
 
 enum Register : uint8_t {
-  kRax, kRcx, kRdx, kRbx, kRsp, kRbp, kRsi, kRdi, kR8, kR9, kR10, kR11, kR12, kR13, kR14, kR15
+  kRax,
+  kRcx,
+  kRdx,
+  kRbx,
+  kRsp,
+  kRbp,
+  kRsi,
+  kRdi,
+  kR8,
+  kR9,
+  kR10,
+  kR11,
+  kR12,
+  kR13,
+  kR14,
+  kR15
 };
 
 struct Address {
@@ -29,8 +44,22 @@ struct Operand {
 };
 
 enum class Condition : uint8_t {
-  kOverflow, kNoOverflow, kBelow, kAboveOrEqual, kEqual, kNotEqual, kBelowOrEqual, kAbove,
-  kSign, kNoSign, kParity, kNoParity, kLess, kGreaterOrEqual, kLessOrEqual, kGreater
+  kOverflow,
+  kNoOverflow,
+  kBelow,
+  kAboveOrEqual,
+  kEqual,
+  kNotEqual,
+  kBelowOrEqual,
+  kAbove,
+  kSign,
+  kNoSign,
+  kParity,
+  kNoParity,
+  kLess,
+  kGreaterOrEqual,
+  kLessOrEqual,
+  kGreater
 };
 
 // 0: add, 1: or, 4: and, 5: sub, 6: xor, 7: cmp
@@ -51,7 +80,7 @@ class Assembler {
   void patch();  // once, when all labels are bound
 
   // Integer instructions work on `width` bytes.
-  void move(uint8_t to, uint8_t from);                       // 8 bytes
+  void move(uint8_t to, uint8_t from);  // 8 bytes
   void move_imm(uint8_t to, uint64_t bits);
   void load(uint8_t to, const Address& from, uint8_t width);  // zero-extended
   void load_signed(uint8_t to, Operand from, uint8_t width);  // to 8 bytes
@@ -89,7 +118,8 @@ class Assembler {
   void float_store(const Address& to, uint8_t from, uint8_t width);
   void float_op(uint8_t opcode, uint8_t to, Operand from, uint8_t width);  // 58 add, 59 mul ...
   void float_compare(uint8_t a, Operand b, uint8_t width);
-  void float_logic(uint8_t opcode, uint8_t to, uint8_t from);  // 54 and, 57 xor; of the whole register
+  void float_logic(uint8_t opcode, uint8_t to,
+                   uint8_t from);  // 54 and, 57 xor; of the whole register
   void float_from_integer(uint8_t to, uint8_t from, uint8_t width, uint8_t from_width);
   void integer_from_float(uint8_t to, uint8_t from, uint8_t from_width, bool truncate);
   void float_width(uint8_t to, Operand from, uint8_t from_width);

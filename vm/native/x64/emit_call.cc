@@ -13,9 +13,7 @@ constexpr uint8_t kSaved[] = {kRbp, kRbx, kR12, kR13, kR14, kR15};
 Address in_context(size_t offset) {
   return {kContextRegister, 0xff, 1, true, static_cast<int32_t>(offset)};
 }
-Address at_record(size_t member) {
-  return {kRcx, 0xff, 1, true, static_cast<int32_t>(member)};
-}
+Address at_record(size_t member) { return {kRcx, 0xff, 1, true, static_cast<int32_t>(member)}; }
 
 }  // namespace
 
@@ -120,7 +118,8 @@ void Emitter::activation(uint32_t number) {
   a_.jump(shared_.leave);
 }
 
-// The record of the call, the callee's frame and instance, and behind the call everything as before.
+// The record of the call, the callee's frame and instance, and behind the call everything as
+// before.
 void Emitter::call(const Node& n) {
   const Call& c = f_.calls[n.call];
   if (c.kind == CallKind::kSlow) return slow_call(c, n.call);

@@ -7,11 +7,10 @@ namespace vm::native::x64 {
 #define CONTEXT(member) context(offsetof(Context, member))
 
 Condition condition_of(Cond cond) {
-  constexpr Condition kOf[] = {Condition::kEqual,          Condition::kNotEqual,
-                               Condition::kLess,           Condition::kLessOrEqual,
-                               Condition::kGreater,        Condition::kGreaterOrEqual,
-                               Condition::kBelow,          Condition::kBelowOrEqual,
-                               Condition::kAbove,          Condition::kAboveOrEqual};
+  constexpr Condition kOf[] = {
+      Condition::kEqual,   Condition::kNotEqual,       Condition::kLess,  Condition::kLessOrEqual,
+      Condition::kGreater, Condition::kGreaterOrEqual, Condition::kBelow, Condition::kBelowOrEqual,
+      Condition::kAbove,   Condition::kAboveOrEqual};
   return kOf[static_cast<size_t>(cond)];
 }
 
@@ -138,7 +137,8 @@ void Emitter::loop_end(Block b) {
   const std::vector<Move>& edge = places_.blocks[b].edges[0];
   a_.alu_imm(Alu::kSub, Operand::of(kFuelRegister), 1, 8);
   const BasicBlock& head = f_.blocks[e.target[0]];
-  if (edge.empty() && (head.end.kind != EndKind::kBranch || !places_.blocks[e.target[0]].steps.empty())) {
+  if (edge.empty() &&
+      (head.end.kind != EndKind::kBranch || !places_.blocks[e.target[0]].steps.empty())) {
     a_.jump_if(Condition::kNotEqual, blocks_[e.target[0]]);
     return a_.jump(exit_label(e.exit));
   }
@@ -194,8 +194,8 @@ void Emitter::branch(Block b) {
 
 void Emitter::branch_integer(const End& e, const Place in[2], Label yes, Label no,
                              bool yes_is_next) {
-  const bool with_zero = in[1].kind == Place::kConstant && in[1].bits == 0 &&
-                         in[0].kind == Place::kRegister;
+  const bool with_zero =
+      in[1].kind == Place::kConstant && in[1].bits == 0 && in[0].kind == Place::kRegister;
   if (with_zero) {
     a_.test(integer_register(in[0]), integer_register(in[0]), e.width);
   } else if (in[0].kind != Place::kRegister) {
@@ -210,8 +210,7 @@ void Emitter::branch_integer(const End& e, const Place in[2], Label yes, Label n
   }
 }
 
-void Emitter::branch_float(const End& e, const Place in[2], Label yes, Label no,
-                           bool yes_is_next) {
+void Emitter::branch_float(const End& e, const Place in[2], Label yes, Label no, bool yes_is_next) {
   if (e.cond == Cond::kLtS || e.cond == Cond::kLeS) {
     // b < c is c above b: false for what is no number
     a_.float_compare(float_register(in[1]), operand(in[0]), e.width);

@@ -121,14 +121,14 @@ class Emitter {
   std::vector<Label> blocks_;
   std::vector<Label> exits_;
   std::vector<EdgeStub> edges_;
-  std::vector<std::pair<Label, uint32_t>> stops_;       // a helper that trapped: its unit
+  std::vector<std::pair<Label, uint32_t>> stops_;  // a helper that trapped: its unit
   struct CallStub {
     Label label;
     uint32_t side;
     uint32_t exit;
   };
   std::vector<CallStub> call_stubs_;  // out of fuel at a call
-  std::vector<Label> inlined_;  // by Function::inlined: makes the activation
+  std::vector<Label> inlined_;        // by Function::inlined: makes the activation
   Label leave_ = 0;
 };
 

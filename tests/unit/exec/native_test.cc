@@ -1,0 +1,130 @@
+// The native tier from source: what is inlined, hoisted and proven, what stays with the
+// interpreter, what a change shares. That it does the same is shown by the golden files and random
+// programs on all tiers.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "frontend/compile.h"
+#include "ir/lower/lower.h"
+#include "linker/link.h"
+#include "tests/unit/exec/machine.h"
+#include "vm/native/make_function.h"
+#include "vm/native/program.h"
+
+namespace {
+
+ir::Image build(const std::string& source, const ir::Image* base = nullptr) {
+  base::SourceMap sources;
+  sources.add("test.st", source);
+  base::Diagnostics diagnostics;
+  auto program = frontend::compile(sources, {}, diagnostics);
+  EXPECT_TRUE(program.has_value()) << source;
+  if (!program) return {};
+  std::vector<ir::Object> objects;
+  for (uint32_t i = 0; i < program->pous.size(); ++i) {
+    objects.push_back(*ir::lower(*program, ir::PouId(i)));
+  }
+  linker::Options options;
+  options.base = base;
+  auto image = linker::link(*program, objects, options);
+  EXPECT_TRUE(image.ok()) << (image.ok() ? "" : image.error().text);
+  return image.ok() ? std::move(*image) : ir::Image{};
+}
+
+// Of the functions' text: what stands behind the POU's name.
+std::string function_of(const ir::Image& image, const std::string& pou) {
+  const std::string all = "\n" + vm::native::functions_text(image);
+  const size_t at = all.find("\n" + pou + "\n");
+  EXPECT_NE(at, std::string::npos) << all;
+  return all.substr(at, all.find("\n\n", at + 1) - at);
+}
+
+bool has(const std::string& text, const std::string& what) {
+  return text.find(what) != std::string::npos;
+}
+
+TEST(Native, AChecksThatCountedLoopsProveAreGone) {
+  const std::string text = function_of(build(R"(
+PROGRAM Main VAR a : ARRAY[0..9] OF INT; i : INT; s : INT; END_VAR
+  FOR i := 0 TO 9 DO s := s + a[i]; END_FOR;
+END_PROGRAM)"),
+                                       "Main");
+  EXPECT_FALSE(has(text, ">=u")) << text;         // no bound is checked in the loop,
+  EXPECT_TRUE(has(text, "exitif.2 <s")) << text;  // but where it begins, what an interruption left
+  const std::string other = function_of(build(R"(
+PROGRAM Main VAR a : ARRAY[0..9] OF INT; i : INT; s : INT; END_VAR
+  FOR i := 0 TO 10 DO s := s + a[i]; END_FOR;
+END_PROGRAM)"),
+                                        "Main");
+  EXPECT_TRUE(has(other, ">=u")) << other;
+}
+
+TEST(Native, SmallBodiesAreInlinedAndLargeOnesCalled) {
+  const char* const source = R"(
+FUNCTION_BLOCK Counter VAR_INPUT up : BOOL; END_VAR VAR_OUTPUT n : INT; END_VAR
+  IF up THEN n := n + 1; END_IF;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Loops VAR i, n : INT; END_VAR
+  FOR i := 1 TO 3 DO n := n + i; END_FOR;
+END_FUNCTION_BLOCK
+PROGRAM Main VAR c : ARRAY[1..2] OF Counter; l : Loops; END_VAR
+  c[1](up := TRUE); l();
+END_PROGRAM)";
+  const std::string text = function_of(build(source), "Main");
+  EXPECT_TRUE(has(text, "enter.0")) << text;
+  EXPECT_TRUE(has(text, "call.0")) << text;
+}
+
+TEST(Native, ThePousItHasNoCodeForAreNamedWithTheReason) {
+  const ir::Image image = build(R"(
+PROGRAM Main VAR a, b : INT; END_VAR
+  __TRY a := a / b; __CATCH b := 1; __ENDTRY
+END_PROGRAM)");
+  sample::Machine machine(image);
+  ASSERT_TRUE(machine.good());
+  const vm::native::Program* const native = machine.generation().native();
+  if (native == nullptr) GTEST_SKIP() << "no native tier on this machine";
+  EXPECT_EQ(native->reason(0), "it has __TRY");
+  EXPECT_EQ(native->native_pous(), image.pous.size() - 1);
+}
+
+// Unchanged code stays where it is; a POU whose inlined callee changed is made anew.
+TEST(Native, AChangeMakesOnlyWhatItTouches) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
+  const auto source = [](const char* step) {
+    return std::string(R"(
+FUNCTION_BLOCK Small VAR_OUTPUT n : INT; END_VAR n := n + )") +
+           step + R"(; END_FUNCTION_BLOCK
+FUNCTION_BLOCK Other VAR i, n : INT; END_VAR FOR i := 1 TO 3 DO n := n + i; END_FOR; END_FUNCTION_BLOCK
+PROGRAM Main VAR s : Small; END_VAR s(); END_PROGRAM
+PROGRAM Second VAR o : Other; END_VAR o(); END_PROGRAM)";
+  };
+  const ir::Image first = build(source("1"));
+  const ir::Image second = build(source("2"), &first);
+  vm::Memory memory = *vm::Memory::reserve();
+  auto slots = std::make_shared<vm::CodeSlots>(1 << 20);
+  auto one =
+      vm::Generation::build(*ir::verify(ir::encode(first)), 0, memory.data(), slots, nullptr);
+  ASSERT_TRUE(one.ok());
+  auto two =
+      vm::Generation::build(*ir::verify(ir::encode(second)), 1, memory.data(), slots, one->get());
+  ASSERT_TRUE(two.ok());
+  for (uint32_t i = 0; i < second.pous.size(); ++i) {
+    const std::string& name = second.pous[i].name;
+    const bool same = (*one)->pous()[i].machine == (*two)->pous()[i].machine;
+    EXPECT_EQ(same, name == "Other" || name == "Second") << name;
+  }
+}
+
+// W^X: no memory can be written and executed.
+TEST(Native, NothingIsWritableAndExecutable) {
+  sample::Machine machine(build("PROGRAM Main VAR a : INT; END_VAR a := a + 1; END_PROGRAM"));
+  ASSERT_TRUE(machine.good());
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    EXPECT_FALSE(has(line, " rwx")) << line;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,60 @@
+#include "vm/native/make_function.h"
+
+#include "vm/native/build.h"
+#include "vm/native/loops.h"
+#include "vm/native/print.h"
+
+namespace vm::native {
+
+bool is_interpreted_at_random(const TierOptions& options, uint32_t pou) {
+  if (options.pou_seed == 0) return false;
+  uint64_t h = (options.pou_seed + pou) * 0x9e3779b97f4a7c15u;
+  h ^= h >> 29;
+  return (h * 0xbf58476d1ce4e5b9u >> 40 & 1) != 0;
+}
+
+Callee Bodies::callee(uint32_t pou, uint32_t caller) {
+  if (pou == caller || is_interpreted_at_random(options_, pou)) return {};
+  State& state = states_[pou];
+  if (!state.asked) {
+    state.asked = true;
+    if (is_small(image_, image_.pous[pou])) {
+      base::Result<Facts> facts = Facts::of(image_, image_.pous[pou]);
+      if (facts.ok()) state.function = std::make_unique<Function>(Builder(*facts).run());
+    }
+  }
+  return {state.function.get(), pous_[pou].code};
+}
+
+Function make_function(const Facts& facts, Bodies& bodies, uint32_t pou,
+                       std::vector<uint32_t>& inlined) {
+  Function function = Builder(facts).run();
+  inlined = inline_calls(function, [&](uint32_t callee) { return bodies.callee(callee, pou); });
+  choose(function);
+  insert_preheaders(function);
+  drop_proven_checks(function);
+  drop_unused(function);
+  hoist(function);
+  return function;
+}
+
+std::string functions_text(const ir::Image& image) {
+  const std::vector<PouEntry> pous(image.pous.size());
+  const TierOptions options;
+  Bodies bodies(image, pous, options);
+  std::string out;
+  for (uint32_t pou = 0; pou < image.pous.size(); ++pou) {
+    if (image.pous[pou].unit_count == 0) continue;
+    out += image.pous[pou].name + "\n";
+    base::Result<Facts> facts = Facts::of(image, image.pous[pou]);
+    if (!facts.ok()) {
+      out += "interpreted: " + facts.error().text + "\n\n";
+      continue;
+    }
+    std::vector<uint32_t> inlined;
+    out += print(make_function(*facts, bodies, pou, inlined)) + "\n";
+  }
+  return out;
+}
+
+}  // namespace vm::native

@@ -1,0 +1,44 @@
+// From the bytecode of a POU to the Function that registers are allocated for.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vm/exec/tier.h"
+#include "vm/load/generation.h"
+#include "vm/native/facts.h"
+#include "vm/native/inline.h"
+
+namespace vm::native {
+
+// Does the hard mode leave this POU to the interpreter?
+bool is_interpreted_at_random(const TierOptions& options, uint32_t pou);
+
+// Functions of small POUs, made when the first caller asks. Borrows everything.
+class Bodies {
+ public:
+  Bodies(const ir::Image& image, const std::vector<PouEntry>& pous, const TierOptions& options)
+      : image_(image), pous_(pous), options_(options), states_(pous.size()) {}
+  // What `caller` has in the place of a call of POU number `pou`.
+  Callee callee(uint32_t pou, uint32_t caller);
+
+ private:
+  struct State {
+    bool asked = false;
+    std::unique_ptr<Function> function;
+  };
+  const ir::Image& image_;
+  const std::vector<PouEntry>& pous_;
+  const TierOptions& options_;
+  std::vector<State> states_;
+};
+
+// `inlined`: the POUs whose bodies are in it.
+Function make_function(const Facts& facts, Bodies& bodies, uint32_t pou,
+                       std::vector<uint32_t>& inlined);
+
+// The Function of every POU as text, or why there is none, for `stc dump --native`.
+std::string functions_text(const ir::Image& image);
+
+}  // namespace vm::native

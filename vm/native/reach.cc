@@ -1,0 +1,139 @@
+// What stores through addresses may change.
+#include <algorithm>
+
+#include "ir/bytecode/regions.h"
+#include "stdlib/native/natives.h"
+#include "vm/native/facts.h"
+
+namespace vm::native {
+namespace {
+
+using ir::Opcode;
+
+constexpr size_t kMostParts = 6;
+
+bool stores_through(Opcode op) {
+  return (op >= Opcode::ST_B && op <= Opcode::ST_F64) || op == Opcode::ST_REF_AT ||
+         op == Opcode::COPY || op == Opcode::SCOPY || op == Opcode::WCOPY;
+}
+bool native_writes(const ir::Unit& unit) {
+  const std::string_view letters = stdlib::native_row(unit.c).arguments;
+  return letters.find_first_of("SW") != std::string_view::npos;
+}
+MemBase base_of(ir::Base base) {
+  if (base == ir::Base::kFrame) return MemBase::kFrame;
+  return base == ir::Base::kSelf ? MemBase::kSelf : MemBase::kData;
+}
+}  // namespace
+
+bool Reach::join(const Reach& other) {
+  if (everything) return false;
+  if (other.everything) return everything = true;
+  bool changed = other.own_instance && !own_instance;
+  own_instance |= other.own_instance;
+  for (const Part& part : other.parts) {
+    if (std::find(parts.begin(), parts.end(), part) != parts.end()) continue;
+    changed = true;
+    if (parts.size() == kMostParts) return everything = true;
+    parts.push_back(part);
+  }
+  return changed;
+}
+
+// What the address or string that the unit makes may point to.
+Reach Facts::reach_of_unit(uint32_t i) const {
+  const ir::Unit& unit = code_[i];
+  const ir::Unit& more = extension(i);
+  const Opcode op = unit.opcode();
+  Reach reach;
+  const auto of_slot = [&](uint32_t offset) {
+    const auto found = reach_.find(offset);
+    return found == reach_.end() ? Reach{} : found->second;
+  };
+  const auto size_of = [&](uint32_t field) {
+    return uint64_t{ir::region_size(image_->types, image_->layouts, ir::region_of_field(field))};
+  };
+  if (op >= Opcode::INDEX_PLACE_I8 && op <= Opcode::INDEX_PLACE_U64) {
+    const ir::LinkedBound& bound = image_->bounds[more.x()];
+    reach.parts.push_back({unit.base_c(), more.y(), more.y() + bound.count * bound.stride});
+  } else if (op >= Opcode::INDEX_I8 && op <= Opcode::INDEX_U64) {
+    return of_slot(unit.c);
+  } else if (op == Opcode::LEA) {
+    reach.parts.push_back({unit.base_b(), more.x(), more.x() + size_of(more.y())});
+  } else if (op == Opcode::LEA_AT || op == Opcode::MOV_A || op == Opcode::MOV_S ||
+             op == Opcode::MOV_W || op == Opcode::STR_AT || op == Opcode::WSTR_AT) {
+    return of_slot(unit.b);
+  } else if (op == Opcode::STR || op == Opcode::WSTR) {
+    const uint64_t unit_size = op == Opcode::STR ? 1 : 2;
+    reach.parts.push_back(
+        {unit.base_b(), more.x(), more.x() + (uint64_t{more.y()} + 1) * unit_size});
+  } else if (op == Opcode::INST) {
+    // What is inside of an instance is not the instance itself; a global one may be it.
+    reach.own_instance = unit.base_b() != ir::Base::kSelf;
+  } else if (op == Opcode::INST_AT) {
+    const Reach from = of_slot(unit.b);
+    reach.own_instance = from.everything || from.own_instance || from.parts.empty();
+    for (const Reach::Part& part : from.parts) {
+      reach.own_instance |= part.base != ir::Base::kSelf;
+    }
+  } else {
+    reach.everything = true;
+  }
+  return reach;
+}
+
+void Facts::find_reach() {
+  // Addresses that come from outside: in-out parameters.
+  for (const ir::FrameSlot& slot : pou_->slots) {
+    if (slot.kind == ir::SlotKind::kParam && !slot.aggregate) {
+      reach_[slot.offset].everything = true;
+    }
+  }
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (uint32_t i = 0; i < code_.size(); i = next(i)) {
+      const ir::Field& field = ir::opcode_row(code_[i].opcode()).a;
+      if (!field.is_near() || !field.writes()) continue;
+      if (field.cls != ir::Class::kA && field.cls != ir::Class::kS && field.cls != ir::Class::kW) {
+        continue;
+      }
+      if (code_[i].base_a() != ir::Base::kFrame) continue;
+      changed |= reach_[code_[i].a].join(reach_of_unit(i));
+    }
+  }
+}
+
+void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
+  const Opcode op = code_[i].opcode();
+  if (op == Opcode::NATIVE) {
+    const bool all = native_writes(code_[i]);
+    for (uint32_t v = 0; v < variables_.size(); ++v) {
+      const bool next_frame =
+          variables_[v].base == MemBase::kFrame && variables_[v].offset >= pou_->frame_size;
+      if (next_frame || (all && !variables_[v].slot && !variables_[v].constant)) out.push_back(v);
+    }
+    return;
+  }
+  if (!stores_through(op)) return;
+  const auto found = reach_.find(code_[i].a);
+  const bool known = found != reach_.end() && !found->second.everything;
+  for (uint32_t v = 0; v < variables_.size(); ++v) {
+    const Variable& variable = variables_[v];
+    if (variable.slot || variable.constant) continue;
+    bool may = !known || (found->second.own_instance && variable.base == MemBase::kSelf);
+    if (!may) {
+      for (const Reach::Part& part : found->second.parts) {
+        may |= base_of(part.base) == variable.base && variable.offset < part.end &&
+               part.begin < uint64_t{variable.offset} + variable.width;
+      }
+    }
+    if (may) out.push_back(v);
+  }
+}
+
+bool Facts::writes_memory(uint32_t i) const {
+  const Opcode op = code_[i].opcode();
+  return stores_through(op) || op == Opcode::NATIVE;
+}
+
+}  // namespace vm::native
