@@ -255,11 +255,12 @@ void Builder::forget_shared() {
   for (const Val v : now_.value) {
     if (v != kNone && !is_constant(v)) ++holders[v];
   }
+  std::vector<uint32_t> parameters = parameters_[block_];
+  std::sort(parameters.begin(), parameters.end());
   for (uint32_t v = 0; v < f_.variables.size(); ++v) {
     Val& value = now_.value[v];
     if (value == kNone || f_.variables[v].slot) continue;
-    const bool parameter = std::find(parameters_[block_].begin(), parameters_[block_].end(), v) !=
-                           parameters_[block_].end();
+    const bool parameter = has(parameters, v);
     if (is_constant(value) || (!parameter && holders[value] > 1)) value = kNone;
   }
 }

@@ -113,7 +113,7 @@ class Builder {
   uint32_t epoch_ = 0;              // values of earlier epochs are reached through variables only
   std::vector<uint32_t> epoch_of_;  // by value
   std::unordered_map<uint64_t, uint32_t> known_;    // hash of a pure node -> node
-  std::unordered_map<uint64_t, Val> constants_[3];  // by bits; of 4 or 8 bytes floating, integers
+  std::unordered_map<uint64_t, Val> constants_[8];  // by bits; of 4 or 8 bytes floating, integers
 };
 
 // Comparisons into the branches and selections that alone use them; what nothing uses is dead.

@@ -75,7 +75,8 @@ MemBase mem_base(ir::Base base) {
 
 Val Builder::constant(uint64_t bits_, uint8_t width, bool floating) {
   bits_ &= mask(width);
-  auto& known = constants_[floating ? (width == 4 ? 0 : 1) : 2];
+  // By width too: 16#FFFF is -1 in two bytes.
+  auto& known = constants_[(floating ? 4 : 0) + std::countr_zero(width)];
   const auto [at, added] = known.try_emplace(bits_, static_cast<Val>(f_.values.size()));
   if (added) {
     f_.values.push_back({floating, width, true, bits_, kNone, 0});

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "ir/bytecode/regions.h"
-
 namespace vm::native {
 namespace {
 
@@ -57,14 +55,13 @@ Accesses accesses_of(const ir::Unit& unit, const ir::Unit& extension) {
   return out;
 }
 
-base::Result<Facts> Facts::of(const ir::Image& image, const ir::LinkedPou& pou) {
+base::Result<Facts> Facts::of(const ir::Image& image, const ImageFacts& common,
+                              const ir::LinkedPou& pou) {
   Facts facts;
+  facts.common_ = &common;
   facts.image_ = &image;
   facts.pou_ = &pou;
   facts.code_ = std::span(image.code).subspan(pou.first_unit, pou.unit_count);
-  for (const ir::LinkedPou& other : image.pous) {
-    facts.recursive_bodies_ |= ir::is_body(other.kind) && other.recursion_depth != 0;
-  }
   std::string why;
   if (!facts.find_blocks(why) || !facts.find_loops(why)) {
     return base::Error{base::Refusal::kTooLarge, why};
@@ -73,6 +70,7 @@ base::Result<Facts> Facts::of(const ir::Image& image, const ir::LinkedPou& pou) 
   facts.find_variables();
   facts.find_overlaps();
   facts.find_reach();
+  if (!facts.fits(why)) return base::Error{base::Refusal::kTooLarge, why};
   facts.find_loop_effects();
   if (!facts.find_liveness(why)) return base::Error{base::Refusal::kTooLarge, why};
   return facts;
@@ -162,14 +160,6 @@ bool Facts::find_loops(std::string& why) {
   return true;
 }
 
-uint32_t Facts::slot_number(uint32_t offset) const {
-  const auto behind =
-      std::upper_bound(pou_->slots.begin(), pou_->slots.end(), offset,
-                       [](uint32_t at, const ir::FrameSlot& slot) { return at < slot.offset; });
-  return behind == pou_->slots.begin() ? kNone
-                                       : static_cast<uint32_t>(behind - pou_->slots.begin() - 1);
-}
-
 void Facts::find_pinned() {
   pinned_.assign(pou_->slots.size(), false);
   for (uint32_t i = 0; i < code_.size(); i = next(i)) {
@@ -179,7 +169,7 @@ void Facts::find_pinned() {
     if (!by_b && !by_c) continue;
     if ((by_b ? code_[i].base_b() : code_[i].base_c()) != ir::Base::kFrame) continue;
     const uint32_t offset = by_b ? code_[i + 1].x() : code_[i + 1].y();
-    const uint32_t slot = offset < pou_->frame_size ? slot_number(offset) : kNone;
+    const uint32_t slot = offset < pou_->frame_size ? slot_number(*pou_, offset) : kNone;
     if (slot != kNone) pinned_[slot] = true;
   }
 }
@@ -204,7 +194,7 @@ void Facts::find_variables() {
       v.constant = access.id;
       v.written = access.writes;
       if (access.base == ir::Base::kFrame && access.offset < pou_->frame_size) {
-        const uint32_t slot = slot_number(access.offset);
+        const uint32_t slot = slot_number(*pou_, access.offset);
         v.slot = slot != kNone && !pinned_[slot] && !pou_->slots[slot].aggregate &&
                  pou_->slots[slot].offset == access.offset;
       }
@@ -284,7 +274,7 @@ bool Facts::find_liveness(std::string& why) {
   std::vector<uint64_t> slots(words_, 0);
   for (uint32_t v = 0; v < variables_.size(); ++v) {
     if (!variables_[v].slot) continue;
-    const ir::FrameSlot& slot = pou_->slots[slot_number(variables_[v].offset)];
+    const ir::FrameSlot& slot = pou_->slots[slot_number(*pou_, variables_[v].offset)];
     const bool result =
         slot.kind == ir::SlotKind::kParam &&
         (slot.local == ir::LocalKind::kOutput || slot.local == ir::LocalKind::kReturn);
@@ -365,31 +355,18 @@ bool Facts::live_out(Block block, uint32_t variable) const {
   return false;
 }
 
-uint32_t Facts::called_body(uint32_t i) const {
-  const ir::Unit& u = code_[i];
-  ir::Region region;
-  uint32_t offset = 0;
-  if (u.opcode() == Opcode::CALL_INST_AT) {
-    const uint32_t slot = slot_number(u.b);
-    if (slot == kNone) return kNone;
-    region = pou_->slots[slot].region;
-    offset = u.c;
-  } else if (u.base_b() == ir::Base::kSelf) {
-    region = {pou_->self, 0};
-    offset = u.bc();
-  } else {
-    return kNone;
+// Displacements of instructions are signed numbers of 32 bits.
+bool Facts::fits(std::string& why) const {
+  constexpr uint64_t kMost = (uint64_t{1} << 31) - (uint64_t{1} << 20);
+  bool good = true;
+  for (const Variable& v : variables_) good &= v.base == MemBase::kData || v.offset < kMost;
+  for (const auto& [offset, reach] : reach_) {
+    for (const Reach::Part& part : reach.parts) {
+      good &= part.base == ir::Base::kGlobal || part.end < kMost;
+    }
   }
-  if (!region.type.valid()) return kNone;
-  const auto is_slot = [](const ir::Leaf& leaf) {
-    return leaf.kind == ir::LeafKind::kInstanceSlot;
-  };
-  const auto leaf = ir::leaf_at(image_->types, image_->layouts, region, offset);
-  if (!leaf || !is_slot(*leaf)) return kNone;
-  for (uint32_t p = 0; p < image_->pous.size(); ++p) {
-    if (ir::is_body(image_->pous[p].kind) && image_->pous[p].self == leaf->type) return p;
-  }
-  return kNone;
+  if (!good) why = "its variables lie too far apart";
+  return good;
 }
 
 }  // namespace vm::native

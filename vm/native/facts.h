@@ -51,10 +51,23 @@ struct UnitRange {
   uint32_t last = 0;  // the last instruction
 };
 
+// What all POUs of an image have in common.
+struct ImageFacts {
+  explicit ImageFacts(const ir::Image& image);
+  std::vector<uint32_t> body_of;  // by type: the POU that runs when its instance is called; kNone
+  bool recursive_bodies = false;  // does any block call itself?
+};
+// The frame slot that covers the offset, or the last one in front of it; kNone: there is none.
+uint32_t slot_number(const ir::LinkedPou& pou, uint32_t offset);
+// The POU that a CALL_INST or CALL_INST_AT runs; kNone: it depends.
+uint32_t called_body(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
+                     const ir::Unit& unit);
+
 class Facts {
  public:
-  // kTooLarge and others: why this POU stays with the interpreter.
-  static base::Result<Facts> of(const ir::Image& image, const ir::LinkedPou& pou);
+  // kTooLarge and others: why this POU stays with the interpreter. Borrows everything.
+  static base::Result<Facts> of(const ir::Image& image, const ImageFacts& common,
+                                const ir::LinkedPou& pou);
 
   const ir::Image& image() const { return *image_; }
   const ir::LinkedPou& pou() const { return *pou_; }
@@ -96,14 +109,16 @@ class Facts {
   const std::vector<uint32_t>& live_behind(uint32_t unit) const;
   // Slots that the caller reads.
   const std::vector<uint32_t>& results() const { return results_; }
-  // The POU that a CALL_INST or CALL_INST_AT runs; kNone: it depends.
-  uint32_t called_body(uint32_t unit) const;
-  bool recursive_bodies() const { return recursive_bodies_; }
+  uint32_t called_body(uint32_t unit) const {
+    return native::called_body(*image_, *common_, *pou_, code_[unit]);
+  }
+  bool recursive_bodies() const { return common_->recursive_bodies; }
   void successors(Block block, Block out[2], uint32_t& count) const;
 
  private:
   bool find_blocks(std::string& why);
   bool find_loops(std::string& why);
+  bool fits(std::string& why) const;
   void find_pinned();
   void find_variables();
   void find_overlaps();
@@ -111,9 +126,9 @@ class Facts {
   Reach reach_of_unit(uint32_t unit) const;
   void find_loop_effects();
   bool find_liveness(std::string& why);
-  uint32_t slot_number(uint32_t offset) const;
 
   const ir::Image* image_ = nullptr;
+  const ImageFacts* common_ = nullptr;
   const ir::LinkedPou* pou_ = nullptr;
   std::span<const ir::Unit> code_;
   std::vector<UnitRange> blocks_;
@@ -129,7 +144,6 @@ class Facts {
   std::vector<std::vector<uint32_t>> overlaps_;
   std::unordered_map<uint32_t, Reach> reach_;  // by offset of a frame slot
   std::vector<uint32_t> results_;
-  bool recursive_bodies_ = false;  // does any block of the image call itself?
   size_t words_ = 0;
   std::vector<uint64_t> live_in_;
   std::unordered_map<uint32_t, std::vector<uint32_t>> live_behind_;

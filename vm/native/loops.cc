@@ -21,7 +21,8 @@ bool is_movable(const Node& n) {
     case Op::kEnter:
       return false;
     case Op::kLoad:
-      return n.immutable;
+      // An index may not have been checked where the loop is not entered.
+      return n.immutable && n.mem.index == kNone;
     default:
       return true;
   }
@@ -51,10 +52,10 @@ class Hoister {
   // Blocks that every whole turn goes through, from the head on.
   std::vector<Block> always(const Loop& loop) const {
     std::vector<Block> out;
-    std::vector<uint32_t> ways(f_.blocks.size(), 0);
+    std::vector<uint32_t> ways(loop.last - loop.head + 1, 0);
     for (Block b = loop.head; b <= loop.last; ++b) {
       for (const Block to : f_.blocks[b].end.target) {
-        if (to != kNone && to > b) ++ways[to];
+        if (to != kNone && to > b && to <= loop.last) ++ways[to - loop.head];
       }
     }
     Block at = loop.head;
@@ -67,7 +68,7 @@ class Hoister {
         ++inside;
         next = to;
       }
-      if (inside != 1 || ways[next] != 1) return out;
+      if (inside != 1 || ways[next - loop.head] != 1) return out;
       at = next;
     }
   }

@@ -19,7 +19,7 @@ Callee Bodies::callee(uint32_t pou, uint32_t caller) {
   if (!state.asked) {
     state.asked = true;
     if (is_small(image_, image_.pous[pou])) {
-      base::Result<Facts> facts = Facts::of(image_, image_.pous[pou]);
+      base::Result<Facts> facts = Facts::of(image_, common_, image_.pous[pou]);
       if (facts.ok()) state.function = std::make_unique<Function>(Builder(*facts).run());
     }
   }
@@ -41,12 +41,13 @@ Function make_function(const Facts& facts, Bodies& bodies, uint32_t pou,
 std::string functions_text(const ir::Image& image) {
   const std::vector<PouEntry> pous(image.pous.size());
   const TierOptions options;
-  Bodies bodies(image, pous, options);
+  const ImageFacts common(image);
+  Bodies bodies(image, common, pous, options);
   std::string out;
   for (uint32_t pou = 0; pou < image.pous.size(); ++pou) {
     if (image.pous[pou].unit_count == 0) continue;
     out += image.pous[pou].name + "\n";
-    base::Result<Facts> facts = Facts::of(image, image.pous[pou]);
+    base::Result<Facts> facts = Facts::of(image, common, image.pous[pou]);
     if (!facts.ok()) {
       out += "interpreted: " + facts.error().text + "\n\n";
       continue;

@@ -18,8 +18,10 @@ bool is_interpreted_at_random(const TierOptions& options, uint32_t pou);
 // Functions of small POUs, made when the first caller asks. Borrows everything.
 class Bodies {
  public:
-  Bodies(const ir::Image& image, const std::vector<PouEntry>& pous, const TierOptions& options)
-      : image_(image), pous_(pous), options_(options), states_(pous.size()) {}
+  Bodies(const ir::Image& image, const ImageFacts& common, const std::vector<PouEntry>& pous,
+         const TierOptions& options)
+      : image_(image), common_(common), pous_(pous), options_(options), states_(pous.size()) {}
+  const ImageFacts& common() const { return common_; }
   // What `caller` has in the place of a call of POU number `pou`.
   Callee callee(uint32_t pou, uint32_t caller);
 
@@ -29,6 +31,7 @@ class Bodies {
     std::unique_ptr<Function> function;
   };
   const ir::Image& image_;
+  const ImageFacts& common_;
   const std::vector<PouEntry>& pous_;
   const TierOptions& options_;
   std::vector<State> states_;

@@ -47,10 +47,14 @@ ir::Unit stop_unit() {
 }
 
 // Constants, bounds, ranges and callees that the units name by number.
-std::vector<uint64_t> facts_of(const ir::Image& image, const ir::LinkedPou& pou) {
-  std::vector<uint64_t> out = {pou.frame_size, pou.slots.size(), pou.merges.size()};
+std::vector<uint64_t> facts_of(const ir::Image& image, const ImageFacts& common,
+                               const ir::LinkedPou& pou) {
+  std::vector<uint64_t> out = {pou.frame_size, pou.slots.size(), pou.merges.size(),
+                               common.recursive_bodies ? 1u : 0u};
   for (const ir::FrameSlot& slot : pou.slots) {
-    out.push_back(uint64_t{slot.offset} << 8 | static_cast<uint64_t>(slot.cls));
+    out.push_back(uint64_t{slot.offset} << 32 | static_cast<uint64_t>(slot.cls) << 24 |
+                  static_cast<uint64_t>(slot.kind) << 16 | static_cast<uint64_t>(slot.local) << 8 |
+                  (slot.aggregate ? 1u : 0u));
   }
   const std::span code = std::span(image.code).subspan(pou.first_unit, pou.unit_count);
   for (uint32_t i = 0; i < code.size(); ++i) {
@@ -73,6 +77,9 @@ std::vector<uint64_t> facts_of(const ir::Image& image, const ir::LinkedPou& pou)
     }
     if (row.c.kind == ir::FieldKind::kCode) out.push_back(image.pous[u.c].recursion_depth);
     if (row.x.kind == ir::FieldKind::kCode) out.push_back(image.pous[x.x()].recursion_depth);
+    if (u.opcode() == ir::Opcode::CALL_INST || u.opcode() == ir::Opcode::CALL_INST_AT) {
+      out.push_back(called_body(image, common, pou, u));
+    }
     if (u.opcode() == ir::Opcode::LEA) {
       out.push_back(ir::region_size(image.types, image.layouts, ir::region_of_field(x.y())));
     }
@@ -140,7 +147,7 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
     work.pou->reason = "it is too large";
     return false;
   }
-  base::Result<Facts> facts = Facts::of(image, pou);
+  base::Result<Facts> facts = Facts::of(image, bodies.common(), pou);
   if (!facts.ok()) {
     work.pou->reason = facts.error().text;
     return false;
@@ -203,9 +210,10 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector
   host::Assembler assembler;
   const host::Shared shared = host::emit_shared(assembler);
   std::vector<Work> all;
-  Bodies bodies(image, pous, options);
+  const ImageFacts common(image);
+  Bodies bodies(image, common, pous, options);
   std::vector<std::vector<uint64_t>> facts_by_pou;
-  for (const ir::LinkedPou& pou : image.pous) facts_by_pou.push_back(facts_of(image, pou));
+  for (const ir::LinkedPou& pou : image.pous) facts_by_pou.push_back(facts_of(image, common, pou));
   // Is what runs of a POU, or was inlined of it, still right?
   const auto is_same = [&](uint32_t number) {
     if (running == nullptr || number >= running->pous_.size() || number >= pous.size())

@@ -8,6 +8,7 @@ namespace vm::native {
 namespace {
 
 constexpr uint32_t kDeepest = 12;
+constexpr uint32_t kMostSteps = 300;  // for one question
 
 struct Range {
   int64_t low = INT64_MIN;
@@ -40,6 +41,8 @@ class Ranges {
  public:
   explicit Ranges(const Function& f) : f_(f) {
     ways_in_.resize(f.blocks.size());
+    loop_at_.assign(f.blocks.size(), kNone);
+    for (uint32_t l = 0; l < f.loops.size(); ++l) loop_at_[f.loops[l].head] = l;
     for (Block b = 0; b < f.blocks.size(); ++b) {
       const End& end = f.blocks[b].end;
       for (uint32_t i = 0; i < 2; ++i) {
@@ -50,7 +53,10 @@ class Ranges {
 
   // What the answers since the last clear() rely on.
   const std::vector<Assumption>& used() const { return used_; }
-  void clear() { used_.clear(); }
+  void clear() {
+    used_.clear();
+    steps_ = 0;
+  }
 
   // As a signed number of its width, where `at` is executed.
   Range of(Val v, Block at, uint32_t depth = 0) {
@@ -60,7 +66,7 @@ class Ranges {
       return {number, number};
     }
     const Range all = whole(value.width);
-    if (depth > kDeepest || value.floating || crosses(v, at)) return all;
+    if (++steps_ > kMostSteps || depth > kDeepest || value.floating || crosses(v, at)) return all;
     if (value.node == kNone) return parameter(v, at, depth);
     const Node& n = f_.nodes[value.node];
     switch (n.op) {
@@ -153,7 +159,8 @@ class Ranges {
       const Val arg = f_.blocks[from].end.args[target][index];
       if (f_.blocks[from].end.kind != EndKind::kLoop) {
         // Through the block in front: what was before, or what the loop itself had made.
-        const Range r = before(from, arg, depth);
+        Range r = before(from, arg, depth);
+        if (!contains(all, r)) r = all;  // its low bytes are another number
         first = {std::min(first.low, r.low), std::max(first.high, r.high)};
         continue;
       }
@@ -187,9 +194,11 @@ class Ranges {
   }
 
   Range join(Block block, size_t index, uint32_t depth) {
+    const Range all = whole(f_.values[f_.blocks[block].params[index]].width);
     Range out{INT64_MAX, INT64_MIN};
     for (const auto& [from, target] : ways_in_[block]) {
-      const Range r = of(f_.blocks[from].end.args[target][index], from, depth + 4);
+      Range r = of(f_.blocks[from].end.args[target][index], from, depth + 4);
+      if (!contains(all, r)) r = all;
       out = {std::min(out.low, r.low), std::max(out.high, r.high)};
     }
     return out;
@@ -205,10 +214,7 @@ class Ranges {
   }
 
   const Loop* loop_at(Block head) const {
-    for (const Loop& loop : f_.loops) {
-      if (loop.head == head) return &loop;
-    }
-    return nullptr;
+    return loop_at_[head] == kNone ? nullptr : &f_.loops[loop_at_[head]];
   }
 
   // The last number with which the head goes on.
@@ -234,6 +240,8 @@ class Ranges {
   const Function& f_;
   std::vector<std::vector<std::pair<Block, uint32_t>>> ways_in_;
   std::vector<Assumption> used_;
+  std::vector<uint32_t> loop_at_;  // by head; kNone: no head
+  uint32_t steps_ = 0;
 };
 
 // Is the answer always no?

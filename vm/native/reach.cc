@@ -46,9 +46,10 @@ Reach Facts::reach_of_unit(uint32_t i) const {
   const ir::Unit& more = extension(i);
   const Opcode op = unit.opcode();
   Reach reach;
-  const auto of_slot = [&](uint32_t offset) {
+  const auto of_slot = [&](ir::Base base, uint32_t offset) {
     const auto found = reach_.find(offset);
-    return found == reach_.end() ? Reach{} : found->second;
+    const bool known = base == ir::Base::kFrame && found != reach_.end();
+    return known ? found->second : Reach{true, false, {}};
   };
   const auto size_of = [&](uint32_t field) {
     return uint64_t{ir::region_size(image_->types, image_->layouts, ir::region_of_field(field))};
@@ -57,12 +58,12 @@ Reach Facts::reach_of_unit(uint32_t i) const {
     const ir::LinkedBound& bound = image_->bounds[more.x()];
     reach.parts.push_back({unit.base_c(), more.y(), more.y() + bound.count * bound.stride});
   } else if (op >= Opcode::INDEX_I8 && op <= Opcode::INDEX_U64) {
-    return of_slot(unit.c);
+    return of_slot(unit.base_c(), unit.c);
   } else if (op == Opcode::LEA) {
     reach.parts.push_back({unit.base_b(), more.x(), more.x() + size_of(more.y())});
   } else if (op == Opcode::LEA_AT || op == Opcode::MOV_A || op == Opcode::MOV_S ||
              op == Opcode::MOV_W || op == Opcode::STR_AT || op == Opcode::WSTR_AT) {
-    return of_slot(unit.b);
+    return of_slot(unit.base_b(), unit.b);
   } else if (op == Opcode::STR || op == Opcode::WSTR) {
     const uint64_t unit_size = op == Opcode::STR ? 1 : 2;
     reach.parts.push_back(
@@ -71,7 +72,7 @@ Reach Facts::reach_of_unit(uint32_t i) const {
     // What is inside of an instance is not the instance itself; a global one may be it.
     reach.own_instance = unit.base_b() != ir::Base::kSelf;
   } else if (op == Opcode::INST_AT) {
-    const Reach from = of_slot(unit.b);
+    const Reach from = of_slot(unit.base_b(), unit.b);
     reach.own_instance = from.everything || from.own_instance || from.parts.empty();
     for (const Reach::Part& part : from.parts) {
       reach.own_instance |= part.base != ir::Base::kSelf;
@@ -87,6 +88,13 @@ void Facts::find_reach() {
   for (const ir::FrameSlot& slot : pou_->slots) {
     if (slot.kind == ir::SlotKind::kParam && !slot.aggregate) {
       reach_[slot.offset].everything = true;
+    }
+  }
+  // What a unit writes points nowhere until that unit is looked at.
+  for (uint32_t i = 0; i < code_.size(); i = next(i)) {
+    const ir::Field& field = ir::opcode_row(code_[i].opcode()).a;
+    if (field.is_near() && field.writes() && code_[i].base_a() == ir::Base::kFrame) {
+      reach_.try_emplace(code_[i].a);
     }
   }
   for (bool changed = true; changed;) {

@@ -15,11 +15,10 @@ Recipe make(Shape shape, Op op, uint8_t width, uint8_t from = 0, Cond cond = Con
 #define ROW(name, ...) table[static_cast<size_t>(ir::Opcode::name)] = make(__VA_ARGS__)
 #define WORDS(M) M(8, 1) M(16, 2) M(32, 4) M(64, 8)
 #define FLOATS(M) M(F32, 4) M(F64, 8)
-#define INTEGERS(M)                                                                 \
-  M(I8, 1, true)                                                                    \
-  M(I16, 2, true)                                                                   \
-  M(I32, 4, true) M(I64, 8, true) M(U8, 1, false) M(U16, 2, false) M(U32, 4, false) \
-      M(U64, 8, false)
+#define INTEGERS(M) \
+  M(I8, 1, true)    \
+  M(I16, 2, true)   \
+  M(I32, 4, true) M(I64, 8, true) M(U8, 1, false) M(U16, 2, false) M(U32, 4, false) M(U64, 8, false)
 
 void add_words(Table& table) {
 #define M(s, w)                                                \
@@ -140,7 +139,9 @@ void add_conversions(Table& table) {
   ROW(ZEXT_##from##_##to, Shape::kExtend, Op::kZext, to / 8, from / 8);
   M(8, 16)
   M(8, 32)
-  M(8, 64) M(16, 32) M(16, 64) M(32, 64)
+  M(8, 64)
+  M(16, 32)
+  M(16, 64) M(32, 64)
 #undef M
 #define M(from, to) ROW(NARROW_##from##_##to, Shape::kSame, Op::kConst, to / 8, from / 8);
       M(16, 8) M(32, 8) M(32, 16) M(64, 8) M(64, 16) M(64, 32)

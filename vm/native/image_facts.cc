@@ -1,0 +1,49 @@
+// What follows from the tables of an image, whatever the code of a POU is.
+#include <algorithm>
+
+#include "ir/bytecode/regions.h"
+#include "vm/native/facts.h"
+
+namespace vm::native {
+
+using ir::Opcode;
+
+uint32_t slot_number(const ir::LinkedPou& pou, uint32_t offset) {
+  const auto behind =
+      std::upper_bound(pou.slots.begin(), pou.slots.end(), offset,
+                       [](uint32_t at, const ir::FrameSlot& slot) { return at < slot.offset; });
+  return behind == pou.slots.begin() ? kNone
+                                     : static_cast<uint32_t>(behind - pou.slots.begin() - 1);
+}
+
+uint32_t called_body(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
+                     const ir::Unit& u) {
+  ir::Region region;
+  uint32_t offset = 0;
+  if (u.opcode() == Opcode::CALL_INST_AT) {
+    const uint32_t slot = slot_number(pou, u.b);
+    if (slot == kNone) return kNone;
+    region = pou.slots[slot].region;
+    offset = u.c;
+  } else if (u.base_b() == ir::Base::kSelf) {
+    region = {pou.self, 0};
+    offset = u.bc();
+  } else {
+    return kNone;
+  }
+  if (!region.type.valid()) return kNone;
+  const auto leaf = ir::leaf_at(image.types, image.layouts, region, offset);
+  if (!leaf || leaf->kind != ir::LeafKind::kInstanceSlot) return kNone;
+  return common.body_of[leaf->type.index];
+}
+
+ImageFacts::ImageFacts(const ir::Image& image) : body_of(image.types.size(), kNone) {
+  for (uint32_t p = 0; p < image.pous.size(); ++p) {
+    const ir::LinkedPou& pou = image.pous[p];
+    if (!ir::is_body(pou.kind)) continue;
+    if (pou.self.valid()) body_of[pou.self.index] = p;
+    recursive_bodies |= pou.recursion_depth != 0;
+  }
+}
+
+}  // namespace vm::native
