@@ -137,15 +137,8 @@ class Sema {
   // The POU whose names are visible; set while anything of it is resolved.
   class Within {
    public:
-    Within(Sema& sema, uint32_t pou)
-        : sema_(sema), saved_(sema.current_pou_), saved_meaning_(sema.meaning_) {
-      sema_.current_pou_ = pou;
-      sema_.meaning_ = pou == kNoPou ? nullptr : sema_.pous[pou].meaning.get();
-    }
-    ~Within() {
-      sema_.current_pou_ = saved_;
-      sema_.meaning_ = saved_meaning_;
-    }
+    Within(Sema& sema, uint32_t pou);
+    ~Within();
     Within(const Within&) = delete;
     Within& operator=(const Within&) = delete;
 
