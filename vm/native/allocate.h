@@ -88,8 +88,8 @@ struct AllocatorOptions {
 base::Result<Allocated> allocate(const Function& function, const Target& target,
                                  const AllocatorOptions& options);
 
-// One after the other, so that nothing is overwritten that a later one reads. `scratch` stands for
-// registers that nothing else uses.
-std::vector<Move> in_sequence(std::vector<Move> moves, Place scratch, Place float_scratch);
+// One after the other, so that nothing is overwritten that a later one reads. `aside` stands for a
+// register that nothing else uses.
+std::vector<Move> in_sequence(std::vector<Move> moves, Place aside);
 
 }  // namespace vm::native

@@ -7,8 +7,8 @@ namespace vm::native {
 namespace {
 
 constexpr uint32_t kFreeInLoops = 2;  // registers for what the body computes
-constexpr Place kScratch{Place::kRegister, false, false, kMostRegisters, 0};
-constexpr Place kFloatScratch{Place::kRegister, true, false, kMostRegisters, 0};
+// A register that nothing else uses; a target knows it by its number.
+constexpr Place kAside{Place::kRegister, true, false, kMostRegisters, 0};
 
 }  // namespace
 
@@ -271,7 +271,7 @@ std::vector<Move> Allocator::edge(Block from, uint32_t target, const Snapshot& h
       moves.push_back({{Place::kSpill, floating(held.v), false, held.slot, 0}, origin, width});
     }
   }
-  return in_sequence(std::move(moves), kScratch, kFloatScratch);
+  return in_sequence(std::move(moves), kAside);
 }
 
 // The interpreter stopped here and everything is in memory again.

@@ -180,8 +180,7 @@ bool same_place(const Place& a, const Place& b) {
 
 }  // namespace
 
-std::vector<Move> in_sequence(std::vector<Move> moves, Place scratch, Place float_scratch) {
-  static_cast<void>(scratch);
+std::vector<Move> in_sequence(std::vector<Move> moves, Place aside) {
   std::erase_if(moves, [](const Move& m) { return same_place(m.to, m.from); });
   std::vector<Move> out;
   while (!moves.empty()) {
@@ -199,7 +198,6 @@ std::vector<Move> in_sequence(std::vector<Move> moves, Place scratch, Place floa
     if (found) continue;
     // A circle: the first one's source waits elsewhere.
     const Place from = moves[0].from;
-    Place aside = float_scratch;
     out.push_back({aside, from, 8});
     for (Move& m : moves) {
       if (same_place(m.from, from)) m.from = aside;

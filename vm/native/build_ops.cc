@@ -343,13 +343,13 @@ void Builder::store_at(const Recipe& recipe) {
 
 // By the interpreter's own handler.
 void Builder::helper() {
-  for (const Access& access : accesses_of(u_, x_)) {
+  for (const Access& access : accesses_of(u_)) {
     const uint32_t v = access.reads ? facts_.variable(access) : kNone;
     if (v != kNone && f_.variables[v].slot) store_slot(v);
   }
   append(node(Op::kHelper, 0));
   if (facts_.writes_memory(unit_)) kill_memory();
-  for (const Access& access : accesses_of(u_, x_)) {
+  for (const Access& access : accesses_of(u_)) {
     if (!access.writes) continue;
     const uint32_t v = facts_.variable(access);
     now_.value[v] = kNone;

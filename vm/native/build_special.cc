@@ -102,7 +102,7 @@ void Builder::call(CallKind kind, uint32_t pou, Val id) {
   Node made = node(Op::kCall, 0, id, area);
   if (kind == CallKind::kSlow) {
     made.in[0] = made.in[1] = kNone;
-    for (const Access& access : accesses_of(u_, x_)) {
+    for (const Access& access : accesses_of(u_)) {
       const uint32_t v = access.reads ? facts_.variable(access) : kNone;
       if (v != kNone && f_.variables[v].slot) store_slot(v);
     }

@@ -353,7 +353,7 @@ uint32_t Builder::exit_here(bool everything) {
   if (everything) {
     for (const uint32_t v : facts_.live_behind(unit_)) add(v);
   }
-  for (const Access& access : accesses_of(u_, x_)) {
+  for (const Access& access : accesses_of(u_)) {
     if (access.reads) add(facts_.variable(access));
   }
   f_.exits.push_back(std::move(exit));

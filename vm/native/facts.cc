@@ -36,8 +36,7 @@ void add(Accesses& out, const ir::Field& field, ir::Base base, uint16_t offset) 
 
 bool is_call(Opcode op) { return ir::opcode_row(op).calls; }
 
-Accesses accesses_of(const ir::Unit& unit, const ir::Unit& extension) {
-  static_cast<void>(extension);
+Accesses accesses_of(const ir::Unit& unit) {
   const Opcode op = unit.opcode();
   const ir::OpcodeRow& row = ir::opcode_row(op);
   Accesses out;
@@ -176,7 +175,7 @@ void Facts::find_pinned() {
 
 void Facts::find_variables() {
   for (uint32_t i = 0; i < code_.size(); i = next(i)) {
-    for (const Access& access : accesses_of(code_[i], extension(i))) {
+    for (const Access& access : accesses_of(code_[i])) {
       if (access.base == ir::Base::kConst) continue;
       const auto [at, added] =
           numbers_.try_emplace(key_of(access), static_cast<uint32_t>(variables_.size()));
@@ -242,7 +241,7 @@ void Facts::find_loop_effects() {
     const uint32_t behind = blocks_[loop.last].behind;
     for (uint32_t i = blocks_[loop.head].first; i < behind; i = next(i)) {
       if (is_call(code_[i].opcode())) loop_calls_[l] = true;
-      for (const Access& access : accesses_of(code_[i], extension(i))) {
+      for (const Access& access : accesses_of(code_[i])) {
         const uint32_t v = variable(access);
         if (v != kNone && access.reads) loop_reads_[l].push_back(v);
         if (!access.writes) continue;
@@ -306,7 +305,7 @@ bool Facts::find_liveness(std::string& why) {
           }
         }
       }
-      const Accesses all = accesses_of(code_[*at], extension(*at));
+      const Accesses all = accesses_of(code_[*at]);
       for (const Access& access : all) {
         if (!access.writes || access.reads) continue;
         const uint32_t v = variable(access);

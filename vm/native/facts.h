@@ -29,7 +29,7 @@ struct Accesses {
   const Access* begin() const { return of; }
   const Access* end() const { return of + count; }
 };
-Accesses accesses_of(const ir::Unit& unit, const ir::Unit& extension);
+Accesses accesses_of(const ir::Unit& unit);
 
 // What an address may point to, of the variables that code names directly.
 struct Reach {

@@ -141,7 +141,8 @@ void add_conversions(Table& table) {
   M(8, 32)
   M(8, 64)
   M(16, 32)
-  M(16, 64) M(32, 64)
+  M(16, 64)
+  M(32, 64)
 #undef M
 #define M(from, to) ROW(NARROW_##from##_##to, Shape::kSame, Op::kConst, to / 8, from / 8);
       M(16, 8) M(32, 8) M(32, 16) M(64, 8) M(64, 16) M(64, 32)
