@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <unordered_set>
 
 #include "ir/bytecode/regions.h"
 #include "vm/exec/context.h"
@@ -245,7 +246,6 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector
   assembler.patch();
   made->shared_code_ = CodeMemory::make(assembler.code());
   if (made->shared_code_ == nullptr) return nullptr;
-  made->code_bytes_ = made->shared_code_->size();
   const uint8_t* const base = made->shared_code_->data();
   made->enter_ = base + assembler.offset_of(shared.enter);
   for (Work& work : all) {
@@ -259,6 +259,12 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector
     pous[number].machine = pou.machine;
     pous[number].entry = made->entry(number, pous[number].code);
   }
+  // POUs that stay the same keep the memory of earlier versions.
+  std::unordered_set<const CodeMemory*> memories = {made->shared_code_.get()};
+  for (const auto& pou : made->pous_) {
+    if (pou->code != nullptr) memories.insert(pou->code.get());
+  }
+  for (const CodeMemory* memory : memories) made->code_bytes_ += memory->size();
   return made;
 }
 

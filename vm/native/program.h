@@ -42,6 +42,7 @@ class Program {
   // The POU's own unit that a side unit stands for.
   const ir::Unit* real_unit(uint32_t pou, const ir::Unit* unit) const;
 
+  // Of all memory that its POUs' code lies in, with what earlier versions have there.
   uint64_t code_bytes() const { return code_bytes_; }
   uint32_t native_pous() const;
   // Why the POU is interpreted; "" when it is not.

@@ -110,6 +110,7 @@ PROGRAM Second VAR o : Other; END_VAR o(); END_PROGRAM)";
   auto two =
       vm::Generation::build(*ir::verify(ir::encode(second)), 1, memory.data(), slots, one->get());
   ASSERT_TRUE(two.ok());
+  EXPECT_GT((*two)->native()->code_bytes(), (*one)->native()->code_bytes());  // both memories
   for (uint32_t i = 0; i < second.pous.size(); ++i) {
     const std::string& name = second.pous[i].name;
     const bool same = (*one)->pous()[i].machine == (*two)->pous()[i].machine;
