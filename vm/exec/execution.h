@@ -4,8 +4,8 @@
 // During run(): no heap allocation, no lock, no system call (invariant 2).
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +14,8 @@
 #include "vm/load/generation.h"
 
 namespace vm {
+
+struct Context;
 
 enum class Exit : uint8_t { kDone, kSuspended, kTrap };
 
@@ -65,10 +67,9 @@ class Execution {
   // (Generation::try_depth); allocated here, not in run(). `task` tells the exposed locals of one
   // task from those of others.
   explicit Execution(uint32_t depth, uint32_t task = 0, uint32_t tries = base::kMaxTryDepth);
+  ~Execution();
   // Numbers its exposed locals behind those of `earlier`, so that no stale reference finds one.
-  void count_on(const Execution& earlier) {
-    exposures_made_ = std::max(exposures_made_, earlier.exposures_made_);
-  }
+  void count_on(const Execution& earlier);
 
   // Prepares a call of program instance `id`. `stack` is where its frames begin.
   void start(const Generation& generation, uint8_t* memory, uint32_t id, uint32_t stack,
@@ -79,7 +80,7 @@ class Execution {
   // Runs at most `fuel` safe points (calls and back edges; 0 is taken as 1).
   Exit run(uint64_t fuel);
 
-  const Trap& trap() const { return trap_; }
+  const Trap& trap() const;
   // A trap from outside (fuel, watchdog) at the safe point where this one is suspended.
   Trap interrupted(ir::TrapKind kind) const;
   // First stack offset that this activation does not use: where a higher-priority
@@ -88,26 +89,11 @@ class Execution {
   uint64_t fuel_used() const { return fuel_used_; }
 
  private:
-  friend struct Interpreter;
-  const Generation* generation_ = nullptr;
-  uint8_t* memory_ = nullptr;
   std::vector<CallRecord> calls_;
-  uint32_t depth_ = 0;
   std::vector<Exposure> exposures_;
-  uint32_t exposure_count_ = 0;
-  uint32_t exposures_made_ = 0;
-  uint32_t task_ = 0;
   std::vector<TryRecord> tries_;
-  uint32_t try_count_ = 0;
-  Trap caught_;
-  const ir::Unit* pc_ = nullptr;
-  uint32_t frame_ = 0;
-  uint32_t self_ = 0;
-  uint32_t pou_ = 0;
-  uint32_t instance_ = 0;
-  int64_t task_time_ns_ = 0;
+  std::unique_ptr<Context> state_;  // where it is; kept, as little of it is new in a scan
   uint64_t fuel_used_ = 0;
-  Trap trap_;
 };
 
 }  // namespace vm
