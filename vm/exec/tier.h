@@ -19,6 +19,7 @@ struct TierOptions {
   uint64_t spill_seed = 0;  // not 0: registers are taken from values at random
   bool alternates = false;  // every other generation is interpreted
   uint64_t pou_seed = 0;    // not 0: every other POU is interpreted, at random
+  bool plain = false;       // no instructions that only newer machines have
 };
 
 }  // namespace vm

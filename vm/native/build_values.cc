@@ -39,6 +39,10 @@ bool holds(Cond cond, uint64_t a, uint64_t b, uint8_t width) {
       return a > b;
     case Cond::kGeU:
       return a >= b;
+    case Cond::kNoBit:
+      return (a & b) == 0;
+    case Cond::kAnyBit:
+      return (a & b) != 0;
   }
   return false;
 }
@@ -191,8 +195,9 @@ Val Builder::value_of(Node made, bool floating) {
     at->second = static_cast<uint32_t>(f_.nodes.size());
   }
   made.result = static_cast<Val>(f_.values.size());
-  f_.values.push_back(
-      {floating, made.width, false, 0, static_cast<uint32_t>(f_.nodes.size()), block_});
+  const bool answers = made.op == Op::kCompare || made.op == Op::kFCompare;
+  f_.values.push_back({floating, answers ? uint8_t{1} : made.width, false, 0,
+                       static_cast<uint32_t>(f_.nodes.size()), block_});
   epoch_of_.push_back(epoch_);
   append(made);
   return made.result;

@@ -34,6 +34,7 @@ struct PouCode {
   const SideUnits* side = nullptr;
   const ir::Unit* units = nullptr;  // the POU's own, ready for the interpreter
   uint32_t number = 0;
+  bool plain = false;  // nothing that only newer machines have
 };
 
 }  // namespace vm::native

@@ -86,7 +86,21 @@ enum class Op : uint8_t {
   kEnter,   // begins the body of `call`, which follows; the result points to its instance
 };
 
-enum class Cond : uint8_t { kEq, kNe, kLtS, kLeS, kGtS, kGeS, kLtU, kLeU, kGtU, kGeU };
+// kNoBit, kAnyBit: a AND b is 0, is not 0.
+enum class Cond : uint8_t {
+  kEq,
+  kNe,
+  kLtS,
+  kLeS,
+  kGtS,
+  kGeS,
+  kLtU,
+  kLeU,
+  kGtU,
+  kGeU,
+  kNoBit,
+  kAnyBit
+};
 Cond negated(Cond cond);
 Cond swapped(Cond cond);  // for exchanged operands
 

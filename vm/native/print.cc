@@ -15,7 +15,8 @@ const char* const kNames[] = {
     "fmax",        "fneg",   "fabs",    "fsqrt",   "fcompare", "fselect",  "inttofloat",
     "floattoint",  "fwidth", "bitstof", "ftobits", "exitif",   "instance", "tasktime",
     "advancetime", "helper", "call",    "enter"};
-const char* const kConds[] = {"=", "<>", "<s", "<=s", ">s", ">=s", "<u", "<=u", ">u", ">=u"};
+const char* const kConds[] = {"=",  "<>",  "<s", "<=s", ">s",     ">=s",
+                              "<u", "<=u", ">u", ">=u", "no bit", "any bit"};
 const char* const kEnds[] = {"jump", "loop", "branch", "return", "exit", "unreachable"};
 
 std::string name(const Function& f, Val v) {

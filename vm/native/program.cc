@@ -238,7 +238,8 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector
     work.pou->facts = facts_by_pou[number];
     made->pous_.push_back(work.pou);
     if (!prepare(image, options, target, bodies, work)) continue;
-    const PouCode code{&work.function, &work.places, &work.pou->side, work.pou->units, number};
+    const PouCode code{&work.function,  &work.places, &work.pou->side,
+                       work.pou->units, number,       options.plain};
     work.entries = host::Emitter(code, shared, assembler).run();
     work.places = {};
     all.push_back(std::move(work));

@@ -64,9 +64,31 @@ class Simplifier {
       }
       for (const uint32_t n : f_.blocks[b].nodes) {
         Node& node = f_.nodes[n];
+        if (node.dead) continue;
         if (node.op == Op::kSelect) fuse_select(node, b);
+        if (node.op == Op::kCompare || node.op == Op::kExitIf) {
+          fuse_bits(b, node.width, node.cond, node.in);
+        }
+        if (node.op == Op::kSelectCmp) fuse_bits(b, node.from, node.cond, node.in + 2);
+      }
+      if (end.kind == EndKind::kBranch && end.compare == Op::kCompare) {
+        fuse_bits(b, end.width, end.cond, end.in);
       }
     }
+  }
+
+  // (x AND y) = 0 is one question.
+  void fuse_bits(Block b, uint8_t width, Cond& cond, Val in[2]) {
+    if (cond != Cond::kEq && cond != Cond::kNe) return;
+    const Value& value = f_.values[in[0]];
+    if (!f_.values[in[1]].constant || f_.values[in[1]].bits != 0) return;
+    if (value.node == kNone || value.block != b || uses_[in[0]] != 1) return;
+    Node& both = f_.nodes[value.node];
+    if (both.op != Op::kAnd || both.width != width) return;
+    cond = cond == Cond::kEq ? Cond::kNoBit : Cond::kAnyBit;
+    in[0] = both.in[0];
+    in[1] = both.in[1];
+    both.dead = true;
   }
 
   bool fuse_end(Block b, End& end) {
@@ -150,13 +172,15 @@ class Simplifier {
 }  // namespace
 
 Cond negated(Cond cond) {
-  constexpr Cond kOf[] = {Cond::kNe,  Cond::kEq,  Cond::kGeS, Cond::kGtS, Cond::kLeS,
-                          Cond::kLtS, Cond::kGeU, Cond::kGtU, Cond::kLeU, Cond::kLtU};
+  constexpr Cond kOf[] = {Cond::kNe,  Cond::kEq,  Cond::kGeS,    Cond::kGtS,
+                          Cond::kLeS, Cond::kLtS, Cond::kGeU,    Cond::kGtU,
+                          Cond::kLeU, Cond::kLtU, Cond::kAnyBit, Cond::kNoBit};
   return kOf[static_cast<size_t>(cond)];
 }
 Cond swapped(Cond cond) {
-  constexpr Cond kOf[] = {Cond::kEq,  Cond::kNe,  Cond::kGtS, Cond::kGeS, Cond::kLtS,
-                          Cond::kLeS, Cond::kGtU, Cond::kGeU, Cond::kLtU, Cond::kLeU};
+  constexpr Cond kOf[] = {Cond::kEq,  Cond::kNe,  Cond::kGtS,   Cond::kGeS,
+                          Cond::kLtS, Cond::kLeS, Cond::kGtU,   Cond::kGeU,
+                          Cond::kLtU, Cond::kLeU, Cond::kNoBit, Cond::kAnyBit};
   return kOf[static_cast<size_t>(cond)];
 }
 

@@ -51,6 +51,7 @@ vm::TierOptions tier_options(Tier tier) {
       break;
     case Tier::kFewRegisters:
       out.integer_registers = 5;
+      out.plain = true;
       out.float_registers = 3;
       break;
     case Tier::kSpills:

@@ -74,12 +74,12 @@ class NativeFunctions {
  public:
   NativeFunctions() : shared_(host::emit_shared(a_)) { context_.call = &record_; }
 
-  uint32_t add(const Function& function) {
+  uint32_t add(const Function& function, bool plain = false) {
     const base::Result<Allocated> places = allocate(function, host::HostTarget(), {});
     EXPECT_TRUE(places.ok());
     const SideUnits side;
     begins_.push_back(
-        host::Emitter({&function, &*places, &side, nullptr, 0}, shared_, a_).run().begin);
+        host::Emitter({&function, &*places, &side, nullptr, 0, plain}, shared_, a_).run().begin);
     return static_cast<uint32_t>(begins_.size() - 1);
   }
   // Before the first one runs.

@@ -65,7 +65,8 @@ bool holds(Cond cond, uint64_t a, uint64_t b, uint8_t width) {
   const int64_t t = as_signed(b, width);
   const uint64_t u = low(a, width);
   const uint64_t v = low(b, width);
-  const bool of[] = {u == v, u != v, s<t, s <= t, s> t, s >= t, u<v, u <= v, u> v, u >= v};
+  const bool of[] = {u == v, u != v,       s<t, s <= t, s> t, s >= t, u<v, u <= v, u> v,
+                     u >= v, (u & v) == 0, (u & v) != 0};
   return of[static_cast<size_t>(cond)];
 }
 
@@ -184,8 +185,9 @@ Function function_of(const Operation& o) {
 
 std::vector<Operation> all_operations() {
   std::vector<Operation> out;
-  constexpr Cond kConds[] = {Cond::kEq,  Cond::kNe,  Cond::kLtS, Cond::kLeS, Cond::kGtS,
-                             Cond::kGeS, Cond::kLtU, Cond::kLeU, Cond::kGtU, Cond::kGeU};
+  constexpr Cond kConds[] = {Cond::kEq,  Cond::kNe,  Cond::kLtS,   Cond::kLeS,
+                             Cond::kGtS, Cond::kGeS, Cond::kLtU,   Cond::kLeU,
+                             Cond::kGtU, Cond::kGeU, Cond::kNoBit, Cond::kAnyBit};
   // Constants that instructions take, and that they do not.
   constexpr uint64_t kConstants[] = {0,
                                      1,
@@ -262,6 +264,35 @@ TEST(Operations, GiveWhatTheBytecodeSaysInEveryWidth) {
         const uint64_t right = o.constant ? o.bits : y;
         ASSERT_EQ(low(frame[2], width), low(expected(o, x, right), width))
             << o.text() << " of " << x << " and " << right;
+      }
+    }
+  }
+}
+
+// With what every machine of its kind has, and with what this one has.
+TEST(Operations, BoolsAndAndOrNot) {
+  if (!host::kIsAvailable) GTEST_SKIP() << "no native tier for this machine";
+  for (const bool plain : {false, true}) {
+    NativeFunctions functions;
+    for (const Op op : {Op::kAndNot, Op::kOrNot}) {
+      FunctionMaker maker;
+      Node node;
+      node.op = op;
+      node.width = 1;
+      node.in[0] = maker.load(0, 1);
+      node.in[1] = maker.load(8, 1);
+      maker.store(16, maker.append(node, 1), 1);
+      maker.end();
+      functions.add(maker.function(), plain);
+    }
+    functions.finish();
+    for (uint64_t a = 0; a < 2; ++a) {
+      for (uint64_t b = 0; b < 2; ++b) {
+        std::array<uint64_t, 3> frame = {a, b, 7};
+        functions.run(0, frame.data());
+        EXPECT_EQ(low(frame[2], 1), a & (b ^ 1)) << a << b << plain;
+        functions.run(1, frame.data());
+        EXPECT_EQ(low(frame[2], 1), a | (b ^ 1)) << a << b << plain;
       }
     }
   }

@@ -21,6 +21,9 @@ Condition float_condition_of(Cond cond) {
     case Cond::kGeS:
     case Cond::kGeU:
       return Condition::kGreaterOrEqual;
+    case Cond::kNoBit:
+    case Cond::kAnyBit:
+      break;  // of integers
   }
   return Condition::kEqual;
 }

@@ -254,6 +254,7 @@ void Emitter::divide(const Node& n, const Step& step) {
 void Emitter::compare(uint8_t width, Cond cond, const Place& a, const Place& b) {
   const uint8_t left = integer_register(a);
   const bool constant = b.kind == Place::kConstant;
+  if (cond == Cond::kNoBit || cond == Cond::kAnyBit) return test_bits(width, left, b);
   if (width >= 4) {
     if (constant) return a_.compare_imm(left, compared_constant(b.bits, width, cond), width);
     return a_.alu(Alu::kSubFlags, kZero, left, integer_register(b), width);
@@ -269,6 +270,18 @@ void Emitter::compare(uint8_t width, Cond cond, const Place& a, const Place& b) 
   }
   if (constant) return a_.compare_imm(kScratch, compared_constant(b.bits, width, cond), 4);
   a_.compare_extended(kScratch, integer_register(b), width, is_signed(cond));
+}
+
+// Whatever lies above 1 or 2 bytes does not count.
+void Emitter::test_bits(uint8_t width, uint8_t left, const Place& b) {
+  if (b.kind == Place::kConstant) {
+    const uint64_t mask = width == 8 ? b.bits : b.bits & ((uint64_t{1} << (8 * width)) - 1);
+    return a_.logical(Logical::kAndFlags, kZero, left,
+                      *logical_immediate(mask, at_least_four(width)), at_least_four(width));
+  }
+  if (width >= 4) return a_.alu(Alu::kAndFlags, kZero, left, integer_register(b), width);
+  a_.zero_extend(kScratch, left, width);
+  a_.alu(Alu::kAndFlags, kZero, kScratch, integer_register(b), 4);
 }
 
 void Emitter::jump_if(uint8_t width, Cond cond, const Place& a, const Place& b, Label to) {

@@ -11,7 +11,7 @@ Condition condition_of(Cond cond) {
   constexpr Condition kOf[] = {
       Condition::kEqual,   Condition::kNotEqual,       Condition::kLess,  Condition::kLessOrEqual,
       Condition::kGreater, Condition::kGreaterOrEqual, Condition::kBelow, Condition::kBelowOrEqual,
-      Condition::kAbove,   Condition::kAboveOrEqual};
+      Condition::kAbove,   Condition::kAboveOrEqual,   Condition::kEqual, Condition::kNotEqual};
   return kOf[static_cast<size_t>(cond)];
 }
 

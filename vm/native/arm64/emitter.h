@@ -91,6 +91,7 @@ class Emitter {
   void rotate_by_constant(const Node& node, uint8_t to, uint8_t from, uint32_t count);
   void divide(const Node& node, const Step& step);
   void compare(uint8_t width, Cond cond, const Place& a, const Place& b);
+  void test_bits(uint8_t width, uint8_t left, const Place& b);
   void jump_if(uint8_t width, Cond cond, const Place& a, const Place& b, Label to);
   void test_bool(uint8_t reg);
   void select(const Node& node, const Step& step);

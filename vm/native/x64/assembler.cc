@@ -1,5 +1,6 @@
 #include "vm/native/x64/assembler.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace vm::native::x64 {
@@ -141,6 +142,20 @@ void Assembler::alu_imm(Alu op, Operand to, int32_t value, uint8_t width) {
 void Assembler::test(uint8_t a, uint8_t b, uint8_t width) {
   if (width == 1) return instruction(0, false, {0x84}, b, Operand::of(a), true, true);
   instruction(width == 2 ? 0x66 : 0, width == 8, {0x85}, b, Operand::of(a));
+}
+
+void Assembler::test_imm(uint8_t reg, int32_t value, uint8_t width) {
+  const bool byte_wide = width == 1;
+  instruction(width == 2 ? 0x66 : 0, width == 8, {static_cast<uint8_t>(byte_wide ? 0xf6 : 0xf7)}, 0,
+              Operand::of(reg), false, byte_wide);
+  imm(value, std::min<uint8_t>(width, 4));
+}
+void Assembler::and_not(uint8_t to, uint8_t complemented, uint8_t with) {
+  byte(0xc4);
+  byte((to >= 8 ? 0u : 0x80u) | 0x40u | (with >= 8 ? 0u : 0x20u) | 2u);
+  byte(static_cast<uint32_t>(~complemented & 15) << 3);
+  byte(0xf2);
+  modrm(to, Operand::of(with));
 }
 
 void Assembler::multiply(uint8_t to, Operand from, uint8_t width) {

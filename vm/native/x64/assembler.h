@@ -90,6 +90,8 @@ class Assembler {
   void alu(Alu op, uint8_t to, Operand from, uint8_t width);
   void alu_imm(Alu op, Operand to, int32_t imm, uint8_t width);
   void test(uint8_t a, uint8_t b, uint8_t width);
+  void test_imm(uint8_t reg, int32_t imm, uint8_t width);
+  void and_not(uint8_t to, uint8_t complemented, uint8_t with);  // andn of 4 bytes: BMI1
   void multiply(uint8_t to, Operand from, uint8_t width);
   void multiply_imm(uint8_t to, Operand from, int32_t imm, uint8_t width);
   void negate(uint8_t reg, uint8_t width);

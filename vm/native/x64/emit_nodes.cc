@@ -32,7 +32,7 @@ void Emitter::node(const Step& step) {
     case Op::kSelectCmp:
       return select(n, step);
     case Op::kExitIf:
-      compare(n.width, step.in[0], step.in[1]);
+      compare(n.width, n.cond, step.in[0], step.in[1]);
       return a_.jump_if(condition_of(n.cond), exit_label(n.exit));
     case Op::kInstance:
       return instance(n, step);
@@ -112,7 +112,8 @@ void Emitter::integer(const Node& n, const Step& step) {
       a_.move(to, integer_register(step.in[0]));
       return a_.alu_imm(Alu::kXor, Operand::of(to), 1, 4);
     case Op::kCompare:
-      compare(n.width, step.in[0], step.in[1]);
+      clear_for_set(to, step);
+      compare(n.width, n.cond, step.in[0], step.in[1]);
       return a_.set(condition_of(n.cond), to);
     case Op::kSext:
       return a_.load_signed(to, operand(step.in[0]), n.from);
@@ -176,7 +177,14 @@ void Emitter::bool_not(const Node& n, const Step& step) {
     a_.move(to, a);
     return a_.alu_imm(op, Operand::of(to), static_cast<int32_t>((b.bits & 1) ^ 1), 4);
   }
-  if (b.kind == Place::kHome && !b.clean) {
+  const bool any_byte = b.kind == Place::kHome && !b.clean;
+  if (op == Alu::kAnd && !any_byte && has_and_not_) {
+    if (b.kind == Place::kRegister) return a_.and_not(to, integer_register(b), a);
+    load_place(kScratch, b, 1);
+    return a_.and_not(to, kScratch, a);
+  }
+  if (any_byte) {
+    a_.move_imm(kScratch, 0);
     a_.alu_imm(Alu::kCmp, operand(b), 0, 1);
     a_.set(Condition::kEqual, kScratch);
   } else {
@@ -235,13 +243,32 @@ void Emitter::divide(const Node& n, const Step& step) {
   a_.bind(done);
 }
 
-void Emitter::compare(uint8_t width, const Place& a, const Place& b) {
+// Only the low byte is set: unless the rest is known, the machine waits for its old value.
+void Emitter::clear_for_set(uint8_t to, const Step& step) {
+  const auto is_in = [&](const Place& place) {
+    return place.kind == Place::kRegister && !place.floating && integer_register(place) == to;
+  };
+  const bool read =
+      is_in(step.in[0]) || is_in(step.in[1]) || is_in(step.index) || is_in(step.pointer);
+  if (!read) a_.move_imm(to, 0);
+}
+
+void Emitter::compare(uint8_t width, Cond cond, const Place& a, const Place& b) {
   const uint8_t left = integer_register(a);
+  if (cond == Cond::kNoBit || cond == Cond::kAnyBit) return test_bits(width, left, b);
   if (b.kind == Place::kConstant) {
     if (b.bits == 0) return a_.test(left, left, width);
     return a_.alu_imm(Alu::kCmp, Operand::of(left), field(b.bits, width), width);
   }
   a_.alu(Alu::kCmp, left, operand(b), width);
+}
+
+void Emitter::test_bits(uint8_t width, uint8_t left, const Place& b) {
+  if (b.kind != Place::kConstant) return a_.test(left, integer_register(b), width);
+  const uint64_t mask = width == 8 ? b.bits : b.bits & ((uint64_t{1} << (8 * width)) - 1);
+  if (mask <= 0xff) return a_.test_imm(left, field(mask, 1), 1);
+  a_.test_imm(left, static_cast<int32_t>(mask),
+              mask <= 0xffffffffu && mask >> 31 == 0 ? 4 : at_least_four(width));
 }
 
 void Emitter::select(const Node& n, const Step& step) {
@@ -251,7 +278,7 @@ void Emitter::select(const Node& n, const Step& step) {
   const uint8_t no = integer_register(step.in[compares ? 1 : 2]);
   Condition condition = Condition::kNotEqual;
   if (compares) {
-    compare(n.from, step.in[2], step.in[3]);
+    compare(n.from, n.cond, step.in[2], step.in[3]);
     condition = condition_of(n.cond);
   } else {
     const uint8_t question = integer_register(step.in[0]);
@@ -271,6 +298,7 @@ void Emitter::load(const Node& n, const Step& step) {
   if (step.result.floating) return a_.float_load(float_register(step.result), from, n.width);
   const uint8_t to = integer_register(step.result);
   if (!n.boolean) return a_.load(to, from, n.width);
+  clear_for_set(to, step);
   a_.alu_imm(Alu::kCmp, Operand::of(from), 0, 1);
   a_.set(Condition::kNotEqual, to);
 }

@@ -10,12 +10,17 @@ Condition condition_of(Cond cond) {
   constexpr Condition kOf[] = {
       Condition::kEqual,   Condition::kNotEqual,       Condition::kLess,  Condition::kLessOrEqual,
       Condition::kGreater, Condition::kGreaterOrEqual, Condition::kBelow, Condition::kBelowOrEqual,
-      Condition::kAbove,   Condition::kAboveOrEqual};
+      Condition::kAbove,   Condition::kAboveOrEqual,   Condition::kEqual, Condition::kNotEqual};
   return kOf[static_cast<size_t>(cond)];
 }
 
 Emitter::Emitter(const PouCode& pou, const Shared& shared, Assembler& assembler)
-    : pou_(pou), f_(*pou.function), places_(*pou.places), shared_(shared), a_(assembler) {
+    : pou_(pou),
+      f_(*pou.function),
+      places_(*pou.places),
+      shared_(shared),
+      a_(assembler),
+      has_and_not_(!pou.plain && has_and_not()) {
   // The stack is a multiple of 16 below the return address.
   frame_bytes_ = static_cast<int32_t>(places_.spill_slots * 8);
   if (frame_bytes_ % 16 == 0) frame_bytes_ += 8;
@@ -194,14 +199,10 @@ void Emitter::branch(Block b) {
 
 void Emitter::branch_integer(const End& e, const Place in[2], Label yes, Label no,
                              bool yes_is_next) {
-  const bool with_zero =
-      in[1].kind == Place::kConstant && in[1].bits == 0 && in[0].kind == Place::kRegister;
-  if (with_zero) {
-    a_.test(integer_register(in[0]), integer_register(in[0]), e.width);
-  } else if (in[0].kind != Place::kRegister) {
+  if (in[0].kind != Place::kRegister) {
     a_.alu_imm(Alu::kCmp, operand(in[0]), field(in[1].bits, e.width), e.width);
   } else {
-    compare(e.width, in[0], in[1]);
+    compare(e.width, e.cond, in[0], in[1]);
   }
   if (yes_is_next) {
     a_.jump_if(condition_of(negated(e.cond)), no);
@@ -254,6 +255,7 @@ void Emitter::load_place(uint8_t to, const Place& from, uint8_t width) {
     case Place::kHome: {
       const Variable& v = f_.variables[from.number];
       if (v.boolean && !from.clean) {
+        a_.move_imm(to, 0);
         a_.alu_imm(Alu::kCmp, Operand::of(variable(from.number)), 0, 1);
         return a_.set(Condition::kNotEqual, to);
       }

@@ -84,7 +84,9 @@ class Emitter {
   void bool_not(const Node& node, const Step& step);
   void shift(const Node& node, const Step& step);
   void divide(const Node& node, const Step& step);
-  void compare(uint8_t width, const Place& a, const Place& b);
+  void clear_for_set(uint8_t to, const Step& step);
+  void compare(uint8_t width, Cond cond, const Place& a, const Place& b);
+  void test_bits(uint8_t width, uint8_t left, const Place& b);
   void select(const Node& node, const Step& step);
   void load(const Node& node, const Step& step);
   void store(const Node& node, const Step& step);
@@ -116,6 +118,7 @@ class Emitter {
   const Allocated& places_;
   const Shared& shared_;
   Assembler& a_;
+  bool has_and_not_;
   Entries entries_;
   int32_t frame_bytes_ = 0;
   std::vector<Label> blocks_;
@@ -133,6 +136,7 @@ class Emitter {
 };
 
 Condition condition_of(Cond cond);
+bool has_and_not();  // this machine: BMI1
 // As the field of an instruction that works on `width` bytes.
 inline int32_t field(uint64_t bits, uint8_t width) {
   if (width == 1) return static_cast<int8_t>(bits);

@@ -3,6 +3,7 @@
 namespace vm::native::x64 {
 namespace {
 
+bool asks_bits(Cond cond) { return cond == Cond::kNoBit || cond == Cond::kAnyBit; }
 bool fits32(uint64_t bits, uint8_t width) {
   if (width < 8) return true;
   const auto v = static_cast<int64_t>(bits);
@@ -10,6 +11,15 @@ bool fits32(uint64_t bits, uint8_t width) {
 }
 
 }  // namespace
+
+bool has_and_not() {
+#if defined(__x86_64__)
+  static const bool kHas = __builtin_cpu_supports("bmi") != 0;
+  return kHas;
+#else
+  return false;
+#endif
+}
 
 Demands X64Target::demands(const Function& f, const Node& node) const {
   Demands d;
@@ -82,8 +92,6 @@ bool X64Target::takes_memory(const Function&, const Node& node, uint32_t operand
     case Op::kAnd:
     case Op::kOr:
     case Op::kXor:
-    case Op::kCompare:
-    case Op::kExitIf:
     case Op::kFAdd:
     case Op::kFSub:
     case Op::kFMul:
@@ -91,6 +99,9 @@ bool X64Target::takes_memory(const Function&, const Node& node, uint32_t operand
     case Op::kAndNot:
     case Op::kOrNot:
       return operand == 1;
+    case Op::kCompare:
+    case Op::kExitIf:
+      return operand == 1 && !asks_bits(node.cond);
     case Op::kSext:
     case Op::kZext:
       return operand == 0;
@@ -104,7 +115,7 @@ bool X64Target::takes_memory(const Function&, const Node& node, uint32_t operand
 // Compared with a constant; a BOOL with zero only.
 bool X64Target::end_takes_memory(const Function& f, const End& end) const {
   if (end.compare != Op::kCompare || !f.values[end.in[1]].constant) return false;
-  if (!end_takes_constant(f, end, 1)) return false;
+  if (!end_takes_constant(f, end, 1) || asks_bits(end.cond)) return false;
   const bool equality = end.cond == Cond::kEq || end.cond == Cond::kNe;
   return end.width != 1 || (equality && f.values[end.in[1]].bits == 0);
 }
