@@ -364,25 +364,29 @@ void EvalMachine::run_handle(Frame& frame, const Inst& inst) {
 
 void EvalMachine::run_native(Frame& frame, const Inst& inst) {
   const stdlib::NativeRow& row = stdlib::native_row(inst.native);
-  std::vector<stdlib::NativeArg> args(inst.operands.size());
-  std::vector<std::vector<uint8_t>> buffers(inst.operands.size());
-  for (size_t i = 0; i < args.size(); ++i) {
+  // Strings lie one behind the other in `memory`, and references to them among the arguments.
+  std::vector<uint64_t> args(std::max<size_t>(inst.operands.size(), stdlib::kDirectArguments));
+  std::vector<uint8_t> memory;
+  size_t first_size = 0;
+  for (size_t i = 0; i < inst.operands.size(); ++i) {
     const EvalValue& value = frame.values[inst.operands[i].index];
-    args[i].bits = value.bits;
-    const bool string = row.arguments[i] == 'S' || row.arguments[i] == 'W';
-    if (string && !alive(value.address)) {
+    args[i] = value.bits;
+    if (row.arguments[i] != 'S' && row.arguments[i] != 'W') continue;
+    if (!alive(value.address)) {
       return trap(inst, TrapKind::kReference, "");
     }
-    if (string) {
-      buffers[i] = units_of(value.address);
-      args[i].data = buffers[i].data();
-      args[i].capacity = value.address.capacity;
-    }
+    const std::vector<uint8_t> units = units_of(value.address);
+    args[i] = memory.size() | uint64_t{value.address.capacity} << 32;
+    memory.insert(memory.end(), units.begin(), units.end());
+    if (i == 0) first_size = memory.size();
   }
   frame.callee.reset();
-  const uint64_t result = row.function(args.data());
+  const bool direct = inst.operands.size() <= stdlib::kDirectArguments;
+  const uint64_t first = direct ? args[0] : reinterpret_cast<uintptr_t>(args.data());
+  const uint64_t result = row.function(memory.data(), first, args[1], args[2], args[3], args[4]);
   if (row.result == 'v') {
-    set_units(frame.values[inst.operands[0].index].address, buffers[0]);
+    memory.resize(first_size);
+    set_units(frame.values[inst.operands[0].index].address, memory);
   } else if (inst.result.valid()) {
     frame.values[inst.result.index].bits = canonical(inst.scalar, result);
   }

@@ -11,13 +11,9 @@ constexpr int64_t kNoMoment = std::numeric_limits<int64_t>::min();
 
 bool within(int64_t value, int64_t most) { return value >= 0 && value <= most; }
 
-int64_t moment(const NativeArg* args) {
-  const std::optional<int64_t> days =
-      days_from_civil(int_of(args[0]), int_of(args[1]), int_of(args[2]));
-  const int64_t hour = int_of(args[3]);
-  const int64_t minute = int_of(args[4]);
-  const int64_t second = int_of(args[5]);
-  const int64_t millisecond = int_of(args[6]);
+int64_t moment(int64_t year, int64_t month, int64_t day, int64_t hour, int64_t minute,
+               int64_t second, int64_t millisecond) {
+  const std::optional<int64_t> days = days_from_civil(year, month, day);
   const bool clock =
       within(hour, 23) && within(minute, 59) && within(second, 59) && within(millisecond, 999);
   int64_t ns = 0;
@@ -29,10 +25,10 @@ int64_t moment(const NativeArg* args) {
   return __builtin_add_overflow(ns, of_day, &ns) ? kNoMoment : ns;
 }
 
-int64_t part_of(int64_t ns, uint64_t part) {
+int64_t part_of(int64_t ns, int32_t part) {
   const DayTime at = split_days(ns);
   const CivilDate date = civil_from_days(at.days);
-  switch (part) {
+  switch (part & 0xFF) {
     case 0:
       return date.year;
     case 1:
@@ -52,16 +48,11 @@ int64_t part_of(int64_t ns, uint64_t part) {
   }
 }
 
+int32_t moment_part(int64_t ns, int32_t part) { return static_cast<int32_t>(part_of(ns, part)); }
+
 }  // namespace
 
-template <>
-uint64_t native<NativeId::kMoment>(NativeArg* args) {
-  return bits_of(moment(args));
-}
-
-template <>
-uint64_t native<NativeId::kMomentPart>(NativeArg* args) {
-  return bits_of(part_of(int_of(args[0]), args[1].bits & 0xFF));
-}
+STC_NATIVE(kMoment, moment)
+STC_NATIVE(kMomentPart, moment_part)
 
 }  // namespace stdlib

@@ -4,12 +4,12 @@
 #include "stdlib/native/implementation.h"
 
 namespace stdlib {
+namespace {
 
-template <>
-uint64_t native<NativeId::kBcdToNumber>(NativeArg* args) {
+uint64_t bcd_to_number(uint64_t bcd) {
   uint64_t number = 0;
   for (int shift = 60; shift >= 0; shift -= 4) {
-    const uint64_t digit = args[0].bits >> shift & 15;
+    const uint64_t digit = bcd >> shift & 15;
     if (digit > 9) {
       return std::numeric_limits<uint64_t>::max();
     }
@@ -18,20 +18,23 @@ uint64_t native<NativeId::kBcdToNumber>(NativeArg* args) {
   return number;
 }
 
-template <>
-uint64_t native<NativeId::kNumberToBcd>(NativeArg* args) {
+uint64_t number_to_bcd(uint64_t number) {
   uint64_t bcd = 0;
-  uint64_t rest = args[0].bits;
+  uint64_t rest = number;
   for (int shift = 0; shift < 64; shift += 4, rest /= 10) {
     bcd |= rest % 10 << shift;
   }
   return bcd;
 }
 
-template <>
-uint64_t native<NativeId::kSwapBytes>(NativeArg* args) {
-  const auto bytes = static_cast<uint32_t>(args[1].bits);
-  return bytes == 0 || bytes > 8 ? 0 : __builtin_bswap64(args[0].bits) >> (64 - 8 * bytes);
+uint64_t swap_bytes(uint64_t bits, int32_t bytes) {
+  return bytes <= 0 || bytes > 8 ? 0 : __builtin_bswap64(bits) >> (64 - 8 * bytes);
 }
+
+}  // namespace
+
+STC_NATIVE(kBcdToNumber, bcd_to_number)
+STC_NATIVE(kNumberToBcd, number_to_bcd)
+STC_NATIVE(kSwapBytes, swap_bytes)
 
 }  // namespace stdlib

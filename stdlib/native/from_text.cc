@@ -2,6 +2,7 @@
 // or FALSE when it is none, the nearest end of the range when it is too large.
 #include <charconv>
 #include <limits>
+#include <optional>
 
 #include "ir/types/time_parse.h"
 #include "stdlib/native/implementation.h"
@@ -32,7 +33,12 @@ bool take(std::string_view& text, std::string_view prefix) {
 }
 
 // A sign in front; a plus is removed, a minus too.
-bool take_minus(std::string_view& text) { return take(text, "-") || (take(text, "+"), false); }
+bool take_minus(std::string_view& text) {
+  if (text.empty() || (text[0] != '-' && text[0] != '+')) return false;
+  const bool minus = text[0] == '-';
+  text.remove_prefix(1);
+  return minus;
+}
 
 // The value of a digit; 16 when it is none.
 uint64_t digit_of(char character) {
@@ -103,59 +109,72 @@ double leading_real(std::string_view text) {
   return end.ec == std::errc() ? value : 0;
 }
 
-}  // namespace
+// Nothing but a sign and a few decimal digits in front of the end: no overflow, no base, no `_`.
+std::optional<uint64_t> plain_number(std::string_view digits) {
+  constexpr size_t kMost = 19;
+  if (digits.size() > kMost) return std::nullopt;
+  uint64_t value = 0;
+  for (const char digit : digits) {
+    if (!is_digit(digit)) return std::nullopt;
+    value = value * 10 + static_cast<uint64_t>(digit - '0');
+  }
+  return value;
+}
 
-template <>
-uint64_t native<NativeId::kStringToI64>(NativeArg* args) {
-  std::string_view text = without_leading_spaces(text_of(args[0]));
+uint64_t number_in_front(std::string_view text) {
+  const std::optional<uint64_t> plain = plain_number(text);
+  return plain ? *plain : leading_number(text);
+}
+
+int64_t string_to_i64(String from) {
+  std::string_view text = without_leading_spaces(text_of(from));
   const bool minus = take_minus(text);
   const uint64_t limit = (uint64_t{1} << 63) - (minus ? 0 : 1);
-  const uint64_t size = std::min(leading_number(text), limit);
-  return minus ? 0 - size : size;
+  const uint64_t size = std::min(number_in_front(text), limit);
+  return static_cast<int64_t>(minus ? 0 - size : size);
 }
 
-template <>
-uint64_t native<NativeId::kStringToU64>(NativeArg* args) {
-  std::string_view text = without_leading_spaces(text_of(args[0]));
+uint64_t string_to_u64(String from) {
+  std::string_view text = without_leading_spaces(text_of(from));
   take(text, "+");
-  return leading_number(text);
+  return number_in_front(text);
 }
 
-template <>
-uint64_t native<NativeId::kStringToF64>(NativeArg* args) {
-  std::string_view text = without_leading_spaces(text_of(args[0]));
+double string_to_f64(String from) {
+  std::string_view text = without_leading_spaces(text_of(from));
   const bool minus = take_minus(text);
   const double size = leading_real(text);
-  return bits_of(minus ? -size : size);
+  return minus ? -size : size;
 }
 
-template <>
-uint64_t native<NativeId::kStringToBool>(NativeArg* args) {
-  const std::string_view text = trimmed(text_of(args[0]));
+bool string_to_bool(String from) {
+  const std::string_view text = trimmed(text_of(from));
   return text == "1" || (text.size() == 4 && starts_with_folded(text, "TRUE"));
 }
 
-template <>
-uint64_t native<NativeId::kStringToTime>(NativeArg* args) {
-  return bits_of(ir::parse_duration(trimmed(text_of(args[0]))).value_or(0));
+int64_t string_to_time(String from) {
+  return ir::parse_duration(trimmed(text_of(from))).value_or(0);
 }
 
-template <>
-uint64_t native<NativeId::kStringToDate>(NativeArg* args) {
-  const auto kind = static_cast<ir::Kind>(args[1].bits & 0xFF);
-  return bits_of(ir::parse_date(kind, trimmed(text_of(args[0]))).value_or(0));
+int64_t string_to_date(String from, int32_t number) {
+  const auto kind = static_cast<ir::Kind>(number & 0xFF);
+  return ir::parse_date(kind, trimmed(text_of(from))).value_or(0);
 }
 
-template <>
-uint64_t native<NativeId::kStringToChar>(NativeArg* args) {
-  const Source<uint8_t> text(args[0]);
-  return text.length() == 0 ? 0 : text[0];
+template <typename Unit>
+int32_t first_character(Text<Unit> text) {
+  return text.capacity == 0 ? 0 : load<Unit>(text.data);
 }
 
-template <>
-uint64_t native<NativeId::kWstringToChar>(NativeArg* args) {
-  const Source<uint16_t> text(args[0]);
-  return text.length() == 0 ? 0 : text[0];
-}
+}  // namespace
+
+STC_NATIVE(kStringToI64, string_to_i64)
+STC_NATIVE(kStringToU64, string_to_u64)
+STC_NATIVE(kStringToF64, string_to_f64)
+STC_NATIVE(kStringToBool, string_to_bool)
+STC_NATIVE(kStringToTime, string_to_time)
+STC_NATIVE(kStringToDate, string_to_date)
+STC_NATIVE(kStringToChar, first_character<uint8_t>)
+STC_NATIVE(kWstringToChar, first_character<uint16_t>)
 
 }  // namespace stdlib

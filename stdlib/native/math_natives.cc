@@ -4,30 +4,16 @@
 
 namespace stdlib {
 
-#define UNARY(id, function)                         \
-  template <>                                       \
-  uint64_t native<NativeId::id>(NativeArg * args) { \
-    return bits_of(function(double_of(args[0])));   \
-  }
-#define BINARY(id, function)                                          \
-  template <>                                                         \
-  uint64_t native<NativeId::id>(NativeArg * args) {                   \
-    return bits_of(function(double_of(args[0]), double_of(args[1]))); \
-  }
-
-UNARY(kSin, sine)
-UNARY(kCos, cosine)
-UNARY(kTan, tangent)
-UNARY(kAsin, arc_sine)
-UNARY(kAcos, arc_cosine)
-UNARY(kAtan, arc_tangent)
-UNARY(kLn, natural_logarithm)
-UNARY(kLog, decimal_logarithm)
-UNARY(kExp, exponential)
-BINARY(kAtan2, arc_tangent2)
-BINARY(kExpt, power)
-
-#undef UNARY
-#undef BINARY
+STC_NATIVE(kSin, sine)
+STC_NATIVE(kCos, cosine)
+STC_NATIVE(kTan, tangent)
+STC_NATIVE(kAsin, arc_sine)
+STC_NATIVE(kAcos, arc_cosine)
+STC_NATIVE(kAtan, arc_tangent)
+STC_NATIVE(kLn, natural_logarithm)
+STC_NATIVE(kLog, decimal_logarithm)
+STC_NATIVE(kExp, exponential)
+STC_NATIVE(kAtan2, arc_tangent2)
+STC_NATIVE(kExpt, power)
 
 }  // namespace stdlib

@@ -19,14 +19,17 @@ enum class NativeId : uint16_t {
 };
 uint32_t native_count();
 
-// One argument or result. Strings: `data` has room for capacity + 1 units.
-struct NativeArg {
-  uint64_t bits = 0;      // scalars, as ir::ConstValue::bits
-  uint8_t* data = nullptr;
-  uint32_t capacity = 0;  // in characters
-};
+// Arguments come as they lie in their slots of 8 bytes, and so does the result: of scalars only the
+// low bytes count, what is above is arbitrary. A string is {offset:32, capacity:32} in `memory`,
+// with room for capacity + 1 units. Of more than kDirectArguments arguments `a` is the slots'
+// address.
+using NativeFunction = uint64_t (*)(uint8_t* memory, uint64_t a, uint64_t b, uint64_t c, uint64_t d,
+                                    uint64_t e);
+inline constexpr uint32_t kDirectArguments = 5;
 
-using NativeFunction = uint64_t (*)(NativeArg* args);  // result bits
+// From slots, and the result into the first of them.
+using NativeSlots = void (*)(uint8_t* memory, uint8_t* slots);
+extern const NativeSlots kNativeSlots[];  // by id
 
 struct NativeRow {
   std::string_view name;

@@ -17,118 +17,122 @@ uint32_t characters_before(int64_t position, uint32_t length) {
 }
 
 template <typename Unit>
-uint64_t length(NativeArg* args) {
-  return Source<Unit>(args[0]).length();
+int32_t length(Text<Unit> text) {
+  return static_cast<int32_t>(Source(text).length());
 }
 
 template <typename Unit>
-uint64_t left(NativeArg* args) {
-  const Source<Unit> text(args[1]);
-  Sink<Unit>(args[0]).put(text, 0, clamp_count(int_of(args[2]), text.length()));
-  return 0;
+void left(Text<Unit> to, Text<Unit> from, int64_t count) {
+  const Source text(from);
+  Sink(to).put(text, 0, clamp_count(count, text.length()));
 }
 
 template <typename Unit>
-uint64_t right(NativeArg* args) {
-  const Source<Unit> text(args[1]);
-  const uint32_t count = clamp_count(int_of(args[2]), text.length());
-  Sink<Unit>(args[0]).put(text, text.length() - count, count);
-  return 0;
+void right(Text<Unit> to, Text<Unit> from, int64_t wanted) {
+  const Source text(from);
+  const uint32_t count = clamp_count(wanted, text.length());
+  Sink(to).put(text, text.length() - count, count);
 }
 
 template <typename Unit>
-uint64_t mid(NativeArg* args) {
-  const Source<Unit> text(args[1]);
-  const uint32_t first = characters_before(int_of(args[3]), text.length());
-  Sink<Unit>(args[0]).put(text, first, clamp_count(int_of(args[2]), text.length() - first));
-  return 0;
+void mid(Text<Unit> to, Text<Unit> from, int64_t count, int64_t position) {
+  const Source text(from);
+  const uint32_t first = characters_before(position, text.length());
+  Sink(to).put(text, first, clamp_count(count, text.length() - first));
 }
 
 template <typename Unit>
-uint64_t concat(NativeArg* args) {
-  const Source<Unit> first(args[1]);
-  const Source<Unit> second(args[2]);
-  Sink<Unit> sink(args[0]);
+void concat(Text<Unit> to, Text<Unit> a, Text<Unit> b) {
+  const Source first(a);
+  const Source second(b);
+  Sink sink(to);
   sink.put(first, 0, first.length());
   sink.put(second, 0, second.length());
-  return 0;
 }
 
 // `text` with the characters [from, to) replaced by `middle`.
 template <typename Unit>
-void splice(const NativeArg& destination, const Source<Unit>& text, uint32_t from, uint32_t to,
+void splice(Text<Unit> destination, const Source<Unit>& text, uint32_t from, uint32_t to,
             const Source<Unit>& middle) {
-  Sink<Unit> sink(destination);
+  Sink sink(destination);
   sink.put(text, 0, from);
   sink.put(middle, 0, middle.length());
   sink.put(text, to, text.length() - to);
 }
 
 template <typename Unit>
-uint64_t insert(NativeArg* args) {
-  const Source<Unit> text(args[1]);
-  const uint32_t at = clamp_count(int_of(args[3]), text.length());
-  splice(args[0], text, at, at, Source<Unit>(args[2]));
-  return 0;
+void insert(Text<Unit> destination, Text<Unit> into, Text<Unit> what, int64_t position) {
+  const Source text(into);
+  const uint32_t at = clamp_count(position, text.length());
+  splice(destination, text, at, at, Source(what));
 }
 
 template <typename Unit>
-uint64_t erase(NativeArg* args) {
-  const Source<Unit> text(args[1]);
-  const uint32_t from = characters_before(int_of(args[3]), text.length());
-  const uint32_t count = clamp_count(int_of(args[2]), text.length() - from);
-  splice(args[0], text, from, from + count, Source<Unit>(NativeArg{}));
-  return 0;
+void erase(Text<Unit> destination, Text<Unit> of, int64_t wanted, int64_t position) {
+  const Source text(of);
+  const uint32_t from = characters_before(position, text.length());
+  const uint32_t count = clamp_count(wanted, text.length() - from);
+  Sink sink(destination);
+  sink.put(text, 0, from);
+  sink.put(text, from + count, text.length() - from - count);
 }
 
 template <typename Unit>
-uint64_t replace(NativeArg* args) {
-  const Source<Unit> text(args[1]);
-  const uint32_t from = characters_before(int_of(args[4]), text.length());
-  const uint32_t count = clamp_count(int_of(args[3]), text.length() - from);
-  splice(args[0], text, from, from + count, Source<Unit>(args[2]));
-  return 0;
+void replace(Text<Unit> destination, Text<Unit> of, Text<Unit> by, int64_t wanted,
+             int64_t position) {
+  const Source text(of);
+  const uint32_t from = characters_before(position, text.length());
+  const uint32_t count = clamp_count(wanted, text.length() - from);
+  splice(destination, text, from, from + count, Source(by));
 }
 
+// The first of `count` units that is `unit`, from `first` on; `count` when there is none.
 template <typename Unit>
-bool occurs_at(const Source<Unit>& text, uint32_t first, const Source<Unit>& wanted) {
-  return std::memcmp(text.at(first), wanted.at(0), size_t{wanted.length()} * sizeof(Unit)) == 0;
+uint32_t next_unit(const Source<Unit>& text, uint32_t first, uint32_t count, Unit unit) {
+  if constexpr (sizeof(Unit) == 1) {
+    const void* const found = std::memchr(text.at(first), unit, count - first);
+    if (found == nullptr) return count;
+    return static_cast<uint32_t>(static_cast<const uint8_t*>(found) - text.at(0));
+  }
+  while (first < count && text[first] != unit) ++first;
+  return first;
 }
 
 // An empty text is found nowhere.
 template <typename Unit>
-uint64_t find(NativeArg* args) {
-  const Source<Unit> text(args[0]);
-  const Source<Unit> wanted(args[1]);
+int32_t find(Text<Unit> in, Text<Unit> what) {
+  const Source text(in);
+  const Source wanted(what);
   if (wanted.length() == 0 || wanted.length() > text.length()) {
     return 0;
   }
-  for (uint32_t first = 0; first <= text.length() - wanted.length(); ++first) {
-    if (occurs_at(text, first, wanted)) {
-      return uint64_t{first} + 1;
+  const uint32_t places = text.length() - wanted.length() + 1;
+  const size_t bytes = size_t{wanted.length()} * sizeof(Unit);
+  for (uint32_t first = 0;; ++first) {
+    first = next_unit(text, first, places, wanted[0]);
+    if (first == places) return 0;
+    if (std::memcmp(text.at(first), wanted.at(0), bytes) == 0) {
+      return static_cast<int32_t>(first) + 1;
     }
   }
-  return 0;
 }
 
 template <typename Unit>
-uint64_t character(NativeArg* args) {
-  const Source<Unit> text(args[0]);
-  const int64_t at = int_of(args[1]);
+uint64_t character(Text<Unit> of, int64_t at) {
+  const Source text(of);
   return at >= 0 && at < text.length() ? text[static_cast<uint32_t>(at)] : 0;
 }
 
 // Of the units behind the end nothing is known, so those up to the new one get defined here.
 template <typename Unit>
-uint64_t set_character(NativeArg* args) {
-  const Source<Unit> text(args[0]);
-  const int64_t at = int_of(args[1]);
-  const Unit unit = static_cast<Unit>(args[2].bits);
-  if (at < 0 || at >= args[0].capacity) {
-    return 0;
+void set_character(Text<Unit> of, int64_t at, uint64_t code) {
+  const Source text(of);
+  const Unit unit = static_cast<Unit>(code);
+  if (at < 0 || at >= of.capacity) {
+    return;
   }
   const auto put = [&](uint32_t index, Unit value) {
-    std::memcpy(args[0].data + size_t{index} * sizeof(Unit), &value, sizeof(Unit));
+    store(of.data + size_t{index} * sizeof(Unit), value);
   };
   const uint32_t index = static_cast<uint32_t>(at);
   const uint32_t length = text.length();
@@ -141,38 +145,50 @@ uint64_t set_character(NativeArg* args) {
     put(index, unit);
     put(index + 1, Unit{0});
   }
-  return 0;
 }
 
 template <typename Number>
-uint64_t order(Number a, Number b) {
-  return bits_of(int64_t{a > b} - int64_t{a < b});
+int32_t order(Number a, Number b) {
+  return int32_t{a > b} - int32_t{a < b};
 }
 
 template <typename Unit>
-uint64_t compare(NativeArg* args) {
-  const Source<Unit> first(args[0]);
-  const Source<Unit> second(args[1]);
+int32_t compare(Text<Unit> a, Text<Unit> b) {
+  const Source first(a);
+  const Source second(b);
   const uint32_t common = std::min(first.length(), second.length());
-  for (uint32_t i = 0; i < common; ++i) {
-    if (first[i] != second[i]) {
-      return order(first[i], second[i]);
+  if constexpr (sizeof(Unit) == 1) {
+    const int difference = std::memcmp(first.at(0), second.at(0), common);
+    if (difference != 0) return order(difference, 0);
+  } else {
+    for (uint32_t i = 0; i < common; ++i) {
+      if (first[i] != second[i]) return order(first[i], second[i]);
     }
   }
   return order(first.length(), second.length());
 }
 
+void string_to_wstring(Wstring to, String from) {
+  const Source text(from);
+  Sink sink(to);
+  for (uint32_t i = 0; i < text.length(); ++i) {
+    sink.put(text[i]);
+  }
+}
+
+void wstring_to_string(String to, Wstring from) {
+  const Source text(from);
+  Sink sink(to);
+  for (uint32_t i = 0; i < text.length(); ++i) {
+    sink.put(text[i] <= 0xFF ? static_cast<uint8_t>(text[i]) : uint8_t{'?'});
+  }
+}
+
 }  // namespace
 
-#define BOTH_KINDS(id, function)                       \
-  template <>                                          \
-  uint64_t native<NativeId::id##S>(NativeArg * args) { \
-    return function<uint8_t>(args);                    \
-  }                                                    \
-  template <>                                          \
-  uint64_t native<NativeId::id##W>(NativeArg * args) { \
-    return function<uint16_t>(args);                   \
-  }
+#define BOTH_KINDS(id, function)       \
+  STC_NATIVE(id##S, function<uint8_t>) \
+  STC_NATIVE(id##W, function<uint16_t>)
 
 BOTH_KINDS(kLen, length)
 BOTH_KINDS(kLeft, left)
@@ -189,24 +205,7 @@ BOTH_KINDS(kSetCharacter, set_character)
 
 #undef BOTH_KINDS
 
-template <>
-uint64_t native<NativeId::kStringToWstring>(NativeArg* args) {
-  const Source<uint8_t> text(args[1]);
-  Sink<uint16_t> sink(args[0]);
-  for (uint32_t i = 0; i < text.length(); ++i) {
-    sink.put(text[i]);
-  }
-  return 0;
-}
-
-template <>
-uint64_t native<NativeId::kWstringToString>(NativeArg* args) {
-  const Source<uint16_t> text(args[1]);
-  Sink<uint8_t> sink(args[0]);
-  for (uint32_t i = 0; i < text.length(); ++i) {
-    sink.put(text[i] <= 0xFF ? static_cast<uint8_t>(text[i]) : uint8_t{'?'});
-  }
-  return 0;
-}
+STC_NATIVE(kStringToWstring, string_to_wstring)
+STC_NATIVE(kWstringToString, wstring_to_string)
 
 }  // namespace stdlib

@@ -63,10 +63,9 @@ uint64_t magnitude(int64_t value) {
 
 // IEC real literals have a point and a capital E: 2.0, 1.0E+10.
 template <typename Float>
-uint64_t put_float(const NativeArg& destination, Float value) {
+void float_to_string(String to, Float value) {
   if (!std::isfinite(value)) {
-    put_text(destination, std::isnan(value) ? "NaN" : value < 0 ? "-Inf" : "+Inf");
-    return 0;
+    return put_text(to, std::isnan(value) ? "NaN" : value < 0 ? "-Inf" : "+Inf");
   }
   Line digits;
   const std::string_view shortest = digits.number(value).text();
@@ -77,11 +76,8 @@ uint64_t put_float(const NativeArg& destination, Float value) {
   if (exponent < shortest.size()) {
     line << "E" << shortest.substr(exponent + 1);
   }
-  put_text(destination, line.text());
-  return 0;
+  put_text(to, line.text());
 }
-
-bool is_long(const NativeArg* args) { return (args[2].bits & 0xFF) != 0; }
 
 void put_clock(Line& line, uint64_t ns) {
   constexpr auto kSecond = static_cast<uint64_t>(ir::kNsPerSecond);
@@ -100,43 +96,45 @@ void put_day(Line& line, int64_t days) {
   line.digits(date.day, 2);
 }
 
-}  // namespace
+constexpr std::array<char, 200> kPairs = [] {
+  std::array<char, 200> pairs{};
+  for (size_t i = 0; i < 100; ++i) {
+    pairs[2 * i] = static_cast<char>('0' + i / 10);
+    pairs[2 * i + 1] = static_cast<char>('0' + i % 10);
+  }
+  return pairs;
+}();
 
-template <>
-uint64_t native<NativeId::kI64ToString>(NativeArg* args) {
-  put_text(args[0], Line().number(int_of(args[1])).text());
-  return 0;
+// Two digits at a time, from the last one on.
+void put_integer(String destination, uint64_t size, bool minus) {
+  constexpr size_t kMost = 21;
+  std::array<char, kMost> buffer;
+  size_t at = kMost;
+  for (; size >= 100; size /= 100) {
+    at -= 2;
+    std::memcpy(&buffer[at], &kPairs[2 * (size % 100)], 2);
+  }
+  if (size >= 10) {
+    at -= 2;
+    std::memcpy(&buffer[at], &kPairs[2 * size], 2);
+  } else {
+    buffer[--at] = static_cast<char>('0' + size);
+  }
+  if (minus) buffer[--at] = '-';
+  put_text(destination, {&buffer[at], kMost - at});
 }
 
-template <>
-uint64_t native<NativeId::kU64ToString>(NativeArg* args) {
-  put_text(args[0], Line().number(args[1].bits).text());
-  return 0;
-}
+void i64_to_string(String to, int64_t value) { put_integer(to, magnitude(value), value < 0); }
+void u64_to_string(String to, uint64_t value) { put_integer(to, value, false); }
 
-template <>
-uint64_t native<NativeId::kF32ToString>(NativeArg* args) {
-  return put_float(args[0], float_of(args[1]));
-}
+void bool_to_string(String to, bool value) { put_text(to, value ? "TRUE" : "FALSE"); }
 
-template <>
-uint64_t native<NativeId::kF64ToString>(NativeArg* args) {
-  return put_float(args[0], double_of(args[1]));
-}
-
-template <>
-uint64_t native<NativeId::kBoolToString>(NativeArg* args) {
-  put_text(args[0], (args[1].bits & 0xFF) != 0 ? "TRUE" : "FALSE");
-  return 0;
-}
-
-template <>
-uint64_t native<NativeId::kTimeToString>(NativeArg* args) {
+void time_to_string(String to, int64_t ns, bool is_long) {
   Line line;
-  line << (is_long(args) ? "LT#" : "T#") << (int_of(args[1]) < 0 ? "-" : "");
-  uint64_t rest = magnitude(int_of(args[1]));
+  line << (is_long ? "LT#" : "T#") << (ns < 0 ? "-" : "");
+  uint64_t rest = magnitude(ns);
   if (rest == 0) {
-    line << (is_long(args) ? "0ns" : "0ms");
+    line << (is_long ? "0ns" : "0ms");
   }
   for (const ir::TimeUnit& unit : ir::kTimeUnits) {
     if (rest >= unit.ns) {
@@ -144,54 +142,56 @@ uint64_t native<NativeId::kTimeToString>(NativeArg* args) {
       rest %= unit.ns;
     }
   }
-  put_text(args[0], line.text());
-  return 0;
+  put_text(to, line.text());
 }
 
-template <>
-uint64_t native<NativeId::kDateToString>(NativeArg* args) {
+void date_to_string(String to, int64_t ns, bool is_long) {
   Line line;
-  put_day(line << (is_long(args) ? "LD#" : "D#"), split_days(int_of(args[1])).days);
-  put_text(args[0], line.text());
-  return 0;
+  put_day(line << (is_long ? "LD#" : "D#"), split_days(ns).days);
+  put_text(to, line.text());
 }
 
-template <>
-uint64_t native<NativeId::kTodToString>(NativeArg* args) {
+void tod_to_string(String to, int64_t ns, bool is_long) {
   Line line;
-  line << (is_long(args) ? "LTOD#" : "TOD#") << (int_of(args[1]) < 0 ? "-" : "");
-  put_clock(line, magnitude(int_of(args[1])));
-  put_text(args[0], line.text());
-  return 0;
+  line << (is_long ? "LTOD#" : "TOD#") << (ns < 0 ? "-" : "");
+  put_clock(line, magnitude(ns));
+  put_text(to, line.text());
 }
 
-template <>
-uint64_t native<NativeId::kDtToString>(NativeArg* args) {
-  const DayTime moment = split_days(int_of(args[1]));
+void dt_to_string(String to, int64_t ns, bool is_long) {
+  const DayTime moment = split_days(ns);
   Line line;
-  put_day(line << (is_long(args) ? "LDT#" : "DT#"), moment.days);
+  put_day(line << (is_long ? "LDT#" : "DT#"), moment.days);
   put_clock(line << "-", static_cast<uint64_t>(moment.ns_of_day));
-  put_text(args[0], line.text());
-  return 0;
+  put_text(to, line.text());
 }
 
-template <>
-uint64_t native<NativeId::kCharToString>(NativeArg* args) {
-  Sink<uint8_t> sink(args[0]);
-  const uint64_t code = args[1].bits;
+void char_to_string(String to, uint64_t code) {
+  Sink sink(to);
   if (code != 0) {
     sink.put(code <= 0xFF ? static_cast<uint8_t>(code) : uint8_t{'?'});
   }
-  return 0;
 }
 
-template <>
-uint64_t native<NativeId::kCharToWstring>(NativeArg* args) {
-  Sink<uint16_t> sink(args[0]);
-  if (args[1].bits != 0) {
-    sink.put(static_cast<uint16_t>(args[1].bits));
+void char_to_wstring(Wstring to, uint64_t code) {
+  Sink sink(to);
+  if (code != 0) {
+    sink.put(static_cast<uint16_t>(code));
   }
-  return 0;
 }
+
+}  // namespace
+
+STC_NATIVE(kI64ToString, i64_to_string)
+STC_NATIVE(kU64ToString, u64_to_string)
+STC_NATIVE(kF32ToString, float_to_string<float>)
+STC_NATIVE(kF64ToString, float_to_string<double>)
+STC_NATIVE(kBoolToString, bool_to_string)
+STC_NATIVE(kTimeToString, time_to_string)
+STC_NATIVE(kDateToString, date_to_string)
+STC_NATIVE(kTodToString, tod_to_string)
+STC_NATIVE(kDtToString, dt_to_string)
+STC_NATIVE(kCharToString, char_to_string)
+STC_NATIVE(kCharToWstring, char_to_wstring)
 
 }  // namespace stdlib

@@ -9,61 +9,6 @@
 #include "vm/native/program.h"
 
 namespace vm {
-namespace {
-
-constexpr size_t kMaxNativeArguments = 8;
-
-void read_argument(char letter, const uint8_t* slot, uint8_t* mem, stdlib::NativeArg& argument) {
-  switch (letter) {
-    case 'b':
-      argument.bits = load<uint8_t>(slot) != 0;
-      return;
-    case 'i':
-      argument.bits = static_cast<uint64_t>(int64_t{load<int32_t>(slot)});
-      return;
-    case 'f':
-      argument.bits = load<uint32_t>(slot);
-      return;
-    case 'S':
-    case 'W': {
-      const auto reference = load<uint64_t>(slot);
-      argument.data = mem + static_cast<uint32_t>(reference);
-      argument.capacity =
-          std::min(static_cast<uint32_t>(reference >> 32), base::kMaxStringCapacity);
-      return;
-    }
-    default:
-      argument.bits = load<uint64_t>(slot);
-      return;
-  }
-}
-
-void write_result(char letter, uint64_t bits, uint8_t* slot) {
-  switch (letter) {
-    case 'v':
-      return;
-    case 'b':
-      return store<uint8_t>(slot, bits != 0);
-    case 'i':
-    case 'f':
-      return store<uint32_t>(slot, static_cast<uint32_t>(bits));
-    default:
-      return store<uint64_t>(slot, bits);
-  }
-}
-
-// Arguments in 8-byte slots from `slots` on, the result in the first of them. Apart from
-// its handler, whose frame must not outlive the jump to the next one.
-[[gnu::noinline]] void call_native(uint32_t number, uint8_t* slots, uint8_t* mem) {
-  const stdlib::NativeRow& row = stdlib::native_row(number);
-  stdlib::NativeArg arguments[kMaxNativeArguments];
-  for (size_t i = 0; i < row.arguments.size() && i < kMaxNativeArguments; ++i) {
-    read_argument(row.arguments[i], slots + 8 * i, mem, arguments[i]);
-  }
-  write_result(row.result, row.function(arguments), slots);
-}
-
-}  // namespace
 
 template <>
 struct Semantics<ir::Opcode::JMP> : Special {
@@ -299,7 +244,7 @@ template <>
 struct Semantics<ir::Opcode::NATIVE> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
-    call_native(pc->c, frame + pc->a * 8u, mem);
+    stdlib::kNativeSlots[pc->c](mem, frame + pc->a * 8u);
     STC_NEXT(1);
   }
 };

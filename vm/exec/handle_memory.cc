@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "stdlib/native/units.h"
 #include "vm/exec/handle.h"
 
 namespace vm {
@@ -177,13 +178,11 @@ struct Semantics<ir::Opcode::WSTR_AT> : StringAt {};
 
 template <class Character>
 [[gnu::noinline]] void copy_string(uint8_t* mem, uint64_t to, uint64_t from) {
-  uint8_t* const target = mem + static_cast<uint32_t>(to);
-  const uint8_t* const source = mem + static_cast<uint32_t>(from);
-  const uint64_t capacity = std::min<uint64_t>({to >> 32, from >> 32, base::kMaxStringCapacity});
-  uint64_t length = 0;
-  while (length < capacity && load<Character>(source + length * sizeof(Character)) != 0) ++length;
-  std::memmove(target, source, length * sizeof(Character));
-  store<Character>(target + length * sizeof(Character), 0);
+  const auto capacity = [](uint64_t reference) {
+    return std::min(static_cast<uint32_t>(reference >> 32), base::kMaxStringCapacity);
+  };
+  stdlib::assign_text<Character>(mem + static_cast<uint32_t>(to), capacity(to),
+                                 mem + static_cast<uint32_t>(from), capacity(from));
 }
 template <class Character>
 struct StringCopy : Special {

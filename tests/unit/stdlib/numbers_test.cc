@@ -59,6 +59,34 @@ TEST(NativeToText, Integers) {
   EXPECT_EQ(int_text(NativeId::kI64ToString, -12345, 0), "");
 }
 
+TEST(NativeToText, IntegersOfEveryLengthReadBack) {
+  uint64_t number = 0;
+  for (int digits = 1; digits <= 20; ++digits) {
+    number = number * 10 + static_cast<uint64_t>(digits % 10);
+    for (const uint64_t value : {number, number - 1, number + 1, 0 - number}) {
+      EXPECT_EQ(to_text(NativeId::kU64ToString, value), std::to_string(value));
+      EXPECT_EQ(from_text(NativeId::kStringToU64, std::to_string(value)), value);
+      const auto whole = static_cast<int64_t>(value);
+      EXPECT_EQ(int_text(NativeId::kI64ToString, whole), std::to_string(whole));
+      EXPECT_EQ(to_int(std::to_string(whole)), whole);
+    }
+  }
+}
+
+TEST(NativeFromText, DecimalDigitsAtTheEdges) {
+  EXPECT_EQ(from_text(NativeId::kStringToU64, "9999999999999999999"), 9999999999999999999u);
+  EXPECT_EQ(from_text(NativeId::kStringToU64, "18446744073709551616"), UINT64_MAX);
+  EXPECT_EQ(from_text(NativeId::kStringToU64, "00000000000000000000000000012"), 12u);
+  EXPECT_EQ(from_text(NativeId::kStringToU64, "12 3"), 12u);
+  EXPECT_EQ(from_text(NativeId::kStringToU64, "1_2_3"), 123u);
+  EXPECT_EQ(from_text(NativeId::kStringToU64, "-5"), 0u);
+  EXPECT_EQ(to_int("- 5"), 0);
+  EXPECT_EQ(to_int("+-5"), 0);
+  EXPECT_EQ(to_int("+"), 0);
+  EXPECT_EQ(to_int("9223372036854775808"), INT64_MAX);
+  EXPECT_EQ(to_int("-9223372036854775809"), INT64_MIN);
+}
+
 TEST(NativeToText, RealsAreShortestIecLiterals) {
   EXPECT_EQ(real_text(2.0f), "2.0");
   EXPECT_EQ(real_text(0.1f), "0.1");

@@ -158,6 +158,25 @@ TEST_P(NativeStrings, SourceWithoutNulIsReadUpToItsCapacity) {
   EXPECT_EQ(static_cast<int64_t>(call(kind().find, {full.arg(), full.arg()})), 1);
 }
 
+TEST_P(NativeStrings, LongTextsAreAsShortOnes) {
+  std::string line;
+  for (int i = 0; i < 60; ++i) {
+    line.push_back(static_cast<char>('a' + i % 26));
+    Text to(130, std::string(130, '#'), kind().unit);
+    Text from(60, line, kind().unit);
+    call(kind().concat, {to.arg(), from.arg(), from.arg()});
+    EXPECT_EQ(to.value(), line + line);
+  }
+  Text text(60, line, kind().unit);
+  EXPECT_EQ(call(kind().len, {text.arg()}), 60u);
+  Text last(20, "fgh", kind().unit);  // 5, 31 and 57 are where it is
+  EXPECT_EQ(call(kind().find, {text.arg(), last.arg()}), 6u);
+  Text other(60, line, kind().unit);
+  EXPECT_EQ(call(kind().compare, {text.arg(), other.arg()}), 0u);
+  other.set_unit(58, 'z');
+  EXPECT_EQ(static_cast<int64_t>(call(kind().compare, {text.arg(), other.arg()})), -1);
+}
+
 TEST(NativeCharset, Latin1BothWays) {
   Text narrow(10, "caf\xE9");
   Text wide(10, "", 2);
