@@ -91,8 +91,9 @@ void Allocator::lose_homes(const Node& n) {
 
 void Allocator::take_home(Val v, uint32_t variable, bool clean) {
   if (is_constant(v) || home_[v] != kNone || holder_[variable] != kNone) return;
-  // An exit stores the slots that are dirty, whatever their memory held for others.
-  if (f_.variables[variable].slot && f_.variables[variable].written) return;
+  // An exit stores the variables that are dirty, whatever their memory held for others.
+  const bool dirty_once = f_.variables[variable].slot || f_.variables[variable].deferred;
+  if (dirty_once && f_.variables[variable].written) return;
   if (f_.values[v].width != f_.variables[variable].width) return;
   if (floating(v) != f_.variables[variable].floating) return;
   home_[v] = variable;

@@ -77,6 +77,9 @@ void Builder::begin(Block block) {
       now_ = *ends_[pred];
     }
     release(pred);
+    const uint32_t loop = f_.blocks[pred].loop;
+    if (loop == kNone || f_.blocks[block].loop == loop) return;
+    for (const uint32_t v : facts_.deferred(loop)) store_slot(v);
     return;
   }
   forget_everything();
@@ -155,7 +158,6 @@ Val Builder::merged(Block block, uint32_t variable) {
 
 void Builder::merge(Block block) {
   for (uint32_t v = 0; v < f_.variables.size(); ++v) {
-    if (!facts_.live_in(block, v)) continue;
     bool all = true;
     bool any = false;
     uint8_t dirty = 0;
@@ -165,11 +167,14 @@ void Builder::merge(Block block) {
       any |= has_value;
       dirty |= ends_[pred.block]->dirty[v];
     }
-    if (!any || (!all && !f_.variables[v].slot)) continue;
+    // What is dirty and no slot must get to memory, whether something reads it or not.
+    const bool wanted = facts_.live_in(block, v) || (dirty != 0 && !f_.variables[v].slot);
+    if (!wanted || !any) continue;
     if (!all && dirty == 0) continue;  // memory is right on every way
     const Val one = merged(block, v);
     if (one == kNone) {
       make_parameter(block, v);
+      now_.dirty[v] |= dirty;
       continue;
     }
     now_.value[v] = one;
@@ -222,6 +227,7 @@ void Builder::enter_loop(Block block, uint32_t loop) {
     }
     if (modified) {
       make_parameter(block, v);
+      if (std::ranges::binary_search(facts_.deferred(loop), v)) now_.dirty[v] = 1;
       continue;
     }
     uint8_t dirty = 0;
@@ -242,7 +248,7 @@ void Builder::enter_loop(Block block, uint32_t loop) {
   for (uint32_t v = 0; v < f_.variables.size(); ++v) {
     if (now_.value[v] == kNone) continue;
     f_.blocks[block].reloads.push_back({v, now_.value[v]});
-    if (now_.dirty[v] == 0) continue;
+    if (now_.dirty[v] == 0 || !f_.variables[v].slot) continue;
     f_.blocks[block].dirty.push_back(
         {f_.variables[v].offset, f_.variables[v].width, now_.value[v]});
   }
@@ -265,7 +271,23 @@ void Builder::forget_shared() {
   }
 }
 
+// A block outside of the loop that several ways lead to finds everything in memory.
+void Builder::store_before_leaving(Block block) {
+  const uint32_t loop = f_.blocks[block].loop;
+  if (loop == kNone || facts_.deferred(loop).empty()) return;
+  Block next[2];
+  uint32_t count = 0;
+  facts_.successors(block, next, count);
+  bool leaves = false;
+  for (uint32_t i = 0; i < count; ++i) {
+    const bool outside = next[i] > block && f_.blocks[next[i]].loop != loop;
+    leaves |= outside && (preds_[next[i]].size() > 1 || f_.blocks[next[i]].head);
+  }
+  if (leaves) store_deferred();
+}
+
 void Builder::finish(Block block) {
+  store_before_leaving(block);
   if (users_[block] != 0) ends_[block] = std::make_unique<State>(now_);
 }
 
@@ -283,6 +305,10 @@ void Builder::pass_back(Block block, Block head) {
   exit.fuel = true;
   std::vector<Val> args;
   for (const uint32_t v : parameters_[head]) args.push_back(read(v));
+  // What the loop only writes has no parameter.
+  for (const uint32_t v : deferred()) {
+    if (std::ranges::find(parameters_[head], v) == parameters_[head].end()) store_slot(v);
+  }
   const bool in_memory = preds_[head].empty() || facts_.has_call(facts_.loop_of(head));
   if (in_memory) {
     for (uint32_t v = 0; v < f_.variables.size(); ++v) {
@@ -290,8 +316,9 @@ void Builder::pass_back(Block block, Block head) {
     }
   }
   for (uint32_t v = 0; v < f_.variables.size(); ++v) {
-    if (now_.dirty[v] == 0 || !facts_.live_in(head, v)) continue;
-    exit.slots.push_back({f_.variables[v].offset, f_.variables[v].width, now_.value[v]});
+    const Variable& variable = f_.variables[v];
+    if (now_.dirty[v] == 0 || (variable.slot && !facts_.live_in(head, v))) continue;
+    exit.slots.push_back({variable.offset, variable.width, now_.value[v], variable.base});
   }
   End& end = f_.blocks[block].end;
   end.kind = EndKind::kLoop;

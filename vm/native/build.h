@@ -42,6 +42,7 @@ class Builder {
   void make_parameter(Block block, uint32_t variable);
   void finish(Block block);
   void pass_back(Block block, Block head);
+  void store_before_leaving(Block block);
   void end_with_jump(Block target);
   void release(Block pred);
 
@@ -91,7 +92,9 @@ class Builder {
   Val address_of(const Mem& mem);
   void kill_memory();
   void forget_everything();
+  const std::vector<uint32_t>& deferred() const;  // in the block's loop
   void store_slot(uint32_t variable);
+  void store_deferred();
   uint32_t exit_here(bool everything);
   void exit_if(Cond cond, uint8_t width, Val a, Val b);
   bool is_constant(Val v) const { return f_.values[v].constant; }

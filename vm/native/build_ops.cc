@@ -59,6 +59,7 @@ void Builder::unit(uint32_t number) {
     case Shape::kIndexPlace:
       return index(recipe, true);
     case Shape::kSpecial:
+      store_deferred();
       return special();
     case Shape::kHelper:
       break;
@@ -78,6 +79,7 @@ void Builder::unit(uint32_t number) {
     pass_back(block_, facts_.block_at(facts_.jump_target(number)));
   } else if (op == Opcode::RET) {
     for (const uint32_t v : facts_.results()) store_slot(v);
+    store_deferred();
     f_.blocks[block_].end.kind = EndKind::kReturn;
     f_.blocks[block_].end.exit = exit_here(false);
     ended_ = true;
@@ -343,6 +345,7 @@ void Builder::store_at(const Recipe& recipe) {
 
 // By the interpreter's own handler.
 void Builder::helper() {
+  store_deferred();
   for (const Access& access : accesses_of(u_)) {
     const uint32_t v = access.reads ? facts_.variable(access) : kNone;
     if (v != kNone && f_.variables[v].slot) store_slot(v);

@@ -1,4 +1,5 @@
 // Values, variables and memory while a Function is built.
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -250,7 +251,7 @@ Val Builder::read_c() { return read_field(u_.base_c(), u_.c, ir::opcode_row(u_.o
 void Builder::write(uint32_t variable, Val value) {
   const Variable& v = f_.variables[variable];
   now_.value[variable] = value;
-  if (v.slot) {
+  if (v.slot || (v.deferred && std::ranges::binary_search(deferred(), variable))) {
     now_.dirty[variable] = 1;
     return;
   }
@@ -336,6 +337,16 @@ void Builder::forget_everything() {
   ++version_;
 }
 
+const std::vector<uint32_t>& Builder::deferred() const {
+  static const std::vector<uint32_t> kNothing;
+  const uint32_t loop = f_.blocks[block_].loop;
+  return loop == kNone ? kNothing : facts_.deferred(loop);
+}
+
+void Builder::store_deferred() {
+  for (const uint32_t v : deferred()) store_slot(v);
+}
+
 void Builder::store_slot(uint32_t variable) {
   if (now_.dirty[variable] == 0) return;
   const Variable& v = f_.variables[variable];
@@ -346,21 +357,24 @@ void Builder::store_slot(uint32_t variable) {
   now_.dirty[variable] = 0;
 }
 
-// The interpreter executes this unit anew. When it surely traps, it needs the unit's own operands;
-// else everything that lives.
+// The interpreter executes this unit anew. When it surely traps, it needs the unit's own operands
+// of the frame; else everything that lives there.
 uint32_t Builder::exit_here(bool everything) {
   Exit exit;
   exit.unit = unit_;
   const auto add = [&](uint32_t v) {
     if (v == kNone || now_.dirty[v] == 0) return;
-    exit.slots.push_back({f_.variables[v].offset, f_.variables[v].width, now_.value[v]});
+    const Variable& variable = f_.variables[v];
+    exit.slots.push_back({variable.offset, variable.width, now_.value[v], variable.base});
   };
   if (everything) {
     for (const uint32_t v : facts_.live_behind(unit_)) add(v);
   }
   for (const Access& access : accesses_of(u_)) {
-    if (access.reads) add(facts_.variable(access));
+    const uint32_t v = access.reads ? facts_.variable(access) : kNone;
+    if (v != kNone && f_.variables[v].slot) add(v);
   }
+  for (const uint32_t v : deferred()) add(v);
   f_.exits.push_back(std::move(exit));
   return static_cast<uint32_t>(f_.exits.size() - 1);
 }

@@ -72,6 +72,7 @@ base::Result<Facts> Facts::of(const ir::Image& image, const ImageFacts& common,
   if (!facts.fits(why)) return base::Error{base::Refusal::kTooLarge, why};
   facts.find_loop_effects();
   if (!facts.find_liveness(why)) return base::Error{base::Refusal::kTooLarge, why};
+  facts.find_deferred();
   return facts;
 }
 

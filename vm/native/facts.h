@@ -89,6 +89,9 @@ class Facts {
   bool has_call(uint32_t loop) const { return loop_calls_[loop]; }
   // Is the variable's memory changed in the loop other than by its name?
   bool killed_in(uint32_t loop, uint32_t variable) const;
+  // Variables that the loop may keep in registers, their memory being older until it ends or is
+  // left; sorted.
+  const std::vector<uint32_t>& deferred(uint32_t loop) const { return loop_deferred_[loop]; }
   // Variables that something in the loop reads, sorted.
   const std::vector<uint32_t>& reads(uint32_t loop) const { return loop_reads_[loop]; }
 
@@ -97,6 +100,8 @@ class Facts {
   uint32_t variable(const Access& access) const;  // kNone: a constant
   // Variables whose memory the unit may change beside what its fields name.
   void killed(uint32_t unit, std::vector<uint32_t>& out) const;
+  // Variables whose memory the unit may read through an address.
+  void seen(uint32_t unit, std::vector<uint32_t>& out) const;
   // Does it change memory that no variable names?
   bool writes_memory(uint32_t unit) const;
 
@@ -125,6 +130,8 @@ class Facts {
   void find_reach();
   Reach reach_of_unit(uint32_t unit) const;
   void find_loop_effects();
+  void find_deferred();
+  void touched(uint32_t slot, std::vector<uint32_t>& out) const;
   bool find_liveness(std::string& why);
 
   const ir::Image* image_ = nullptr;
@@ -138,6 +145,7 @@ class Facts {
   std::vector<bool> loop_calls_;
   std::vector<std::vector<uint32_t>> loop_reads_;
   std::vector<std::vector<uint32_t>> loop_killed_;
+  std::vector<std::vector<uint32_t>> loop_deferred_;
   std::vector<bool> pinned_;  // by frame slot: something else knows where it is
   std::vector<Variable> variables_;
   std::unordered_map<uint64_t, uint32_t> numbers_;

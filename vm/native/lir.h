@@ -4,13 +4,14 @@
 //
 // Where values are. A *variable* is a scalar that an instruction names directly: a slot of the own
 // frame, a variable of the instance, a global, an argument in the next frame. A slot may be newer
-// in a register than in memory ("dirty"); every other variable is written through at once, so
-// memory is right wherever something else may look: at a trap, at a call, for references.
+// in a register than in memory ("dirty"), and so may a variable that an innermost loop changes,
+// until that loop ends ("deferred"); every other variable is written through at once, so memory is
+// right wherever something else may look: at a trap, at a call, for references.
 //
 // Registers hold the low `width` bytes of a value; what is above is arbitrary, except that values
 // of 4 bytes (addresses among them) are zero-extended to 8. A BOOL is 0 or 1 in its low byte.
 //
-// Leaving. An *exit* gives the POU back to the interpreter at a unit: slots that are dirty are
+// Leaving. An *exit* gives the POU back to the interpreter at a unit: what is dirty is
 // stored first, then the interpreter executes that unit itself. So what traps, suspends or happens
 // seldom has no second meaning here.
 #pragma once
@@ -144,11 +145,12 @@ struct Value {
   Block block = 0;
 };
 
-// Slots that are dirty, and what they hold there.
+// Variables that are dirty, and what they hold there.
 struct SlotValue {
   uint32_t offset = 0;
   uint8_t width = 0;
   Val value = kNone;
+  MemBase base = MemBase::kFrame;
 };
 struct Exit {
   uint32_t unit = 0;
@@ -226,6 +228,7 @@ struct Variable {
   bool slot = false;      // of the own frame: may be dirty
   bool constant = false;  // an instance's ID: no code writes it
   bool written = false;   // by its name
+  bool deferred = false;  // not a slot, and may be dirty in some loop
 };
 
 struct Function {

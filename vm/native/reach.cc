@@ -1,4 +1,4 @@
-// What stores through addresses may change.
+// What loads and stores through addresses may reach, and what that leaves to registers.
 #include <algorithm>
 
 #include "ir/bytecode/regions.h"
@@ -122,8 +122,17 @@ void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
     }
     return;
   }
-  if (!stores_through(op)) return;
-  const auto found = reach_.find(code_[i].a);
+  if (stores_through(op)) touched(code_[i].a, out);
+}
+
+void Facts::seen(uint32_t i, std::vector<uint32_t>& out) const {
+  const Opcode op = code_[i].opcode();
+  if (op >= Opcode::LD_B && op <= Opcode::LD_F64) touched(code_[i].b, out);
+}
+
+// Variables where the address in the frame slot may point to.
+void Facts::touched(uint32_t slot, std::vector<uint32_t>& out) const {
+  const auto found = reach_.find(slot);
   const bool known = found != reach_.end() && !found->second.everything;
   for (uint32_t v = 0; v < variables_.size(); ++v) {
     const Variable& variable = variables_[v];
@@ -142,6 +151,36 @@ void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
 bool Facts::writes_memory(uint32_t i) const {
   const Opcode op = code_[i].opcode();
   return stores_through(op) || op == Opcode::NATIVE;
+}
+
+// Only of innermost loops without calls: nothing but their own code is executed until they end, or
+// are left by an exit, which stores what is newer than memory. A BOOL may be any byte until
+// something writes it.
+void Facts::find_deferred() {
+  loop_deferred_.resize(loops_.size());
+  std::vector<bool> outer(loops_.size(), false);
+  for (const Loop& loop : loops_) {
+    if (loop.parent != kNone) outer[loop.parent] = true;
+  }
+  std::vector<uint32_t> seen_there;
+  for (uint32_t l = 0; l < loops_.size(); ++l) {
+    if (outer[l] || loop_calls_[l]) continue;
+    const Loop& loop = loops_[l];
+    seen_there.clear();
+    for (uint32_t i = blocks_[loop.head].first; i < blocks_[loop.last].behind; i = next(i)) {
+      seen(i, seen_there);
+    }
+    std::sort(seen_there.begin(), seen_there.end());
+    for (const uint32_t v : loop.modified) {
+      Variable& variable = variables_[v];
+      const bool shared = variable.base == MemBase::kSelf || variable.base == MemBase::kData;
+      if (!shared || variable.boolean || variable.constant || !overlaps_[v].empty()) continue;
+      if (!live_in(loop.head, v) || killed_in(l, v)) continue;
+      if (std::binary_search(seen_there.begin(), seen_there.end(), v)) continue;
+      loop_deferred_[l].push_back(v);
+      variable.deferred = true;
+    }
+  }
 }
 
 }  // namespace vm::native

@@ -307,7 +307,7 @@ Label Emitter::exit_label(uint32_t exit) {
 }
 
 void Emitter::store_slot(const SlotValue& slot, const Place& place) {
-  const Address to{kFrameRegister, 0xff, 1, true, static_cast<int32_t>(slot.offset)};
+  const Address to = address({slot.base, 1, kNone, int64_t{slot.offset}}, {});
   if (place.kind == Place::kRegister) {
     if (place.floating) return a_.float_store(to, float_register(place), slot.width);
     return a_.store(to, integer_register(place), slot.width);
