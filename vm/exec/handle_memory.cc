@@ -3,10 +3,7 @@
 // Addresses are 32-bit and wrap; 16-bit displacements are added behind that. With
 // the guard behind data memory nothing here can touch other memory of the process,
 // whatever an address holds.
-#include <algorithm>
-
-#include "base/limits.h"
-#include "stdlib/native/units.h"
+#include "vm/exec/copies.h"
 #include "vm/exec/handle.h"
 
 namespace vm {
@@ -176,26 +173,18 @@ struct Semantics<ir::Opcode::STR_AT> : StringAt {};
 template <>
 struct Semantics<ir::Opcode::WSTR_AT> : StringAt {};
 
-template <class Character>
-[[gnu::noinline]] void copy_string(uint8_t* mem, uint64_t to, uint64_t from) {
-  const auto capacity = [](uint64_t reference) {
-    return std::min(static_cast<uint32_t>(reference >> 32), base::kMaxStringCapacity);
-  };
-  stdlib::assign_text<Character>(mem + static_cast<uint32_t>(to), capacity(to),
-                                 mem + static_cast<uint32_t>(from), capacity(from));
-}
-template <class Character>
+template <uint64_t (*copy)(uint8_t*, uint64_t, uint64_t, uint64_t, uint64_t, uint64_t)>
 struct StringCopy : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
-    copy_string<Character>(mem, load<uint64_t>(frame + pc->a), load<uint64_t>(frame + pc->b));
+    copy(mem, load<uint64_t>(frame + pc->a), load<uint64_t>(frame + pc->b), 0, 0, 0);
     STC_NEXT(1);
   }
 };
 template <>
-struct Semantics<ir::Opcode::SCOPY> : StringCopy<uint8_t> {};
+struct Semantics<ir::Opcode::SCOPY> : StringCopy<&copy_string> {};
 template <>
-struct Semantics<ir::Opcode::WCOPY> : StringCopy<uint16_t> {};
+struct Semantics<ir::Opcode::WCOPY> : StringCopy<&copy_wstring> {};
 
 STC_INSTANTIATE_GROUP(kMemoryHandlers);
 

@@ -205,9 +205,13 @@ void Allocator::node(uint32_t number) {
   step.node = number;
   if (n.op == Op::kLoad && n.variable != kNone && stays_in_memory(n)) return;
   lose_homes(n);
-  operands(n, demands, step);
-  record_exit(n.exit);
-  if (demands.clobbers != 0 || demands.clobbers_all) clobber(demands);
+  if (n.op == Op::kNative) {
+    call_operands(n, demands, step);
+  } else {
+    operands(n, demands, step);
+    record_exit(n.exit);
+    if (demands.clobbers != 0 || demands.clobbers_all) clobber(demands);
+  }
   if (n.op == Op::kCall) {
     for (const Val v : live_) {
       if (!is_constant(v) && next_use(v, position_ + 1) != kNone)

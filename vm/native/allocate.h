@@ -61,6 +61,7 @@ struct Demands {
   int8_t in[4] = {-1, -1, -1, -1};
   int8_t result = -1;
   uint32_t clobbers = 0;  // integer registers that it destroys
+  uint32_t clobbers_floats = 0;
   uint8_t shares = 0xff;  // operands whose register the result may take: bit i; 0x10: the index
   bool clobbers_all = false;
 };
@@ -87,6 +88,10 @@ struct AllocatorOptions {
 
 base::Result<Allocated> allocate(const Function& function, const Target& target,
                                  const AllocatorOptions& options);
+
+// A register that nothing else uses; a target knows it by its number.
+inline constexpr uint32_t kMostRegisters = 32;
+inline constexpr Place kAside{Place::kRegister, true, false, kMostRegisters, 0};
 
 // One after the other, so that nothing is overwritten that a later one reads. `aside` stands for a
 // register that nothing else uses.

@@ -7,9 +7,6 @@ namespace vm::native {
 namespace {
 
 constexpr uint32_t kFreeInLoops = 2;  // registers for what the body computes
-// A register that nothing else uses; a target knows it by its number.
-constexpr Place kAside{Place::kRegister, true, false, kMostRegisters, 0};
-
 }  // namespace
 
 bool Allocator::lives_into(Block block, Val v, const std::vector<Val>& params) const {

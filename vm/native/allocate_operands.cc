@@ -80,6 +80,47 @@ Place Allocator::operand(const Node& n, uint32_t i, uint32_t forbidden) {
   return in_register(v);
 }
 
+// All at once into their registers; what lives on leaves those that the call loses, which are free
+// then.
+void Allocator::call_operands(const Node& n, const Demands& demands, Step& step) {
+  const uint32_t lost[2] = {demands.clobbers, demands.clobbers_floats};
+  for (uint32_t kind = 0; kind < 2; ++kind) {
+    for (uint32_t r = 0; r < count_[kind]; ++r) {
+      const Val v = regs_[kind][r];
+      if ((lost[kind] >> r & 1) == 0 || v == kNone || next_use(v, position_ + 1) == kNone) continue;
+      uint32_t to = kNone;
+      for (uint32_t k = 0; k < count_[kind] && to == kNone && random_ == 0; ++k) {
+        if (regs_[kind][k] == kNone && (lost[kind] >> k & 1) == 0) to = k;
+      }
+      if (to != kNone && !is_constant(v)) {
+        move({Place::kRegister, kind == 1, false, to, 0}, in_register(v), 8);
+        put(v, to);
+      } else if (memory_of(v).kind == Place::kNowhere) {
+        move({Place::kSpill, kind == 1, false, spill_slot(v), 0}, in_register(v), 8);
+        saved_[v] = 1;
+      }
+    }
+  }
+  std::vector<Move> moves;
+  for (uint32_t i = 0; i < 4; ++i) {
+    if (n.in[i] == kNone) continue;
+    const Place from = place_of(n.in[i]);
+    if (from.kind == Place::kNowhere) return fail("an argument is nowhere");
+    step.in[i] = {Place::kRegister, false, false, static_cast<uint32_t>(demands.in[i]), 0};
+    moves.push_back({step.in[i], from, f_.values[n.in[i]].width});
+  }
+  for (const Move& m : in_sequence(std::move(moves), kAside)) {
+    Step made;
+    made.move = m;
+    steps_->push_back(made);
+  }
+  for (uint32_t kind = 0; kind < 2; ++kind) {
+    for (uint32_t r = 0; r < count_[kind]; ++r) {
+      if ((lost[kind] >> r & 1) != 0 && regs_[kind][r] != kNone) free_register(regs_[kind][r]);
+    }
+  }
+}
+
 void Allocator::operands(const Node& n, const Demands& demands, Step& step) {
   uint32_t locked[2] = {demands.clobbers, 0};
   bool has_fixed = false;

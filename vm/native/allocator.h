@@ -9,7 +9,6 @@
 
 namespace vm::native {
 
-inline constexpr uint32_t kMostRegisters = 32;
 inline constexpr Val kCopy = 0xfffffffeu;  // in a register: a second copy of a value for one node
 
 class Allocator {
@@ -39,6 +38,7 @@ class Allocator {
   Place fixed_operand(Val v, uint32_t reg, const Demands& demands);
   Place operand(const Node& node, uint32_t i, uint32_t forbidden);
   void clobber(const Demands& demands);
+  void call_operands(const Node& node, const Demands& demands, Step& step);
   void result(const Node& node, const Demands& demands, Step& step);
   void lose_homes(const Node& node);
   void lose_home(uint32_t variable);

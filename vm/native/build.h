@@ -7,8 +7,11 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
+
+#include "stdlib/native/natives.h"
 
 #include "vm/native/facts.h"
 #include "vm/native/recipes.h"
@@ -60,12 +63,28 @@ class Builder {
   void load_at(const Recipe& recipe);
   void store_at(const Recipe& recipe);
   void special();
-  void make_string(Val address);
   Val read_field_id(ir::Base base, uint32_t offset);
   void instance(Val id);
   void call(CallKind kind, uint32_t pou, Val id);
   void helper();
   void leave();
+
+  // build_memory.cc
+  struct Piece {
+    uint32_t at = 0;
+    uint8_t width = 0;
+  };
+  Val pool_address(uint32_t offset);
+  void make_string(Val address);
+  void call_function(stdlib::NativeFunction function, std::span<const Val> arguments, Val result);
+  void native();
+  void copy_text();
+  template <class Visit>
+  void each_variable_in(const Mem& mem, uint32_t size, Visit visit) const;
+  bool cut(const Mem places[2], uint32_t size, size_t most, std::vector<Piece>& out) const;
+  Val read_piece(const Mem& from, const Piece& piece);
+  void known_pieces(const Mem& to, std::span<const Piece> pieces, std::span<const Val> values);
+  void copy();
 
   // build_values.cc
   Val constant(uint64_t bits, uint8_t width, bool floating);
@@ -87,6 +106,7 @@ class Builder {
   void write_field(ir::Base base, uint32_t offset, ir::Class cls, Val v);
   Val load(const Mem& mem, uint8_t width, bool floating, bool boolean);
   Val load_id(const Mem& mem);
+  void remember(const Mem& mem, uint8_t width, Val value, bool boolean);
   Mem behind(Val address, uint32_t offset) const;
   Mem place(ir::Base base, uint32_t offset) const;
   Val address_of(const Mem& mem);

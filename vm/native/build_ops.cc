@@ -59,7 +59,6 @@ void Builder::unit(uint32_t number) {
     case Shape::kIndexPlace:
       return index(recipe, true);
     case Shape::kSpecial:
-      store_deferred();
       return special();
     case Shape::kHelper:
       break;
@@ -83,6 +82,12 @@ void Builder::unit(uint32_t number) {
     f_.blocks[block_].end.kind = EndKind::kReturn;
     f_.blocks[block_].end.exit = exit_here(false);
     ended_ = true;
+  } else if (op == Opcode::NATIVE) {
+    native();
+  } else if (op == Opcode::SCOPY || op == Opcode::WCOPY) {
+    copy_text();
+  } else if (op == Opcode::COPY) {
+    copy();
   } else if (ir::opcode_row(op).ends) {
     leave();
   } else {
@@ -341,6 +346,7 @@ void Builder::store_at(const Recipe& recipe) {
   made.mem = behind(read_a(), u_.c);
   append(made);
   kill_memory();
+  remember(made.mem, made.width, value, ir::opcode_row(u_.opcode()).b.cls == ir::Class::kB);
 }
 
 // By the interpreter's own handler.

@@ -5,11 +5,22 @@ namespace vm::native {
 
 using ir::Opcode;
 
+namespace {
+
+// Does it look at no variable but those that its fields name?
+bool only_computes(Opcode op) {
+  return op == Opcode::LEA || op == Opcode::LEA_AT || op == Opcode::LD_REF ||
+         (op >= Opcode::STR && op <= Opcode::WSTR_AT) || op == Opcode::SIZE_OF;
+}
+
+}  // namespace
+
 void Builder::special() {
   const Opcode op = u_.opcode();
+  if (!only_computes(op)) store_deferred();
   switch (op) {
     case Opcode::LEA:
-      if (u_.base_b() == ir::Base::kConst) return helper();
+      if (u_.base_b() == ir::Base::kConst) return write_a(pool_address(x_.x()));
       return write_a(address_of(place(u_.base_b(), x_.x())));
     case Opcode::LEA_AT:
       return write_a(address_of(behind(read_b(), x_.x())));
@@ -28,7 +39,7 @@ void Builder::special() {
     }
     case Opcode::STR:
     case Opcode::WSTR:
-      if (u_.base_b() == ir::Base::kConst) return helper();
+      if (u_.base_b() == ir::Base::kConst) return make_string(pool_address(x_.x()));
       return make_string(address_of(place(u_.base_b(), x_.x())));
     case Opcode::STR_AT:
     case Opcode::WSTR_AT:
@@ -64,12 +75,6 @@ void Builder::special() {
     default:
       return call(CallKind::kSlow, 0, kNone);
   }
-}
-
-// {offset:32, capacity:32}
-void Builder::make_string(Val address) {
-  const uint64_t capacity = uint64_t{x_.y()} << 32;
-  write_a(int_op(Op::kOr, 8, address, constant(capacity, 8, false)));
 }
 
 Val Builder::read_field_id(ir::Base base, uint32_t offset) {

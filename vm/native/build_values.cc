@@ -71,11 +71,6 @@ bool same(const Node& a, const Node& b) {
          a.mem.disp == b.mem.disp;
 }
 
-MemBase mem_base(ir::Base base) {
-  if (base == ir::Base::kFrame) return MemBase::kFrame;
-  return base == ir::Base::kSelf ? MemBase::kSelf : MemBase::kData;
-}
-
 }  // namespace
 
 Val Builder::constant(uint64_t bits_, uint8_t width, bool floating) {
@@ -271,40 +266,23 @@ void Builder::write_field(ir::Base base, uint32_t offset, ir::Class cls, Val v) 
   write(facts_.variable({base, offset, cls, false, true, false}), v);
 }
 
-Mem Builder::place(ir::Base base, uint32_t offset) const {
-  return {mem_base(base), 1, kNone, static_cast<int64_t>(offset)};
-}
-
-// What lies behind an address: a known place goes into the instruction.
-Mem Builder::behind(Val address, uint32_t offset) const {
-  const Value& value = f_.values[address];
-  if (value.constant) return {MemBase::kData, 1, kNone, static_cast<int64_t>(value.bits + offset)};
-  if (value.node != kNone && epoch_of_[address] == epoch_ && epoch_ != 0) {
-    const Node& made = f_.nodes[value.node];
-    if (made.op == Op::kAddr) {
-      Mem mem = made.mem;
-      mem.disp += offset;
-      return mem;
-    }
-  }
-  return {MemBase::kData, 1, address, static_cast<int64_t>(offset)};
-}
-
-Val Builder::address_of(const Mem& mem) {
-  if (mem.base == MemBase::kData && mem.index == kNone) {
-    return constant(static_cast<uint64_t>(mem.disp), 4, false);
-  }
-  if (mem.base == MemBase::kData && mem.scale == 1 && mem.disp == 0) return mem.index;
-  Node made = node(Op::kAddr, 4);
-  made.mem = mem;
-  return value_of(made, false);
-}
-
 Val Builder::load(const Mem& mem, uint8_t width, bool floating, bool boolean) {
   Node made = node(Op::kLoad, width);
   made.mem = mem;
   made.boolean = boolean;
+  made.imm = floating ? 1 : 0;  // other bytes of a union are another value
   return value_of(made, floating);
+}
+
+// The place holds the value now: a load of it needs none.
+void Builder::remember(const Mem& mem, uint8_t width, Val value, bool boolean) {
+  Node made = node(Op::kLoad, width);
+  made.mem = mem;
+  made.boolean = boolean;
+  made.imm = f_.values[value].floating ? 1 : 0;
+  made.result = value;
+  known_[hash_of(made, version_)] = static_cast<uint32_t>(f_.nodes.size());
+  f_.nodes.push_back(made);
 }
 
 // No code writes the ID of an instance.
@@ -313,22 +291,6 @@ Val Builder::load_id(const Mem& mem) {
   made.mem = mem;
   made.immutable = true;
   return value_of(made, false);
-}
-
-// The unit stores where no name says: what may lie there is known no more.
-void Builder::kill_memory() {
-  std::vector<uint32_t> killed;
-  facts_.killed(unit_, killed);
-  ++version_;
-  std::vector<uint32_t> known;
-  for (const uint32_t v : killed) {
-    now_.value[v] = kNone;
-    known.push_back(v);
-  }
-  if (known.empty()) return;
-  Node& last = f_.nodes.back();
-  last.kills = static_cast<uint32_t>(f_.kills.size());
-  f_.kills.push_back(std::move(known));
 }
 
 void Builder::forget_everything() {

@@ -208,6 +208,11 @@ uint32_t Facts::variable(const Access& access) const {
   return numbers_.at(key_of(access));
 }
 
+uint32_t Facts::find_variable(const Access& access) const {
+  const auto found = numbers_.find(key_of(access));
+  return found == numbers_.end() ? kNone : found->second;
+}
+
 void Facts::find_overlaps() {
   overlaps_.resize(variables_.size());
   std::vector<uint32_t> order(variables_.size());

@@ -97,11 +97,15 @@ class Facts {
 
   const std::vector<Variable>& variables() const { return variables_; }
   const std::vector<std::vector<uint32_t>>& overlaps() const { return overlaps_; }
-  uint32_t variable(const Access& access) const;  // kNone: a constant
+  uint32_t variable(const Access& access) const;       // kNone: a constant
+  uint32_t find_variable(const Access& access) const;  // kNone: no code names it
   // Variables whose memory the unit may change beside what its fields name.
   void killed(uint32_t unit, std::vector<uint32_t>& out) const;
   // Variables whose memory the unit may read through an address.
   void seen(uint32_t unit, std::vector<uint32_t>& out) const;
+  // Of a COPY: may its two places have bytes in common?
+  bool may_overlap(uint32_t unit) const;
+  uint32_t copied_bytes(uint32_t unit) const;
   // Does it change memory that no variable names?
   bool writes_memory(uint32_t unit) const;
 
@@ -129,9 +133,10 @@ class Facts {
   void find_overlaps();
   void find_reach();
   Reach reach_of_unit(uint32_t unit) const;
+  void find_targets();
   void find_loop_effects();
   void find_deferred();
-  void touched(uint32_t slot, std::vector<uint32_t>& out) const;
+  void touched(const Reach& reach, std::vector<uint32_t>& out) const;
   bool find_liveness(std::string& why);
 
   const ir::Image* image_ = nullptr;
@@ -151,6 +156,8 @@ class Facts {
   std::unordered_map<uint64_t, uint32_t> numbers_;
   std::vector<std::vector<uint32_t>> overlaps_;
   std::unordered_map<uint32_t, Reach> reach_;  // by offset of a frame slot
+  std::unordered_map<uint32_t, Reach> targets_,
+      sources_;  // by unit: what it writes, what COPY reads
   std::vector<uint32_t> results_;
   size_t words_ = 0;
   std::vector<uint64_t> live_in_;

@@ -82,6 +82,8 @@ enum class Op : uint8_t {
   kInstance,
   kTaskTime,
   kAdvanceTime,
+  kPool,    // result := data address of the image's constants
+  kNative,  // the function at address `imm`, of data memory and in; what calls lose is lost
   kHelper,  // `unit` by its handler; every register is lost
   kCall,    // `call`; nothing but constants lives across
   kEnter,   // begins the body of `call`, which follows; the result points to its instance

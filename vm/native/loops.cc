@@ -16,6 +16,7 @@ bool is_movable(const Node& n) {
     case Op::kStore:
     case Op::kTaskTime:
     case Op::kAdvanceTime:
+    case Op::kNative:
     case Op::kHelper:
     case Op::kCall:
     case Op::kEnter:

@@ -14,7 +14,7 @@ const char* const kNames[] = {
     "sext",        "zext",   "fadd",    "fsub",    "fmul",     "fdiv",     "fmin",
     "fmax",        "fneg",   "fabs",    "fsqrt",   "fcompare", "fselect",  "inttofloat",
     "floattoint",  "fwidth", "bitstof", "ftobits", "exitif",   "instance", "tasktime",
-    "advancetime", "helper", "call",    "enter"};
+    "advancetime", "pool",   "native",  "helper",  "call",     "enter"};
 const char* const kConds[] = {"=",  "<>",  "<s", "<=s", ">s",     ">=s",
                               "<u", "<=u", ">u", ">=u", "no bit", "any bit"};
 const char* const kEnds[] = {"jump", "loop", "branch", "return", "exit", "unreachable"};

@@ -81,6 +81,9 @@ std::vector<uint64_t> facts_of(const ir::Image& image, const ImageFacts& common,
     if (u.opcode() == ir::Opcode::CALL_INST || u.opcode() == ir::Opcode::CALL_INST_AT) {
       out.push_back(called_body(image, common, pou, u));
     }
+    if (u.opcode() == ir::Opcode::COPY) {
+      out.push_back(ir::region_size(image.types, image.layouts, ir::region_of_field(x.x())));
+    }
     if (u.opcode() == ir::Opcode::LEA) {
       out.push_back(ir::region_size(image.types, image.layouts, ir::region_of_field(x.y())));
     }

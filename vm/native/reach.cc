@@ -16,10 +16,8 @@ bool stores_through(Opcode op) {
   return (op >= Opcode::ST_B && op <= Opcode::ST_F64) || op == Opcode::ST_REF_AT ||
          op == Opcode::COPY || op == Opcode::SCOPY || op == Opcode::WCOPY;
 }
-bool native_writes(const ir::Unit& unit) {
-  const std::string_view letters = stdlib::native_row(unit.c).arguments;
-  return letters.find_first_of("SW") != std::string_view::npos;
-}
+// A text that is the result is written through the first argument.
+bool native_writes(const ir::Unit& unit) { return stdlib::native_row(unit.c).result == 'v'; }
 MemBase base_of(ir::Base base) {
   if (base == ir::Base::kFrame) return MemBase::kFrame;
   return base == ir::Base::kSelf ? MemBase::kSelf : MemBase::kData;
@@ -109,37 +107,86 @@ void Facts::find_reach() {
       changed |= reach_[code_[i].a].join(reach_of_unit(i));
     }
   }
+  find_targets();
+}
+
+// What stores write, and copies read, each where it stands: of the slot with the address the last
+// unit in front says where that is.
+void Facts::find_targets() {
+  std::unordered_map<uint32_t, uint32_t> made_by;  // unit, by offset of a frame slot
+  const auto at = [&](uint32_t slot) {
+    const auto near = made_by.find(slot);
+    if (near != made_by.end()) return reach_of_unit(near->second);
+    const auto any = reach_.find(slot);
+    return any == reach_.end() ? Reach{true, false, {}} : any->second;
+  };
+  for (const UnitRange& block : blocks_) {
+    made_by.clear();
+    for (uint32_t i = block.first; i < block.behind; i = next(i)) {
+      const ir::Unit& unit = code_[i];
+      const Opcode op = unit.opcode();
+      if (stores_through(op)) targets_[i] = at(unit.a);
+      if (op == Opcode::COPY) sources_[i] = at(unit.b);
+      if (op == Opcode::NATIVE && native_writes(unit)) targets_[i] = at(unit.a * 8u);
+      if (is_call(op) || op == Opcode::NATIVE) made_by.clear();  // the next frame is used
+      const ir::Field& field = ir::opcode_row(op).a;
+      if (field.is_near() && field.writes() && unit.base_a() == ir::Base::kFrame) {
+        made_by[unit.a] = i;
+      }
+    }
+  }
 }
 
 void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
-  const Opcode op = code_[i].opcode();
-  if (op == Opcode::NATIVE) {
-    const bool all = native_writes(code_[i]);
-    for (uint32_t v = 0; v < variables_.size(); ++v) {
-      const bool next_frame =
-          variables_[v].base == MemBase::kFrame && variables_[v].offset >= pou_->frame_size;
-      if (next_frame || (all && !variables_[v].slot && !variables_[v].constant)) out.push_back(v);
+  const auto target = targets_.find(i);
+  if (target != targets_.end()) touched(target->second, out);
+  if (code_[i].opcode() != Opcode::NATIVE) return;
+  // The result lies in the first slot.
+  const uint32_t result = code_[i].a * 8u;
+  for (uint32_t v = 0; v < variables_.size(); ++v) {
+    const Variable& variable = variables_[v];
+    if (variable.base == MemBase::kFrame && variable.offset < result + 8 &&
+        result < variable.offset + variable.width) {
+      out.push_back(v);
     }
-    return;
   }
-  if (stores_through(op)) touched(code_[i].a, out);
 }
 
 void Facts::seen(uint32_t i, std::vector<uint32_t>& out) const {
   const Opcode op = code_[i].opcode();
-  if (op >= Opcode::LD_B && op <= Opcode::LD_F64) touched(code_[i].b, out);
+  if (op == Opcode::COPY) touched(sources_.at(i), out);
+  if (op < Opcode::LD_B || op > Opcode::LD_F64) return;
+  const auto found = reach_.find(code_[i].b);
+  touched(found == reach_.end() ? Reach{true, false, {}} : found->second, out);
 }
 
-// Variables where the address in the frame slot may point to.
-void Facts::touched(uint32_t slot, std::vector<uint32_t>& out) const {
-  const auto found = reach_.find(slot);
-  const bool known = found != reach_.end() && !found->second.everything;
+uint32_t Facts::copied_bytes(uint32_t i) const {
+  return ir::region_size(image_->types, image_->layouts, ir::region_of_field(extension(i).x()));
+}
+
+bool Facts::may_overlap(uint32_t i) const {
+  const Reach& to = targets_.at(i);
+  const Reach& from = sources_.at(i);
+  if (to.everything || from.everything || to.own_instance || from.own_instance) return true;
+  for (const Reach::Part& a : to.parts) {
+    for (const Reach::Part& b : from.parts) {
+      if (a.base == b.base && a.begin < b.end && b.begin < a.end) return true;
+      // The frame is apart from everything else.
+      const bool apart = (a.base == ir::Base::kFrame) != (b.base == ir::Base::kFrame);
+      if (a.base != b.base && !apart) return true;
+    }
+  }
+  return false;
+}
+
+// Variables where an address may point to.
+void Facts::touched(const Reach& reach, std::vector<uint32_t>& out) const {
   for (uint32_t v = 0; v < variables_.size(); ++v) {
     const Variable& variable = variables_[v];
     if (variable.slot || variable.constant) continue;
-    bool may = !known || (found->second.own_instance && variable.base == MemBase::kSelf);
+    bool may = reach.everything || (reach.own_instance && variable.base == MemBase::kSelf);
     if (!may) {
-      for (const Reach::Part& part : found->second.parts) {
+      for (const Reach::Part& part : reach.parts) {
         may |= base_of(part.base) == variable.base && variable.offset < part.end &&
                part.begin < uint64_t{variable.offset} + variable.width;
       }

@@ -162,6 +162,18 @@ void Emitter::call(const Node& n) {
   a_.bind(entries_.behind_call[n.call]);
 }
 
+// Its arguments are in their registers; the data memory comes first.
+void Emitter::native(const Node& n) {
+  a_.move(0, kDataRegister);
+  a_.move_imm(kScratch, n.imm);
+  a_.call(kScratch);
+}
+
+void Emitter::pool(const Step& step) {
+  a_.load(kScratch, CONTEXT(consts), 8);
+  a_.alu(Alu::kSub, integer_register(step.result), kScratch, kDataRegister, 4);
+}
+
 // The interpreter calls, and what it calls returns to the resume unit.
 void Emitter::slow_call(uint32_t number) {
   leave_at_side(pou_.side->call[number]);

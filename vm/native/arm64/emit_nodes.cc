@@ -45,6 +45,10 @@ void Emitter::node(const Step& step) {
       a_.load(kScratch, CONTEXT(task_time_ns), 8);
       a_.alu(Alu::kAdd, kScratch, kScratch, integer_register(step.in[0]), 8);
       return a_.store(CONTEXT(task_time_ns), kScratch, 8);
+    case Op::kPool:
+      return pool(step);
+    case Op::kNative:
+      return native(n);
     case Op::kHelper:
       return helper(n, step);
     case Op::kCall:

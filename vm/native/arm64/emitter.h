@@ -100,6 +100,8 @@ class Emitter {
   void data_address(const Node& node, const Step& step);
   void instance(const Node& node, const Step& step);
   void helper(const Node& node, const Step& step);
+  void native(const Node& node);
+  void pool(const Step& step);
 
   // emit_float.cc
   void floating(const Node& node, const Step& step);

@@ -27,6 +27,14 @@ int64_t compared_constant(uint64_t bits, uint8_t width, Cond cond) {
 Demands Arm64Target::demands(const Function&, const Node& node) const {
   Demands d;
   d.clobbers_all = node.op == Op::kHelper || node.op == Op::kCall;
+  if (node.op == Op::kNative) {
+    for (uint32_t i = 0; i < 4; ++i) {
+      if (node.in[i] != kNone) d.in[i] = static_cast<int8_t>(i + 1);
+    }
+    d.result = 0;
+    d.clobbers = 0xffff;           // all but x24 to x28
+    d.clobbers_floats = ~0xff00u;  // of d8 to d15 what counts stays
+  }
   if (node.op == Op::kCall) {
     if (node.in[0] != kNone) d.in[0] = 0;
     if (node.in[1] != kNone) d.in[1] = 1;
@@ -37,6 +45,8 @@ Demands Arm64Target::demands(const Function&, const Node& node) const {
 bool Arm64Target::takes_constant(const Function& f, const Node& node, uint32_t operand) const {
   const Value& value = f.values[node.in[operand]];
   switch (node.op) {
+    case Op::kNative:
+      return true;
     case Op::kStore:
       return value.bits == 0;
     case Op::kAdd:

@@ -161,6 +161,20 @@ void Emitter::call(const Node& n) {
   a_.bind(entries_.behind_call[n.call]);
 }
 
+// Its arguments are in their registers; the data memory comes first.
+void Emitter::native(const Node& n) {
+  a_.address(kRdi, {kDataRegister, 0xff, 1, true, INT32_MIN}, 8);
+  a_.move_imm(kRax, n.imm);
+  a_.call(Operand::of(uint8_t{kRax}));
+}
+
+void Emitter::pool(const Step& step) {
+  const uint8_t to = integer_register(step.result);
+  a_.load(to, CONTEXT(consts), 8);
+  a_.alu(Alu::kSub, to, Operand::of(kDataRegister), 4);
+  a_.alu_imm(Alu::kAdd, Operand::of(to), INT32_MIN, 4);
+}
+
 // The interpreter calls, and what it calls returns to the resume unit.
 void Emitter::slow_call(const Call&, uint32_t number) {
   a_.move_imm(kScratch, reinterpret_cast<uintptr_t>(&pou_.side->units[pou_.side->call[number]]));

@@ -44,6 +44,10 @@ void Emitter::node(const Step& step) {
       a_.alu(Alu::kAdd, kScratch, Operand::of(by), 8);
       return a_.store(CONTEXT(task_time_ns), kScratch, 8);
     }
+    case Op::kPool:
+      return pool(step);
+    case Op::kNative:
+      return native(n);
     case Op::kHelper:
       return helper(n, step);
     case Op::kCall:

@@ -96,6 +96,8 @@ class Emitter {
   void float_compare(const Node& node, const Step& step);
   void instance(const Node& node, const Step& step);
   void helper(const Node& node, const Step& step);
+  void native(const Node& node);
+  void pool(const Step& step);
 
   // emit_call.cc
   void call(const Node& node);

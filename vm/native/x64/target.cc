@@ -4,6 +4,9 @@ namespace vm::native::x64 {
 namespace {
 
 bool asks_bits(Cond cond) { return cond == Cond::kNoBit || cond == Cond::kAnyBit; }
+constexpr int8_t kArguments[] = {3, 2, 1, 5};  // rsi, rdx, rcx, r8
+constexpr uint32_t kLostAtCalls = 0xff;        // all but r15
+
 bool fits32(uint64_t bits, uint8_t width) {
   if (width < 8) return true;
   const auto v = static_cast<int64_t>(bits);
@@ -47,6 +50,14 @@ Demands X64Target::demands(const Function& f, const Node& node) const {
       if (node.in[0] != kNone) d.in[0] = 0;
       if (node.in[1] != kNone) d.in[1] = 2;
       break;
+    case Op::kNative:
+      for (uint32_t i = 0; i < 4; ++i) {
+        if (node.in[i] != kNone) d.in[i] = kArguments[i];
+      }
+      d.result = 0;
+      d.clobbers = kLostAtCalls;
+      d.clobbers_floats = ~0u;
+      break;
     case Op::kHelper:
       d.clobbers_all = true;
       break;
@@ -59,6 +70,8 @@ Demands X64Target::demands(const Function& f, const Node& node) const {
 bool X64Target::takes_constant(const Function& f, const Node& node, uint32_t operand) const {
   const Value& value = f.values[node.in[operand]];
   switch (node.op) {
+    case Op::kNative:
+      return true;
     case Op::kStore:
       return operand == 0;
     case Op::kAdd:
