@@ -90,7 +90,7 @@ class Runs {
     }
     const bool parts = type.kind == Kind::kArray && !types_.is_scalar(type.base);
     if (!parts) {
-      join(offset, layouts_[id].size);
+      join(offset, layouts_[id].size, is_bool(type.kind == Kind::kArray ? type.base : id));
       return true;
     }
     const uint32_t stride = layouts_[type.base].size;
@@ -104,11 +104,15 @@ class Runs {
   std::vector<PlainRun> take() { return std::move(runs_); }
 
  private:
-  void join(uint32_t offset, uint32_t size) {
-    if (!runs_.empty() && runs_.back().offset + runs_.back().size == offset) {
+  bool is_bool(TypeId id) const {
+    return types_.is_scalar(id) && types_.scalar(id) == Scalar::kBool;
+  }
+  void join(uint32_t offset, uint32_t size, bool bools) {
+    if (!runs_.empty() && runs_.back().offset + runs_.back().size == offset &&
+        runs_.back().bools == bools) {
       runs_.back().size += size;
     } else {
-      runs_.push_back({offset, size});
+      runs_.push_back({offset, size, bools});
     }
   }
 

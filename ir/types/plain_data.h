@@ -25,6 +25,7 @@ std::optional<base::Digest> plain_signature(const TypeTable& types, const Layout
 struct PlainRun {
   uint32_t offset = 0;
   uint32_t size = 0;
+  bool bools = false;  // of BOOLs alone, each 0 or 1
 };
 std::vector<PlainRun> plain_runs(const TypeTable& types, const Layouts& layouts, TypeId id);
 

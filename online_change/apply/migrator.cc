@@ -135,6 +135,7 @@ base::Status Migrator::run_call(size_t number) {
       conversions_.convert(input.conversion, 0, from, {frame + input.slot, input.slot_size});
     } else {
       std::memcpy(frame + input.slot, from, input.size);
+      code_.bools().normalise(input.conversion.new_type, frame + input.slot);
     }
     from += input.size;
   }

@@ -1,5 +1,6 @@
 #include "online_change/plan/pause.h"
 
+#include "ir/bytecode/bools.h"
 #include "online_change/diff/fast_conversion.h"
 #include "online_change/diff/place_moves.h"
 
@@ -31,6 +32,8 @@ BoundaryWork boundary_work(const Plan& plan, const ir::Image& old_image, const i
     work.bytes += step.total();
   }
   work.calls = plan.calls.size();
+  const ir::Bools bools(new_image);
+  if (ir::needs_normalising(ir::Bools(old_image), bools)) work.values += bools.count();
   if (!PlaceMoves(old_image, new_image).trivial()) {
     work.references = reference_leaves(new_image).size();
   }

@@ -82,6 +82,7 @@ void write_initial_data(const ir::Image& image, uint8_t* memory) {
   for (const ir::DataRun& run : image.data) {
     std::memcpy(memory + run.offset, run.bytes.data(), run.bytes.size());
   }
+  ir::Bools(image).normalise_all(memory);
 }
 
 uint32_t Generation::pool_offset() const {
@@ -204,7 +205,7 @@ base::Result<std::unique_ptr<Generation>> Generation::build(ir::VerifiedImage ve
   for (const ir::Range& range : image.ranges) made->ranges_.push_back({range.low, range.high});
   made->write_pool(memory);
   if (!tier.alternates || number % 2 == 0) {
-    made->native_ = native::Program::make(image, made->pous_, tier,
+    made->native_ = native::Program::make(image, made->bools_.stay_clean(), made->pous_, tier,
                                           running == nullptr ? nullptr : running->native());
   }
   return made;

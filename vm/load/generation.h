@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "ir/bytecode/bools.h"
 #include "ir/bytecode/verify.h"
 #include "vm/exec/tier.h"
 #include "vm/load/code_slots.h"
@@ -59,7 +60,7 @@ struct OverrideEntry {
 };
 inline constexpr uint32_t kNoTarget = 0xffffffffu;
 
-// A cold start's data: `memory` is all zero before.
+// A cold start's data: `memory` is all zero before. BOOLs are 0 or 1.
 void write_initial_data(const ir::Image& image, uint8_t* memory);
 
 class Generation {
@@ -104,11 +105,12 @@ class Generation {
   }
   // Machine code of its POUs; null: everything is interpreted.
   const native::Program* native() const { return native_.get(); }
+  const ir::Bools& bools() const { return bools_; }
   // Tries that one POU can have open at once, at most.
   uint32_t try_depth() const { return try_depth_; }
 
  private:
-  explicit Generation(ir::VerifiedImage image) : image_(std::move(image)) {}
+  explicit Generation(ir::VerifiedImage image) : image_(std::move(image)), bools_(image_.image()) {}
   base::Status place_code(const Generation* running);
   void build_areas();
   void build_stamps();
@@ -117,6 +119,7 @@ class Generation {
     return static_cast<size_t>(key * 0x9e3779b97f4a7c15u >> 32) & override_mask_;
   }
   ir::VerifiedImage image_;
+  ir::Bools bools_;
   std::vector<AreaEntry> areas_;
   std::vector<uint32_t> area_slots_;
   std::vector<uint32_t> areas_by_data_;

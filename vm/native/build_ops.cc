@@ -336,7 +336,7 @@ void Builder::index(const Recipe& recipe, bool of_place) {
 
 void Builder::load_at(const Recipe& recipe) {
   const Mem mem = behind(read_b(), u_.c);
-  const bool boolean = ir::opcode_row(u_.opcode()).a.cls == ir::Class::kB;
+  const bool boolean = ir::opcode_row(u_.opcode()).a.cls == ir::Class::kB && !facts_.clean_bools();
   write_a(load(mem, recipe.width, recipe.floating, boolean));
 }
 

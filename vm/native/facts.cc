@@ -190,7 +190,7 @@ void Facts::find_variables() {
       v.offset = access.offset;
       v.width = static_cast<uint8_t>(ir::class_size(access.cls));
       v.floating = access.cls == ir::Class::kF32 || access.cls == ir::Class::kF64;
-      v.boolean = access.cls == ir::Class::kB;
+      v.boolean = access.cls == ir::Class::kB && !common_->clean_bools;
       v.constant = access.id;
       v.written = access.writes;
       if (access.base == ir::Base::kFrame && access.offset < pou_->frame_size) {

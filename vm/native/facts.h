@@ -53,9 +53,10 @@ struct UnitRange {
 
 // What all POUs of an image have in common.
 struct ImageFacts {
-  explicit ImageFacts(const ir::Image& image);
+  ImageFacts(const ir::Image& image, bool are_bools_clean);
   std::vector<uint32_t> body_of;  // by type: the POU that runs when its instance is called; kNone
   bool recursive_bodies = false;  // does any block call itself?
+  bool clean_bools = false;       // are all BOOLs in memory 0 or 1?
 };
 // The frame slot that covers the offset, or the last one in front of it; kNone: there is none.
 uint32_t slot_number(const ir::LinkedPou& pou, uint32_t offset);
@@ -122,6 +123,7 @@ class Facts {
     return native::called_body(*image_, *common_, *pou_, code_[unit]);
   }
   bool recursive_bodies() const { return common_->recursive_bodies; }
+  bool clean_bools() const { return common_->clean_bools; }
   void successors(Block block, Block out[2], uint32_t& count) const;
 
  private:

@@ -37,7 +37,8 @@ uint32_t called_body(const ir::Image& image, const ImageFacts& common, const ir:
   return common.body_of[leaf->type.index];
 }
 
-ImageFacts::ImageFacts(const ir::Image& image) : body_of(image.types.size(), kNone) {
+ImageFacts::ImageFacts(const ir::Image& image, bool are_bools_clean)
+    : body_of(image.types.size(), kNone), clean_bools(are_bools_clean) {
   for (uint32_t p = 0; p < image.pous.size(); ++p) {
     const ir::LinkedPou& pou = image.pous[p];
     if (!ir::is_body(pou.kind)) continue;

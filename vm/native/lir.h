@@ -9,7 +9,8 @@
 // right wherever something else may look: at a trap, at a call, for references.
 //
 // Registers hold the low `width` bytes of a value; what is above is arbitrary, except that values
-// of 4 bytes (addresses among them) are zero-extended to 8. A BOOL is 0 or 1 in its low byte.
+// of 4 bytes (addresses among them) are zero-extended to 8. A BOOL is 0 or 1 in its low byte; what
+// a hostile image or package put there may be another byte, so no check is left out because of it.
 //
 // Leaving. An *exit* gives the POU back to the interpreter at a unit: what is dirty is
 // stored first, then the interpreter executes that unit itself. So what traps, suspends or happens
@@ -124,7 +125,7 @@ struct Node {
   uint8_t width = 0;
   uint8_t from = 0;
   Cond cond = Cond::kEq;
-  bool boolean = false;    // kLoad of a BOOL that may be any byte
+  bool boolean = false;    // kLoad of a BOOL that may be any byte, which becomes 0 or 1
   bool immutable = false;  // kLoad: no code writes there
   bool dead = false;
   Val result = kNone;
@@ -226,7 +227,7 @@ struct Variable {
   uint32_t offset = 0;
   uint8_t width = 0;
   bool floating = false;
-  bool boolean = false;
+  bool boolean = false;   // a BOOL that may be any byte
   bool slot = false;      // of the own frame: may be dirty
   bool constant = false;  // an instance's ID: no code writes it
   bool written = false;   // by its name

@@ -1,5 +1,6 @@
 #include "vm/native/make_function.h"
 
+#include "ir/bytecode/bools.h"
 #include "vm/native/build.h"
 #include "vm/native/loops.h"
 #include "vm/native/print.h"
@@ -41,7 +42,7 @@ Function make_function(const Facts& facts, Bodies& bodies, uint32_t pou,
 std::string functions_text(const ir::Image& image) {
   const std::vector<PouEntry> pous(image.pous.size());
   const TierOptions options;
-  const ImageFacts common(image);
+  const ImageFacts common(image, ir::Bools(image).stay_clean());
   Bodies bodies(image, common, pous, options);
   std::string out;
   for (uint32_t pou = 0; pou < image.pous.size(); ++pou) {

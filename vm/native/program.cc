@@ -50,8 +50,9 @@ ir::Unit stop_unit() {
 // Constants, bounds, ranges and callees that the units name by number.
 std::vector<uint64_t> facts_of(const ir::Image& image, const ImageFacts& common,
                                const ir::LinkedPou& pou) {
-  std::vector<uint64_t> out = {pou.frame_size, pou.slots.size(), pou.merges.size(),
-                               common.recursive_bodies ? 1u : 0u};
+  std::vector<uint64_t> out = {
+      pou.frame_size, pou.slots.size(), pou.merges.size(),
+      (common.recursive_bodies ? 1u : 0u) | (common.clean_bools ? 2u : 0u)};
   for (const ir::FrameSlot& slot : pou.slots) {
     out.push_back(uint64_t{slot.offset} << 32 | static_cast<uint64_t>(slot.cls) << 24 |
                   static_cast<uint64_t>(slot.kind) << 16 | static_cast<uint64_t>(slot.local) << 8 |
@@ -206,7 +207,8 @@ bool is_available() { return host::kIsAvailable; }
 
 Program::~Program() = default;
 
-std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector<PouEntry>& pous,
+std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_bools,
+                                             std::vector<PouEntry>& pous,
                                              const TierOptions& options, const Program* running) {
   if (options.tier == Tier::kInterpreter || !is_available()) return nullptr;
   const auto made = std::make_shared<Program>(Key());
@@ -214,7 +216,7 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, std::vector
   host::Assembler assembler;
   const host::Shared shared = host::emit_shared(assembler);
   std::vector<Work> all;
-  const ImageFacts common(image);
+  const ImageFacts common(image, clean_bools);
   Bodies bodies(image, common, pous, options);
   std::vector<std::vector<uint64_t>> facts_by_pou;
   for (const ir::LinkedPou& pou : image.pous) facts_by_pou.push_back(facts_of(image, common, pou));

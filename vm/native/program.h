@@ -31,7 +31,9 @@ class Program {
   ~Program();
   // Sets entry and machine of `pous`. Code of `running` that is still right is shared. Null when
   // everything is interpreted.
-  static std::shared_ptr<const Program> make(const ir::Image& image, std::vector<PouEntry>& pous,
+  // `clean_bools`: BOOLs of the image are 0 or 1 wherever they lie (ir/bytecode/bools.h).
+  static std::shared_ptr<const Program> make(const ir::Image& image, bool clean_bools,
+                                             std::vector<PouEntry>& pous,
                                              const TierOptions& options, const Program* running);
 
   // Runs machine code. True: its POU returned, and the caller's record is on top; else the Context

@@ -97,8 +97,13 @@ class Ranges {
       }
       case Op::kCompare:
       case Op::kFCompare:
-      case Op::kNotBool:
         return {0, 1};
+      case Op::kNotBool: {
+        const Range from = of(n.in[0], at, depth + 1);
+        return from.low >= 0 && from.high <= 1 ? from : all;
+      }
+      case Op::kLoad:
+        return n.boolean ? Range{0, 1} : all;
       default:
         return all;
     }

@@ -25,6 +25,7 @@ void write_retained(const ir::Image& image, base::ByteSpan values, uint8_t* memo
     std::memcpy(memory + range.data, values.data(), range.size);
     values = values.subspan(range.size);
   }
+  ir::Bools(image).normalise_all(memory);  // whatever was stored
 }
 
 TimeSummary summary_of(const Histogram& times) {
@@ -81,8 +82,7 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
   Impl& impl = *controller->impl_;
   write_initial_data(image.image(), impl.memory.data());
   if (!retained.empty()) write_retained(image.image(), retained, impl.memory.data());
-  auto first = Generation::build(image, 0, impl.memory.data(), impl.code_slots, nullptr,
-                                 impl.tier);
+  auto first = Generation::build(image, 0, impl.memory.data(), impl.code_slots, nullptr, impl.tier);
   if (!first.ok()) return first.error();
   impl.running = std::move(*first);
   if (base::Status devices = io.prepare(image); !devices.ok()) return devices.error();
@@ -245,6 +245,9 @@ std::unique_ptr<Generation> Controller::publish(std::unique_ptr<Generation> next
   TaskTables& tables = *prepared->second;
   tables.adopt(impl_->scheduler.tables(), impl_->scheduler.cycle_start_ns());
   if (data != nullptr) std::swap(impl_->memory, *data);
+  if (ir::needs_normalising(impl_->running->bools(), next->bools())) {
+    next->bools().normalise_all(impl_->memory.data());
+  }
   impl_->scheduler.use(tables, impl_->memory.data());
   std::swap(impl_->running, next);
   impl_->io_port.use(verified().digest());

@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "ir/bytecode/bools.h"
+
 namespace vm {
 
 SharedGlobals::SharedGlobals(const ir::Image& image) {
@@ -56,6 +58,7 @@ uint8_t* gather(std::span<const ir::PlainRun> runs, const uint8_t* memory, uint8
 const uint8_t* scatter(std::span<const ir::PlainRun> runs, const uint8_t* from, uint8_t* memory) {
   for (const ir::PlainRun& run : runs) {
     std::memcpy(memory + run.offset, from, run.size);
+    if (run.bools) ir::normalise_bools(memory + run.offset, run.size);
     from += run.size;
   }
   return from;

@@ -1,0 +1,116 @@
+#include "ir/bytecode/bools.h"
+
+#include "base/limits.h"
+#include "ir/bytecode/regions.h"
+
+namespace ir {
+
+Bools::Bools(const Image& image) : image_(image), holds_(image.types.size(), Holds::kUnknown) {
+  stay_clean_ = !writes_as_others();
+}
+
+// IDs and addresses, not the value itself.
+bool Bools::is_slot(const Member& member) const {
+  return member.section == Section::kInOut || image_.types.is_instance(member.type);
+}
+
+bool Bools::find(TypeId id, uint32_t depth) {
+  Holds& known = holds_[id.index];
+  if (known != Holds::kUnknown) return known == Holds::kYes;
+  known = Holds::kNo;
+  if (depth > base::kMaxNesting) return false;
+  bool found = false;
+  const Type& type = image_.types[id];
+  if (image_.types.is_scalar(id)) {
+    found = image_.types.scalar(id) == Scalar::kBool;
+  } else if (type.kind == Kind::kArray) {
+    found = !image_.types.is_instance(type.base) && find(type.base, depth + 1);
+  }
+  for (const Member& member : type.members) {
+    if (!is_slot(member) && find(member.type, depth + 1)) found = true;
+  }
+  holds_[id.index] = found ? Holds::kYes : Holds::kNo;
+  return found;
+}
+
+// Through members that overlap, or through references, which may have been converted.
+bool Bools::writes_as_others() {
+  bool found = false;
+  for (uint32_t i = 0; i < image_.types.size(); ++i) {
+    const bool holds = find(TypeId(i), 0);
+    found |= holds && image_.types.overlaps(TypeId(i));
+  }
+  for (const LinkedPou& pou : image_.pous) {
+    for (uint32_t i = 0; i < pou.unit_count && !found; ++i) {
+      const Unit* const unit = &image_.code[pou.first_unit + i];
+      const Opcode op = unit->opcode();
+      // An instance is exactly that, or of a type that extends it.
+      const bool plain =
+          op == Opcode::RESOLVE && !image_.types.is_instance(region_of_field(unit[1].x()).type);
+      found = plain || op == Opcode::RESOLVE_S || op == Opcode::RESOLVE_W;
+      if (opcode_row(op).extended) ++i;
+    }
+  }
+  return found;
+}
+
+uint64_t Bools::count_in(TypeId id, uint32_t depth) const {
+  if (holds_[id.index] != Holds::kYes || depth > base::kMaxNesting) return 0;
+  const Type& type = image_.types[id];
+  if (image_.types.is_scalar(id)) return 1;
+  if (type.kind == Kind::kArray) {
+    const uint32_t stride = image_.layouts[type.base].size;
+    return stride == 0 ? 0 : image_.layouts[id].size / stride * count_in(type.base, depth + 1);
+  }
+  uint64_t sum = 0;
+  for (const Member& member : type.members) {
+    if (!is_slot(member)) sum += count_in(member.type, depth + 1);
+  }
+  return sum;
+}
+
+uint64_t Bools::count() const {
+  uint64_t sum = 0;
+  for (size_t id = 0; id < image_.instances.size(); ++id) {
+    const Instance& row = image_.instances[id];
+    if (id == 0 || row.live) sum += count_in(row.type, 0);
+  }
+  return sum;
+}
+
+void Bools::normalise(TypeId type, uint8_t* value) const { normalise(type, value, 0); }
+
+// What overlaps is no BOOL alone, and in no program whose BOOLs stay clean.
+void Bools::normalise(TypeId id, uint8_t* value, uint32_t depth) const {
+  if (holds_[id.index] != Holds::kYes || depth > base::kMaxNesting) return;
+  const Type& type = image_.types[id];
+  if (image_.types.overlaps(id)) return;
+  if (image_.types.is_scalar(id)) return normalise_bools(value, 1);
+  if (type.kind == Kind::kArray) {
+    const uint32_t size = image_.layouts[id].size;
+    const uint32_t stride = image_.layouts[type.base].size;
+    if (stride == 1) return normalise_bools(value, size);
+    for (uint32_t at = 0; stride != 0 && at < size; at += stride) {
+      normalise(type.base, value + at, depth + 1);
+    }
+    return;
+  }
+  const std::vector<uint32_t>& offsets = image_.layouts[id].member_offsets;
+  for (size_t i = 0; i < type.members.size(); ++i) {
+    const Member& member = type.members[i];
+    if (!is_slot(member)) normalise(member.type, value + offsets[i], depth + 1);
+  }
+}
+
+void Bools::normalise_all(uint8_t* memory) const {
+  for (size_t id = 0; id < image_.instances.size(); ++id) {
+    const Instance& row = image_.instances[id];
+    if (id == 0 || row.live) normalise(row.type, memory + row.data);
+  }
+}
+
+void normalise_bools(uint8_t* at, size_t count) {
+  for (size_t i = 0; i < count; ++i) at[i] = at[i] != 0 ? 1 : 0;
+}
+
+}  // namespace ir
