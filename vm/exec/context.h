@@ -36,6 +36,7 @@
 #define STC_MUST_TAIL
 #endif
 #define STC_INLINE [[gnu::always_inline]] static inline
+#define STC_INLINE_MEMBER [[gnu::always_inline]]
 #define STC_COLD [[gnu::noinline, gnu::cold]]
 
 namespace vm {
@@ -91,9 +92,9 @@ struct Context {
 using Handler = void (*)(const ir::Unit*, uint8_t*, uint8_t*, uint8_t*, const uint8_t*, Context*);
 
 // By handler number; Generation::build puts these numbers into the op fields. Behind those of the
-// opcodes come the two of side units (vm/native/emit.h).
+// opcodes come the two of side units (vm/native/emit.h) and the fused ones (fusion.h).
 struct HandlerTable {
-  Handler of[kHandlerCount + 2];
+  Handler of[kHandlerLimit];
 };
 extern const HandlerTable kHandlers __attribute__((visibility("hidden")));
 

@@ -43,7 +43,10 @@ inline constexpr uint32_t kHandlerCount = kFirstHandler[ir::kOpcodeCount];
 // end of what a helper does.
 inline constexpr uint32_t kResumeHandler = kHandlerCount;
 inline constexpr uint32_t kStopHandler = kHandlerCount + 1;
-static_assert(kStopHandler < 65536, "a handler number fits the op field");
+// Fused handlers (fusion.h) come behind these.
+inline constexpr uint32_t kFirstFused = kHandlerCount + 2;
+inline constexpr uint32_t kHandlerLimit = kFirstFused + 2048;
+static_assert(kHandlerLimit <= 65536, "a handler number fits the op field");
 
 constexpr uint32_t handler_number(ir::Opcode op, ir::Base a, ir::Base b, ir::Base c) {
   const auto i = static_cast<uint32_t>(op);

@@ -1,22 +1,31 @@
-// The table of all handlers. They are instantiated in handle_*.cc; an opcode that
-// none of those gives a meaning fails to link.
+// The table of all handlers. They are instantiated in handle_*.cc and fused_*.cc; an
+// opcode that none of those gives a meaning fails to link.
 #include <utility>
 
 #include "vm/exec/context.h"
+#include "vm/exec/fusion.h"
 #include "vm/exec/handler_numbers.h"
 
 namespace vm {
 
 template <ir::Opcode op, ir::Base A, ir::Base B, ir::Base C>
 void handle(STC_HANDLER_ARGS);
+template <class... S>
+void fused(STC_HANDLER_ARGS);
 void resume_native(STC_HANDLER_ARGS);
 void stop_helper(STC_HANDLER_ARGS);
 
 namespace {
 
+using operand::c, operand::f, operand::g, operand::s;
+using operand::v0, operand::v1, operand::v2, operand::v3, operand::v4, operand::v5, operand::v6;
+using O = ir::Opcode;
+template <O op, uint8_t A = f, uint8_t B = f, uint8_t C = f>
+using S = Step<op, A, B, C>;
+
 template <ir::Opcode op, uint32_t... i>
-constexpr void fill_opcode(HandlerTable& table, std::integer_sequence<uint32_t, i...>) {
-  ((table.of[kFirstHandler[static_cast<uint32_t>(op)] + i] =
+constexpr void fill_opcode(Handler* table, std::integer_sequence<uint32_t, i...>) {
+  ((table[kFirstHandler[static_cast<uint32_t>(op)] + i] =
         &handle<op, base_of_a(op, i), base_of_b(op, i), base_of_c(op, i)>),
    ...);
 }
@@ -27,10 +36,14 @@ constexpr HandlerTable all_handlers() {
   table.of[kStopHandler] = &stop_helper;
 #define OP(name, a, b, c, x, y, flags, meaning) \
   fill_opcode<ir::Opcode::name>(                \
-      table, std::make_integer_sequence<        \
-                 uint32_t, kBaseCounts[static_cast<uint32_t>(ir::Opcode::name)].product()>());
+      table.of, std::make_integer_sequence<     \
+                    uint32_t, kBaseCounts[static_cast<uint32_t>(ir::Opcode::name)].product()>());
 #include "ir/bytecode/opcodes.def"
 #undef OP
+  [[maybe_unused]] uint32_t next = kFirstFused;
+#define FUSION(...) table.of[next++] = &fused<__VA_ARGS__>;
+#include "vm/exec/fusions.def"
+#undef FUSION
   return table;
 }
 

@@ -11,15 +11,24 @@ enum class Tier : uint8_t {
   kNative,  // the same as kAuto
 };
 
+// Do several instructions in a row share a handler (vm/exec/fusion.h)?
+enum class Fusing : uint8_t {
+  kAuto,  // where everything is interpreted
+  kNever,
+  kAlways,  // also what the interpreter does for native code
+};
+
 struct TierOptions {
   Tier tier = Tier::kAuto;
+  Fusing fusing = Fusing::kAuto;
   // Hard modes (docs/TESTING.md).
   uint32_t integer_registers = 0;  // at most so many; 0: all
   uint32_t float_registers = 0;
-  uint64_t spill_seed = 0;  // not 0: registers are taken from values at random
-  bool alternates = false;  // every other generation is interpreted
-  uint64_t pou_seed = 0;    // not 0: every other POU is interpreted, at random
-  bool plain = false;       // no instructions that only newer machines have
+  uint64_t spill_seed = 0;   // not 0: registers are taken from values at random
+  uint64_t fusing_seed = 0;  // not 0: at every other place, at random
+  bool alternates = false;   // every other generation is interpreted
+  uint64_t pou_seed = 0;     // not 0: every other POU is interpreted, at random
+  bool plain = false;        // no instructions that only newer machines have
 };
 
 }  // namespace vm

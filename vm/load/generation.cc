@@ -9,6 +9,7 @@
 #include "ir/bytecode/regions.h"
 #include "ir/types/handle.h"
 #include "ir/types/inside.h"
+#include "vm/exec/fusion.h"
 #include "vm/exec/handler_numbers.h"
 #include "vm/native/program.h"
 
@@ -63,6 +64,12 @@ void prepare_code(const ir::Image& image, const std::vector<bool>& has_slots,
     const ir::Region region = ir::region_of_field(extension.x());
     extension = ir::Unit::extension(ir::region_size(image.types, image.layouts, region), 0);
   }
+}
+
+// Code that is compiled leaves the interpreter little to do.
+bool is_fused(const TierOptions& tier) {
+  if (tier.fusing != Fusing::kAuto) return tier.fusing == Fusing::kAlways;
+  return tier.tier == Tier::kInterpreter || !native::is_available();
 }
 
 // Tries are not inside each other more often than there are instructions that begin one.
@@ -154,15 +161,17 @@ void Generation::build_overrides() {
   }
 }
 
-base::Status Generation::place_code(const Generation* running) {
+base::Status Generation::place_code(const Generation* running, const TierOptions& tier) {
   const ir::Image& image = image_.image();
   const std::vector<bool> has_slots = types_with_slots(image);
+  const bool fuses = is_fused(tier);
   std::vector<ir::Unit> code;
   for (uint32_t number = 0; number < image.pous.size(); ++number) {
     const ir::LinkedPou& pou = image.pous[number];
     const auto first = image.code.begin() + pou.first_unit;
     code.assign(first, first + pou.unit_count);
     prepare_code(image, has_slots, pou, code.data());
+    if (fuses) fuse({first, first + pou.unit_count}, code, tier.fusing_seed);
     const bool runs = running != nullptr && number < running->pous_.size();
     base::Result<const ir::Unit*> place =
         slots_->place(number, pou.name, code, runs ? running->pous_[number].code : nullptr);
@@ -190,7 +199,7 @@ base::Result<std::unique_ptr<Generation>> Generation::build(ir::VerifiedImage ve
   const ir::Image& image = made->image();
   made->number_ = number;
   made->slots_ = std::move(slots);
-  base::Status placed = made->place_code(running);
+  base::Status placed = made->place_code(running, tier);
   if (!placed.ok()) return placed.error();
   for (const ir::Instance& row : image.instances) {
     const bool callable = row.live && row.type != image.globals;

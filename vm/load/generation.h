@@ -111,7 +111,7 @@ class Generation {
 
  private:
   explicit Generation(ir::VerifiedImage image) : image_(std::move(image)), bools_(image_.image()) {}
-  base::Status place_code(const Generation* running);
+  base::Status place_code(const Generation* running, const TierOptions& tier);
   void build_areas();
   void build_stamps();
   void build_overrides();

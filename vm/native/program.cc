@@ -93,8 +93,10 @@ std::vector<uint64_t> facts_of(const ir::Image& image, const ImageFacts& common,
   return out;
 }
 
-// A call's unit goes on with one that comes back, a helper's with a stop.
-SideUnits side_units(const Function& f, const ir::Unit* units, const Facts& facts) {
+// A call's unit goes on with one that comes back, a helper's with a stop. Each is one instruction,
+// also where the interpreter would take several at once.
+SideUnits side_units(const Function& f, const ir::Unit* units, const ir::Unit* code,
+                     const Facts& facts) {
   SideUnits side;
   side.helper.assign(f.nodes.size(), kNone);
   side.call.assign(f.calls.size(), 0);
@@ -106,6 +108,9 @@ SideUnits side_units(const Function& f, const ir::Unit* units, const Facts& fact
       all.push_back(units[i]);
       side.real.push_back(unit);
     }
+    const ir::Unit& u = code[unit];
+    all[at].op =
+        static_cast<uint16_t>(handler_number(u.opcode(), u.base_a(), u.base_b(), u.base_c()));
     return at;
   };
   for (uint32_t n = 0; n < f.nodes.size(); ++n) {
@@ -170,7 +175,8 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
     return false;
   }
   work.places = std::move(*places);
-  work.pou->side = side_units(work.function, work.pou->units, *facts);
+  work.pou->side =
+      side_units(work.function, work.pou->units, image.code.data() + pou.first_unit, *facts);
   for (const Call& call : work.function.calls) work.call_units.push_back(facts->next(call.unit));
   return true;
 }

@@ -12,6 +12,8 @@ const char* tier_name(Tier tier) {
       return "evaluator";
     case Tier::kInterpreter:
       return "interpreter";
+    case Tier::kUnfused:
+      return "interpreter, one instruction at a time";
     case Tier::kFuelOne:
       return "fuel 1";
     case Tier::kIdentity:

@@ -15,6 +15,7 @@ namespace golden {
 enum class Tier : uint8_t {
   kEvaluator,
   kInterpreter,
+  kUnfused,   // as kInterpreter, one instruction at a time
   kFuelOne,   // suspended at every safe point
   kIdentity,  // an identity change after every scan
   kMoveAll,   // every instance moved after every scan
@@ -25,10 +26,10 @@ enum class Tier : uint8_t {
   kSpills,        // native; registers are taken from values at random, some POUs interpreted
   kAlternating,   // as kIdentity; every other generation is interpreted
 };
-inline constexpr Tier kTiers[] = {Tier::kEvaluator, Tier::kInterpreter,   Tier::kFuelOne,
-                                  Tier::kIdentity,  Tier::kMoveAll,       Tier::kStandby,
-                                  Tier::kNative,    Tier::kNativeFuelOne, Tier::kFewRegisters,
-                                  Tier::kSpills,    Tier::kAlternating};
+inline constexpr Tier kTiers[] = {Tier::kEvaluator,    Tier::kInterpreter, Tier::kUnfused,
+                                  Tier::kFuelOne,      Tier::kIdentity,    Tier::kMoveAll,
+                                  Tier::kStandby,      Tier::kNative,      Tier::kNativeFuelOne,
+                                  Tier::kFewRegisters, Tier::kSpills,      Tier::kAlternating};
 const char* tier_name(Tier tier);
 
 class Engine {

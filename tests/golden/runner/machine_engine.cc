@@ -40,8 +40,15 @@ vm::TierOptions tier_options(Tier tier) {
   switch (tier) {
     case Tier::kEvaluator:
     case Tier::kInterpreter:
-    case Tier::kFuelOne:
     case Tier::kIdentity:
+      out.tier = vm::Tier::kInterpreter;
+      break;
+    case Tier::kUnfused:
+      out.tier = vm::Tier::kInterpreter;
+      out.fusing = vm::Fusing::kNever;
+      break;
+    case Tier::kFuelOne:  // resumes in the middle of what is fused elsewhere
+      out.fusing_seed = 7;
       out.tier = vm::Tier::kInterpreter;
       break;
     case Tier::kMoveAll:
@@ -57,9 +64,12 @@ vm::TierOptions tier_options(Tier tier) {
     case Tier::kSpills:
       out.spill_seed = 12345;
       out.pou_seed = 99;
+      out.fusing = vm::Fusing::kAlways;
       break;
     case Tier::kAlternating:
       out.alternates = true;
+      out.fusing = vm::Fusing::kAlways;
+      out.fusing_seed = 11;
       break;
   }
   return out;

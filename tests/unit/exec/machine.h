@@ -17,7 +17,7 @@ namespace sample {
 
 class Machine {
  public:
-  explicit Machine(const ir::Image& image)
+  explicit Machine(const ir::Image& image, const vm::TierOptions& tier = {})
       : memory_(std::move(vm::Memory::reserve()).value()), execution_(image.call_depth) {
     auto verified = ir::verify(ir::encode(image));
     EXPECT_TRUE(verified.ok()) << (verified.ok() ? "" : base::to_string(verified.error()));
@@ -25,7 +25,7 @@ class Machine {
     for (const ir::DataRun& run : image.data) {
       std::memcpy(memory_.data() + run.offset, run.bytes.data(), run.bytes.size());
     }
-    generation_ = vm::Generation::build(*verified, 0, memory_.data());
+    generation_ = vm::Generation::build(*verified, 0, memory_.data(), tier);
   }
   bool good() const { return generation_ != nullptr; }
   uint8_t* data() { return memory_.data(); }

@@ -1,0 +1,66 @@
+// Fused handlers and their instantiation. The parts (fused_*.cc) have every fourth row of
+// fusions.def each, so that they compile at the same time: STC_FUSED_PART says which.
+#pragma once
+
+#include "vm/exec/semantics_arithmetic.h"
+#include "vm/exec/semantics_compare.h"
+#include "vm/exec/semantics_control.h"
+#include "vm/exec/semantics_convert.h"
+#include "vm/exec/semantics_logic.h"
+#include "vm/exec/semantics_memory.h"
+#include "vm/exec/step.h"
+
+namespace vm {
+
+template <class S>
+using ResultOf = ValueOf<typename Semantics<S::kOp>::Result>;
+
+template <size_t i, auto written, class Values, class... S>
+struct Steps {
+  STC_INLINE Flow take(Machine&, Values&) { return Flow::kOn; }
+};
+template <size_t i, auto written, class Values, class First, class... Rest>
+struct Steps<i, written, Values, First, Rest...> {
+  STC_INLINE Flow take(Machine& m, Values& values) {
+    const Flow flow = take_step<First::kOp, written[i], First::kA, First::kB, First::kC>(
+        m, values, std::get<i>(values));
+    if (flow != Flow::kOn) return flow;
+    return Steps<i + 1, written, Values, Rest...>::take(m, values);
+  }
+};
+
+template <class... S>
+void fused(STC_HANDLER_ARGS) {
+  using Values = std::tuple<ResultOf<S>...>;
+  Machine m = STC_MACHINE;
+  Values values;
+  if (Steps<0, written_bases<S...>(), Values, S...>::take(m, values) == Flow::kStop) [[unlikely]]
+    return;
+  STC_GO(m.pc, m.frame, m.self);
+}
+
+template <bool here, class... S>
+constexpr Handler fused_if() {
+  if constexpr (here) return &fused<S...>;
+  return nullptr;
+}
+
+namespace {
+
+using operand::c, operand::f, operand::g, operand::s;
+using operand::v0, operand::v1, operand::v2, operand::v3, operand::v4, operand::v5, operand::v6;
+using O = ir::Opcode;
+template <O op, uint8_t A = f, uint8_t B = f, uint8_t C = f>
+using S = Step<op, A, B, C>;
+
+constexpr int kFirstCount = __COUNTER__ + 1;
+// Keeps the handlers of this part; handlers.cc names them.
+[[gnu::used]] constinit const Handler kPart[] = {
+#define FUSION(...) fused_if<(__COUNTER__ - kFirstCount) % 4 == STC_FUSED_PART, __VA_ARGS__>(),
+#include "vm/exec/fusions.def"
+#undef FUSION
+    nullptr};
+
+}  // namespace
+
+}  // namespace vm

@@ -1,0 +1,189 @@
+#include "vm/exec/fusion.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+
+namespace vm {
+namespace {
+
+using operand::c, operand::f, operand::g, operand::s;
+using operand::v0, operand::v1, operand::v2, operand::v3, operand::v4, operand::v5, operand::v6;
+
+template <class Bases>
+constexpr ir::Base base_of(const Bases& written, uint8_t source) {
+  return static_cast<ir::Base>(source < v0 ? source : written[source - v0]);
+}
+constexpr uint32_t source_bits(uint8_t source) { return source < v0 ? 0 : source - v0 + 1u; }
+
+template <class... S>
+constexpr Fusion fusion_of() {
+  static_assert(sizeof...(S) <= kMaxSteps);
+  Fusion out;
+  constexpr auto kBases = written_bases<S...>();
+  const auto add = [&](ir::Opcode op, uint8_t A, uint8_t B, uint8_t C) {
+    const uint32_t number =
+        handler_number(op, base_of(kBases, A), base_of(kBases, B), base_of(kBases, C));
+    out.keys[out.length++] =
+        number | source_bits(A) << 16 | source_bits(B) << 20 | source_bits(C) << 24;
+  };
+  (add(S::kOp, S::kA, S::kB, S::kC), ...);
+  return out;
+}
+
+using O = ir::Opcode;
+template <O op, uint8_t A = f, uint8_t B = f, uint8_t C = f>
+using S = Step<op, A, B, C>;
+
+constexpr size_t kFusionCount = 0
+#define FUSION(...) +1
+#include "vm/exec/fusions.def"
+#undef FUSION
+    ;
+static_assert(kFirstFused + kFusionCount <= kHandlerLimit,
+              "the table of handlers has no more room");
+
+constexpr bool comes_before(const Fusion& x, const Fusion& y) {
+  return std::lexicographical_compare(x.keys.begin(), x.keys.begin() + x.length, y.keys.begin(),
+                                      y.keys.begin() + y.length);
+}
+
+std::array<Fusion, kFusionCount> sorted_fusions() {
+  std::array<Fusion, kFusionCount> rows = {{
+#define FUSION(...) fusion_of<__VA_ARGS__>(),
+#include "vm/exec/fusions.def"
+#undef FUSION
+  }};
+  for (size_t i = 0; i < rows.size(); ++i) rows[i].handler = static_cast<uint16_t>(kFirstFused + i);
+  std::sort(rows.begin(), rows.end(), comes_before);
+  return rows;
+}
+
+StepLine::Place place_of(const ir::Field& field, ir::Base base, uint16_t offset) {
+  return {static_cast<uint8_t>(base), static_cast<uint8_t>(ir::class_size(field.cls)), offset};
+}
+
+bool overlap(const StepLine::Place& x, const StepLine::Place& y) {
+  return x.base == y.base && x.offset < y.offset + y.size && y.offset < x.offset + x.size;
+}
+
+bool takes_random_place(uint64_t seed, size_t unit) {
+  const uint64_t h = (seed + unit) * 0x9e3779b97f4a7c15u;
+  return (h >> 40 & 1) != 0;
+}
+
+// What a dispatch costs, and what is saved by each step that a fusion takes behind a back edge.
+constexpr uint32_t kDispatch = 10;
+constexpr uint32_t kBehindLoop = 4;
+
+}  // namespace
+
+std::span<const Fusion> fusions() {
+  static const std::array<Fusion, kFusionCount> rows = sorted_fusions();
+  return rows;
+}
+
+StepLine::StepLine(std::span<const ir::Unit> code) : units_(code.size()) {
+  for (uint32_t i = 0; i < code.size(); ++i) {
+    const ir::Unit& u = code[i];
+    const ir::Opcode op = u.opcode();
+    const ir::OpcodeRow& row = ir::opcode_row(op);
+    Unit& out = units_[i];
+    const StepFacts& facts = kStepFacts[static_cast<size_t>(op)];
+    out.handler = static_cast<uint16_t>(handler_number(op, u.base_a(), u.base_b(), u.base_c()));
+    out.units = row.extended ? 2 : 1;
+    out.is_step = facts.is_step;
+    out.stores = facts.stores;
+    out.next = i + out.units;
+    if (row.a.is_near() && row.a.reads()) out.a = place_of(row.a, u.base_a(), u.a);
+    if (row.b.is_near()) out.b = place_of(row.b, u.base_b(), u.b);
+    if (row.c.is_near()) out.c = place_of(row.c, u.base_c(), u.c);
+    if (row.a.is_near() && row.a.writes()) out.written = place_of(row.a, u.base_a(), u.a);
+    if (row.b.kind == ir::FieldKind::kRel32) {
+      out.target = i + 1 + static_cast<uint32_t>(u.bc());
+      out.jumps = row.ends;
+      out.may_jump = !row.ends;
+      if (out.jumps) out.next = out.target;
+    }
+    out.ends = row.calls || (row.ends && !out.jumps);
+    if (row.extended && ++i < code.size()) units_[i].units = 0;
+  }
+}
+
+uint32_t StepWalk::source(const StepLine::Place& place) const {
+  if (place.size == 0) return 0;
+  for (uint32_t k = length_; k-- > 0;) {
+    const StepLine::Unit& earlier = line_[taken_[k]];
+    if (earlier.stores) return 0;
+    if (earlier.written.size == 0 || !overlap(earlier.written, place)) continue;
+    const bool same = earlier.written.offset == place.offset && earlier.written.size == place.size;
+    return same ? k + 1 : 0;
+  }
+  return 0;
+}
+
+bool StepWalk::take(StepKey& key) {
+  if (is_over_ || length_ == kMaxSteps || next_ >= line_.size()) return false;
+  const StepLine::Unit& unit = line_[next_];
+  if (!unit.is_step) return false;
+  key = unit.handler | source(unit.a) << 16 | source(unit.b) << 20 | source(unit.c) << 24;
+  if (goes_back_) ++behind_back_;
+  if (unit.jumps && unit.next <= next_) {
+    is_over_ = goes_back_;  // once around is enough
+    goes_back_ = true;
+  }
+  taken_[length_++] = next_;
+  is_over_ = is_over_ || unit.ends;
+  next_ = unit.next;
+  return true;
+}
+
+std::vector<uint32_t> choose_fusions(const StepLine& line, std::span<const Fusion> table) {
+  std::vector<uint32_t> chosen(line.size(), kNoFusion);
+  std::vector<uint32_t> cost(size_t{line.size()} + 1, 0);
+  for (uint32_t i = line.size(); i-- > 0;) {
+    if (line.is_extension(i)) continue;
+    const StepLine::Unit& unit = line[i];
+    const bool back = unit.jumps && unit.next <= i;
+    cost[i] = kDispatch + (back || unit.next > line.size() ? 0 : cost[unit.next]);
+    size_t low = 0;
+    size_t high = table.size();
+    StepWalk walk(line, i);
+    StepKey key = 0;
+    while (low < high && walk.take(key)) {
+      const uint32_t depth = walk.length() - 1;
+      const auto begin = table.begin();
+      const auto first = std::partition_point(
+          begin + static_cast<ptrdiff_t>(low), begin + static_cast<ptrdiff_t>(high),
+          [&](const Fusion& f) { return f.length <= depth || f.keys[depth] < key; });
+      const auto behind =
+          std::partition_point(first, begin + static_cast<ptrdiff_t>(high),
+                               [&](const Fusion& f) { return f.keys[depth] == key; });
+      low = static_cast<size_t>(first - begin);
+      high = static_cast<size_t>(behind - begin);
+      if (low == high || table[low].length != walk.length()) continue;
+      uint32_t with = kDispatch;
+      if (!walk.goes_back()) {
+        with += walk.next() > line.size() ? 0 : cost[walk.next()];
+      } else {
+        with -= std::min(with - 1, kBehindLoop * walk.behind_back());
+      }
+      if (with > cost[i]) continue;
+      cost[i] = with;
+      chosen[i] = static_cast<uint32_t>(low);
+    }
+  }
+  return chosen;
+}
+
+void fuse(std::span<const ir::Unit> code, std::span<ir::Unit> prepared, uint64_t seed) {
+  const StepLine line(code);
+  const std::span<const Fusion> table = fusions();
+  const std::vector<uint32_t> chosen = choose_fusions(line, table);
+  for (uint32_t i = 0; i < line.size(); ++i) {
+    if (chosen[i] == kNoFusion || (seed != 0 && takes_random_place(seed, i))) continue;
+    prepared[i].op = table[chosen[i]].handler;
+  }
+}
+
+}  // namespace vm
