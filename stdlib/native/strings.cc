@@ -50,6 +50,17 @@ void concat(Text<Unit> to, Text<Unit> a, Text<Unit> b) {
   sink.put(second, 0, second.length());
 }
 
+template <typename Unit>
+void concat3(Text<Unit> to, Text<Unit> a, Text<Unit> b, Text<Unit> c) {
+  const Source first(a);
+  const Source second(b);
+  const Source third(c);
+  Sink sink(to);
+  sink.put(first, 0, first.length());
+  sink.put(second, 0, second.length());
+  sink.put(third, 0, third.length());
+}
+
 // `text` with the characters [from, to) replaced by `middle`.
 template <typename Unit>
 void splice(Text<Unit> destination, const Source<Unit>& text, uint32_t from, uint32_t to,
@@ -195,6 +206,7 @@ BOTH_KINDS(kLeft, left)
 BOTH_KINDS(kRight, right)
 BOTH_KINDS(kMid, mid)
 BOTH_KINDS(kConcat, concat)
+BOTH_KINDS(kConcat3, concat3)
 BOTH_KINDS(kInsert, insert)
 BOTH_KINDS(kDelete, erase)
 BOTH_KINDS(kReplace, replace)

@@ -108,6 +108,16 @@ TEST_P(NativeStrings, ConcatTruncates) {
   EXPECT_EQ(result(kind().concat, {"", ""}, {}), "");
 }
 
+TEST_P(NativeStrings, ThreeTextsAtOnceAreCutAsTwoAndOne) {
+  const NativeId three = kind().unit == 1 ? NativeId::kConcat3S : NativeId::kConcat3W;
+  for (uint32_t capacity = 0; capacity < 10; ++capacity) {
+    const std::string two = result(kind().concat, {"abc", "d"}, {}, capacity);
+    EXPECT_EQ(result(three, {"abc", "d", "efg"}, {}, capacity),
+              result(kind().concat, {two, "efg"}, {}, capacity));
+  }
+  EXPECT_EQ(result(three, {"", "", ""}, {}), "");
+}
+
 TEST_P(NativeStrings, InsertBehindPosition) {
   EXPECT_EQ(result(kind().insert, {"fler", "il"}, {1}), "filler");
   EXPECT_EQ(result(kind().insert, {"ler", "fil"}, {0}), "filler");
