@@ -77,9 +77,7 @@ void Builder::begin(Block block) {
       now_ = *ends_[pred];
     }
     release(pred);
-    const uint32_t loop = f_.blocks[pred].loop;
-    if (loop == kNone || f_.blocks[block].loop == loop) return;
-    for (const uint32_t v : facts_.deferred(loop)) store_slot(v);
+    store_behind(f_.blocks[pred].loop);
     return;
   }
   forget_everything();
@@ -101,6 +99,7 @@ void Builder::begin(Block block) {
     now_.value.assign(count, kNone);
     now_.dirty.assign(count, 0);
     merge(block);
+    for (const Pred& pred : preds) store_behind(f_.blocks[pred.block].loop);
   }
   for (const Pred& pred : preds) release(pred.block);
 }
@@ -271,23 +270,24 @@ void Builder::forget_shared() {
   }
 }
 
-// A block outside of the loop that several ways lead to finds everything in memory.
-void Builder::store_before_leaving(Block block) {
-  const uint32_t loop = f_.blocks[block].loop;
-  if (loop == kNone || facts_.deferred(loop).empty()) return;
+// Behind a loop its variables are in memory again.
+void Builder::store_behind(uint32_t loop) {
+  if (loop == kNone || f_.blocks[block_].loop == loop) return;
+  for (const uint32_t v : facts_.deferred(loop)) store_slot(v);
+}
+
+// The next loop begins with everything in memory.
+void Builder::store_before_loop(Block block) {
   Block next[2];
   uint32_t count = 0;
   facts_.successors(block, next, count);
-  bool leaves = false;
   for (uint32_t i = 0; i < count; ++i) {
-    const bool outside = next[i] > block && f_.blocks[next[i]].loop != loop;
-    leaves |= outside && (preds_[next[i]].size() > 1 || f_.blocks[next[i]].head);
+    if (next[i] > block && f_.blocks[next[i]].head) store_deferred();
   }
-  if (leaves) store_deferred();
 }
 
 void Builder::finish(Block block) {
-  store_before_leaving(block);
+  store_before_loop(block);
   if (users_[block] != 0) ends_[block] = std::make_unique<State>(now_);
 }
 

@@ -45,7 +45,8 @@ class Builder {
   void make_parameter(Block block, uint32_t variable);
   void finish(Block block);
   void pass_back(Block block, Block head);
-  void store_before_leaving(Block block);
+  void store_behind(uint32_t loop);
+  void store_before_loop(Block block);
   void end_with_jump(Block target);
   void release(Block pred);
 

@@ -171,6 +171,10 @@ Val Builder::value_of(Node made, bool floating) {
   if (commutes && is_constant(made.in[0]) && !is_constant(made.in[1])) {
     std::swap(made.in[0], made.in[1]);
   }
+  if (made.op == Op::kSub && is_constant(made.in[1])) {
+    made.op = Op::kAdd;
+    made.in[1] = constant(~bits(made.in[1]) + 1, made.width, false);
+  }
   if (made.op == Op::kCompare && is_constant(made.in[0]) && !is_constant(made.in[1])) {
     std::swap(made.in[0], made.in[1]);
     made.cond = swapped(made.cond);

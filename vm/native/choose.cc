@@ -19,7 +19,7 @@ class Chooser {
   }
 
   void run() {
-    for (Block b = 0; b < f_.blocks.size(); ++b) diamond(b);
+    for (Block b = static_cast<Block>(f_.blocks.size()); b-- > 0;) diamond(b);  // inner ones first
   }
 
  private:
@@ -54,6 +54,7 @@ class Chooser {
         case Op::kZext:
         case Op::kCompare:
         case Op::kNotBool:
+        case Op::kSelectCmp:
           break;
         case Op::kShl:
         case Op::kShr:
@@ -67,8 +68,21 @@ class Chooser {
     return true;
   }
 
-  std::vector<uint32_t> stores_of(Block b) const {
+  // Where both ways meet: behind both, or one leads past the other. kNone: nowhere near.
+  Block join_of(const End& end) const {
+    for (uint32_t i = 0; i < 2; ++i) {
+      const Block way = end.target[i];
+      const Block other = end.target[1 - i];
+      const Block join = f_.blocks[way].end.target[0];
+      if (join == kNone || join <= way || !is_cheap(way, join)) continue;
+      if (other == join || (join > other && is_cheap(other, join))) return join;
+    }
+    return kNone;
+  }
+
+  std::vector<uint32_t> stores_of(Block b, Block join) const {
     std::vector<uint32_t> out;
+    if (b == join) return out;
     for (const uint32_t n : f_.blocks[b].nodes) {
       if (f_.nodes[n].op == Op::kStore) out.push_back(n);
     }
@@ -101,23 +115,25 @@ class Chooser {
     const Block yes = end.target[0];
     const Block no = end.target[1];
     if (yes <= b || no <= b || yes == no) return;
-    const Block join = f_.blocks[yes].end.target[0];
-    if (join == kNone || join <= yes || join <= no || ways_in_[join] != 2) return;
-    if (f_.blocks[join].head || !end.args[0].empty() || !end.args[1].empty()) return;
-    if (!is_cheap(yes, join) || !is_cheap(no, join)) return;
-    const std::vector<uint32_t> first = stores_of(yes);
-    const std::vector<uint32_t> second = stores_of(no);
+    const Block join = join_of(end);
+    if (join == kNone || f_.blocks[join].head) return;
+    for (uint32_t i = 0; i < 2; ++i) {
+      if (end.target[i] != join && !end.args[i].empty()) return;
+    }
+    const std::vector<uint32_t> first = stores_of(yes, join);
+    const std::vector<uint32_t> second = stores_of(no, join);
     if (first.size() != second.size() || first.size() > 2) return;
     for (size_t i = 0; i < first.size(); ++i) {
       if (f_.nodes[first[i]].variable != f_.nodes[second[i]].variable) return;
     }
-    const std::vector<Val> yes_args = f_.blocks[yes].end.args[0];
-    const std::vector<Val> no_args = f_.blocks[no].end.args[0];
+    const std::vector<Val> yes_args = yes == join ? end.args[0] : f_.blocks[yes].end.args[0];
+    const std::vector<Val> no_args = no == join ? end.args[1] : f_.blocks[no].end.args[0];
     for (size_t i = 0; i < yes_args.size(); ++i) {
       if (f_.values[yes_args[i]].floating && yes_args[i] != no_args[i]) return;
     }
     if (yes_args.size() > 2) return;
     for (const Block way : {yes, no}) {
+      if (way == join) continue;
       for (const uint32_t n : f_.blocks[way].nodes) {
         if (f_.nodes[n].op == Op::kStore) continue;
         f_.blocks[b].nodes.push_back(n);
@@ -141,18 +157,19 @@ class Chooser {
       f_.blocks[b].nodes.push_back(static_cast<uint32_t>(f_.nodes.size()));
       f_.nodes.push_back(store);
     }
-    // The two ways stay as blocks that nothing leads to.
+    // The ways stay as blocks that nothing leads to.
     End made;
     made.kind = EndKind::kJump;
     made.target[0] = join;
     made.args[0] = std::move(args);
     f_.blocks[b].end = std::move(made);
     for (const Block way : {yes, no}) {
+      if (way == join) continue;
       f_.blocks[way].nodes.clear();
       f_.blocks[way].end = End();
       f_.blocks[way].end.kind = EndKind::kUnreachable;
     }
-    ways_in_[join] = 1;
+    --ways_in_[join];
   }
 
   Function& f_;

@@ -33,6 +33,7 @@ enum class Op : uint8_t {
   kLoad,   // result := [mem]; a BOOL as 0 or 1
   kStore,  // [mem] := in[0]
   kAddr,   // result := data address of mem
+  kPlace,  // result := machine address of mem; no memory ever holds it
   // a op b, of `width` bytes
   kAdd,
   kAddShifted,  // a + (b << imm); imm is 1, 2 or 3, width 8
@@ -108,7 +109,8 @@ enum class Cond : uint8_t {
 Cond negated(Cond cond);
 Cond swapped(Cond cond);  // for exchanged operands
 
-// kPointer: a machine address, of an instance whose code is inlined; no memory ever holds it.
+// kPointer: a machine address, of an instance whose code is inlined or of a part of a sum in a loop
+// (kPlace); no memory ever holds it.
 enum class MemBase : uint8_t { kFrame, kSelf, kData, kPointer };
 
 // base + index * scale + disp. kData: data memory; disp is an offset of 32 bits.

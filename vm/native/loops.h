@@ -19,4 +19,7 @@ void drop_proven_checks(Function& function);
 // interpreter at the loop's head, which finds out what is wrong, and when.
 void hoist(Function& function);
 
+// Behind hoist(): what does not change of a sum that an access in a loop has for its address.
+void split_addresses(Function& function);
+
 }  // namespace vm::native

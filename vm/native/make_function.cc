@@ -36,6 +36,8 @@ Function make_function(const Facts& facts, Bodies& bodies, uint32_t pou,
   drop_proven_checks(function);
   drop_unused(function);
   hoist(function);
+  split_addresses(function);
+  if (!function.loops.empty()) drop_unused(function);  // what a check in its old place wanted
   return function;
 }
 

@@ -7,14 +7,14 @@ namespace vm::native {
 namespace {
 
 const char* const kNames[] = {
-    "const",       "load",   "store",   "addr",    "add",      "addsh",    "sub",
-    "mul",         "and",    "or",      "xor",     "andn",     "orn",      "shl",
-    "shr",         "sar",    "rol",     "ror",     "divs",     "divu",     "mods",
-    "modu",        "neg",    "not",     "notb",    "compare",  "select",   "selectcmp",
-    "sext",        "zext",   "fadd",    "fsub",    "fmul",     "fdiv",     "fmin",
-    "fmax",        "fneg",   "fabs",    "fsqrt",   "fcompare", "fselect",  "inttofloat",
-    "floattoint",  "fwidth", "bitstof", "ftobits", "exitif",   "instance", "tasktime",
-    "advancetime", "pool",   "native",  "helper",  "call",     "enter"};
+    "const",      "load",        "store",  "addr",    "place",   "add",      "addsh",
+    "sub",        "mul",         "and",    "or",      "xor",     "andn",     "orn",
+    "shl",        "shr",         "sar",    "rol",     "ror",     "divs",     "divu",
+    "mods",       "modu",        "neg",    "not",     "notb",    "compare",  "select",
+    "selectcmp",  "sext",        "zext",   "fadd",    "fsub",    "fmul",     "fdiv",
+    "fmin",       "fmax",        "fneg",   "fabs",    "fsqrt",   "fcompare", "fselect",
+    "inttofloat", "floattoint",  "fwidth", "bitstof", "ftobits", "exitif",   "instance",
+    "tasktime",   "advancetime", "pool",   "native",  "helper",  "call",     "enter"};
 const char* const kConds[] = {"=",  "<>",  "<s", "<=s", ">s",     ">=s",
                               "<u", "<=u", ">u", ">=u", "no bit", "any bit"};
 const char* const kEnds[] = {"jump", "loop", "branch", "return", "exit", "unreachable"};
@@ -32,8 +32,9 @@ std::string list(const Function& f, const std::vector<Val>& values) {
 }
 
 std::string memory(const Function& f, const Mem& mem) {
-  const char* const bases[] = {"frame", "self", "data", "context"};
+  const char* const bases[] = {"frame", "self", "data", ""};
   std::string out = std::string("[") + bases[static_cast<size_t>(mem.base)];
+  if (mem.pointer != kNone) out += name(f, mem.pointer);
   if (mem.index != kNone) out += "+" + name(f, mem.index) + "*" + std::to_string(mem.scale);
   return out + "+" + std::to_string(mem.disp) + "]";
 }
@@ -49,7 +50,9 @@ std::string line(const Function& f, const Node& n) {
     out += std::string(" ") + kConds[static_cast<size_t>(n.cond)];
   }
   for (const Val v : n.in) out += v == kNone ? "" : " " + name(f, v);
-  if (n.op == Op::kLoad || n.op == Op::kStore || n.op == Op::kAddr) out += " " + memory(f, n.mem);
+  if (n.op == Op::kLoad || n.op == Op::kStore || n.op == Op::kAddr || n.op == Op::kPlace) {
+    out += " " + memory(f, n.mem);
+  }
   if (n.variable != kNone) out += " var" + std::to_string(n.variable);
   return out;
 }

@@ -145,7 +145,7 @@ void add_conversions(Table& table) {
   M(32, 64)
 #undef M
 #define M(from, to) ROW(NARROW_##from##_##to, Shape::kSame, Op::kConst, to / 8, from / 8);
-      M(16, 8) M(32, 8) M(32, 16) M(64, 8) M(64, 16) M(64, 32)
+  M(16, 8) M(32, 8) M(32, 16) M(64, 8) M(64, 16) M(64, 32)
 #undef M
 }
 

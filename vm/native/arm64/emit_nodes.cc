@@ -35,6 +35,8 @@ void Emitter::node(const Step& step) {
       return store(n, step);
     case Op::kAddr:
       return data_address(n, step);
+    case Op::kPlace:
+      return a_.address(integer_register(step.result), address(n.mem, step.index, step.pointer), 8);
     case Op::kExitIf:
       return jump_if(n.width, n.cond, step.in[0], step.in[1], exit_label(n.exit));
     case Op::kInstance:

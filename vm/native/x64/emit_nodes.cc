@@ -23,6 +23,8 @@ void Emitter::node(const Step& step) {
       return store(n, step);
     case Op::kAddr:
       return data_address(n, step);
+    case Op::kPlace:
+      return a_.address(integer_register(step.result), address(n.mem, step.index, step.pointer), 8);
     case Op::kDivS:
     case Op::kDivU:
     case Op::kModS:

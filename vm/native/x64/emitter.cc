@@ -149,11 +149,11 @@ void Emitter::loop_end(Block b) {
   }
   a_.jump_if(Condition::kEqual, exit_label(e.exit));
   moves(edge);
-  again(e.target[0]);
+  again(b, e.target[0]);
 }
 
 // The next turn. A head that does nothing but ask is asked here.
-void Emitter::again(Block head) {
+void Emitter::again(Block from, Block head) {
   const End& e = f_.blocks[head].end;
   const AllocatedBlock& places = places_.blocks[head];
   const bool asks = places.steps.empty() && e.kind == EndKind::kBranch &&
@@ -162,8 +162,9 @@ void Emitter::again(Block head) {
   // It goes on with the block behind it.
   const bool yes_goes_on = e.target[0] == head + 1;
   if (!yes_goes_on && e.target[1] != head + 1) return a_.jump(blocks_[head]);
-  branch_integer(e, places.in, blocks_[e.target[0]], blocks_[e.target[1]], false);
-  a_.jump(blocks_[e.target[1]]);
+  const Block out = e.target[yes_goes_on ? 1 : 0];
+  branch_integer(e, places.in, blocks_[e.target[0]], blocks_[e.target[1]], !yes_goes_on);
+  if (out != from + 1) a_.jump(blocks_[out]);
 }
 
 // The way that is not the next block, or needs moves, is jumped to.

@@ -62,7 +62,7 @@ class Emitter {
   void end(Block b);
   void branch(Block b);
   void loop_end(Block b);
-  void again(Block head);
+  void again(Block from, Block head);
   void branch_integer(const End& end, const Place in[2], Label yes, Label no, bool yes_is_next);
   void branch_float(const End& end, const Place in[2], Label yes, Label no, bool yes_is_next);
   void moves(const std::vector<Move>& all);

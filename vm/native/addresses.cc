@@ -1,0 +1,97 @@
+// Addresses in loops: what of one does not change is added up in front of the loop, so that the
+// machine's own address form does the rest: [base + index * scale + displacement].
+#include <algorithm>
+
+#include "vm/native/loops.h"
+
+namespace vm::native {
+namespace {
+
+constexpr size_t kMostPlaces = 6;  // in front of one loop: registers are few
+
+class Places {
+ public:
+  explicit Places(Function& f) : f_(f) {}
+
+  void run() {
+    std::vector<bool> outer(f_.loops.size(), false);
+    for (const Loop& l : f_.loops) {
+      if (l.parent != kNone) outer[l.parent] = true;
+    }
+    for (size_t l = 0; l < f_.loops.size(); ++l) {
+      if (!outer[l]) loop(f_.loops[l]);
+    }
+  }
+
+ private:
+  bool outside(Val v, const Loop& l) const {
+    return f_.values[v].constant || f_.values[v].block < l.head;
+  }
+
+  void loop(const Loop& l) {
+    made_.clear();
+    for (Block b = l.head; b <= l.last; ++b) {
+      for (const uint32_t number : f_.blocks[b].nodes) {
+        const Op op = f_.nodes[number].op;
+        if (op == Op::kLoad || op == Op::kStore) split(number, l);
+      }
+    }
+  }
+
+  // The index is a sum of something from before the loop and something from inside.
+  void split(uint32_t number, const Loop& l) {
+    const Mem mem = f_.nodes[number].mem;
+    if (mem.index == kNone || mem.base == MemBase::kPointer || mem.scale != 1) return;
+    const Value& index = f_.values[mem.index];
+    if (index.constant || index.node == kNone || outside(mem.index, l)) return;
+    const Node& sum = f_.nodes[index.node];
+    if (sum.width != 8 || (sum.op != Op::kAdd && sum.op != Op::kAddShifted)) return;
+    const uint8_t scales[2] = {1, sum.op == Op::kAdd ? uint8_t{1} : uint8_t(1u << sum.imm)};
+    for (uint32_t i = 0; i < 2; ++i) {
+      const Val fixed = sum.in[i];
+      const Val moving = sum.in[1 - i];
+      if (f_.values[fixed].constant || !outside(fixed, l) || outside(moving, l)) continue;
+      Mem front{mem.base, scales[i], fixed, 0, kNone};
+      // Offsets of data memory may be larger than a displacement.
+      if (mem.base == MemBase::kData) front.disp = mem.disp;
+      const Val place = place_of(front, l);
+      if (place == kNone) return;
+      const uint8_t scale = scales[1 - i];
+      f_.nodes[number].mem = {MemBase::kPointer, scale, moving, mem.disp - front.disp, place};
+      return;
+    }
+  }
+
+  Val place_of(const Mem& mem, const Loop& l) {
+    for (const Val v : made_) {
+      const Mem& other = f_.nodes[f_.values[v].node].mem;
+      if (other.base == mem.base && other.scale == mem.scale && other.index == mem.index &&
+          other.disp == mem.disp) {
+        return v;
+      }
+    }
+    if (made_.size() == kMostPlaces) return kNone;
+    const Block front = l.head - 1;
+    Node node;
+    node.op = Op::kPlace;
+    node.width = 8;
+    node.mem = mem;
+    node.unit = f_.blocks[front].unit;
+    node.result = static_cast<Val>(f_.values.size());
+    const auto number = static_cast<uint32_t>(f_.nodes.size());
+    f_.values.push_back({false, 8, false, 0, number, front});
+    f_.nodes.push_back(node);
+    f_.blocks[front].nodes.push_back(number);
+    made_.push_back(node.result);
+    return node.result;
+  }
+
+  Function& f_;
+  std::vector<Val> made_;
+};
+
+}  // namespace
+
+void split_addresses(Function& function) { Places(function).run(); }
+
+}  // namespace vm::native
