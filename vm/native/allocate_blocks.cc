@@ -37,10 +37,7 @@ void Allocator::restore(const Snapshot& snapshot, Block block) {
 void Allocator::begin(Block block) {
   const std::vector<Pred>& preds = preds_[block];
   const bool head = f_.blocks[block].head;
-  if (f_.blocks[block].behind_call != kNone) {
-    clear_state();  // as it is when the interpreter goes on here
-  } else if (preds.size() == 1 && !head && f_.blocks[block].params.empty() &&
-             !f_.blocks[block].resumes) {
+  if (preds.size() == 1 && !head && f_.blocks[block].params.empty() && !f_.blocks[block].resumes) {
     restore(ends_[preds[0].block], block);
   } else if (!preds.empty() || head || f_.blocks[block].resumes) {
     meet(block);

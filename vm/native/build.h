@@ -67,6 +67,7 @@ class Builder {
   Val read_field_id(ir::Base base, uint32_t offset);
   void instance(Val id);
   void call(CallKind kind, uint32_t pou, Val id);
+  void call_body(Node made);
   void helper();
   void leave();
 

@@ -10,14 +10,15 @@ namespace {
 // Does it look at no variable but those that its fields name?
 bool only_computes(Opcode op) {
   return op == Opcode::LEA || op == Opcode::LEA_AT || op == Opcode::LD_REF ||
-         (op >= Opcode::STR && op <= Opcode::WSTR_AT) || op == Opcode::SIZE_OF;
+         (op >= Opcode::STR && op <= Opcode::WSTR_AT) || op == Opcode::SIZE_OF ||
+         op == Opcode::INST || op == Opcode::INST_AT || op == Opcode::TASK_TIME;
 }
 
 }  // namespace
 
 void Builder::special() {
   const Opcode op = u_.opcode();
-  if (!only_computes(op)) store_deferred();
+  if (!only_computes(op) && facts_.body_at(unit_) == nullptr) store_deferred();
   switch (op) {
     case Opcode::LEA:
       if (u_.base_b() == ir::Base::kConst) return write_a(pool_address(x_.x()));
@@ -89,6 +90,14 @@ void Builder::instance(Val id) {
   write_a(area);
 }
 
+// A body will stand in its place: values live on, but for what the body changes.
+void Builder::call_body(Node made) {
+  made.exit = exit_here(true);
+  f_.exits.back().fuel = true;
+  append(made);
+  kill_memory();
+}
+
 // Before a call everything is in memory, and behind it everything is read from there again.
 void Builder::call(CallKind kind, uint32_t pou, Val id) {
   const std::vector<ir::LinkedPou>& pous = facts_.image().pous;
@@ -103,8 +112,12 @@ void Builder::call(CallKind kind, uint32_t pou, Val id) {
     area = value_of(made, false);
     if (f_.nodes.size() != before) f_.nodes.back().exit = exit_here(false);
   }
-  for (const uint32_t v : facts_.live_behind(unit_)) store_slot(v);
   Node made = node(Op::kCall, 0, id, area);
+  made.call = static_cast<uint32_t>(f_.calls.size());
+  f_.calls.push_back({kind, pou, uint32_t{u_.a} * 8, unit_, facts_.callee(unit_),
+                      facts_.next(unit_), facts_.body_at(unit_) != nullptr});
+  if (f_.calls.back().inlined) return call_body(made);
+  for (const uint32_t v : facts_.live_behind(unit_)) store_slot(v);
   if (kind == CallKind::kSlow) {
     made.in[0] = made.in[1] = kNone;
     for (const Access& access : accesses_of(u_)) {
@@ -114,11 +127,6 @@ void Builder::call(CallKind kind, uint32_t pou, Val id) {
   } else {
     made.exit = exit_here(false);  // what the interpreter reads when it calls in our place
   }
-  made.call = static_cast<uint32_t>(f_.calls.size());
-  const uint32_t known = kind == CallKind::kBody   ? facts_.called_body(unit_)
-                         : kind == CallKind::kSlow ? kNone
-                                                   : pou;
-  f_.calls.push_back({kind, pou, uint32_t{u_.a} * 8, unit_, known});
   append(made);
   for (uint32_t v = 0; v < f_.variables.size(); ++v) {
     now_.value[v] = kNone;

@@ -26,9 +26,7 @@ class Chooser {
   // Nothing but what may be done in vain; stores come last.
   bool is_cheap(Block b, Block join) const {
     const BasicBlock& block = f_.blocks[b];
-    if (ways_in_[b] != 1 || block.head || block.behind_call != kNone || !block.params.empty()) {
-      return false;
-    }
+    if (ways_in_[b] != 1 || block.head || !block.params.empty()) return false;
     if (block.end.kind != EndKind::kJump || block.end.target[0] != join) return false;
     size_t nodes = 0;
     bool stores = false;

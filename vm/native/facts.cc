@@ -55,7 +55,7 @@ Accesses accesses_of(const ir::Unit& unit) {
 }
 
 base::Result<Facts> Facts::of(const ir::Image& image, const ImageFacts& common,
-                              const ir::LinkedPou& pou) {
+                              const ir::LinkedPou& pou, const BodyOf& body_of) {
   Facts facts;
   facts.common_ = &common;
   facts.image_ = &image;
@@ -65,6 +65,7 @@ base::Result<Facts> Facts::of(const ir::Image& image, const ImageFacts& common,
   if (!facts.find_blocks(why) || !facts.find_loops(why)) {
     return base::Error{base::Refusal::kTooLarge, why};
   }
+  facts.find_bodies(body_of);
   facts.find_pinned();
   facts.find_variables();
   facts.find_overlaps();
@@ -246,7 +247,7 @@ void Facts::find_loop_effects() {
     changed.clear();
     const uint32_t behind = blocks_[loop.last].behind;
     for (uint32_t i = blocks_[loop.head].first; i < behind; i = next(i)) {
-      if (is_call(code_[i].opcode())) loop_calls_[l] = true;
+      if (is_call(code_[i].opcode()) && body_at(i) == nullptr) loop_calls_[l] = true;
       for (const Access& access : accesses_of(code_[i])) {
         const uint32_t v = variable(access);
         if (v != kNone && access.reads) loop_reads_[l].push_back(v);

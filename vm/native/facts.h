@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -64,11 +65,29 @@ uint32_t slot_number(const ir::LinkedPou& pou, uint32_t offset);
 uint32_t called_body(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
                      const ir::Unit& unit);
 
+// What a body in the place of its call may do to memory that the caller names.
+struct Effects {
+  struct Use {
+    bool everywhere = false;                          // through an address
+    bool own_instance = false;                        // of the callee
+    std::vector<std::pair<uint64_t, uint64_t>> data;  // of the globals: [begin, end)
+  };
+  Use reads, writes;
+};
+// A small POU, made once, to stand in the place of its calls.
+struct Body {
+  Function function;
+  Effects effects;
+};
+Effects effects_of(const Function& body);
+
 class Facts {
  public:
+  // The body that stands in the place of calls of a POU; null: it is called.
+  using BodyOf = std::function<const Body*(uint32_t pou)>;
   // kTooLarge and others: why this POU stays with the interpreter. Borrows everything.
   static base::Result<Facts> of(const ir::Image& image, const ImageFacts& common,
-                                const ir::LinkedPou& pou);
+                                const ir::LinkedPou& pou, const BodyOf& body_of = {});
 
   const ir::Image& image() const { return *image_; }
   const ir::LinkedPou& pou() const { return *pou_; }
@@ -87,7 +106,10 @@ class Facts {
   Block block_at(uint32_t unit) const { return block_at_[unit]; }
   const std::vector<Loop>& loops() const { return loops_; }
   uint32_t loop_of(Block block) const { return loop_of_[block]; }  // innermost, or kNone
+  // A call that no body stands for.
   bool has_call(uint32_t loop) const { return loop_calls_[loop]; }
+  // In the place of the call at the unit; null: none.
+  const Body* body_at(uint32_t unit) const;
   // Is the variable's memory changed in the loop other than by its name?
   bool killed_in(uint32_t loop, uint32_t variable) const;
   // Variables that the loop may keep in registers, their memory being older until it ends or is
@@ -119,9 +141,8 @@ class Facts {
   const std::vector<uint32_t>& live_behind(uint32_t unit) const;
   // Slots that the caller reads.
   const std::vector<uint32_t>& results() const { return results_; }
-  uint32_t called_body(uint32_t unit) const {
-    return native::called_body(*image_, *common_, *pou_, code_[unit]);
-  }
+  // The POU that the unit calls; kNone: it depends.
+  uint32_t callee(uint32_t unit) const;
   bool recursive_bodies() const { return common_->recursive_bodies; }
   bool clean_bools() const { return common_->clean_bools; }
   void successors(Block block, Block out[2], uint32_t& count) const;
@@ -130,6 +151,9 @@ class Facts {
   bool find_blocks(std::string& why);
   bool find_loops(std::string& why);
   bool fits(std::string& why) const;
+  void find_bodies(const BodyOf& body_of);
+  bool may_be_self(uint32_t unit) const;
+  void used_by_body(uint32_t unit, const Effects::Use& use, std::vector<uint32_t>& out) const;
   void find_pinned();
   void find_variables();
   void find_overlaps();
@@ -150,6 +174,7 @@ class Facts {
   std::vector<Loop> loops_;
   std::vector<uint32_t> loop_of_;
   std::vector<bool> loop_calls_;
+  std::unordered_map<uint32_t, const Body*> bodies_;  // by unit
   std::vector<std::vector<uint32_t>> loop_reads_;
   std::vector<std::vector<uint32_t>> loop_killed_;
   std::vector<std::vector<uint32_t>> loop_deferred_;

@@ -9,7 +9,6 @@ namespace vm::native {
 namespace {
 
 constexpr uint32_t kMostUnits = 96;
-constexpr size_t kMostNodes = 200'000;  // of one POU with everything in it
 
 class Inliner {
  public:
@@ -53,10 +52,8 @@ class Inliner {
 
  private:
   Callee callee(const Node& node) const {
-    if (node.op != Op::kCall || f_.nodes.size() > kMostNodes) return {};
-    const Call& call = f_.calls[node.call];
-    if (call.kind == CallKind::kSlow || call.known == kNone) return {};
-    return callee_of_(call.known);
+    if (node.op != Op::kCall || !f_.calls[node.call].inlined) return {};
+    return callee_of_(f_.calls[node.call].known);
   }
 
   void split(Block b) {
@@ -73,7 +70,6 @@ class Inliner {
       const Callee body = callee(f_.nodes[n]);
       part.nodes.push_back(n);
       if (body.function == nullptr) continue;
-      const uint32_t call = f_.nodes[n].call;
       part.end.kind = EndKind::kJump;
       part.end.target[0] = static_cast<Block>(blocks_.size()) + 1;
       blocks_.push_back(std::move(part));
@@ -81,7 +77,6 @@ class Inliner {
       part = BasicBlock();
       part.unit = old.unit;
       part.loop = old.loop;
-      part.behind_call = call;
     }
     part.end = std::move(old.end);
     last_[b] = static_cast<Block>(blocks_.size());
@@ -125,6 +120,8 @@ class Inliner {
         slot.value = value_of_[slot.value];
       }
       made.inlined = static_cast<uint32_t>(f_.inlined.size() - 1);
+      const std::vector<SlotValue>& callers = f_.exits[f_.nodes[call_node].exit].slots;
+      made.slots.insert(made.slots.end(), callers.begin(), callers.end());
       if (inlined.has_instance) {
         made.slots.push_back({0, 4, id});
         made.slots.push_back({0, 4, area});

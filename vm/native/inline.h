@@ -1,8 +1,8 @@
 // Bodies of small POUs in the place of their calls.
 //
 // What is there is what the call would do: arguments and results travel through the callee's frame,
-// fuel is taken, and an exit inside makes the callee's activation as if it had been called. Behind
-// the body everything is in memory, so the interpreter can go on there as behind any call.
+// fuel is taken, and an exit inside makes the callee's activation as if it had been called. The
+// interpreter then goes on behind the call, until the next unit where machine code can be entered.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@
 namespace vm::native {
 
 struct Callee {
-  const Function* function = nullptr;  // null: it is called
+  const Function* function = nullptr;
   const ir::Unit* units = nullptr;
 };
 

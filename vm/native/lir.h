@@ -87,7 +87,7 @@ enum class Op : uint8_t {
   kPool,    // result := data address of the image's constants
   kNative,  // the function at address `imm`, of data memory and in; what calls lose is lost
   kHelper,  // `unit` by its handler; every register is lost
-  kCall,    // `call`; nothing but constants lives across
+  kCall,    // `call`; nothing but constants lives across, unless it becomes kEnter
   kEnter,   // begins the body of `call`, which follows; the result points to its instance
 };
 
@@ -174,6 +174,8 @@ struct Call {
   uint32_t frame_step = 0;  // bytes from this frame to the callee's
   uint32_t unit = 0;
   uint32_t known = kNone;  // the POU, when it is known before
+  uint32_t behind = 0;     // the unit where the caller goes on
+  bool inlined = false;    // a body stands in its place
 };
 
 struct Inlined {
@@ -216,7 +218,6 @@ struct BasicBlock {
   End end;
   uint32_t loop = kNone;  // innermost that it is in
   bool head = false;
-  uint32_t behind_call = kNone;  // an inlined one: the interpreter may go on here
   // In front of a loop: an interrupted execution goes on here. Every value that lives here, and the
   // slots that are dirty.
   bool resumes = false;

@@ -14,23 +14,32 @@ bool is_interpreted_at_random(const TierOptions& options, uint32_t pou) {
   return (h * 0xbf58476d1ce4e5b9u >> 40 & 1) != 0;
 }
 
-Callee Bodies::callee(uint32_t pou, uint32_t caller) {
-  if (pou == caller || is_interpreted_at_random(options_, pou)) return {};
+const Body* Bodies::body(uint32_t pou, uint32_t caller) {
+  if (pou == caller || is_interpreted_at_random(options_, pou)) return nullptr;
   State& state = states_[pou];
   if (!state.asked) {
     state.asked = true;
     if (is_small(image_, image_.pous[pou])) {
       base::Result<Facts> facts = Facts::of(image_, common_, image_.pous[pou]);
-      if (facts.ok()) state.function = std::make_unique<Function>(Builder(*facts).run());
+      if (facts.ok()) {
+        state.body = std::make_unique<Body>();
+        state.body->function = Builder(*facts).run();
+        state.body->effects = effects_of(state.body->function);
+      }
     }
   }
-  return {state.function.get(), pous_[pou].code};
+  return state.body.get();
 }
 
-Function make_function(const Facts& facts, Bodies& bodies, uint32_t pou,
-                       std::vector<uint32_t>& inlined) {
-  Function function = Builder(facts).run();
-  inlined = inline_calls(function, [&](uint32_t callee) { return bodies.callee(callee, pou); });
+base::Result<Function> make_function(const ir::Image& image, Bodies& bodies, uint32_t pou,
+                                     std::vector<uint32_t>& inlined) {
+  const auto body_of = [&](uint32_t callee) { return bodies.body(callee, pou); };
+  base::Result<Facts> facts = Facts::of(image, bodies.common(), image.pous[pou], body_of);
+  if (!facts.ok()) return facts.error();
+  Function function = Builder(*facts).run();
+  inlined = inline_calls(function, [&](uint32_t callee) {
+    return Callee{&body_of(callee)->function, bodies.units(callee)};
+  });
   choose(function);
   insert_preheaders(function);
   drop_proven_checks(function);
@@ -50,13 +59,10 @@ std::string functions_text(const ir::Image& image) {
   for (uint32_t pou = 0; pou < image.pous.size(); ++pou) {
     if (image.pous[pou].unit_count == 0) continue;
     out += image.pous[pou].name + "\n";
-    base::Result<Facts> facts = Facts::of(image, common, image.pous[pou]);
-    if (!facts.ok()) {
-      out += "interpreted: " + facts.error().text + "\n\n";
-      continue;
-    }
     std::vector<uint32_t> inlined;
-    out += print(make_function(*facts, bodies, pou, inlined)) + "\n";
+    const base::Result<Function> function = make_function(image, bodies, pou, inlined);
+    out += function.ok() ? print(*function) : "interpreted: " + function.error().text + "\n";
+    out += "\n";
   }
   return out;
 }

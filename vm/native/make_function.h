@@ -22,13 +22,14 @@ class Bodies {
          const TierOptions& options)
       : image_(image), common_(common), pous_(pous), options_(options), states_(pous.size()) {}
   const ImageFacts& common() const { return common_; }
-  // What `caller` has in the place of a call of POU number `pou`.
-  Callee callee(uint32_t pou, uint32_t caller);
+  // What `caller` has in the place of a call of POU number `pou`; null: it calls.
+  const Body* body(uint32_t pou, uint32_t caller);
+  const ir::Unit* units(uint32_t pou) const { return pous_[pou].code; }
 
  private:
   struct State {
     bool asked = false;
-    std::unique_ptr<Function> function;
+    std::unique_ptr<Body> body;
   };
   const ir::Image& image_;
   const ImageFacts& common_;
@@ -38,8 +39,8 @@ class Bodies {
 };
 
 // `inlined`: the POUs whose bodies are in it.
-Function make_function(const Facts& facts, Bodies& bodies, uint32_t pou,
-                       std::vector<uint32_t>& inlined);
+base::Result<Function> make_function(const ir::Image& image, Bodies& bodies, uint32_t pou,
+                                     std::vector<uint32_t>& inlined);
 
 // The Function of every POU as text, or why there is none, for `stc dump --native`.
 std::string functions_text(const ir::Image& image);

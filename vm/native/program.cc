@@ -95,8 +95,7 @@ std::vector<uint64_t> facts_of(const ir::Image& image, const ImageFacts& common,
 
 // A call's unit goes on with one that comes back, a helper's with a stop. Each is one instruction,
 // also where the interpreter would take several at once.
-SideUnits side_units(const Function& f, const ir::Unit* units, const ir::Unit* code,
-                     const Facts& facts) {
+SideUnits side_units(const Function& f, const ir::Unit* units, const ir::Unit* code) {
   SideUnits side;
   side.helper.assign(f.nodes.size(), kNone);
   side.call.assign(f.calls.size(), 0);
@@ -104,18 +103,19 @@ SideUnits side_units(const Function& f, const ir::Unit* units, const ir::Unit* c
   std::vector<ir::Unit> all;
   const auto copy = [&](uint32_t unit) {
     const auto at = static_cast<uint32_t>(all.size());
-    for (uint32_t i = unit; i < facts.next(unit); ++i) {
+    const ir::Unit& u = code[unit];
+    const bool extended = ir::opcode_row(u.opcode()).extended;
+    for (uint32_t i = unit; i <= unit + (extended ? 1 : 0); ++i) {
       all.push_back(units[i]);
       side.real.push_back(unit);
     }
-    const ir::Unit& u = code[unit];
     all[at].op =
         static_cast<uint16_t>(handler_number(u.opcode(), u.base_a(), u.base_b(), u.base_c()));
     return at;
   };
   for (uint32_t n = 0; n < f.nodes.size(); ++n) {
     const Node& node = f.nodes[n];
-    const bool calls = node.op == Op::kCall || node.op == Op::kEnter;
+    const bool calls = node.op == Op::kCall;
     if (node.dead || (node.op != Op::kHelper && !calls)) continue;
     const uint32_t at = copy(node.op == Op::kHelper ? node.unit : f.calls[node.call].unit);
     if (node.op == Op::kHelper) {
@@ -142,7 +142,6 @@ struct Work {
   Function function;
   Allocated places;
   Entries entries;
-  std::vector<uint32_t> call_units;  // where a call's caller goes on
 };
 
 // Everything up to registers; the machine code follows for all POUs together.
@@ -157,12 +156,12 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
     work.pou->reason = "it is too large";
     return false;
   }
-  base::Result<Facts> facts = Facts::of(image, bodies.common(), pou);
-  if (!facts.ok()) {
-    work.pou->reason = facts.error().text;
+  base::Result<Function> function = make_function(image, bodies, work.number, work.pou->inlined);
+  if (!function.ok()) {
+    work.pou->reason = function.error().text;
     return false;
   }
-  work.function = make_function(*facts, bodies, work.number, work.pou->inlined);
+  work.function = std::move(*function);
   const AllocatorOptions registers{options.integer_registers, options.float_registers,
                                    options.spill_seed};
   base::Result<Allocated> places = allocate(work.function, target, registers);
@@ -175,9 +174,7 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
     return false;
   }
   work.places = std::move(*places);
-  work.pou->side =
-      side_units(work.function, work.pou->units, image.code.data() + pou.first_unit, *facts);
-  for (const Call& call : work.function.calls) work.call_units.push_back(facts->next(call.unit));
+  work.pou->side = side_units(work.function, work.pou->units, image.code.data() + pou.first_unit);
   return true;
 }
 
@@ -187,9 +184,11 @@ void finish(Work& work, const uint8_t* base) {
   SideUnits& side = pou.side;
   pou.machine = base + work.entries.begin;
   for (size_t c = 0; c < work.entries.behind_call.size(); ++c) {
+    const Call& call = work.function.calls[c];
+    if (call.inlined) continue;
     side.units[side.resume[c]] = resume_unit(base + work.entries.behind_call[c]);
-    side.real[side.resume[c]] = work.call_units[c];
-    pou.entries.push_back({work.call_units[c], side.resume[c]});
+    side.real[side.resume[c]] = call.behind;
+    pou.entries.push_back({call.behind, side.resume[c]});
   }
   uint32_t next = side.count - 1 - static_cast<uint32_t>(work.function.loops.size());
   side.units[next] = resume_unit(pou.machine);

@@ -138,6 +138,7 @@ void Facts::find_targets() {
 }
 
 void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
+  if (const Body* const body = body_at(i)) return used_by_body(i, body->effects.writes, out);
   const auto target = targets_.find(i);
   if (target != targets_.end()) touched(target->second, out);
   if (code_[i].opcode() != Opcode::NATIVE) return;
@@ -154,6 +155,7 @@ void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
 
 void Facts::seen(uint32_t i, std::vector<uint32_t>& out) const {
   const Opcode op = code_[i].opcode();
+  if (const Body* const body = body_at(i)) used_by_body(i, body->effects.reads, out);
   if (op == Opcode::COPY) touched(sources_.at(i), out);
   if (op < Opcode::LD_B || op > Opcode::LD_F64) return;
   const auto found = reach_.find(code_[i].b);
@@ -197,7 +199,7 @@ void Facts::touched(const Reach& reach, std::vector<uint32_t>& out) const {
 
 bool Facts::writes_memory(uint32_t i) const {
   const Opcode op = code_[i].opcode();
-  return stores_through(op) || op == Opcode::NATIVE;
+  return stores_through(op) || op == Opcode::NATIVE || body_at(i) != nullptr;
 }
 
 // Only of innermost loops without calls: nothing but their own code is executed until they end, or

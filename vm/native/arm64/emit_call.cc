@@ -72,7 +72,9 @@ void Emitter::take_fuel(const Node& n) {
 }
 
 void Emitter::push_record(uint32_t call) {
-  const ir::Unit* const resume = &pou_.side->units[pou_.side->resume[call]];
+  const Call& c = f_.calls[call];
+  const ir::Unit* const resume =
+      c.inlined ? &pou_.units[c.behind] : &pou_.side->units[pou_.side->resume[call]];
   a_.load(kRecord, CONTEXT(call), 8);
   a_.move_imm(kScratch, reinterpret_cast<uintptr_t>(resume));
   a_.store(at_record(offsetof(CallRecord, resume)), kScratch, 8);
@@ -87,7 +89,8 @@ void Emitter::push_record(uint32_t call) {
 
 // An inlined body begins.
 void Emitter::enter(const Node& n, const Step& step) {
-  take_fuel(n);
+  a_.decrement(kFuelRegister);
+  a_.jump_if(Condition::kEqual, exit_label(n.exit));
   if (n.result == kNone) return;
   a_.alu(Alu::kAdd, integer_register(step.result), kDataRegister, integer_register(step.in[1]), 8);
 }

@@ -109,6 +109,7 @@ void Emitter::function() {
     a_.jump(blocks_[b]);
   }
   for (size_t c = 0; c < f_.calls.size(); ++c) {
+    if (f_.calls[c].inlined) continue;
     const Label to = entries_.behind_call[c];
     entries_.behind_call[c] = a_.here();
     enter_frame();
@@ -118,8 +119,6 @@ void Emitter::function() {
 
 void Emitter::block(Block b) {
   a_.bind(blocks_[b]);
-  const uint32_t call = f_.blocks[b].behind_call;
-  if (call != kNone) entries_.behind_call[call] = blocks_[b];
   for (const Step& step : places_.blocks[b].steps) {
     if (step.node == kNone) {
       move(step.move);

@@ -54,9 +54,11 @@ Shared emit_shared(Assembler& a) {
   return shared;
 }
 
-// By rcx, rsi and the scratch register.
+// Behind a body the interpreter goes on. By rcx, rsi and the scratch register.
 void Emitter::push_record(uint32_t call) {
-  const ir::Unit* const resume = &pou_.side->units[pou_.side->resume[call]];
+  const Call& c = f_.calls[call];
+  const ir::Unit* const resume =
+      c.inlined ? &pou_.units[c.behind] : &pou_.side->units[pou_.side->resume[call]];
   a_.load(kRcx, CONTEXT(call), 8);
   a_.move_imm(kScratch, reinterpret_cast<uintptr_t>(resume));
   a_.store(at_record(offsetof(CallRecord, resume)), kScratch, 8);
@@ -71,10 +73,8 @@ void Emitter::push_record(uint32_t call) {
 
 // An inlined body begins.
 void Emitter::enter(const Node& n, const Step& step) {
-  const Label stub = a_.label();
-  call_stubs_.push_back({stub, pou_.side->call[n.call], n.exit});
   a_.alu_imm(Alu::kSub, Operand::of(kFuelRegister), 1, 8);
-  a_.jump_if(Condition::kEqual, stub);
+  a_.jump_if(Condition::kEqual, exit_label(n.exit));
   if (n.result == kNone) return;
   a_.address(integer_register(step.result),
              {kDataRegister, integer_register(step.in[1]), 1, true, INT32_MIN}, 8);

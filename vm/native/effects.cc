@@ -1,0 +1,99 @@
+// Calls that a body stands in the place of, and what those bodies do to the caller's variables.
+#include <algorithm>
+
+#include "vm/native/facts.h"
+
+namespace vm::native {
+namespace {
+
+using ir::Opcode;
+
+constexpr size_t kMostNodes = 200'000;  // of one POU with everything in it
+
+bool any_overlaps(const std::vector<std::pair<uint64_t, uint64_t>>& parts, const Variable& v) {
+  return std::any_of(parts.begin(), parts.end(), [&](const auto& part) {
+    return v.offset < part.second && part.first < uint64_t{v.offset} + v.width;
+  });
+}
+
+}  // namespace
+
+Effects effects_of(const Function& body) {
+  Effects out;
+  for (const Node& n : body.nodes) {
+    if (n.op == Op::kNative) out.reads.everywhere = out.writes.everywhere = true;
+    if (n.dead || (n.op != Op::kLoad && n.op != Op::kStore)) continue;
+    Effects::Use& use = n.op == Op::kLoad ? out.reads : out.writes;
+    if (n.mem.base == MemBase::kSelf) use.own_instance = true;
+    if (n.mem.base != MemBase::kData) continue;
+    if (n.mem.index != kNone) {
+      use.everywhere = true;
+    } else {
+      const auto begin = static_cast<uint64_t>(n.mem.disp);
+      use.data.push_back({begin, begin + n.width});
+    }
+  }
+  return out;
+}
+
+uint32_t Facts::callee(uint32_t i) const {
+  const ir::Unit& unit = code_[i];
+  switch (unit.opcode()) {
+    case Opcode::CALL:
+    case Opcode::CALL_OWN:
+      return unit.c;
+    case Opcode::CALL_INST:
+    case Opcode::CALL_INST_AT:
+      return called_body(*image_, *common_, *pou_, unit);
+    case Opcode::CALL_METHOD:
+    case Opcode::CALL_METHOD_AT:
+      return extension(i).x();
+    default:
+      return kNone;
+  }
+}
+
+void Facts::find_bodies(const BodyOf& body_of) {
+  if (!body_of) return;
+  size_t nodes = code_.size();
+  for (uint32_t i = 0; i < code_.size(); i = next(i)) {
+    const uint32_t number = is_call(code_[i].opcode()) ? callee(i) : kNone;
+    if (number == kNone || image_->pous[number].recursion_depth != 0) continue;
+    const Opcode op = code_[i].opcode();
+    const bool of_instance = op == Opcode::CALL_INST || op == Opcode::CALL_INST_AT;
+    if (of_instance && recursive_bodies()) continue;
+    const Body* const body = nodes > kMostNodes ? nullptr : body_of(number);
+    if (body == nullptr) continue;
+    nodes += body->function.nodes.size();
+    bodies_[i] = body;
+  }
+}
+
+const Body* Facts::body_at(uint32_t unit) const {
+  const auto found = bodies_.find(unit);
+  return found == bodies_.end() ? nullptr : found->second;
+}
+
+// May the callee's instance be that of this POU?
+bool Facts::may_be_self(uint32_t unit) const {
+  if (code_[unit].opcode() == Opcode::CALL_OWN) return true;
+  const ir::TypeId own = pou_->self;
+  const ir::TypeId other = image_->pous[callee(unit)].self;
+  if (!own.valid() || !other.valid()) return false;
+  return image_->types.is_a(own, other) || image_->types.is_a(other, own);
+}
+
+// The callee's frame is its own, from the arguments on.
+void Facts::used_by_body(uint32_t unit, const Effects::Use& use, std::vector<uint32_t>& out) const {
+  const bool own = use.own_instance && may_be_self(unit);
+  for (uint32_t v = 0; v < variables_.size(); ++v) {
+    const Variable& variable = variables_[v];
+    if (variable.slot || variable.constant) continue;
+    const bool next_frame = variable.base == MemBase::kFrame && variable.offset >= pou_->frame_size;
+    const bool named = variable.base == MemBase::kData && any_overlaps(use.data, variable);
+    const bool self = own && variable.base == MemBase::kSelf;
+    if (use.everywhere || next_frame || named || self) out.push_back(v);
+  }
+}
+
+}  // namespace vm::native
