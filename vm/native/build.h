@@ -141,6 +141,10 @@ class Builder {
   std::unordered_map<uint64_t, Val> constants_[8];  // by bits; of 4 or 8 bytes floating, integers
 };
 
+// Of operations that give the same, `version` of memory being the same.
+uint64_t hash_of(const Node& node, uint32_t version);
+bool same(const Node& a, const Node& b);
+
 // Comparisons into the branches and selections that alone use them; what nothing uses is dead.
 void simplify(Function& function);
 // What nothing uses any more.

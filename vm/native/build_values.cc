@@ -53,6 +53,8 @@ uint64_t mix(uint64_t hash, uint64_t value) {
   return hash * 0xff51afd7ed558ccdu;
 }
 
+}  // namespace
+
 uint64_t hash_of(const Node& n, uint32_t version) {
   uint64_t h = mix(static_cast<uint64_t>(n.op), n.width | n.from << 8 | n.boolean << 16);
   h = mix(h, static_cast<uint64_t>(n.cond));
@@ -60,6 +62,7 @@ uint64_t hash_of(const Node& n, uint32_t version) {
   h = mix(h, n.imm);
   h = mix(h, static_cast<uint64_t>(n.mem.base) | n.mem.scale << 8);
   h = mix(h, n.mem.index);
+  h = mix(h, n.mem.pointer);
   h = mix(h, static_cast<uint64_t>(n.mem.disp));
   return mix(h, version);
 }
@@ -68,10 +71,8 @@ bool same(const Node& a, const Node& b) {
   return a.op == b.op && a.width == b.width && a.from == b.from && a.cond == b.cond &&
          a.boolean == b.boolean && a.imm == b.imm && std::memcmp(a.in, b.in, sizeof a.in) == 0 &&
          a.mem.base == b.mem.base && a.mem.scale == b.mem.scale && a.mem.index == b.mem.index &&
-         a.mem.disp == b.mem.disp;
+         a.mem.pointer == b.mem.pointer && a.mem.disp == b.mem.disp;
 }
-
-}  // namespace
 
 Val Builder::constant(uint64_t bits_, uint8_t width, bool floating) {
   bits_ &= mask(width);

@@ -9,6 +9,9 @@ namespace vm::native {
 // execution too, so what it computes holds in the whole loop.
 void insert_preheaders(Function& function);
 
+// Behind insert_preheaders(): what a dominating block computes or checks is not done again.
+void number_again(Function& function);
+
 // Makes selections of branches around a few cheap operations.
 void choose(Function& function);
 

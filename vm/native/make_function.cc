@@ -42,6 +42,7 @@ base::Result<Function> make_function(const ir::Image& image, Bodies& bodies, uin
   });
   choose(function);
   insert_preheaders(function);
+  number_again(function);
   drop_proven_checks(function);
   drop_unused(function);
   hoist(function);

@@ -1,0 +1,128 @@
+// Operations that a block in front has done already: their values serve again, and questions are
+// asked once. Only within a stretch without calls and loop heads, where values live in registers.
+#include <algorithm>
+#include <unordered_map>
+
+#include "vm/native/build.h"
+#include "vm/native/loops.h"
+
+namespace vm::native {
+namespace {
+
+bool is_operation(const Node& n) {
+  switch (n.op) {
+    case Op::kConst:
+    case Op::kStore:
+    case Op::kTaskTime:
+    case Op::kAdvanceTime:
+    case Op::kNative:
+    case Op::kHelper:
+    case Op::kCall:
+    case Op::kEnter:
+      return false;
+    case Op::kLoad:
+      return n.immutable;
+    default:
+      return true;
+  }
+}
+
+class Numbers {
+ public:
+  explicit Numbers(Function& f)
+      : f_(f), dominator_(f.blocks.size(), kNone), instead_(f.values.size(), kNone) {
+    // A variable's value at a loop stays its own: another task may change one of two variables that
+    // hold the same.
+    held_.assign(f.values.size(), false);
+    for (const BasicBlock& block : f.blocks) {
+      for (const Reload& reload : block.reloads) held_[reload.value] = true;
+      for (const SlotValue& slot : block.dirty) held_[slot.value] = true;
+    }
+  }
+
+  void run() {
+    find_dominators();
+    for (Block b = 0; b < f_.blocks.size(); ++b) block(b);
+    if (!any_) return;
+    rename();
+  }
+
+ private:
+  Val now(Val v) const { return v == kNone || instead_[v] == kNone ? v : instead_[v]; }
+
+  // Blocks come in an order in which all ways but those back to a loop lead on.
+  void find_dominators() {
+    for (Block b = 0; b < f_.blocks.size(); ++b) {
+      const End& end = f_.blocks[b].end;
+      if (end.kind == EndKind::kLoop) continue;
+      for (const Block to : end.target) {
+        if (to != kNone) dominator_[to] = dominator_[to] == kNone ? b : common(dominator_[to], b);
+      }
+    }
+  }
+  Block common(Block a, Block b) const {
+    while (a != b && a != kNone && b != kNone) {
+      Block& later = a > b ? a : b;
+      later = dominator_[later];
+    }
+    return a == kNone || b == kNone ? kNone : a;
+  }
+  bool dominates(Block a, Block b) const {
+    while (b != kNone && b > a) b = dominator_[b];
+    return b == a;
+  }
+
+  void block(Block b) {
+    const BasicBlock& at = f_.blocks[b];
+    if (at.head || at.resumes || b == 0 || at.loop != f_.blocks[b - 1].loop) known_.clear();
+    std::erase_if(f_.blocks[b].nodes, [&](uint32_t number) {
+      Node& n = f_.nodes[number];
+      for (Val& v : n.in) v = now(v);
+      n.mem.index = now(n.mem.index);
+      n.mem.pointer = now(n.mem.pointer);
+      if (n.op == Op::kCall) known_.clear();
+      if (!is_operation(n) || (n.result != kNone && held_[n.result])) return false;
+      const auto [first, last] = known_.equal_range(hash_of(n, 0));
+      for (auto found = first; found != last; ++found) {
+        const auto& [other, there] = found->second;
+        if (!same(f_.nodes[other], n) || !dominates(there, b)) continue;
+        if (n.result != kNone) instead_[n.result] = f_.nodes[other].result;
+        n.dead = any_ = true;
+        return true;
+      }
+      known_.insert({hash_of(n, 0), {number, b}});
+      return false;
+    });
+  }
+
+  void rename() {
+    for (BasicBlock& block : f_.blocks) {
+      for (const uint32_t number : block.nodes) {
+        Node& n = f_.nodes[number];
+        for (Val& v : n.in) v = now(v);
+        n.mem.index = now(n.mem.index);
+        n.mem.pointer = now(n.mem.pointer);
+      }
+      for (Val& v : block.end.in) v = now(v);
+      for (std::vector<Val>& args : block.end.args) {
+        for (Val& v : args) v = now(v);
+      }
+    }
+    for (Exit& exit : f_.exits) {
+      for (SlotValue& slot : exit.slots) slot.value = now(slot.value);
+    }
+  }
+
+  Function& f_;
+  std::vector<Block> dominator_;  // the nearest; kNone: none
+  std::vector<Val> instead_;      // by value
+  std::vector<bool> held_;        // by value: a variable's at a loop
+  std::unordered_multimap<uint64_t, std::pair<uint32_t, Block>> known_;  // node and its block
+  bool any_ = false;
+};
+
+}  // namespace
+
+void number_again(Function& function) { Numbers(function).run(); }
+
+}  // namespace vm::native
