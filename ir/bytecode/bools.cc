@@ -89,7 +89,7 @@ void Bools::normalise(TypeId id, uint8_t* value, uint32_t depth) const {
   if (type.kind == Kind::kArray) {
     const uint32_t size = image_.layouts[id].size;
     const uint32_t stride = image_.layouts[type.base].size;
-    if (stride == 1) return normalise_bools(value, size);
+    if (image_.types.is_scalar(type.base)) return normalise_bools(value, size);
     for (uint32_t at = 0; stride != 0 && at < size; at += stride) {
       normalise(type.base, value + at, depth + 1);
     }
