@@ -346,7 +346,8 @@ void Builder::store_at(const Recipe& recipe) {
   made.mem = behind(read_a(), u_.c);
   append(made);
   kill_memory();
-  remember(made.mem, made.width, value, ir::opcode_row(u_.opcode()).b.cls == ir::Class::kB);
+  const bool boolean = ir::opcode_row(u_.opcode()).b.cls == ir::Class::kB && !facts_.clean_bools();
+  remember(made.mem, made.width, value, boolean);
 }
 
 // By the interpreter's own handler.
