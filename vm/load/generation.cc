@@ -89,7 +89,6 @@ void write_initial_data(const ir::Image& image, uint8_t* memory) {
   for (const ir::DataRun& run : image.data) {
     std::memcpy(memory + run.offset, run.bytes.data(), run.bytes.size());
   }
-  ir::Bools(image).normalise_all(memory);
 }
 
 uint32_t Generation::pool_offset() const {

@@ -60,7 +60,7 @@ struct OverrideEntry {
 };
 inline constexpr uint32_t kNoTarget = 0xffffffffu;
 
-// A cold start's data: `memory` is all zero before. BOOLs are 0 or 1.
+// A cold start's data: `memory` is all zero before.
 void write_initial_data(const ir::Image& image, uint8_t* memory);
 
 class Generation {

@@ -16,38 +16,6 @@ int64_t as_signed(uint64_t bits, uint8_t width) {
   return static_cast<int64_t>(bits << shift) >> shift;
 }
 
-bool holds(Cond cond, uint64_t a, uint64_t b, uint8_t width) {
-  const int64_t sa = as_signed(a, width);
-  const int64_t sb = as_signed(b, width);
-  switch (cond) {
-    case Cond::kEq:
-      return a == b;
-    case Cond::kNe:
-      return a != b;
-    case Cond::kLtS:
-      return sa < sb;
-    case Cond::kLeS:
-      return sa <= sb;
-    case Cond::kGtS:
-      return sa > sb;
-    case Cond::kGeS:
-      return sa >= sb;
-    case Cond::kLtU:
-      return a < b;
-    case Cond::kLeU:
-      return a <= b;
-    case Cond::kGtU:
-      return a > b;
-    case Cond::kGeU:
-      return a >= b;
-    case Cond::kNoBit:
-      return (a & b) == 0;
-    case Cond::kAnyBit:
-      return (a & b) != 0;
-  }
-  return false;
-}
-
 uint64_t mix(uint64_t hash, uint64_t value) {
   hash ^= value + 0x9e3779b97f4a7c15u + (hash << 6) + (hash >> 2);
   return hash * 0xff51afd7ed558ccdu;

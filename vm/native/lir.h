@@ -108,6 +108,8 @@ enum class Cond : uint8_t {
 };
 Cond negated(Cond cond);
 Cond swapped(Cond cond);  // for exchanged operands
+// Of the low `width` bytes, with zeros above.
+bool holds(Cond cond, uint64_t a, uint64_t b, uint8_t width);
 
 // kPointer: a machine address, of an instance whose code is inlined or of a part of a sum in a loop
 // (kPlace); no memory ever holds it.

@@ -75,6 +75,12 @@ class Hoister {
   }
 
   void loop(const Loop& l) {
+    // Behind a call nothing but memory is left.
+    for (Block b = l.head; b <= l.last; ++b) {
+      for (const uint32_t number : f_.blocks[b].nodes) {
+        if (f_.nodes[number].op == Op::kCall) return;
+      }
+    }
     const Block front = l.head - 1;
     const std::vector<Block> sure = always(l);
     uint32_t values = 0;

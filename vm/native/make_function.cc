@@ -2,6 +2,7 @@
 
 #include "ir/bytecode/bools.h"
 #include "vm/native/build.h"
+#include "vm/native/forward.h"
 #include "vm/native/loops.h"
 #include "vm/native/print.h"
 
@@ -40,6 +41,7 @@ base::Result<Function> make_function(const ir::Image& image, Bodies& bodies, uin
   inlined = inline_calls(function, [&](uint32_t callee) {
     return Callee{&body_of(callee)->function, bodies.units(callee)};
   });
+  if (!inlined.empty()) forward_memory(function);
   choose(function);
   insert_preheaders(function);
   number_again(function);

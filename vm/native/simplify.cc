@@ -184,6 +184,39 @@ Cond swapped(Cond cond) {
   return kOf[static_cast<size_t>(cond)];
 }
 
+bool holds(Cond cond, uint64_t a, uint64_t b, uint8_t width) {
+  const unsigned above = 64 - 8u * width;
+  const auto sa = static_cast<int64_t>(a << above) >> above;
+  const auto sb = static_cast<int64_t>(b << above) >> above;
+  switch (cond) {
+    case Cond::kEq:
+      return a == b;
+    case Cond::kNe:
+      return a != b;
+    case Cond::kLtS:
+      return sa < sb;
+    case Cond::kLeS:
+      return sa <= sb;
+    case Cond::kGtS:
+      return sa > sb;
+    case Cond::kGeS:
+      return sa >= sb;
+    case Cond::kLtU:
+      return a < b;
+    case Cond::kLeU:
+      return a <= b;
+    case Cond::kGtU:
+      return a > b;
+    case Cond::kGeU:
+      return a >= b;
+    case Cond::kNoBit:
+      return (a & b) == 0;
+    case Cond::kAnyBit:
+      return (a & b) != 0;
+  }
+  return false;
+}
+
 void simplify(Function& function) { Simplifier(function).run(); }
 void drop_unused(Function& function) { Simplifier(function).drop(); }
 

@@ -25,7 +25,6 @@ void write_retained(const ir::Image& image, base::ByteSpan values, uint8_t* memo
     std::memcpy(memory + range.data, values.data(), range.size);
     values = values.subspan(range.size);
   }
-  ir::Bools(image).normalise_all(memory);  // whatever was stored
 }
 
 TimeSummary summary_of(const Histogram& times) {
@@ -85,6 +84,7 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
   auto first = Generation::build(image, 0, impl.memory.data(), impl.code_slots, nullptr, impl.tier);
   if (!first.ok()) return first.error();
   impl.running = std::move(*first);
+  impl.running->bools().normalise_all(impl.memory.data());  // whatever the files say
   if (base::Status devices = io.prepare(image); !devices.ok()) return devices.error();
   io.use(image.digest());
   auto tables = std::make_unique<TaskTables>(*impl.running, impl.scheduler.next_cycle_ns());
@@ -304,6 +304,7 @@ void Controller::Impl::reset_data(bool retain) {
   }
   write_initial_data(image(), data);
   if (retain) write_retained(image(), kept, data);
+  running->bools().normalise_all(data);
 }
 
 base::Status Controller::Impl::leave(const std::vector<uint32_t>& ids, bool changed,

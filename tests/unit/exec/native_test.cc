@@ -89,6 +89,40 @@ END_PROGRAM)");
   EXPECT_EQ(native->native_pous(), image.pous.size() - 1);
 }
 
+// What a caller stores into an instance is known inside of the body and need not be loaded.
+TEST(Native, InputsOfInlinedBodiesAreNotLoadedAgain) {
+  const std::string text = function_of(build(R"(
+FUNCTION_BLOCK Both VAR_INPUT a, b : BOOL; END_VAR VAR_OUTPUT q : BOOL; END_VAR
+  q := a AND b;
+END_FUNCTION_BLOCK
+PROGRAM Main VAR f : Both; x, y, z : BOOL; END_VAR
+  f(a := x, b := y, q => z);
+END_PROGRAM)"),
+                                       "Main");
+  EXPECT_TRUE(has(text, "enter.0")) << text;
+  EXPECT_FALSE(has(text, "load.1 [context")) << text;
+}
+
+// Nothing lives in registers across a call, so nothing leaves a loop that has one.
+TEST(Native, NothingIsMovedOutOfALoopThatCalls) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
+  const ir::Image image = build(R"(
+TYPE Row : STRUCT a, b, c : LINT; END_STRUCT; END_TYPE
+FUNCTION Sum : INT VAR_INPUT n : INT; END_VAR VAR k : INT; END_VAR
+  FOR k := 1 TO n DO Sum := Sum + k; END_FOR;
+END_FUNCTION
+PROGRAM Main VAR i, n : INT; row : Row; END_VAR
+  FOR i := 1 TO 3 DO
+    n := n + Sum(i);
+    row := (a := 5, b := 6, c := 7);
+  END_FOR;
+END_PROGRAM)");
+  sample::Machine machine(image);
+  ASSERT_TRUE(machine.good());
+  const vm::native::Program* const native = machine.generation().native();
+  EXPECT_EQ(native->native_pous(), image.pous.size());
+}
+
 // Unchanged code stays where it is; a POU whose inlined callee changed is made anew.
 TEST(Native, AChangeMakesOnlyWhatItTouches) {
   if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";

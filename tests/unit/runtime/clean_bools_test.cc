@@ -79,10 +79,16 @@ TEST(CleanBools, InitialValuesOfAnImage) {
     if (symbol->data < run.offset || symbol->data - run.offset >= run.bytes.size()) continue;
     run.bytes[symbol->data - run.offset] = 0x55;
   }
-  base::Result<vm::Memory> memory = vm::Memory::reserve();
-  ASSERT_TRUE(memory.ok());
-  vm::write_initial_data(other, memory->data());
-  EXPECT_EQ(memory->data()[symbol->data], 1);
+  const auto verified = ir::verify(ir::encode(other));
+  ASSERT_TRUE(verified.ok());
+  vm::VirtualClock clock;
+  vm::SimulatedIo io;
+  auto started = vm::Controller::start(*verified, {}, clock, io);
+  ASSERT_TRUE(started.ok());
+  const uint8_t* const at = (*started)->memory().data() + symbol->data;
+  EXPECT_EQ(*at, 1);
+  ASSERT_TRUE((*started)->restart(vm::Restart::kCold, kMs).ok());
+  EXPECT_EQ(*at, 1);
 }
 
 TEST(CleanBools, RetainedValuesFromStorage) {

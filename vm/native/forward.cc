@@ -1,0 +1,245 @@
+#include "vm/native/forward.h"
+
+#include <algorithm>
+
+namespace vm::native {
+namespace {
+
+constexpr size_t kMostKnown = 48;  // places at once
+
+class Forwarder {
+ public:
+  explicit Forwarder(Function& f) : f_(f), same_(f.values.size(), kNone) {}
+
+  void run() {
+    const auto count = static_cast<Block>(f_.blocks.size());
+    find_held();
+    preds_.resize(count);
+    ends_.resize(count);
+    for (Block b = 0; b < count; ++b) {
+      for (const Block to : f_.blocks[b].end.target) {
+        if (to != kNone) preds_[to].push_back(b);
+      }
+    }
+    for (Block b = 0; b < count; ++b) block(b);
+    rename();
+  }
+
+ private:
+  // A variable's value at a loop stays its own: another task may change one of two variables that
+  // hold the same.
+  void find_held() {
+    held_.assign(f_.values.size(), false);
+    for (const BasicBlock& block : f_.blocks) {
+      for (const Reload& reload : block.reloads) held_[reload.value] = true;
+      for (const SlotValue& slot : block.dirty) held_[slot.value] = true;
+    }
+  }
+
+  // The area that a place lies in. An address that is computed may lead anywhere.
+  struct Root {
+    enum Kind : uint8_t { kFrame, kSelf, kGlobals, kInstance, kAnywhere };
+    Kind kind = kAnywhere;
+    Val area = kNone;  // of kInstance
+    bool part =
+        false;  // kInstance: inside of another instance or of this one, so it is not this one
+  };
+  struct Known {
+    Mem mem;
+    Root root;
+    uint8_t width = 0;
+    bool normal = false;  // a BOOL that is 0 or 1
+    Val value = kNone;
+  };
+
+  Val real(Val v) const {
+    while (v != kNone && same_[v] != kNone) v = same_[v];
+    return v;
+  }
+  const Node* maker(Val v) const {
+    return v == kNone || f_.values[v].node == kNone ? nullptr : &f_.nodes[f_.values[v].node];
+  }
+
+  // An inlined body reaches its instance by a pointer, the caller by the address.
+  Mem canonical(Mem mem) const {
+    mem.index = real(mem.index);
+    mem.pointer = real(mem.pointer);
+    const Node* const enter = maker(mem.pointer);
+    if (mem.base == MemBase::kPointer && mem.index == kNone && enter != nullptr) {
+      mem.base = MemBase::kData;
+      mem.index = real(enter->in[1]);
+      mem.scale = 1;
+      mem.pointer = kNone;
+    }
+    return mem;
+  }
+
+  Root instance(Val area) const {
+    Root root;
+    const Node* const made = maker(area);
+    if (made == nullptr || made->op != Op::kInstance) return root;
+    root.kind = Root::kInstance;
+    root.area = area;
+    const Node* const id = maker(real(made->in[0]));
+    root.part = id != nullptr && id->op == Op::kLoad &&
+                (id->mem.base == MemBase::kSelf || id->mem.base == MemBase::kPointer);
+    return root;
+  }
+  Root root_of(const Mem& mem) const {
+    switch (mem.base) {
+      case MemBase::kFrame:
+        return {Root::kFrame, kNone, false};
+      case MemBase::kSelf:
+        return {Root::kSelf, kNone, false};
+      case MemBase::kPointer: {
+        const Node* const enter = maker(mem.pointer);
+        return enter == nullptr ? Root() : instance(real(enter->in[1]));
+      }
+      case MemBase::kData:
+        if (mem.index == kNone) return {Root::kGlobals, kNone, false};
+        return mem.scale == 1 ? instance(mem.index) : Root();
+    }
+    return {};
+  }
+
+  static bool indexed(const Mem& mem, const Root& root) {
+    const bool by_area = root.kind == Root::kInstance && mem.base == MemBase::kData;
+    return mem.index != kNone && !by_area;
+  }
+
+  static bool may_overlap(const Mem& a, const Root& ra, uint8_t width, const Known& b) {
+    const Root& rb = b.root;
+    if (ra.kind == Root::kAnywhere || rb.kind == Root::kAnywhere) return true;
+    if (ra.kind != rb.kind) {
+      // Frames, the globals and instances lie apart; an instance may be this one.
+      const bool self = ra.kind == Root::kSelf || rb.kind == Root::kSelf;
+      const bool other = ra.kind == Root::kInstance || rb.kind == Root::kInstance;
+      return self && other && !(ra.kind == Root::kInstance ? ra.part : rb.part);
+    }
+    if (ra.area != rb.area || indexed(a, ra) || indexed(b.mem, rb)) return true;
+    return a.disp < b.mem.disp + b.width && b.mem.disp < a.disp + width;
+  }
+
+  static bool same_place(const Mem& a, const Mem& b) {
+    return a.base == b.base && a.index == b.index && a.pointer == b.pointer && a.disp == b.disp &&
+           (a.index == kNone || a.scale == b.scale);
+  }
+
+  void block(Block b) {
+    known_.clear();
+    BasicBlock& block = f_.blocks[b];
+    if (!block.head && !block.resumes) meet(b);
+    for (const uint32_t n : block.nodes) node(n);
+    std::erase_if(block.nodes, [&](uint32_t n) { return f_.nodes[n].dead; });
+    ends_[b] = known_;
+  }
+
+  // What all ways bring.
+  void meet(Block b) {
+    const std::vector<Block>& preds = preds_[b];
+    if (preds.empty()) return;
+    for (const Block pred : preds) {
+      if (pred >= b) return;
+    }
+    known_ = ends_[preds[0]];
+    for (size_t i = 1; i < preds.size(); ++i) {
+      const std::vector<Known>& other = ends_[preds[i]];
+      std::erase_if(known_, [&](Known& k) {
+        const auto same = std::find_if(other.begin(), other.end(), [&](const Known& o) {
+          return same_place(k.mem, o.mem) && k.width == o.width && k.value == o.value;
+        });
+        if (same != other.end()) k.normal &= same->normal;
+        return same == other.end();
+      });
+    }
+  }
+
+  void add(const Known& known) {
+    if (known_.size() == kMostKnown) known_.erase(known_.begin());
+    known_.push_back(known);
+  }
+
+  void node(uint32_t number) {
+    Node& n = f_.nodes[number];
+    switch (n.op) {
+      case Op::kLoad:
+        return load(n);
+      case Op::kStore: {
+        const Mem mem = canonical(n.mem);
+        const Root root = root_of(mem);
+        std::erase_if(known_, [&](const Known& k) { return may_overlap(mem, root, n.width, k); });
+        const Val value = real(n.in[0]);
+        // A constant of floating point costs more than a load.
+        const Value& v = f_.values[value];
+        if (v.width == n.width && !(v.constant && v.floating)) {
+          add({mem, root, n.width, false, value});
+        }
+        return;
+      }
+      case Op::kCall:
+      case Op::kHelper:
+      case Op::kNative:
+        return known_.clear();
+      case Op::kSelectCmp:
+        return select(n);
+      default:
+        return;
+    }
+  }
+
+  // Arguments that are constants decide limits.
+  void select(Node& n) {
+    const Value& a = f_.values[real(n.in[2])];
+    const Value& b = f_.values[real(n.in[3])];
+    if (!a.constant || !b.constant) return;
+    const uint64_t mask = n.from == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * n.from)) - 1;
+    const Val chosen = real(n.in[holds(n.cond, a.bits & mask, b.bits & mask, n.from) ? 0 : 1]);
+    if (f_.values[chosen].width != n.width || held_[n.result]) return;
+    same_[n.result] = chosen;
+    n.dead = true;
+  }
+
+  void load(Node& n) {
+    const Mem mem = canonical(n.mem);
+    for (const Known& k : known_) {
+      if (held_[n.result]) break;
+      if (!same_place(k.mem, mem) || k.width != n.width || (n.boolean && !k.normal)) continue;
+      if (f_.values[k.value].floating != f_.values[n.result].floating) continue;
+      same_[n.result] = k.value;
+      n.dead = true;
+      return;
+    }
+    add({mem, root_of(mem), n.width, n.boolean, n.result});
+  }
+
+  void rename() {
+    const auto all = [&](auto& values) {
+      for (Val& v : values) v = real(v);
+    };
+    for (Node& n : f_.nodes) {
+      all(n.in);
+      n.mem.index = real(n.mem.index);
+      n.mem.pointer = real(n.mem.pointer);
+    }
+    for (Exit& exit : f_.exits) {
+      for (SlotValue& slot : exit.slots) slot.value = real(slot.value);
+    }
+    for (BasicBlock& block : f_.blocks) {
+      all(block.end.in);
+      for (std::vector<Val>& args : block.end.args) all(args);
+    }
+  }
+
+  Function& f_;
+  std::vector<Val> same_;   // by value: what it is instead
+  std::vector<bool> held_;  // by value: a variable's at a loop
+  std::vector<std::vector<Block>> preds_;
+  std::vector<Known> known_;
+  std::vector<std::vector<Known>> ends_;
+};
+
+}  // namespace
+
+void forward_memory(Function& function) { Forwarder(function).run(); }
+
+}  // namespace vm::native
