@@ -48,7 +48,7 @@ class Forwarder {
     Mem mem;
     Root root;
     uint8_t width = 0;
-    bool normal = false;  // a BOOL that is 0 or 1
+    bool normal = false;  // the value is 0 or 1, memory may be any byte
     Val value = kNone;
   };
 
@@ -144,11 +144,11 @@ class Forwarder {
     known_ = ends_[preds[0]];
     for (size_t i = 1; i < preds.size(); ++i) {
       const std::vector<Known>& other = ends_[preds[i]];
-      std::erase_if(known_, [&](Known& k) {
+      std::erase_if(known_, [&](const Known& k) {
         const auto same = std::find_if(other.begin(), other.end(), [&](const Known& o) {
-          return same_place(k.mem, o.mem) && k.width == o.width && k.value == o.value;
+          return same_place(k.mem, o.mem) && k.width == o.width && k.value == o.value &&
+                 k.normal == o.normal;
         });
-        if (same != other.end()) k.normal &= same->normal;
         return same == other.end();
       });
     }
@@ -203,7 +203,7 @@ class Forwarder {
     const Mem mem = canonical(n.mem);
     for (const Known& k : known_) {
       if (held_[n.result]) break;
-      if (!same_place(k.mem, mem) || k.width != n.width || (n.boolean && !k.normal)) continue;
+      if (!same_place(k.mem, mem) || k.width != n.width || n.boolean != k.normal) continue;
       if (f_.values[k.value].floating != f_.values[n.result].floating) continue;
       same_[n.result] = k.value;
       n.dead = true;
