@@ -5,6 +5,7 @@
 // whatever an address holds.
 #pragma once
 
+#include "stdlib/native/units.h"
 #include "vm/exec/copies.h"
 #include "vm/exec/step.h"
 
@@ -144,7 +145,8 @@ struct Semantics<ir::Opcode::COPY> : Stepwise<void, 2> {
   static constexpr bool kStores = true;
   template <class O>
   STC_INLINE Flow step(const O& o, Machine& m, NoValue&) {
-    std::memmove(m.mem + o.template a<uint32_t>(), m.mem + o.template b<uint32_t>(), m.pc[1].x());
+    stdlib::copy_bytes(m.mem + o.template a<uint32_t>(), m.mem + o.template b<uint32_t>(),
+                       m.pc[1].x());
     m.pc += 2;
     return Flow::kOn;
   }
