@@ -212,12 +212,41 @@ class Forwarder {
     add({mem, root_of(mem), n.width, n.boolean, n.result});
   }
 
+  // As machines want them.
+  bool swaps(const Val in[2]) const {
+    return f_.values[in[0]].constant && !f_.values[in[1]].constant;
+  }
+  void compare_right(Val in[2], Cond& cond) const {
+    if (!swaps(in)) return;
+    std::swap(in[0], in[1]);
+    cond = swapped(cond);
+  }
+  void constants_right(Node& n) const {
+    switch (n.op) {
+      case Op::kCompare:
+      case Op::kExitIf:
+        return compare_right(n.in, n.cond);
+      case Op::kSelectCmp:
+        return compare_right(n.in + 2, n.cond);
+      case Op::kAdd:
+      case Op::kMul:
+      case Op::kAnd:
+      case Op::kOr:
+      case Op::kXor:
+        if (swaps(n.in)) std::swap(n.in[0], n.in[1]);
+        return;
+      default:
+        return;
+    }
+  }
+
   void rename() {
     const auto all = [&](auto& values) {
       for (Val& v : values) v = real(v);
     };
     for (Node& n : f_.nodes) {
       all(n.in);
+      constants_right(n);
       n.mem.index = real(n.mem.index);
       n.mem.pointer = real(n.mem.pointer);
     }
@@ -226,6 +255,10 @@ class Forwarder {
     }
     for (BasicBlock& block : f_.blocks) {
       all(block.end.in);
+      End& end = block.end;
+      if (end.kind == EndKind::kBranch && end.compare == Op::kCompare) {
+        compare_right(end.in, end.cond);
+      }
       for (std::vector<Val>& args : block.end.args) all(args);
     }
   }

@@ -252,4 +252,14 @@ struct Function {
   std::vector<Inlined> inlined;
 };
 
+// The block that execution falls into behind `b`: what nothing leads to has no code.
+inline Block next_block(const Function& f, Block b) {
+  Block next = b + 1;
+  while (next + 1 < f.blocks.size() && f.blocks[next].end.kind == EndKind::kUnreachable &&
+         f.blocks[next].nodes.empty()) {
+    ++next;
+  }
+  return next;
+}
+
 }  // namespace vm::native

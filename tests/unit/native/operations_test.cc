@@ -60,7 +60,7 @@ struct Operation {
   }
 };
 
-bool holds(Cond cond, uint64_t a, uint64_t b, uint8_t width) {
+bool answer_of(Cond cond, uint64_t a, uint64_t b, uint8_t width) {
   const int64_t s = as_signed(a, width);
   const int64_t t = as_signed(b, width);
   const uint64_t u = low(a, width);
@@ -126,9 +126,9 @@ uint64_t expected(const Operation& o, uint64_t a, uint64_t b) {
       return ~u;
     case Op::kCompare:
     case Op::kExitIf:  // a branch
-      return holds(o.cond, a, b, w) ? 1 : 0;
+      return answer_of(o.cond, a, b, w) ? 1 : 0;
     case Op::kSelectCmp:
-      return holds(o.cond, a, b, o.from) ? a : b;
+      return answer_of(o.cond, a, b, o.from) ? a : b;
     case Op::kSext:
       return static_cast<uint64_t>(as_signed(a, o.from));
     case Op::kZext:

@@ -134,7 +134,7 @@ void Emitter::end(Block b) {
   switch (e.kind) {
     case EndKind::kJump:
       moves(places_.blocks[b].edges[0]);
-      if (e.target[0] != b + 1) a_.jump(blocks_[e.target[0]]);
+      if (e.target[0] != next_block(f_, b)) a_.jump(blocks_[e.target[0]]);
       return;
     case EndKind::kLoop:
       return loop_end(b);
@@ -187,7 +187,7 @@ bool Emitter::only_asks(Block head) const {
 void Emitter::branch(Block b) {
   const End& e = f_.blocks[b].end;
   const AllocatedBlock& places = places_.blocks[b];
-  const uint32_t through = e.target[0] == b + 1 ? 0 : 1;
+  const uint32_t through = e.target[0] == next_block(f_, b) ? 0 : 1;
   const uint32_t other = 1 - through;
   Label to = blocks_[e.target[other]];
   if (!places.edges[other].empty()) {
@@ -202,7 +202,7 @@ void Emitter::branch(Block b) {
     jump_if(e.width, other == 0 ? e.cond : negated(e.cond), places.in[0], places.in[1], to);
   }
   moves(places.edges[through]);
-  if (e.target[through] != b + 1) a_.jump(blocks_[e.target[through]]);
+  if (e.target[through] != next_block(f_, b)) a_.jump(blocks_[e.target[through]]);
 }
 
 void Emitter::moves(const std::vector<Move>& all) {

@@ -1,4 +1,6 @@
 // One operation after the other.
+#include <algorithm>
+
 #include "vm/exec/context.h"
 #include "vm/native/x64/emitter.h"
 
@@ -351,10 +353,16 @@ void Emitter::instance(const Node& n, const Step& step) {
   a_.jump_if(Condition::kAboveOrEqual, none);
   a_.load(kScratch, CONTEXT(instances), 8);
   static_assert(sizeof(InstanceEntry) == 8);
-  a_.load(kScratch, {kScratch, id, 8, true, offsetof(InstanceEntry, data)}, 4);
-  a_.test(kScratch, kScratch, 4);
+  // What an exit stores must be there still.
+  const std::vector<Place>& kept = places_.exits[n.exit];
+  const bool at_once = std::none_of(kept.begin(), kept.end(), [&](const Place& place) {
+    return place.kind == Place::kRegister && place.number == step.result.number;
+  });
+  const uint8_t to = at_once ? integer_register(step.result) : kScratch;
+  a_.load(to, {kScratch, id, 8, true, offsetof(InstanceEntry, data)}, 4);
+  a_.test(to, to, 4);
   a_.jump_if(Condition::kEqual, none);
-  a_.move(integer_register(step.result), kScratch);
+  a_.move(integer_register(step.result), to);
 }
 
 void Emitter::helper(const Node& n, const Step& step) {

@@ -117,7 +117,7 @@ void Emitter::end(Block b) {
   switch (e.kind) {
     case EndKind::kJump:
       moves(places_.blocks[b].edges[0]);
-      if (e.target[0] != b + 1) a_.jump(blocks_[e.target[0]]);
+      if (e.target[0] != next_block(f_, b)) a_.jump(blocks_[e.target[0]]);
       return;
     case EndKind::kLoop:
       return loop_end(b);
@@ -177,7 +177,7 @@ void Emitter::branch(Block b) {
     to[i] = a_.label();
     edges_.push_back({to[i], b, i});
   }
-  const bool yes_is_next = e.target[0] == b + 1;
+  const bool yes_is_next = e.target[0] == next_block(f_, b);
   if (e.compare == Op::kFCompare) {
     branch_float(e, places.in, to[0], to[1], yes_is_next);
   } else {
@@ -194,7 +194,7 @@ void Emitter::branch(Block b) {
     }
     moves(places.edges[through]);
   }
-  if (e.target[through] != b + 1) a_.jump(blocks_[e.target[through]]);
+  if (e.target[through] != next_block(f_, b)) a_.jump(blocks_[e.target[through]]);
 }
 
 void Emitter::branch_integer(const End& e, const Place in[2], Label yes, Label no,
