@@ -141,6 +141,14 @@ bool is_inside(const Machine& machine, uint32_t pou, uint32_t unit) {
 TEST(Fusion, ATrapInsideNamesItsOwnInstruction) {
   const char* const programs[] = {
       "PROGRAM Main VAR a : ARRAY[0..9] OF INT; i : INT; s : DINT; END_VAR\n"
+      "  FOR i := 0 TO 20 DO\n\n    s := s * 31 + a[i];\n  END_FOR;\nEND_PROGRAM",
+      "PROGRAM Main VAR a : ARRAY[0..9] OF INT; i, s : INT; END_VAR\n"
+      "  FOR i := 0 TO 20 DO\n\n    a[i] := s;\n  END_FOR;\nEND_PROGRAM",
+      "PROGRAM Main VAR m : ARRAY[0..3, 0..9] OF LREAL; i, j : INT; s : LREAL; END_VAR\n"
+      "  FOR i := 0 TO 3 DO FOR j := 0 TO 20 DO\n\n    s := s + m[i, j] * 2.0;\n  END_FOR; "
+      "END_FOR;\n"
+      "END_PROGRAM",
+      "PROGRAM Main VAR a : ARRAY[0..9] OF INT; i : INT; s : DINT; END_VAR\n"
       "  FOR i := 0 TO 20 DO\n    s := s + 1;\n    s := s * 31 + a[i];\n  END_FOR;\nEND_PROGRAM",
       "PROGRAM Main VAR a : ARRAY[0..9] OF DINT; i : INT; s : DINT; END_VAR\n"
       "  FOR i := 0 TO 20 DO\n    s := s + 1;\n    a[i] := s;\n  END_FOR;\nEND_PROGRAM",
@@ -150,7 +158,8 @@ TEST(Fusion, ATrapInsideNamesItsOwnInstruction) {
       "  FOR i := 5 TO 0 BY -1 DO\n    s := s * 3 + 7;\n    s := s * 10 / i + 7;\n  END_FOR;\n"
       "END_PROGRAM",
       "PROGRAM Main VAR r : REAL := 1.0; s : DINT; END_VAR\n"
-      "  WHILE s < 2000000000 DO\n    r := r * 1000.0;\n    s := REAL_TO_DINT(r * 1000.0);\n  END_WHILE;\n"
+      "  WHILE s < 2000000000 DO\n    r := r * 1000.0;\n    s := REAL_TO_DINT(r * 1000.0);\n  "
+      "END_WHILE;\n"
       "END_PROGRAM",
   };
   size_t inside = 0;
