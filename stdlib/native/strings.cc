@@ -128,16 +128,18 @@ int32_t find(Text<Unit> in, Text<Unit> what) {
   }
 }
 
+// Nobody looks behind the position.
 template <typename Unit>
 uint64_t character(Text<Unit> of, int64_t at) {
-  const Source text(of);
-  return at >= 0 && at < text.length() ? text[static_cast<uint32_t>(at)] : 0;
+  if (at < 0 || at >= of.capacity) return 0;
+  const auto index = static_cast<uint32_t>(at);
+  const bool is_inside = length_of<Unit>(of.data, index + 1) > index;
+  return is_inside ? load<Unit>(of.data + size_t{index} * sizeof(Unit)) : 0;
 }
 
 // Of the units behind the end nothing is known, so those up to the new one get defined here.
 template <typename Unit>
 void set_character(Text<Unit> of, int64_t at, uint64_t code) {
-  const Source text(of);
   const Unit unit = static_cast<Unit>(code);
   if (at < 0 || at >= of.capacity) {
     return;
@@ -146,7 +148,7 @@ void set_character(Text<Unit> of, int64_t at, uint64_t code) {
     store(of.data + size_t{index} * sizeof(Unit), value);
   };
   const uint32_t index = static_cast<uint32_t>(at);
-  const uint32_t length = text.length();
+  const uint32_t length = length_of<Unit>(of.data, index + 1);
   if (index < length) {
     put(index, unit);
   } else if (unit != 0) {
@@ -158,25 +160,9 @@ void set_character(Text<Unit> of, int64_t at, uint64_t code) {
   }
 }
 
-template <typename Number>
-int32_t order(Number a, Number b) {
-  return int32_t{a > b} - int32_t{a < b};
-}
-
 template <typename Unit>
 int32_t compare(Text<Unit> a, Text<Unit> b) {
-  const Source first(a);
-  const Source second(b);
-  const uint32_t common = std::min(first.length(), second.length());
-  if constexpr (sizeof(Unit) == 1) {
-    const int difference = std::memcmp(first.at(0), second.at(0), common);
-    if (difference != 0) return order(difference, 0);
-  } else {
-    for (uint32_t i = 0; i < common; ++i) {
-      if (first[i] != second[i]) return order(first[i], second[i]);
-    }
-  }
-  return order(first.length(), second.length());
+  return compare_texts<Unit>(a.data, a.capacity, b.data, b.capacity);
 }
 
 void string_to_wstring(Wstring to, String from) {

@@ -53,6 +53,49 @@ TEST(NativeUnits, LengthIsTheFirstNulOrTheCapacity) {
   lengths<uint16_t>();
 }
 
+template <typename Unit>
+int32_t order_of(const uint8_t* a, uint32_t a_capacity, const uint8_t* b, uint32_t b_capacity) {
+  const uint32_t a_length = counted_length<Unit>(a, a_capacity);
+  const uint32_t b_length = counted_length<Unit>(b, b_capacity);
+  for (uint32_t i = 0; i < std::min(a_length, b_length); ++i) {
+    const auto x = load<Unit>(a + i * sizeof(Unit));
+    const auto y = load<Unit>(b + i * sizeof(Unit));
+    if (x != y) return x < y ? -1 : 1;
+  }
+  return a_length == b_length ? 0 : a_length < b_length ? -1 : 1;
+}
+
+template <typename Unit>
+void comparisons() {
+  std::mt19937 random(9);
+  constexpr uint32_t kMost = 24;
+  for (int round = 0; round < 20000; ++round) {
+    const uint32_t a_capacity = random() % kMost;
+    const uint32_t b_capacity = random() % 3 == 0 ? random() % kMost : a_capacity;
+    const size_t a_bytes = (size_t{a_capacity} + 1) * sizeof(Unit);
+    const size_t b_bytes = (size_t{b_capacity} + 1) * sizeof(Unit);
+    const auto a = random_bytes(a_bytes, random);
+    const auto b = random_bytes(b_bytes, random);
+    // Mostly the same text, with another unit or an end somewhere, and anything behind that.
+    if (random() % 8 != 0) std::memcpy(b.get(), a.get(), std::min(a_bytes, b_bytes));
+    const auto change = [&](uint8_t* text, uint32_t capacity) {
+      uint8_t* const at = text + random() % (capacity + 1) * sizeof(Unit);
+      if (random() % 3 == 0) at[random() % sizeof(Unit)] = static_cast<uint8_t>(random());
+      if (random() % 3 == 0) store(at, Unit{0});
+    };
+    change(a.get(), a_capacity);
+    change(b.get(), b_capacity);
+    if (random() % 4 == 0) std::memcpy(b.get(), a.get(), std::min(a_bytes, b_bytes));
+    ASSERT_EQ(compare_texts<Unit>(a.get(), a_capacity, b.get(), b_capacity),
+              order_of<Unit>(a.get(), a_capacity, b.get(), b_capacity));
+  }
+}
+
+TEST(NativeUnits, TextsCompareAsTheirFirstUnitsThatDiffer) {
+  comparisons<uint8_t>();
+  comparisons<uint16_t>();
+}
+
 TEST(NativeUnits, BytesAreMovedWhateverOverlaps) {
   std::mt19937 random(8);
   for (size_t count = 0; count < 70; ++count) {
