@@ -74,18 +74,15 @@ const Body* Facts::body_at(uint32_t unit) const {
   return found == bodies_.end() ? nullptr : found->second;
 }
 
-// May the callee's instance be that of this POU?
-bool Facts::may_be_self(uint32_t unit) const {
-  if (code_[unit].opcode() == Opcode::CALL_OWN) return true;
-  const ir::TypeId own = pou_->self;
-  const ir::TypeId other = image_->pous[callee(unit)].self;
-  if (!own.valid() || !other.valid()) return false;
-  return image_->types.is_a(own, other) || image_->types.is_a(other, own);
+bool may_share_instance(const ir::Image& image, const ir::LinkedPou& a, const ir::LinkedPou& b) {
+  if (!a.self.valid() || !b.self.valid()) return false;
+  return image.types.is_a(a.self, b.self) || image.types.is_a(b.self, a.self);
 }
 
 // The callee's frame is its own, from the arguments on.
 void Facts::used_by_body(uint32_t unit, const Effects::Use& use, std::vector<uint32_t>& out) const {
-  const bool own = use.own_instance && may_be_self(unit);
+  const bool own =
+      use.own_instance && may_share_instance(*image_, *pou_, image_->pous[callee(unit)]);
   for (uint32_t v = 0; v < variables_.size(); ++v) {
     const Variable& variable = variables_[v];
     if (variable.slot || variable.constant) continue;

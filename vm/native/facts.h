@@ -65,6 +65,9 @@ uint32_t slot_number(const ir::LinkedPou& pou, uint32_t offset);
 uint32_t called_body(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
                      const ir::Unit& unit);
 
+// May code of both be executed for one instance?
+bool may_share_instance(const ir::Image& image, const ir::LinkedPou& a, const ir::LinkedPou& b);
+
 // What a body in the place of its call may do to memory that the caller names.
 struct Effects {
   struct Use {
@@ -152,7 +155,6 @@ class Facts {
   bool find_loops(std::string& why);
   bool fits(std::string& why) const;
   void find_bodies(const BodyOf& body_of);
-  bool may_be_self(uint32_t unit) const;
   void used_by_body(uint32_t unit, const Effects::Use& use, std::vector<uint32_t>& out) const;
   void find_pinned();
   void find_variables();

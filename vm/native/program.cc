@@ -77,10 +77,16 @@ std::vector<uint64_t> facts_of(const ir::Image& image, const ImageFacts& common,
       const ir::Range& range = image.ranges[u.c];
       out.insert(out.end(), {static_cast<uint64_t>(range.low), static_cast<uint64_t>(range.high)});
     }
-    if (row.c.kind == ir::FieldKind::kCode) out.push_back(image.pous[u.c].recursion_depth);
-    if (row.x.kind == ir::FieldKind::kCode) out.push_back(image.pous[x.x()].recursion_depth);
+    uint32_t callee = kNone;
+    if (row.c.kind == ir::FieldKind::kCode) callee = u.c;
+    if (row.x.kind == ir::FieldKind::kCode) callee = x.x();
     if (u.opcode() == ir::Opcode::CALL_INST || u.opcode() == ir::Opcode::CALL_INST_AT) {
-      out.push_back(called_body(image, common, pou, u));
+      callee = called_body(image, common, pou, u);
+    }
+    if (callee != kNone) {
+      const ir::LinkedPou& called = image.pous[callee];
+      out.insert(out.end(), {callee, called.recursion_depth,
+                             may_share_instance(image, pou, called) ? uint64_t{1} : 0});
     }
     if (u.opcode() == ir::Opcode::COPY) {
       out.push_back(ir::region_size(image.types, image.layouts, ir::region_of_field(x.x())));
