@@ -1,5 +1,5 @@
-// Addresses in loops: what of one does not change is added up in front of the loop, so that the
-// machine's own address form does the rest: [base + index * scale + displacement].
+// Addresses as the machine forms them: [base + index * scale + displacement]. What is constant of
+// an index goes to the displacement; what does not change in a loop is added up in front of it.
 #include <algorithm>
 
 #include "vm/native/loops.h"
@@ -8,12 +8,14 @@ namespace vm::native {
 namespace {
 
 constexpr size_t kMostPlaces = 6;  // in front of one loop: registers are few
+constexpr int64_t kMostDisplacement = int64_t{1} << 30;
 
 class Places {
  public:
   explicit Places(Function& f) : f_(f) {}
 
   void run() {
+    fold_constants();
     std::vector<bool> outer(f_.loops.size(), false);
     for (const Loop& l : f_.loops) {
       if (l.parent != kNone) outer[l.parent] = true;
@@ -24,6 +26,34 @@ class Places {
   }
 
  private:
+  // In one stretch without loop heads: what an index is made of lives on to the access.
+  void fold_constants() {
+    Block stretch = 0;
+    for (Block b = 0; b < f_.blocks.size(); ++b) {
+      const BasicBlock& block = f_.blocks[b];
+      if (block.head || block.resumes || (b > 0 && block.loop != f_.blocks[b - 1].loop))
+        stretch = b;
+      for (const uint32_t number : block.nodes) {
+        Node& n = f_.nodes[number];
+        if (n.op == Op::kLoad || n.op == Op::kStore) fold_constant(n.mem, stretch);
+      }
+    }
+  }
+
+  void fold_constant(Mem& mem, Block stretch) const {
+    if (mem.index == kNone || mem.base == MemBase::kData) return;
+    const Value& index = f_.values[mem.index];
+    if (index.constant || index.node == kNone || index.block < stretch) return;
+    const Node& sum = f_.nodes[index.node];
+    if (sum.op != Op::kAdd || sum.width != 8 || !f_.values[sum.in[1]].constant) return;
+    const auto by = static_cast<int64_t>(f_.values[sum.in[1]].bits);
+    if (by < -kMostDisplacement || by > kMostDisplacement) return;
+    const int64_t disp = mem.disp + by * mem.scale;
+    if (disp < -kMostDisplacement || disp > kMostDisplacement) return;
+    mem.disp = disp;
+    mem.index = sum.in[0];
+  }
+
   bool outside(Val v, const Loop& l) const {
     return f_.values[v].constant || f_.values[v].block < l.head;
   }

@@ -50,30 +50,6 @@ class Hoister {
     return v == kNone || f_.values[v].constant || f_.values[v].block < loop.head;
   }
 
-  // Blocks that every whole turn goes through, from the head on.
-  std::vector<Block> always(const Loop& loop) const {
-    std::vector<Block> out;
-    std::vector<uint32_t> ways(loop.last - loop.head + 1, 0);
-    for (Block b = loop.head; b <= loop.last; ++b) {
-      for (const Block to : f_.blocks[b].end.target) {
-        if (to != kNone && to > b && to <= loop.last) ++ways[to - loop.head];
-      }
-    }
-    Block at = loop.head;
-    while (true) {
-      out.push_back(at);
-      Block next = kNone;
-      uint32_t inside = 0;
-      for (const Block to : f_.blocks[at].end.target) {
-        if (to == kNone || to <= at || to > loop.last) continue;
-        ++inside;
-        next = to;
-      }
-      if (inside != 1 || ways[next - loop.head] != 1) return out;
-      at = next;
-    }
-  }
-
   void loop(const Loop& l) {
     // Behind a call nothing but memory is left.
     for (Block b = l.head; b <= l.last; ++b) {
@@ -82,7 +58,7 @@ class Hoister {
       }
     }
     const Block front = l.head - 1;
-    const std::vector<Block> sure = always(l);
+    const std::vector<Block> sure = every_turn(f_, l);
     uint32_t values = 0;
     for (Block b = l.head; b <= l.last; ++b) {
       const bool is_sure = std::find(sure.begin(), sure.end(), b) != sure.end();
@@ -117,6 +93,29 @@ class Hoister {
 };
 
 }  // namespace
+
+std::vector<Block> every_turn(const Function& f, const Loop& loop) {
+  std::vector<Block> out;
+  std::vector<uint32_t> ways(loop.last - loop.head + 1, 0);
+  for (Block b = loop.head; b <= loop.last; ++b) {
+    for (const Block to : f.blocks[b].end.target) {
+      if (to != kNone && to > b && to <= loop.last) ++ways[to - loop.head];
+    }
+  }
+  Block at = loop.head;
+  while (true) {
+    out.push_back(at);
+    Block next = kNone;
+    uint32_t inside = 0;
+    for (const Block to : f.blocks[at].end.target) {
+      if (to == kNone || to <= at || to > loop.last) continue;
+      ++inside;
+      next = to;
+    }
+    if (inside != 1 || ways[next - loop.head] != 1) return out;
+    at = next;
+  }
+}
 
 void insert_preheaders(Function& f) {
   const auto count = static_cast<Block>(f.blocks.size());

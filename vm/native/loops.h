@@ -12,6 +12,9 @@ void insert_preheaders(Function& function);
 // Behind insert_preheaders(): what a dominating block computes or checks is not done again.
 void number_again(Function& function);
 
+// Blocks that every whole turn goes through, from the head on.
+std::vector<Block> every_turn(const Function& function, const Loop& loop);
+
 // Makes selections of branches around a few cheap operations.
 void choose(Function& function);
 
@@ -22,7 +25,8 @@ void drop_proven_checks(Function& function);
 // interpreter at the loop's head, which finds out what is wrong, and when.
 void hoist(Function& function);
 
-// Behind hoist(): what does not change of a sum that an access in a loop has for its address.
+// Behind hoist(): constants of addresses into displacements, and what does not change of a sum that an
+// access in a loop has for its address in front of it.
 void split_addresses(Function& function);
 
 }  // namespace vm::native
