@@ -27,6 +27,14 @@ bool is_operation(const Node& n) {
   }
 }
 
+constexpr uint32_t kMostHops = 64;
+constexpr size_t kMostPlaces = 8;  // of one operation
+
+struct Doing {
+  uint32_t node = 0;
+  Block block = 0;
+};
+
 class Numbers {
  public:
   explicit Numbers(Function& f)
@@ -67,8 +75,9 @@ class Numbers {
     }
     return a == kNone || b == kNone ? kNone : a;
   }
+  // Looks so far only, as long chains of branches would make it quadratic.
   bool dominates(Block a, Block b) const {
-    while (b != kNone && b > a) b = dominator_[b];
+    for (uint32_t hops = 0; hops < kMostHops && b != kNone && b > a; ++hops) b = dominator_[b];
     return b == a;
   }
 
@@ -82,15 +91,15 @@ class Numbers {
       n.mem.pointer = now(n.mem.pointer);
       if (n.op == Op::kCall) known_.clear();
       if (!is_operation(n) || (n.result != kNone && held_[n.result])) return false;
-      const auto [first, last] = known_.equal_range(hash_of(n, 0));
-      for (auto found = first; found != last; ++found) {
-        const auto& [other, there] = found->second;
-        if (!same(f_.nodes[other], n) || !dominates(there, b)) continue;
-        if (n.result != kNone) instead_[n.result] = f_.nodes[other].result;
+      std::vector<Doing>& known = known_[hash_of(n, 0)];
+      for (const Doing& place : known) {
+        if (!same(f_.nodes[place.node], n) || !dominates(place.block, b)) continue;
+        if (n.result != kNone) instead_[n.result] = f_.nodes[place.node].result;
         n.dead = any_ = true;
         return true;
       }
-      known_.insert({hash_of(n, 0), {number, b}});
+      if (known.size() == kMostPlaces) known.erase(known.begin());
+      known.push_back({number, b});
       return false;
     });
   }
@@ -114,10 +123,10 @@ class Numbers {
   }
 
   Function& f_;
-  std::vector<Block> dominator_;  // the nearest; kNone: none
-  std::vector<Val> instead_;      // by value
-  std::vector<bool> held_;        // by value: a variable's at a loop
-  std::unordered_multimap<uint64_t, std::pair<uint32_t, Block>> known_;  // node and its block
+  std::vector<Block> dominator_;                            // the nearest; kNone: none
+  std::vector<Val> instead_;                                // by value
+  std::vector<bool> held_;                                  // by value: a variable's at a loop
+  std::unordered_map<uint64_t, std::vector<Doing>> known_;  // by hash
   bool any_ = false;
 };
 
