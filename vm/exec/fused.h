@@ -34,8 +34,9 @@ void fused(STC_HANDLER_ARGS) {
   using Values = std::tuple<ResultOf<S>...>;
   Machine m = STC_MACHINE;
   Values values;
-  if (Steps<0, written_bases<S...>(), Values, S...>::take(m, values) == Flow::kStop) [[unlikely]]
-    return;
+  const Flow flow = Steps<0, written_bases<S...>(), Values, S...>::take(m, values);
+  if (stops(flow)) [[unlikely]]
+    return leave(m, flow);
   STC_GO(m.pc, m.frame, m.self);
 }
 

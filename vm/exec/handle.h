@@ -20,8 +20,8 @@ void handle(STC_HANDLER_ARGS) {
     constexpr auto kA = static_cast<uint8_t>(A);
     const Flow flow = take_step<op, kA, kA, static_cast<uint8_t>(B), static_cast<uint8_t>(C)>(
         m, std::tuple<>(), result);
-    if (flow == Flow::kStop) [[unlikely]]
-      return;
+    if (stops(flow)) [[unlikely]]
+      return leave(m, flow);
     STC_GO(m.pc, m.frame, m.self);
   } else {
     STC_MUST_TAIL return S::template run<A, B, C>(pc, frame, self, mem, consts, ctx);

@@ -25,8 +25,7 @@ struct Semantics<ir::Opcode::LOOP> : Stepwise<void> {
     m.pc = jump_target(m);
     if (--m.ctx->fuel != 0) [[likely]]
       return Flow::kOn;
-    stop(m.ctx, Exit::kSuspended, m.pc, m.frame, m.self);
-    return Flow::kStop;
+    return Flow::kSuspended;
   }
 };
 template <>
@@ -90,8 +89,8 @@ STC_INLINE Flow enter(Machine& m, uint32_t number, uint32_t instance, uint8_t* s
   m.pc = callee.entry;
   if (--ctx->fuel != 0) [[likely]]
     return Flow::kAway;
-  stop(ctx, Exit::kSuspended, callee.code, m.frame, m.self);
-  return Flow::kStop;
+  m.pc = callee.code;
+  return Flow::kSuspended;
 }
 template <>
 struct Semantics<ir::Opcode::CALL> : Stepwise<void> {
@@ -208,10 +207,7 @@ struct Semantics<ir::Opcode::RET> : Stepwise<void> {
     Context* const ctx = m.ctx;
     if (ctx->call == ctx->exposed) [[unlikely]]
       drop_exposed(*ctx, static_cast<uint32_t>(ctx->call - ctx->calls_begin));
-    if (ctx->call == ctx->calls_begin) {
-      stop(ctx, Exit::kDone, m.pc, m.frame, m.self);
-      return Flow::kStop;
-    }
+    if (ctx->call == ctx->calls_begin) return Flow::kDone;
     const CallRecord& caller = *--ctx->call;
     ctx->pou = caller.pou;
     ctx->instance = caller.instance;

@@ -58,7 +58,10 @@ struct Machine {
 enum class Flow : uint8_t {
   kOn,    // with the next step; `pc` is its unit
   kAway,  // at `pc`, whatever steps were to follow
-  kStop,  // the Context says why
+  // The execution stops:
+  kDone,
+  kSuspended,  // and goes on at `pc`
+  kTrapped,    // in the step; the Context says what
 };
 
 template <ir::Base base>
@@ -123,28 +126,31 @@ struct Operands {
   }
 };
 
-template <class S, class... Values>
-STC_INLINE bool operands_fail(Values... operands) {
-  if constexpr (requires { S::fails(operands...); }) {
-    return S::fails(operands...);
-  } else {
-    return false;
-  }
-}
-
-template <class S, class T>
-STC_INLINE void raise_value([[maybe_unused]] const Machine& m, [[maybe_unused]] T value) {
-  if constexpr (requires { S::kTrap; }) {
-    int64_t operand = 0;
-    if constexpr (requires { S::culprit(value); }) operand = S::culprit(value);
-    raise(m.ctx, S::kTrap, m.pc, m.frame, m.self, operand);
-  }
-}
-
+// No call, and what all exits do is left to the end (leave): handlers keep no frame.
 STC_INLINE Flow trap(const Machine& m, ir::TrapKind kind, int64_t operand0 = 0,
                      int64_t operand1 = 0) {
-  raise(m.ctx, kind, m.pc, m.frame, m.self, operand0, operand1);
-  return Flow::kStop;
+  m.ctx->trap.kind = kind;
+  m.ctx->trap.operand[0] = operand0;
+  m.ctx->trap.operand[1] = operand1;
+  return Flow::kTrapped;
+}
+template <class S, class T>
+STC_INLINE Flow trap_on_value(const Machine& m, T value) {
+  int64_t operand = 0;
+  if constexpr (requires { S::culprit(value); }) operand = S::culprit(value);
+  return trap(m, S::kTrap, operand);
+}
+
+constexpr bool stops(Flow flow) { return flow > Flow::kAway; }
+STC_INLINE void leave(const Machine& m, Flow flow) {
+  Context* const ctx = m.ctx;
+  ctx->running = false;
+  ctx->exit = flow == Flow::kTrapped     ? Exit::kTrap
+              : flow == Flow::kSuspended ? Exit::kSuspended
+                                         : Exit::kDone;
+  ctx->pc = m.pc;
+  ctx->frame = m.frame;
+  ctx->self = m.self;
 }
 
 // Takes one step. Its result goes into `result`, and to its place in memory, whose base is `to`.
@@ -156,22 +162,22 @@ STC_INLINE Flow take_step(Machine& m, const Values& values, [[maybe_unused]] Res
   const ir::Unit* const unit = m.pc;
   if constexpr (S::kReads == 0) {
     flow = S::step(operands, m, result);
-    if (flow == Flow::kStop) [[unlikely]]
+    if (stops(flow)) [[unlikely]]
       return flow;
   } else if constexpr (S::kReads == 1) {
     const auto b = operands.template b<typename S::Left>();
-    if (operands_fail<S>(b)) [[unlikely]] {
-      raise_value<S>(m, b);
-      return Flow::kStop;
+    if constexpr (requires { S::kTrap; }) {
+      if (S::fails(b)) [[unlikely]]
+        return trap_on_value<S>(m, b);
     }
     if constexpr (!std::is_void_v<typename S::Result>) result = S::apply(b);
     m.pc += 1;
   } else {
     const auto b = operands.template b<typename S::Left>();
     const auto c = operands.template c<typename S::Right>();
-    if (operands_fail<S>(b, c)) [[unlikely]] {
-      raise_value<S>(m, b);
-      return Flow::kStop;
+    if constexpr (requires { S::kTrap; }) {
+      if (S::fails(b, c)) [[unlikely]]
+        return trap_on_value<S>(m, b);
     }
     result = S::apply(b, c);
     m.pc += 1;
