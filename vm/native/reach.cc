@@ -169,7 +169,10 @@ uint32_t Facts::copied_bytes(uint32_t i) const {
 bool Facts::may_overlap(uint32_t i) const {
   const Reach& to = targets_.at(i);
   const Reach& from = sources_.at(i);
-  if (to.everything || from.everything || to.own_instance || from.own_instance) return true;
+  const auto is_unknown = [](const Reach& reach) {
+    return reach.everything || reach.own_instance || reach.parts.empty();  // of an instance inside
+  };
+  if (is_unknown(to) || is_unknown(from)) return true;
   for (const Reach::Part& a : to.parts) {
     for (const Reach::Part& b : from.parts) {
       if (a.base == b.base && a.begin < b.end && b.begin < a.end) return true;
