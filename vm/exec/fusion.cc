@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "base/check.h"
-
 namespace vm {
 namespace {
 
@@ -48,12 +46,14 @@ constexpr bool comes_before(const Fusion& x, const Fusion& y) {
                                       y.keys.begin() + y.length);
 }
 
-std::array<Fusion, kFusionCount> sorted_fusions() {
-  std::array<Fusion, kFusionCount> rows = {{
+constexpr std::array<Fusion, kFusionCount> kFusions = {{
 #define FUSION(...) fusion_of<__VA_ARGS__>(),
 #include "vm/exec/fusions.def"
 #undef FUSION
-  }};
+}};
+
+std::array<Fusion, kFusionCount> sorted_fusions() {
+  std::array<Fusion, kFusionCount> rows = kFusions;
   for (size_t i = 0; i < rows.size(); ++i) rows[i].handler = static_cast<uint16_t>(kFirstFused + i);
   std::sort(rows.begin(), rows.end(), comes_before);
   return rows;
