@@ -45,6 +45,7 @@ class ChartBody {
   void unused_actions();
   void action_statements(const ChartAction& action, ir::BlockId next);
   void step_uses();
+  void add_to(const ir::Place& flag, ir::ValueId value);
   void request(uint32_t step, const sfc::Use& use);
   void begin(VarId record, const sfc::Use& use);
   void controls();

@@ -44,18 +44,26 @@ void ChartBody::action_statements(const ChartAction& action, ir::BlockId next) {
 void ChartBody::step_uses() {
   for (uint32_t step = 0; step < net_.steps.size(); ++step) {
     const std::vector<sfc::Use>& uses = net_.steps[step].uses;
-    bool active = false;
+    bool active = false;  // asks something that only an active step may
     for (const sfc::Use& use : uses) {
       for (ExprId indicator : use.decl->indicators) {
         const VarId variable = sema_.infer(indicator).variable;
         if (variable.valid()) sema_.mark_written(variable);  // by what the action says
       }
-      if (use.decl->qualifier != ActionQualifier::kP0) {
-        active = true;
-        continue;
-      }
       body_.set_line(use.decl->span);
-      when(is_raised(left_[step]), [&] { raise(released_[use.action]); });
+      switch (use.decl->qualifier) {
+        case ActionQualifier::kN:
+          add_to(flag(wanted_[use.action]), build_.load(part(steps_[step], "X"), kBool));
+          break;
+        case ActionQualifier::kP1:  // what was entered is active
+          add_to(flag(pulsed_[use.action]), is_raised(entered_[step]));
+          break;
+        case ActionQualifier::kP0:
+          when(is_raised(left_[step]), [&] { raise(released_[use.action]); });
+          break;
+        default:
+          active = true;
+      }
     }
     if (!active) continue;
     body_.set_line(net_.steps[step].decl->name.span);
@@ -65,12 +73,13 @@ void ChartBody::step_uses() {
   }
 }
 
+void ChartBody::add_to(const ir::Place& flag, ir::ValueId value) {
+  ir::ValueId before = build_.load(flag, kBool);
+  build_.store(flag, kBool, build_.binary(ir::Op::kOr, kBool, before, value));
+}
+
 void ChartBody::request(uint32_t step, const sfc::Use& use) {
   VarId record = actions_[use.action];
-  auto add = [&](const ir::Place& flag, ir::ValueId value) {
-    ir::ValueId before = build_.load(flag, kBool);
-    build_.store(flag, kBool, build_.binary(ir::Op::kOr, kBool, before, value));
-  };
   auto still_shorter = [&] {
     ir::ValueId limit = limit_of(*use.decl);
     ir::ValueId time = build_.load(part(steps_[step], "T"), kTime);
@@ -79,23 +88,21 @@ void ChartBody::request(uint32_t step, const sfc::Use& use) {
   auto elapsed = [&] { return build_.unary(ir::Op::kNot, kBool, still_shorter()); };
   body_.set_line(use.decl->span);
   switch (use.decl->qualifier) {
-    case ActionQualifier::kN:
-      return raise(wanted_[use.action]);
     case ActionQualifier::kR:
       return raise(reset_[use.action]);
     case ActionQualifier::kS:
       return set_flag(part(record, "S"));
     case ActionQualifier::kL:
-      return add(flag(wanted_[use.action]), still_shorter());
+      return add_to(flag(wanted_[use.action]), still_shorter());
     case ActionQualifier::kD:
-      return add(flag(wanted_[use.action]), elapsed());
+      return add_to(flag(wanted_[use.action]), elapsed());
     case ActionQualifier::kDS:
-      return add(part(record, "DS"), elapsed());
+      return add_to(part(record, "DS"), elapsed());
     case ActionQualifier::kP:
-      return add(flag(wanted_[use.action]), is_raised(entered_[step]));
+      return add_to(flag(wanted_[use.action]), is_raised(entered_[step]));
+    case ActionQualifier::kN:  // step_uses()
     case ActionQualifier::kP1:
-      return add(flag(pulsed_[use.action]), is_raised(entered_[step]));
-    case ActionQualifier::kP0:  // step_uses()
+    case ActionQualifier::kP0:
       return;
     case ActionQualifier::kSD:
     case ActionQualifier::kSL:
