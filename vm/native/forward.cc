@@ -81,8 +81,7 @@ class Forwarder {
     root.kind = Root::kInstance;
     root.area = area;
     const Node* const id = maker(real(made->in[0]));
-    root.part = id != nullptr && id->op == Op::kLoad &&
-                (id->mem.base == MemBase::kSelf || id->mem.base == MemBase::kPointer);
+    root.part = id != nullptr && id->op == Op::kLoad && id->mem.base == MemBase::kSelf;
     return root;
   }
   Root root_of(const Mem& mem) const {
