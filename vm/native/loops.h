@@ -25,8 +25,8 @@ void drop_proven_checks(Function& function);
 // interpreter at the loop's head, which finds out what is wrong, and when.
 void hoist(Function& function);
 
-// Behind hoist(): constants of addresses into displacements, and what does not change of a sum that an
-// access in a loop has for its address in front of it.
+// Behind hoist(): constants of addresses into displacements, and what does not change of a sum that
+// an access in a loop has for its address in front of it.
 void split_addresses(Function& function);
 
 }  // namespace vm::native
