@@ -40,6 +40,9 @@
 #define STC_COLD [[gnu::noinline, gnu::cold]]
 
 namespace vm {
+namespace native {
+class Program;
+}
 
 // A BOOL in memory. Bytes that came in as another type may be anything; not zero is TRUE.
 enum class Bool : uint8_t {};
@@ -62,6 +65,8 @@ struct Context {
   uint32_t exposures_made = 0;
   uint32_t task = 0;
   const Generation* generation = nullptr;
+  const native::Program* native = nullptr;  // of the generation; null: none
+  uint64_t entries = 0;                     // into machine code
   uint8_t* memory = nullptr;
   const uint8_t* consts = nullptr;
   void* native_stack = nullptr;  // of the machine, where native code was entered
@@ -131,6 +136,9 @@ STC_COLD inline void raise(Context* ctx, ir::TrapKind kind, const ir::Unit* pc, 
   ctx->trap.operand[1] = operand1;
   stop(ctx, Exit::kTrap, pc, frame, self);
 }
+
+// Where the POU that is executed goes on at `unit`: in machine code, if that can be entered there.
+const ir::Unit* native_entry(const Context* ctx, const ir::Unit* unit);
 
 // Values lie at any address; these compile to plain loads and stores.
 template <class T>

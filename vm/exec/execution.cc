@@ -14,8 +14,8 @@ namespace {
 
 // The unit of its POU where it is, also when a side unit of machine code stands for that.
 uint32_t unit_of(const Context& ctx) {
-  const native::Program* const native = ctx.generation->native();
-  const ir::Unit* const pc = native == nullptr ? ctx.pc : native->real_unit(ctx.pou, ctx.pc);
+  const ir::Unit* const pc =
+      ctx.native == nullptr ? ctx.pc : ctx.native->real_unit(ctx.pou, ctx.pc);
   return static_cast<uint32_t>(pc - ctx.pous[ctx.pou].code);
 }
 
@@ -91,6 +91,8 @@ void Execution::start(const Generation& generation, uint8_t* memory, uint32_t id
 void Execution::call(const Generation& generation, uint8_t* memory, uint32_t pou, uint32_t frame) {
   Context& ctx = *state_;
   ctx.generation = &generation;
+  ctx.native = generation.native();
+  ctx.entries = 0;
   ctx.memory = memory;
   ctx.consts = memory + generation.pool_offset();
   ctx.pous = generation.pous().data();
@@ -115,6 +117,7 @@ void Execution::call(const Generation& generation, uint8_t* memory, uint32_t pou
   fuel_used_ = 0;
 }
 
+uint64_t Execution::machine_entries() const { return state_->entries; }
 const Trap& Execution::trap() const { return state_->trap; }
 
 Trap Execution::interrupted(ir::TrapKind kind) const {
@@ -131,8 +134,7 @@ Exit Execution::run(uint64_t fuel) {
   ctx.fuel = std::max<uint64_t>(fuel, 1);
   const uint64_t given = ctx.fuel;
   if (ctx.exit == Exit::kSuspended) {
-    const native::Program* const native = ctx.generation->native();
-    if (native != nullptr) ctx.pc = native->entry(ctx.pou, ctx.pc);
+    if (ctx.native != nullptr) ctx.pc = ctx.native->entry(ctx.pou, ctx.pc);
     ctx.exit = Exit::kDone;
   }
   ctx.running = true;

@@ -87,6 +87,7 @@ class Execution {
   // one may start while this one is suspended.
   uint32_t stack_top() const;
   uint64_t fuel_used() const { return fuel_used_; }
+  uint64_t machine_entries() const;  // how often the interpreter went on in machine code
 
  private:
   std::vector<CallRecord> calls_;

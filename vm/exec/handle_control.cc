@@ -97,12 +97,17 @@ STC_INSTANTIATE_GROUP(kControlHandlers);
 
 // --- side units of native code ----------------------------------------------------------------
 
+const ir::Unit* native_entry(const Context* ctx, const ir::Unit* unit) {
+  return ctx->native->entry(ctx->pou, unit);
+}
+
 // Runs machine code until its POU returns, or the interpreter is to go on somewhere.
 void resume_native(STC_HANDLER_ARGS) {
   uint64_t unit;
   std::memcpy(&unit, pc, sizeof unit);
   const void* const code = reinterpret_cast<const void*>(unit >> 16);
-  if (ctx->generation->native()->enter(code, frame, self, mem, ctx)) {
+  ++ctx->entries;
+  if (ctx->native->enter(code, frame, self, mem, ctx)) {
     if (ctx->call == ctx->calls_begin) return stop(ctx, Exit::kDone, ctx->pc, frame, self);
     const CallRecord& caller = *--ctx->call;
     ctx->pou = caller.pou;

@@ -18,14 +18,23 @@ struct Semantics<ir::Opcode::JMP> : Stepwise<void> {
     return Flow::kOn;
   }
 };
+// Left in the middle of a POU, machine code is entered again at the next place that allows it.
+STC_INLINE bool goes_on_in_machine_code(Machine& m) {
+  if (m.ctx->native == nullptr) [[likely]]
+    return false;
+  const ir::Unit* const entry = native_entry(m.ctx, m.pc);
+  const bool there = entry != m.pc;
+  m.pc = entry;
+  return there;
+}
 template <>
 struct Semantics<ir::Opcode::LOOP> : Stepwise<void> {
   template <class O>
   STC_INLINE Flow step(const O&, Machine& m, NoValue&) {
     m.pc = jump_target(m);
-    if (--m.ctx->fuel != 0) [[likely]]
-      return Flow::kOn;
-    return Flow::kSuspended;
+    if (--m.ctx->fuel == 0) [[unlikely]]
+      return Flow::kSuspended;
+    return goes_on_in_machine_code(m) ? Flow::kAway : Flow::kOn;
   }
 };
 template <>
@@ -81,7 +90,10 @@ STC_INLINE Flow enter(Machine& m, uint32_t number, uint32_t instance, uint8_t* s
   const PouEntry& callee = ctx->pous[number];
   if (callee.recursion_depth != 0 && is_too_deep(ctx, number)) [[unlikely]]
     return trap(m, ir::TrapKind::kStack);
-  *ctx->call++ = {m.pc + units, m.frame, m.self, ctx->pou, ctx->instance};
+  const ir::Unit* resume = m.pc + units;
+  if (ctx->native != nullptr) [[unlikely]]
+    resume = native_entry(ctx, resume);
+  *ctx->call++ = {resume, m.frame, m.self, ctx->pou, ctx->instance};
   ctx->pou = number;
   ctx->instance = instance;
   m.frame += m.pc->a * 8u;

@@ -9,6 +9,9 @@ namespace {
 using ir::Opcode;
 
 constexpr size_t kMostNodes = 200'000;  // of one POU with everything in it
+// An execution that was interrupted in a body goes on in machine code behind a call or at a loop;
+// so one call in so many stays one.
+constexpr uint32_t kCallsBetween = 32;
 
 bool any_overlaps(const std::vector<std::pair<uint64_t, uint64_t>>& parts, const Variable& v) {
   return std::any_of(parts.begin(), parts.end(), [&](const auto& part) {
@@ -56,6 +59,7 @@ uint32_t Facts::callee(uint32_t i) const {
 void Facts::find_bodies(const BodyOf& body_of) {
   if (!body_of) return;
   size_t nodes = code_.size();
+  uint32_t calls = 0;
   for (uint32_t i = 0; i < code_.size(); i = next(i)) {
     const uint32_t number = is_call(code_[i].opcode()) ? callee(i) : kNone;
     if (number == kNone || image_->pous[number].recursion_depth != 0) continue;
@@ -64,6 +68,7 @@ void Facts::find_bodies(const BodyOf& body_of) {
     if (of_instance && recursive_bodies()) continue;
     const Body* const body = nodes > kMostNodes ? nullptr : body_of(number);
     if (body == nullptr) continue;
+    if (loop_of_[block_at_[i]] == kNone && ++calls % kCallsBetween == 0) continue;
     nodes += body->function.nodes.size();
     bodies_[i] = body;
   }
