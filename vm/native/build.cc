@@ -217,7 +217,8 @@ void Builder::enter_loop(Block block, uint32_t loop) {
         if (!dirty) continue;
       }
     } else {
-      if (!read) continue;
+      // What only a loop around this one reads lives on through it.
+      if (!read && (modified || merged(block, v) == kNone)) continue;
       // Something that no field names may change it.
       if (modified && facts_.killed_in(loop, v)) continue;
       bool known = true;
@@ -303,6 +304,8 @@ void Builder::pass_back(Block block, Block head) {
   Exit exit;
   exit.unit = unit_;
   exit.fuel = true;
+  // Back to a loop around this one: that begins with everything in memory.
+  if (f_.blocks[block].loop != facts_.loop_of(head)) store_deferred();
   std::vector<Val> args;
   for (const uint32_t v : parameters_[head]) args.push_back(read(v));
   // What the loop only writes has no parameter.

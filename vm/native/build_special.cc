@@ -7,6 +7,8 @@ using ir::Opcode;
 
 namespace {
 
+constexpr size_t kMostDirty = 16;  // over a body: every exit of it stores them
+
 // Does it look at no variable but those that its fields name?
 bool only_computes(Opcode op) {
   return op == Opcode::LEA || op == Opcode::LEA_AT || op == Opcode::LD_REF ||
@@ -93,6 +95,11 @@ void Builder::instance(Val id) {
 // A body will stand in its place: values live on, but for what the body changes.
 void Builder::call_body(Node made) {
   made.exit = exit_here(true);
+  if (f_.exits.back().slots.size() > kMostDirty) {
+    f_.exits.pop_back();
+    for (const uint32_t v : facts_.live_behind(unit_)) store_slot(v);
+    made.exit = exit_here(true);
+  }
   f_.exits.back().fuel = true;
   append(made);
   kill_memory();

@@ -11,6 +11,7 @@ namespace {
 using ir::Opcode;
 
 constexpr size_t kMostParts = 6;
+constexpr size_t kMostDeferred = 24;  // of one loop: every exit of it stores them
 
 bool stores_through(Opcode op) {
   return (op >= Opcode::ST_B && op <= Opcode::ST_F64) || op == Opcode::ST_REF_AT ||
@@ -229,6 +230,7 @@ void Facts::find_deferred() {
       if (!shared || variable.boolean || variable.constant || !overlaps_[v].empty()) continue;
       if (!live_in(loop.head, v) || killed_in(l, v)) continue;
       if (std::binary_search(seen_there.begin(), seen_there.end(), v)) continue;
+      if (loop_deferred_[l].size() == kMostDeferred) break;
       loop_deferred_[l].push_back(v);
       variable.deferred = true;
     }

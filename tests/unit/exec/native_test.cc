@@ -123,6 +123,42 @@ END_PROGRAM)");
   EXPECT_EQ(native->native_pous(), image.pous.size());
 }
 
+TEST(Native, WhatOnlyAnOuterLoopReadsLivesThroughTheInnerOne) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
+  sample::Machine machine(build(R"(
+PROGRAM Main VAR i, j, a, x, y : DINT; END_VAR
+  FOR i := 1 TO 3 DO
+    x := x + a * i;
+    FOR j := 1 TO 3 DO y := y + j; END_FOR;
+  END_FOR;
+END_PROGRAM)"));
+  ASSERT_TRUE(machine.good());
+  EXPECT_EQ(machine.generation().native()->native_pous(), 1u);
+}
+
+// Left in the middle of a body that stands in the place of a call, an execution is in machine code
+// again at the loop's next turn, and in a straight line behind one call of 32 that is one.
+TEST(Native, AnInterruptedExecutionIsSoonInMachineCodeAgain) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
+  const std::string block = R"(
+FUNCTION_BLOCK Small VAR_INPUT a : DINT; END_VAR VAR_OUTPUT n : DINT; END_VAR n := n + a; END_FUNCTION_BLOCK
+PROGRAM Main VAR f : Small; i : DINT; END_VAR
+)";
+  std::string line;
+  for (int i = 0; i < 500; ++i) line += "f(a := 1);\n";
+  const std::string bodies[] = {"FOR i := 1 TO 500 DO f(a := 1); END_FOR;", line};
+  for (const std::string& body : bodies) {
+    sample::Machine machine(build(block + body + "END_PROGRAM"));
+    ASSERT_TRUE(machine.good());
+    machine.start();
+    ASSERT_EQ(machine.execution().run(20), vm::Exit::kSuspended);
+    const uint64_t before = machine.execution().machine_entries();
+    ASSERT_EQ(machine.execution().run(1'000'000), vm::Exit::kDone);
+    EXPECT_EQ(machine.value("Main.f.n"), "500");
+    EXPECT_LT(machine.execution().machine_entries() - before, 50u) << body.substr(0, 40);
+  }
+}
+
 // Unchanged code stays where it is; a POU whose inlined callee changed is made anew.
 TEST(Native, AChangeMakesOnlyWhatItTouches) {
   if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
