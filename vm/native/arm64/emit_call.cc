@@ -170,6 +170,7 @@ void Emitter::native(const Node& n) {
   a_.move(0, kDataRegister);
   a_.move_imm(kScratch, n.imm);
   a_.call(kScratch);
+  if (n.result != kNone && f_.values[n.result].width == 4) a_.zero_extend(0, 0, 4);
 }
 
 void Emitter::pool(const Step& step) {

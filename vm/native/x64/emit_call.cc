@@ -166,6 +166,9 @@ void Emitter::native(const Node& n) {
   a_.address(kRdi, {kDataRegister, 0xff, 1, true, INT32_MIN}, 8);
   a_.move_imm(kRax, n.imm);
   a_.call(Operand::of(uint8_t{kRax}));
+  if (n.result != kNone && f_.values[n.result].width == 4) {
+    a_.zero_extend(kRax, Operand::of(uint8_t{kRax}), 4);
+  }
 }
 
 void Emitter::pool(const Step& step) {
