@@ -217,6 +217,7 @@ const std::string& Selector::prefix_key(const Place& place, size_t steps) {
   add(place.pou.index);
   add(place.value.valid() ? values_.root(place.value).index : kNoNumber);
   add(place.constant.index);
+  add(place.base_type.index);  // one handle may stand for pointers to several types
   for (size_t i = 0; i < steps; ++i) {
     const Step& step = place.steps[i];
     const bool constant = step.value.valid() && values_.is_constant(step.value);
