@@ -250,6 +250,11 @@ void Allocator::node(uint32_t number) {
 
 void Allocator::end(Block block) {
   const End& e = f_.blocks[block].end;
+  // What the ways from here want, asked first: questions behind this position forget it.
+  std::vector<Val> wanted;
+  for (const Val v : live_) {
+    if (next_use(v, position_) != kNone) wanted.push_back(v);
+  }
   uint32_t locked[2] = {0, 0};
   for (uint32_t i = 0; i < 2; ++i) {
     if (e.in[i] != kNone && reg_[e.in[i]] >= 0) locked[floating(e.in[i])] |= 1u << reg_[e.in[i]];
@@ -274,8 +279,7 @@ void Allocator::end(Block block) {
   }
   record_exit(e.exit);
   Snapshot now;
-  for (const Val v : live_) {
-    if (next_use(v, position_) == kNone) continue;
+  for (const Val v : wanted) {
     now.push_back({v, reg_[v], saved_[v] != 0, clean_[v] != 0, home_[v], slot_[v]});
   }
   if (e.kind == EndKind::kLoop) {

@@ -3,7 +3,9 @@
 // programs on all tiers.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "frontend/compile.h"
 #include "ir/lower/lower.h"
@@ -157,6 +159,47 @@ PROGRAM Main VAR f : Small; i : DINT; END_VAR
     EXPECT_EQ(machine.value("Main.f.n"), "500");
     EXPECT_LT(machine.execution().machine_entries() - before, 50u) << body.substr(0, 40);
   }
+}
+
+TEST(Native, AValueThatABranchAsksForAndOneWayTakesIsThere) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
+  sample::Machine machine(build(R"(
+FUNCTION Largest : REAL VAR_INPUT a, b : REAL; END_VAR VAR best : REAL; END_VAR
+  best := a;
+  IF b > best THEN best := b; END_IF
+  Largest := best;
+END_FUNCTION
+PROGRAM Main VAR r : REAL; i : INT; END_VAR
+  FOR i := 1 TO 3 DO r := Largest(r, INT_TO_REAL(i)); END_FOR;
+END_PROGRAM)"));
+  ASSERT_TRUE(machine.good());
+  const vm::native::Program& native = *machine.generation().native();
+  for (uint32_t pou = 0; pou < machine.image().pous.size(); ++pou) {
+    EXPECT_EQ(native.reason(pou), "");
+  }
+  EXPECT_EQ(machine.scan(), vm::Exit::kDone);
+  EXPECT_EQ(machine.value("Main.r"), "3.0");
+}
+
+// The golden files of the native tier would pass as well if it gave their POUs up.
+TEST(Native, GoldenFilesOfTheNativeTierAreNotInterpreted) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
+  uint32_t files = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(STC_SOURCE_DIR) + "/tests/golden/run")) {
+    if (!entry.path().filename().string().starts_with("native_")) continue;
+    std::ifstream in(entry.path());
+    const std::string source(std::istreambuf_iterator<char>(in), {});
+    sample::Machine machine(build(source));
+    ASSERT_TRUE(machine.good()) << entry.path();
+    const vm::native::Program& native = *machine.generation().native();
+    for (uint32_t pou = 0; pou < machine.image().pous.size(); ++pou) {
+      if (native.reason(pou) == "it has __TRY") continue;
+      EXPECT_EQ(native.reason(pou), "") << entry.path() << " " << machine.image().pous[pou].name;
+    }
+    ++files;
+  }
+  EXPECT_GE(files, 10u);
 }
 
 // Unchanged code stays where it is; a POU whose inlined callee changed is made anew.
