@@ -8,25 +8,12 @@ namespace {
 constexpr uint32_t kMostHoisted = 10;  // values in front of one loop: registers are few
 
 bool is_movable(const Node& n) {
-  switch (n.op) {
-    case Op::kDivS:
-    case Op::kDivU:
-    case Op::kModS:
-    case Op::kModU:  // a check of the divisor stands before
-    case Op::kStore:
-    case Op::kTaskTime:
-    case Op::kAdvanceTime:
-    case Op::kNative:
-    case Op::kHelper:
-    case Op::kCall:
-    case Op::kEnter:
-      return false;
-    case Op::kLoad:
-      // An index may not have been checked where the loop is not entered.
-      return n.immutable && n.mem.index == kNone;
-    default:
-      return true;
-  }
+  // A check of the divisor stands before; an index may not have been checked where the loop is not
+  // entered.
+  const bool divides =
+      n.op == Op::kDivS || n.op == Op::kDivU || n.op == Op::kModS || n.op == Op::kModU;
+  const bool indexed = n.op == Op::kLoad && n.mem.index != kNone;
+  return is_operation(n) && !divides && !indexed;
 }
 
 class Hoister {

@@ -5,6 +5,9 @@
 
 namespace vm::native {
 
+// Does it do nothing but give a value, always the same, or leave by its exit?
+bool is_operation(const Node& node);
+
 // Puts a block in front of every loop head. All ways in lead through it, that of a resumed
 // execution too, so what it computes holds in the whole loop.
 void insert_preheaders(Function& function);

@@ -7,7 +7,6 @@
 #include "vm/native/loops.h"
 
 namespace vm::native {
-namespace {
 
 bool is_operation(const Node& n) {
   switch (n.op) {
@@ -26,6 +25,8 @@ bool is_operation(const Node& n) {
       return true;
   }
 }
+
+namespace {
 
 constexpr uint32_t kMostHops = 64;
 constexpr size_t kMostPlaces = 8;  // of one operation

@@ -6,34 +6,17 @@
 
 #include <algorithm>
 
-#include "frontend/compile.h"
-#include "ir/lower/lower.h"
-#include "ir/opt/optimise.h"
-#include "linker/link.h"
 #include "tests/unit/exec/machine.h"
+#include "tests/unit/exec/source_image.h"
 
 namespace {
 
 using sample::Machine;
 using vm::Exit;
 
+// Optimised, as what the rows are for.
 ir::Image build(const std::string& source, const ir::Image* base = nullptr) {
-  base::SourceMap sources;
-  sources.add("test.st", source);
-  base::Diagnostics diagnostics;
-  auto program = frontend::compile(sources, {}, diagnostics);
-  EXPECT_TRUE(program.has_value()) << source;
-  if (!program) return {};
-  EXPECT_TRUE(ir::optimise(*program, ir::PassSet::all(), false).ok());  // as what rows are for
-  std::vector<ir::Object> objects;
-  for (uint32_t i = 0; i < program->pous.size(); ++i) {
-    objects.push_back(*ir::lower(*program, ir::PouId(i)));
-  }
-  linker::Options options;
-  options.base = base;
-  auto image = linker::link(*program, objects, options);
-  EXPECT_TRUE(image.ok()) << (image.ok() ? "" : image.error().text);
-  return image.ok() ? std::move(*image) : ir::Image{};
+  return sample::build(source, base, sample::Optimised::kYes);
 }
 
 vm::TierOptions tier(vm::Fusing fusing, uint64_t seed = 0) {

@@ -7,32 +7,14 @@
 #include <fstream>
 #include <iterator>
 
-#include "frontend/compile.h"
-#include "ir/lower/lower.h"
-#include "linker/link.h"
 #include "tests/unit/exec/machine.h"
+#include "tests/unit/exec/source_image.h"
 #include "vm/native/make_function.h"
 #include "vm/native/program.h"
 
 namespace {
 
-ir::Image build(const std::string& source, const ir::Image* base = nullptr) {
-  base::SourceMap sources;
-  sources.add("test.st", source);
-  base::Diagnostics diagnostics;
-  auto program = frontend::compile(sources, {}, diagnostics);
-  EXPECT_TRUE(program.has_value()) << source;
-  if (!program) return {};
-  std::vector<ir::Object> objects;
-  for (uint32_t i = 0; i < program->pous.size(); ++i) {
-    objects.push_back(*ir::lower(*program, ir::PouId(i)));
-  }
-  linker::Options options;
-  options.base = base;
-  auto image = linker::link(*program, objects, options);
-  EXPECT_TRUE(image.ok()) << (image.ok() ? "" : image.error().text);
-  return image.ok() ? std::move(*image) : ir::Image{};
-}
+using sample::build;
 
 // Of the functions' text: what stands behind the POU's name.
 std::string function_of(const ir::Image& image, const std::string& pou) {

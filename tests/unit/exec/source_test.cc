@@ -4,33 +4,15 @@
 
 #include <chrono>
 
-#include "frontend/compile.h"
-#include "ir/lower/lower.h"
-#include "linker/link.h"
 #include "tests/unit/exec/machine.h"
+#include "tests/unit/exec/source_image.h"
 
 namespace {
 
+using sample::build;
+
 using sample::Machine;
 using vm::Exit;
-
-ir::Image build(const std::string& source) {
-  base::SourceMap sources;
-  sources.add("test.st", source);
-  base::Diagnostics diagnostics;
-  auto program = frontend::compile(sources, {}, diagnostics);
-  EXPECT_TRUE(program.has_value()) << source;
-  if (!program) return {};
-  std::vector<ir::Object> objects;
-  for (uint32_t i = 0; i < program->pous.size(); ++i) {
-    auto object = ir::lower(*program, ir::PouId(i));
-    EXPECT_TRUE(object.ok()) << (object.ok() ? "" : object.error().text);
-    if (object.ok()) objects.push_back(std::move(*object));
-  }
-  auto image = linker::link(*program, objects, {});
-  EXPECT_TRUE(image.ok()) << (image.ok() ? "" : image.error().text);
-  return image.ok() ? std::move(*image) : ir::Image{};
-}
 
 TEST(Source, StructuresArraysInOutsStrings) {
   Machine machine(build(R"(
