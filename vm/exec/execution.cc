@@ -78,24 +78,29 @@ void Execution::count_on(const Execution& earlier) {
   state_->exposures_made = std::max(state_->exposures_made, earlier.state_->exposures_made);
 }
 
-void Execution::start(const Generation& generation, uint8_t* memory, uint32_t id, uint32_t stack,
-                      int64_t task_time_ns) {
+void Execution::start(const Generation& generation, const CodeTable& code, uint8_t* memory,
+                      uint32_t id, uint32_t stack, int64_t task_time_ns) {
   const InstanceEntry& instance = generation.instances()[id];
   base::check(instance.data != 0, "an execution starts with a live program instance");
-  call(generation, memory, instance.pou, stack);
+  call(generation, code, memory, instance.pou, stack);
   state_->instance = id;
   state_->self = memory + instance.data;
   state_->task_time_ns = task_time_ns;
 }
 
 void Execution::call(const Generation& generation, uint8_t* memory, uint32_t pou, uint32_t frame) {
+  call(generation, generation.code(), memory, pou, frame);
+}
+
+void Execution::call(const Generation& generation, const CodeTable& code, uint8_t* memory,
+                     uint32_t pou, uint32_t frame) {
   Context& ctx = *state_;
   ctx.generation = &generation;
-  ctx.native = generation.native();
+  ctx.native = code.native.get();
   ctx.entries = 0;
   ctx.memory = memory;
   ctx.consts = memory + generation.pool_offset();
-  ctx.pous = generation.pous().data();
+  ctx.pous = code.pous.data();
   ctx.instances = generation.instances().data();
   ctx.instance_count = static_cast<uint32_t>(generation.instances().size());
   ctx.bounds = generation.bounds().data();
@@ -110,7 +115,7 @@ void Execution::call(const Generation& generation, uint8_t* memory, uint32_t pou
   ctx.exit = Exit::kDone;
   ctx.pou = pou;
   ctx.instance = 0;
-  ctx.pc = generation.pous()[pou].entry;
+  ctx.pc = code.pous[pou].entry;
   ctx.frame = memory + frame;
   ctx.self = memory;
   ctx.task_time_ns = 0;

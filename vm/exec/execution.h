@@ -73,7 +73,12 @@ class Execution {
 
   // Prepares a call of program instance `id`. `stack` is where its frames begin.
   void start(const Generation& generation, uint8_t* memory, uint32_t id, uint32_t stack,
-             int64_t task_time_ns);
+             int64_t task_time_ns) {
+    start(generation, generation.code(), memory, id, stack, task_time_ns);
+  }
+  // The same with other code of that generation, which outlives the execution.
+  void start(const Generation& generation, const CodeTable& code, uint8_t* memory, uint32_t id,
+             uint32_t stack, int64_t task_time_ns);
   // Prepares a call of a function, which finds its inputs in its frame at `frame`, and leaves what
   // it gives there.
   void call(const Generation& generation, uint8_t* memory, uint32_t pou, uint32_t frame);
@@ -90,6 +95,9 @@ class Execution {
   uint64_t machine_entries() const;  // how often the interpreter went on in machine code
 
  private:
+  void call(const Generation& generation, const CodeTable& code, uint8_t* memory, uint32_t pou,
+            uint32_t frame);
+
   std::vector<CallRecord> calls_;
   std::vector<Exposure> exposures_;
   std::vector<TryRecord> tries_;

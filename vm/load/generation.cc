@@ -171,15 +171,15 @@ base::Status Generation::place_code(const Generation* running, const TierOptions
     code.assign(first, first + pou.unit_count);
     prepare_code(image, has_slots, pou, code.data());
     if (fuses) fuse({first, first + pou.unit_count}, code, tier.fusing_seed);
-    const bool runs = running != nullptr && number < running->pous_.size();
+    const bool runs = running != nullptr && number < running->code_.pous.size();
     base::Result<const ir::Unit*> place =
-        slots_->place(number, pou.name, code, runs ? running->pous_[number].code : nullptr);
+        slots_->place(number, pou.name, code, runs ? running->code_.pous[number].code : nullptr);
     if (!place.ok()) return place.error();
-    pous_.push_back({*place, *place, nullptr, pou.frame_size, pou.recursion_depth});
+    code_.pous.push_back({*place, *place, nullptr, pou.frame_size, pou.recursion_depth});
     try_depth_ = std::max(try_depth_, tries_in(image, pou));
   }
-  const size_t in_use = running == nullptr ? 0 : running->pous_.size();
-  slots_->keep_first(static_cast<uint32_t>(std::max(in_use, pous_.size())));
+  const size_t in_use = running == nullptr ? 0 : running->code_.pous.size();
+  slots_->keep_first(static_cast<uint32_t>(std::max(in_use, code_.pous.size())));
   return base::Ok{};
 }
 
@@ -213,8 +213,9 @@ base::Result<std::unique_ptr<Generation>> Generation::build(ir::VerifiedImage ve
   for (const ir::Range& range : image.ranges) made->ranges_.push_back({range.low, range.high});
   made->write_pool(memory);
   if (!tier.alternates || number % 2 == 0) {
-    made->native_ = native::Program::make(image, made->bools_.stay_clean(), made->pous_, tier,
-                                          running == nullptr ? nullptr : running->native());
+    made->code_.native =
+        native::Program::make(image, made->bools_.stay_clean(), made->code_.pous, tier,
+                              running == nullptr ? nullptr : running->native());
   }
   return made;
 }

@@ -26,6 +26,13 @@ struct PouEntry {
   uint32_t recursion_depth = 0;  // 0: never in a circle of calls
 };
 
+// What executions run. Immutable once made, so that another table of the same generation can be
+// prepared beside it and takes its place between two scans by one store (TaskTables::code).
+struct CodeTable {
+  std::vector<PouEntry> pous;
+  std::shared_ptr<const native::Program> native;  // null: everything is interpreted
+};
+
 struct InstanceEntry {
   uint32_t data = 0;  // 0: the ID is free
   uint32_t pou = 0;
@@ -84,7 +91,9 @@ class Generation {
   uint32_t pool_offset() const;
   // The constant pool to its place in data memory.
   void write_pool(uint8_t* memory) const;
-  const std::vector<PouEntry>& pous() const { return pous_; }
+  // Of its image as it is.
+  const CodeTable& code() const { return code_; }
+  const std::vector<PouEntry>& pous() const { return code_.pous; }
   const std::vector<InstanceEntry>& instances() const { return instances_; }
   const std::vector<AreaEntry>& areas() const { return areas_; }
   const std::vector<uint32_t>& area_slots() const { return area_slots_; }
@@ -104,7 +113,7 @@ class Generation {
     }
   }
   // Machine code of its POUs; null: everything is interpreted.
-  const native::Program* native() const { return native_.get(); }
+  const native::Program* native() const { return code_.native.get(); }
   const ir::Bools& bools() const { return bools_; }
   // Tries that one POU can have open at once, at most.
   uint32_t try_depth() const { return try_depth_; }
@@ -126,8 +135,7 @@ class Generation {
   std::vector<uint32_t> stamps_;
   uint32_t number_ = 0;
   std::shared_ptr<CodeSlots> slots_;
-  std::vector<PouEntry> pous_;
-  std::shared_ptr<const native::Program> native_;
+  CodeTable code_;
   std::vector<InstanceEntry> instances_;
   std::vector<BoundEntry> bounds_;
   std::vector<RangeEntry> ranges_;

@@ -58,8 +58,8 @@ void Scheduler::begin_task(TaskSlot& task) {
 }
 
 void Scheduler::begin_program(TaskSlot& task) {
-  task.execution->start(*tables_->generation, memory_, task.programs[task.program], task.stack,
-                        task.time_ns);
+  task.execution->start(*tables_->generation, *tables_->code, memory_, task.programs[task.program],
+                        task.stack, task.time_ns);
 }
 
 uint64_t Scheduler::fuel_left(const TaskSlot& task) const {

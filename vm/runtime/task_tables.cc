@@ -99,6 +99,7 @@ class RenamedPaths {
 
 TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
     : generation(&made_for),
+      code(&made_for.code()),
       version(made_for.verified()),
       process_image(made_for.image()),
       shared(made_for.image()),

@@ -74,6 +74,7 @@ struct TaskTables {
   void adopt_forces(const ir::Image& from, const std::vector<Force>& forces);
 
   const Generation* generation;
+  const CodeTable* code;  // what its executions run: that of the generation, or one in its place
   ir::VerifiedImage version;    // outlives the generation, which its owner may drop at any time
   std::vector<TaskSlot> tasks;  // as in the image
   std::vector<uint32_t> by_priority;  // highest first, then as declared
