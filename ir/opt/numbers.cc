@@ -162,6 +162,12 @@ class Numbers {
            });
   }
 
+  // What is stored there is not what is read behind it while the variable is forced: such stores
+  // are gone then, and everything else stays (docs/adr/0026-forced-versions.md).
+  static bool outlives_call(const Place& place) {
+    return place.base == PlaceBase::kSelf || place.base == PlaceBase::kGlobal;
+  }
+
   bool may_meet(PlaceId a, PlaceId b) const {
     const Place& left = place(a);
     const Place& right = place(b);
@@ -313,9 +319,13 @@ class Numbers {
     for (Known& known : known_) {
       if (known.hash != hash || !same_place(place(known.place), place(inst.place))) continue;
       if (pou_.values[known.value.index].scalar != inst.scalar) return;
-      number_[inst.result.index] = number(known.value);
       const bool here = known.block == block_;
       const bool fixed = is_static(place(inst.place), facts_);
+      if (known.stored && fixed && outlives_call(place(inst.place))) {
+        known = {hash, inst.place, inst.result, false, block_};
+        return;
+      }
+      number_[inst.result.index] = number(known.value);
       const bool pays = facts_.constants.known(known.value) ||
                         (fixed ? here && !known.stored : here || !known.stored);
       if (pays) return replace(inst.result, known.value);
