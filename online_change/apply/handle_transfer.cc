@@ -49,7 +49,6 @@ void HandleTransfer::for_each_broken(
 
 std::optional<uint32_t> HandleTransfer::forward(uint8_t* memory, bool allow_loss,
                                                 const Interrupted& interrupted) {
-  if (moves_.trivial()) return std::nullopt;
   for (size_t i = 0; i < references_.size(); ++i) {
     Reference& one = references_[i];
     one.before = one.after = load(memory, one.at);
@@ -67,7 +66,6 @@ std::optional<uint32_t> HandleTransfer::forward(uint8_t* memory, bool allow_loss
 }
 
 void HandleTransfer::restore_forward(uint8_t* memory) const {
-  if (moves_.trivial()) return;
   for (const Reference& one : references_) store(memory, one.at, one.before);
 }
 

@@ -1,7 +1,7 @@
 // References of live data follow a change: behind the last pass of a Transfer each one gets the
 // handle that names, in the new version, what it named in the old one; NULL when that is gone
 // (diff/place_moves.h). All memory is allocated beforehand; where nothing that can be referred to
-// moves or goes, no reference is looked at.
+// moves or goes, on the way there or back, no reference is looked at.
 #pragma once
 
 #include <cstdint>
