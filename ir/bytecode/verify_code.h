@@ -31,7 +31,7 @@ struct Pointer {
 
 class CodeVerifier {
  public:
-  CodeVerifier(const Context& context, uint32_t pou);
+  CodeVerifier(const Context& context, uint32_t pou, std::span<const Unit> code);
   base::Result<CodeFacts> run();
 
  private:

@@ -4,11 +4,11 @@
 
 namespace ir::verification {
 
-CodeVerifier::CodeVerifier(const Context& context, uint32_t pou)
+CodeVerifier::CodeVerifier(const Context& context, uint32_t pou, std::span<const Unit> code)
     : context_(context),
       image_(context.image),
       pou_(image_.pous[pou]),
-      code_(std::span(image_.code).subspan(pou_.first_unit, pou_.unit_count)),
+      code_(code),
       written_(pou_.slots.size()),
       read_only_(pou_.slots.size()),
       outgoing_(pou_.slots.size()),
@@ -221,7 +221,14 @@ bool CodeVerifier::check_return() {
 }
 
 base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou) {
-  return CodeVerifier(context, pou).run();
+  const LinkedPou& row = context.image.pous[pou];
+  return verify_code(context, pou,
+                     std::span(context.image.code).subspan(row.first_unit, row.unit_count));
+}
+
+base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou,
+                                    std::span<const Unit> code) {
+  return CodeVerifier(context, pou, code).run();
 }
 
 }  // namespace ir::verification

@@ -2,6 +2,7 @@
 // Later parts rely on what earlier ones have proven, in the order of this header.
 #pragma once
 
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,11 +58,14 @@ base::Status verify_resources(const Context& context);
 
 // --- verify_code.cc: one POU in one pass (V3 to V10, V12, V19, V20) -------------
 struct CodeFacts {
-  std::vector<uint32_t> callees;          // nodes of the call graph, each once per call
-  std::vector<Extent> written_outputs;    // %Q globals in data memory
-  uint32_t native_bytes = 0;              // argument area of native calls
+  std::vector<uint32_t> callees;        // nodes of the call graph, each once per call
+  std::vector<Extent> written_outputs;  // %Q globals in data memory
+  uint32_t native_bytes = 0;            // argument area of native calls
 };
 base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou);
+// Of other code in its place (pou_version.h).
+base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou,
+                                    std::span<const Unit> code);
 
 // --- verify_calls.cc: call graph, stack, output writers (V11, V14) --------------
 base::Result<std::vector<OutputWriter>> verify_calls(const Context& context,

@@ -95,10 +95,18 @@ base::Result<vm::Values> ControllerClient::list(const std::string& pattern) {
   }
 }
 
-base::Result<vm::Values> ControllerClient::forces() {
+base::Result<vm::ForceRows> ControllerClient::forces() {
   base::Result<base::Bytes> body = call({.command = vm::Command::kForces});
   if (!body.ok()) return body.error();
-  return vm::decode_values(*body);
+  return vm::decode_forces(*body);
+}
+
+base::Result<vm::ForceRows> ControllerClient::force(const std::vector<std::string>& names,
+                                                    const std::vector<std::string>& values) {
+  base::Result<base::Bytes> body =
+      call({.command = vm::Command::kForce, .names = names, .values = values});
+  if (!body.ok()) return body.error();
+  return vm::decode_forces(*body);
 }
 
 base::Status ControllerClient::assign(vm::Command command, const std::vector<std::string>& names,

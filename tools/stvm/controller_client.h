@@ -27,7 +27,9 @@ class ControllerClient {
   base::Result<vm::TaskTimes> task_times(const std::string& task);
   base::Result<vm::Values> get(std::vector<std::string> names);
   base::Result<vm::Values> list(const std::string& pattern);
-  base::Result<vm::Values> forces();
+  base::Result<vm::ForceRows> forces();
+  base::Result<vm::ForceRows> force(const std::vector<std::string>& names,
+                                    const std::vector<std::string>& values);
   base::Status assign(vm::Command command, const std::vector<std::string>& names,
                       const std::vector<std::string>& values);
   base::Result<base::Bytes> image();

@@ -174,6 +174,9 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   for (std::string& text : store_.complaints()) report.alarms.push_back(std::move(text));
   report.base_period_ns = controller_.base_period_ns();
   report.forces = controller_.forces().size();
+  for (const vm::Force& force : controller_.forces()) {
+    report.boundary_forces += force.reason.empty() ? 0 : 1;
+  }
   report.devices = controller_.devices();
   report.memory = vm::memory_report(controller_.image());
   report_tier(controller_.generation(), report);
@@ -244,18 +247,19 @@ base::Result<base::Bytes> ControllerService::set(const vm::Request& request) {
   return nothing();
 }
 
+// The code for it is made here, beside the running program; the boundary only exchanges it.
 base::Result<base::Bytes> ControllerService::force(const vm::Request& request) {
   base::Status checked = check_assignments(request, true);
   if (!checked.ok()) return checked.error();
-  base::Status done = base::Ok{};
-  base::Status taken = at_boundary([&] {
-    for (size_t i = 0; i < request.names.size() && done.ok(); ++i) {
-      done = controller_.force(request.names[i], request.values[i]);
-    }
-  });
+  std::vector<vm::NamedValue> values;
+  for (size_t i = 0; i < request.names.size(); ++i) {
+    values.push_back({request.names[i], request.values[i]});
+  }
+  auto change = controller_.prepare_force(values);
+  if (!change.ok()) return change.error();
+  base::Status taken = at_boundary([&] { controller_.use(**change); });
   if (!taken.ok()) return taken.error();
-  if (!done.ok()) return done.error();
-  return nothing();
+  return force_rows(request.names);
 }
 
 base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request) {
@@ -263,38 +267,30 @@ base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request)
   if (names.empty()) {
     for (const vm::Force& force : controller_.forces()) names.push_back(force.path);
   }
-  // All or none; only this thread's commands change forces, so they can be read here.
-  for (const std::string& name : names) {
-    base::Result<ir::Symbol> symbol = ir::find_symbol(controller_.image(), name);
-    if (!symbol.ok()) return symbol.error();
-    const std::vector<vm::Force>& forces = controller_.forces();
-    const bool forced = std::any_of(forces.begin(), forces.end(), [&](const vm::Force& force) {
-      return force.symbol.data == symbol->data;
-    });
-    if (forced) continue;
-    return base::Error{base::Refusal::kNoSuchVariable, "`" + name + "` is not forced"};
-  }
-  base::Status taken = at_boundary([&] {
-    for (const std::string& name : names) {
-      [[maybe_unused]] const base::Status twice = controller_.unforce(name);
-    }
-  });
+  auto change = controller_.prepare_unforce(names);
+  if (!change.ok()) return change.error();
+  base::Status taken = at_boundary([&] { controller_.use(**change); });
   if (!taken.ok()) return taken.error();
   return nothing();
 }
 
-base::Result<base::Bytes> ControllerService::forces(const vm::Request&) {
-  vm::Values values;
+base::Result<base::Bytes> ControllerService::forces(const vm::Request&) { return force_rows({}); }
+
+// Of the variables with these names, or all. Only this thread's commands change forces, so they can
+// be read here.
+base::Bytes ControllerService::force_rows(const std::vector<std::string>& names) const {
+  vm::ForceRows forces;
   const ir::Image& image = controller_.image();
-  // Only this thread's commands change forces, so they can be read here.
   for (const vm::Force& force : controller_.forces()) {
-    vm::ValueRow row = value_row(image, force.path, force.symbol);
+    const bool wanted =
+        names.empty() || std::find(names.begin(), names.end(), force.path) != names.end();
+    if (!wanted) continue;
     ir::Symbol alone = force.symbol;
     alone.data = 0;
-    row.value = ir::format_value(image, alone, force.value);
-    values.rows.push_back(std::move(row));
+    forces.rows.push_back({force.path, image.types.text(force.symbol.type),
+                           ir::format_value(image, alone, force.value), force.reason});
   }
-  return vm::encode(values);
+  return vm::encode(forces);
 }
 
 base::Result<base::Bytes> ControllerService::image(const vm::Request& request) {

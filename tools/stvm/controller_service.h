@@ -50,6 +50,7 @@ class ControllerService : public vm::Service {
   Answer force(const vm::Request& request);
   Answer unforce(const vm::Request& request);
   Answer forces(const vm::Request& request);
+  base::Bytes force_rows(const std::vector<std::string>& names) const;
   Answer list(const vm::Request& request);
   Answer image(const vm::Request& request);
   Answer upload(const vm::Request& request);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr tools::OptionRow kOptions[] = {
     {"--list", nullptr, "list variables and their types; NAMES are patterns with * and ?"},
-    {"--forces", nullptr, "list forced variables"},
+    {"--forces", nullptr, "list forced variables, and whether they hold everywhere"},
     STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION,
 };
@@ -57,8 +57,13 @@ base::Status show(const tools::Options& options) {
   base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
   if (options.has("--list")) return list(options, *client, *json);
-  base::Result<vm::Values> values =
-      options.has("--forces") ? client->forces() : client->get(options.arguments());
+  if (options.has("--forces")) {
+    base::Result<vm::ForceRows> forces = client->forces();
+    if (!forces.ok()) return forces.error();
+    std::fputs((*json ? forces_json(*forces) : forces_text(*forces)).c_str(), stdout);
+    return base::Ok{};
+  }
+  base::Result<vm::Values> values = client->get(options.arguments());
   if (!values.ok()) return values.error();
   std::fputs((*json ? values_json(*values) : values_text(*values)).c_str(), stdout);
   return base::Ok{};

@@ -6,6 +6,7 @@
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
 #include "tools/stvm/trace.h"
+#include "tools/stvm/values.h"
 
 namespace stvm {
 namespace {
@@ -28,6 +29,12 @@ base::Status send(vm::Command command, const tools::Options& options,
   if (!client.ok()) return client.error();
   base::Result<vm::StatusReport> status = client->status();
   if (!status.ok()) return status.error();
+  if (command == vm::Command::kForce) {
+    base::Result<vm::ForceRows> forces = client->force(names, values);
+    if (!forces.ok()) return forces.error();
+    std::fputs((*json ? forces_json(*forces) : forces_text(*forces)).c_str(), stdout);
+    return base::Ok{};
+  }
   base::Status done = client->assign(command, names, values);
   if (!done.ok()) return done;
   if (*json) {

@@ -53,7 +53,12 @@ void print_versions(const vm::StatusReport& report) {
   std::printf("  change      %s\n", report.change.c_str());
   std::printf("  cycles      %llu of %s\n", static_cast<unsigned long long>(report.cycles),
               tools::duration(report.base_period_ns).c_str());
-  std::printf("  forces      %llu\n", static_cast<unsigned long long>(report.forces));
+  std::printf("  forces      %llu", static_cast<unsigned long long>(report.forces));
+  if (report.boundary_forces != 0) {
+    std::printf(", %llu at the boundaries of cycles (stvm get --forces)",
+                static_cast<unsigned long long>(report.boundary_forces));
+  }
+  std::printf("\n");
   print_tier(report);
   std::printf("\n");
 }
@@ -167,6 +172,7 @@ void print_json(const vm::StatusReport& report) {
   json.end_array();
   json.field("uptime_ns", report.uptime_ns).field("base_period_ns", report.base_period_ns);
   json.field("faulted", report.faulted).field("forces", report.forces);
+  json.field("boundary_forces", report.boundary_forces);
   json.field("pous", report.pous).field("native_pous", report.native_pous);
   json.field("native_bytes", report.native_bytes);
   json.key("interpreted").begin_array();

@@ -1,6 +1,7 @@
 #include "tools/stvm/values.h"
 
 #include "tools/common/json.h"
+#include "vm/runtime/forces.h"
 
 namespace stvm {
 
@@ -15,6 +16,27 @@ std::string values_json(const vm::Values& values) {
   json.begin_object().field("cycle", values.cycle).key("values").begin_object();
   for (const vm::ValueRow& row : values.rows) json.field(row.path, row.value);
   json.end_object().end_object();
+  return json.finish();
+}
+
+std::string forces_text(const vm::ForceRows& forces) {
+  std::string out;
+  for (const vm::ForceRow& row : forces.rows) {
+    out += row.path + "=" + row.value + "  " + vm::hold_text(row.reason) + "\n";
+  }
+  return out;
+}
+
+std::string forces_json(const vm::ForceRows& forces) {
+  tools::JsonWriter json;
+  json.begin_object().key("forces").begin_array();
+  for (const vm::ForceRow& row : forces.rows) {
+    json.begin_object().field("path", row.path).field("type", row.type).field("value", row.value);
+    json.field("everywhere", row.reason.empty());
+    if (!row.reason.empty()) json.field("reason", row.reason);
+    json.end_object();
+  }
+  json.end_array().end_object();
   return json.finish();
 }
 

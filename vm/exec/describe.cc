@@ -13,13 +13,6 @@ constexpr const char* kTitles[] = {
 #undef TRAP
 };
 
-uint32_t line_of(const ir::LinkedPou& pou, uint32_t unit) {
-  const auto behind =
-      std::upper_bound(pou.lines.begin(), pou.lines.end(), unit,
-                       [](uint32_t at, const ir::LineEntry& line) { return at < line.unit; });
-  return behind == pou.lines.begin() ? 0 : (behind - 1)->line;
-}
-
 // An index or checked value as the instruction that trapped saw it.
 std::string number(std::string_view opcode, int64_t value) {
   const bool is_unsigned = opcode.ends_with("_U64");
@@ -59,6 +52,13 @@ std::string operand_text(const ir::Image& image, const Trap& trap, std::string_v
 }
 
 }  // namespace
+
+uint32_t line_of(const ir::LinkedPou& pou, uint32_t unit) {
+  const auto behind =
+      std::upper_bound(pou.lines.begin(), pou.lines.end(), unit,
+                       [](uint32_t at, const ir::LineEntry& line) { return at < line.unit; });
+  return behind == pou.lines.begin() ? 0 : (behind - 1)->line;
+}
 
 TrapText describe(const ir::Image& image, const Trap& trap) {
   TrapText text;

@@ -89,7 +89,7 @@ void Execution::start(const Generation& generation, const CodeTable& code, uint8
 }
 
 void Execution::call(const Generation& generation, uint8_t* memory, uint32_t pou, uint32_t frame) {
-  call(generation, generation.code(), memory, pou, frame);
+  call(generation, *generation.code(), memory, pou, frame);
 }
 
 void Execution::call(const Generation& generation, const CodeTable& code, uint8_t* memory,

@@ -6,71 +6,13 @@
 #include <unordered_map>
 
 #include "base/limits.h"
-#include "ir/bytecode/regions.h"
 #include "ir/types/handle.h"
 #include "ir/types/inside.h"
-#include "vm/exec/fusion.h"
-#include "vm/exec/handler_numbers.h"
+#include "vm/load/decode.h"
 #include "vm/native/program.h"
 
 namespace vm {
 namespace {
-
-// What a RESOLVE checks follows from its type alone: so many bytes without a slot (c is 0, x the
-// bytes), or exactly such a value or instance (c is 1, x the type).
-void prepare_resolve(const ir::Image& image, const std::vector<bool>& has_slots, ir::Unit& unit,
-                     ir::Unit& extension) {
-  const ir::TypeId type = ir::region_of_field(extension.x()).type;
-  const bool exact = has_slots[type.index];
-  unit.c = exact ? 1 : 0;
-  extension = ir::Unit::extension(exact ? type.index : image.layouts[type].size, extension.y());
-}
-
-// Types whose values hold ID or in-out slots; instance types themselves included.
-std::vector<bool> types_with_slots(const ir::Image& image) {
-  std::vector<bool> with(image.types.size());
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (uint32_t i = 0; i < with.size(); ++i) {
-      const ir::Type& type = image.types[ir::TypeId(i)];
-      bool found = image.types.is_instance(ir::TypeId(i)) ||
-                   (type.kind == ir::Kind::kArray && with[type.base.index]);
-      for (const ir::Member& member : type.members) found = found || with[member.type.index];
-      changed |= found && !with[i];
-      if (found) with[i] = true;
-    }
-  }
-  return with;
-}
-
-// Handler numbers into the op fields; the bytes of a COPY in the place of its type.
-void prepare_code(const ir::Image& image, const std::vector<bool>& has_slots,
-                  const ir::LinkedPou& pou, ir::Unit* code) {
-  for (uint32_t i = 0; i < pou.unit_count; ++i) {
-    ir::Unit& unit = code[i];
-    const ir::Opcode op = unit.opcode();
-    unit.op =
-        static_cast<uint16_t>(handler_number(op, unit.base_a(), unit.base_b(), unit.base_c()));
-    if (!ir::opcode_row(op).extended) continue;
-    ir::Unit& extension = code[++i];
-    if (op == ir::Opcode::RESOLVE) prepare_resolve(image, has_slots, unit, extension);
-    if (op == ir::Opcode::CALL_REF || op == ir::Opcode::IS_TYPE) {
-      extension = ir::Unit::extension(ir::region_of_field(extension.x()).type.index, 0);
-    }
-    if (op == ir::Opcode::CALL_METHOD_REF) {
-      extension = ir::Unit::extension(extension.x(), image.pous[extension.x()].self.index);
-    }
-    if (op != ir::Opcode::COPY) continue;
-    const ir::Region region = ir::region_of_field(extension.x());
-    extension = ir::Unit::extension(ir::region_size(image.types, image.layouts, region), 0);
-  }
-}
-
-// Code that is compiled leaves the interpreter little to do.
-bool is_fused(const TierOptions& tier) {
-  if (tier.fusing != Fusing::kAuto) return tier.fusing == Fusing::kAlways;
-  return tier.tier == Tier::kInterpreter || !native::is_available();
-}
 
 // Tries are not inside each other more often than there are instructions that begin one.
 uint32_t tries_in(const ir::Image& image, const ir::LinkedPou& pou) {
@@ -160,26 +102,24 @@ void Generation::build_overrides() {
   }
 }
 
-base::Status Generation::place_code(const Generation* running, const TierOptions& tier) {
+base::Status Generation::place_code(const Generation* running, const TierOptions& tier,
+                                    CodeTable& table) {
   const ir::Image& image = image_.image();
-  const std::vector<bool> has_slots = types_with_slots(image);
-  const bool fuses = is_fused(tier);
+  const Decoder decoder(image, tier);
   std::vector<ir::Unit> code;
   for (uint32_t number = 0; number < image.pous.size(); ++number) {
     const ir::LinkedPou& pou = image.pous[number];
     const auto first = image.code.begin() + pou.first_unit;
-    code.assign(first, first + pou.unit_count);
-    prepare_code(image, has_slots, pou, code.data());
-    if (fuses) fuse({first, first + pou.unit_count}, code, tier.fusing_seed);
-    const bool runs = running != nullptr && number < running->code_.pous.size();
+    decoder.run({first, first + pou.unit_count}, code);
+    const bool runs = running != nullptr && number < running->pous().size();
     base::Result<const ir::Unit*> place =
-        slots_->place(number, pou.name, code, runs ? running->code_.pous[number].code : nullptr);
+        slots_->place(number, pou.name, code, runs ? running->pous()[number].code : nullptr);
     if (!place.ok()) return place.error();
-    code_.pous.push_back({*place, *place, nullptr, pou.frame_size, pou.recursion_depth});
+    table.pous.push_back({*place, *place, nullptr, pou.frame_size, pou.recursion_depth});
     try_depth_ = std::max(try_depth_, tries_in(image, pou));
   }
-  const size_t in_use = running == nullptr ? 0 : running->code_.pous.size();
-  slots_->keep_first(static_cast<uint32_t>(std::max(in_use, code_.pous.size())));
+  const size_t in_use = running == nullptr ? 0 : running->pous().size();
+  slots_->keep_first(static_cast<uint32_t>(std::max(in_use, table.pous.size())));
   return base::Ok{};
 }
 
@@ -198,7 +138,8 @@ base::Result<std::unique_ptr<Generation>> Generation::build(ir::VerifiedImage ve
   const ir::Image& image = made->image();
   made->number_ = number;
   made->slots_ = std::move(slots);
-  base::Status placed = made->place_code(running, tier);
+  const auto code = std::make_shared<CodeTable>();
+  base::Status placed = made->place_code(running, tier, *code);
   if (!placed.ok()) return placed.error();
   for (const ir::Instance& row : image.instances) {
     const bool callable = row.live && row.type != image.globals;
@@ -212,11 +153,12 @@ base::Result<std::unique_ptr<Generation>> Generation::build(ir::VerifiedImage ve
   }
   for (const ir::Range& range : image.ranges) made->ranges_.push_back({range.low, range.high});
   made->write_pool(memory);
+  code->clean_bools = made->bools_.stay_clean();
   if (!tier.alternates || number % 2 == 0) {
-    made->code_.native =
-        native::Program::make(image, made->bools_.stay_clean(), made->code_.pous, tier,
-                              running == nullptr ? nullptr : running->native());
+    code->native = native::Program::make(image, code->clean_bools, code->pous, tier,
+                                         running == nullptr ? nullptr : running->native());
   }
+  made->code_ = code;
   return made;
 }
 

@@ -31,6 +31,7 @@ struct PouEntry {
 struct CodeTable {
   std::vector<PouEntry> pous;
   std::shared_ptr<const native::Program> native;  // null: everything is interpreted
+  bool clean_bools = false;                       // ir::Bools::stay_clean, for machine code
 };
 
 struct InstanceEntry {
@@ -91,9 +92,9 @@ class Generation {
   uint32_t pool_offset() const;
   // The constant pool to its place in data memory.
   void write_pool(uint8_t* memory) const;
-  // Of its image as it is.
-  const CodeTable& code() const { return code_; }
-  const std::vector<PouEntry>& pous() const { return code_.pous; }
+  // Of its image as it is. It can be held longer than the generation.
+  const std::shared_ptr<const CodeTable>& code() const { return code_; }
+  const std::vector<PouEntry>& pous() const { return code_->pous; }
   const std::vector<InstanceEntry>& instances() const { return instances_; }
   const std::vector<AreaEntry>& areas() const { return areas_; }
   const std::vector<uint32_t>& area_slots() const { return area_slots_; }
@@ -113,14 +114,14 @@ class Generation {
     }
   }
   // Machine code of its POUs; null: everything is interpreted.
-  const native::Program* native() const { return code_.native.get(); }
+  const native::Program* native() const { return code_->native.get(); }
   const ir::Bools& bools() const { return bools_; }
   // Tries that one POU can have open at once, at most.
   uint32_t try_depth() const { return try_depth_; }
 
  private:
   explicit Generation(ir::VerifiedImage image) : image_(std::move(image)), bools_(image_.image()) {}
-  base::Status place_code(const Generation* running, const TierOptions& tier);
+  base::Status place_code(const Generation* running, const TierOptions& tier, CodeTable& code);
   void build_areas();
   void build_stamps();
   void build_overrides();
@@ -135,7 +136,7 @@ class Generation {
   std::vector<uint32_t> stamps_;
   uint32_t number_ = 0;
   std::shared_ptr<CodeSlots> slots_;
-  CodeTable code_;
+  std::shared_ptr<const CodeTable> code_;
   std::vector<InstanceEntry> instances_;
   std::vector<BoundEntry> bounds_;
   std::vector<RangeEntry> ranges_;

@@ -60,7 +60,7 @@ base::Result<Facts> Facts::of(const ir::Image& image, const ImageFacts& common,
   facts.common_ = &common;
   facts.image_ = &image;
   facts.pou_ = &pou;
-  facts.code_ = std::span(image.code).subspan(pou.first_unit, pou.unit_count);
+  facts.code_ = common.code_of(image, pou);
   std::string why;
   if (!facts.find_blocks(why) || !facts.find_loops(why)) {
     return base::Error{base::Refusal::kTooLarge, why};

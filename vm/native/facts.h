@@ -11,6 +11,7 @@
 
 #include "base/result.h"
 #include "ir/bytecode/image.h"
+#include "ir/bytecode/pou_version.h"
 #include "vm/native/lir.h"
 
 namespace vm::native {
@@ -54,7 +55,11 @@ struct UnitRange {
 
 // What all POUs of an image have in common.
 struct ImageFacts {
-  ImageFacts(const ir::Image& image, bool are_bools_clean);
+  // `other_code` stands for that of the image, sorted by POU; borrowed.
+  ImageFacts(const ir::Image& image, bool are_bools_clean,
+             std::span<const ir::PouVersion> other_code = {});
+  std::span<const ir::Unit> code_of(const ir::Image& image, const ir::LinkedPou& pou) const;
+  std::span<const ir::PouVersion> versions;
   std::vector<uint32_t> body_of;  // by type: the POU that runs when its instance is called; kNone
   bool recursive_bodies = false;  // does any block call itself?
   bool clean_bools = false;       // are all BOOLs in memory 0 or 1?

@@ -37,8 +37,19 @@ uint32_t called_body(const ir::Image& image, const ImageFacts& common, const ir:
   return common.body_of[leaf->type.index];
 }
 
-ImageFacts::ImageFacts(const ir::Image& image, bool are_bools_clean)
-    : body_of(image.types.size(), kNone), clean_bools(are_bools_clean) {
+std::span<const ir::Unit> ImageFacts::code_of(const ir::Image& image,
+                                              const ir::LinkedPou& pou) const {
+  const auto number = static_cast<uint32_t>(&pou - image.pous.data());
+  const auto version =
+      std::lower_bound(versions.begin(), versions.end(), number,
+                       [](const ir::PouVersion& row, uint32_t at) { return row.pou < at; });
+  if (version != versions.end() && version->pou == number) return version->units;
+  return std::span(image.code).subspan(pou.first_unit, pou.unit_count);
+}
+
+ImageFacts::ImageFacts(const ir::Image& image, bool are_bools_clean,
+                       std::span<const ir::PouVersion> other_code)
+    : versions(other_code), body_of(image.types.size(), kNone), clean_bools(are_bools_clean) {
   for (uint32_t p = 0; p < image.pous.size(); ++p) {
     const ir::LinkedPou& pou = image.pous[p];
     if (!ir::is_body(pou.kind)) continue;

@@ -193,10 +193,10 @@ class Inliner {
 
 }  // namespace
 
-bool is_small(const ir::Image& image, const ir::LinkedPou& pou) {
+bool is_small(const ir::LinkedPou& pou, std::span<const ir::Unit> code) {
   if (pou.unit_count > kMostUnits || pou.recursion_depth != 0) return false;
-  for (uint32_t i = pou.first_unit; i < pou.first_unit + pou.unit_count; ++i) {
-    const ir::Unit& unit = image.code[i];
+  for (uint32_t i = 0; i < code.size(); ++i) {
+    const ir::Unit& unit = code[i];
     const ir::Opcode op = unit.opcode();
     const ir::OpcodeRow& row = ir::opcode_row(op);
     const Shape shape = recipe_of(op).shape;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "ir/bytecode/image.h"
@@ -20,7 +21,7 @@ struct Callee {
 
 // May the POU be a callee's body at all? No loops, no calls, nothing that the interpreter does for
 // it.
-bool is_small(const ir::Image& image, const ir::LinkedPou& pou);
+bool is_small(const ir::LinkedPou& pou, std::span<const ir::Unit> code);
 
 // Returns the numbers of the POUs whose bodies are in `function` now.
 std::vector<uint32_t> inline_calls(Function& function,

@@ -20,7 +20,7 @@ const Body* Bodies::body(uint32_t pou, uint32_t caller) {
   State& state = states_[pou];
   if (!state.asked) {
     state.asked = true;
-    if (is_small(image_, image_.pous[pou])) {
+    if (is_small(image_.pous[pou], common_.code_of(image_, image_.pous[pou]))) {
       base::Result<Facts> facts = Facts::of(image_, common_, image_.pous[pou]);
       if (facts.ok()) {
         state.body = std::make_unique<Body>();

@@ -58,7 +58,7 @@ std::vector<uint64_t> facts_of(const ir::Image& image, const ImageFacts& common,
                   static_cast<uint64_t>(slot.kind) << 16 | static_cast<uint64_t>(slot.local) << 8 |
                   (slot.aggregate ? 1u : 0u));
   }
-  const std::span code = std::span(image.code).subspan(pou.first_unit, pou.unit_count);
+  const std::span code = common.code_of(image, pou);
   for (uint32_t i = 0; i < code.size(); ++i) {
     const ir::Unit& u = code[i];
     const ir::OpcodeRow& row = ir::opcode_row(u.opcode());
@@ -180,7 +180,8 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
     return false;
   }
   work.places = std::move(*places);
-  work.pou->side = side_units(work.function, work.pou->units, image.code.data() + pou.first_unit);
+  work.pou->side =
+      side_units(work.function, work.pou->units, bodies.common().code_of(image, pou).data());
   return true;
 }
 
@@ -220,14 +221,15 @@ Program::~Program() = default;
 
 std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_bools,
                                              std::vector<PouEntry>& pous,
-                                             const TierOptions& options, const Program* running) {
+                                             const TierOptions& options, const Program* running,
+                                             std::span<const ir::PouVersion> versions) {
   if (options.tier == Tier::kInterpreter || !is_available()) return nullptr;
   const auto made = std::make_shared<Program>(Key());
   const host::HostTarget target;
   host::Assembler assembler;
   const host::Shared shared = host::emit_shared(assembler);
   std::vector<Work> all;
-  const ImageFacts common(image, clean_bools);
+  const ImageFacts common(image, clean_bools, versions);
   Bodies bodies(image, common, pous, options);
   std::vector<std::vector<uint64_t>> facts_by_pou;
   for (const ir::LinkedPou& pou : image.pous) facts_by_pou.push_back(facts_of(image, common, pou));

@@ -4,10 +4,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "ir/bytecode/image.h"
+#include "ir/bytecode/pou_version.h"
 #include "vm/exec/tier.h"
 
 namespace vm {
@@ -31,10 +32,12 @@ class Program {
   ~Program();
   // Sets entry and machine of `pous`. Code of `running` that is still right is shared. Null when
   // everything is interpreted.
+  // `versions`: code that stands for that of the image, sorted by POU (forced_code.h).
   // `clean_bools`: BOOLs of the image are 0 or 1 wherever they lie (ir/bytecode/bools.h).
   static std::shared_ptr<const Program> make(const ir::Image& image, bool clean_bools,
                                              std::vector<PouEntry>& pous,
-                                             const TierOptions& options, const Program* running);
+                                             const TierOptions& options, const Program* running,
+                                             std::span<const ir::PouVersion> versions = {});
 
   // Runs machine code. True: its POU returned, and the caller's record is on top; else the Context
   // says where the interpreter goes on, or that it has stopped.

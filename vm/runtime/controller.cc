@@ -52,7 +52,7 @@ struct Controller::Impl {
 
   const ir::Image& image() const { return running->image(); }
   base::Result<ir::Symbol> writable(std::string_view path) const;
-  void forces_changed();
+  std::unique_ptr<ForceChange> prepare_forces(std::vector<Force> forces) const;
   void set_change_flag(bool changed);
   void reset_data(bool retain);
   base::Status leave(const std::vector<uint32_t>& ids, bool changed, int64_t limit_ns);
@@ -188,37 +188,65 @@ base::Status Controller::set(std::string_view path, std::string_view value) {
   return base::Ok{};
 }
 
-base::Status Controller::force(std::string_view path, std::string_view value) {
+base::Result<std::unique_ptr<ForceChange>> Controller::prepare_force(
+    std::span<const NamedValue> values) const {
+  std::vector<Force> next = forces();
+  for (const NamedValue& row : values) {
+    base::Result<ir::Symbol> symbol = impl_->writable(row.path);
+    if (!symbol.ok()) return symbol.error();
+    base::Result<base::Bytes> bytes = ir::parse_value(image(), symbol->type, row.value);
+    if (!bytes.ok()) return bytes.error();
+    if (base::Status fits = fits_output(image(), *symbol, *bytes); !fits.ok()) return fits.error();
+    std::erase_if(next, [&](const Force& force) { return force.symbol.data == symbol->data; });
+    next.push_back({row.path, *symbol, std::move(*bytes)});
+  }
+  return impl_->prepare_forces(std::move(next));
+}
+
+base::Result<std::unique_ptr<ForceChange>> Controller::prepare_unforce(
+    std::span<const std::string> paths) const {
+  std::vector<Force> next = forces();
+  for (const std::string& path : paths) {
+    base::Result<ir::Symbol> symbol = ir::find_symbol(image(), path);
+    if (!symbol.ok()) return symbol.error();
+    const auto same_place = [&](const Force& f) { return f.symbol.data == symbol->data; };
+    const bool twice = std::none_of(forces().begin(), forces().end(), same_place);
+    if (twice) return base::Error{base::Refusal::kNoSuchVariable, "`" + path + "` is not forced"};
+    std::erase_if(next, same_place);
+  }
+  return impl_->prepare_forces(std::move(next));
+}
+
+void Controller::use(ForceChange& change) {
   base::check(at_boundary(), "a variable is forced while a task is inside a scan");
-  base::Result<ir::Symbol> symbol = impl_->writable(path);
-  if (!symbol.ok()) return symbol.error();
-  base::Result<base::Bytes> bytes = ir::parse_value(image(), symbol->type, value);
-  if (!bytes.ok()) return bytes.error();
-  if (base::Status fits = fits_output(image(), *symbol, *bytes); !fits.ok()) return fits;
-  std::vector<Force>& forces = impl_->scheduler.tables().forces;
-  auto same_place = [&](const Force& force) { return force.symbol.data == symbol->data; };
-  std::erase_if(forces, same_place);
-  forces.push_back({std::string(path), *symbol, std::move(*bytes)});
-  impl_->forces_changed();
+  for (ForceChange::Row& row : change.rows) {
+    const auto tables = impl_->tables.find(row.generation);
+    if (tables != impl_->tables.end()) tables->second->exchange_forces(row.set);
+  }
+}
+
+base::Status Controller::force(std::string_view path, std::string_view value) {
+  const NamedValue row{std::string(path), std::string(value)};
+  auto change = prepare_force({&row, 1});
+  if (!change.ok()) return change.error();
+  use(**change);
   return base::Ok{};
 }
 
 base::Status Controller::unforce(std::string_view path) {
-  base::Result<ir::Symbol> symbol = ir::find_symbol(image(), path);
-  if (!symbol.ok()) return symbol.error();
-  std::vector<Force>& forces = impl_->scheduler.tables().forces;
-  auto same_place = [&](const Force& force) { return force.symbol.data == symbol->data; };
-  if (std::erase_if(forces, same_place) == 0) {
-    return base::Error{base::Refusal::kNoSuchVariable, "`" + std::string(path) + "` is not forced"};
-  }
-  impl_->forces_changed();
+  const std::string row(path);
+  auto change = prepare_unforce({&row, 1});
+  if (!change.ok()) return change.error();
+  use(**change);
   return base::Ok{};
 }
 
-const std::vector<Force>& Controller::forces() const { return impl_->scheduler.tables().forces; }
+const std::vector<Force>& Controller::forces() const {
+  return impl_->scheduler.tables().forced.forces;
+}
 
 const std::vector<std::string>& Controller::ended_forces(const Generation& prepared) const {
-  return impl_->tables.at(&prepared)->ended_forces;
+  return impl_->tables.at(&prepared)->forced.ended;
 }
 
 base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage next_image) {
@@ -230,7 +258,9 @@ base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage 
   base::Status devices = impl_->io_port.prepare((*next)->verified());
   if (!devices.ok()) return devices.error();
   auto tables = std::make_unique<TaskTables>(**next, 0);
-  tables->adopt_forces(image(), forces());
+  ForcedSet forced =
+      ForcedSet::adopt(tables->version, *tables->own_code, image(), forces(), impl_->tier);
+  tables->exchange_forces(forced);
   TaskTables::compare_outputs(impl_->scheduler.tables(), *tables);
   impl_->tables[next->get()] = std::move(tables);
   return next;
@@ -340,10 +370,16 @@ base::Result<ir::Symbol> Controller::Impl::writable(std::string_view path) const
 }
 
 // Prepared tables carry the forces too, so that a switch need not look them up.
-void Controller::Impl::forces_changed() {
-  for (auto& [generation, other] : tables) {
-    if (generation != running.get()) other->adopt_forces(image(), scheduler.tables().forces);
+std::unique_ptr<ForceChange> Controller::Impl::prepare_forces(std::vector<Force> forces) const {
+  auto change = std::make_unique<ForceChange>();
+  for (const auto& [generation, other] : tables) {
+    if (generation == running.get()) continue;
+    change->rows.push_back(
+        {generation, ForcedSet::adopt(other->version, *other->own_code, image(), forces, tier)});
   }
+  ForcedSet set = ForcedSet::make(running->verified(), *running->code(), std::move(forces), tier);
+  change->rows.push_back({running.get(), std::move(set)});
+  return change;
 }
 
 }  // namespace vm

@@ -12,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include "vm/exec/memory.h"
 #include "vm/exec/tier.h"
 #include "vm/load/generation.h"
+#include "vm/runtime/forces.h"
 #include "vm/runtime/ports.h"
 
 namespace vm {
@@ -82,12 +84,6 @@ struct TrapRecord {
   TrapText text;
 };
 
-struct Force {
-  std::string path;
-  ir::Symbol symbol;
-  base::Bytes value;
-};
-
 class Controller {
  public:
   // Cold start: all variables hold their initial values, and the tasks that run once have run.
@@ -131,7 +127,17 @@ class Controller {
   base::Result<std::string> get(std::string_view path) const;
   base::Status set(std::string_view path, std::string_view value);
   // A force is imposed when inputs are copied in and before outputs are copied out, and on other
-  // variables before and after every scan.
+  // variables before and after every scan. Code that writes the variable is exchanged for versions
+  // that do not (forced_code.h), or the force says why that cannot be.
+  // To be prepared off the control thread, at any time; all or none, and nothing changes yet.
+  base::Result<std::unique_ptr<ForceChange>> prepare_force(
+      std::span<const NamedValue> values) const;
+  base::Result<std::unique_ptr<ForceChange>> prepare_unforce(
+      std::span<const std::string> paths) const;
+  // At a boundary: what was prepared for the version that runs comes into force. `change` has what
+  // was before, which takes time to free.
+  void use(ForceChange& change);
+  // Both at once, at a boundary.
   base::Status force(std::string_view path, std::string_view value);
   base::Status unforce(std::string_view path);
   const std::vector<Force>& forces() const;

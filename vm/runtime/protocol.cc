@@ -155,6 +155,7 @@ void status_fields(A& a, T& report) {
   a(report.base_period_ns);
   a(report.faulted);
   a(report.forces);
+  a(report.boundary_forces);
   memory_fields(a, report.memory);
   a(report.pous);
   a(report.native_pous);
@@ -170,6 +171,19 @@ void values_fields(A& a, T& values) {
   a(values.cycle);
   a(values.next);
   a.list(values.rows, 3 * kTextBytes);
+}
+
+template <class A, class T>
+void force_fields(A& a, T& row) {
+  a(row.path);
+  a(row.type);
+  a(row.value);
+  a(row.reason);
+}
+
+template <class A, class T>
+void forces_fields(A& a, T& forces) {
+  a.list(forces.rows, 4 * kTextBytes);
 }
 
 template <class A, class T>
@@ -192,6 +206,8 @@ FIELDS(DeviceStatus, device_fields)
 FIELDS(ValueRow, value_fields)
 FIELDS(StatusReport, status_fields)
 FIELDS(Values, values_fields)
+FIELDS(ForceRow, force_fields)
+FIELDS(ForceRows, forces_fields)
 FIELDS(ImagePart, image_fields)
 #undef FIELDS
 
@@ -267,6 +283,7 @@ base::Result<base::Bytes> decode_answer(base::ByteSpan bytes) {
 base::Bytes encode(const StatusReport& report) { return write_fields(report); }
 base::Bytes encode(const TaskTimes& times) { return write_fields(times); }
 base::Bytes encode(const Values& values) { return write_fields(values); }
+base::Bytes encode(const ForceRows& rows) { return write_fields(rows); }
 base::Bytes encode(const ImagePart& part) { return write_fields(part); }
 
 base::Result<StatusReport> decode_status(base::ByteSpan body) {
@@ -277,6 +294,9 @@ base::Result<TaskTimes> decode_task_times(base::ByteSpan body) {
 }
 base::Result<Values> decode_values(base::ByteSpan body) {
   return read_fields<Values>(body, "values");
+}
+base::Result<ForceRows> decode_forces(base::ByteSpan body) {
+  return read_fields<ForceRows>(body, "forces");
 }
 base::Result<ImagePart> decode_image_part(base::ByteSpan body) {
   return read_fields<ImagePart>(body, "image");

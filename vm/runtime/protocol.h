@@ -81,6 +81,7 @@ struct StatusReport {
   int64_t base_period_ns = 0;
   bool faulted = false;
   uint64_t forces = 0;
+  uint64_t boundary_forces = 0;  // those that hold at the boundaries of cycles only
   MemoryReport memory;
   uint64_t pous = 0;
   uint64_t native_pous = 0;  // that run as machine code; 0: everything is interpreted
@@ -103,6 +104,17 @@ struct Values {
   std::vector<ValueRow> rows;
 };
 
+// Forced variables: all of them, or those of the request that forced them.
+struct ForceRow {
+  std::string path;
+  std::string type;
+  std::string value;
+  std::string reason;  // why it holds at the boundaries of cycles only; "": everywhere
+};
+struct ForceRows {
+  std::vector<ForceRow> rows;
+};
+
 struct ImagePart {
   base::Digest digest{};
   uint64_t total = 0;
@@ -112,10 +124,12 @@ struct ImagePart {
 base::Bytes encode(const StatusReport& report);
 base::Bytes encode(const TaskTimes& times);
 base::Bytes encode(const Values& values);
+base::Bytes encode(const ForceRows& rows);
 base::Bytes encode(const ImagePart& part);
 base::Result<StatusReport> decode_status(base::ByteSpan body);
 base::Result<TaskTimes> decode_task_times(base::ByteSpan body);
 base::Result<Values> decode_values(base::ByteSpan body);
+base::Result<ForceRows> decode_forces(base::ByteSpan bytes);
 base::Result<ImagePart> decode_image_part(base::ByteSpan body);
 
 }  // namespace vm

@@ -122,7 +122,7 @@ void Scheduler::begin_cycle() {
 
 // Forced, else as it came in just now, else as the programs left it.
 bool Scheduler::event_level(const TaskSlot& task) const {
-  for (const Force& force : tables_->forces) {
+  for (const Force& force : tables_->forced.forces) {
     if (force.symbol.data == task.event) return force.value[0] != 0;
   }
   if (task.event_mask != 0) return (tables_->inputs[task.event_byte] & task.event_mask) != 0;

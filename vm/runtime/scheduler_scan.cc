@@ -267,7 +267,7 @@ void Scheduler::copy_outputs(TaskSlot& task) {
 }
 
 void Scheduler::impose(bool inputs_only) {
-  for (const Force& force : tables_->forces) {
+  for (const Force& force : tables_->forced.forces) {
     if (inputs_only && !force.symbol.input) continue;
     std::memcpy(memory_ + force.symbol.data, force.value.data(), force.value.size());
   }
@@ -277,7 +277,7 @@ void Scheduler::impose(bool inputs_only) {
 void Scheduler::impose_on_outputs() {
   bool any = false;
   base::Bytes& mask = tables_->written;
-  for (const Force& force : tables_->forces) {
+  for (const Force& force : tables_->forced.forces) {
     if (!force.symbol.output) continue;
     if (!any) std::fill(mask.begin(), mask.end(), uint8_t{0});
     any = true;

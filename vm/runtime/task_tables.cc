@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "base/limits.h"
-#include "ir/bytecode/renames.h"
 #include "vm/runtime/own_outputs.h"
 
 namespace vm {
@@ -57,49 +56,12 @@ void keep_phase(TaskSlot& slot, const TaskSlot& old, int64_t cycle_start_ns) {
   }
 }
 
-// Bytes that stand for the same value in the other image; empty when there are none.
-base::Bytes carry_over(const ir::Image& from, const Force& force, const ir::Image& to,
-                       const ir::Symbol& symbol) {
-  bool same_type = from.types.text(force.symbol.type) == to.types.text(symbol.type);
-  if (same_type && from.types[force.symbol.type].kind != ir::Kind::kEnum) return force.value;
-  ir::Symbol alone = force.symbol;
-  alone.data = 0;
-  std::string text = ir::format_value(from, alone, force.value);
-  base::Result<base::Bytes> value = ir::parse_value(to, symbol.type, text);
-  return value.ok() ? *value : base::Bytes{};
-}
-
-// Paths of one version's variables in the other one, whichever of them renames (case 47).
-class RenamedPaths {
- public:
-  RenamedPaths(const ir::Image& from, const ir::Image& to)
-      : from_(from), to_(to), there_(from, to), back_(to, from) {}
-
-  std::string find(const Force& force) const {
-    if (!there_.renamed() && !back_.renamed()) return force.path;
-    const std::string before = ir::path_of(from_, force.symbol);
-    std::string after;
-    if (there_.renamed()) {
-      after = ir::path_of(there_.image(), force.symbol);
-    } else {
-      base::Result<ir::Symbol> symbol = ir::find_symbol(back_.image(), before);
-      if (symbol.ok()) after = ir::path_of(to_, *symbol);
-    }
-    return before == after ? force.path : after;
-  }
-
- private:
-  const ir::Image& from_;
-  const ir::Image& to_;
-  ir::OldUnderNewNames there_;
-  ir::OldUnderNewNames back_;
-};
-
 }  // namespace
 
 TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
     : generation(&made_for),
-      code(&made_for.code()),
+      own_code(made_for.code()),
+      code(own_code.get()),
       version(made_for.verified()),
       process_image(made_for.image()),
       shared(made_for.image()),
@@ -229,24 +191,9 @@ int64_t TaskTables::next_cycle_ns(int64_t cycle_start_ns) const {
   return cycle_start_ns + (distance > 0 ? distance : base_period_ns + distance);
 }
 
-void TaskTables::adopt_forces(const ir::Image& from, const std::vector<Force>& rows) {
-  const ir::Image& to = version.image();
-  forces.clear();
-  ended_forces.clear();
-  if (rows.empty()) return;
-  const RenamedPaths paths(from, to);
-  for (const Force& row : rows) {
-    Force force = row;
-    force.path = paths.find(row);
-    base::Result<ir::Symbol> symbol = ir::find_symbol(to, force.path);
-    base::Bytes value;
-    if (symbol.ok() && !symbol->constant) value = carry_over(from, force, to, *symbol);
-    if (value.empty()) {
-      ended_forces.push_back(row.path);
-    } else {
-      forces.push_back({force.path, *symbol, std::move(value)});
-    }
-  }
+void TaskTables::exchange_forces(ForcedSet& set) {
+  std::swap(forced, set);
+  code = forced.code == nullptr ? own_code.get() : &forced.code->table();
 }
 
 }  // namespace vm

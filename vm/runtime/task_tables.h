@@ -68,13 +68,14 @@ struct TaskTables {
   // The first cycle after `cycle_start_ns`.
   int64_t next_cycle_ns(int64_t cycle_start_ns) const;
   int64_t next_release_ns() const;
-  // Forces of another image by path; what has no place of its kind here ends.
   // Of the version that runs and one that is prepared, or the other way round.
   static void compare_outputs(TaskTables& a, TaskTables& b);
-  void adopt_forces(const ir::Image& from, const std::vector<Force>& forces);
+  // The set and its code come into force, and `set` has what was before. Nothing is freed.
+  void exchange_forces(ForcedSet& set);
 
   const Generation* generation;
-  const CodeTable* code;  // what its executions run: that of the generation, or one in its place
+  std::shared_ptr<const CodeTable> own_code;  // of the generation, when it was made
+  const CodeTable* code;                      // what its executions run: that, or one in its place
   ir::VerifiedImage version;    // outlives the generation, which its owner may drop at any time
   std::vector<TaskSlot> tasks;  // as in the image
   std::vector<uint32_t> by_priority;  // highest first, then as declared
@@ -93,8 +94,7 @@ struct TaskTables {
   bool plain_outputs = false;
   // Of this version and the other one: then what waits is kept, and what is known of its writers.
   bool same_outputs = false;
-  std::vector<Force> forces;
-  std::vector<std::string> ended_forces;  // paths of those that were not adopted
+  ForcedSet forced;
 
  private:
   void find_base_period();

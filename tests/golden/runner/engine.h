@@ -42,6 +42,8 @@ class Engine {
   virtual base::Status set(const std::string& path, const std::string& value) = 0;
   virtual base::Status force(const std::string& path, const std::string& value);
   virtual base::Status unforce(const std::string& path);
+  // "path everywhere", or why it holds at the boundaries of cycles only.
+  virtual std::vector<std::string> forces() const { return {}; }
   enum class Restart : uint8_t { kCold, kWarm, kHot };
   virtual base::Status restart(Restart kind) = 0;
   // Online change; the lines of its report.

@@ -124,6 +124,14 @@ class MachineEngine : public Engine {
   }
   base::Status unforce(const std::string& path) override { return controller_->unforce(path); }
 
+  std::vector<std::string> forces() const override {
+    std::vector<std::string> lines;
+    for (const vm::Force& force : controller_->forces()) {
+      lines.push_back(force.path + " " + vm::hold_text(force.reason));
+    }
+    return lines;
+  }
+
   base::Status restart(Restart kind) override {
     constexpr int64_t kExitLimitNs = 1'000'000'000;
     constexpr vm::Restart kKinds[] = {vm::Restart::kCold, vm::Restart::kWarm, vm::Restart::kHot};

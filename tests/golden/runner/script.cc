@@ -95,6 +95,8 @@ class Runner {
       note(engine_.force(args[0], args[1]), output);
     } else if (verb == "unforce" && args.size() == 1) {
       note(engine_.unforce(args[0]), output);
+    } else if (verb == "forces") {
+      output = engine_.forces();
     } else if (verb == "change" && !args.empty()) {
       change(args, output);
     } else if (verb == "undo") {

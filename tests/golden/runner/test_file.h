@@ -6,7 +6,7 @@
 //   ...source...
 //   // --- v2             begins the next version (mode change)
 //   // > run 3            script: run N | show NAMES | set NAME VALUE | change K [--allow-loss] |
-//   //                    undo | accept | force NAME VALUE | unforce NAME
+//   //                    undo | accept | force NAME VALUE | unforce NAME | forces
 //   // CHECK: text        one line of output of what stands above
 //   // CHECK:SCAN 2: a=1  short form of `run to scan 2, show a`
 #pragma once

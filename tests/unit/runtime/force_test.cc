@@ -1,0 +1,125 @@
+// Forces while a controller runs: what they hold, and when.
+#include <functional>
+
+#include "tests/unit/runtime/plant.h"
+
+namespace runtime_test {
+namespace {
+
+// Asks at every safe point.
+class AskingClock : public vm::VirtualClock {
+ public:
+  AskingClock() : VirtualClock(0) {}
+  void consumed(uint64_t safe_points) override {
+    VirtualClock::consumed(safe_points);
+    if (ask) ask();
+  }
+  std::function<void()> ask;
+};
+
+constexpr const char* kSource = R"(
+VAR_GLOBAL g : DINT; seen : ARRAY[0..3] OF DINT; END_VAR
+FUNCTION Next : DINT Next := g + 1; END_FUNCTION
+FUNCTION_BLOCK Ramp VAR_INPUT up : BOOL; END_VAR VAR_OUTPUT value : DINT; END_VAR VAR i : INT; END_VAR
+  IF up THEN value := value + 1; END_IF
+  FOR i := 1 TO 4 DO value := value + i; END_FOR;
+END_FUNCTION_BLOCK
+PROGRAM Main VAR r : Ramp; i : INT; END_VAR
+  FOR i := 0 TO 3 DO g := Next(); seen[i] := g; END_FOR;
+  r(up := TRUE);
+  seen[3] := r.value;
+END_PROGRAM)";
+
+class Forces : public testing::TestWithParam<vm::Tier> {};
+
+// A scan that is interrupted at every call and back edge never has another value there.
+TEST_P(Forces, HoldAtEverySafePoint) {
+  const auto image = build(kSource);
+  ASSERT_TRUE(image);
+  AskingClock clock;
+  vm::SimulatedIo io;
+  vm::ControllerOptions options;
+  options.fuel_slice = 1;
+  options.tier.tier = GetParam();
+  auto plant = vm::Controller::start(*image, options, clock, io);
+  ASSERT_TRUE(plant.ok());
+  (*plant)->cycle();
+  EXPECT_EQ(*(*plant)->get("g"), "4");
+  for (const char* path : {"g", "Main.r.value", "Main.r.up"}) {
+    ASSERT_TRUE((*plant)
+                    ->force(path, path[0] == 'g'   ? "70"
+                                  : path[7] == 'u' ? "FALSE"
+                                                   : "80")
+                    .ok());
+  }
+  for (const vm::Force& force : (*plant)->forces()) EXPECT_EQ(force.reason, "") << force.path;
+  uint64_t asked = 0;
+  clock.ask = [&] {
+    ++asked;
+    for (const vm::Force& force : (*plant)->forces()) {
+      const uint8_t* const at = (*plant)->memory().data() + force.symbol.data;
+      EXPECT_TRUE(std::equal(force.value.begin(), force.value.end(), at)) << force.path;
+    }
+  };
+  (*plant)->cycle();
+  clock.ask = nullptr;
+  EXPECT_GE(asked, 10u);
+  EXPECT_EQ(*(*plant)->get("seen[2]"), "70");
+  EXPECT_EQ(*(*plant)->get("seen[3]"), "80");
+}
+INSTANTIATE_TEST_SUITE_P(Tiers, Forces, testing::Values(vm::Tier::kInterpreter, vm::Tier::kNative));
+
+// What is prepared beside the running program changes nothing before it is exchanged.
+TEST(Force, ComesWithItsExchange) {
+  Plant plant(kSource);
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(1);
+  const vm::NamedValue values[] = {{"g", "70"}, {"Main.r.value", "80"}};
+  auto change = plant->prepare_force(values);
+  ASSERT_TRUE(change.ok());
+  EXPECT_TRUE(plant->forces().empty());
+  plant.cycles(1);
+  EXPECT_EQ(plant.get("g"), "8");
+  plant->use(**change);
+  EXPECT_EQ(plant->forces().size(), 2u);
+  plant.cycles(1);
+  EXPECT_EQ(plant.get("seen[2]"), "70");
+  const std::string both[] = {"g", "Main.r.value"};
+  auto back = plant->prepare_unforce(both);
+  ASSERT_TRUE(back.ok());
+  plant.cycles(1);
+  EXPECT_EQ(plant.get("seen[2]"), "70");
+  plant->use(**back);
+  EXPECT_TRUE(plant->forces().empty());
+  plant.cycles(1);
+  EXPECT_EQ(plant.get("seen[2]"), "73");
+}
+
+// All or none.
+TEST(Force, OneMistakeForcesNothing) {
+  Plant plant(kSource);
+  ASSERT_TRUE(plant.ok());
+  const vm::NamedValue values[] = {{"g", "70"}, {"Main.r.up", "7"}};
+  EXPECT_EQ(plant->prepare_force(values).error().refusal, base::Refusal::kBadValue);
+  const std::string paths[] = {"g"};
+  EXPECT_EQ(plant->prepare_unforce(paths).error().refusal, base::Refusal::kNoSuchVariable);
+}
+
+// The version before the last one is gone, and what is known of it stays until the next change.
+TEST(Force, OutlivesAVersionThatNobodyWantsBack) {
+  Plant plant(kSource);
+  ASSERT_TRUE(plant.ok());
+  ASSERT_TRUE(plant->force("g", "70").ok());
+  auto next = *plant->prepare(plant->verified());
+  plant->publish(std::move(next)).reset();  // accepted
+  ASSERT_TRUE(plant->force("Main.r.value", "80").ok());
+  plant.cycles(1);
+  EXPECT_EQ(plant.get("seen[2]"), "70");
+  EXPECT_EQ(plant.get("seen[3]"), "80");
+  ASSERT_TRUE(plant->unforce("g").ok());
+  plant.cycles(1);
+  EXPECT_EQ(plant.get("seen[2]"), "73");
+}
+
+}  // namespace
+}  // namespace runtime_test

@@ -1,0 +1,357 @@
+#include "vm/load/writers.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "ir/bytecode/regions.h"
+#include "stdlib/native/natives.h"
+#include "vm/load/origins.h"
+#include "vm/load/write_targets.h"
+
+namespace vm {
+namespace {
+
+using ir::Opcode;
+using How = Writer::How;
+using Kind = Origin::Kind;
+
+// A store or another use of an address from outside of its POU.
+struct Unknown {
+  enum class Use : uint8_t { kStored, kPassed, kReferenced };
+  Use use = Use::kStored;
+  Kind from = Kind::kInOut;
+  ir::Region region;  // invalid type: a string
+  uint64_t offset = 0;
+  uint64_t size = 0;
+  uint32_t pou = 0;
+  uint32_t unit = 0;
+};
+
+class Search {
+ public:
+  Search(const ir::Image& image, std::span<const Variable> variables);
+  std::vector<Writer> run();
+
+ private:
+  struct At {
+    uint32_t pou = 0;
+    uint32_t unit = 0;
+  };
+  void look_at(uint32_t pou);
+  void look_at_unit(const ir::Unit& unit, const ir::Unit& more, const OriginWalk& walk);
+  void store(ir::Base base, uint64_t begin, uint64_t end, How how);
+  void store_through(const Origins& origins, ir::Region region, uint64_t offset, uint64_t size,
+                     How how);
+  void pass(const Origins& origins, ir::Region region);
+  void reference(const Origins& origins, ir::Region region);
+  void reference_place(ir::Base base, uint64_t begin);
+  void hit(uint32_t target, uint64_t begin, uint64_t end, How how);
+  template <class Visit>
+  void for_each_in(ir::Base base, uint64_t begin, uint64_t end, const Visit& visit);
+  template <class Visit>
+  void for_each_in(const Origin& origin, uint64_t begin, uint64_t end, const Visit& visit);
+  void note(Unknown::Use use, Kind from, ir::Region region, uint64_t offset, uint64_t size);
+  bool fits(const Target& target, const Unknown& unknown) const;
+  void find_escapes(Target& target) const;
+  bool is_shared(ir::TypeId self);
+  bool is_of(const Target& target, ir::TypeId type) const {
+    return !type.valid() || image_.types.is_a(image_.instances[target.owner].type, type);
+  }
+
+  const ir::Image& image_;
+  std::vector<Target> targets_;
+  std::vector<uint32_t> by_place_;  // targets of globals
+  std::vector<uint32_t> inside_;    // targets of instances
+  std::vector<uint32_t> of_self_;   // those of them that the POU may run for
+  std::vector<uint32_t> counts_;    // instances by type, those that extend it too
+  std::vector<Unknown> unknown_;
+  std::vector<Writer> found_;
+  bool calculates_ = false;  // addresses of any variable can be made of numbers
+  const ir::LinkedPou* pou_ = nullptr;
+  At at_;
+};
+
+Search::Search(const ir::Image& image, std::span<const Variable> variables)
+    : image_(image), targets_(targets_of(image, variables)) {
+  for (uint32_t i = 0; i < targets_.size(); ++i) {
+    (targets_[i].owner == 0 ? by_place_ : inside_).push_back(i);
+  }
+  std::sort(by_place_.begin(), by_place_.end(),
+            [&](uint32_t a, uint32_t b) { return targets_[a].begin < targets_[b].begin; });
+}
+
+bool Search::is_shared(ir::TypeId self) {
+  if (counts_.empty()) counts_.resize(image_.types.size(), UINT32_MAX);
+  uint32_t& count = counts_[self.index];
+  if (count == UINT32_MAX) {
+    count = static_cast<uint32_t>(std::count_if(
+        image_.instances.begin(), image_.instances.end(),
+        [&](const auto& row) { return row.live && image_.types.is_a(row.type, self); }));
+  }
+  return count > 1;
+}
+
+// Variables that overlap the place; of the own instance, whichever that is.
+template <class Visit>
+void Search::for_each_in(ir::Base base, uint64_t begin, uint64_t end, const Visit& visit) {
+  if (base == ir::Base::kGlobal) {
+    auto at = std::lower_bound(by_place_.begin(), by_place_.end(), begin,
+                               [&](uint32_t i, uint64_t b) { return targets_[i].end <= b; });
+    for (; at != by_place_.end() && targets_[*at].begin < end; ++at) visit(*at, begin, end, false);
+  } else if (base == ir::Base::kSelf) {
+    for (const uint32_t i : of_self_) {
+      const uint64_t area = image_.instances[targets_[i].owner].data;
+      if (targets_[i].begin < area + end && area + begin < targets_[i].end) {
+        visit(i, area + begin, area + end, is_shared(pou_->self));
+      }
+    }
+  }
+}
+
+template <class Visit>
+void Search::for_each_in(const Origin& origin, uint64_t begin, uint64_t end, const Visit& visit) {
+  if (origin.kind == Kind::kPlace) return for_each_in(origin.base, begin, end, visit);
+  for (const uint32_t i : inside_) {
+    const uint32_t owner = targets_[i].owner;
+    const ir::Instance& instance = image_.instances[owner];
+    if (targets_[i].begin >= instance.data + end || instance.data + begin >= targets_[i].end) {
+      continue;
+    }
+    bool shared = true;
+    if (origin.kind == Kind::kAnyInstance) {
+      if (!is_of(targets_[i], origin.type)) continue;
+    } else if (origin.base == ir::Base::kGlobal) {
+      if (ir::initial_id(image_, origin.slot) != owner) continue;
+      shared = false;
+    } else {
+      const ir::Instance& parent = image_.instances[instance.parent];
+      const bool holds = instance.parent != 0 && pou_->self.valid() &&
+                         image_.types.is_a(parent.type, pou_->self) &&
+                         ir::initial_id(image_, parent.data + origin.slot) == owner;
+      if (!holds) continue;
+      shared = is_shared(pou_->self);
+    }
+    visit(i, instance.data + begin, instance.data + end, shared);
+  }
+}
+
+void Search::hit(uint32_t target, uint64_t begin, uint64_t end, How how) {
+  const Target& row = targets_[target];
+  const bool inside = row.begin <= begin && end <= row.end;
+  if (how <= How::kShared && !inside) how = How::kPart;
+  found_.push_back({target, at_.pou, at_.unit, how});
+}
+
+void Search::store(ir::Base base, uint64_t begin, uint64_t end, How how) {
+  for_each_in(base, begin, end, [&](uint32_t target, uint64_t from, uint64_t to, bool shared) {
+    hit(target, from, to, how == How::kOnly && shared ? How::kShared : how);
+  });
+}
+
+void Search::store_through(const Origins& origins, ir::Region region, uint64_t offset,
+                           uint64_t size, How how) {
+  // With several origins one execution writes here, another there.
+  for (const Origin& origin : origins) {
+    if (origin.kind >= Kind::kInOut) {
+      note(Unknown::Use::kStored, origin.kind, region, offset, size);
+      continue;
+    }
+    const uint64_t begin = origin.exact ? origin.begin + offset : origin.begin;
+    const uint64_t end = origin.exact ? begin + size : origin.end;
+    const bool indexed = !origin.exact || origin.kind == Kind::kAnyInstance || origins.size() > 1;
+    for_each_in(origin, begin, end, [&](uint32_t target, uint64_t from, uint64_t to, bool shared) {
+      How use = how;
+      if (how == How::kOnly && shared) use = How::kShared;
+      if (indexed && how != How::kText) use = How::kIndexed;
+      hit(target, from, to, use);
+    });
+  }
+}
+
+void Search::note(Unknown::Use use, Kind from, ir::Region region, uint64_t offset, uint64_t size) {
+  unknown_.push_back({use, from, region, offset, size, at_.pou, at_.unit});
+}
+
+// The address goes into a VAR_IN_OUT.
+void Search::pass(const Origins& origins, ir::Region region) {
+  for (const Origin& origin : origins) {
+    if (origin.kind >= Kind::kInOut) {
+      note(Unknown::Use::kPassed, origin.kind, region, 0, UINT32_MAX);
+      continue;
+    }
+    for_each_in(origin, origin.begin, origin.end,
+                [&](uint32_t target, uint64_t, uint64_t, bool) { targets_[target].in_out = true; });
+  }
+}
+
+// A reference is made of the address; by it the whole area can be reached.
+void Search::reference(const Origins& origins, ir::Region region) {
+  for (const Origin& origin : origins) {
+    if (origin.kind >= Kind::kInOut) {
+      note(Unknown::Use::kReferenced, origin.kind, region, 0, UINT32_MAX);
+      continue;
+    }
+    for_each_in(origin, 0, UINT32_MAX, [&](uint32_t target, uint64_t, uint64_t, bool) {
+      targets_[target].referenced = true;
+    });
+  }
+}
+
+// Of a variable: it leads to what that holds. Of the own instance: to all of it.
+void Search::reference_place(ir::Base base, uint64_t begin) {
+  const bool whole = base == ir::Base::kSelf && begin == 0;
+  for_each_in(base, 0, UINT32_MAX, [&](uint32_t i, uint64_t area, uint64_t, bool) {
+    Target& target = targets_[i];
+    const uint64_t at = area + begin;
+    target.referenced |= whole || (target.member_begin <= at && at < target.member_end);
+  });
+}
+
+void Search::look_at_unit(const ir::Unit& unit, const ir::Unit& more, const OriginWalk& walk) {
+  const Opcode op = unit.opcode();
+  const ir::OpcodeRow& row = ir::opcode_row(op);
+  if (row.a.kind == ir::FieldKind::kDst && unit.base_a() != ir::Base::kFrame) {
+    return store(unit.base_a(), unit.a, unit.a + ir::class_size(row.a.cls), How::kOnly);
+  }
+  if (op >= Opcode::STFAR_B && op <= Opcode::STFAR_F64) {
+    return store(unit.base_b(), unit.bc(), uint64_t{unit.bc()} + ir::class_size(row.a.cls),
+                 How::kOnly);
+  }
+  if (op >= Opcode::ST_B && op <= Opcode::ST_F64) {
+    return store_through(walk.of(unit.a), walk.region(unit.a), unit.c, ir::class_size(row.b.cls),
+                         How::kOnly);
+  }
+  if (row.calls) {
+    for (const OriginWalk::Argument& argument : walk.arguments()) pass(argument.origins, {});
+    return;
+  }
+  const auto whole = [&](uint32_t slot, uint64_t size, How how) {
+    Origins origins = walk.of(slot);
+    for (Origin& origin : origins) {
+      if (size == 0 && origin.exact) size = origin.end - origin.begin;
+    }
+    store_through(origins, walk.region(slot), 0, size, how);
+  };
+  switch (op) {
+    case Opcode::COPY: {
+      const ir::Region region = ir::region_of_field(more.x());
+      return whole(unit.a, ir::region_size(image_.types, image_.layouts, region), How::kPart);
+    }
+    case Opcode::SCOPY:
+    case Opcode::WCOPY:
+      return whole(unit.a, 0, How::kOnly);
+    case Opcode::ST_REF_AT:
+      return pass(walk.of(unit.b), walk.region(unit.b));
+    case Opcode::NATIVE:
+      if (stdlib::native_row(unit.c).result == 'v') whole(unit.a * 8u, 0, How::kText);
+      return;
+    case Opcode::HANDLE:
+      return reference_place(unit.base_b(), more.x());
+    case Opcode::HANDLE_AT:
+      return reference(walk.of(unit.b), walk.region(unit.b));
+    case Opcode::HANDLE_INST:
+    case Opcode::HANDLE_INST_AT: {
+      Origin origin;
+      const bool named = op == Opcode::HANDLE_INST;
+      origin.kind = named ? Kind::kInstance : Kind::kAnyInstance;
+      origin.base = unit.base_b();
+      origin.slot = named ? unit.bc() : 0;
+      return reference({origin}, {});
+    }
+    case Opcode::HANDLE_ADD:
+    case Opcode::UNFLAT:
+      calculates_ = true;
+      return;
+    default:
+      return;
+  }
+}
+
+void Search::look_at(uint32_t number) {
+  const ir::LinkedPou& pou = image_.pous[number];
+  pou_ = &pou;
+  of_self_.clear();
+  for (const uint32_t i : inside_) {
+    if (pou.self.valid() && is_of(targets_[i], pou.self)) of_self_.push_back(i);
+  }
+  OriginWalk walk(image_, pou);
+  const ir::Unit* const code = image_.code.data() + pou.first_unit;
+  for (uint32_t i = 0; i < pou.unit_count; ++i) {
+    const bool extended = ir::opcode_row(code[i].opcode()).extended;
+    at_ = {number, i};
+    walk.enter(i);
+    look_at_unit(code[i], code[extended ? i + 1 : i], walk);
+    walk.pass(i);
+    if (extended) ++i;
+  }
+}
+
+// Can the variable be what an address of that kind points to? References take any type.
+bool Search::fits(const Target& target, const Unknown& unknown) const {
+  if (unknown.from != Kind::kInOut || target.overlaid || !unknown.region.type.valid()) {
+    const bool text = unknown.from == Kind::kInOut && !target.overlaid;
+    const ir::Kind kind = image_.types[target.type].kind;
+    return !text || unknown.use != Unknown::Use::kStored || kind == ir::Kind::kString ||
+           kind == ir::Kind::kWstring;
+  }
+  const ir::TypeId wanted = unknown.region.type;
+  const bool scalar = image_.types.is_scalar(wanted);
+  for (const Around& around : target.around) {
+    const uint64_t end = around.offset + (target.end - target.begin);
+    const bool there = unknown.region.dim != 0 ||
+                       (unknown.offset < end && around.offset < unknown.offset + unknown.size);
+    if (!there) continue;
+    if (scalar) {
+      if (!image_.types.is_scalar(around.type)) continue;
+      const ir::Class have = ir::class_of(image_.types.scalar(around.type));
+      if (have == ir::class_of(image_.types.scalar(wanted))) return true;
+    } else if (image_.types[wanted].kind == image_.types[around.type].kind) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// What becomes of an address that left its POU once.
+void Search::find_escapes(Target& target) const {
+  target.referenced |= calculates_;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const Unknown& unknown : unknown_) {
+      const bool reaches = unknown.from == Kind::kAnywhere ||
+                           (unknown.from == Kind::kInOut ? target.in_out : target.referenced);
+      if (!reaches || unknown.use == Unknown::Use::kStored) continue;
+      bool& more = unknown.use == Unknown::Use::kPassed ? target.in_out : target.referenced;
+      if (more || !fits(target, unknown)) continue;
+      changed = more = true;
+    }
+  }
+}
+
+std::vector<Writer> Search::run() {
+  for (uint32_t pou = 0; pou < image_.pous.size(); ++pou) look_at(pou);
+  for (uint32_t i = 0; i < targets_.size(); ++i) {
+    find_escapes(targets_[i]);
+    for (const Unknown& unknown : unknown_) {
+      if (unknown.use != Unknown::Use::kStored) continue;
+      const bool reaches =
+          unknown.from == Kind::kAnywhere ||
+          (unknown.from == Kind::kInOut ? targets_[i].in_out : targets_[i].referenced);
+      if (!reaches || !fits(targets_[i], unknown)) continue;
+      found_.push_back({i, unknown.pou, unknown.unit, How::kAddress});
+      break;
+    }
+  }
+  std::stable_sort(found_.begin(), found_.end(), [](const Writer& a, const Writer& b) {
+    return std::tie(a.variable, a.pou, a.unit) < std::tie(b.variable, b.pou, b.unit);
+  });
+  return std::move(found_);
+}
+
+}  // namespace
+
+std::vector<Writer> find_writers(const ir::Image& image, std::span<const Variable> variables) {
+  return Search(image, variables).run();
+}
+
+}  // namespace vm

@@ -1,0 +1,32 @@
+// Which instructions may write given variables: what a version of a POU leaves out while they are
+// forced (forced_code.h), and what stands against that. One pass over all code of an image.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ir/bytecode/image.h"
+#include "vm/load/write_targets.h"
+
+namespace vm {
+
+struct Writer {
+  enum class How : uint8_t {
+    kOnly,     // what it writes lies inside of the variable, whoever executes it
+    kShared,   // the same, when it is executed for one of several instances
+    kPart,     // it writes more than the variable
+    kIndexed,  // where it writes is known at run time only
+    kText,     // a native function writes its result there
+    kAddress,  // through a VAR_IN_OUT or a reference that may lead there
+  };
+  uint32_t variable = 0;  // index
+  uint32_t pou = 0;       // number in the image
+  uint32_t unit = 0;      // of that POU
+  How how = How::kOnly;
+};
+
+// Sorted by variable, POU and unit. Of writers with kAddress the first one of each variable.
+std::vector<Writer> find_writers(const ir::Image& image, std::span<const Variable> variables);
+
+}  // namespace vm

@@ -1,0 +1,93 @@
+#include "vm/runtime/forces.h"
+
+#include "ir/bytecode/renames.h"
+
+namespace vm {
+namespace {
+
+// Bytes that stand for the same value in the other image; empty when there are none.
+base::Bytes carry_over(const ir::Image& from, const Force& force, const ir::Image& to,
+                       const ir::Symbol& symbol) {
+  bool same_type = from.types.text(force.symbol.type) == to.types.text(symbol.type);
+  if (same_type && from.types[force.symbol.type].kind != ir::Kind::kEnum) return force.value;
+  ir::Symbol alone = force.symbol;
+  alone.data = 0;
+  std::string text = ir::format_value(from, alone, force.value);
+  base::Result<base::Bytes> value = ir::parse_value(to, symbol.type, text);
+  return value.ok() ? *value : base::Bytes{};
+}
+
+// Paths of one version's variables in the other one, whichever of them renames (case 47).
+class RenamedPaths {
+ public:
+  RenamedPaths(const ir::Image& from, const ir::Image& to)
+      : from_(from), to_(to), there_(from, to), back_(to, from) {}
+
+  std::string find(const Force& force) const {
+    if (!there_.renamed() && !back_.renamed()) return force.path;
+    const std::string before = ir::path_of(from_, force.symbol);
+    std::string after;
+    if (there_.renamed()) {
+      after = ir::path_of(there_.image(), force.symbol);
+    } else {
+      base::Result<ir::Symbol> symbol = ir::find_symbol(back_.image(), before);
+      if (symbol.ok()) after = ir::path_of(to_, *symbol);
+    }
+    return before == after ? force.path : after;
+  }
+
+ private:
+  const ir::Image& from_;
+  const ir::Image& to_;
+  ir::OldUnderNewNames there_;
+  ir::OldUnderNewNames back_;
+};
+
+}  // namespace
+
+std::string hold_text(const std::string& reason) {
+  return reason.empty() ? "everywhere" : "at the boundaries of cycles: " + reason;
+}
+
+ForcedSet ForcedSet::make(const ir::VerifiedImage& image, const CodeTable& own,
+                          std::vector<Force> forces, const TierOptions& tier) {
+  ForcedSet set;
+  set.forces = std::move(forces);
+  std::vector<Variable> variables;
+  for (const Force& force : set.forces) {
+    const auto size = static_cast<uint32_t>(force.value.size());
+    variables.push_back({force.symbol.data, size, force.symbol.type});
+  }
+  set.code = ForcedCode::make(image, own, variables, tier);
+  for (size_t i = 0; i < set.forces.size(); ++i) {
+    set.forces[i].reason = set.code == nullptr ? std::string() : set.code->reason(i);
+  }
+  return set;
+}
+
+ForcedSet ForcedSet::adopt(const ir::VerifiedImage& image, const CodeTable& own,
+                           const ir::Image& from, const std::vector<Force>& rows,
+                           const TierOptions& tier) {
+  if (rows.empty()) return {};
+  const ir::Image& to = image.image();
+  const RenamedPaths paths(from, to);
+  std::vector<Force> forces;
+  std::vector<std::string> ended;
+  for (const Force& row : rows) {
+    Force force = row;
+    force.path = paths.find(row);
+    base::Result<ir::Symbol> symbol = ir::find_symbol(to, force.path);
+    base::Bytes value;
+    if (symbol.ok() && !symbol->constant) value = carry_over(from, force, to, *symbol);
+    if (value.empty()) {
+      ended.push_back(row.path);
+    } else {
+      forces.push_back({force.path, *symbol, std::move(value)});
+    }
+  }
+  ForcedSet set = make(image, own, std::move(forces), tier);
+  set.ended = std::move(ended);
+  return set;
+}
+
+}  // namespace vm

@@ -1,0 +1,50 @@
+// Forces on variables of one version of a program, and what takes them to another.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+#include "ir/bytecode/symbols.h"
+#include "vm/load/forced_code.h"
+
+namespace vm {
+
+struct Force {
+  std::string path;
+  ir::Symbol symbol;
+  base::Bytes value;
+  std::string reason = {};  // why it holds at the boundaries of cycles only; "": everywhere
+};
+// "everywhere", or "at the boundaries of cycles: " and the reason.
+std::string hold_text(const std::string& reason);
+struct NamedValue {
+  std::string path;
+  std::string value;
+};
+
+// The forces on a generation's variables.
+struct ForcedSet {
+  std::vector<Force> forces;
+  std::vector<std::string> ended;          // paths of those that were not adopted
+  std::shared_ptr<const ForcedCode> code;  // null: that of the generation
+  // Finds out how `forces` hold on variables of the image, and makes the code.
+  static ForcedSet make(const ir::VerifiedImage& image, const CodeTable& own,
+                        std::vector<Force> forces, const TierOptions& tier);
+  // Of forces of another image by path; what has no place of its kind here ends.
+  static ForcedSet adopt(const ir::VerifiedImage& image, const CodeTable& own,
+                         const ir::Image& from, const std::vector<Force>& forces,
+                         const TierOptions& tier);
+};
+
+// What prepare_force() made: for every version of the program that runs or can come to run.
+struct ForceChange {
+  struct Row {
+    const Generation* generation = nullptr;
+    ForcedSet set;
+  };
+  std::vector<Row> rows;
+};
+
+}  // namespace vm
