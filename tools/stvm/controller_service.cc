@@ -180,6 +180,7 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.devices = controller_.devices();
   report.memory = vm::memory_report(controller_.image());
   report_tier(controller_.generation(), report);
+  report.pous_to_make = controller_.pous_to_make();
   return vm::encode(report);
 }
 

@@ -162,7 +162,7 @@ base::Result<int> run_alone(const Settings& settings,
   const bool virtual_time = options.has("--virtual-time");
   vm::Clock& clock = virtual_time ? static_cast<vm::Clock&>(virtual_clock) : real_clock;
   ResourceController::Settings start{options, {}, virtual_time, nullptr, program, 0};
-  start.limits.tier.tier = settings.tier;
+  start.limits.tier = tier_options(settings.tier, virtual_time);
   if (settings.hard_mode == HardMode::kFuel1) start.limits.fuel_slice = 1;
   auto running = ResourceController::start(start, clock, {});
   if (!running.ok()) return running.error();

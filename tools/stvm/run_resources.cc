@@ -226,10 +226,10 @@ base::Result<int> run_resources(const std::vector<Resource>& resources, const Ru
   base::Result<vm::Tier> tier = tier_of(options);
   if (!tier.ok()) return tier.error();
   vm::ControllerOptions limits;
-  limits.tier.tier = *tier;
   auto exchange = make_exchange(resources);
   if (!exchange.ok()) return exchange.error();
   const bool virtual_time = options.has("--virtual-time");
+  limits.tier = tier_options(*tier, virtual_time);
   vm::RealClock real_clock;
   std::vector<vm::VirtualClock> virtual_clocks(resources.size());
   Running running;

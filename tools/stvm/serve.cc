@@ -116,7 +116,7 @@ base::Result<vm::ControllerOptions> limits_of(const tools::Options& options) {
   limits.code_limit = *code_limit;
   base::Result<vm::Tier> tier = tier_of(options);
   if (!tier.ok()) return tier.error();
-  limits.tier.tier = *tier;
+  limits.tier = tier_options(*tier, options.has("--virtual-time"));
   return limits;
 }
 

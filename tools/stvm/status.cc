@@ -24,6 +24,13 @@ constexpr tools::Command kCommand{"status", "", "Shows what a controller runs an
 bool on_trial(const vm::StatusReport& report) { return report.change == "trial"; }
 
 void print_tier(const vm::StatusReport& report) {
+  if (report.pous_to_make != 0) {
+    std::printf(
+        "  code        interpreted; machine code of %llu of %llu POUs is still to be made\n",
+        static_cast<unsigned long long>(report.pous_to_make),
+        static_cast<unsigned long long>(report.pous));
+    return;
+  }
   if (report.native_pous == 0) {
     std::printf("  code        interpreted\n");
     return;
@@ -174,7 +181,7 @@ void print_json(const vm::StatusReport& report) {
   json.field("faulted", report.faulted).field("forces", report.forces);
   json.field("boundary_forces", report.boundary_forces);
   json.field("pous", report.pous).field("native_pous", report.native_pous);
-  json.field("native_bytes", report.native_bytes);
+  json.field("native_bytes", report.native_bytes).field("pous_to_make", report.pous_to_make);
   json.key("interpreted").begin_array();
   for (const std::string& pou : report.interpreted) json.value(pou);
   json.end_array();

@@ -16,4 +16,11 @@ base::Result<vm::Tier> tier_of(const tools::Options& options) {
   return base::Error{base::Refusal::kUsage, "--tier is auto, native or interp, not `" + name + "`"};
 }
 
+vm::TierOptions tier_options(vm::Tier tier, bool virtual_time) {
+  vm::TierOptions out;
+  out.tier = tier;
+  if (tier == vm::Tier::kAuto && !virtual_time) out.making = vm::Making::kBeside;
+  return out;
+}
+
 }  // namespace stvm

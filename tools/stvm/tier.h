@@ -11,5 +11,8 @@ namespace stvm {
 
 // kUsage for other names.
 base::Result<vm::Tier> tier_of(const tools::Options& options);
+// In real time with --tier auto the first scan does not wait for machine code; in virtual time, and
+// with --tier native, it is there before.
+vm::TierOptions tier_options(vm::Tier tier, bool virtual_time);
 
 }  // namespace stvm

@@ -18,9 +18,17 @@ enum class Fusing : uint8_t {
   kAlways,  // also what the interpreter does for native code
 };
 
+// When is machine code of the first version made? That of later ones is there when they are
+// prepared.
+enum class Making : uint8_t {
+  kAtOnce,
+  kBeside,  // by another thread, while the program is interpreted (vm/runtime/controller.h)
+};
+
 struct TierOptions {
   Tier tier = Tier::kAuto;
   Fusing fusing = Fusing::kAuto;
+  Making making = Making::kAtOnce;
   // Hard modes (docs/TESTING.md).
   uint32_t integer_registers = 0;  // at most so many; 0: all
   uint32_t float_registers = 0;
@@ -28,6 +36,7 @@ struct TierOptions {
   uint64_t fusing_seed = 0;  // not 0: at every other place, at random
   bool alternates = false;   // every other generation is interpreted
   uint64_t pou_seed = 0;     // not 0: every other POU is interpreted, at random
+  uint64_t take_at = 0;      // not 0: what was made beside is taken when this cycle begins
   bool plain = false;        // no instructions that only newer machines have
 };
 

@@ -154,12 +154,22 @@ base::Result<std::unique_ptr<Generation>> Generation::build(ir::VerifiedImage ve
   for (const ir::Range& range : image.ranges) made->ranges_.push_back({range.low, range.high});
   made->write_pool(memory);
   code->clean_bools = made->bools_.stay_clean();
-  if (!tier.alternates || number % 2 == 0) {
+  const bool later = tier.making == Making::kBeside && running == nullptr;
+  if (!later && (!tier.alternates || number % 2 == 0)) {
     code->native = native::Program::make(image, code->clean_bools, code->pous, tier,
                                          running == nullptr ? nullptr : running->native());
   }
   made->code_ = code;
   return made;
+}
+
+void Generation::make_native(const TierOptions& tier, native::Progress& progress) {
+  const auto table = std::make_shared<CodeTable>(*code_);
+  table->native =
+      native::Program::make(image(), table->clean_bools, table->pous, tier, nullptr, {}, &progress);
+  if (table->native == nullptr) return;
+  with_native_ = table;
+  newest_.store(&with_native_, std::memory_order_release);
 }
 
 }  // namespace vm

@@ -3,6 +3,7 @@
 // constant pool. Immutable once built; at most two exist, running and previous.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -15,7 +16,8 @@
 namespace vm {
 namespace native {
 class Program;
-}
+struct Progress;
+}  // namespace native
 
 struct PouEntry {
   const ir::Unit* code = nullptr;  // first unit, decoded
@@ -92,9 +94,15 @@ class Generation {
   uint32_t pool_offset() const;
   // The constant pool to its place in data memory.
   void write_pool(uint8_t* memory) const;
-  // Of its image as it is. It can be held longer than the generation.
-  const std::shared_ptr<const CodeTable>& code() const { return code_; }
-  const std::vector<PouEntry>& pous() const { return code_->pous; }
+  // Of its image as it is; what is newest of it. Any thread. It can be held longer than the
+  // generation.
+  const std::shared_ptr<const CodeTable>& code() const {
+    return *newest_.load(std::memory_order_acquire);
+  }
+  const std::vector<PouEntry>& pous() const { return code()->pous; }
+  // Makes the machine code that build() left out (Making::kBeside), on any thread, once. Executions
+  // go on with the table that they began with.
+  void make_native(const TierOptions& tier, native::Progress& progress);
   const std::vector<InstanceEntry>& instances() const { return instances_; }
   const std::vector<AreaEntry>& areas() const { return areas_; }
   const std::vector<uint32_t>& area_slots() const { return area_slots_; }
@@ -114,7 +122,7 @@ class Generation {
     }
   }
   // Machine code of its POUs; null: everything is interpreted.
-  const native::Program* native() const { return code_->native.get(); }
+  const native::Program* native() const { return code()->native.get(); }
   const ir::Bools& bools() const { return bools_; }
   // Tries that one POU can have open at once, at most.
   uint32_t try_depth() const { return try_depth_; }
@@ -137,6 +145,8 @@ class Generation {
   uint32_t number_ = 0;
   std::shared_ptr<CodeSlots> slots_;
   std::shared_ptr<const CodeTable> code_;
+  std::shared_ptr<const CodeTable> with_native_;  // made beside
+  std::atomic<const std::shared_ptr<const CodeTable>*> newest_ = &code_;
   std::vector<InstanceEntry> instances_;
   std::vector<BoundEntry> bounds_;
   std::vector<RangeEntry> ranges_;

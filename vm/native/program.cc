@@ -222,7 +222,8 @@ Program::~Program() = default;
 std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_bools,
                                              std::vector<PouEntry>& pous,
                                              const TierOptions& options, const Program* running,
-                                             std::span<const ir::PouVersion> versions) {
+                                             std::span<const ir::PouVersion> versions,
+                                             Progress* progress) {
   if (options.tier == Tier::kInterpreter || !is_available()) return nullptr;
   const auto made = std::make_shared<Program>(Key());
   const host::HostTarget target;
@@ -241,6 +242,10 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_
     return old.units == pous[number].code && old.facts == facts_by_pou[number];
   };
   for (uint32_t number = 0; number < pous.size(); ++number) {
+    if (progress != nullptr) {
+      if (progress->stop) return nullptr;
+      progress->pous = number;
+    }
     if (is_same(number)) {
       const std::shared_ptr<const PouNative>& old = running->pous_[number];
       if (old->machine != nullptr &&

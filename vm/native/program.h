@@ -2,6 +2,7 @@
 // on. What the native tier has no code for is interpreted, and says why.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -24,6 +25,12 @@ struct PouNative;
 // Has this machine a native tier?
 bool is_available();
 
+// Of a Program that is made while others look.
+struct Progress {
+  std::atomic<bool> stop = false;  // it is not wanted any more: what is made is null
+  std::atomic<uint32_t> pous = 0;  // are done
+};
+
 class Program {
   struct Key {};
 
@@ -37,7 +44,8 @@ class Program {
   static std::shared_ptr<const Program> make(const ir::Image& image, bool clean_bools,
                                              std::vector<PouEntry>& pous,
                                              const TierOptions& options, const Program* running,
-                                             std::span<const ir::PouVersion> versions = {});
+                                             std::span<const ir::PouVersion> versions = {},
+                                             Progress* progress = nullptr);
 
   // Runs machine code. True: its POU returned, and the caller's record is on top; else the Context
   // says where the interpreter goes on, or that it has stopped.

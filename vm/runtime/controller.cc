@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/check.h"
+#include "vm/runtime/native_maker.h"
 #include "vm/runtime/scheduler.h"
 #include "vm/runtime/stamp_ref.h"
 #include "vm/runtime/task_tables.h"
@@ -66,6 +67,7 @@ struct Controller::Impl {
   std::unique_ptr<Generation> running;
   // Of the running generation, and of one that is prepared or can come back by undo.
   TablesByGeneration tables;
+  NativeMaker native_maker;  // ends before the generation that it works on
 };
 
 Controller::Controller() = default;
@@ -92,10 +94,15 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
   impl.scheduler.run_start_tasks();
   if (!impl.scheduler.faulted()) io.publish_globals(tables->shared, impl.memory.data());
   impl.tables[impl.running.get()] = std::move(tables);
+  if (impl.tier.making == Making::kBeside) {
+    impl.native_maker.start(*impl.running, impl.tier);
+  }
   return controller;
 }
 
 void Controller::cycle() {
+  Impl& impl = *impl_;
+  impl.native_maker.take(impl.scheduler.tables(), impl.tier.take_at, impl.scheduler.cycles());
   impl_->scheduler.run_cycle();
   if (!at_boundary() || faulted()) return;
   const TaskTables& tables = impl_->scheduler.tables();
@@ -249,8 +256,11 @@ const std::vector<std::string>& Controller::ended_forces(const Generation& prepa
   return impl_->tables.at(&prepared)->forced.ended;
 }
 
+uint32_t Controller::pous_to_make() const { return impl_->native_maker.to_make(); }
+
 base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage next_image) {
   const Generation* running = impl_->running.get();
+  impl_->native_maker.wait();  // code that stays the same is shared
   std::erase_if(impl_->tables, [&](const auto& row) { return row.first != running; });
   auto next = Generation::build(std::move(next_image), running->number() + 1, impl_->memory.data(),
                                 impl_->code_slots, running, impl_->tier);
@@ -371,6 +381,7 @@ base::Result<ir::Symbol> Controller::Impl::writable(std::string_view path) const
 
 // Prepared tables carry the forces too, so that a switch need not look them up.
 std::unique_ptr<ForceChange> Controller::Impl::prepare_forces(std::vector<Force> forces) const {
+  native_maker.wait();  // what has no version keeps its machine code
   auto change = std::make_unique<ForceChange>();
   for (const auto& [generation, other] : tables) {
     if (generation == running.get()) continue;

@@ -114,6 +114,9 @@ class Controller {
   const ir::Image& image() const;
   const ir::VerifiedImage& verified() const;
   const Generation& generation() const;
+  // Making::kBeside: machine code of so many POUs is still to be made by a thread in the
+  // background; until then all are interpreted. Any thread.
+  uint32_t pous_to_make() const;
   Memory& memory();
   uint64_t data_limit() const;
   std::vector<TaskStatus> tasks() const;

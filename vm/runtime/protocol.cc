@@ -160,6 +160,7 @@ void status_fields(A& a, T& report) {
   a(report.pous);
   a(report.native_pous);
   a(report.native_bytes);
+  a(report.pous_to_make);
   a.list(report.interpreted, kTextBytes);
   a.list(report.tasks, 130);
   a.list(report.traps, 28);

@@ -86,6 +86,7 @@ struct StatusReport {
   uint64_t pous = 0;
   uint64_t native_pous = 0;  // that run as machine code; 0: everything is interpreted
   uint64_t native_bytes = 0;
+  uint64_t pous_to_make = 0;  // machine code of so many is still being made
   std::vector<std::string> interpreted;  // "POU: why", the first few, where there is machine code
   std::vector<TaskStatus> tasks;
   std::vector<TrapRow> traps;

@@ -2,6 +2,7 @@
 
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -52,6 +53,14 @@ base::Status make_real_time(const RealTimeOptions& options) {
   if (sched_setscheduler(0, SCHED_FIFO, &parameter) == 0) return base::Ok{};
   return refused("SCHED_FIFO with priority " + std::to_string(options.fifo_priority),
                  "raise `ulimit -r`, or LimitRTPRIO in the unit; `stvm doctor` shows the limits");
+}
+
+void run_in_background() {
+  // Whatever the thread that began it has. What cannot be had is no harm: it is a normal thread
+  // then.
+  sched_param none{};
+  sched_setscheduler(0, SCHED_BATCH, &none);
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);
 }
 
 void prefault(Controller& controller) {

@@ -18,6 +18,8 @@ struct RealTimeOptions {
 
 // Of the calling thread; kNotPermitted, kUsage for a processor that is not there.
 base::Status make_real_time(const RealTimeOptions& options);
+// The calling thread gives way to all others.
+void run_in_background();
 // Touches the pages of all data areas and of the stack, so that no scan meets a page fault.
 void prefault(Controller& controller);
 

@@ -32,6 +32,8 @@ const char* tier_name(Tier tier) {
       return "native, random registers and tiers";
     case Tier::kAlternating:
       return "another tier after every scan";
+    case Tier::kBeside:
+      return "machine code that comes later, fuel 1";
   }
   return "?";
 }

@@ -25,11 +25,12 @@ enum class Tier : uint8_t {
   kFewRegisters,  // native with as few registers as it can do with
   kSpills,        // native; registers are taken from values at random, some POUs interpreted
   kAlternating,   // as kIdentity; every other generation is interpreted
+  kBeside,        // machine code takes its place in the third cycle; suspended at every safe point
 };
-inline constexpr Tier kTiers[] = {Tier::kEvaluator,    Tier::kInterpreter, Tier::kUnfused,
-                                  Tier::kFuelOne,      Tier::kIdentity,    Tier::kMoveAll,
-                                  Tier::kStandby,      Tier::kNative,      Tier::kNativeFuelOne,
-                                  Tier::kFewRegisters, Tier::kSpills,      Tier::kAlternating};
+inline constexpr Tier kTiers[] = {
+    Tier::kEvaluator, Tier::kInterpreter, Tier::kUnfused, Tier::kFuelOne,       Tier::kIdentity,
+    Tier::kMoveAll,   Tier::kStandby,     Tier::kNative,  Tier::kNativeFuelOne, Tier::kFewRegisters,
+    Tier::kSpills,    Tier::kAlternating, Tier::kBeside};
 const char* tier_name(Tier tier);
 
 class Engine {

@@ -71,6 +71,10 @@ vm::TierOptions tier_options(Tier tier) {
       out.fusing = vm::Fusing::kAlways;
       out.fusing_seed = 11;
       break;
+    case Tier::kBeside:
+      out.making = vm::Making::kBeside;
+      out.take_at = 2;
+      break;
   }
   return out;
 }
@@ -86,7 +90,9 @@ class MachineEngine : public Engine {
     options.fuel_budget = 20'000'000;
     // As in the evaluator: a trap ends the scan of its task, and nothing else.
     options.on_trap = ir::OnTrap::kGoOn;
-    if (tier_ == Tier::kFuelOne || tier_ == Tier::kNativeFuelOne) options.fuel_slice = 1;
+    if (tier_ == Tier::kFuelOne || tier_ == Tier::kNativeFuelOne || tier_ == Tier::kBeside) {
+      options.fuel_slice = 1;
+    }
     options.tier = tier_options(tier_);
     auto controller = vm::Controller::start(*image, options, clock_, devices_);
     if (!controller.ok()) return controller.error();

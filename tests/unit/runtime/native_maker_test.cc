@@ -1,0 +1,116 @@
+// Machine code of the first version is made beside its first scans.
+#include "tests/unit/runtime/plant.h"
+#include "vm/native/program.h"
+
+namespace runtime_test {
+namespace {
+
+constexpr uint32_t kBlocks = 300;
+
+// A program that calls blocks of many types, and one in a slow task, which takes several cycles.
+std::string many_blocks() {
+  std::string out;
+  std::string variables;
+  std::string calls;
+  for (uint32_t i = 0; i < kBlocks; ++i) {
+    const std::string number = std::to_string(i);
+    out += "FUNCTION_BLOCK B" + number +
+           " VAR k, n : DINT; END_VAR FOR k := 1 TO 3 DO n := n + k; END_FOR; END_FUNCTION_BLOCK\n";
+    variables += " b" + number + " : B" + number + ";";
+    calls += " b" + number + "();";
+  }
+  return out + "PROGRAM P VAR scans : DINT;" + variables + " END_VAR scans := scans + 1;" + calls +
+         R"( END_PROGRAM
+PROGRAM S VAR k, n : DINT; END_VAR FOR k := 1 TO 400 DO n := n + 1; END_FOR; END_PROGRAM
+CONFIGURATION c RESOURCE r ON cpu
+  TASK Fast (INTERVAL := T#10ms, PRIORITY := 0);
+  TASK Slow (INTERVAL := T#100ms, PRIORITY := 1);
+  PROGRAM A WITH Fast : P;
+  PROGRAM B WITH Slow : S;
+END_RESOURCE END_CONFIGURATION)";
+}
+
+vm::ControllerOptions beside(uint64_t take_at = 0) {
+  vm::ControllerOptions out;
+  out.tier.making = vm::Making::kBeside;
+  out.tier.take_at = take_at;
+  return out;
+}
+
+TEST(NativeMaker, ScansDoNotWaitForMachineCodeAndGoOnWithIt) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier for this machine";
+  Plant plant(many_blocks(), beside());
+  ASSERT_TRUE(plant.ok());
+  int cycles = 0;
+  do {
+    plant.cycles(1);
+    ++cycles;
+  } while (plant->pous_to_make() != 0);
+  plant.cycles(2);
+  ASSERT_NE(plant->generation().native(), nullptr);
+  EXPECT_EQ(plant->generation().native()->native_pous(), plant->image().pous.size());
+  EXPECT_EQ(plant.get("A.scans"), std::to_string(cycles + 2));
+  EXPECT_EQ(plant.get("A.b7.n"), std::to_string(6 * (cycles + 2)));
+}
+
+TEST(NativeMaker, AChangePreparedMeanwhileSharesItsCode) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier for this machine";
+  Plant plant(many_blocks(), beside());
+  ASSERT_TRUE(plant.ok());
+  auto next = plant->prepare(plant->verified());
+  ASSERT_TRUE(next.ok());
+  EXPECT_EQ(plant->pous_to_make(), 0u);
+  for (uint32_t pou = 0; pou < plant->image().pous.size(); ++pou) {
+    EXPECT_NE((*next)->pous()[pou].machine, nullptr);
+    EXPECT_EQ((*next)->pous()[pou].machine, plant->generation().pous()[pou].machine);
+  }
+  plant.cycles(1);
+  auto old = plant->publish(std::move(*next));
+  plant.cycles(1);
+  auto newer = plant->publish(std::move(old));
+  plant.cycles(1);
+  EXPECT_EQ(plant.get("A.scans"), "3");
+}
+
+TEST(NativeMaker, AForceMeanwhileIsAVersionOfMachineCodeAndEndsWithIt) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier for this machine";
+  Plant plant(many_blocks(), beside(3));
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(1);
+  ASSERT_TRUE(plant->force("A.scans", "70").ok());
+  plant.cycles(4);
+  EXPECT_EQ(plant.get("A.scans"), "70");
+  ASSERT_TRUE(plant->unforce("A.scans").ok());
+  plant.cycles(2);
+  EXPECT_EQ(plant.get("A.scans"), "72");
+  EXPECT_EQ(plant.get("A.b7.n"), std::to_string(6 * 7));
+  ASSERT_NE(plant->generation().native(), nullptr);
+}
+
+// Whoever was interrupted ends with what it began with; whoever begins finds machine code.
+TEST(NativeMaker, B1ATaskInTheMiddleGoesOnWhenMachineCodeComes) {
+  constexpr int64_t kNsPerSafePoint = 20'000;
+  Plant there(many_blocks(), {}, kNsPerSafePoint);
+  Plant comes(many_blocks(), beside(2), kNsPerSafePoint);
+  ASSERT_TRUE(there.ok() && comes.ok());
+  for (int i = 0; i < 30; ++i) {
+    there.cycles(1);
+    comes.cycles(1);
+    for (const char* path : {"A.scans", "B.n", "B.k", "A.b299.n"}) {
+      EXPECT_EQ(there.get(path), comes.get(path)) << path << " in cycle " << i;
+    }
+    EXPECT_EQ(there.clock.now_ns(), comes.clock.now_ns());
+  }
+  EXPECT_GT(there.task("Slow").scans, 1u);
+}
+
+TEST(NativeMaker, AControllerMayEndMeanwhile) {
+  for (int i = 0; i < 3; ++i) {
+    Plant plant(many_blocks(), beside());
+    ASSERT_TRUE(plant.ok());
+    plant.cycles(i);
+  }
+}
+
+}  // namespace
+}  // namespace runtime_test
