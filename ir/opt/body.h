@@ -33,9 +33,10 @@ class Constants {
  public:
   explicit Constants(const Pou& pou);
   std::optional<uint64_t> operator[](ValueId value) const {
-    return known_[value.index] ? std::optional<uint64_t>(bits_[value.index]) : std::nullopt;
+    return known(value) ? std::optional<uint64_t>(bits_[value.index]) : std::nullopt;
   }
-  bool known(ValueId value) const { return known_[value.index]; }
+  // False of values that were made behind the constructor and not set.
+  bool known(ValueId value) const { return value.index < known_.size() && known_[value.index]; }
   void set(ValueId value, uint64_t bits);
 
  private:

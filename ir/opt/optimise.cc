@@ -29,9 +29,9 @@ constexpr auto kRows = [] {
 // What one pass finds out, a later one uses: constants come to light behind calls that
 // became bodies, branches behind constants, single values behind dead stores.
 constexpr Pass kOrder[] = {
-    Pass::kInline,   Pass::kTexts,    Pass::kNumbers, Pass::kFold, Pass::kBranches,
-    Pass::kCopies,   Pass::kStores,   Pass::kNumbers, Pass::kFold, Pass::kChecks,
-    Pass::kStrength, Pass::kBranches, Pass::kStores,  Pass::kDead,
+    Pass::kInline,   Pass::kTexts,    Pass::kNumbers, Pass::kFold,  Pass::kBranches,
+    Pass::kCopies,   Pass::kStores,   Pass::kNumbers, Pass::kFold,  Pass::kChecks,
+    Pass::kStrength, Pass::kBranches, Pass::kStores,  Pass::kLoops, Pass::kDead,
 };
 
 constexpr size_t kBatch = 8;  // POUs that a thread takes at a time

@@ -22,7 +22,9 @@ class Dominators {
     return reachable(a) && first_[order_of_[a]] <= first_[order_of_[b]] &&
            first_[order_of_[b]] <= last_[order_of_[a]];
   }
+  // In reverse post order: those of order(), and where a reachable block is in it.
   const std::vector<uint32_t>& order() const { return order_; }
+  uint32_t position(uint32_t block) const { return order_of_[block]; }
 
  private:
   static constexpr uint32_t kNone = 0xffffffffu;
