@@ -220,7 +220,8 @@ TEST(GlobalExchange, NothingIsTornWhileVersionsComeAndGo) {
     side.run(*next);
     order.next.store(nullptr, std::memory_order_release);
   };
-  uint64_t torn = 0, back = 0, seen = 0, published = 0;
+  uint64_t torn = 0, back = 0, published = 0;
+  std::atomic<uint64_t> seen{0};
   std::thread writing([&] {
     while (!stop) {
       obey(orders[0], *pair.writer);
@@ -263,6 +264,10 @@ TEST(GlobalExchange, NothingIsTornWhileVersionsComeAndGo) {
     });
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  // A busy machine may need longer for as much.
+  for (int i = 0; i < 600 && (seen <= 50 || changes <= 20); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
   stop = true;
   for (std::thread* thread : {&writing, &reading, &changing[0], &changing[1]}) thread->join();
   EXPECT_EQ(torn, 0u);
