@@ -32,7 +32,7 @@ Allocator::Allocator(const Function& function, const Target& target,
   regs_[1].fill(kNone);
   out_.blocks.resize(f_.blocks.size());
   out_.exits.resize(f_.exits.size());
-  preds_.resize(f_.blocks.size());
+  first_pred_.assign(f_.blocks.size() + 1, 0);
   users_.assign(f_.blocks.size(), 0);
   ends_.resize(f_.blocks.size());
   heads_.resize(f_.blocks.size());
@@ -43,10 +43,20 @@ Allocator::Allocator(const Function& function, const Target& target,
       for (size_t i = 0; i < params.size(); ++i) hint_[end.args[0][i]] = params[i];
       continue;
     }
-    for (uint32_t i = 0; i < 2; ++i) {
-      if (end.target[i] == kNone) continue;
-      preds_[end.target[i]].push_back({b, i});
+    for (const Block to : end.target) {
+      if (to == kNone) continue;
+      ++first_pred_[to + 1];
       ++users_[b];
+    }
+  }
+  for (Block b = 0; b < f_.blocks.size(); ++b) first_pred_[b + 1] += first_pred_[b];
+  preds_.resize(first_pred_.back());
+  std::vector<uint32_t> fill(first_pred_.begin(), first_pred_.end() - 1);
+  for (Block b = 0; b < f_.blocks.size(); ++b) {
+    const End& end = f_.blocks[b].end;
+    if (end.kind == EndKind::kLoop) continue;
+    for (uint32_t i = 0; i < 2; ++i) {
+      if (end.target[i] != kNone) preds_[fill[end.target[i]]++] = {b, i};
     }
   }
 }
@@ -56,6 +66,7 @@ base::Result<Allocated> Allocator::run() {
     steps_ = &out_.blocks[b].steps;
     position_ = uses_.begin_of(b);
     find_live_out(b);
+    steps_->reserve(f_.blocks[b].nodes.size());
     begin(b);
     for (const uint32_t n : f_.blocks[b].nodes) {
       ++position_;
@@ -251,9 +262,9 @@ void Allocator::node(uint32_t number) {
 void Allocator::end(Block block) {
   const End& e = f_.blocks[block].end;
   // What the ways from here want, asked first: questions behind this position forget it.
-  std::vector<Val> wanted;
+  wanted_.clear();
   for (const Val v : live_) {
-    if (next_use(v, position_) != kNone) wanted.push_back(v);
+    if (next_use(v, position_) != kNone) wanted_.push_back(v);
   }
   uint32_t locked[2] = {0, 0};
   for (uint32_t i = 0; i < 2; ++i) {
@@ -279,15 +290,16 @@ void Allocator::end(Block block) {
   }
   record_exit(e.exit);
   Snapshot now;
-  for (const Val v : wanted) {
+  if (e.kind == EndKind::kLoop || users_[block] != 0) now.reserve(wanted_.size());
+  for (const Val v : wanted_) {
     now.push_back({v, reg_[v], saved_[v] != 0, clean_[v] != 0, home_[v], slot_[v]});
   }
   if (e.kind == EndKind::kLoop) {
     out_.blocks[block].edges[0] = edge(block, 0, now, heads_[e.target[0]]);
   }
   if (users_[block] != 0) ends_[block] = std::move(now);
-  const std::vector<Val> was = live_;
-  for (const Val v : was) {
+  was_ = live_;
+  for (const Val v : was_) {
     if (next_use(v, position_ + 1) == kNone) remove_live(v);
   }
 }

@@ -11,7 +11,7 @@ constexpr uint32_t kFreeInLoops = 2;  // registers for what the body computes
 
 bool Allocator::lives_into(Block block, Val v, const std::vector<Val>& params) const {
   if (is_constant(v)) return true;
-  const std::vector<Val>& live = uses_.live_in(block);
+  const std::span<const Val> live = uses_.live_in(block);
   return std::binary_search(live.begin(), live.end(), v) ||
          std::find(params.begin(), params.end(), v) != params.end();
 }
@@ -35,7 +35,7 @@ void Allocator::restore(const Snapshot& snapshot, Block block) {
 }
 
 void Allocator::begin(Block block) {
-  const std::vector<Pred>& preds = preds_[block];
+  const std::span<const Pred> preds = this->preds(block);
   const bool head = f_.blocks[block].head;
   if (preds.size() == 1 && !head && f_.blocks[block].params.empty() && !f_.blocks[block].resumes) {
     restore(ends_[preds[0].block], block);
@@ -64,7 +64,7 @@ const Allocator::Held* Allocator::stamped(Val v) const {
 
 // Values that every way brings, and the parameters.
 void Allocator::meet(Block block) {
-  const std::vector<Pred>& preds = preds_[block];
+  const std::span<const Pred> preds = this->preds(block);
   const BasicBlock& b = f_.blocks[block];
   clear_state();
   Snapshot state;
@@ -201,7 +201,7 @@ void Allocator::place_parameters(Block block, Snapshot& state) {
         f_.blocks[block].head ? count_[fl] - std::min(count_[fl], kFreeInLoops) : count_[fl];
     int reg = -1;
     if (placed[fl] < room) {
-      for (const Pred& pred : preds_[block]) {
+      for (const Pred& pred : preds(block)) {
         const Val arg = f_.blocks[pred.block].end.args[pred.target][i];
         for (const Held& held : ends_[pred.block]) {
           if (held.v != arg || held.reg < 0 || floating(held.v) != fl) continue;

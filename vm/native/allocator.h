@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "vm/native/uses.h"
@@ -109,7 +110,11 @@ class Allocator {
   std::vector<Val> hint_;          // the parameter of a loop head that the value becomes
   std::vector<int8_t> parameter_;  // registers of loop heads' parameters where they begin
 
-  std::vector<std::vector<Pred>> preds_;
+  std::span<const Pred> preds(Block block) const {
+    return {preds_.data() + first_pred_[block], preds_.data() + first_pred_[block + 1]};
+  }
+  std::vector<uint32_t> first_pred_;  // by block, in `preds_`
+  std::vector<Pred> preds_;
   std::vector<uint32_t> users_;
   std::vector<Snapshot> ends_;
   std::vector<Snapshot> heads_;
@@ -120,6 +125,7 @@ class Allocator {
   std::vector<uint32_t> live_out_;  // by value: == block_stamp_
   uint32_t block_stamp_ = 0;
   uint32_t block_end_ = 0;
+  std::vector<Val> wanted_, was_;  // of end()
 };
 
 }  // namespace vm::native

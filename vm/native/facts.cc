@@ -176,11 +176,17 @@ void Facts::find_pinned() {
 }
 
 void Facts::find_variables() {
+  named_.reserve(code_.size() * 2);
+  first_named_.resize(code_.size());
+  named_count_.resize(code_.size());
   for (uint32_t i = 0; i < code_.size(); i = next(i)) {
+    first_named_[i] = static_cast<uint32_t>(named_.size());
     for (const Access& access : accesses_of(code_[i])) {
       if (access.base == ir::Base::kConst) continue;
       const auto [at, added] =
           numbers_.try_emplace(key_of(access), static_cast<uint32_t>(variables_.size()));
+      named_.push_back({at->second, access.reads, access.writes});
+      ++named_count_[i];
       if (!added) {
         variables_[at->second].constant &= access.id;
         variables_[at->second].written |= access.writes;
@@ -248,10 +254,9 @@ void Facts::find_loop_effects() {
     const uint32_t behind = blocks_[loop.last].behind;
     for (uint32_t i = blocks_[loop.head].first; i < behind; i = next(i)) {
       if (is_call(code_[i].opcode()) && body_at(i) == nullptr) loop_calls_[l] = true;
-      for (const Access& access : accesses_of(code_[i])) {
-        const uint32_t v = variable(access);
-        if (v != kNone && access.reads) loop_reads_[l].push_back(v);
-        if (!access.writes) continue;
+      for (const auto& [v, reads, writes] : named(i)) {
+        if (reads) loop_reads_[l].push_back(v);
+        if (!writes) continue;
         changed.push_back(v);
         loop_killed_[l].insert(loop_killed_[l].end(), overlaps_[v].begin(), overlaps_[v].end());
       }
@@ -312,31 +317,28 @@ bool Facts::find_liveness(std::string& why) {
           }
         }
       }
-      const Accesses all = accesses_of(code_[*at]);
-      for (const Access& access : all) {
-        if (!access.writes || access.reads) continue;
-        const uint32_t v = variable(access);
-        live[v / 64] &= ~(uint64_t{1} << (v % 64));
+      for (const auto& [v, reads, writes] : named(*at)) {
+        if (writes && !reads) live[v / 64] &= ~(uint64_t{1} << (v % 64));
       }
-      for (const Access& access : all) {
-        if (!access.reads || access.base == ir::Base::kConst) continue;
-        const uint32_t v = variable(access);
-        live[v / 64] |= uint64_t{1} << (v % 64);
+      for (const auto& [v, reads, writes] : named(*at)) {
+        if (reads) live[v / 64] |= uint64_t{1} << (v % 64);
       }
     }
   };
+  // Without loops the first walk has seen everything that comes behind a block.
+  const bool once = loops_.empty();
   for (bool changed = true; changed;) {
     changed = false;
     for (Block b = static_cast<Block>(blocks_.size()); b-- > 0;) {
-      walk(b, false);
+      walk(b, once);
       uint64_t* const in = &live_in_[size_t{b} * words_];
       for (size_t w = 0; w < words_; ++w) {
-        changed |= in[w] != live[w];
+        changed |= !once && in[w] != live[w];
         in[w] = live[w];
       }
     }
   }
-  for (Block b = 0; b < blocks_.size(); ++b) walk(b, true);
+  for (Block b = 0; b < blocks_.size() && !once; ++b) walk(b, true);
   return true;
 }
 

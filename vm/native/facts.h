@@ -171,6 +171,15 @@ class Facts {
   void find_deferred();
   void touched(const Reach& reach, std::vector<uint32_t>& out) const;
   bool find_liveness(std::string& why);
+  // What accesses_of() says of the unit, but for constants.
+  struct Named {
+    uint32_t variable = 0;
+    bool reads = false;
+    bool writes = false;
+  };
+  std::span<const Named> named(uint32_t unit) const {
+    return std::span(named_).subspan(first_named_[unit], named_count_[unit]);
+  }
 
   const ir::Image* image_ = nullptr;
   const ImageFacts* common_ = nullptr;
@@ -187,6 +196,9 @@ class Facts {
   std::vector<std::vector<uint32_t>> loop_deferred_;
   std::vector<bool> pinned_;  // by frame slot: something else knows where it is
   std::vector<Variable> variables_;
+  std::vector<Named> named_;
+  std::vector<uint32_t> first_named_;  // by unit
+  std::vector<uint8_t> named_count_;
   std::unordered_map<uint64_t, uint32_t> numbers_;
   std::vector<std::vector<uint32_t>> overlaps_;
   std::unordered_map<uint32_t, Reach> reach_;  // by offset of a frame slot

@@ -19,6 +19,7 @@ class Inliner {
     const auto count = static_cast<Block>(f_.blocks.size());
     first_.resize(count);
     last_.resize(count);
+    blocks_.reserve(2 * size_t{count});
     for (Block b = 0; b < count; ++b) split(b);
     if (bodies_.empty()) {
       f_.blocks = std::move(blocks_);  // as they were
@@ -215,6 +216,9 @@ bool is_small(const ir::LinkedPou& pou, std::span<const ir::Unit> code) {
 
 std::vector<uint32_t> inline_calls(Function& function,
                                    const std::function<Callee(uint32_t)>& callee_of) {
+  const bool has_some = std::any_of(function.calls.begin(), function.calls.end(),
+                                    [](const Call& call) { return call.inlined; });
+  if (!has_some) return {};
   return Inliner(function, callee_of).run();
 }
 

@@ -1,7 +1,7 @@
 // Operations that a block in front has done already: their values serve again, and questions are
 // asked once. Only within a stretch without calls and loop heads, where values live in registers.
 #include <algorithm>
-#include <unordered_map>
+#include <bit>
 
 #include "vm/native/build.h"
 #include "vm/native/loops.h"
@@ -32,8 +32,10 @@ constexpr uint32_t kMostHops = 64;
 constexpr size_t kMostPlaces = 8;  // of one operation
 
 struct Doing {
+  uint64_t hash = 0;
   uint32_t node = 0;
   Block block = 0;
+  uint32_t earlier = kNone;  // with the same place in the table
 };
 
 class Numbers {
@@ -50,6 +52,8 @@ class Numbers {
   }
 
   void run() {
+    if (f_.blocks.empty()) return;
+    newest_.assign(std::bit_ceil(f_.nodes.size() + 1), kNone);
     find_dominators();
     for (Block b = 0; b < f_.blocks.size(); ++b) block(b);
     if (!any_) return;
@@ -84,25 +88,40 @@ class Numbers {
 
   void block(Block b) {
     const BasicBlock& at = f_.blocks[b];
-    if (at.head || at.resumes || b == 0 || at.loop != f_.blocks[b - 1].loop) known_.clear();
+    if (at.head || at.resumes || b == 0 || at.loop != f_.blocks[b - 1].loop) forget();
     std::erase_if(f_.blocks[b].nodes, [&](uint32_t number) {
       Node& n = f_.nodes[number];
       for (Val& v : n.in) v = now(v);
       n.mem.index = now(n.mem.index);
       n.mem.pointer = now(n.mem.pointer);
-      if (n.op == Op::kCall) known_.clear();
+      if (n.op == Op::kCall) forget();
       if (!is_operation(n) || (n.result != kNone && held_[n.result])) return false;
-      std::vector<Doing>& known = known_[hash_of(n, 0)];
-      for (const Doing& place : known) {
-        if (!same(f_.nodes[place.node], n) || !dominates(place.block, b)) continue;
-        if (n.result != kNone) instead_[n.result] = f_.nodes[place.node].result;
-        n.dead = any_ = true;
-        return true;
+      const uint64_t hash = hash_of(n, 0);
+      const uint32_t before = find(n, hash, b);
+      if (before == kNone) {
+        uint32_t& newest = newest_[(hash >> 32 ^ hash) & (newest_.size() - 1)];
+        done_.push_back({hash, number, b, newest});
+        newest = static_cast<uint32_t>(done_.size() - 1);
+        return false;
       }
-      if (known.size() == kMostPlaces) known.erase(known.begin());
-      known.push_back({number, b});
-      return false;
+      if (n.result != kNone) instead_[n.result] = f_.nodes[before].result;
+      n.dead = any_ = true;
+      return true;
     });
+  }
+
+  void forget() { first_ = static_cast<uint32_t>(done_.size()); }
+
+  // The node that did the same in front; kNone: none did.
+  uint32_t find(const Node& n, uint64_t hash, Block b) const {
+    size_t places = 0;
+    uint32_t at = newest_[(hash >> 32 ^ hash) & (newest_.size() - 1)];
+    for (; at != kNone && at >= first_ && places < kMostPlaces; at = done_[at].earlier) {
+      if (done_[at].hash != hash) continue;
+      ++places;
+      if (same(f_.nodes[done_[at].node], n) && dominates(done_[at].block, b)) return done_[at].node;
+    }
+    return kNone;
   }
 
   void rename() {
@@ -124,10 +143,12 @@ class Numbers {
   }
 
   Function& f_;
-  std::vector<Block> dominator_;                            // the nearest; kNone: none
-  std::vector<Val> instead_;                                // by value
-  std::vector<bool> held_;                                  // by value: a variable's at a loop
-  std::unordered_map<uint64_t, std::vector<Doing>> known_;  // by hash
+  std::vector<Block> dominator_;  // the nearest; kNone: none
+  std::vector<Val> instead_;      // by value
+  std::vector<bool> held_;        // by value: a variable's at a loop
+  std::vector<Doing> done_;
+  uint32_t first_ = 0;            // in `done_`; what is in front is forgotten
+  std::vector<uint32_t> newest_;  // in `done_`, by hash
   bool any_ = false;
 };
 

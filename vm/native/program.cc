@@ -147,6 +147,14 @@ struct Work {
   std::shared_ptr<PouNative> pou;
   Function function;
   Allocated places;
+};
+
+// What is left to do for a POU when addresses are known.
+struct Emitted {
+  std::shared_ptr<PouNative> pou;
+  std::vector<Call> calls;
+  std::vector<uint32_t> head_units;  // of entries.heads
+  uint32_t loops = 0;
   Entries entries;
 };
 
@@ -185,30 +193,49 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
   return true;
 }
 
+Emitted emit(Work& work, const TierOptions& options, const host::Shared& shared,
+             host::Assembler& assembler) {
+  const PouCode code{&work.function,  &work.places, &work.pou->side,
+                     work.pou->units, work.number,  options.plain};
+  Emitted out;
+  out.entries = host::Emitter(code, shared, assembler).run();
+  for (const auto& [block, offset] : out.entries.heads) {
+    out.head_units.push_back(work.function.blocks[block].unit);
+  }
+  out.loops = static_cast<uint32_t>(work.function.loops.size());
+  out.calls = std::move(work.function.calls);
+  out.pou = std::move(work.pou);
+  return out;
+}
+
 // Addresses are known: side units that go on in machine code get them.
-void finish(Work& work, const uint8_t* base) {
-  PouNative& pou = *work.pou;
+void finish(const Emitted& emitted, const uint8_t* base) {
+  PouNative& pou = *emitted.pou;
   SideUnits& side = pou.side;
-  pou.machine = base + work.entries.begin;
-  for (size_t c = 0; c < work.entries.behind_call.size(); ++c) {
-    const Call& call = work.function.calls[c];
+  const Entries& entries = emitted.entries;
+  pou.machine = base + entries.begin;
+  for (size_t c = 0; c < entries.behind_call.size(); ++c) {
+    const Call& call = emitted.calls[c];
     if (call.inlined) continue;
-    side.units[side.resume[c]] = resume_unit(base + work.entries.behind_call[c]);
+    side.units[side.resume[c]] = resume_unit(base + entries.behind_call[c]);
     side.real[side.resume[c]] = call.behind;
     pou.entries.push_back({call.behind, side.resume[c]});
   }
-  uint32_t next = side.count - 1 - static_cast<uint32_t>(work.function.loops.size());
+  uint32_t next = side.count - 1 - emitted.loops;
   side.units[next] = resume_unit(pou.machine);
   pou.entries.push_back({0, next++});
-  for (const auto& [block, offset] : work.entries.heads) {
-    side.units[next] = resume_unit(base + offset);
-    side.real[next] = work.function.blocks[block].unit;
+  for (size_t h = 0; h < entries.heads.size(); ++h) {
+    const uint32_t unit = emitted.head_units[h];
+    side.units[next] = resume_unit(base + entries.heads[h].second);
+    side.real[next] = unit;
     // An entry that is a head is entered as the POU: its memory is right as well.
-    if (work.function.blocks[block].unit != 0) {
-      pou.entries.push_back({work.function.blocks[block].unit, next});
-    }
+    if (unit != 0) pou.entries.push_back({unit, next});
     ++next;
   }
+  // Nobody asks for these any more.
+  side.helper = {};
+  side.call = {};
+  side.resume = {};
   std::sort(pou.entries.begin(), pou.entries.end(),
             [](const auto& a, const auto& b) { return a.unit < b.unit; });
 }
@@ -229,7 +256,7 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_
   const host::HostTarget target;
   host::Assembler assembler;
   const host::Shared shared = host::emit_shared(assembler);
-  std::vector<Work> all;
+  std::vector<Emitted> all;
   const ImageFacts common(image, clean_bools, versions);
   Bodies bodies(image, common, pous, options);
   std::vector<std::vector<uint64_t>> facts_by_pou;
@@ -261,20 +288,16 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_
     work.pou->facts = facts_by_pou[number];
     made->pous_.push_back(work.pou);
     if (!prepare(image, options, target, bodies, work)) continue;
-    const PouCode code{&work.function,  &work.places, &work.pou->side,
-                       work.pou->units, number,       options.plain};
-    work.entries = host::Emitter(code, shared, assembler).run();
-    work.places = {};
-    all.push_back(std::move(work));
+    all.push_back(emit(work, options, shared, assembler));
   }
   assembler.patch();
   made->shared_code_ = CodeMemory::make(assembler.code());
   if (made->shared_code_ == nullptr) return nullptr;
   const uint8_t* const base = made->shared_code_->data();
   made->enter_ = base + assembler.offset_of(shared.enter);
-  for (Work& work : all) {
-    work.pou->code = made->shared_code_;
-    finish(work, base);
+  for (const Emitted& emitted : all) {
+    emitted.pou->code = made->shared_code_;
+    finish(emitted, base);
   }
   for (uint32_t number = 0; number < pous.size(); ++number) {
     const PouNative& pou = *made->pous_[number];

@@ -26,13 +26,21 @@ int64_t as_signed(uint64_t bits, uint8_t width) {
 }
 
 Ranges::Ranges(const Function& f) : f_(f) {
-  ways_in_.resize(f.blocks.size());
+  first_way_.assign(f.blocks.size() + 1, 0);
   loop_at_.assign(f.blocks.size(), kNone);
   for (uint32_t l = 0; l < f.loops.size(); ++l) loop_at_[f.loops[l].head] = l;
+  for (const BasicBlock& block : f.blocks) {
+    for (const Block to : block.end.target) {
+      if (to != kNone) ++first_way_[to + 1];
+    }
+  }
+  for (Block b = 0; b < f.blocks.size(); ++b) first_way_[b + 1] += first_way_[b];
+  ways_in_.resize(first_way_.back());
+  std::vector<uint32_t> fill(first_way_.begin(), first_way_.end() - 1);
   for (Block b = 0; b < f.blocks.size(); ++b) {
     const End& end = f.blocks[b].end;
     for (uint32_t i = 0; i < 2; ++i) {
-      if (end.target[i] != kNone) ways_in_[end.target[i]].push_back({b, i});
+      if (end.target[i] != kNone) ways_in_[fill[end.target[i]]++] = {b, i};
     }
   }
 }
@@ -141,7 +149,7 @@ Range Ranges::parameter(Val v, Block at, uint32_t depth) {
   if (loop == nullptr || at <= block || at > loop->last) return all;
   std::optional<int64_t> step;
   Range first{INT64_MAX, INT64_MIN};
-  for (const auto& [from, target] : ways_in_[block]) {
+  for (const auto& [from, target] : ways_in(block)) {
     const Val arg = f_.blocks[from].end.args[target][index];
     if (f_.blocks[from].end.kind != EndKind::kLoop) {
       // Through the block in front: what was before, or what the loop itself had made.
@@ -179,7 +187,7 @@ Range Ranges::parameter(Val v, Block at, uint32_t depth) {
   if (__builtin_add_overflow(limit, *step, &beyond)) return all;
   if (beyond < all.low || beyond > all.high) return all;
   if (out.low > out.high) return all;
-  for (const auto& [from, target] : ways_in_[block]) {
+  for (const auto& [from, target] : ways_in(block)) {
     if (f_.blocks[from].end.kind == EndKind::kLoop) continue;
     used_.push_back(
         {from, f_.blocks[from].end.args[target][index], *step > 0, *step > 0 ? out.low : out.high});
@@ -200,7 +208,7 @@ bool Ranges::close(const Open& open, int64_t& end) {
 Range Ranges::join(Block block, size_t index, uint32_t depth) {
   const Range all = whole(f_.values[f_.blocks[block].params[index]].width);
   Range out{INT64_MAX, INT64_MIN};
-  for (const auto& [from, target] : ways_in_[block]) {
+  for (const auto& [from, target] : ways_in(block)) {
     Range r = of(f_.blocks[from].end.args[target][index], from, depth + 4);
     if (!contains(all, r)) r = all;
     out = {std::min(out.low, r.low), std::max(out.high, r.high)};

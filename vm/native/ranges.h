@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -69,7 +70,12 @@ class Ranges {
   };
   std::optional<Limit> limit_of(const Loop& loop, Val v, bool upwards) const;
   const Function& f_;
-  std::vector<std::vector<std::pair<Block, uint32_t>>> ways_in_;
+  // Blocks that lead there, by which of their targets.
+  std::span<const std::pair<Block, uint32_t>> ways_in(Block block) const {
+    return {ways_in_.data() + first_way_[block], ways_in_.data() + first_way_[block + 1]};
+  }
+  std::vector<uint32_t> first_way_;  // by block, in `ways_in_`
+  std::vector<std::pair<Block, uint32_t>> ways_in_;
   std::vector<Assumption> used_;
   std::vector<uint32_t> loop_at_;  // by head; kNone: no head
   uint32_t steps_ = 0;

@@ -86,21 +86,33 @@ Uses::Uses(const Function& function, const Target& target) : function_(function)
 // From each use back to the definition.
 void Uses::find_live(const std::vector<uint32_t>& defined) {
   const Function& f = function_;
-  live_in_.resize(f.blocks.size());
-  std::vector<std::vector<Block>> preds(f.blocks.size());
-  for (Block b = 0; b < f.blocks.size(); ++b) {
-    for (const Block to : f.blocks[b].end.target) {
-      if (to != kNone) preds[to].push_back(b);
+  const size_t blocks = f.blocks.size();
+  std::vector<uint32_t> first_pred(blocks + 1, 0);
+  const auto each_way = [&](auto visit) {
+    for (Block b = 0; b < blocks; ++b) {
+      for (const Block to : f.blocks[b].end.target) {
+        if (to != kNone) visit(b, to);
+      }
     }
-  }
+  };
+  each_way([&](Block, Block to) { ++first_pred[to + 1]; });
+  for (size_t b = 0; b < blocks; ++b) first_pred[b + 1] += first_pred[b];
+  std::vector<Block> preds(first_pred.back());
+  std::vector<uint32_t> fill(first_pred.begin(), first_pred.end() - 1);
+  each_way([&](Block b, Block to) { preds[fill[to]++] = b; });
+
   std::vector<std::pair<Val, Block>> all;
   each_use([&](Val v, uint32_t, Block b) {
-    if (!f.values[v].constant && defined[v] < begins_[b]) all.push_back({v, b});
+    const std::pair use(v, b);
+    if (f.values[v].constant || defined[v] >= begins_[b]) return;
+    if (all.empty() || all.back() != use) all.push_back(use);
   });
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  std::vector<Val> seen(f.blocks.size(), kNone);
+  std::vector<Val> seen(blocks, kNone);
   std::vector<Block> work;
+  std::vector<std::pair<Block, Val>> found;  // sorted by value
+  first_live_.assign(blocks + 1, 0);
   for (const auto& [v, used_in] : all) {
     work.push_back(used_in);
     while (!work.empty()) {
@@ -108,13 +120,18 @@ void Uses::find_live(const std::vector<uint32_t>& defined) {
       work.pop_back();
       if (seen[b] == v) continue;
       seen[b] = v;
-      live_in_[b].push_back(v);
-      for (const Block pred : preds[b]) {
+      found.push_back({b, v});
+      ++first_live_[b + 1];
+      for (uint32_t at = first_pred[b]; at < first_pred[b + 1]; ++at) {
         // Its own block defines it, as a parameter or behind its beginning.
-        if (f.values[v].block != pred) work.push_back(pred);
+        if (f.values[v].block != preds[at]) work.push_back(preds[at]);
       }
     }
   }
+  for (size_t b = 0; b < blocks; ++b) first_live_[b + 1] += first_live_[b];
+  live_.resize(found.size());
+  fill.assign(first_live_.begin(), first_live_.end() - 1);
+  for (const auto& [b, v] : found) live_[fill[b]++] = v;
 }
 
 }  // namespace vm::native

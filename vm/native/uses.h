@@ -1,6 +1,7 @@
 // When values are used: positions count up through the blocks in their order.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "vm/native/allocate.h"
@@ -26,7 +27,9 @@ class Uses {
   }
   // Values that something behind the block's beginning uses, whichever way leads there; sorted.
   // Constants and the block's own parameters are none of them.
-  const std::vector<Val>& live_in(Block block) const { return live_in_[block]; }
+  std::span<const Val> live_in(Block block) const {
+    return {live_.data() + first_live_[block], live_.data() + first_live_[block + 1]};
+  }
   const std::vector<Val>& constants() const { return constants_; }  // that want a register
 
  private:
@@ -39,7 +42,8 @@ class Uses {
   std::vector<uint32_t> begins_, ends_;
   std::vector<uint32_t> first_, uses_, cursor_;
   std::vector<Val> constants_;
-  std::vector<std::vector<Val>> live_in_;
+  std::vector<uint32_t> first_live_;  // by block, in `live_`
+  std::vector<Val> live_;
 };
 
 }  // namespace vm::native
