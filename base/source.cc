@@ -19,7 +19,29 @@ uint32_t SourceMap::file_of(SourcePos pos) const {
   return static_cast<uint32_t>(after - files_.begin()) - 1;
 }
 
+void SourceMap::replace(uint32_t file, std::string text) {
+  files_[file].text = std::move(text);
+  files_[file].line_starts.clear();
+  next_base_ = files_[file].base;
+  for (uint32_t i = file; i < file_count(); ++i) {
+    files_[i].base = next_base_;
+    next_base_ += static_cast<uint32_t>(files_[i].text.size()) + 1;
+  }
+}
+
+SourcePos SourceMap::current(SourcePos pos) const {
+  if (!pos.valid()) return pos;
+  const auto after =
+      std::upper_bound(pieces_.begin(), pieces_.end(), pos.offset,
+                       [](uint32_t offset, const Piece& piece) { return offset < piece.begin; });
+  if (after == pieces_.begin()) return pos;
+  const Piece& piece = after[-1];
+  const uint32_t inside = pos.offset - piece.begin;
+  return inside <= piece.size ? SourcePos{piece.to + inside} : pos;
+}
+
 SourceLocation SourceMap::locate(SourcePos pos) const {
+  pos = current(pos);
   uint32_t index = file_of(pos);
   if (index == file_count()) return {};
   const File& file = files_[index];

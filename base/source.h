@@ -1,9 +1,12 @@
 // Source texts and positions. A SourceMap owns every text of one compilation;
 // a SourcePos is a 32-bit offset into their concatenation, so that tokens and
 // nodes carry four bytes and line numbers are computed only for messages.
+// Views into a text stay valid while others are added. Who keeps a tree over edits of its sources
+// adds later texts behind the first ones, and says which pieces of the first ones live on where.
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +51,21 @@ class SourceMap {
   uint32_t file_of(SourcePos pos) const;
   SourceLocation locate(SourcePos pos) const;
 
+  // Another text for a file; the positions in files behind it change.
+  void replace(uint32_t file, std::string text);
+  // What stood at [begin, begin + size] stands at `to` now, in a later text of the same file.
+  struct Piece {
+    uint32_t begin;
+    uint32_t size;
+    uint32_t to;
+  };
+  // All of them, sorted by `begin`; locate() follows them, file_of() and text() do not.
+  void set_pieces(std::vector<Piece> pieces) { pieces_ = std::move(pieces); }
+  bool has_pieces() const { return !pieces_.empty(); }
+  SourcePos current(SourcePos pos) const;
+  // Position behind all texts.
+  SourcePos end() const { return {next_base_}; }
+
  private:
   struct File {
     std::string name;
@@ -56,7 +74,8 @@ class SourceMap {
     TextUse use;
     mutable std::vector<uint32_t> line_starts;  // filled by the first locate()
   };
-  std::vector<File> files_;
+  std::deque<File> files_;  // texts do not move
+  std::vector<Piece> pieces_;
   uint32_t next_base_ = 0;
 };
 

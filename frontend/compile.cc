@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/limits.h"
+#include "frontend/analysis.h"
 #include "frontend/lex/declaration_index.h"
 #include "frontend/lower/body.h"
 #include "frontend/parse/address_map.h"
@@ -66,12 +67,8 @@ base::SourceMap with_library(const base::SourceMap& sources) {
   return all;
 }
 
-// All sources as one tree; nullopt when there is nothing to be found in it.
-struct Parsed {
-  base::SourceMap sources;  // with the library
-  uint32_t library_file = 0;
-  Tree tree;
-};
+}  // namespace
+
 std::unique_ptr<Parsed> parse_project(const base::SourceMap& sources, const CompileOptions& options,
                                       base::Diagnostics& diagnostics) {
   if (!fits(sources, options.max_source_bytes, diagnostics)) return nullptr;
@@ -86,23 +83,26 @@ std::unique_ptr<Parsed> parse_project(const base::SourceMap& sources, const Comp
   return parsed;
 }
 
-struct Analysed {
-  TestProgram made;
-  ResourceUses uses;
-};
-std::optional<Analysed> analyse(Purpose purpose, const Parsed& parsed,
-                                const CompileOptions& options, base::Diagnostics& diagnostics) {
-  Sema sema(parsed.sources, parsed.tree, parsed.library_file, options, purpose, diagnostics);
+void declare_all(Sema& sema) {
   sema.report_not_supported();
   sema.collect();
   sema.resolve_declarations();
   Migrations(sema).collect();
   sema.configure();
   sema.objects.add_start();
-  // Grows while bodies use functions in new instances.
-  for (uint32_t pou = 0; pou < sema.pous.size(); ++pou) {
-    if (sema.pous[pou].id.valid()) Body(sema, pou).run();
-  }
+}
+
+void lower_body(Sema& sema, uint32_t pou) {
+  if (sema.pous[pou].id.valid()) Body(sema, pou).run();
+}
+
+void check_uses(Sema& sema) {
+  sema.objects.check_recursion();
+  CommonUses(sema).check_output_tasks();
+  sema.report_unused();
+}
+
+void check_whole(Sema& sema) {
   sema.finish_programs();
   Migrations(sema).check_code();
   sema.objects.check_recursion();
@@ -110,6 +110,21 @@ std::optional<Analysed> analyse(Purpose purpose, const Parsed& parsed,
   CommonUses(sema).check_output_tasks();
   sema.check_direct_addresses();
   sema.report_unused();
+}
+
+namespace {
+
+struct Analysed {
+  TestProgram made;
+  ResourceUses uses;
+};
+std::optional<Analysed> analyse(Purpose purpose, const Parsed& parsed,
+                                const CompileOptions& options, base::Diagnostics& diagnostics) {
+  Sema sema(parsed.sources, parsed.tree, parsed.library_file, options, purpose, diagnostics);
+  declare_all(sema);
+  // Grows while bodies use functions in new instances.
+  for (uint32_t pou = 0; pou < sema.pous.size(); ++pou) lower_body(sema, pou);
+  check_whole(sema);
   if (diagnostics.has_errors()) return std::nullopt;
   ResourceUses uses = CommonUses(sema).of_resource();
   return Analysed{{std::move(sema.program), std::move(sema.test_cases)}, std::move(uses)};

@@ -11,6 +11,7 @@
 #include "linker/call_graph.h"
 #include "linker/data.h"
 #include "linker/instances.h"
+#include "linker/relink.h"
 #include "linker/relocate.h"
 #include "linker/tables.h"
 #include "linker/type_numbers.h"
@@ -22,9 +23,6 @@ constexpr size_t kBatch = 16;  // POUs that a thread takes at a time
 
 constexpr int64_t kEventWatchdogNs = 100'000'000;     // of a task without a period
 constexpr int64_t kStartWatchdogNs = 10'000'000'000;  // of a task that runs once
-
-// Bytes of constants that no code needs any more, besides as many as it needs.
-constexpr size_t kPoolWaste = 4096;
 
 class Linker {
  public:
@@ -38,7 +36,7 @@ class Linker {
     if (renamed_base_) options_.base = &*renamed_base_;
   }
 
-  base::Result<ir::Image> run() {
+  base::Result<LinkState> run() {
     base::Status (Linker::*const steps[])() = {
         &Linker::lay_out_types,  &Linker::number_pous,     &Linker::place_instances,
         &Linker::fill_pool,      &Linker::link_code,       &Linker::link_tasks,
@@ -51,7 +49,14 @@ class Linker {
     fill_data_tables(image_, nodes_);
     if (base::Status status = bind_located(); !status.ok()) return status.error();
     type_numbers_->apply(image_);
-    return std::move(image_);
+    return LinkState{std::move(image_),
+                     std::move(pool_),
+                     std::move(context_.objects),
+                     std::move(context_.pou_numbers),
+                     std::move(context_.parameter_offsets),
+                     std::move(context_.table_numbers),
+                     std::move(names_),
+                     type_numbers_->are_own() && !renamed_base_};
   }
 
  private:
@@ -152,30 +157,10 @@ class Linker {
     return base::Ok{};
   }
 
-  void fill(ConstantPool& pool) const {
-    const InitialValues initial(image_.types, image_.constants, image_.layouts);
-    for (const ir::Object* object : context_.objects) {
-      if (object != nullptr) pool.add_scalars(*object);
-    }
-    for (const ir::Object* object : context_.objects) {
-      if (object != nullptr) pool.add_values(*object, initial, image_.layouts);
-    }
-  }
-
-  // What the base has stays where it is, until too much of it is of no use any more. In the end
-  // every constant is taken from the first place that has its bytes: so the same program linked
-  // against itself comes out the same.
   base::Status fill_pool() {
-    ConstantPool own;
-    fill(own);
-    base::Bytes bytes = own.bytes();
-    if (options_.base != nullptr && options_.base->pool.size() <= 2 * bytes.size() + kPoolWaste) {
-      ConstantPool grown(options_.base->pool);
-      fill(grown);
-      if (grown.bytes().size() <= ir::kConstPoolLimit) bytes = grown.bytes();
-    }
-    pool_ = ConstantPool(bytes);
-    fill(pool_);
+    const InitialValues initial(image_.types, image_.constants, image_.layouts);
+    pool_ = make_pool(context_.objects, initial, image_.layouts,
+                      options_.base == nullptr ? nullptr : &options_.base->pool);
     image_.pool = pool_.bytes();
     if (image_.pool.size() > ir::kConstPoolLimit) {
       return base::Error{base::Refusal::kTooLarge,
@@ -189,13 +174,13 @@ class Linker {
     type_numbers_.emplace(program_.types, options_.base);
     fill_tables(context_, options_.base, *type_numbers_);
     if (base::Status status = lay_out_parameters(); !status.ok()) return status;
-    const ir::PouNames names = ir::pou_names(program_);
+    names_ = ir::pou_names(program_);
     std::vector<base::Result<LinkedCode>> codes(context_.objects.size(), LinkedCode{});
     base::for_each_index(codes.size(), options_.jobs, kBatch, [&](size_t i) {
       const ir::Object* object = context_.objects[i];
       codes[i] = object == nullptr ? unused_pou() : relocate(context_, *object);
       if (object == nullptr || !codes[i].ok()) return;
-      codes[i]->pou.identity = ir::identity(*object, program_, names);
+      codes[i]->pou.identity = ir::identity(*object, program_, names_);
     });
     for (base::Result<LinkedCode>& linked : codes) {
       if (!linked.ok()) return linked.error();
@@ -352,15 +337,23 @@ class Linker {
   ir::Image image_;
   ConstantPool pool_;
   LinkContext context_;
+  ir::PouNames names_;
   std::unordered_map<uint32_t, uint32_t> pou_of_type_;
   std::vector<InstanceNode> nodes_;
 };
 
 }  // namespace
 
+base::Result<LinkState> link_state(const ir::Program& program,
+                                   const std::vector<ir::Object>& objects, const Options& options) {
+  return Linker(program, objects, options).run();
+}
+
 base::Result<ir::Image> link(const ir::Program& program, const std::vector<ir::Object>& objects,
                              const Options& options) {
-  return Linker(program, objects, options).run();
+  base::Result<LinkState> linked = link_state(program, objects, options);
+  if (!linked.ok()) return linked.error();
+  return std::move(linked->image);
 }
 
 }  // namespace linker

@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <cstring>
 
+#include "ir/bytecode/image.h"
+
 namespace linker {
 namespace {
 
 constexpr size_t kPoolAlign = 8;
+
+// Bytes of constants that no code needs any more, besides as many as it needs.
+constexpr size_t kPoolWaste = 4096;
 
 // The first word, what is missing as zeros: scalars are padded so.
 uint64_t first_word(const uint8_t* bytes, size_t size) {
@@ -68,6 +73,29 @@ void ConstantPool::add_values(const ir::Object& object, const InitialValues& ini
 
 uint32_t ConstantPool::offset(const ir::Object& object, uint32_t number) const {
   return of_object_.at(&object)[number];
+}
+
+ConstantPool make_pool(const std::vector<const ir::Object*>& objects, const InitialValues& initial,
+                       const ir::Layouts& layouts, const base::Bytes* base) {
+  const auto fill = [&](ConstantPool& pool) {
+    for (const ir::Object* object : objects) {
+      if (object != nullptr) pool.add_scalars(*object);
+    }
+    for (const ir::Object* object : objects) {
+      if (object != nullptr) pool.add_values(*object, initial, layouts);
+    }
+  };
+  ConstantPool own;
+  fill(own);
+  base::Bytes bytes = own.bytes();
+  if (base != nullptr && base->size() <= 2 * bytes.size() + kPoolWaste) {
+    ConstantPool grown(*base);
+    fill(grown);
+    if (grown.bytes().size() <= ir::kConstPoolLimit) bytes = grown.bytes();
+  }
+  ConstantPool pool(bytes);
+  fill(pool);
+  return pool;
 }
 
 }  // namespace linker

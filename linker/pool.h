@@ -25,6 +25,10 @@ class ConstantPool {
                   const ir::Layouts& layouts);
   // Offset of constant `number` of `object`, which must have been added.
   uint32_t offset(const ir::Object& object, uint32_t number) const;
+  // Has `other` the constants of the object where this pool has them?
+  bool same_offsets(const ConstantPool& other, const ir::Object& object) const {
+    return of_object_.at(&object) == other.of_object_.at(&object);
+  }
   const base::Bytes& bytes() const { return bytes_; }
 
  private:
@@ -38,5 +42,12 @@ class ConstantPool {
   std::unordered_map<std::string, uint32_t> offsets_;
   std::unordered_map<const ir::Object*, std::vector<uint32_t>> of_object_;
 };
+
+// The pool of all objects (by POU number; null: none). `base`, which may be null, is that of the
+// running version. What it has stays where it is, until too much of it is of no use any more. In
+// the end every constant is taken from the first place that has its bytes: so the same program
+// linked against itself comes out the same.
+ConstantPool make_pool(const std::vector<const ir::Object*>& objects, const InitialValues& initial,
+                       const ir::Layouts& layouts, const base::Bytes* base);
 
 }  // namespace linker

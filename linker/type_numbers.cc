@@ -94,6 +94,13 @@ TypeNumbers::TypeNumbers(const ir::TypeTable& types, const ir::Image* base)
   for (uint32_t number : number_of_) count_ = std::max(count_, number + 1);
 }
 
+bool TypeNumbers::are_own() const {
+  for (uint32_t i = 0; i < number_of_.size(); ++i) {
+    if (number_of_[i] != i) return false;
+  }
+  return count_ == number_of_.size();
+}
+
 void TypeNumbers::apply(ir::Image& image) const {
   const Renumberer renumber(number_of_);
   std::vector<ir::Type> types(count_, placeholder(image.types));

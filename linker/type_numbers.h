@@ -18,6 +18,8 @@ class TypeNumbers {
 
   // The program's type that a type of the base is; invalid: gone.
   ir::TypeId of_base(ir::TypeId base) const { return of_base_[base.index]; }
+  // Are the numbers those of the program?
+  bool are_own() const;
   // From the program's numbers to those that stay, everywhere in the image.
   void apply(ir::Image& image) const;
 

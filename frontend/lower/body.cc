@@ -71,16 +71,25 @@ void Body::run() {
 
 void Body::leave() { go({}, 0); }
 
+// Of the POU's own text? The statements may be of a later one.
+bool Body::is_outside(base::SourcePos pos) const {
+  const PouDecl& decl = *info_.decl;
+  const auto in = [pos](base::SourceSpan span) { return !(pos < span.begin) && pos <= span.end; };
+  return !in(decl.span) && !(decl.code.begin.valid() && in(decl.code));
+}
+
 void Body::set_line(base::SourceSpan span) {
   if (!span.begin.valid()) return;
   uint32_t offset = span.begin.offset;
+  if (sema_.log != nullptr && is_outside(span.begin)) sema_.log->other_lines = true;
   if (offset >= line_begin_ && offset <= line_offset_) return build_.set_line(line_);
   uint32_t file = sema_.sources.file_of(span.begin);
   uint32_t base = sema_.sources.begin(file).offset;
   // A type's initial values may stand in another file than the variable; a drawing goes up and
   // down in its rows.
   constexpr uint32_t kFar = 4096;
-  if (offset < line_offset_ || line_offset_ < base || offset - line_offset_ > kFar) {
+  const bool far = offset < line_offset_ || line_offset_ < base || offset - line_offset_ > kFar;
+  if (far || sema_.sources.has_pieces()) {
     const base::SourceLocation location = sema_.sources.locate(span.begin);
     line_ = location.line;
     line_begin_ = offset + 1 - location.column;

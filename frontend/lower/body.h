@@ -317,6 +317,7 @@ class Body {
   void leave();
   void initialise(const ir::Place& where, const Variable& variable);
   void set_line(base::SourceSpan span);
+  bool is_outside(base::SourcePos pos) const;
   const ir::TypeTable& types() const { return sema_.program.types; }
   ir::Scalar scalar(ir::TypeId type) const { return types().scalar(type); }
   ir::TypeId elementary(ir::Kind kind) const { return types().elementary(kind); }

@@ -213,6 +213,8 @@ bool Parser::parse_inner(PouDecl& pou) {
 void Parser::parse_pou_body(PouDecl& pou) {
   size_t mark = statement_stack_.size();
   base::SourcePos begin = here();
+  const base::SourcePos code_begin = last_end();
+  const size_t members = pou.members.size();
   for (;;) {
     if (parse_inner(pou) || parse_chart_element(pou)) continue;
     bool drawn = pou.diagram != kNoDiagram;
@@ -230,6 +232,9 @@ void Parser::parse_pou_body(PouDecl& pou) {
     }
   }
   pou.body = move_tail(statement_stack_, mark, tree_.stmt_lists);
+  const bool only_statements =
+      pou.members.size() == members && pou.chart == kNoChart && pou.diagram == kNoDiagram;
+  if (only_statements) pou.code = {code_begin, here()};
   finish_chart(pou);
   bool bodiless = pou.kind == PouKind::kClass || pou.kind == PouKind::kInterface;
   if (!bodiless || pou.body.count == 0) return;

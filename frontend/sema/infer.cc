@@ -192,11 +192,11 @@ Note Sema::infer_name(const Expr& expr) {
 }
 
 Note Sema::variable_note(VarId id) {
-  variables_[id.index].used = true;
+  mark_used(id);
   const Variable* variable = &resolve(id);
   if (variable->external.valid()) {
     id = variable->external;
-    variables_[id.index].used = true;
+    mark_used(id);
     variable = &resolve(id);
   }
   Note note;

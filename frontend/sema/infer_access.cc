@@ -82,7 +82,7 @@ std::optional<Note> Sema::infer_named_bit(const Expr& expr, const Note& operand)
   VarId id = find_variable(expr.name);
   if (!id.valid()) return std::nullopt;
   const Variable& constant = resolve(id);
-  variables_[id.index].used = true;
+  mark_used(id);
   allow_extension("a constant as the number of a bit", expr.span);
   if (!constant.constant || !traits_of(program.types, constant.type).integer) return std::nullopt;
   ir::ConstId init = constant.init;

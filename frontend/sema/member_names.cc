@@ -79,7 +79,7 @@ Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
     }
     bool open = variable.access == Access::kPublic || variable.access == Access::kInternal;
     if (variable.section == VarSection::kInput || variable.section == VarSection::kOutput || open) {
-      sema_.variables_[id.index].used = true;
+      sema_.mark_used(id);
       check_access(variable.access, variable.pou, expr.name);
       note.type = variable.type;
       return note;

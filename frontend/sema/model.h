@@ -148,6 +148,12 @@ struct Note {
   ir::TypeId reference;
 };
 
+// What a body did beside its own code (resident.h).
+struct BodyLog {
+  std::vector<uint32_t> marks;  // twice the number of a variable that it uses; odd: writes
+  bool other_lines = false;     // its code has lines of other declarations
+};
+
 // What the declaration means in one instance of it: its expressions and types differ from
 // those of other instances.
 struct Meaning {

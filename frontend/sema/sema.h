@@ -42,7 +42,14 @@ class Sema {
   void configure();
   void finish_programs();  // after all bodies
   void report_unused();
-  void mark_written(VarId id) { variables_[id.index].written = true; }
+  void mark_used(VarId id) {
+    variables_[id.index].used = true;
+    if (log != nullptr) log->marks.push_back(2 * id.index);
+  }
+  void mark_written(VarId id) {
+    variables_[id.index].written = true;
+    if (log != nullptr) log->marks.push_back(2 * id.index + 1);
+  }
   bool for_tests() const { return purpose_ == Purpose::kTest; }
   // Member of the globals that takes the message of a failed assertion.
   uint32_t test_message() const { return test_message_; }
@@ -154,6 +161,7 @@ class Sema {
   ir::Program program;
   std::deque<PouInfo> pous;  // stable addresses; grows when library blocks are used
   std::vector<TestCase> test_cases;
+  BodyLog* log = nullptr;  // of the body that is lowered, where somebody keeps one
   Objects objects{*this};
   StartValues start_values{*this};
   Namespaces namespaces{*this};
@@ -169,6 +177,7 @@ class Sema {
   friend class InitialBuilder;
   friend class StartValues;
   friend class Pools;
+  friend class Resident;
 
   // declarations.cc
   void collect_types();

@@ -286,4 +286,8 @@ class Inliner {
 
 bool inline_functions(const Program& program, Pou& pou) { return Inliner(program, pou).run(); }
 
+uint32_t inlined_size(const Program& program, const Pou& pou) {
+  return Candidate(program, pou).size();
+}
+
 }  // namespace ir::opt

@@ -182,4 +182,12 @@ base::Status optimise(Program& program, PassSet passes, bool verify_each, uint32
   return base::Ok{};
 }
 
+base::Status optimise(Program& program, PouId pou, PassSet passes, bool verify_each) {
+  return optimise_pou(program, program.pous[pou.index], passes, verify_each);
+}
+
+bool can_be_inlined(const Program& program, PouId pou) {
+  return opt::inlined_size(program, program.pous[pou.index]) != 0;
+}
+
 }  // namespace ir

@@ -47,4 +47,9 @@ class PassSet {
 // nothing else fails. POUs are optimised on up to `jobs` threads.
 base::Status optimise(Program& program, PassSet passes, bool verify_each, uint32_t jobs = 1);
 
+// One POU that is not optimised yet; what it calls is. The result is that of the whole.
+base::Status optimise(Program& program, PouId pou, PassSet passes, bool verify_each);
+// May calls of this function become its body?
+bool can_be_inlined(const Program& program, PouId pou);
+
 }  // namespace ir

@@ -12,4 +12,7 @@ namespace ir::opt {
 #include "ir/opt/passes.def"
 #undef PASS
 
+// Instructions that a function's body adds where it is called; 0: calls of it stay calls.
+uint32_t inlined_size(const Program& program, const Pou& pou);
+
 }  // namespace ir::opt

@@ -26,9 +26,17 @@ struct ConstValue {
 class ConstTable {
  public:
   ConstId add(ConstValue value) {
-    values_.push_back(std::move(value));
-    return ConstId(static_cast<uint32_t>(values_.size() - 1));
+    if (next_ == size()) {
+      values_.push_back(std::move(value));
+    } else {
+      values_[next_] = std::move(value);
+    }
+    return ConstId(next_++);
   }
+  // The number that the next value gets. Setting it back lets code that is made anew give its
+  // constants the numbers that they had.
+  uint32_t next() const { return next_; }
+  void set_next(uint32_t next) { next_ = next; }
   ConstId scalar(uint64_t bits) { return add({bits, {}, {}}); }
   const ConstValue& operator[](ConstId id) const { return values_[id.index]; }
   uint32_t size() const { return static_cast<uint32_t>(values_.size()); }
@@ -36,6 +44,7 @@ class ConstTable {
 
  private:
   std::vector<ConstValue> values_;
+  uint32_t next_ = 0;
 };
 
 // The initial value of a type whose members overlap (TypeTable::overlaps): what is written to

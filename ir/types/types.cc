@@ -87,6 +87,7 @@ TypeId TypeTable::intern(std::string key, Type type) {
   if (inserted) {
     types_.push_back(std::move(type));
   }
+  asked_below_ = std::max(asked_below_, found->second.index + 1);
   return found->second;
 }
 

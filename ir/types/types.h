@@ -177,6 +177,11 @@ class TypeTable {
   const std::vector<std::string>& old_names() const { return old_names_; }
   void set_old_names(std::vector<std::string> names) { old_names_ = std::move(names); }
 
+  // One more than the highest number that interning gave out since it was set to 0: whether what
+  // is made anew asks for types that somebody behind it was the first to need.
+  uint32_t asked_below() const { return asked_below_; }
+  void set_asked_below(uint32_t number) { asked_below_ = number; }
+
   uint32_t size() const { return static_cast<uint32_t>(types_.size()); }
   bool contains(TypeId id) const { return id.index < types_.size(); }
 
@@ -205,6 +210,7 @@ class TypeTable {
   std::vector<Type> types_;
   std::unordered_map<std::string, TypeId> interned_;
   std::vector<std::string> old_names_;
+  uint32_t asked_below_ = 0;
 };
 
 // Comparison and folding of IEC identifiers (base/name_case.h).

@@ -18,6 +18,7 @@ ir/lower: ir/types ir/program ir/bytecode
 frontend: ir/types ir/program stdlib
 frontend/format: ir/types/types.h frontend/lex frontend/network frontend/ladder frontend/fbd frontend/parse/il_operators.h frontend/parse/parse.h
 linker: ir/types ir/program ir/bytecode stdlib/native
+workspace: ir frontend linker
 vm: ir/types ir/program/ir.h ir/bytecode stdlib/native
 vm/io: ir/types ir/bytecode vm/runtime
 adapters/modbus: ir/types ir/bytecode vm/io vm/runtime
@@ -30,11 +31,11 @@ online_change/package: ir linker online_change/diff online_change/plan
 online_change/apply: ir/types ir/program/ir.h ir/bytecode online_change vm
 online_change/store: ir/types ir/program/ir.h ir/bytecode online_change/diff online_change/plan online_change/apply vm
 tools/common: ir online_change/diff online_change/plan
-tools/stc: ir frontend linker online_change/diff online_change/plan online_change/package stdlib vm/exec vm/load vm/native tools/common adapters/xml adapters/plcopen adapters/twincat
+tools/stc: ir frontend linker workspace online_change/diff online_change/plan online_change/package stdlib vm/exec vm/load vm/native tools/common adapters/xml adapters/plcopen adapters/twincat
 tools/stvm: ir/types ir/program/ir.h ir/bytecode vm online_change tools/common adapters
 '
 
-find adapters base ir frontend linker vm online_change stdlib tools -name '*.cc' -o -name '*.h' |
+find adapters base ir frontend linker workspace vm online_change stdlib tools -name '*.cc' -o -name '*.h' |
   xargs grep -n '^#include "' | sed 's/^\([^:]*\):\([0-9]*\):#include "\([^"]*\)".*/\1 \2 \3/' |
   TABLE="$table" awk '
     BEGIN {

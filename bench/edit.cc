@@ -1,0 +1,157 @@
+// An edit of one POU in a large project: how long the resident compiler (workspace/) takes from new
+// source texts to the new image's bytes.
+//
+//   bench_edit --sources FOLDER --out FOLDER --section NAME --title TEXT [--repeats N]
+//
+// Each edit changes the statements of another function block; every image is compared with that of
+// a build from nothing once, at the end. Writes NAME.json and NAME.md. Times are processor time.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "bench/measure.h"
+#include "tools/common/heap.h"
+#include "workspace/incremental_build.h"
+
+namespace {
+
+using Options = std::map<std::string, std::string>;
+
+base::SourceMap read_sources(const std::string& folder, uint64_t& lines) {
+  std::vector<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".st") paths.push_back(entry.path());
+  }
+  std::sort(paths.begin(), paths.end());
+  base::SourceMap sources;
+  for (const std::filesystem::path& path : paths) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    lines += static_cast<uint64_t>(std::count(text.view().begin(), text.view().end(), '\n'));
+    sources.add(path.string(), text.str());
+  }
+  return sources;
+}
+
+// Statements at the beginning of a function block, in the middle of a file in the middle of all.
+struct Edit {
+  const char* what;
+  const char* text;  // behind the END_VAR of the block
+};
+constexpr Edit kEdits[] = {
+    {"a statement is added", "  Stop := Stop OR Tripped;\n"},
+    {"a constant is changed", "  Stop := Stop OR Delay.ET > T#1234ms;\n"},
+    {"lines move", "\n\n  Stop := Stop OR Reset;\n\n"},
+};
+
+std::string edited(const std::string& text, const char* added) {
+  const size_t block = text.find("FUNCTION_BLOCK Drive", text.size() / 2);
+  base::check(block != std::string::npos, "bench_project wrote the project");
+  size_t at = text.find("END_VAR\n  IF", block);
+  base::check(at != std::string::npos, "a drive has statements");
+  at += 8;
+  return text.substr(0, at) + added + text.substr(at);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+struct Row {
+  std::string name;
+  double build_ms;
+  double encode_ms;
+};
+
+template <class T>
+T taken(base::Result<T> result) {
+  base::check(result.ok(), result.ok() ? "" : base::to_string(result.error()).c_str());
+  return std::move(*result);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i + 1 < argc; i += 2) options[argv[i]] = argv[i + 1];
+  for (const char* name : {"--sources", "--out", "--section", "--title"}) {
+    if (options[name].empty()) {
+      std::fprintf(stderr, "bench_edit: %s is missing\n", name);
+      return 2;
+    }
+  }
+  const int repeats = options["--repeats"].empty() ? 9 : std::atoi(options["--repeats"].c_str());
+  bench::pin_to_one_core();
+  tools::keep_freed_memory();  // as stc does
+  uint64_t lines = 0;
+  base::SourceMap sources = read_sources(options["--sources"], lines);
+  const uint32_t file = sources.file_count() / 2;
+  const std::string original(sources.text(file));
+  workspace::IncrementalBuild build({});
+  const auto built = [&](double& build_ms, double& encode_ms) {
+    base::Diagnostics messages;
+    const double begin = bench::cpu_seconds();
+    const ir::Image* image = taken(build.build(sources, messages));
+    const double linked = bench::cpu_seconds();
+    base::Bytes bytes = ir::encode(*image);
+    build_ms = (linked - begin) * 1e3;
+    encode_ms = (bench::cpu_seconds() - linked) * 1e3;
+    return bytes;
+  };
+  double whole_ms = 0;
+  double whole_encode_ms = 0;
+  built(whole_ms, whole_encode_ms);
+  std::vector<Row> rows{{"from nothing", whole_ms, whole_encode_ms}};
+  for (const Edit& edit : kEdits) {
+    std::vector<double> build_ms;
+    std::vector<double> encode_ms;
+    base::Bytes last;
+    for (int i = 0; i < repeats; ++i) {
+      for (const bool there : {true, false}) {
+        sources.replace(file, there ? edited(original, edit.text) : original);
+        base::Bytes bytes = built(build_ms.emplace_back(), encode_ms.emplace_back());
+        if (there) last = std::move(bytes);
+      }
+    }
+    rows.push_back({edit.what, median(build_ms), median(encode_ms)});
+    sources.replace(file, edited(original, edit.text));
+    base::Diagnostics messages;
+    workspace::IncrementalBuild anew({});
+    const base::Bytes clean = ir::encode(*taken(anew.build(sources, messages)));
+    base::check(clean == last, "an edit gives the image of a build from nothing");
+  }
+  std::printf("whole builds %llu, edits %llu, bodies %llu\n",
+              static_cast<unsigned long long>(build.counts().whole),
+              static_cast<unsigned long long>(build.counts().edits),
+              static_cast<unsigned long long>(build.counts().lowered));
+  std::string json = "{\"lines\": " + std::to_string(lines) + ", \"edits\": [";
+  std::string page = "## " + options["--title"] + "\n\n" + std::to_string(lines) +
+                     " lines, an image of the whole project after an edit of one function block. "
+                     "Processor time on one core, medians.\n\n"
+                     "| edit | image, ms | its bytes, ms |\n| --- | ---: | ---: |\n";
+  const char* comma = "";
+  for (const Row& row : rows) {
+    char text[200];
+    std::snprintf(text, sizeof text, "%-30s %10.1f %10.1f\n", row.name.c_str(), row.build_ms,
+                  row.encode_ms);
+    std::fputs(text, stdout);
+    std::snprintf(text, sizeof text, "| %s | %.1f | %.1f |\n", row.name.c_str(), row.build_ms,
+                  row.encode_ms);
+    page += text;
+    std::snprintf(text, sizeof text, "%s\n  {\"name\": \"%s\", \"ms\": %.2f, \"encode_ms\": %.2f}",
+                  comma, row.name.c_str(), row.build_ms, row.encode_ms);
+    json += text;
+    comma = ",";
+  }
+  const std::string path = options["--out"] + "/" + options["--section"];
+  std::ofstream(path + ".md") << page;
+  std::ofstream(path + ".json") << json << "\n]}\n";
+  return 0;
+}

@@ -1,0 +1,240 @@
+#include "frontend/resident.h"
+
+#include <algorithm>
+
+#include "frontend/resident_parts.h"
+
+namespace frontend {
+namespace {
+
+std::vector<ir::PouId> prototypes_of(const ir::Pou& pou) {
+  std::vector<ir::PouId> found;
+  for (const ir::Block& block : pou.blocks) {
+    for (const ir::Inst& inst : block.insts) {
+      if (inst.op == ir::Op::kCallVirtual) found.push_back(inst.pou);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+bool same_writes(const std::vector<OutputWrite>& a, const std::vector<OutputWrite>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+    return x.address == y.address && x.type == y.type;
+  });
+}
+
+// Members of the globals that the POU names are those below this number.
+uint32_t globals_below(const ir::Pou& pou) {
+  uint32_t below = 0;
+  for (const ir::Place& place : pou.places) {
+    if (place.base != ir::PlaceBase::kGlobal || place.steps.empty()) continue;
+    below = std::max(below, place.steps[0].index + 1);
+  }
+  return below;
+}
+
+// `{IF` asks what is declared anywhere, before anything is parsed.
+bool has_condition(std::string_view text) {
+  for (size_t at = 0; (at = text.find('{', at)) != std::string_view::npos;) {
+    at = text.find_first_not_of(" \t\r\n", at + 1);
+    if (at == std::string_view::npos) return false;
+    if (ir::same_name(text.substr(at, 2), "if")) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Resident::Resident() = default;
+Resident::~Resident() = default;
+
+ir::Program* Resident::compile(const base::SourceMap& sources, const CompileOptions& options,
+                               base::Diagnostics& diagnostics) {
+  followable_ = false;
+  sema_.reset();
+  options_ = options;
+  diagnostics_ = base::Diagnostics();
+  parsed_ = parse_project(sources, options_, diagnostics_);
+  if (parsed_ != nullptr) {
+    const auto& configs = parsed_->tree.configs;
+    if (configs.size() == 1 && configs[0].resources.size() > 1) return nullptr;
+    sema_ = std::make_unique<Sema>(parsed_->sources, parsed_->tree, parsed_->library_file, options_,
+                                   Purpose::kRun, diagnostics_);
+    declare_all(*sema_);
+    lower_all_bodies();
+    check_whole(*sema_);
+  }
+  for (const base::Diagnostic& message : diagnostics_.all()) diagnostics.add(message);
+  if (diagnostics_.has_errors()) return nullptr;
+  followable_ = can_follow();
+  if (followable_) note_files();
+  return &sema_->program;
+}
+
+bool Resident::can_follow() const {
+  if (diagnostics_.all().size() != diagnostics_.warning_count()) return false;  // too many to keep
+  if (!sema_->program.migrations.empty()) return false;
+  const base::SourceMap& sources = parsed_->sources;
+  for (uint32_t file = 0; file < parsed_->library_file; ++file) {
+    if (!sources.is_source(file) || has_condition(sources.text(file))) return false;
+  }
+  return true;
+}
+
+Resident::Sizes Resident::sizes() const {
+  const ir::Program& program = sema_->program;
+  return {program.types.size(), static_cast<uint32_t>(sema_->variables_.size()),
+          static_cast<uint32_t>(sema_->pous.size()),
+          static_cast<uint32_t>(program.types[program.globals].members.size()),
+          static_cast<uint32_t>(sema_->direct_uses_.size())};
+}
+
+// Lowers a body, where nothing of it is left from before.
+void Resident::run_body(uint32_t pou, BodyRecord& record) {
+  Sema& sema = *sema_;
+  ir::ConstTable& constants = sema.program.constants;
+  record.before = sizes();
+  record.first_constant = constants.next();
+  BodyLog log;
+  sema.log = &log;
+  lower_body(sema, pou);
+  sema.log = nullptr;
+  ++lowered_;
+  const PouInfo& info = sema.pous[pou];
+  record.first = sizes() != record.before;
+  record.end_constant = constants.next();
+  record.other_lines = log.other_lines;
+  record.marks = std::move(log.marks);
+  std::sort(record.marks.begin(), record.marks.end());
+  record.marks.erase(std::unique(record.marks.begin(), record.marks.end()), record.marks.end());
+  record.callees = info.callees;
+  record.writes = info.writes;
+  record.prototypes = prototypes_of(sema.program.pous[info.id.index]);
+}
+
+void Resident::lower_all_bodies() {
+  Sema& sema = *sema_;
+  bodies_.clear();
+  heads_.clear();
+  std::vector<uint8_t> declared;  // what declarations mark
+  for (const Variable& variable : sema.variables_) {
+    declared.push_back(variable.used);
+    declared.push_back(variable.written);
+  }
+  before_ = diagnostics_.all();
+  for (uint32_t pou = 0; pou < sema.pous.size(); ++pou) {
+    BodyRecord& record = bodies_.emplace_back();
+    const ir::PouId id = sema.pous[pou].id;
+    if (!id.valid()) continue;
+    if (heads_.size() <= id.index) {
+      heads_.resize(id.index + 1);
+      number_of_.resize(id.index + 1);
+    }
+    heads_[id.index] = sema.program.pous[id.index];
+    number_of_[id.index] = pou;
+    const size_t messages = diagnostics_.all().size();
+    run_body(pou, record);
+    record.messages.assign(diagnostics_.all().begin() + static_cast<ptrdiff_t>(messages),
+                           diagnostics_.all().end());
+  }
+  marks_.assign(2 * sema.variables_.size(), 0);
+  std::copy(declared.begin(), declared.end(), marks_.begin());
+  for (const BodyRecord& record : bodies_) {
+    for (const uint32_t mark : record.marks) ++marks_[mark];
+  }
+  for (size_t i = 0; i < sema.variables_.size(); ++i) {  // of those that came with a body
+    if (sema.variables_[i].used && marks_[2 * i] == 0) marks_[2 * i] = 1;
+    if (sema.variables_[i].written && marks_[2 * i + 1] == 0) marks_[2 * i + 1] = 1;
+  }
+}
+
+// Would the body have given everything else the same numbers, had it been so from the start?
+bool Resident::is_alike(const BodyRecord& old, const BodyRecord& now, uint32_t pou) const {
+  const ir::Program& program = sema_->program;
+  if (now.first || program.types.asked_below() > old.before.types) return false;
+  if (now.end_constant != old.end_constant) return false;
+  if (!now.marks.empty() && now.marks.back() >= 2 * old.before.variables) return false;
+  const auto known = [&](uint32_t callee) { return callee < old.before.pous; };
+  if (!std::all_of(now.callees.begin(), now.callees.end(), known)) return false;
+  const ir::Pou& code = program.pous[sema_->pous[pou].id.index];
+  if (globals_below(code) > old.before.globals) return false;
+  if (now.prototypes != old.prototypes || !same_writes(now.writes, old.writes)) return false;
+  if (now.callees == old.callees) return true;
+  // A program that somebody calls does not run by itself.
+  const auto is_program = [&](uint32_t callee) {
+    return sema_->pous[callee].decl->kind == PouKind::kProgram;
+  };
+  return std::none_of(now.callees.begin(), now.callees.end(), is_program) &&
+         std::none_of(old.callees.begin(), old.callees.end(), is_program);
+}
+
+// Leaves the record of the body, with the numbers that it has in the whole.
+bool Resident::lower_anew(uint32_t pou) {
+  Sema& sema = *sema_;
+  BodyRecord& old = bodies_[pou];
+  PouInfo& info = sema.pous[pou];
+  if (old.first || !info.outer_uses.empty()) return false;
+  ir::Program& program = sema.program;
+  program.pous[info.id.index] = heads_[info.id.index];
+  program.constants.set_next(old.first_constant);
+  program.types.set_asked_below(0);
+  info.callees.clear();
+  info.writes.clear();
+  diagnostics_ = base::Diagnostics();
+  BodyRecord now;
+  run_body(pou, now);
+  program.constants.set_next(program.constants.size());
+  if (diagnostics_.has_errors() || !info.outer_uses.empty()) return false;
+  if (!is_alike(old, now, pou)) return false;
+  now.before = old.before;
+  now.messages = diagnostics_.all();
+  uses_changed_ = uses_changed_ || now.marks != old.marks || now.callees != old.callees;
+  count_marks(old.marks, false);
+  count_marks(now.marks, true);
+  old = std::move(now);
+  return true;
+}
+
+void Resident::count_marks(const std::vector<uint32_t>& marks, bool more) {
+  for (const uint32_t mark : marks) {
+    marks_[mark] += more ? 1u : ~0u;
+    Variable& variable = sema_->variables_[mark / 2];
+    (mark % 2 == 0 ? variable.used : variable.written) = marks_[mark] != 0;
+  }
+}
+
+bool Resident::lower_again(ir::PouId id) {
+  Sema& sema = *sema_;
+  const BodyRecord& record = bodies_[number_of_[id.index]];
+  PouInfo& info = sema.pous[number_of_[id.index]];
+  if (record.first) return false;
+  ir::Program& program = sema.program;
+  program.pous[id.index] = heads_[id.index];
+  program.constants.set_next(record.first_constant);
+  diagnostics_ = base::Diagnostics();
+  BodyRecord now;
+  run_body(info.number, now);
+  info.callees = record.callees;
+  info.writes = record.writes;
+  const bool same = !now.first && now.end_constant == record.end_constant;
+  program.constants.set_next(program.constants.size());
+  diagnostics_ = base::Diagnostics();
+  followable_ = followable_ && same;
+  return same;
+}
+
+std::vector<std::vector<ir::PouId>> Resident::callees() const {
+  std::vector<std::vector<ir::PouId>> out(sema_->program.pous.size());
+  for (uint32_t pou = 0; pou < bodies_.size(); ++pou) {
+    if (!sema_->pous[pou].id.valid()) continue;
+    for (const uint32_t callee : bodies_[pou].callees) {
+      const ir::PouId id = sema_->pous[callee].id;
+      if (id.valid()) out[sema_->pous[pou].id.index].push_back(id);
+    }
+  }
+  return out;
+}
+
+}  // namespace frontend
