@@ -11,6 +11,7 @@ Sema::Sema(const base::SourceMap& source_map, const Tree& syntax, uint32_t libra
       follow_ups_(source_map, syntax, diagnostics),
       purpose_(purpose),
       library_file_(library_file),
+      library_end_(source_map.file_count()),
       specs_(syntax.specs.size()),
       notes_(syntax.exprs.size()) {
   program.name = options.name;
@@ -35,8 +36,7 @@ void Sema::warning(DiagnosticCode code, base::SourceSpan span, std::string text,
 }
 
 void Sema::allow_extension(std::string_view what, base::SourceSpan span, std::string fix) {
-  bool library = span.begin.valid() && sources.file_of(span.begin) >= library_file_;
-  if (options.dialect != Dialect::kIec || library) return;
+  if (options.dialect != Dialect::kIec || in_library(span)) return;
   error(DiagnosticCode::kExtension, span, std::string(what) + " is no part of the standard",
         std::move(fix));
 }

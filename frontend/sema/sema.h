@@ -31,7 +31,8 @@ enum class Purpose : uint8_t { kRun, kTest };
 
 class Sema {
  public:
-  // Files below `library_file` are the project, the others the standard library.
+  // Files from `library_file` on are the standard library, the others the project; and so are those
+  // that come later.
   Sema(const base::SourceMap& sources, const Tree& tree, uint32_t library_file,
        const CompileOptions& options, Purpose purpose, base::Diagnostics& diagnostics);
 
@@ -186,7 +187,9 @@ class Sema {
   bool use_library_type(std::string_view name);
   bool use_library_literal(std::string_view name);
   bool in_library(base::SourceSpan span) const {
-    return span.begin.valid() && sources.file_of(span.begin) >= library_file_;
+    if (!span.begin.valid()) return false;
+    const uint32_t file = sources.file_of(span.begin);
+    return file >= library_file_ && file < library_end_;
   }
   void forward_declare(const TypeDecl& decl, std::string_view name);
   void collect_enumerators(SpecId spec, ScopeId scope, Access access = Access::kDefault);
@@ -373,6 +376,7 @@ class Sema {
   };
   std::vector<MockBody> mock_bodies_;
   uint32_t library_file_;
+  uint32_t library_end_;
   const ResourceDecl* resource_ = nullptr;  // the one that is compiled
   size_t outer_globals_ = 0;  // of global_order_: outside every RESOURCE, when there are several
   uint32_t current_pou_ = kNoPou;

@@ -1,0 +1,59 @@
+// An image after edits is the image that a build from nothing makes, byte for byte, with the same
+// messages: the golden files, which have everything that the language has, edited at random.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/unit/workspace/edited_project.h"
+
+namespace {
+
+uint32_t number_of(const char* name, uint32_t otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : static_cast<uint32_t>(std::strtoul(text, nullptr, 10));
+}
+
+// Names the file, the edit and both texts' place when they differ.
+void expect_same(const std::string& path, uint32_t edit, const std::string& text,
+                 const test::Outcome& again, const test::Outcome& clean) {
+  EXPECT_EQ(again.messages, clean.messages) << path << " edit " << edit << "\n" << text;
+  EXPECT_EQ(again.refusal, clean.refusal) << path << " edit " << edit << "\n" << text;
+  EXPECT_EQ(again.image.has_value(), clean.image.has_value()) << path << " edit " << edit;
+  EXPECT_TRUE(again.image == clean.image)
+      << path << " edit " << edit << ": another image\n" << text;
+}
+
+// STC_EDITS: edits of each file; STC_SEED: other ones; STC_FILES: one file in so many.
+TEST(RandomEdits, PerformanceIncrementalBuildsEqualBuildsFromNothing) {
+  const uint32_t edits = number_of("STC_EDITS", 4);
+  const uint32_t every = number_of("STC_FILES", 3);
+  const uint32_t seed = number_of("STC_SEED", 1);
+  uint64_t followed = 0;
+  uint64_t whole = 0;
+  uint32_t number = 0;
+  for (const std::string& path : test::sources_below("tests/golden")) {
+    if (++number % every != 0) continue;
+    const std::string original = test::read_file(path);
+    workspace::Settings settings;
+    workspace::IncrementalBuild build(settings);
+    test::Random random(seed * 1000 + number);
+    std::string text = original;
+    if (!test::build_again(build, test::one_file(text)).image) continue;
+    for (uint32_t edit = 0; edit < edits; ++edit) {
+      text = test::edited(random.below(6) == 0 ? original : text, random);
+      const base::SourceMap sources = test::one_file(text);
+      const test::Outcome clean = test::build_from_nothing(sources, settings);
+      expect_same(path, edit, text, test::build_again(build, sources), clean);
+      if (::testing::Test::HasFailure()) return;
+      if (!clean.image && random.below(2) == 0) text = original;
+    }
+    followed += build.counts().edits;
+    whole += build.counts().whole;
+  }
+  // Otherwise nothing was tested.
+  EXPECT_GT(followed, 100u);
+  RecordProperty("followed", static_cast<int>(followed));
+  RecordProperty("whole", static_cast<int>(whole));
+}
+
+}  // namespace
