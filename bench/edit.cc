@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
   const auto built = [&](double& build_ms, double& encode_ms) {
     base::Diagnostics messages;
     const double begin = bench::cpu_seconds();
-    const ir::Image* image = taken(build.build(sources, messages));
+    const ir::Image* image = taken(build.build(sources, {file}, messages));
     const double linked = bench::cpu_seconds();
     base::Bytes bytes = ir::encode(*image);
     build_ms = (linked - begin) * 1e3;

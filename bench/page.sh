@@ -23,6 +23,7 @@ section() {  # section FILE TITLE COMMAND
   section scan.md 'Scan time' 'make bench'
   section build.md 'Compiler' 'make bench'
   section build_large.md 'Compiler, a million lines' 'make bench-large'
+  section edit_large.md 'An edit in a million lines' 'make bench-large'
   section start.md 'Size and start' 'make bench'
 } | cat -s | sed '$d' >"$docs/performance.md"
 cp "$sections/performance.svg" "$docs/performance.svg"

@@ -92,10 +92,11 @@ Resident::Sizes Resident::sizes() const {
 }
 
 // Lowers a body, where nothing of it is left from before.
-void Resident::run_body(uint32_t pou, BodyRecord& record) {
+void Resident::run_body(uint32_t pou, uint32_t next_type, BodyRecord& record) {
   Sema& sema = *sema_;
   ir::ConstTable& constants = sema.program.constants;
   record.before = sizes();
+  sema.program.types.expect_in_turn(next_type);
   record.first_constant = constants.next();
   BodyLog log;
   sema.log = &log;
@@ -103,7 +104,7 @@ void Resident::run_body(uint32_t pou, BodyRecord& record) {
   sema.log = nullptr;
   ++lowered_;
   const PouInfo& info = sema.pous[pou];
-  record.first = sizes() != record.before;
+  record.behind = sizes();
   record.end_constant = constants.next();
   record.other_lines = log.other_lines;
   record.marks = std::move(log.marks);
@@ -135,7 +136,8 @@ void Resident::lower_all_bodies() {
     heads_[id.index] = sema.program.pous[id.index];
     number_of_[id.index] = pou;
     const size_t messages = diagnostics_.all().size();
-    run_body(pou, record);
+    run_body(pou, sema.program.types.size(), record);
+    record.in_turn = sema.program.types.came_in_turn(sema.program.types.size());
     record.messages.assign(diagnostics_.all().begin() + static_cast<ptrdiff_t>(messages),
                            diagnostics_.all().end());
   }
@@ -153,7 +155,7 @@ void Resident::lower_all_bodies() {
 // Would the body have given everything else the same numbers, had it been so from the start?
 bool Resident::is_alike(const BodyRecord& old, const BodyRecord& now, uint32_t pou) const {
   const ir::Program& program = sema_->program;
-  if (now.first || program.types.asked_below() > old.before.types) return false;
+  if (now.behind != now.before || !program.types.came_in_turn(old.behind.types)) return false;
   if (now.end_constant != old.end_constant) return false;
   if (!now.marks.empty() && now.marks.back() >= 2 * old.before.variables) return false;
   const auto known = [&](uint32_t callee) { return callee < old.before.pous; };
@@ -171,33 +173,72 @@ bool Resident::is_alike(const BodyRecord& old, const BodyRecord& now, uint32_t p
 }
 
 // Leaves the record of the body, with the numbers that it has in the whole.
-bool Resident::lower_anew(uint32_t pou) {
+bool Resident::lower_anew(uint32_t pou, Undo& undo) {
   Sema& sema = *sema_;
   BodyRecord& old = bodies_[pou];
   PouInfo& info = sema.pous[pou];
-  if (old.first || !info.outer_uses.empty()) return false;
+  Sizes with_types = old.before;
+  with_types.types = old.behind.types;
+  if (with_types != old.behind || !old.in_turn || !info.outer_uses.empty()) return false;
   ir::Program& program = sema.program;
+  Undo::Code& was = undo.codes.emplace_back();
+  was.pou = pou;
+  was.record = old;
+  was.code = std::move(program.pous[info.id.index]);
+  for (uint32_t i = old.first_constant; i < old.end_constant; ++i) {
+    was.constants.push_back(program.constants[ir::ConstId(i)]);
+  }
   program.pous[info.id.index] = heads_[info.id.index];
   program.constants.set_next(old.first_constant);
-  program.types.set_asked_below(0);
+  sema.follow_ups_.forget();
   info.callees.clear();
   info.writes.clear();
   diagnostics_ = base::Diagnostics();
   BodyRecord now;
-  run_body(pou, now);
+  run_body(pou, old.before.types, now);
   program.constants.set_next(program.constants.size());
-  if (diagnostics_.has_errors() || !info.outer_uses.empty()) return false;
-  if (!is_alike(old, now, pou)) return false;
-  now.before = old.before;
-  now.messages = diagnostics_.all();
-  uses_changed_ = uses_changed_ || now.marks != old.marks || now.callees != old.callees;
   count_marks(old.marks, false);
   count_marks(now.marks, true);
+  const bool alike =
+      !diagnostics_.has_errors() && info.outer_uses.empty() && is_alike(old, now, pou);
+  uses_changed_ = uses_changed_ || now.marks != old.marks || now.callees != old.callees;
+  undo.complete = undo.complete && now.end_constant <= old.end_constant;
+  now.before = old.before;
+  now.behind = old.behind;
+  now.in_turn = true;
+  now.messages = diagnostics_.all();
   old = std::move(now);
-  return true;
+  return alike;
+}
+
+// The program, and what is known of it, as before these edits.
+void Resident::undo_edits(Undo& undo) {
+  ir::Program& program = sema_->program;
+  for (auto code = undo.codes.rbegin(); code != undo.codes.rend(); ++code) {
+    PouInfo& info = sema_->pous[code->pou];
+    BodyRecord& record = bodies_[code->pou];
+    count_marks(record.marks, false);
+    count_marks(code->record.marks, true);
+    record = std::move(code->record);
+    info.callees = record.callees;
+    info.writes = record.writes;
+    info.outer_uses.clear();
+    program.pous[info.id.index] = std::move(code->code);
+    program.constants.set_next(record.first_constant);
+    for (ir::ConstValue& value : code->constants) program.constants.add(std::move(value));
+    program.constants.set_next(program.constants.size());
+  }
+  for (const Undo::Statements& was : undo.statements) {
+    was.pou->body = was.body;
+    was.pou->code = was.code;
+  }
+  for (auto& [number, file] : undo.files) files_[number] = std::move(file);
+  set_pieces();
+  behind_ = std::move(undo.behind);
 }
 
 void Resident::count_marks(const std::vector<uint32_t>& marks, bool more) {
+  if (marks_.size() < 2 * sema_->variables_.size()) marks_.resize(2 * sema_->variables_.size());
   for (const uint32_t mark : marks) {
     marks_[mark] += more ? 1u : ~0u;
     Variable& variable = sema_->variables_[mark / 2];
@@ -209,16 +250,15 @@ bool Resident::lower_again(ir::PouId id) {
   Sema& sema = *sema_;
   const BodyRecord& record = bodies_[number_of_[id.index]];
   PouInfo& info = sema.pous[number_of_[id.index]];
-  if (record.first) return false;
   ir::Program& program = sema.program;
   program.pous[id.index] = heads_[id.index];
   program.constants.set_next(record.first_constant);
   diagnostics_ = base::Diagnostics();
   BodyRecord now;
-  run_body(info.number, now);
+  run_body(info.number, 0, now);
   info.callees = record.callees;
   info.writes = record.writes;
-  const bool same = !now.first && now.end_constant == record.end_constant;
+  const bool same = now.behind == now.before && now.end_constant == record.end_constant;
   program.constants.set_next(program.constants.size());
   diagnostics_ = base::Diagnostics();
   followable_ = followable_ && same;

@@ -43,16 +43,17 @@ class Resident {
     std::vector<LineShift> shifts;
   };
   struct Update {
-    std::vector<ir::PouId> pous;   // made anew, in order
-    std::vector<FileLines> lines;  // of all other POUs in these files
+    std::vector<ir::PouId> pous;                           // made anew, in order
+    std::vector<std::pair<uint32_t, uint32_t>> constants;  // theirs: [first, end)
+    std::vector<FileLines> lines;                          // of all other POUs in these files
   };
   // `sources` differ from the last ones in `files` only; all messages of the whole project go to
   // `diagnostics`. nullopt: compile everything; nothing was reported.
   std::optional<Update> follow(const base::SourceMap& sources, std::span<const uint32_t> files,
                                base::Diagnostics& diagnostics);
 
-  // Is there still something to follow?
-  bool kept() const { return followable_; }
+  // After nullopt: is there still something to follow, when the errors that were found are mended?
+  bool kept() const { return followable_ && found_errors_; }
 
   // The POU as it was before anybody optimised it. False: compile everything.
   bool lower_again(ir::PouId pou);
@@ -66,6 +67,7 @@ class Resident {
   struct File;
   struct Sizes;
   struct Edit;
+  struct Undo;
   using Messages = std::vector<base::Diagnostic>;
 
   bool can_follow() const;
@@ -73,11 +75,14 @@ class Resident {
   void note_files();
   std::optional<Edit> read_edit(uint32_t file, std::string_view text);
   void move_pieces(const Edit& edit);
-  void take_edit(Edit& edit);
-  bool lower_edited(const std::vector<Edit>& edits, Update& update);
+  void take_edit(Edit& edit, Undo& undo);
+  void set_pieces();
+  bool lower_edited(const std::vector<Edit>& edits, Update& update, Undo& undo);
+  bool check_uses_again();
+  void undo_edits(Undo& undo);
   Sizes sizes() const;
-  void run_body(uint32_t pou, BodyRecord& record);
-  bool lower_anew(uint32_t pou);
+  void run_body(uint32_t pou, uint32_t next_type, BodyRecord& record);
+  bool lower_anew(uint32_t pou, Undo& undo);
   bool is_alike(const BodyRecord& old, const BodyRecord& now, uint32_t pou) const;
   void count_marks(const std::vector<uint32_t>& marks, bool more);
   void report(const base::SourceMap& sources, base::Diagnostics& out) const;
@@ -94,12 +99,13 @@ class Resident {
   std::vector<File> files_;
   std::set<uint32_t> edited_;      // files with more than one text
   std::vector<uint32_t> origins_;  // file by number of a text in the resident sources
-  Messages before_;  // of parser and declarations
-  Messages behind_;  // of what needs all bodies
+  Messages before_;                // of parser and declarations
+  Messages behind_;                // of what needs all bodies
   size_t first_exprs_ = 0;
   uint32_t first_bytes_ = 0;
   bool followable_ = false;
   bool uses_changed_ = false;
+  bool found_errors_ = false;
   uint64_t lowered_ = 0;
 };
 

@@ -81,6 +81,7 @@ std::optional<Resident::Edit> Resident::read_edit(uint32_t number, std::string_v
   edit.pous = std::move(known.pous);
   sema_->notes_.resize(tree.exprs.size());
   sema_->specs_.resize(tree.specs.size());
+  found_errors_ = messages.has_errors();
   if (!messages.all().empty() || tree.levels.size() != levels) return std::nullopt;
   edit.now = code_places(edit.pous, sources, edit.text);
   auto bodies = compare_bodies(sources.text(file.text), file.places, text, edit.now);
@@ -124,18 +125,25 @@ void Resident::move_pieces(const Edit& edit) {
   file.text = edit.text;
 }
 
-void Resident::take_edit(Edit& edit) {
+void Resident::take_edit(Edit& edit, Undo& undo) {
+  undo.files.emplace_back(edit.file, files_[edit.file]);
   move_pieces(edit);
   std::vector<CodePlace>& places = files_[edit.file].places;
   for (const size_t i : edit.bodies.changed) {
-    places[i].pou->body = edit.now[i].pou->body;
-    places[i].pou->code = edit.now[i].pou->code;
+    PouDecl& pou = *places[i].pou;
+    undo.statements.push_back({&pou, pou.body, pou.code});
+    pou.body = edit.now[i].pou->body;
+    pou.code = edit.now[i].pou->code;
   }
   for (size_t i = 0; i < places.size(); ++i) {
     places[i].begin = edit.now[i].begin;
     places[i].end = edit.now[i].end;
   }
   edited_.insert(edit.file);
+  set_pieces();
+}
+
+void Resident::set_pieces() {
   std::vector<base::SourceMap::Piece> all;
   for (const uint32_t file : edited_) {
     all.insert(all.end(), files_[file].pieces.begin(), files_[file].pieces.end());
@@ -144,25 +152,37 @@ void Resident::take_edit(Edit& edit) {
   parsed_->sources.set_pieces(std::move(all));
 }
 
-bool Resident::lower_edited(const std::vector<Edit>& edits, Update& update) {
+bool Resident::lower_edited(const std::vector<Edit>& edits, Update& update, Undo& undo) {
   std::set<const PouDecl*> changed;
   for (const Edit& edit : edits) {
     for (const size_t i : edit.bodies.changed) changed.insert(files_[edit.file].places[i].pou);
   }
   for (const PouInfo& info : sema_->pous) {
     if (!info.id.valid() || !changed.contains(info.decl)) continue;
-    if (info.made != MadeCode::kNone || !lower_anew(info.number)) return false;
+    if (info.made != MadeCode::kNone || !lower_anew(info.number, undo)) return false;
     update.pous.push_back(info.id);
+    const BodyRecord& record = bodies_[info.number];
+    update.constants.emplace_back(record.first_constant, record.end_constant);
   }
+  return true;
+}
+
+bool Resident::check_uses_again() {
+  diagnostics_ = base::Diagnostics();
+  check_uses(*sema_);
+  if (diagnostics_.has_errors()) return false;
+  behind_ = diagnostics_.all();
   return true;
 }
 
 std::optional<Resident::Update> Resident::follow(const base::SourceMap& sources,
                                                  std::span<const uint32_t> files,
                                                  base::Diagnostics& diagnostics) {
+  found_errors_ = false;
   const Tree* tree = followable_ ? &parsed_->tree : nullptr;
   if (tree == nullptr || tree->exprs.size() > 2 * first_exprs_ + kMoreExprs ||
       parsed_->sources.end().offset > 2 * first_bytes_ + kMoreBytes) {
+    followable_ = false;
     return std::nullopt;
   }
   Update update;
@@ -181,17 +201,17 @@ std::optional<Resident::Update> Resident::follow(const base::SourceMap& sources,
   if (!update.lines.empty() && std::any_of(bodies_.begin(), bodies_.end(), has_other_lines)) {
     return std::nullopt;
   }
-  followable_ = false;
   uses_changed_ = false;
-  for (Edit& edit : edits) take_edit(edit);
-  if (!lower_edited(edits, update)) return std::nullopt;
-  if (uses_changed_) {
-    diagnostics_ = base::Diagnostics();
-    check_uses(*sema_);
-    if (diagnostics_.has_errors()) return std::nullopt;
-    behind_ = diagnostics_.all();
+  Undo undo;
+  undo.sizes = sizes();
+  undo.behind = behind_;
+  for (Edit& edit : edits) take_edit(edit, undo);
+  if (!lower_edited(edits, update, undo) || (uses_changed_ && !check_uses_again())) {
+    found_errors_ = diagnostics_.has_errors();
+    followable_ = undo.complete && sizes() == undo.sizes;  // what was added stays
+    undo_edits(undo);
+    return std::nullopt;
   }
-  followable_ = true;
   report(sources, diagnostics);
   return update;
 }
@@ -204,9 +224,9 @@ base::SourceSpan Resident::moved(base::SourceSpan span, const base::SourceMap& t
     if (text == from.file_count()) return pos;
     const uint32_t file = origins_[text];
     const uint32_t library = parsed_->library_file;
-    const uint32_t begin = file < library ? to.begin(file).offset
-                                          : to.end().offset + from.begin(file).offset -
-                                                from.begin(library).offset;
+    const uint32_t begin =
+        file < library ? to.begin(file).offset
+                       : to.end().offset + from.begin(file).offset - from.begin(library).offset;
     return base::SourcePos{begin + (pos.offset - from.begin(text).offset)};
   };
   return {move(span.begin), move(span.end)};

@@ -6,8 +6,8 @@
 
 namespace frontend {
 
-// What grows when something is needed for the first time. Numbers are given in that order, so a
-// body that was the first to need something cannot change alone.
+// What grows when something is needed for the first time. Numbers are given in that order: an
+// edited body must add the same types in the same order, and may have added nothing else.
 struct Resident::Sizes {
   uint32_t types = 0;
   uint32_t variables = 0;
@@ -19,7 +19,8 @@ struct Resident::Sizes {
 
 struct Resident::BodyRecord {
   Sizes before;  // when it was lowered in its turn
-  bool first = false;
+  Sizes behind;
+  bool in_turn = false;         // all types that came with it were interned
   uint32_t first_constant = 0;  // its constants lie side by side
   uint32_t end_constant = 0;
   bool other_lines = false;  // BodyLog
@@ -35,6 +36,27 @@ struct Resident::File {
   bool has_places = false;
   std::vector<CodePlace> places;
   std::vector<base::SourceMap::Piece> pieces;  // of its texts, as they stand in the last one
+};
+
+// What a body was before it was lowered anew, for the case that the edit is not taken.
+struct Resident::Undo {
+  struct Code {
+    uint32_t pou = 0;
+    BodyRecord record;
+    ir::Pou code;
+    std::vector<ir::ConstValue> constants;
+  };
+  struct Statements {
+    PouDecl* pou;
+    Range32 body;
+    base::SourceSpan code;
+  };
+  Sizes sizes;
+  bool complete = true;  // false: constants of others were overwritten
+  std::vector<std::pair<uint32_t, File>> files;
+  std::vector<Statements> statements;
+  std::vector<Code> codes;
+  Messages behind;
 };
 
 // A file with other statements, read.

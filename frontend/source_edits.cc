@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ir/types/utf.h"
+
 namespace frontend {
 namespace {
 
@@ -15,15 +17,24 @@ void collect(std::vector<PouDecl>& pous, const base::SourceMap& sources, uint32_
   }
 }
 
+// Whether a file is UTF-8 or Latin-1 is for all of its bytes to say.
+bool is_utf8(std::string_view text) {
+  for (size_t at = 0; at < text.size();) {
+    const uint32_t bytes =
+        static_cast<unsigned char>(text[at]) < 0x80 ? 1 : ir::read_utf8(text.substr(at)).bytes;
+    if (bytes == 0) return false;
+    at += bytes;
+  }
+  return true;
+}
+
 // May these statements be exchanged for others without looking at anything around them?
 bool is_plain(std::string_view text, const CodePlace& place) {
   const std::string_view code = text.substr(place.begin, place.end - place.begin);
-  const bool plain = std::none_of(code.begin(), code.end(), [](char c) {
-    return c == '{' || static_cast<unsigned char>(c) >= 0x80;
-  });
+  if (code.find('{') != std::string_view::npos || !is_utf8(code)) return false;
   // The word behind them is the first of its line.
   const size_t line = code.rfind('\n');
-  return plain && line != std::string_view::npos &&
+  return line != std::string_view::npos &&
          code.substr(line).find_first_not_of(" \t\r\n") == std::string_view::npos;
 }
 

@@ -44,7 +44,7 @@ struct BodyEdits {
   std::vector<Kept> kept;
 };
 // nullopt when something else than statements differs, or statements in a way that reaches beyond
-// them: pragmas, bytes beyond ASCII, several POUs on a line.
+// them: pragmas, Latin-1, an END that does not begin its line.
 std::optional<BodyEdits> compare_bodies(std::string_view before, const std::vector<CodePlace>& old,
                                         std::string_view after, const std::vector<CodePlace>& now);
 

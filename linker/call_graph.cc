@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <string>
 #include <unordered_map>
 
 #include "base/limits.h"
@@ -129,7 +131,62 @@ class CallGraph {
   ir::DynamicCalls dynamic_;
 };
 
+// What the instructions of an object call, by kind and by name or type.
+std::set<std::string> calls_of(const ir::Object& object) {
+  std::set<std::string> calls;
+  const auto named = [&](const char* kind, uint32_t callee) {
+    calls.insert(kind + ir::fold_name(object.callees[callee]));
+  };
+  const auto typed = [&](ir::Region region) {
+    calls.insert("of " + std::to_string(region.type.index) + "." + std::to_string(region.dim));
+  };
+  for (size_t i = 0; i < object.code.size(); ++i) {
+    const ir::Unit& unit = object.code[i];
+    const bool extended = ir::opcode_row(unit.opcode()).extended;
+    const uint32_t x = extended ? object.code[i + 1].x() : 0;
+    switch (unit.opcode()) {
+      case ir::Opcode::CALL:
+      case ir::Opcode::CALL_OWN:
+        named("", unit.c);
+        break;
+      case ir::Opcode::CALL_METHOD:
+      case ir::Opcode::CALL_METHOD_AT:
+      case ir::Opcode::CALL_METHOD_REF:
+        named("", x);
+        break;
+      case ir::Opcode::CALL_VIRTUAL:
+        named("any ", x);
+        break;
+      case ir::Opcode::CALL_INST:
+        typed(object.places[unit.bc()].result);
+        break;
+      case ir::Opcode::CALL_INST_AT:
+        typed(object.places[unit.c].result);
+        break;
+      case ir::Opcode::CALL_REF:
+        calls.insert("any of " + std::to_string(object.regions[x].type.index));
+        break;
+      default:
+        break;
+    }
+    i += extended ? 1 : 0;
+  }
+  return calls;
+}
+
+uint32_t native_slots(const ir::Object& object) {
+  uint32_t slots = 0;
+  for (const ir::Slot& slot : object.slots) {
+    if (slot.kind == ir::SlotKind::kNativeArg) slots = std::max(slots, slot.param + 1);
+  }
+  return slots;
+}
+
 }  // namespace
+
+bool same_calls(const ir::Object& a, const ir::Object& b) {
+  return calls_of(a) == calls_of(b) && native_slots(a) == native_slots(b);
+}
 
 base::Result<StackNeeds> stack_needs(const ir::Image& image,
                                      const std::vector<const ir::Object*>& objects) {

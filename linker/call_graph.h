@@ -16,6 +16,10 @@ struct StackNeeds {
   uint32_t depth = 0;  // frames of the deepest chain
 };
 
+// Do both call the same, with the same room for arguments of natives? Then a graph with one is that
+// with the other, if their frames are as large.
+bool same_calls(const ir::Object& a, const ir::Object& b);
+
 // `objects` by POU number, null for unused numbers; image.pous have their frame sizes.
 base::Result<StackNeeds> stack_needs(const ir::Image& image,
                                      const std::vector<const ir::Object*>& objects);

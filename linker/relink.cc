@@ -32,22 +32,32 @@ class Relinker {
   Relinker(const Relinker&) = delete;
   Relinker& operator=(const Relinker&) = delete;
 
-  bool run(std::vector<uint32_t> pous) {
-    std::sort(pous.begin(), pous.end());
-    for (const uint32_t pou : pous) {
-      if (!is_known(pou)) return false;
+  bool run(const std::vector<EditedPou>& edited) {
+    std::vector<uint32_t> pous;
+    bool same_tables = true;
+    bool same_constants = true;
+    bool same_stack = true;
+    for (const EditedPou& pou : edited) {
+      if (!is_known(pou.number)) return false;
+      const ir::Object& object = *context_.objects[pou.number];
+      pous.push_back(pou.number);
+      same_tables = same_tables && same_tables_of(pou.before, object);
+      same_constants = same_constants && has_constants(pou.before, object);
+      same_stack = same_stack && same_calls(pou.before, object);
     }
-    if (!fill_tables_again()) return false;
-    add_moved_constants(pous);
+    if (!same_tables && !fill_tables_again()) return false;
+    if (!same_constants) make_pool_again(pous);
     std::vector<LinkedCode> codes;
     for (const uint32_t pou : pous) {
       base::Result<LinkedCode> linked = relocate(context_, *context_.objects[pou]);
       if (!linked.ok()) return false;
       linked->pou.identity = ir::identity(*context_.objects[pou], program_, state_.names);
+      same_stack = same_stack && linked->pou.frame_size == state_.image.pous[pou].frame_size;
       codes.push_back(std::move(*linked));
     }
     put_in(pous, codes);
-    return state_.image.code.size() <= options_.max_code_units && measure_stack();
+    if (state_.image.code.size() > options_.max_code_units) return false;
+    return same_stack || measure_stack();
   }
 
  private:
@@ -71,6 +81,33 @@ class Relinker {
     return true;
   }
 
+  static bool same_tables_of(const ir::Object& a, const ir::Object& b) {
+    const auto same = [](const ir::Bound& x, const ir::Bound& y) {
+      return x.array == y.array && x.dim == y.dim && x.name == y.name;
+    };
+    return a.ranges == b.ranges &&
+           std::equal(a.bounds.begin(), a.bounds.end(), b.bounds.begin(), b.bounds.end(), same);
+  }
+
+  // The same bytes, one after the other, as the pool has for what the object was?
+  bool has_constants(const ir::Object& before, const ir::Object& object) const {
+    const InitialValues initial(program_.types, program_.constants, state_.image.layouts);
+    if (before.constants.size() != object.constants.size()) return false;
+    for (uint32_t i = 0; i < object.constants.size(); ++i) {
+      const ir::ObjectConstant& now = object.constants[i];
+      const ir::ObjectConstant& old = before.constants[i];
+      if (now.type != old.type || (!now.type.valid() && now.bytes != old.bytes)) return false;
+      if (!now.type.valid()) continue;
+      base::Bytes bytes(state_.image.layouts[now.type].size, 0);
+      initial.write_value(now.type, now.value, bytes);
+      const base::Bytes& pool = state_.pool.bytes();
+      const uint32_t at = state_.pool.offset(object, i);
+      const bool inside = at <= pool.size() && bytes.size() <= pool.size() - at;
+      if (!inside || !std::equal(bytes.begin(), bytes.end(), pool.begin() + at)) return false;
+    }
+    return true;
+  }
+
   // Entries that live on must keep their numbers; POUs that were not edited name them.
   bool fill_tables_again() {
     const std::unordered_map<std::string, uint32_t> old = std::move(context_.table_numbers);
@@ -87,18 +124,16 @@ class Relinker {
   }
 
   // POUs whose constants have other places now are linked again, too.
-  void add_moved_constants(std::vector<uint32_t>& pous) {
+  void make_pool_again(std::vector<uint32_t>& pous) {
     const InitialValues initial(program_.types, program_.constants, state_.image.layouts);
-    ConstantPool pool =
-        make_pool(context_.objects, initial, state_.image.layouts,
-                  options_.base == nullptr ? nullptr : &options_.base->pool);
-    const size_t edited = pous.size();
+    ConstantPool pool = make_pool(context_.objects, initial, state_.image.layouts,
+                                  options_.base == nullptr ? nullptr : &options_.base->pool);
+    const std::vector<uint32_t> edited = pous;
     for (uint32_t number = 0; number < context_.objects.size(); ++number) {
       const ir::Object* object = context_.objects[number];
       if (object == nullptr || state_.pool.same_offsets(pool, *object)) continue;
-      if (!std::binary_search(pous.begin(), pous.begin() + static_cast<ptrdiff_t>(edited), number)) {
-        pous.push_back(number);
-      }
+      if (std::binary_search(edited.begin(), edited.end(), number)) continue;
+      pous.push_back(number);
     }
     std::sort(pous.begin(), pous.end());
     state_.pool = std::move(pool);
@@ -106,38 +141,47 @@ class Relinker {
   }
 
   void put_in(const std::vector<uint32_t>& numbers, std::vector<LinkedCode>& codes) {
-    ir::Image& image = state_.image;
-    std::vector<ir::Unit>& code = image.code;
-    const bool same_sizes = std::equal(
-        numbers.begin(), numbers.end(), codes.begin(), [&](uint32_t number, const auto& linked) {
-          return image.pous[number].unit_count == linked.pou.unit_count;
-        });
-    if (same_sizes) {
-      for (size_t i = 0; i < numbers.size(); ++i) {
-        codes[i].pou.first_unit = image.pous[numbers[i]].first_unit;
-        std::copy(codes[i].code.begin(), codes[i].code.end(),
-                  code.begin() + codes[i].pou.first_unit);
-        image.pous[numbers[i]] = std::move(codes[i].pou);
-      }
-      return;
+    // Each moves what is behind it; many are better put together anew.
+    constexpr size_t kMany = 8;
+    if (numbers.size() > kMany) return put_together(numbers, codes);
+    for (size_t i = 0; i < numbers.size(); ++i) exchange(numbers[i], std::move(codes[i]));
+  }
+
+  void exchange(uint32_t number, LinkedCode linked) {
+    std::vector<ir::LinkedPou>& pous = state_.image.pous;
+    std::vector<ir::Unit>& code = state_.image.code;
+    const uint32_t first = pous[number].first_unit;
+    const uint32_t old_count = pous[number].unit_count;
+    const uint32_t count = linked.pou.unit_count;
+    const auto behind = code.begin() + first + old_count;
+    if (count > old_count) {
+      code.insert(behind, count - old_count, ir::Unit());
+    } else {
+      code.erase(code.begin() + first + count, behind);
     }
+    std::copy(linked.code.begin(), linked.code.end(), code.begin() + first);
+    linked.pou.first_unit = first;
+    pous[number] = std::move(linked.pou);
+    for (uint32_t i = number + 1; i < pous.size(); ++i) pous[i].first_unit += count - old_count;
+  }
+
+  void put_together(const std::vector<uint32_t>& numbers, std::vector<LinkedCode>& codes) {
+    ir::Image& image = state_.image;
     std::vector<ir::Unit> made;
-    made.reserve(code.size() + code.size() / 8);
+    made.reserve(image.code.size());
     size_t next = 0;
     for (uint32_t number = 0; number < image.pous.size(); ++number) {
-      const bool edited = next < numbers.size() && numbers[next] == number;
-      const ir::LinkedPou& old = image.pous[number];
       const auto first = static_cast<uint32_t>(made.size());
-      if (edited) {
+      if (next < numbers.size() && numbers[next] == number) {
         made.insert(made.end(), codes[next].code.begin(), codes[next].code.end());
         image.pous[number] = std::move(codes[next++].pou);
       } else {
-        made.insert(made.end(), code.begin() + old.first_unit,
-                    code.begin() + old.first_unit + old.unit_count);
+        const auto old = image.code.begin() + image.pous[number].first_unit;
+        made.insert(made.end(), old, old + image.pous[number].unit_count);
       }
       image.pous[number].first_unit = first;
     }
-    code = std::move(made);
+    image.code = std::move(made);
   }
 
   bool measure_stack() {
@@ -156,11 +200,19 @@ class Relinker {
 
 }  // namespace
 
-bool relink(LinkState& state, const ir::Program& program, std::span<const uint32_t> pous,
-            const Options& options) {
+bool relink(LinkState& state, const ir::Program& program, std::vector<EditedPou>& pous,
+            std::span<const EditedConstants> constants, const Options& options) {
   if (!state.own_types) return false;
-  state.image.constants = program.constants;
-  return Relinker(state, program, options).run({pous.begin(), pous.end()});
+  for (const EditedConstants& range : constants) {
+    state.image.constants.set_next(range.first);
+    for (uint32_t i = range.first; i < range.end; ++i) {
+      state.image.constants.add(program.constants[ir::ConstId(i)]);
+    }
+  }
+  state.image.constants.set_next(state.image.constants.size());
+  std::sort(pous.begin(), pous.end(),
+            [](const EditedPou& a, const EditedPou& b) { return a.number < b.number; });
+  return Relinker(state, program, options).run(pous);
 }
 
 }  // namespace linker

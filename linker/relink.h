@@ -21,8 +21,8 @@ namespace linker {
 struct LinkState {
   ir::Image image;
   ConstantPool pool;
-  std::vector<const ir::Object*> objects;                   // by POU number
-  std::unordered_map<std::string, uint32_t> pou_numbers;    // as in LinkContext
+  std::vector<const ir::Object*> objects;                 // by POU number
+  std::unordered_map<std::string, uint32_t> pou_numbers;  // as in LinkContext
   std::vector<std::vector<uint64_t>> parameter_offsets;
   std::unordered_map<std::string, uint32_t> table_numbers;
   ir::PouNames names;
@@ -32,9 +32,18 @@ struct LinkState {
 base::Result<LinkState> link_state(const ir::Program& program,
                                    const std::vector<ir::Object>& objects, const Options& options);
 
-// The objects of these POUs, and constants that only they name, are others than at the last link.
+// A POU with another object than at the last link.
+struct EditedPou {
+  uint32_t number = 0;
+  ir::Object before;
+};
+// Constants of the program that only their code names, and that may be others now: [first, end).
+struct EditedConstants {
+  uint32_t first = 0;
+  uint32_t end = 0;
+};
 // False: link everything; the state is of no use any more.
-bool relink(LinkState& state, const ir::Program& program, std::span<const uint32_t> pous,
-            const Options& options);
+bool relink(LinkState& state, const ir::Program& program, std::vector<EditedPou>& pous,
+            std::span<const EditedConstants> constants, const Options& options);
 
 }  // namespace linker

@@ -1,6 +1,7 @@
 #include "workspace/incremental_build.h"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 #include <string_view>
 
@@ -63,9 +64,23 @@ IncrementalBuild::IncrementalBuild(Settings settings) : settings_(std::move(sett
 
 base::Result<const ir::Image*> IncrementalBuild::build(const base::SourceMap& sources,
                                                        base::Diagnostics& diagnostics) {
-  if (const auto files = edited_files(sources)) {
-    if (follow(sources, *files, diagnostics)) {
-      for (const uint32_t file : *files) sources_.replace(file, std::string(sources.text(file)));
+  std::vector<uint32_t> all(sources.file_count());
+  std::iota(all.begin(), all.end(), 0u);
+  return build(sources, all, diagnostics);
+}
+
+base::Result<const ir::Image*> IncrementalBuild::build(const base::SourceMap& sources,
+                                                       const std::vector<uint32_t>& saved,
+                                                       base::Diagnostics& diagnostics) {
+  differing_.insert(saved.begin(), saved.end());
+  if (has_files_of(sources)) {
+    std::vector<uint32_t> files;
+    for (const uint32_t file : differing_) {
+      if (sources.text(file) != sources_.text(file)) files.push_back(file);
+    }
+    if (follow(sources, files, diagnostics)) {
+      for (const uint32_t file : files) sources_.replace(file, std::string(sources.text(file)));
+      differing_.clear();
       ++counts_.edits;
       return &kept_->linked->image;
     }
@@ -73,17 +88,14 @@ base::Result<const ir::Image*> IncrementalBuild::build(const base::SourceMap& so
   return build_whole(sources, diagnostics);
 }
 
-std::optional<std::vector<uint32_t>> IncrementalBuild::edited_files(
-    const base::SourceMap& sources) const {
-  if (kept_ == nullptr || sources.file_count() != sources_.file_count()) return std::nullopt;
-  std::vector<uint32_t> files;
+bool IncrementalBuild::has_files_of(const base::SourceMap& sources) const {
+  if (kept_ == nullptr || sources.file_count() != sources_.file_count()) return false;
   for (uint32_t file = 0; file < sources.file_count(); ++file) {
-    const bool same_file = sources.file_name(file) == sources_.file_name(file) &&
-                           sources.is_source(file) == sources_.is_source(file);
-    if (!same_file) return std::nullopt;
-    if (sources.text(file) != sources_.text(file)) files.push_back(file);
+    const bool same = sources.file_name(file) == sources_.file_name(file) &&
+                      sources.is_source(file) == sources_.is_source(file);
+    if (!same) return false;
   }
-  return files;
+  return true;
 }
 
 base::Result<const ir::Image*> IncrementalBuild::build_whole(const base::SourceMap& sources,
@@ -116,6 +128,7 @@ base::Result<const ir::Image*> IncrementalBuild::build_whole(const base::SourceM
   made->linked = std::move(*linked);
   kept_ = std::move(made);
   sources_ = sources;
+  differing_.clear();
   return &kept_->linked->image;
 }
 
@@ -131,18 +144,20 @@ bool IncrementalBuild::follow(const base::SourceMap& sources, const std::vector<
   }
   bool done = optimise_with_callers(update->pous);
   move_lines(update->lines);
-  std::vector<uint32_t> numbers;
+  std::vector<linker::EditedPou> pous;
   for (const ir::PouId pou : update->pous) {
     if (!done) break;
     base::Result<ir::Object> object = ir::lower(*kept_->program, pou);
     done = object.ok();
     if (!done) break;
-    kept_->objects[pou.index] = std::move(*object);
+    std::swap(kept_->objects[pou.index], *object);
     const std::string name = ir::fold_name(kept_->program->pous[pou.index].name);
-    numbers.push_back(kept_->linked->pou_numbers.at(name));
+    pous.push_back({kept_->linked->pou_numbers.at(name), std::move(*object)});
   }
-  if (done && !numbers.empty()) {
-    done = linker::relink(*kept_->linked, *kept_->program, numbers, settings_.link);
+  std::vector<linker::EditedConstants> constants;
+  for (const auto& [first, end] : update->constants) constants.push_back({first, end});
+  if (done && !pous.empty()) {
+    done = linker::relink(*kept_->linked, *kept_->program, pous, constants, settings_.link);
   }
   if (!done) {
     kept_.reset();
@@ -164,7 +179,8 @@ bool IncrementalBuild::optimise_with_callers(std::vector<ir::PouId>& pous) {
   std::set<ir::PouId> waiting(pous.begin(), pous.end());
   std::set<ir::PouId> done;
   while (!waiting.empty()) {
-    const ir::PouId pou = callees.empty() ? *waiting.begin() : CalleesFirst(callees).next_of(waiting);
+    const ir::PouId pou =
+        callees.empty() ? *waiting.begin() : CalleesFirst(callees).next_of(waiting);
     waiting.erase(pou);
     done.insert(pou);
     if (!ir::optimise(program, pou, settings_.passes, kVerifyEach).ok()) return false;

@@ -3,13 +3,14 @@
 //
 // One IncrementalBuild serves one project and keeps sources, tree, program, objects and image of
 // the last build (about as much memory as a build takes). When an edit is of another kind than the
-// front end can follow (frontend/resident.h), everything is built anew; `counts` says what happened.
-// Not for projects with several RESOURCEs.
+// front end can follow (frontend/resident.h), everything is built anew; `counts` says what
+// happened. Not for projects with several RESOURCEs.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -47,6 +48,10 @@ class IncrementalBuild {
   // kUsage, and no message, for several RESOURCEs.
   base::Result<const ir::Image*> build(const base::SourceMap& sources,
                                        base::Diagnostics& diagnostics);
+  // The same, where only these files may differ from the sources of the last call.
+  base::Result<const ir::Image*> build(const base::SourceMap& sources,
+                                       const std::vector<uint32_t>& saved,
+                                       base::Diagnostics& diagnostics);
   const Counts& counts() const { return counts_; }
 
  private:
@@ -54,11 +59,11 @@ class IncrementalBuild {
     frontend::Resident frontend;
     ir::Program* program = nullptr;
     std::vector<ir::Object> objects;  // by PouId
-    std::vector<bool> inlined;  // by PouId: functions whose callers may hold their body
+    std::vector<bool> inlined;        // by PouId: functions whose callers may hold their body
     std::optional<linker::LinkState> linked;
   };
 
-  std::optional<std::vector<uint32_t>> edited_files(const base::SourceMap& sources) const;
+  bool has_files_of(const base::SourceMap& sources) const;
   base::Result<const ir::Image*> build_whole(const base::SourceMap& sources,
                                              base::Diagnostics& diagnostics);
   bool follow(const base::SourceMap& sources, const std::vector<uint32_t>& files,
@@ -67,7 +72,8 @@ class IncrementalBuild {
   void move_lines(const std::vector<frontend::Resident::FileLines>& files);
 
   Settings settings_;
-  base::SourceMap sources_;  // of the last good build
+  base::SourceMap sources_;       // of the last good build
+  std::set<uint32_t> differing_;  // files that may differ from them
   std::unique_ptr<Kept> kept_;
   Counts counts_;
 };

@@ -24,6 +24,8 @@ class FollowUps {
 
   // Nothing to say? `within` is the POU around the place, or null.
   bool silences(base::DiagnosticCode code, const PouDecl* within, const std::string& text);
+  // What was said is to be said again.
+  void forget() { said_.clear(); }
 
  private:
   void note_damage(const base::SourceMap& sources, const Tree& tree, base::SourcePos at);

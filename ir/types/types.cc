@@ -87,7 +87,11 @@ TypeId TypeTable::intern(std::string key, Type type) {
   if (inserted) {
     types_.push_back(std::move(type));
   }
-  asked_below_ = std::max(asked_below_, found->second.index + 1);
+  if (found->second.index == next_in_turn_) {
+    ++next_in_turn_;
+  } else if (found->second.index > next_in_turn_) {
+    in_turn_ = false;
+  }
   return found->second;
 }
 

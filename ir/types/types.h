@@ -177,10 +177,14 @@ class TypeTable {
   const std::vector<std::string>& old_names() const { return old_names_; }
   void set_old_names(std::vector<std::string> names) { old_names_ = std::move(names); }
 
-  // One more than the highest number that interning gave out since it was set to 0: whether what
-  // is made anew asks for types that somebody behind it was the first to need.
-  uint32_t asked_below() const { return asked_below_; }
-  void set_asked_below(uint32_t number) { asked_below_ = number; }
+  // Watches what interning gives out: the types from number `next` on must come one after the
+  // other, each when the one before it has come. So it is told whether code that is made anew needs
+  // the types that were added for it, in the same order, and none that was added for others.
+  void expect_in_turn(uint32_t next) {
+    next_in_turn_ = next;
+    in_turn_ = true;
+  }
+  bool came_in_turn(uint32_t end) const { return in_turn_ && next_in_turn_ == end; }
 
   uint32_t size() const { return static_cast<uint32_t>(types_.size()); }
   bool contains(TypeId id) const { return id.index < types_.size(); }
@@ -210,7 +214,8 @@ class TypeTable {
   std::vector<Type> types_;
   std::unordered_map<std::string, TypeId> interned_;
   std::vector<std::string> old_names_;
-  uint32_t asked_below_ = 0;
+  uint32_t next_in_turn_ = 0;
+  bool in_turn_ = true;
 };
 
 // Comparison and folding of IEC identifiers (base/name_case.h).

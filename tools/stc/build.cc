@@ -35,16 +35,6 @@ base::Result<Compiled> to_objects(ir::Program program, const Project& project,
   return Compiled{std::move(program), std::move(*objects)};
 }
 
-// What only shows when all is linked, with the place of the device that it is about.
-base::Error with_place(base::Error error, const std::vector<ProjectDevice>& devices) {
-  for (const ProjectDevice& row : devices) {
-    const bool about = error.refusal == base::Refusal::kBadMapping &&
-                       error.text.starts_with("device `" + row.device.name + "`: ");
-    if (about) return {error.refusal, row.where + ": " + error.text};
-  }
-  return error;
-}
-
 // The only task of a test image runs the tests.
 std::vector<ir::Device> without_lost_tasks(std::vector<ir::Device> devices) {
   for (ir::Device& device : devices) {
@@ -82,6 +72,15 @@ std::string resource_of(const ir::Image* base) {
 }
 
 }  // namespace
+
+base::Error with_place(base::Error error, const std::vector<ProjectDevice>& devices) {
+  for (const ProjectDevice& row : devices) {
+    const bool about = error.refusal == base::Refusal::kBadMapping &&
+                       error.text.starts_with("device `" + row.device.name + "`: ");
+    if (about) return {error.refusal, row.where + ": " + error.text};
+  }
+  return error;
+}
 
 base::Result<Compiled> compile(const Project& project, base::Diagnostics& diagnostics) {
   add_findings(diagnostics, project.imported, false);

@@ -53,6 +53,9 @@ struct TestVersion {
 };
 base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics& diagnostics);
 
+// An error of linking, with the place of the device that it is about.
+base::Error with_place(base::Error error, const std::vector<ProjectDevice>& devices);
+
 base::Result<Version> read_image(const std::string& path);
 // Is this file an image (by its magic)?
 bool is_image(const std::string& path);

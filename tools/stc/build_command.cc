@@ -1,11 +1,8 @@
 // stc build: sources -> image file.
-#include <cstdio>
-#include <filesystem>
-
-#include "base/hash.h"
-#include "tools/common/files.h"
 #include "tools/stc/commands.h"
+#include "tools/stc/image_output.h"
 #include "tools/stc/session.h"
+#include "tools/stc/watch.h"
 
 namespace stc {
 namespace {
@@ -18,44 +15,11 @@ constexpr tools::OptionRow kOptions[] = {
      "FILE.RESOURCE.img each, or RESOURCE.img in the folder FILE"},
     {"--base", "IMAGE", "running version: what lives on keeps its place"},
     {"--quiet|-q", nullptr, "no line about the image"},
+    {"--watch", nullptr, "stay, and build again whenever a source is saved"},
     {"--move-all", nullptr, "with --base: give every instance a new place (a test of changes)"},
 };
 constexpr tools::Command kCommand{"build", "PATHS...", "Compiles and links sources to an image.",
                                   kOptions, 1};
-
-// DIR/NAME.img when `output` is a folder, or ends with a slash; of several resources DIR/Line.img,
-// or plant.Line.img beside plant.img.
-base::Result<std::string> image_path(const std::string& output, const std::string& resource,
-                                     const std::string& project) {
-  const std::filesystem::path path(output);
-  std::error_code error;
-  if (path.filename().empty()) std::filesystem::create_directories(path, error);
-  if (error) return base::Error{base::Refusal::kFileUnwritable, output + ": " + error.message()};
-  if (std::filesystem::is_directory(path, error)) {
-    const bool usable = project.find('/') == std::string::npos;
-    const std::string alone = usable ? project : "program";
-    return (path / ((resource.empty() ? alone : resource) + ".img")).string();
-  }
-  if (resource.empty()) return output;
-  const std::string name = path.stem().string() + "." + resource + path.extension().string();
-  return (path.parent_path() / name).string();
-}
-
-base::Status write_images(const std::vector<ResourceVersion>& versions, const std::string& output,
-                          const std::string& project, bool with_line) {
-  for (const ResourceVersion& made : versions) {
-    const std::string resource = versions.size() > 1 ? made.resource : std::string();
-    base::Result<std::string> path = image_path(output, resource, project);
-    if (!path.ok()) return path.error();
-    base::Status written = tools::write_file(*path, made.version.bytes);
-    if (!written.ok()) return written;
-    if (!with_line) continue;
-    std::fprintf(stderr, "%s: %zu POUs, %zu bytes, hash %s\n", path->c_str(),
-                 made.version.image.pous.size(), made.version.bytes.size(),
-                 base::short_hex(ir::digest(made.version.bytes)).c_str());
-  }
-  return base::Ok{};
-}
 
 int run(const tools::Options& options) {
   auto format = diagnostic_format(options);
@@ -70,6 +34,7 @@ int run(const tools::Options& options) {
   }
   BuildOptions build_options{base_version ? &base_version->image : nullptr,
                              options.has("--move-all")};
+  if (options.has("--watch")) return watch(options, *project, build_options, *format);
   base::Diagnostics diagnostics;
   auto versions = build_resources(*project, build_options, diagnostics);
   report(*project, diagnostics, *format);

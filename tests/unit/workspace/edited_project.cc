@@ -58,14 +58,15 @@ void change_number(std::string& text, const Part& part, Random& random) {
 
 void change_word(std::string& text, const Part& part, Random& random) {
   static constexpr const char* kWords[][2] = {
-      {" + ", " - "},   {"TRUE", "FALSE"}, {" AND ", " OR "}, {"'", "'more "},
-      {" < ", " >= "},  {" := ", " := 1 + "}, {";", "; ;"},    {" - ", " * "},
-      {"FALSE", "TRUE"}, {";", ""},        {"(", "(("},       {"IF ", "IF NOT "},
+      {" + ", " - "},  {"TRUE", "FALSE"}, {" AND ", " OR "},
+      {"'", "'more "}, {" < ", " >= "},   {" := ", " := 1 + "},
+      {";", "; ;"},    {" - ", " * "},    {"FALSE", "TRUE"},
+      {";", ""},       {"(", "(("},       {"IF ", "IF NOT "},
   };
   for (int tries = 0; tries < 4; ++tries) {
     const auto& [from, to] = kWords[random.below(sizeof kWords / sizeof kWords[0])];
-    const size_t at = text.find(from, part.begin + random.below(static_cast<uint32_t>(
-                                                     part.end - part.begin + 1)));
+    const size_t at = text.find(
+        from, part.begin + random.below(static_cast<uint32_t>(part.end - part.begin + 1)));
     if (at >= part.end) continue;
     text.replace(at, std::string(from).size(), to);
     return;
@@ -124,8 +125,7 @@ std::string edited(const std::string& text, Random& random) {
 Outcome build_from_nothing(const base::SourceMap& sources, const workspace::Settings& settings) {
   Outcome outcome;
   base::Diagnostics diagnostics;
-  std::optional<ir::Program> program =
-      frontend::compile(sources, settings.compile, diagnostics);
+  std::optional<ir::Program> program = frontend::compile(sources, settings.compile, diagnostics);
   outcome.messages = rendered(diagnostics, sources);
   if (!program) return outcome;
   base::Status optimised = ir::optimise(*program, settings.passes, false, 1);

@@ -19,8 +19,8 @@ void expect_same(const std::string& path, uint32_t edit, const std::string& text
   EXPECT_EQ(again.messages, clean.messages) << path << " edit " << edit << "\n" << text;
   EXPECT_EQ(again.refusal, clean.refusal) << path << " edit " << edit << "\n" << text;
   EXPECT_EQ(again.image.has_value(), clean.image.has_value()) << path << " edit " << edit;
-  EXPECT_TRUE(again.image == clean.image)
-      << path << " edit " << edit << ": another image\n" << text;
+  EXPECT_TRUE(again.image == clean.image) << path << " edit " << edit << ": another image\n"
+                                          << text;
 }
 
 // STC_EDITS: edits of each file; STC_SEED: other ones; STC_FILES: one file in so many.

@@ -1,0 +1,88 @@
+#!/bin/sh
+# stc build --watch: an image at each save, the same as that of a build from nothing.
+. "$(dirname "$0")/lib.sh"
+
+mkdir plant
+cat >plant/pump.st <<'ST'
+FUNCTION_BLOCK Pump
+VAR_INPUT Start : BOOL; END_VAR
+VAR_OUTPUT Hours : INT; END_VAR
+  IF Start THEN
+    Hours := Hours + 1;
+  END_IF;
+END_FUNCTION_BLOCK
+ST
+cat >plant/main.st <<'ST'
+PROGRAM Main
+VAR
+  P1 : Pump;
+END_VAR
+  P1(Start := TRUE);
+END_PROGRAM
+ST
+
+# built COUNT: as many builds have been reported.
+built() {
+  for _ in $(seq 200); do
+    [ "$(grep -c '^built ' watch.log)" -ge "$1" ] && return 0
+    sleep 0.05
+  done
+  sed 's/^/  log: /' watch.log
+  fail "not built $1 times"
+}
+# same: the image is that of a build from nothing.
+same() {
+  expect 0 stc build plant -q -o clean.img
+  cmp -s clean.img watched.img || fail "another image: $1"
+}
+# save FILE: as editors do it, in one step.
+save() { cat >"$1.new" && mv "$1.new" "$1"; }
+
+"$bin/stc" build plant --watch -o watched.img 2>watch.log >watch.out </dev/null &
+echo $! >watch.pid
+built 1
+same 'the first one'
+grep -q '^built everything in [0-9]* ms$' watch.log || fail "no line about the build"
+
+sed 's/Hours + 1/Hours + 2/' plant/pump.st | save plant/pump.st
+built 2
+same 'statements'
+tail -1 watch.log | grep -q '^built 1 POU in' || fail "more than one POU for a statement"
+
+sed 's/^VAR_OUTPUT/VAR_OUTPUT Runs : INT; END_VAR VAR_OUTPUT/' plant/pump.st | save plant/pump.st
+built 3
+same 'declarations'
+
+# A mistake is reported; the image stays until it is mended.
+cp watched.img before.img
+sed 's/TRUE/Missing/' plant/main.st | save plant/main.st
+for _ in $(seq 100); do
+  grep -q 'main.st:5.*Missing' watch.log && break
+  sleep 0.05
+done
+grep -q 'main.st:5:.*error\[E2001\].*Missing' watch.log || fail "the mistake is not reported"
+cmp -s before.img watched.img || fail "an image in spite of errors"
+sed 's/Missing/FALSE/' plant/main.st | save plant/main.st
+built 4
+same 'mended'
+
+# A new file, a file that goes, other settings.
+printf 'FUNCTION Twice : INT VAR_INPUT x : INT; END_VAR Twice := 2 * x; END_FUNCTION\n' |
+  save plant/twice.st
+built 5
+same 'a new file'
+rm plant/twice.st
+built 6
+same 'a file less'
+echo 'name = "other"' >plant/stc.toml
+built 7
+same 'settings'
+echo 'nam = 1' >plant/stc.toml
+for _ in $(seq 100); do
+  grep -q 'R0506' watch.log && break
+  sleep 0.05
+done
+grep -q 'R0506' watch.log || fail "bad settings are not reported"
+rm plant/stc.toml
+built 8
+same 'without settings'

@@ -1,0 +1,196 @@
+// What an edit costs, counted: bodies that are checked and lowered again.
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include "tests/unit/workspace/edited_project.h"
+
+namespace {
+
+// Sources of which one can be exchanged, and their builds.
+class Project {
+ public:
+  explicit Project(std::vector<std::string> texts) : build_(settings_) {
+    for (std::string& text : texts) {
+      sources_.add("part" + std::to_string(sources_.file_count()) + ".st", std::move(text));
+    }
+    save(0, std::string(sources_.text(0)));
+  }
+
+  void save(uint32_t file, std::string text) {
+    sources_.replace(file, std::move(text));
+    const workspace::Counts before = build_.counts();
+    outcome = test::build_again(build_, sources_);
+    EXPECT_TRUE(outcome == test::build_from_nothing(sources_, settings_))
+        << outcome.messages << outcome.refusal;
+    whole = build_.counts().whole - before.whole;
+    lowered = build_.counts().lowered - before.lowered;
+  }
+  // The one place where `from` stands becomes `to`.
+  void edit(uint32_t file, const std::string& from, const std::string& to) {
+    std::string text(sources_.text(file));
+    const size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    save(file, text.replace(at, from.size(), to));
+  }
+  std::string text(uint32_t file) const { return std::string(sources_.text(file)); }
+
+  test::Outcome outcome;
+  uint64_t whole = 0;  // by the last save
+  uint64_t lowered = 0;
+
+ private:
+  workspace::Settings settings_;
+  base::SourceMap sources_;
+  workspace::IncrementalBuild build_;
+};
+
+constexpr const char* kBlocks = R"(FUNCTION Twice : INT
+VAR_INPUT x : INT; END_VAR
+  Twice := x + x;
+END_FUNCTION
+
+FUNCTION_BLOCK Motor
+VAR_INPUT Start : BOOL; END_VAR
+VAR_OUTPUT Speed : INT; Text : STRING[20]; END_VAR
+VAR Step : INT; END_VAR
+METHOD Faster : BOOL
+  Speed := Twice(Speed);
+  Faster := Speed > 100;
+END_METHOD
+  IF Start THEN
+    Step := Step + 1;
+    Text := 'running';
+  END_IF;
+  IF Step > 10 THEN
+    Text := 'tired';
+    Step := 0;
+  END_IF;
+END_FUNCTION_BLOCK
+
+FUNCTION_BLOCK Last
+VAR n : INT; END_VAR
+  n := n + Twice(n) / 3;
+END_FUNCTION_BLOCK
+)";
+constexpr const char* kMain = R"(PROGRAM Main
+VAR
+  M : Motor;
+  L : Last;
+END_VAR
+  M(Start := TRUE);
+  M.Faster();
+  L();
+END_PROGRAM
+)";
+
+TEST(Edits, PerformanceStatementCostsOneBody) {
+  Project project({kBlocks, kMain});
+  EXPECT_EQ(project.whole, 1u);
+  project.edit(0, "Step + 1", "Step + 2");
+  EXPECT_EQ(project.whole, 0u);
+  EXPECT_EQ(project.lowered, 1u);
+  project.edit(1, "TRUE", "FALSE");
+  EXPECT_EQ(project.whole, 0u);
+  EXPECT_EQ(project.lowered, 1u);
+  project.edit(0, "Speed > 100", "Speed > 99");
+  EXPECT_EQ(project.lowered, 1u);
+}
+
+TEST(Edits, LinesAndCommentsOfABodyCostThatBody) {
+  Project project({kBlocks, kMain});
+  project.edit(0, "    Step := Step + 1;\n", "\n\n    (* one more *)\n    Step := Step + 1;\n");
+  EXPECT_EQ(project.whole, 0u);
+  EXPECT_EQ(project.lowered, 1u);
+}
+
+TEST(Edits, InlinedFunctionCostsItselfAndWhoHoldsIt) {
+  Project project({kBlocks, kMain});
+  project.edit(0, "x + x", "x * 2");
+  EXPECT_EQ(project.whole, 0u);
+  EXPECT_EQ(project.lowered, 3u);  // Twice, Motor.Faster, Last
+}
+
+TEST(Edits, NoEditCostsNothing) {
+  Project project({kBlocks, kMain});
+  project.save(0, project.text(0));
+  EXPECT_EQ(project.whole, 0u);
+  EXPECT_EQ(project.lowered, 0u);
+}
+
+TEST(Edits, DeclarationsCostEverything) {
+  Project project({kBlocks, kMain});
+  project.edit(0, "Step : INT", "Step : DINT");
+  EXPECT_EQ(project.whole, 1u);
+  project.edit(0, "Step : DINT", "Step : INT; more : INT");
+  EXPECT_EQ(project.whole, 1u);
+  project.edit(0, "Step + 1", "Step + more");
+  EXPECT_EQ(project.whole, 0u);
+}
+
+TEST(Edits, FirstUseAndLastUseOfAVariableAreReported) {
+  Project project({kBlocks, kMain});
+  project.edit(0, "n := n + Twice(n) / 3", "Twice(1)");
+  EXPECT_NE(project.outcome.messages.find("`n` is never used"), std::string::npos);
+  project.edit(0, "Twice(1)", "n := Twice(n)");
+  EXPECT_EQ(project.outcome.messages.find("never used"), std::string::npos);
+  EXPECT_EQ(project.whole, 0u);
+}
+
+TEST(Edits, AfterAMistakeTheNextGoodEditCostsOneBody) {
+  Project project({kBlocks, kMain});
+  project.edit(0, "Step + 1;", "Step + ;");
+  EXPECT_FALSE(project.outcome.image.has_value());
+  project.edit(0, "Step + ;", "Step + 3;");
+  EXPECT_TRUE(project.outcome.image.has_value());
+  EXPECT_EQ(project.whole, 0u);
+  EXPECT_EQ(project.lowered, 1u);
+  for (int twice = 0; twice < 2; ++twice) {
+    project.edit(0, "Step + 3;", "Step + Missing; Start := 1.5;");
+    EXPECT_FALSE(project.outcome.image.has_value());
+    project.edit(0, "Step + Missing; Start := 1.5;", "Step + 3;");
+    EXPECT_EQ(project.whole, 0u);
+  }
+  project.edit(0, "Step + 3", "Step + 4");
+  EXPECT_EQ(project.whole, 0u);
+  EXPECT_EQ(project.lowered, 1u);
+}
+
+TEST(Edits, LettersBeyondAsciiCostOneBody) {
+  Project project({kBlocks, kMain});
+  project.edit(0, "Step + 1;", "Step + 2;  (* l\303\244uft *)");
+  EXPECT_EQ(project.whole, 0u);
+  project.edit(0, "Step := 0;", "Step := 1;  (* m\374de *)");  // now all of the file is Latin-1
+  EXPECT_EQ(project.whole, 1u);
+}
+
+TEST(Edits, SeveralFilesAtOnce) {
+  Project project({kBlocks, kMain});
+  project.edit(0, "Step + 1", "Step + 4");
+  project.edit(1, "TRUE", "M.Speed < 100");
+  project.edit(0, "Twice(n) / 3", "Twice(n) / 4");
+  EXPECT_EQ(project.whole, 0u);
+}
+
+// Texts and nodes of former edits go when there are too many of them.
+TEST(Edits, TenThousandEditsKeepTheirMemory) {
+  workspace::Settings settings;
+  workspace::IncrementalBuild build(settings);
+  base::SourceMap sources;
+  sources.add("blocks.st", kBlocks);
+  sources.add("main.st", kMain);
+  const std::string before = kBlocks;
+  const size_t at = before.find("Step + 1");
+  size_t after_some = 0;
+  for (int edit = 0; edit < 10'000; ++edit) {
+    std::string text = before;
+    sources.replace(0, text.replace(at, 8, "Step + " + std::to_string(edit % 97)));
+    base::Diagnostics diagnostics;
+    ASSERT_TRUE(build.build(sources, diagnostics).ok());
+    if (edit == 2'000) after_some = mallinfo2().uordblks;
+    if (edit <= 2'000) continue;
+    ASSERT_LT(mallinfo2().uordblks, 2 * after_some + (48u << 20)) << edit;
+  }
+  EXPECT_LT(build.counts().whole, 100u);
+}
+
+}  // namespace
