@@ -21,6 +21,22 @@ Sema::Sema(const base::SourceMap& source_map, const Tree& syntax, uint32_t libra
   for (const stdlib::FunctionRow& row : stdlib::function_rows()) standard_.emplace(row.name, &row);
 }
 
+bool Sema::in_library(base::SourceSpan span) const {
+  if (!span.begin.valid()) return false;
+  const uint32_t file = sources.file_of(span.begin);
+  return file >= library_file_ && file < library_end_;
+}
+
+void Sema::mark_used(VarId id) {
+  variables_[id.index].used = true;
+  if (log != nullptr) log->marks.push_back(2 * id.index);
+}
+
+void Sema::mark_written(VarId id) {
+  variables_[id.index].written = true;
+  if (log != nullptr) log->marks.push_back(2 * id.index + 1);
+}
+
 void Sema::error(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix) {
   const PouDecl* within = current_pou_ == kNoPou ? nullptr : pous[current_pou_].decl;
   if (within != nullptr && pous[current_pou_].owner != kNoPou) {

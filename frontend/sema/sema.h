@@ -43,14 +43,8 @@ class Sema {
   void configure();
   void finish_programs();  // after all bodies
   void report_unused();
-  void mark_used(VarId id) {
-    variables_[id.index].used = true;
-    if (log != nullptr) log->marks.push_back(2 * id.index);
-  }
-  void mark_written(VarId id) {
-    variables_[id.index].written = true;
-    if (log != nullptr) log->marks.push_back(2 * id.index + 1);
-  }
+  void mark_used(VarId id);
+  void mark_written(VarId id);
   bool for_tests() const { return purpose_ == Purpose::kTest; }
   // Member of the globals that takes the message of a failed assertion.
   uint32_t test_message() const { return test_message_; }
@@ -186,11 +180,7 @@ class Sema {
   void declare_type(const TypeDecl& decl, std::string_view name);
   bool use_library_type(std::string_view name);
   bool use_library_literal(std::string_view name);
-  bool in_library(base::SourceSpan span) const {
-    if (!span.begin.valid()) return false;
-    const uint32_t file = sources.file_of(span.begin);
-    return file >= library_file_ && file < library_end_;
-  }
+  bool in_library(base::SourceSpan span) const;
   void forward_declare(const TypeDecl& decl, std::string_view name);
   void collect_enumerators(SpecId spec, ScopeId scope, Access access = Access::kDefault);
   void collect_globals(const VarBlock& block, std::string_view list);

@@ -34,11 +34,19 @@ TEST(RandomEdits, PerformanceIncrementalBuildsEqualBuildsFromNothing) {
   for (const std::string& path : test::sources_below("tests/golden")) {
     if (++number % every != 0) continue;
     const std::string original = test::read_file(path);
-    workspace::Settings settings;
-    workspace::IncrementalBuild build(settings);
     test::Random random(seed * 1000 + number);
+    workspace::Settings settings;
+    const test::Outcome first = test::build_from_nothing(test::one_file(original), settings);
+    if (!first.image) continue;
+    ir::Image base;
+    if (random.below(2) == 0) {  // against a running version
+      base = std::move(*ir::decode(*first.image));
+      settings.link.base = &base;
+    }
+    if (random.below(8) == 0) settings.passes = ir::PassSet::none();
+    workspace::IncrementalBuild build(settings);
     std::string text = original;
-    if (!test::build_again(build, test::one_file(text)).image) continue;
+    test::build_again(build, test::one_file(text));
     for (uint32_t edit = 0; edit < edits; ++edit) {
       text = test::edited(random.below(6) == 0 ? original : text, random);
       const base::SourceMap sources = test::one_file(text);
