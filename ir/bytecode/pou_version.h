@@ -12,6 +12,7 @@ namespace ir {
 struct PouVersion {
   uint32_t pou = 0;  // number
   std::span<const Unit> units;
+  bool interpreted = false;  // machine code could not do what it does besides
 };
 
 // Would the image be as good with this code (rules V3 to V12, V19, V20)? An answer for each. It

@@ -2,41 +2,44 @@
 # What forcing says of itself: whether a force holds everywhere, and if not, why; and what goes on beside it.
 . "$(dirname "$0")/lib.sh"
 
-cat >v1.st <<'ST'
-VAR_GLOBAL level : INT; END_VAR
-FUNCTION_BLOCK Valve VAR_OUTPUT open : INT; END_VAR
-  open := open + 1;
-END_FUNCTION_BLOCK
-PROGRAM Main VAR a, b : Valve; seen, n : INT; list : ARRAY[0..3] OF INT; i : INT; END_VAR
-  level := level + 1;
-  seen := level;
-  list[i] := seen;
-  a(); b(); n := n + 1;
-END_PROGRAM
-ST
+{
+  echo 'VAR_GLOBAL level, shared : INT; END_VAR'
+  echo 'FUNCTION_BLOCK Valve VAR_OUTPUT open : INT; END_VAR'
+  echo '  open := open + 1;'
+  echo 'END_FUNCTION_BLOCK'
+  for i in $(seq 33); do echo "FUNCTION F$i : INT VAR_IN_OUT v : INT; END_VAR v := v + 1; F$i := v; END_FUNCTION"; done
+  echo 'PROGRAM Main VAR a, b : Valve; seen, opened, n : INT; END_VAR'
+  echo '  level := level + 1;'
+  echo '  seen := level;'
+  echo '  a(); b(); opened := a.open;'
+  for i in $(seq 33); do echo "  n := F$i(shared);"; done
+  echo 'END_PROGRAM'
+} >v1.st
 sed 's/level + 1/level + 2/' v1.st >v2.st
 serve plc v1.st
 
-expect 0 stvm force --dir plc level=40 Main.a.open=7 'Main.list[0]=3'
+expect 0 stvm force --dir plc level=40 Main.a.open=7 shared=3
 said '^level=40  everywhere$'
-said '^Main.a.open=7  at the boundaries of cycles: `Valve` in line 3 writes it, for other instances too$'
-said '^Main.list\[0\]=3  at the boundaries of cycles: `Main` in line 8 may write it by an index$'
-expect 0 stvm get --dir plc Main.seen
+said '^Main.a.open=7  everywhere$'
+said '^shared=3  at the boundaries of cycles: `F1` in line 5 may write it by VAR_IN_OUT or by a reference, and so may more than 31 other POUs$'
+expect 0 stvm get --dir plc Main.seen Main.opened
 said '^Main.seen=40$'
+said '^Main.opened=7$'
 expect 0 stvm get --dir plc --forces
 said '^level=40  everywhere$'
-said '^Main.a.open=7  at the boundaries'
+said '^shared=3  at the boundaries'
 expect 0 stvm force --dir plc level=41 --format json
 said '"path":"level"'
 said '"everywhere":true'
 ! grep -q reason out || fail "a reason for what holds everywhere"
 expect 0 stvm get --dir plc --forces --format json
 said '"everywhere":false'
-said '"reason":"`Valve` in line 3'
+said '"reason":"`F1` in line 5'
 expect 0 stvm status --dir plc
-said 'forces +3, 2 at the boundaries of cycles'
+said 'forces +3, 1 at the boundaries of cycles'
+said 'Valve: it writes where a variable is forced'
 expect 0 stvm status --dir plc --format json
-said '"boundary_forces":2'
+said '"boundary_forces":1'
 
 # The next version too, and the old one behind undo.
 expect 0 stvm change --dir plc --yes v2.st
@@ -45,7 +48,7 @@ said '^level=41  everywhere$'
 expect 0 stvm get --dir plc Main.seen
 said '^Main.seen=41$'
 expect 0 stvm undo --dir plc
-expect 0 stvm unforce --dir plc Main.a.open 'Main.list[0]'
+expect 0 stvm unforce --dir plc Main.a.open shared
 expect 0 stvm get --dir plc --forces
 said '^level=41  everywhere$'
 expect 0 stvm status --dir plc

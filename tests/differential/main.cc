@@ -1,10 +1,10 @@
 // differential FIRST COUNT [--scans N] [--jobs N] [--shrink] [--write DIR]: random programs of
 // seeds FIRST.. on every tier, in N processes at a time. With --changes: random changes of them
-// while they run. --shrink makes failing programs small and prints each as a golden file; --write
-// puts them into DIR instead. --passes LIST: optimised by these, whatever the seed says.
-// differential --print SEED [--changes]: the program of a seed, its second version behind it. With
-// --constructs: no program runs; how many have each construct, and an error when one has none. Ends
-// with "N passed, N failed".
+// while they run. With --forces: variables of them are forced. --shrink makes failing programs
+// small and prints each as a golden file; --write puts them into DIR instead. --passes LIST:
+// optimised by these, whatever the seed says. differential --print SEED [--changes]: the program of
+// a seed, its second version behind it. With --constructs: no program runs; how many have each
+// construct, and an error when one has none. Ends with "N passed, N failed".
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,6 +19,7 @@
 #include "tests/differential/changes.h"
 #include "tests/differential/constructs.h"
 #include "tests/differential/edit.h"
+#include "tests/differential/forces.h"
 #include "tests/differential/generator.h"
 #include "tests/differential/golden_text.h"
 #include "tests/differential/isolated.h"
@@ -38,6 +39,7 @@ struct Options {
   bool print = false;
   bool constructs = false;
   bool changes = false;
+  bool forces = false;
   bool shrink = false;
   std::string folder;
   std::string passes;
@@ -54,6 +56,8 @@ Options parse_options(int argc, char** argv) {
       out.constructs = true;
     } else if (word == "--changes") {
       out.changes = true;
+    } else if (word == "--forces") {
+      out.forces = true;
     } else if (word == "--shrink") {
       out.shrink = true;
     } else if (word == "--write" && more) {
@@ -113,6 +117,9 @@ class Case {
     std::string next = differential::print(second);
     return differential::isolated(
         [&] {
+          if (options_.forces) {
+            return differential::examine_forces(source, seed_, options_.scans, passes_);
+          }
           return options_.changes ? differential::examine_change(source, next, script_, passes_)
                                   : differential::examine(source, options_.scans, passes_);
         },
@@ -249,10 +256,11 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (options.numbers.size() != 2) {
-    std::fprintf(stderr,
-                 "usage: differential FIRST COUNT [--scans N] [--jobs N] [--changes] [--shrink] "
-                 "[--passes LIST] "
-                 "[--write DIR] | --constructs | --print SEED [--changes]\n");
+    std::fprintf(
+        stderr,
+        "usage: differential FIRST COUNT [--scans N] [--jobs N] [--changes | --forces] [--shrink] "
+        "[--passes LIST] "
+        "[--write DIR] | --constructs | --print SEED [--changes]\n");
     return 2;
   }
   return options.constructs ? run_constructs(options) : run(options);

@@ -139,22 +139,24 @@ base::Status ControllerService::at_boundary(const std::function<void()>& job) {
   return base::Error{base::Refusal::kBusy, "no boundary came within 5 s: a task does not end"};
 }
 
-void report_tier(const vm::Generation& generation, vm::StatusReport& report) {
-  report.pous = generation.pous().size();
-  const vm::native::Program* const native = generation.native();
+void report_tier(const ir::Image& image, const vm::CodeTable& code, vm::StatusReport& report) {
+  report.pous = code.pous.size();
+  const vm::native::Program* const native = code.native.get();
   if (native == nullptr) return;
   report.native_pous = native->native_pous();
   report.native_bytes = native->code_bytes();
   for (uint32_t pou = 0; pou < report.pous; ++pou) {
     if (native->reason(pou).empty() || report.interpreted.size() == vm::kShownInterpreted) continue;
-    report.interpreted.push_back(generation.image().pous[pou].name + ": " + native->reason(pou));
+    report.interpreted.push_back(image.pous[pou].name + ": " + native->reason(pou));
   }
 }
 
 base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   vm::StatusReport report;
+  const vm::CodeTable* code = nullptr;
   base::Status taken = at_boundary([&] {
     report.cycles = controller_.cycles();
+    code = &controller_.code();
     report.faulted = controller_.faulted();
     report.tasks = controller_.tasks();
     report.uptime_ns = clock_.now_ns();
@@ -179,7 +181,7 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   }
   report.devices = controller_.devices();
   report.memory = vm::memory_report(controller_.image());
-  report_tier(controller_.generation(), report);
+  report_tier(controller_.image(), *code, report);
   report.pous_to_make = controller_.pous_to_make();
   return vm::encode(report);
 }
@@ -289,7 +291,8 @@ base::Bytes ControllerService::force_rows(const std::vector<std::string>& names)
     ir::Symbol alone = force.symbol;
     alone.data = 0;
     forces.rows.push_back({force.path, image.types.text(force.symbol.type),
-                           ir::format_value(image, alone, force.value), force.reason});
+                           ir::format_value(image, alone, force.value), force.reason,
+                           force.remark});
   }
   return vm::encode(forces);
 }

@@ -5,6 +5,7 @@
 #include "vm/exec/handle.h"
 #include "vm/exec/references.h"
 #include "vm/exec/semantics_control.h"
+#include "vm/exec/store_aside.h"
 #include "vm/native/program.h"
 
 namespace vm {
@@ -116,6 +117,18 @@ void resume_native(STC_HANDLER_ARGS) {
   }
   if (!ctx->running) return;
   STC_GO(ctx->pc, ctx->frame, ctx->self);
+}
+
+// --- stores of versions beside their code -----------------------------------------------------
+
+void go_aside(STC_HANDLER_ARGS) { STC_GO(aside_of(pc).units, frame, self); }
+
+void restore_forced(STC_HANDLER_ARGS) {
+  const StoreAside& aside = aside_of(pc);
+  for (const StoreAside::Value& value : aside.values) {
+    std::memcpy(mem + value.data, value.bytes, value.size);
+  }
+  STC_GO(aside.back, frame, self);
 }
 
 // Behind the one instruction that a helper executes.

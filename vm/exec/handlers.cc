@@ -14,6 +14,8 @@ template <class... S>
 void fused(STC_HANDLER_ARGS);
 void resume_native(STC_HANDLER_ARGS);
 void stop_helper(STC_HANDLER_ARGS);
+void go_aside(STC_HANDLER_ARGS);
+void restore_forced(STC_HANDLER_ARGS);
 
 namespace {
 
@@ -34,6 +36,8 @@ constexpr HandlerTable all_handlers() {
   HandlerTable table{};
   table.of[kResumeHandler] = &resume_native;
   table.of[kStopHandler] = &stop_helper;
+  table.of[kAsideHandler] = &go_aside;
+  table.of[kRestoreHandler] = &restore_forced;
 #define OP(name, a, b, c, x, y, flags, meaning) \
   fill_opcode<ir::Opcode::name>(                \
       table.of, std::make_integer_sequence<     \

@@ -73,9 +73,13 @@ Decoder::Decoder(const ir::Image& image, const TierOptions& tier)
       seed_(tier.fusing_seed) {}
 
 void Decoder::run(std::span<const ir::Unit> units, std::vector<ir::Unit>& decoded) const {
+  run_unfused(units, decoded);
+  if (fuses_) fuse(units, decoded, seed_);
+}
+
+void Decoder::run_unfused(std::span<const ir::Unit> units, std::vector<ir::Unit>& decoded) const {
   decoded.assign(units.begin(), units.end());
   prepare_code(image_, has_slots_, decoded);
-  if (fuses_) fuse(units, decoded, seed_);
 }
 
 }  // namespace vm

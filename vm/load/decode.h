@@ -16,6 +16,8 @@ class Decoder {
   Decoder(const ir::Image& image, const TierOptions& tier);
   // Verified units of a POU of that image.
   void run(std::span<const ir::Unit> units, std::vector<ir::Unit>& decoded) const;
+  // The same, and each instruction has a handler of its own.
+  void run_unfused(std::span<const ir::Unit> units, std::vector<ir::Unit>& decoded) const;
 
  private:
   const ir::Image& image_;

@@ -1,10 +1,10 @@
 #include "vm/load/forced_code.h"
 
 #include <algorithm>
-#include <map>
 
 #include "ir/bytecode/pou_version.h"
 #include "vm/exec/execution.h"
+#include "vm/exec/handler_numbers.h"
 #include "vm/load/decode.h"
 #include "vm/native/program.h"
 
@@ -21,62 +21,15 @@ Opcode move_of(ir::Class cls) {
   return kMoves[static_cast<size_t>(cls)];
 }
 
-std::string reason_of(const ir::Image& image, const Writer& writer) {
+std::string place_of(const ir::Image& image, const Writer& writer) {
   const ir::LinkedPou& pou = image.pous[writer.pou];
-  const std::string where =
-      "`" + pou.name + "` in line " + std::to_string(line_of(pou, writer.unit));
-  switch (writer.how) {
-    case How::kShared:
-      return where + " writes it, for other instances too";
-    case How::kPart:
-      return where + " writes it together with what is beside it";
-    case How::kIndexed:
-      return where + " may write it by an index";
-    case How::kText:
-      return where + " has a function write it";
-    default:
-      return where + " may write it by VAR_IN_OUT or by a reference";
-  }
+  return "`" + pou.name + "` in line " + std::to_string(line_of(pou, writer.unit));
 }
 
-using Versions = std::map<uint32_t, std::vector<ir::Unit>>;  // by POU, as in an image
-
-// Of writers of variables whose writers are all of kOnly.
-Versions versions_of(const ir::Image& image, const std::vector<Writer>& writers,
-                     const std::vector<std::string>& reasons) {
-  Versions versions;
-  for (const Writer& writer : writers) {
-    if (!reasons[writer.variable].empty()) continue;
-    const ir::LinkedPou& pou = image.pous[writer.pou];
-    const auto first = image.code.begin() + pou.first_unit;
-    auto [version, is_new] = versions.try_emplace(writer.pou);
-    if (is_new) version->second.assign(first, first + pou.unit_count);
-    version->second[writer.unit] = without_store(first[writer.unit]);
-  }
-  return versions;
-}
-
-std::vector<ir::PouVersion> rows_of(const Versions& versions) {
-  std::vector<ir::PouVersion> rows;
-  for (const auto& [pou, units] : versions) rows.push_back({pou, units});
-  return rows;
-}
-
-// A version that does not pass takes its variables with it. True: there was one.
-bool refuse_versions(const ir::VerifiedImage& image, const Versions& versions,
-                     const std::vector<Writer>& writers, std::vector<std::string>& reasons) {
-  const std::vector<ir::PouVersion> rows = rows_of(versions);
-  const std::vector<base::Status> answers = ir::verify_versions(image, rows);
-  bool any = false;
-  for (size_t i = 0; i < rows.size(); ++i) {
-    if (answers[i].ok()) continue;
-    for (const Writer& writer : writers) {
-      if (writer.pou != rows[i].pou || !reasons[writer.variable].empty()) continue;
-      reasons[writer.variable] = base::to_string(answers[i].error());
-      any = true;
-    }
-  }
-  return any;
+std::string way_of(const Writer& writer) {
+  return writer.how == How::kAddress   ? "by VAR_IN_OUT or by a reference"
+         : writer.how == How::kIndexed ? "by an index"
+                                       : "with other variables";
 }
 
 }  // namespace
@@ -90,23 +43,111 @@ ir::Unit without_store(const ir::Unit& store) {
   return unit;
 }
 
+std::vector<ir::PouVersion> ForcedCode::rows_of(const Versions& versions) {
+  std::vector<ir::PouVersion> rows;
+  for (const auto& [pou, version] : versions) {
+    rows.push_back({pou, version.units, !version.restoring.empty()});
+  }
+  return rows;
+}
+
+// Writers are sorted by variable and POU.
+void ForcedCode::describe(const ir::Image& image, const std::vector<Writer>& writers) {
+  std::vector<const Writer*> first(variables_.size());
+  std::vector<const Writer*> last(variables_.size());
+  std::vector<size_t> pous(variables_.size());
+  for (const Writer& writer : writers) {
+    if (writer.how == How::kOnly) continue;
+    const uint32_t v = writer.variable;
+    if (first[v] == nullptr) first[v] = &writer;
+    if (last[v] == nullptr || last[v]->pou != writer.pou) ++pous[v];
+    last[v] = &writer;
+    const bool unsure = writer.how == How::kAddress || writer.how == How::kIndexed;
+    if (unsure && remarks_[v].empty()) {
+      remarks_[v] = place_of(image, writer) + " may go on with what it writes " + way_of(writer);
+    }
+  }
+  for (size_t v = 0; v < variables_.size(); ++v) {
+    if (pous[v] <= kMostRestoringPous) continue;
+    reasons_[v] = place_of(image, *first[v]) + " may write it " + way_of(*first[v]) +
+                  ", and so may more than " + std::to_string(kMostRestoringPous - 1) +
+                  " other POUs";
+  }
+}
+
+ForcedCode::Versions ForcedCode::versions_of(const ir::Image& image,
+                                             const std::vector<Writer>& writers) const {
+  Versions versions;
+  for (const bool only : {true, false}) {
+    for (const Writer& writer : writers) {
+      if (!reasons_[writer.variable].empty() || (writer.how == How::kOnly) != only) continue;
+      const ir::LinkedPou& pou = image.pous[writer.pou];
+      const auto first = image.code.begin() + pou.first_unit;
+      auto [row, is_new] = versions.try_emplace(writer.pou);
+      Version& version = row->second;
+      if (is_new) version.units.assign(first, first + pou.unit_count);
+      ir::Unit& unit = version.units[writer.unit];
+      if (only) {
+        unit = without_store(first[writer.unit]);
+      } else if (unit == first[writer.unit]) {  // else it writes nothing any more
+        version.restoring[writer.unit].push_back(writer.variable);
+      }
+    }
+  }
+  return versions;
+}
+
+// A version that does not pass takes its variables with it. True: there was one.
+bool ForcedCode::refuse_versions(const ir::VerifiedImage& image, const Versions& versions,
+                                 const std::vector<Writer>& writers) {
+  const std::vector<ir::PouVersion> rows = rows_of(versions);
+  const std::vector<base::Status> answers = ir::verify_versions(image, rows);
+  bool any = false;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    if (answers[i].ok()) continue;
+    for (const Writer& writer : writers) {
+      if (writer.pou != rows[i].pou || !reasons_[writer.variable].empty()) continue;
+      reasons_[writer.variable] = base::to_string(answers[i].error());
+      any = true;
+    }
+  }
+  return any;
+}
+
+void ForcedCode::put_aside(const Version& version, std::vector<ir::Unit>& decoded) {
+  for (const auto& [unit, variables] : version.restoring) {
+    const bool extended = ir::opcode_row(version.units[unit].opcode()).extended;
+    StoreAside& aside = asides_.emplace_back();
+    aside.units[0] = decoded[unit];
+    if (extended) aside.units[1] = decoded[unit + 1];
+    aside.units[extended ? 2 : 1] = aside_unit(kRestoreHandler, aside);
+    aside.back = &decoded[unit] + (extended ? 2 : 1);
+    for (const uint32_t v : variables) {
+      const ForcedVariable& row = variables_[v];
+      aside.values.push_back({row.place.data, row.place.size, row.value.data()});
+    }
+    decoded[unit] = aside_unit(kAsideHandler, aside);
+  }
+}
+
 std::shared_ptr<const ForcedCode> ForcedCode::make(const ir::VerifiedImage& verified,
                                                    const CodeTable& own,
-                                                   std::span<const Variable> variables,
+                                                   std::span<const ForcedVariable> variables,
                                                    const TierOptions& tier) {
-  if (variables.empty()) return nullptr;
   const ir::Image& image = verified.image();
-  const std::vector<Writer> writers = find_writers(image, variables);
+  std::vector<Variable> places;
+  for (const ForcedVariable& variable : variables) places.push_back(variable.place);
+  if (places.empty()) return nullptr;
+  const std::vector<Writer> writers = find_writers(image, places);
   if (writers.empty()) return nullptr;
   const auto made = std::make_shared<ForcedCode>(Key());
+  made->variables_.assign(variables.begin(), variables.end());
   made->reasons_.resize(variables.size());
-  for (const Writer& writer : writers) {
-    std::string& reason = made->reasons_[writer.variable];
-    if (reason.empty() && writer.how != How::kOnly) reason = reason_of(image, writer);
-  }
-  Versions versions = versions_of(image, writers, made->reasons_);
-  while (refuse_versions(verified, versions, writers, made->reasons_)) {
-    versions = versions_of(image, writers, made->reasons_);
+  made->remarks_.resize(variables.size());
+  made->describe(image, writers);
+  Versions versions = made->versions_of(image, writers);
+  while (made->refuse_versions(verified, versions, writers)) {
+    versions = made->versions_of(image, writers);
   }
   made->table_ = {own.pous, nullptr, own.clean_bools};
   for (PouEntry& pou : made->table_.pous) {
@@ -115,11 +156,16 @@ std::shared_ptr<const ForcedCode> ForcedCode::make(const ir::VerifiedImage& veri
   }
   const Decoder decoder(image, tier);
   made->code_.reserve(versions.size());
-  for (const auto& [number, units] : versions) {
-    made->code_.emplace_back();
-    decoder.run(units, made->code_.back());
+  for (const auto& [number, version] : versions) {
+    std::vector<ir::Unit>& decoded = made->code_.emplace_back();
+    if (version.restoring.empty()) {
+      decoder.run(version.units, decoded);
+    } else {
+      decoder.run_unfused(version.units, decoded);
+      made->put_aside(version, decoded);
+    }
     PouEntry& pou = made->table_.pous[number];
-    pou.code = pou.entry = made->code_.back().data();
+    pou.code = pou.entry = decoded.data();
   }
   if (own.native != nullptr) {
     made->table_.native = native::Program::make(image, own.clean_bools, made->table_.pous, tier,

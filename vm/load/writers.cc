@@ -52,7 +52,9 @@ class Search {
   void for_each_in(const Origin& origin, uint64_t begin, uint64_t end, const Visit& visit);
   void note(Unknown::Use use, Kind from, ir::Region region, uint64_t offset, uint64_t size);
   bool fits(const Target& target, const Unknown& unknown) const;
+  bool reaches(const Target& target, const Unknown& unknown) const;
   void find_escapes(Target& target) const;
+  void find_by_address(uint32_t target);
   bool is_shared(ir::TypeId self);
   bool is_of(const Target& target, ir::TypeId type) const {
     return !type.valid() || image_.types.is_a(image_.instances[target.owner].type, type);
@@ -312,36 +314,43 @@ bool Search::fits(const Target& target, const Unknown& unknown) const {
   return false;
 }
 
+// Can an address from outside be that of the variable?
+bool Search::reaches(const Target& target, const Unknown& unknown) const {
+  const bool escaped = unknown.from == Kind::kAnywhere ||
+                       (unknown.from == Kind::kInOut ? target.in_out : target.referenced);
+  return escaped && fits(target, unknown);
+}
+
 // What becomes of an address that left its POU once.
 void Search::find_escapes(Target& target) const {
   target.referenced |= calculates_;
   for (bool changed = true; changed;) {
     changed = false;
     for (const Unknown& unknown : unknown_) {
-      const bool reaches = unknown.from == Kind::kAnywhere ||
-                           (unknown.from == Kind::kInOut ? target.in_out : target.referenced);
-      if (!reaches || unknown.use == Unknown::Use::kStored) continue;
+      if (unknown.use == Unknown::Use::kStored) continue;
       bool& more = unknown.use == Unknown::Use::kPassed ? target.in_out : target.referenced;
-      if (more || !fits(target, unknown)) continue;
+      if (more || !reaches(target, unknown)) continue;
       changed = more = true;
     }
   }
 }
 
+// By POUs in their order; as many as can be asked for.
+void Search::find_by_address(uint32_t target) {
+  find_escapes(targets_[target]);
+  uint32_t pou = UINT32_MAX;
+  size_t pous = 0;
+  for (const Unknown& unknown : unknown_) {
+    if (unknown.use != Unknown::Use::kStored || !reaches(targets_[target], unknown)) continue;
+    if (unknown.pou != pou && ++pous > kMostAddressPous) return;
+    pou = unknown.pou;
+    found_.push_back({target, unknown.pou, unknown.unit, How::kAddress});
+  }
+}
+
 std::vector<Writer> Search::run() {
   for (uint32_t pou = 0; pou < image_.pous.size(); ++pou) look_at(pou);
-  for (uint32_t i = 0; i < targets_.size(); ++i) {
-    find_escapes(targets_[i]);
-    for (const Unknown& unknown : unknown_) {
-      if (unknown.use != Unknown::Use::kStored) continue;
-      const bool reaches =
-          unknown.from == Kind::kAnywhere ||
-          (unknown.from == Kind::kInOut ? targets_[i].in_out : targets_[i].referenced);
-      if (!reaches || !fits(targets_[i], unknown)) continue;
-      found_.push_back({i, unknown.pou, unknown.unit, How::kAddress});
-      break;
-    }
-  }
+  for (uint32_t i = 0; i < targets_.size(); ++i) find_by_address(i);
   std::stable_sort(found_.begin(), found_.end(), [](const Writer& a, const Writer& b) {
     return std::tie(a.variable, a.pou, a.unit) < std::tie(b.variable, b.pou, b.unit);
   });

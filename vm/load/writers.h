@@ -26,7 +26,9 @@ struct Writer {
   How how = How::kOnly;
 };
 
-// Sorted by variable, POU and unit. Of writers with kAddress the first one of each variable.
+// Of writers with kAddress those in so many POUs.
+inline constexpr size_t kMostAddressPous = 100;
+// Sorted by variable, POU and unit.
 std::vector<Writer> find_writers(const ir::Image& image, std::span<const Variable> variables);
 
 }  // namespace vm

@@ -58,6 +58,7 @@ struct ImageFacts {
   // `other_code` stands for that of the image, sorted by POU; borrowed.
   ImageFacts(const ir::Image& image, bool are_bools_clean,
              std::span<const ir::PouVersion> other_code = {});
+  const ir::PouVersion* version_of(uint32_t pou) const;  // null: it has none
   std::span<const ir::Unit> code_of(const ir::Image& image, const ir::LinkedPou& pou) const;
   std::span<const ir::PouVersion> versions;
   std::vector<uint32_t> body_of;  // by type: the POU that runs when its instance is called; kNone

@@ -37,13 +37,17 @@ uint32_t called_body(const ir::Image& image, const ImageFacts& common, const ir:
   return common.body_of[leaf->type.index];
 }
 
+const ir::PouVersion* ImageFacts::version_of(uint32_t pou) const {
+  const auto found =
+      std::lower_bound(versions.begin(), versions.end(), pou,
+                       [](const ir::PouVersion& row, uint32_t at) { return row.pou < at; });
+  return found == versions.end() || found->pou != pou ? nullptr : &*found;
+}
+
 std::span<const ir::Unit> ImageFacts::code_of(const ir::Image& image,
                                               const ir::LinkedPou& pou) const {
-  const auto number = static_cast<uint32_t>(&pou - image.pous.data());
-  const auto version =
-      std::lower_bound(versions.begin(), versions.end(), number,
-                       [](const ir::PouVersion& row, uint32_t at) { return row.pou < at; });
-  if (version != versions.end() && version->pou == number) return version->units;
+  const auto* const version = version_of(static_cast<uint32_t>(&pou - image.pous.data()));
+  if (version != nullptr) return version->units;
   return std::span(image.code).subspan(pou.first_unit, pou.unit_count);
 }
 

@@ -17,6 +17,8 @@ bool is_interpreted_at_random(const TierOptions& options, uint32_t pou) {
 
 const Body* Bodies::body(uint32_t pou, uint32_t caller) {
   if (pou == caller || is_interpreted_at_random(options_, pou)) return nullptr;
+  const ir::PouVersion* const version = common_.version_of(pou);
+  if (version != nullptr && version->interpreted) return nullptr;
   State& state = states_[pou];
   if (!state.asked) {
     state.asked = true;

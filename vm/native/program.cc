@@ -166,6 +166,11 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
     work.pou->reason = "the options say so";
     return false;
   }
+  const ir::PouVersion* const version = bodies.common().version_of(work.number);
+  if (version != nullptr && version->interpreted) {
+    work.pou->reason = "it writes where a variable is forced";
+    return false;
+  }
   if (pou.unit_count > kMostUnits) {
     work.pou->reason = "it is too large";
     return false;

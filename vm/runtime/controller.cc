@@ -122,6 +122,7 @@ int64_t Controller::base_period_ns() const { return impl_->scheduler.tables().ba
 const ir::Image& Controller::image() const { return impl_->image(); }
 const ir::VerifiedImage& Controller::verified() const { return impl_->running->verified(); }
 const Generation& Controller::generation() const { return *impl_->running; }
+const CodeTable& Controller::code() const { return *impl_->scheduler.tables().code; }
 Memory& Controller::memory() { return impl_->memory; }
 uint64_t Controller::data_limit() const { return impl_->data_limit; }
 

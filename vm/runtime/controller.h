@@ -114,6 +114,8 @@ class Controller {
   const ir::Image& image() const;
   const ir::VerifiedImage& verified() const;
   const Generation& generation() const;
+  // That scans begin with: another one than its own while something is forced. At a boundary.
+  const CodeTable& code() const;
   // Making::kBeside: machine code of so many POUs is still to be made by a thread in the
   // background; until then all are interpreted. Any thread.
   uint32_t pous_to_make() const;

@@ -45,22 +45,24 @@ class RenamedPaths {
 
 }  // namespace
 
-std::string hold_text(const std::string& reason) {
-  return reason.empty() ? "everywhere" : "at the boundaries of cycles: " + reason;
+std::string hold_text(const std::string& reason, const std::string& remark) {
+  if (!reason.empty()) return "at the boundaries of cycles: " + reason;
+  return remark.empty() ? "everywhere" : "everywhere, but " + remark;
 }
 
 ForcedSet ForcedSet::make(const ir::VerifiedImage& image, const CodeTable& own,
                           std::vector<Force> forces, const TierOptions& tier) {
   ForcedSet set;
   set.forces = std::move(forces);
-  std::vector<Variable> variables;
+  std::vector<ForcedVariable> variables;
   for (const Force& force : set.forces) {
     const auto size = static_cast<uint32_t>(force.value.size());
-    variables.push_back({force.symbol.data, size, force.symbol.type});
+    variables.push_back({{force.symbol.data, size, force.symbol.type}, force.value});
   }
   set.code = ForcedCode::make(image, own, variables, tier);
   for (size_t i = 0; i < set.forces.size(); ++i) {
     set.forces[i].reason = set.code == nullptr ? std::string() : set.code->reason(i);
+    set.forces[i].remark = set.code == nullptr ? std::string() : set.code->remark(i);
   }
   return set;
 }

@@ -15,10 +15,13 @@ struct Force {
   std::string path;
   ir::Symbol symbol;
   base::Bytes value;
-  std::string reason = {};  // why it holds at the boundaries of cycles only; "": everywhere
+  // How it holds (ForcedCode): a reason why at the boundaries of cycles only, or "" and everywhere,
+  // perhaps with a remark.
+  std::string reason = {};
+  std::string remark = {};
 };
-// "everywhere", or "at the boundaries of cycles: " and the reason.
-std::string hold_text(const std::string& reason);
+// "everywhere", "everywhere, but " and the remark, "at the boundaries of cycles: " and the reason.
+std::string hold_text(const std::string& reason, const std::string& remark);
 struct NamedValue {
   std::string path;
   std::string value;

@@ -110,7 +110,8 @@ struct ForceRow {
   std::string path;
   std::string type;
   std::string value;
-  std::string reason;  // why it holds at the boundaries of cycles only; "": everywhere
+  std::string reason;  // as those of vm::Force
+  std::string remark;
 };
 struct ForceRows {
   std::vector<ForceRow> rows;

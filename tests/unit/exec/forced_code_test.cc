@@ -166,7 +166,7 @@ PROGRAM Second VAR o : Other; END_VAR o(); END_PROGRAM)");
     Machine machine(image, options);
     ASSERT_TRUE(machine.good());
     const vm::Generation& generation = machine.generation();
-    const vm::Variable g = variable(image, "g");
+    const vm::ForcedVariable g{variable(image, "g"), {7, 0}};
     const auto forced =
         vm::ForcedCode::make(generation.verified(), *generation.code(), {&g, 1}, options);
     ASSERT_NE(forced, nullptr);
@@ -188,11 +188,62 @@ PROGRAM Second VAR o : Other; END_VAR o(); END_PROGRAM)");
   }
 }
 
+// Where a store may lead elsewhere too, the POU is interpreted, and nothing else is.
+TEST(Forcing, AStoreThatMayLeadElsewhereIsInterpreted) {
+  const ir::Image image = build(R"(
+FUNCTION_BLOCK Many VAR_OUTPUT n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK
+PROGRAM Main VAR a, b : Many; seen, i : INT; END_VAR FOR i := 1 TO 2 DO a(); b(); END_FOR; seen := a.n; END_PROGRAM)");
+  Machine machine(image);
+  ASSERT_TRUE(machine.good());
+  const vm::Generation& generation = machine.generation();
+  if (generation.native() == nullptr) GTEST_SKIP() << "no native tier on this machine";
+  const vm::ForcedVariable n{variable(image, "Main.a.n"), {7, 0}};
+  const auto forced = vm::ForcedCode::make(generation.verified(), *generation.code(), {&n, 1}, {});
+  ASSERT_NE(forced, nullptr);
+  EXPECT_EQ(forced->reason(0), "");
+  const vm::native::Program& native = *forced->table().native;
+  EXPECT_EQ(native.reason(0), "it writes where a variable is forced");
+  EXPECT_EQ(native.reason(1), "");
+  EXPECT_NE(forced->table().pous[1].machine, generation.pous()[1].machine) << "it had it inside";
+}
+
+// A force that would have too much of a program interpreted holds at the boundaries.
+TEST(Forcing, TooManyPousAreNotInterpreted) {
+  const auto source = [](size_t count) {
+    std::string text = "VAR_GLOBAL g : INT; END_VAR\n";
+    std::string calls = "g := 1;\n";
+    for (size_t i = 0; i < count; ++i) {
+      const std::string name = "F" + std::to_string(i);
+      text += "FUNCTION " + name + " : INT VAR_IN_OUT v : INT; END_VAR v := v + 1; END_FUNCTION\n";
+      calls += name + "(g);\n";
+    }
+    return text + "PROGRAM Main " + calls + "END_PROGRAM";
+  };
+  for (const size_t more : {0, 1}) {
+    Machine machine(build(source(vm::kMostRestoringPous + more)));
+    ASSERT_TRUE(machine.good());
+    const vm::Generation& generation = machine.generation();
+    const vm::ForcedVariable g{variable(machine.image(), "g"), {7, 0}};
+    const auto forced =
+        vm::ForcedCode::make(generation.verified(), *generation.code(), {&g, 1}, {});
+    ASSERT_NE(forced, nullptr);
+    if (more == 0) {
+      EXPECT_EQ(forced->reason(0), "");
+      EXPECT_EQ(forced->versions(), vm::kMostRestoringPous + 1);
+    } else {
+      EXPECT_EQ(forced->reason(0),
+                "`F0` in line 2 may write it by VAR_IN_OUT or by a reference, and so may more than "
+                "31 other POUs");
+      EXPECT_EQ(forced->versions(), 0u);
+    }
+  }
+}
+
 TEST(Forcing, WithoutWritersThereIsNothingToExchange) {
   Machine machine(build("PROGRAM Main VAR a, b : INT; END_VAR b := a; END_PROGRAM"));
   ASSERT_TRUE(machine.good());
   const vm::Generation& generation = machine.generation();
-  const vm::Variable a = variable(machine.image(), "Main.a");
+  const vm::ForcedVariable a{variable(machine.image(), "Main.a"), {7, 0}};
   EXPECT_EQ(vm::ForcedCode::make(generation.verified(), *generation.code(), {&a, 1}, {}), nullptr);
   EXPECT_EQ(vm::ForcedCode::make(generation.verified(), *generation.code(), {}, {}), nullptr);
 }
