@@ -233,6 +233,7 @@ std::vector<Move> Allocator::edge(Block from, uint32_t target, const Snapshot& h
   const std::vector<Val>& args = f_.blocks[from].end.args[target];
   stamp(have);
   std::vector<Move> moves;
+  moves.reserve(want.size());
   for (const Held& held : want) {
     Val source = held.v;
     bool param = false;

@@ -15,6 +15,9 @@ bool has(const std::vector<uint32_t>& sorted, uint32_t v) {
 
 Builder::Builder(const Facts& facts) : facts_(facts) {
   f_.variables = facts.variables();
+  const size_t units = facts.blocks().empty() ? 0 : facts.blocks().back().behind;
+  f_.nodes.reserve(units);
+  f_.values.reserve(units);
   f_.overlaps = facts.overlaps();
   f_.loops = facts.loops();
   f_.blocks.resize(facts.blocks().size());
@@ -48,6 +51,7 @@ Function Builder::run() {
     begin(b);
     const UnitRange range = facts_.blocks()[b];
     ended_ = false;
+    f_.blocks[b].nodes.reserve(f_.blocks[b].nodes.size() + range.behind - range.first);
     for (uint32_t i = range.first; i < range.behind && !ended_; i = facts_.next(i)) unit(i);
     if (!ended_) end_with_jump(b + 1);
     finish(b);
@@ -72,9 +76,9 @@ void Builder::begin(Block block) {
     const Block pred = preds[0].block;
     if (pred + 1 != block) forget_everything();
     if (users_[pred] == 1) {
-      now_ = std::move(*ends_[pred]);
+      now_ = std::move(ends_[pred]);
     } else {
-      now_ = *ends_[pred];
+      now_ = ends_[pred];
     }
     release(pred);
     store_behind(f_.blocks[pred].loop);
@@ -82,16 +86,8 @@ void Builder::begin(Block block) {
   }
   forget_everything();
   if (head) {
-    // The entry may be a head: then nothing comes before it.
-    if (block == 0) {
-      auto empty = std::make_unique<State>();
-      empty->value.assign(count, kNone);
-      empty->dirty.assign(count, 0);
-      now_ = std::move(*empty);
-    } else {
-      now_.value.assign(count, kNone);
-      now_.dirty.assign(count, 0);
-    }
+    now_.value.assign(count, kNone);  // the entry may be a head: nothing comes before it
+    now_.dirty.assign(count, 0);
     for (uint32_t l = 0; l < f_.loops.size(); ++l) {
       if (f_.loops[l].head == block) enter_loop(block, l);
     }
@@ -105,12 +101,12 @@ void Builder::begin(Block block) {
 }
 
 void Builder::release(Block pred) {
-  if (--users_[pred] == 0) ends_[pred].reset();
+  if (--users_[pred] == 0) ends_[pred] = State();
 }
 
 // The value of a variable where `pred` ends, loaded there if need be.
 Val Builder::at_end_of(Block pred, uint32_t variable) {
-  Val& value = ends_[pred]->value[variable];
+  Val& value = ends_[pred].value[variable];
   if (value != kNone) return value;
   const Variable& v = f_.variables[variable];
   Node node;
@@ -147,7 +143,7 @@ Val Builder::merged(Block block, uint32_t variable) {
   Val one = kNone;
   bool first = true;
   for (const Pred& pred : preds_[block]) {
-    const Val value = ends_[pred.block]->value[variable];
+    const Val value = ends_[pred.block].value[variable];
     if (first) one = value;
     if (value != one) return kNone;
     first = false;
@@ -161,10 +157,10 @@ void Builder::merge(Block block) {
     bool any = false;
     uint8_t dirty = 0;
     for (const Pred& pred : preds_[block]) {
-      const bool has_value = ends_[pred.block]->value[v] != kNone;
+      const bool has_value = ends_[pred.block].value[v] != kNone;
       all &= has_value;
       any |= has_value;
-      dirty |= ends_[pred.block]->dirty[v];
+      dirty |= ends_[pred.block].dirty[v];
     }
     // What is dirty and no slot must get to memory, whether something reads it or not.
     const bool wanted = facts_.live_in(block, v) || (dirty != 0 && !f_.variables[v].slot);
@@ -193,7 +189,7 @@ void Builder::enter_loop(Block block, uint32_t loop) {
     if (calls) {
       // Calls want every slot in memory, so it is there from the start.
       for (const Pred& pred : preds_[block]) {
-        State& end = *ends_[pred.block];
+        State& end = ends_[pred.block];
         if (!slot || end.dirty[v] == 0) continue;
         Node store;
         store.op = Op::kStore;
@@ -213,7 +209,7 @@ void Builder::enter_loop(Block block, uint32_t loop) {
     if (slot) {
       if (!read && !modified && merged(block, v) == kNone) {
         bool dirty = false;
-        for (const Pred& pred : preds_[block]) dirty |= ends_[pred.block]->dirty[v] != 0;
+        for (const Pred& pred : preds_[block]) dirty |= ends_[pred.block].dirty[v] != 0;
         if (!dirty) continue;
       }
     } else {
@@ -222,7 +218,7 @@ void Builder::enter_loop(Block block, uint32_t loop) {
       // Something that no field names may change it.
       if (modified && facts_.killed_in(loop, v)) continue;
       bool known = true;
-      for (const Pred& pred : preds_[block]) known &= ends_[pred.block]->value[v] != kNone;
+      for (const Pred& pred : preds_[block]) known &= ends_[pred.block].value[v] != kNone;
       if (!known && ++hoisted > kMostHoisted) continue;
     }
     if (modified) {
@@ -233,7 +229,7 @@ void Builder::enter_loop(Block block, uint32_t loop) {
     uint8_t dirty = 0;
     for (const Pred& pred : preds_[block]) {
       at_end_of(pred.block, v);
-      dirty |= ends_[pred.block]->dirty[v];
+      dirty |= ends_[pred.block].dirty[v];
     }
     const Val one = merged(block, v);
     if (one == kNone) {
@@ -289,7 +285,7 @@ void Builder::store_before_loop(Block block) {
 
 void Builder::finish(Block block) {
   store_before_loop(block);
-  if (users_[block] != 0) ends_[block] = std::make_unique<State>(now_);
+  if (users_[block] != 0) ends_[block] = std::move(now_);  // what begins next has its own
 }
 
 void Builder::end_with_jump(Block target) {

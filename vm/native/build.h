@@ -6,7 +6,6 @@
 // loop for what the loop reads.
 #pragma once
 
-#include <memory>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "stdlib/native/natives.h"
 
 #include "vm/native/facts.h"
+#include "vm/native/known_nodes.h"
 #include "vm/native/recipes.h"
 
 namespace vm::native {
@@ -125,7 +125,7 @@ class Builder {
   const Facts& facts_;
   Function f_;
   std::vector<std::vector<Pred>> preds_;
-  std::vector<std::unique_ptr<State>> ends_;       // by block, while something needs it
+  std::vector<State> ends_;                        // by block, while something needs it
   std::vector<uint32_t> users_;                    // of ends_
   std::vector<std::vector<uint32_t>> parameters_;  // variables, by block
   State now_;
@@ -137,7 +137,7 @@ class Builder {
   uint32_t version_ = 0;            // of memory that no variable names
   uint32_t epoch_ = 0;              // values of earlier epochs are reached through variables only
   std::vector<uint32_t> epoch_of_;  // by value
-  std::unordered_map<uint64_t, uint32_t> known_;    // hash of a pure node -> node
+  KnownNodes known_;                // pure nodes
   std::unordered_map<uint64_t, Val> constants_[8];  // by bits; of 4 or 8 bytes floating, integers
 };
 

@@ -158,10 +158,10 @@ Val Builder::value_of(Node made, bool floating) {
   if (folded != kNone) return folded;
   const bool memory = made.op == Op::kLoad && !made.immutable;
   const uint64_t hash = hash_of(made, memory ? version_ : 0);
-  const auto [at, added] = known_.try_emplace(hash, static_cast<uint32_t>(f_.nodes.size()));
-  if (!added) {
-    if (same(f_.nodes[at->second], made)) return f_.nodes[at->second].result;
-    at->second = static_cast<uint32_t>(f_.nodes.size());
+  const uint32_t before = known_.set(hash, static_cast<uint32_t>(f_.nodes.size()));
+  if (before != kNone && same(f_.nodes[before], made)) {
+    known_.set(hash, before);
+    return f_.nodes[before].result;
   }
   made.result = static_cast<Val>(f_.values.size());
   const bool answers = made.op == Op::kCompare || made.op == Op::kFCompare;
@@ -254,7 +254,7 @@ void Builder::remember(const Mem& mem, uint8_t width, Val value, bool boolean) {
   made.boolean = boolean;
   made.imm = f_.values[value].floating ? 1 : 0;
   made.result = value;
-  known_[hash_of(made, version_)] = static_cast<uint32_t>(f_.nodes.size());
+  known_.set(hash_of(made, version_), static_cast<uint32_t>(f_.nodes.size()));
   f_.nodes.push_back(made);
 }
 
@@ -323,10 +323,10 @@ void Builder::exit_if(Cond cond, uint8_t width, Val a, Val b) {
   Node made = node(Op::kExitIf, width, a, b);
   made.cond = cond;
   const uint64_t hash = hash_of(made, 0);
-  const auto [at, added] = known_.try_emplace(hash, static_cast<uint32_t>(f_.nodes.size()));
-  if (!added) {
-    if (same(f_.nodes[at->second], made)) return;
-    at->second = static_cast<uint32_t>(f_.nodes.size());
+  const uint32_t before = known_.set(hash, static_cast<uint32_t>(f_.nodes.size()));
+  if (before != kNone && same(f_.nodes[before], made)) {
+    known_.set(hash, before);
+    return;
   }
   made.exit = exit_here(false);
   append(made);

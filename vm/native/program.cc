@@ -63,7 +63,10 @@ std::vector<uint64_t> facts_of(const ir::Image& image, const ImageFacts& common,
     const ir::Unit& u = code[i];
     const ir::OpcodeRow& row = ir::opcode_row(u.opcode());
     const ir::Unit& x = row.extended ? code[i + 1] : u;
-    for (const Access& access : accesses_of(u)) {
+    const bool has_constant = u.base_a() == ir::Base::kConst || u.base_b() == ir::Base::kConst ||
+                              u.base_c() == ir::Base::kConst;
+    const Accesses named = has_constant ? accesses_of(u) : Accesses();
+    for (const Access& access : named) {
       if (access.base != ir::Base::kConst) continue;
       uint64_t bits = 0;
       std::memcpy(&bits, image.pool.data() + access.offset, ir::class_size(access.cls));
