@@ -1,6 +1,7 @@
 #include "frontend/resident.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "frontend/resident_parts.h"
 
@@ -34,6 +35,9 @@ uint32_t globals_below(const ir::Pou& pou) {
   }
   return below;
 }
+
+// Constants that a body may have more than before an edit.
+constexpr uint32_t kSpare = 256;
 
 // `{IF` asks what is declared anywhere, before anything is parsed.
 bool has_condition(std::string_view text) {
@@ -156,7 +160,6 @@ void Resident::lower_all_bodies() {
 bool Resident::is_alike(const BodyRecord& old, const BodyRecord& now, uint32_t pou) const {
   const ir::Program& program = sema_->program;
   if (now.behind != now.before || !program.types.came_in_turn(old.behind.types)) return false;
-  if (now.end_constant != old.end_constant) return false;
   if (!now.marks.empty() && now.marks.back() >= 2 * old.before.variables) return false;
   const auto known = [&](uint32_t callee) { return callee < old.before.pous; };
   if (!std::all_of(now.callees.begin(), now.callees.end(), known)) return false;
@@ -185,9 +188,11 @@ bool Resident::lower_anew(uint32_t pou, Undo& undo) {
   was.pou = pou;
   was.record = old;
   was.code = std::move(program.pous[info.id.index]);
-  for (uint32_t i = old.first_constant; i < old.end_constant; ++i) {
-    was.constants.push_back(program.constants[ir::ConstId(i)]);
-  }
+  was.constants = constants_between(old.first_constant, old.end_constant);
+  // A body with more constants writes over those of others first.
+  const uint32_t size = program.constants.size();
+  const Values others =
+      constants_between(old.end_constant, std::min(size, old.end_constant + kSpare));
   program.pous[info.id.index] = heads_[info.id.index];
   program.constants.set_next(old.first_constant);
   sema.follow_ups_.forget();
@@ -196,18 +201,24 @@ bool Resident::lower_anew(uint32_t pou, Undo& undo) {
   diagnostics_ = base::Diagnostics();
   BodyRecord now;
   run_body(pou, old.before.types, now);
-  program.constants.set_next(program.constants.size());
+  Values made = constants_between(now.first_constant, now.end_constant);
+  set_constants(old.end_constant, others, size);
+  const bool all_spared = others.size() < kSpare || now.end_constant <= old.end_constant + kSpare;
+  undo.complete = undo.complete && all_spared;
   count_marks(old.marks, false);
   count_marks(now.marks, true);
-  const bool alike =
-      !diagnostics_.has_errors() && info.outer_uses.empty() && is_alike(old, now, pou);
+  bool alike = !diagnostics_.has_errors() && info.outer_uses.empty() && is_alike(old, now, pou);
+  alike =
+      alike && undo.complete && (now.end_constant == old.end_constant || may_move_constants(pou));
+  if (!alike) now.end_constant = old.end_constant;
   uses_changed_ = uses_changed_ || now.marks != old.marks || now.callees != old.callees;
-  undo.complete = undo.complete && now.end_constant <= old.end_constant;
   now.before = old.before;
   now.behind = old.behind;
   now.in_turn = true;
   now.messages = diagnostics_.all();
+  const uint32_t new_end = std::exchange(now.end_constant, old.end_constant);
   old = std::move(now);
+  if (alike && new_end != old.end_constant) replace_constants(pou, std::move(made));
   return alike;
 }
 
@@ -219,14 +230,12 @@ void Resident::undo_edits(Undo& undo) {
     BodyRecord& record = bodies_[code->pou];
     count_marks(record.marks, false);
     count_marks(code->record.marks, true);
+    replace_constants(code->pou, std::move(code->constants));
     record = std::move(code->record);
     info.callees = record.callees;
     info.writes = record.writes;
     info.outer_uses.clear();
     program.pous[info.id.index] = std::move(code->code);
-    program.constants.set_next(record.first_constant);
-    for (ir::ConstValue& value : code->constants) program.constants.add(std::move(value));
-    program.constants.set_next(program.constants.size());
   }
   for (const Undo::Statements& was : undo.statements) {
     was.pou->body = was.body;

@@ -42,10 +42,17 @@ class Resident {
     std::string file;
     std::vector<LineShift> shifts;
   };
+  // Those of the program from `first` to `end` are others now, and end at `new_end`; what was
+  // behind them has moved.
+  struct Constants {
+    uint32_t first = 0;
+    uint32_t end = 0;
+    uint32_t new_end = 0;
+  };
   struct Update {
-    std::vector<ir::PouId> pous;                           // made anew, in order
-    std::vector<std::pair<uint32_t, uint32_t>> constants;  // theirs: [first, end)
-    std::vector<FileLines> lines;                          // of all other POUs in these files
+    std::vector<ir::PouId> pous;       // made anew, in order
+    std::vector<Constants> constants;  // theirs, one after the other
+    std::vector<FileLines> lines;      // of all other POUs in these files
   };
   // `sources` differ from the last ones in `files` only; all messages of the whole project go to
   // `diagnostics`. nullopt: compile everything; nothing was reported.
@@ -68,6 +75,7 @@ class Resident {
   struct Sizes;
   struct Edit;
   struct Undo;
+  using Values = std::vector<ir::ConstValue>;
   using Messages = std::vector<base::Diagnostic>;
 
   bool can_follow() const;
@@ -80,6 +88,10 @@ class Resident {
   bool lower_edited(const std::vector<Edit>& edits, Update& update, Undo& undo);
   bool check_uses_again();
   void undo_edits(Undo& undo);
+  Values constants_between(uint32_t first, uint32_t end) const;
+  void set_constants(uint32_t first, const Values& values, uint32_t size);
+  bool may_move_constants(uint32_t pou) const;
+  void replace_constants(uint32_t pou, Values values);
   Sizes sizes() const;
   void run_body(uint32_t pou, uint32_t next_type, BodyRecord& record);
   bool lower_anew(uint32_t pou, Undo& undo);

@@ -159,10 +159,11 @@ bool Resident::lower_edited(const std::vector<Edit>& edits, Update& update, Undo
   }
   for (const PouInfo& info : sema_->pous) {
     if (!info.id.valid() || !changed.contains(info.decl)) continue;
+    const uint32_t end = bodies_[info.number].end_constant;
     if (info.made != MadeCode::kNone || !lower_anew(info.number, undo)) return false;
     update.pous.push_back(info.id);
     const BodyRecord& record = bodies_[info.number];
-    update.constants.emplace_back(record.first_constant, record.end_constant);
+    update.constants.push_back({record.first_constant, end, record.end_constant});
   }
   return true;
 }

@@ -44,7 +44,7 @@ struct Resident::Undo {
     uint32_t pou = 0;
     BodyRecord record;
     ir::Pou code;
-    std::vector<ir::ConstValue> constants;
+    Values constants;
   };
   struct Statements {
     PouDecl* pou;

@@ -198,18 +198,24 @@ class Relinker {
   LinkContext context_;
 };
 
+void copy_constants(LinkState& state, const ir::Program& program, EditedConstants range) {
+  state.image.constants.set_next(range.first);
+  for (uint32_t i = range.first; i < range.end; ++i) {
+    state.image.constants.add(program.constants[ir::ConstId(i)]);
+  }
+  state.image.constants.set_next(state.image.constants.size());
+}
+
 }  // namespace
 
 bool relink(LinkState& state, const ir::Program& program, std::vector<EditedPou>& pous,
             std::span<const EditedConstants> constants, const Options& options) {
   if (!state.own_types) return false;
-  for (const EditedConstants& range : constants) {
-    state.image.constants.set_next(range.first);
-    for (uint32_t i = range.first; i < range.end; ++i) {
-      state.image.constants.add(program.constants[ir::ConstId(i)]);
-    }
+  if (state.image.constants.size() != program.constants.size()) {
+    state.image.constants = program.constants;
+  } else {
+    for (const EditedConstants& range : constants) copy_constants(state, program, range);
   }
-  state.image.constants.set_next(state.image.constants.size());
   std::sort(pous.begin(), pous.end(),
             [](const EditedPou& a, const EditedPou& b) { return a.number < b.number; });
   return Relinker(state, program, options).run(pous);

@@ -144,6 +144,7 @@ bool IncrementalBuild::follow(const base::SourceMap& sources, const std::vector<
   }
   bool done = optimise_with_callers(update->pous);
   move_lines(update->lines);
+  for (const auto& constants : update->constants) move_constants(constants);
   std::vector<linker::EditedPou> pous;
   for (const ir::PouId pou : update->pous) {
     if (!done) break;
@@ -155,7 +156,11 @@ bool IncrementalBuild::follow(const base::SourceMap& sources, const std::vector<
     pous.push_back({kept_->linked->pou_numbers.at(name), std::move(*object)});
   }
   std::vector<linker::EditedConstants> constants;
-  for (const auto& [first, end] : update->constants) constants.push_back({first, end});
+  const uint32_t all = kept_->program->constants.size();
+  for (const auto& made : update->constants) {
+    const bool moves = made.end != made.new_end;
+    constants.push_back({moves ? 0 : made.first, moves ? all : made.new_end});
+  }
   if (done && !pous.empty()) {
     done = linker::relink(*kept_->linked, *kept_->program, pous, constants, settings_.link);
   }
@@ -211,6 +216,17 @@ void IncrementalBuild::move_lines(const std::vector<frontend::Resident::FileLine
   if (files.empty()) return;
   for (ir::Object& object : kept_->objects) move(object.file, object.lines);
   for (ir::LinkedPou& pou : kept_->linked->image.pous) move(pou.file, pou.lines);
+}
+
+// Objects that were not made anew name theirs by number.
+void IncrementalBuild::move_constants(const frontend::Resident::Constants& moved) {
+  if (moved.end == moved.new_end) return;
+  for (ir::Object& object : kept_->objects) {
+    for (ir::ObjectConstant& constant : object.constants) {
+      const bool behind = constant.value.valid() && constant.value.index >= moved.end;
+      if (behind) constant.value = ir::ConstId(constant.value.index + moved.new_end - moved.end);
+    }
+  }
 }
 
 }  // namespace workspace

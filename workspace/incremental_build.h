@@ -69,6 +69,7 @@ class IncrementalBuild {
   bool follow(const base::SourceMap& sources, const std::vector<uint32_t>& files,
               base::Diagnostics& diagnostics);
   bool optimise_with_callers(std::vector<ir::PouId>& pous);
+  void move_constants(const frontend::Resident::Constants& moved);
   void move_lines(const std::vector<frontend::Resident::FileLines>& files);
 
   Settings settings_;

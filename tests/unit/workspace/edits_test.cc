@@ -155,6 +155,26 @@ TEST(Edits, AfterAMistakeTheNextGoodEditCostsOneBody) {
   EXPECT_EQ(project.lowered, 1u);
 }
 
+TEST(Edits, MoreAndFewerTextsCostOneBody) {
+  Project project({kBlocks, kMain,
+                   "FUNCTION_BLOCK Other VAR Text : STRING[20]; END_VAR\n"
+                   "  Text := 'another';\nEND_FUNCTION_BLOCK\n"});
+  project.edit(0, "    Step := 0;\n",
+               "    Step := 0;\n    Text := 'rest';\n    Text := 'tired';\n");
+  EXPECT_EQ(project.whole, 1u);  // the first text of four letters
+  project.edit(0, "    Text := 'rest';\n", "    Text := 'rest';\n    Text := 'calm';\n");
+  EXPECT_EQ(project.whole, 0u);
+  EXPECT_EQ(project.lowered, 1u);
+  project.edit(0, "    Text := 'calm';\n", "");
+  EXPECT_EQ(project.whole, 0u);
+  project.edit(0, "    Text := 'rest';\n",
+               "    Text := 'rest'; Text := 'free'; Step := 1.5 + 'x';\n");
+  EXPECT_FALSE(project.outcome.image.has_value());
+  project.edit(0, " Text := 'free'; Step := 1.5 + 'x';", "");
+  project.edit(2, "'another'", "'a other'");
+  EXPECT_EQ(project.lowered, 1u);
+}
+
 TEST(Edits, LettersBeyondAsciiCostOneBody) {
   Project project({kBlocks, kMain});
   project.edit(0, "Step + 1;", "Step + 2;  (* l\303\244uft *)");
