@@ -1,5 +1,6 @@
 // Images that somebody has tampered with and hashed anew: the verifier refuses them, or
-// the machine runs 100 scans without touching memory that the image does not declare.
+// the machine runs 100 scans, and 10 with variables forced, without touching memory that the image
+// does not declare.
 //
 // An input is either stored bytes (those that begin like an image), whose length and hash
 // are put right, or a script of changes to a good image: 6 bytes {what, where, value} each.
@@ -19,6 +20,7 @@
 #include "tests/unit/bytecode/sample_objects.h"
 #include "vm/exec/execution.h"
 #include "vm/exec/memory.h"
+#include "vm/load/forced_code.h"
 
 namespace {
 
@@ -39,10 +41,18 @@ template <class T>
 void alter(T& number, const Change& change) {
   auto wide = static_cast<uint64_t>(number);
   switch (change.how % 4) {
-    case 0: wide = change.value; break;
-    case 1: wide ^= uint64_t{1} << (change.value % 64); break;
-    case 2: wide += change.value % 9; break;
-    default: wide -= change.value % 9; break;
+    case 0:
+      wide = change.value;
+      break;
+    case 1:
+      wide ^= uint64_t{1} << (change.value % 64);
+      break;
+    case 2:
+      wide += change.value % 9;
+      break;
+    default:
+      wide -= change.value % 9;
+      break;
   }
   number = static_cast<T>(wide);
 }
@@ -54,20 +64,34 @@ T* pick(std::vector<T>& list, uint32_t where) {
 
 void change_slot(ir::FrameSlot& slot, const Change& change) {
   switch (change.how / 4 % 6) {
-    case 0: return alter(slot.offset, change);
-    case 1: slot.cls = static_cast<ir::Class>(change.value % ir::kClassCount); return;
-    case 2: slot.kind = static_cast<ir::SlotKind>(change.value % 3); return;
-    case 3: slot.local = static_cast<ir::LocalKind>(change.value % 5); return;
-    case 4: slot.aggregate = !slot.aggregate; return;
-    default: slot.region.type.index = change.value % 40; return;
+    case 0:
+      return alter(slot.offset, change);
+    case 1:
+      slot.cls = static_cast<ir::Class>(change.value % ir::kClassCount);
+      return;
+    case 2:
+      slot.kind = static_cast<ir::SlotKind>(change.value % 3);
+      return;
+    case 3:
+      slot.local = static_cast<ir::LocalKind>(change.value % 5);
+      return;
+    case 4:
+      slot.aggregate = !slot.aggregate;
+      return;
+    default:
+      slot.region.type.index = change.value % 40;
+      return;
   }
 }
 
 void change_pou(ir::LinkedPou& pou, const Change& change) {
   switch (change.how / 4 % 7) {
-    case 0: return alter(pou.frame_size, change);
-    case 1: return alter(pou.self.index, change);
-    case 2: return alter(pou.unit_count, change);
+    case 0:
+      return alter(pou.frame_size, change);
+    case 1:
+      return alter(pou.self.index, change);
+    case 2:
+      return alter(pou.unit_count, change);
     case 3:
       if (ir::FrameSlot* slot = pick(pou.slots, change.where / 8)) change_slot(*slot, change);
       return;
@@ -79,17 +103,26 @@ void change_pou(ir::LinkedPou& pou, const Change& change) {
         merge->slots.assign(1, static_cast<uint16_t>(change.value % (pou.slots.size() + 1)));
       }
       return;
-    default: pou.kind = static_cast<ir::PouKind>(change.value % ir::kPouKindCount); return;
+    default:
+      pou.kind = static_cast<ir::PouKind>(change.value % ir::kPouKindCount);
+      return;
   }
 }
 
 void change_unit(ir::Unit& unit, const Change& change) {
   switch (change.how / 4 % 5) {
-    case 0: return alter(unit.a, change);
-    case 1: return alter(unit.b, change);
-    case 2: return alter(unit.c, change);
-    case 3: unit.op = static_cast<uint16_t>((unit.op & ~0x3ff) | change.value % ir::kOpcodeCount); return;
-    default: unit.op ^= static_cast<uint16_t>(1u << (10 + change.value % 6)); return;
+    case 0:
+      return alter(unit.a, change);
+    case 1:
+      return alter(unit.b, change);
+    case 2:
+      return alter(unit.c, change);
+    case 3:
+      unit.op = static_cast<uint16_t>((unit.op & ~0x3ff) | change.value % ir::kOpcodeCount);
+      return;
+    default:
+      unit.op ^= static_cast<uint16_t>(1u << (10 + change.value % 6));
+      return;
   }
 }
 
@@ -99,16 +132,22 @@ void change_type(ir::Image& image, const Change& change) {
   ir::Type& type = image.types.edit(ir::TypeId(number));
   ir::TypeLayout& layout = image.layouts.of[number];
   switch (change.how / 4 % 7) {
-    case 0: return alter(type.base.index, change);
-    case 1: return alter(type.capacity, change);
-    case 6: type.interfaces.assign(1, ir::TypeId(change.value % (image.types.size() + 1))); return;
+    case 0:
+      return alter(type.base.index, change);
+    case 1:
+      return alter(type.capacity, change);
+    case 6:
+      type.interfaces.assign(1, ir::TypeId(change.value % (image.types.size() + 1)));
+      return;
     case 2:
       if (ir::Member* member = pick(type.members, change.value)) {
         member->type.index = change.where / 16 % (image.types.size() + 1);
       }
       return;
-    case 3: return alter(layout.size, change);
-    case 4: return alter(layout.area_capacity, change);
+    case 3:
+      return alter(layout.size, change);
+    case 4:
+      return alter(layout.area_capacity, change);
     default:
       if (uint32_t* offset = pick(layout.member_offsets, change.where / 16)) alter(*offset, change);
       return;
@@ -117,19 +156,28 @@ void change_type(ir::Image& image, const Change& change) {
 
 void change_instance(ir::Instance& row, const Change& change) {
   switch (change.how / 4 % 5) {
-    case 0: return alter(row.data, change);
-    case 1: return alter(row.type.index, change);
-    case 2: return alter(row.pou, change);
-    case 3: return alter(row.parent, change);
-    default: row.live = !row.live; return;
+    case 0:
+      return alter(row.data, change);
+    case 1:
+      return alter(row.type.index, change);
+    case 2:
+      return alter(row.pou, change);
+    case 3:
+      return alter(row.parent, change);
+    default:
+      row.live = !row.live;
+      return;
   }
 }
 
 void change_override(ir::LinkedOverride& row, const Change& change) {
   switch (change.how / 4 % 3) {
-    case 0: return alter(row.type.index, change);
-    case 1: return alter(row.prototype, change);
-    default: return alter(row.target, change);
+    case 0:
+      return alter(row.type.index, change);
+    case 1:
+      return alter(row.prototype, change);
+    default:
+      return alter(row.target, change);
   }
 }
 
@@ -144,25 +192,35 @@ void apply(ir::Image& image, const Change& change) {
     if (item != nullptr) act(*item);
   };
   switch (change.what % 16) {
-    case 0: return on(pick(image.pous, change.where), [&](auto& p) { change_pou(p, change); });
-    case 1: return change_type(image, change);
-    case 2: return on(pick(image.instances, change.where), [&](auto& r) { change_instance(r, change); });
-    case 3: return on(pick(image.bounds, change.where), [&](auto& b) { alter(b.count, change); });
-    case 4: return on(pick(image.bounds, change.where), [&](auto& b) { alter(b.from.type.index, change); });
-    case 5: return on(pick(image.data, change.where), [&](auto& d) { alter(d.offset, change); });
+    case 0:
+      return on(pick(image.pous, change.where), [&](auto& p) { change_pou(p, change); });
+    case 1:
+      return change_type(image, change);
+    case 2:
+      return on(pick(image.instances, change.where), [&](auto& r) { change_instance(r, change); });
+    case 3:
+      return on(pick(image.bounds, change.where), [&](auto& b) { alter(b.count, change); });
+    case 4:
+      return on(pick(image.bounds, change.where),
+                [&](auto& b) { alter(b.from.type.index, change); });
+    case 5:
+      return on(pick(image.data, change.where), [&](auto& d) { alter(d.offset, change); });
     case 6:
       return on(pick(image.data, change.where), [&](auto& d) {
         on(pick(d.bytes, change.where / 8), [&](auto& byte) { alter(byte, change); });
       });
-    case 7: return on(pick(image.pool, change.where), [&](auto& byte) { alter(byte, change); });
-    case 8: return change_numbers(image, change);
+    case 7:
+      return on(pick(image.pool, change.where), [&](auto& byte) { alter(byte, change); });
+    case 8:
+      return change_numbers(image, change);
     case 9:  // an instruction in another place
-      return on(pick(image.code, change.where), [&](auto& unit) {
-        unit = image.code[change.value % image.code.size()];
-      });
+      return on(pick(image.code, change.where),
+                [&](auto& unit) { unit = image.code[change.value % image.code.size()]; });
     case 10:
-      return on(pick(image.overrides, change.where), [&](auto& row) { change_override(row, change); });
-    default: return on(pick(image.code, change.where), [&](auto& unit) { change_unit(unit, change); });
+      return on(pick(image.overrides, change.where),
+                [&](auto& row) { change_override(row, change); });
+    default:
+      return on(pick(image.code, change.where), [&](auto& unit) { change_unit(unit, change); });
   }
 }
 
@@ -219,6 +277,35 @@ void check_memory(vm::Memory& memory, const ir::Image& image) {
   check_untouched(memory, uint64_t{ir::kStackBegin} + image.stack_bytes, uint64_t{1} << 32);
 }
 
+void run(const vm::Generation& generation, const vm::CodeTable& code, vm::Memory& memory,
+         int scans) {
+  const ir::Image& image = generation.image();
+  vm::Execution execution(image.call_depth, 0, generation.try_depth());
+  for (int scan = 0; scan < scans; ++scan) {
+    for (const ir::ImageTask& task : image.tasks) {
+      for (uint32_t program : task.programs) {
+        execution.start(generation, code, memory.data(), program, ir::kStackBegin, scan);
+        if (execution.run(kFuelOfAScan) == vm::Exit::kTrap) {
+          base::check(!vm::describe(image, execution.trap()).text.empty(), "a trap has a text");
+        }
+      }
+    }
+  }
+}
+
+// Some variables have the values of other moments.
+std::vector<vm::ForcedVariable> forced_variables(const ir::Image& image, vm::Memory& memory) {
+  std::vector<vm::ForcedVariable> out;
+  uint32_t count = 0;
+  ir::for_each_leaf(image, [&](const std::string&, const ir::Symbol& symbol) {
+    if (symbol.constant || count++ % 3 != 0) return;
+    const uint32_t size = image.layouts[symbol.type].size;
+    const uint8_t* const at = memory.data() + symbol.data;
+    out.push_back({{symbol.data, size, symbol.type}, base::Bytes(at, at + size)});
+  });
+  return out;
+}
+
 void run_scans(const ir::VerifiedImage& verified, bool look_at_pages) {
   const ir::Image& image = verified.image();
   if (pages(image.data_capacity) > kMaxPages) return;
@@ -229,17 +316,11 @@ void run_scans(const ir::VerifiedImage& verified, bool look_at_pages) {
     }
   }
   const auto generation = vm::Generation::build(verified, 0, memory.data());
-  vm::Execution execution(image.call_depth, 0, generation->try_depth());
-  for (int scan = 0; scan < 100; ++scan) {
-    for (const ir::ImageTask& task : image.tasks) {
-      for (uint32_t program : task.programs) {
-        execution.start(*generation, memory.data(), program, ir::kStackBegin, scan);
-        if (execution.run(kFuelOfAScan) == vm::Exit::kTrap) {
-          base::check(!vm::describe(image, execution.trap()).text.empty(), "a trap has a text");
-        }
-      }
-    }
-  }
+  run(*generation, *generation->code(), memory, 1);
+  const std::vector<vm::ForcedVariable> variables = forced_variables(image, memory);
+  run(*generation, *generation->code(), memory, 99);
+  const auto forced = vm::ForcedCode::make(verified, *generation->code(), variables, {});
+  if (forced != nullptr) run(*generation, forced->table(), memory, 10);
   ir::state_hash(image, memory.view());
   if (look_at_pages) check_memory(memory, image);
 }
