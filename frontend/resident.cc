@@ -63,7 +63,8 @@ ir::Program* Resident::compile(const base::SourceMap& sources, const CompileOpti
   parsed_ = parse_project(sources, options_, diagnostics_);
   if (parsed_ != nullptr) {
     const auto& configs = parsed_->tree.configs;
-    if (configs.size() == 1 && configs[0].resources.size() > 1) return nullptr;
+    const bool several = configs.size() == 1 && configs[0].resources.size() > 1;
+    if (several && !diagnostics_.has_errors()) return nullptr;
     sema_ = std::make_unique<Sema>(parsed_->sources, parsed_->tree, parsed_->library_file, options_,
                                    Purpose::kRun, diagnostics_);
     declare_all(*sema_);

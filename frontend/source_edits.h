@@ -1,7 +1,7 @@
 // What edits of source files leave as it is. A resident tree (resident.h) keeps the nodes of every
-// declaration, and takes new statements for a POU from the file's new text, when nothing else in
-// that file differs. The new text is parsed as one more file; positions in the older ones are
-// followed to where their text stands now (base::SourceMap::Piece).
+// declaration, and takes new statements for a POU from the file's new text, when nothing else but
+// comments and spaces differs in that file. The new text is parsed as one more file; positions in
+// the older ones are followed to where their text stands now (base::SourceMap::Piece).
 #pragma once
 
 #include <cstdint>
@@ -43,8 +43,8 @@ struct BodyEdits {
   };
   std::vector<Kept> kept;
 };
-// nullopt when something else than statements differs, or statements in a way that reaches beyond
-// them: pragmas, Latin-1, an END that does not begin its line.
+// nullopt when something else than statements, comments and spaces differs, or statements in a way
+// that reaches beyond them: pragmas, Latin-1, an END that does not begin its line.
 std::optional<BodyEdits> compare_bodies(std::string_view before, const std::vector<CodePlace>& old,
                                         std::string_view after, const std::vector<CodePlace>& now);
 

@@ -155,6 +155,31 @@ TEST(Edits, AfterAMistakeTheNextGoodEditCostsOneBody) {
   EXPECT_EQ(project.lowered, 1u);
 }
 
+TEST(Edits, CommentsOutsideOfBodiesCostNothing) {
+  Project project(
+      {"{attribute 'qualified_only'}\nVAR_GLOBAL g : INT; END_VAR\n" + std::string(kBlocks),
+       kMain});
+  project.edit(0, "FUNCTION_BLOCK Motor", "(* a\n   motor *)\nFUNCTION_BLOCK Motor  // here");
+  EXPECT_EQ(project.whole, 0u);
+  EXPECT_EQ(project.lowered, 0u);
+  project.edit(0, "VAR Step : INT;", "\n(* the sequence *)\nVAR  Step:INT;  (* where it is *)");
+  EXPECT_EQ(project.whole, 0u);
+  EXPECT_EQ(project.lowered, 0u);
+  project.edit(0, "VAR  Step:INT", "VAR  Stop:INT");
+  EXPECT_FALSE(project.outcome.image.has_value());
+  project.edit(0, "VAR  Stop:INT", "VAR\n\n  Step :\n INT");
+  EXPECT_TRUE(project.outcome.image.has_value());
+}
+
+TEST(Edits, PragmasAndSpacesThatMatterCostEverything) {
+  Project project(
+      {"{attribute 'list' := 'G'}\nVAR_GLOBAL g : INT; END_VAR\n" + std::string(kBlocks), kMain});
+  project.edit(0, "'G'", "'H'");
+  EXPECT_EQ(project.whole, 1u);
+  project.edit(0, "g : INT", "g g : INT");
+  EXPECT_EQ(project.whole, 1u);
+}
+
 TEST(Edits, MoreAndFewerTextsCostOneBody) {
   Project project({kBlocks, kMain,
                    "FUNCTION_BLOCK Other VAR Text : STRING[20]; END_VAR\n"
