@@ -3,8 +3,8 @@
 //
 //   bench_edit --sources FOLDER --out FOLDER --section NAME --title TEXT [--repeats N]
 //
-// Each edit changes the statements of another function block; every image is compared with that of
-// a build from nothing once, at the end. Writes NAME.json and NAME.md. Times are processor time.
+// Each edit changes the statements of one function block, there and back; its image is compared
+// with that of a build from nothing. Writes NAME.json and NAME.md. Times are processor time.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
