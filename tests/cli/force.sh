@@ -56,3 +56,9 @@ said 'forces +1$'
 expect 0 stvm unforce --dir plc --all
 expect 0 stvm get --dir plc --forces
 expect 7 stvm force --dir plc level=hello
+
+# A run says what a force cannot do.
+expect 0 stvm run v1.st --scans 3 --force level=40 --force shared=3 --print Main.seen
+said '^shared is forced at the boundaries of cycles: `F1` in line 5'
+said 'Main.seen=40'
+! grep -q 'level is forced' err || fail "a note on what holds everywhere"

@@ -175,6 +175,13 @@ void print_json(const Running& running, const RunSettings& settings,
   std::fputs(json.finish().c_str(), stdout);
 }
 
+// What a force cannot do.
+void note_hold(const vm::Force& force) {
+  if (force.reason.empty() && force.remark.empty()) return;
+  std::fprintf(stderr, "%s is forced %s\n", force.path.c_str(),
+               vm::hold_text(force.reason, force.remark).c_str());
+}
+
 }  // namespace
 
 base::Status apply_assignments(const tools::Options& options, const std::string& resource,
@@ -190,6 +197,7 @@ base::Status apply_assignments(const tools::Options& options, const std::string&
       base::Status status =
           set ? controller.set(row.name, row.value) : controller.force(row.name, row.value);
       if (!status.ok()) return status;
+      if (!set) note_hold(controller.forces().back());
       if (recorder != nullptr) note_assignment(*recorder, controller, set, row);
     }
   }
