@@ -10,13 +10,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <map>
-#include <sstream>
 
 #include "base/diagnostics.h"
 #include "bench/measure.h"
+#include "bench/project_sources.h"
 #include "frontend/compile.h"
 #include "frontend/lex/lexer.h"
 #include "frontend/parse/tree.h"
@@ -70,22 +69,6 @@ template <class T>
 T taken(base::Result<T> result) {
   base::check(result.ok(), result.ok() ? "" : base::to_string(result.error()).c_str());
   return std::move(*result);
-}
-
-base::SourceMap read_sources(const std::string& folder, uint64_t& lines) {
-  std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".st") paths.push_back(entry.path());
-  }
-  std::sort(paths.begin(), paths.end());
-  base::SourceMap sources;
-  for (const std::filesystem::path& path : paths) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    lines += static_cast<uint64_t>(std::count(text.view().begin(), text.view().end(), '\n'));
-    sources.add(path.string(), text.str());
-  }
-  return sources;
 }
 
 size_t lex_all(const base::SourceMap& sources) {
@@ -231,7 +214,7 @@ int main(int argc, char** argv) {
   tools::keep_freed_memory();  // as stc does
   Measured made;
   measure_build(options, repeats, made);
-  const base::SourceMap sources = read_sources(options["--sources"], made.lines);
+  const base::SourceMap sources = bench::read_sources(options["--sources"], made.lines);
   for (uint32_t file = 0; file < sources.file_count(); ++file) {
     made.source_bytes += sources.text(file).size();
   }

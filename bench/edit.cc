@@ -8,36 +8,19 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <map>
-#include <sstream>
 #include <vector>
 
 #include "base/diagnostics.h"
 #include "bench/measure.h"
+#include "bench/project_sources.h"
 #include "tools/common/heap.h"
 #include "workspace/incremental_build.h"
 
 namespace {
 
 using Options = std::map<std::string, std::string>;
-
-base::SourceMap read_sources(const std::string& folder, uint64_t& lines) {
-  std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".st") paths.push_back(entry.path());
-  }
-  std::sort(paths.begin(), paths.end());
-  base::SourceMap sources;
-  for (const std::filesystem::path& path : paths) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    lines += static_cast<uint64_t>(std::count(text.view().begin(), text.view().end(), '\n'));
-    sources.add(path.string(), text.str());
-  }
-  return sources;
-}
 
 // Statements at the beginning of a function block, in the middle of a file in the middle of all.
 struct Edit {
@@ -91,7 +74,7 @@ int main(int argc, char** argv) {
   bench::pin_to_one_core();
   tools::keep_freed_memory();  // as stc does
   uint64_t lines = 0;
-  base::SourceMap sources = read_sources(options["--sources"], lines);
+  base::SourceMap sources = bench::read_sources(options["--sources"], lines);
   const uint32_t file = sources.file_count() / 2;
   const std::string original(sources.text(file));
   workspace::IncrementalBuild build({});

@@ -28,9 +28,7 @@ void Histogram::add(int64_t ns) {
   ++count_;
 }
 
-int64_t Histogram::average() const {
-  return count_ == 0 ? 0 : sum_ / static_cast<int64_t>(count_);
-}
+int64_t Histogram::average() const { return count_ == 0 ? 0 : sum_ / static_cast<int64_t>(count_); }
 
 int64_t Histogram::quantile(double share) const {
   const auto wanted = static_cast<uint64_t>(share * static_cast<double>(count_));
