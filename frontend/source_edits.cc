@@ -60,6 +60,10 @@ class LineCounter {
   int64_t line_ = 1;
 };
 
+auto count_lines(std::string_view text, uint32_t begin, uint32_t end) {
+  return std::count(text.begin() + begin, text.begin() + end, '\n');
+}
+
 // Tokens and pragmas of a part of a text, by position; nothing when it cannot be read alone.
 std::optional<std::vector<base::SourceSpan>> words_of(std::string_view text, uint32_t begin,
                                                       uint32_t end) {
@@ -109,13 +113,15 @@ class Comparison {
     const auto now = words_of(after_, to_, end_to);
     if (!old || !now || old->size() != now->size()) return false;
     uint32_t behind = from_;  // the last word
+    uint32_t behind_to = to_;
     for (size_t i = 0; i < old->size(); ++i) {
       const uint32_t at = (*old)[i].begin.offset;
       const uint32_t size = (*old)[i].end.offset - at;
       const uint32_t to = (*now)[i].begin.offset;
       if (before_.substr(at, size) != after_.substr(to, (*now)[i].end.offset - to)) return false;
-      const bool moves =
-          edits.kept.empty() || i == 0 || to - edits.kept.back().to != at - edits.kept.back().begin;
+      const bool moves = edits.kept.empty() || i == 0 ||
+                         to - edits.kept.back().to != at - edits.kept.back().begin ||
+                         count_lines(before_, behind, at) != count_lines(after_, behind_to, to);
       if (moves && i > 0 && at == behind) return false;  // nothing tells which one is meant
       if (moves) {
         edits.kept.push_back({at, size, to});
@@ -126,6 +132,7 @@ class Comparison {
       }
       edits.kept.back().size = at + size - edits.kept.back().begin;
       behind = at + size;
+      behind_to = to + size;
     }
     return true;
   }

@@ -103,6 +103,16 @@ TEST(Edits, LinesAndCommentsOfABodyCostThatBody) {
   EXPECT_EQ(project.lowered, 1u);
 }
 
+// Behind the comment everything has the place that it had, but not the line.
+TEST(Edits, ALineInPlaceOfAnotherCharacterMovesLines) {
+  std::string blocks = kBlocks;
+  blocks.insert(blocks.find("FUNCTION_BLOCK Last"), "(* one two *)\n");
+  Project project({blocks, kMain});
+  project.edit(0, "(* one two *)", "(* one\ntwo *)");
+  EXPECT_EQ(project.whole, 0u);
+  EXPECT_EQ(project.lowered, 0u);
+}
+
 TEST(Edits, InlinedFunctionCostsItselfAndWhoHoldsIt) {
   Project project({kBlocks, kMain});
   project.edit(0, "x + x", "x * 2");
