@@ -321,7 +321,7 @@ class Numbers {
       if (pou_.values[known.value.index].scalar != inst.scalar) return;
       const bool here = known.block == block_;
       const bool fixed = is_static(place(inst.place), facts_);
-      if (known.stored && fixed && outlives_call(place(inst.place))) {
+      if (known.stored && outlives_call(place(inst.place))) {
         known = {hash, inst.place, inst.result, false, block_};
         return;
       }
