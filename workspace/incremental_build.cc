@@ -101,6 +101,9 @@ bool IncrementalBuild::has_files_of(const base::SourceMap& sources) const {
 base::Result<const ir::Image*> IncrementalBuild::build_whole(const base::SourceMap& sources,
                                                              base::Diagnostics& diagnostics) {
   auto made = std::make_unique<Kept>();
+  made->link = settings_.link;
+  made->base = next_base_;
+  if (made->base != nullptr) made->link.base = made->base.get();
   ++counts_.whole;
   const size_t before = diagnostics.error_count();
   made->program = made->frontend.compile(sources, settings_.compile, diagnostics);
@@ -123,7 +126,7 @@ base::Result<const ir::Image*> IncrementalBuild::build_whole(const base::SourceM
   auto objects = ir::lower_all(*made->program, {}, settings_.jobs);
   if (!objects.ok()) return objects.error();
   made->objects = std::move(*objects);
-  auto linked = linker::link_state(*made->program, made->objects, settings_.link);
+  auto linked = linker::link_state(*made->program, made->objects, made->link);
   if (!linked.ok()) return linked.error();
   made->linked = std::move(*linked);
   kept_ = std::move(made);
@@ -162,7 +165,7 @@ bool IncrementalBuild::follow(const base::SourceMap& sources, const std::vector<
     constants.push_back({moves ? 0 : made.first, moves ? all : made.new_end});
   }
   if (done && !pous.empty()) {
-    done = linker::relink(*kept_->linked, *kept_->program, pous, constants, settings_.link);
+    done = linker::relink(*kept_->linked, *kept_->program, pous, constants, kept_->link);
   }
   if (!done) {
     kept_.reset();

@@ -29,7 +29,7 @@ struct Settings {
   frontend::CompileOptions compile;
   ir::PassSet passes = ir::PassSet::all();
   uint32_t jobs = 1;
-  linker::Options link;  // its base stays where it is as long as the build
+  linker::Options link;  // its base stays where it is as long as the build, or continue_from()
 };
 
 // Since the build was made.
@@ -52,6 +52,9 @@ class IncrementalBuild {
   base::Result<const ir::Image*> build(const base::SourceMap& sources,
                                        const std::vector<uint32_t>& saved,
                                        base::Diagnostics& diagnostics);
+  // What the last build() gave runs now: builds from nothing are linked against `base`, which is
+  // equal to it, from now on. Edits are followed as before, since they move nothing.
+  void continue_from(std::shared_ptr<const ir::Image> base) { next_base_ = std::move(base); }
   const Counts& counts() const { return counts_; }
 
  private:
@@ -61,6 +64,8 @@ class IncrementalBuild {
     std::vector<ir::Object> objects;  // by PouId
     std::vector<bool> inlined;        // by PouId: functions whose callers may hold their body
     std::optional<linker::LinkState> linked;
+    linker::Options link;                   // of the last link
+    std::shared_ptr<const ir::Image> base;  // its base, if it is ours
   };
 
   bool has_files_of(const base::SourceMap& sources) const;
@@ -76,6 +81,7 @@ class IncrementalBuild {
   base::SourceMap sources_;       // of the last good build
   std::set<uint32_t> differing_;  // files that may differ from them
   std::unique_ptr<Kept> kept_;
+  std::shared_ptr<const ir::Image> next_base_;  // null: that of the settings
   Counts counts_;
 };
 

@@ -49,8 +49,14 @@ built 2
 same 'statements'
 tail -1 watch.log | grep -q '^built 1 POU in' || fail "more than one POU for a statement"
 
-sed 's/^VAR_OUTPUT/VAR_OUTPUT Runs : INT; END_VAR VAR_OUTPUT/' plant/pump.st | save plant/pump.st
+# An image that is gone is written at the next save, whatever has changed.
+rm watched.img
+printf '\n' >>plant/main.st
 built 3
+same 'written again'
+
+sed 's/^VAR_OUTPUT/VAR_OUTPUT Runs : INT; END_VAR VAR_OUTPUT/' plant/pump.st | save plant/pump.st
+built 4
 same 'declarations'
 
 # A mistake is reported; the image stays until it is mended.
@@ -63,19 +69,19 @@ done
 grep -q 'main.st:5:.*error\[E2001\].*Missing' watch.log || fail "the mistake is not reported"
 cmp -s before.img watched.img || fail "an image in spite of errors"
 sed 's/Missing/FALSE/' plant/main.st | save plant/main.st
-built 4
+built 5
 same 'mended'
 
 # A new file, a file that goes, other settings.
 printf 'FUNCTION Twice : INT VAR_INPUT x : INT; END_VAR Twice := 2 * x; END_FUNCTION\n' |
   save plant/twice.st
-built 5
+built 6
 same 'a new file'
 rm plant/twice.st
-built 6
+built 7
 same 'a file less'
 echo 'name = "other"' >plant/stc.toml
-built 7
+built 8
 same 'settings'
 echo 'nam = 1' >plant/stc.toml
 for _ in $(seq 100); do
@@ -84,5 +90,5 @@ for _ in $(seq 100); do
 done
 grep -q 'R0506' watch.log || fail "bad settings are not reported"
 rm plant/stc.toml
-built 8
+built 9
 same 'without settings'

@@ -60,6 +60,22 @@ std::string read_all(int fd) {
   }
 }
 
+constexpr uint32_t kMaxMessage = 1u << 30;
+
+base::Error no_partner() {
+  return {base::Refusal::kNotRunning, "the tool at the other end of the connection is gone"};
+}
+
+bool receive_all(int socket, std::span<uint8_t> to) {
+  while (!to.empty()) {
+    const ssize_t n = ::recv(socket, to.data(), to.size(), 0);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    to = to.subspan(static_cast<size_t>(n));
+  }
+  return true;
+}
+
 struct Output {
   std::string messages;
   std::optional<base::Error> refusal;
@@ -132,10 +148,39 @@ ConnectedChild::ConnectedChild(ConnectedChild&& other) noexcept
 
 ConnectedChild::~ConnectedChild() {
   if (socket_ >= 0) ::close(socket_);
-  if (pid_ > 0) wait_for(pid_);
+  wait();
+}
+
+int ConnectedChild::wait() {
+  const int pid = std::exchange(pid_, -1);
+  return pid > 0 ? wait_for(pid) : -1;
 }
 
 int ConnectedChild::take_socket() { return std::exchange(socket_, -1); }
+
+base::Status send_message(int socket, base::ByteSpan message) {
+  base::ByteWriter length;
+  length.u32(static_cast<uint32_t>(message.size()));
+  for (base::ByteSpan rest : {base::ByteSpan(length.bytes()), message}) {
+    while (!rest.empty()) {
+      const ssize_t n = ::send(socket, rest.data(), rest.size(), MSG_NOSIGNAL);
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) return no_partner();
+      rest = rest.subspan(static_cast<size_t>(n));
+    }
+  }
+  return base::Ok{};
+}
+
+base::Result<base::Bytes> receive_message(int socket) {
+  uint8_t length[4];
+  if (!receive_all(socket, length)) return no_partner();
+  const uint32_t size = base::ByteReader(length).u32();
+  if (size > kMaxMessage) return no_partner();
+  base::Bytes message(size);
+  if (!receive_all(socket, message)) return no_partner();
+  return message;
+}
 
 base::Result<TemporaryFolder> TemporaryFolder::make() {
   const char* parent = std::getenv("TMPDIR");

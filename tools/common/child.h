@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/bytes.h"
 #include "base/result.h"
 
 namespace tools {
@@ -22,6 +23,8 @@ class ConnectedChild {
   ConnectedChild(ConnectedChild&& other) noexcept;
   ConnectedChild& operator=(ConnectedChild&&) = delete;
   ~ConnectedChild();  // waits for its end
+  // Its exit code, once it has ended; -1 when it was killed.
+  int wait();
   // Our end of the socket, once; the caller owns it.
   int take_socket();
 
@@ -30,6 +33,11 @@ class ConnectedChild {
   int pid_ = -1;
   int socket_ = -1;
 };
+
+// Messages of any bytes between a tool and its child, over their socket. Each is a u32 length and
+// as many bytes. kNotRunning when the other side is gone.
+base::Status send_message(int socket, base::ByteSpan message);
+base::Result<base::Bytes> receive_message(int socket);
 
 // A folder for intermediate files that goes when its owner goes.
 class TemporaryFolder {

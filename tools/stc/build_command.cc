@@ -2,7 +2,7 @@
 #include "tools/stc/commands.h"
 #include "tools/stc/image_output.h"
 #include "tools/stc/session.h"
-#include "tools/stc/watch.h"
+#include "tools/stc/watch_image.h"
 
 namespace stc {
 namespace {
@@ -26,25 +26,27 @@ int run(const tools::Options& options) {
   if (!format.ok()) return tools::refuse("stc", format.error());
   base::Result<Project> project = open_project(options, options.arguments());
   if (!project.ok()) return tools::refuse("stc", project.error());
-  std::optional<Version> base_version;
+  std::shared_ptr<const ir::Image> base_image;
   if (options.has("--base")) {
     base::Result<Version> read = read_image(options.text("--base"));
     if (!read.ok()) return tools::refuse("stc", read.error());
-    base_version = std::move(*read);
+    base_image = std::make_shared<const ir::Image>(std::move(read->image));
   }
-  BuildOptions build_options{base_version ? &base_version->image : nullptr,
-                             options.has("--move-all")};
-  if (options.has("--watch")) return watch(options, *project, build_options, *format);
+  const bool with_line = *format == base::DiagnosticFormat::kText && !options.has("--quiet");
+  BuildOptions build_options{base_image.get(), options.has("--move-all")};
+  if (options.has("--watch")) {
+    WatchedImage target(options.text("--output"), with_line, base_image);
+    return watch(options, std::move(*project), build_options.move_all, *format, target);
+  }
   base::Diagnostics diagnostics;
   auto versions = build_resources(*project, build_options, diagnostics);
   report(*project, diagnostics, *format);
   if (!versions.ok()) return tools::refuse("stc", versions.error());
-  if (versions->size() > 1 && base_version) {
+  if (versions->size() > 1 && base_image) {
     return tools::refuse("stc", {base::Refusal::kUsage,
                                  "--base is one program, but there are several RESOURCEs; say "
                                  "which one is meant: --resource NAME"});
   }
-  const bool with_line = *format == base::DiagnosticFormat::kText && !options.has("--quiet");
   base::Status written = write_images(*versions, options.text("--output", project->name + ".img"),
                                       project->name, with_line);
   return written.ok() ? tools::kOk : tools::refuse("stc", written.error());

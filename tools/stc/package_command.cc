@@ -1,9 +1,12 @@
 // stc package: a running image and a new version -> change package.
+#include <unistd.h>
+
 #include "online_change/package/package.h"
 #include "online_change/plan/pou_edits.h"
 #include "tools/common/files.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/session.h"
+#include "tools/stc/watch_packages.h"
 
 namespace stc {
 namespace {
@@ -12,9 +15,10 @@ constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
     STC_CODE_OPTIONS,
     {"--base", "IMAGE", "the running version (required)"},
-    {"--output|-o", "FILE", "package to write (required)"},
+    {"--output|-o", "FILE", "package to write (required without --watch)"},
     STC_RESTRICTED_OPTION,
     {"--move-all", nullptr, "give every instance a new place (a test of changes)"},
+    {"--watch", nullptr, "stay, and make one at each save, for `stvm change --watch`"},
 };
 constexpr tools::Command kCommand{"package", "NEW...",
                                   "Makes the change package from a running version to a new one.",
@@ -39,7 +43,24 @@ base::Status make(const tools::Options& options) {
   return tools::write_file(options.text("--output"), online_change::encode(*package));
 }
 
+int follow(const tools::Options& options) {
+  if (!options.has("--base") || options.has("--output")) {
+    return tools::refuse(
+        "stc", {base::Refusal::kUsage, "package --watch: --base is required, --output has no use"});
+  }
+  base::Result<Version> running = read_image(options.text("--base"));
+  if (!running.ok()) return tools::refuse("stc", running.error());
+  base::Result<Project> project = open_project(options, options.arguments());
+  if (!project.ok()) return tools::refuse("stc", project.error());
+  WatchedPackages target(STDOUT_FILENO, options.has("--restricted"));
+  base::Status begun = target.begin(std::move(running->bytes));
+  if (!begun.ok()) return tools::refuse("stc", begun.error());
+  return watch(options, std::move(*project), options.has("--move-all"),
+               base::DiagnosticFormat::kText, target);
+}
+
 int run(const tools::Options& options) {
+  if (options.has("--watch")) return follow(options);
   base::Status made = make(options);
   return made.ok() ? tools::kOk : tools::refuse("stc", made.error());
 }

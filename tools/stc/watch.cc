@@ -1,18 +1,14 @@
 #include "tools/stc/watch.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <map>
-#include <thread>
 
 #include "tools/common/exit.h"
 #include "tools/common/files.h"
-#include "tools/stc/image_output.h"
+#include "tools/stc/file_stamp.h"
 #include "tools/stc/importer.h"
 #include "tools/stc/session.h"
 #include "workspace/incremental_build.h"
@@ -25,46 +21,39 @@ using Clock = std::chrono::steady_clock;
 // Looking takes a tenth of the time at most, and happens often enough for people.
 constexpr auto kLookEvery = std::chrono::milliseconds(30);
 constexpr int kRest = 10;
+constexpr auto kLongestLook = std::chrono::seconds(10);
 
-// What tells one content of a file from the next.
-struct Stamp {
-  int64_t seconds = -1;  // -1: there is no such file
-  int64_t ns = 0;
-  int64_t bytes = 0;
-  uint64_t file = 0;
-  friend bool operator==(const Stamp&, const Stamp&) = default;
-};
-using Stamps = std::map<std::string, Stamp>;
-
-Stamp stamp_of(const std::string& path) {
-  struct stat found = {};
-  if (::stat(path.c_str(), &found) != 0) return {};
-  return {found.st_mtim.tv_sec, found.st_mtim.tv_nsec, found.st_size, found.st_ino};
-}
+using Stamps = std::map<std::string, FileStamp>;
+using Next = WatchTarget::Next;
 
 class Watch {
  public:
-  Watch(const tools::Options& options, Project project, const BuildOptions& build_options,
-        base::DiagnosticFormat format)
+  Watch(const tools::Options& options, Project project, bool move_all,
+        base::DiagnosticFormat format, WatchTarget& target)
       : options_(options),
         project_(std::move(project)),
-        build_options_(build_options),
-        format_(format) {}
+        move_all_(move_all),
+        format_(format),
+        target_(target) {}
 
   int run() {
     stamps_ = look();
     begin_anew();
     for (;;) {
-      build();
-      wait();
+      const Next next = build();
+      if (next == Next::kEnd) return tools::kOk;
+      if (next == Next::kBase) build_->continue_from(target_.base());
+      if (next == Next::kOtherBase) begin_anew();
+      if (next == Next::kAgain || next == Next::kOtherBase) {
+        saved_files_.clear();
+        look_again();
+      } else if (!wait()) {
+        return tools::kOk;
+      }
     }
   }
 
  private:
-  bool with_line() const {
-    return format_ == base::DiagnosticFormat::kText && !options_.has("--quiet");
-  }
-
   // Every file that a build may read: those of the project, and what has come into its folders.
   Stamps look() const {
     Stamps found;
@@ -88,20 +77,40 @@ class Watch {
     return found;
   }
 
-  // Until something has changed, and the project is what the files say now.
-  void wait() {
+  // Until something has changed, and the project is what the files say now. False: nobody waits
+  // for it any more.
+  bool wait() {
     for (;;) {
       const auto begin = Clock::now();
-      Stamps now = look();
-      if (now != stamps_) {
-        saved_ = begin;
-        const Stamps before = std::exchange(stamps_, std::move(now));
-        if (!take_texts(before)) reload();
-        return;
-      }
+      if (look_again()) return true;
       const auto rest = std::max<Clock::duration>(kLookEvery, kRest * (Clock::now() - begin));
-      std::this_thread::sleep_for(rest);
+      if (!target_.rest(rest)) return false;
     }
+  }
+
+  bool look_again() {
+    const auto begin = Clock::now();
+    Stamps now = look();
+    if (now == stamps_) return false;
+    seen_ = begin;
+    const Stamps before = std::exchange(stamps_, std::move(now));
+    saved_ = save_of(before);
+    if (!take_texts(before)) reload();
+    return true;
+  }
+
+  // When the last of the files that differ was saved, as far as that can be known.
+  Clock::time_point save_of(const Stamps& before) const {
+    int64_t last = 0;
+    for (const auto& [path, stamp] : stamps_) {
+      const auto old = before.find(path);
+      if (old == before.end() || old->second != stamp) last = std::max(last, changed_ns(path));
+    }
+    const int64_t now =
+        std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+    const std::chrono::nanoseconds ago(now - last);
+    const bool likely = ago >= Clock::duration::zero() && ago < kLongestLook;
+    return likely ? Clock::now() - ago : seen_;
   }
 
   // The new texts of source files that are known; false: something else has changed.
@@ -145,8 +154,9 @@ class Watch {
     settings.passes = project_.passes;
     settings.jobs = project_.jobs;
     settings.link.slack = project_.slack;
-    settings.link.base = build_options_.base;
-    settings.link.move_all = build_options_.move_all;
+    base_ = target_.base();
+    settings.link.base = base_.get();
+    settings.link.move_all = move_all_;
     settings.link.safe = project_.safe.rows;
     settings.link.jobs = project_.jobs;
     auto devices = devices_of(project_.devices, {}, {});
@@ -160,73 +170,70 @@ class Watch {
     build_ = std::make_unique<workspace::IncrementalBuild>(std::move(settings));
   }
 
-  void build() {
-    if (broken_) return;
-    const workspace::Counts before = build_->counts();
+  Next build() {
+    if (broken_) return Next::kWait;
     base::Diagnostics diagnostics;
-    const base::Status done = build_into(diagnostics);
-    report(project_, diagnostics, format_);
-    if (!done.ok()) {
-      tools::refuse("stc", done.error());
-      return;
-    }
-    if (!with_line()) return;
-    const workspace::Counts& now = build_->counts();
-    const double ms = std::chrono::duration<double, std::milli>(Clock::now() - saved_).count();
-    const uint64_t bodies = now.lowered - before.lowered;
-    const std::string what = now.edits == before.edits ? "everything"
-                             : bodies == 1             ? "1 POU"
-                                                       : std::to_string(bodies) + " POUs";
-    std::fprintf(stderr, "built %s in %.0f ms\n", what.c_str(), ms);
+    base::Result<Next> next = build_into(diagnostics);
+    if (next.ok()) return *next;
+    tools::refuse("stc", next.error());
+    return Next::kWait;
   }
 
-  base::Status build_into(base::Diagnostics& diagnostics) {
+  // Everything that there is to say of the sources is said before the target has the image.
+  base::Result<Next> build_into(base::Diagnostics& diagnostics) {
     add_findings(diagnostics, project_.imported, false);
     if (!diagnostics.has_errors() && !several_) {
+      const workspace::Counts before = build_->counts();
       auto image = build_->build(project_.sources, saved_files_, diagnostics);
-      if (image.ok()) return write(**image);
-      several_ = image.error().refusal == base::Refusal::kUsage;
-      if (!several_) return with_place(image.error(), project_.devices);
+      several_ = !image.ok() && image.error().refusal == base::Refusal::kUsage;
+      if (!several_) {
+        report(project_, diagnostics, format_);
+        if (!image.ok()) return with_place(image.error(), project_.devices);
+        base::Status safe = check_safe_settings(project_.safe, (*image)->output_bytes);
+        if (!safe.ok()) return safe.error();
+        return target_.take(**image, project_, {built_since(before), saved_, seen_, Clock::now()});
+      }
     }
     base::Diagnostics anew;  // the findings are among them
-    auto versions = build_resources(project_, build_options_, anew);
-    diagnostics = std::move(anew);
+    const std::shared_ptr<const ir::Image> base = target_.base();
+    auto versions = build_resources(project_, {base.get(), move_all_}, anew);
+    report(project_, anew, format_);
     if (!versions.ok()) return versions.error();
-    return write_images(*versions, output(), project_.name, with_line());
+    return target_.take(*versions, project_, {"everything", saved_, seen_, Clock::now()});
   }
 
-  std::string output() const { return options_.text("--output", project_.name + ".img"); }
-
-  base::Status write(const ir::Image& image) {
-    base::Status safe = check_safe_settings(project_.safe, image.output_bytes);
-    if (!safe.ok()) return safe;
-    base::Bytes bytes = ir::encode(image);
-    if (bytes == written_) return base::Ok{};
-    base::Result<std::string> path = image_path(output(), {}, project_.name);
-    if (!path.ok()) return path.error();
-    base::Status written = write_image(*path, image, bytes, with_line());
-    if (written.ok()) written_ = std::move(bytes);
-    return written;
+  std::string built_since(const workspace::Counts& before) const {
+    const workspace::Counts& now = build_->counts();
+    const uint64_t bodies = now.lowered - before.lowered;
+    if (now.edits == before.edits) return "everything";
+    return bodies == 1 ? "1 POU" : std::to_string(bodies) + " POUs";
   }
 
   const tools::Options& options_;
   Project project_;
-  BuildOptions build_options_;
+  bool move_all_;
   base::DiagnosticFormat format_;
+  WatchTarget& target_;
+  std::shared_ptr<const ir::Image> base_;  // of build_
   std::unique_ptr<workspace::IncrementalBuild> build_;
   Stamps stamps_;
   std::vector<uint32_t> saved_files_;  // since the last build, when it was not begun anew
-  base::Bytes written_;
   Clock::time_point saved_ = Clock::now();
+  Clock::time_point seen_ = saved_;
   bool several_ = false;  // RESOURCEs
   bool broken_ = false;   // the files cannot be read as a project; what is wrong was said
 };
 
 }  // namespace
 
-int watch(const tools::Options& options, Project project, const BuildOptions& build_options,
-          base::DiagnosticFormat format) {
-  return Watch(options, std::move(project), build_options, format).run();
+void Built::print() const {
+  const double ms = std::chrono::duration<double, std::milli>(Clock::now() - seen).count();
+  std::fprintf(stderr, "built %s in %.0f ms\n", what.c_str(), ms);
+}
+
+int watch(const tools::Options& options, Project project, bool move_all,
+          base::DiagnosticFormat format, WatchTarget& target) {
+  return Watch(options, std::move(project), move_all, format, target).run();
 }
 
 }  // namespace stc

@@ -1,5 +1,11 @@
-// stc build --watch: stays, and builds again whenever a source is saved (workspace/).
+// stc build --watch, stc package --watch: stays, and builds again whenever a source is saved
+// (workspace/).
 #pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "tools/common/options.h"
@@ -7,10 +13,47 @@
 
 namespace stc {
 
-// Until it is ended by a signal; an exit code only when the first build cannot even begin. Mistakes
-// in sources and files that cannot be read are reported, and it goes on; the image is written
-// when it is another than the last one.
-int watch(const tools::Options& options, Project project, const BuildOptions& build_options,
-          base::DiagnosticFormat format);
+// A build of what was saved.
+struct Built {
+  using Time = std::chrono::steady_clock::time_point;
+  std::string what;  // "1 POU", "everything"
+  Time saved;        // the last of the files
+  Time seen;
+  Time made;  // the image
+
+  // "built 1 POU in 9 ms" on stderr.
+  void print() const;
+};
+
+// Where images go.
+class WatchTarget {
+ public:
+  virtual ~WatchTarget() = default;
+
+  enum class Next : uint8_t {
+    kWait,       // for the next save
+    kBase,       // likewise; base() is this image now
+    kOtherBase,  // base() is another one: build against it
+    kAgain,      // look and build once more
+    kEnd,
+  };
+  // What images are linked against; null: nothing. It stays until a take() has ended, and behind
+  // kBase as long as edits are followed.
+  virtual std::shared_ptr<const ir::Image> base() const = 0;
+  // One resource that was built incrementally.
+  virtual base::Result<Next> take(const ir::Image& image, const Project& project,
+                                  const Built& built) = 0;
+  // Whatever was built from nothing.
+  virtual base::Result<Next> take(std::vector<ResourceVersion>& versions, const Project& project,
+                                  const Built& built) = 0;
+  // False: nobody wants images any more.
+  virtual bool rest(std::chrono::nanoseconds time) = 0;
+};
+
+// Until it is ended by a signal or by the target; an exit code only then, and when the first build
+// cannot even begin. Mistakes in sources and files that cannot be read are reported, and it goes
+// on.
+int watch(const tools::Options& options, Project project, bool move_all,
+          base::DiagnosticFormat format, WatchTarget& target);
 
 }  // namespace stc

@@ -1,0 +1,124 @@
+#!/bin/sh
+# stvm change --watch: every save reaches the running controller, under the rules of a single change.
+. "$(dirname "$0")/lib.sh"
+
+mkdir plant
+cat >plant/pump.st <<'ST'
+FUNCTION_BLOCK Pump
+VAR_INPUT Start : BOOL; END_VAR
+VAR_OUTPUT Hours : DINT; END_VAR
+VAR Step : INT := 1; END_VAR
+  IF Start THEN
+    Hours := Hours + Step;
+  END_IF;
+END_FUNCTION_BLOCK
+ST
+cat >plant/main.st <<'ST'
+PROGRAM Main
+VAR
+  P1 : Pump;
+  Cycles : DINT;
+  Last : DINT := 70000;
+END_VAR
+  P1(Start := TRUE);
+  Cycles := Cycles + 1;
+END_PROGRAM
+ST
+# save FILE: as editors do it, in one step.
+save() { cat >"$1.new" && mv "$1.new" "$1"; }
+# until COUNT REGEX: the watch has said it as often.
+until_said() {
+  for _ in $(seq 300); do
+    [ "$(cat watch.log watch.out | grep -cE -- "$2")" -ge "$1" ] && return 0
+    sleep 0.05
+  done
+  sed 's/^/  log: /' watch.log watch.out
+  fail "not said $1 times: $2"
+}
+running() { stvm image --dir plc -o "$1" 2>/dev/null || fail "no image"; }
+follow() {
+  "$bin/stvm" change --watch "$@" plant --dir plc >watch.out 2>watch.log </dev/null &
+  echo $! >watch.pid
+}
+end_follow() {
+  kill "$(cat watch.pid)"
+  wait "$(cat watch.pid)" || true
+  rm watch.pid
+}
+
+stc build plant -q -o first.img
+serve plc first.img
+# E8: nobody is there who could be asked.
+expect 2 stvm change --watch plant --dir plc
+said 'R0504.*--yes'
+
+follow --yes --permanent
+until_said 1 'what was saved is what runs'
+
+# Statements: one POU is compiled, values stay, and what runs is what a build against it gives.
+sed 's/+ Step/+ 2 * Step/' plant/pump.st | save plant/pump.st
+until_said 1 'accepted: it boots next'
+until_said 1 '^code +Pump'
+until_said 1 'running [0-9]+ ms after it was saved'
+running now.img
+expect 0 stc build plant -q --base first.img -o wanted.img
+cmp now.img wanted.img || fail "another program than that of a build"
+expect 0 stvm get --dir plc Main.Cycles
+said 'Main.Cycles *[:=].*[1-9]'
+
+# Mistakes: said, and nothing happens to what runs.
+sed 's/Cycles + 1/Missing + 1/' plant/main.st | save plant/main.st
+until_said 1 'main.st:8:.*error\[E2001\].*Missing'
+running still.img
+cmp now.img still.img || fail "changed in spite of errors"
+sed 's/Missing + 1/Cycles + 3/' plant/main.st | save plant/main.st
+until_said 2 'accepted: it boots next'
+
+# Declarations, and statements behind that: what runs is the base of the next one.
+sed 's/^VAR Step/VAR Runs : DINT := 7; END_VAR VAR Step/' plant/pump.st | save plant/pump.st
+until_said 3 'accepted: it boots next'
+until_said 1 'initialised +Main.P1.Runs'
+running before.img
+sed 's/Hours := Hours/Runs := Runs + 1; Hours := Hours/' plant/pump.st | save plant/pump.st
+until_said 4 'accepted: it boots next'
+running now.img
+expect 0 stc build plant -q --base before.img -o wanted.img
+cmp now.img wanted.img || fail "another program than that of a build against the running one"
+
+# A refusal leaves the program, says why, and the next save is another try.
+sed 's/Last : DINT := 70000/Last : INT/' plant/main.st | save plant/main.st
+until_said 1 'R0301.*would be lost|would be lost'
+running still.img
+cmp now.img still.img || fail "changed in spite of the refusal"
+sed 's/Last : INT/Last : LINT/' plant/main.st | save plant/main.st
+until_said 5 'accepted: it boots next'
+expect 0 stvm get --dir plc Main.Last
+said '70000'
+end_follow
+
+# On trial: the next save waits until it is accepted or undone; what was undone is no base.
+follow --yes
+until_said 1 'what was saved is what runs'
+sed 's/Cycles + 3/Cycles + 4/' plant/main.st | save plant/main.st
+until_said 1 'on trial'
+sed 's/Cycles + 4/Cycles + 5/' plant/main.st | save plant/main.st
+until_said 1 'waiting: the last change is still on trial'
+expect 0 stvm accept --dir plc
+until_said 2 'switched between'
+expect 0 stvm undo --dir plc
+sed 's/Cycles + 5/Cycles + 6/' plant/main.st | save plant/main.st
+until_said 3 'switched between'
+expect 0 stvm status --dir plc
+said 'trial'
+expect 0 stvm accept --dir plc
+expect 0 stvm journal --dir plc
+said 'undone'
+
+# The controller ends, and with it the watch.
+expect 0 stvm stop --dir plc
+sed 's/Cycles + 6/Cycles + 7/' plant/main.st | save plant/main.st
+code=0
+wait "$(cat watch.pid)" || code=$?
+rm watch.pid
+[ "$code" -eq 7 ] || fail "exit code $code of the watch"
+grep -q R0404 watch.log || fail "does not say that the controller is gone"

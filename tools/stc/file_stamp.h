@@ -1,0 +1,22 @@
+// What tells one content of a file from the next.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace stc {
+
+struct FileStamp {
+  int64_t seconds = -1;  // -1: there is no such file
+  int64_t ns = 0;
+  int64_t bytes = 0;
+  uint64_t file = 0;
+  friend bool operator==(const FileStamp&, const FileStamp&) = default;
+};
+
+// When the file became what it is, by the system's clock; 0: there is none.
+int64_t changed_ns(const std::string& path);
+
+FileStamp stamp_of(const std::string& path);
+
+}  // namespace stc

@@ -1,0 +1,48 @@
+#include "tools/stc/watch_image.h"
+
+#include <thread>
+
+#include "tools/stc/image_output.h"
+#include "tools/stc/safe_settings.h"
+
+namespace stc {
+
+base::Result<WatchTarget::Next> WatchedImage::take(const ir::Image& image, const Project& project,
+                                                   const Built& built) {
+  base::Status written = write(image, project);
+  if (!written.ok()) return written.error();
+  if (with_line_) built.print();
+  return Next::kWait;
+}
+
+base::Result<WatchTarget::Next> WatchedImage::take(std::vector<ResourceVersion>& versions,
+                                                   const Project& project, const Built& built) {
+  base::Status written = write_images(versions, output_of(project), project.name, with_line_);
+  if (!written.ok()) return written.error();
+  if (with_line_) built.print();
+  return Next::kWait;
+}
+
+bool WatchedImage::rest(std::chrono::nanoseconds time) {
+  std::this_thread::sleep_for(time);
+  return true;
+}
+
+base::Status WatchedImage::write(const ir::Image& image, const Project& project) {
+  base::Bytes bytes = ir::encode(image);
+  base::Result<std::string> path = image_path(output_of(project), {}, project.name);
+  if (!path.ok()) return path.error();
+  const bool stands = stamp_.seconds != -1 && stamp_of(*path) == stamp_;
+  if (stands && bytes == written_) return base::Ok{};
+  base::Status written = write_image(*path, image, bytes, with_line_);
+  if (!written.ok()) return written;
+  written_ = std::move(bytes);
+  stamp_ = stamp_of(*path);
+  return written;
+}
+
+std::string WatchedImage::output_of(const Project& project) const {
+  return output_.empty() ? project.name + ".img" : output_;
+}
+
+}  // namespace stc

@@ -1,0 +1,35 @@
+// stc package --watch: a change package at each save, for `stvm change --watch`, which brings it to
+// a controller and answers what became of it (tools/common/followed_change.h).
+#pragma once
+
+#include <memory>
+
+#include "tools/common/followed_change.h"
+#include "tools/stc/watch.h"
+
+namespace stc {
+
+class WatchedPackages : public WatchTarget {
+ public:
+  // Over `socket`. `restricted`: no edits of interfaces (D7).
+  WatchedPackages(int socket, bool restricted) : socket_(socket), restricted_(restricted) {}
+  // What runs; before anything else.
+  base::Status begin(base::Bytes running);
+
+  std::shared_ptr<const ir::Image> base() const override { return running_; }
+  base::Result<Next> take(const ir::Image& image, const Project& project,
+                          const Built& built) override;
+  base::Result<Next> take(std::vector<ResourceVersion>& versions, const Project& project,
+                          const Built& built) override;
+  bool rest(std::chrono::nanoseconds time) override;
+
+ private:
+  base::Result<Next> bring(const ir::Image& image, base::Bytes bytes, const Built& built);
+
+  int socket_;
+  bool restricted_;
+  base::Bytes bytes_;
+  std::shared_ptr<const ir::Image> running_;  // the same, decoded
+};
+
+}  // namespace stc

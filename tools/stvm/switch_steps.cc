@@ -1,0 +1,187 @@
+#include "tools/stvm/switch_steps.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+
+#include "tools/common/change_settings.h"
+#include "tools/common/json.h"
+#include "tools/common/table.h"
+#include "tools/stvm/commands.h"
+#include "tools/stvm/fate_view.h"
+#include "tools/stvm/switch_text.h"
+#include "vm/io/global_exchange.h"
+
+namespace stvm {
+namespace {
+
+std::string losses_text(const FatePage& page) {
+  if (page.loss_count == 0) return {};
+  std::string out = "\n" + std::to_string(page.loss_count) + " live value(s) would be lost:\n";
+  tools::Table table({"variable", "now", "after", "what"});
+  for (const LossLine& line : page.losses) {
+    table.row({line.loss.path, line.loss.old_value, line.loss.new_value, line.loss.what});
+  }
+  return out + table.text();
+}
+
+void losses_json(const FatePage& page, tools::JsonWriter& json) {
+  json.field("loss_count", page.loss_count).key("losses").begin_array();
+  for (const LossLine& line : page.losses) {
+    json.begin_object().field("variable", line.loss.path).field("live", line.loss.old_value);
+    json.field("after", line.loss.new_value).field("what", line.loss.what).end_object();
+  }
+  json.end_array();
+}
+
+base::Status ask() {
+  if (::isatty(STDIN_FILENO) == 0) {
+    return base::Error{base::Refusal::kUsage, "nobody to ask: not a terminal; give --yes"};
+  }
+  std::fputs("Switch now? [y/N] ", stderr);
+  std::string answer;
+  std::getline(std::cin, answer);
+  if (answer == "y" || answer == "Y" || answer == "yes") return base::Ok{};
+  return base::Error{base::Refusal::kBusy, "not switched; the old program runs on"};
+}
+
+// What stands between the report and the switch.
+base::Status may_switch(const SwitchOptions& options, const FatePage& page) {
+  if (page.loss_count != 0 && (options.switch_flags & vm::kAllowLoss) == 0) {
+    return base::Error{base::Refusal::kWouldLose,
+                       std::to_string(page.loss_count) + " live value(s) would be lost"};
+  }
+  return options.ask ? ask() : base::Status(base::Ok{});
+}
+
+// Variables that the staged version would no longer exchange with other resources.
+base::Result<std::vector<std::string>> exchange_notes(ControllerClient& client) {
+  base::Result<vm::StatusReport> status = client.status();
+  if (!status.ok()) return status.error();
+  std::vector<std::string> notes;
+  for (vm::DeviceStatus& row : status->devices) {
+    if (row.state == vm::kStagedState) notes.push_back(std::move(row.error));
+  }
+  return notes;
+}
+
+void print_text(const Outcome& outcome, bool permanent) {
+  if (!outcome.report) return;
+  std::fputs(switch_text("switched", *outcome.report).c_str(), stdout);
+  std::printf("%s\n", permanent
+                          ? "accepted: it boots next"
+                          : "on trial: `stvm accept` makes it final, `stvm undo` takes it back");
+}
+
+void print_json(const Outcome& outcome) {
+  tools::JsonWriter json;
+  json.begin_object();
+  fates_json(outcome.page, json);
+  losses_json(outcome.page, json);
+  json.key("exchange").begin_array();
+  for (const std::string& note : outcome.exchange) json.value(note);
+  json.end_array();
+  json.field("switched", outcome.report.has_value());
+  if (outcome.report) switch_json(*outcome.report, json);
+  if (outcome.refused) json.field("refused", base::refusal_code(outcome.refused->refusal));
+  json.end_object();
+  std::fputs(json.finish().c_str(), stdout);
+}
+
+// Of stc.toml, where the command line says nothing else.
+base::Result<tools::ChangeSettings> settings_of(const tools::Options& options) {
+  base::Result<tools::ChangeSettings> settings = tools::change_settings(options.arguments());
+  if (!settings.ok()) return settings;
+  if (options.has("--restricted") && options.has("--unrestricted")) {
+    return base::Error{base::Refusal::kUsage, "--restricted and --unrestricted: which?"};
+  }
+  settings->strategy = options.text("--strategy", settings->strategy);
+  if (options.has("--restricted")) settings->restricted = true;
+  if (options.has("--unrestricted")) settings->restricted = false;
+  return settings;
+}
+
+base::Result<uint32_t> stage_flags(const std::string& strategy) {
+  if (strategy.empty() || strategy == "in-place") return 0u;
+  if (strategy == "standby") return uint32_t{vm::kByStandby};
+  return base::Error{base::Refusal::kUsage,
+                     "--strategy is in-place or standby, not `" + strategy + "`"};
+}
+
+uint32_t switch_flags(const tools::Options& options) {
+  return (options.has("--allow-loss") ? vm::kAllowLoss : 0u) |
+         (options.has("--allow-overrun") ? vm::kAllowOverrun : 0u) |
+         (options.has("--permanent") ? vm::kPermanent : 0u);
+}
+
+}  // namespace
+
+base::Result<SwitchOptions> switch_options(const tools::Options& options) {
+  SwitchOptions out;
+  base::Result<bool> json = wants_json(options);
+  if (!json.ok()) return json.error();
+  base::Result<tools::ChangeSettings> settings = settings_of(options);
+  if (!settings.ok()) return settings.error();
+  base::Result<uint32_t> strategy = stage_flags(settings->strategy);
+  if (!strategy.ok()) return strategy.error();
+  out.stage_flags = *strategy;
+  out.switch_flags = switch_flags(options);
+  out.restricted = settings->restricted;
+  out.dry_run = options.has("--dry-run");
+  out.ask = !options.has("--yes");
+  out.json = *json;
+  return out;
+}
+
+base::Status check_no_trial(const vm::StatusReport& status) {
+  if (status.change != "trial") return base::Ok{};
+  return base::Error{base::Refusal::kChangePending,
+                     "the last change is still on trial; `stvm accept` or `stvm undo` ends that"};
+}
+
+base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& client,
+                            base::ByteSpan package) {
+  base::Status staged = client.stage(package, options.stage_flags);
+  if (!staged.ok()) return staged.error();
+  const Outcome::Time prepared = std::chrono::steady_clock::now();
+  base::Result<FatePage> page = client.fates();
+  if (!page.ok()) return page.error();
+  base::Result<std::vector<std::string>> notes = exchange_notes(client);
+  if (!notes.ok()) return notes.error();
+  Outcome outcome{std::move(*page), std::move(*notes), {}, {}, prepared, {}};
+  if (!options.json) {
+    std::string report = fates_text(outcome.page);
+    std::fputs((report + losses_text(outcome.page)).c_str(), stdout);
+    for (const std::string& note : outcome.exchange) std::printf("exchange: %s\n", note.c_str());
+    std::fflush(stdout);
+  }
+  outcome.shown = std::chrono::steady_clock::now();
+  base::Status go = base::Ok{};
+  if (!options.dry_run) go = may_switch(options, outcome.page);
+  if (options.dry_run || !go.ok()) {
+    base::Result<base::Bytes> cancelled = client.call({.command = vm::Command::kCancel});
+    if (!cancelled.ok()) return cancelled.error();
+    if (!go.ok()) outcome.refused = go.error();
+    return outcome;
+  }
+  base::Result<online_change::SwitchReport> report = client.make_switch(options.switch_flags);
+  if (report.ok()) {
+    outcome.report = *report;
+  } else {
+    outcome.refused = report.error();
+    (void)client.call({.command = vm::Command::kCancel}).ok();
+  }
+  return outcome;
+}
+
+void print(const SwitchOptions& options, const Outcome& outcome) {
+  if (options.json) {
+    print_json(outcome);
+  } else {
+    print_text(outcome, (options.switch_flags & vm::kPermanent) != 0);
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace stvm

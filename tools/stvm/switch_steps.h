@@ -1,0 +1,43 @@
+// From a change package to its switch: stage it, show every variable's fate, ask, switch.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/common/options.h"
+#include "tools/stvm/controller_client.h"
+
+namespace stvm {
+
+// What the command line and stc.toml say of it.
+struct SwitchOptions {
+  uint32_t stage_flags = 0;   // vm::StageFlags
+  uint32_t switch_flags = 0;  // vm::SwitchFlags
+  bool restricted = false;    // for who makes the package
+  bool dry_run = false;
+  bool ask = true;
+  bool json = false;
+};
+// Of the options of `stvm change`.
+base::Result<SwitchOptions> switch_options(const tools::Options& options);
+
+struct Outcome {
+  using Time = std::chrono::steady_clock::time_point;
+  FatePage page;
+  std::vector<std::string> exchange;
+  std::optional<online_change::SwitchReport> report;
+  std::optional<base::Error> refused;  // after the report was made
+  Time staged;                         // the controller has checked and prepared it
+  Time shown;                          // its fates
+};
+
+// kChangePending while a change is on trial.
+base::Status check_no_trial(const vm::StatusReport& status);
+// Prints the fates on the way, unless that is JSON's. What is not switched is cancelled.
+base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& client,
+                            base::ByteSpan package);
+void print(const SwitchOptions& options, const Outcome& outcome);
+
+}  // namespace stvm
