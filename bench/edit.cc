@@ -5,7 +5,6 @@
 //
 // Each edit changes the statements of one function block, there and back; its image is compared
 // with that of a build from nothing. Writes NAME.json and NAME.md. Times are processor time.
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "bench/edits.h"
 #include "bench/measure.h"
 #include "bench/project_sources.h"
 #include "tools/common/heap.h"
@@ -21,31 +21,6 @@
 namespace {
 
 using Options = std::map<std::string, std::string>;
-
-// Statements at the beginning of a function block, in the middle of a file in the middle of all.
-struct Edit {
-  const char* what;
-  const char* text;  // behind the END_VAR of the block
-};
-constexpr Edit kEdits[] = {
-    {"a statement is added", "  Stop := Stop OR Tripped;\n"},
-    {"a constant is changed", "  Stop := Stop OR Delay.ET > T#1234ms;\n"},
-    {"lines move", "\n\n  Stop := Stop OR Reset;\n\n"},
-};
-
-std::string edited(const std::string& text, const char* added) {
-  const size_t block = text.find("FUNCTION_BLOCK Drive", text.size() / 2);
-  base::check(block != std::string::npos, "bench_project wrote the project");
-  size_t at = text.find("END_VAR\n  IF", block);
-  base::check(at != std::string::npos, "a drive has statements");
-  at += 8;
-  return text.substr(0, at) + added + text.substr(at);
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 struct Row {
   std::string name;
@@ -92,19 +67,19 @@ int main(int argc, char** argv) {
   double whole_encode_ms = 0;
   built(whole_ms, whole_encode_ms);
   std::vector<Row> rows{{"from nothing", whole_ms, whole_encode_ms}};
-  for (const Edit& edit : kEdits) {
+  for (const bench::Edit& edit : bench::kEdits) {
     std::vector<double> build_ms;
     std::vector<double> encode_ms;
     base::Bytes last;
     for (int i = 0; i < repeats; ++i) {
       for (const bool there : {true, false}) {
-        sources.replace(file, there ? edited(original, edit.text) : original);
+        sources.replace(file, there ? bench::edited(original, edit.text) : original);
         base::Bytes bytes = built(build_ms.emplace_back(), encode_ms.emplace_back());
         if (there) last = std::move(bytes);
       }
     }
-    rows.push_back({edit.what, median(build_ms), median(encode_ms)});
-    sources.replace(file, edited(original, edit.text));
+    rows.push_back({edit.what, bench::median(build_ms), bench::median(encode_ms)});
+    sources.replace(file, bench::edited(original, edit.text));
     base::Diagnostics messages;
     workspace::IncrementalBuild anew({});
     const base::Bytes clean = ir::encode(*taken(anew.build(sources, messages)));
