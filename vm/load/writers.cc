@@ -39,7 +39,7 @@ class Search {
   };
   void look_at(uint32_t pou);
   void look_at_unit(const ir::Unit& unit, const ir::Unit& more, const OriginWalk& walk);
-  void store(ir::Base base, uint64_t begin, uint64_t end, How how);
+  void store(ir::Base base, uint64_t begin, ir::Class cls);
   void store_through(const Origins& origins, ir::Region region, uint64_t offset, uint64_t size,
                      How how);
   void pass(const Origins& origins, ir::Region region);
@@ -56,6 +56,10 @@ class Search {
   void find_escapes(Target& target) const;
   void find_by_address(uint32_t target);
   bool is_shared(ir::TypeId self);
+  bool is_bool(const Target& target) const {
+    const ir::TypeId type = target.type;
+    return image_.types.is_scalar(type) && image_.types.scalar(type) == ir::Scalar::kBool;
+  }
   bool is_of(const Target& target, ir::TypeId type) const {
     return !type.valid() || image_.types.is_a(image_.instances[target.owner].type, type);
   }
@@ -63,6 +67,7 @@ class Search {
   const ir::Image& image_;
   std::vector<Target> targets_;
   std::vector<uint32_t> by_place_;  // targets of globals
+  uint64_t longest_ = 0;            // of them, in bytes
   std::vector<uint32_t> inside_;    // targets of instances
   std::vector<uint32_t> of_self_;   // those of them that the POU may run for
   std::vector<uint32_t> counts_;    // instances by type, those that extend it too
@@ -77,6 +82,7 @@ Search::Search(const ir::Image& image, std::span<const Variable> variables)
     : image_(image), targets_(targets_of(image, variables)) {
   for (uint32_t i = 0; i < targets_.size(); ++i) {
     (targets_[i].owner == 0 ? by_place_ : inside_).push_back(i);
+    longest_ = std::max(longest_, targets_[i].end - targets_[i].begin);
   }
   std::sort(by_place_.begin(), by_place_.end(),
             [&](uint32_t a, uint32_t b) { return targets_[a].begin < targets_[b].begin; });
@@ -97,9 +103,11 @@ bool Search::is_shared(ir::TypeId self) {
 template <class Visit>
 void Search::for_each_in(ir::Base base, uint64_t begin, uint64_t end, const Visit& visit) {
   if (base == ir::Base::kGlobal) {
-    auto at = std::lower_bound(by_place_.begin(), by_place_.end(), begin,
-                               [&](uint32_t i, uint64_t b) { return targets_[i].end <= b; });
-    for (; at != by_place_.end() && targets_[*at].begin < end; ++at) visit(*at, begin, end, false);
+    const auto ends = [&](uint32_t i, uint64_t b) { return targets_[i].begin + longest_ <= b; };
+    auto at = std::lower_bound(by_place_.begin(), by_place_.end(), begin, ends);
+    for (; at != by_place_.end() && targets_[*at].begin < end; ++at) {
+      if (begin < targets_[*at].end) visit(*at, begin, end, false);
+    }
   } else if (base == ir::Base::kSelf) {
     for (const uint32_t i : of_self_) {
       const uint64_t area = image_.instances[targets_[i].owner].data;
@@ -144,9 +152,12 @@ void Search::hit(uint32_t target, uint64_t begin, uint64_t end, How how) {
   found_.push_back({target, at_.pou, at_.unit, how});
 }
 
-void Search::store(ir::Base base, uint64_t begin, uint64_t end, How how) {
+// A BOOL that is moved to itself becomes 0 or 1: not so what else lies there, in a union.
+void Search::store(ir::Base base, uint64_t begin, ir::Class cls) {
+  const uint64_t end = begin + ir::class_size(cls);
   for_each_in(base, begin, end, [&](uint32_t target, uint64_t from, uint64_t to, bool shared) {
-    hit(target, from, to, how == How::kOnly && shared ? How::kShared : how);
+    const bool only = cls != ir::Class::kB || is_bool(targets_[target]);
+    hit(target, from, to, !only ? How::kPart : shared ? How::kShared : How::kOnly);
   });
 }
 
@@ -213,11 +224,10 @@ void Search::look_at_unit(const ir::Unit& unit, const ir::Unit& more, const Orig
   const Opcode op = unit.opcode();
   const ir::OpcodeRow& row = ir::opcode_row(op);
   if (row.a.kind == ir::FieldKind::kDst && unit.base_a() != ir::Base::kFrame) {
-    return store(unit.base_a(), unit.a, unit.a + ir::class_size(row.a.cls), How::kOnly);
+    return store(unit.base_a(), unit.a, row.a.cls);
   }
   if (op >= Opcode::STFAR_B && op <= Opcode::STFAR_F64) {
-    return store(unit.base_b(), unit.bc(), uint64_t{unit.bc()} + ir::class_size(row.a.cls),
-                 How::kOnly);
+    return store(unit.base_b(), unit.bc(), row.a.cls);
   }
   if (op >= Opcode::ST_B && op <= Opcode::ST_F64) {
     return store_through(walk.of(unit.a), walk.region(unit.a), unit.c, ir::class_size(row.b.cls),

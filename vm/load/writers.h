@@ -15,7 +15,7 @@ struct Writer {
   enum class How : uint8_t {
     kOnly,     // what it writes lies inside of the variable, whoever executes it
     kShared,   // the same, when it is executed for one of several instances
-    kPart,     // it writes more than the variable
+    kPart,     // it writes more than the variable, or it cannot be left out
     kIndexed,  // where it writes is known at run time only
     kText,     // a native function writes its result there
     kAddress,  // through a VAR_IN_OUT or a reference that may lead there
