@@ -63,6 +63,11 @@ const char* Conversions::convert(const UpdateStep& step, uint32_t index, const u
   return value.loss;
 }
 
+bool Conversions::left_by_inverse(const UpdateStep& step) const {
+  const Conversion there = classify(to_.types, step.new_type, from_.types, step.old_type);
+  return there == Conversion::kSame;
+}
+
 std::string Conversions::old_text(const UpdateStep& step, const uint8_t* value) const {
   return value_text(from_, step.old_type, value);
 }

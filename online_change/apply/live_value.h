@@ -21,6 +21,8 @@ class Conversions {
     return fast_converter(from_.types, step.old_type, to_.types, step.new_type);
   }
   uint32_t source_size(const UpdateStep& step) const { return from_.layouts[step.old_type].size; }
+  // Did the other direction leave the bytes of such values as they were?
+  bool left_by_inverse(const UpdateStep& step) const;
   // Converts the value at `source` for value number `index` of `step`; fills `out`. Returns what
   // is lost, or null.
   const char* convert(const UpdateStep& step, uint32_t index, const uint8_t* source,

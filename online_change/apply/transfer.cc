@@ -252,12 +252,16 @@ bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
 void Transfer::read_back_converted(const Piece& piece, const uint8_t* memory,
                                    const Transfer& forward) {
   const UpdateStep& step = step_of(piece);
+  const uint32_t size = conversions_.source_size(step);
+  const bool was_left = conversions_.left_by_inverse(step);
   for (uint32_t i = 0; i < piece.count; ++i) {
     const size_t at = piece.at + size_t{i} * step.size;
     std::span<uint8_t> out(staged_.data() + at, step.size);
+    const uint8_t* const before = remembered_.data() + at;
     uint32_t from = piece.from + i * step.from_stride;
-    if (forward.still_as_converted(from, conversions_.source_size(step), memory)) {
-      std::memcpy(out.data(), remembered_.data() + at, step.size);
+    if (was_left ? std::memcmp(memory + from, before, size) == 0
+                 : forward.still_as_converted(from, size, memory)) {
+      std::memcpy(out.data(), before, step.size);
     } else {
       conversions_.convert(step, piece.first + i, memory + from, out);
     }
