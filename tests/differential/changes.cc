@@ -10,6 +10,7 @@
 #include "ir/program/evaluate.h"
 #include "ir/types/handle.h"
 #include "ir/types/value_text.h"
+#include "tests/differential/compiled.h"
 #include "tests/differential/random.h"
 #include "tests/differential/rig.h"
 #include "tests/golden/runner/evaluator_engine.h"
@@ -31,17 +32,6 @@ Finding skipped() {
   Finding out;
   out.key = "skipped";
   return out;
-}
-
-std::optional<golden::Program> compiled(const std::string& source, const std::string& passes) {
-  golden::TestFile test;
-  test.name = "random.st";
-  test.versions.push_back(source);
-  test.options = {"--passes", passes};
-  golden::Outcome outcome;
-  base::Result<golden::Program> program = golden::compile(test, 0, outcome);
-  if (!program.ok()) return std::nullopt;
-  return std::move(*program);
 }
 
 bool is_whole(const ir::TypeTable& types, ir::TypeId type) {
@@ -361,9 +351,9 @@ ChangeScript change_script(uint64_t seed) {
 Finding examine_change(const std::string& first, const std::string& second,
                        const ChangeScript& script, const std::string& passes) {
   if (first == second) return skipped();
-  std::optional<golden::Program> a = compiled(first, passes);
-  std::optional<golden::Program> b = compiled(second, passes);
-  if (!a || !b) return skipped();
+  const base::Result<golden::Program> a = compiled(first, passes);
+  const base::Result<golden::Program> b = compiled(second, passes);
+  if (!a.ok() || !b.ok()) return skipped();
   Finding found = Examination(*a, *b, online_change::Strategy::kInPlace).run(script);
   if (found.failed) return found;
   Finding other = Examination(*a, *b, online_change::Strategy::kStandby).run(script);

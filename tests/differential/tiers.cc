@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "ir/opt/optimise.h"
+#include "tests/differential/compiled.h"
 #include "tests/differential/random.h"
 #include "tests/golden/runner/engine.h"
 
@@ -81,13 +82,8 @@ std::string random_passes(uint64_t seed) {
 }
 
 Finding examine(const std::string& source, int scans, const std::string& passes) {
-  golden::TestFile test;
-  test.name = "random.st";
-  test.versions.push_back(source);
-  test.options = {"--passes", passes};
-  golden::Outcome outcome;
   Finding out;
-  base::Result<golden::Program> program = golden::compile(test, 0, outcome);
+  base::Result<golden::Program> program = compiled(source, passes);
   if (!program.ok()) {
     out.failed = true;
     out.text = base::to_string(program.error());

@@ -1,0 +1,14 @@
+#include "tests/differential/compiled.h"
+
+namespace differential {
+
+base::Result<golden::Program> compiled(const std::string& source, const std::string& passes) {
+  golden::TestFile test;
+  test.name = "random.st";
+  test.versions.push_back(source);
+  test.options = {"--passes", passes};
+  golden::Outcome outcome;
+  return golden::compile(test, 0, outcome);
+}
+
+}  // namespace differential
