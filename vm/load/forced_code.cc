@@ -98,15 +98,14 @@ ForcedCode::Versions ForcedCode::versions_of(const ir::Image& image,
 }
 
 // A version that does not pass takes its variables with it. True: there was one.
-bool ForcedCode::refuse_versions(const ir::VerifiedImage& image, const Versions& versions,
+bool ForcedCode::refuse_versions(const std::vector<ir::PouVersion>& versions,
+                                 const std::vector<base::Status>& answers,
                                  const std::vector<Writer>& writers) {
-  const std::vector<ir::PouVersion> rows = rows_of(versions);
-  const std::vector<base::Status> answers = ir::verify_versions(image, rows);
   bool any = false;
-  for (size_t i = 0; i < rows.size(); ++i) {
+  for (size_t i = 0; i < versions.size(); ++i) {
     if (answers[i].ok()) continue;
     for (const Writer& writer : writers) {
-      if (writer.pou != rows[i].pou || !reasons_[writer.variable].empty()) continue;
+      if (writer.pou != versions[i].pou || !reasons_[writer.variable].empty()) continue;
       reasons_[writer.variable] = base::to_string(answers[i].error());
       any = true;
     }
@@ -133,7 +132,8 @@ void ForcedCode::put_aside(const Version& version, std::vector<ir::Unit>& decode
 std::shared_ptr<const ForcedCode> ForcedCode::make(const ir::VerifiedImage& verified,
                                                    const CodeTable& own,
                                                    std::span<const ForcedVariable> variables,
-                                                   const TierOptions& tier) {
+                                                   const TierOptions& tier,
+                                                   const VerifyVersions& verify) {
   const ir::Image& image = verified.image();
   std::vector<Variable> places;
   for (const ForcedVariable& variable : variables) places.push_back(variable.place);
@@ -145,10 +145,12 @@ std::shared_ptr<const ForcedCode> ForcedCode::make(const ir::VerifiedImage& veri
   made->reasons_.resize(variables.size());
   made->remarks_.resize(variables.size());
   made->describe(image, writers);
-  Versions versions = made->versions_of(image, writers);
-  while (made->refuse_versions(verified, versions, writers)) {
+  Versions versions;
+  std::vector<ir::PouVersion> rows;
+  do {
     versions = made->versions_of(image, writers);
-  }
+    rows = rows_of(versions);
+  } while (made->refuse_versions(rows, verify(verified, rows), writers));
   made->table_ = {own.pous, nullptr, own.clean_bools};
   for (PouEntry& pou : made->table_.pous) {
     pou.entry = pou.code;
@@ -169,7 +171,7 @@ std::shared_ptr<const ForcedCode> ForcedCode::make(const ir::VerifiedImage& veri
   }
   if (own.native != nullptr) {
     made->table_.native = native::Program::make(image, own.clean_bools, made->table_.pous, tier,
-                                                own.native.get(), rows_of(versions));
+                                                own.native.get(), rows);
   }
   return made;
 }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -29,6 +30,10 @@ struct ForcedVariable {
   base::Bytes value;
 };
 
+// ir::verify_versions(), or what a test has instead.
+using VerifyVersions = std::function<std::vector<base::Status>(const ir::VerifiedImage&,
+                                                               std::span<const ir::PouVersion>)>;
+
 class ForcedCode {
   struct Key {};
 
@@ -39,7 +44,8 @@ class ForcedCode {
   static std::shared_ptr<const ForcedCode> make(const ir::VerifiedImage& image,
                                                 const CodeTable& own,
                                                 std::span<const ForcedVariable> variables,
-                                                const TierOptions& tier);
+                                                const TierOptions& tier,
+                                                const VerifyVersions& verify = ir::verify_versions);
 
   // What executions run.
   const CodeTable& table() const { return table_; }
@@ -62,7 +68,8 @@ class ForcedCode {
   static std::vector<ir::PouVersion> rows_of(const Versions& versions);
   void describe(const ir::Image& image, const std::vector<Writer>& writers);
   Versions versions_of(const ir::Image& image, const std::vector<Writer>& writers) const;
-  bool refuse_versions(const ir::VerifiedImage& image, const Versions& versions,
+  bool refuse_versions(const std::vector<ir::PouVersion>& versions,
+                       const std::vector<base::Status>& answers,
                        const std::vector<Writer>& writers);
   void put_aside(const Version& version, std::vector<ir::Unit>& decoded);
 

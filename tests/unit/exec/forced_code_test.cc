@@ -239,6 +239,44 @@ TEST(Forcing, TooManyPousAreNotInterpreted) {
   }
 }
 
+// The variables of a version that the verifier does not take are forced at the boundaries; the
+// others keep theirs.
+TEST(Forcing, WhatIsNotVerifiedDoesNotRun) {
+  Machine machine(build(R"(
+VAR_GLOBAL g, h : INT; END_VAR
+FUNCTION_BLOCK Bad VAR n : INT; END_VAR n := n + 1; g := n; END_FUNCTION_BLOCK
+PROGRAM Main VAR b : Bad; seen : INT; END_VAR b(); g := 3; h := 4; seen := g + h; END_PROGRAM)"));
+  ASSERT_TRUE(machine.good());
+  const ir::Image& image = machine.image();
+  const vm::Generation& generation = machine.generation();
+  size_t asked = 0;
+  const auto verify = [&](const ir::VerifiedImage& verified,
+                          std::span<const ir::PouVersion> versions) {
+    ++asked;
+    std::vector<base::Status> answers = ir::verify_versions(verified, versions);
+    for (size_t i = 0; i < versions.size(); ++i) {
+      EXPECT_TRUE(answers[i].ok());
+      if (image.pous[versions[i].pou].name == "Bad") {
+        answers[i] = base::Error{base::Refusal::kBadCall, "not like that"};
+      }
+    }
+    return answers;
+  };
+  const vm::ForcedVariable both[] = {{variable(image, "g"), {7, 0}},
+                                     {variable(image, "h"), {8, 0}}};
+  const auto forced =
+      vm::ForcedCode::make(generation.verified(), *generation.code(), both, {}, verify);
+  ASSERT_NE(forced, nullptr);
+  EXPECT_EQ(asked, 2u);
+  EXPECT_NE(forced->reason(0).find("not like that"), std::string::npos);
+  EXPECT_EQ(forced->reason(1), "");
+  EXPECT_EQ(forced->versions(), 1u) << "that of Main, where `h` is written";
+  for (uint32_t i = 0; i < image.pous.size(); ++i) {
+    const bool own = forced->table().pous[i].code == generation.pous()[i].code;
+    EXPECT_EQ(own, image.pous[i].name != "Main") << image.pous[i].name;
+  }
+}
+
 TEST(Forcing, WithoutWritersThereIsNothingToExchange) {
   Machine machine(build("PROGRAM Main VAR a, b : INT; END_VAR b := a; END_PROGRAM"));
   ASSERT_TRUE(machine.good());
