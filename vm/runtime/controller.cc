@@ -205,8 +205,9 @@ base::Result<std::unique_ptr<ForceChange>> Controller::prepare_force(
     base::Result<base::Bytes> bytes = ir::parse_value(image(), symbol->type, row.value);
     if (!bytes.ok()) return bytes.error();
     if (base::Status fits = fits_output(image(), *symbol, *bytes); !fits.ok()) return fits.error();
-    std::erase_if(next, [&](const Force& force) { return force.symbol.data == symbol->data; });
-    next.push_back({row.path, *symbol, std::move(*bytes)});
+    Force force{row.path, *symbol, std::move(*bytes)};
+    std::erase_if(next, [&](const Force& other) { return overlap(force, other); });
+    next.push_back(std::move(force));
   }
   return impl_->prepare_forces(std::move(next));
 }

@@ -1,5 +1,7 @@
 #include "vm/runtime/forces.h"
 
+#include <algorithm>
+
 #include "ir/bytecode/renames.h"
 
 namespace vm {
@@ -45,6 +47,11 @@ class RenamedPaths {
 
 }  // namespace
 
+bool overlap(const Force& a, const Force& b) {
+  return a.symbol.data < b.symbol.data + b.value.size() &&
+         b.symbol.data < a.symbol.data + a.value.size();
+}
+
 std::string hold_text(const std::string& reason, const std::string& remark) {
   if (!reason.empty()) return "at the boundaries of cycles: " + reason;
   return remark.empty() ? "everywhere" : "everywhere, but " + remark;
@@ -81,10 +88,12 @@ ForcedSet ForcedSet::adopt(const ir::VerifiedImage& image, const CodeTable& own,
     base::Result<ir::Symbol> symbol = ir::find_symbol(to, force.path);
     base::Bytes value;
     if (symbol.ok() && !symbol->constant) value = carry_over(from, force, to, *symbol);
-    if (value.empty()) {
+    force = {force.path, symbol.ok() ? *symbol : ir::Symbol(), std::move(value)};
+    const auto meets = [&](const Force& other) { return overlap(force, other); };
+    if (force.value.empty() || std::any_of(forces.begin(), forces.end(), meets)) {
       ended.push_back(row.path);
     } else {
-      forces.push_back({force.path, *symbol, std::move(value)});
+      forces.push_back(std::move(force));
     }
   }
   ForcedSet set = make(image, own, std::move(forces), tier);

@@ -20,6 +20,8 @@ struct Force {
   std::string reason = {};
   std::string remark = {};
 };
+// Have they bytes in common? Of members of a union only one can be held.
+bool overlap(const Force& a, const Force& b);
 // "everywhere", "everywhere, but " and the remark, "at the boundaries of cycles: " and the reason.
 std::string hold_text(const std::string& reason, const std::string& remark);
 struct NamedValue {
