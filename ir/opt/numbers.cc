@@ -163,9 +163,13 @@ class Numbers {
   }
 
   // What is stored there is not what is read behind it while the variable is forced: such stores
-  // are gone then, and everything else stays (docs/adr/0026-forced-versions.md).
-  static bool outlives_call(const Place& place) {
-    return place.base == PlaceBase::kSelf || place.base == PlaceBase::kGlobal;
+  // are gone then, and everything else stays (docs/adr/0026-forced-versions.md). Of places in the
+  // frame only what in-outs lead to can be forced.
+  static bool can_be_forced(const Place& place) {
+    return place.base != PlaceBase::kLocal ||
+           std::any_of(place.steps.begin(), place.steps.end(), [](const Step& step) {
+             return step.kind == StepKind::kDeref || step.kind == StepKind::kEnter;
+           });
   }
 
   bool may_meet(PlaceId a, PlaceId b) const {
@@ -321,7 +325,7 @@ class Numbers {
       if (pou_.values[known.value.index].scalar != inst.scalar) return;
       const bool here = known.block == block_;
       const bool fixed = is_static(place(inst.place), facts_);
-      if (known.stored && outlives_call(place(inst.place))) {
+      if (known.stored && can_be_forced(place(inst.place))) {
         known = {hash, inst.place, inst.result, false, block_};
         return;
       }

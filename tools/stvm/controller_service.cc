@@ -291,8 +291,7 @@ base::Bytes ControllerService::force_rows(const std::vector<std::string>& names)
     ir::Symbol alone = force.symbol;
     alone.data = 0;
     forces.rows.push_back({force.path, image.types.text(force.symbol.type),
-                           ir::format_value(image, alone, force.value), force.reason,
-                           force.remark});
+                           ir::format_value(image, alone, force.value), force.reason});
   }
   return vm::encode(forces);
 }

@@ -177,9 +177,9 @@ void print_json(const Running& running, const RunSettings& settings,
 
 // What a force cannot do.
 void note_hold(const vm::Force& force) {
-  if (force.reason.empty() && force.remark.empty()) return;
+  if (force.reason.empty()) return;
   std::fprintf(stderr, "%s is forced %s\n", force.path.c_str(),
-               vm::hold_text(force.reason, force.remark).c_str());
+               vm::hold_text(force.reason).c_str());
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ std::string values_json(const vm::Values& values) {
 std::string forces_text(const vm::ForceRows& forces) {
   std::string out;
   for (const vm::ForceRow& row : forces.rows) {
-    out += row.path + "=" + row.value + "  " + vm::hold_text(row.reason, row.remark) + "\n";
+    out += row.path + "=" + row.value + "  " + vm::hold_text(row.reason) + "\n";
   }
   return out;
 }
@@ -34,7 +34,6 @@ std::string forces_json(const vm::ForceRows& forces) {
     json.begin_object().field("path", row.path).field("type", row.type).field("value", row.value);
     json.field("everywhere", row.reason.empty());
     if (!row.reason.empty()) json.field("reason", row.reason);
-    if (row.reason.empty() && !row.remark.empty()) json.field("remark", row.remark);
     json.end_object();
   }
   json.end_array().end_object();

@@ -62,10 +62,6 @@ void ForcedCode::describe(const ir::Image& image, const std::vector<Writer>& wri
     if (first[v] == nullptr) first[v] = &writer;
     if (last[v] == nullptr || last[v]->pou != writer.pou) ++pous[v];
     last[v] = &writer;
-    const bool unsure = writer.how == How::kAddress || writer.how == How::kIndexed;
-    if (unsure && remarks_[v].empty()) {
-      remarks_[v] = place_of(image, writer) + " may go on with what it writes " + way_of(writer);
-    }
   }
   for (size_t v = 0; v < variables_.size(); ++v) {
     if (pous[v] <= kMostRestoringPous) continue;
@@ -143,7 +139,6 @@ std::shared_ptr<const ForcedCode> ForcedCode::make(const ir::VerifiedImage& veri
   const auto made = std::make_shared<ForcedCode>(Key());
   made->variables_.assign(variables.begin(), variables.end());
   made->reasons_.resize(variables.size());
-  made->remarks_.resize(variables.size());
   made->describe(image, writers);
   Versions versions;
   std::vector<ir::PouVersion> rows;

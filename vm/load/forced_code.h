@@ -52,9 +52,6 @@ class ForcedCode {
   // Why the stores to the variable of that index stay, so that its force holds at the boundaries of
   // cycles only; "": it holds everywhere.
   const std::string& reason(size_t variable) const { return reasons_[variable]; }
-  // Else who may go on with what it has just written itself, as it does so where only a scan can
-  // tell; "": nobody.
-  const std::string& remark(size_t variable) const { return remarks_[variable]; }
   // How many POUs have a version.
   size_t versions() const { return code_.size(); }
 
@@ -78,7 +75,6 @@ class ForcedCode {
   std::deque<StoreAside> asides_;
   std::vector<ForcedVariable> variables_;
   std::vector<std::string> reasons_;
-  std::vector<std::string> remarks_;
 };
 
 // What does nothing and passes wherever `store`, which is without a trap and writes no frame, does.

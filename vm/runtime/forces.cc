@@ -52,9 +52,8 @@ bool overlap(const Force& a, const Force& b) {
          b.symbol.data < a.symbol.data + a.value.size();
 }
 
-std::string hold_text(const std::string& reason, const std::string& remark) {
-  if (!reason.empty()) return "at the boundaries of cycles: " + reason;
-  return remark.empty() ? "everywhere" : "everywhere, but " + remark;
+std::string hold_text(const std::string& reason) {
+  return reason.empty() ? "everywhere" : "at the boundaries of cycles: " + reason;
 }
 
 ForcedSet ForcedSet::make(const ir::VerifiedImage& image, const CodeTable& own,
@@ -69,7 +68,6 @@ ForcedSet ForcedSet::make(const ir::VerifiedImage& image, const CodeTable& own,
   set.code = ForcedCode::make(image, own, variables, tier);
   for (size_t i = 0; i < set.forces.size(); ++i) {
     set.forces[i].reason = set.code == nullptr ? std::string() : set.code->reason(i);
-    set.forces[i].remark = set.code == nullptr ? std::string() : set.code->remark(i);
   }
   return set;
 }

@@ -15,15 +15,13 @@ struct Force {
   std::string path;
   ir::Symbol symbol;
   base::Bytes value;
-  // How it holds (ForcedCode): a reason why at the boundaries of cycles only, or "" and everywhere,
-  // perhaps with a remark.
+  // Why it holds at the boundaries of cycles only (ForcedCode); "": it holds everywhere.
   std::string reason = {};
-  std::string remark = {};
 };
 // Have they bytes in common? Of members of a union only one can be held.
 bool overlap(const Force& a, const Force& b);
-// "everywhere", "everywhere, but " and the remark, "at the boundaries of cycles: " and the reason.
-std::string hold_text(const std::string& reason, const std::string& remark);
+// "everywhere", or "at the boundaries of cycles: " and the reason.
+std::string hold_text(const std::string& reason);
 struct NamedValue {
   std::string path;
   std::string value;

@@ -180,12 +180,11 @@ void force_fields(A& a, T& row) {
   a(row.type);
   a(row.value);
   a(row.reason);
-  a(row.remark);
 }
 
 template <class A, class T>
 void forces_fields(A& a, T& forces) {
-  a.list(forces.rows, 5 * kTextBytes);
+  a.list(forces.rows, 4 * kTextBytes);
 }
 
 template <class A, class T>

@@ -110,8 +110,7 @@ struct ForceRow {
   std::string path;
   std::string type;
   std::string value;
-  std::string reason;  // as those of vm::Force
-  std::string remark;
+  std::string reason;  // as that of vm::Force
 };
 struct ForceRows {
   std::vector<ForceRow> rows;

@@ -133,7 +133,7 @@ class MachineEngine : public Engine {
   std::vector<std::string> forces() const override {
     std::vector<std::string> lines;
     for (const vm::Force& force : controller_->forces()) {
-      lines.push_back(force.path + " " + vm::hold_text(force.reason, force.remark));
+      lines.push_back(force.path + " " + vm::hold_text(force.reason));
     }
     return lines;
   }
