@@ -49,7 +49,8 @@ base::Bytes ControllerService::answer_within_memory(base::ByteSpan bytes, bool& 
   base::Result<vm::Request> request = vm::decode_request(bytes);
   if (!request.ok()) {
     keep_open = false;
-    return vm::encode_answer(request.error());
+    const uint8_t version = bytes.empty() ? vm::kProtocolVersion : bytes.front();
+    return vm::encode_answer(request.error(), version);
   }
   base::Status expected = check_expected(*request);
   if (!expected.ok()) return vm::encode_answer(expected.error());

@@ -22,6 +22,14 @@ const CommandRow& row(Command command) { return kCommands[static_cast<size_t>(co
 
 constexpr uint32_t kTextBytes = 4;  // of an empty one
 
+base::Error other_version(uint8_t controller, uint8_t client) {
+  return {base::Refusal::kProtocol,
+          "the controller speaks version " + std::to_string(controller) +
+              " of the protocol, the client version " + std::to_string(client) +
+              "; use the stvm that the controller was started with, or start the controller again "
+              "with this one"};
+}
+
 // `R` is a Request for reading, a const one for writing.
 template <class A, class R>
 void request_fields(A& a, R& request) {
@@ -232,8 +240,10 @@ base::Result<Request> decode_request(base::ByteSpan bytes) {
   uint8_t version = 0;
   uint8_t command = 0;
   reader(version);
+  if (!bytes.empty() && version != kProtocolVersion) {
+    return other_version(kProtocolVersion, version);
+  }
   reader(command);
-  if (version != kProtocolVersion) return not_understood("another version of the protocol");
   if (command >= std::size(kCommands)) return not_understood("unknown command");
   Request request;
   request.command = static_cast<Command>(command);
@@ -256,9 +266,9 @@ base::Bytes encode_answer(base::ByteSpan body) {
   return answer;
 }
 
-base::Bytes encode_answer(const base::Error& error) {
+base::Bytes encode_answer(const base::Error& error, uint8_t version) {
   FieldWriter writer;
-  writer(kProtocolVersion);
+  writer(version);
   writer(false);
   writer(std::string(base::refusal_code(error.refusal)));
   writer(error.text.substr(0, kMaxNameBytes));
@@ -266,9 +276,8 @@ base::Bytes encode_answer(const base::Error& error) {
 }
 
 base::Result<base::Bytes> decode_answer(base::ByteSpan bytes) {
-  if (bytes.size() < 2 || bytes[0] != kProtocolVersion || bytes[1] > 1) {
-    return not_understood("damaged answer");
-  }
+  if (bytes.size() < 2 || bytes[1] > 1) return not_understood("damaged answer");
+  if (bytes[0] != kProtocolVersion) return other_version(bytes[0], kProtocolVersion);
   base::ByteSpan rest = bytes.subspan(2);
   if (bytes[1] == 1) return base::Bytes(rest.begin(), rest.end());
   FieldReader reader(rest);

@@ -1,6 +1,8 @@
 // The control channel's messages (architecture.md section 12): binary, little endian, each of one
 // version byte, one command or result byte, and a body. Framing: frames.h. Both directions are
-// decoded by the bounded reader, and neither side believes the other.
+// decoded by the bounded reader, and neither side believes the other. Only sides of one version
+// understand each other; the layout of an error is the same in all of them, so that a client of
+// another version can say what is wrong.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +17,8 @@
 
 namespace vm {
 
-inline constexpr uint8_t kProtocolVersion = 3;
+// Another one with each other layout of a message (tests/unit/store/protocol_layout_test.cc).
+inline constexpr uint8_t kProtocolVersion = 4;
 inline constexpr uint32_t kMaxMessageBytes = 1u << 20;
 inline constexpr uint32_t kMaxNames = 4096;          // in one request
 inline constexpr uint32_t kMaxNameBytes = 65536;     // of a path or a value
@@ -57,7 +60,8 @@ base::Result<Request> decode_request(base::ByteSpan bytes);
 
 // An answer is a body or an Error.
 base::Bytes encode_answer(base::ByteSpan body);
-base::Bytes encode_answer(const base::Error& error);
+// For a client of that version.
+base::Bytes encode_answer(const base::Error& error, uint8_t version = kProtocolVersion);
 // The body; the other side's Error as it was; kProtocol for anything else.
 base::Result<base::Bytes> decode_answer(base::ByteSpan bytes);
 

@@ -11,7 +11,7 @@ namespace {
 
 std::vector<Request> samples() {
   std::vector<Request> out;
-  for (uint8_t i = 0; i <= static_cast<uint8_t>(Command::kStop); ++i) {
+  for (uint8_t i = 0; i <= static_cast<uint8_t>(Command::kJournal); ++i) {
     Request request{.command = static_cast<Command>(i)};
     request.expected[3] = 7;
     request.edition = 42;
@@ -104,6 +104,35 @@ TEST(Protocol, AnswersCarryBodiesAndErrors) {
   EXPECT_EQ(decode_answer(base::Bytes{}).error().refusal, base::Refusal::kProtocol);
   EXPECT_EQ(decode_answer(base::Bytes{kProtocolVersion, 0, 9}).error().refusal,
             base::Refusal::kProtocol);
+}
+
+std::string mismatch(uint8_t controller, uint8_t client) {
+  return "the controller speaks version " + std::to_string(controller) +
+         " of the protocol, the client version " + std::to_string(client) +
+         "; use the stvm that the controller was started with, or start the controller again with "
+         "this one";
+}
+
+// Whichever side is older: what the client shows names both versions and the way out.
+TEST(Protocol, OtherVersionsAreNamed) {
+  constexpr uint8_t kOlder = kProtocolVersion - 1;
+  base::Bytes request = encode(Request{.command = Command::kStatus});
+  request[0] = kOlder;
+  const base::Error refused = decode_request(request).error();
+  EXPECT_EQ(refused.refusal, base::Refusal::kProtocol);
+  EXPECT_EQ(refused.text, mismatch(kProtocolVersion, kOlder));
+
+  base::Bytes answer = encode_answer(base::Bytes{1, 2});
+  answer[0] = kOlder;
+  EXPECT_EQ(decode_answer(answer).error().text, mismatch(kOlder, kProtocolVersion));
+}
+
+// It reads errors as this version does.
+TEST(Protocol, ClientsOfOtherVersionsReadTheError) {
+  base::Bytes answer = encode_answer(base::Error{base::Refusal::kProtocol, "versions"}, 9);
+  EXPECT_EQ(answer[0], 9);
+  answer[0] = kProtocolVersion;
+  EXPECT_EQ(decode_answer(answer).error().text, "versions");
 }
 
 StatusReport sample_status() {
