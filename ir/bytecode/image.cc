@@ -11,7 +11,6 @@
 namespace ir {
 namespace {
 
-constexpr std::string_view kMagic = "STCIMAGE";
 constexpr uint32_t kVersion = 7;
 constexpr size_t kDigestAt = 16;
 constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
@@ -154,12 +153,13 @@ void section(Archive& a, I& image, uint32_t number) {
 
 base::Status check_header(base::ByteSpan bytes) {
   base::ByteReader in(bytes);
-  const base::ByteSpan magic = in.raw(kMagic.size());
+  const base::ByteSpan magic = in.raw(kImageMagic.size());
   const uint32_t version = in.u32();
   const uint32_t length = in.u32();
   const base::ByteSpan stored = in.raw(sizeof(base::Digest));
   if (in.failed()) return bad_format("only " + std::to_string(bytes.size()) + " bytes");
-  if (!std::equal(magic.begin(), magic.end(), kMagic.begin())) return bad_format("no magic number");
+  if (!std::equal(magic.begin(), magic.end(), kImageMagic.begin()))
+    return bad_format("no magic number");
   if (version != kVersion) {
     return bad_format("version " + std::to_string(version) + ", this program reads " +
                       std::to_string(kVersion));
@@ -186,7 +186,7 @@ base::Status check_header(base::ByteSpan bytes) {
 
 base::Bytes encode(const Image& image) {
   base::ByteWriter out;
-  out.raw(base::as_bytes(kMagic));
+  out.raw(base::as_bytes(kImageMagic));
   out.u32(kVersion);
   out.u32(0);
   out.raw(base::Digest{});
@@ -198,7 +198,7 @@ base::Bytes encode(const Image& image) {
     section(archive, image, number);
     out.patch_u32(length_at, static_cast<uint32_t>(out.size() - length_at - 4));
   }
-  out.patch_u32(kMagic.size() + 4, static_cast<uint32_t>(out.size()));
+  out.patch_u32(kImageMagic.size() + 4, static_cast<uint32_t>(out.size()));
   base::Bytes bytes = out.take();
   const base::Digest sum = base::sha256(base::ByteSpan(bytes).subspan(kHeaderBytes));
   std::copy(sum.begin(), sum.end(), bytes.begin() + kDigestAt);
@@ -236,7 +236,8 @@ size_t layout_end(base::ByteSpan encoded) {
 }
 
 bool has_image_magic(base::ByteSpan bytes) {
-  return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
+  return bytes.size() >= kImageMagic.size() &&
+         std::equal(kImageMagic.begin(), kImageMagic.end(), bytes.begin());
 }
 
 base::Digest digest(base::ByteSpan encoded) {

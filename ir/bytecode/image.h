@@ -193,6 +193,7 @@ base::Result<Image> decode(base::ByteSpan bytes);
 // Where the layout of an encoded image (program facts, types, initial values, offsets) ends and its
 // program (POUs, code, tables, data) begins; its size when it is cut off before.
 size_t layout_end(base::ByteSpan encoded);
+inline constexpr std::string_view kImageMagic = "STCIMAGE";
 // Does the file begin as an image does? For tools that take images and sources.
 bool has_image_magic(base::ByteSpan bytes);
 // The digest in the header: the name of this version everywhere.

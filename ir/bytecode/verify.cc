@@ -54,7 +54,7 @@ base::Result<std::vector<OutputWriter>> verify_image(const Image& image) {
 
 }  // namespace
 
-base::Result<VerifiedImage> verify(base::ByteSpan encoded) {
+base::Result<VerifiedImage> verify(base::Bytes encoded) {
   base::Result<Image> decoded = decode(encoded);
   if (!decoded) return decoded.error();
   auto image = std::make_shared<const Image>(std::move(decoded).value());
@@ -64,8 +64,8 @@ base::Result<VerifiedImage> verify(base::ByteSpan encoded) {
   verified.image_ = std::move(image);
   verified.output_writers_ =
       std::make_shared<const std::vector<OutputWriter>>(std::move(writers).value());
-  verified.encoded_ = std::make_shared<const base::Bytes>(encoded.begin(), encoded.end());
   verified.digest_ = digest(encoded);
+  verified.encoded_ = std::make_shared<const base::Bytes>(std::move(encoded));
   return verified;
 }
 

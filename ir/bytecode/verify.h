@@ -30,7 +30,7 @@ class VerifiedImage {
   const std::vector<OutputWriter>& output_writers() const { return *output_writers_; }
 
  private:
-  friend base::Result<VerifiedImage> verify(base::ByteSpan encoded);
+  friend base::Result<VerifiedImage> verify(base::Bytes encoded);
   VerifiedImage() = default;
   std::shared_ptr<const Image> image_;
   std::shared_ptr<const base::Bytes> encoded_;
@@ -38,7 +38,7 @@ class VerifiedImage {
   base::Digest digest_{};
 };
 
-// Copies `encoded`. Cost: linear in its size.
-base::Result<VerifiedImage> verify(base::ByteSpan encoded);
+// Keeps `encoded`. Cost: linear in its size.
+base::Result<VerifiedImage> verify(base::Bytes encoded);
 
 }  // namespace ir

@@ -218,9 +218,10 @@ base::Result<Package> decode(base::ByteSpan bytes) {
 }
 
 base::Result<Package> make_package(base::ByteSpan old_image, base::ByteSpan new_image) {
-  base::Result<ir::VerifiedImage> from = ir::verify(old_image);
+  base::Result<ir::VerifiedImage> from =
+      ir::verify(base::Bytes(old_image.begin(), old_image.end()));
   if (!from) return from.error();
-  base::Result<ir::VerifiedImage> to = ir::verify(new_image);
+  base::Result<ir::VerifiedImage> to = ir::verify(base::Bytes(new_image.begin(), new_image.end()));
   if (!to) return to.error();
   base::Result<Plan> forward = plan(from->image(), to->image());
   if (!forward) return forward.error();

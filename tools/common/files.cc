@@ -4,9 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 namespace tools {
 namespace {
@@ -15,13 +17,24 @@ base::Error file_error(base::Refusal refusal, const std::string& path, int code)
   return {refusal, path + ": " + std::strerror(code)};
 }
 
+constexpr size_t kReadStep = 64 << 10;
+
 // Closes a descriptor on every way out.
 struct Descriptor {
-  int fd;
+  explicit Descriptor(int opened) : fd(opened) {}
+  Descriptor(Descriptor&& other) noexcept : fd(std::exchange(other.fd, -1)) {}
   ~Descriptor() {
     if (fd >= 0) ::close(fd);
   }
+  int fd;
 };
+
+base::Result<Descriptor> open_to_read(const std::string& path) {
+  Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (file.fd >= 0) return file;
+  auto refusal = errno == ENOENT ? base::Refusal::kFileNotFound : base::Refusal::kFileUnreadable;
+  return file_error(refusal, path, errno);
+}
 
 base::Status write_all(int fd, const std::string& path, base::ByteSpan bytes) {
   size_t done = 0;
@@ -48,24 +61,40 @@ base::Status write_through(const std::string& path, base::ByteSpan bytes) {
 }  // namespace
 
 base::Result<base::Bytes> read_bytes(const std::string& path, uint64_t limit) {
-  Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-  if (file.fd < 0) {
-    auto refusal = errno == ENOENT ? base::Refusal::kFileNotFound : base::Refusal::kFileUnreadable;
-    return file_error(refusal, path, errno);
-  }
+  base::Result<Descriptor> file = open_to_read(path);
+  if (!file.ok()) return file.error();
+  struct stat info;
+  const bool sized = ::fstat(file->fd, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0;
+  // One more, so that the end of a file is found without more room.
+  const size_t step = sized ? std::min(static_cast<uint64_t>(info.st_size), limit) + 1 : kReadStep;
   base::Bytes bytes;
-  uint8_t buffer[65536];
-  for (;;) {
-    ssize_t n = ::read(file.fd, buffer, sizeof buffer);
+  for (size_t used = 0;;) {
+    if (used == bytes.size()) bytes.resize(used + (used == 0 ? step : kReadStep));
+    const ssize_t n = ::read(file->fd, bytes.data() + used, bytes.size() - used);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return file_error(base::Refusal::kFileUnreadable, path, errno);
-    if (n == 0) return bytes;
-    bytes.insert(bytes.end(), buffer, buffer + n);
-    if (bytes.size() > limit) {
+    used += static_cast<size_t>(n);
+    if (used > limit) {
       return base::Error{base::Refusal::kFileUnreadable,
                          path + ": larger than " + std::to_string(limit) + " bytes"};
     }
+    if (n != 0) continue;
+    bytes.resize(used);
+    return bytes;
   }
+}
+
+base::Result<base::Bytes> read_first(const std::string& path, size_t count) {
+  base::Result<Descriptor> file = open_to_read(path);
+  if (!file.ok()) return file.error();
+  base::Bytes bytes(count);
+  ssize_t n = 0;
+  do {
+    n = ::read(file->fd, bytes.data(), count);
+  } while (n < 0 && errno == EINTR);
+  if (n < 0) return file_error(base::Refusal::kFileUnreadable, path, errno);
+  bytes.resize(static_cast<size_t>(n));
+  return bytes;
 }
 
 base::Result<std::string> read_text(const std::string& path, uint64_t limit) {

@@ -11,6 +11,8 @@ namespace tools {
 
 // Errors: kFileNotFound, kFileUnreadable (also for folders, devices and files over `limit`).
 base::Result<base::Bytes> read_bytes(const std::string& path, uint64_t limit = 1u << 30);
+// At most so many bytes of its beginning; errors as those of read_bytes().
+base::Result<base::Bytes> read_first(const std::string& path, size_t count);
 base::Result<std::string> read_text(const std::string& path, uint64_t limit = 1u << 30);
 // Errors: kFileUnwritable. Symbolic links and devices such as /dev/stdout are written through.
 base::Status write_file(const std::string& path, base::ByteSpan bytes);

@@ -162,8 +162,8 @@ base::Result<Version> read_image(const std::string& path) {
 }
 
 bool is_image(const std::string& path) {
-  base::Result<base::Bytes> bytes = tools::read_bytes(path);
-  return bytes.ok() && ir::has_image_magic(*bytes);
+  base::Result<base::Bytes> first = tools::read_first(path, ir::kImageMagic.size());
+  return first.ok() && ir::has_image_magic(*first);
 }
 
 }  // namespace stc

@@ -25,13 +25,8 @@ std::vector<std::string> stc_arguments(std::vector<std::string> command, const S
 bool is_image(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;
-  base::Result<base::Bytes> bytes = tools::read_bytes(path);
-  static const base::Bytes kMagic = [] {
-    base::Bytes empty = ir::encode(ir::Image{});
-    return base::Bytes(empty.begin(), empty.begin() + 8);
-  }();
-  return bytes.ok() && bytes->size() >= kMagic.size() &&
-         std::equal(kMagic.begin(), kMagic.end(), bytes->begin());
+  base::Result<base::Bytes> first = tools::read_first(path, ir::kImageMagic.size());
+  return first.ok() && ir::has_image_magic(*first);
 }
 
 base::Result<ir::VerifiedImage> load_program(const Sources& sources) {
@@ -62,7 +57,7 @@ base::Result<std::vector<ir::VerifiedImage>> load_programs(const Sources& source
   for (const std::string& path : paths) {
     base::Result<base::Bytes> bytes = tools::read_bytes(path);
     if (!bytes.ok()) return bytes.error();
-    base::Result<ir::VerifiedImage> image = ir::verify(*bytes);
+    base::Result<ir::VerifiedImage> image = ir::verify(std::move(*bytes));
     if (!image.ok()) return image.error();
     images.push_back(std::move(*image));
   }
