@@ -1,7 +1,7 @@
 #include "ir/bytecode/call_needs.h"
 
 #include <algorithm>
-#include <unordered_map>
+#include <span>
 
 namespace ir {
 namespace {
@@ -18,8 +18,8 @@ struct Visit {
 std::vector<uint32_t> undeclared_circle(const std::vector<CallNode>& nodes) {
   enum class State : uint8_t { kNew, kOpen, kDone };
   std::vector<State> states(nodes.size(), State::kNew);
+  std::vector<Visit> path;
   for (uint32_t start = 0; start < nodes.size(); ++start) {
-    std::vector<Visit> path;
     if (states[start] == State::kNew && nodes[start].recursion_depth == 0) path.push_back({start});
     while (!path.empty()) {
       Visit& top = path.back();
@@ -52,7 +52,9 @@ class Measurer {
         needs_(nodes.size()),
         group_(nodes.size(), kNone),
         number_(nodes.size(), kNone),
-        low_(nodes.size()) {}
+        low_(nodes.size()),
+        chains_(nodes.size()),
+        has_chain_(nodes.size(), false) {}
 
   std::vector<CallNeeds> run() {
     for (uint32_t node = 0; node < nodes_.size(); ++node) {
@@ -64,44 +66,43 @@ class Measurer {
  private:
   // Tarjan: groups are complete callees first.
   void visit(uint32_t start) {
-    std::vector<Visit> path;
-    open(start, path);
-    while (!path.empty()) {
-      Visit& top = path.back();
+    open(start);
+    while (!path_.empty()) {
+      Visit& top = path_.back();
       const uint32_t node = top.node;
       if (top.next < nodes_[node].callees.size()) {
         const uint32_t callee = nodes_[node].callees[top.next++];
         if (number_[callee] == kNone) {
-          open(callee, path);
+          open(callee);
         } else if (group_[callee] == kNone) {
           low_[node] = std::min(low_[node], number_[callee]);
         }
         continue;
       }
-      path.pop_back();
-      if (!path.empty()) low_[path.back().node] = std::min(low_[path.back().node], low_[node]);
+      path_.pop_back();
+      if (!path_.empty()) low_[path_.back().node] = std::min(low_[path_.back().node], low_[node]);
       if (low_[node] == number_[node]) close(node);
     }
   }
 
-  void open(uint32_t node, std::vector<Visit>& path) {
+  void open(uint32_t node) {
     number_[node] = low_[node] = count_++;
     stack_.push_back(node);
-    path.push_back({node});
+    path_.push_back({node});
   }
 
+  // The group is what lies on the stack from its root on.
   void close(uint32_t root) {
-    std::vector<uint32_t> members;
+    size_t first = stack_.size();
     do {
-      members.push_back(stack_.back());
-      group_[stack_.back()] = root;
-      stack_.pop_back();
-    } while (members.back() != root);
-    measure(members);
+      group_[stack_[--first]] = root;
+    } while (stack_[first] != root);
+    measure(std::span(stack_).subspan(first));
+    stack_.resize(first);
   }
 
   // A group of one that does not call itself needs its own frame once.
-  void measure(const std::vector<uint32_t>& members) {
+  void measure(std::span<const uint32_t> members) {
     CallNeeds outside;
     uint64_t activations = 0;
     uint64_t declared_bytes = 0;
@@ -132,30 +133,31 @@ class Measurer {
   // Through nodes of the same group without a recursion depth; these have no circle.
   CallNeeds longest_chain(uint32_t start) {
     if (nodes_[start].recursion_depth != 0) return {};
-    std::vector<Visit> path{{start}};
-    while (!path.empty()) {
-      Visit& top = path.back();
+    chain_path_.assign(1, {start});
+    while (!chain_path_.empty()) {
+      Visit& top = chain_path_.back();
       const uint32_t node = top.node;
-      if (chains_.contains(node)) {
-        path.pop_back();
+      if (has_chain_[node]) {
+        chain_path_.pop_back();
         continue;
       }
       if (top.next < nodes_[node].callees.size()) {
         const uint32_t callee = nodes_[node].callees[top.next++];
-        if (in_chain(node, callee) && !chains_.contains(callee)) path.push_back({callee});
+        if (in_chain(node, callee) && !has_chain_[callee]) chain_path_.push_back({callee});
         continue;
       }
       CallNeeds longest;
       for (uint32_t callee : nodes_[node].callees) {
         if (!in_chain(node, callee)) continue;
-        longest.bytes = std::max(longest.bytes, chains_.at(callee).bytes);
-        longest.depth = std::max(longest.depth, chains_.at(callee).depth);
+        longest.bytes = std::max(longest.bytes, chains_[callee].bytes);
+        longest.depth = std::max(longest.depth, chains_[callee].depth);
       }
       const uint32_t own = nodes_[node].is_pou ? 1 : 0;
       chains_[node] = {longest.bytes + nodes_[node].frame_bytes, longest.depth + own};
-      path.pop_back();
+      has_chain_[node] = true;
+      chain_path_.pop_back();
     }
-    return chains_.at(start);
+    return chains_[start];
   }
 
   bool in_chain(uint32_t node, uint32_t callee) const {
@@ -168,7 +170,10 @@ class Measurer {
   std::vector<uint32_t> number_;  // in order of the first visit
   std::vector<uint32_t> low_;
   std::vector<uint32_t> stack_;
-  std::unordered_map<uint32_t, CallNeeds> chains_;
+  std::vector<Visit> path_;
+  std::vector<CallNeeds> chains_;  // where has_chain_ says so
+  std::vector<bool> has_chain_;
+  std::vector<Visit> chain_path_;
   uint32_t count_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 
 namespace ir {
 namespace {
@@ -57,9 +58,11 @@ struct LinearSearch {
 struct IndexedSearch {
   const TypeTable& types;
   const Layouts& layouts;
-  const std::vector<std::vector<uint32_t>>& order;
+  const std::vector<uint32_t>& first_member;
+  const std::vector<uint32_t>& order;
   int64_t operator()(TypeId id, uint32_t offset) const {
-    const std::vector<uint32_t>& sorted = order[id.index];
+    const std::span sorted(order.begin() + first_member[id.index],
+                           order.begin() + first_member[id.index + 1]);
     const std::vector<uint32_t>& offsets = layouts[id].member_offsets;
     const auto behind =
         std::upper_bound(sorted.begin(), sorted.end(), offset,
@@ -225,29 +228,64 @@ bool has_region_at(const TypeTable& types, const Layouts& layouts, Region region
 }
 
 RegionMap::RegionMap(const TypeTable& types, const Layouts& layouts)
-    : types_(types), layouts_(layouts), order_(types.size()) {
+    : types_(types), layouts_(layouts) {
+  first_member_.reserve(types.size() + 1);
+  first_scalar_.reserve(types.size() + 1);
   for (uint32_t i = 0; i < types.size(); ++i) {
-    const std::vector<uint32_t>& offsets = layouts.of[i].member_offsets;
-    std::vector<uint32_t>& order = order_[i];
-    order.resize(std::min(types[TypeId(i)].members.size(), offsets.size()));
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-      if (offsets[a] != offsets[b]) return offsets[a] < offsets[b];
-      const auto& members = types[TypeId(i)].members;  // empty ones first: they cover nothing
-      return embedded_size(layouts, members[a]) < embedded_size(layouts, members[b]);
-    });
+    first_member_.push_back(static_cast<uint32_t>(order_.size()));
+    first_scalar_.push_back(static_cast<uint32_t>(scalars_.size()));
+    add_members(TypeId(i));
   }
+  first_member_.push_back(static_cast<uint32_t>(order_.size()));
+  first_scalar_.push_back(static_cast<uint32_t>(scalars_.size()));
+}
+
+void RegionMap::add_members(TypeId type) {
+  if (types_.is_scalar(type)) {
+    scalars_.push_back({0, class_of(types_.scalar(type)), {}});
+    return;
+  }
+  const std::vector<Member>& members = types_[type].members;
+  const std::vector<uint32_t>& offsets = layouts_[type].member_offsets;
+  const auto first = static_cast<std::ptrdiff_t>(order_.size());
+  order_.resize(order_.size() + std::min(members.size(), offsets.size()));
+  std::iota(order_.begin() + first, order_.end(), 0u);
+  const auto before = [&](uint32_t a, uint32_t b) {
+    if (offsets[a] != offsets[b]) return offsets[a] < offsets[b];
+    // Empty ones first: they cover nothing.
+    return embedded_size(layouts_, members[a]) < embedded_size(layouts_, members[b]);
+  };
+  std::sort(order_.begin() + first, order_.end(), before);
+  if (types_.overlaps(type)) return;
+  for (auto number = order_.begin() + first; number != order_.end(); ++number) {
+    const Member& member = members[*number];
+    if (member.section == Section::kInOut || !types_.is_scalar(member.type)) continue;
+    const DirectArea area = member.address.area;
+    scalars_.push_back(
+        {offsets[*number],
+         class_of(types_.scalar(member.type)),
+         {member.constant, area == DirectArea::kInput, area == DirectArea::kOutput}});
+  }
+}
+
+const ScalarPlace* RegionMap::scalar_at(Region region, uint32_t offset) const {
+  if (region.dim != 0) return nullptr;
+  const auto begin = scalars_.begin() + first_scalar_[region.type.index];
+  const auto end = scalars_.begin() + first_scalar_[region.type.index + 1];
+  const auto found = std::lower_bound(
+      begin, end, offset, [](const ScalarPlace& p, uint32_t at) { return p.offset < at; });
+  return found == end || found->offset != offset ? nullptr : &*found;
 }
 
 std::optional<Leaf> RegionMap::leaf_at(Region region, uint32_t offset,
                                        const LeafTest& accept) const {
-  return find_leaf(types_, layouts_, IndexedSearch{types_, layouts_, order_}, region, offset,
-                   accept);
+  return find_leaf(types_, layouts_, IndexedSearch{types_, layouts_, first_member_, order_}, region,
+                   offset, accept);
 }
 
 std::optional<PlaceFlags> RegionMap::find(Region region, uint32_t offset, Region wanted) const {
-  return find_place(types_, layouts_, IndexedSearch{types_, layouts_, order_}, region, offset,
-                    wanted);
+  return find_place(types_, layouts_, IndexedSearch{types_, layouts_, first_member_, order_},
+                    region, offset, wanted);
 }
 
 bool RegionMap::same(Region have, Region wanted) const {

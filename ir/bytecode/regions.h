@@ -60,6 +60,13 @@ struct PlaceFlags {
   bool output = false;
 };
 
+// A scalar that alone has its bytes: a type by itself (at offset 0), or a member of its own.
+struct ScalarPlace {
+  uint32_t offset = 0;
+  Class cls = Class::kB;
+  PlaceFlags flags;
+};
+
 // The same lookups with an index over the members, for whoever does many: a lookup costs
 // O(log members) per level. Borrows both tables, which must be consistent (verify.h).
 class RegionMap {
@@ -67,6 +74,8 @@ class RegionMap {
   RegionMap(const TypeTable& types, const Layouts& layouts);
 
   uint32_t size(Region region) const { return region_size(types_, layouts_, region); }
+  // Most of what code names, without going down: null says nothing.
+  const ScalarPlace* scalar_at(Region region, uint32_t offset) const;
   // The first one that `accept` takes, where several lie on top of each other.
   std::optional<Leaf> leaf_at(Region region, uint32_t offset,
                               const LeafTest& accept = LeafTest()) const;
@@ -78,7 +87,11 @@ class RegionMap {
  private:
   const TypeTable& types_;
   const Layouts& layouts_;
-  std::vector<std::vector<uint32_t>> order_;  // by type: members by offset
+  void add_members(TypeId type);
+  std::vector<uint32_t> first_member_;  // by type, in `order_`
+  std::vector<uint32_t> order_;         // of each type: members by offset
+  std::vector<uint32_t> first_scalar_;  // by type, in `scalars_`
+  std::vector<ScalarPlace> scalars_;    // of each type, by offset
 };
 
 }  // namespace ir

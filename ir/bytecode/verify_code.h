@@ -66,7 +66,7 @@ class CodeVerifier {
 
   // verify_flow.cc
   bool scan_instructions();
-  bool find_loops(const std::vector<uint32_t>& calls);
+  bool find_loops(const std::vector<uint32_t>& calls, const std::vector<uint32_t>& loops);
   bool step(uint32_t unit);
   bool enter_merge(uint32_t unit);
   bool arrive(uint32_t merge, bool backwards);
@@ -87,7 +87,7 @@ class CodeVerifier {
   bool frame_scalar(uint32_t offset, Class cls, bool write);
   bool leaf_access(Region region, uint32_t offset, Class cls, bool write, const char* base);
   bool pool_scalar(uint32_t offset, Class cls);
-  bool check_access(const Leaf& leaf, Class cls, bool write);
+  bool check_access(const ScalarPlace& there, Class cls, bool write);
   uint32_t slot_at(uint32_t offset) const;                 // that covers it; kNone
   uint32_t scalar_slot(uint32_t offset, Class cls) const;  // that starts there; kNone
   bool is_written(uint32_t slot) const { return written_[slot] == epoch_; }
@@ -157,8 +157,10 @@ class CodeVerifier {
   Unit extension_;
   bool falls_through_ = true;
   size_t next_merge_ = 0;
+  uint32_t next_merge_unit_ = kNone;
 
   uint32_t epoch_ = 1;
+  std::vector<uint32_t> slot_offsets_;
   std::vector<uint32_t> written_;   // by slot: == epoch_
   std::vector<bool> read_only_;     // by slot
   std::vector<uint32_t> outgoing_;  // by slot

@@ -12,7 +12,11 @@ CodeVerifier::CodeVerifier(const Context& context, uint32_t pou, std::span<const
       written_(pou_.slots.size()),
       read_only_(pou_.slots.size()),
       outgoing_(pou_.slots.size()),
-      arrivals_(pou_.merges.size()) {}
+      arrivals_(pou_.merges.size()) {
+  slot_offsets_.reserve(pou_.slots.size());
+  for (const FrameSlot& slot : pou_.slots) slot_offsets_.push_back(slot.offset);
+  if (!pou_.merges.empty()) next_merge_unit_ = pou_.merges[0].unit;
+}
 
 bool CodeVerifier::fail(Refusal refusal, const std::string& why) {
   std::string where = "POU `" + pou_.name + "`, unit " + std::to_string(unit_);
@@ -49,6 +53,7 @@ base::Result<CodeFacts> CodeVerifier::run() {
 // Opcodes, extensions and the merge table; where the loops are.
 bool CodeVerifier::scan_instructions() {
   std::vector<uint32_t> calls;
+  std::vector<uint32_t> loops;
   for (unit_ = 0; unit_ < code_.size(); ++unit_) {
     u_ = code_[unit_];
     if (u_.opcode_number() >= kOpcodeCount) {
@@ -58,6 +63,7 @@ bool CodeVerifier::scan_instructions() {
     if (row.calls || u_.opcode() == Opcode::NATIVE) calls.push_back(unit_);
     // Where a handler begins, no results are left, as behind a call.
     if (u_.opcode() == Opcode::TRY) calls.push_back(unit_ + 1 + u_.bc());
+    if (u_.opcode() == Opcode::LOOP) loops.push_back(unit_);
     if (row.extended && ++unit_ == code_.size()) {
       return fail(Refusal::kBadOpcode, "its second unit is missing");
     }
@@ -77,22 +83,21 @@ bool CodeVerifier::scan_instructions() {
     arrivals_[i].read_only.resize(merge.slots.size());
   }
   std::sort(calls.begin(), calls.end());
-  return find_loops(calls);
+  return find_loops(calls, loops);
 }
 
-bool CodeVerifier::find_loops(const std::vector<uint32_t>& calls) {
-  for (unit_ = 0; unit_ < code_.size(); ++unit_) {
+bool CodeVerifier::find_loops(const std::vector<uint32_t>& calls,
+                              const std::vector<uint32_t>& loops) {
+  for (const uint32_t loop : loops) {
+    unit_ = loop;
     u_ = code_[unit_];
-    if (u_.opcode() == Opcode::LOOP) {
-      const uint32_t head = merge_at(unit_ + 1 + u_.bc());
-      if (head == kNone || pou_.merges[head].unit > unit_) {
-        return fail(Refusal::kBadJump, "jumps to unit " + std::to_string(unit_ + 1 + u_.bc()));
-      }
-      const auto inside = std::lower_bound(calls.begin(), calls.end(), pou_.merges[head].unit);
-      arrivals_[head].loop_head = true;
-      arrivals_[head].calls_inside |= inside != calls.end() && *inside <= unit_;
+    const uint32_t head = merge_at(unit_ + 1 + u_.bc());
+    if (head == kNone || pou_.merges[head].unit > unit_) {
+      return fail(Refusal::kBadJump, "jumps to unit " + std::to_string(unit_ + 1 + u_.bc()));
     }
-    if (opcode_row(u_.opcode()).extended) ++unit_;
+    const auto inside = std::lower_bound(calls.begin(), calls.end(), pou_.merges[head].unit);
+    arrivals_[head].loop_head = true;
+    arrivals_[head].calls_inside |= inside != calls.end() && *inside <= unit_;
   }
   return true;
 }
@@ -106,7 +111,7 @@ uint32_t CodeVerifier::merge_at(uint32_t unit) const {
 
 bool CodeVerifier::step(uint32_t unit) {
   u_ = code_[unit];
-  if (!enter_merge(unit)) return false;
+  if (unit >= next_merge_unit_ && !enter_merge(unit)) return false;
   if (!falls_through_) return fail(Refusal::kUnreachable, "nothing leads here");
   const OpcodeRow& row = opcode_row(u_.opcode());
   const uint32_t next = unit + (row.extended ? 2 : 1);
@@ -134,14 +139,13 @@ bool CodeVerifier::step(uint32_t unit) {
 
 // At a merge the state is exactly the merge's, whichever way was taken.
 bool CodeVerifier::enter_merge(uint32_t unit) {
-  if (next_merge_ == pou_.merges.size()) return true;
   const Merge& merge = pou_.merges[next_merge_];
-  if (merge.unit > unit) return true;
   if (merge.unit < unit) {
     return fail(Refusal::kBadJump,
                 "merge at unit " + std::to_string(merge.unit) + " is no instruction");
   }
   const uint32_t number = static_cast<uint32_t>(next_merge_++);
+  next_merge_unit_ = next_merge_ == pou_.merges.size() ? kNone : pou_.merges[next_merge_].unit;
   if (falls_through_ && !arrive(number, false)) return false;
   const Arrival& arrival = arrivals_[number];
   if (!arrival.reached) return fail(Refusal::kUnreachable, "nothing leads here");
@@ -169,13 +173,13 @@ bool CodeVerifier::arrive(uint32_t number, bool backwards) {
   }
   for (size_t i = 0; i < merge.slots.size(); ++i) {
     const uint16_t slot = merge.slots[i];
-    const std::string name = "slot at " + std::to_string(pou_.slots[slot].offset);
+    const auto name = [&] { return "slot at " + std::to_string(pou_.slots[slot].offset); };
     if (!is_written(slot) || outgoing_[slot] != 0) {
       return fail(Refusal::kBadTyping,
-                  name + " holds no value for the merge at unit " + std::to_string(merge.unit));
+                  name() + " holds no value for the merge at unit " + std::to_string(merge.unit));
     }
     if (backwards && read_only_[slot] && !arrival.read_only[i]) {
-      return fail(Refusal::kBadTyping, name + " is read-only in a later turn of the loop");
+      return fail(Refusal::kBadTyping, name() + " is read-only in a later turn of the loop");
     }
     if (!backwards && read_only_[slot]) arrival.read_only[i] = true;
   }

@@ -170,16 +170,18 @@ class InstancesVerifier {
         if (id == 0) continue;
         return bad(holder, "the in-out at " + std::to_string(slot.offset) + " starts bound");
       }
-      const std::string where =
-          "its slot at " + std::to_string(slot.offset) + " names instance " + std::to_string(id);
+      const auto bad_slot = [&](const char* why) {
+        return bad(holder, "its slot at " + std::to_string(slot.offset) + " names instance " +
+                               std::to_string(id) + why);
+      };
       if (id == 0 || id >= image_.instances.size() || !is_live(id)) {
-        return bad(holder, where + ", which is not live");
+        return bad_slot(", which is not live");
       }
       const Instance& child = image_.instances[id];
-      if (child.type != slot.type) return bad(holder, where + ", which has another type");
+      if (child.type != slot.type) return bad_slot(", which has another type");
       if (is_program(id)) continue;  // of the globals; it exists anyway
-      if (child.parent != holder) return bad(holder, where + ", which has another parent");
-      if (named_[id]) return bad(holder, where + ", which is named twice");
+      if (child.parent != holder) return bad_slot(", which has another parent");
+      if (named_[id]) return bad_slot(", which is named twice");
       named_[id] = true;
     }
     return base::Ok{};

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cstring>
 
 #include "base/limits.h"
 #include "ir/bytecode/verify_code.h"
@@ -8,22 +10,63 @@ namespace {
 
 std::string at_text(uint32_t offset) { return " at offset " + std::to_string(offset); }
 
+uint64_t bits_of(const Unit& unit) {
+  uint64_t bits;
+  std::memcpy(&bits, &unit, sizeof bits);
+  return bits;
+}
+
+// What an instruction leaves unused: bits that are zero, and which bases it may have, as a bit for
+// each value of the three fields together.
+struct Unused {
+  uint64_t bases = 0;
+  uint64_t first = 0;
+  uint64_t second = 0;
+};
+
+Unused unused_of(const OpcodeRow& row) {
+  const auto mask = [](const Field& field) {
+    const bool unused = field.kind == FieldKind::kNone || field.kind == FieldKind::kBase;
+    return unused ? uint16_t{0xffff} : uint16_t{0};
+  };
+  const bool wide = row.b.kind == FieldKind::kBc32 || row.b.kind == FieldKind::kRel32;
+  Unused out;
+  out.first = bits_of({0, mask(row.a), mask(row.b), wide ? uint16_t{0} : mask(row.c)});
+  const auto extension = [](const Field& field) {
+    return field.kind == FieldKind::kNone ? 0xffffffffu : 0u;
+  };
+  out.second = bits_of(Unit::extension(extension(row.x), extension(row.y)));
+  for (uint32_t bases = 0; bases < 64; ++bases) {
+    const auto base = [&](uint32_t field) { return static_cast<Base>(bases >> 2 * field & 3); };
+    const bool allowed = row.a.allows(base(0)) && row.b.allows(base(1)) && row.c.allows(base(2));
+    out.bases |= uint64_t{allowed} << bases;
+  }
+  return out;
+}
+
+const Unused& unused_of(Opcode op) {
+  static const std::array<Unused, kOpcodeCount> kRows = [] {
+    std::array<Unused, kOpcodeCount> rows;
+    for (uint32_t i = 0; i < kOpcodeCount; ++i) {
+      rows[i] = unused_of(opcode_row(static_cast<Opcode>(i)));
+    }
+    return rows;
+  }();
+  return kRows[static_cast<size_t>(op)];
+}
+
 }  // namespace
 
 // Fields that an instruction does not use are zero, and no operand has a base that
 // the interpreter lacks (V3).
 bool CodeVerifier::check_unused(const OpcodeRow& row) {
-  const bool wide = row.b.kind == FieldKind::kBc32 || row.b.kind == FieldKind::kRel32;
-  const bool bases =
-      row.a.allows(u_.base_a()) && row.b.allows(u_.base_b()) && row.c.allows(u_.base_c());
-  if (!bases) return fail(Refusal::kBadOpcode, "an operand has a base that it cannot have");
-  const auto unused = [](const Field& f) {
-    return f.kind == FieldKind::kNone || f.kind == FieldKind::kBase;
-  };
-  const bool zero = (!unused(row.a) || u_.a == 0) && (!unused(row.b) || u_.b == 0) &&
-                    (!unused(row.c) || wide || u_.c == 0) &&
-                    (!row.extended || row.x.kind != FieldKind::kNone || extension_.x() == 0) &&
-                    (!row.extended || row.y.kind != FieldKind::kNone || extension_.y() == 0);
+  const Unused& unused = unused_of(u_.opcode());
+  const uint32_t bases = u_.op >> 10;
+  if ((unused.bases >> bases & 1) == 0) {
+    return fail(Refusal::kBadOpcode, "an operand has a base that it cannot have");
+  }
+  const bool zero = (bits_of(u_) & unused.first) == 0 &&
+                    (!row.extended || (bits_of(extension_) & unused.second) == 0);
   return zero || fail(Refusal::kBadOpcode, "a field that it does not use is not zero");
 }
 
@@ -41,6 +84,12 @@ bool CodeVerifier::scalar_access(Place place, Class cls, bool write) {
   const bool self = place.base == Base::kSelf;
   const std::optional<Region> root = root_region(place);
   if (!root) return false;
+  if (const ScalarPlace* const scalar = context_.regions.scalar_at(*root, place.offset)) {
+    if (write && !self && scalar->flags.output) {
+      facts_.written_outputs.push_back({shown, class_size(cls)});
+    }
+    return check_access(*scalar, cls, write);
+  }
   if (!leaf_access(*root, place.offset, cls, write, self ? "self" : "global")) return false;
   if (write && !self) {
     const auto leaf = context_.regions.leaf_at(*root, place.offset);
@@ -67,6 +116,9 @@ std::optional<Region> CodeVerifier::root_region(Place& place) {
 
 bool CodeVerifier::leaf_access(Region region, uint32_t offset, Class cls, bool write,
                                const char* base) {
+  if (const ScalarPlace* const scalar = context_.regions.scalar_at(region, offset)) {
+    return check_access(*scalar, cls, write);
+  }
   const auto fits = [&](const Leaf& leaf) {
     return leaf.kind == LeafKind::kScalar && leaf.begin == offset &&
            class_of(image_.types.scalar(leaf.type)) == cls;
@@ -76,18 +128,18 @@ bool CodeVerifier::leaf_access(Region region, uint32_t offset, Class cls, bool w
   if (!leaf || leaf->kind != LeafKind::kScalar || leaf->begin != offset) {
     return fail(Refusal::kBadReference, std::string("no ") + base + " scalar" + at_text(offset));
   }
-  return check_access(*leaf, cls, write);
+  const Class have = class_of(image_.types.scalar(leaf->type));
+  return check_access({leaf->begin, have, {leaf->constant, leaf->input, leaf->output}}, cls, write);
 }
 
-bool CodeVerifier::check_access(const Leaf& leaf, Class cls, bool write) {
-  const Class have = class_of(image_.types.scalar(leaf.type));
-  if (have != cls) {
-    return fail(Refusal::kBadTyping, "the variable" + at_text(leaf.begin) + " has class " +
-                                         std::string(class_name(have)) + ", needed is " +
+bool CodeVerifier::check_access(const ScalarPlace& there, Class cls, bool write) {
+  if (there.cls != cls) {
+    return fail(Refusal::kBadTyping, "the variable" + at_text(there.offset) + " has class " +
+                                         std::string(class_name(there.cls)) + ", needed is " +
                                          std::string(class_name(cls)));
   }
-  if (write && leaf.input) return fail(Refusal::kBadIoAccess, "an input is written");
-  if (write && leaf.constant) return fail(Refusal::kBadReference, "a CONSTANT is written");
+  if (write && there.flags.input) return fail(Refusal::kBadIoAccess, "an input is written");
+  if (write && there.flags.constant) return fail(Refusal::kBadReference, "a CONSTANT is written");
   return true;
 }
 
@@ -102,11 +154,10 @@ bool CodeVerifier::pool_scalar(uint32_t offset, Class cls) {
 }
 
 uint32_t CodeVerifier::slot_at(uint32_t offset) const {
-  const auto behind =
-      std::upper_bound(pou_.slots.begin(), pou_.slots.end(), offset,
-                       [](uint32_t at, const FrameSlot& slot) { return at < slot.offset; });
-  return behind == pou_.slots.begin() ? kNone
-                                      : static_cast<uint32_t>(behind - pou_.slots.begin() - 1);
+  const auto behind = std::upper_bound(slot_offsets_.begin(), slot_offsets_.end(), offset);
+  return behind == slot_offsets_.begin()
+             ? kNone
+             : static_cast<uint32_t>(behind - slot_offsets_.begin() - 1);
 }
 
 uint32_t CodeVerifier::scalar_slot(uint32_t offset, Class cls) const {

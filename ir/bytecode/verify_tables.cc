@@ -148,17 +148,19 @@ class TablesVerifier {
 
   base::Status check_slot(const LinkedPou& pou, const FrameSlot& slot) const {
     const TypeTable& types = image_.types;
-    const std::string where = "slot at " + std::to_string(slot.offset) + ": ";
+    const auto bad = [&](const char* why) {
+      return bad_frame(pou, "slot at " + std::to_string(slot.offset) + ": " + why);
+    };
     if (slot.aggregate || slot.cls == Class::kA) {
-      if (!context_.valid(slot.region)) return bad_frame(pou, where + "no such type");
+      if (!context_.valid(slot.region)) return bad("no such type");
     }
     if (slot.aggregate) {
       const bool area = types.is_instance(slot.region.type) ||
                         types[slot.region.type].kind == Kind::kGlobals ||
                         context_.facts[slot.region.type.index].has_slots;
-      if (area) return bad_frame(pou, where + "instances cannot live in a frame");
+      if (area) return bad("instances cannot live in a frame");
       if (slot.region.dim == 0 && types.is_scalar(slot.region.type)) {
-        return bad_frame(pou, where + "a scalar is no aggregate");
+        return bad("a scalar is no aggregate");
       }
     }
     return base::Ok{};
