@@ -15,6 +15,8 @@ using ir::Opcode;
 using How = Writer::How;
 using Kind = Origin::Kind;
 
+constexpr uint64_t kAll = UINT32_MAX;  // bytes: what the address leads to
+
 // A store or another use of an address from outside of its POU.
 struct Unknown {
   enum class Use : uint8_t { kStored, kPassed, kReferenced };
@@ -170,7 +172,7 @@ void Search::store_through(const Origins& origins, ir::Region region, uint64_t o
       continue;
     }
     const uint64_t begin = origin.exact ? origin.begin + offset : origin.begin;
-    const uint64_t end = origin.exact ? begin + size : origin.end;
+    const uint64_t end = origin.exact && size != kAll ? begin + size : origin.end;
     const bool indexed = !origin.exact || origin.kind == Kind::kAnyInstance || origins.size() > 1;
     for_each_in(origin, begin, end, [&](uint32_t target, uint64_t from, uint64_t to, bool shared) {
       How use = how;
@@ -189,7 +191,7 @@ void Search::note(Unknown::Use use, Kind from, ir::Region region, uint64_t offse
 void Search::pass(const Origins& origins, ir::Region region) {
   for (const Origin& origin : origins) {
     if (origin.kind >= Kind::kInOut) {
-      note(Unknown::Use::kPassed, origin.kind, region, 0, UINT32_MAX);
+      note(Unknown::Use::kPassed, origin.kind, region, 0, kAll);
       continue;
     }
     for_each_in(origin, origin.begin, origin.end,
@@ -201,10 +203,10 @@ void Search::pass(const Origins& origins, ir::Region region) {
 void Search::reference(const Origins& origins, ir::Region region) {
   for (const Origin& origin : origins) {
     if (origin.kind >= Kind::kInOut) {
-      note(Unknown::Use::kReferenced, origin.kind, region, 0, UINT32_MAX);
+      note(Unknown::Use::kReferenced, origin.kind, region, 0, kAll);
       continue;
     }
-    for_each_in(origin, 0, UINT32_MAX, [&](uint32_t target, uint64_t, uint64_t, bool) {
+    for_each_in(origin, 0, kAll, [&](uint32_t target, uint64_t, uint64_t, bool) {
       targets_[target].referenced = true;
     });
   }
@@ -213,7 +215,7 @@ void Search::reference(const Origins& origins, ir::Region region) {
 // Of a variable: it leads to what that holds. Of the own instance: to all of it.
 void Search::reference_place(ir::Base base, uint64_t begin) {
   const bool whole = base == ir::Base::kSelf && begin == 0;
-  for_each_in(base, 0, UINT32_MAX, [&](uint32_t i, uint64_t area, uint64_t, bool) {
+  for_each_in(base, 0, kAll, [&](uint32_t i, uint64_t area, uint64_t, bool) {
     Target& target = targets_[i];
     const uint64_t at = area + begin;
     target.referenced |= whole || (target.member_begin <= at && at < target.member_end);
@@ -238,11 +240,7 @@ void Search::look_at_unit(const ir::Unit& unit, const ir::Unit& more, const Orig
     return;
   }
   const auto whole = [&](uint32_t slot, uint64_t size, How how) {
-    Origins origins = walk.of(slot);
-    for (Origin& origin : origins) {
-      if (size == 0 && origin.exact) size = origin.end - origin.begin;
-    }
-    store_through(origins, walk.region(slot), 0, size, how);
+    store_through(walk.of(slot), walk.region(slot), 0, size, how);
   };
   switch (op) {
     case Opcode::COPY: {
@@ -251,11 +249,11 @@ void Search::look_at_unit(const ir::Unit& unit, const ir::Unit& more, const Orig
     }
     case Opcode::SCOPY:
     case Opcode::WCOPY:
-      return whole(unit.a, 0, How::kOnly);
+      return whole(unit.a, kAll, How::kOnly);
     case Opcode::ST_REF_AT:
       return pass(walk.of(unit.b), walk.region(unit.b));
     case Opcode::NATIVE:
-      if (stdlib::native_row(unit.c).result == 'v') whole(unit.a * 8u, 0, How::kText);
+      if (stdlib::native_row(unit.c).result == 'v') whole(unit.a * 8u, kAll, How::kText);
       return;
     case Opcode::HANDLE:
       return reference_place(unit.base_b(), more.x());
