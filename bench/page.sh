@@ -26,6 +26,7 @@ section() {  # section FILE TITLE COMMAND
   section edit_large.md 'An edit in a million lines' 'make bench-large'
   section live_edit_large.md 'From saved file to running, a million lines' 'make bench-large'
   section start.md 'Size and start' 'make bench'
+  section force.md 'Forcing' 'make bench'
 } | cat -s | sed '$d' >"$docs/performance.md"
 cp "$sections/performance.svg" "$docs/performance.svg"
 echo "wrote $docs/performance.md and performance.svg"

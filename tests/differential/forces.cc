@@ -242,7 +242,10 @@ Finding examine_forces(const std::string& source, uint64_t seed, int scans,
     }
     Run now = run(forced, values, scans);
     if (!now.wrong.empty()) return failed(mode, "wrong", now.wrong);
-    if (forced.out_of_fuel()) out.trap = ir::trap_name(ir::TrapKind::kFuel);
+    if (forced.out_of_fuel()) {
+      out.trap = ir::trap_name(ir::TrapKind::kFuel);
+      out.scan = now.states.size() + 1;
+    }
     if (&mode == &kModes[0]) {
       expected = std::move(now);
       continue;
