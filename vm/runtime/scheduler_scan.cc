@@ -228,7 +228,7 @@ void Scheduler::roll_back_outputs(const TaskSlot& task) {
   tables_->process_image.outputs_to_variables(now, memory_);
 }
 
-// In this cycle still, and in the variables too.
+// In this cycle still, and in the variables too. What is forced stays so.
 void Scheduler::stop_outputs(TaskSlot& task) {
   find_written(task);
   base::Bytes& mask = tables_->written;
@@ -241,6 +241,7 @@ void Scheduler::stop_outputs(TaskSlot& task) {
   }
   std::fill(task.waiting_mask.begin(), task.waiting_mask.end(), uint8_t{0});
   tables_->safe.apply(mask, looked_ns_, tables_->outputs);
+  impose_on_outputs();
   outputs_to_variables(mask);
   io_.send(tables_->outputs);
 }
@@ -276,7 +277,7 @@ void Scheduler::impose(bool inputs_only) {
 // Forced outputs do not wait for anything.
 void Scheduler::impose_on_outputs() {
   bool any = false;
-  base::Bytes& mask = tables_->written;
+  base::Bytes& mask = tables_->forced_outputs;
   for (const Force& force : tables_->forced.forces) {
     if (!force.symbol.output) continue;
     if (!any) std::fill(mask.begin(), mask.end(), uint8_t{0});

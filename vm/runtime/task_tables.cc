@@ -85,6 +85,7 @@ TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
   waiting_mask.resize(image.output_bytes);
   written.resize(image.output_bytes);
   scratch.resize(image.output_bytes);
+  forced_outputs.resize(image.output_bytes);
   if (image.output_bytes != 0) mark_own_outputs(*this);
   set_base_period();
 }

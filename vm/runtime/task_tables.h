@@ -90,6 +90,7 @@ struct TaskTables {
   base::Bytes written;       // by the task that ends
   base::Bytes lost;          // IoPort::lost_tasks
   base::Bytes scratch;
+  base::Bytes forced_outputs;  // mask
   // No outputs wait, and none can be NaN: a scan that nobody is suspended below just packs them.
   bool plain_outputs = false;
   // Of this version and the other one: then what waits is kept, and what is known of its writers.

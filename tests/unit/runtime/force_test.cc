@@ -69,6 +69,38 @@ TEST_P(Forces, HoldAtEverySafePoint) {
 }
 INSTANTIATE_TEST_SUITE_P(Tiers, Forces, testing::Values(vm::Tier::kInterpreter, vm::Tier::kNative));
 
+// Also where a task that is stopped by a trap leaves its outputs, in the middle of the scan of
+// another one, and for the devices.
+TEST(Force, HoldsWhenATaskIsStopped) {
+  vm::ControllerOptions options;
+  options.fuel_slice = 1;
+  Plant plant(R"(
+VAR_GLOBAL q AT %QX0.0 : BOOL; free AT %QX0.1 : BOOL; END_VAR
+PROGRAM Fast VAR n, x : INT; END_VAR q := FALSE; free := TRUE; n := n + 1; x := 10 / (5 - n); END_PROGRAM
+PROGRAM Slow VAR i, lost, safe : INT; END_VAR
+  FOR i := 1 TO 100 DO
+    IF NOT q THEN lost := lost + 1; END_IF;
+    IF NOT free THEN safe := safe + 1; END_IF;
+  END_FOR;
+END_PROGRAM
+CONFIGURATION C RESOURCE R ON PLC
+  {attribute 'on_trap' := 'stop_task'} TASK High (INTERVAL := T#1ms, PRIORITY := 0);
+  TASK Low (INTERVAL := T#50ms, PRIORITY := 1);
+  PROGRAM F WITH High : Fast;
+  PROGRAM S WITH Low : Slow;
+END_RESOURCE END_CONFIGURATION)",
+              options, 100'000);
+  ASSERT_TRUE(plant.ok());
+  ASSERT_TRUE(plant->force("q", "TRUE").ok());
+  for (int i = 0; i < 40; ++i) {
+    plant.cycles(1);
+    EXPECT_EQ(plant.io.output(0) & 1, 1) << i;
+  }
+  EXPECT_TRUE(plant.task("High").stopped);
+  EXPECT_EQ(plant.get("S.lost"), "0");
+  EXPECT_NE(plant.get("S.safe"), "0") << "what is not forced is safe at once";
+}
+
 // What is prepared beside the running program changes nothing before it is exchanged.
 TEST(Force, ComesWithItsExchange) {
   Plant plant(kSource);
