@@ -63,9 +63,13 @@ const char* Conversions::convert(const UpdateStep& step, uint32_t index, const u
   return value.loss;
 }
 
-bool Conversions::left_by_inverse(const UpdateStep& step) const {
-  const Conversion there = classify(to_.types, step.new_type, from_.types, step.old_type);
-  return there == Conversion::kSame;
+bool Conversions::left_by_inverse(const UpdateStep& step) {
+  const auto [row, is_new] = left_.try_emplace({step.old_type, step.new_type});
+  if (is_new) {
+    row->second =
+        classify(to_.types, step.new_type, from_.types, step.old_type) == Conversion::kSame;
+  }
+  return row->second;
 }
 
 std::string Conversions::old_text(const UpdateStep& step, const uint8_t* value) const {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "ir/bytecode/image.h"
 #include "online_change/diff/fast_conversion.h"
@@ -21,8 +23,9 @@ class Conversions {
     return fast_converter(from_.types, step.old_type, to_.types, step.new_type);
   }
   uint32_t source_size(const UpdateStep& step) const { return from_.layouts[step.old_type].size; }
-  // Did the other direction leave the bytes of such values as they were?
-  bool left_by_inverse(const UpdateStep& step) const;
+  // Does the other direction leave the bytes of such values as they are? Compares names, once for
+  // each pair of types: not at the boundary.
+  bool left_by_inverse(const UpdateStep& step);
   // Converts the value at `source` for value number `index` of `step`; fills `out`. Returns what
   // is lost, or null.
   const char* convert(const UpdateStep& step, uint32_t index, const uint8_t* source,
@@ -34,6 +37,7 @@ class Conversions {
   const ir::Image& from_;
   const ir::Image& to_;
   InitialData to_initial_;
+  std::map<std::pair<ir::TypeId, ir::TypeId>, bool> left_;  // by old and new type
 };
 
 }  // namespace online_change

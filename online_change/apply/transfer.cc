@@ -72,7 +72,10 @@ void Transfer::add_step(uint32_t number, size_t at) {
   if (step.kind == StepKind::kEnter) converted_.push_back({step.to, step.size, at});
   if (without_gaps(step)) return add_bytes(piece, step.total());
   const bool converts = step.kind == StepKind::kConvert;
-  if (converts) piece.fast = conversions_.fast(step);
+  if (converts) {
+    piece.fast = conversions_.fast(step);
+    piece.left = conversions_.left_by_inverse(step);
+  }
   piece.size = step.size;
   uint32_t most = converts && piece.fast == nullptr ? kSlowValues : kFastValues;
   most = std::clamp(kPieceBytes / std::max(step.size, 1u), 1u, most);
@@ -253,14 +256,13 @@ void Transfer::read_back_converted(const Piece& piece, const uint8_t* memory,
                                    const Transfer& forward) {
   const UpdateStep& step = step_of(piece);
   const uint32_t size = conversions_.source_size(step);
-  const bool was_left = conversions_.left_by_inverse(step);
   for (uint32_t i = 0; i < piece.count; ++i) {
     const size_t at = piece.at + size_t{i} * step.size;
     std::span<uint8_t> out(staged_.data() + at, step.size);
     const uint8_t* const before = remembered_.data() + at;
     uint32_t from = piece.from + i * step.from_stride;
-    if (was_left ? std::memcmp(memory + from, before, size) == 0
-                 : forward.still_as_converted(from, size, memory)) {
+    if (piece.left ? std::memcmp(memory + from, before, size) == 0
+                   : forward.still_as_converted(from, size, memory)) {
       std::memcpy(out.data(), before, step.size);
     } else {
       conversions_.convert(step, piece.first + i, memory + from, out);

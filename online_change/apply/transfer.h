@@ -42,6 +42,7 @@ struct Piece {
   StepKind kind = StepKind::kCopy;
   size_t at = 0;  // in the transfer's buffers
   FastConverter fast = nullptr;
+  bool left = false;  // kConvert: the way in the other direction leaves its bytes
   uint32_t total() const { return size * count; }
 };
 
