@@ -157,12 +157,12 @@ void Writer::put_value(Node parent, ExprId id) {
     return;
   }
   if (value.kind != ExprKind::kStructInit) return simple(flat(value.span));
-  for (uint32_t i = 0; i < value.args.count; ++i) {
-    if (tree_.args[value.args.first + i].name.empty()) return simple(flat(value.span));
+  for (uint32_t i = 0; i < value.list.count; ++i) {
+    if (tree_.args[value.list.first + i].name.empty()) return simple(flat(value.span));
   }
   Node list = parent.append_child("structValue");
-  for (uint32_t i = 0; i < value.args.count; ++i) {
-    const frontend::Arg& arg = tree_.args[value.args.first + i];
+  for (uint32_t i = 0; i < value.list.count; ++i) {
+    const frontend::Arg& arg = tree_.args[value.list.first + i];
     Node node = list.append_child("value");
     node.append_attribute("member") = std::string(arg.name.text).c_str();
     if (arg.value.valid()) put_value(node, arg.value);

@@ -8,13 +8,13 @@ std::string quoted_name(const Name& name) { return "`" + std::string(name.text) 
 // Arguments without names come first and go to parameters in order; names may follow.
 bool Body::bind_arguments(const Expr& call, const PouInfo& callee, std::vector<Binding>& bindings) {
   uint32_t positional = 0;
-  while (positional < call.args.count && tree_.args[call.args.first + positional].name.empty()) {
+  while (positional < call.list.count && tree_.args[call.list.first + positional].name.empty()) {
     ++positional;
   }
   if (positional != 0 && !bind_positional(call, positional, callee, bindings)) return false;
   bool good = true;
-  for (uint32_t i = positional; i < call.args.count; ++i) {
-    const Arg& arg = tree_.args[call.args.first + i];
+  for (uint32_t i = positional; i < call.list.count; ++i) {
+    const Arg& arg = tree_.args[call.list.first + i];
     if (arg.name.empty()) {
       sema_.error(DiagnosticCode::kMixedArguments, arg.span,
                   "an argument without a name behind one with a name", "name it too");
@@ -83,7 +83,7 @@ bool Body::bind_positional(const Expr& call, uint32_t count, const PouInfo& call
     return false;
   }
   for (uint32_t i = 0; i < count; ++i) {
-    const Arg& arg = tree_.args[call.args.first + i];
+    const Arg& arg = tree_.args[call.list.first + i];
     if (arg.value.valid()) bindings.push_back({parameters[i], &arg, {}, {}, {}});
   }
   return true;

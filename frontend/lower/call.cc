@@ -256,8 +256,8 @@ void Body::call_statement(ExprId id, const Callee& callee) {
   const Expr& call = tree_[id];
   switch (callee.kind) {
     case Callee::Kind::kError:
-      for (uint32_t i = 0; i < call.args.count; ++i) {
-        ExprId value = tree_.args[call.args.first + i].value;
+      for (uint32_t i = 0; i < call.list.count; ++i) {
+        ExprId value = tree_.args[call.list.first + i].value;
         if (value.valid()) sema_.infer(value);
       }
       return;

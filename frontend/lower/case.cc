@@ -32,16 +32,16 @@ void Body::case_statement(const Stmt& stmt) {
   ir::ValueId selector = value(stmt.value, usable ? type : ir::TypeId());
   if (!usable) selector = zero(type);
   std::vector<ir::BlockId> arms;
-  for (uint32_t i = 0; i < stmt.cases.count; ++i) arms.push_back(build_.new_block());
+  for (uint32_t i = 0; i < stmt.arms.count; ++i) arms.push_back(build_.new_block());
   ir::BlockId otherwise = build_.new_block();
   ir::BlockId done = build_.new_block();
   std::vector<Interval> intervals;
   if (usable) intervals = case_intervals(stmt, type, arms);
   if (!stmt.has_else && traits.enumeration) report_missing_labels(stmt, type, intervals);
   case_tree(intervals, 0, intervals.size(), selector, scalar(type), otherwise);
-  for (uint32_t i = 0; i < stmt.cases.count; ++i) {
+  for (uint32_t i = 0; i < stmt.arms.count; ++i) {
     build_.start(arms[i]);
-    statements(tree_.cases[stmt.cases.first + i].body);
+    statements(tree_.cases[stmt.arms.first + i].body);
     if (build_.reachable()) build_.jump(done);
   }
   build_.start(otherwise);
@@ -72,8 +72,8 @@ std::vector<Body::Interval> Body::case_intervals(const Stmt& stmt, ir::TypeId ty
   auto wide_of = [&](uint64_t bits) {
     return is_signed ? static_cast<Wide>(static_cast<int64_t>(bits)) : static_cast<Wide>(bits);
   };
-  for (uint32_t i = 0; i < stmt.cases.count; ++i) {
-    const CaseArm& arm = tree_.cases[stmt.cases.first + i];
+  for (uint32_t i = 0; i < stmt.arms.count; ++i) {
+    const CaseArm& arm = tree_.cases[stmt.arms.first + i];
     for (uint32_t k = 0; k < arm.labels.count; ++k) {
       const CaseLabel& label = tree_.labels[arm.labels.first + k];
       auto low = sema_.fold_bits(label.low, type);

@@ -9,8 +9,8 @@ namespace frontend {
 std::optional<Body::Enable> Body::enable_of(const Expr& call, const Callee& callee) {
   const PouInfo* pou = callee.pou == kNoPou ? nullptr : &sema_.pous[callee.pou];
   Enable enable;
-  for (uint32_t i = 0; i < call.args.count; ++i) {
-    const Arg& arg = tree_.args[call.args.first + i];
+  for (uint32_t i = 0; i < call.list.count; ++i) {
+    const Arg& arg = tree_.args[call.list.first + i];
     if (!sema_.is_enable(arg, pou)) continue;
     const Arg*& slot = ir::same_name(arg.name.text, "EN") ? enable.en : enable.eno;
     bool output = &slot == &enable.eno;

@@ -9,22 +9,23 @@ Body::Labels Body::labels_of(Range32 list) {
   for (uint32_t i = 0; i < list.count; ++i) {
     const Stmt& stmt = tree_[tree_.stmt_lists[list.first + i]];
     if (stmt.kind != StmtKind::kLabel) continue;
+    const Name name = tree_.name(stmt.name);
     // `x : f(y);` is a slip of the finger, and would be a label and a call.
-    if (sema_.find_variable(stmt.name).valid()) {
-      sema_.error(DiagnosticCode::kDuplicateName, stmt.name.span,
-                  "`" + std::string(stmt.name.text) + "` is a variable and cannot be a label",
+    if (sema_.find_variable(name).valid()) {
+      sema_.error(DiagnosticCode::kDuplicateName, name.span,
+                  "`" + std::string(name.text) + "` is a variable and cannot be a label",
                   "write `:=` to assign to it");
     }
-    if (!labels.emplace(stmt.name.text, build_.new_block()).second) {
-      sema_.error(DiagnosticCode::kDuplicateName, stmt.name.span,
-                  "the label `" + std::string(stmt.name.text) + "` stands twice");
+    if (!labels.emplace(name.text, build_.new_block()).second) {
+      sema_.error(DiagnosticCode::kDuplicateName, name.span,
+                  "the label `" + std::string(name.text) + "` stands twice");
     }
   }
   return labels;
 }
 
 void Body::label(const Stmt& stmt) {
-  ir::BlockId block = labels_.back().labels.find(stmt.name.text)->second;
+  ir::BlockId block = labels_.back().labels.find(tree_.name(stmt.name).text)->second;
   if (build_.started(block)) return;  // the name stands twice
   if (build_.reachable()) build_.jump(block);
   build_.start(block);
@@ -34,24 +35,25 @@ void Body::jump(const Stmt& stmt) {
   if (!stmt.instruction) {
     sema_.allow_extension("JMP in Structured Text", stmt.span, "use IF, loops, EXIT and RETURN");
   }
+  const Name wanted = tree_.name(stmt.name);
   for (size_t i = labels_.size(); i-- > 0;) {
-    auto found = labels_[i].labels.find(stmt.name.text);
+    auto found = labels_[i].labels.find(wanted.text);
     if (found != labels_[i].labels.end()) return go(found->second, labels_[i].tries);
   }
-  std::string name = "`" + std::string(stmt.name.text) + "`";
+  std::string name = "`" + std::string(wanted.text) + "`";
   for (const Stmt& other : tree_.stmts) {
     bool inside = other.kind == StmtKind::kLabel && info_.decl != nullptr &&
                   !(other.span.begin < info_.decl->span.begin) &&
                   other.span.begin < info_.decl->span.end;
-    if (!inside || !ir::same_name(other.name.text, stmt.name.text)) continue;
+    if (!inside || !ir::same_name(tree_.name(other.name).text, wanted.text)) continue;
     sema_.error(DiagnosticCode::kJumpIntoBlock, stmt.span,
                 "the label " + name + " lies inside a block that this jump is not in",
                 "put the label in front of the block, or the jump inside it");
     return;
   }
-  NearestName nearest(stmt.name.text);
+  NearestName nearest(wanted.text);
   for (const LabelList& list : labels_) nearest.offer_all(list.labels);
-  sema_.error(DiagnosticCode::kUnknownLabel, stmt.name.span, "there is no label " + name,
+  sema_.error(DiagnosticCode::kUnknownLabel, wanted.span, "there is no label " + name,
               nearest.fix());
 }
 

@@ -54,7 +54,7 @@ ir::ValueId Body::emit_binary(const Expr& expr, ir::TypeId own) {
   }
   ir::ValueId left = value(expr.operand, own);
   ir::ValueId right = value(expr.right, own);
-  set_line(expr.op_span);
+  set_line({expr.op, expr.op});
   return number_op(expr.binary, own, left, right);
 }
 

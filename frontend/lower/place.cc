@@ -182,12 +182,14 @@ bool Body::check_writable(ExprId id) {
   switch (expr.kind) {
     case ExprKind::kName:
       return check_writable_name(expr);
-    case ExprKind::kDirect:
-      note_output(expr.address, sema_.infer(id).type, expr.span);
-      if (expr.address.area != ir::DirectArea::kInput) return true;
+    case ExprKind::kDirect: {
+      const ir::DirectAddress address = tree_.directs[expr.number].address;
+      note_output(address, sema_.infer(id).type, expr.span);
+      if (address.area != ir::DirectArea::kInput) return true;
       sema_.error(DiagnosticCode::kAssignToInput, expr.span,
                   "`" + std::string(expr.name.text) + "` is an input of the process image");
       return false;
+    }
     case ExprKind::kMember: {
       if (VarId global = sema_.infer(id).variable; global.valid()) {
         return check_writable_variable(expr, global);

@@ -78,11 +78,11 @@ void PoolCode::call_made(uint32_t method, const ir::Place& at) {
 
 // Nothing can come between looking at a state and setting it: no task is suspended there.
 ir::ValueId PoolCode::make(const Expr& call) {
-  const ExprId type = sema_.tree.args[call.args.first].value;
+  const ExprId type = sema_.tree.args[call.list.first].value;
   const Pool* pool = sema_.pools.of_new(type);
   if (pool == nullptr) return body_.zero({});
   const Expr& written = sema_.tree[type];
-  const Range32 args = written.kind == ExprKind::kCall ? written.args : Range32();
+  const Range32 args = written.kind == ExprKind::kCall ? written.list : Range32();
   if (pool->boxed && args.count != 0) {
     sema_.error(DiagnosticCode::kBadConstruction, written.span,
                 "`" + std::string(pool->name) + "` has no FB_Init that takes arguments");
@@ -106,7 +106,7 @@ ir::ValueId PoolCode::make(const Expr& call) {
 }
 
 void PoolCode::destroy(const Expr& call) {
-  const ExprId argument = sema_.tree.args[call.args.first].value;
+  const ExprId argument = sema_.tree.args[call.list.first].value;
   const Note& note = sema_.infer(argument);
   if (!note.type.valid() || !body_.check_writable(argument)) return;
   const ir::Place pointer = body_.place(argument);

@@ -131,7 +131,7 @@ void Body::bind_reference(const Stmt& stmt) {
 }
 
 ir::ValueId Body::emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own) {
-  const ExprId argument = tree_.args[expr.args.first].value;
+  const ExprId argument = tree_.args[expr.list.first].value;
   switch (call) {
     case ReferenceCall::kNew:
       return PoolCode(*this).make(expr);
@@ -139,7 +139,7 @@ ir::ValueId Body::emit_reference_call(const Expr& expr, ReferenceCall call, ir::
       PoolCode(*this).destroy(expr);
       return zero(own);
     case ReferenceCall::kQuery:
-      return attempt(tree_.args[expr.args.first + 1].value, argument, expr.span).fits;
+      return attempt(tree_.args[expr.list.first + 1].value, argument, expr.span).fits;
     case ReferenceCall::kSizeof:
       return machine_convert(build_.size_of(sema_.type_of_argument(argument)), ir::Scalar::kU32,
                              scalar(own));

@@ -11,7 +11,7 @@ void Body::infer_results(Range32 list) {
     if (!stmt.instruction) continue;
     bool keeps = stmt.kind == StmtKind::kAssign && tree_[stmt.target].kind == ExprKind::kResult;
     if (keeps) sema_.infer(stmt.value);
-    if (stmt.kind == StmtKind::kIf) infer_results(tree_.branches[stmt.branches.first].body);
+    if (stmt.kind == StmtKind::kIf) infer_results(tree_.branches[stmt.arms.first].body);
   }
 }
 

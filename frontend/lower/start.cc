@@ -161,7 +161,7 @@ void StartCode::elements(const ir::Place& at, ir::TypeId type, const Spec* spec)
   }
   for (uint32_t i = 0; i < total; ++i) {
     const Expr& list = sema_.tree[sema_.tree.expr_lists[spec->element_args.first + i]];
-    instance(element(at, dims, base, i), base, list.args);
+    instance(element(at, dims, base, i), base, list.list);
   }
 }
 
@@ -273,7 +273,7 @@ void StartCode::call(const ir::Place& at, const PouInfo& method, Range32 args) {
   constexpr ir::Scalar kBool = ir::Scalar::kBool;
   Expr written;
   written.kind = ExprKind::kCall;
-  written.args = args;
+  written.list = args;
   written.span = span_;
   std::vector<Body::Binding> bindings;
   if (!bind(written, method, bindings) || !body_.check_in_outs(written, method, bindings)) return;
@@ -311,8 +311,8 @@ bool StartCode::bind(const Expr& call, const PouInfo& method,
         variable.section == VarSection::kInput || variable.section == VarSection::kInOut;
     if (input && !is_implicit(variable.name)) parameters.push_back(id);
   }
-  for (uint32_t i = 0; i < call.args.count; ++i) {
-    const Arg& arg = sema_.tree.args[call.args.first + i];
+  for (uint32_t i = 0; i < call.list.count; ++i) {
+    const Arg& arg = sema_.tree.args[call.list.first + i];
     if (arg.output) {
       sema_.error(DiagnosticCode::kBadConstruction, arg.span, name + " has no outputs here");
       return false;

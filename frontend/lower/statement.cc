@@ -72,9 +72,9 @@ ir::ValueId Body::condition(ExprId expr) {
 void Body::if_statement(const Stmt& stmt) {
   ir::BlockId done = build_.new_block();
   bool open = false;  // the way past the last condition is still without a target
-  for (uint32_t i = 0; i < stmt.branches.count; ++i) {
-    const Branch& branch = tree_.branches[stmt.branches.first + i];
-    bool last = i + 1 == stmt.branches.count && stmt.else_body.count == 0;
+  for (uint32_t i = 0; i < stmt.arms.count; ++i) {
+    const Branch& branch = tree_.branches[stmt.arms.first + i];
+    bool last = i + 1 == stmt.arms.count && stmt.else_body.count == 0;
     ir::BlockId then = build_.new_block();
     ir::BlockId otherwise = last ? done : build_.new_block();
     const Note& note = sema_.infer(branch.condition);

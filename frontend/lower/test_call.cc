@@ -36,13 +36,13 @@ Relation relation_of(TestCall call) {
 
 void Body::test_call(const Expr& call, const TestCallRow& row) {
   std::vector<ExprId> args;
-  for (uint32_t i = 0; i < call.args.count; ++i) {
-    const Arg& arg = tree_.args[call.args.first + i];
+  for (uint32_t i = 0; i < call.list.count; ++i) {
+    const Arg& arg = tree_.args[call.list.first + i];
     if (arg.value.valid() && arg.name.empty()) args.push_back(arg.value);
   }
-  if (args.size() < row.fewest || args.size() > row.most || args.size() != call.args.count) {
+  if (args.size() < row.fewest || args.size() > row.most || args.size() != call.list.count) {
     sema_.error(DiagnosticCode::kWrongArgumentCount, call.span,
-                std::string(row.name) + " with " + std::to_string(call.args.count) + " arguments",
+                std::string(row.name) + " with " + std::to_string(call.list.count) + " arguments",
                 "it takes, in this order: " + std::string(row.parameters));
     return;
   }

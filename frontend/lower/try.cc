@@ -15,7 +15,7 @@ void Body::try_statement(const Stmt& stmt) {
     }
   };
   if (stmt.has_finally) {
-    try_finally(body, stmt.finally_body, stmt.span);
+    try_finally(body, tree_.branches[stmt.arms.first + 1].body, stmt.span);
   } else {
     body();
   }
@@ -114,7 +114,7 @@ void Body::try_catch(const Stmt& stmt) {
   leave_try();
   build_.start(handler);
   if (stmt.target.valid()) catch_variable(stmt);
-  statements(stmt.catch_body);
+  statements(tree_.branches[stmt.arms.first].body);
   if (build_.reachable()) build_.jump(behind);
   build_.start(behind);
 }

@@ -158,7 +158,7 @@ ir::ValueId Body::part_of(ir::ValueId word, ir::Scalar machine, uint32_t offset,
 
 ir::ValueId Body::emit_unary(const Expr& expr, ir::TypeId own) {
   ir::ValueId operand = value(expr.operand, own);
-  set_line(expr.op_span);
+  set_line({expr.op, expr.op});
   if (expr.unary == UnaryOp::kPlus) return operand;
   return build_.unary(expr.unary == UnaryOp::kNot ? ir::Op::kNot : ir::Op::kNeg, scalar(own),
                       operand);

@@ -45,7 +45,7 @@ ExprId Parser::parse_assign_expression(ExprId target, AssignOp op) {
   Expr expr;
   expr.kind = ExprKind::kAssign;
   expr.assign = op;
-  expr.op_span = current_->span();
+  expr.op = here();
   take_assign_op();
   expr.operand = target;
   expr.right = parse_assigned();
@@ -60,8 +60,8 @@ ExprId Parser::parse_listed_value() {
   Nesting nesting(*this);
   if (!nesting.entered()) return error_expression();
   ExprId list = parse_struct_initializer();
-  if (panic_ || tree_[list].args.count != 1 || !at_operator()) return list;
-  Arg arg = tree_.args[tree_[list].args.first];
+  if (panic_ || tree_[list].list.count != 1 || !at_operator()) return list;
+  Arg arg = tree_.args[tree_[list].list.first];
   Expr name;
   name.kind = ExprKind::kName;
   name.name = arg.name;
@@ -71,7 +71,7 @@ ExprId Parser::parse_listed_value() {
   assign.kind = ExprKind::kAssign;
   assign.operand = target;
   assign.right = arg.value.valid() ? arg.value : target;
-  assign.args = {};
+  assign.list = {};
   assign.parenthesised = true;
   return parse_operators(list, 0);
 }

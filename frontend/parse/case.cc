@@ -33,7 +33,7 @@ void Parser::parse_case() {
     stmt.else_body = parse_statements();
   }
   --open_[static_cast<uint8_t>(TokenKind::kEndCase)];
-  stmt.cases = move_tail(case_stack_, mark, tree_.cases);
+  stmt.arms = move_tail(case_stack_, mark, tree_.cases);
   add_statement(stmt);
   close_statement(opening, TokenKind::kEndCase);
 }

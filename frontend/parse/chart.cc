@@ -193,7 +193,7 @@ void Parser::parse_transition_head(ChartTransition& transition) {
     const Expr& number = tree_[parse_expression()];
     bool good = number.kind == ExprKind::kLiteral;
     if (good) {
-      const Literal& literal = tree_.literals[number.literal];
+      const Literal& literal = tree_.literals[number.number];
       good = literal.kind == LiteralKind::kInteger && !literal.negative &&
              literal.integer <= 0xffffffffu;
       transition.has_priority = good;

@@ -43,23 +43,23 @@ struct Attribute {  // names are compared without case
 // --- expressions -------------------------------------------------------------
 enum class ExprKind : uint8_t {
   kError,
-  kLiteral,     // literal
+  kLiteral,
   kName,        // name; `global`: `.name`, looked up among the globals only
-  kQualified,   // prefix#name : typed enumeration literal; name, prefix; operand: Lib of Lib.E#a
+  kQualified,   // prefix#name : typed enumeration literal; operand: Lib of Lib.E#a
   kMember,      // operand . name
   kBit,         // operand . number, operand.%X3 %B1 %W1 %D0: bit_size, number
   kIndex,       // operand [ list ]
   kDeref,       // operand ^
-  kCall,        // operand ( args )
+  kCall,        // operand ( list )
   kUnary,       // op operand
   kBinary,      // operand op right
-  kDirect,      // %IX0.0 : address, levels; its text kept in name; operand: Resource.%IX0.0
+  kDirect,      // %IX0.0 : its text kept in name; operand: Resource.%IX0.0
   kArrayInit,   // [ list ] of values and kRepeat
   kRepeat,      // operand ( list ) : operand = count
-  kStructInit,  // ( args ): names and values; without names as list of FB_Init's arguments
+  kStructInit,  // ( list ): names and values; without names as list of FB_Init's arguments
   kThis,        // THIS; `THIS^` is a kDeref of it, `THIS.x` a kMember
   kSuper,       // SUPER; likewise
-  kType,        // spec: a type as an argument, __NEW(ARRAY[0..3] OF INT). A plain name is kName
+  kType,        // a type as an argument, __NEW(ARRAY[0..3] OF INT). A plain name is kName
   kAssign,      // operand := right, with `assign`; right-associative: a := b := 3
   kResult,      // what an instruction list keeps of its current result: number in Tree::results
 };
@@ -105,17 +105,22 @@ enum class LiteralKind : uint8_t {
   kDateAndTime,  // integer = ns
 };
 
+// Expressions, statements and literals are most of a tree, and read all the time: what is seldom
+// there is kept beside them.
+inline constexpr uint32_t kNoNumber = 0xffffffffu;
+
 struct Literal {
   LiteralKind kind = LiteralKind::kInteger;
   bool based = false;
   bool too_large = false;  // does not fit 64 bits (already reported)
   bool is_long = false;    // LT# LD# LTOD# LDT#
-  Name prefix;             // "INT" of INT#5, "WORD" of WORD#16#AF; empty when untyped
-  uint64_t integer = 0;    // magnitude; a sign inside a typed literal sets `negative`
   bool negative = false;
+  uint32_t prefix = kNoNumber;  // Tree::names: "INT" of INT#5, "WORD" of WORD#16#AF
+  uint32_t text = kNoNumber;    // Tree::texts
+  uint64_t integer = 0;         // magnitude; a sign inside a typed literal sets `negative`
   double real = 0;
-  std::string text;
 };
+static_assert(sizeof(Literal) == 32);
 
 struct Arg {
   Name name;             // empty: positional
@@ -125,32 +130,36 @@ struct Arg {
   base::SourceSpan span;
 };
 
+struct Direct {  // of kDirect
+  ir::DirectAddress address;
+  Range32 levels;  // with more levels than byte.bit: Tree::levels; address then has area and size
+};
+
 struct Expr {
   ExprKind kind = ExprKind::kError;
-  uint16_t height =
-      1;  // of the tree below, at most kMaxExpressionHeight: recursion over it is safe
-  base::SourceSpan span;
   UnaryOp unary = UnaryOp::kNegate;
   BinaryOp binary = BinaryOp::kOr;
-  base::SourceSpan op_span;
+  AssignOp assign = AssignOp::kAssign;  // kAssign
+  uint8_t bit_size = 1;                 // kBit: 1, 8, 16, 32
+  bool global : 1 = false;              // kName
+  bool parenthesised : 1 = false;
+  bool instruction : 1 = false;  // kCall, kBinary, kName of a function: of an instruction list
+  // Of the tree below, at most kMaxExpressionHeight: recursion over it is safe.
+  uint16_t height = 1;
+  base::SourceSpan span;
+  base::SourcePos op;  // of the operator, the dot, the bracket
   ExprId operand;
   ExprId right;
+  // kBit: of the part. Elsewhere the index of what belongs to it: kLiteral in Tree::literals,
+  // kResult in Tree::results, kDirect in Tree::directs, kType in Tree::specs; kQualified: of the
+  // prefix, and kCall: of the type that a box of a diagram names, in Tree::names.
+  uint32_t number = kNoNumber;
+  Range32 list;  // kCall, kStructInit: of Tree::args; kIndex, kArrayInit, kRepeat: Tree::expr_lists
   Name name;
-  Name prefix;
-  uint32_t literal = 0;  // Tree::literals
-  Range32 list;          // Tree::expr_lists
-  Range32 args;          // Tree::args
-  uint32_t number = 0;   // kBit, kResult
-  uint8_t bit_size = 1;  // kBit: 1, 8, 16, 32
-  ir::DirectAddress address;
-  Range32 levels;  // kDirect with more levels than byte.bit: Tree::levels; address then has area
-                   // and size only
-  SpecId spec;     // kType
-  AssignOp assign = AssignOp::kAssign;  // kAssign
-  bool global = false;                  // kName
-  bool parenthesised = false;
-  bool instruction = false;  // kCall, kBinary, kName of a function: of an instruction list
+
+  SpecId spec() const { return SpecId(number); }  // of kType
 };
+static_assert(sizeof(Expr) == 64);
 
 // --- statements --------------------------------------------------------------
 enum class StmtKind : uint8_t {
@@ -158,8 +167,8 @@ enum class StmtKind : uint8_t {
   kEmpty,
   kAssign,  // target := value, with `assign`; the rest of a chain is a kAssign expression
   kCall,    // value is the kCall expression
-  kIf,      // branches; else_body
-  kCase,    // value, cases, else_body
+  kIf,      // arms; else_body
+  kCase,    // value, arms, else_body
   kFor,     // target, from, to, by (may be invalid), body
   kWhile,   // value, body
   kRepeat,  // body, value
@@ -168,7 +177,7 @@ enum class StmtKind : uint8_t {
   kReturn,
   kJump,   // JMP name
   kLabel,  // name:
-  kTry,    // body; has_catch: catch_body, target = its variable (may be invalid); finally_body
+  kTry,    // body; has_catch: target = its variable (may be invalid); arms: CATCH's and FINALLY's
   kMock,   // MOCK target: the instance's body does nothing in this test
   kMockFunction,  // MOCK_FUNCTION target RETURNS value (may be invalid)
 };
@@ -189,23 +198,21 @@ struct CaseArm {
 
 struct Stmt {
   StmtKind kind = StmtKind::kEmpty;
+  AssignOp assign = AssignOp::kAssign;
+  bool has_else : 1 = false;
+  bool has_catch : 1 = false;
+  bool has_finally : 1 = false;
+  // Of an instruction list. S and R of an instance are calls: kAssign then has the call in `from`.
+  bool instruction : 1 = false;
   base::SourceSpan span;  // kFor..kIf: of the head line
   ExprId target;
   ExprId value;
   ExprId from, to, by;
-  Range32 branches;  // Tree::branches
-  Range32 cases;     // Tree::cases
-  Range32 body;      // Tree::stmt_lists
+  Range32 arms;  // kIf, kTry: of Tree::branches; kCase: of Tree::cases
+  Range32 body;  // Tree::stmt_lists
   Range32 else_body;
-  bool has_else = false;
-  AssignOp assign = AssignOp::kAssign;
-  Name name;
-  bool has_catch = false;
-  bool has_finally = false;
-  Range32 catch_body;
-  Range32 finally_body;
-  // Of an instruction list. S and R of an instance are calls: kAssign then has the call in `from`.
-  bool instruction = false;
+  uint32_t name = kNoNumber;  // Tree::names
 };
+static_assert(sizeof(Stmt) == 60);
 
 }  // namespace frontend

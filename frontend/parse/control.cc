@@ -58,7 +58,7 @@ void Parser::parse_if() {
       stmt.else_body = parse_body(TokenKind::kEndIf);
     }
   }
-  stmt.branches = move_tail(branch_stack_, mark, tree_.branches);
+  stmt.arms = move_tail(branch_stack_, mark, tree_.branches);
   add_statement(stmt);
   close_statement(opening, TokenKind::kEndIf);
 }

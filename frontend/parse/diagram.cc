@@ -66,7 +66,7 @@ void Parser::Diagram::network(const network::Network& network) {
   if (!network.label.empty()) {
     Stmt label;
     label.kind = StmtKind::kLabel;
-    label.name = {made(network.label.text), network.label.span};
+    label.name = tree_.add_name({made(network.label.text), network.label.span});
     emit(label, network.label.span);
   }
   count_uses();
@@ -194,7 +194,7 @@ void Parser::Diagram::jump(const Element& element) {
   Stmt stmt;
   stmt.kind = element.kind == Kind::kJump ? StmtKind::kJump : StmtKind::kReturn;
   stmt.span = element.span;
-  stmt.name = {made(element.operand.text), element.operand.span};
+  stmt.name = tree_.add_name({made(element.operand.text), element.operand.span});
   Value condition = input(element.inputs[0]);
   if (!condition.expr.valid()) condition.expr = boolean(false, element.span);
   if (condition.power) return emit(stmt, element.span);

@@ -23,8 +23,8 @@ void Parser::Diagram::block(uint32_t number, const Element& element) {
   call.span = element.span;
   call.operand = callee(element);
   Value enable;
-  call.args = arguments(number, element, &enable);
-  if (!function) call.prefix = {made(element.type.text), element.type.span};
+  call.list = arguments(number, element, &enable);
+  if (!function) call.number = tree_.add_name({made(element.type.text), element.type.span});
   ExprId value = p_.add_expression(call);
   bool result = false;
   for (uint32_t i = 0; i < element.outputs.size(); ++i) {
@@ -188,7 +188,8 @@ ExprId Parser::Diagram::binary(BinaryOp op, ExprId left, ExprId right, base::Sou
   expr.binary = op;
   expr.operand = left;
   expr.right = right;
-  expr.op_span = expr.span = span;
+  expr.op = span.begin;
+  expr.span = span;
   return p_.add_expression(expr);
 }
 
@@ -238,7 +239,7 @@ void Parser::Diagram::emit_if(ExprId condition, const Stmt& then, base::SourceSp
   branch.body = move_tail(p_.statement_stack_, mark, tree_.stmt_lists);
   Stmt stmt;
   stmt.kind = StmtKind::kIf;
-  stmt.branches = {static_cast<uint32_t>(tree_.branches.size()), 1};
+  stmt.arms = {static_cast<uint32_t>(tree_.branches.size()), 1};
   tree_.branches.push_back(branch);
   emit(stmt, span);
 }

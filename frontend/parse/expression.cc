@@ -79,7 +79,7 @@ ExprId Parser::add_binary(ExprId left, const Token& op, ExprId right) {
   Expr expr;
   expr.kind = ExprKind::kBinary;
   expr.binary = op.kind == TokenKind::kAssign ? BinaryOp::kEq : operator_of(op.kind).op;
-  expr.op_span = op.span();
+  expr.op = {op.begin};
   expr.span = {tree_[left].span.begin, tree_[right].span.end};
   expr.operand = left;
   expr.right = right;
@@ -98,9 +98,9 @@ ExprId Parser::parse_unary() {
   expr.unary = op == TokenKind::kMinus  ? UnaryOp::kNegate
                : op == TokenKind::kPlus ? UnaryOp::kPlus
                                         : UnaryOp::kNot;
-  expr.op_span = take().span();
+  expr.op = {take().begin};
   expr.operand = parse_unary();
-  expr.span = {expr.op_span.begin, tree_[expr.operand].span.end};
+  expr.span = {expr.op, tree_[expr.operand].span.end};
   return add_expression(expr);
 }
 
@@ -205,7 +205,7 @@ ExprId Parser::parse_type_argument() {
   Expr expr;
   expr.kind = ExprKind::kType;
   base::SourcePos begin = here();
-  expr.spec = parse_spec();
+  expr.number = parse_spec().index;
   expr.span = span_from(begin);
   return add_expression(expr);
 }
@@ -233,11 +233,9 @@ ExprId Parser::add_expression(const Expr& expr) {
 
 uint32_t Parser::height_below(const Expr& expr) const {
   uint32_t below = std::max(height(expr.operand), height(expr.right));
-  for (uint32_t i = 0; i < expr.list.count; ++i) {
-    below = std::max(below, height(tree_.expr_lists[expr.list.first + i]));
-  }
-  for (uint32_t i = 0; i < expr.args.count; ++i) {
-    below = std::max(below, height(tree_.args[expr.args.first + i].value));
+  const bool arguments = expr.kind == ExprKind::kCall || expr.kind == ExprKind::kStructInit;
+  for (uint32_t i = expr.list.first; i < expr.list.first + expr.list.count; ++i) {
+    below = std::max(below, height(arguments ? tree_.args[i].value : tree_.expr_lists[i]));
   }
   return below;
 }

@@ -198,7 +198,8 @@ void Parser::InstructionList::read_call_target(Instruction& in) {
   Expr call;
   call.kind = ExprKind::kCall;
   call.operand = in.operand;
-  call.op_span = call.span = tree_[in.operand].span;
+  call.span = tree_[in.operand].span;
+  call.op = call.span.begin;
   in.operand = p_.add_expression(call);
 }
 

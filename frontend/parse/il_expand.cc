@@ -110,7 +110,8 @@ void Parser::InstructionList::input(const Instruction& in, bool last) {
   member.kind = ExprKind::kMember;
   member.operand = in.operand;
   member.name = in.word;
-  member.op_span = member.span = in.span;
+  member.op = in.span.begin;
+  member.span = in.span;
   stmt.kind = StmtKind::kAssign;
   stmt.target = p_.add_expression(member);
   stmt.value = value;
@@ -125,8 +126,9 @@ ExprId Parser::InstructionList::input_call(const Instruction& in, ExprId value) 
   Expr expr;
   expr.kind = ExprKind::kCall;
   expr.operand = in.operand;
-  expr.op_span = expr.span = in.span;
-  expr.args = {static_cast<uint32_t>(tree_.args.size()), 1};
+  expr.op = in.span.begin;
+  expr.span = in.span;
+  expr.list = {static_cast<uint32_t>(tree_.args.size()), 1};
   tree_.args.push_back(arg);
   return p_.add_expression(expr);
 }
@@ -138,7 +140,7 @@ void Parser::InstructionList::apply(const Instruction& in, ExprId left, ExprId r
   expr.binary = in.op->binary;
   expr.operand = left;
   expr.right = right;
-  expr.op_span = in.word.span;
+  expr.op = in.word.span.begin;
   expr.span = in.span;
   expr.instruction = true;
   define(p_.add_expression(expr), literal);
@@ -178,12 +180,13 @@ void Parser::InstructionList::call_function(size_t i) {
   Expr call;
   call.kind = ExprKind::kCall;
   call.instruction = true;
-  call.op_span = call.span = in.span;
+  call.op = in.span.begin;
+  call.span = in.span;
   Arg arg;
   arg.value = use(in, true);
   arg.span = in.word.span;
   call.operand = p_.add_expression(name);
-  call.args = {static_cast<uint32_t>(tree_.args.size()), in.others.count + 1};
+  call.list = {static_cast<uint32_t>(tree_.args.size()), in.others.count + 1};
   tree_.args.push_back(arg);
   for (uint32_t k = 0; k < in.others.count; ++k) {
     arg.value = tree_.expr_lists[in.others.first + k];

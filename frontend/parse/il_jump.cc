@@ -20,7 +20,7 @@ void Parser::InstructionList::label(size_t i) {
   }
   Stmt stmt;
   stmt.kind = StmtKind::kLabel;
-  stmt.name = in.word;
+  stmt.name = tree_.add_name(in.word);
   stmt.span = in.span;
   emit(stmt);
   reachable_ = true;
@@ -50,7 +50,7 @@ void Parser::InstructionList::jump(size_t i) {
   const Instruction& in = list_[i];
   Stmt stmt;
   stmt.kind = StmtKind::kJump;
-  stmt.name = in.target;
+  stmt.name = tree_.add_name(in.target);
   stmt.span = in.span;
   stmt.instruction = true;
   std::vector<Stmt> body;
@@ -110,7 +110,7 @@ void Parser::InstructionList::guard(const Instruction& in, ExprId condition,
   Stmt stmt;
   stmt.kind = StmtKind::kIf;
   stmt.span = in.span;
-  stmt.branches = {static_cast<uint32_t>(tree_.branches.size()), 1};
+  stmt.arms = {static_cast<uint32_t>(tree_.branches.size()), 1};
   tree_.branches.push_back(branch);
   emit(stmt);
 }

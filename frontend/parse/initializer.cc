@@ -71,7 +71,7 @@ ExprId Parser::parse_struct_initializer() {
   Expr expr;
   expr.kind = ExprKind::kStructInit;
   base::SourcePos begin = here();
-  expr.args = parse_arguments();
+  expr.list = parse_arguments();
   expr.span = span_from(begin);
   return add_expression(expr);
 }

@@ -25,8 +25,8 @@ bool Parser::parse_soft_statement() {
 void Parser::parse_label() {
   Stmt stmt;
   stmt.kind = StmtKind::kLabel;
-  stmt.name = name_of(take());
-  stmt.span = stmt.name.span;
+  stmt.span = current_->span();
+  stmt.name = tree_.add_name(name_of(take()));
   take();
   add_statement(stmt);
 }
@@ -36,7 +36,7 @@ void Parser::parse_jump_to_label() {
   Stmt stmt;
   stmt.kind = StmtKind::kJump;
   base::SourcePos begin = {take().begin};
-  stmt.name = name_of(take());
+  stmt.name = tree_.add_name(name_of(take()));
   stmt.span = span_from(begin);
   add_statement(stmt);
   finish_statement("statement");
@@ -50,20 +50,23 @@ void Parser::parse_try() {
   stmt.span = opening.span();
   accept(TokenKind::kSemicolon);
   stmt.body = parse_body(TokenKind::kEndTry);
+  Branch parts[2];  // CATCH's and FINALLY's
   while (kind() == TokenKind::kCatch || kind() == TokenKind::kFinally) {
     const Token part = take();
     bool is_catch = part.kind == TokenKind::kCatch;
-    bool& present = is_catch ? stmt.has_catch : stmt.has_finally;
-    if (present || (is_catch && stmt.has_finally)) {
+    if ((is_catch ? stmt.has_catch : stmt.has_finally) || (is_catch && stmt.has_finally)) {
       note_only(Code::kUnexpectedEnd, part.span(),
                 describe(part) + " stands here a second time, or behind __FINALLY",
                 "write __TRY ... __CATCH(e) ... __FINALLY ... __ENDTRY");
     }
-    present = true;
+    if (is_catch) stmt.has_catch = true;
+    if (!is_catch) stmt.has_finally = true;
     if (is_catch && kind() == TokenKind::kLeftParen) stmt.target = parse_catch_variable();
     accept(TokenKind::kSemicolon);
-    (is_catch ? stmt.catch_body : stmt.finally_body) = parse_body(TokenKind::kEndTry);
+    parts[is_catch ? 0 : 1].body = parse_body(TokenKind::kEndTry);
   }
+  stmt.arms = {static_cast<uint32_t>(tree_.branches.size()), 2};
+  tree_.branches.insert(tree_.branches.end(), {parts[0], parts[1]});
   if (!stmt.has_catch && !stmt.has_finally && kind() == TokenKind::kEndTry) {
     note_only(Code::kExpected, current_->span(),
               "expected `__CATCH` or `__FINALLY` before `__ENDTRY`");

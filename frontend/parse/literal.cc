@@ -2,22 +2,22 @@
 
 namespace frontend {
 
-ExprId Parser::add_literal(Literal literal, base::SourceSpan span) {
+ExprId Parser::add_literal(const Literal& literal, base::SourceSpan span) {
   Expr expr;
   expr.kind = ExprKind::kLiteral;
   expr.span = span;
-  expr.literal = static_cast<uint32_t>(tree_.literals.size());
-  tree_.literals.push_back(std::move(literal));
+  expr.number = static_cast<uint32_t>(tree_.literals.size());
+  tree_.literals.push_back(literal);
   return add_expression(expr);
 }
 
 ExprId Parser::parse_literal(const Name& prefix, base::SourcePos begin, bool negative) {
   const Token token = take();
   Literal literal;
-  literal.prefix = prefix;
   literal.negative = negative;
+  if (!prefix.empty()) literal.prefix = tree_.add_name(prefix);
   decode_literal(token, literal);
-  return add_literal(std::move(literal), span_from(begin));
+  return add_literal(literal, span_from(begin));
 }
 
 void Parser::decode_literal(const Token& token, Literal& literal) {
@@ -44,7 +44,8 @@ void Parser::decode_literal(const Token& token, Literal& literal) {
                                   : decode_string(text(token), charset_of(literal));
       if (string.problem) report_problem(*string.problem, token);
       literal.kind = wide ? LiteralKind::kWstring : LiteralKind::kString;
-      literal.text = std::move(string.bytes);
+      literal.text = static_cast<uint32_t>(tree_.texts.size());
+      tree_.texts.push_back(std::move(string.bytes));
       break;
     }
     case TokenKind::kDuration:
@@ -61,12 +62,11 @@ void Parser::decode_literal(const Token& token, Literal& literal) {
 }
 
 // USTRING#'...' and UTF8#'...' (CODESYS) are STRING literals that keep the bytes of UTF-8.
-StringCharset Parser::charset_of(Literal& literal) const {
+StringCharset Parser::charset_of(const Literal& literal) {
   bool latin1 = list_.latin1;
-  bool utf8 =
-      ir::same_name(literal.prefix.text, "USTRING") || ir::same_name(literal.prefix.text, "UTF8");
-  if (utf8) {
-    literal.prefix.text = "STRING";
+  const std::string_view prefix = tree_.name(literal.prefix).text;
+  if (ir::same_name(prefix, "USTRING") || ir::same_name(prefix, "UTF8")) {
+    tree_.names[literal.prefix].text = "STRING";
     return latin1 ? StringCharset::kLatin1ToUtf8 : StringCharset::kUtf8SourceBytes;
   }
   return latin1 ? StringCharset::kLatin1Source : StringCharset::kUtf8Source;
@@ -116,7 +116,7 @@ ExprId Parser::parse_typed_literal() {
   }
   Expr expr;
   expr.kind = ExprKind::kQualified;
-  expr.prefix = prefix;
+  expr.number = tree_.add_name(prefix);
   expr.name = name_of(take());
   expr.span = span_from(begin);
   return add_expression(expr);

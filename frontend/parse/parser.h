@@ -124,9 +124,9 @@ class Parser {
   ExprId parse_literal(const Name& prefix, base::SourcePos begin, bool negative);
   ExprId parse_typed_literal();
   Name prefix_of(const Token& token) const;
-  ExprId add_literal(Literal literal, base::SourceSpan span);
+  ExprId add_literal(const Literal& literal, base::SourceSpan span);
   void decode_literal(const Token& token, Literal& literal);
-  StringCharset charset_of(Literal& literal) const;
+  StringCharset charset_of(const Literal& literal);
   void decode_date_literal(const Token& token, Literal& literal);
   void store_time(const DecodedTime& time, const Token& token, Literal& literal);
   DecodedAddress parse_direct_address(const Token& token);

@@ -26,8 +26,8 @@ void Parser::set_direct(Expr& expr, const Token& token) {
     decoded.address = {};
   }
   expr.kind = ExprKind::kDirect;
-  expr.address = decoded.address;
-  expr.levels = add_levels(decoded.levels);
+  expr.number = static_cast<uint32_t>(tree_.directs.size());
+  tree_.directs.push_back({decoded.address, add_levels(decoded.levels)});
 }
 
 ExprId Parser::parse_postfix(ExprId operand) {
@@ -46,7 +46,7 @@ ExprId Parser::parse_postfix(ExprId operand) {
         Expr expr;
         expr.kind = ExprKind::kDeref;
         expr.operand = operand;
-        expr.op_span = take().span();
+        expr.op = {take().begin};
         expr.span = span_from(tree_[operand].span.begin);
         operand = add_expression(expr);
         break;
@@ -61,7 +61,7 @@ ExprId Parser::parse_postfix(ExprId operand) {
 // `.name`, `.3`, `.%X3`
 ExprId Parser::parse_member(ExprId operand) {
   Expr expr;
-  expr.op_span = take().span();
+  expr.op = {take().begin};
   expr.operand = operand;
   const Token token = *current_;
   if (is_name(token.kind)) {
@@ -70,7 +70,7 @@ ExprId Parser::parse_member(ExprId operand) {
   } else if (token.kind == TokenKind::kTypePrefix && is_name(next_kind())) {
     take();
     expr.kind = ExprKind::kQualified;  // Lib.Color#Red
-    expr.prefix = prefix_of(token);
+    expr.number = tree_.add_name(prefix_of(token));
     expr.name = name_of(take());
   } else if (token.kind == TokenKind::kInteger) {
     expr.kind = ExprKind::kBit;
@@ -109,7 +109,7 @@ ExprId Parser::parse_index(ExprId operand) {
   Expr expr;
   expr.kind = ExprKind::kIndex;
   expr.operand = operand;
-  expr.op_span = open.span();
+  expr.op = {open.begin};
   expr.list = move_tail(expr_stack_, mark, tree_.expr_lists);
   expr.span = span_from(tree_[operand].span.begin);
   return add_expression(expr);
@@ -119,8 +119,8 @@ ExprId Parser::parse_call(ExprId operand) {
   Expr expr;
   expr.kind = ExprKind::kCall;
   expr.operand = operand;
-  expr.op_span = current_->span();
-  expr.args = parse_arguments();
+  expr.op = here();
+  expr.list = parse_arguments();
   expr.span = span_from(tree_[operand].span.begin);
   return add_expression(expr);
 }

@@ -95,12 +95,12 @@ std::string Printer::expression(ExprId id) const {
     case ExprKind::kError:
       return "<error>";
     case ExprKind::kLiteral:
-      return literal(tree_.literals[expr.literal]);
+      return literal(tree_.literals[expr.number]);
     case ExprKind::kName:
       return (expr.global ? "." : "") + std::string(expr.name.text);
     case ExprKind::kQualified:
       return (expr.operand.valid() ? expression(expr.operand) + '.' : "") +
-             std::string(expr.prefix.text) + '#' + std::string(expr.name.text);
+             std::string(tree_.name(expr.number).text) + '#' + std::string(expr.name.text);
     case ExprKind::kMember:
       return expression(expr.operand) + '.' + std::string(expr.name.text);
     case ExprKind::kBit:
@@ -110,20 +110,20 @@ std::string Printer::expression(ExprId id) const {
     case ExprKind::kDeref:
       return expression(expr.operand) + '^';
     case ExprKind::kCall:
-      return expression(expr.operand) + arguments(expr.args);
+      return expression(expr.operand) + arguments(expr.list);
     case ExprKind::kUnary:
       return '(' + (operator_text(expr.unary) + expression(expr.operand)) + ')';
     case ExprKind::kBinary:
       return binary(expr);
     case ExprKind::kDirect:
       return (expr.operand.valid() ? expression(expr.operand) + '.' : "") +
-             address(expr.address, expr.levels);
+             address(tree_.directs[expr.number].address, tree_.directs[expr.number].levels);
     case ExprKind::kArrayInit:
       return '[' + list(expr.list) + ']';
     case ExprKind::kRepeat:
       return expression(expr.operand) + '(' + list(expr.list) + ')';
     case ExprKind::kStructInit:
-      return arguments(expr.args);
+      return arguments(expr.list);
     case ExprKind::kResult:
       return "result#" + std::to_string(expr.number);
     case ExprKind::kThis:
@@ -131,7 +131,7 @@ std::string Printer::expression(ExprId id) const {
     case ExprKind::kSuper:
       return "SUPER";
     case ExprKind::kType:
-      return "TYPE(" + spec(expr.spec) + ')';
+      return "TYPE(" + spec(expr.spec()) + ')';
     case ExprKind::kAssign:
       return '(' + expression(expr.operand) + assign_text(expr.assign) + expression(expr.right) +
              ')';
@@ -172,7 +172,8 @@ std::string Printer::binary(const Expr& expr) const {
 }
 
 std::string Printer::literal(const Literal& literal) const {
-  std::string out = literal.prefix.empty() ? "" : std::string(literal.prefix.text) + '#';
+  std::string out;
+  if (literal.prefix != kNoNumber) out = std::string(tree_.name(literal.prefix).text) + '#';
   if (literal.negative) out += '-';
   const char* is_long = literal.is_long ? "L" : "";
   switch (literal.kind) {
@@ -186,12 +187,13 @@ std::string Printer::literal(const Literal& literal) const {
     case LiteralKind::kBool:
       return out + (literal.integer != 0 ? "TRUE" : "FALSE");
     case LiteralKind::kString:
-      return out + '\'' + string_text(literal.text) + '\'';
+      return out + '\'' + string_text(tree_.texts[literal.text]) + '\'';
     case LiteralKind::kWstring: {
+      const std::string& text = tree_.texts[literal.text];
       std::string units;
-      for (size_t i = 0; i + 1 < literal.text.size(); i += 2) {
-        uint32_t unit = static_cast<uint8_t>(literal.text[i]) |
-                        static_cast<uint32_t>(static_cast<uint8_t>(literal.text[i + 1])) << 8;
+      for (size_t i = 0; i + 1 < text.size(); i += 2) {
+        uint32_t unit = static_cast<uint8_t>(text[i]) |
+                        static_cast<uint32_t>(static_cast<uint8_t>(text[i + 1])) << 8;
         units += unit >= 0x20 && unit < 0x7F ? std::string(1, static_cast<char>(unit))
                                              : '$' + std::to_string(unit) + ';';
       }

@@ -47,9 +47,9 @@ void Printer::statement(const Stmt& stmt) {
     case StmtKind::kReturn:
       return line("RETURN");
     case StmtKind::kJump:
-      return line("JMP " + std::string(stmt.name.text));
+      return line("JMP " + std::string(tree_.name(stmt.name).text));
     case StmtKind::kLabel:
-      return line("LABEL " + std::string(stmt.name.text));
+      return line("LABEL " + std::string(tree_.name(stmt.name).text));
     case StmtKind::kTry:
       return try_statement(stmt);
     case StmtKind::kMock:
@@ -65,14 +65,14 @@ void Printer::try_statement(const Stmt& stmt) {
   nested("TRY", stmt.body);
   if (stmt.has_catch) {
     std::string variable = expression(stmt.target);
-    nested(variable.empty() ? "CATCH" : "CATCH " + variable, stmt.catch_body);
+    nested(variable.empty() ? "CATCH" : "CATCH " + variable, tree_.branches[stmt.arms.first].body);
   }
-  if (stmt.has_finally) nested("FINALLY", stmt.finally_body);
+  if (stmt.has_finally) nested("FINALLY", tree_.branches[stmt.arms.first + 1].body);
 }
 
 void Printer::branches(const Stmt& stmt) {
-  for (uint32_t i = 0; i < stmt.branches.count; ++i) {
-    const Branch& branch = tree_.branches[stmt.branches.first + i];
+  for (uint32_t i = 0; i < stmt.arms.count; ++i) {
+    const Branch& branch = tree_.branches[stmt.arms.first + i];
     nested((i == 0 ? "IF " : "ELSIF ") + expression(branch.condition), branch.body);
   }
   if (stmt.has_else) nested("ELSE", stmt.else_body);
@@ -81,8 +81,8 @@ void Printer::branches(const Stmt& stmt) {
 void Printer::cases(const Stmt& stmt) {
   line("CASE " + expression(stmt.value));
   ++depth_;
-  for (uint32_t i = 0; i < stmt.cases.count; ++i) {
-    const CaseArm& arm = tree_.cases[stmt.cases.first + i];
+  for (uint32_t i = 0; i < stmt.arms.count; ++i) {
+    const CaseArm& arm = tree_.cases[stmt.arms.first + i];
     std::string head;
     for (uint32_t j = 0; j < arm.labels.count; ++j) {
       const CaseLabel& label = tree_.labels[arm.labels.first + j];

@@ -31,7 +31,8 @@ ExprId Parser::negated(ExprId operand, base::SourceSpan span) {
   expr.kind = ExprKind::kUnary;
   expr.unary = UnaryOp::kNot;
   expr.operand = operand;
-  expr.op_span = expr.span = span;
+  expr.op = span.begin;
+  expr.span = span;
   return add_expression(expr);
 }
 

@@ -10,4 +10,9 @@ const Attribute* Tree::find_attribute(Range32 of, std::string_view name) const {
   return nullptr;
 }
 
+uint32_t Tree::add_name(const Name& name) {
+  names.push_back(name);
+  return static_cast<uint32_t>(names.size() - 1);
+}
+
 }  // namespace frontend

@@ -238,6 +238,8 @@ struct Tree {
   std::vector<Stmt> stmts;
   std::vector<Spec> specs;
   std::vector<Literal> literals;
+  std::vector<std::string> texts;  // of string literals: escapes resolved, WSTRING as UTF-16LE
+  std::vector<Direct> directs;
   std::vector<Arg> args;
   std::vector<Branch> branches;
   std::vector<CaseArm> cases;
@@ -263,6 +265,9 @@ struct Tree {
   const Stmt& operator[](StmtId id) const { return stmts[id.index]; }
   const Spec& operator[](SpecId id) const { return specs[id.index]; }
   const Scope& operator[](ScopeId id) const { return scopes[id.index]; }
+  // The name of that number, or an empty one for kNoNumber.
+  Name name(uint32_t number) const { return number == kNoNumber ? Name{} : names[number]; }
+  uint32_t add_name(const Name& name);
   // The attribute of that name, or null.
   const Attribute* find_attribute(Range32 of, std::string_view name) const;
   // Is `scope` inside a namespace?

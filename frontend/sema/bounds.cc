@@ -14,21 +14,21 @@ Note Sema::infer_bound(const Expr& expr, bool upper) {
 
 std::optional<int64_t> Sema::bound_of(const Expr& expr, bool upper) {
   const char* name = upper ? "UPPER_BOUND" : "LOWER_BOUND";
-  bool complete = expr.args.count == 2 && tree.args[expr.args.first].value.valid() &&
-                  tree.args[expr.args.first + 1].value.valid();
+  bool complete = expr.list.count == 2 && tree.args[expr.list.first].value.valid() &&
+                  tree.args[expr.list.first + 1].value.valid();
   if (!complete) {
     error(DiagnosticCode::kWrongArgumentCount, expr.span,
           std::string(name) + " takes an array and the number of a dimension");
     return std::nullopt;
   }
-  ExprId array = tree.args[expr.args.first].value;
+  ExprId array = tree.args[expr.list.first].value;
   ir::TypeId type = infer(array).type;
   if (!type.valid()) return std::nullopt;
   if (program.types[type].kind != ir::Kind::kArray) {
     error(DiagnosticCode::kNotArray, tree[array].span, "`" + type_text(type) + "` is not an array");
     return std::nullopt;
   }
-  ExprId number = tree.args[expr.args.first + 1].value;
+  ExprId number = tree.args[expr.list.first + 1].value;
   auto dimension = fold_integer(number);
   if (!dimension) return std::nullopt;
   const std::vector<ir::Dimension>& dims = program.types[type].dims;

@@ -11,8 +11,8 @@ bool Sema::is_enable(const Arg& arg, const PouInfo* callee) const {
 
 std::vector<const Arg*> Sema::plain_arguments(const Expr& call, const PouInfo* callee) const {
   std::vector<const Arg*> plain;
-  for (uint32_t i = 0; i < call.args.count; ++i) {
-    const Arg& arg = tree.args[call.args.first + i];
+  for (uint32_t i = 0; i < call.list.count; ++i) {
+    const Arg& arg = tree.args[call.list.first + i];
     if (!is_enable(arg, callee)) plain.push_back(&arg);
   }
   return plain;
@@ -25,7 +25,7 @@ ExprId Sema::conversion_argument(const Expr& call) const {
 
 // ENO is written, and EN may call: such a call is no pure value.
 void Sema::mark_enabled(const Expr& call, Note& note) const {
-  if (plain_arguments(call, nullptr).size() == call.args.count) return;
+  if (plain_arguments(call, nullptr).size() == call.list.count) return;
   note.calls = true;
   note.known = Known::kNo;
 }

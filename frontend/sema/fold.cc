@@ -103,7 +103,7 @@ std::optional<Constant> Folder::call(ExprId id) {
 }
 
 std::optional<Constant> Folder::literal(const Expr& expr) {
-  const Literal& literal = sema_.tree.literals[expr.literal];
+  const Literal& literal = sema_.tree.literals[expr.number];
   Constant value;
   switch (literal.kind) {
     case LiteralKind::kReal:
@@ -114,7 +114,7 @@ std::optional<Constant> Folder::literal(const Expr& expr) {
     case LiteralKind::kString:
     case LiteralKind::kWstring:
       value.form = Constant::Form::kText;
-      value.text = literal.text;
+      value.text = sema_.tree.texts[literal.text];
       value.flex = Flex::kText;
       value.type = literal.kind == LiteralKind::kString ? sema_.program.types.string(1)
                                                         : sema_.program.types.wstring(1);
@@ -132,7 +132,7 @@ std::optional<Constant> Folder::literal(const Expr& expr) {
       }
       break;
   }
-  if (literal.prefix.empty()) return value;
+  if (literal.prefix == kNoNumber) return value;
   // A typed literal has to fit its prefix: INT#40000 does not.
   ir::TypeId type = sema_.infer_literal(expr).type;
   if (!type.valid()) return std::nullopt;

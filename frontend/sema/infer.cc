@@ -96,7 +96,7 @@ Note Sema::infer_kind(ExprId, const Expr& expr) {
       return infer_result(expr);
     case ExprKind::kDirect: {
       Note note;
-      note.type = type_of_direct(expr.address);
+      note.type = type_of_direct(tree.directs[expr.number].address);
       return note;
     }
     case ExprKind::kDeref:
@@ -118,23 +118,23 @@ Note Sema::infer_kind(ExprId, const Expr& expr) {
 }
 
 Note Sema::infer_literal(const Expr& expr) {
-  const Literal& literal = tree.literals[expr.literal];
+  const Literal& literal = tree.literals[expr.number];
   Note note;
   note.constant = true;
   if (literal.too_large) return {};
-  if (!literal.prefix.empty()) {
-    auto use = find_type(namespaces.find(NameSort::kDeclaration, literal.prefix));
+  if (const Name prefix = tree.name(literal.prefix); !prefix.empty()) {
+    auto use = find_type(namespaces.find(NameSort::kDeclaration, prefix));
     if (!use) {
-      error(DiagnosticCode::kUnknownType, literal.prefix.span,
-            "`" + std::string(literal.prefix.text) + "` is not a type");
+      error(DiagnosticCode::kUnknownType, prefix.span,
+            "`" + std::string(prefix.text) + "` is not a type");
       return {};
     }
     const ir::TypeId type = use->type;
     const bool single = type.valid() && !program.types.is_reference(type) &&
                         (program.types.is_scalar(type) || is_string(program.types, type));
     if (type.valid() && !single) {
-      error(DiagnosticCode::kUnknownType, literal.prefix.span,
-            "`" + std::string(literal.prefix.text) + "` has no literals");
+      error(DiagnosticCode::kUnknownType, prefix.span,
+            "`" + std::string(prefix.text) + "` has no literals");
     }
     if (!single) return {};
     note.type = type;
@@ -151,13 +151,13 @@ Note Sema::infer_literal(const Expr& expr) {
       return note;
     case LiteralKind::kString: {
       note.flex = Flex::kText;
-      uint32_t length = static_cast<uint32_t>(literal.text.size());
+      uint32_t length = static_cast<uint32_t>(tree.texts[literal.text].size());
       note.type = program.types.string(length == 0 ? 1 : length);
       return note;
     }
     case LiteralKind::kWstring: {
       note.flex = Flex::kText;
-      uint32_t length = static_cast<uint32_t>(literal.text.size() / 2);
+      uint32_t length = static_cast<uint32_t>(tree.texts[literal.text].size() / 2);
       note.type = program.types.wstring(length == 0 ? 1 : length);
       return note;
     }
@@ -251,7 +251,7 @@ Note Sema::infer_enum_name(const Expr& expr) {
 
 // Color#Red, A.Color#Red
 Note Sema::infer_qualified(const Expr& expr) {
-  const Name& type = expr.prefix;
+  const Name type = tree.name(expr.number);
   if (!expr.operand.valid()) {
     return infer_literal_of(namespaces.find(NameSort::kDeclaration, type), type.span, expr.name);
   }

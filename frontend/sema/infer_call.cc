@@ -59,13 +59,12 @@ Callee Sema::callee(const Expr& call) {
           quoted(block->decl->name) + " is a class and has no body", "call a method of it");
     return {};
   }
-  if (std::string_view type = last_name(call.prefix);
+  const Name box = tree.name(call.number);
+  if (std::string_view type = last_name(box);
       !type.empty() && !ir::same_name(type, block->decl->name.text) && !types_.contains(type)) {
-    error(
-        DiagnosticCode::kOtherBoxType, call.prefix.span,
-        "the instance is a " + quoted(block->decl->name) + ", its box says " + quoted(call.prefix),
-        "write " + quoted(block->decl->name) + ", or declare the instance as " +
-            quoted(call.prefix));
+    error(DiagnosticCode::kOtherBoxType, box.span,
+          "the instance is a " + quoted(block->decl->name) + ", its box says " + quoted(box),
+          "write " + quoted(block->decl->name) + ", or declare the instance as " + quoted(box));
   }
   Callee callee;
   callee.kind = Callee::Kind::kInstance;

@@ -178,7 +178,7 @@ void Sema::check_real_equality(const Expr& expr) {
     if (!note.constant || !note.type.valid()) continue;
     const Expr& literal = tree[side];
     if (literal.kind != ExprKind::kLiteral) continue;
-    const Literal& value = tree.literals[literal.literal];
+    const Literal& value = tree.literals[literal.number];
     if (value.integer == 0 && value.real == 0) return;
   }
   if (!real || constant) return;

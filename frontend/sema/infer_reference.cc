@@ -100,15 +100,15 @@ Note Sema::infer_pointer_index(const Expr& expr, const Note& operand) {
 
 Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
   const uint32_t wanted = call == ReferenceCall::kQuery ? 2 : 1;
-  if (call == ReferenceCall::kNew && expr.args.count == 2) {
+  if (call == ReferenceCall::kNew && expr.list.count == 2) {
     error(DiagnosticCode::kBadPool, expr.span, "a pool gives one element at a time",
           "take an array: TYPE {attribute 'pool' := '2'} Ten : ARRAY[1..10] OF INT; END_TYPE and "
           "__NEW(Ten)");
     return {};
   }
-  bool given = expr.args.count == wanted;
+  bool given = expr.list.count == wanted;
   for (uint32_t i = 0; i < wanted && given; ++i) {
-    const Arg& arg = tree.args[expr.args.first + i];
+    const Arg& arg = tree.args[expr.list.first + i];
     given = arg.value.valid() && !arg.output;
   }
   if (!given) {
@@ -117,7 +117,7 @@ Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
               (wanted == 1 ? "one argument" : "two arguments"));
     return {};
   }
-  const ExprId argument = tree.args[expr.args.first].value;
+  const ExprId argument = tree.args[expr.list.first].value;
   Note note;
   if (call == ReferenceCall::kNew) return pools.infer_new(argument);
   if (call == ReferenceCall::kSizeof) {
@@ -133,7 +133,7 @@ Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
   note.can_trap = operand.can_trap;
   switch (call) {
     case ReferenceCall::kQuery:
-      infer(tree.args[expr.args.first + 1].value);
+      infer(tree.args[expr.list.first + 1].value);
       note.calls = true;
       note.type = program.types.elementary(ir::Kind::kBool);
       return note;
@@ -158,7 +158,7 @@ Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
 // SIZEOF takes a variable or a type.
 ir::TypeId Sema::type_of_argument(ExprId argument) {
   const Expr& expr = tree[argument];
-  if (expr.kind == ExprKind::kType) return resolve(expr.spec).type;
+  if (expr.kind == ExprKind::kType) return resolve(expr.spec()).type;
   if (expr.kind == ExprKind::kName ? !find_variable(expr.name).valid()
                                    : namespaces.declares(expr)) {
     if (auto use = find_type(namespaces.find(NameSort::kDeclaration, expr))) return use->type;

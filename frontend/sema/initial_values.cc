@@ -118,8 +118,8 @@ bool InitialBuilder::item_parts(ExprId id, uint64_t& rounds, std::vector<ExprId>
     }
   } else if (item.kind == ExprKind::kCall && tree[item.operand].kind == ExprKind::kName &&
              sema_.find_variable(tree[item.operand]).valid()) {
-    for (uint32_t k = 0; k < item.args.count; ++k) {
-      values.push_back(tree.args[item.args.first + k].value);
+    for (uint32_t k = 0; k < item.list.count; ++k) {
+      values.push_back(tree.args[item.list.first + k].value);
       if (!values.back().valid()) return false;
     }
   } else {
@@ -217,8 +217,8 @@ ir::ConstId InitialBuilder::structure(const Expr& expr, ir::TypeId type, ir::Con
   ir::ConstValue value;
   if (otherwise.valid()) value.elements = sema_.program.constants[otherwise].elements;
   std::vector<bool> given;
-  for (uint32_t i = 0; i < expr.args.count; ++i) {
-    const Arg& arg = sema_.tree.args[expr.args.first + i];
+  for (uint32_t i = 0; i < expr.list.count; ++i) {
+    const Arg& arg = sema_.tree.args[expr.list.first + i];
     Slot slot = find_slot(type, arg.name);
     if (slot.member < 0 || arg.output || !arg.value.valid()) {
       sema_.error(DiagnosticCode::kUnknownMember, arg.span,

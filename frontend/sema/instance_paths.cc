@@ -131,7 +131,7 @@ bool InstancePaths::walk(ExprId id, Path& path) {
       path.root = sema_.direct_member(expr);
       path.text = sema_.program.types[sema_.program.globals].members[path.root].name;
       path.global = true;
-      path.type = sema_.type_of_direct(expr.address);
+      path.type = sema_.type_of_direct(sema_.tree.directs[expr.number].address);
       return true;
     default:
       sema_.error(DiagnosticCode::kUnknownName, expr.span,

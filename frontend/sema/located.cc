@@ -143,10 +143,11 @@ uint32_t Sema::direct_member(const Expr& expr) {
     return known->second;
   }
   ir::Type& globals = program.types.edit(program.globals);
-  ir::TypeId type = type_of_direct(expr.address);
+  const ir::DirectAddress address = tree.directs[expr.number].address;
+  ir::TypeId type = type_of_direct(address);
   uint32_t index = 0;
   while (index < globals.members.size() &&
-         !(globals.members[index].address == expr.address && globals.members[index].type == type)) {
+         !(globals.members[index].address == address && globals.members[index].type == type)) {
     ++index;
   }
   if (index == globals.members.size()) {
@@ -154,9 +155,9 @@ uint32_t Sema::direct_member(const Expr& expr) {
     member.name = expr.name.text;
     member.type = type;
     member.section = ir::Section::kGlobal;
-    member.address = expr.address;
+    member.address = address;
     globals.members.push_back(std::move(member));
-    direct_uses_.push_back({expr.address, type, expr.span, std::string(expr.name.text)});
+    direct_uses_.push_back({address, type, expr.span, std::string(expr.name.text)});
   }
   direct_members_.emplace(std::move(name), index);
   return index;

@@ -73,8 +73,8 @@ std::vector<Match> Sema::match(const Expr& call, const PouInfo& callee) const {
     }
   }
   std::vector<Match> matches;
-  for (uint32_t i = 0; i < call.args.count; ++i) {
-    const Arg& arg = tree.args[call.args.first + i];
+  for (uint32_t i = 0; i < call.list.count; ++i) {
+    const Arg& arg = tree.args[call.list.first + i];
     if (!arg.value.valid() || is_enable(arg, &callee)) continue;
     if (arg.name.empty()) {
       if (i < parameters.size()) matches.push_back({parameters[i], &arg});
