@@ -98,6 +98,10 @@ BlockId EvalMachine::caught_by(Frame& frame, BlockId block) {
   return handler;
 }
 
+static bool may_write(Op op) {
+  return op == Op::kStore || op == Op::kCopy || op == Op::kInit || op == Op::kCallNative;
+}
+
 BlockId EvalMachine::run_block(Frame& frame, BlockId block) {
   for (const Inst& inst : frame.pou->blocks[block.index].insts) {
     if (*budget_ == 0) {
@@ -110,6 +114,7 @@ BlockId EvalMachine::run_block(Frame& frame, BlockId block) {
     }
     if (!trap_) {
       run_inst(frame, inst);
+      if (written && may_write(inst.op)) written();
     }
     if (trap_) {
       break;

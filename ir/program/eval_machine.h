@@ -2,6 +2,7 @@
 // ValueId, traps as values.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -48,6 +49,8 @@ class EvalMachine {
   std::optional<EvalTrap> run(Variable& instance, uint32_t task, int64_t now_ns, uint64_t& budget);
   // Runs a function that has no parameters; `local` of its frame as it was at the end.
   EvalResult run_alone(const Pou& pou, uint32_t local, uint64_t& budget);
+  // Called behind each instruction that may write variables.
+  std::function<void()> written;
 
  private:
   std::unique_ptr<Frame> make_frame(const Pou& pou, Variable* self);

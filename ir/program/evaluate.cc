@@ -30,6 +30,12 @@ struct Evaluator::Impl {
     std::string bytes = {};
   };
   std::vector<Output> outputs;  // at %Q
+  struct Held {
+    std::string path;
+    Address at;
+    std::vector<uint8_t> bytes;
+  };
+  std::vector<Held> held;
   References references;
   EvalMachine machine;
   EvalInspector inspector;
@@ -166,6 +172,7 @@ struct Evaluator::Impl {
   // What a task that traps has written to outputs goes back to what it was when the scan began
   // (vm/runtime/scheduler_scan.cc).
   std::optional<EvalTrap> run_task(uint32_t task, int64_t now_ns, uint64_t budget) {
+    impose();
     for (Output& output : outputs) {
       output.bits = output.variable->bits;
       output.bytes = output.variable->bytes;
@@ -177,6 +184,10 @@ struct Evaluator::Impl {
       output.variable->bytes = output.bytes;
     }
     return trap;
+  }
+
+  void impose() {
+    for (const Held& one : held) references.bytes().write(*one.at.root, one.at.offset, one.bytes);
   }
 
   // What leaves traps in nobody's scan.
@@ -212,8 +223,8 @@ struct Evaluator::Impl {
   void release_due(int64_t now_ns) {
     for (uint32_t i = 0; i < program.tasks.size(); ++i) {
       const Task& task = program.tasks[i];
-      const bool due = task.policy.freewheeling ||
-                       (task.period_ns > 0 && now_ns % task.period_ns == 0);
+      const bool due =
+          task.policy.freewheeling || (task.period_ns > 0 && now_ns % task.period_ns == 0);
       if (due && !(task.event != kNoEvent && level[i])) released[i] = true;
     }
   }
@@ -315,6 +326,20 @@ base::Status Evaluator::set_bits(std::string_view path, uint64_t bits) {
   }
   impl_->references.bytes().write(*at->root, at->offset, raw);
   return base::Ok{};
+}
+
+base::Status Evaluator::hold(std::string_view path, std::span<const uint8_t> bytes) {
+  const base::Result<Address> at = impl_->inspector.find_value(path);
+  if (!at.ok()) {
+    return at.error();
+  }
+  impl_->held.push_back({std::string(path), *at, {bytes.begin(), bytes.end()}});
+  impl_->machine.written = [impl = impl_.get()] { impl->impose(); };
+  return base::Ok{};
+}
+
+void Evaluator::release(std::string_view path) {
+  std::erase_if(impl_->held, [&](const Impl::Held& one) { return one.path == path; });
 }
 
 base::Status Evaluator::set_bytes(std::string_view path, std::span<const uint8_t> bytes) {

@@ -75,6 +75,10 @@ class Evaluator {
   // As they are in memory, of a structure too: with what overlaps other leaves, follows a NUL or
   // is padding. Outputs count as left by a complete scan.
   base::Status set_bytes(std::string_view path, std::span<const uint8_t> bytes);
+  // From now on the bytes are there again behind whatever may have written them: a force, as every
+  // reader is to find it (docs/adr/0026-forced-versions.md).
+  base::Status hold(std::string_view path, std::span<const uint8_t> bytes);
+  void release(std::string_view path);
   // Cut to the capacity; WSTRING: UTF-16LE.
   base::Status set_string(std::string_view path, std::string_view text);
 

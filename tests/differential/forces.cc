@@ -8,6 +8,7 @@
 
 #include "tests/differential/compiled.h"
 #include "tests/differential/random.h"
+#include "tests/golden/runner/evaluator_engine.h"
 #include "vm/load/writers.h"
 #include "vm/runtime/clocks.h"
 #include "vm/runtime/controller.h"
@@ -17,6 +18,7 @@ namespace {
 
 constexpr int kScansBefore = 2;
 constexpr uint64_t kFuel = 500'000;
+constexpr uint64_t kInstructions = 1'000'000;  // of the evaluator, for a scan
 constexpr uint32_t kMostForces = 30;
 
 class AskingClock : public vm::VirtualClock {
@@ -40,7 +42,7 @@ struct Mode {
   vm::Fusing fusing;
   uint64_t fuel_slice;
   bool republished;       // an identity change after every scan
-  bool optimised = true;  // else each variable is read where the source reads it: the oracle
+  bool optimised = true;  // else each variable is read where the source reads it
 };
 constexpr Mode kModes[] = {
     {"no passes", vm::Tier::kInterpreter, vm::Fusing::kNever, 1000, false, false},
@@ -51,7 +53,61 @@ constexpr Mode kModes[] = {
     {"native, republished", vm::Tier::kNative, vm::Fusing::kAuto, 1000, true},
 };
 
-class Forced {
+// "fuel Main:7" a line: what all tiers must agree about.
+std::string trap_line(ir::TrapKind kind, const std::string& pou, uint32_t line) {
+  return std::string(ir::trap_name(kind)) + " " + pou + ":" + std::to_string(line) + "\n";
+}
+
+// A program whose variables can be forced.
+class Subject {
+ public:
+  virtual ~Subject() = default;
+  // What went wrong, or "".
+  virtual std::string scan() = 0;
+  virtual std::string state() const = 0;
+  virtual base::Status force(const vm::NamedValue& row) = 0;
+  virtual void unforce(const std::string& path) = 0;
+  // A force can make a loop endless. Where in it the fuel ends, is another matter in other code.
+  virtual bool out_of_fuel() const = 0;
+};
+
+// The oracle: it knows no code of writers, but puts the values back behind every instruction.
+class Evaluated : public Subject {
+ public:
+  Evaluated(const golden::Program& program, const ir::Image& image)
+      : image_(image),
+        evaluator_(program.program, golden::memory_of(image, program.program.types)),
+        period_ns_(golden::base_period_ns(program.program)) {}
+
+  std::string scan() override {
+    for (const ir::EvalTrap& trap : evaluator_.scan(now_ns_, kInstructions)) {
+      out_of_fuel_ |= trap.kind == ir::TrapKind::kFuel;
+      traps_ += trap_line(trap.kind, trap.pou, trap.line);
+    }
+    now_ns_ += period_ns_;
+    return {};
+  }
+  std::string state() const override { return evaluator_.state() + traps_; }
+  base::Status force(const vm::NamedValue& row) override {
+    const base::Result<ir::Symbol> symbol = ir::find_symbol(image_, row.path);
+    if (!symbol.ok()) return symbol.error();
+    const base::Result<base::Bytes> bytes = ir::parse_value(image_, symbol->type, row.value);
+    if (!bytes.ok()) return bytes.error();
+    return evaluator_.hold(row.path, *bytes);
+  }
+  void unforce(const std::string& path) override { evaluator_.release(path); }
+  bool out_of_fuel() const override { return out_of_fuel_; }
+
+ private:
+  const ir::Image& image_;
+  ir::Evaluator evaluator_;
+  int64_t period_ns_;
+  int64_t now_ns_ = 0;
+  std::string traps_;
+  bool out_of_fuel_ = false;
+};
+
+class Forced : public Subject {
  public:
   base::Status start(const ir::VerifiedImage& image, const Mode& mode) {
     republished_ = mode.republished;
@@ -68,9 +124,16 @@ class Forced {
     return base::Ok{};
   }
 
-  // What went wrong, or "".
-  std::string scan() {
+  std::string scan() override {
     controller_->cycle();
+    for (; traps_seen_ < controller_->trap_count(); ++traps_seen_) {
+      const std::vector<vm::TrapRecord>& kept = controller_->traps();
+      const size_t back = static_cast<size_t>(controller_->trap_count() - traps_seen_);
+      if (back > kept.size()) continue;
+      const vm::TrapRecord& trap = kept[kept.size() - back];
+      traps_ += trap_line(trap.trap.kind, trap.text.pou, trap.text.line);
+      out_of_fuel_ |= trap.trap.kind == ir::TrapKind::kFuel;
+    }
     if (republished_ && !controller_->faulted()) {
       auto next = controller_->prepare(controller_->verified());
       if (!next.ok()) return base::to_string(next.error());
@@ -78,21 +141,15 @@ class Forced {
     }
     return changed_;
   }
-  std::string state() const {
-    std::string text = ir::state_text(controller_->image(), controller_->memory().view());
-    for (const vm::TrapRecord& trap : controller_->traps()) {
-      text += std::string(ir::trap_name(trap.trap.kind)) + " " + trap.text.pou + ":" +
-              std::to_string(trap.text.line) + " " + trap.text.text + "\n";
-    }
-    return text;
+  std::string state() const override {
+    return ir::state_text(controller_->image(), controller_->memory().view()) + traps_;
   }
-  // A force can make a loop endless. Where in it the fuel ends, is another matter in other code.
-  bool out_of_fuel() const {
-    const std::vector<vm::TrapRecord>& traps = controller_->traps();
-    return std::any_of(traps.begin(), traps.end(), [](const vm::TrapRecord& trap) {
-      return trap.trap.kind == ir::TrapKind::kFuel;
-    });
+  base::Status force(const vm::NamedValue& row) override {
+    return controller_->force(row.path, row.value);
   }
+  // A later one at the same place, in a union, has replaced it.
+  void unforce(const std::string& path) override { (void)controller_->unforce(path).ok(); }
+  bool out_of_fuel() const override { return out_of_fuel_; }
   vm::Controller& controller() { return *controller_; }
 
  private:
@@ -112,6 +169,9 @@ class Forced {
   std::unique_ptr<vm::Controller> controller_;
   std::unique_ptr<vm::Generation> old_;
   std::string changed_;
+  std::string traps_;
+  uint64_t traps_seen_ = 0;
+  bool out_of_fuel_ = false;
   bool republished_ = false;
 };
 
@@ -160,7 +220,7 @@ struct Run {
   std::string wrong;
 };
 
-Run run(Forced& forced, const std::vector<vm::NamedValue>& values, int scans) {
+Run run(Subject& forced, const std::vector<vm::NamedValue>& values, int scans) {
   Run out;
   const auto some = [&](int count) {
     for (int i = 0; i < count && out.wrong.empty() && !forced.out_of_fuel(); ++i) {
@@ -170,14 +230,11 @@ Run run(Forced& forced, const std::vector<vm::NamedValue>& values, int scans) {
   };
   some(kScansBefore);
   for (const vm::NamedValue& row : values) {
-    const base::Status done = forced.controller().force(row.path, row.value);
+    const base::Status done = forced.force(row);
     if (!done.ok()) out.wrong = base::to_string(done.error());
   }
   some(scans);
-  for (size_t i = 0; i < values.size(); i += 2) {
-    // A later one at the same place, in a union, has replaced it.
-    (void)forced.controller().unforce(values[i].path).ok();
-  }
+  for (size_t i = 0; i < values.size(); i += 2) forced.unforce(values[i].path);
   some(2);
   return out;
 }
@@ -234,7 +291,8 @@ Finding examine_forces(const std::string& source, uint64_t seed, int scans,
     out.key = "skipped";
     return out;
   }
-  Run expected;
+  Evaluated oracle(*plain, images[0]->image());
+  const Run expected = run(oracle, values, scans);
   for (const Mode& mode : kModes) {
     Forced forced;
     if (base::Status s = forced.start(*images[mode.optimised ? 1 : 0], mode); !s.ok()) {
@@ -245,10 +303,6 @@ Finding examine_forces(const std::string& source, uint64_t seed, int scans,
     if (forced.out_of_fuel()) {
       out.trap = ir::trap_name(ir::TrapKind::kFuel);
       out.scan = now.states.size() + 1;
-    }
-    if (&mode == &kModes[0]) {
-      expected = std::move(now);
-      continue;
     }
     for (size_t i = 0; i < std::min(expected.states.size(), now.states.size()); ++i) {
       if (expected.states[i] == now.states[i]) continue;

@@ -1,5 +1,6 @@
-// A program that runs with some of its variables forced, on several tiers: they agree after every
-// scan, and a variable whose force holds everywhere has its value at every safe point.
+// A program that runs with some of its variables forced, on several tiers, optimised and not: after
+// every scan they agree with the evaluator, which puts the values back behind every instruction;
+// and what is forced has its value at every safe point.
 #pragma once
 
 #include <cstdint>

@@ -156,6 +156,30 @@ TEST(Evaluate, FuelEndsAnEndlessLoop) {
   EXPECT_EQ(bits(evaluator, "n"), 20u);
 }
 
+// What is held is read so right behind the store, until it is released.
+TEST(Evaluate, HeldValuesArePutBack) {
+  const Program program =
+      verified(small_program("  member global n : DINT\n  member global seen : DINT\n", R"(b0:
+    v0 = load i32 global.n
+    v1 = const i32 1
+    v2 = add i32 v0, v1
+    store i32 global.n, v2
+    v3 = load i32 global.n
+    store i32 global.seen, v3
+    return
+)"));
+  Evaluator evaluator(program);
+  EXPECT_FALSE(evaluator.hold("missing", {}).ok());
+  const uint8_t seven[] = {7, 0, 0, 0};
+  ASSERT_TRUE(evaluator.hold("n", seven).ok());
+  expect_no_trap(evaluator.scan(0, kBudget));
+  EXPECT_EQ(bits(evaluator, "n"), 7u);
+  EXPECT_EQ(bits(evaluator, "seen"), 7u);
+  evaluator.release("n");
+  expect_no_trap(evaluator.scan(1'000'000, kBudget));
+  EXPECT_EQ(bits(evaluator, "seen"), 8u);
+}
+
 // F calls itself as often as `n` says.
 TEST(Evaluate, RecursionEndsAtTheCallDepth) {
   const Program program =
