@@ -44,11 +44,12 @@ bool Bools::writes_as_others() {
     for (uint32_t i = 0; i < pou.unit_count && !found; ++i) {
       const Unit* const unit = &image_.code[pou.first_unit + i];
       const Opcode op = unit->opcode();
+      if (opcode_row(op).extended) ++i;
+      if (op < Opcode::RESOLVE || op > Opcode::RESOLVE_W) continue;
       // An instance is exactly that, or of a type that extends it.
       const bool plain =
           op == Opcode::RESOLVE && !image_.types.is_instance(region_of_field(unit[1].x()).type);
       found = plain || op == Opcode::RESOLVE_S || op == Opcode::RESOLVE_W;
-      if (opcode_row(op).extended) ++i;
     }
   }
   return found;

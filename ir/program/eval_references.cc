@@ -23,7 +23,7 @@ void References::add_area(Variable& root, uint32_t id, uint32_t generation, uint
   home.data = data;
   home.used = layouts_[root.type].used;
   home.capacity = std::max(home.used, layouts_[root.type].area_capacity);
-  home.slots = slots_inside(program_.types, layouts_, root.type);
+  home.slots = SlotFinder(program_.types, layouts_).inside(root.type);
   segment_of_[&root] = home.segment;
   areas_[home.segment] = std::move(home);
 }

@@ -49,76 +49,6 @@ bool step_down(const TypeTable& types, const Layouts& layouts, Part& part, std::
   return false;
 }
 
-class SlotWalk {
- public:
-  SlotWalk(const TypeTable& types, const Layouts& layouts)
-      : types_(types), layouts_(layouts), holds_(types.size(), Holds::kUnknown) {}
-
-  void members(TypeId id, uint32_t begin, uint32_t depth) {
-    const std::vector<Member>& members = types_[id].members;
-    for (size_t i = 0; i < members.size(); ++i) {
-      const uint32_t at = begin + layouts_[id].member_offsets[i];
-      if (members[i].section == Section::kInOut) {
-        slots_.push_back(at);
-      } else {
-        value(members[i].type, at, depth + 1);
-      }
-    }
-  }
-
-  std::vector<uint32_t> take() {
-    std::sort(slots_.begin(), slots_.end());
-    return std::move(slots_);
-  }
-
- private:
-  enum class Holds : uint8_t { kUnknown, kNo, kYes };
-
-  bool holds(TypeId id, uint32_t depth) {
-    if (types_.is_instance(id)) {
-      return true;
-    }
-    Holds& known = holds_[id.index];
-    if (known == Holds::kUnknown) {
-      known = Holds::kNo;
-      bool found = false;
-      const Type& type = types_[id];
-      if (depth < base::kMaxNesting && type.kind == Kind::kArray) {
-        found = holds(type.base, depth + 1);
-      }
-      for (size_t i = 0; i < type.members.size() && depth < base::kMaxNesting; ++i) {
-        found = found || holds(type.members[i].type, depth + 1);
-      }
-      holds_[id.index] = found ? Holds::kYes : Holds::kNo;
-    }
-    return holds_[id.index] == Holds::kYes;
-  }
-
-  void value(TypeId id, uint32_t at, uint32_t depth) {
-    if (types_.is_instance(id)) {
-      slots_.push_back(at);
-    } else if (holds(id, 0) && depth < base::kMaxNesting) {
-      if (types_[id].kind == Kind::kArray) {
-        return elements(id, at, depth);
-      }
-      members(id, at, depth);
-    }
-  }
-
-  void elements(TypeId id, uint32_t at, uint32_t depth) {
-    const TypeId element = types_[id].base;
-    const uint32_t stride = layouts_[element].size;
-    for (uint32_t done = 0; stride != 0 && done < layouts_[id].size; done += stride) {
-      value(element, at + done, depth + 1);
-    }
-  }
-
-  const TypeTable& types_;
-  const Layouts& layouts_;
-  std::vector<Holds> holds_;
-  std::vector<uint32_t> slots_;
-};
-
 }  // namespace
 
 std::string index_text(const Type& array, uint64_t flat) {
@@ -155,10 +85,62 @@ std::string reference_text(const std::string& area, std::string inside) {
   return area.empty() ? "ref" : area + inside;
 }
 
-std::vector<uint32_t> slots_inside(const TypeTable& types, const Layouts& layouts, TypeId root) {
-  SlotWalk walk(types, layouts);
-  walk.members(root, 0, 0);
-  return walk.take();
+std::vector<uint32_t> SlotFinder::inside(TypeId root) {
+  slots_.clear();
+  members(root, 0, 0);
+  std::sort(slots_.begin(), slots_.end());
+  return slots_;
+}
+
+void SlotFinder::members(TypeId id, uint32_t begin, uint32_t depth) {
+  const std::vector<Member>& members = types_[id].members;
+  for (size_t i = 0; i < members.size(); ++i) {
+    const uint32_t at = begin + layouts_[id].member_offsets[i];
+    if (members[i].section == Section::kInOut) {
+      slots_.push_back(at);
+    } else {
+      value(members[i].type, at, depth + 1);
+    }
+  }
+}
+
+bool SlotFinder::holds(TypeId id, uint32_t depth) {
+  if (types_.is_instance(id)) {
+    return true;
+  }
+  Holds& known = holds_[id.index];
+  if (known == Holds::kUnknown) {
+    known = Holds::kNo;
+    bool found = false;
+    const Type& type = types_[id];
+    if (depth < base::kMaxNesting && type.kind == Kind::kArray) {
+      found = holds(type.base, depth + 1);
+    }
+    for (size_t i = 0; i < type.members.size() && depth < base::kMaxNesting; ++i) {
+      found = found || holds(type.members[i].type, depth + 1);
+    }
+    holds_[id.index] = found ? Holds::kYes : Holds::kNo;
+  }
+  return holds_[id.index] == Holds::kYes;
+}
+
+void SlotFinder::value(TypeId id, uint32_t at, uint32_t depth) {
+  if (types_.is_instance(id)) {
+    slots_.push_back(at);
+  } else if (holds(id, 0) && depth < base::kMaxNesting) {
+    if (types_[id].kind == Kind::kArray) {
+      return elements(id, at, depth);
+    }
+    members(id, at, depth);
+  }
+}
+
+void SlotFinder::elements(TypeId id, uint32_t at, uint32_t depth) {
+  const TypeId element = types_[id].base;
+  const uint32_t stride = layouts_[element].size;
+  for (uint32_t done = 0; stride != 0 && done < layouts_[id].size; done += stride) {
+    value(element, at + done, depth + 1);
+  }
 }
 
 }  // namespace ir

@@ -22,8 +22,25 @@ std::string path_inside(const TypeTable& types, const Layouts& layouts, TypeId r
 // "ref" where there is no variable to name.
 std::string reference_text(const std::string& area, std::string inside);
 
-// Offsets of all 4-byte slots (instance IDs, in-outs) in an area of type `root`, sorted.
-// `types` is verified; the cost is that of all elements that hold slots.
-std::vector<uint32_t> slots_inside(const TypeTable& types, const Layouts& layouts, TypeId root);
+// Offsets of all 4-byte slots (instance IDs, in-outs) in areas, sorted. `types` is verified, and
+// borrowed; the cost is that of all elements that hold slots, and once that of all types.
+class SlotFinder {
+ public:
+  SlotFinder(const TypeTable& types, const Layouts& layouts)
+      : types_(types), layouts_(layouts), holds_(types.size(), Holds::kUnknown) {}
+  std::vector<uint32_t> inside(TypeId root);
+
+ private:
+  enum class Holds : uint8_t { kUnknown, kNo, kYes };
+  void members(TypeId id, uint32_t begin, uint32_t depth);
+  void value(TypeId id, uint32_t at, uint32_t depth);
+  void elements(TypeId id, uint32_t at, uint32_t depth);
+  bool holds(TypeId id, uint32_t depth);
+
+  const TypeTable& types_;
+  const Layouts& layouts_;
+  std::vector<Holds> holds_;  // by type
+  std::vector<uint32_t> slots_;
+};
 
 }  // namespace ir

@@ -45,6 +45,7 @@ void Generation::write_pool(uint8_t* memory) const {
 // Slots are listed once per type.
 void Generation::build_areas() {
   const ir::Image& image = image_.image();
+  ir::SlotFinder finder(image.types, image.layouts);
   std::unordered_map<ir::TypeId, std::pair<uint32_t, uint32_t>> known;
   areas_.resize(image.instances.size());
   for (uint32_t id = 0; id < areas_.size(); ++id) {
@@ -53,7 +54,7 @@ void Generation::build_areas() {
     const ir::TypeLayout& layout = image.layouts[row.type];
     const auto [slots, added] = known.try_emplace(row.type);
     if (added) {
-      const std::vector<uint32_t> found = ir::slots_inside(image.types, image.layouts, row.type);
+      const std::vector<uint32_t> found = finder.inside(row.type);
       slots->second = {static_cast<uint32_t>(area_slots_.size()),
                        static_cast<uint32_t>(found.size())};
       area_slots_.insert(area_slots_.end(), found.begin(), found.end());
