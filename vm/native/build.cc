@@ -24,7 +24,6 @@ Builder::Builder(const Facts& facts) : facts_(facts) {
   ends_.resize(f_.blocks.size());
   users_.resize(f_.blocks.size(), 0);
   parameters_.resize(f_.blocks.size());
-  preds_.resize(f_.blocks.size());
   for (Block b = 0; b < f_.blocks.size(); ++b) {
     f_.blocks[b].unit = facts.blocks()[b].first;
     f_.blocks[b].loop = facts.loop_of(b);
@@ -33,16 +32,25 @@ Builder::Builder(const Facts& facts) : facts_(facts) {
 }
 
 void Builder::find_preds() {
-  for (Block b = 0; b < f_.blocks.size(); ++b) {
-    Block next[2];
-    uint32_t count = 0;
-    facts_.successors(b, next, count);
-    for (uint32_t i = 0; i < count; ++i) {
-      if (next[i] <= b) continue;
-      preds_[next[i]].push_back({b, i});
-      ++users_[b];
+  first_pred_.assign(f_.blocks.size() + 1, 0);
+  const auto each_way = [&](auto visit) {
+    for (Block b = 0; b < f_.blocks.size(); ++b) {
+      Block next[2];
+      uint32_t count = 0;
+      facts_.successors(b, next, count);
+      for (uint32_t i = 0; i < count; ++i) {
+        if (next[i] > b) visit(next[i], Pred{b, i});
+      }
     }
-  }
+  };
+  each_way([&](Block to, Pred pred) {
+    ++first_pred_[to + 1];
+    ++users_[pred.block];
+  });
+  for (Block b = 0; b < f_.blocks.size(); ++b) first_pred_[b + 1] += first_pred_[b];
+  preds_.resize(first_pred_.back());
+  std::vector<uint32_t> fill(first_pred_.begin(), first_pred_.end() - 1);
+  each_way([&](Block to, Pred pred) { preds_[fill[to]++] = pred; });
 }
 
 Function Builder::run() {
@@ -63,7 +71,7 @@ Function Builder::run() {
 void Builder::begin(Block block) {
   block_ = block;
   const size_t count = f_.variables.size();
-  const std::vector<Pred>& preds = preds_[block];
+  const std::span<const Pred> preds = this->preds(block);
   const bool head = f_.blocks[block].head;
   if (block == 0 && !head) {
     now_.value.assign(count, kNone);
@@ -131,7 +139,7 @@ void Builder::make_parameter(Block block, uint32_t variable) {
   epoch_of_.push_back(0);
   f_.blocks[block].params.push_back(param);
   parameters_[block].push_back(variable);
-  for (const Pred& pred : preds_[block]) {
+  for (const Pred& pred : preds(block)) {
     f_.blocks[pred.block].end.args[pred.target].push_back(at_end_of(pred.block, variable));
   }
   now_.value[variable] = param;
@@ -142,7 +150,7 @@ void Builder::make_parameter(Block block, uint32_t variable) {
 Val Builder::merged(Block block, uint32_t variable) {
   Val one = kNone;
   bool first = true;
-  for (const Pred& pred : preds_[block]) {
+  for (const Pred& pred : preds(block)) {
     const Val value = ends_[pred.block].value[variable];
     if (first) one = value;
     if (value != one) return kNone;
@@ -156,7 +164,7 @@ void Builder::merge(Block block) {
     bool all = true;
     bool any = false;
     uint8_t dirty = 0;
-    for (const Pred& pred : preds_[block]) {
+    for (const Pred& pred : preds(block)) {
       const bool has_value = ends_[pred.block].value[v] != kNone;
       all &= has_value;
       any |= has_value;
@@ -188,7 +196,7 @@ void Builder::enter_loop(Block block, uint32_t loop) {
     const bool slot = f_.variables[v].slot;
     if (calls) {
       // Calls want every slot in memory, so it is there from the start.
-      for (const Pred& pred : preds_[block]) {
+      for (const Pred& pred : preds(block)) {
         State& end = ends_[pred.block];
         if (!slot || end.dirty[v] == 0) continue;
         Node store;
@@ -205,11 +213,11 @@ void Builder::enter_loop(Block block, uint32_t loop) {
     }
     const bool modified = has(l.modified, v);
     const bool read = has(reads, v);
-    if (preds_[block].empty()) continue;
+    if (preds(block).empty()) continue;
     if (slot) {
       if (!read && !modified && merged(block, v) == kNone) {
         bool dirty = false;
-        for (const Pred& pred : preds_[block]) dirty |= ends_[pred.block].dirty[v] != 0;
+        for (const Pred& pred : preds(block)) dirty |= ends_[pred.block].dirty[v] != 0;
         if (!dirty) continue;
       }
     } else {
@@ -218,7 +226,7 @@ void Builder::enter_loop(Block block, uint32_t loop) {
       // Something that no field names may change it.
       if (modified && facts_.killed_in(loop, v)) continue;
       bool known = true;
-      for (const Pred& pred : preds_[block]) known &= ends_[pred.block].value[v] != kNone;
+      for (const Pred& pred : preds(block)) known &= ends_[pred.block].value[v] != kNone;
       if (!known && ++hoisted > kMostHoisted) continue;
     }
     if (modified) {
@@ -227,7 +235,7 @@ void Builder::enter_loop(Block block, uint32_t loop) {
       continue;
     }
     uint8_t dirty = 0;
-    for (const Pred& pred : preds_[block]) {
+    for (const Pred& pred : preds(block)) {
       at_end_of(pred.block, v);
       dirty |= ends_[pred.block].dirty[v];
     }
@@ -308,7 +316,7 @@ void Builder::pass_back(Block block, Block head) {
   for (const uint32_t v : deferred()) {
     if (std::ranges::find(parameters_[head], v) == parameters_[head].end()) store_slot(v);
   }
-  const bool in_memory = preds_[head].empty() || facts_.has_call(facts_.loop_of(head));
+  const bool in_memory = preds(head).empty() || facts_.has_call(facts_.loop_of(head));
   if (in_memory) {
     for (uint32_t v = 0; v < f_.variables.size(); ++v) {
       if (now_.dirty[v] != 0 && facts_.live_in(head, v)) store_slot(v);

@@ -13,7 +13,7 @@
 #include "stdlib/native/natives.h"
 
 #include "vm/native/facts.h"
-#include "vm/native/known_nodes.h"
+#include "vm/native/number_table.h"
 #include "vm/native/recipes.h"
 
 namespace vm::native {
@@ -124,7 +124,11 @@ class Builder {
 
   const Facts& facts_;
   Function f_;
-  std::vector<std::vector<Pred>> preds_;
+  std::span<const Pred> preds(Block block) const {
+    return {preds_.data() + first_pred_[block], preds_.data() + first_pred_[block + 1]};
+  }
+  std::vector<uint32_t> first_pred_;  // by block, in `preds_`
+  std::vector<Pred> preds_;
   std::vector<State> ends_;                        // by block, while something needs it
   std::vector<uint32_t> users_;                    // of ends_
   std::vector<std::vector<uint32_t>> parameters_;  // variables, by block
@@ -137,8 +141,8 @@ class Builder {
   uint32_t version_ = 0;            // of memory that no variable names
   uint32_t epoch_ = 0;              // values of earlier epochs are reached through variables only
   std::vector<uint32_t> epoch_of_;  // by value
-  KnownNodes known_;                // pure nodes
-  std::unordered_map<uint64_t, Val> constants_[8];  // by bits; of 4 or 8 bytes floating, integers
+  NumberTable known_;               // pure nodes, by their hash
+  NumberTable constants_[8];        // by bits; of 4 or 8 bytes floating, integers
 };
 
 // Of operations that give the same, `version` of memory being the same.

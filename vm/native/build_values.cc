@@ -46,12 +46,13 @@ Val Builder::constant(uint64_t bits_, uint8_t width, bool floating) {
   bits_ &= mask(width);
   // By width too: 16#FFFF is -1 in two bytes.
   auto& known = constants_[(floating ? 4 : 0) + std::countr_zero(width)];
-  const auto [at, added] = known.try_emplace(bits_, static_cast<Val>(f_.values.size()));
-  if (added) {
+  const auto fresh = static_cast<Val>(f_.values.size());
+  const Val value = known.add(bits_, fresh);
+  if (value == fresh) {
     f_.values.push_back({floating, width, true, bits_, kNone, 0});
     epoch_of_.push_back(0);
   }
-  return at->second;
+  return value;
 }
 
 Node Builder::node(Op op, uint8_t width, Val a, Val b, Val c, Val d) const {

@@ -75,8 +75,8 @@ void Facts::find_bodies(const BodyOf& body_of) {
 }
 
 const Body* Facts::body_at(uint32_t unit) const {
-  const auto found = bodies_.find(unit);
-  return found == bodies_.end() ? nullptr : found->second;
+  const Body* const* const found = bodies_.find(unit);
+  return found == nullptr ? nullptr : *found;
 }
 
 bool may_share_instance(const ir::Image& image, const ir::LinkedPou& a, const ir::LinkedPou& b) {

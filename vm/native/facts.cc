@@ -183,13 +183,13 @@ void Facts::find_variables() {
     first_named_[i] = static_cast<uint32_t>(named_.size());
     for (const Access& access : accesses_of(code_[i])) {
       if (access.base == ir::Base::kConst) continue;
-      const auto [at, added] =
-          numbers_.try_emplace(key_of(access), static_cast<uint32_t>(variables_.size()));
-      named_.push_back({at->second, access.reads, access.writes});
+      const uint32_t number =
+          numbers_.add(key_of(access), static_cast<uint32_t>(variables_.size()));
+      named_.push_back({number, access.reads, access.writes});
       ++named_count_[i];
-      if (!added) {
-        variables_[at->second].constant &= access.id;
-        variables_[at->second].written |= access.writes;
+      if (number != variables_.size()) {
+        variables_[number].constant &= access.id;
+        variables_[number].written |= access.writes;
         continue;
       }
       Variable v;
@@ -211,14 +211,10 @@ void Facts::find_variables() {
 }
 
 uint32_t Facts::variable(const Access& access) const {
-  if (access.base == ir::Base::kConst) return kNone;
-  return numbers_.at(key_of(access));
+  return access.base == ir::Base::kConst ? kNone : numbers_.find(key_of(access));
 }
 
-uint32_t Facts::find_variable(const Access& access) const {
-  const auto found = numbers_.find(key_of(access));
-  return found == numbers_.end() ? kNone : found->second;
-}
+uint32_t Facts::find_variable(const Access& access) const { return numbers_.find(key_of(access)); }
 
 void Facts::find_overlaps() {
   overlaps_.resize(variables_.size());
@@ -310,10 +306,12 @@ bool Facts::find_liveness(std::string& why) {
       const Opcode op = code_[*at].opcode();
       if (op == Opcode::RET) live = results;
       if (record && (is_call(op) || ir::opcode_row(op).traps)) {
-        std::vector<uint32_t>& behind = live_behind_[*at];
+        Listed& behind = live_behind_[*at];
+        behind = {static_cast<uint32_t>(live_slots_.size()), 0};
         for (size_t w = 0; w < words_; ++w) {
           for (uint64_t left = live[w] & slots[w]; left != 0; left &= left - 1) {
-            behind.push_back(static_cast<uint32_t>(w * 64) + std::countr_zero(left));
+            live_slots_.push_back(static_cast<uint32_t>(w * 64) + std::countr_zero(left));
+            ++behind.count;
           }
         }
       }
@@ -347,10 +345,10 @@ bool Facts::killed_in(uint32_t loop, uint32_t variable) const {
   return std::binary_search(killed.begin(), killed.end(), variable);
 }
 
-const std::vector<uint32_t>& Facts::live_behind(uint32_t unit) const {
-  static const std::vector<uint32_t> kNothing;
-  const auto found = live_behind_.find(unit);
-  return found == live_behind_.end() ? kNothing : found->second;
+std::span<const uint32_t> Facts::live_behind(uint32_t unit) const {
+  const Listed* const found = live_behind_.find(unit);
+  if (found == nullptr) return {};
+  return std::span(live_slots_).subspan(found->first, found->count);
 }
 
 bool Facts::live_out(Block block, uint32_t variable) const {
@@ -368,7 +366,7 @@ bool Facts::fits(std::string& why) const {
   constexpr uint64_t kMost = (uint64_t{1} << 31) - (uint64_t{1} << 20);
   bool good = true;
   for (const Variable& v : variables_) good &= v.base == MemBase::kData || v.offset < kMost;
-  for (const auto& [offset, reach] : reach_) {
+  for (const Reach& reach : reach_.all()) {
     for (const Reach::Part& part : reach.parts) {
       good &= part.base == ir::Base::kGlobal || part.end < kMost;
     }

@@ -6,13 +6,13 @@
 #include <functional>
 #include <span>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "base/result.h"
 #include "ir/bytecode/image.h"
 #include "ir/bytecode/pou_version.h"
 #include "vm/native/lir.h"
+#include "vm/native/number_table.h"
 
 namespace vm::native {
 
@@ -147,7 +147,7 @@ class Facts {
   }
   bool live_out(Block block, uint32_t variable) const;
   // Slots that are live behind the unit, which calls or may leave.
-  const std::vector<uint32_t>& live_behind(uint32_t unit) const;
+  std::span<const uint32_t> live_behind(uint32_t unit) const;
   // Slots that the caller reads.
   const std::vector<uint32_t>& results() const { return results_; }
   // The POU that the unit calls; kNone: it depends.
@@ -191,7 +191,7 @@ class Facts {
   std::vector<Loop> loops_;
   std::vector<uint32_t> loop_of_;
   std::vector<bool> loop_calls_;
-  std::unordered_map<uint32_t, const Body*> bodies_;  // by unit
+  ByKey<const Body*> bodies_;  // by unit
   std::vector<std::vector<uint32_t>> loop_reads_;
   std::vector<std::vector<uint32_t>> loop_killed_;
   std::vector<std::vector<uint32_t>> loop_deferred_;
@@ -200,15 +200,19 @@ class Facts {
   std::vector<Named> named_;
   std::vector<uint32_t> first_named_;  // by unit
   std::vector<uint8_t> named_count_;
-  std::unordered_map<uint64_t, uint32_t> numbers_;
+  NumberTable numbers_;  // of variables
   std::vector<std::vector<uint32_t>> overlaps_;
-  std::unordered_map<uint32_t, Reach> reach_;  // by offset of a frame slot
-  std::unordered_map<uint32_t, Reach> targets_,
-      sources_;  // by unit: what it writes, what COPY reads
+  ByKey<Reach> reach_;              // by offset of a frame slot with an address
+  ByKey<Reach> targets_, sources_;  // by unit: what it writes, what COPY reads
   std::vector<uint32_t> results_;
   size_t words_ = 0;
   std::vector<uint64_t> live_in_;
-  std::unordered_map<uint32_t, std::vector<uint32_t>> live_behind_;
+  struct Listed {
+    uint32_t first = 0;
+    uint32_t count = 0;
+  };
+  std::vector<uint32_t> live_slots_;
+  ByKey<Listed> live_behind_;  // by unit, in `live_slots_`
 };
 
 // Does the unit leave the POU for another, so that all slots must be in memory?

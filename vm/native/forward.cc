@@ -1,6 +1,7 @@
 #include "vm/native/forward.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace vm::native {
 namespace {
@@ -125,12 +126,14 @@ class Forwarder {
   }
 
   void block(Block b) {
-    known_.clear();
+    forget();
     BasicBlock& block = f_.blocks[b];
     if (!block.head && !block.resumes) meet(b);
     for (const uint32_t n : block.nodes) node(n);
     std::erase_if(block.nodes, [&](uint32_t n) { return f_.nodes[n].dead; });
-    ends_[b] = known_;
+    const bool asked = std::any_of(std::begin(block.end.target), std::end(block.end.target),
+                                   [&](Block to) { return to != kNone && !f_.blocks[to].head; });
+    if (asked) ends_[b].assign(known_.begin() + static_cast<std::ptrdiff_t>(oldest_), known_.end());
   }
 
   // What all ways bring.
@@ -153,8 +156,18 @@ class Forwarder {
     }
   }
 
+  void drop_old() {
+    known_.erase(known_.begin(), known_.begin() + static_cast<std::ptrdiff_t>(oldest_));
+    oldest_ = 0;
+  }
+
+  void forget() {
+    known_.clear();
+    oldest_ = 0;
+  }
+
   void add(const Known& known) {
-    if (known_.size() == kMostKnown) known_.erase(known_.begin());
+    if (known_.size() - oldest_ == kMostKnown && ++oldest_ == kMostKnown) drop_old();
     known_.push_back(known);
   }
 
@@ -166,7 +179,11 @@ class Forwarder {
       case Op::kStore: {
         const Mem mem = canonical(n.mem);
         const Root root = root_of(mem);
-        std::erase_if(known_, [&](const Known& k) { return may_overlap(mem, root, n.width, k); });
+        const auto first = known_.begin() + static_cast<std::ptrdiff_t>(oldest_);
+        known_.erase(
+            std::remove_if(first, known_.end(),
+                           [&](const Known& k) { return may_overlap(mem, root, n.width, k); }),
+            known_.end());
         const Val value = real(n.in[0]);
         // A constant of floating point costs more than a load.
         const Value& v = f_.values[value];
@@ -178,7 +195,7 @@ class Forwarder {
       case Op::kCall:
       case Op::kHelper:
       case Op::kNative:
-        return known_.clear();
+        return forget();
       case Op::kSelectCmp:
         return select(n);
       default:
@@ -200,7 +217,8 @@ class Forwarder {
 
   void load(Node& n) {
     const Mem mem = canonical(n.mem);
-    for (const Known& k : known_) {
+    for (size_t i = oldest_; i < known_.size(); ++i) {
+      const Known& k = known_[i];
       if (held_[n.result]) break;
       if (!same_place(k.mem, mem) || k.width != n.width || n.boolean != k.normal) continue;
       if (f_.values[k.value].floating != f_.values[n.result].floating) continue;
@@ -267,6 +285,7 @@ class Forwarder {
   std::vector<bool> held_;  // by value: a variable's at a loop
   std::vector<std::vector<Block>> preds_;
   std::vector<Known> known_;
+  size_t oldest_ = 0;  // in `known_`; what is in front is forgotten
   std::vector<std::vector<Known>> ends_;
 };
 

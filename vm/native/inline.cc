@@ -60,6 +60,14 @@ class Inliner {
   void split(Block b) {
     BasicBlock old = std::move(f_.blocks[b]);
     first_[b] = static_cast<Block>(blocks_.size());
+    const bool whole = std::none_of(old.nodes.begin(), old.nodes.end(), [&](uint32_t n) {
+      return f_.nodes[n].op == Op::kCall && f_.calls[f_.nodes[n].call].inlined;
+    });
+    if (whole) {
+      last_[b] = first_[b];
+      blocks_.push_back(std::move(old));
+      return;
+    }
     BasicBlock part;
     part.unit = old.unit;
     part.params = std::move(old.params);

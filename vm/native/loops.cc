@@ -105,6 +105,7 @@ std::vector<Block> every_turn(const Function& f, const Loop& loop) {
 }
 
 void insert_preheaders(Function& f) {
+  if (f.loops.empty()) return;
   const auto count = static_cast<Block>(f.blocks.size());
   std::vector<Block> place(count);  // of the old block
   Block next = 0;

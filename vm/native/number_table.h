@@ -1,5 +1,5 @@
-// By its hash, the node that did something last: a table of open addressing that is emptied at
-// once, as that happens at every block.
+// Numbers by key: a table of open addressing that is emptied at once, as that happens at every
+// block.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace vm::native {
 
-class KnownNodes {
+class NumberTable {
  public:
   void clear() {
     used_ = 0;
@@ -17,41 +17,77 @@ class KnownNodes {
     slots_.assign(slots_.size(), {});  // the numbers of epochs begin anew
     epoch_ = 1;
   }
-  // The node becomes what is known; the one before, or kNone.
-  uint32_t set(uint64_t hash, uint32_t node) {
-    if (2 * used_ >= slots_.size()) grow();
-    Slot& slot = slots_[place(hash)];
-    if (slot.epoch != epoch_) {
-      ++used_;
-      slot = {hash, kNone, epoch_};
-    }
-    const uint32_t before = slot.node;
-    slot.node = node;
+  // kNone: none.
+  uint32_t find(uint64_t key) const {
+    if (used_ == 0) return kNone;
+    const Slot& slot = slots_[place(key)];
+    return slot.epoch == epoch_ ? slot.number : kNone;
+  }
+  // The key's number from now on; gives the one before, or kNone.
+  uint32_t set(uint64_t key, uint32_t number) {
+    Slot& slot = at(key);
+    const uint32_t before = slot.number;
+    slot.number = number;
     return before;
+  }
+  // Its number; `fresh` becomes that of a key without one.
+  uint32_t add(uint64_t key, uint32_t fresh) {
+    Slot& slot = at(key);
+    if (slot.number == kNone) slot.number = fresh;
+    return slot.number;
   }
 
  private:
   struct Slot {
-    uint64_t hash = 0;
-    uint32_t node = 0;
+    uint64_t key = 0;
+    uint32_t number = 0;
     uint32_t epoch = 0;  // of clear(); another: it is free
   };
-  size_t place(uint64_t hash) const {
+  Slot& at(uint64_t key) {
+    if (2 * used_ >= slots_.size()) grow();
+    Slot& slot = slots_[place(key)];
+    if (slot.epoch != epoch_) {
+      ++used_;
+      slot = {key, kNone, epoch_};
+    }
+    return slot;
+  }
+  size_t place(uint64_t key) const {
     const size_t mask = slots_.size() - 1;
-    size_t at = (hash ^ hash >> 32) & mask;
-    while (slots_[at].epoch == epoch_ && slots_[at].hash != hash) at = (at + 1) & mask;
+    size_t at = (key * 0x9e3779b97f4a7c15u >> 32) & mask;
+    while (slots_[at].epoch == epoch_ && slots_[at].key != key) at = (at + 1) & mask;
     return at;
   }
   void grow() {
     const std::vector<Slot> old = std::move(slots_);
-    slots_.assign(old.empty() ? 64 : 2 * old.size(), {});
+    slots_.assign(old.empty() ? 16 : 2 * old.size(), {});
     for (const Slot& slot : old) {
-      if (slot.epoch == epoch_) slots_[place(slot.hash)] = slot;
+      if (slot.epoch == epoch_) slots_[place(slot.key)] = slot;
     }
   }
   std::vector<Slot> slots_;  // a power of two of them
   size_t used_ = 0;
   uint32_t epoch_ = 1;
+};
+
+// A T for each key that was asked for.
+template <class T>
+class ByKey {
+ public:
+  T& operator[](uint64_t key) {
+    const uint32_t number = numbers_.add(key, static_cast<uint32_t>(all_.size()));
+    if (number == all_.size()) all_.emplace_back();
+    return all_[number];
+  }
+  const T* find(uint64_t key) const {
+    const uint32_t number = numbers_.find(key);
+    return number == kNone ? nullptr : &all_[number];
+  }
+  const std::vector<T>& all() const { return all_; }
+
+ private:
+  NumberTable numbers_;
+  std::vector<T> all_;
 };
 
 }  // namespace vm::native

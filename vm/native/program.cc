@@ -33,6 +33,7 @@ namespace {
 
 constexpr uint32_t kMostUnits = 1u << 20;
 constexpr uint32_t kMostSpills = 1024;
+constexpr size_t kCodeBytesPerUnit = 32;  // of addresses; pages that no code fills take no memory
 
 ir::Unit resume_unit(const uint8_t* at) {
   const uint64_t bits = reinterpret_cast<uint64_t>(at) << 16 | kResumeHandler;
@@ -99,6 +100,7 @@ std::vector<uint64_t> facts_of(const ir::Image& image, const ImageFacts& common,
     }
     if (row.extended) ++i;
   }
+  out.shrink_to_fit();
   return out;
 }
 
@@ -248,6 +250,71 @@ void finish(const Emitted& emitted, const uint8_t* base) {
             [](const auto& a, const auto& b) { return a.unit < b.unit; });
 }
 
+using PouNatives = std::vector<std::shared_ptr<const PouNative>>;
+
+struct Job {
+  const ir::Image& image;
+  bool clean_bools = false;
+  const std::vector<PouEntry>& pous;
+  const TierOptions& options;
+  const PouNatives* running = nullptr;  // null: none
+  std::span<const ir::PouVersion> versions;
+  Progress* progress = nullptr;
+};
+
+// Machine code of all POUs but those whose running code is still right.
+std::vector<Emitted> emit_all(const Job& job, const host::Shared& shared,
+                              host::Assembler& assembler, PouNatives& made) {
+  const size_t shared_labels = assembler.labels();
+  const ImageFacts common(job.image, job.clean_bools, job.versions);
+  const host::HostTarget target;
+  Bodies bodies(job.image, common, job.pous, job.options);
+  assembler.reserve(kCodeBytesPerUnit * job.image.code.size());
+  made.reserve(job.pous.size());
+  std::vector<Emitted> all;
+  all.reserve(job.pous.size());
+  std::vector<std::vector<uint64_t>> facts_by_pou;  // where some code may be right
+  if (job.running != nullptr) {
+    for (const ir::LinkedPou& pou : job.image.pous) {
+      facts_by_pou.push_back(facts_of(job.image, common, pou));
+    }
+  }
+  // Is what runs of a POU, or was inlined of it, still right?
+  const auto is_same = [&](uint32_t number) {
+    if (job.running == nullptr || number >= job.running->size() || number >= job.pous.size())
+      return false;
+    const PouNative& old = *(*job.running)[number];
+    return old.units == job.pous[number].code && old.facts == facts_by_pou[number];
+  };
+  for (uint32_t number = 0; number < job.pous.size(); ++number) {
+    if (job.progress != nullptr) {
+      if (job.progress->stop) break;
+      job.progress->pous = number;
+    }
+    if (is_same(number)) {
+      const std::shared_ptr<const PouNative>& old = (*job.running)[number];
+      if (old->machine != nullptr &&
+          std::all_of(old->inlined.begin(), old->inlined.end(), is_same)) {
+        made.push_back(old);
+        continue;
+      }
+    }
+    Work work;
+    work.number = number;
+    work.pou = std::make_shared<PouNative>();
+    work.pou->units = job.pous[number].code;
+    work.pou->facts = job.running != nullptr ? facts_by_pou[number]
+                                             : facts_of(job.image, common, job.image.pous[number]);
+    made.push_back(work.pou);
+    if (!prepare(job.image, job.options, target, bodies, work)) continue;
+    all.push_back(emit(work, job.options, shared, assembler));
+    assembler.patch();
+    assembler.forget_labels(shared_labels);
+  }
+  assembler.patch();
+  return all;
+}
+
 }  // namespace
 
 bool is_available() { return host::kIsAvailable; }
@@ -261,44 +328,13 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_
                                              Progress* progress) {
   if (options.tier == Tier::kInterpreter || !is_available()) return nullptr;
   const auto made = std::make_shared<Program>(Key());
-  const host::HostTarget target;
   host::Assembler assembler;
   const host::Shared shared = host::emit_shared(assembler);
-  std::vector<Emitted> all;
-  const ImageFacts common(image, clean_bools, versions);
-  Bodies bodies(image, common, pous, options);
-  std::vector<std::vector<uint64_t>> facts_by_pou;
-  for (const ir::LinkedPou& pou : image.pous) facts_by_pou.push_back(facts_of(image, common, pou));
-  // Is what runs of a POU, or was inlined of it, still right?
-  const auto is_same = [&](uint32_t number) {
-    if (running == nullptr || number >= running->pous_.size() || number >= pous.size())
-      return false;
-    const PouNative& old = *running->pous_[number];
-    return old.units == pous[number].code && old.facts == facts_by_pou[number];
-  };
-  for (uint32_t number = 0; number < pous.size(); ++number) {
-    if (progress != nullptr) {
-      if (progress->stop) return nullptr;
-      progress->pous = number;
-    }
-    if (is_same(number)) {
-      const std::shared_ptr<const PouNative>& old = running->pous_[number];
-      if (old->machine != nullptr &&
-          std::all_of(old->inlined.begin(), old->inlined.end(), is_same)) {
-        made->pous_.push_back(old);
-        continue;
-      }
-    }
-    Work work;
-    work.number = number;
-    work.pou = std::make_shared<PouNative>();
-    work.pou->units = pous[number].code;
-    work.pou->facts = facts_by_pou[number];
-    made->pous_.push_back(work.pou);
-    if (!prepare(image, options, target, bodies, work)) continue;
-    all.push_back(emit(work, options, shared, assembler));
-  }
-  assembler.patch();
+  const std::vector<Emitted> all =
+      emit_all({image, clean_bools, pous, options, running == nullptr ? nullptr : &running->pous_,
+                versions, progress},
+               shared, assembler, made->pous_);
+  if (progress != nullptr && progress->stop) return nullptr;
   made->shared_code_ = CodeMemory::make(assembler.code());
   if (made->shared_code_ == nullptr) return nullptr;
   const uint8_t* const base = made->shared_code_->data();

@@ -23,6 +23,14 @@ MemBase base_of(ir::Base base) {
   if (base == ir::Base::kFrame) return MemBase::kFrame;
   return base == ir::Base::kSelf ? MemBase::kSelf : MemBase::kData;
 }
+// Does the unit put an address or a string into a frame slot?
+bool makes_address(const ir::Unit& unit) {
+  const ir::Field& field = ir::opcode_row(unit.opcode()).a;
+  const bool address =
+      field.cls == ir::Class::kA || field.cls == ir::Class::kS || field.cls == ir::Class::kW;
+  return address && field.is_near() && field.writes() && unit.base_a() == ir::Base::kFrame;
+}
+
 }  // namespace
 
 bool Reach::join(const Reach& other) {
@@ -46,9 +54,8 @@ Reach Facts::reach_of_unit(uint32_t i) const {
   const Opcode op = unit.opcode();
   Reach reach;
   const auto of_slot = [&](ir::Base base, uint32_t offset) {
-    const auto found = reach_.find(offset);
-    const bool known = base == ir::Base::kFrame && found != reach_.end();
-    return known ? found->second : Reach{true, false, {}};
+    const Reach* const found = base == ir::Base::kFrame ? reach_.find(offset) : nullptr;
+    return found != nullptr ? *found : Reach{true, false, {}};
   };
   const auto size_of = [&](uint32_t field) {
     return uint64_t{ir::region_size(image_->types, image_->layouts, ir::region_of_field(field))};
@@ -90,22 +97,17 @@ void Facts::find_reach() {
     }
   }
   // What a unit writes points nowhere until that unit is looked at.
+  std::vector<uint32_t> makers;
   for (uint32_t i = 0; i < code_.size(); i = next(i)) {
-    const ir::Field& field = ir::opcode_row(code_[i].opcode()).a;
-    if (field.is_near() && field.writes() && code_[i].base_a() == ir::Base::kFrame) {
-      reach_.try_emplace(code_[i].a);
-    }
+    if (!makes_address(code_[i])) continue;
+    makers.push_back(i);
+    reach_[code_[i].a];
   }
-  for (bool changed = true; changed;) {
+  for (bool changed = !makers.empty(); changed;) {
     changed = false;
-    for (uint32_t i = 0; i < code_.size(); i = next(i)) {
-      const ir::Field& field = ir::opcode_row(code_[i].opcode()).a;
-      if (!field.is_near() || !field.writes()) continue;
-      if (field.cls != ir::Class::kA && field.cls != ir::Class::kS && field.cls != ir::Class::kW) {
-        continue;
-      }
-      if (code_[i].base_a() != ir::Base::kFrame) continue;
-      changed |= reach_[code_[i].a].join(reach_of_unit(i));
+    for (const uint32_t i : makers) {
+      const Reach reach = reach_of_unit(i);
+      changed |= reach_[code_[i].a].join(reach);
     }
   }
   find_targets();
@@ -114,12 +116,12 @@ void Facts::find_reach() {
 // What stores write, and copies read, each where it stands: of the slot with the address the last
 // unit in front says where that is.
 void Facts::find_targets() {
-  std::unordered_map<uint32_t, uint32_t> made_by;  // unit, by offset of a frame slot
+  NumberTable made_by;  // unit, by offset of a frame slot
   const auto at = [&](uint32_t slot) {
-    const auto near = made_by.find(slot);
-    if (near != made_by.end()) return reach_of_unit(near->second);
-    const auto any = reach_.find(slot);
-    return any == reach_.end() ? Reach{true, false, {}} : any->second;
+    const uint32_t near = made_by.find(slot);
+    if (near != kNone) return reach_of_unit(near);
+    const Reach* const any = reach_.find(slot);
+    return any == nullptr ? Reach{true, false, {}} : *any;
   };
   for (const UnitRange& block : blocks_) {
     made_by.clear();
@@ -130,18 +132,14 @@ void Facts::find_targets() {
       if (op == Opcode::COPY) sources_[i] = at(unit.b);
       if (op == Opcode::NATIVE && native_writes(unit)) targets_[i] = at(unit.a * 8u);
       if (is_call(op) || op == Opcode::NATIVE) made_by.clear();  // the next frame is used
-      const ir::Field& field = ir::opcode_row(op).a;
-      if (field.is_near() && field.writes() && unit.base_a() == ir::Base::kFrame) {
-        made_by[unit.a] = i;
-      }
+      if (makes_address(unit)) made_by.set(unit.a, i);
     }
   }
 }
 
 void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
   if (const Body* const body = body_at(i)) return used_by_body(i, body->effects.writes, out);
-  const auto target = targets_.find(i);
-  if (target != targets_.end()) touched(target->second, out);
+  if (const Reach* const target = targets_.find(i)) touched(*target, out);
   if (code_[i].opcode() != Opcode::NATIVE) return;
   // The result lies in the first slot.
   const uint32_t result = code_[i].a * 8u;
@@ -157,10 +155,10 @@ void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
 void Facts::seen(uint32_t i, std::vector<uint32_t>& out) const {
   const Opcode op = code_[i].opcode();
   if (const Body* const body = body_at(i)) used_by_body(i, body->effects.reads, out);
-  if (op == Opcode::COPY) touched(sources_.at(i), out);
+  if (op == Opcode::COPY) touched(*sources_.find(i), out);
   if (op < Opcode::LD_B || op > Opcode::LD_F64) return;
-  const auto found = reach_.find(code_[i].b);
-  touched(found == reach_.end() ? Reach{true, false, {}} : found->second, out);
+  const Reach* const found = reach_.find(code_[i].b);
+  touched(found == nullptr ? Reach{true, false, {}} : *found, out);
 }
 
 uint32_t Facts::copied_bytes(uint32_t i) const {
@@ -168,8 +166,8 @@ uint32_t Facts::copied_bytes(uint32_t i) const {
 }
 
 bool Facts::may_overlap(uint32_t i) const {
-  const Reach& to = targets_.at(i);
-  const Reach& from = sources_.at(i);
+  const Reach& to = *targets_.find(i);
+  const Reach& from = *sources_.find(i);
   const auto is_unknown = [](const Reach& reach) {
     return reach.everything || reach.own_instance || reach.parts.empty();  // of an instance inside
   };

@@ -33,12 +33,15 @@ class Uses {
   const std::vector<Val>& constants() const { return constants_; }  // that want a register
 
  private:
-  void find_live(const std::vector<uint32_t>& defined);
-  template <class Visit>
-  void each_use(Visit visit) const;
+  struct Use {
+    Val v = kNone;
+    uint32_t at = 0;
+    Block block = 0;
+  };
+  std::vector<Use> all_uses(const Target& target) const;
+  void find_live(const std::vector<Use>& all, const std::vector<uint32_t>& defined);
 
   const Function& function_;
-  const Target& target_;
   std::vector<uint32_t> begins_, ends_;
   std::vector<uint32_t> first_, uses_, cursor_;
   std::vector<Val> constants_;

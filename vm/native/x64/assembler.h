@@ -1,6 +1,7 @@
 // Machine code of x86-64, byte by byte. Registers are their numbers in the encoding.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <vector>
@@ -71,13 +72,18 @@ using Label = uint32_t;
 class Assembler {
  public:
   const std::vector<uint8_t>& code() const { return code_; }
+  void reserve(size_t bytes) { code_.reserve(bytes); }
   uint32_t here() const { return static_cast<uint32_t>(code_.size()); }
 
   Label label();
   void bind(Label label) { labels_[label] = here(); }
   bool is_bound(Label label) const { return labels_[label] != 0xffffffffu; }
   uint32_t offset_of(Label label) const { return labels_[label]; }
-  void patch();  // once, when all labels are bound
+  // Jumps so far get their distances: their labels are bound.
+  void patch();
+  size_t labels() const { return labels_.size(); }
+  // Of patched code; those from number `first` on are given out anew.
+  void forget_labels(size_t first) { labels_.resize(first); }
 
   // Integer instructions work on `width` bytes.
   void move(uint8_t to, uint8_t from);  // 8 bytes
