@@ -54,7 +54,10 @@ class ImageReader {
   void operator()(uint32_t& v) { v = in_.u32(); }
   void operator()(uint64_t& v) { v = in_.u64(); }
   void operator()(int64_t& v) { v = in_.i64(); }
-  void operator()(std::string& v) { v = in_.text(); }
+  void operator()(std::string& v) {
+    const base::ByteSpan bytes = in_.blob();
+    if (!bytes.empty()) v.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  }
   void operator()(base::Bytes& v) {
     const base::ByteSpan bytes = in_.blob();
     v.assign(bytes.begin(), bytes.end());

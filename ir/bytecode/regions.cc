@@ -255,7 +255,9 @@ void RegionMap::add_members(TypeId type) {
     // Empty ones first: they cover nothing.
     return embedded_size(layouts_, members[a]) < embedded_size(layouts_, members[b]);
   };
-  std::sort(order_.begin() + first, order_.end(), before);
+  if (!std::is_sorted(order_.begin() + first, order_.end(), before)) {
+    std::sort(order_.begin() + first, order_.end(), before);
+  }
   if (types_.overlaps(type)) return;
   for (auto number = order_.begin() + first; number != order_.end(); ++number) {
     const Member& member = members[*number];

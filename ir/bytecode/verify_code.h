@@ -65,9 +65,11 @@ class CodeVerifier {
   };
 
   // verify_flow.cc
+  void list_offsets();
   bool scan_instructions();
   bool find_loops(const std::vector<uint32_t>& calls, const std::vector<uint32_t>& loops);
-  bool step(uint32_t unit);
+  bool check_merges();
+  bool step(uint32_t unit, const OpcodeRow& row);
   bool enter_merge(uint32_t unit);
   bool arrive(uint32_t merge, bool backwards);
   bool jump(uint32_t next, bool backwards);
@@ -78,7 +80,12 @@ class CodeVerifier {
   bool check_end_try();
   bool outlives_traps(uint32_t slot, const Pointer& pointer);
   uint32_t merge_at(uint32_t unit) const;
-  bool fail(Refusal refusal, const std::string& why);
+  // Texts are put together here, so that what checks has none of that in it. False.
+  [[gnu::cold]] bool fail(Refusal refusal, const std::string& why);
+  [[gnu::cold]] bool fail(Refusal refusal, const char* why);
+  [[gnu::cold]] bool fail_at(Refusal refusal, const char* what, uint32_t offset,
+                             const char* behind = "");
+  [[gnu::cold]] bool fail_without_slot(Refusal refusal, Class cls, uint32_t offset);
 
   // verify_operands.cc
   bool check_unused(const OpcodeRow& row);
@@ -161,6 +168,7 @@ class CodeVerifier {
 
   uint32_t epoch_ = 1;
   std::vector<uint32_t> slot_offsets_;
+  std::vector<uint32_t> slot_of_;   // by offset, in frames that slots fill; else empty
   std::vector<uint32_t> written_;   // by slot: == epoch_
   std::vector<bool> read_only_;     // by slot
   std::vector<uint32_t> outgoing_;  // by slot

@@ -3,6 +3,11 @@
 #include "ir/bytecode/verify_code.h"
 
 namespace ir::verification {
+namespace {
+
+constexpr size_t kBytesOfSlot = 64;
+
+}  // namespace
 
 CodeVerifier::CodeVerifier(const Context& context, uint32_t pou, std::span<const Unit> code)
     : context_(context),
@@ -15,7 +20,18 @@ CodeVerifier::CodeVerifier(const Context& context, uint32_t pou, std::span<const
       arrivals_(pou_.merges.size()) {
   slot_offsets_.reserve(pou_.slots.size());
   for (const FrameSlot& slot : pou_.slots) slot_offsets_.push_back(slot.offset);
+  list_offsets();
   if (!pou_.merges.empty()) next_merge_unit_ = pou_.merges[0].unit;
+}
+
+// Not of frames that are large without reason: the cost stays linear in the image.
+void CodeVerifier::list_offsets() {
+  if (pou_.frame_size > kBytesOfSlot * slot_offsets_.size()) return;
+  slot_of_.reserve(pou_.frame_size);
+  for (uint32_t i = 0; i < slot_offsets_.size(); ++i) {
+    slot_of_.resize(slot_offsets_[i], i == 0 ? kNone : i - 1);
+  }
+  slot_of_.resize(pou_.frame_size, static_cast<uint32_t>(slot_offsets_.size() - 1));
 }
 
 bool CodeVerifier::fail(Refusal refusal, const std::string& why) {
@@ -23,6 +39,19 @@ bool CodeVerifier::fail(Refusal refusal, const std::string& why) {
   if (u_.opcode_number() < kOpcodeCount) where += " " + std::string(opcode_row(u_.opcode()).name);
   error_ = refuse(refusal, where + ": " + why);
   return false;
+}
+
+bool CodeVerifier::fail(Refusal refusal, const char* why) {
+  return fail(refusal, std::string(why));
+}
+
+bool CodeVerifier::fail_at(Refusal refusal, const char* what, uint32_t offset, const char* behind) {
+  return fail(refusal, std::string(what) + " at offset " + std::to_string(offset) + behind);
+}
+
+bool CodeVerifier::fail_without_slot(Refusal refusal, Class cls, uint32_t offset) {
+  const std::string what = "the frame has no slot of class " + std::string(class_name(cls));
+  return fail_at(refusal, what.c_str(), offset);
 }
 
 base::Result<CodeFacts> CodeVerifier::run() {
@@ -35,8 +64,9 @@ base::Result<CodeFacts> CodeVerifier::run() {
   }
   for (uint32_t unit = 0; unit < code_.size();) {
     unit_ = unit;
-    if (!step(unit)) return *error_;
-    unit += opcode_row(u_.opcode()).extended ? 2 : 1;
+    const OpcodeRow& row = opcode_row(code_[unit].opcode());
+    if (!step(unit, row)) return *error_;
+    unit += row.extended ? 2 : 1;
   }
   if (falls_through_) {
     fail(Refusal::kNoReturn, "the code ends without a return");
@@ -54,20 +84,30 @@ base::Result<CodeFacts> CodeVerifier::run() {
 bool CodeVerifier::scan_instructions() {
   std::vector<uint32_t> calls;
   std::vector<uint32_t> loops;
-  for (unit_ = 0; unit_ < code_.size(); ++unit_) {
-    u_ = code_[unit_];
-    if (u_.opcode_number() >= kOpcodeCount) {
-      return fail(Refusal::kBadOpcode, "opcode " + std::to_string(u_.opcode_number()));
+  for (uint32_t unit = 0; unit < code_.size(); ++unit) {
+    const Unit u = code_[unit];
+    unit_ = unit;
+    if (u.opcode_number() >= kOpcodeCount) {
+      u_ = u;
+      return fail(Refusal::kBadOpcode, "opcode " + std::to_string(u.opcode_number()));
     }
-    const OpcodeRow& row = opcode_row(u_.opcode());
-    if (row.calls || u_.opcode() == Opcode::NATIVE) calls.push_back(unit_);
+    const Opcode op = u.opcode();
+    const OpcodeRow& row = opcode_row(op);
+    if (row.calls || op == Opcode::NATIVE) calls.push_back(unit);
     // Where a handler begins, no results are left, as behind a call.
-    if (u_.opcode() == Opcode::TRY) calls.push_back(unit_ + 1 + u_.bc());
-    if (u_.opcode() == Opcode::LOOP) loops.push_back(unit_);
-    if (row.extended && ++unit_ == code_.size()) {
+    if (op == Opcode::TRY) calls.push_back(unit + 1 + u.bc());
+    if (op == Opcode::LOOP) loops.push_back(unit);
+    u_ = u;
+    if (row.extended && ++unit == code_.size()) {
+      unit_ = unit;
       return fail(Refusal::kBadOpcode, "its second unit is missing");
     }
   }
+  std::sort(calls.begin(), calls.end());
+  return check_merges() && find_loops(calls, loops);
+}
+
+bool CodeVerifier::check_merges() {
   for (size_t i = 0; i < pou_.merges.size(); ++i) {
     const Merge& merge = pou_.merges[i];
     unit_ = merge.unit;
@@ -82,8 +122,7 @@ bool CodeVerifier::scan_instructions() {
     }
     arrivals_[i].read_only.resize(merge.slots.size());
   }
-  std::sort(calls.begin(), calls.end());
-  return find_loops(calls, loops);
+  return true;
 }
 
 bool CodeVerifier::find_loops(const std::vector<uint32_t>& calls,
@@ -109,11 +148,10 @@ uint32_t CodeVerifier::merge_at(uint32_t unit) const {
   return static_cast<uint32_t>(found - pou_.merges.begin());
 }
 
-bool CodeVerifier::step(uint32_t unit) {
+bool CodeVerifier::step(uint32_t unit, const OpcodeRow& row) {
   u_ = code_[unit];
   if (unit >= next_merge_unit_ && !enter_merge(unit)) return false;
   if (!falls_through_) return fail(Refusal::kUnreachable, "nothing leads here");
-  const OpcodeRow& row = opcode_row(u_.opcode());
   const uint32_t next = unit + (row.extended ? 2 : 1);
   extension_ = row.extended ? code_[unit + 1] : Unit{};
   if (!check_unused(row)) return false;

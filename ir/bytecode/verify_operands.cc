@@ -107,7 +107,7 @@ std::optional<Region> CodeVerifier::root_region(Place& place) {
   }
   const uint32_t begin = image_.instances[0].data;
   if (place.offset < begin) {
-    fail(Refusal::kBadReference, "no global" + at_text(place.offset));
+    fail_at(Refusal::kBadReference, "no global", place.offset);
     return std::nullopt;
   }
   place.offset -= begin;
@@ -126,7 +126,8 @@ bool CodeVerifier::leaf_access(Region region, uint32_t offset, Class cls, bool w
   std::optional<Leaf> leaf = context_.regions.leaf_at(region, offset, fits);
   if (!leaf) leaf = context_.regions.leaf_at(region, offset);  // to say what is there
   if (!leaf || leaf->kind != LeafKind::kScalar || leaf->begin != offset) {
-    return fail(Refusal::kBadReference, std::string("no ") + base + " scalar" + at_text(offset));
+    const std::string what = std::string("no ") + base + " scalar";
+    return fail_at(Refusal::kBadReference, what.c_str(), offset);
   }
   const Class have = class_of(image_.types.scalar(leaf->type));
   return check_access({leaf->begin, have, {leaf->constant, leaf->input, leaf->output}}, cls, write);
@@ -134,9 +135,9 @@ bool CodeVerifier::leaf_access(Region region, uint32_t offset, Class cls, bool w
 
 bool CodeVerifier::check_access(const ScalarPlace& there, Class cls, bool write) {
   if (there.cls != cls) {
-    return fail(Refusal::kBadTyping, "the variable" + at_text(there.offset) + " has class " +
-                                         std::string(class_name(there.cls)) + ", needed is " +
-                                         std::string(class_name(cls)));
+    const std::string classes = " has class " + std::string(class_name(there.cls)) +
+                                ", needed is " + std::string(class_name(cls));
+    return fail_at(Refusal::kBadTyping, "the variable", there.offset, classes.c_str());
   }
   if (write && there.flags.input) return fail(Refusal::kBadIoAccess, "an input is written");
   if (write && there.flags.constant) return fail(Refusal::kBadReference, "a CONSTANT is written");
@@ -145,7 +146,7 @@ bool CodeVerifier::check_access(const ScalarPlace& there, Class cls, bool write)
 
 bool CodeVerifier::pool_scalar(uint32_t offset, Class cls) {
   if (uint64_t{offset} + class_size(cls) > image_.pool.size()) {
-    return fail(Refusal::kBadReference, "no constant" + at_text(offset));
+    return fail_at(Refusal::kBadReference, "no constant", offset);
   }
   if (cls == Class::kB && image_.pool[offset] > 1) {
     return fail(Refusal::kBadTyping, "a BOOL constant is neither 0 nor 1");
@@ -154,6 +155,7 @@ bool CodeVerifier::pool_scalar(uint32_t offset, Class cls) {
 }
 
 uint32_t CodeVerifier::slot_at(uint32_t offset) const {
+  if (offset < slot_of_.size()) return slot_of_[offset];
   const auto behind = std::upper_bound(slot_offsets_.begin(), slot_offsets_.end(), offset);
   return behind == slot_offsets_.begin()
              ? kNone
@@ -180,14 +182,13 @@ bool CodeVerifier::frame_scalar(uint32_t offset, Class cls, bool write) {
     const FrameSlot& s = pou_.slots[slot];
     return leaf_access(s.region, offset - s.offset, cls, write, "frame");
   }
-  if (scalar_slot(offset, cls) == kNone) {
-    return fail(Refusal::kBadTyping,
-                "the frame has no slot of class " + std::string(class_name(cls)) + at_text(offset));
+  if (slot == kNone || pou_.slots[slot].offset != offset || pou_.slots[slot].cls != cls) {
+    return fail_without_slot(Refusal::kBadTyping, cls, offset);
   }
   if (write) {
     mark_written(slot, false, 0);
   } else if (!is_written(slot)) {
-    return fail(Refusal::kReadBeforeWrite, "the slot" + at_text(offset) + " holds no value yet");
+    return fail_at(Refusal::kReadBeforeWrite, "the slot", offset, " holds no value yet");
   }
   return true;
 }
@@ -195,12 +196,11 @@ bool CodeVerifier::frame_scalar(uint32_t offset, Class cls, bool write) {
 std::optional<Pointer> CodeVerifier::read_pointer(uint32_t offset, Class cls) {
   const uint32_t slot = offset < pou_.frame_size ? scalar_slot(offset, cls) : kNone;
   if (slot == kNone) {
-    fail(Refusal::kBadReferenceSlot,
-         "the frame has no slot of class " + std::string(class_name(cls)) + at_text(offset));
+    fail_without_slot(Refusal::kBadReferenceSlot, cls, offset);
     return std::nullopt;
   }
   if (!is_written(slot)) {
-    fail(Refusal::kReadBeforeWrite, "the slot" + at_text(offset) + " holds no value yet");
+    fail_at(Refusal::kReadBeforeWrite, "the slot", offset, " holds no value yet");
     return std::nullopt;
   }
   return Pointer{pou_.slots[slot].region, read_only_[slot], outgoing_[slot]};
@@ -210,8 +210,7 @@ bool CodeVerifier::write_pointer(uint32_t offset, Class cls, const Pointer& poin
   if (offset >= pou_.frame_size) return put_pointer(offset - pou_.frame_size, cls, pointer);
   const uint32_t slot = scalar_slot(offset, cls);
   if (slot == kNone) {
-    return fail(Refusal::kBadReferenceSlot,
-                "the frame has no slot of class " + std::string(class_name(cls)) + at_text(offset));
+    return fail_without_slot(Refusal::kBadReferenceSlot, cls, offset);
   }
   if (cls == Class::kA && !context_.regions.same(pointer.region, pou_.slots[slot].region)) {
     return fail(Refusal::kBadTyping, "the slot" + at_text(offset) + " is for addresses of " +
@@ -260,7 +259,7 @@ std::optional<Pointer> CodeVerifier::point_to(Place place, Region wanted) {
                     class_of(image_.types.scalar(wanted.type)) == s.cls;
   if (!same) return bad();
   if (!is_written(slot)) {
-    fail(Refusal::kReadBeforeWrite, "the slot" + at_text(place.offset) + " holds no value yet");
+    fail_at(Refusal::kReadBeforeWrite, "the slot", place.offset, " holds no value yet");
     return std::nullopt;
   }
   return Pointer{wanted, false, 0};
@@ -307,7 +306,7 @@ std::optional<Pointer> CodeVerifier::point_to_string(Place place, Class cls, uin
   if (slot != kNone && pou_.slots[slot].aggregate) {
     return check_leaf(pou_.slots[slot].region, place.offset - pou_.slots[slot].offset);
   }
-  fail(Refusal::kBadReference, "no string" + at_text(place.offset));
+  fail_at(Refusal::kBadReference, "no string", place.offset);
   return std::nullopt;
 }
 

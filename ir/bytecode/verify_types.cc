@@ -242,9 +242,11 @@ class TypesVerifier {
     return base::Ok{};
   }
 
-  base::Status check_disjoint(uint32_t i, uint32_t limit) const {
+  base::Status check_disjoint(uint32_t i, uint32_t limit) {
     const Type& type = types_[TypeId(i)];
-    std::vector<std::pair<uint64_t, uint64_t>> extents;
+    std::vector<std::pair<uint64_t, uint64_t>>& extents = extents_;
+    extents.clear();
+    bool sorted = true;
     for (size_t m = 0; m < type.members.size(); ++m) {
       const Member& member = type.members[m];
       const uint64_t begin = image_.layouts.of[i].member_offsets[m];
@@ -254,9 +256,10 @@ class TypesVerifier {
         return bad(i, "member `" + member.name + "` ends at " + std::to_string(begin + size) +
                           ", behind its end at " + std::to_string(limit));
       }
+      sorted = sorted && (extents.empty() || extents.back() <= std::pair(begin, begin + size));
       extents.emplace_back(begin, begin + size);
     }
-    std::sort(extents.begin(), extents.end());
+    if (!sorted) std::sort(extents.begin(), extents.end());
     for (size_t m = 1; m < extents.size(); ++m) {
       if (extents[m].first < extents[m - 1].second) {
         return bad(i, "members overlap at offset " + std::to_string(extents[m].first));
@@ -268,7 +271,8 @@ class TypesVerifier {
   const Image& image_;
   const TypeTable& types_;
   std::vector<TypeFacts> facts_;
-  std::vector<uint32_t> order_;  // parts before what they are part of
+  std::vector<uint32_t> order_;                         // parts before what they are part of
+  std::vector<std::pair<uint64_t, uint64_t>> extents_;  // of check_disjoint()
 };
 
 }  // namespace
