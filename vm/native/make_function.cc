@@ -15,6 +15,19 @@ bool is_interpreted_at_random(const TierOptions& options, uint32_t pou) {
   return (h * 0xbf58476d1ce4e5b9u >> 40 & 1) != 0;
 }
 
+namespace {
+
+// What stands in the place of calls needs nothing else, and there are many of them.
+void keep_for_calls(Function& function) {
+  function.variables = {};
+  function.overlaps = {};
+  function.kills = {};
+  function.nodes.shrink_to_fit();
+  function.values.shrink_to_fit();
+}
+
+}  // namespace
+
 const Body* Bodies::body(uint32_t pou, uint32_t caller) {
   if (pou == caller || is_interpreted_at_random(options_, pou)) return nullptr;
   const ir::PouVersion* const version = common_.version_of(pou);
@@ -28,6 +41,7 @@ const Body* Bodies::body(uint32_t pou, uint32_t caller) {
         state.body = std::make_unique<Body>();
         state.body->function = Builder(*facts).run();
         state.body->effects = effects_of(state.body->function);
+        keep_for_calls(state.body->function);
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <unordered_set>
 
+#include "base/hash.h"
 #include "ir/bytecode/regions.h"
 #include "vm/exec/context.h"
 #include "vm/native/code_memory.h"
@@ -13,11 +14,11 @@
 
 namespace vm::native {
 
-// What belongs to one POU. `facts` is everything outside of its units that its code relies on.
+// What belongs to one POU. `facts`: of everything outside of its units that its code relies on.
 struct PouNative {
   std::string reason;  // not empty: there is no code
   const ir::Unit* units = nullptr;
-  std::vector<uint64_t> facts;
+  base::Digest facts{};
   std::shared_ptr<const CodeMemory> code;
   const uint8_t* machine = nullptr;
   SideUnits side;
@@ -48,12 +49,11 @@ ir::Unit stop_unit() {
   return unit;
 }
 
-// Constants, bounds, ranges and callees that the units name by number.
-std::vector<uint64_t> facts_of(const ir::Image& image, const ImageFacts& common,
-                               const ir::LinkedPou& pou) {
-  std::vector<uint64_t> out = {
-      pou.frame_size, pou.slots.size(), pou.merges.size(),
-      (common.recursive_bodies ? 1u : 0u) | (common.clean_bools ? 2u : 0u)};
+// Constants, bounds, ranges and callees that the units name by number; `out`: to be used again.
+base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
+                      std::vector<uint64_t>& out) {
+  out.assign({pou.frame_size, pou.slots.size(), pou.merges.size(),
+              (common.recursive_bodies ? 1u : 0u) | (common.clean_bools ? 2u : 0u)});
   for (const ir::FrameSlot& slot : pou.slots) {
     out.push_back(uint64_t{slot.offset} << 32 | static_cast<uint64_t>(slot.cls) << 24 |
                   static_cast<uint64_t>(slot.kind) << 16 | static_cast<uint64_t>(slot.local) << 8 |
@@ -100,8 +100,7 @@ std::vector<uint64_t> facts_of(const ir::Image& image, const ImageFacts& common,
     }
     if (row.extended) ++i;
   }
-  out.shrink_to_fit();
-  return out;
+  return base::sha256({reinterpret_cast<const uint8_t*>(out.data()), out.size() * sizeof out[0]});
 }
 
 // A call's unit goes on with one that comes back, a helper's with a stop. Each is one instruction,
@@ -273,10 +272,11 @@ std::vector<Emitted> emit_all(const Job& job, const host::Shared& shared,
   made.reserve(job.pous.size());
   std::vector<Emitted> all;
   all.reserve(job.pous.size());
-  std::vector<std::vector<uint64_t>> facts_by_pou;  // where some code may be right
+  std::vector<uint64_t> scratch;
+  std::vector<base::Digest> facts_by_pou;  // where some code may be right
   if (job.running != nullptr) {
     for (const ir::LinkedPou& pou : job.image.pous) {
-      facts_by_pou.push_back(facts_of(job.image, common, pou));
+      facts_by_pou.push_back(facts_of(job.image, common, pou, scratch));
     }
   }
   // Is what runs of a POU, or was inlined of it, still right?
@@ -303,8 +303,9 @@ std::vector<Emitted> emit_all(const Job& job, const host::Shared& shared,
     work.number = number;
     work.pou = std::make_shared<PouNative>();
     work.pou->units = job.pous[number].code;
-    work.pou->facts = job.running != nullptr ? facts_by_pou[number]
-                                             : facts_of(job.image, common, job.image.pous[number]);
+    work.pou->facts = job.running != nullptr
+                          ? facts_by_pou[number]
+                          : facts_of(job.image, common, job.image.pous[number], scratch);
     made.push_back(work.pou);
     if (!prepare(job.image, job.options, target, bodies, work)) continue;
     all.push_back(emit(work, job.options, shared, assembler));
