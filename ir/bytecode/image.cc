@@ -63,9 +63,11 @@ void types_section(ImageReader& a, TypeTable& types) {
   std::vector<std::string> old_names;
   a.list(old_names, 4, a);
   types.set_old_names(std::move(old_names));
-  std::vector<Type> stored;
-  a.list(stored, 54, [&](Type& type) { type_fields(a, type); });
-  for (Type& type : stored) add_type(types, std::move(type));
+  a.each(54, [&] {
+    Type type;
+    type_fields(a, type);
+    add_type(types, std::move(type));
+  });
 }
 
 void constants_section(ImageWriter& a, const ConstTable& constants) {
@@ -74,9 +76,11 @@ void constants_section(ImageWriter& a, const ConstTable& constants) {
 }
 
 void constants_section(ImageReader& a, ConstTable& constants) {
-  std::vector<ConstValue> stored;
-  a.list(stored, 16, [&](ConstValue& value) { constant_fields(a, value); });
-  for (ConstValue& value : stored) constants.add(std::move(value));
+  a.each(16, [&] {
+    ConstValue value;
+    constant_fields(a, value);
+    constants.add(std::move(value));
+  });
 }
 
 template <class Archive, class I>

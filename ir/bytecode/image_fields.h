@@ -87,6 +87,11 @@ class ImageReader {
       each(item);
     }
   }
+  // A list that goes elsewhere: one after the other.
+  template <class Each>
+  void each(size_t min_size, Each each) {
+    for (uint32_t left = in_.count(min_size); left != 0 && !in_.failed(); --left) each();
+  }
 
  private:
   base::ByteReader& in_;
