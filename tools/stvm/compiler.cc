@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "tools/common/child.h"
 #include "tools/common/files.h"
@@ -38,10 +39,12 @@ base::Result<ir::VerifiedImage> load_program(const Sources& sources) {
 }
 
 base::Result<std::vector<ir::VerifiedImage>> load_programs(const Sources& sources) {
-  base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
-  if (!folder.ok()) return folder.error();
+  std::optional<tools::TemporaryFolder> folder;  // of images that are made here
   std::vector<std::string> paths = sources.paths;
   if (!std::all_of(paths.begin(), paths.end(), is_image)) {
+    base::Result<tools::TemporaryFolder> temporary = tools::TemporaryFolder::make();
+    if (!temporary.ok()) return temporary.error();
+    folder.emplace(std::move(*temporary));
     const std::string made = folder->file("images/");
     base::Status built =
         tools::run_beside("stc", stc_arguments({"build", "--quiet", "-o", made}, sources));

@@ -17,10 +17,11 @@ namespace {
 // Tries are not inside each other more often than there are instructions that begin one.
 uint32_t tries_in(const ir::Image& image, const ir::LinkedPou& pou) {
   uint32_t count = 0;
-  for (uint32_t i = pou.first_unit; i < pou.first_unit + pou.unit_count; ++i) {
-    const ir::Opcode op = image.code[i].opcode();
+  const ir::Unit* const end = image.code.data() + pou.first_unit + pou.unit_count;
+  for (const ir::Unit* unit = end - pou.unit_count; unit < end; ++unit) {
+    const ir::Opcode op = unit->opcode();
     if (op == ir::Opcode::TRY) ++count;
-    if (ir::opcode_row(op).extended) ++i;
+    if (ir::opcode_row(op).extended) ++unit;
   }
   return std::min(count, base::kMaxTryDepth);
 }
