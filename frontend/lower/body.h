@@ -100,10 +100,12 @@ class Body {
                                        const std::vector<ir::BlockId>& arms);
   void report_missing_labels(const Stmt& stmt, ir::TypeId type,
                              const std::vector<Interval>& intervals);
-  void case_tree(const std::vector<Interval>& intervals, size_t first, size_t last,
-                 ir::ValueId selector, ir::Scalar scalar, ir::BlockId otherwise);
-  void case_test(const Interval& interval, ir::ValueId selector, ir::Scalar scalar,
-                 ir::BlockId next);
+  struct CaseLeaf;
+  struct CaseTests;
+  static std::vector<CaseLeaf> case_leaves(const std::vector<Interval>& intervals);
+  void case_tree(const CaseTests& tests, size_t first, size_t last);
+  void case_test(const CaseTests& tests, const Interval& interval, ir::BlockId next);
+  void case_table(const CaseTests& tests, const CaseLeaf& leaf, ir::BlockId next);
 
   // --- places (place.cc)
   ir::Place variable_place(VarId id);

@@ -259,6 +259,17 @@ void Builder::branch(ValueId condition, BlockId if_true, BlockId if_false) {
   current_ = {};
 }
 
+void Builder::switch_on(Scalar scalar, ValueId value, int64_t low,
+                        const std::vector<BlockId>& targets, BlockId otherwise) {
+  Inst& inst = emit(Op::kSwitch, scalar);
+  inst.operands = {value};
+  inst.low = low;
+  inst.high = low + static_cast<int64_t>(targets.size()) - 1;
+  inst.targets.push_back({otherwise, {}});
+  for (const BlockId target : targets) inst.targets.push_back({target, {}});
+  current_ = {};
+}
+
 void Builder::ret() {
   emit(Op::kReturn, Scalar::kBool);
   current_ = {};

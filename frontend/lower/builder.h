@@ -61,6 +61,9 @@ class Builder {
 
   void jump(ir::BlockId block, std::vector<ir::ValueId> args = {});
   void branch(ir::ValueId condition, ir::BlockId if_true, ir::BlockId if_false);
+  // `targets`: of low, low + 1, ...
+  void switch_on(ir::Scalar scalar, ir::ValueId value, int64_t low,
+                 const std::vector<ir::BlockId>& targets, ir::BlockId otherwise);
   void ret();
   void trap(ir::TrapKind kind);
   // The last caught trap goes on; `kind` is its kind.

@@ -1,5 +1,7 @@
-// CASE: labels become sorted intervals, and those a tree of comparisons.
+// CASE: labels become sorted intervals. Where many lie close together a table says where to go on;
+// what is left, and the tables, are the leaves of a tree of comparisons.
 #include <algorithm>
+#include <limits>
 
 #include "frontend/lower/body.h"
 
@@ -12,10 +14,29 @@ struct Body::Interval {
   base::SourceSpan span;
 };
 
+// Intervals first..last - 1: one to be tested, or several for a table.
+struct Body::CaseLeaf {
+  size_t first;
+  size_t last;
+};
+
+struct Body::CaseTests {
+  const std::vector<Interval>& intervals;
+  const std::vector<CaseLeaf>& leaves;
+  ir::ValueId selector;
+  ir::Scalar machine;
+  ir::BlockId otherwise;
+};
+
 namespace {
 
 // Up to here one test behind the other is as good as a tree.
 constexpr size_t kLinearTests = 4;
+// A table has an entry for each value between its first label and its last: 8 bytes of code, where
+// a test takes 16.
+constexpr size_t kLeastIntervals = 5;  // fewer tests are as quick
+constexpr Wide kMostAlike = 4;  // values of one interval, and between two
+constexpr Wide kMostEntries = 1024;
 
 }  // namespace
 
@@ -38,7 +59,9 @@ void Body::case_statement(const Stmt& stmt) {
   std::vector<Interval> intervals;
   if (usable) intervals = case_intervals(stmt, type, arms);
   if (!stmt.has_else && traits.enumeration) report_missing_labels(stmt, type, intervals);
-  case_tree(intervals, 0, intervals.size(), selector, scalar(type), otherwise);
+  std::vector<CaseLeaf> leaves = case_leaves(intervals);
+  CaseTests tests{intervals, leaves, selector, scalar(type), otherwise};
+  case_tree(tests, 0, leaves.size());
   for (uint32_t i = 0; i < stmt.arms.count; ++i) {
     build_.start(arms[i]);
     statements(tree_.cases[stmt.arms.first + i].body);
@@ -104,40 +127,76 @@ std::vector<Body::Interval> Body::case_intervals(const Stmt& stmt, ir::TypeId ty
   return intervals;
 }
 
-void Body::case_tree(const std::vector<Interval>& intervals, size_t first, size_t last,
-                     ir::ValueId selector, ir::Scalar machine, ir::BlockId otherwise) {
+std::vector<Body::CaseLeaf> Body::case_leaves(const std::vector<Interval>& intervals) {
+  auto fits = [&](size_t i) {
+    return intervals[i].high - intervals[i].low < kMostAlike &&
+           intervals[i].low >= std::numeric_limits<int32_t>::min() &&
+           intervals[i].high <= std::numeric_limits<int32_t>::max();
+  };
+  std::vector<CaseLeaf> leaves;
+  for (size_t first = 0; first < intervals.size();) {
+    size_t last = first + 1;
+    while (last < intervals.size() && fits(first) && fits(last) &&
+           intervals[last].low - intervals[last - 1].high - 1 <= kMostAlike &&
+           intervals[last].high - intervals[first].low < kMostEntries) {
+      ++last;
+    }
+    if (last - first < kLeastIntervals) last = first + 1;
+    leaves.push_back({first, last});
+    first = last;
+  }
+  return leaves;
+}
+
+void Body::case_tree(const CaseTests& tests, size_t first, size_t last) {
   if (last - first > kLinearTests) {
     size_t middle = first + (last - first) / 2;
     ir::BlockId below = build_.new_block();
     ir::BlockId above = build_.new_block();
-    ir::ValueId edge = build_.constant(machine, static_cast<uint64_t>(intervals[middle].low));
-    build_.branch(build_.compare(ir::Op::kLt, machine, selector, edge), below, above);
+    Wide low = tests.intervals[tests.leaves[middle].first].low;
+    ir::ValueId edge = build_.constant(tests.machine, static_cast<uint64_t>(low));
+    build_.branch(build_.compare(ir::Op::kLt, tests.machine, tests.selector, edge), below, above);
     build_.start(below);
-    case_tree(intervals, first, middle, selector, machine, otherwise);
+    case_tree(tests, first, middle);
     build_.start(above);
-    case_tree(intervals, middle, last, selector, machine, otherwise);
+    case_tree(tests, middle, last);
     return;
   }
   for (size_t i = first; i < last; ++i) {
-    ir::BlockId next = i + 1 == last ? otherwise : build_.new_block();
-    case_test(intervals[i], selector, machine, next);
+    ir::BlockId next = i + 1 == last ? tests.otherwise : build_.new_block();
+    const CaseLeaf& leaf = tests.leaves[i];
+    if (leaf.last - leaf.first == 1) {
+      case_test(tests, tests.intervals[leaf.first], next);
+    } else {
+      case_table(tests, leaf, next);
+    }
     if (i + 1 != last) build_.start(next);
   }
-  if (first == last) build_.jump(otherwise);
+  if (first == last) build_.jump(tests.otherwise);
 }
 
-void Body::case_test(const Interval& interval, ir::ValueId selector, ir::Scalar machine,
-                     ir::BlockId next) {
-  ir::ValueId low = build_.constant(machine, static_cast<uint64_t>(interval.low));
-  if (interval.low == interval.high) {
-    build_.branch(build_.compare(ir::Op::kEq, machine, selector, low), interval.arm, next);
-    return;
-  }
+void Body::case_test(const CaseTests& tests, const Interval& interval, ir::BlockId next) {
+  auto test = [&](ir::Op op, ir::ValueId a, ir::ValueId b, ir::BlockId yes) {
+    build_.branch(build_.compare(op, tests.machine, a, b), yes, next);
+  };
+  ir::ValueId low = build_.constant(tests.machine, static_cast<uint64_t>(interval.low));
+  if (interval.low == interval.high) return test(ir::Op::kEq, tests.selector, low, interval.arm);
   ir::BlockId upper = build_.new_block();
-  build_.branch(build_.compare(ir::Op::kLe, machine, low, selector), upper, next);
+  test(ir::Op::kLe, low, tests.selector, upper);
   build_.start(upper);
-  ir::ValueId high = build_.constant(machine, static_cast<uint64_t>(interval.high));
-  build_.branch(build_.compare(ir::Op::kLe, machine, selector, high), interval.arm, next);
+  ir::ValueId high = build_.constant(tests.machine, static_cast<uint64_t>(interval.high));
+  test(ir::Op::kLe, tests.selector, high, interval.arm);
+}
+
+void Body::case_table(const CaseTests& tests, const CaseLeaf& leaf, ir::BlockId next) {
+  Wide low = tests.intervals[leaf.first].low;
+  std::vector<ir::BlockId> targets;
+  for (size_t i = leaf.first; i < leaf.last; ++i) {
+    const Interval& interval = tests.intervals[i];
+    targets.resize(static_cast<size_t>(interval.low - low), next);
+    targets.resize(static_cast<size_t>(interval.high - low + 1), interval.arm);
+  }
+  build_.switch_on(tests.machine, tests.selector, static_cast<int64_t>(low), targets, next);
 }
 
 }  // namespace frontend

@@ -19,6 +19,7 @@ constexpr ColumnName kColumnNames[] = {
     {"P32", FieldKind::kPlace32},     {"BOUNDS", FieldKind::kBounds},
     {"TYPE", FieldKind::kType},       {"SIZE", FieldKind::kSize},
     {"CAP", FieldKind::kCapacity},    {"OFF32", FieldKind::kOffset32},
+    {"NUM", FieldKind::kNumber},
 };
 
 constexpr std::string_view kClassNames[kClassCount] = {"B",   "8",   "16", "32", "64",

@@ -54,6 +54,7 @@ enum class FieldKind : uint8_t {
   kSize,
   kCapacity,
   kOffset32,
+  kNumber,
 };
 
 struct Field {

@@ -111,6 +111,8 @@ class Disassembler {
         return image_.types.text(region_of_field(value).type);
       case FieldKind::kSize:
         return std::to_string(value);
+      case FieldKind::kNumber:
+        return std::to_string(static_cast<int32_t>(value));
       case FieldKind::kCapacity:
         return "cap " + std::to_string(value);
       default:

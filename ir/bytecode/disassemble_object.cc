@@ -142,6 +142,8 @@ class Disassembler {
       case FieldKind::kBounds:
         return "bounds of " + object_.bounds[value].name + " dim " +
                std::to_string(object_.bounds[value].dim);
+      case FieldKind::kNumber:
+        return std::to_string(static_cast<int32_t>(value));
       case FieldKind::kCapacity:
         return "capacity " + std::to_string(value);
       default:

@@ -73,6 +73,8 @@ class CodeVerifier {
   bool enter_merge(uint32_t unit);
   bool arrive(uint32_t merge, bool backwards);
   bool jump(uint32_t next, bool backwards);
+  bool check_switch(const OpcodeRow& row, uint32_t next);
+  bool check_table(uint32_t unit);
   bool check_return();
 
   // verify_tries.cc
@@ -163,6 +165,7 @@ class CodeVerifier {
   Unit u_;
   Unit extension_;
   bool falls_through_ = true;
+  uint32_t table_end_ = 0;  // of the last SWITCH: the unit behind its table
   size_t next_merge_ = 0;
   uint32_t next_merge_unit_ = kNone;
 

@@ -150,6 +150,7 @@ uint32_t CodeVerifier::merge_at(uint32_t unit) const {
 
 bool CodeVerifier::step(uint32_t unit, const OpcodeRow& row) {
   u_ = code_[unit];
+  if (unit <= table_end_ && !check_table(unit)) return false;
   if (unit >= next_merge_unit_ && !enter_merge(unit)) return false;
   if (!falls_through_) return fail(Refusal::kUnreachable, "nothing leads here");
   const uint32_t next = unit + (row.extended ? 2 : 1);
@@ -164,6 +165,11 @@ bool CodeVerifier::step(uint32_t unit, const OpcodeRow& row) {
     case Opcode::JT:
     case Opcode::JF:
       return near_operand(row.a, u_.base_a(), u_.a, false) && jump(next, false);
+    case Opcode::SWITCH_8:
+    case Opcode::SWITCH_16:
+    case Opcode::SWITCH_32:
+    case Opcode::SWITCH_64:
+      return check_switch(row, next);
     case Opcode::TRY:
       return check_try(next);
     case Opcode::END_TRY:
@@ -246,6 +252,29 @@ bool CodeVerifier::jump(uint32_t next, bool backwards) {
     return fail(Refusal::kBadJump, "jumps to unit " + std::to_string(target));
   }
   return arrive(merge, backwards);
+}
+
+bool CodeVerifier::check_switch(const OpcodeRow& row, uint32_t next) {
+  if (!near_operand(row.b, u_.base_b(), u_.b, false)) return false;
+  const uint32_t entries = extension_.y();
+  const uint32_t bits = 8 * class_size(row.b.cls);
+  if (entries == 0 || (bits < 32 && entries > 1u << bits)) {
+    return fail(Refusal::kBadJump, "has a table of " + std::to_string(entries) + " jumps");
+  }
+  if (entries >= code_.size() - next) {
+    return fail(Refusal::kBadJump, "nothing stands behind its table");
+  }
+  table_end_ = next + entries;
+  return true;
+}
+
+// Units up to the one behind a table: what held at the SWITCH holds there.
+bool CodeVerifier::check_table(uint32_t unit) {
+  falls_through_ = true;
+  if (unit == table_end_) return true;
+  if (u_.opcode() != Opcode::JMP) return fail(Refusal::kBadJump, "is in a table, and no JMP");
+  if (merge_at(unit) != kNone) return fail(Refusal::kBadJump, "a jump leads into a table");
+  return true;
 }
 
 bool CodeVerifier::check_return() {

@@ -95,6 +95,10 @@ class Emitter {
       case EndKind::kBranch:
         emit_branch(position, block.end);
         break;
+      case EndKind::kSwitch:
+        for (const uint32_t entry : block.end.table) jump(Unit::make(Opcode::JMP), entry);
+        go(position, block.end.taken);
+        break;
       case EndKind::kTry:
         jump(Unit::make(Opcode::TRY), block.end.other);
         go(position, block.end.taken);

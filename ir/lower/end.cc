@@ -23,6 +23,8 @@ void Selector::select_end(const Inst& inst, const FlowBlock& flow_block) {
       return;
     case Op::kBranch:
       return select_branch(inst, flow_block);
+    case Op::kSwitch:
+      return select_switch(inst, flow_block);
     case Op::kTry:
       end.kind = EndKind::kTry;
       end.taken = flow_block.successors[0];
@@ -65,6 +67,16 @@ void Selector::select_branch(const Inst& inst, const FlowBlock& flow_block) {
     operand = copy;
   }
   block().end = {EndKind::kBranch, operand, taken, other, 0, line_};
+}
+
+void Selector::select_switch(const Inst& inst, const FlowBlock& flow_block) {
+  const auto entries = static_cast<uint32_t>(inst.targets.size() - 1);
+  emit(switch_opcode(inst.scalar), {}, use(inst.operands[0]), {}, static_cast<uint32_t>(inst.low),
+       entries);
+  BlockEnd& end = block().end;
+  end.kind = EndKind::kSwitch;
+  end.taken = flow_block.successors[0];
+  end.table.assign(flow_block.successors.begin() + 1, flow_block.successors.end());
 }
 
 void Selector::pass_arguments(const Target& target) {

@@ -16,6 +16,26 @@ void split_edge(Graph& graph, uint32_t node, size_t successor, const Target& tar
   graph.push_back(std::move(edge));
 }
 
+// The wanted ways of a switch; those that say the same share a block.
+template <class Wanted>
+bool split_switch(Graph& graph, uint32_t node, const Inst& end, Wanted wanted) {
+  std::vector<size_t> split;
+  for (size_t t = 0; t < end.targets.size(); ++t) {
+    if (!wanted(t)) continue;
+    const Target& way = end.targets[t];
+    const auto same = std::find_if(split.begin(), split.end(), [&](size_t s) {
+      return end.targets[s].block == way.block && end.targets[s].args == way.args;
+    });
+    if (same != split.end()) {
+      graph[node].successors[t] = graph[node].successors[*same];
+      continue;
+    }
+    split_edge(graph, node, t, way);
+    split.push_back(t);
+  }
+  return !split.empty();
+}
+
 Graph graph_of(const Pou& pou) {
   Graph graph(pou.blocks.size());
   for (uint32_t i = 0; i < pou.blocks.size(); ++i) {
@@ -26,6 +46,9 @@ Graph graph_of(const Pou& pou) {
   }
   for (uint32_t i = 0; i < pou.blocks.size(); ++i) {
     const Inst& end = pou.blocks[i].insts.back();
+    if (end.op == Op::kSwitch) {
+      split_switch(graph, i, end, [&](size_t t) { return !end.targets[t].args.empty(); });
+    }
     if (end.op != Op::kBranch && end.op != Op::kTry) continue;
     for (size_t t = 0; t < end.targets.size(); ++t) {
       if (!end.targets[t].args.empty()) split_edge(graph, i, t, end.targets[t]);
@@ -66,16 +89,23 @@ std::vector<uint32_t> positions_of(const std::vector<uint32_t>& order, size_t no
   return positions;
 }
 
-// Conditional jumps and ways to handlers go forwards only, so one of two backward edges gets a
-// block, and a handler that comes before its try gets one in front.
-bool split_double_backward(Graph& graph, const std::vector<uint32_t>& order, const Pou& pou) {
+// Conditional jumps, entries of tables and ways to handlers go forwards only, so one of two
+// backward edges gets a block, and so does a backward entry; a handler that comes before its try
+// gets one in front.
+bool split_backward(Graph& graph, const std::vector<uint32_t>& order, const Pou& pou) {
   const std::vector<uint32_t> positions = positions_of(order, graph.size());
   bool changed = false;
   for (uint32_t node : order) {
-    const std::vector<uint32_t>& next = graph[node].successors;
-    if (next.size() != 2 || positions[next[1]] > positions[node]) continue;
+    if (graph[node].successors.size() < 2) continue;
     const Inst& end = pou.blocks[graph[node].source.index].insts.back();
-    if (end.op != Op::kTry && positions[next[0]] > positions[node]) continue;
+    const auto is_back = [&](size_t t) {
+      return positions[graph[node].successors[t]] <= positions[node];
+    };
+    if (end.op == Op::kSwitch) {
+      changed |= split_switch(graph, node, end, [&](size_t t) { return t != 0 && is_back(t); });
+      continue;
+    }
+    if (!is_back(1) || (end.op != Op::kTry && !is_back(0))) continue;
     split_edge(graph, node, 1, end.targets[1]);
     changed = true;
   }
@@ -87,7 +117,7 @@ bool split_double_backward(Graph& graph, const std::vector<uint32_t>& order, con
 Flow order_blocks(const Pou& pou) {
   Graph graph = graph_of(pou);
   std::vector<uint32_t> order = reverse_post_order(graph);
-  while (split_double_backward(graph, order, pou)) order = reverse_post_order(graph);
+  while (split_backward(graph, order, pou)) order = reverse_post_order(graph);
   const std::vector<uint32_t> positions = positions_of(order, graph.size());
   Flow flow;
   for (uint32_t node : order) {

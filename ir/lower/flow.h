@@ -22,8 +22,8 @@ struct Flow {
   std::vector<FlowBlock> blocks;  // in order of emission
 };
 
-// Splits branch edges that pass arguments, the second of two backward ones, and the way to a
-// handler that lies before its try.
+// Splits edges of branches and switches that pass arguments, the second of two backward ones of a
+// branch, backward ones of a table, and the way to a handler that lies before its try.
 Flow order_blocks(const Pou& pou);
 
 }  // namespace ir::codegen

@@ -53,15 +53,17 @@ struct Register {
   bool result = false;  // read by the caller after the return
 };
 
-enum class EndKind : uint8_t { kJump, kBranch, kReturn, kTrap, kTry, kEndTry, kInst };
+// kSwitch: the last instruction is a SWITCH.
+enum class EndKind : uint8_t { kJump, kBranch, kSwitch, kReturn, kTrap, kTry, kEndTry, kInst };
 
 struct BlockEnd {
   EndKind kind = EndKind::kReturn;  // kInst: the last instruction leads nowhere
-  Operand condition;   // kBranch; TRUE: taken
-  uint32_t taken = 0;  // position of a block; kJump, kEndTry and the body of kTry too
+  Operand condition;                // kBranch; TRUE: taken
+  uint32_t taken = 0;  // position of a block; kJump, kEndTry, the body of kTry, no entry of kSwitch
   uint32_t other = 0;  // position of a block, kBranch; the handler of kTry
   uint32_t trap = 0;
   uint32_t line = 0;
+  std::vector<uint32_t> table = {};  // kSwitch: positions of blocks behind this one
 };
 
 struct MachineBlock {
@@ -94,6 +96,7 @@ void for_each_successor(const BlockEnd& end, Visit visit) {
   if (leaves || end.kind == EndKind::kInst) return;
   visit(end.taken);
   if (end.kind == EndKind::kBranch || end.kind == EndKind::kTry) visit(end.other);
+  for (const uint32_t entry : end.table) visit(entry);
 }
 
 }  // namespace ir::codegen

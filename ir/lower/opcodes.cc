@@ -89,6 +89,7 @@ struct Tables {
   ScalarRow index = names.by_scalar("INDEX_", kSign);
   ScalarRow index_place = names.by_scalar("INDEX_PLACE_", kSign);
   ScalarRow check = names.by_scalar("CHECK_", kSign);
+  ScalarRow switch_on = names.by_scalar("SWITCH_", kWidth);
   ScalarRow check_step = names.by_scalar("CHECK_STEP_", kWidth);
   ScalarRow to_bool = names.by_scalar("TOBOOL_", kWidth);
   ScalarGrid sign_extend = names.by_pair("SEXT_", "_", kWidth);
@@ -175,6 +176,7 @@ Opcode store_opcode(Class cls) { return tables().store[at(cls)]; }
 Opcode index_opcode(Scalar index) { return tables().index[at(index)]; }
 Opcode index_place_opcode(Scalar index) { return tables().index_place[at(index)]; }
 Opcode check_range_opcode(Scalar scalar) { return tables().check[at(scalar)]; }
+Opcode switch_opcode(Scalar scalar) { return tables().switch_on[at(scalar)]; }
 Opcode check_step_opcode(Scalar scalar) { return tables().check_step[at(scalar)]; }
 Opcode extend_opcode(Scalar from, Scalar to) {
   const Tables& t = tables();

@@ -20,6 +20,7 @@ Opcode store_opcode(Class cls);           // through an addr
 Opcode index_opcode(Scalar index);        // of an array behind an addr
 Opcode index_place_opcode(Scalar index);  // of an array at a place
 Opcode check_range_opcode(Scalar scalar);
+Opcode switch_opcode(Scalar scalar);
 Opcode check_step_opcode(Scalar scalar);
 // Conversions; kNoOpcode also where nothing needs to be done.
 Opcode extend_opcode(Scalar from, Scalar to);  // by the sign of `from`

@@ -170,6 +170,7 @@ class Selector {
   void select_end(const Inst& inst, const FlowBlock& flow_block);
   void select_edge(const FlowBlock& flow_block);
   void select_branch(const Inst& inst, const FlowBlock& flow_block);
+  void select_switch(const Inst& inst, const FlowBlock& flow_block);
   void pass_arguments(const Target& target);
   void parallel_move(std::vector<std::pair<Operand, Operand>> moves);
 

@@ -5,6 +5,7 @@
 #include "ir/opt/body.h"
 #include "ir/opt/passes.h"
 #include "ir/program/dominators.h"
+#include "ir/program/ops.h"
 
 namespace ir::opt {
 namespace {
@@ -62,14 +63,16 @@ class Branches {
     changed_ = true;
   }
 
+  static bool decides(Op op) { return op == Op::kBranch || op == Op::kSwitch; }
+
   void straighten(Block& block) {
     Inst& end = block.insts.back();
-    if (end.op == Op::kBranch && !names_loop(block)) decide(end);
+    if (decides(end.op) && !names_loop(block)) decide(end);
     for (size_t t = 0; t < end.targets.size(); ++t) {
       const bool handler = end.op == Op::kTry && t == 1;
       if (!handler) pass_jumps(end, end.targets[t]);
     }
-    if (end.op == Op::kBranch && !names_loop(block)) decide(end);
+    if (decides(end.op) && !names_loop(block)) decide(end);
     if (end.op == Op::kJump) pass_decided_branches(end);
   }
 
@@ -81,12 +84,14 @@ class Branches {
   }
 
   void decide(Inst& end) {
-    if (const std::optional<uint64_t> condition = constants_[end.operands[0]]) {
-      return become_jump(end, end.targets[*condition != 0 ? 0 : 1]);
+    if (const std::optional<uint64_t> bits = constants_[end.operands[0]]) {
+      return become_jump(end, taken_target(end, *bits));
     }
-    const bool same =
-        end.targets[0].block == end.targets[1].block && end.targets[0].args == end.targets[1].args;
-    if (same) become_jump(end, end.targets[0]);
+    const Target& first = end.targets[0];
+    const bool same = std::all_of(end.targets.begin(), end.targets.end(), [&](const Target& way) {
+      return way.block == first.block && way.args == first.args;
+    });
+    if (same) become_jump(end, first);
   }
 
   // Nothing but a jump, and constants that nobody uses.
@@ -131,12 +136,12 @@ class Branches {
       const Target& way = end.targets[0];
       const Block& next = pou_.blocks[way.block.index];
       const Inst& branch = next.insts.back();
-      if (next.insts.size() != 1 || branch.op != Op::kBranch || handlers_[way.block.index]) return;
+      if (next.insts.size() != 1 || !decides(branch.op) || handlers_[way.block.index]) return;
       if (next.params.empty() || !used_only_at_end(next)) return;
       const ValueId condition = argument(next, way, branch.operands[0]);
       const std::optional<uint64_t> bits = constants_[condition];
       if (!bits || condition == branch.operands[0]) return;
-      Target taken = branch.targets[*bits != 0 ? 0 : 1];
+      Target taken = taken_target(branch, *bits);
       for (ValueId& arg : taken.args) arg = argument(next, way, arg);
       for (const ValueId arg : way.args) --uses_of(arg);
       for (const ValueId arg : taken.args) ++uses_of(arg);

@@ -74,6 +74,7 @@ class Candidate {
       case Op::kSizeOf:
       case Op::kJump:
       case Op::kBranch:
+      case Op::kSwitch:
       case Op::kReturn:
         return true;
       case Op::kCallNative:

@@ -130,7 +130,8 @@ BlockId EvalMachine::run_terminator(Frame& frame, const Inst& inst) {
     case Op::kEndTry:
       return take(frame, inst.targets[0]);
     case Op::kBranch:
-      return take(frame, inst.targets[bits(frame, inst.operands[0]) != 0 ? 0 : 1]);
+    case Op::kSwitch:
+      return take(frame, taken_target(inst, bits(frame, inst.operands[0])));
     case Op::kTrap:
       trap(inst, inst.trap, "");
       return BlockId();

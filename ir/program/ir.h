@@ -172,7 +172,7 @@ struct Inst {
   PouId pou;            // calls of functions and methods
   TypeId type;          // kIsType, kCallReference, kSizeOf
   uint32_t native = 0;  // kCallNative: row of stdlib/native/natives.def
-  int64_t low = 0;      // kCheckRange
+  int64_t low = 0;      // kCheckRange, kSwitch
   int64_t high = 0;
   TrapKind trap = TrapKind::kAssert;
   std::vector<Target> targets;

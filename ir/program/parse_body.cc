@@ -132,7 +132,12 @@ class BodyParser {
         inst.constant = line.take(",") ? line.constant() : ConstId();
         break;
       case Op::kCheckRange:
-        parse_check_range(line, inst);
+        parse_value_and_range(line, inst);
+        break;
+      case Op::kSwitch:
+        parse_value_and_range(line, inst);
+        line.expect(",");
+        parse_values_and_targets(line, inst);
         break;
       case Op::kSizeOf:
         inst.type = scope_.type(line);
@@ -192,7 +197,7 @@ class BodyParser {
     }
   }
 
-  static void parse_check_range(LineReader& line, Inst& inst) {
+  static void parse_value_and_range(LineReader& line, Inst& inst) {
     inst.operands.push_back(ValueId(line.numbered('v')));
     line.expect(",");
     inst.low = line.signed_number();

@@ -120,6 +120,9 @@ class PouPrinter {
         return targets(inst);
       case Op::kBranch:
         return list(inst.operands) + ", " + targets(inst);
+      case Op::kSwitch:
+        return list(inst.operands) + ", " + std::to_string(inst.low) + ".." +
+               std::to_string(inst.high) + ", " + targets(inst);
       case Op::kTrap:
         return trap_name(inst.trap);
       default:

@@ -23,7 +23,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
 
-bool shows_scalar(Op op) { return op_has_result(op) || op == Op::kStore; }
+bool shows_scalar(Op op) { return op_has_result(op) || op == Op::kStore || op == Op::kSwitch; }
 
 Scalar result_scalar(const Inst& inst) {
   return inst.op >= Op::kEq && inst.op <= Op::kLe ? Scalar::kBool : inst.scalar;

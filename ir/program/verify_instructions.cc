@@ -59,15 +59,10 @@ class InstVerifier {
     if (inst.result.valid() && reason_.empty()) {
       require(scalar_of(inst.result) == result_scalar(inst), "its result has another type");
     }
-    require(inst.targets.size() == target_count(inst.op), "number of targets");
+    require(inst.targets.size() == target_count(inst), "number of targets");
     for (const Target& target : inst.targets) {
       check_target(target);
     }
-  }
-
-  static size_t target_count(Op op) {
-    const bool two = op == Op::kBranch || op == Op::kTry;
-    return two ? 2 : op == Op::kJump || op == Op::kEndTry ? 1 : 0;
   }
 
   void check_target(const Target& target) {
@@ -184,6 +179,12 @@ class InstVerifier {
         break;
       case Op::kBranch:
         require(operand(inst, 0) == Scalar::kBool, "a branch takes a bool");
+        break;
+      case Op::kSwitch:
+        require_operands(inst, is_integer(inst.scalar));
+        require(inst.low <= inst.high && fits_switch(inst.scalar, inst.low) &&
+                    fits_switch(inst.scalar, inst.high),
+                "the range of a switch is empty, or beyond its type or i32");
         break;
       case Op::kTrapAgain:
         require(operand(inst, 0) == Scalar::kU32, "the kind of a trap is u32");

@@ -2,6 +2,8 @@
 // POU: there the frame memory is all there is to know.
 #pragma once
 
+#include <algorithm>
+
 #include "vm/exec/references.h"
 #include "vm/exec/step.h"
 
@@ -61,6 +63,24 @@ struct Semantics<ir::Opcode::JF> : Stepwise<void> {
     return Flow::kOn;
   }
 };
+// Takes the JMP of the table along.
+template <class T>
+struct Switch : Stepwise<void, 2> {
+  template <class O>
+  STC_INLINE Flow step(const O& o, Machine& m, NoValue&) {
+    const ir::Unit& table = m.pc[1];
+    const auto low = static_cast<T>(static_cast<int32_t>(table.x()));
+    const uint64_t entry = static_cast<T>(o.template b<T>() - low);
+    m.pc += 2 + std::min(entry, uint64_t{table.y()});
+    if (entry < table.y()) m.pc = jump_target(m);
+    return Flow::kAway;
+  }
+};
+#define SWITCH(suffix, T) \
+  template <>             \
+  struct Semantics<ir::Opcode::SWITCH_##suffix> : Switch<T> {};
+STC_WORDS(SWITCH)
+#undef SWITCH
 template <>
 struct Semantics<ir::Opcode::TASK_TIME> : Stepwise<int64_t> {
   template <class O>

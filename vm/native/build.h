@@ -69,6 +69,7 @@ class Builder {
   void call(CallKind kind, uint32_t pou, Val id);
   void call_body(Node made);
   void helper();
+  void fork(const Fork& fork);
   void leave();
 
   // build_memory.cc
@@ -138,6 +139,10 @@ class Builder {
   ir::Unit u_;
   ir::Unit x_;
   bool ended_ = false;
+  struct {
+    Val value = kNone;
+    uint8_t width = 0;
+  } switched_;                      // what the forks of the last SWITCH ask
   uint32_t version_ = 0;            // of memory that no variable names
   uint32_t epoch_ = 0;              // values of earlier epochs are reached through variables only
   std::vector<uint32_t> epoch_of_;  // by value

@@ -63,6 +63,9 @@ void Builder::unit(uint32_t number) {
     case Shape::kHelper:
       break;
   }
+  if (const Fork* const fork = facts_.fork(block_)) {
+    if (op == Opcode::JMP || is_switch(op)) return this->fork(*fork);
+  }
   if (op == Opcode::JT || op == Opcode::JF) {
     End& end = f_.blocks[block_].end;
     end.in[0] = read_a();
@@ -93,6 +96,30 @@ void Builder::unit(uint32_t number) {
   } else {
     helper();
   }
+}
+
+void Builder::fork(const Fork& fork) {
+  const Opcode op = u_.opcode();
+  if (is_switch(op)) {
+    const auto width = static_cast<uint8_t>(ir::class_size(ir::opcode_row(op).b.cls));
+    const auto low = static_cast<uint64_t>(int64_t{static_cast<int32_t>(x_.x())});
+    switched_.value = read_b();
+    switched_.width = width;
+    if (low != 0) {
+      switched_.value = int_op(Op::kSub, width, switched_.value, constant(low, width, false));
+    }
+  }
+  End& end = f_.blocks[block_].end;
+  end.kind = fork.below == kNone ? EndKind::kUnreachable : EndKind::kBranch;
+  ended_ = true;
+  if (fork.below == kNone) return;
+  if (fork.below == fork.above) return end_with_jump(fork.below);
+  end.cond = Cond::kLtU;
+  end.width = switched_.width;
+  end.in[0] = switched_.value;
+  end.in[1] = constant(fork.edge, switched_.width, false);
+  end.target[0] = fork.below;
+  end.target[1] = fork.above;
 }
 
 void Builder::leave() {

@@ -35,6 +35,7 @@ void add(Accesses& out, const ir::Field& field, ir::Base base, uint16_t offset) 
 }  // namespace
 
 bool is_call(Opcode op) { return ir::opcode_row(op).calls; }
+bool is_switch(Opcode op) { return op >= Opcode::SWITCH_8 && op <= Opcode::SWITCH_64; }
 
 Accesses accesses_of(const ir::Unit& unit) {
   const Opcode op = unit.opcode();
@@ -87,7 +88,7 @@ bool Facts::find_blocks(std::string& why) {
       why = "it has __TRY";
       return false;
     }
-    if (op == Opcode::JT || op == Opcode::JF || ir::opcode_row(op).ends) begins[i + 1] = true;
+    if (op == Opcode::JT || op == Opcode::JF || ir::opcode_row(op).ends) begins[next(i)] = true;
   }
   block_at_.assign(code_.size(), kNone);
   for (uint32_t i = 0; i < code_.size(); i = next(i)) {
@@ -96,11 +97,20 @@ bool Facts::find_blocks(std::string& why) {
     blocks_.back().behind = next(i);
     blocks_.back().last = i;
   }
+  for (Block b = 0; b < blocks_.size(); ++b) {
+    if (is_switch(code_[blocks_[b].last].opcode())) find_forks(b);
+  }
   return true;
 }
 
 void Facts::successors(Block block, Block out[2], uint32_t& count) const {
   count = 0;
+  if (const Fork* const fork = this->fork(block)) {
+    if (fork->below == kNone) return;
+    out[count++] = fork->below;
+    if (fork->above != fork->below) out[count++] = fork->above;
+    return;
+  }
   const uint32_t last = blocks_[block].last;
   const Opcode op = code_[last].opcode();
   if (op == Opcode::JT || op == Opcode::JF) {

@@ -53,6 +53,13 @@ struct UnitRange {
   uint32_t last = 0;  // the last instruction
 };
 
+// Numbers below `edge` go on at `below`, the others at `above`.
+struct Fork {
+  uint64_t edge = 0;
+  Block below = kNone;  // kNone: nothing leads to this block
+  Block above = kNone;
+};
+
 // What all POUs of an image have in common.
 struct ImageFacts {
   // `other_code` stands for that of the image, sorted by POU; borrowed.
@@ -112,6 +119,12 @@ class Facts {
   }
 
   const std::vector<UnitRange>& blocks() const { return blocks_; }
+  // A SWITCH is a tree of comparisons of its value less `low`: its own block and those of the JMPs
+  // behind it are the forks. Null: the block is no part of one.
+  const Fork* fork(Block block) const {
+    const auto found = forks_.find(block);
+    return found == forks_.end() ? nullptr : &found->second;
+  }
   Block block_at(uint32_t unit) const { return block_at_[unit]; }
   const std::vector<Loop>& loops() const { return loops_; }
   uint32_t loop_of(Block block) const { return loop_of_[block]; }  // innermost, or kNone
@@ -158,6 +171,7 @@ class Facts {
 
  private:
   bool find_blocks(std::string& why);
+  void find_forks(Block block);
   bool find_loops(std::string& why);
   bool fits(std::string& why) const;
   void find_bodies(const BodyOf& body_of);
@@ -188,6 +202,7 @@ class Facts {
   std::span<const ir::Unit> code_;
   std::vector<UnitRange> blocks_;
   std::vector<Block> block_at_;
+  std::unordered_map<Block, Fork> forks_;
   std::vector<Loop> loops_;
   std::vector<uint32_t> loop_of_;
   std::vector<bool> loop_calls_;
@@ -214,6 +229,8 @@ class Facts {
   std::vector<uint32_t> live_slots_;
   ByKey<Listed> live_behind_;  // by unit, in `live_slots_`
 };
+
+bool is_switch(ir::Opcode op);
 
 // Does the unit leave the POU for another, so that all slots must be in memory?
 bool is_call(ir::Opcode op);

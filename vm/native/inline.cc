@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ir/bytecode/image.h"
+#include "vm/native/facts.h"
 #include "vm/native/recipes.h"
 
 namespace vm::native {
@@ -210,7 +211,7 @@ bool is_small(const ir::LinkedPou& pou, std::span<const ir::Unit> code) {
     const ir::OpcodeRow& row = ir::opcode_row(op);
     const Shape shape = recipe_of(op).shape;
     const bool flow = op == ir::Opcode::JT || op == ir::Opcode::JF || op == ir::Opcode::JMP ||
-                      op == ir::Opcode::RET;
+                      op == ir::Opcode::RET || is_switch(op);
     if (row.calls || row.backward || (shape == Shape::kHelper && !flow)) return false;
     const bool constant_place =
         (row.b.kind == ir::FieldKind::kBase && unit.base_b() == ir::Base::kConst) ||

@@ -195,6 +195,22 @@ TEST(Verify, KeepsTheLimitsOfTypes) {
   EXPECT_NE(verdict(program), "ok");
 }
 
+TEST(Verify, ASwitchHasATargetForEachNumber) {
+  const auto verdict_of = [](const std::string& type, const std::string& rest) {
+    return verdict(
+        parse_ok(small_program("", "b0:\n v0 = const " + type + " 3\n switch " + type + " v0, " +
+                                       rest + "\n b1:\n return\n b2:\n jump b1\n")));
+  };
+  EXPECT_EQ(verdict_of("i16", "-1..1, b1, b2, b1, b2"), "ok");
+  EXPECT_EQ(verdict_of("u64", "2147483646..2147483647, b1, b2, b2"), "ok");
+  EXPECT_NE(verdict_of("i16", "-1..1, b1, b2, b1").find("number of targets"), std::string::npos);
+  const char* const why = "empty, or beyond its type or i32";
+  EXPECT_NE(verdict_of("i16", "4..3, b1").find(why), std::string::npos);
+  EXPECT_NE(verdict_of("u16", "-1..0, b1, b2, b1").find(why), std::string::npos);
+  EXPECT_NE(verdict_of("i8", "127..128, b1, b2, b1").find(why), std::string::npos);
+  EXPECT_NE(verdict_of("i64", "2147483647..2147483648, b1, b2, b1").find(why), std::string::npos);
+}
+
 TEST(Verify, FollowsLoops) {
   EXPECT_EQ(verdict(parse_ok(small_program("", R"(b0:
     v0 = const i16 0
