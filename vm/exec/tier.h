@@ -38,6 +38,7 @@ struct TierOptions {
   uint64_t pou_seed = 0;     // not 0: every other POU is interpreted, at random
   uint64_t take_at = 0;      // not 0: what was made beside is taken when this cycle begins
   bool plain = false;        // no instructions that only newer machines have
+  uint32_t table_ways = 0;   // a jump table for so many ways; 0: where it pays
 };
 
 }  // namespace vm

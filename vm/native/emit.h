@@ -34,7 +34,8 @@ struct PouCode {
   const SideUnits* side = nullptr;
   const ir::Unit* units = nullptr;  // the POU's own, ready for the interpreter
   uint32_t number = 0;
-  bool plain = false;  // nothing that only newer machines have
+  bool plain = false;       // nothing that only newer machines have
+  uint32_t table_ways = 0;  // a jump table for so many ways; 0: where it pays
 };
 
 }  // namespace vm::native

@@ -204,8 +204,8 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
 
 Emitted emit(Work& work, const TierOptions& options, const host::Shared& shared,
              host::Assembler& assembler) {
-  const PouCode code{&work.function,  &work.places, &work.pou->side,
-                     work.pou->units, work.number,  options.plain};
+  const PouCode code{&work.function, &work.places,  &work.pou->side,   work.pou->units,
+                     work.number,    options.plain, options.table_ways};
   Emitted out;
   out.entries = host::Emitter(code, shared, assembler).run();
   for (const auto& [block, offset] : out.entries.heads) {

@@ -59,6 +59,7 @@ vm::TierOptions tier_options(Tier tier) {
     case Tier::kFewRegisters:
       out.integer_registers = 5;
       out.plain = true;
+      out.table_ways = 2;
       out.float_registers = 3;
       break;
     case Tier::kSpills:

@@ -230,6 +230,23 @@ TEST(Arm64Assembler, CodeWhoseBranchesDoNotReachIsMadeAnew) {
   EXPECT_TRUE(a.reaches(mark));
 }
 
+// adrp x9, 0; add x9, x9, 12; the table behind it
+TEST(Arm64Assembler, TablesHoldDistancesToTheirBeginning) {
+  Assembler a;
+  const Label to = a.label();
+  const Label table = a.label();
+  a.bind(to);
+  a.ret();
+  a.address_of(9, table);
+  a.bind(table);
+  a.table_entry(table, to);
+  a.table_entry(table, table);
+  a.patch();
+  const std::vector<uint8_t> expected = {0xc0, 0x03, 0x5f, 0xd6, 0x09, 0, 0, 0x90, 0x29, 0x31,
+                                         0x00, 0x91, 0x0c, 0,    0,    0, 0, 0,    0,    0};
+  EXPECT_EQ(a.code(), expected);
+}
+
 TEST(Arm64Assembler, LogicalImmediatesAreRunsOfOnes) {
   // All of them, by what they mean: a run of ones, turned, repeated.
   uint32_t count = 0;

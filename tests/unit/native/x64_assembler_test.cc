@@ -134,5 +134,22 @@ TEST(X64Assembler, InstructionsAreEncodedAsGnuAsDoes) {
   }
 }
 
+// lea r9, [rip]; the table behind it
+TEST(X64Assembler, TablesHoldDistancesFromTheirBeginning) {
+  Assembler a;
+  const Label to = a.label();
+  const Label table = a.label();
+  a.bind(to);
+  a.ret();
+  a.address_of(kR9, table);
+  a.bind(table);
+  a.table_entry(table, to);
+  a.table_entry(table, table);
+  a.patch();
+  const std::vector<uint8_t> expected = {0xc3, 0x4c, 0x8d, 0x0d, 0, 0, 0, 0,
+                                         0xf8, 0xff, 0xff, 0xff, 0, 0, 0, 0};
+  EXPECT_EQ(a.code(), expected);
+}
+
 }  // namespace
 }  // namespace vm::native::x64

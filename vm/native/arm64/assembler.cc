@@ -29,8 +29,9 @@ bool Assembler::reaches(const Mark& since) const {
   for (size_t i = since.fixups; i < fixups_.size(); ++i) {
     const Fixup& fixup = fixups_[i];
     const int64_t far = signed_distance(fixup.at, labels_[fixup.to]);
+    if (fixup.reach == Reach::kPage || fixup.reach == Reach::kDistance) continue;
     const int64_t most = int64_t{1} << (fixup.reach == Reach::kJump ? 27 : 20);
-    if (fixup.reach != Reach::kPage && (far < -most || far >= most)) return false;
+    if (far < -most || far >= most) return false;
   }
   return true;
 }
@@ -60,6 +61,9 @@ void Assembler::patch() {
         w[1] |= (to & 0xfff) << 10;
         break;
       }
+      case Reach::kDistance:
+        w[0] = distance(to, fixup.at - w[0]);
+        break;
     }
     std::memcpy(&code_[fixup.at], w, fixup.reach == Reach::kPage ? 8 : 4);
   }
@@ -75,10 +79,17 @@ void Assembler::jump(Label to) {
   branch(0x14000000, to, Reach::kJump);
 }
 // adrp, add, br
+void Assembler::address_of(uint8_t to, Label label) {
+  branch(0x90000000 | to, label, Reach::kPage);
+  word(0x91000000 | uint32_t{to} << 5 | to);
+}
 void Assembler::jump_long(Label to) {
-  branch(0x90000000 | kAddressScratch, to, Reach::kPage);
-  word(0x91000000 | uint32_t{kAddressScratch} << 5 | kAddressScratch);
+  address_of(kAddressScratch, to);
   jump_to(kAddressScratch);
+}
+void Assembler::table_entry(Label table, Label to) {
+  const uint32_t behind_table = here() - labels_[table];
+  branch(behind_table, to, Reach::kDistance);
 }
 void Assembler::jump_if(Condition condition, Label to) {
   if (!long_) return branch(0x54000000 | static_cast<uint32_t>(condition), to, Reach::kConditional);

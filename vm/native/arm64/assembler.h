@@ -136,6 +136,7 @@ class Assembler {
   void load(uint8_t to, const Address& from, uint8_t width);  // zero-extended
   void store(const Address& to, uint8_t from, uint8_t width);
   void address(uint8_t to, const Address& at, uint8_t width);
+  void address_of(uint8_t to, Label label);
   // At a multiple of 8 from the stack pointer; `floats`: the d registers.
   void store_pair(uint8_t a, uint8_t b, int32_t at, bool floats);
   void load_pair(uint8_t a, uint8_t b, int32_t at, bool floats);
@@ -148,6 +149,7 @@ class Assembler {
   void call(uint8_t reg);
   void ret();
   void trap();  // is never reached
+  void table_entry(Label table, Label to);  // 4 bytes: table - to; `table` is bound
 
   // Floating point of 4 or 8 bytes.
   void float_unary(FloatUnary op, uint8_t to, uint8_t from, uint8_t width);
@@ -167,7 +169,7 @@ class Assembler {
   void float_to_bits(uint8_t to, uint8_t from, uint8_t width);
 
  private:
-  enum class Reach : uint8_t { kJump, kConditional, kPage };
+  enum class Reach : uint8_t { kJump, kConditional, kPage, kDistance };
   struct Fixup {
     uint32_t at;
     Label to;

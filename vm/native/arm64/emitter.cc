@@ -16,7 +16,12 @@ Condition condition_of(Cond cond) {
 }
 
 Emitter::Emitter(const PouCode& pou, const Shared& shared, Assembler& assembler)
-    : pou_(pou), f_(*pou.function), places_(*pou.places), shared_(shared), a_(assembler) {
+    : pou_(pou),
+      f_(*pou.function),
+      places_(*pou.places),
+      shared_(shared),
+      a_(assembler),
+      tables_(f_, places_, pou.table_ways) {
   // The spill slots and the return address, a multiple of 16.
   frame_bytes_ = static_cast<int32_t>((places_.spill_slots + 2) / 2 * 16);
 }
@@ -91,6 +96,7 @@ void Emitter::function() {
   exits_.assign(f_.exits.size(), kNone);
   blocks_.clear();
   edges_.clear();
+  table_stubs_.clear();
   stops_.clear();
   call_stubs_.clear();
   inlined_.clear();
@@ -139,6 +145,7 @@ void Emitter::end(Block b) {
     case EndKind::kLoop:
       return loop_end(b);
     case EndKind::kBranch:
+      if (const auto table = tables_.at(b)) return jump_by_table(b, *table);
       return branch(b);
     case EndKind::kUnreachable:
       return;
@@ -334,6 +341,7 @@ void Emitter::stubs() {
   a_.store(CONTEXT(pc), kScratch, 8);
   store_word(CONTEXT(pou), pou_.number);
   a_.jump_long(shared_.leave);
+  tables();
 }
 
 }  // namespace vm::native::arm64

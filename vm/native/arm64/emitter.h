@@ -7,6 +7,7 @@
 
 #include "vm/native/arm64/assembler.h"
 #include "vm/native/emit.h"
+#include "vm/native/jump_tables.h"
 
 namespace vm::native::arm64 {
 
@@ -54,6 +55,10 @@ class Emitter {
     Block block;
     uint32_t target;
   };
+  struct TableStub {
+    Label label;
+    std::vector<Label> entries;
+  };
   struct CallStub {
     Label label;
     uint32_t side;
@@ -79,6 +84,11 @@ class Emitter {
   Label exit_label(uint32_t exit);
   void enter_frame();
   void leave_frame();
+
+  // emit_table.cc
+  Label label_of(const JumpTable::Way& way);
+  void jump_by_table(Block b, const JumpTable& table);
+  void tables();
 
   // emit_nodes.cc
   void node(const Step& step);
@@ -135,6 +145,8 @@ class Emitter {
   std::vector<Label> blocks_;
   std::vector<Label> exits_;
   std::vector<EdgeStub> edges_;
+  JumpTables tables_;
+  std::vector<TableStub> table_stubs_;
   std::vector<std::pair<Label, uint32_t>> stops_;  // a helper that trapped: its unit
   std::vector<CallStub> call_stubs_;               // out of fuel at a call
   std::vector<Label> inlined_;                     // by Function::inlined: makes the activation

@@ -17,7 +17,9 @@ Label Assembler::label() {
 
 void Assembler::patch() {
   for (const Fixup& fixup : fixups_) {
-    const auto distance = static_cast<int32_t>(labels_[fixup.to] - (fixup.at + 4));
+    int32_t distance;
+    std::memcpy(&distance, &code_[fixup.at], sizeof distance);
+    distance += static_cast<int32_t>(labels_[fixup.to] - (fixup.at + 4));
     std::memcpy(&code_[fixup.at], &distance, sizeof distance);
   }
   fixups_.clear();
@@ -215,6 +217,16 @@ void Assembler::jump_if(Condition condition, Label to) {
   byte(0x0f);
   byte(0x80u | static_cast<uint8_t>(condition));
   jump_field(to);
+}
+void Assembler::address_of(uint8_t to, Label label) {
+  byte(to >= 8 ? 0x4c : 0x48);
+  byte(0x8d);
+  byte(0x05u | (to & 7u) << 3);
+  jump_field(label);
+}
+void Assembler::table_entry(Label table, Label to) {
+  fixups_.push_back({here(), to});
+  imm32(int64_t{here()} + 4 - labels_[table]);
 }
 void Assembler::jump_to(uint8_t reg) { instruction(0, false, {0xff}, 4, Operand::of(reg)); }
 void Assembler::call(Label to) {

@@ -107,6 +107,7 @@ class Assembler {
   void divide(uint8_t by, bool is_signed, uint8_t width);  // rdx:rax
   void sign_into_rdx(uint8_t width);
   void address(uint8_t to, const Address& at, uint8_t width);  // lea
+  void address_of(uint8_t to, Label label);
   void set(Condition condition, uint8_t to);
   void move_if(Condition condition, uint8_t to, uint8_t from);  // 8 bytes
 
@@ -119,6 +120,7 @@ class Assembler {
   void push(uint8_t reg);
   void pop(uint8_t reg);
   void trap();  // ud2: is never reached
+  void table_entry(Label table, Label to);  // 4 bytes: to - table, which is bound
 
   // Floating point of 4 or 8 bytes.
   void float_move(uint8_t to, uint8_t from);

@@ -20,7 +20,8 @@ Emitter::Emitter(const PouCode& pou, const Shared& shared, Assembler& assembler)
       places_(*pou.places),
       shared_(shared),
       a_(assembler),
-      has_and_not_(!pou.plain && has_and_not()) {
+      has_and_not_(!pou.plain && has_and_not()),
+      tables_(f_, places_, pou.table_ways) {
   // The stack is a multiple of 16 below the return address.
   frame_bytes_ = static_cast<int32_t>(places_.spill_slots * 8);
   if (frame_bytes_ % 16 == 0) frame_bytes_ += 8;
@@ -122,6 +123,7 @@ void Emitter::end(Block b) {
     case EndKind::kLoop:
       return loop_end(b);
     case EndKind::kBranch:
+      if (const auto table = tables_.at(b)) return jump_by_table(b, *table);
       return branch(b);
     case EndKind::kUnreachable:
       return;
@@ -359,6 +361,7 @@ void Emitter::stubs() {
   a_.store(CONTEXT(pc), kScratch, 8);
   a_.store_imm(CONTEXT(pou), static_cast<int32_t>(pou_.number), 4);
   a_.jump(shared_.leave);
+  tables();
 }
 
 }  // namespace vm::native::x64

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "vm/native/emit.h"
+#include "vm/native/jump_tables.h"
 #include "vm/native/x64/assembler.h"
 
 namespace vm::native::x64 {
@@ -56,6 +57,10 @@ class Emitter {
     Block block;
     uint32_t target;
   };
+  struct TableStub {
+    Label label;
+    std::vector<Label> entries;
+  };
 
   // emitter.cc: blocks, moves, exits
   void block(Block b);
@@ -75,6 +80,11 @@ class Emitter {
   Label exit_label(uint32_t exit);
   void enter_frame();
   void leave_frame();
+
+  // emit_table.cc
+  Label label_of(const JumpTable::Way& way);
+  void jump_by_table(Block b, const JumpTable& table);
+  void tables();
 
   // emit_nodes.cc
   void node(const Step& step);
@@ -126,6 +136,8 @@ class Emitter {
   std::vector<Label> blocks_;
   std::vector<Label> exits_;
   std::vector<EdgeStub> edges_;
+  JumpTables tables_;
+  std::vector<TableStub> table_stubs_;
   std::vector<std::pair<Label, uint32_t>> stops_;  // a helper that trapped: its unit
   struct CallStub {
     Label label;
