@@ -23,8 +23,9 @@ constexpr uint32_t kMostForces = 30;
 
 class AskingClock : public vm::VirtualClock {
  public:
-  AskingClock() : VirtualClock(0) {}
-  void consumed(uint64_t) override {
+  explicit AskingClock(int64_t ns_per_safe_point) : VirtualClock(ns_per_safe_point) {}
+  void consumed(uint64_t safe_points) override {
+    VirtualClock::consumed(safe_points);
     if (ask) ask();
   }
   std::function<void()> ask;
@@ -43,6 +44,9 @@ struct Mode {
   uint64_t fuel_slice;
   bool republished;       // an identity change after every scan
   bool optimised = true;  // else each variable is read where the source reads it
+  // Scans take time: tasks begin in the middle of others, where the code says, so that states are
+  // not compared.
+  int64_t ns_per_safe_point = 0;
 };
 constexpr Mode kModes[] = {
     {"no passes", vm::Tier::kInterpreter, vm::Fusing::kNever, 1000, false, false},
@@ -51,6 +55,7 @@ constexpr Mode kModes[] = {
     {"unfused, fuel 1", vm::Tier::kInterpreter, vm::Fusing::kNever, 1, false},
     {"native, fuel 1", vm::Tier::kNative, vm::Fusing::kAlways, 1, false},
     {"native, republished", vm::Tier::kNative, vm::Fusing::kAuto, 1000, true},
+    {"preempted", vm::Tier::kNative, vm::Fusing::kAuto, 1, false, true, 700'000},
 };
 
 // "fuel Main:7" a line: what all tiers must agree about.
@@ -109,6 +114,7 @@ class Evaluated : public Subject {
 
 class Forced : public Subject {
  public:
+  explicit Forced(const Mode& mode) : clock_(mode.ns_per_safe_point) {}
   base::Status start(const ir::VerifiedImage& image, const Mode& mode) {
     republished_ = mode.republished;
     vm::ControllerOptions options;
@@ -145,14 +151,20 @@ class Forced : public Subject {
     return ir::state_text(controller_->image(), controller_->memory().view()) + traps_;
   }
   base::Status force(const vm::NamedValue& row) override {
-    return controller_->force(row.path, row.value);
+    return comes_to_boundary() ? controller_->force(row.path, row.value) : base::Ok{};
   }
-  // A later one at the same place, in a union, has replaced it.
-  void unforce(const std::string& path) override { (void)controller_->unforce(path).ok(); }
+  void unforce(const std::string& path) override {
+    if (comes_to_boundary()) (void)controller_->unforce(path).ok();
+  }
   bool out_of_fuel() const override { return out_of_fuel_; }
   vm::Controller& controller() { return *controller_; }
 
  private:
+  // Tasks that take too long never leave one.
+  bool comes_to_boundary() {
+    for (int i = 0; i < 100 && !controller_->at_boundary(); ++i) controller_->cycle();
+    return controller_->at_boundary();
+  }
   void look() {
     for (const vm::Force& force : controller_->forces()) {
       if (!force.reason.empty() || !changed_.empty()) continue;
@@ -249,7 +261,7 @@ Finding failed(const Mode& mode, const char* what, const std::string& text) {
 
 // Those that hold everywhere in this program.
 base::Status keep_certain(const ir::VerifiedImage& image, std::vector<vm::NamedValue>& values) {
-  Forced forced;
+  Forced forced(kModes[0]);
   if (base::Status s = forced.start(image, kModes[0]); !s.ok()) return s;
   vm::Controller& controller = forced.controller();
   for (const vm::NamedValue& row : values) {
@@ -272,18 +284,18 @@ Finding examine_forces(const std::string& source, uint64_t seed, int scans,
   if (!plain.ok()) return failed(kModes[0], "compile", base::to_string(plain.error()));
   const base::Result<ir::VerifiedImage> images[] = {golden::link(*plain, nullptr, false),
                                                     golden::link(*optimised, nullptr, false)};
-  std::vector<vm::NamedValue> values;
   for (const base::Result<ir::VerifiedImage>& image : images) {
     if (!image.ok()) return failed(kModes[0], "link", base::to_string(image.error()));
   }
+  std::vector<vm::NamedValue> values;
   {
-    Forced first;
+    Forced first(kModes[1]);
     if (base::Status s = first.start(*images[1], kModes[1]); !s.ok()) return {};
     if (!first.scan().empty()) return {};
     values = choose(first.controller(), first.controller().memory().view(), seed);
   }
   for (const base::Result<ir::VerifiedImage>& image : images) {
-    base::Status kept = keep_certain(*image, values);
+    const base::Status kept = keep_certain(*image, values);
     if (!kept.ok()) return failed(kModes[0], "force", base::to_string(kept.error()));
   }
   Finding out;
@@ -294,7 +306,7 @@ Finding examine_forces(const std::string& source, uint64_t seed, int scans,
   Evaluated oracle(*plain, images[0]->image());
   const Run expected = run(oracle, values, scans);
   for (const Mode& mode : kModes) {
-    Forced forced;
+    Forced forced(mode);
     if (base::Status s = forced.start(*images[mode.optimised ? 1 : 0], mode); !s.ok()) {
       return failed(mode, "refused", base::to_string(s.error()));
     }
@@ -304,6 +316,7 @@ Finding examine_forces(const std::string& source, uint64_t seed, int scans,
       out.trap = ir::trap_name(ir::TrapKind::kFuel);
       out.scan = now.states.size() + 1;
     }
+    if (mode.ns_per_safe_point != 0) continue;
     for (size_t i = 0; i < std::min(expected.states.size(), now.states.size()); ++i) {
       if (expected.states[i] == now.states[i]) continue;
       const Finding where = first_difference(expected.states[i], now.states[i]);
