@@ -31,7 +31,8 @@ struct Target {
   bool overlaid = false;      // in a union
   uint64_t member_begin = 0;  // of the owner's member that it is, or is part of
   uint64_t member_end = 0;
-  bool in_out = false;  // its address may be bound to a VAR_IN_OUT
+  bool in_out = false;   // its address may be bound to a VAR_IN_OUT
+  bool retyped = false;  // by a reference, as a variable of any type
   bool referenced = false;
 };
 

@@ -296,8 +296,10 @@ void Search::look_at(uint32_t number) {
   }
 }
 
-// Can the variable be what an address of that kind points to? References take any type.
+// Can the variable be what an address of that kind points to? References take any type, and so do
+// VAR_IN_OUTs that they are bound to.
 bool Search::fits(const Target& target, const Unknown& unknown) const {
+  if (target.retyped) return true;
   if (unknown.from != Kind::kInOut || target.overlaid || !unknown.region.type.valid()) {
     const bool text = unknown.from == Kind::kInOut && !target.overlaid;
     const ir::Kind kind = image_.types[target.type].kind;
@@ -336,9 +338,12 @@ void Search::find_escapes(Target& target) const {
     changed = false;
     for (const Unknown& unknown : unknown_) {
       if (unknown.use == Unknown::Use::kStored) continue;
-      bool& more = unknown.use == Unknown::Use::kPassed ? target.in_out : target.referenced;
-      if (more || !reaches(target, unknown)) continue;
+      const bool passed = unknown.use == Unknown::Use::kPassed;
+      const bool retypes = passed && unknown.from != Kind::kInOut && !target.retyped;
+      bool& more = passed ? target.in_out : target.referenced;
+      if ((more && !retypes) || !reaches(target, unknown)) continue;
       changed = more = true;
+      target.retyped |= retypes;
     }
   }
 }
