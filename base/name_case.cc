@@ -1,5 +1,8 @@
 #include "base/name_case.h"
 
+#include <cstring>
+#include <optional>
+
 namespace base {
 namespace {
 
@@ -64,10 +67,63 @@ class Folded {
   uint8_t trail_ = 0;  // folded second byte of the letter whose first one was given
 };
 
+// Eight bytes at a time, the missing ones of the last piece being 0.
+constexpr size_t kPiece = 8;
+constexpr uint64_t kEach = 0x0101010101010101u;
+
+template <class T>
+uint64_t read(const char* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  return value;
+}
+
+// What stands there: of short names by two readings that overlap, without a loop.
+uint64_t piece_at(std::string_view name, size_t at) {
+  const char* begin = name.data() + at;
+  const size_t size = name.size() - at;
+  if (size >= kPiece) return read<uint64_t>(begin);
+  if (size >= 4) return read<uint32_t>(begin) | read<uint32_t>(begin + size - 4) << 8 * (size - 4);
+  if (size >= 2) return read<uint16_t>(begin) | read<uint16_t>(begin + size - 2) << 8 * (size - 2);
+  return static_cast<uint8_t>(*begin);
+}
+
+bool is_ascii(uint64_t piece) { return (piece & 0x80 * kEach) == 0; }
+
+// fold_ascii() of each byte; bytes above 0x7F stay.
+uint64_t fold_piece(uint64_t piece) {
+  const uint64_t low = piece & 0x7f * kEach;
+  const uint64_t from_a = low + (0x80 - 'A') * kEach;
+  const uint64_t behind_z = low + (0x7f - 'Z') * kEach;
+  const uint64_t capital = (from_a ^ behind_z) & ~piece & 0x80 * kEach;
+  return piece | capital >> 2;
+}
+
+// nullopt when not all of it is ASCII and `any` is false.
+std::optional<uint64_t> hash_pieces(std::string_view name, bool any) {
+  uint64_t hash = 0xcbf29ce484222325u;
+  uint64_t all = 0;
+  for (size_t at = 0; at < name.size(); at += kPiece) {
+    const uint64_t piece = piece_at(name, at);
+    all |= piece;
+    hash = (hash ^ fold_piece(piece)) * 0x9e3779b97f4a7c15u;
+    hash ^= hash >> 32;
+  }
+  return any || is_ascii(all) ? std::optional(hash) : std::nullopt;
+}
+
 }  // namespace
 
 bool same_name(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
+  bool plain = true;
+  for (size_t at = 0; at < a.size() && plain; at += kPiece) {
+    const uint64_t left = piece_at(a, at);
+    const uint64_t right = piece_at(b, at);
+    plain = is_ascii(left | right);
+    if (plain && fold_piece(left) != fold_piece(right)) return false;
+  }
+  if (plain) return true;
   Folded left(a);
   Folded right(b);
   while (left.more()) {
@@ -84,9 +140,8 @@ std::string fold_name(std::string_view name) {
 }
 
 uint64_t name_hash(std::string_view name) {
-  uint64_t hash = 0xcbf29ce484222325u;
-  for (Folded bytes(name); bytes.more();) hash = (hash ^ bytes.next()) * 0x100000001b3u;
-  return hash;
+  if (const auto hash = hash_pieces(name, false)) return *hash;
+  return *hash_pieces(fold_name(name), true);
 }
 
 }  // namespace base

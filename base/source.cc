@@ -47,8 +47,8 @@ SourceLocation SourceMap::locate(SourcePos pos) const {
   const File& file = files_[index];
   if (file.line_starts.empty()) {
     file.line_starts.push_back(0);
-    for (uint32_t i = 0; i < file.text.size(); ++i) {
-      if (file.text[i] == '\n') file.line_starts.push_back(i + 1);
+    for (size_t at = 0; (at = file.text.find('\n', at)) != std::string::npos;) {
+      file.line_starts.push_back(static_cast<uint32_t>(++at));
     }
   }
   uint32_t offset = pos.offset - file.base;

@@ -23,15 +23,16 @@ void Body::run() {
   Sema::Within scope(sema_, pou_number_);
   const PouDecl& decl = *info_.decl;
   base::SourceLocation head = sema_.sources.locate(decl.span.begin);
-  uint32_t file = sema_.sources.file_of(decl.span.begin);
+  line_file_ = sema_.sources.file_of(decl.span.begin);
   out_.file = head.file;
   out_.line = head.line;
   line_offset_ = decl.span.begin.offset;
   line_begin_ = line_offset_;
   line_ = head.line;
-  uint32_t base = sema_.sources.begin(file).offset;
-  std::string_view text = sema_.sources.text(file).substr(
-      decl.span.begin.offset - base, decl.span.end.offset - decl.span.begin.offset);
+  uint32_t base = sema_.sources.begin(line_file_).offset;
+  std::string_view text =
+      sema_.sources.text(line_file_)
+          .substr(decl.span.begin.offset - base, decl.span.end.offset - decl.span.begin.offset);
   out_.source_hash = base::sha256(base::as_bytes(text));
   build_.set_line(head.line);
   initialise_locals();
@@ -83,8 +84,11 @@ void Body::set_line(base::SourceSpan span) {
   uint32_t offset = span.begin.offset;
   if (sema_.log != nullptr && is_outside(span.begin)) sema_.log->other_lines = true;
   if (offset >= line_begin_ && offset <= line_offset_) return build_.set_line(line_);
-  uint32_t file = sema_.sources.file_of(span.begin);
-  uint32_t base = sema_.sources.begin(file).offset;
+  uint32_t base = sema_.sources.begin(line_file_).offset;
+  if (offset < base || offset - base >= sema_.sources.text(line_file_).size()) {
+    line_file_ = sema_.sources.file_of(span.begin);
+    base = sema_.sources.begin(line_file_).offset;
+  }
   // A type's initial values may stand in another file than the variable; a drawing goes up and
   // down in its rows.
   constexpr uint32_t kFar = 4096;
@@ -94,7 +98,7 @@ void Body::set_line(base::SourceSpan span) {
     line_ = location.line;
     line_begin_ = offset + 1 - location.column;
   } else {
-    std::string_view text = sema_.sources.text(file);
+    std::string_view text = sema_.sources.text(line_file_);
     const char* at = text.data() + (line_offset_ - base);
     const char* end = text.data() + (offset - base);
     while ((at = static_cast<const char*>(std::memchr(at, '\n', static_cast<size_t>(end - at)))) !=

@@ -356,6 +356,7 @@ class Body {
   // Where the last line was found; positions mostly go forward.
   uint32_t line_offset_ = 0;  // where the line was last known,
   uint32_t line_begin_ = 0;   // and from where on it is the same line
+  uint32_t line_file_ = 0;    // which file that is, most likely
   uint32_t line_ = 0;
 };
 

@@ -42,4 +42,21 @@ TEST(NameCase, AnyBytes) {
   }
 }
 
+// Names are compared and hashed by pieces of eight bytes: each byte at each place of them.
+TEST(NameCase, EachByteAtEachPlace) {
+  for (size_t size = 1; size <= 17; ++size) {
+    for (size_t at = 0; at < size; ++at) {
+      for (int byte = 0; byte < 0x100; ++byte) {
+        std::string text(size, 'm');
+        text[at] = static_cast<char>(byte);
+        std::string other(size, 'M');
+        other[at] = static_cast<char>(byte ^ 0x20);
+        const bool same = base::fold_name(text) == base::fold_name(other);
+        ASSERT_EQ(base::same_name(text, other), same) << size << ' ' << at << ' ' << byte;
+        ASSERT_EQ(base::name_hash(text) == base::name_hash(other), same);
+      }
+    }
+  }
+}
+
 }  // namespace
