@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kScansBefore = 2;
 constexpr uint64_t kFuel = 500'000;
-constexpr uint64_t kInstructions = 1'000'000;  // of the evaluator, for a scan
+constexpr uint64_t kInstructions = 200'000;  // of the evaluator, for a scan
 constexpr uint32_t kMostForces = 30;
 
 class AskingClock : public vm::VirtualClock {
