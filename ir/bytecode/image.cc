@@ -7,6 +7,7 @@
 
 #include "base/limits.h"
 #include "ir/bytecode/image_fields.h"
+#include "ir/bytecode/image_sections.h"
 
 namespace ir {
 namespace {
@@ -228,15 +229,20 @@ base::Result<Image> decode(base::ByteSpan bytes) {
   return image;
 }
 
-size_t layout_end(base::ByteSpan encoded) {
-  constexpr uint32_t kFirstOfProgram = 4;
-  size_t end = std::min(kHeaderBytes, encoded.size());
-  base::ByteReader in(encoded.subspan(end));
-  for (uint32_t number = 0; number < kFirstOfProgram && !in.failed(); ++number) {
+base::ByteSpan section_of(base::ByteSpan encoded, ImageSection section) {
+  base::ByteReader in(encoded.subspan(std::min(kHeaderBytes, encoded.size())));
+  base::ByteSpan content;
+  for (uint32_t number = 0; number <= static_cast<uint32_t>(section) && !in.failed(); ++number) {
     in.u32();
-    end += 8 + in.blob().size();
+    content = in.blob();
   }
-  return in.failed() ? encoded.size() : end;
+  return in.failed() ? base::ByteSpan() : content;
+}
+
+size_t layout_end(base::ByteSpan encoded) {
+  const base::ByteSpan last = section_of(encoded, ImageSection::kLayouts);
+  if (last.data() == nullptr) return encoded.size();
+  return static_cast<size_t>(last.data() - encoded.data()) + last.size();
 }
 
 bool has_image_magic(base::ByteSpan bytes) {

@@ -74,28 +74,28 @@ base::Status Change::stage(base::ByteSpan package, Strategy strategy,
 
 base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy,
                                  const AtBoundary& at_boundary) {
-  base::Result<Package> package = decode(bytes);
+  const ir::VerifiedImage& before = controller_.verified();
+  base::Result<Package> package = decode(bytes, before.encoded());
   if (!package.ok()) return package.error();
-  const base::Digest& running = controller_.verified().digest();
-  if (package->image == controller_.verified().encoded()) {
+  const base::Digest& running = before.digest();
+  if (package->image == before.encoded()) {
     return base::Error{base::Refusal::kNoChange,
                        "version " + base::short_hex(running) + " is running already"};
   }
-  if (package->base != running) {
-    return base::Error{base::Refusal::kStaleBase,
-                       "made for version " + base::short_hex(package->base) + ", but " +
-                           base::short_hex(running) + " is running; make the change again"};
-  }
+  if (package->base != running) return stale_base(package->base, running);
   state_ = State::kStaged;
   if (interrupted()) return abandoned("when it was received");
-  base::Result<ir::VerifiedImage> image = ir::verify(package->image);
+  base::Result<ir::VerifiedImage> image = ir::verify(std::move(package->image));
   if (!image.ok()) return image.error();
   state_ = State::kVerified;
   if (interrupted()) return abandoned("when it was verified");
-  base::Status sound = check_package(*package, controller_.image(), image->image());
-  if (!sound.ok()) return sound;
-  pending_ =
-      std::make_unique<Pending>(std::move(*package), controller_.verified(), *image, strategy);
+  const bool same =
+      same_data({before.image(), before.encoded()}, {image->image(), image->encoded()});
+  if (!same || !leaves_all(*package)) {
+    base::Status sound = check_package(*package, before.image(), image->image());
+    if (!sound.ok()) return sound;
+  }
+  pending_ = std::make_unique<Pending>(std::move(*package), before, *image, strategy, same);
   state_ = State::kPlanned;
   if (interrupted()) return abandoned("when its plan was checked");
   base::Result<std::unique_ptr<vm::Generation>> next = controller_.prepare(*image);
@@ -109,7 +109,7 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy,
     if (!area.ok()) return area.error();
     pending_->area = std::move(*area);
   }
-  pending_->count_work();
+  pending_->count_work(controller_.generation().bools());
   state_ = State::kPrepared;
   if (interrupted()) return abandoned("when it was prepared");
   return base::Ok{};
@@ -121,6 +121,12 @@ base::Status Change::migrate() {
 }
 
 const Plan& Change::plan() const { return pending_ ? pending_->package.forward : kNothing; }
+
+const ir::VerifiedImage* Change::next() const {
+  return pending_ && state_ != State::kTrial ? &pending_->new_image : nullptr;
+}
+
+bool Change::keeps_all() const { return pending_ && pending_->keeps_all; }
 
 const Plan& Change::undo_plan() const {
   return state_ == State::kTrial ? pending_->package.inverse : kNothing;

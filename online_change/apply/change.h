@@ -63,6 +63,10 @@ class Change {
   // only (arm()).
   std::vector<LiveLoss> live_losses(std::span<const uint8_t> memory) const;
   const Plan& plan() const;
+  // The version that is staged; null: none is.
+  const ir::VerifiedImage* next() const;
+  // Only code differs: no value is touched, there and back.
+  bool keeps_all() const;
   // In trial: what undo() would do.
   const Plan& undo_plan() const;
   Strategy strategy() const;

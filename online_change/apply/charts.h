@@ -13,6 +13,8 @@ namespace online_change {
 
 class Charts {
  public:
+  // None of them has another step than before.
+  Charts() = default;
   // `old_image` has the new version's names.
   Charts(const ir::Image& old_image, const ir::Image& new_image);
 

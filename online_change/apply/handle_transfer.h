@@ -17,6 +17,8 @@ namespace online_change {
 class HandleTransfer {
  public:
   HandleTransfer(const ir::Image& old_image, const ir::Image& new_image);
+  // Between versions with the same data.
+  explicit HandleTransfer(const ir::Image& both) : old_(both) {}
 
   // Calls visit(place of the reference in the old version's memory, its type) for each one that
   // lives on while what it names does not.

@@ -15,12 +15,16 @@
 #include "online_change/apply/migrator.h"
 #include "online_change/apply/standby.h"
 #include "online_change/apply/transfer.h"
+#include "online_change/plan/pause.h"
 
 namespace online_change {
 
 struct Change::Pending {
-  Pending(Package received, ir::VerifiedImage running, ir::VerifiedImage next, Strategy chosen)
+  // `same`: they have the same_data().
+  Pending(Package received, ir::VerifiedImage running, ir::VerifiedImage next, Strategy chosen,
+          bool same)
       : strategy(chosen),
+        keeps_all(same && leaves_all(received)),
         package(std::move(received)),
         old_image(std::move(running)),
         new_image(std::move(next)),
@@ -29,11 +33,17 @@ struct Change::Pending {
                 in_place() ? Transfer::Steps::kBoundary : Transfer::Steps::kApart),
         early(package.forward, old(), new_image.image(), Transfer::Steps::kEarly),
         backward(package.inverse, new_image.image(), old(), Transfer::Steps::kAll),
-        handles(old(), new_image.image()),
+        handles(same ? HandleTransfer(old()) : HandleTransfer(old(), new_image.image())),
         leaving(find_leaving(old(), new_image.image())),
-        charts(old(), new_image.image()) {}
+        charts(same ? Charts() : Charts(old(), new_image.image())) {}
   // Behind stage(): both are known.
-  void count_work() {
+  void count_work(const ir::Bools& bools) {
+    if (keeps_all) {
+      switch_work.values = bools_to_normalise(bools, waiting->bools());
+      undo_work.values = bools_to_normalise(waiting->bools(), bools);
+      if (area) switch_work.compared = area->compared_bytes();
+      return;
+    }
     switch_work = boundary_work(package.forward, old(), new_image.image(), !in_place());
     if (area) switch_work.compared = area->compared_bytes();
     undo_work = boundary_work(package.inverse, new_image.image(), old(), true);
@@ -48,6 +58,7 @@ struct Change::Pending {
   const ir::Image& old() const { return renamed.image(); }
 
   Strategy strategy;
+  bool keeps_all;  // the change is one of code alone
   Package package;
   ir::VerifiedImage old_image;
   ir::VerifiedImage new_image;

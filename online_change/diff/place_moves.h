@@ -40,6 +40,8 @@ class PlaceMoves {
   // Whose rules say what was moved between variables (moved_parts.h): kBack when the old image is
   // the one that is changed to, on the way back from it.
   enum class Way : uint8_t { kThere, kBack };
+  // Everything stays.
+  PlaceMoves() = default;
   // Borrows nothing.
   PlaceMoves(const ir::Image& old_image, const ir::Image& new_image, Way way = Way::kThere);
 

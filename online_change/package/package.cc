@@ -4,6 +4,7 @@
 
 #include "base/limits.h"
 #include "ir/bytecode/verify.h"
+#include "online_change/package/delta.h"
 
 namespace online_change {
 namespace {
@@ -15,6 +16,7 @@ using base::ByteWriter;
 // program together are the image.
 constexpr uint32_t kMagic = 0x47504353;  // "SCPG"
 constexpr uint32_t kVersion = 4;
+constexpr uint32_t kShortVersion = 5;  // layout and program are deltas to those of the base
 constexpr const char* kPartNames[] = {"layout", "program", "commands"};
 constexpr size_t kParts = std::size(kPartNames);
 constexpr size_t kMinRowBytes = 1 + 3 * 4 + 1 + 4 + 8 + 4;
@@ -177,19 +179,18 @@ base::Result<Parts> split(ByteReader& in) {
   return parts;
 }
 
-}  // namespace
-
-base::Bytes encode(const Package& package) {
+base::Bytes encode_commands(const Package& package) {
   ByteWriter commands;
   commands.raw(package.base);
   write_plan(commands, package.forward);
   write_plan(commands, package.inverse);
-  const base::ByteSpan image = package.image;
-  const size_t layout = ir::layout_end(image);
-  const Parts parts = {image.first(layout), image.subspan(layout), commands.bytes()};
+  return commands.take();
+}
+
+base::Bytes put_together(uint32_t version, const Parts& parts) {
   ByteWriter out;
   out.u32(kMagic);
-  out.u32(kVersion);
+  out.u32(version);
   for (const base::ByteSpan part : parts) {
     out.u32(static_cast<uint32_t>(part.size()));
     out.raw(base::sha256(part));
@@ -198,22 +199,78 @@ base::Bytes encode(const Package& package) {
   return out.take();
 }
 
-base::Result<Package> decode(base::ByteSpan bytes) {
+// Layout and program of the image.
+std::array<base::ByteSpan, 2> parts_of(base::ByteSpan image) {
+  const size_t layout = ir::layout_end(image);
+  return {image.first(layout), image.subspan(layout)};
+}
+
+base::Result<base::Bytes> image_of(const Parts& parts, base::ByteSpan base_image) {
+  base::Bytes image;
+  const auto base_parts = parts_of(base_image);
+  for (size_t i = 0; i < base_parts.size(); ++i) {
+    auto part = apply_delta(base_parts[i], parts[i], base::kMaxImageBytes - image.size());
+    if (!part) {
+      return bad_format(std::string("its ") + kPartNames[i] +
+                        " part is no delta to the version that it is made for");
+    }
+    if (image.empty()) {
+      image = std::move(*part);
+    } else {
+      image.insert(image.end(), part->begin(), part->end());
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+base::Bytes encode(const Package& package) {
+  const base::Bytes commands = encode_commands(package);
+  const auto [layout, program] = parts_of(package.image);
+  return put_together(kVersion, {layout, program, commands});
+}
+
+base::Bytes encode_short(const Package& package, base::ByteSpan base_image) {
+  const base::Bytes commands = encode_commands(package);
+  const auto [layout, program] = parts_of(package.image);
+  const auto [base_layout, base_program] = parts_of(base_image);
+  return put_together(kShortVersion, {make_delta(base_layout, layout),
+                                      make_delta(base_program, program), commands});
+}
+
+base::Error stale_base(const base::Digest& base, const base::Digest& running) {
+  return {base::Refusal::kStaleBase, "made for version " + base::short_hex(base) + ", but " +
+                                         base::short_hex(running) +
+                                         " is running; make the change again"};
+}
+
+base::Result<Package> decode(base::ByteSpan bytes, base::ByteSpan base_image) {
   ByteReader in(bytes);
   if (in.u32() != kMagic) return bad_format("does not begin like one");
   uint32_t version = in.u32();
-  if (version != kVersion) return bad_format("has version " + std::to_string(version));
+  if (version != kVersion && version != kShortVersion)
+    return bad_format("has version " + std::to_string(version));
   base::Result<Parts> parts = split(in);
   if (!parts.ok()) return parts.error();
   const auto& [layout, program, commands] = *parts;
   Package package;
-  package.image.assign(layout.begin(), layout.end());
-  package.image.insert(package.image.end(), program.begin(), program.end());
   ByteReader plans(commands);
   package.base = read_digest(plans);
   package.forward = read_plan(plans);
   package.inverse = read_plan(plans);
   if (!plans.done()) return bad_format("has a damaged plan");
+  if (version == kVersion) {
+    package.image.assign(layout.begin(), layout.end());
+    package.image.insert(package.image.end(), program.begin(), program.end());
+    return package;
+  }
+  if (package.base != ir::digest(base_image)) {
+    return stale_base(package.base, ir::digest(base_image));
+  }
+  auto image = image_of(*parts, base_image);
+  if (!image.ok()) return image.error();
+  package.image = std::move(*image);
   return package;
 }
 
@@ -223,18 +280,34 @@ base::Result<Package> make_package(base::ByteSpan old_image, base::ByteSpan new_
   if (!from) return from.error();
   base::Result<ir::VerifiedImage> to = ir::verify(base::Bytes(new_image.begin(), new_image.end()));
   if (!to) return to.error();
-  base::Result<Plan> forward = plan(from->image(), to->image());
-  if (!forward) return forward.error();
-  base::Result<Plan> inverse = inverse_plan(from->image(), to->image());
-  if (!inverse) return inverse.error();
+  return make_package({from->image(), old_image}, {to->image(), new_image});
+}
+
+base::Result<Package> make_package(const EncodedImage& from, const EncodedImage& to) {
   Package package;
-  package.base = from->digest();
-  package.image.assign(new_image.begin(), new_image.end());
+  package.base = ir::digest(from.bytes);
+  package.image.assign(to.bytes.begin(), to.bytes.end());
+  if (same_data(from, to)) {
+    package.forward = plan_of_same_data(from.image, to.image);
+    package.inverse = plan_of_same_data(to.image, from.image);
+    return package;
+  }
+  base::Result<Plan> forward = plan(from.image, to.image);
+  if (!forward) return forward.error();
+  base::Result<Plan> inverse = inverse_plan(from.image, to.image);
+  if (!inverse) return inverse.error();
   package.forward = std::move(forward).value();
   package.inverse = std::move(inverse).value();
-  base::Status sound = check_package(package, from->image(), to->image());
+  base::Status sound = check_package(package, from.image, to.image);
   if (!sound) return sound.error();
   return package;
+}
+
+bool leaves_all(const Package& package) {
+  const auto does_nothing = [](const Plan& plan) {
+    return plan.steps.empty() && plan.calls.empty() && plan.fates.empty();
+  };
+  return does_nothing(package.forward) && does_nothing(package.inverse);
 }
 
 }  // namespace online_change

@@ -7,6 +7,7 @@
 #include "base/result.h"
 #include "ir/bytecode/image.h"
 #include "online_change/plan/plan.h"
+#include "online_change/plan/same_data.h"
 
 namespace online_change {
 
@@ -18,14 +19,22 @@ struct Package {
 };
 
 base::Bytes encode(const Package& package);
+// The same, without what the base has too: it can be decoded beside the base only.
+base::Bytes encode_short(const Package& package, base::ByteSpan base_image);
 // In three parts: layout, program (together the image), commands. All three checksums are verified
 // before anything of them is used (C4): kBadHash names the part. Consistency with the images is
-// check_package().
-base::Result<Package> decode(base::ByteSpan bytes);
+// check_package(). `base_image`: the encoded image that runs; kStaleBase when a package in the
+// short form was made for another one.
+base::Result<Package> decode(base::ByteSpan bytes, base::ByteSpan base_image = {});
+base::Error stale_base(const base::Digest& base, const base::Digest& running);
 // V17: copies in range and inside areas of their own version, types right, no target twice, every
 // variable of the new version kept, written or initialised.
 base::Status check_package(const Package& package, const ir::Image& old_image,
                            const ir::Image& new_image);
 base::Result<Package> make_package(base::ByteSpan old_image, base::ByteSpan new_image);
+// Of images that were verified, or come from the linker.
+base::Result<Package> make_package(const EncodedImage& from, const EncodedImage& to);
+// Does it do nothing to data, there and back? Sound where the two versions have the same_data().
+bool leaves_all(const Package& package);
 
 }  // namespace online_change

@@ -22,6 +22,10 @@ bool converts_slowly(const UpdateStep& step, const ir::Image& old_image,
          fast_converter(old_image.types, step.old_type, new_image.types, step.new_type) == nullptr;
 }
 
+uint64_t bools_to_normalise(const ir::Bools& before, const ir::Bools& after) {
+  return ir::needs_normalising(before, after) ? after.count() : 0;
+}
+
 BoundaryWork boundary_work(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image,
                            bool early_too) {
   BoundaryWork work;
@@ -32,8 +36,7 @@ BoundaryWork boundary_work(const Plan& plan, const ir::Image& old_image, const i
     work.bytes += step.total();
   }
   work.calls = plan.calls.size();
-  const ir::Bools bools(new_image);
-  if (ir::needs_normalising(ir::Bools(old_image), bools)) work.values += bools.count();
+  work.values += bools_to_normalise(ir::Bools(old_image), ir::Bools(new_image));
   if (!PlaceMoves(old_image, new_image).trivial()) {
     work.references = reference_leaves(new_image).size();
   }

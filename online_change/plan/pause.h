@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "ir/bytecode/bools.h"
 #include "online_change/plan/plan.h"
 
 namespace online_change {
@@ -42,6 +43,8 @@ bool converts_slowly(const UpdateStep& step, const ir::Image& old_image,
 // migrations are not known.
 BoundaryWork boundary_work(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image,
                            bool early_too);
+// Of BOOLs, when code that may write others into their bytes goes.
+uint64_t bools_to_normalise(const ir::Bools& before, const ir::Bools& after);
 // Of that, in place.
 int64_t predicted_pause_ns(const Plan& plan, const ir::Image& old_image,
                            const ir::Image& new_image);

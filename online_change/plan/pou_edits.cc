@@ -114,13 +114,27 @@ std::string interface_difference(const std::vector<Parameter>& before,
 
 using Pous = std::map<std::string, const ir::LinkedPou*>;  // by folded name
 
-Pous by_name(const ir::Image& image) {
+Pous by_name(const ir::Image& image, const std::vector<bool>& left_out) {
   Pous out;
   for (const ir::LinkedPou& pou : image.pous) {
+    const auto number = static_cast<size_t>(&pou - image.pous.data());
+    if (number < left_out.size() && left_out[number]) continue;
     // A number that a removed POU had, and no other has yet, stays without a name.
     if (!pou.name.empty()) out.emplace(ir::fold_name(pou.name), &pou);
   }
   return out;
+}
+
+bool same_parameter(const ir::FrameSlot& a, const ir::FrameSlot& b) {
+  const bool parameters = a.kind == ir::SlotKind::kParam && b.kind == ir::SlotKind::kParam;
+  if (!parameters) return a.kind != ir::SlotKind::kParam && b.kind != ir::SlotKind::kParam;
+  return a.local == b.local && a.region == b.region && a.name == b.name;
+}
+
+// Where types are the same: the same POU, with the same code and the same interface.
+bool same_pou(const ir::LinkedPou& a, const ir::LinkedPou& b) {
+  return a.identity == b.identity && a.name == b.name && a.kind == b.kind && a.self == b.self &&
+         std::equal(a.slots.begin(), a.slots.end(), b.slots.begin(), b.slots.end(), same_parameter);
 }
 
 // Live instances of each POU.
@@ -150,9 +164,13 @@ const char* pou_change_name(PouChange change) {
   return "";
 }
 
-std::vector<PouEdit> pou_edits(const ir::Image& old_image, const ir::Image& new_image) {
-  const Pous before = by_name(old_image);
-  const Pous after = by_name(new_image);
+namespace {
+
+// But for POUs that are known to be the same in both.
+std::vector<PouEdit> edits_but(const ir::Image& old_image, const ir::Image& new_image,
+                               const std::vector<bool>& same) {
+  const Pous before = by_name(old_image, same);
+  const Pous after = by_name(new_image, same);
   const std::vector<uint64_t> counts = instance_counts(old_image);
   std::vector<PouEdit> edits;
   for (const auto& [name, pou] : after) {
@@ -176,6 +194,23 @@ std::vector<PouEdit> pou_edits(const ir::Image& old_image, const ir::Image& new_
     if (!after.contains(name)) edits.push_back({PouChange::kRemoved, pou->name, 0, {}});
   }
   return edits;
+}
+
+}  // namespace
+
+std::vector<PouEdit> pou_edits(const ir::Image& old_image, const ir::Image& new_image) {
+  return edits_but(old_image, new_image, {});
+}
+
+std::vector<PouEdit> pou_edits(const EncodedImage& old_version, const EncodedImage& new_version) {
+  const std::vector<ir::LinkedPou>& before = old_version.image.pous;
+  const std::vector<ir::LinkedPou>& after = new_version.image.pous;
+  std::vector<bool> same;
+  if (same_types(old_version, new_version)) {
+    same.resize(std::min(before.size(), after.size()));
+    for (size_t i = 0; i < same.size(); ++i) same[i] = same_pou(before[i], after[i]);
+  }
+  return edits_but(old_version.image, new_version.image, same);
 }
 
 base::Status check_restricted(const std::vector<PouEdit>& edits) {

@@ -9,6 +9,7 @@
 
 #include "base/result.h"
 #include "ir/bytecode/image.h"
+#include "online_change/plan/same_data.h"
 
 namespace online_change {
 
@@ -29,6 +30,8 @@ struct PouEdit {
 
 // By name, the removed ones last. Linear in the POUs of both versions.
 std::vector<PouEdit> pou_edits(const ir::Image& old_image, const ir::Image& new_image);
+// The same, sooner where types are as they were.
+std::vector<PouEdit> pou_edits(const EncodedImage& old_version, const EncodedImage& new_version);
 // D7: kInterfaceEdit when a POU that stays gets another interface.
 base::Status check_restricted(const std::vector<PouEdit>& edits);
 

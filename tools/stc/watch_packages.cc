@@ -49,18 +49,20 @@ base::Result<WatchTarget::Next> WatchedPackages::bring(const ir::Image& image, b
     std::fprintf(stderr, "what was saved is what runs\n");
     return Next::kWait;
   }
+  const online_change::EncodedImage before{*running_, bytes_};
+  const online_change::EncodedImage after{image, bytes};
   if (restricted_) {
-    base::Status kept = online_change::check_restricted(online_change::pou_edits(*running_, image));
+    base::Status kept = online_change::check_restricted(online_change::pou_edits(before, after));
     if (!kept.ok()) return kept.error();
   }
-  auto package = online_change::make_package(bytes_, bytes);
+  auto package = online_change::make_package(before, after);
   if (!package.ok()) return package.error();
   tools::FollowedChange change{monotonic_ns(built.saved),
                                monotonic_ns(built.seen),
                                monotonic_ns(built.made),
                                0,
                                package->base,
-                               online_change::encode(*package)};
+                               online_change::encode_short(*package, bytes_)};
   change.packed_ns = monotonic_ns(Clock::now());
   if (!tools::send_message(socket_, encode(change)).ok()) return Next::kEnd;
   base::Result<base::Bytes> message = tools::receive_message(socket_);

@@ -47,18 +47,11 @@ std::string converted_text(const ir::Image& image, const std::string& path,
   return ir::format_value(image, alone, *value);
 }
 
-// Change has verified it a moment ago.
-std::optional<ir::VerifiedImage> image_of(base::ByteSpan bytes) {
-  base::Result<online_change::Package> package = online_change::decode(bytes);
-  if (!package.ok()) return std::nullopt;
-  base::Result<ir::VerifiedImage> image = ir::verify(package->image);
-  if (!image.ok()) return std::nullopt;
-  return *image;
-}
-
 // What fits into a message; a change that edits more POUs is looked at by other means.
-tools::PouEdits shown_edits(const ir::Image& old_image, const ir::Image& new_image) {
-  tools::PouEdits edits = online_change::pou_edits(old_image, new_image);
+tools::PouEdits shown_edits(const ir::VerifiedImage& old_image,
+                            const ir::VerifiedImage& new_image) {
+  tools::PouEdits edits = online_change::pou_edits({old_image.image(), old_image.encoded()},
+                                                   {new_image.image(), new_image.encoded()});
   if (edits.size() > kShownEdits) edits.resize(kShownEdits);
   return edits;
 }
@@ -106,7 +99,7 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
     change_.collect();  // devices that it opened
     return refused(staged.error());
   }
-  staged_ = image_of(package);
+  staged_ = *change_.next();
   online_change::JournalEntry done = entry(online_change::Event::kStaged);
   done.counts = change_.plan().counts;
   done.predicted_ns = change_.plan().predicted_pause_ns;
@@ -122,7 +115,8 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
   if (!back && (change_.state() == online_change::State::kIdle || !staged_)) {
     return base::Error{base::Refusal::kBusy, "no change is staged, and none is on trial"};
   }
-  const ir::Image& next_image = back ? previous_->image() : staged_->image();
+  const ir::VerifiedImage& next_version = back ? *previous_ : *staged_;
+  const ir::Image& next_image = next_version.image();
   if (request.offset == 0 || !live_) {
     live_.reset();
     auto taken = LiveReport::take(controller_, change_, back ? nullptr : &next_image,
@@ -152,7 +146,7 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
     for (size_t i = 0; i < std::min(live_->losses().size(), kShownLosses); ++i) {
       page.losses.push_back({live_->losses()[i]});
     }
-    page.edits = shown_edits(controller_.image(), next_image);
+    page.edits = shown_edits(controller_.verified(), next_version);
     page.devices = online_change::device_edits(controller_.image(), next_image);
     page.devices.resize(std::min<size_t>(page.devices.size(), kShownEdits));
   }

@@ -23,7 +23,7 @@ base::Result<LiveReport> LiveReport::take(vm::Controller& controller,
   if (!memory.ok()) return memory.error();
   LiveReport report(std::move(*memory), controller.verified());
   if (next != nullptr) report.renamed_ = ir::under_new_names(report.image_.image(), *next);
-  const uint32_t end = controller.image().data_capacity;
+  const uint32_t end = change.keeps_all() ? 0 : controller.image().data_capacity;
   for (uint32_t at = 0; at < end; at += std::min(kSliceBytes, end - at)) {
     uint8_t* const to = report.memory_.data() + at;
     const size_t size = std::min(kSliceBytes, end - at);

@@ -1,0 +1,25 @@
+// The parts of an encoded image, without decoding it.
+#pragma once
+
+#include <cstdint>
+
+#include "base/bytes.h"
+
+namespace ir {
+
+// In stored order.
+enum class ImageSection : uint8_t {
+  kProgram,
+  kTypes,
+  kConstants,
+  kLayouts,
+  kPous,
+  kCode,
+  kTables,
+  kData,
+  kDevices
+};
+// Its content; empty when the image is cut off before its end.
+base::ByteSpan section_of(base::ByteSpan encoded, ImageSection section);
+
+}  // namespace ir
