@@ -8,12 +8,13 @@
 namespace online_change {
 namespace {
 
-constexpr size_t kAlike = 16;           // so many equal bytes are worth a piece
-constexpr size_t kExchanged = 64;       // bytes that may have others in their place
-constexpr size_t kStep = 64;            // between places that are looked for elsewhere
-constexpr size_t kOwn = 4096;           // own bytes between two such places, at most
-constexpr size_t kShift = 8192;         // as far as something may have moved
-constexpr size_t kMostSearches = 1024;  // in vain; behind that only what is in its place is found
+constexpr size_t kAlike = 16;         // so many equal bytes are worth a piece
+constexpr size_t kKey = 32;           // that is looked for elsewhere
+constexpr size_t kExchanged = 64;     // bytes that may have others in their place
+constexpr size_t kStep = 64;          // between places that are looked for elsewhere
+constexpr size_t kOwn = 4096;         // own bytes between two such places, at most
+constexpr size_t kShift = 8192;       // as far as something may have moved
+constexpr size_t kMostSearches = 64;  // in vain; behind that only what is in its place is found
 
 bool alike(base::ByteSpan a, size_t i, base::ByteSpan b, size_t j) {
   return i + kAlike <= a.size() && j + kAlike <= b.size() &&
@@ -65,18 +66,21 @@ class Maker {
     skip(std::min(kOwn, to_.size() - at_), kOwn);
   }
 
-  // What follows in a while is somewhere near.
+  // What follows in a while is somewhere near: behind this place, or else a little before it.
   bool find_moved() {
-    for (size_t own = 0; own < kOwn && at_ + own + kAlike <= to_.size(); own += kStep) {
-      const base::ByteSpan key = to_.subspan(at_ + own, kAlike);
-      const size_t begin = std::min(in_ - std::min(in_, kShift), from_.size());
-      const base::ByteSpan near =
-          from_.subspan(begin, std::min(in_ + own + kShift, from_.size()) - begin);
-      const void* found = ::memmem(near.data(), near.size(), key.data(), key.size());
-      if (found == nullptr) continue;
-      in_ = static_cast<size_t>(static_cast<const uint8_t*>(found) - from_.data());
-      at_ += own;
-      return true;
+    const size_t here = std::min(in_, from_.size());
+    const base::ByteSpan behind = from_.subspan(here, std::min(kShift, from_.size() - here));
+    const size_t back = here - std::min(here, kShift);
+    const base::ByteSpan before = from_.subspan(back, here - back);
+    for (size_t own = 0; own < kOwn && at_ + own + kKey <= to_.size(); own += kStep) {
+      const base::ByteSpan key = to_.subspan(at_ + own, kKey);
+      for (const base::ByteSpan near : {behind, before}) {
+        const void* found = ::memmem(near.data(), near.size(), key.data(), key.size());
+        if (found == nullptr) continue;
+        in_ = static_cast<size_t>(static_cast<const uint8_t*>(found) - from_.data());
+        at_ += own;
+        return true;
+      }
     }
     return false;
   }

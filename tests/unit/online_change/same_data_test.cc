@@ -114,6 +114,7 @@ TEST(SameData, deltas_give_the_bytes_back_and_take_any) {
     }
     const base::Bytes delta = make_delta(from, to);
     EXPECT_EQ(apply_delta(from, delta, to.size()), to);
+    EXPECT_LT(delta.size(), 4000u);
     EXPECT_EQ(apply_delta(from, delta, to.size() - 1), std::nullopt);
     base::Bytes damaged = delta;
     damaged[random() % damaged.size()] ^= static_cast<uint8_t>(1 + random() % 255);
