@@ -51,6 +51,14 @@ serve plc first.img
 # E8: nobody is there who could be asked.
 expect 2 stvm change --watch plant --dir plc
 said 'R0504.*--yes'
+# What was typed before the question confirms nothing.
+sed 's/+ Step/+ 3 * Step/' plant/pump.st >other.st
+cp plant/main.st other_main.st
+(printf 'y\n' && sleep 3) |
+  script -qec "$bin/stvm change other.st other_main.st --dir plc" /dev/null >typed.log 2>&1 || true
+grep -q 'Switch now' typed.log || fail "did not ask: $(cat typed.log)"
+stvm image --dir plc -o typed.img || fail "no image"
+cmp first.img typed.img || fail "switched by what was typed before the question"
 
 follow --yes --permanent
 until_said 1 'what was saved is what runs'
@@ -106,8 +114,20 @@ until_said 1 'waiting: the last change is still on trial'
 expect 0 stvm accept --dir plc
 until_said 2 'switched between'
 expect 0 stvm undo --dir plc
-sed 's/Cycles + 5/Cycles + 6/' plant/main.st | save plant/main.st
+# What was undone does not run: saved again, it is brought again.
+{ cat plant/main.st; echo; } | save plant/main.st
 until_said 3 'switched between'
+running undone.img
+# Undone while another save waits, which was made on top of it: that one waits for a next save.
+sed 's/Cycles + 5/Cycles + 50/' plant/main.st | save plant/main.st
+until_said 2 'waiting: the last change is still on trial'
+expect 0 stvm undo --dir plc
+until_said 1 'undone: what was saved meanwhile is left'
+sleep 0.5
+expect 0 stvm status --dir plc
+if grep -q 'on trial' out; then fail "brought what was made on top of what was undone"; fi
+sed 's/Cycles + 50/Cycles + 6/' plant/main.st | save plant/main.st
+until_said 4 'switched between'
 expect 0 stvm status --dir plc
 said 'trial'
 expect 0 stvm accept --dir plc

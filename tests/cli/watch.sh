@@ -92,3 +92,15 @@ grep -q 'R0506' watch.log || fail "bad settings are not reported"
 rm plant/stc.toml
 built 9
 same 'without settings'
+
+# A file that cannot be read at one look, and can at the next.
+cp plant/main.st kept.st
+printf 'x\0' | save plant/main.st
+for _ in $(seq 100); do
+  grep -q 'R0502' watch.log && break
+  sleep 0.05
+done
+grep -q 'R0502' watch.log || fail "a file that is no text is not reported"
+save plant/main.st <kept.st
+built 10
+same 'readable again'

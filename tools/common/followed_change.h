@@ -16,7 +16,7 @@ struct FollowedChange {
   int64_t built_ns = 0;
   int64_t packed_ns = 0;
   base::Digest base{};  // the version that the package is for
-  base::Bytes package;
+  base::Bytes package;  // none: the sources give that version
 };
 
 // From stvm, after each.

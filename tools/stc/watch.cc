@@ -95,7 +95,7 @@ class Watch {
     seen_ = begin;
     const Stamps before = std::exchange(stamps_, std::move(now));
     saved_ = save_of(before);
-    if (!take_texts(before)) reload();
+    if (broken_ || !take_texts(before)) reload();
     return true;
   }
 

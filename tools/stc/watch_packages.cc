@@ -46,8 +46,8 @@ base::Result<WatchTarget::Next> WatchedPackages::take(std::vector<ResourceVersio
 base::Result<WatchTarget::Next> WatchedPackages::bring(const ir::Image& image, base::Bytes bytes,
                                                        const Built& built) {
   if (bytes == bytes_) {
-    std::fprintf(stderr, "what was saved is what runs\n");
-    return Next::kWait;
+    const base::Digest same = ir::digest(bytes_);
+    return send(built, same, {}, std::move(bytes));
   }
   const online_change::EncodedImage before{*running_, bytes_};
   const online_change::EncodedImage after{image, bytes};
@@ -57,13 +57,19 @@ base::Result<WatchTarget::Next> WatchedPackages::bring(const ir::Image& image, b
   }
   auto package = online_change::make_package(before, after);
   if (!package.ok()) return package.error();
-  tools::FollowedChange change{monotonic_ns(built.saved),
-                               monotonic_ns(built.seen),
-                               monotonic_ns(built.made),
-                               0,
-                               package->base,
-                               online_change::encode_short(*package, bytes_)};
-  change.packed_ns = monotonic_ns(Clock::now());
+  base::Bytes message = online_change::encode_short(*package, bytes_);
+  return send(built, package->base, std::move(message), std::move(bytes));
+}
+
+// No package: nothing has changed since `base`, if that still runs.
+base::Result<WatchTarget::Next> WatchedPackages::send(const Built& built, const base::Digest& base,
+                                                      base::Bytes package, base::Bytes made) {
+  const tools::FollowedChange change{monotonic_ns(built.saved),
+                                     monotonic_ns(built.seen),
+                                     monotonic_ns(built.made),
+                                     monotonic_ns(Clock::now()),
+                                     base,
+                                     std::move(package)};
   if (!tools::send_message(socket_, encode(change)).ok()) return Next::kEnd;
   base::Result<base::Bytes> message = tools::receive_message(socket_);
   if (!message.ok()) return Next::kEnd;
@@ -82,7 +88,7 @@ base::Result<WatchTarget::Next> WatchedPackages::bring(const ir::Image& image, b
       break;
   }
   const bool is_ours = answer->end == tools::FollowedEnd::kRuns;
-  base::Status begun = begin(is_ours ? std::move(bytes) : std::move(answer->image));
+  base::Status begun = begin(is_ours ? std::move(made) : std::move(answer->image));
   if (!begun.ok()) return begun.error();
   return is_ours ? Next::kBase : Next::kOtherBase;
 }

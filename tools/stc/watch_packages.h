@@ -25,6 +25,8 @@ class WatchedPackages : public WatchTarget {
 
  private:
   base::Result<Next> bring(const ir::Image& image, base::Bytes bytes, const Built& built);
+  base::Result<Next> send(const Built& built, const base::Digest& base, base::Bytes package,
+                          base::Bytes made);
 
   int socket_;
   bool restricted_;

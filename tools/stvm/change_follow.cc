@@ -45,9 +45,13 @@ class Follower {
   base::Result<tools::FollowedAnswer> take(const tools::FollowedChange& change) {
     base::Result<vm::StatusReport> status = client_.status();
     if (!status.ok()) return status.error();
+    if (change.package.empty() && status->running == change.base) {
+      std::fputs("what was saved is what runs\n", stderr);
+      return tools::FollowedAnswer{};
+    }
     if (base::Status free = check_no_trial(*status); !free.ok()) {
       std::fprintf(stderr, "waiting: %s\n", free.error().text.c_str());
-      return wait_for_end_of_trial();
+      return wait_for_end_of_trial(status->running);
     }
     if (status->running != change.base) {
       base::Result<base::Bytes> image = client_.image();
@@ -66,11 +70,18 @@ class Follower {
     return tools::FollowedAnswer{FollowedEnd::kRuns, {}};
   }
 
-  base::Result<tools::FollowedAnswer> wait_for_end_of_trial() {
+  // Accepted, what waits is next. Undone, somebody wants the old program, and what waits was made
+  // on top of the one that he took back: the next save is another try.
+  base::Result<tools::FollowedAnswer> wait_for_end_of_trial(const base::Digest& on_trial) {
     for (;;) {
       base::Result<vm::StatusReport> status = client_.status();
       if (!status.ok()) return status.error();
-      if (check_no_trial(*status).ok()) return tools::FollowedAnswer{FollowedEnd::kAgain, {}};
+      if (check_no_trial(*status).ok()) {
+        if (status->running == on_trial) return tools::FollowedAnswer{FollowedEnd::kAgain, {}};
+        std::fputs("undone: what was saved meanwhile is left; the next save is another try\n",
+                   stderr);
+        return tools::FollowedAnswer{};
+      }
       pollfd end = {stc_, POLLIN, 0};  // it has nothing to say now but that it ends
       if (::poll(&end, 1, kTrialLookMs) > 0) return tools::FollowedAnswer{};
     }

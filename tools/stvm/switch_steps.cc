@@ -1,5 +1,6 @@
 #include "tools/stvm/switch_steps.h"
 
+#include <termios.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -39,6 +40,11 @@ base::Status ask() {
   if (::isatty(STDIN_FILENO) == 0) {
     return base::Error{base::Refusal::kUsage, "nobody to ask: not a terminal; give --yes"};
   }
+  // What was typed before the question, for another one perhaps, is no answer to it (E8); nor is
+  // an end of input that answered the last one.
+  ::tcflush(STDIN_FILENO, TCIFLUSH);
+  std::clearerr(stdin);
+  std::cin.clear();
   std::fputs("Switch now? [y/N] ", stderr);
   std::string answer;
   std::getline(std::cin, answer);

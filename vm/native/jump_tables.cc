@@ -43,7 +43,7 @@ std::optional<JumpTable> JumpTables::at(Block block) {
   leaves_.clear();
   const uint8_t width = f_.blocks[block].end.width;
   fork(block, block, 0, ~uint64_t{0} >> (64 - 8 * width), 0);
-  if (leaves_.size() < least_ways_) return std::nullopt;
+  if (leaves_.size() < std::max<size_t>(least_ways_, 2)) return std::nullopt;
   const uint64_t most = leaves_[leaves_.size() - 2].last;
   if (most >= kMostPerWay * leaves_.size()) return std::nullopt;
   JumpTable table;
