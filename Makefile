@@ -61,7 +61,9 @@ coverage: setup
 	@cmake --build build/coverage -j $(JOBS)
 	@ctest --test-dir build/coverage --output-on-failure -j $(JOBS)
 
-MACHINE := $(shell sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(shell nproc) cores
+# Clouds give many processors one name: what tells them apart is their family and model.
+PROCESSOR = $(shell sed -n 's/^$(1)[^:]*: //p' /proc/cpuinfo | head -1)
+MACHINE := $(call PROCESSOR,model name) (family $(call PROCESSOR,cpu family) model $(call PROCESSOR,model	)), $(shell nproc) cores
 bench: setup
 	@cmake --preset release >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target bench

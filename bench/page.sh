@@ -21,6 +21,8 @@ section() {  # section FILE TITLE COMMAND
   printf 'Array bounds, division and fuel checks are on in every figure of ST, and absent in C.\n'
   printf 'How long online changes stop the tasks: [pause.md](pause.md).\n\n'
   section scan.md 'Scan time' 'make bench'
+  cat "$2/bench/machines.md"
+  echo
   section build.md 'Compiler' 'make bench'
   section build_large.md 'Compiler, a million lines' 'make bench-large'
   section edit_large.md 'An edit in a million lines' 'make bench-large'
