@@ -62,12 +62,14 @@ tools::ConnectedChild start(const std::vector<std::string>& command) {
   return std::move(*child);
 }
 
-// "running 95 ms after it was saved: seen 14.1, built 9.0, ...": the steps' names and times.
+// "running 95 ms after it was saved: seen 14.1, built 9.0, ..., and answered 150.3 later": the
+// steps' names and times.
 std::vector<std::pair<std::string, double>> steps_of(const std::string& line) {
   std::vector<std::pair<std::string, double>> steps;
   for (size_t at = line.find(": ") + 2; at < line.size();) {
-    const size_t end = std::min(line.find(", ", at), line.size());
+    const size_t end = line.find(", ", at);
     const std::string step = line.substr(at, end - at);
+    if (end == std::string::npos) break;
     const size_t space = step.rfind(' ');
     steps.emplace_back(step.substr(0, space), std::atof(step.c_str() + space));
     at = end + 2;

@@ -38,6 +38,7 @@ struct SwitchReport {
   int64_t pause_ns = 0;       // measured, boundary work only
   uint64_t missed = 0;        // task releases missed because of it
   FateCounts counts;          // what was done
+  int64_t ago_ns = 0;         // that it was, when a controller said so
 };
 
 // Runs a job at a boundary and waits for its end.

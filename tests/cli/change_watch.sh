@@ -67,7 +67,7 @@ until_said 1 'what was saved is what runs'
 sed 's/+ Step/+ 2 * Step/' plant/pump.st | save plant/pump.st
 until_said 1 'accepted: it boots next'
 until_said 1 '^code +Pump'
-until_said 1 'running [0-9]+ ms after it was saved'
+until_said 1 'running [0-9]+ ms after it was saved: seen .* and answered [0-9.]+ later'
 running now.img
 expect 0 stc build plant -q --base first.img -o wanted.img
 cmp now.img wanted.img || fail "another program than that of a build"

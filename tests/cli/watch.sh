@@ -104,3 +104,22 @@ grep -q 'R0502' watch.log || fail "a file that is no text is not reported"
 save plant/main.st <kept.st
 built 10
 same 'readable again'
+
+# The system says what is saved, also in folders that are made later.
+grep -q inotify /proc/"$(cat watch.pid)"/fdinfo/* || fail "polls where the system says what is saved"
+mkdir plant/more
+printf 'FUNCTION Thrice : INT VAR_INPUT x : INT; END_VAR Thrice := 3 * x; END_FUNCTION\n' |
+  save plant/more/thrice.st
+built 11
+same 'a new folder'
+mv plant/more elsewhere
+built 12
+same 'a folder less'
+
+# What a link leads to is polled.
+cp plant/pump.st linked.st
+ln -s ../linked.st pump.link && mv pump.link plant/pump.st
+built 13
+sed 's/Hours + 2/Hours + 5/' linked.st | save linked.st
+built 14
+same 'behind a link'

@@ -17,19 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_source(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".st" || extension == ".iecst" || extension == ".exp";
-}
-
 base::Result<std::vector<std::string>> files_below(
-    const std::string& folder, const std::function<bool(const fs::path&)>& wanted) {
+    const std::string& folder, const std::function<bool(const std::string&)>& wanted) {
   std::vector<std::string> found;
   std::error_code error;
   fs::recursive_directory_iterator walk(folder, error);
   for (; !error && walk != fs::recursive_directory_iterator(); walk.increment(error)) {
-    if (walk->is_regular_file() && wanted(walk->path())) found.push_back(walk->path().string());
+    std::string path = walk->path().string();
+    if (walk->is_regular_file() && wanted(path)) found.push_back(std::move(path));
   }
   if (error) {
     return base::Error{base::Refusal::kFileUnreadable, folder + ": " + error.message()};
@@ -176,17 +171,23 @@ base::Result<std::vector<std::string>> expand(const std::string& path, Project& 
 
 }  // namespace
 
+bool is_source_name(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".st" || extension == ".iecst" || extension == ".exp";
+}
+
 base::Result<std::vector<std::string>> source_files(const std::string& path) {
   if (!fs::exists(path)) {
     return base::Error{base::Refusal::kFileNotFound, path + ": no such file or directory"};
   }
   if (!fs::is_directory(path)) return std::vector<std::string>{path};
-  return files_below(path, is_source);
+  return files_below(path, is_source_name);
 }
 
 base::Result<std::vector<std::string>> importable_files(const std::string& path, bool any_xml) {
-  auto found = files_below(path, [&](const fs::path& file) {
-    return any_xml ? is_importable(file.string()) : is_twincat(file.string());
+  auto found = files_below(path, [&](const std::string& file) {
+    return any_xml ? is_importable(file) : is_twincat(file);
   });
   if (!found.ok()) return found;
   return without_listed(*found);

@@ -30,6 +30,8 @@ struct Project {
   SafeSettings safe;
 };
 
+// Is it a source by its name?
+bool is_source_name(const std::string& path);
 // `path` itself, or the sources in that folder and below it, sorted. Errors: kFileNotFound,
 // kFileUnreadable.
 base::Result<std::vector<std::string>> source_files(const std::string& path);

@@ -5,9 +5,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 
 #include "tools/common/exit.h"
 #include "tools/common/files.h"
+#include "tools/stc/file_events.h"
 #include "tools/stc/file_stamp.h"
 #include "tools/stc/importer.h"
 #include "tools/stc/session.h"
@@ -18,10 +21,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+namespace fs = std::filesystem;
+
 // Looking takes a tenth of the time at most, and happens often enough for people.
 constexpr auto kLookEvery = std::chrono::milliseconds(30);
 constexpr int kRest = 10;
+// Where the system says what is saved, for what it does not know itself.
+constexpr auto kLookRarely = std::chrono::seconds(2);
+constexpr auto kQuiet = std::chrono::milliseconds(4);  // between files that are saved together
 constexpr auto kLongestLook = std::chrono::seconds(10);
+constexpr const char* kSettings = "stc.toml";
 
 using Stamps = std::map<std::string, FileStamp>;
 using Next = WatchTarget::Next;
@@ -37,6 +46,7 @@ class Watch {
         target_(target) {}
 
   int run() {
+    watch_folders();
     stamps_ = look();
     begin_anew();
     for (;;) {
@@ -63,9 +73,9 @@ class Watch {
     };
     for (const std::string& path : options_.arguments()) {
       found.emplace(path, stamp_of(path));
-      if (!std::filesystem::is_directory(path)) continue;
+      if (!fs::is_directory(path)) continue;
       found[path] = {};  // a folder's own time says nothing about its files
-      const std::string settings = (std::filesystem::path(path) / "stc.toml").string();
+      const std::string settings = (fs::path(path) / kSettings).string();
       found.emplace(settings, stamp_of(settings));
       add(source_files(path));
       add(importable_files(path, false));
@@ -80,17 +90,67 @@ class Watch {
   // Until something has changed, and the project is what the files say now. False: nobody waits
   // for it any more.
   bool wait() {
-    for (;;) {
+    for (bool everywhere = true;;) {
       const auto begin = Clock::now();
-      if (look_again()) return true;
-      const auto rest = std::max<Clock::duration>(kLookEvery, kRest * (Clock::now() - begin));
-      if (!target_.rest(rest)) return false;
+      if (everywhere ? look_again() : look_at_events()) return true;
+      const Clock::duration rest =
+          told_ ? kLookRarely
+                : std::max<Clock::duration>(kLookEvery, kRest * (Clock::now() - begin));
+      const WatchTarget::Rest rested = target_.rest(rest, events_.descriptor());
+      if (rested == WatchTarget::Rest::kEnd) return false;
+      everywhere = rested == WatchTarget::Rest::kOver;
     }
+  }
+
+  // Folders first, so that nothing is missed between them and the first look.
+  void watch_folders() {
+    std::set<std::string> folders;
+    const auto add = [&](const fs::path& folder) {
+      if (fs::is_directory(folder.empty() ? "." : folder)) folders.insert(folder.string());
+    };
+    bool links = false;  // what they lead to is in other folders
+    for (const auto& [path, stamp] : look()) {
+      links |= fs::is_symlink(path);
+      add(fs::path(path).parent_path());
+    }
+    std::error_code error;
+    for (const std::string& path : options_.arguments()) {
+      if (!fs::is_directory(path)) continue;
+      add((fs::path(path) / kSettings).parent_path());  // without a slash at its end
+      fs::recursive_directory_iterator walk(path, error);
+      for (; !error && walk != fs::recursive_directory_iterator(); walk.increment(error)) {
+        if (walk->is_directory()) folders.insert(walk->path().string());
+      }
+    }
+    told_ = events_.watch(folders) && !links && !error;
+  }
+
+  // What the system has said, without a look at all the others.
+  bool look_at_events() {
+    const std::optional<std::set<std::string>> files = events_.take(kQuiet);
+    if (!files) watch_folders();
+    if (!files || broken_) return look_again();
+    const auto begin = Clock::now();
+    Stamps now = stamps_;
+    for (const std::string& file : *files) {
+      const auto known = now.find(file);
+      if (known == now.end() && may_belong(file)) return look_again();
+      if (known != now.end()) known->second = stamp_of(file);
+    }
+    return take(std::move(now), begin);
+  }
+
+  // To the project, by its name.
+  static bool may_belong(const std::string& file) {
+    return is_source_name(file) || is_importable(file) || fs::path(file).filename() == kSettings;
   }
 
   bool look_again() {
     const auto begin = Clock::now();
-    Stamps now = look();
+    return take(look(), begin);
+  }
+
+  bool take(Stamps now, Clock::time_point begin) {
     if (now == stamps_) return false;
     seen_ = begin;
     const Stamps before = std::exchange(stamps_, std::move(now));
@@ -144,6 +204,7 @@ class Watch {
       return;
     }
     project_ = std::move(*project);
+    watch_folders();
     stamps_ = look();
     begin_anew();
   }
@@ -217,6 +278,8 @@ class Watch {
   std::shared_ptr<const ir::Image> base_;  // of build_
   std::unique_ptr<workspace::IncrementalBuild> build_;
   Stamps stamps_;
+  FileEvents events_;
+  bool told_ = false;                  // by them, of whatever is written to files of the project
   std::vector<uint32_t> saved_files_;  // since the last build, when it was not begun anew
   Clock::time_point saved_ = Clock::now();
   Clock::time_point seen_ = saved_;

@@ -46,8 +46,13 @@ class WatchTarget {
   // Whatever was built from nothing.
   virtual base::Result<Next> take(std::vector<ResourceVersion>& versions, const Project& project,
                                   const Built& built) = 0;
-  // False: nobody wants images any more.
-  virtual bool rest(std::chrono::nanoseconds time) = 0;
+  enum class Rest : uint8_t {
+    kOver,   // the time
+    kEvent,  // there is something to read from the descriptor
+    kEnd,    // nobody wants images any more
+  };
+  // `descriptor`: -1 for none.
+  virtual Rest rest(std::chrono::nanoseconds time, int descriptor) = 0;
 };
 
 // Until it is ended by a signal or by the target; an exit code only then, and when the first build

@@ -1,6 +1,6 @@
 #include "tools/stc/watch_image.h"
 
-#include <thread>
+#include <poll.h>
 
 #include "tools/stc/image_output.h"
 #include "tools/stc/safe_settings.h"
@@ -23,9 +23,10 @@ base::Result<WatchTarget::Next> WatchedImage::take(std::vector<ResourceVersion>&
   return Next::kWait;
 }
 
-bool WatchedImage::rest(std::chrono::nanoseconds time) {
-  std::this_thread::sleep_for(time);
-  return true;
+WatchTarget::Rest WatchedImage::rest(std::chrono::nanoseconds time, int descriptor) {
+  pollfd event = {descriptor, POLLIN, 0};
+  const auto ms = std::chrono::ceil<std::chrono::milliseconds>(time);
+  return ::poll(&event, 1, static_cast<int>(ms.count())) > 0 ? Rest::kEvent : Rest::kOver;
 }
 
 base::Status WatchedImage::write(const ir::Image& image, const Project& project) {

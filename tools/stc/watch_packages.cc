@@ -94,10 +94,11 @@ base::Result<WatchTarget::Next> WatchedPackages::send(const Built& built, const 
 }
 
 // Nothing comes from stvm but answers, and its end.
-bool WatchedPackages::rest(std::chrono::nanoseconds time) {
-  pollfd end = {socket_, POLLIN, 0};
+WatchTarget::Rest WatchedPackages::rest(std::chrono::nanoseconds time, int descriptor) {
+  pollfd ready[] = {{socket_, POLLIN, 0}, {descriptor, POLLIN, 0}};
   const auto ms = std::chrono::ceil<std::chrono::milliseconds>(time);
-  return ::poll(&end, 1, static_cast<int>(ms.count())) <= 0;
+  if (::poll(ready, std::size(ready), static_cast<int>(ms.count())) <= 0) return Rest::kOver;
+  return ready[0].revents != 0 ? Rest::kEnd : Rest::kEvent;
 }
 
 }  // namespace stc

@@ -21,7 +21,7 @@ class WatchedPackages : public WatchTarget {
                           const Built& built) override;
   base::Result<Next> take(std::vector<ResourceVersion>& versions, const Project& project,
                           const Built& built) override;
-  bool rest(std::chrono::nanoseconds time) override;
+  Rest rest(std::chrono::nanoseconds time, int descriptor) override;
 
  private:
   base::Result<Next> bring(const ir::Image& image, base::Bytes bytes, const Built& built);

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <utility>
 
 #include "tools/common/child.h"
 #include "tools/common/exit.h"
@@ -41,7 +42,7 @@ class Follower {
   }
 
  private:
-  // An error only when the controller is gone.
+  // An error when the controller is gone, or does not say what it runs.
   base::Result<tools::FollowedAnswer> take(const tools::FollowedChange& change) {
     base::Result<vm::StatusReport> status = client_.status();
     if (!status.ok()) return status.error();
@@ -51,14 +52,13 @@ class Follower {
     }
     if (base::Status free = check_no_trial(*status); !free.ok()) {
       std::fprintf(stderr, "waiting: %s\n", free.error().text.c_str());
+      waited_ = true;
       return wait_for_end_of_trial(status->running);
     }
     if (status->running != change.base) {
       base::Result<base::Bytes> image = client_.image();
-      if (image.ok()) return tools::FollowedAnswer{FollowedEnd::kOtherBase, std::move(*image)};
-      return is_gone(image.error())
-                 ? base::Result<tools::FollowedAnswer>(image.error())
-                 : base::Result<tools::FollowedAnswer>({FollowedEnd::kAgain, {}});
+      if (!image.ok()) return image.error();
+      return tools::FollowedAnswer{FollowedEnd::kOtherBase, std::move(*image)};
     }
     base::Result<Outcome> outcome = bring(options_, client_, change.package);
     if (!outcome.ok() && is_gone(outcome.error())) return outcome.error();
@@ -66,7 +66,8 @@ class Follower {
     if (!outcome.ok()) refuse(outcome.error());
     if (outcome.ok() && outcome->refused) refuse(*outcome->refused);
     if (!outcome.ok() || !outcome->report) return tools::FollowedAnswer{};
-    if (!options_.ask && !options_.json) say_times(change, *outcome);
+    const bool waited = std::exchange(waited_, false);  // the times are somebody's who decided
+    if (!options_.ask && !options_.json && !waited) say_times(change, *outcome);
     return tools::FollowedAnswer{FollowedEnd::kRuns, {}};
   }
 
@@ -87,11 +88,13 @@ class Follower {
     }
   }
 
-  // Where the time from the save to the switch has gone.
+  // Where the time from the save to the switch has gone. The controller answers when it knows which
+  // releases the switch has made late.
   void say_times(const tools::FollowedChange& change, const Outcome& outcome) const {
     using Ms = std::chrono::duration<double, std::milli>;
     const auto at = [](Outcome::Time time) { return Ms(time.time_since_epoch()).count(); };
     const double now = at(std::chrono::steady_clock::now());
+    const double runs = now - static_cast<double>(outcome.report->ago_ns) / 1e6;
     const struct {
       const char* what;
       double end;
@@ -100,19 +103,21 @@ class Follower {
                   {"packed", static_cast<double>(change.packed_ns) / 1e6},
                   {"sent and checked", at(outcome.staged)},
                   {"shown", at(outcome.shown)},
-                  {"switched", now}};
+                  {"switched", runs}};
     double begin = static_cast<double>(change.saved_ns) / 1e6;
-    std::printf("running %.0f ms after it was saved:", now - begin);
+    std::printf("running %.0f ms after it was saved:", runs - begin);
     for (const auto& [what, end] : kSteps) {
-      std::printf(" %s %.1f%s", what, end - begin, end == now ? "\n" : ",");
+      std::printf(" %s %.1f,", what, end - begin);
       begin = end;
     }
+    std::printf(" and answered %.1f later\n", now - runs);
     std::fflush(stdout);
   }
 
   const SwitchOptions& options_;
   ControllerClient& client_;
   int stc_;
+  bool waited_ = false;  // for the end of a trial: what comes next was saved long ago
 };
 
 }  // namespace

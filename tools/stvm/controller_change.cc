@@ -221,8 +221,9 @@ base::Status ControllerService::arm_in_time(bool allow_loss, bool allow_overrun,
   return base::Ok{};
 }
 
-base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
-    bool allow_overrun, uint64_t& missed_before) {
+base::Result<online_change::SwitchReport> ControllerService::switch_in_time(bool allow_overrun,
+                                                                            uint64_t& missed_before,
+                                                                            int64_t& done_ns) {
   std::optional<base::Result<online_change::SwitchReport>> report;
   online_change::Snapshot before = empty_snapshot();
   online_change::Snapshot after = empty_snapshot();
@@ -236,6 +237,7 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
     }
     missed_before = controller_.missed_releases();
     report.emplace(change_.switch_now());
+    done_ns = clock_.now_ns();
     change_.set_interruption(nullptr);
     if (report->ok()) keeper_.take(after);
   };
@@ -259,7 +261,8 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
 // Releases that the switch made late are known only when the next cycles have been. The switch has
 // been made: when no boundary comes any more, what is known is the answer.
 online_change::SwitchReport ControllerService::finish_report(online_change::SwitchReport report,
-                                                             uint64_t missed_before) {
+                                                             uint64_t missed_before,
+                                                             int64_t done_ns) {
   for (int attempt = 0; attempt < kSwitchAttempts; ++attempt) {
     uint64_t cycles = 0;
     base::Status taken = at_boundary([&] {
@@ -270,6 +273,7 @@ online_change::SwitchReport ControllerService::finish_report(online_change::Swit
     if (cycles > report.cycle_after || controller_.faulted()) break;
     boundary_.pause(kBetweenAttemptsNs);
   }
+  report.ago_ns = clock_.now_ns() - done_ns;
   return report;
 }
 
@@ -295,7 +299,8 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
     return not_switched(stored.error());
   }
   uint64_t missed_before = 0;
-  base::Result<online_change::SwitchReport> report = switch_in_time(allow_overrun, missed_before);
+  int64_t done_ns = 0;
+  auto report = switch_in_time(allow_overrun, missed_before, done_ns);
   change_.collect();
   if (!report.ok()) {
     change_.cancel();
@@ -310,7 +315,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
     base::Status permanent = make_permanent();
     if (!permanent.ok()) return permanent.error();
   }
-  return encode(finish_report(*report, missed_before));
+  return encode(finish_report(*report, missed_before, done_ns));
 }
 
 // Done first and then recorded: after a power cut in between it boots the same program. Where no
@@ -319,6 +324,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
 base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
   std::optional<base::Result<online_change::SwitchReport>> report;
   uint64_t missed_before = 0;
+  int64_t done_ns = 0;
   const int64_t predicted_ns = change_.predicted_pause_ns();
   const base::Digest undone = controller_.verified().digest();
   online_change::Snapshot after = empty_snapshot();
@@ -328,6 +334,7 @@ base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
       if (!time_for_switch() && attempt != kSwitchAttempts) return;
       missed_before = controller_.missed_releases();
       report.emplace(change_.undo());
+      done_ns = clock_.now_ns();
       if (report->ok()) keeper_.take(after);
     });
     if (!taken.ok()) return taken.error();
@@ -339,7 +346,7 @@ base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
   note_switch(online_change::Event::kUndone, undone, **report, predicted_ns);
   previous_.reset();
   ++edition_;
-  return encode(finish_report(**report, missed_before));
+  return encode(finish_report(**report, missed_before, done_ns));
 }
 
 // Durable first: after a power cut in between, the accepted version boots, as it was asked for.

@@ -74,12 +74,13 @@ class ControllerService : public vm::Service {
   // Arms at a boundary with time enough for a look at all values.
   base::Status arm_in_time(bool allow_loss, bool allow_overrun, base::Status& armed);
   base::Result<online_change::SwitchReport> switch_in_time(bool allow_overrun,
-                                                           uint64_t& missed_before);
+                                                           uint64_t& missed_before,
+                                                           int64_t& done_ns);
   bool time_for_switch() const;
   // What the change must have done before the switch, cycle by cycle in idle time (C5).
   base::Status configure(bool allow_overrun);
   online_change::SwitchReport finish_report(online_change::SwitchReport report,
-                                            uint64_t missed_before);
+                                            uint64_t missed_before, int64_t done_ns);
   // Notes the refusal of a switch.
   base::Error not_switched(const base::Error& why);
   // The running image boots next, and only then the change is final.

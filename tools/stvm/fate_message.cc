@@ -66,6 +66,7 @@ void report_fields(A& a, T& report) {
   a(report.pause_ns);
   a(report.missed);
   count_fields(a, report.counts);
+  a(report.ago_ns);
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ std::string layout() {
   add(all, vm::encode(vm::ForceRows{{{"path", "type", "value", "reason"}}}));
   add(all, vm::encode(vm::ImagePart{digest(1), 2, {3}}));
   add(all, encode(fates()));
-  add(all, encode(online_change::SwitchReport{1, 2, 3, 4, {5, 6, 7, 8, 9}}));
+  add(all, encode(online_change::SwitchReport{1, 2, 3, 4, {5, 6, 7, 8, 9}, 10}));
   return base::short_hex(base::sha256(all));
 }
 
@@ -117,6 +117,7 @@ struct Version {
 // Those since version 4. One is added, none is edited: controllers that speak it are out there.
 constexpr Version kVersions[] = {
     {4, "8ac16b7c3e79"},
+    {5, "7f04c328f272"},
 };
 
 TEST(ProtocolLayout, BelongsToTheVersion) {
