@@ -123,6 +123,7 @@ class Forced : public Subject {
     options.fuel_slice = mode.fuel_slice;
     options.tier.tier = mode.tier;
     options.tier.fusing = mode.fusing;
+    options.tier.logic_line = 1;
     auto controller = vm::Controller::start(image, options, clock_, devices_);
     if (!controller.ok()) return controller.error();
     controller_ = std::move(*controller);

@@ -110,6 +110,10 @@ StepLine::StepLine(std::span<const ir::Unit> code) : units_(code.size()) {
   }
 }
 
+void StepLine::leave_out(uint32_t first, uint32_t units) {
+  for (uint32_t i = first; i < first + units; ++i) units_[i].is_step = false;
+}
+
 uint32_t StepWalk::source(const StepLine::Place& place) const {
   if (place.size == 0) return 0;
   for (uint32_t k = length_; k-- > 0;) {
@@ -176,8 +180,7 @@ std::vector<uint32_t> choose_fusions(const StepLine& line, std::span<const Fusio
   return chosen;
 }
 
-void fuse(std::span<const ir::Unit> code, std::span<ir::Unit> prepared, uint64_t seed) {
-  const StepLine line(code);
+void fuse(const StepLine& line, std::span<ir::Unit> prepared, uint64_t seed) {
   const std::span<const Fusion> table = fusions();
   const std::vector<uint32_t> chosen = choose_fusions(line, table);
   for (uint32_t i = 0; i < line.size(); ++i) {

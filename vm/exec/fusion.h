@@ -81,6 +81,8 @@ class StepLine {
     Place written;
   };
   explicit StepLine(std::span<const ir::Unit> code);
+  // Units that others take care of: no part of a fusion.
+  void leave_out(uint32_t first, uint32_t units);
   uint32_t size() const { return static_cast<uint32_t>(units_.size()); }
   // Not of extensions.
   const Unit& operator[](uint32_t unit) const { return units_[unit]; }
@@ -118,8 +120,8 @@ class StepWalk {
 inline constexpr uint32_t kNoFusion = 0xffffffffu;
 std::vector<uint32_t> choose_fusions(const StepLine& line, std::span<const Fusion> table);
 
-// Puts fused handlers into the op fields of `prepared`, the units of `code` with their handlers.
+// Puts fused handlers into the op fields of `prepared`, the units of `line` with their handlers.
 // A pure function of its arguments. Seed not 0: at every other place, at random.
-void fuse(std::span<const ir::Unit> code, std::span<ir::Unit> prepared, uint64_t seed);
+void fuse(const StepLine& line, std::span<ir::Unit> prepared, uint64_t seed);
 
 }  // namespace vm

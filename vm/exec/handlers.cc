@@ -16,6 +16,7 @@ void resume_native(STC_HANDLER_ARGS);
 void stop_helper(STC_HANDLER_ARGS);
 void go_aside(STC_HANDLER_ARGS);
 void restore_forced(STC_HANDLER_ARGS);
+void take_truth_tables(STC_HANDLER_ARGS);
 
 namespace {
 
@@ -38,6 +39,7 @@ constexpr HandlerTable all_handlers() {
   table.of[kStopHandler] = &stop_helper;
   table.of[kAsideHandler] = &go_aside;
   table.of[kRestoreHandler] = &restore_forced;
+  table.of[kTruthTables] = &take_truth_tables;
 #define OP(name, a, b, c, x, y, flags, meaning) \
   fill_opcode<ir::Opcode::name>(                \
       table.of, std::make_integer_sequence<     \

@@ -39,6 +39,7 @@ struct TierOptions {
   uint64_t take_at = 0;      // not 0: what was made beside is taken when this cycle begins
   bool plain = false;        // no instructions that only newer machines have
   uint32_t table_ways = 0;   // a jump table for so many ways; 0: where it pays
+  uint32_t logic_line = 0;   // truth tables for so many instructions; 0: where they pay
 };
 
 }  // namespace vm

@@ -3,6 +3,7 @@
 #include "ir/bytecode/regions.h"
 #include "vm/exec/fusion.h"
 #include "vm/exec/handler_numbers.h"
+#include "vm/load/truth_tables.h"
 #include "vm/native/program.h"
 
 namespace vm {
@@ -64,17 +65,32 @@ bool is_fused(const TierOptions& tier) {
   return tier.tier == Tier::kInterpreter || !native::is_available();
 }
 
+// Shorter lines of boolean logic are quicker with fused handlers.
+constexpr uint32_t kLeastLogic = 16;
+
 }  // namespace
 
-Decoder::Decoder(const ir::Image& image, const TierOptions& tier)
+Decoder::Decoder(const ir::Image& image, bool clean_bools, const TierOptions& tier)
     : image_(image),
       has_slots_(types_with_slots(image)),
       fuses_(is_fused(tier)),
-      seed_(tier.fusing_seed) {}
+      seed_(tier.fusing_seed),
+      has_tables_(clean_bools),
+      logic_line_(tier.logic_line) {}
 
-void Decoder::run(std::span<const ir::Unit> units, std::vector<ir::Unit>& decoded) const {
+void Decoder::run(const ir::LinkedPou& pou, std::span<const ir::Unit> units,
+                  std::vector<ir::Unit>& decoded) const {
   run_unfused(units, decoded);
-  if (fuses_) fuse(units, decoded, seed_);
+  if (!fuses_) return;
+  StepLine line(units);
+  std::vector<TruthSeries> tables;
+  if (has_tables_) {
+    const uint32_t least = logic_line_ != 0 ? logic_line_ : kLeastLogic;
+    tables = truth_tables(pou, units, image_.pool, least, logic_line_ != 0);
+  }
+  for (const TruthSeries& series : tables) line.leave_out(series.first, series.units);
+  fuse(line, decoded, seed_);
+  for (const TruthSeries& series : tables) put_truth_tables(series, decoded);
 }
 
 void Decoder::run_unfused(std::span<const ir::Unit> units, std::vector<ir::Unit>& decoded) const {

@@ -1,5 +1,5 @@
 // Code of a POU as the interpreter runs it: handler numbers in the op fields, what types say in the
-// place of their numbers, and fused handlers where the options want them.
+// place of their numbers, and fused handlers and truth tables where the options want them.
 #pragma once
 
 #include <span>
@@ -13,9 +13,11 @@ namespace vm {
 // Of one image, which is verified and borrowed.
 class Decoder {
  public:
-  Decoder(const ir::Image& image, const TierOptions& tier);
-  // Verified units of a POU of that image.
-  void run(std::span<const ir::Unit> units, std::vector<ir::Unit>& decoded) const;
+  // Do its BOOLs stay clean (ir/bytecode/bools.h)?
+  Decoder(const ir::Image& image, bool clean_bools, const TierOptions& tier);
+  // Verified units of `pou`, of that image. What follows them in `decoded` is theirs, too.
+  void run(const ir::LinkedPou& pou, std::span<const ir::Unit> units,
+           std::vector<ir::Unit>& decoded) const;
   // The same, and each instruction has a handler of its own.
   void run_unfused(std::span<const ir::Unit> units, std::vector<ir::Unit>& decoded) const;
 
@@ -24,6 +26,8 @@ class Decoder {
   std::vector<bool> has_slots_;  // by type
   bool fuses_;
   uint64_t seed_;
+  bool has_tables_;
+  uint32_t logic_line_;
 };
 
 }  // namespace vm

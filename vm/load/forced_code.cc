@@ -151,12 +151,12 @@ std::shared_ptr<const ForcedCode> ForcedCode::make(const ir::VerifiedImage& veri
     pou.entry = pou.code;
     pou.machine = nullptr;
   }
-  const Decoder decoder(image, tier);
+  const Decoder decoder(image, own.clean_bools, tier);
   made->code_.reserve(versions.size());
   for (const auto& [number, version] : versions) {
     std::vector<ir::Unit>& decoded = made->code_.emplace_back();
     if (version.restoring.empty()) {
-      decoder.run(version.units, decoded);
+      decoder.run(image.pous[number], version.units, decoded);
     } else {
       decoder.run_unfused(version.units, decoded);
       made->put_aside(version, decoded);

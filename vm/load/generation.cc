@@ -107,12 +107,12 @@ void Generation::build_overrides() {
 base::Status Generation::place_code(const Generation* running, const TierOptions& tier,
                                     CodeTable& table) {
   const ir::Image& image = image_.image();
-  const Decoder decoder(image, tier);
+  const Decoder decoder(image, bools_.stay_clean(), tier);
   std::vector<ir::Unit> code;
   for (uint32_t number = 0; number < image.pous.size(); ++number) {
     const ir::LinkedPou& pou = image.pous[number];
     const auto first = image.code.begin() + pou.first_unit;
-    decoder.run({first, first + pou.unit_count}, code);
+    decoder.run(pou, {first, first + pou.unit_count}, code);
     const bool runs = running != nullptr && number < running->pous().size();
     base::Result<const ir::Unit*> place =
         slots_->place(number, pou.name, code, runs ? running->pous()[number].code : nullptr);

@@ -49,6 +49,7 @@ vm::TierOptions tier_options(Tier tier) {
       break;
     case Tier::kFuelOne:  // resumes in the middle of what is fused elsewhere
       out.fusing_seed = 7;
+      out.logic_line = 1;
       out.tier = vm::Tier::kInterpreter;
       break;
     case Tier::kMoveAll:
@@ -65,12 +66,14 @@ vm::TierOptions tier_options(Tier tier) {
     case Tier::kSpills:
       out.spill_seed = 12345;
       out.pou_seed = 99;
+      out.logic_line = 1;
       out.fusing = vm::Fusing::kAlways;
       break;
     case Tier::kAlternating:
       out.alternates = true;
       out.fusing = vm::Fusing::kAlways;
       out.fusing_seed = 11;
+      out.logic_line = 1;
       break;
     case Tier::kBeside:
       out.making = vm::Making::kBeside;
