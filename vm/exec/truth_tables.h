@@ -2,8 +2,8 @@
 // branch that depends on what is computed (docs/adr/0028-truth-tables.md). The series stands behind
 // the units of its POU; vm/load/truth_tables.h makes it.
 //
-//   in the code:  the first unit has the handler kTruthTables, and in `bc` how many units on the
-//                 series begins
+//   in the code:  the first unit has the handler kTruthTables, in `bc` how many units on the
+//                 series begins, and in `a` its home
 //   the series:   a unit with x: the units of the code that it does, y: how many rows it has;
 //                 then the rows, in the order in which they are to be computed
 //   a row:        three units (TruthRow)
@@ -18,6 +18,11 @@
 namespace vm {
 
 inline constexpr uint32_t kTruthInputs = 6;
+// Where most variables of a series are: then the first inputs are read from there, whatever the
+// rows say, and only the others from a base of their own. kNoHome: all are.
+inline constexpr uint32_t kHomeInputs = 4;
+using Home = uint16_t;
+inline constexpr Home kNoHome = 3;  // else an ir::Base
 inline constexpr uint32_t kUnitsOfTruthRow = 3;
 
 // out := bit number (in[0] + 2 in[1] + ... + 32 in[5]) of `table`. All are BOOLs that are clean

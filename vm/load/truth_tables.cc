@@ -63,32 +63,42 @@ constexpr uint64_t kCases[kTruthInputs] = {0xaaaaaaaaaaaaaaaau, 0xcccccccccccccc
 
 // Base in bits 16 and 17, offset below.
 using Place = uint32_t;
+constexpr Place kNowhere = ~Place{0};
 Place place_of(Base base, uint16_t offset) { return static_cast<uint32_t>(base) << 16 | offset; }
 
-// The places in memory that a value follows from.
+// The places in memory that a value follows from, as inputs of a table.
 class Leaves {
  public:
-  bool has(Place place) const { return std::find(begin(), end(), place) != end(); }
+  Leaves() { places_.fill(kNowhere); }
+  bool has(Place place) const { return input_of(place) < kTruthInputs; }
+  // Which input has that place? kTruthInputs: none.
+  uint32_t input_of(Place place) const {
+    return static_cast<uint32_t>(std::find(places_.begin(), places_.end(), place) -
+                                 places_.begin());
+  }
   // False: there is no room.
-  bool add(Place place) {
-    if (has(place)) return true;
-    if (count_ == kTruthInputs) return false;
-    places_[count_++] = place;
-    return true;
+  bool add(Place place, Home home) {
+    if (place == kNowhere || has(place)) return true;
+    const bool away = home != kNoHome && place >> 16 != home;
+    for (uint32_t k = away ? kHomeInputs : 0; k < kTruthInputs; ++k) {
+      if (places_[k] != kNowhere) continue;
+      places_[k] = place;
+      return true;
+    }
+    return false;
   }
-  bool add(const Leaves& others) {
-    return std::all_of(others.begin(), others.end(), [this](Place place) { return add(place); });
+  bool add(const Leaves& others, Home home) {
+    return std::all_of(others.places_.begin(), others.places_.end(),
+                       [&](Place place) { return add(place, home); });
   }
-  uint32_t count() const { return count_; }
-  uint32_t index(Place place) const {
-    return static_cast<uint32_t>(std::find(begin(), end(), place) - begin());
+  uint32_t count() const {
+    const auto free = std::count(places_.begin(), places_.end(), kNowhere);
+    return kTruthInputs - static_cast<uint32_t>(free);
   }
-  const Place* begin() const { return places_.data(); }
-  const Place* end() const { return places_.data() + count_; }
+  Place operator[](uint32_t k) const { return places_[k]; }
 
  private:
-  std::array<Place, kTruthInputs> places_{};
-  uint32_t count_ = 0;
+  std::array<Place, kTruthInputs> places_;
 };
 
 // A value as the instructions that make it of what is in memory now.
@@ -100,13 +110,20 @@ struct Term {
   uint64_t constant = 0;         // in all cases
   std::array<uint32_t, 3> in{};  // terms: a, b, c
   Leaves leaves;
+  Place place = kNowhere;  // of a leaf
 };
 
 class Maker {
  public:
-  explicit Maker(const base::Bytes& pool) : pool_(pool), terms_(1) {}
+  // `at_home`: some variable there; kNowhere: there is no home.
+  Maker(const base::Bytes& pool, Place at_home)
+      : pool_(pool),
+        at_home_(at_home),
+        home_(at_home == kNowhere ? kNoHome : static_cast<Home>(at_home >> 16)),
+        terms_(1) {}
 
-  void take(const ir::Unit& u, const LastReads& reads, uint32_t unit);
+  // False: with that home there are no rows for the line.
+  bool take(const ir::Unit& u, const LastReads& reads, uint32_t unit);
   std::vector<TruthRow> finish();
 
  private:
@@ -125,11 +142,13 @@ class Maker {
   void write_waiting(size_t index);
   void write_readers(Place place);
   bool write_largest(std::array<uint32_t, 3>& in);
-  uint32_t join(Opcode op, std::array<uint32_t, 3> in);
+  bool join(Term& term);
   void write(Place place, uint32_t term);
   uint64_t cases(uint32_t term, const Leaves& leaves) const;
 
   const base::Bytes& pool_;
+  Place at_home_;
+  Home home_;
   std::vector<Term> terms_;  // the first stands for operands that there are not
   std::vector<Waiting> waiting_;
   std::vector<TruthRow> rows_;
@@ -138,7 +157,8 @@ class Maker {
 uint32_t Maker::leaf(Place place) {
   Term term;
   term.kind = Term::Kind::kLeaf;
-  term.leaves.add(place);
+  term.place = place;
+  term.leaves.add(place, home_);
   return add(term);
 }
 
@@ -185,16 +205,19 @@ void Maker::write_readers(Place place) {
 uint64_t Maker::cases(uint32_t term, const Leaves& leaves) const {
   const Term& t = terms_[term];
   if (t.kind == Term::Kind::kConstant) return t.constant;
-  if (t.kind == Term::Kind::kLeaf) return kCases[leaves.index(*t.leaves.begin())];
+  if (t.kind == Term::Kind::kLeaf) return kCases[leaves.input_of(t.place)];
   return apply(t.op, cases(t.in[0], leaves), cases(t.in[1], leaves), cases(t.in[2], leaves));
 }
 
+// Inputs that are not needed are BOOLs, too, but those on top, which may be anything.
 void Maker::write(Place place, uint32_t term) {
   const Leaves& leaves = terms_[term].leaves;
+  Place filler = leaves[0];
+  if (filler == kNowhere) filler = home_ == kNoHome ? place : at_home_;
   TruthRow row;
   row.table = cases(term, leaves);
   for (uint32_t k = 0; k < kTruthInputs; ++k) {
-    const Place input = k < leaves.count() ? leaves.begin()[k] : k == 0 ? place : leaves.begin()[0];
+    const Place input = leaves[k] == kNowhere ? filler : leaves[k];
     row.in[k] = static_cast<uint16_t>(input);
     row.bases = static_cast<uint16_t>(row.bases | (input >> 16) << 2 * k);
   }
@@ -220,44 +243,50 @@ bool Maker::write_largest(std::array<uint32_t, 3>& in) {
   return true;
 }
 
-uint32_t Maker::join(Opcode op, std::array<uint32_t, 3> in) {
-  Term term;
+bool Maker::join(Term& term) {
   bool fits = false;
   do {
-    term = {Term::Kind::kGate, op, 1, 0, in, {}};
+    term.leaves = {};
+    term.gates = 1;
     fits = true;
-    for (const uint32_t part : in) {
-      fits = term.leaves.add(terms_[part].leaves) && fits;
+    for (const uint32_t part : term.in) {
+      fits = term.leaves.add(terms_[part].leaves, home_) && fits;
       term.gates += terms_[part].gates;
     }
     fits = fits && term.gates <= kMostGates;
-  } while (!fits && write_largest(in));
-  return add(term);
+  } while (!fits && write_largest(term.in));
+  return fits;
 }
 
-void Maker::take(const ir::Unit& u, const LastReads& reads, uint32_t unit) {
+bool Maker::take(const ir::Unit& u, const LastReads& reads, uint32_t unit) {
   const ir::OpcodeRow& row = ir::opcode_row(u.opcode());
   const bool has_c = row.c.kind != ir::FieldKind::kNone;
-  std::array<uint32_t, 3> in{};
-  in[1] = read(u.base_b(), u.b, reads.ends_b(unit));
-  if (has_c) in[2] = read(u.base_c(), u.c, reads.ends_c(unit));
-  if (row.a.reads()) in[0] = read(u.base_a(), u.a, true);
-  const uint32_t term = join(u.opcode(), in);
+  Term gate;
+  gate.kind = Term::Kind::kGate;
+  gate.op = u.opcode();
+  gate.in[1] = read(u.base_b(), u.b, reads.ends_b(unit));
+  if (has_c) gate.in[2] = read(u.base_c(), u.c, reads.ends_c(unit));
+  if (row.a.reads()) gate.in[0] = read(u.base_a(), u.a, true);
+  if (!join(gate)) return false;
+  const uint32_t term = add(gate);
   if (reads.ends_b(unit)) forget(u.base_b(), u.b);
   if (has_c && reads.ends_c(unit)) forget(u.base_c(), u.c);
   const Place place = place_of(u.base_a(), u.a);
   forget(u.base_a(), u.a);
-  if (reads.ends_a(unit)) return;
+  if (reads.ends_a(unit)) return true;
   write_readers(place);
-  if (u.base_a() != Base::kFrame) return write(place, term);
-  waiting_.push_back({place, term});
-  if (waiting_.size() > kMostWaiting) write_waiting(0);
+  if (u.base_a() == Base::kFrame) {
+    waiting_.push_back({place, term});
+    if (waiting_.size() > kMostWaiting) write_waiting(0);
+  } else {
+    write(place, term);
+  }
+  return true;
 }
 
 std::vector<TruthRow> Maker::finish() {
   while (!waiting_.empty()) write_waiting(waiting_.size() - 1);
-  terms_.resize(1);
-  return std::exchange(rows_, {});
+  return std::move(rows_);
 }
 
 // Lines, still without rows.
@@ -286,6 +315,35 @@ std::vector<TruthSeries> logic_lines(const ir::LinkedPou& pou, std::span<const i
   return lines;
 }
 
+// A variable of the instance or of the globals, wherever the line reads more; kNowhere: of neither.
+Place most_read(std::span<const ir::Unit> line) {
+  std::array<uint32_t, 4> counts{};
+  std::array<Place, 4> some{};
+  const auto count = [&](Base base, uint16_t offset) {
+    ++counts[static_cast<size_t>(base)];
+    some[static_cast<size_t>(base)] = place_of(base, offset);
+  };
+  for (const ir::Unit& u : line) {
+    count(u.base_b(), u.b);
+    if (ir::opcode_row(u.opcode()).c.kind != ir::FieldKind::kNone) count(u.base_c(), u.c);
+  }
+  const auto self = static_cast<size_t>(Base::kSelf);
+  const auto global = static_cast<size_t>(Base::kGlobal);
+  const size_t most = counts[self] >= counts[global] ? self : global;
+  return counts[most] == 0 ? kNowhere : some[most];
+}
+
+bool make_rows(std::span<const ir::Unit> code, const base::Bytes& pool, const LastReads& reads,
+               Place at_home, TruthSeries& series) {
+  Maker maker(pool, at_home);
+  for (uint32_t i = 0; i < series.units; ++i) {
+    if (!maker.take(code[series.first + i], reads, series.first + i)) return false;
+  }
+  series.rows = maker.finish();
+  series.home = at_home == kNowhere ? kNoHome : static_cast<Home>(at_home >> 16);
+  return true;
+}
+
 }  // namespace
 
 std::vector<TruthSeries> truth_tables(const ir::LinkedPou& pou, std::span<const ir::Unit> code,
@@ -293,12 +351,10 @@ std::vector<TruthSeries> truth_tables(const ir::LinkedPou& pou, std::span<const 
   std::vector<TruthSeries> lines = logic_lines(pou, code, least);
   if (lines.empty()) return lines;
   const LastReads reads(pou, code);
-  Maker maker(pool);
   for (TruthSeries& line : lines) {
-    for (uint32_t i = 0; i < line.units; ++i) {
-      maker.take(code[line.first + i], reads, line.first + i);
-    }
-    line.rows = maker.finish();
+    const Place at_home = most_read(code.subspan(line.first, line.units));
+    if (make_rows(code, pool, reads, at_home, line)) continue;
+    make_rows(code, pool, reads, kNowhere, line);
   }
   if (!all) std::erase_if(lines, [](const TruthSeries& s) { return 2 * s.rows.size() > s.units; });
   return lines;
@@ -306,7 +362,7 @@ std::vector<TruthSeries> truth_tables(const ir::LinkedPou& pou, std::span<const 
 
 void put_truth_tables(const TruthSeries& series, std::vector<ir::Unit>& prepared) {
   ir::Unit& head = prepared[series.first];
-  head = {static_cast<uint16_t>(kTruthTables), 0, 0, 0};
+  head = {static_cast<uint16_t>(kTruthTables), series.home, 0, 0};
   head.set_bc(static_cast<uint32_t>(prepared.size()) - series.first);
   prepared.push_back(ir::Unit::extension(series.units, static_cast<uint32_t>(series.rows.size())));
   for (const TruthRow& row : series.rows) {

@@ -54,11 +54,13 @@ void run(std::span<const Unit> code, std::span<const vm::TruthSeries> series, Me
       for (const vm::TruthRow& row : found->rows) {
         uint32_t number = 0;
         for (uint32_t k = 0; k < vm::kTruthInputs; ++k) {
-          const auto base = static_cast<Base>(row.bases >> 2 * k & 3);
+          auto base = static_cast<Base>(row.bases >> 2 * k & 3);
+          const bool at_home = k < vm::kHomeInputs;
+          if (found->home != vm::kNoHome && at_home) base = static_cast<Base>(found->home);
           EXPECT_NE(base, Base::kConst);
-          number |= static_cast<uint32_t>(memory.read(base, row.in[k])) << k;
+          number += static_cast<uint32_t>(memory.read(base, row.in[k])) << k;
         }
-        memory.at(static_cast<Base>(row.bases >> 12), row.out) = row.table >> number & 1;
+        memory.at(static_cast<Base>(row.bases >> 12), row.out) = row.table >> (number & 63) & 1;
       }
       i += found->units;
     } else if (u.opcode() == Opcode::JF || u.opcode() == Opcode::JT) {
@@ -192,18 +194,26 @@ class Code {
 TEST(TruthTables, RandomLinesLeaveTheSameBehindThem) {
   size_t gates = 0;
   size_t rows = 0;
+  size_t with_home = 0;
+  size_t without_home = 0;
   for (uint32_t seed = 1; seed <= 3000; ++seed) {
     Code code(seed);
     code.fill(1 + seed % 7, 1 + seed % 40);
     const auto series = vm::truth_tables(code.pou, code.units, kPool, 1, true);
-    for (const auto& s : series) gates += s.units, rows += s.rows.size();
+    for (const auto& s : series) {
+      gates += s.units;
+      rows += s.rows.size();
+      ++(s.home == vm::kNoHome ? without_home : with_home);
+    }
     for (int start = 0; start < 8; ++start) {
       Memory plain;
       for (uint16_t i = 0; i < kVariables; ++i) {
         plain.at(Base::kSelf, i) = static_cast<uint8_t>(code.below(2));
         plain.at(Base::kGlobal, i) = static_cast<uint8_t>(code.below(2));
       }
-      for (uint16_t i = 0; i < 16; ++i) plain.at(Base::kFrame, i) = 0;
+      // What another call left there.
+      for (uint16_t i = 0; i < 16; ++i)
+        plain.at(Base::kFrame, i) = static_cast<uint8_t>(code.below(256));
       Memory tables = plain;
       run(code.units, {}, plain);
       run(code.units, series, tables);
@@ -212,6 +222,8 @@ TEST(TruthTables, RandomLinesLeaveTheSameBehindThem) {
     }
   }
   EXPECT_LT(rows, gates * 9 / 10);
+  EXPECT_GT(with_home, 1000u);
+  EXPECT_GT(without_home, 1000u);
 }
 
 Unit gate(Opcode op, Base base_a, uint16_t a, Base base_b, uint16_t b, Base base_c, uint16_t c) {
@@ -226,9 +238,12 @@ TEST(TruthTables, ARungOfSixContactsIsOneRow) {
   Code code(1);
   const Base f = Base::kFrame;
   const Base s = Base::kSelf;
-  code.units = {gate(Opcode::AND_B, f, 0, s, 0, s, 1), gate(Opcode::ANDN_B, f, 0, f, 0, s, 2),
-                gate(Opcode::AND_B, f, 1, s, 3, s, 4), gate(Opcode::OR_B, f, 0, f, 0, f, 1),
-                gate(Opcode::ORN_B, s, 8, f, 0, s, 5), Unit::make(Opcode::RET)};
+  code.units = {gate(Opcode::AND_B, f, 0, s, 0, s, 1),
+                gate(Opcode::ANDN_B, f, 0, f, 0, s, 2),
+                gate(Opcode::AND_B, f, 1, s, 3, s, 4),
+                gate(Opcode::OR_B, f, 0, f, 0, f, 1),
+                gate(Opcode::ORN_B, s, 8, f, 0, Base::kGlobal, 5),
+                Unit::make(Opcode::RET)};
   const auto series = vm::truth_tables(code.pou, code.units, kPool, 1, false);
   ASSERT_EQ(series.size(), 1u);
   EXPECT_EQ(series[0].units, 5u);
@@ -238,7 +253,7 @@ TEST(TruthTables, ARungOfSixContactsIsOneRow) {
 
 // Temporaries that wait, and instructions in one table, are limited.
 TEST(TruthTables, TheWorkIsLinearInTheCode) {
-  for (const uint16_t temps : {2, 3000}) {
+  for (const uint16_t temps : {uint16_t{2}, uint16_t{3000}}) {
     Code code(1);
     code.pou.slots.clear();
     for (uint16_t i = 0; i < temps; ++i) {
