@@ -82,12 +82,10 @@ bench-pause: setup
 FUZZ_RUNS := 1000000
 fuzz: setup
 	@cmake --preset asan >/dev/null
-	@cmake --build build/asan -j $(JOBS) --target fuzz_parse fuzz_literal fuzz_lex fuzz_image fuzz_compile fuzz_store
-	@for target in parse literal image store; do \
-	  build/asan/tests/fuzz/fuzz_$$target tests/fuzz/corpus/$$target $(FUZZ_RUNS) 2 || exit 1; \
-	done
-	@build/asan/tests/fuzz/fuzz_lex tests/golden/parse $(FUZZ_RUNS) 2
-	@build/asan/tests/fuzz/fuzz_compile tests/golden $(FUZZ_RUNS) 2
+	@cmake --build build/asan -j $(JOBS) --target fuzz_targets
+	@cd build/asan/tests/fuzz && while read -r target corpus; do \
+	  echo "$$target"; ./$$target "$$corpus" $(FUZZ_RUNS) 2 || exit 1; \
+	done <targets.txt
 
 SEED := 1
 PROGRAMS := 5000

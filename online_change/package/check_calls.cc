@@ -67,6 +67,7 @@ bool PlanCheck::check_entered(Node node, const Target& target) {
   const bool right = !node.in_out && node.begin == target.to && size_of(node) == target.size &&
                      is_step(new_, node.type) && fit_.value_at(step.from, node) == Fit::kYes &&
                      fit_.value_at(step.from_stride, node) == Fit::kYes;
+  if (right) reach(target);
   return right || fail(node.begin, "goes on from what is no step");
 }
 
@@ -77,6 +78,7 @@ bool PlanCheck::check_migrated(Node node, const Target& target) {
                      code_.layouts[slot->region.type].size == target.size &&
                      ir::same_value_type(new_.types, new_.layouts, node.type, code_.types,
                                          code_.layouts, slot->region.type);
+  if (right) reach(target);
   return right || fail(node.begin, "is made by a migration of another type");
 }
 

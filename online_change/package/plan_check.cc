@@ -38,8 +38,22 @@ base::Status PlanCheck::run() {
   for (uint32_t id = 0; good && id < new_.instances.size(); ++id) {
     if (new_.instances[id].live) good = check_area(id);
   }
-  if (good) return base::Ok{};
+  if (good && check_reached()) return base::Ok{};
   return base::Error{base::Refusal::kBadPackage, "change package: " + why_};
+}
+
+void PlanCheck::reach(const Target& first, uint32_t count) {
+  const auto at = reached_.begin() + (&first - targets_.data());
+  std::fill(at, at + count, true);
+}
+
+bool PlanCheck::check_reached() {
+  for (size_t i = 0; i < targets_.size(); ++i) {
+    const StepKind kind = step_of(targets_[i]).kind;
+    const bool plain = kind == StepKind::kInitialise || kind == StepKind::kCopy;
+    if (!plain && !reached_[i]) return fail(targets_[i].to, "is made, but no variable is there");
+  }
+  return true;
 }
 
 bool PlanCheck::fail(uint32_t at, const char* what) {
@@ -99,6 +113,7 @@ void PlanCheck::expand() {
   if (!std::is_sorted(targets_.begin(), targets_.end(), by_place)) {
     std::sort(targets_.begin(), targets_.end(), by_place);
   }
+  reached_.resize(targets_.size());
 }
 
 bool PlanCheck::check_targets() {
@@ -225,7 +240,7 @@ bool PlanCheck::check_elements(Node array, uint32_t depth) {
   return true;
 }
 
-uint32_t PlanCheck::converted_run(Node first, uint32_t most) const {
+uint32_t PlanCheck::converted_run(Node first, uint32_t most) {
   auto found = std::partition_point(targets_.begin(), targets_.end(), [&](const Target& target) {
     return target.end() <= first.begin;
   });
@@ -236,7 +251,9 @@ uint32_t PlanCheck::converted_run(Node first, uint32_t most) const {
                step.size == size_of(first) && (run == 1 || step.to_stride == step.size) &&
                step.from_stride == old_.layouts[step.old_type].size &&
                classify(old_.types, step.old_type, new_.types, step.new_type) != Conversion::kNone;
-  return right && old_areas_.is_array_of(source_of(*found), step.old_type, run) ? run : 0;
+  if (!right || !old_areas_.is_array_of(source_of(*found), step.old_type, run)) return 0;
+  reach(*found, run);
+  return run;
 }
 
 bool PlanCheck::check_written(Node node, const Target& target, uint32_t depth) {
@@ -284,6 +301,7 @@ bool PlanCheck::check_conversion(Node node, const Target& target, uint32_t depth
                source->type == step.old_type && !node.in_out && node.type == step.new_type &&
                node.begin == target.to && size_of(node) == target.size &&
                classify(old_.types, step.old_type, new_.types, step.new_type) != Conversion::kNone;
+  if (right) reach(target);
   return right || fail(node.begin, "is converted between other types than its own");
 }
 

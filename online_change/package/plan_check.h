@@ -1,8 +1,8 @@
 // V17 for one plan, independent of how it was made: every byte that a step
 // writes belongs to an area of the new version and takes a value of its type; every
 // variable of the new version is written by exactly one step, or stays where the
-// old version has a variable that can serve as it. So nothing is reinterpreted,
-// whatever the package says.
+// old version has a variable that can serve as it; what is converted, migrated or entered is
+// such a variable. So nothing is reinterpreted, whatever the package says.
 #pragma once
 
 #include <string>
@@ -39,7 +39,7 @@ class PlanCheck {
   bool check_area(uint32_t id);
   bool check_elements(Node array, uint32_t depth);
   // Elements from `first` on, `most` at most, that one step converts from neighbours in an array.
-  uint32_t converted_run(Node first, uint32_t most) const;
+  uint32_t converted_run(Node first, uint32_t most);
   bool check_node(Node node, uint32_t depth);
   bool check_calls();
   bool check_input(const MigrationInput& input, const ir::LinkedPou& pou, TypeFit& fit);
@@ -57,6 +57,9 @@ class PlanCheck {
   uint32_t size_of(Node node) const;
   uint32_t source_of(const Target& target) const;
   const UpdateStep& step_of(const Target& target) const { return plan_.steps[target.step]; }
+  // Values that are not just copied were looked at where the variable is that they are made for.
+  void reach(const Target& first, uint32_t count = 1);
+  bool check_reached();
   bool fail(uint32_t at, const char* what);
 
   const Plan& plan_;
@@ -69,6 +72,7 @@ class PlanCheck {
   InitialData new_data_;
   TypeFit fit_;
   std::vector<Target> targets_;  // sorted, disjoint after check_targets()
+  std::vector<bool> reached_;    // of targets_
   uint32_t stamp_at_ = 0;        // of the instance that is looked at
   std::string why_;
 };

@@ -9,6 +9,7 @@
 
 #include "base/limits.h"
 #include "ir/bytecode/symbols.h"
+#include "online_change/diff/areas.h"
 
 #include "tests/unit/online_change/hand_made.h"
 
@@ -309,6 +310,24 @@ TEST(Package, V17_what_passes_is_harmless) {
   }
   EXPECT_GT(passed, 0u);
   EXPECT_LT(passed, 1500u);
+}
+
+// A conversion whose value no variable takes would read what nobody has looked at.
+TEST(Package, V17_values_made_for_no_variable) {
+  for (const StepKind kind : {StepKind::kConvert, StepKind::kEnter}) {
+    auto pair = make_pair();
+    const Areas areas(pair->b.image);
+    const uint32_t main = pair->b.image.program_ids().front();
+    ASSERT_LE(areas.used(main) + 16, areas.capacity(main));
+    UpdateStep step = first_step(pair->package, StepKind::kConvert);
+    step.kind = kind;
+    step.count = 1;
+    step.to = areas.begin(main) + areas.used(main) + 8;  // in the slack
+    step.from_stride = 0xfffffff0u;
+    step.fate = kNoFate;
+    pair->package.forward.steps.push_back(step);
+    expect_refused(*pair, "is made, but no variable is there");
+  }
 }
 
 TEST(Package, V17_absurd_counts) {
