@@ -157,8 +157,8 @@ void bind_address(ir::Image& image, const ir::DirectAddress& address, uint32_t d
   if (address.area != ir::DirectArea::kNone) image.io.push_back({address, data, type});
 }
 
-void size_process_image(ir::Image& image) {
-  if (image.io.empty()) return;
+base::Status size_process_image(ir::Image& image) {
+  if (image.io.empty()) return base::Ok{};
   const ir::Layouts natural = ir::natural_layouts(image.types);
   for (const ir::IoBinding& binding : image.io) {
     const uint64_t end = binding.address.bit_offset +
@@ -167,7 +167,12 @@ void size_process_image(ir::Image& image) {
     const bool input = binding.address.area == ir::DirectArea::kInput;
     uint32_t& bytes = input ? image.input_bytes : image.output_bytes;
     bytes = std::max(bytes, static_cast<uint32_t>((end + 7) / 8));
+    if (bytes <= base::kMaxDeviceBytes) continue;
+    return base::Error{base::Refusal::kTooMany,
+                       std::string(input ? "%I" : "%Q") + " has " + std::to_string(bytes) +
+                           " bytes; the limit is " + std::to_string(base::kMaxDeviceBytes)};
   }
+  return base::Ok{};
 }
 
 // %M as far as devices can exchange what is there.

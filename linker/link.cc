@@ -313,7 +313,7 @@ class Linker {
       if (!symbol.ok()) return symbol.error();
       bind_address(image_, located.address, symbol->data, symbol->type);
     }
-    size_process_image(image_);
+    if (base::Status sized = size_process_image(image_); !sized.ok()) return sized;
     if (base::Status placed = place_devices(image_, options_.devices); !placed.ok()) return placed;
     image_.safe = options_.safe;
     image_.access = program_.access;

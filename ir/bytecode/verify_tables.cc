@@ -45,6 +45,8 @@ class TablesVerifier {
         {"instances", {image_.instances.size(), base::kMaxInstances}},
         {"instructions", {image_.code.size(), base::kMaxCodeUnits}},
         {"tasks", {image_.tasks.size(), base::kMaxTasks}},
+        {"bytes of %I", {image_.input_bytes, base::kMaxDeviceBytes}},
+        {"bytes of %Q", {image_.output_bytes, base::kMaxDeviceBytes}},
     };
     for (const auto& [what, values] : limits) {
       if (base::Status s = limit(what, values.first, values.second); !s) return s;

@@ -510,6 +510,11 @@ TEST(Verify, V18_Memory) {
                  [](Image& i) { i.pool.resize(ir::kConstPoolLimit + 1); });
   expect_refused(Refusal::kTooLarge, "tasks",
                  [](Image& i) { i.tasks.resize(base::kMaxTasks + 1, i.tasks[0]); });
+  // Each task has copies of the process image.
+  expect_refused(Refusal::kTooLarge, "inputs",
+                 [](Image& i) { i.input_bytes = base::kMaxDeviceBytes + 1; });
+  expect_refused(Refusal::kTooLarge, "outputs",
+                 [](Image& i) { i.output_bytes = base::kMaxDeviceBytes + 1; });
 }
 
 TEST(Verify, V19_BackEdgesTakeFuel) {

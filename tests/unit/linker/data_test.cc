@@ -91,6 +91,17 @@ TEST(InitialData, BindsInputsAndOutputsAndSizesTheProcessImage) {
   EXPECT_EQ(image.io[3].data, area_of(image, "Main") + offset_of(image, "Main", "o"));
 }
 
+TEST(InitialData, LargestProcessImage) {
+  const auto inputs = [](uint64_t bytes) {
+    const std::string bit = std::to_string(bytes * 8 - 8);
+    return try_link(simple("  member global i : BYTE at input " + bit + " 8\n", ""));
+  };
+  const auto largest = inputs(base::kMaxDeviceBytes);
+  ASSERT_TRUE(largest.ok());
+  EXPECT_EQ(largest->input_bytes, base::kMaxDeviceBytes);
+  EXPECT_EQ(inputs(base::kMaxDeviceBytes + 1).error().refusal, base::Refusal::kTooMany);
+}
+
 TEST(InitialData, RetainsVariablesAndWholeInstances) {
   const ir::Image image =
       linked(simple("  member global a : INT retain\n  member global b : INT retain\n"
