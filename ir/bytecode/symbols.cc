@@ -36,6 +36,22 @@ Symbol member_of(const Image& image, const Symbol& owner, size_t number) {
   return symbol;
 }
 
+// BIT members that share a byte are one member, with the names of all of them. What to write
+// instead of the name of one of them; "" when `name` is none.
+std::string byte_of_bit(const Type& owner, std::string_view name) {
+  for (const Member& member : owner.members) {
+    const std::string_view all = member.name;
+    size_t bit = 0;
+    for (size_t at = 0, end = 0; end < all.size() && all.find('-') != all.npos;
+         at = end + 1, ++bit) {
+      end = std::min(all.find('-', at), all.size());
+      if (!same_name(all.substr(at, end - at), name)) continue;
+      return "is bit " + std::to_string(bit) + " of `" + member.name + "`; name that byte";
+    }
+  }
+  return {};
+}
+
 // Reads a path from left to right.
 class PathReader {
  public:
@@ -109,7 +125,10 @@ class PathReader {
 
   base::Status step_to(Symbol& symbol, std::string_view text, const std::string& why) {
     const int32_t number = image_.types.find_member(symbol.type, text);
-    if (number < 0) return fail("`" + std::string(text) + "` " + why);
+    if (number < 0) {
+      const std::string bit = byte_of_bit(image_.types[symbol.type], text);
+      return fail("`" + std::string(text) + "` " + (bit.empty() ? why : bit));
+    }
     const Member& member = image_.types[symbol.type].members[static_cast<size_t>(number)];
     if (member.section == Section::kInOut) {
       return fail("`" + std::string(text) + "` is an in-out; name the variable that is bound");
