@@ -2,7 +2,9 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/file.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -182,23 +184,59 @@ base::Result<base::Bytes> receive_message(int socket) {
   return message;
 }
 
-base::Result<TemporaryFolder> TemporaryFolder::make() {
-  const char* parent = std::getenv("TMPDIR");
-  std::string path = parent != nullptr && *parent != '\0' ? parent : "/tmp";
-  path += "/stvm-XXXXXX";
-  if (::mkdtemp(path.data()) == nullptr) {
-    return base::Error{base::Refusal::kFileUnwritable, path + ": " + std::strerror(errno)};
+namespace {
+
+constexpr const char* kFolderPrefix = "stvm-";
+constexpr const char* kFolderMark = "/.stvm-temporary";
+
+// Those in `parent` whose owner lives no more. What has no mark is none of ours.
+void remove_left_folders(const std::string& parent) {
+  std::error_code failed;
+  std::filesystem::directory_iterator at(parent, failed);
+  for (; !failed && at != std::filesystem::directory_iterator(); at.increment(failed)) {
+    if (!at->path().filename().string().starts_with(kFolderPrefix)) continue;
+    struct stat folder {};
+    if (::lstat(at->path().c_str(), &folder) != 0 || folder.st_uid != ::geteuid()) continue;
+    const std::string mark = at->path().string() + kFolderMark;
+    const int fd = S_ISDIR(folder.st_mode) ? ::open(mark.c_str(), O_RDWR | O_CLOEXEC) : -1;
+    if (fd < 0) continue;
+    std::error_code ignored;
+    if (::flock(fd, LOCK_EX | LOCK_NB) == 0) std::filesystem::remove_all(at->path(), ignored);
+    ::close(fd);
   }
-  return TemporaryFolder(std::move(path));
+}
+
+}  // namespace
+
+base::Result<TemporaryFolder> TemporaryFolder::make() {
+  const char* chosen = std::getenv("TMPDIR");
+  const std::string parent = chosen != nullptr && *chosen != '\0' ? chosen : "/tmp";
+  remove_left_folders(parent);
+  for (;;) {
+    std::string path = parent + "/" + kFolderPrefix + "XXXXXX";
+    const bool made = ::mkdtemp(path.data()) != nullptr;
+    const std::string mark = path + kFolderMark;
+    const int fd = made ? ::open(mark.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600) : -1;
+    if (fd < 0) {
+      const int reason = errno;
+      if (made) ::rmdir(path.c_str());
+      return base::Error{base::Refusal::kFileUnwritable, path + ": " + std::strerror(reason)};
+    }
+    struct stat marked {};
+    const bool locked = ::flock(fd, LOCK_EX) == 0 && ::fstat(fd, &marked) == 0;
+    if (locked && marked.st_nlink != 0) return TemporaryFolder(std::move(path), fd);
+    ::close(fd);  // another process took it for one that was left, before it was locked
+  }
 }
 
 TemporaryFolder::TemporaryFolder(TemporaryFolder&& other) noexcept
-    : path_(std::exchange(other.path_, {})) {}
+    : path_(std::exchange(other.path_, {})), mark_(std::exchange(other.mark_, -1)) {}
 
 TemporaryFolder::~TemporaryFolder() {
   if (path_.empty()) return;
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
+  ::close(mark_);
 }
 
 }  // namespace tools

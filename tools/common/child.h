@@ -39,7 +39,8 @@ class ConnectedChild {
 base::Status send_message(int socket, base::ByteSpan message);
 base::Result<base::Bytes> receive_message(int socket);
 
-// A folder for intermediate files that goes when its owner goes.
+// A folder for intermediate files that goes when its owner goes. A process that is killed cannot
+// take it along: the next one that makes a folder does.
 class TemporaryFolder {
  public:
   static base::Result<TemporaryFolder> make();
@@ -49,8 +50,9 @@ class TemporaryFolder {
   std::string file(const char* name) const { return path_ + "/" + name; }
 
  private:
-  explicit TemporaryFolder(std::string path) : path_(std::move(path)) {}
+  TemporaryFolder(std::string path, int mark) : path_(std::move(path)), mark_(mark) {}
   std::string path_;
+  int mark_ = -1;  // locked for as long as the process lives
 };
 
 }  // namespace tools
