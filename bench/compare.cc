@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 
 #include "bench/measure.h"
 
@@ -112,14 +113,23 @@ const std::vector<Program>& programs() {
   return kPrograms;
 }
 
-std::vector<size_t> present_tiers(const CompareOptions& options) {
+std::vector<std::string> missing_images(const CompareOptions& options,
+                                        const std::vector<Program>& programs) {
+  std::vector<std::string> missing;
+  for (const Program& program : programs) {
+    if (!std::filesystem::exists(image_of(options, program))) missing.emplace_back(program.name);
+  }
+  return missing;
+}
+
+std::vector<size_t> present_tiers(const CompareOptions& options, const Program& program) {
   std::vector<size_t> present;
   for (size_t tier = 0; tier < kTierCount; ++tier) {
     const std::string name = kTiers[tier].name;
     if (options.tier != "all" && options.tier != name) continue;
     // An stvm that falls back to another tier says so in its answer.
     const std::string answer =
-        tier == 0 || knows_tiers(options) ? vm_bench(options, programs().front(), tier, 10) : "";
+        tier == 0 || knows_tiers(options) ? vm_bench(options, program, tier, 10) : "";
     if (answer.find("\"tier\":\"" + name + "\"") != std::string::npos) {
       present.push_back(tier);
     } else {

@@ -48,9 +48,13 @@ struct CompareOptions {
   uint32_t repeats = 7;
 };
 
+// Names of the programs whose images are not in that folder.
+std::vector<std::string> missing_images(const CompareOptions& options,
+                                        const std::vector<Program>& programs);
+
 // The tiers that are asked for and that this stvm has, by index of kTiers; one line on
-// standard output for each that it has not.
-std::vector<size_t> present_tiers(const CompareOptions& options);
+// standard output for each that it has not. Asks with the image of `program`.
+std::vector<size_t> present_tiers(const CompareOptions& options, const Program& program);
 
 // First both sides run some scans from power-up and must have the same checksum of their
 // state, or it would not be the same work. Then `repeats` measurements of each side in turn;

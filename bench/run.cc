@@ -55,14 +55,31 @@ bool parse(int argc, char** argv, Options& options) {
   return argc % 2 == 1 && !options.compare.stvm.empty() && !options.compare.images.empty();
 }
 
+// Empty behind a message that says why.
+std::vector<bench::Program> chosen_programs(const Options& options) {
+  std::vector<bench::Program> chosen;
+  for (const bench::Program& program : bench::programs()) {
+    if (options.only.empty() || options.only == program.name) chosen.push_back(program);
+  }
+  if (chosen.empty()) std::fprintf(stderr, "no program is called %s\n", options.only.c_str());
+  const std::vector<std::string> missing = bench::missing_images(options.compare, chosen);
+  if (missing.empty()) return chosen;
+  for (const std::string& name : missing) {
+    std::fprintf(stderr, "%s/%s.image is missing\n", options.compare.images.c_str(), name.c_str());
+  }
+  std::fputs("`cmake --build build/release --target bench_images` makes the images\n", stderr);
+  return {};
+}
+
 int run(const Options& options) {
+  const std::vector<bench::Program> programs = chosen_programs(options);
+  if (programs.empty()) return 1;
   const uint32_t repeats = options.compare.repeats;
   const int core = bench::pin_to_one_core();
-  const std::vector<size_t> tiers = bench::present_tiers(options.compare);
+  const std::vector<size_t> tiers = bench::present_tiers(options.compare, programs.front());
   if (repeats > 0) bench::print_head(tiers, repeats, core);
   std::vector<bench::Result> results;
-  for (const bench::Program& program : bench::programs()) {
-    if (!options.only.empty() && options.only != program.name) continue;
+  for (const bench::Program& program : programs) {
     results.push_back(bench::compare(options.compare, tiers, program));
     if (repeats > 0) bench::print_row(tiers, results.back());
   }
@@ -80,7 +97,7 @@ int run(const Options& options) {
     std::ofstream(options.out + "/performance.svg") << bench::scan_chart(tiers, results);
     std::ofstream(options.out + "/scan.md") << bench::scan_page(tiers, results, repeats, reasons);
   }
-  return differing == 0 && !results.empty() && !tiers.empty() ? 0 : 1;
+  return differing == 0 && !tiers.empty() ? 0 : 1;
 }
 
 }  // namespace
