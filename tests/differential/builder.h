@@ -140,6 +140,7 @@ class Builder {
 
   bool holds_block(TypeRef type) const;
   std::optional<uint32_t> bytes_of(TypeRef type) const;  // of plain numbers, and arrays of them
+  uint64_t most_bytes(TypeRef type) const;               // with what alignment may take
 
   // --- literals (literals.cc)
   Expr literal(TypeRef type, bool bare = false);

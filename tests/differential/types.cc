@@ -8,6 +8,8 @@ namespace differential {
 namespace {
 
 constexpr uint32_t kCapacities[] = {1, 5, 12, 80};
+// Several arrays and their copies in calls lie in one frame, whose references are near its begin.
+constexpr uint64_t kMostArrayBytes = 8192;
 
 }  // namespace
 
@@ -95,6 +97,28 @@ std::optional<uint32_t> Builder::bytes_of(TypeRef type) const {
     if (size) *size *= static_cast<uint32_t>(dim.high - dim.low + 1);
   }
   return size;
+}
+
+uint64_t Builder::most_bytes(TypeRef type) const {
+  const Type& row = program_[type];
+  uint64_t bytes = 0;
+  switch (row.form) {
+    case Form::kString:
+      return row.capacity + 1;
+    case Form::kWstring:
+      return 2 * (uint64_t{row.capacity} + 2);
+    case Form::kArray:
+      bytes = most_bytes(row.base);
+      for (const Bounds& dim : row.dims) bytes *= static_cast<uint64_t>(dim.high - dim.low + 1);
+      return bytes;
+    case Form::kStruct:
+    case Form::kUnion:
+      if (row.base != kNoType) bytes = most_bytes(row.base);
+      for (const Variable& member : row.members) bytes += (most_bytes(member.type) + 7) / 8 * 8;
+      return bytes;
+    default:
+      return 8;
+  }
 }
 
 ir::Group Builder::group(TypeRef type) const {
@@ -270,7 +294,9 @@ void Builder::declare_array() {
   type.name = fresh("Array");
   type.base = element;
   type.dims = std::move(dims);
-  arrays_.push_back(declared(std::move(type)));
+  const TypeRef array = declared(std::move(type));
+  if (most_bytes(array) > kMostArrayBytes) program_.types[array].base = elementary(ir::Kind::kInt);
+  arrays_.push_back(array);
 }
 
 void Builder::declare_types() {
