@@ -63,13 +63,11 @@ Timing summarise(std::vector<double>& times) {
   return {times.front(), times[times.size() / 2], times[times.size() * 99 / 100]};
 }
 
-base::Status one_scan(vm::Controller& controller, vm::Execution& execution, uint32_t program,
-                      int64_t time_ns) {
-  constexpr uint64_t kFuel = 1'000'000'000;
-  execution.start(controller.generation(), controller.memory().data(), program, ir::kStackBegin,
-                  time_ns);
-  vm::Exit exit = execution.run(kFuel);
-  if (exit == vm::Exit::kDone) return base::Ok{};
+constexpr uint64_t kFuel = 1'000'000'000;
+
+// Of a scan that did not end as it should.
+base::Error failure(const vm::Controller& controller, const vm::Execution& execution,
+                    vm::Exit exit) {
   if (exit == vm::Exit::kSuspended) {
     return base::Error{base::Refusal::kFault, "the scan does not end: endless loop?"};
   }
@@ -115,13 +113,16 @@ base::Result<Timing> measure(const Settings& settings, vm::Controller& controlle
   std::vector<double> times;
   times.reserve(settings.scans / settings.batch);
   const int64_t cost = clock_cost();
+  const vm::Generation& generation = controller.generation();
+  uint8_t* const memory = controller.memory().data();
   for (uint64_t scan = 0; scan + settings.batch <= all;) {
     const bool counts = scan >= warm_up;
     const auto begin = SteadyClock::now();
     for (uint64_t end = scan + settings.batch; scan < end; ++scan) {
-      base::Status done =
-          one_scan(controller, execution, program, static_cast<int64_t>(scan) * settings.period_ns);
-      if (!done.ok()) return done.error();
+      execution.start(generation, memory, program, ir::kStackBegin,
+                      static_cast<int64_t>(scan) * settings.period_ns);
+      const vm::Exit exit = execution.run(kFuel);
+      if (exit != vm::Exit::kDone) return failure(controller, execution, exit);
     }
     const auto ns = static_cast<double>(std::max<int64_t>(since(begin) - cost, 0));
     if (counts) times.push_back(ns / static_cast<double>(settings.batch));

@@ -6,6 +6,7 @@
 // loop for what the loop reads.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -65,8 +66,12 @@ class Builder {
   void store_at(const Recipe& recipe);
   void special();
   Val read_field_id(ir::Base base, uint32_t offset);
-  void instance(Val id);
-  void call(CallKind kind, uint32_t pou, Val id);
+  std::optional<Mem> area_of(const Mem& slot);
+  Val instance_area(const Mem& slot, Val id);
+  void instance(const Mem& slot, Val id);
+  bool is_slow(CallKind kind, uint32_t pou) const;
+  void call_instance(CallKind kind, uint32_t pou, const Mem& slot, Val id);
+  void call(CallKind kind, uint32_t pou, Node made);
   void call_body(Node made);
   void helper();
   void fork(const Fork& fork);

@@ -60,23 +60,30 @@ void Builder::special() {
     case Opcode::ADVANCE_TIME:
       return append(node(Op::kAdvanceTime, 8, read_b()));
     case Opcode::INST:
-      return instance(read_field_id(u_.base_b(), u_.bc()));
-    case Opcode::INST_AT:
-      return instance(load_id(behind(read_b(), u_.c)));
+      return instance(place(u_.base_b(), u_.bc()), read_field_id(u_.base_b(), u_.bc()));
+    case Opcode::INST_AT: {
+      const Mem slot = behind(read_b(), u_.c);
+      return instance(slot, load_id(slot));
+    }
     case Opcode::CALL:
-      return call(CallKind::kFunction, u_.c, kNone);
+      return call(CallKind::kFunction, u_.c, node(Op::kCall, 0));
     case Opcode::CALL_OWN:
-      return call(CallKind::kOwn, u_.c, kNone);
+      return call(CallKind::kOwn, u_.c, node(Op::kCall, 0));
     case Opcode::CALL_INST:
-      return call(CallKind::kBody, 0, read_field_id(u_.base_b(), u_.bc()));
+    case Opcode::CALL_METHOD: {
+      const bool body = op == Opcode::CALL_INST;
+      return call_instance(body ? CallKind::kBody : CallKind::kMethod, body ? 0 : x_.x(),
+                           place(u_.base_b(), u_.bc()), read_field_id(u_.base_b(), u_.bc()));
+    }
     case Opcode::CALL_INST_AT:
-      return call(CallKind::kBody, 0, load_id(behind(read_b(), u_.c)));
-    case Opcode::CALL_METHOD:
-      return call(CallKind::kMethod, x_.x(), read_field_id(u_.base_b(), u_.bc()));
-    case Opcode::CALL_METHOD_AT:
-      return call(CallKind::kMethod, x_.x(), load_id(behind(read_b(), u_.c)));
+    case Opcode::CALL_METHOD_AT: {
+      const bool body = op == Opcode::CALL_INST_AT;
+      const Mem slot = behind(read_b(), u_.c);
+      return call_instance(body ? CallKind::kBody : CallKind::kMethod, body ? 0 : x_.x(), slot,
+                           load_id(slot));
+    }
     default:
-      return call(CallKind::kSlow, 0, kNone);
+      return call(CallKind::kSlow, 0, node(Op::kCall, 0));
   }
 }
 
@@ -84,13 +91,32 @@ Val Builder::read_field_id(ir::Base base, uint32_t offset) {
   return read(facts_.variable({base, offset, ir::Class::k32, true, false, true}));
 }
 
-void Builder::instance(Val id) {
+// Where the instance lies whose ID is in the slot, when the image says that; none: the table of
+// instances is asked.
+std::optional<Mem> Builder::area_of(const Mem& slot) {
+  if (slot.base != MemBase::kSelf || slot.inside) return std::nullopt;
+  const Children* const all = facts_.children(static_cast<uint64_t>(slot.disp));
+  if (all == nullptr) return std::nullopt;
+  const int64_t at = slot.disp - all->slot;
+  Mem area{MemBase::kSelf, 1, kNone, all->first + all->stride * (at / 4)};
+  area.inside = true;
+  if (slot.index == kNone) return area;
+  if (slot.scale != 4 || at != 0) return std::nullopt;
+  const Val stride = constant(static_cast<uint64_t>(all->stride), 8, false);
+  area.index = int_op(Op::kMul, 8, slot.index, stride);
+  return area;
+}
+
+Val Builder::instance_area(const Mem& slot, Val id) {
+  if (const std::optional<Mem> area = area_of(slot)) return address_of(*area);
   Node made = node(Op::kInstance, 4, id);
   const size_t before = f_.nodes.size();
   const Val area = value_of(made, false);
   if (f_.nodes.size() != before) f_.nodes.back().exit = exit_here(false);
-  write_a(area);
+  return area;
 }
+
+void Builder::instance(const Mem& slot, Val id) { write_a(instance_area(slot, id)); }
 
 // A body will stand in its place: values live on, but for what the body changes.
 void Builder::call_body(Node made) {
@@ -105,21 +131,27 @@ void Builder::call_body(Node made) {
   kill_memory();
 }
 
+// Recursion counts its depth.
+bool Builder::is_slow(CallKind kind, uint32_t pou) const {
+  if (kind == CallKind::kBody) return facts_.recursive_bodies();
+  return kind == CallKind::kSlow || facts_.image().pous[pou].recursion_depth != 0;
+}
+
+void Builder::call_instance(CallKind kind, uint32_t pou, const Mem& slot, Val id) {
+  Node made = node(Op::kCall, 0, id);
+  if (is_slow(kind, pou)) return call(kind, pou, made);
+  const std::optional<Mem> area = facts_.body_at(unit_) != nullptr ? area_of(slot) : std::nullopt;
+  if (area) {
+    made.mem = *area;
+  } else {
+    made.in[1] = instance_area(slot, id);
+  }
+  call(kind, pou, made);
+}
+
 // Before a call everything is in memory, and behind it everything is read from there again.
-void Builder::call(CallKind kind, uint32_t pou, Val id) {
-  const std::vector<ir::LinkedPou>& pous = facts_.image().pous;
-  if (kind == CallKind::kBody ? facts_.recursive_bodies()
-                              : kind != CallKind::kSlow && pous[pou].recursion_depth != 0) {
-    kind = CallKind::kSlow;
-  }
-  Val area = kNone;
-  if (kind == CallKind::kBody || kind == CallKind::kMethod) {
-    Node made = node(Op::kInstance, 4, id);
-    const size_t before = f_.nodes.size();
-    area = value_of(made, false);
-    if (f_.nodes.size() != before) f_.nodes.back().exit = exit_here(false);
-  }
-  Node made = node(Op::kCall, 0, id, area);
+void Builder::call(CallKind kind, uint32_t pou, Node made) {
+  if (is_slow(kind, pou)) kind = CallKind::kSlow;
   made.call = static_cast<uint32_t>(f_.calls.size());
   f_.calls.push_back({kind, pou, uint32_t{u_.a} * 8, unit_, facts_.callee(unit_),
                       facts_.next(unit_), facts_.body_at(unit_) != nullptr});

@@ -28,6 +28,7 @@ Effects effects_of(const Function& body) {
     if (n.dead || (n.op != Op::kLoad && n.op != Op::kStore)) continue;
     Effects::Use& use = n.op == Op::kLoad ? out.reads : out.writes;
     if (n.mem.base == MemBase::kSelf) use.own_instance = true;
+    if (n.mem.inside) use.everywhere = true;
     if (n.mem.base != MemBase::kData) continue;
     if (n.mem.index != kNone) {
       use.everywhere = true;

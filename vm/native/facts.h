@@ -60,6 +60,15 @@ struct Fork {
   Block above = kNone;
 };
 
+// Where the instances inside of all instances of a type lie, seen from these: of the slots from
+// offset `slot` on, the first is at `first`, and each next one `stride` bytes behind.
+struct Children {
+  uint32_t slot = 0;
+  uint32_t count = 0;
+  int64_t first = 0;
+  int64_t stride = 0;
+};
+
 // What all POUs of an image have in common.
 struct ImageFacts {
   // `other_code` stands for that of the image, sorted by POU; borrowed.
@@ -68,9 +77,17 @@ struct ImageFacts {
   const ir::PouVersion* version_of(uint32_t pou) const;  // null: it has none
   std::span<const ir::Unit> code_of(const ir::Image& image, const ir::LinkedPou& pou) const;
   std::span<const ir::PouVersion> versions;
+  // By their slots; what differs between instances of the type is left out.
+  const std::vector<Children>& children(ir::TypeId type) const;
   std::vector<uint32_t> body_of;  // by type: the POU that runs when its instance is called; kNone
   bool recursive_bodies = false;  // does any block call itself?
   bool clean_bools = false;       // are all BOOLs in memory 0 or 1?
+
+ private:
+  bool same_for_all(ir::TypeId type, Children& children) const;
+  const ir::Image& image_;
+  std::vector<std::vector<uint32_t>> instances_of_;  // live ones, by type and what it is made from
+  mutable ByKey<std::vector<Children>> children_;    // by type: as far as asked for
 };
 // The frame slot that covers the offset, or the last one in front of it; kNone: there is none.
 uint32_t slot_number(const ir::LinkedPou& pou, uint32_t offset);
@@ -165,6 +182,8 @@ class Facts {
   const std::vector<uint32_t>& results() const { return results_; }
   // The POU that the unit calls; kNone: it depends.
   uint32_t callee(uint32_t unit) const;
+  // Of the own instance's slot at `offset`; null: they may lie anywhere.
+  const Children* children(uint64_t offset) const;
   bool recursive_bodies() const { return common_->recursive_bodies; }
   bool clean_bools() const { return common_->clean_bools; }
   void successors(Block block, Block out[2], uint32_t& count) const;

@@ -39,7 +39,8 @@ class Forwarder {
 
   // The area that a place lies in. An address that is computed may lead anywhere.
   struct Root {
-    enum Kind : uint8_t { kFrame, kSelf, kGlobals, kInstance, kAnywhere };
+    // kInside: an instance inside of this one, where the image says that it lies.
+    enum Kind : uint8_t { kFrame, kSelf, kInside, kGlobals, kInstance, kAnywhere };
     Kind kind = kAnywhere;
     Val area = kNone;  // of kInstance
     bool part =
@@ -67,6 +68,13 @@ class Forwarder {
     mem.pointer = real(mem.pointer);
     const Node* const enter = maker(mem.pointer);
     if (mem.base == MemBase::kPointer && mem.index == kNone && enter != nullptr) {
+      if (enter->mem.inside) {
+        const int64_t disp = mem.disp;
+        mem = enter->mem;
+        mem.index = real(mem.index);
+        mem.disp += disp;
+        return mem;
+      }
       mem.base = MemBase::kData;
       mem.index = real(enter->in[1]);
       mem.scale = 1;
@@ -90,10 +98,12 @@ class Forwarder {
       case MemBase::kFrame:
         return {Root::kFrame, kNone, false};
       case MemBase::kSelf:
-        return {Root::kSelf, kNone, false};
+        return {mem.inside ? Root::kInside : Root::kSelf, kNone, false};
       case MemBase::kPointer: {
         const Node* const enter = maker(mem.pointer);
-        return enter == nullptr ? Root() : instance(real(enter->in[1]));
+        if (enter == nullptr) return {};
+        if (enter->mem.inside) return {Root::kInside, kNone, false};
+        return instance(real(enter->in[1]));
       }
       case MemBase::kData:
         if (mem.index == kNone) return {Root::kGlobals, kNone, false};
@@ -114,7 +124,15 @@ class Forwarder {
       // Frames, the globals and instances lie apart; an instance may be this one.
       const bool self = ra.kind == Root::kSelf || rb.kind == Root::kSelf;
       const bool other = ra.kind == Root::kInstance || rb.kind == Root::kInstance;
+      if (ra.kind == Root::kInside || rb.kind == Root::kInside) return other;
       return self && other && !(ra.kind == Root::kInstance ? ra.part : rb.part);
+    }
+    if (ra.kind == Root::kInside) {
+      const bool comparable = a.base == b.mem.base && a.pointer == b.mem.pointer &&
+                              a.index == b.mem.index &&
+                              (a.index == kNone || a.scale == b.mem.scale);
+      if (!comparable) return true;
+      return a.disp < b.mem.disp + b.width && b.mem.disp < a.disp + width;
     }
     if (ra.area != rb.area || indexed(a, ra) || indexed(b.mem, rb)) return true;
     return a.disp < b.mem.disp + b.width && b.mem.disp < a.disp + width;

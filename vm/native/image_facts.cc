@@ -1,6 +1,7 @@
 // What follows from the tables of an image, whatever the code of a POU is.
 #include <algorithm>
 
+#include "base/limits.h"
 #include "ir/bytecode/regions.h"
 #include "vm/native/facts.h"
 
@@ -51,15 +52,87 @@ std::span<const ir::Unit> ImageFacts::code_of(const ir::Image& image,
   return std::span(image.code).subspan(pou.first_unit, pou.unit_count);
 }
 
+namespace {
+
+constexpr int64_t kFarthest = int64_t{1} << 29;  // of what an instruction reaches from an instance
+
+}  // namespace
+
 ImageFacts::ImageFacts(const ir::Image& image, bool are_bools_clean,
                        std::span<const ir::PouVersion> other_code)
-    : versions(other_code), body_of(image.types.size(), kNone), clean_bools(are_bools_clean) {
+    : versions(other_code),
+      body_of(image.types.size(), kNone),
+      clean_bools(are_bools_clean),
+      image_(image),
+      instances_of_(image.types.size()) {
+  for (uint32_t id = 1; id < image.instances.size(); ++id) {
+    if (!image.instances[id].live) continue;
+    ir::TypeId type = image.instances[id].type;
+    for (uint32_t depth = 0; depth < base::kMaxNesting && image.types.contains(type); ++depth) {
+      instances_of_[type.index].push_back(id);
+      type = image.types[type].kind == ir::Kind::kFunctionBlock ? image.types[type].base
+                                                                : ir::TypeId();
+    }
+  }
   for (uint32_t p = 0; p < image.pous.size(); ++p) {
     const ir::LinkedPou& pou = image.pous[p];
     if (!ir::is_body(pou.kind)) continue;
     if (pou.self.valid()) body_of[pou.self.index] = p;
     recursive_bodies |= pou.recursion_depth != 0;
   }
+}
+
+// The verifier has seen that each slot names a live instance of its type, and nothing changes it.
+bool ImageFacts::same_for_all(ir::TypeId type, Children& out) const {
+  bool first = true;
+  for (const uint32_t holder : instances_of_[type.index]) {
+    const uint32_t data = image_.instances[holder].data;
+    for (uint32_t i = 0; i < out.count; ++i) {
+      const uint32_t id = ir::initial_id(image_, data + out.slot + 4 * i);
+      const int64_t way = int64_t{image_.instances[id].data} - data;
+      if (first && i == 0) out.first = way;
+      if (first && i == 1) out.stride = way - out.first;
+      if (way != out.first + out.stride * i) return false;
+    }
+    first = false;
+  }
+  return !first;
+}
+
+const std::vector<Children>& ImageFacts::children(ir::TypeId type) const {
+  if (const auto* const known = children_.find(type.index)) return *known;
+  std::vector<Children> all;
+  const std::vector<ir::Member>& members = image_.types[type].members;
+  for (size_t m = 0; m < members.size(); ++m) {
+    if (members[m].section == ir::Section::kInOut) continue;
+    const ir::Type& row = image_.types[members[m].type];
+    const bool array = row.kind == ir::Kind::kArray;
+    const ir::TypeId child = array ? row.base : members[m].type;
+    if (!image_.types.is_instance(child)) continue;
+    uint64_t count = 1;
+    if (array) {
+      for (const ir::Dimension& dim : row.dims) count *= dim.count();
+    }
+    if (count > image_.instances.size()) continue;
+    Children out{image_.layouts[type].member_offsets[m], static_cast<uint32_t>(count), 0, 0};
+    if (!same_for_all(type, out)) continue;
+    const int64_t last = out.first + out.stride * (out.count - 1);
+    const int64_t end = std::max(out.first, last) + image_.layouts[child].area_capacity;
+    if (std::min(out.first, last) >= -kFarthest && end <= kFarthest) all.push_back(out);
+  }
+  std::sort(all.begin(), all.end(),
+            [](const Children& a, const Children& b) { return a.slot < b.slot; });
+  return children_[type.index] = std::move(all);
+}
+
+const Children* Facts::children(uint64_t offset) const {
+  if (!pou_->self.valid()) return nullptr;
+  const std::vector<Children>& all = common_->children(pou_->self);
+  auto at = std::upper_bound(all.begin(), all.end(), offset,
+                             [](uint64_t o, const Children& c) { return o < c.slot; });
+  if (at == all.begin()) return nullptr;
+  --at;
+  return offset < at->slot + uint64_t{4} * at->count ? &*at : nullptr;
 }
 
 }  // namespace vm::native

@@ -1,6 +1,7 @@
 #include "vm/native/inline.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "ir/bytecode/image.h"
 #include "vm/native/facts.h"
@@ -10,6 +11,14 @@ namespace vm::native {
 namespace {
 
 constexpr uint32_t kMostUnits = 96;
+
+bool may_leave(const Function& body) {
+  return std::any_of(body.blocks.begin(), body.blocks.end(), [&](const BasicBlock& block) {
+    return block.end.kind == EndKind::kExit ||
+           std::any_of(block.nodes.begin(), block.nodes.end(),
+                       [&](uint32_t n) { return body.nodes[n].exit != kNone; });
+  });
+}
 
 class Inliner {
  public:
@@ -101,8 +110,14 @@ class Inliner {
     call.op = Op::kEnter;
     step_ = f_.calls[call.call].frame_step;
     own_ = f_.calls[call.call].kind == CallKind::kOwn;
+    // An instance that lies in a known place needs no pointer but for leaving there.
+    const bool leaves = may_leave(g);
+    const bool has_instance = call.in[1] != kNone || call.mem.inside;
+    near_.reset();
+    if (call.mem.inside && call.mem.index == kNone) near_ = call.mem.disp;
     pointer_ = kNone;
-    if (call.in[1] != kNone) {
+    if (!leaves) call.in[0] = kNone;
+    if (has_instance && (!near_ || leaves)) {
       pointer_ = static_cast<Val>(f_.values.size());
       f_.values.push_back({false, 8, false, 0, call_node, 0});
       call.result = pointer_;
@@ -110,10 +125,10 @@ class Inliner {
     Inlined inlined;
     inlined.call = call.call;
     inlined.units = body.units;
-    inlined.has_instance = call.in[1] != kNone;
+    inlined.has_instance = has_instance;
+    inlined.leaves = leaves;
     f_.inlined.push_back(inlined);
     const Val id = call.in[0];
-    const Val area = call.in[1];
     value_of_.assign(g.values.size(), kNone);
     const auto begin = static_cast<Block>(blocks_.size());
     const Block behind = begin + static_cast<Block>(g.blocks.size());
@@ -132,9 +147,9 @@ class Inliner {
       made.inlined = static_cast<uint32_t>(f_.inlined.size() - 1);
       const std::vector<SlotValue>& callers = f_.exits[f_.nodes[call_node].exit].slots;
       made.slots.insert(made.slots.end(), callers.begin(), callers.end());
-      if (inlined.has_instance) {
+      if (has_instance && leaves) {
         made.slots.push_back({0, 4, id});
-        made.slots.push_back({0, 4, area});
+        made.slots.push_back({0, 8, pointer_});
       }
       f_.exits.push_back(std::move(made));
     }
@@ -173,7 +188,10 @@ class Inliner {
     for (Val& v : n.in) v = mapped(v);
     n.mem.index = mapped(n.mem.index);
     if (n.mem.base == MemBase::kFrame) n.mem.disp += step_;
-    if (n.mem.base == MemBase::kSelf && !own_) {
+    if (n.mem.base == MemBase::kSelf && near_) {
+      n.mem.disp += *near_;
+      n.mem.inside = true;
+    } else if (n.mem.base == MemBase::kSelf && !own_) {
       n.mem.base = MemBase::kPointer;
       n.mem.pointer = pointer_;
     }
@@ -199,6 +217,7 @@ class Inliner {
   uint32_t step_ = 0;
   bool own_ = false;
   Val pointer_ = kNone;
+  std::optional<int64_t> near_;  // the callee's instance lies so far from the own one
 };
 
 }  // namespace

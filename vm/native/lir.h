@@ -88,7 +88,8 @@ enum class Op : uint8_t {
   kNative,  // the function at address `imm`, of data memory and in; what calls lose is lost
   kHelper,  // `unit` by its handler; every register is lost
   kCall,    // `call`; nothing but constants lives across, unless it becomes kEnter
-  kEnter,   // begins the body of `call`, which follows; the result points to its instance
+  // begins the body of `call`, which follows; the result points to its instance: in[1], or mem
+  kEnter,
 };
 
 // kNoBit, kAnyBit: a AND b is 0, is not 0.
@@ -115,13 +116,15 @@ bool holds(Cond cond, uint64_t a, uint64_t b, uint8_t width);
 // (kPlace); no memory ever holds it.
 enum class MemBase : uint8_t { kFrame, kSelf, kData, kPointer };
 
-// base + index * scale + disp. kData: data memory; disp is an offset of 32 bits.
+// base + index * scale + disp. kData: data memory; disp is an offset of 32 bits. `inside`: kSelf,
+// but in the area of an instance inside, which the image says to lie there.
 struct Mem {
   MemBase base = MemBase::kFrame;
   uint8_t scale = 1;  // 1, 2, 4, 8
   Val index = kNone;
   int64_t disp = 0;
   Val pointer = kNone;
+  bool inside = false;
 };
 
 struct Node {
@@ -161,9 +164,10 @@ struct SlotValue {
 };
 struct Exit {
   uint32_t unit = 0;
-  bool fuel = false;  // its unit takes fuel that has just been taken
+  bool fuel = false;       // its unit takes fuel that has just been taken
+  uint32_t fuel_back = 0;  // was taken for turns of a loop that are not done
   // Inside of an inlined body (Function::inlined): the activation is made first. Behind its slots
-  // come the instance's ID and area when it has one.
+  // come the instance's ID and the pointer to it when it has one.
   uint32_t inlined = kNone;
   std::vector<SlotValue> slots;
 };
@@ -184,9 +188,11 @@ struct Inlined {
   uint32_t call = 0;
   const ir::Unit* units = nullptr;  // the callee's
   bool has_instance = false;
+  bool leaves = false;  // some exit leaves in the middle of it
 };
 
-enum class EndKind : uint8_t { kJump, kLoop, kBranch, kReturn, kExit, kUnreachable };
+// kTakeFuel: [0] when more is left than it takes, else [1], and nothing is taken.
+enum class EndKind : uint8_t { kJump, kLoop, kBranch, kTakeFuel, kReturn, kExit, kUnreachable };
 struct End {
   EndKind kind = EndKind::kReturn;
   Op compare = Op::kCompare;  // kBranch: kCompare or kFCompare
@@ -195,7 +201,8 @@ struct End {
   Val in[2] = {kNone, kNone};
   Block target[2] = {kNone, kNone};  // kBranch: [0] when it holds, else [1]
   std::vector<Val> args[2];
-  uint32_t exit = kNone;  // kLoop: out of fuel; kExit
+  uint32_t exit = kNone;  // kLoop: out of fuel (kNone: it takes none); kExit
+  uint32_t fuel = 0;      // kTakeFuel
 };
 
 // A loop is its head and all blocks up to the last one that jumps back to it.

@@ -5,6 +5,7 @@
 #include "vm/native/forward.h"
 #include "vm/native/loops.h"
 #include "vm/native/print.h"
+#include "vm/native/unroll.h"
 
 namespace vm::native {
 
@@ -65,6 +66,7 @@ base::Result<Function> make_function(const ir::Image& image, Bodies& bodies, uin
   drop_unused(function);
   hoist(function);
   split_addresses(function);
+  unroll(function);
   if (!function.loops.empty()) drop_unused(function);  // what a check in its old place wanted
   return function;
 }

@@ -17,7 +17,8 @@ const char* const kNames[] = {
     "tasktime",   "advancetime", "pool",   "native",  "helper",  "call",     "enter"};
 const char* const kConds[] = {"=",  "<>",  "<s", "<=s", ">s",     ">=s",
                               "<u", "<=u", ">u", ">=u", "no bit", "any bit"};
-const char* const kEnds[] = {"jump", "loop", "branch", "return", "exit", "unreachable"};
+const char* const kEnds[] = {"jump",   "loop", "branch",     "take fuel",
+                             "return", "exit", "unreachable"};
 
 std::string name(const Function& f, Val v) {
   if (v == kNone) return "-";

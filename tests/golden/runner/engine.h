@@ -22,8 +22,8 @@ enum class Tier : uint8_t {
   kStandby,   // as kIdentity, and the script's changes too, by the standby strategy
   kNative,
   kNativeFuelOne,
-  kFewRegisters,  // native with as few registers as it can do with
-  kSpills,        // native; registers are taken from values at random, some POUs interpreted
+  kFewRegisters,  // native with as few registers as it can do with; a slice has fuel for 7
+  kSpills,        // native; registers are taken at random, some POUs interpreted; fuel for 23
   kAlternating,   // as kIdentity; every other generation is interpreted
   kBeside,        // machine code takes its place in the third cycle; suspended at every safe point
 };

@@ -97,6 +97,9 @@ class MachineEngine : public Engine {
     if (tier_ == Tier::kFuelOne || tier_ == Tier::kNativeFuelOne || tier_ == Tier::kBeside) {
       options.fuel_slice = 1;
     }
+    // In the middle of turns that are done together.
+    if (tier_ == Tier::kFewRegisters) options.fuel_slice = 7;
+    if (tier_ == Tier::kSpills) options.fuel_slice = 23;
     options.tier = tier_options(tier_);
     auto controller = vm::Controller::start(*image, options, clock_, devices_);
     if (!controller.ok()) return controller.error();

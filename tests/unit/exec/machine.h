@@ -55,6 +55,7 @@ class Machine {
     const auto symbol = ir::find_symbol(image(), path);
     return symbol ? ir::format_value(image(), *symbol, memory_.view()) : symbol.error().text;
   }
+  std::string state() const { return ir::state_text(image(), memory_.view()); }
   std::string trap_text() const { return vm::describe(image(), execution_.trap()).text; }
 
  private:

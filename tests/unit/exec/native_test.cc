@@ -213,6 +213,53 @@ PROGRAM Second VAR o : Other; END_VAR o(); END_PROGRAM)";
   }
 }
 
+TEST(Native, InstancesInsideAreReachedAsOwnVariables) {
+  const std::string blocks = R"(
+FUNCTION_BLOCK Small VAR_OUTPUT n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK
+FUNCTION_BLOCK Holder VAR s : Small; x : INT; END_VAR s(); x := s.n; END_FUNCTION_BLOCK
+)";
+  const ir::Image one = build(blocks + R"(
+PROGRAM Main VAR a : ARRAY[1..9] OF Small; s : Small; h : Holder; i : INT; END_VAR
+  FOR i := 1 TO 9 DO a[i](); END_FOR; s(); h(); i := s.n + a[3].n;
+END_PROGRAM)");
+  for (const char* pou : {"Main", "Holder"}) {
+    const std::string text = function_of(one, pou);
+    EXPECT_FALSE(has(text, "instance.")) << text;
+  }
+  // Global ones, those of a reference, and those that lie differently are looked for.
+  const std::string text = function_of(build(blocks + R"(
+VAR_GLOBAL g : Small; END_VAR
+PROGRAM Main VAR x : INT; END_VAR g(); x := g.n; END_PROGRAM)"),
+                                       "Main");
+  EXPECT_TRUE(has(text, "instance.")) << text;
+}
+
+TEST(Native, AMovedInstanceIsFoundByNewCode) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
+  const auto source = [](const char* more) {
+    return std::string("FUNCTION_BLOCK Small VAR_OUTPUT n : INT; END_VAR VAR ") + more +
+           R"( END_VAR n := n + 1; END_FUNCTION_BLOCK
+FUNCTION_BLOCK Other VAR_OUTPUT n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK
+PROGRAM Main VAR s : Small; x : INT; END_VAR x := s.n; END_PROGRAM
+PROGRAM Second VAR o : Other; x : INT; END_VAR x := o.n; END_PROGRAM)";
+  };
+  const ir::Image first = build(source(""));
+  const ir::Image second = build(source("more : ARRAY[1..5000] OF LINT;"), &first);
+  vm::Memory memory = *vm::Memory::reserve();
+  auto slots = std::make_shared<vm::CodeSlots>(1 << 20);
+  auto one =
+      vm::Generation::build(*ir::verify(ir::encode(first)), 0, memory.data(), slots, nullptr);
+  ASSERT_TRUE(one.ok());
+  auto two =
+      vm::Generation::build(*ir::verify(ir::encode(second)), 1, memory.data(), slots, one->get());
+  ASSERT_TRUE(two.ok());
+  for (uint32_t i = 0; i < second.pous.size(); ++i) {
+    const std::string& name = second.pous[i].name;
+    const bool same = (*one)->pous()[i].machine == (*two)->pous()[i].machine;
+    EXPECT_EQ(same, name != "Main") << name;
+  }
+}
+
 // W^X: no memory can be written and executed.
 TEST(Native, NothingIsWritableAndExecutable) {
   sample::Machine machine(build("PROGRAM Main VAR a : INT; END_VAR a := a + 1; END_PROGRAM"));

@@ -58,6 +58,7 @@ const Form kForms[] = {
     {"add x1, x2, #0x123, lsl #12; add x1, x1, #0x456", {0x91448c41, 0x91115821}, [](Assembler& a) { a.add_imm(1, 2, 0x123456, 8); }},
     {"sub sp, sp, #2, lsl #12; sub sp, sp, #0x10", {0xd1400bff, 0xd10043ff}, [](Assembler& a) { a.add_imm(kSp, kSp, -0x2010, 8); }},
     {"movz x17, #0x100, lsl #16; add x1, x2, x17", {0xd2a02011, 0x8b110041}, [](Assembler& a) { a.add_imm(1, 2, 0x1000000, 8); }},
+    {"subs x3, x3, #8", {0xf1002063}, [](Assembler& a) { a.decrement(3, 8); }},
     {"cmp w3, #7", {0x71001c7f}, [](Assembler& a) { a.compare_imm(3, 7, 4); }},
     {"cmp x3, #0x7, lsl #12", {0xf1401c7f}, [](Assembler& a) { a.compare_imm(3, 0x7000, 8); }},
     {"cmn w3, #1", {0x3100047f}, [](Assembler& a) { a.compare_imm(3, -1, 4); }},

@@ -180,7 +180,7 @@ void Assembler::compare_imm(uint8_t a, int64_t value, uint8_t width) {
   const bool adds = value < 0;
   sum(!adds, true, kZero, a, static_cast<uint32_t>(adds ? -value : value), width);
 }
-void Assembler::decrement(uint8_t reg) { sum(true, true, reg, reg, 1, 8); }
+void Assembler::decrement(uint8_t reg, uint32_t by) { sum(true, true, reg, reg, by, 8); }
 void Assembler::compare_extended(uint8_t a, uint8_t b, uint8_t from, bool is_signed) {
   const uint32_t option = (is_signed ? 4u : 0u) | (from == 2 ? 1u : 0u);
   registers(0x6b200000 | option << 13, kZero, a, b, false);

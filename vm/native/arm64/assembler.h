@@ -119,7 +119,7 @@ class Assembler {
   void logical(Logical op, uint8_t to, uint8_t a, uint32_t immediate, uint8_t width);
   void add_imm(uint8_t to, uint8_t a, int64_t value, uint8_t width);  // any; may need x17
   void compare_imm(uint8_t a, int64_t value, uint8_t width);          // a sum immediate
-  void decrement(uint8_t reg);                                        // 8 bytes, sets flags
+  void decrement(uint8_t reg, uint32_t by);  // 8 bytes, sets flags; less than 4096
   // `b` is extended from 1 or 2 bytes.
   void compare_extended(uint8_t a, uint8_t b, uint8_t from, bool is_signed);
   void multiply(uint8_t to, uint8_t a, uint8_t b, uint8_t width);
@@ -148,7 +148,7 @@ class Assembler {
   void jump_to(uint8_t reg);
   void call(uint8_t reg);
   void ret();
-  void trap();  // is never reached
+  void trap();                              // is never reached
   void table_entry(Label table, Label to);  // 4 bytes: table - to; `table` is bound
 
   // Floating point of 4 or 8 bytes.

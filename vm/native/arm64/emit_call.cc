@@ -9,7 +9,7 @@ namespace vm::native::arm64 {
 namespace {
 
 constexpr uint8_t kId = 0;
-constexpr uint8_t kArea = 1;
+constexpr uint8_t kPointer = 1;
 constexpr uint8_t kRecord = 2;
 constexpr uint8_t kValue = 3;
 constexpr int32_t kSavedBytes = 160;  // x19 to x30, d8 to d15
@@ -67,7 +67,7 @@ Shared emit_shared(Assembler& a) {
 void Emitter::take_fuel(const Node& n) {
   const Label stub = a_.label();
   call_stubs_.push_back({stub, pou_.side->call[n.call], n.exit});
-  a_.decrement(kFuelRegister);
+  a_.decrement(kFuelRegister, 1);
   a_.jump_if(Condition::kEqual, stub);
 }
 
@@ -89,10 +89,12 @@ void Emitter::push_record(uint32_t call) {
 
 // An inlined body begins.
 void Emitter::enter(const Node& n, const Step& step) {
-  a_.decrement(kFuelRegister);
+  a_.decrement(kFuelRegister, 1);
   a_.jump_if(Condition::kEqual, exit_label(n.exit));
   if (n.result == kNone) return;
-  a_.alu(Alu::kAdd, integer_register(step.result), kDataRegister, integer_register(step.in[1]), 8);
+  const uint8_t to = integer_register(step.result);
+  if (n.in[1] == kNone) return a_.address(to, address(n.mem, step.index), 8);
+  a_.alu(Alu::kAdd, to, kDataRegister, integer_register(step.in[1]), 8);
 }
 
 // Inside of an inlined body: its slots, then the instance in x0 and x1, the unit's number in x9.
@@ -104,7 +106,7 @@ void Emitter::inlined_exit(uint32_t exit) {
   for (size_t i = 0; i < slots; ++i) store_slot(e.slots[i], places[i]);
   if (has_instance) {
     load_place(kScratch, places[slots]);
-    load_place(kArea, places[slots + 1]);
+    load_place(kPointer, places[slots + 1]);
     a_.move(kId, kScratch);
   }
   a_.move_imm(kPouNumber, e.unit);
@@ -119,7 +121,7 @@ void Emitter::activation(uint32_t number) {
   push_record(inlined.call);
   if (inlined.has_instance) {
     a_.store(CONTEXT(instance), kId, 4);
-    a_.alu(Alu::kAdd, kSelfRegister, kDataRegister, kArea, 8);
+    a_.move(kSelfRegister, kPointer);
   } else if (c.kind == CallKind::kFunction) {
     a_.store(CONTEXT(instance), kZero, 4);
   }
@@ -147,7 +149,7 @@ void Emitter::call(const Node& n) {
   if (c.kind == CallKind::kFunction) a_.store(CONTEXT(instance), kZero, 4);
   if (c.kind == CallKind::kBody || c.kind == CallKind::kMethod) {
     a_.store(CONTEXT(instance), kId, 4);
-    a_.alu(Alu::kAdd, kSelfRegister, kDataRegister, kArea, 8);
+    a_.alu(Alu::kAdd, kSelfRegister, kDataRegister, kPointer, 8);
   }
   a_.add_imm(kFrameRegister, kFrameRegister, c.frame_step, 8);
   a_.load(kScratch, CONTEXT(pous), 8);

@@ -147,6 +147,8 @@ void Emitter::end(Block b) {
     case EndKind::kBranch:
       if (const auto table = tables_.at(b)) return jump_by_table(b, *table);
       return branch(b);
+    case EndKind::kTakeFuel:
+      return take_turns(b);
     case EndKind::kUnreachable:
       return;
     case EndKind::kExit:
@@ -162,24 +164,43 @@ void Emitter::end(Block b) {
 }
 
 void Emitter::loop_end(Block b) {
-  const Label out = exit_label(f_.blocks[b].end.exit);
-  const Block head = f_.blocks[b].end.target[0];
+  const End& e = f_.blocks[b].end;
   const std::vector<Move>& edge = places_.blocks[b].edges[0];
-  a_.decrement(kFuelRegister);
-  if (edge.empty() && !only_asks(head)) {
-    a_.jump_if(Condition::kNotEqual, blocks_[head]);
-    return a_.jump(out);
+  if (e.exit != kNone) {
+    const Label out = exit_label(e.exit);
+    a_.decrement(kFuelRegister, 1);
+    if (edge.empty() && !only_asks(e.target[0])) {
+      a_.jump_if(Condition::kNotEqual, blocks_[e.target[0]]);
+      return a_.jump(out);
+    }
+    a_.jump_if(Condition::kEqual, out);
   }
-  a_.jump_if(Condition::kEqual, out);
   moves(edge);
+  again(e.target[0]);
+}
+
+// The next turn. A head that does nothing but ask is asked here.
+void Emitter::again(Block head) {
   if (!only_asks(head)) return a_.jump(blocks_[head]);
-  // A head that does nothing but ask is asked here.
   const End& e = f_.blocks[head].end;
   const AllocatedBlock& places = places_.blocks[head];
   const bool yes_goes_on = e.target[0] == head + 1;
   jump_if(e.width, yes_goes_on ? e.cond : negated(e.cond), places.in[0], places.in[1],
           blocks_[head + 1]);
   a_.jump(blocks_[e.target[yes_goes_on ? 1 : 0]]);
+}
+
+void Emitter::take_turns(Block b) {
+  const End& e = f_.blocks[b].end;
+  a_.decrement(kFuelRegister, e.fuel);
+  edges_.push_back({a_.label(), b, 1});
+  a_.jump_if(Condition::kBelowOrEqual, edges_.back().label);
+  moves(places_.blocks[b].edges[0]);
+  if (e.target[0] != next_block(f_, b)) a_.jump(blocks_[e.target[0]]);
+}
+
+void Emitter::give_back(uint32_t fuel) {
+  if (fuel != 0) a_.add_imm(kFuelRegister, kFuelRegister, fuel, 8);
 }
 
 bool Emitter::only_asks(Block head) const {
@@ -304,9 +325,11 @@ void Emitter::leave_at_side(uint32_t side) {
 // What is seldom comes behind everything else.
 void Emitter::stubs() {
   for (const EdgeStub& edge : edges_) {
+    const End& e = f_.blocks[edge.block].end;
     a_.bind(edge.label);
+    give_back(e.fuel);
     moves(places_.blocks[edge.block].edges[edge.target]);
-    a_.jump(blocks_[f_.blocks[edge.block].end.target[edge.target]]);
+    a_.jump(blocks_[e.target[edge.target]]);
   }
   for (uint32_t exit = 0; exit < f_.exits.size(); ++exit) {
     if (exits_[exit] == kNone) continue;
@@ -318,6 +341,7 @@ void Emitter::stubs() {
     }
     for (size_t i = 0; i < e.slots.size(); ++i) store_slot(e.slots[i], places_.exits[exit][i]);
     if (e.fuel) a_.move_imm(kFuelRegister, 1);
+    give_back(e.fuel_back);
     a_.move_imm(kScratch, e.unit);
     a_.jump(leave_);
   }
@@ -333,7 +357,9 @@ void Emitter::stubs() {
     a_.move_imm(kFuelRegister, 1);
     leave_at_side(side);
   }
-  for (uint32_t i = 0; i < inlined_.size(); ++i) activation(i);
+  for (uint32_t i = 0; i < inlined_.size(); ++i) {
+    if (f_.inlined[i].leaves) activation(i);
+  }
   a_.bind(leave_);
   static_assert(sizeof(ir::Unit) == 8);
   a_.move_imm(0, reinterpret_cast<uintptr_t>(pou_.units));

@@ -71,6 +71,9 @@ class Emitter {
   void end(Block b);
   void branch(Block b);
   void loop_end(Block b);
+  void again(Block head);
+  void take_turns(Block b);
+  void give_back(uint32_t fuel);
   bool only_asks(Block head) const;
   void moves(const std::vector<Move>& all);
   void move(const Move& m);

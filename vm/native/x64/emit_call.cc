@@ -76,8 +76,9 @@ void Emitter::enter(const Node& n, const Step& step) {
   a_.alu_imm(Alu::kSub, Operand::of(kFuelRegister), 1, 8);
   a_.jump_if(Condition::kEqual, exit_label(n.exit));
   if (n.result == kNone) return;
-  a_.address(integer_register(step.result),
-             {kDataRegister, integer_register(step.in[1]), 1, true, INT32_MIN}, 8);
+  Address at = address(n.mem, step.index);
+  if (n.in[1] != kNone) at = {kDataRegister, integer_register(step.in[1]), 1, true, INT32_MIN};
+  a_.address(integer_register(step.result), at, 8);
 }
 
 // Inside of an inlined body: its slots, then the unit's number in the scratch register.
@@ -89,7 +90,7 @@ void Emitter::inlined_exit(uint32_t exit) {
   if (has_instance) {
     load_place(kScratch, places_.exits[exit][slots], 4);
     a_.store(CONTEXT(native_scratch[0]), kScratch, 8);
-    load_place(kScratch, places_.exits[exit][slots + 1], 4);
+    load_place(kScratch, places_.exits[exit][slots + 1], 8);
     a_.store(CONTEXT(native_scratch[1]), kScratch, 8);
   }
   a_.move_imm(kRdi, e.unit);
@@ -105,8 +106,7 @@ void Emitter::activation(uint32_t number) {
   if (inlined.has_instance) {
     a_.load(kRax, CONTEXT(native_scratch[0]), 4);
     a_.store(CONTEXT(instance), kRax, 4);
-    a_.load(kRdx, CONTEXT(native_scratch[1]), 4);
-    a_.address(kSelfRegister, {kDataRegister, kRdx, 1, true, INT32_MIN}, 8);
+    a_.load(kSelfRegister, CONTEXT(native_scratch[1]), 8);
   } else if (c.kind == CallKind::kFunction) {
     a_.store_imm(CONTEXT(instance), 0, 4);
   }

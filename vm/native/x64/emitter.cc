@@ -125,6 +125,8 @@ void Emitter::end(Block b) {
     case EndKind::kBranch:
       if (const auto table = tables_.at(b)) return jump_by_table(b, *table);
       return branch(b);
+    case EndKind::kTakeFuel:
+      return take_turns(b);
     case EndKind::kUnreachable:
       return;
     case EndKind::kExit:
@@ -141,6 +143,10 @@ void Emitter::end(Block b) {
 void Emitter::loop_end(Block b) {
   const End& e = f_.blocks[b].end;
   const std::vector<Move>& edge = places_.blocks[b].edges[0];
+  if (e.exit == kNone) {
+    moves(edge);
+    return again(b, e.target[0]);
+  }
   a_.alu_imm(Alu::kSub, Operand::of(kFuelRegister), 1, 8);
   const BasicBlock& head = f_.blocks[e.target[0]];
   if (edge.empty() &&
@@ -151,6 +157,15 @@ void Emitter::loop_end(Block b) {
   a_.jump_if(Condition::kEqual, exit_label(e.exit));
   moves(edge);
   again(b, e.target[0]);
+}
+
+void Emitter::take_turns(Block b) {
+  const End& e = f_.blocks[b].end;
+  a_.alu_imm(Alu::kSub, Operand::of(kFuelRegister), static_cast<int32_t>(e.fuel), 8);
+  edges_.push_back({a_.label(), b, 1});
+  a_.jump_if(Condition::kBelowOrEqual, edges_.back().label);
+  moves(places_.blocks[b].edges[0]);
+  if (e.target[0] != next_block(f_, b)) a_.jump(blocks_[e.target[0]]);
 }
 
 // The next turn. A head that does nothing but ask is asked here.
@@ -318,12 +333,19 @@ void Emitter::store_slot(const SlotValue& slot, const Place& place) {
   a_.store(to, kScratch, slot.width);
 }
 
+void Emitter::give_back(uint32_t fuel) {
+  if (fuel == 0) return;
+  a_.alu_imm(Alu::kAdd, Operand::of(kFuelRegister), static_cast<int32_t>(fuel), 8);
+}
+
 // What is seldom comes behind everything else.
 void Emitter::stubs() {
   for (const EdgeStub& edge : edges_) {
+    const End& e = f_.blocks[edge.block].end;
     a_.bind(edge.label);
+    give_back(e.fuel);
     moves(places_.blocks[edge.block].edges[edge.target]);
-    a_.jump(blocks_[f_.blocks[edge.block].end.target[edge.target]]);
+    a_.jump(blocks_[e.target[edge.target]]);
   }
   for (uint32_t exit = 0; exit < f_.exits.size(); ++exit) {
     if (exits_[exit] == kNone) continue;
@@ -335,6 +357,7 @@ void Emitter::stubs() {
     }
     for (size_t i = 0; i < e.slots.size(); ++i) store_slot(e.slots[i], places_.exits[exit][i]);
     if (e.fuel) a_.move_imm(kFuelRegister, 1);
+    give_back(e.fuel_back);
     a_.move_imm(kScratch, e.unit);
     a_.jump(leave_);
   }
@@ -353,7 +376,9 @@ void Emitter::stubs() {
     a_.store_imm(CONTEXT(pou), static_cast<int32_t>(pou_.number), 4);
     a_.jump(shared_.leave);
   }
-  for (uint32_t i = 0; i < inlined_.size(); ++i) activation(i);
+  for (uint32_t i = 0; i < inlined_.size(); ++i) {
+    if (f_.inlined[i].leaves) activation(i);
+  }
   a_.bind(leave_);
   a_.shift(Shift::kShl, kScratch, 3, 8);
   a_.move_imm(kRax, reinterpret_cast<uintptr_t>(pou_.units));

@@ -1,6 +1,7 @@
 // One function as x86-64 code. Registers that stay what they are:
-//   rbx  the frame           rbp  the instance       r12  data memory + 2 GiB
-//   r13  the Context         r14  the fuel           r11, xmm15  scratch
+//   r13  the frame           rbp  the instance       rbx  data memory + 2 GiB
+//   r12  the Context         r14  the fuel           r11, xmm15  scratch
+// What code reaches most often has the registers of the shortest instructions.
 // The rest is the allocator's. Spill slots lie at rsp.
 #pragma once
 
@@ -13,10 +14,10 @@ namespace vm::native::x64 {
 inline constexpr uint8_t kIntegers[] = {kRax, kRcx, kRdx, kRsi, kRdi, kR8, kR9, kR10, kR15};
 inline constexpr uint32_t kIntegerCount = sizeof kIntegers;
 inline constexpr uint32_t kFloatCount = 15;
-inline constexpr uint8_t kFrameRegister = kRbx;
+inline constexpr uint8_t kFrameRegister = kR13;
 inline constexpr uint8_t kSelfRegister = kRbp;
-inline constexpr uint8_t kDataRegister = kR12;
-inline constexpr uint8_t kContextRegister = kR13;
+inline constexpr uint8_t kDataRegister = kRbx;
+inline constexpr uint8_t kContextRegister = kR12;
 inline constexpr uint8_t kFuelRegister = kR14;
 inline constexpr uint8_t kScratch = kR11;
 inline constexpr uint8_t kFloatScratch = 15;
@@ -67,6 +68,8 @@ class Emitter {
   void end(Block b);
   void branch(Block b);
   void loop_end(Block b);
+  void take_turns(Block b);
+  void give_back(uint32_t fuel);
   void again(Block from, Block head);
   void branch_integer(const End& end, const Place in[2], Label yes, Label no, bool yes_is_next);
   void branch_float(const End& end, const Place in[2], Label yes, Label no, bool yes_is_next);

@@ -1,0 +1,80 @@
+#include "vm/native/code_facts.h"
+
+#include <cstring>
+
+#include "ir/bytecode/regions.h"
+
+namespace vm::native {
+namespace {
+
+// Does the unit read the ID of an instance?
+bool names_instance(ir::Opcode op) {
+  return op == ir::Opcode::INST || op == ir::Opcode::INST_AT || op == ir::Opcode::CALL_INST ||
+         op == ir::Opcode::CALL_INST_AT || op == ir::Opcode::CALL_METHOD ||
+         op == ir::Opcode::CALL_METHOD_AT;
+}
+
+}  // namespace
+
+base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
+                      std::vector<uint64_t>& out) {
+  out.assign({pou.frame_size, pou.slots.size(), pou.merges.size(),
+              (common.recursive_bodies ? 1u : 0u) | (common.clean_bools ? 2u : 0u)});
+  for (const ir::FrameSlot& slot : pou.slots) {
+    out.push_back(uint64_t{slot.offset} << 32 | static_cast<uint64_t>(slot.cls) << 24 |
+                  static_cast<uint64_t>(slot.kind) << 16 | static_cast<uint64_t>(slot.local) << 8 |
+                  (slot.aggregate ? 1u : 0u));
+  }
+  const std::span code = common.code_of(image, pou);
+  bool names_instances = false;
+  for (uint32_t i = 0; i < code.size(); ++i) {
+    const ir::Unit& u = code[i];
+    const ir::OpcodeRow& row = ir::opcode_row(u.opcode());
+    const ir::Unit& x = row.extended ? code[i + 1] : u;
+    const bool has_constant = u.base_a() == ir::Base::kConst || u.base_b() == ir::Base::kConst ||
+                              u.base_c() == ir::Base::kConst;
+    const Accesses named = has_constant ? accesses_of(u) : Accesses();
+    for (const Access& access : named) {
+      if (access.base != ir::Base::kConst) continue;
+      uint64_t bits = 0;
+      std::memcpy(&bits, image.pool.data() + access.offset, ir::class_size(access.cls));
+      out.push_back(bits);
+    }
+    if (row.x.kind == ir::FieldKind::kBounds) {
+      const ir::LinkedBound& bound = image.bounds[x.x()];
+      out.insert(out.end(), {static_cast<uint64_t>(bound.low), bound.count, bound.stride});
+    }
+    if (row.c.kind == ir::FieldKind::kRange) {
+      const ir::Range& range = image.ranges[u.c];
+      out.insert(out.end(), {static_cast<uint64_t>(range.low), static_cast<uint64_t>(range.high)});
+    }
+    names_instances |= names_instance(u.opcode());
+    uint32_t callee = kNone;
+    if (row.c.kind == ir::FieldKind::kCode) callee = u.c;
+    if (row.x.kind == ir::FieldKind::kCode) callee = x.x();
+    if (u.opcode() == ir::Opcode::CALL_INST || u.opcode() == ir::Opcode::CALL_INST_AT) {
+      callee = called_body(image, common, pou, u);
+    }
+    if (callee != kNone) {
+      const ir::LinkedPou& called = image.pous[callee];
+      out.insert(out.end(), {callee, called.recursion_depth,
+                             may_share_instance(image, pou, called) ? uint64_t{1} : 0});
+    }
+    if (u.opcode() == ir::Opcode::COPY) {
+      out.push_back(ir::region_size(image.types, image.layouts, ir::region_of_field(x.x())));
+    }
+    if (u.opcode() == ir::Opcode::LEA) {
+      out.push_back(ir::region_size(image.types, image.layouts, ir::region_of_field(x.y())));
+    }
+    if (row.extended) ++i;
+  }
+  if (names_instances && pou.self.valid()) {
+    for (const Children& all : common.children(pou.self)) {
+      out.insert(out.end(), {all.slot, all.count, static_cast<uint64_t>(all.first),
+                             static_cast<uint64_t>(all.stride)});
+    }
+  }
+  return base::sha256({reinterpret_cast<const uint8_t*>(out.data()), out.size() * sizeof out[0]});
+}
+
+}  // namespace vm::native

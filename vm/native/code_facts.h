@@ -1,0 +1,17 @@
+// What the machine code of a POU relies on beside its units.
+#pragma once
+
+#include <vector>
+
+#include "base/hash.h"
+#include "vm/native/facts.h"
+
+namespace vm::native {
+
+// Constants, bounds, ranges and callees that the units name by number, and where the instances
+// inside lie. Code whose units and digest stay the same is still right. `scratch`: to be used
+// again.
+base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
+                      std::vector<uint64_t>& scratch);
+
+}  // namespace vm::native
