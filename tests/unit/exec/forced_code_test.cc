@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "ir/bytecode/pou_version.h"
 #include "tests/unit/bytecode/sample_image.h"
 #include "tests/unit/exec/machine.h"
@@ -89,6 +91,40 @@ TEST(Forcing, WritersOfAVariableAreFound) {
   EXPECT_EQ(writers(image, "Main.many[1].in"), "Main only, Main indexed");
   EXPECT_EQ(writers(image, "Main.d.kept"), "Base only") << "the base's code runs for one instance";
   EXPECT_EQ(writers(image, "Main.d.more"), "Derived only");
+}
+
+// A slot holds the addresses of two texts in turn, and the longer one's is made in front of a
+// branch: the store behind it reaches as far as that text, not as the first one.
+TEST(Forcing, AnAddressOfTheBlockBefore) {
+  ir::Image image = build(R"(
+TYPE U : UNION text : STRING[40]; bytes : ARRAY[0..40] OF BYTE; END_UNION END_TYPE
+PROGRAM Main VAR short : STRING[3]; u : U; on : BOOL; n : INT; END_VAR
+  short := 'abc';
+  IF on THEN n := 1; END_IF
+  u.text := 'a text of some length';
+END_PROGRAM)");
+  ir::LinkedPou& main = image.pous[0];
+  const auto begin = image.code.begin() + main.first_unit;
+  const auto end = begin + main.unit_count;
+  const auto is = [](Opcode opcode) {
+    return [opcode](const ir::Unit& unit) { return unit.opcode() == opcode; };
+  };
+  const auto branch = std::find_if(begin, end, is(Opcode::JF));
+  const auto address = std::find_if(branch, end, is(Opcode::STR));
+  ASSERT_EQ(main.merges.size(), 1u);
+  ASSERT_EQ(main.merges[0].unit, static_cast<uint32_t>(address - begin));
+  ASSERT_EQ(address->a, std::find_if(begin, end, is(Opcode::STR))->a) << "the same slot";
+  for (uint32_t i = 0; i < main.slots.size(); ++i) {
+    if (main.slots[i].offset == address->a)
+      main.merges[0].slots.push_back(static_cast<uint16_t>(i));
+  }
+  std::sort(main.merges[0].slots.begin(), main.merges[0].slots.end());
+  main.merges[0].unit += 2;
+  std::rotate(branch, address, address + 2);
+  const auto verified = ir::verify(ir::encode(image));
+  ASSERT_TRUE(verified.ok()) << verified.error().text;
+  EXPECT_EQ(writers(image, "Main.u.bytes[20]"), "Main indexed");
+  EXPECT_EQ(writers(image, "Main.on"), "");
 }
 
 // Each kind of store that can be left out: what stands for it passes the verifier.
