@@ -1,26 +1,10 @@
 #include "vm/runtime/native_maker.h"
 
 #include <chrono>
-#include <cstdlib>
-
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 #include "vm/runtime/realtime.h"
 
 namespace vm {
-namespace {
-
-// Checking the image and making the code took several times what is left of it, and a controller
-// runs for months.
-void give_back_freed() {
-#ifdef __GLIBC__
-  malloc_trim(0);
-#endif
-}
-
-}  // namespace
 
 NativeMaker::~NativeMaker() {
   progress_.stop = true;
@@ -32,7 +16,6 @@ void NativeMaker::start(Generation& first, const TierOptions& tier) {
   done_ = std::async(std::launch::async, [this, &first, tier] {
             run_in_background();
             first.make_native(tier, progress_);
-            give_back_freed();
           }).share();
 }
 
