@@ -28,6 +28,13 @@ bool Outliner::head() {
   }
 }
 
+// TRANSITION (PRIORITY := 1) FROM ..., as the parser tells it from a call.
+bool Outliner::has_priority(uint32_t i) const {
+  return text_.kind(i + 1) == TokenKind::kLeftParen && is_name(text_.kind(i + 2)) &&
+         text_.kind(i + 3) == TokenKind::kAssign && text_.kind(i + 5) == TokenKind::kRightParen &&
+         text_.is_word(i + 6, "FROM");
+}
+
 // Does a member or part of a chart begin at `i`? As soft_head() sees it.
 bool Outliner::begins_member(uint32_t i) const {
   const TokenKind next = text_.kind(i + 1);
@@ -45,7 +52,7 @@ bool Outliner::begins_member(uint32_t i) const {
     case TokenKind::kMockFunction:
       return named;
     case TokenKind::kTransition:
-      return named || next == TokenKind::kLeftParen;
+      return named || has_priority(i);
     case TokenKind::kTest:
       return next == TokenKind::kString;
     default:
@@ -94,8 +101,9 @@ bool Outliner::soft_head() {
       if (named) step(TokenKind::kEndStep);
       return named;
     case TokenKind::kTransition:
-      if (named || next == TokenKind::kLeftParen) transition();
-      return named || next == TokenKind::kLeftParen;
+      if (!named && !has_priority(at_)) return false;
+      transition();
+      return true;
     case TokenKind::kTest:
       if (next == TokenKind::kString) test();
       return next == TokenKind::kString;

@@ -50,6 +50,7 @@ class Outliner {
   // --- heads.cc
   bool head();
   bool soft_head();
+  bool has_priority(uint32_t i) const;
   bool begins_member(uint32_t i) const;
   void pou(TokenKind end, BlockKind kind);
   void named_group(TokenKind end, BlockKind kind);
