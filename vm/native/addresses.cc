@@ -124,4 +124,48 @@ class Places {
 
 void split_addresses(Function& function) { Places(function).run(); }
 
+bool sink_addresses(Function& f) {
+  std::vector<bool> wanted(f.values.size(), false);
+  const auto want = [&](Val v) {
+    if (v != kNone) wanted[v] = true;
+  };
+  for (const BasicBlock& block : f.blocks) {
+    for (const uint32_t number : block.nodes) {
+      const Node& n = f.nodes[number];
+      for (const Val v : n.in) want(v);
+      want(n.mem.index);
+      want(n.mem.pointer);
+    }
+    for (const Val v : block.end.in) want(v);
+    for (const std::vector<Val>& args : block.end.args) {
+      for (const Val v : args) want(v);
+    }
+    for (const Reload& reload : block.reloads) want(reload.value);
+    for (const SlotValue& slot : block.dirty) want(slot.value);
+  }
+  Val none = kNone;
+  for (Exit& exit : f.exits) {
+    for (SlotValue& slot : exit.slots) {
+      const Value& value = f.values[slot.value];
+      if (wanted[slot.value] || value.constant || value.node == kNone) continue;
+      const Node& made = f.nodes[value.node];
+      if (made.op != Op::kAddr || made.mem.base != MemBase::kSelf) continue;
+      slot.is_address = true;
+      slot.address = made.mem;
+      slot.value = made.mem.index;
+      if (slot.value != kNone) continue;
+      if (none == kNone) {
+        none = static_cast<Val>(f.values.size());
+        f.values.push_back({false, 8, true, 0, kNone, 0});
+        wanted.push_back(true);
+      }
+      slot.value = none;
+    }
+  }
+  return none != kNone || std::any_of(f.exits.begin(), f.exits.end(), [](const Exit& exit) {
+           return std::any_of(exit.slots.begin(), exit.slots.end(),
+                              [](const SlotValue& slot) { return slot.is_address; });
+         });
+}
+
 }  // namespace vm::native

@@ -73,12 +73,17 @@ class Target {
   // May the operand be a constant in the instruction, or be read from memory by it?
   virtual bool takes_constant(const Function& f, const Node& node, uint32_t operand) const = 0;
   virtual bool takes_memory(const Function& f, const Node& node, uint32_t operand) const = 0;
+  // The operand that the operation can read from any memory; -1: none.
+  virtual int folds(const Node&) const { return -1; }
   // May in[0] be read from memory, where a BOOL is any byte?
   virtual bool end_takes_memory(const Function&, const End&) const { return false; }
   virtual bool end_takes_constant(const Function& f, const End& end, uint32_t operand) const = 0;
   uint32_t integers = 0;  // registers
   uint32_t floats = 0;
 };
+
+// Loads that one operation alone wants, close behind them, become a part of it. The last pass.
+void fold_loads(Function& function, const Target& target);
 
 struct AllocatorOptions {
   uint32_t integers = 0;  // at most; 0: all of the target

@@ -8,7 +8,7 @@ namespace vm::native {
 namespace {
 
 constexpr uint32_t kMostTurns = 8;
-constexpr size_t kMostNodes = 64;  // of all turns together
+constexpr size_t kMostNodes = 96;  // of all turns together
 
 bool is_copied(const Function& f, const Node& n) {
   switch (n.op) {

@@ -135,6 +135,7 @@ struct Node {
   bool boolean = false;    // kLoad of a BOOL that may be any byte, which becomes 0 or 1
   bool immutable = false;  // kLoad: no code writes there
   bool dead = false;
+  uint8_t folded = 0xff;  // the operand that is what lies at `mem` (fold_loads)
   Val result = kNone;
   Val in[4] = {kNone, kNone, kNone, kNone};
   uint64_t imm = 0;
@@ -161,6 +162,9 @@ struct SlotValue {
   uint8_t width = 0;
   Val value = kNone;
   MemBase base = MemBase::kFrame;
+  // It is the data address of `address`, which is made where it is stored; `value` is the index.
+  bool is_address = false;
+  Mem address = {};
 };
 struct Exit {
   uint32_t unit = 0;

@@ -32,4 +32,7 @@ void hoist(Function& function);
 // an access in a loop has for its address in front of it.
 void split_addresses(Function& function);
 
+// Addresses that nothing but exits wants are made there. True: there were some.
+bool sink_addresses(Function& function);
+
 }  // namespace vm::native

@@ -58,7 +58,7 @@ base::Result<Function> make_function(const ir::Image& image, Bodies& bodies, uin
   inlined = inline_calls(function, [&](uint32_t callee) {
     return Callee{&body_of(callee)->function, bodies.units(callee)};
   });
-  if (!inlined.empty()) forward_memory(function);
+  forward_memory(function);
   choose(function);
   insert_preheaders(function);
   number_again(function);
@@ -67,7 +67,8 @@ base::Result<Function> make_function(const ir::Image& image, Bodies& bodies, uin
   hoist(function);
   split_addresses(function);
   unroll(function);
-  if (!function.loops.empty()) drop_unused(function);  // what a check in its old place wanted
+  const bool sunk = sink_addresses(function);
+  if (sunk || !function.loops.empty()) drop_unused(function);  // what a check once wanted
   return function;
 }
 

@@ -51,7 +51,8 @@ std::string line(const Function& f, const Node& n) {
     out += std::string(" ") + kConds[static_cast<size_t>(n.cond)];
   }
   for (const Val v : n.in) out += v == kNone ? "" : " " + name(f, v);
-  if (n.op == Op::kLoad || n.op == Op::kStore || n.op == Op::kAddr || n.op == Op::kPlace) {
+  if (n.folded != 0xff || n.op == Op::kLoad || n.op == Op::kStore || n.op == Op::kAddr ||
+      n.op == Op::kPlace) {
     out += " " + memory(f, n.mem);
   }
   if (n.variable != kNone) out += " var" + std::to_string(n.variable);

@@ -130,6 +130,7 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
     return false;
   }
   work.function = std::move(*function);
+  fold_loads(work.function, target);
   const AllocatorOptions registers{options.integer_registers, options.float_registers,
                                    options.spill_seed};
   base::Result<Allocated> places = allocate(work.function, target, registers);

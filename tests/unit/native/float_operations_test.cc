@@ -131,8 +131,8 @@ void expect_same(Bits<T> got, T wanted, bool is_exact, const std::string& text) 
 }
 
 template <class T>
-void test_binary() {
-  NativeFunctions functions;
+void test_binary(bool folds) {
+  NativeFunctions functions(folds);
   for (const Operation& o : kBinary) functions.add(binary<T>(o));
   functions.finish();
   for (uint32_t i = 0; i < std::size(kBinary); ++i) {
@@ -156,8 +156,10 @@ void test_binary() {
 
 TEST(FloatOperations, OfTwoGiveWhatTheBytecodeSays) {
   if (!host::kIsAvailable) GTEST_SKIP() << "no native tier for this machine";
-  test_binary<float>();
-  test_binary<double>();
+  test_binary<float>(false);
+  test_binary<float>(true);
+  test_binary<double>(false);
+  test_binary<double>(true);
 }
 
 template <class T>
@@ -185,9 +187,9 @@ int64_t to_integer(T b, bool truncates) {
 }
 
 template <class T>
-void test_unary() {
+void test_unary(bool folds) {
   using Other = std::conditional_t<sizeof(T) == 4, double, float>;
-  NativeFunctions functions;
+  NativeFunctions functions(folds);
   for (const Operation& o : kUnary) functions.add(unary<T>(o));
   functions.finish();
   for (uint32_t i = 0; i < std::size(kUnary); ++i) {
@@ -216,8 +218,10 @@ void test_unary() {
 
 TEST(FloatOperations, OfOneGiveWhatTheBytecodeSays) {
   if (!host::kIsAvailable) GTEST_SKIP() << "no native tier for this machine";
-  test_unary<float>();
-  test_unary<double>();
+  test_unary<float>(false);
+  test_unary<float>(true);
+  test_unary<double>(false);
+  test_unary<double>(true);
 }
 
 template <class T>

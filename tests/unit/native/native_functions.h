@@ -72,9 +72,13 @@ class FunctionMaker {
 
 class NativeFunctions {
  public:
-  NativeFunctions() : shared_(host::emit_shared(a_)) { context_.call = &record_; }
+  // `folds`: operations read memory themselves where this machine can.
+  explicit NativeFunctions(bool folds = false) : shared_(host::emit_shared(a_)), folds_(folds) {
+    context_.call = &record_;
+  }
 
-  uint32_t add(const Function& function, bool plain = false) {
+  uint32_t add(Function function, bool plain = false) {
+    if (folds_) fold_loads(function, host::HostTarget());
     const base::Result<Allocated> places = allocate(function, host::HostTarget(), {});
     EXPECT_TRUE(places.ok());
     const SideUnits side;
@@ -98,6 +102,7 @@ class NativeFunctions {
  private:
   host::Assembler a_;
   host::Shared shared_;
+  bool folds_;
   std::vector<uint32_t> begins_;
   std::shared_ptr<const CodeMemory> code_;
   CallRecord record_;

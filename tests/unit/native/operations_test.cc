@@ -247,10 +247,9 @@ std::vector<Operation> all_operations() {
   return out;
 }
 
-TEST(Operations, GiveWhatTheBytecodeSaysInEveryWidth) {
-  if (!host::kIsAvailable) GTEST_SKIP() << "no native tier for this machine";
+void test_operations(bool folds) {
   const std::vector<Operation> operations = all_operations();
-  NativeFunctions functions;
+  NativeFunctions functions(folds);
   for (const Operation& o : operations) functions.add(function_of(o));
   functions.finish();
   for (size_t i = 0; i < operations.size(); ++i) {
@@ -263,10 +262,16 @@ TEST(Operations, GiveWhatTheBytecodeSaysInEveryWidth) {
         functions.run(static_cast<uint32_t>(i), frame.data());
         const uint64_t right = o.constant ? o.bits : y;
         ASSERT_EQ(low(frame[2], width), low(expected(o, x, right), width))
-            << o.text() << " of " << x << " and " << right;
+            << o.text() << " of " << x << " and " << right << (folds ? " in memory" : "");
       }
     }
   }
+}
+
+TEST(Operations, GiveWhatTheBytecodeSaysInEveryWidth) {
+  if (!host::kIsAvailable) GTEST_SKIP() << "no native tier for this machine";
+  test_operations(false);
+  test_operations(true);
 }
 
 // With what every machine of its kind has, and with what this one has.

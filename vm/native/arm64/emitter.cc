@@ -305,7 +305,14 @@ Label Emitter::exit_label(uint32_t exit) {
 }
 
 void Emitter::store_slot(const SlotValue& slot, const Place& place) {
+  constexpr Place kInScratch{Place::kRegister, false, false, kIntegerCount, 0};
   const Address to = address({slot.base, 1, kNone, int64_t{slot.offset}}, {});
+  if (slot.is_address) {
+    if (slot.address.index != kNone) load_place(kScratch, place);
+    a_.address(kScratch, address(slot.address, kInScratch), 8);
+    a_.alu(Alu::kSub, kScratch, kScratch, kDataRegister, 4);
+    return a_.store(to, kScratch, slot.width);
+  }
   if (place.kind == Place::kRegister) {
     if (place.floating) return a_.float_store(to, float_register(place), slot.width);
     return a_.store(to, integer_register(place), slot.width);

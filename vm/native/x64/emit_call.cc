@@ -178,6 +178,24 @@ void Emitter::pool(const Step& step) {
   a_.alu_imm(Alu::kAdd, Operand::of(to), INT32_MIN, 4);
 }
 
+void Emitter::helper(const Node& n, const Step& step) {
+  const uint32_t side = pou_.side->helper[step.node];
+  const ir::Unit& unit = pou_.side->units[side];
+  a_.store_imm(CONTEXT(pou), static_cast<int32_t>(pou_.number), 4);
+  a_.move_imm(kRdi, reinterpret_cast<uintptr_t>(&unit));
+  a_.move(kRsi, kFrameRegister);
+  a_.move(kRdx, kSelfRegister);
+  a_.address(kRcx, {kDataRegister, 0xff, 1, true, INT32_MIN}, 8);
+  a_.load(kR8, CONTEXT(consts), 8);
+  a_.move(kR9, kContextRegister);
+  a_.move_imm(kRax, reinterpret_cast<uintptr_t>(kHandlers.of[unit.op]));
+  a_.call(Operand::of(uint8_t{kRax}));
+  const Label stopped = a_.label();
+  stops_.push_back({stopped, n.unit});
+  a_.alu_imm(Alu::kCmp, Operand::of(CONTEXT(running)), 0, 1);
+  a_.jump_if(Condition::kEqual, stopped);
+}
+
 // The interpreter calls, and what it calls returns to the resume unit.
 void Emitter::slow_call(const Call&, uint32_t number) {
   a_.move_imm(kScratch, reinterpret_cast<uintptr_t>(&pou_.side->units[pou_.side->call[number]]));

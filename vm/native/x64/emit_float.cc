@@ -70,7 +70,7 @@ void Emitter::floating(const Node& n, const Step& step) {
   }
   const uint8_t to = float_register(step.result);
   const uint8_t a = float_register(step.in[0]);
-  const Operand b = operand(step.in[1]);
+  const Operand b = operand(n, step, 1);
   const uint8_t opcode = opcode_of(n.op);
   if (b.memory || b.reg != to || to == a) {
     a_.float_move(to, a);

@@ -36,7 +36,7 @@ void Emitter::node(const Step& step) {
     case Op::kSelectCmp:
       return select(n, step);
     case Op::kExitIf:
-      compare(n.width, n.cond, step.in[0], step.in[1]);
+      compare(n, step);
       return a_.jump_if(condition_of(n.cond), exit_label(n.exit));
     case Op::kInstance:
       return instance(n, step);
@@ -121,12 +121,12 @@ void Emitter::integer(const Node& n, const Step& step) {
       return a_.alu_imm(Alu::kXor, Operand::of(to), 1, 4);
     case Op::kCompare:
       clear_for_set(to, step);
-      compare(n.width, n.cond, step.in[0], step.in[1]);
+      compare(n, step);
       return a_.set(condition_of(n.cond), to);
     case Op::kSext:
-      return a_.load_signed(to, operand(step.in[0]), n.from);
+      return a_.load_signed(to, operand(n, step, 0), n.from);
     case Op::kZext:
-      return a_.zero_extend(to, operand(step.in[0]), n.from);
+      return a_.zero_extend(to, operand(n, step, 0), n.from);
     default:
       return a_.trap();
   }
@@ -145,7 +145,7 @@ void Emitter::three(Alu op, const Node& n, const Step& step) {
     a_.move(to, a);
     return a_.alu_imm(op, Operand::of(to), field(b.bits, n.width), width);
   }
-  const Operand right = operand(b);
+  const Operand right = operand(n, step, 1);
   // Memory is read as wide as it is.
   const uint8_t wide = right.memory ? n.width : width;
   if (right.memory || right.reg != to || to == a) {
@@ -169,7 +169,7 @@ void Emitter::multiply(const Node& n, const Step& step) {
   if (b.kind == Place::kConstant) {
     return a_.multiply_imm(to, Operand::of(a), field(b.bits, n.width), width);
   }
-  const Operand right = operand(b);
+  const Operand right = operand(n, step, 1);
   if (!right.memory && right.reg == to) return a_.multiply(to, Operand::of(a), width);
   a_.move(to, a);
   a_.multiply(to, right, width);
@@ -261,6 +261,11 @@ void Emitter::clear_for_set(uint8_t to, const Step& step) {
   if (!read) a_.move_imm(to, 0);
 }
 
+void Emitter::compare(const Node& n, const Step& step) {
+  if (n.folded == 0xff) return compare(n.width, n.cond, step.in[0], step.in[1]);
+  a_.alu(Alu::kCmp, integer_register(step.in[0]), operand(n, step, 1), n.width);
+}
+
 void Emitter::compare(uint8_t width, Cond cond, const Place& a, const Place& b) {
   const uint8_t left = integer_register(a);
   if (cond == Cond::kNoBit || cond == Cond::kAnyBit) return test_bits(width, left, b);
@@ -340,7 +345,12 @@ void Emitter::data_address(const Node& n, const Step& step) {
     }
     return a_.address(to, at, 4);
   }
-  at.disp = static_cast<int32_t>(static_cast<uint32_t>(n.mem.disp + (int64_t{1} << 31)));
+  address_to_data(to, at);
+}
+
+// From an address of the machine.
+void Emitter::address_to_data(uint8_t to, Address at) {
+  at.disp = static_cast<int32_t>(static_cast<uint32_t>(at.disp) + (1u << 31));
   a_.address(to, at, 8);
   a_.alu(Alu::kSub, to, Operand::of(kDataRegister), 4);
 }
@@ -363,24 +373,6 @@ void Emitter::instance(const Node& n, const Step& step) {
   a_.test(to, to, 4);
   a_.jump_if(Condition::kEqual, none);
   a_.move(integer_register(step.result), to);
-}
-
-void Emitter::helper(const Node& n, const Step& step) {
-  const uint32_t side = pou_.side->helper[step.node];
-  const ir::Unit& unit = pou_.side->units[side];
-  a_.store_imm(CONTEXT(pou), static_cast<int32_t>(pou_.number), 4);
-  a_.move_imm(kRdi, reinterpret_cast<uintptr_t>(&unit));
-  a_.move(kRsi, kFrameRegister);
-  a_.move(kRdx, kSelfRegister);
-  a_.address(kRcx, {kDataRegister, 0xff, 1, true, INT32_MIN}, 8);
-  a_.load(kR8, CONTEXT(consts), 8);
-  a_.move(kR9, kContextRegister);
-  a_.move_imm(kRax, reinterpret_cast<uintptr_t>(kHandlers.of[unit.op]));
-  a_.call(Operand::of(uint8_t{kRax}));
-  const Label stopped = a_.label();
-  stops_.push_back({stopped, n.unit});
-  a_.alu_imm(Alu::kCmp, Operand::of(CONTEXT(running)), 0, 1);
-  a_.jump_if(Condition::kEqual, stopped);
 }
 
 }  // namespace vm::native::x64

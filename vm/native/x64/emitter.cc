@@ -40,9 +40,6 @@ uint8_t Emitter::float_register(const Place& place) const {
 Address Emitter::spill(uint32_t slot) const {
   return {kRsp, 0xff, 1, true, static_cast<int32_t>(slot * 8)};
 }
-Address Emitter::context(size_t offset) const {
-  return {kContextRegister, 0xff, 1, true, static_cast<int32_t>(offset)};
-}
 Address Emitter::variable(uint32_t number) const {
   const Variable& v = f_.variables[number];
   return address({v.base, 1, kNone, static_cast<int64_t>(v.offset)}, {});
@@ -73,6 +70,10 @@ Operand Emitter::operand(const Place& place) const {
   if (place.kind == Place::kSpill) return Operand::of(spill(place.number));
   if (place.kind == Place::kHome) return Operand::of(variable(place.number));
   return Operand::of(place.floating ? float_register(place) : integer_register(place));
+}
+Operand Emitter::operand(const Node& n, const Step& step, uint32_t number) const {
+  if (n.folded == number) return Operand::of(address(n.mem, step.index, step.pointer));
+  return operand(step.in[number]);
 }
 
 void Emitter::enter_frame() { a_.alu_imm(Alu::kSub, Operand::of(kRsp), frame_bytes_, 8); }
@@ -324,7 +325,13 @@ Label Emitter::exit_label(uint32_t exit) {
 }
 
 void Emitter::store_slot(const SlotValue& slot, const Place& place) {
+  constexpr Place kInScratch{Place::kRegister, false, false, kIntegerCount, 0};
   const Address to = address({slot.base, 1, kNone, int64_t{slot.offset}}, {});
+  if (slot.is_address) {
+    if (slot.address.index != kNone) load_place(kScratch, place, 8);
+    address_to_data(kScratch, address(slot.address, kInScratch));
+    return a_.store(to, kScratch, slot.width);
+  }
   if (place.kind == Place::kRegister) {
     if (place.floating) return a_.float_store(to, float_register(place), slot.width);
     return a_.store(to, integer_register(place), slot.width);

@@ -39,6 +39,7 @@ class X64Target : public Target {
   Demands demands(const Function& f, const Node& node) const override;
   bool takes_constant(const Function& f, const Node& node, uint32_t operand) const override;
   bool takes_memory(const Function& f, const Node& node, uint32_t operand) const override;
+  int folds(const Node& node) const override;
   bool end_takes_memory(const Function& f, const End& end) const override;
   bool end_takes_constant(const Function& f, const End& end, uint32_t operand) const override;
 };
@@ -98,12 +99,14 @@ class Emitter {
   void shift(const Node& node, const Step& step);
   void divide(const Node& node, const Step& step);
   void clear_for_set(uint8_t to, const Step& step);
+  void compare(const Node& node, const Step& step);
   void compare(uint8_t width, Cond cond, const Place& a, const Place& b);
   void test_bits(uint8_t width, uint8_t left, const Place& b);
   void select(const Node& node, const Step& step);
   void load(const Node& node, const Step& step);
   void store(const Node& node, const Step& step);
   void data_address(const Node& node, const Step& step);
+  void address_to_data(uint8_t to, Address at);
   void floating(const Node& node, const Step& step);
   void float_sign(const Node& node, const Step& step);
   void float_compare(const Node& node, const Step& step);
@@ -123,10 +126,13 @@ class Emitter {
   uint8_t integer_register(const Place& place) const;
   uint8_t float_register(const Place& place) const;
   Operand operand(const Place& place) const;
+  Operand operand(const Node& node, const Step& step, uint32_t number) const;
   Address spill(uint32_t slot) const;
   Address variable(uint32_t number) const;
   Address address(const Mem& mem, const Place& index, const Place& pointer = {}) const;
-  Address context(size_t offset) const;
+  Address context(size_t offset) const {
+    return {kContextRegister, 0xff, 1, true, static_cast<int32_t>(offset)};
+  }
 
   const PouCode& pou_;
   const Function& f_;

@@ -26,6 +26,7 @@ bool has_and_not() {
 
 Demands X64Target::demands(const Function& f, const Node& node) const {
   Demands d;
+  if (node.folded != 0xff) d.shares = 0x0f;  // the address is read behind the first operand
   switch (node.op) {
     case Op::kDivS:
     case Op::kDivU:
@@ -122,6 +123,31 @@ bool X64Target::takes_memory(const Function&, const Node& node, uint32_t operand
       return operand == 1 && node.width >= 4;
     default:
       return false;
+  }
+}
+
+int X64Target::folds(const Node& node) const {
+  switch (node.op) {
+    case Op::kAdd:
+    case Op::kSub:
+    case Op::kAnd:
+    case Op::kOr:
+    case Op::kXor:
+    case Op::kFAdd:
+    case Op::kFSub:
+    case Op::kFMul:
+    case Op::kFDiv:
+      return 1;
+    case Op::kMul:
+      return node.width >= 4 ? 1 : -1;
+    case Op::kCompare:
+    case Op::kExitIf:
+      return asks_bits(node.cond) ? -1 : 1;
+    case Op::kSext:
+    case Op::kZext:
+      return 0;
+    default:
+      return -1;
   }
 }
 
