@@ -309,6 +309,12 @@ class Forwarder {
 
 }  // namespace
 
-void forward_memory(Function& function) { Forwarder(function).run(); }
+// What variables hold is known already.
+void forward_memory(Function& function) {
+  const bool reads = std::any_of(function.nodes.begin(), function.nodes.end(), [](const Node& n) {
+    return n.op == Op::kLoad && !n.dead && n.variable == kNone;
+  });
+  if (reads) Forwarder(function).run();
+}
 
 }  // namespace vm::native

@@ -1,4 +1,5 @@
-// Values that memory is known to hold, where inlined bodies meet their callers.
+// Values that memory is known to hold, where no variable names it: where inlined bodies meet their
+// callers, and in elements and structures.
 #pragma once
 
 #include "vm/native/lir.h"
