@@ -116,10 +116,23 @@ mv plant/more elsewhere
 built 12
 same 'a folder less'
 
+# What the system does not say is looked for, however much else it says.
+(for _ in $(seq 75); do
+  [ -e quiet ] && break
+  echo x >>plant/noise.log
+  sleep 0.2
+done) &
+printf 'FUNCTION Half : INT VAR_INPUT x : INT; END_VAR Half := x / 2; END_FUNCTION\n' >elsewhere/half.st
+sleep 0.3
+ln elsewhere/half.st plant/half.st
+built 13
+touch quiet
+same 'a second name, beside a file that is written all the time'
+
 # What a link leads to is polled.
 cp plant/pump.st linked.st
 ln -s ../linked.st pump.link && mv pump.link plant/pump.st
-built 13
-sed 's/Hours + 2/Hours + 5/' linked.st | save linked.st
 built 14
+sed 's/Hours + 2/Hours + 5/' linked.st | save linked.st
+built 15
 same 'behind a link'

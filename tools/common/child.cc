@@ -222,10 +222,11 @@ base::Result<TemporaryFolder> TemporaryFolder::make() {
       if (made) ::rmdir(path.c_str());
       return base::Error{base::Refusal::kFileUnwritable, path + ": " + std::strerror(reason)};
     }
+    // Where files cannot be locked nobody takes it for one that was left.
     struct stat marked {};
     const bool locked = ::flock(fd, LOCK_EX) == 0 && ::fstat(fd, &marked) == 0;
-    if (locked && marked.st_nlink != 0) return TemporaryFolder(std::move(path), fd);
-    ::close(fd);  // another process took it for one that was left, before it was locked
+    if (!locked || marked.st_nlink != 0) return TemporaryFolder(std::move(path), fd);
+    ::close(fd);  // another process did, before it was locked
   }
 }
 

@@ -90,15 +90,19 @@ class Watch {
   // Until something has changed, and the project is what the files say now. False: nobody waits
   // for it any more.
   bool wait() {
-    for (bool everywhere = true;;) {
+    for (;;) {
       const auto begin = Clock::now();
-      if (everywhere ? look_again() : look_at_events()) return true;
+      if (look_again()) return true;
+      const auto looked = Clock::now();
       const Clock::duration rest =
-          told_ ? kLookRarely
-                : std::max<Clock::duration>(kLookEvery, kRest * (Clock::now() - begin));
-      const WatchTarget::Rest rested = target_.rest(rest, events_.descriptor());
-      if (rested == WatchTarget::Rest::kEnd) return false;
-      everywhere = rested == WatchTarget::Rest::kOver;
+          told_ ? kLookRarely : std::max<Clock::duration>(kLookEvery, kRest * (looked - begin));
+      // However much the system says meanwhile: it does not say everything.
+      for (auto left = rest; left > Clock::duration(0); left = looked + rest - Clock::now()) {
+        const WatchTarget::Rest rested = target_.rest(left, events_.descriptor());
+        if (rested == WatchTarget::Rest::kEnd) return false;
+        if (rested == WatchTarget::Rest::kOver) break;
+        if (look_at_events()) return true;
+      }
     }
   }
 
