@@ -129,10 +129,19 @@ built 13
 touch quiet
 same 'a second name, beside a file that is written all the time'
 
+# A link that leads to itself is no source.
+ln -s loop.st plant/loop.st
+sed 's/Hours + 2/Hours + 4/' plant/pump.st | save plant/pump.st
+built 14
+same 'beside a link that leads to itself'
+sed 's/Hours + 4/Hours + 2/' plant/pump.st | save plant/pump.st
+built 15
+rm plant/loop.st
+
 # What a link leads to is polled.
 cp plant/pump.st linked.st
 ln -s ../linked.st pump.link && mv pump.link plant/pump.st
-built 14
+built 16
 sed 's/Hours + 2/Hours + 5/' linked.st | save linked.st
-built 15
+built 17
 same 'behind a link'

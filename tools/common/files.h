@@ -17,6 +17,11 @@ base::Result<std::string> read_text(const std::string& path, uint64_t limit = 1u
 // Errors: kFileUnwritable. Symbolic links and devices such as /dev/stdout are written through.
 base::Status write_file(const std::string& path, base::ByteSpan bytes);
 
+// What cannot be asked, such as a link that leads to itself, is none of these.
+bool is_folder(const std::string& path);
+bool is_file(const std::string& path);
+bool is_there(const std::string& path);
+
 // Folder of the running program, for `stc` beside `stvm`.
 std::string own_folder();
 

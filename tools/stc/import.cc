@@ -59,7 +59,7 @@ class Import {
 base::Status Import::read(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     base::Result<std::vector<std::string>> files(std::vector<std::string>{path});
-    if (fs::is_directory(path)) files = importable_files(path, true);
+    if (tools::is_folder(path)) files = importable_files(path, true);
     if (!files.ok()) return files.error();
     if (files->empty()) {
       return base::Error{base::Refusal::kFileNotFound,
@@ -82,7 +82,7 @@ base::Status Import::read(const std::vector<std::string>& paths) {
 base::Status Import::refuse_to_overwrite() const {
   for (const Importer::Made& made : importer_.made) {
     const std::string path = target(made);
-    if (!fs::exists(path)) continue;
+    if (!tools::is_there(path)) continue;
     base::Result<std::string> old = tools::read_text(path, base::kMaxSourceBytes);
     if (!old.ok()) return old.error();
     if (*old == made.source.text) continue;

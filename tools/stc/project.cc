@@ -24,7 +24,7 @@ base::Result<std::vector<std::string>> files_below(
   fs::recursive_directory_iterator walk(folder, error);
   for (; !error && walk != fs::recursive_directory_iterator(); walk.increment(error)) {
     std::string path = walk->path().string();
-    if (walk->is_regular_file() && wanted(path)) found.push_back(std::move(path));
+    if (tools::is_file(path) && wanted(path)) found.push_back(std::move(path));
   }
   if (error) {
     return base::Error{base::Refusal::kFileUnreadable, folder + ": " + error.message()};
@@ -81,7 +81,7 @@ base::Status apply_slack(const std::string& file, const std::string& key,
 base::Status apply_project_file(const std::string& folder, Project& project,
                                 std::vector<std::string>& sources) {
   std::string file = (fs::path(folder) / "stc.toml").string();
-  if (!fs::exists(file)) return base::Ok{};
+  if (!tools::is_there(file)) return base::Ok{};
   base::Result<std::string> text = tools::read_text(file);
   if (!text.ok()) return text.error();
   base::Result<tools::TomlTable> table = tools::parse_toml(file, *text);
@@ -156,7 +156,7 @@ base::Status count_bytes(uint64_t& bytes, const std::string& file, const std::st
 
 base::Result<std::vector<std::string>> expand(const std::string& path, Project& project) {
   base::Result<std::vector<std::string>> found = source_files(path);
-  if (!found.ok() || !fs::is_directory(path)) return found;
+  if (!found.ok() || !tools::is_folder(path)) return found;
   base::Result<std::vector<std::string>> others = importable_files(path, false);
   if (!others.ok()) return others;
   found->insert(found->end(), others->begin(), others->end());
@@ -178,10 +178,10 @@ bool is_source_name(const std::string& path) {
 }
 
 base::Result<std::vector<std::string>> source_files(const std::string& path) {
-  if (!fs::exists(path)) {
+  if (!tools::is_there(path)) {
     return base::Error{base::Refusal::kFileNotFound, path + ": no such file or directory"};
   }
-  if (!fs::is_directory(path)) return std::vector<std::string>{path};
+  if (!tools::is_folder(path)) return std::vector<std::string>{path};
   return files_below(path, is_source_name);
 }
 

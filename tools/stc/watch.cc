@@ -73,7 +73,7 @@ class Watch {
     };
     for (const std::string& path : options_.arguments()) {
       found.emplace(path, stamp_of(path));
-      if (!fs::is_directory(path)) continue;
+      if (!tools::is_folder(path)) continue;
       found[path] = {};  // a folder's own time says nothing about its files
       const std::string settings = (fs::path(path) / kSettings).string();
       found.emplace(settings, stamp_of(settings));
@@ -110,20 +110,21 @@ class Watch {
   void watch_folders() {
     std::set<std::string> folders;
     const auto add = [&](const fs::path& folder) {
-      if (fs::is_directory(folder.empty() ? "." : folder)) folders.insert(folder.string());
+      if (tools::is_folder(folder.empty() ? "." : folder.string())) folders.insert(folder.string());
     };
+    std::error_code error;
     bool links = false;  // what they lead to is in other folders
     for (const auto& [path, stamp] : look()) {
-      links |= fs::is_symlink(path);
+      links |= fs::is_symlink(path, error);
       add(fs::path(path).parent_path());
     }
-    std::error_code error;
+    error.clear();
     for (const std::string& path : options_.arguments()) {
-      if (!fs::is_directory(path)) continue;
+      if (!tools::is_folder(path)) continue;
       add((fs::path(path) / kSettings).parent_path());  // without a slash at its end
       fs::recursive_directory_iterator walk(path, error);
       for (; !error && walk != fs::recursive_directory_iterator(); walk.increment(error)) {
-        if (walk->is_directory()) folders.insert(walk->path().string());
+        if (tools::is_folder(walk->path().string())) folders.insert(walk->path().string());
       }
     }
     told_ = events_.watch(folders) && !links && !error;
