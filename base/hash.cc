@@ -1,26 +1,67 @@
 #include "base/hash.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "base/sha256.h"
 
 namespace base {
-Digest sha256(ByteSpan bytes) {
-  std::array<uint32_t, 8> state = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
-                                   0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-  size_t whole = bytes.size() / 64 * 64;
-  sha256_blocks(state, bytes.data(), whole / 64);
-  uint8_t tail[128] = {};
-  size_t rest = bytes.size() - whole;
-  if (rest != 0) std::memcpy(tail, bytes.data() + whole, rest);
-  tail[rest] = 0x80;
-  size_t tail_size = rest < 56 ? 64 : 128;
-  uint64_t bits = static_cast<uint64_t>(bytes.size()) * 8;
-  for (int i = 0; i < 8; ++i) tail[tail_size - 1 - i] = static_cast<uint8_t>(bits >> (8 * i));
-  sha256_blocks(state, tail, tail_size / 64);
-  Digest out;
-  for (int i = 0; i < 32; ++i) out[i] = static_cast<uint8_t>(state[i / 4] >> (24 - i % 4 * 8));
-  return out;
+namespace {
+
+// Whole blocks at once; bytes of a block that is not whole are kept.
+class Sha256 {
+ public:
+  void add(ByteSpan bytes) {
+    length_ += bytes.size();
+    if (rest_ != 0) bytes = fill(bytes);
+    const size_t whole = bytes.size() / 64 * 64;
+    sha256_blocks(state_, bytes.data(), whole / 64);
+    keep(bytes.subspan(whole));
+  }
+
+  Digest finish() {
+    tail_[rest_] = 0x80;
+    std::memset(tail_ + rest_ + 1, 0, sizeof tail_ - rest_ - 1);
+    const size_t size = rest_ < 56 ? 64 : 128;
+    const uint64_t bits = length_ * 8;
+    for (int i = 0; i < 8; ++i) tail_[size - 1 - i] = static_cast<uint8_t>(bits >> (8 * i));
+    sha256_blocks(state_, tail_, size / 64);
+    Digest out;
+    for (int i = 0; i < 32; ++i) out[i] = static_cast<uint8_t>(state_[i / 4] >> (24 - i % 4 * 8));
+    return out;
+  }
+
+ private:
+  // A block that was begun; the bytes behind it.
+  ByteSpan fill(ByteSpan bytes) {
+    const size_t more = std::min(64 - rest_, bytes.size());
+    keep(bytes.first(more));
+    if (rest_ == 64) sha256_blocks(state_, tail_, 1);
+    rest_ %= 64;
+    return bytes.subspan(more);
+  }
+
+  void keep(ByteSpan bytes) {
+    if (!bytes.empty()) std::memcpy(tail_ + rest_, bytes.data(), bytes.size());
+    rest_ += bytes.size();
+  }
+
+  Sha256State state_ = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
+                        0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+  uint8_t tail_[128];
+  size_t rest_ = 0;  // of the tail
+  uint64_t length_ = 0;
+};
+
+}  // namespace
+
+Digest sha256(ByteSpan bytes) { return sha256(bytes, {}); }
+
+Digest sha256(ByteSpan first, ByteSpan second) {
+  Sha256 sum;
+  sum.add(first);
+  sum.add(second);
+  return sum.finish();
 }
 
 std::string to_hex(const Digest& digest) {

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/hash.h"
+
 namespace base {
 
 using Sha256State = std::array<uint32_t, 8>;
@@ -17,5 +19,8 @@ void sha256_blocks(Sha256State& state, const uint8_t* data, size_t blocks);
 void sha256_blocks_portable(Sha256State& state, const uint8_t* data, size_t blocks);
 // False, and nothing done, when this processor has no such instructions.
 bool sha256_blocks_x86(Sha256State& state, const uint8_t* data, size_t blocks);
+
+// Of one behind the other.
+Digest sha256(ByteSpan first, ByteSpan second);
 
 }  // namespace base

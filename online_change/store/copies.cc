@@ -37,7 +37,7 @@ base::Status Copies::reserve(size_t number, uint64_t payload_bytes) {
   return opened;
 }
 
-base::Status Copies::write(size_t number, base::ByteSpan payload) {
+base::Status Copies::write(size_t number, const Payload& payload) {
   Copy& copy = copies_[number];
   if (copy.dead) return base::Error{base::Refusal::kStorageFailed, complaint_};
   if (last_sequence_ >= kLastSequence) {

@@ -28,7 +28,7 @@ class Copies {
   // Room for a longer payload in one copy.
   base::Status reserve(size_t number, uint64_t payload_bytes);
   // Over whatever the copy holds, with the next sequence number.
-  base::Status write(size_t number, base::ByteSpan payload);
+  base::Status write(size_t number, const Payload& payload);
 
   size_t count() const { return copies_.size(); }
   const Copy& operator[](size_t number) const { return copies_[number]; }

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/crc32c.h"
-#include "base/hash.h"
+#include "base/sha256.h"
 
 namespace online_change {
 namespace {
@@ -39,14 +39,14 @@ bool all_zero(base::ByteSpan bytes) {
 
 }  // namespace
 
-base::Bytes record_header(RecordKind kind, uint64_t sequence, base::ByteSpan payload) {
+base::Bytes record_header(RecordKind kind, uint64_t sequence, const Payload& payload) {
   base::ByteWriter out;
   out.u64(kMagic);
   out.u32(kVersion);
   out.u32(static_cast<uint32_t>(kind));
   out.u64(sequence);
-  out.u64(payload.size());
-  out.raw(base::sha256(payload));
+  out.u64(payload.first.size() + payload.second.size());
+  out.raw(base::sha256(payload.first, payload.second));
   base::Bytes sector = out.take();
   sector.resize(kSectorBytes);
   const uint32_t checksum = base::crc32c(base::ByteSpan(sector).first(kChecksumAt));
@@ -72,8 +72,11 @@ Record read_record(vm::Storage& storage, const std::string& name, RecordKind kin
 }
 
 base::Status write_record(vm::Storage& storage, const std::string& name, RecordKind kind,
-                          uint64_t sequence, base::ByteSpan payload) {
-  base::Status done = storage.write(name, kSectorBytes, payload);
+                          uint64_t sequence, const Payload& payload) {
+  base::Status done = storage.write(name, kSectorBytes, payload.first);
+  if (done.ok() && !payload.second.empty()) {
+    done = storage.write(name, kSectorBytes + payload.first.size(), payload.second);
+  }
   if (done.ok()) done = storage.sync(name);
   if (done.ok()) done = storage.write(name, 0, record_header(kind, sequence, payload));
   if (done.ok()) done = storage.sync(name);

@@ -31,13 +31,22 @@ struct Record {
   base::Bytes payload;    // of kValid
 };
 
+// One behind the other; borrowed.
+struct Payload {
+  Payload(base::ByteSpan all) : first(all) {}      // NOLINT: most are in one piece
+  Payload(const base::Bytes& all) : first(all) {}  // NOLINT
+  Payload(base::ByteSpan a, base::ByteSpan b) : first(a), second(b) {}
+  base::ByteSpan first;
+  base::ByteSpan second;
+};
+
 constexpr uint64_t record_bytes(uint64_t payload) { return kSectorBytes + payload; }
 
-base::Bytes record_header(RecordKind kind, uint64_t sequence, base::ByteSpan payload);
+base::Bytes record_header(RecordKind kind, uint64_t sequence, const Payload& payload);
 // Any content of the file, of any length. Takes no more memory than the file has bytes.
 Record read_record(vm::Storage& storage, const std::string& name, RecordKind kind);
 // Durable when it returns. Behind an error the file holds anything.
 base::Status write_record(vm::Storage& storage, const std::string& name, RecordKind kind,
-                          uint64_t sequence, base::ByteSpan payload);
+                          uint64_t sequence, const Payload& payload);
 
 }  // namespace online_change

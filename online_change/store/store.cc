@@ -9,12 +9,6 @@ constexpr size_t kDigestBytes = sizeof(base::Digest);
 
 base::Error failed(std::string text) { return {base::Refusal::kStorageFailed, std::move(text)}; }
 
-base::Bytes image_payload(const StoredImage& image) {
-  base::Bytes payload(image.digest.begin(), image.digest.end());
-  payload.insert(payload.end(), image.bytes.begin(), image.bytes.end());
-  return payload;
-}
-
 std::optional<StoredImage> image_of(base::Bytes payload) {
   if (payload.size() < kDigestBytes) return std::nullopt;
   StoredImage image;
@@ -142,7 +136,7 @@ base::Status Store::write_control(const ControlRecord& next) {
   return written;
 }
 
-base::Status Store::write_image(size_t slot, const StoredImage& image, uint64_t retain_bytes) {
+base::Status Store::write_image(size_t slot, const ImageToStore& image, uint64_t retain_bytes) {
   for (size_t i = 0; i < retained_.count(); ++i) {
     if (retained_[i].dead) continue;
     base::Status room = retained_.reserve(i, retain_payload_bytes(retain_bytes));
@@ -153,7 +147,7 @@ base::Status Store::write_image(size_t slot, const StoredImage& image, uint64_t 
   if (!room.ok()) return room;
   in_slot_[slot].reset();
   written_[slot] = false;
-  base::Status written = slots_.write(slot, image_payload(image));
+  base::Status written = slots_.write(slot, {image.digest, image.bytes});
   if (!written.ok()) return written;
   in_slot_[slot] = image.digest;
   written_[slot] = true;
@@ -168,7 +162,7 @@ size_t Store::free_slot() const {
   return in_slot_[0] == in_copy_[*newest]->image ? 1 : 0;
 }
 
-base::Status Store::install(const StoredImage& image, uint64_t retain_bytes) {
+base::Status Store::install(const ImageToStore& image, uint64_t retain_bytes) {
   std::lock_guard lock(mutex_);
   if (boots_valid() && control_.boots == image.digest) return end_trial_locked();
   if (boots_valid() && !retained_fits_locked()) {
@@ -182,7 +176,7 @@ base::Status Store::install(const StoredImage& image, uint64_t retain_bytes) {
   return settle_locked();
 }
 
-base::Status Store::begin_trial(const StoredImage& image, uint64_t retain_bytes) {
+base::Status Store::begin_trial(const ImageToStore& image, uint64_t retain_bytes) {
   std::lock_guard lock(mutex_);
   if (!boots_valid()) return failed("no program is stored that the change could be undone to");
   if (control_.trial) return base::Error{base::Refusal::kChangePending, "a trial is not over"};

@@ -38,6 +38,15 @@ struct StoredImage {
   base::Bytes bytes;
 };
 
+// The same, borrowed.
+struct ImageToStore {
+  ImageToStore(const base::Digest& sum, base::ByteSpan all) : digest(sum), bytes(all) {}
+  ImageToStore(const StoredImage& image)  // NOLINT: as good as borrowed
+      : ImageToStore(image.digest, image.bytes) {}
+  const base::Digest& digest;
+  base::ByteSpan bytes;
+};
+
 // What was found at the start.
 struct Recovered {
   std::optional<StoredImage> boots;
@@ -63,10 +72,10 @@ class Store {
   base::Status settle();
 
   // This program boots from now on, nothing is on trial. `retain_bytes`: of its retained values.
-  base::Status install(const StoredImage& image, uint64_t retain_bytes);
+  base::Status install(const ImageToStore& image, uint64_t retain_bytes);
   // The program is stored and on trial: what boots stays. The newest retained values must be those
   // of the program that boots (kStorageFailed).
-  base::Status begin_trial(const StoredImage& image, uint64_t retain_bytes);
+  base::Status begin_trial(const ImageToStore& image, uint64_t retain_bytes);
   base::Status end_trial();
   // What is on trial boots from now on.
   base::Status accept();
@@ -95,7 +104,7 @@ class Store {
   void recover_images();
   void recover_retained();
   base::Status write_control(const ControlRecord& next);
-  base::Status write_image(size_t slot, const StoredImage& image, uint64_t retain_bytes);
+  base::Status write_image(size_t slot, const ImageToStore& image, uint64_t retain_bytes);
   base::Status end_trial_locked();
   base::Status settle_locked();
   bool boots_valid() const { return has_control_ && in_slot_[control_.slot] == control_.boots; }

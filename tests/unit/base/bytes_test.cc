@@ -80,6 +80,17 @@ TEST(Hash, HexRoundTrip) {
   EXPECT_FALSE(digest_from_hex(std::string(64, 'g'), back));
 }
 
+TEST(Sha256, TwoPiecesAreAsOneWhereverTheyMeet) {
+  Bytes data(300);
+  for (size_t i = 0; i < data.size(); ++i) data[i] = static_cast<uint8_t>(i * 31 + 7);
+  for (size_t size : {0, 1, 55, 56, 63, 64, 65, 119, 128, 300}) {
+    const ByteSpan all = ByteSpan(data).first(size);
+    for (size_t at = 0; at <= size; ++at) {
+      EXPECT_EQ(sha256(all.first(at), all.subspan(at)), sha256(all)) << size << " " << at;
+    }
+  }
+}
+
 TEST(Sha256, WithAndWithoutProcessorInstructions) {
   std::array<uint8_t, 64 * 5> data{};
   for (size_t i = 0; i < data.size(); ++i) data[i] = static_cast<uint8_t>(i * 37 + i / 64);
