@@ -78,7 +78,7 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy,
   base::Result<Package> package = decode(bytes, before.encoded());
   if (!package.ok()) return package.error();
   const base::Digest& running = before.digest();
-  if (package->image == before.encoded()) {
+  if (ir::digest(package->image) == running && package->image == before.encoded()) {
     return base::Error{base::Refusal::kNoChange,
                        "version " + base::short_hex(running) + " is running already"};
   }

@@ -102,24 +102,25 @@ class Maker {
 
 base::Bytes make_delta(base::ByteSpan from, base::ByteSpan to) { return Maker(from, to).run(); }
 
-std::optional<base::Bytes> apply_delta(base::ByteSpan from, base::ByteSpan delta, size_t limit) {
+std::optional<base::Bytes> apply_delta(base::ByteSpan from, base::ByteSpan delta, size_t limit,
+                                       base::Bytes out) {
   base::ByteReader in(delta);
   const size_t size = in.u32();
   if (size > limit) return std::nullopt;
-  base::Bytes to;
-  to.reserve(size);
-  while (!in.failed() && to.size() < size) {
+  const size_t end = out.size() + size;
+  out.reserve(end);
+  while (!in.failed() && out.size() < end) {
     const size_t place = in.u32();
     const size_t length = in.u32();
     const base::ByteSpan own = in.blob();
     const bool inside = place <= from.size() && length <= from.size() - place;
-    if (in.failed() || !inside || length + own.size() > size - to.size()) return std::nullopt;
+    if (in.failed() || !inside || length + own.size() > end - out.size()) return std::nullopt;
     if (length + own.size() == 0) return std::nullopt;
-    to.insert(to.end(), from.begin() + place, from.begin() + place + length);
-    to.insert(to.end(), own.begin(), own.end());
+    out.insert(out.end(), from.begin() + place, from.begin() + place + length);
+    out.insert(out.end(), own.begin(), own.end());
   }
   if (!in.done()) return std::nullopt;
-  return to;
+  return out;
 }
 
 }  // namespace online_change

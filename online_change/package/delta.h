@@ -10,7 +10,9 @@ namespace online_change {
 
 // Time is linear whatever they are; the result is never much longer than `to`.
 base::Bytes make_delta(base::ByteSpan from, base::ByteSpan to);
-// `to` again; nullopt when the delta is damaged, made for other bytes, or of more than `limit`.
-std::optional<base::Bytes> apply_delta(base::ByteSpan from, base::ByteSpan delta, size_t limit);
+// `to` again, behind what is in `out`; nullopt when the delta is damaged, made for other bytes, or
+// of more than `limit`.
+std::optional<base::Bytes> apply_delta(base::ByteSpan from, base::ByteSpan delta, size_t limit,
+                                       base::Bytes out = {});
 
 }  // namespace online_change
