@@ -1,9 +1,26 @@
 #include "ir/bytecode/bools.h"
 
+#include <array>
+
 #include "base/limits.h"
 #include "ir/bytecode/regions.h"
 
 namespace ir {
+namespace {
+
+// Of instructions, by opcode.
+const std::array<uint8_t, kOpcodeCount>& unit_counts() {
+  static const std::array<uint8_t, kOpcodeCount> kUnits = [] {
+    std::array<uint8_t, kOpcodeCount> units{};
+    for (uint32_t i = 0; i < kOpcodeCount; ++i) {
+      units[i] = opcode_row(static_cast<Opcode>(i)).extended ? 2 : 1;
+    }
+    return units;
+  }();
+  return kUnits;
+}
+
+}  // namespace
 
 Bools::Bools(const Image& image) : image_(image), holds_(image.types.size(), Holds::kUnknown) {
   stay_clean_ = !writes_as_others();
@@ -40,17 +57,16 @@ bool Bools::writes_as_others() {
     const bool holds = find(TypeId(i), 0);
     found |= holds && image_.types.overlaps(TypeId(i));
   }
-  for (const LinkedPou& pou : image_.pous) {
-    for (uint32_t i = 0; i < pou.unit_count && !found; ++i) {
-      const Unit* const unit = &image_.code[pou.first_unit + i];
-      const Opcode op = unit->opcode();
-      if (opcode_row(op).extended) ++i;
-      if (op < Opcode::RESOLVE || op > Opcode::RESOLVE_W) continue;
-      // An instance is exactly that, or of a type that extends it.
-      const bool plain =
-          op == Opcode::RESOLVE && !image_.types.is_instance(region_of_field(unit[1].x()).type);
-      found = plain || op == Opcode::RESOLVE_S || op == Opcode::RESOLVE_W;
-    }
+  // Every unit belongs to one POU.
+  const std::array<uint8_t, kOpcodeCount>& units = unit_counts();
+  for (size_t i = 0, next = 0; i < image_.code.size() && !found; i = next) {
+    const Opcode op = image_.code[i].opcode();
+    next = i + units[static_cast<size_t>(op)];
+    if (op < Opcode::RESOLVE || op > Opcode::RESOLVE_W) continue;
+    // An instance is exactly that, or of a type that extends it.
+    const bool plain = op == Opcode::RESOLVE &&
+                       !image_.types.is_instance(region_of_field(image_.code[i + 1].x()).type);
+    found = plain || op == Opcode::RESOLVE_S || op == Opcode::RESOLVE_W;
   }
   return found;
 }

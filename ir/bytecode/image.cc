@@ -4,8 +4,11 @@
 #include "ir/bytecode/image.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/limits.h"
+#include "base/memory_limit.h"
+#include "base/parallel.h"
 #include "ir/bytecode/image_fields.h"
 #include "ir/bytecode/image_sections.h"
 
@@ -19,6 +22,7 @@ constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 constexpr const char* kSectionNames[] = {"program", "types",  "constants", "layouts", "pous",
                                          "code",    "tables", "data",      "devices"};
 constexpr uint32_t kSectionCount = 9;
+constexpr size_t kBytesForThreads = 1 << 20;  // below, threads cost more than they save
 
 base::Error bad_format(std::string text) {
   return {base::Refusal::kBadFormat, "image: " + std::move(text)};
@@ -161,7 +165,7 @@ base::Status check_header(base::ByteSpan bytes) {
   const base::ByteSpan magic = in.raw(kImageMagic.size());
   const uint32_t version = in.u32();
   const uint32_t length = in.u32();
-  const base::ByteSpan stored = in.raw(sizeof(base::Digest));
+  in.raw(sizeof(base::Digest));
   if (in.failed()) return bad_format("only " + std::to_string(bytes.size()) + " bytes");
   if (!std::equal(magic.begin(), magic.end(), kImageMagic.begin()))
     return bad_format("no magic number");
@@ -178,29 +182,81 @@ base::Status check_header(base::ByteSpan bytes) {
     return bad_format("header says " + std::to_string(length) + " bytes, there are " +
                       std::to_string(bytes.size()));
   }
+  return base::Ok{};
+}
+
+base::Status check_sum(base::ByteSpan bytes) {
   const base::Digest actual = base::sha256(bytes.subspan(kHeaderBytes));
-  if (!std::equal(stored.begin(), stored.end(), actual.begin())) {
-    return base::Error{base::Refusal::kBadHash, "image: content hash is " +
-                                                    base::short_hex(actual) + ", header says " +
-                                                    base::short_hex(digest(bytes))};
+  if (actual == digest(bytes)) return base::Ok{};
+  return base::Error{base::Refusal::kBadHash, "image: content hash is " + base::short_hex(actual) +
+                                                  ", header says " +
+                                                  base::short_hex(digest(bytes))};
+}
+
+// A part of the work of decoding, and what came of it.
+struct Part {
+  uint32_t first = 0;  // section
+  uint32_t end = 0;
+  base::Status done = base::Ok{};
+  bool no_memory = false;
+};
+
+std::string name_of(uint32_t section) {
+  return std::string("section `") + kSectionNames[section] + "`";
+}
+
+using Contents = std::array<base::ByteSpan, kSectionCount>;
+
+// What they are, and the error of the first that is not there.
+base::Status split(base::ByteSpan bytes, Contents& contents, uint32_t& count) {
+  base::ByteReader in(bytes.subspan(kHeaderBytes));
+  for (count = 0; count < kSectionCount; ++count) {
+    if (in.u32() != count) return bad_format(name_of(count) + " is missing");
+    contents[count] = in.blob();
+    if (in.failed()) return bad_format(name_of(count) + " is cut off");
+  }
+  if (!in.done()) return bad_format("bytes behind the last section");
+  return base::Ok{};
+}
+
+base::Status decode_sections(const Contents& contents, const Part& part, Image& image) {
+  for (uint32_t number = part.first; number < part.end; ++number) {
+    base::ByteReader content(contents[number]);
+    ImageReader archive(content);
+    section(archive, image, number);
+    if (content.done()) continue;
+    return bad_format(name_of(number) + " is damaged at its byte " + std::to_string(content.at()));
   }
   return base::Ok{};
+}
+
+// More than most images take, from how much there is of what takes most.
+size_t rough_bytes(const Image& image) {
+  size_t bytes = 4096 + image.code.size() * sizeof(Unit) + image.constants.size() * 64 +
+                 image.instances.size() * 64 + image.pool.size();
+  for (uint32_t i = 0; i < image.types.size(); ++i) {
+    bytes += 128 + image.types[TypeId(i)].members.size() * 64;
+  }
+  for (const LinkedPou& pou : image.pous) {
+    bytes += 192 + pou.slots.size() * 48 + pou.merges.size() * 48 + pou.lines.size() * 8;
+  }
+  for (const DataRun& run : image.data) bytes += 8 + run.bytes.size();
+  return bytes;
 }
 
 }  // namespace
 
 base::Bytes encode(const Image& image) {
-  base::ByteWriter out;
+  ImageWriter out(rough_bytes(image));
   out.raw(base::as_bytes(kImageMagic));
-  out.u32(kVersion);
-  out.u32(0);
+  out(kVersion);
+  out(0u);
   out.raw(base::Digest{});
-  ImageWriter archive(out);
   for (uint32_t number = 0; number < kSectionCount; ++number) {
-    out.u32(number);
+    out(number);
     const size_t length_at = out.size();
-    out.u32(0);
-    section(archive, image, number);
+    out(0u);
+    section(out, image, number);
     out.patch_u32(length_at, static_cast<uint32_t>(out.size() - length_at - 4));
   }
   out.patch_u32(kImageMagic.size() + 4, static_cast<uint32_t>(out.size()));
@@ -210,22 +266,33 @@ base::Bytes encode(const Image& image) {
   return bytes;
 }
 
+// Its checksum, types and code at once where that pays; the answer is that of one after the other.
 base::Result<Image> decode(base::ByteSpan bytes) {
   if (base::Status header = check_header(bytes); !header) return header.error();
-  base::ByteReader in(bytes.subspan(kHeaderBytes));
   Image image;
-  for (uint32_t number = 0; number < kSectionCount; ++number) {
-    const std::string name = std::string("section `") + kSectionNames[number] + "`";
-    if (in.u32() != number) return bad_format(name + " is missing");
-    base::ByteReader content(in.blob());
-    if (in.failed()) return bad_format(name + " is cut off");
-    ImageReader archive(content);
-    section(archive, image, number);
-    if (!content.done()) {
-      return bad_format(name + " is damaged at its byte " + std::to_string(content.at()));
-    }
+  Contents contents;
+  uint32_t count = 0;
+  const base::Status whole = split(bytes, contents, count);
+  const uint32_t pous = std::min(count, static_cast<uint32_t>(ImageSection::kPous));
+  std::array<Part, 3> parts = {Part{}, Part{.end = pous}, Part{.first = pous, .end = count}};
+  const uint32_t jobs = bytes.size() < kBytesForThreads ? 1 : base::usable_cores();
+  const auto work = [&](size_t number) {
+    Part& part = parts[number];
+    if (jobs == 1 && !parts[0].done.ok()) return;
+    part.done = number == 0 ? check_sum(bytes) : decode_sections(contents, part, image);
+  };
+  base::for_each_index(parts.size(), jobs, 1, [&](size_t number) {
+    parts[number].no_memory =
+        base::within_memory([&] { return work(number), false; }, [] { return true; });
+  });
+  if (std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.no_memory; })) {
+    image = Image();  // once more, in the caller's memory limit
+    for (size_t number = 0; number < parts.size(); ++number) work(number);
   }
-  if (!in.done()) return bad_format("bytes behind the last section");
+  for (const Part& part : parts) {
+    if (!part.done.ok()) return part.done.error();
+  }
+  if (!whole.ok()) return whole.error();
   return image;
 }
 

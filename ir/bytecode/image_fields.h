@@ -10,39 +10,83 @@
 
 namespace ir {
 
+// As base::ByteWriter; the fields of a large image are many, so they are gathered first.
 class ImageWriter {
  public:
-  explicit ImageWriter(base::ByteWriter& out) : out_(out) {}
-  void operator()(const bool& v) { out_.boolean(v); }
-  void operator()(const uint8_t& v) { out_.u8(v); }
-  void operator()(const uint16_t& v) { out_.u16(v); }
-  void operator()(const uint32_t& v) { out_.u32(v); }
-  void operator()(const uint64_t& v) { out_.u64(v); }
-  void operator()(const int64_t& v) { out_.i64(v); }
-  void operator()(const std::string& v) { out_.text(v); }
-  void operator()(const base::Bytes& v) { out_.blob(v); }
-  void operator()(const base::Digest& v) { out_.raw(v); }
+  // `expected` bytes, or some more: what is not written takes no memory.
+  explicit ImageWriter(size_t expected) { bytes_.reserve(expected); }
+  ImageWriter(const ImageWriter&) = delete;
+  ImageWriter& operator=(const ImageWriter&) = delete;
+  void operator()(const bool& v) { number(static_cast<uint8_t>(v ? 1 : 0)); }
+  void operator()(const uint8_t& v) { number(v); }
+  void operator()(const uint16_t& v) { number(v); }
+  void operator()(const uint32_t& v) { number(v); }
+  void operator()(const uint64_t& v) { number(v); }
+  void operator()(const int64_t& v) { number(v); }
+  void operator()(const std::string& v) {
+    count(v.size());
+    raw(base::as_bytes(v));
+  }
+  void operator()(const base::Bytes& v) {
+    count(v.size());
+    raw(v);
+  }
+  void operator()(const base::Digest& v) { raw(v); }
   void operator()(const std::vector<Unit>& v) {
-    out_.u32(static_cast<uint32_t>(v.size()));
-    out_.raw({reinterpret_cast<const uint8_t*>(v.data()), v.size() * sizeof(Unit)});
+    count(v.size());
+    raw({reinterpret_cast<const uint8_t*>(v.data()), v.size() * sizeof(Unit)});
   }
   template <class Tag>
   void operator()(const base::Id<Tag>& v) {
-    out_.u32(v.index);
+    number(v.index);
   }
   template <class E>
   void enumerator(const E& v, uint32_t) {
-    out_.u8(static_cast<uint8_t>(v));
+    number(static_cast<uint8_t>(v));
   }
   // `min_size`: bytes of the smallest record.
   template <class T, class Each>
-  void list(const std::vector<T>& v, size_t, Each each) {
-    out_.u32(static_cast<uint32_t>(v.size()));
+  void list(const std::vector<T>& v, size_t, Each&& each) {
+    count(v.size());
     for (const T& item : v) each(item);
   }
 
+  void raw(base::ByteSpan v) {
+    if (v.size() > sizeof gathered_ - used_) flush();
+    if (v.size() > sizeof gathered_) {
+      bytes_.insert(bytes_.end(), v.begin(), v.end());
+    } else if (!v.empty()) {
+      std::memcpy(gathered_ + used_, v.data(), v.size());
+      used_ += v.size();
+    }
+  }
+  size_t size() const { return bytes_.size() + used_; }
+  // What was written before.
+  void patch_u32(size_t at, uint32_t v) {
+    flush();
+    std::memcpy(bytes_.data() + at, &v, sizeof v);
+  }
+  base::Bytes take() {
+    flush();
+    return std::move(bytes_);
+  }
+
  private:
-  base::ByteWriter& out_;
+  void count(size_t n) { number(static_cast<uint32_t>(n)); }
+  template <class T>
+  void number(T v) {
+    if (sizeof v > sizeof gathered_ - used_) flush();
+    std::memcpy(gathered_ + used_, &v, sizeof v);
+    used_ += sizeof v;
+  }
+  void flush() {
+    bytes_.insert(bytes_.end(), gathered_, gathered_ + used_);
+    used_ = 0;
+  }
+
+  base::Bytes bytes_;
+  uint8_t gathered_[4096];
+  size_t used_ = 0;  // of these
 };
 
 class ImageReader {

@@ -76,6 +76,8 @@ const TypeDiff& TypeDiffer::value(TypeId old_type, TypeId new_type) {
 }
 
 uint64_t TypeDiffer::leaves(const ir::Image& image, TypeId type) {
+  const bool has_parts = image.types.has_members(type) || image.types[type].kind == Kind::kArray;
+  if (!has_parts) return 1;
   auto found = leaves_.find({&image, type});
   if (found != leaves_.end()) return found->second;
   if (depth_ >= kMaxDepth) {

@@ -207,20 +207,47 @@ std::array<base::ByteSpan, 2> parts_of(base::ByteSpan image) {
 
 base::Result<base::Bytes> image_of(const Parts& parts, base::ByteSpan base_image) {
   base::Bytes image;
+  image.reserve(base_image.size() + base_image.size() / 8);  // for both parts
   const auto base_parts = parts_of(base_image);
   for (size_t i = 0; i < base_parts.size(); ++i) {
-    auto part = apply_delta(base_parts[i], parts[i], base::kMaxImageBytes - image.size());
-    if (!part) {
+    const size_t limit = base::kMaxImageBytes - image.size();
+    auto longer = apply_delta(base_parts[i], parts[i], limit, std::move(image));
+    if (!longer) {
       return bad_format(std::string("its ") + kPartNames[i] +
                         " part is no delta to the version that it is made for");
     }
-    if (image.empty()) {
-      image = std::move(*part);
-    } else {
-      image.insert(image.end(), part->begin(), part->end());
-    }
+    image = std::move(*longer);
   }
   return image;
+}
+
+base::Bytes encode_short(const Package& plans, base::ByteSpan image, base::ByteSpan base_image) {
+  const base::Bytes commands = encode_commands(plans);
+  const auto [layout, program] = parts_of(image);
+  const auto [base_layout, base_program] = parts_of(base_image);
+  return put_together(kShortVersion, {make_delta(base_layout, layout),
+                                      make_delta(base_program, program), commands});
+}
+
+// A package without its image.
+base::Result<Package> plans_for(const EncodedImage& from, const EncodedImage& to) {
+  Package package;
+  package.base = ir::digest(from.bytes);
+  if (same_data(from, to)) {
+    SameDataPlans plans = plans_of_same_data(from.image, to.image);
+    package.forward = std::move(plans.forward);
+    package.inverse = std::move(plans.inverse);
+    return package;
+  }
+  base::Result<Plan> forward = plan(from.image, to.image);
+  if (!forward) return forward.error();
+  base::Result<Plan> inverse = inverse_plan(from.image, to.image);
+  if (!inverse) return inverse.error();
+  package.forward = std::move(forward).value();
+  package.inverse = std::move(inverse).value();
+  base::Status sound = check_package(package, from.image, to.image);
+  if (!sound) return sound.error();
+  return package;
 }
 
 }  // namespace
@@ -232,11 +259,7 @@ base::Bytes encode(const Package& package) {
 }
 
 base::Bytes encode_short(const Package& package, base::ByteSpan base_image) {
-  const base::Bytes commands = encode_commands(package);
-  const auto [layout, program] = parts_of(package.image);
-  const auto [base_layout, base_program] = parts_of(base_image);
-  return put_together(kShortVersion, {make_delta(base_layout, layout),
-                                      make_delta(base_program, program), commands});
+  return encode_short(package, package.image, base_image);
 }
 
 base::Error stale_base(const base::Digest& base, const base::Digest& running) {
@@ -284,23 +307,15 @@ base::Result<Package> make_package(base::ByteSpan old_image, base::ByteSpan new_
 }
 
 base::Result<Package> make_package(const EncodedImage& from, const EncodedImage& to) {
-  Package package;
-  package.base = ir::digest(from.bytes);
-  package.image.assign(to.bytes.begin(), to.bytes.end());
-  if (same_data(from, to)) {
-    package.forward = plan_of_same_data(from.image, to.image);
-    package.inverse = plan_of_same_data(to.image, from.image);
-    return package;
-  }
-  base::Result<Plan> forward = plan(from.image, to.image);
-  if (!forward) return forward.error();
-  base::Result<Plan> inverse = inverse_plan(from.image, to.image);
-  if (!inverse) return inverse.error();
-  package.forward = std::move(forward).value();
-  package.inverse = std::move(inverse).value();
-  base::Status sound = check_package(package, from.image, to.image);
-  if (!sound) return sound.error();
+  base::Result<Package> package = plans_for(from, to);
+  if (package.ok()) package->image.assign(to.bytes.begin(), to.bytes.end());
   return package;
+}
+
+base::Result<base::Bytes> make_short_package(const EncodedImage& from, const EncodedImage& to) {
+  base::Result<Package> package = plans_for(from, to);
+  if (!package.ok()) return package.error();
+  return encode_short(*package, to.bytes, from.bytes);
 }
 
 bool leaves_all(const Package& package) {

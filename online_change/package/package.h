@@ -34,6 +34,8 @@ base::Status check_package(const Package& package, const ir::Image& old_image,
 base::Result<Package> make_package(base::ByteSpan old_image, base::ByteSpan new_image);
 // Of images that were verified, or come from the linker.
 base::Result<Package> make_package(const EncodedImage& from, const EncodedImage& to);
+// The same in the short form, without a package in between.
+base::Result<base::Bytes> make_short_package(const EncodedImage& from, const EncodedImage& to);
 // Does it do nothing to data, there and back? Sound where the two versions have the same_data().
 bool leaves_all(const Package& package);
 

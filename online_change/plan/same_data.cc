@@ -42,24 +42,29 @@ bool same_data(const EncodedImage& a, const EncodedImage& b) {
                     b.image.instances.end(), same_instance);
 }
 
-Plan plan_of_same_data(const ir::Image& old_image, const ir::Image& new_image) {
-  Plan plan;
+SameDataPlans plans_of_same_data(const ir::Image& old_image, const ir::Image& new_image) {
+  SameDataPlans plans;
   const Migrations none(new_image, new_image, Migrations::Way::kThere);
   TypeDiffer differ(new_image, new_image, TypeDiffer::Direction::kForward, false, none);
   std::vector<std::optional<uint64_t>> leaves(new_image.types.size());
+  uint64_t kept = 0;
   for (uint32_t id = 0; id < new_image.instances.size(); ++id) {
     const ir::Instance& row = new_image.instances[id];
     if (id != 0 && !row.live) continue;
     std::optional<uint64_t>& known = leaves[row.type.index];
     if (!known) known = differ.leaves(new_image, row.type);
-    plan.counts.kept += *known;
+    kept += *known;
   }
-  BoundaryWork work;
-  if (const ir::Bools before(old_image); !before.stay_clean()) {
-    work.values = bools_to_normalise(before, ir::Bools(new_image));
-  }
-  plan.predicted_pause_ns = pause_ns(work);
-  return plan;
+  const ir::Bools before(old_image);
+  const ir::Bools after(new_image);
+  BoundaryWork there;
+  BoundaryWork back;
+  there.values = bools_to_normalise(before, after);
+  back.values = bools_to_normalise(after, before);
+  plans.forward.counts.kept = plans.inverse.counts.kept = kept;
+  plans.forward.predicted_pause_ns = pause_ns(there);
+  plans.inverse.predicted_pause_ns = pause_ns(back);
+  return plans;
 }
 
 }  // namespace online_change

@@ -19,6 +19,10 @@ bool same_types(const EncodedImage& a, const EncodedImage& b);
 // become of values. False says nothing.
 bool same_data(const EncodedImage& a, const EncodedImage& b);
 // What plan() gives for such a pair, there and back.
-Plan plan_of_same_data(const ir::Image& old_image, const ir::Image& new_image);
+struct SameDataPlans {
+  Plan forward;
+  Plan inverse;
+};
+SameDataPlans plans_of_same_data(const ir::Image& old_image, const ir::Image& new_image);
 
 }  // namespace online_change

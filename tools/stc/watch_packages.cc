@@ -24,8 +24,17 @@ base::Status WatchedPackages::begin(base::Bytes running) {
   base::Result<ir::Image> image = ir::decode(running);
   if (!image.ok()) return image.error();
   bytes_ = std::move(running);
-  running_ = std::make_shared<const ir::Image>(std::move(*image));
+  running_ = std::make_shared<ir::Image>(std::move(*image));
+  before_.reset();
   return base::Ok{};
+}
+
+// A copy in the place of another image costs less than one by itself, or than decoding.
+void WatchedPackages::keep(const ir::Image& image, base::Bytes bytes) {
+  if (before_ == nullptr || before_.use_count() != 1) before_ = std::make_shared<ir::Image>();
+  *before_ = image;
+  running_.swap(before_);
+  bytes_ = std::move(bytes);
 }
 
 base::Result<WatchTarget::Next> WatchedPackages::take(const ir::Image& image, const Project&,
@@ -45,31 +54,24 @@ base::Result<WatchTarget::Next> WatchedPackages::take(std::vector<ResourceVersio
 
 base::Result<WatchTarget::Next> WatchedPackages::bring(const ir::Image& image, base::Bytes bytes,
                                                        const Built& built) {
-  if (bytes == bytes_) {
-    const base::Digest same = ir::digest(bytes_);
-    return send(built, same, {}, std::move(bytes));
-  }
+  if (bytes == bytes_) return send(built, {}, image, std::move(bytes));
   const online_change::EncodedImage before{*running_, bytes_};
   const online_change::EncodedImage after{image, bytes};
   if (restricted_) {
     base::Status kept = online_change::check_restricted(online_change::pou_edits(before, after));
     if (!kept.ok()) return kept.error();
   }
-  auto package = online_change::make_package(before, after);
+  auto package = online_change::make_short_package(before, after);
   if (!package.ok()) return package.error();
-  base::Bytes message = online_change::encode_short(*package, bytes_);
-  return send(built, package->base, std::move(message), std::move(bytes));
+  return send(built, std::move(*package), image, std::move(bytes));
 }
 
-// No package: nothing has changed since `base`, if that still runs.
-base::Result<WatchTarget::Next> WatchedPackages::send(const Built& built, const base::Digest& base,
-                                                      base::Bytes package, base::Bytes made) {
-  const tools::FollowedChange change{monotonic_ns(built.saved),
-                                     monotonic_ns(built.seen),
-                                     monotonic_ns(built.made),
-                                     monotonic_ns(Clock::now()),
-                                     base,
-                                     std::move(package)};
+// No package: nothing has changed since the base, if that still runs.
+base::Result<WatchTarget::Next> WatchedPackages::send(const Built& built, base::Bytes package,
+                                                      const ir::Image& image, base::Bytes made) {
+  const tools::FollowedChange change{monotonic_ns(built.saved), monotonic_ns(built.seen),
+                                     monotonic_ns(built.made),  monotonic_ns(Clock::now()),
+                                     ir::digest(bytes_),        std::move(package)};
   if (!tools::send_message(socket_, encode(change)).ok()) return Next::kEnd;
   base::Result<base::Bytes> message = tools::receive_message(socket_);
   if (!message.ok()) return Next::kEnd;
@@ -87,10 +89,13 @@ base::Result<WatchTarget::Next> WatchedPackages::send(const Built& built, const 
     case tools::FollowedEnd::kOtherBase:
       break;
   }
-  const bool is_ours = answer->end == tools::FollowedEnd::kRuns;
-  base::Status begun = begin(is_ours ? std::move(made) : std::move(answer->image));
+  if (answer->end == tools::FollowedEnd::kRuns) {
+    keep(image, std::move(made));
+    return Next::kBase;
+  }
+  base::Status begun = begin(std::move(answer->image));
   if (!begun.ok()) return begun.error();
-  return is_ours ? Next::kBase : Next::kOtherBase;
+  return Next::kOtherBase;
 }
 
 // Nothing comes from stvm but answers, and its end.

@@ -25,13 +25,15 @@ class WatchedPackages : public WatchTarget {
 
  private:
   base::Result<Next> bring(const ir::Image& image, base::Bytes bytes, const Built& built);
-  base::Result<Next> send(const Built& built, const base::Digest& base, base::Bytes package,
+  base::Result<Next> send(const Built& built, base::Bytes package, const ir::Image& image,
                           base::Bytes made);
+  void keep(const ir::Image& image, base::Bytes bytes);
 
   int socket_;
   bool restricted_;
   base::Bytes bytes_;
-  std::shared_ptr<const ir::Image> running_;  // the same, decoded
+  std::shared_ptr<ir::Image> running_;  // the same, decoded
+  std::shared_ptr<ir::Image> before_;   // what ran before it: its memory takes the next one
 };
 
 }  // namespace stc

@@ -57,10 +57,9 @@ void expect_same(const Plan& quick, const Plan& whole) {
 TEST(SameData, an_edit_of_statements_has_the_plan_that_a_look_at_everything_finds) {
   const Pair pair = pair_of(source(kBefore), source(kAfter));
   ASSERT_TRUE(same_data(pair.from(), pair.to()));
-  expect_same(plan_of_same_data(pair.old_image, pair.new_image),
-              *plan(pair.old_image, pair.new_image));
-  expect_same(plan_of_same_data(pair.new_image, pair.old_image),
-              *inverse_plan(pair.old_image, pair.new_image));
+  const SameDataPlans plans = plans_of_same_data(pair.old_image, pair.new_image);
+  expect_same(plans.forward, *plan(pair.old_image, pair.new_image));
+  expect_same(plans.inverse, *inverse_plan(pair.old_image, pair.new_image));
   const std::vector<PouEdit> edits = pou_edits(pair.from(), pair.to());
   ASSERT_EQ(edits.size(), 1u);
   EXPECT_EQ(edits[0].pou, "Motor");
@@ -83,6 +82,9 @@ TEST(SameData, a_short_package_changes_the_program_and_fits_no_other) {
   const base::Bytes running = plant.controller().verified().encoded();
   const base::Bytes bytes = encode_short(*whole, running);
   EXPECT_LT(bytes.size(), whole->image.size() / 2);
+  const ir::Image before = *ir::decode(running);
+  const ir::Image after = *ir::decode(whole->image);
+  EXPECT_EQ(*make_short_package({before, running}, {after, whole->image}), bytes);
   auto again = decode(bytes, running);
   ASSERT_TRUE(again.ok()) << base::to_string(again.error());
   EXPECT_EQ(again->image, whole->image);
