@@ -1,8 +1,13 @@
 #include "ir/bytecode/verify.h"
 
+#include <algorithm>
+#include <array>
+#include <mutex>
+
 #include "base/memory_limit.h"
 #include "base/parallel.h"
-#include "ir/bytecode/verify_parts.h"
+#include "ir/bytecode/image_sections.h"
+#include "ir/bytecode/proof.h"
 
 namespace ir {
 namespace {
@@ -12,13 +17,17 @@ constexpr size_t kPousAtATime = 32;
 
 // One POU after the other, or several at once; the first error is the answer in any case.
 base::Result<std::vector<verification::CodeFacts>> verify_pous(
-    const verification::Context& context) {
+    const verification::Context& context, const verification::Likeness& likeness) {
   const Image& image = context.image;
   std::vector<verification::CodeFacts> facts(image.pous.size());
   std::vector<uint8_t> bad(image.pous.size(), 0);
   const auto check = [&](size_t pou) {
     const auto number = static_cast<uint32_t>(pou);
     if (image.pous[number].unit_count == 0) return true;  // a number whose POU was removed
+    if (const verification::CodeFacts* known = likeness.code(number)) {
+      facts[number] = *known;
+      return true;
+    }
     auto checked = verification::verify_code(context, number);
     if (checked) facts[number] = std::move(checked).value();
     return checked.ok();
@@ -36,36 +45,89 @@ base::Result<std::vector<verification::CodeFacts>> verify_pous(
   return facts;
 }
 
-base::Result<std::vector<OutputWriter>> verify_image(const Image& image) {
-  auto facts = verification::verify_types(image);
-  if (!facts) return facts.error();
-  if (base::Status s = verification::verify_constants(image); !s) return s.error();
-  verification::Context context(image, std::move(facts).value());
-  if (base::Status s = verification::verify_tables(context); !s) return s.error();
-  if (base::Status s = verification::verify_overrides(image); !s) return s.error();
-  if (base::Status s = verification::verify_migrations(image); !s) return s.error();
-  if (base::Status s = verification::verify_initial_data(image); !s) return s.error();
-  if (base::Status s = verification::verify_instances(context); !s) return s.error();
-  if (base::Status s = verification::verify_resources(context); !s) return s.error();
-  const auto code = verify_pous(context);
-  if (!code) return code.error();
-  return verification::verify_calls(context, *code);
+// The last images that were proven, as long as somebody holds them: the next one is often another
+// version of one of them.
+class Proofs {
+ public:
+  std::shared_ptr<const verification::Proof> like(base::ByteSpan encoded) {
+    const size_t types = section_of(encoded, ImageSection::kTypes).size();
+    std::lock_guard lock(mutex_);
+    for (const auto& row : rows_) {
+      std::shared_ptr<const verification::Proof> proof = row.lock();
+      if (proof == nullptr) continue;
+      if (section_of(proof->encoded, ImageSection::kTypes).size() == types) return proof;
+    }
+    return nullptr;
+  }
+  void add(const std::shared_ptr<const verification::Proof>& proof) {
+    std::lock_guard lock(mutex_);
+    std::move_backward(rows_.begin(), rows_.end() - 1, rows_.end());
+    rows_[0] = proof;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::array<std::weak_ptr<const verification::Proof>, 4> rows_;  // the newest first
+};
+
+Proofs& proofs() {
+  static Proofs all;
+  return all;
 }
 
 }  // namespace
 
-base::Result<VerifiedImage> verify(base::Bytes encoded) {
+namespace verification {
+
+base::Result<std::shared_ptr<const Proof>> prove(base::Bytes encoded, const Proof* like) {
   base::Result<Image> decoded = decode(encoded);
   if (!decoded) return decoded.error();
-  auto image = std::make_shared<const Image>(std::move(decoded).value());
-  base::Result<std::vector<OutputWriter>> writers = verify_image(*image);
+  auto proof = std::make_shared<Proof>();
+  proof->encoded = std::move(encoded);
+  proof->image = std::move(decoded).value();
+  const Image& image = proof->image;
+  const Likeness likeness(like, proof->encoded, image);
+  if (likeness.types()) {
+    proof->types = like->types;
+  } else {
+    auto facts = verify_types(image);
+    if (!facts) return facts.error();
+    proof->types = std::move(facts).value();
+  }
+  if (!likeness.constants()) {
+    if (base::Status s = verify_constants(image); !s) return s.error();
+  }
+  Context context(image, proof->types);
+  if (base::Status s = verify_tables(context); !s) return s.error();
+  if (base::Status s = verify_overrides(image); !s) return s.error();
+  if (base::Status s = verify_migrations(image); !s) return s.error();
+  if (base::Status s = verify_initial_data(image); !s) return s.error();
+  if (!likeness.instances()) {
+    if (base::Status s = verify_instances(context); !s) return s.error();
+  }
+  if (base::Status s = verify_resources(context); !s) return s.error();
+  auto code = verify_pous(context, likeness);
+  if (!code) return code.error();
+  proof->code = std::move(code).value();
+  auto writers = verify_calls(context, proof->code);
   if (!writers) return writers.error();
+  proof->writers = std::move(writers).value();
+  return std::shared_ptr<const Proof>(std::move(proof));
+}
+
+}  // namespace verification
+
+base::Result<VerifiedImage> verify(base::Bytes encoded) {
+  const std::shared_ptr<const verification::Proof> like = proofs().like(encoded);
+  auto proven = verification::prove(std::move(encoded), like.get());
+  if (!proven) return proven.error();
+  const std::shared_ptr<const verification::Proof>& proof = *proven;
+  proofs().add(proof);
   VerifiedImage verified;
-  verified.image_ = std::move(image);
-  verified.output_writers_ =
-      std::make_shared<const std::vector<OutputWriter>>(std::move(writers).value());
-  verified.digest_ = digest(encoded);
-  verified.encoded_ = std::make_shared<const base::Bytes>(std::move(encoded));
+  verified.image_ = {proof, &proof->image};
+  verified.output_writers_ = {proof, &proof->writers};
+  verified.encoded_ = {proof, &proof->encoded};
+  verified.digest_ = digest(proof->encoded);
   return verified;
 }
 

@@ -11,6 +11,7 @@
 // call in preparation only, and never survives a merge).
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <span>
@@ -144,6 +145,10 @@ class CodeVerifier {
   bool check_instance_frame();
   bool add_instance_call(TypeId type);
   bool end_of_arguments(const char* where);
+
+  // Constants that the answer relies on (proof.h).
+  void uses_pool(uint64_t end) { facts_.pool_end = std::max(facts_.pool_end, end); }
+  bool check_bounds(uint32_t number);
 
   // verify_methods.cc
   bool is_method(uint32_t pou) const;

@@ -81,9 +81,7 @@ bool CodeVerifier::special(const OpcodeRow& row) {
       break;
   }
   const bool of_handle = row.a.cls == Class::k64;
-  if (row.x.kind == FieldKind::kBounds && of_handle && extension_.x() >= image_.bounds.size()) {
-    return fail(Refusal::kBadReference, "there are no bounds " + std::to_string(extension_.x()));
-  }
+  if (row.x.kind == FieldKind::kBounds && of_handle && !check_bounds(extension_.x())) return false;
   if (row.x.kind == FieldKind::kBounds && !of_handle)
     return check_index(row.y.kind == FieldKind::kPlace32);
   if (row.b.kind == FieldKind::kBc32) {
@@ -94,8 +92,11 @@ bool CodeVerifier::special(const OpcodeRow& row) {
   if (row.c.kind == FieldKind::kOffset16) {
     return row.a.cls == Class::kA && !row.a.writes() ? check_store(row.b) : check_load(row.a);
   }
-  if (row.c.kind == FieldKind::kRange && u_.c >= image_.ranges.size()) {
-    return fail(Refusal::kBadReference, "there is no range " + std::to_string(u_.c));
+  if (row.c.kind == FieldKind::kRange) {
+    if (u_.c >= image_.ranges.size()) {
+      return fail(Refusal::kBadReference, "there is no range " + std::to_string(u_.c));
+    }
+    facts_.ranges_end = std::max(facts_.ranges_end, u_.c + 1u);
   }
   if (row.a.kind == FieldKind::kTrap && u_.a >= kTrapCount) {
     return fail(Refusal::kBadReference, "there is no trap " + std::to_string(u_.a));
@@ -139,12 +140,18 @@ bool CodeVerifier::check_lea() {
   return write_pointer(u_.a, Class::kA, {region, read_only, base->outgoing});
 }
 
+bool CodeVerifier::check_bounds(uint32_t number) {
+  if (number >= image_.bounds.size()) {
+    return fail(Refusal::kBadReference, "there are no bounds " + std::to_string(number));
+  }
+  facts_.bounds_end = std::max(facts_.bounds_end, number + 1);
+  return true;
+}
+
 bool CodeVerifier::check_index(bool from_place) {
   const OpcodeRow& row = opcode_row(u_.opcode());
   if (!near_operand(row.b, u_.base_b(), u_.b, false)) return false;
-  if (extension_.x() >= image_.bounds.size()) {
-    return fail(Refusal::kBadReference, "there are no bounds " + std::to_string(extension_.x()));
-  }
+  if (!check_bounds(extension_.x())) return false;
   const Region array = image_.bounds[extension_.x()].from;
   Pointer element;
   if (from_place) {

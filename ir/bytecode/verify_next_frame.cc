@@ -123,6 +123,7 @@ bool CodeVerifier::check_call() {
 // What is in the next frame are exactly the arguments of that POU; then come its results.
 bool CodeVerifier::pass_arguments(uint32_t pou) {
   const LinkedPou& callee = image_.pous[pou];
+  facts_.parameters_of.push_back(pou);
   std::vector<bool> given(callee.slots.size());
   for (const Outgoing& out : pending_) {
     const FrameSlot* slot = callee_slot(callee, out.offset);

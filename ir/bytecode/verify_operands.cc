@@ -148,6 +148,7 @@ bool CodeVerifier::pool_scalar(uint32_t offset, Class cls) {
   if (uint64_t{offset} + class_size(cls) > image_.pool.size()) {
     return fail_at(Refusal::kBadReference, "no constant", offset);
   }
+  uses_pool(uint64_t{offset} + class_size(cls));
   if (cls == Class::kB && image_.pool[offset] > 1) {
     return fail(Refusal::kBadTyping, "a BOOL constant is neither 0 nor 1");
   }
@@ -318,6 +319,7 @@ bool CodeVerifier::pool_region(Region region, uint32_t offset, uint32_t depth) {
                                             std::to_string(context_.regions.size(region)) +
                                             " bytes" + at_text(offset));
   }
+  uses_pool(uint64_t{offset} + context_.regions.size(region));
   const Type& type = image_.types[region.type];
   if (type.kind == Kind::kGlobals || image_.types.is_instance(region.type) ||
       context_.facts[region.type.index].has_slots || depth > base::kMaxNesting) {
@@ -353,6 +355,7 @@ bool CodeVerifier::pool_string(uint32_t offset, Class cls, uint32_t capacity) {
     return fail(Refusal::kBadReference,
                 "no constant string of capacity " + std::to_string(capacity) + at_text(offset));
   }
+  uses_pool(uint64_t{offset} + (uint64_t{capacity} + 1) * unit);
   for (uint32_t i = 0; i <= capacity; ++i) {
     const uint8_t* at = &image_.pool[offset + i * unit];
     if (at[0] == 0 && at[unit - 1] == 0) return true;

@@ -61,6 +61,11 @@ struct CodeFacts {
   std::vector<uint32_t> callees;        // nodes of the call graph, each once per call
   std::vector<Extent> written_outputs;  // %Q globals in data memory
   uint32_t native_bytes = 0;            // argument area of native calls
+  // What the answer relies on beside the POU itself, types and roles of POUs (proof.h).
+  std::vector<uint32_t> parameters_of;  // POUs, each once per call
+  uint64_t pool_end = 0;                // constants that are named lie before it
+  uint32_t bounds_end = 0;              // numbers of bounds are below
+  uint32_t ranges_end = 0;
 };
 base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou);
 // Of other code in its place (pou_version.h).

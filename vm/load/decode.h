@@ -15,6 +15,9 @@ class Decoder {
  public:
   // Do its BOOLs stay clean (ir/bytecode/bools.h)?
   Decoder(const ir::Image& image, bool clean_bools, const TierOptions& tier);
+  // Does the code of a POU follow from its units, the types and whose methods there are? Truth
+  // tables rely on more.
+  bool goes_by_units() const { return !fuses_ || !has_tables_; }
   // Verified units of `pou`, of that image. What follows them in `decoded` is theirs, too.
   void run(const ir::LinkedPou& pou, std::span<const ir::Unit> units,
            std::vector<ir::Unit>& decoded) const;

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "base/limits.h"
+#include "ir/bytecode/image_sections.h"
 #include "ir/types/handle.h"
 #include "ir/types/inside.h"
 #include "vm/load/decode.h"
@@ -24,6 +25,33 @@ uint32_t tries_in(const ir::Image& image, const ir::LinkedPou& pou) {
     if (ir::opcode_row(op).extended) ++unit;
   }
   return std::min(count, base::kMaxTryDepth);
+}
+
+bool same_section(const ir::VerifiedImage& a, const ir::VerifiedImage& b,
+                  ir::ImageSection section) {
+  const base::ByteSpan x = ir::section_of(a.encoded(), section);
+  const base::ByteSpan y = ir::section_of(b.encoded(), section);
+  return std::equal(x.begin(), x.end(), y.begin(), y.end());
+}
+
+// Do the same units become the same code? What a Decoder that goes by units reads beside them:
+// types, their layouts and whose methods there are.
+bool decodes_alike(const Generation& a, const Generation& b) {
+  const std::vector<ir::LinkedPou>& x = a.image().pous;
+  const std::vector<ir::LinkedPou>& y = b.image().pous;
+  return a.bools().stay_clean() == b.bools().stay_clean() &&
+         same_section(a.verified(), b.verified(), ir::ImageSection::kTypes) &&
+         same_section(a.verified(), b.verified(), ir::ImageSection::kLayouts) &&
+         std::equal(x.begin(), x.end(), y.begin(), y.end(),
+                    [](const auto& p, const auto& q) { return p.self == q.self; });
+}
+
+bool same_units(const ir::Image& a, const ir::Image& b, uint32_t number) {
+  const ir::LinkedPou& x = a.pous[number];
+  const ir::LinkedPou& y = b.pous[number];
+  return x.unit_count == y.unit_count &&
+         std::equal(a.code.begin() + x.first_unit, a.code.begin() + x.first_unit + x.unit_count,
+                    b.code.begin() + y.first_unit);
 }
 
 }  // namespace
@@ -108,18 +136,24 @@ base::Status Generation::place_code(const Generation* running, const TierOptions
                                     CodeTable& table) {
   const ir::Image& image = image_.image();
   const Decoder decoder(image, bools_.stay_clean(), tier);
+  const bool alike =
+      running != nullptr && decoder.goes_by_units() && decodes_alike(*running, *this);
   std::vector<ir::Unit> code;
   for (uint32_t number = 0; number < image.pous.size(); ++number) {
     const ir::LinkedPou& pou = image.pous[number];
-    const auto first = image.code.begin() + pou.first_unit;
-    decoder.run(pou, {first, first + pou.unit_count}, code);
     const bool runs = running != nullptr && number < running->pous().size();
-    base::Result<const ir::Unit*> place =
-        slots_->place(number, pou.name, code, runs ? running->pous()[number].code : nullptr);
-    if (!place.ok()) return place.error();
-    table.pous.push_back({*place, *place, nullptr, pou.frame_size, pou.recursion_depth});
-    try_depth_ = std::max(try_depth_, tries_in(image, pou));
+    const ir::Unit* place = runs ? running->pous()[number].code : nullptr;
+    if (!alike || !runs || !same_units(running->image(), image, number)) {
+      const auto first = image.code.begin() + pou.first_unit;
+      decoder.run(pou, {first, first + pou.unit_count}, code);
+      base::Result<const ir::Unit*> placed = slots_->place(number, pou.name, code, place);
+      if (!placed.ok()) return placed.error();
+      place = *placed;
+      try_depth_ = std::max(try_depth_, tries_in(image, pou));
+    }
+    table.pous.push_back({place, place, nullptr, pou.frame_size, pou.recursion_depth});
   }
+  if (alike) try_depth_ = std::max(try_depth_, running->try_depth_);
   const size_t in_use = running == nullptr ? 0 : running->pous().size();
   slots_->keep_first(static_cast<uint32_t>(std::max(in_use, table.pous.size())));
   return base::Ok{};

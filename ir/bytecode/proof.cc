@@ -1,0 +1,116 @@
+#include "ir/bytecode/proof.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "ir/bytecode/image_sections.h"
+
+namespace ir::verification {
+namespace {
+
+bool same_section(base::ByteSpan a, base::ByteSpan b, ImageSection section) {
+  const base::ByteSpan x = section_of(a, section);
+  const base::ByteSpan y = section_of(b, section);
+  return x.data() != nullptr && std::equal(x.begin(), x.end(), y.begin(), y.end());
+}
+
+bool same_slot(const FrameSlot& a, const FrameSlot& b) {
+  return a.offset == b.offset && a.kind == b.kind && a.local == b.local &&
+         a.aggregate == b.aggregate && a.cls == b.cls && a.region == b.region;
+}
+
+bool same_slots(const LinkedPou& a, const LinkedPou& b) {
+  return std::equal(a.slots.begin(), a.slots.end(), b.slots.begin(), b.slots.end(), same_slot);
+}
+
+bool same_merges(const LinkedPou& a, const LinkedPou& b) {
+  const auto same = [](const Merge& x, const Merge& y) {
+    return x.unit == y.unit && x.slots == y.slots;
+  };
+  return std::equal(a.merges.begin(), a.merges.end(), b.merges.begin(), b.merges.end(), same);
+}
+
+std::span<const Unit> code_of(const Image& image, const LinkedPou& pou) {
+  return std::span(image.code).subspan(pou.first_unit, pou.unit_count);
+}
+
+bool same_units(std::span<const Unit> a, std::span<const Unit> b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+bool same_instance(const Instance& a, const Instance& b) {
+  return a.type == b.type && a.data == b.data && a.pou == b.pou && a.parent == b.parent &&
+         a.live == b.live && a.old_name == b.old_name;
+}
+
+}  // namespace
+
+Likeness::Likeness(const Proof* like, base::ByteSpan encoded, const Image& image)
+    : like_(like), image_(image) {
+  if (like_ == nullptr) return;
+  const Image& known = like_->image;
+  const auto same = [&](ImageSection section) {
+    return same_section(like_->encoded, encoded, section);
+  };
+  types_ =
+      known.globals == image_.globals && same(ImageSection::kTypes) && same(ImageSection::kLayouts);
+  if (!types_) return;
+  constants_ = same(ImageSection::kConstants);
+  if (!same_roles()) return;
+  instances_ = known.data_capacity == image_.data_capacity && known.free == image_.free &&
+               same(ImageSection::kData) &&
+               std::equal(known.instances.begin(), known.instances.end(), image_.instances.begin(),
+                          image_.instances.end(), same_instance);
+  code_ = !image_.instances.empty() && image_.instances[0].data == known.instances[0].data;
+  if (!code_) return;
+  const auto pool =
+      std::mismatch(known.pool.begin(), known.pool.end(), image_.pool.begin(), image_.pool.end());
+  same_pool_ = static_cast<size_t>(pool.first - known.pool.begin());
+  const auto bounds = std::mismatch(
+      known.bounds.begin(), known.bounds.end(), image_.bounds.begin(), image_.bounds.end(),
+      [](const LinkedBound& a, const LinkedBound& b) { return a.from == b.from; });
+  same_bounds_ = static_cast<size_t>(bounds.first - known.bounds.begin());
+  find_changed_parameters();
+}
+
+// Every number is a POU of the same kind and type, or none.
+bool Likeness::same_roles() const {
+  const std::vector<LinkedPou>& known = like_->image.pous;
+  return std::equal(known.begin(), known.end(), image_.pous.begin(), image_.pous.end(),
+                    [](const LinkedPou& a, const LinkedPou& b) {
+                      return a.kind == b.kind && a.self == b.self &&
+                             (a.unit_count == 0) == (b.unit_count == 0);
+                    });
+}
+
+// Nobody looks at the slots of a body, which has no parameters.
+void Likeness::find_changed_parameters() {
+  new_parameters_.resize(image_.pous.size());
+  for (size_t i = 0; i < new_parameters_.size(); ++i) {
+    new_parameters_[i] =
+        !is_body(image_.pous[i].kind) && !same_slots(like_->image.pous[i], image_.pous[i]);
+  }
+}
+
+bool Likeness::same_code(uint32_t pou) const {
+  const LinkedPou& a = like_->image.pous[pou];
+  const LinkedPou& b = image_.pous[pou];
+  return a.frame_size == b.frame_size && same_units(code_of(like_->image, a), code_of(image_, b)) &&
+         same_slots(a, b) && same_merges(a, b);
+}
+
+const CodeFacts* Likeness::code(uint32_t pou) const {
+  if (!code_ || !same_code(pou)) return nullptr;
+  const CodeFacts& facts = like_->code[pou];
+  if (facts.pool_end > same_pool_ || facts.bounds_end > same_bounds_ ||
+      facts.ranges_end > image_.ranges.size()) {
+    return nullptr;
+  }
+  for (const uint32_t named : facts.parameters_of) {
+    if (new_parameters_[named]) return nullptr;
+  }
+  return &facts;
+}
+
+}  // namespace ir::verification

@@ -1,0 +1,124 @@
+// What is verified with the help of an earlier version gets the answer that it gets alone.
+#include "ir/bytecode/proof.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/fuzz/image_changes.h"
+#include "tests/unit/bytecode/sample_objects.h"
+
+namespace ir::verification {
+namespace {
+
+using Proven = base::Result<std::shared_ptr<const Proof>>;
+
+bool same_facts(const CodeFacts& a, const CodeFacts& b) {
+  return a.callees == b.callees && a.written_outputs == b.written_outputs &&
+         a.native_bytes == b.native_bytes && a.parameters_of == b.parameters_of &&
+         a.pool_end == b.pool_end && a.bounds_end == b.bounds_end && a.ranges_end == b.ranges_end;
+}
+
+bool same_writer(const OutputWriter& a, const OutputWriter& b) {
+  return a.data == b.data && a.size == b.size && a.task == b.task;
+}
+
+void expect_same(const Proven& alone, const Proven& helped) {
+  ASSERT_EQ(alone.ok(), helped.ok()) << base::to_string((alone.ok() ? helped : alone).error());
+  if (!alone.ok()) {
+    EXPECT_EQ(base::to_string(alone.error()), base::to_string(helped.error()));
+    return;
+  }
+  const Proof& a = **alone;
+  const Proof& b = **helped;
+  EXPECT_TRUE(std::equal(a.code.begin(), a.code.end(), b.code.begin(), b.code.end(), same_facts));
+  EXPECT_TRUE(std::equal(a.writers.begin(), a.writers.end(), b.writers.begin(), b.writers.end(),
+                         same_writer));
+  EXPECT_TRUE(std::equal(a.types.begin(), a.types.end(), b.types.begin(), b.types.end(),
+                         [](const TypeFacts& x, const TypeFacts& y) {
+                           return x.has_slots == y.has_slots && x.depth == y.depth;
+                         }));
+}
+
+// POUs that need no look.
+uint32_t left_out(const Proof& like, const Image& image) {
+  const base::Bytes bytes = encode(image);
+  const Likeness likeness(&like, bytes, image);
+  uint32_t count = 0;
+  for (uint32_t pou = 0; pou < image.pous.size(); ++pou) {
+    count += likeness.code(pou) != nullptr ? 1 : 0;
+  }
+  return count;
+}
+
+// What was accepted is what the next ones are compared with.
+void expect_same_of_changes(const Image& first, uint32_t seed) {
+  constexpr int kImages = 6000;
+  Proven like = prove(encode(first), nullptr);
+  ASSERT_TRUE(like.ok());
+  std::mt19937 random(seed);
+  int accepted = 0;
+  uint32_t helped = 0;
+  for (int i = 0; i < kImages; ++i) {
+    Image image = i % 4 == 3 ? (*like)->image : first;
+    for (uint32_t changes = random() % 3; changes != 0; --changes) {
+      fuzz::apply(image, {static_cast<uint8_t>(random()), static_cast<uint16_t>(random()),
+                          static_cast<uint16_t>(random()), static_cast<uint8_t>(random())});
+    }
+    const base::Bytes bytes = encode(image);
+    const Proven alone = prove(bytes, nullptr);
+    expect_same(alone, prove(bytes, like->get()));
+    if (testing::Test::HasFailure()) return;
+    if (!alone.ok()) continue;
+    ++accepted;
+    helped += left_out(**like, image);
+    like = alone;
+  }
+  // Both answers were compared, and of both kinds of images.
+  EXPECT_GT(accepted, kImages / 10);
+  EXPECT_LT(accepted, kImages * 9 / 10);
+  EXPECT_GT(helped, static_cast<uint32_t>(accepted));
+}
+
+TEST(Proof, ChangedImagesGetTheAnswerThatTheyGetAlone) {
+  for (uint32_t seed = 1; seed <= 3; ++seed) expect_same_of_changes(sample::busy_image(), seed);
+}
+
+TEST(Proof, ChangedImagesWithMethodsGetTheAnswerThatTheyGetAlone) {
+  for (uint32_t seed = 1; seed <= 3; ++seed) {
+    expect_same_of_changes(sample::busy_object_image(), seed);
+  }
+}
+
+TEST(Proof, OnlyThePouThatDiffersIsLookedAt) {
+  const Proven first = prove(encode(sample::busy_image()), nullptr);
+  ASSERT_TRUE(first.ok());
+  Image image = sample::busy_image();
+  const auto pous = static_cast<uint32_t>(image.pous.size());
+  EXPECT_EQ(left_out(**first, image), pous);
+  image.pous[sample::kCounterPou].frame_size += 8;
+  EXPECT_EQ(left_out(**first, image), pous - 1);
+  image.pous[sample::kAddPou].slots[0].local = LocalKind::kOutput;  // its caller finds another one
+  EXPECT_EQ(left_out(**first, image), pous - 3);
+  image = sample::busy_image();
+  image.instances[0].data += 8;  // all code names globals by their place
+  EXPECT_EQ(left_out(**first, image), 0u);
+}
+
+// verify() finds what is held by itself.
+TEST(Proof, VersionsThatAreHeldAnswerAsTheyDoAlone) {
+  const auto held = verify(encode(sample::busy_image()));
+  ASSERT_TRUE(held.ok());
+  Image image = sample::busy_image();
+  image.code[image.pous[sample::kMainPou].first_unit].a ^= 1;
+  const base::Bytes bytes = encode(image);
+  const Proven alone = prove(bytes, nullptr);
+  const auto beside = verify(bytes);
+  ASSERT_EQ(alone.ok(), beside.ok());
+  if (!alone.ok()) {
+    EXPECT_EQ(base::to_string(alone.error()), base::to_string(beside.error()));
+  }
+}
+
+}  // namespace
+}  // namespace ir::verification
