@@ -134,6 +134,30 @@ expect 0 stvm accept --dir plc
 expect 0 stvm journal --dir plc
 said 'undone'
 
+end_follow
+
+# An end of input answers one question, not those behind it.
+mkfifo keys
+script -qec "$bin/stvm change --watch plant --dir plc" /dev/null <keys >watch.out 2>watch.log &
+echo $! >watch.pid
+exec 3>keys
+until_said 1 'what was saved is what runs'
+sed 's/Cycles + 6/Cycles + 8/' plant/main.st | save plant/main.st
+until_said 1 'Switch now'
+printf '\004' >&3
+until_said 1 'not switched'
+sed 's/Cycles + 8/Cycles + 6 + 2/' plant/main.st | save plant/main.st
+until_said 2 'Switch now'
+printf 'y\n' >&3
+until_said 1 'switched between'
+exec 3>&-
+end_follow
+expect 0 stvm accept --dir plc
+sed 's/Cycles + 6 + 2/Cycles + 6/' plant/main.st | save plant/main.st
+
+follow --yes --permanent
+until_said 1 'accepted: it boots next'
+
 # The controller ends, and with it the watch.
 expect 0 stvm stop --dir plc
 sed 's/Cycles + 6/Cycles + 7/' plant/main.st | save plant/main.st
