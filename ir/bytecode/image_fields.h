@@ -74,7 +74,7 @@ class ImageWriter {
  private:
   void count(size_t n) { number(static_cast<uint32_t>(n)); }
   template <class T>
-  void number(T v) {
+  [[gnu::always_inline]] void number(T v) {
     if (sizeof v > sizeof gathered_ - used_) flush();
     std::memcpy(gathered_ + used_, &v, sizeof v);
     used_ += sizeof v;

@@ -17,4 +17,10 @@ void keep_freed_memory() {
 #endif
 }
 
+void keep_large_pieces() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_MAX, 0);
+#endif
+}
+
 }  // namespace tools

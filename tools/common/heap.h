@@ -8,4 +8,8 @@ namespace tools {
 // settings.
 void keep_freed_memory();
 
+// The same of large pieces, for programs that stay and need as much again and again: pages that
+// they give back cost more than what is done with them.
+void keep_large_pieces();
+
 }  // namespace tools

@@ -10,6 +10,7 @@
 
 #include "tools/common/exit.h"
 #include "tools/common/files.h"
+#include "tools/common/heap.h"
 #include "tools/stc/file_events.h"
 #include "tools/stc/file_stamp.h"
 #include "tools/stc/importer.h"
@@ -51,6 +52,7 @@ class Watch {
     begin_anew();
     for (;;) {
       const Next next = build();
+      tools::keep_large_pieces();  // from now on there are edits
       if (next == Next::kEnd) return tools::kOk;
       if (next == Next::kBase) build_->continue_from(target_.base());
       if (next == Next::kOtherBase) begin_anew();
