@@ -4,11 +4,13 @@
 // later reads return zero, and the caller checks once per record.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace base {
@@ -18,35 +20,52 @@ using ByteSpan = std::span<const uint8_t>;
 
 class ByteWriter {
  public:
-  void u8(uint8_t v) { bytes_.push_back(v); }
+  void u8(uint8_t v) { fixed(v); }
   void u16(uint16_t v) { fixed(v); }
   void u32(uint32_t v) { fixed(v); }
   void u64(uint64_t v) { fixed(v); }
   void i64(int64_t v) { fixed(static_cast<uint64_t>(v)); }
   void boolean(bool v) { u8(v ? 1 : 0); }
-  void raw(ByteSpan v) { bytes_.insert(bytes_.end(), v.begin(), v.end()); }
+  void raw(ByteSpan v) {
+    if (!v.empty()) std::memcpy(extend(v.size()), v.data(), v.size());
+  }
   void blob(ByteSpan v) {  // u32 length, bytes
     u32(static_cast<uint32_t>(v.size()));
     raw(v);
   }
   void text(std::string_view v) {
     u32(static_cast<uint32_t>(v.size()));
-    bytes_.insert(bytes_.end(), v.begin(), v.end());
+    if (!v.empty()) std::memcpy(extend(v.size()), v.data(), v.size());
+  }
+  // `count` bytes more, for the caller to fill at once.
+  uint8_t* extend(size_t count) {
+    if (count > bytes_.size() - size_) grow(count);
+    uint8_t* const at = bytes_.data() + size_;
+    size_ += count;
+    return at;
   }
   // Overwrites a u32 written earlier, for lengths known only afterwards.
   void patch_u32(size_t at, uint32_t v) { std::memcpy(bytes_.data() + at, &v, sizeof v); }
-  size_t size() const { return bytes_.size(); }
-  const Bytes& bytes() const { return bytes_; }
-  Bytes take() { return std::move(bytes_); }
+  size_t size() const { return size_; }
+  ByteSpan bytes() const { return {bytes_.data(), size_}; }
+  Bytes take() {
+    bytes_.resize(size_);
+    size_ = 0;
+    return std::exchange(bytes_, {});
+  }
 
  private:
   template <class T>
   void fixed(T v) {
-    uint8_t raw_bytes[sizeof v];
-    std::memcpy(raw_bytes, &v, sizeof v);
-    bytes_.insert(bytes_.end(), raw_bytes, raw_bytes + sizeof v);
+    std::memcpy(extend(sizeof v), &v, sizeof v);
   }
-  Bytes bytes_;
+  void grow(size_t count) {
+    constexpr size_t kFirst = 64;
+    bytes_.resize(std::max({kFirst, size_ + count, bytes_.size() + bytes_.size() / 2}));
+  }
+
+  Bytes bytes_;      // what was written, and room behind it
+  size_t size_ = 0;  // written
 };
 
 class ByteReader {

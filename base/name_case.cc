@@ -1,5 +1,6 @@
 #include "base/name_case.h"
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 
@@ -132,10 +133,25 @@ bool same_name(std::string_view a, std::string_view b) {
   return true;
 }
 
+void fold_name(std::string_view name, char* out) {
+  char* to = out;
+  for (size_t at = 0; at < name.size(); at += kPiece) {
+    const uint64_t piece = piece_at(name, at);
+    if (!is_ascii(piece)) {
+      to = out;
+      for (Folded bytes(name); bytes.more();) *to++ = static_cast<char>(bytes.next());
+      return;
+    }
+    const uint64_t folded = fold_piece(piece);
+    const size_t size = std::min(kPiece, name.size() - at);
+    std::memcpy(to, &folded, size);
+    to += size;
+  }
+}
+
 std::string fold_name(std::string_view name) {
-  std::string folded;
-  folded.reserve(name.size());
-  for (Folded bytes(name); bytes.more();) folded.push_back(static_cast<char>(bytes.next()));
+  std::string folded(name.size(), '\0');
+  fold_name(name, folded.data());
   return folded;
 }
 

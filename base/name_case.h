@@ -12,6 +12,7 @@ namespace base {
 
 bool same_name(std::string_view a, std::string_view b);
 std::string fold_name(std::string_view name);
+void fold_name(std::string_view name, char* out);  // as many bytes as the name has
 // Equal for equal names.
 uint64_t name_hash(std::string_view name);
 

@@ -28,7 +28,7 @@ ConstantPool::ConstantPool(const base::Bytes& base) : bytes_(base), base_size_(b
   }
 }
 
-std::optional<uint32_t> ConstantPool::in_base(const base::Bytes& entry) const {
+std::optional<uint32_t> ConstantPool::in_base(base::ByteSpan entry) const {
   const auto found = words_.find(first_word(entry.data(), entry.size()));
   if (found == words_.end()) return std::nullopt;
   for (uint32_t at : found->second) {
@@ -38,7 +38,7 @@ std::optional<uint32_t> ConstantPool::in_base(const base::Bytes& entry) const {
   return std::nullopt;
 }
 
-uint32_t ConstantPool::intern(const base::Bytes& entry) {
+uint32_t ConstantPool::intern(base::ByteSpan entry) {
   const std::optional<uint32_t> known = in_base(entry);
   const auto [found, added] =
       offsets_.try_emplace(std::string(entry.begin(), entry.end()),
@@ -69,10 +69,6 @@ void ConstantPool::add_values(const ir::Object& object, const InitialValues& ini
     initial.write_value(constant.type, constant.value, bytes);
     offsets[i] = intern(bytes);
   }
-}
-
-uint32_t ConstantPool::offset(const ir::Object& object, uint32_t number) const {
-  return of_object_.at(&object)[number];
 }
 
 ConstantPool make_pool(const std::vector<const ir::Object*>& objects, const InitialValues& initial,

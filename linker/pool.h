@@ -24,7 +24,13 @@ class ConstantPool {
   void add_values(const ir::Object& object, const InitialValues& initial,
                   const ir::Layouts& layouts);
   // Offset of constant `number` of `object`, which must have been added.
-  uint32_t offset(const ir::Object& object, uint32_t number) const;
+  uint32_t offset(const ir::Object& object, uint32_t number) const {
+    return offsets(object)[number];
+  }
+  // Of all its constants.
+  const std::vector<uint32_t>& offsets(const ir::Object& object) const {
+    return of_object_.at(&object);
+  }
   // Has `other` the constants of the object where this pool has them?
   bool same_offsets(const ConstantPool& other, const ir::Object& object) const {
     return of_object_.at(&object) == other.of_object_.at(&object);
@@ -32,9 +38,9 @@ class ConstantPool {
   const base::Bytes& bytes() const { return bytes_; }
 
  private:
-  uint32_t intern(const base::Bytes& entry);
+  uint32_t intern(base::ByteSpan entry);
   // Where the base has these bytes, at the beginning of a word.
-  std::optional<uint32_t> in_base(const base::Bytes& entry) const;
+  std::optional<uint32_t> in_base(base::ByteSpan entry) const;
 
   base::Bytes bytes_;
   size_t base_size_ = 0;

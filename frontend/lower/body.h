@@ -215,8 +215,7 @@ class Body {
   std::optional<Enable> enable_of(const Expr& call, const Callee& callee);
   void open_enable(Enable& enable);
   // `type` is that of the result, invalid when there is none; `otherwise` its value without a call.
-  void close_enable(Enable& enable, std::vector<ir::ValueId> result, ir::TypeId type,
-                    uint64_t otherwise = 0);
+  void close_enable(Enable& enable, ir::ValueList result, ir::TypeId type, uint64_t otherwise = 0);
   void store_eno(const Enable& enable, bool good);
   uint64_t default_bits(ir::TypeId type) const;
 
@@ -309,7 +308,7 @@ class Body {
   ir::ValueId is_valid(ExprId argument, const stdlib::FunctionRow& row);
   ir::Place choose(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
                    ir::TypeId type);
-  ir::ValueId native(stdlib::NativeId id, std::vector<ir::ValueId> operands);
+  ir::ValueId native(stdlib::NativeId id, ir::ValueList operands);
 
   // --- helpers
   void initialise_locals();

@@ -27,6 +27,7 @@ using ir::Op;
 using ir::Place;
 using ir::Scalar;
 using ir::ValueId;
+using ir::ValueList;
 
 BlockId Builder::new_block() {
   pou_.blocks.emplace_back();
@@ -228,14 +229,14 @@ void Builder::call_virtual(ir::PouId prototype, ValueId handle) {
 
 void Builder::call_body(ir::PouId pou) { emit(Op::kCallBody, Scalar::kBool).pou = pou; }
 
-ValueId Builder::call_native(uint32_t native, Scalar scalar, std::vector<ValueId> operands) {
+ValueId Builder::call_native(uint32_t native, Scalar scalar, ValueList operands) {
   Inst& inst = emit(Op::kCallNative, scalar);
   inst.native = native;
   inst.operands = std::move(operands);
   return result(inst);
 }
 
-void Builder::call_native(uint32_t native, std::vector<ValueId> operands) {
+void Builder::call_native(uint32_t native, ValueList operands) {
   Inst& inst = emit(Op::kCallNative, Scalar::kBool);
   inst.native = native;
   inst.operands = std::move(operands);
@@ -247,7 +248,7 @@ void Builder::advance_time(ValueId ns) {
   emit(Op::kAdvanceTime, Scalar::kI64).operands.push_back(ns);
 }
 
-void Builder::jump(BlockId block, std::vector<ValueId> args) {
+void Builder::jump(BlockId block, ValueList args) {
   emit(Op::kJump, Scalar::kBool).targets.push_back({block, std::move(args)});
   current_ = {};
 }

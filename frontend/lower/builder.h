@@ -53,13 +53,13 @@ class Builder {
   void call_method(ir::PouId pou, ir::ValueId handle);
   void call_virtual(ir::PouId prototype, ir::ValueId handle);
   void call_body(ir::PouId pou);
-  ir::ValueId call_native(uint32_t native, ir::Scalar result, std::vector<ir::ValueId> operands);
-  void call_native(uint32_t native, std::vector<ir::ValueId> operands);
+  ir::ValueId call_native(uint32_t native, ir::Scalar result, ir::ValueList operands);
+  void call_native(uint32_t native, ir::ValueList operands);
   ir::ValueId task_time();
   ir::ValueId trap_kind();
   void advance_time(ir::ValueId ns);
 
-  void jump(ir::BlockId block, std::vector<ir::ValueId> args = {});
+  void jump(ir::BlockId block, ir::ValueList args = {});
   void branch(ir::ValueId condition, ir::BlockId if_true, ir::BlockId if_false);
   // `targets`: of low, low + 1, ...
   void switch_on(ir::Scalar scalar, ir::ValueId value, int64_t low,

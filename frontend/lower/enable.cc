@@ -55,8 +55,7 @@ void Body::store_eno(const Enable& enable, bool good) {
   store(*enable.target, build_.constant(ir::Scalar::kBool, bit ? 1 : 0));
 }
 
-void Body::close_enable(Enable& enable, std::vector<ir::ValueId> result, ir::TypeId type,
-                        uint64_t otherwise) {
+void Body::close_enable(Enable& enable, ir::ValueList result, ir::TypeId type, uint64_t otherwise) {
   if (enable.handler.valid()) {
     ir::BlockId good = build_.new_block();
     build_.end_try(good);
@@ -69,7 +68,7 @@ void Body::close_enable(Enable& enable, std::vector<ir::ValueId> result, ir::Typ
     if (!failed.valid()) continue;
     build_.start(failed);
     store_eno(enable, false);
-    std::vector<ir::ValueId> result_then;
+    ir::ValueList result_then;
     if (type.valid()) result_then.push_back(build_.constant(scalar(type), otherwise));
     build_.jump(enable.done, std::move(result_then));
   }

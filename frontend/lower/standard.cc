@@ -111,7 +111,7 @@ ir::ValueId Body::real_function(const std::vector<ExprId>& args, const stdlib::F
   if (row.id == FunctionId::kSqrt) {
     return build_.unary(ir::Op::kSqrt, machine, value(args[0], own));
   }
-  std::vector<ir::ValueId> operands;
+  ir::ValueList operands;
   for (ExprId arg : args) {
     operands.push_back(machine_convert(value(arg, own), machine, ir::Scalar::kF64));
   }
@@ -192,11 +192,10 @@ ir::ValueId Body::multiplex(const std::vector<ExprId>& args, ir::TypeId own) {
 }
 
 // Every argument is evaluated once; each is compared with the next.
-ir::ValueId Body::compare_chain(const std::vector<ExprId>& args, BinaryOp op,
-                                ir::TypeId common) {
+ir::ValueId Body::compare_chain(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId common) {
   if (!common.valid()) return zero(elementary(ir::Kind::kBool));
   bool text = is_string(types(), common);
-  std::vector<ir::ValueId> values;
+  ir::ValueList values;
   std::vector<ir::Place> places;
   for (ExprId arg : args) {
     if (text) {

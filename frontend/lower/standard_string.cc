@@ -33,7 +33,7 @@ NativeId string_native(FunctionId id, bool wide) {
 // Do lengths and positions of the call lie in a text of `length` characters? `operands` are result,
 // strings and numbers. Sums of numbers that are out of range themselves may wrap.
 ir::ValueId in_range(Builder& build, FunctionId id, ir::ValueId length,
-                     const std::vector<ir::ValueId>& operands) {
+                     const ir::ValueList& operands) {
   constexpr ir::Scalar kI64 = ir::Scalar::kI64;
   ir::ValueId one = build.constant(kI64, 1);
   ir::ValueId last = operands.back();
@@ -58,7 +58,7 @@ ir::ValueId in_range(Builder& build, FunctionId id, ir::ValueId length,
 }  // namespace
 
 ir::ValueId Body::string_number(const std::vector<ExprId>& args, const stdlib::FunctionRow& row) {
-  std::vector<ir::ValueId> operands;
+  ir::ValueList operands;
   bool is_wide = false;
   for (ExprId arg : args) {
     ir::Place text = place(arg);
@@ -76,7 +76,7 @@ ir::Place Body::string_function(const std::vector<ExprId>& args, const stdlib::F
   if (row.id == FunctionId::kConcat) return concat(args, type, is_wide);
   ir::Place result = temporary_place(type);
   uint32_t strings = string_arguments(row, static_cast<uint32_t>(args.size()));
-  std::vector<ir::ValueId> operands{string_value(result)};
+  ir::ValueList operands{string_value(result)};
   for (uint32_t i = 0; i < args.size(); ++i) {
     if (i < strings) {
       operands.push_back(string_value(place(args[i])));

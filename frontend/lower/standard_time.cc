@@ -55,12 +55,12 @@ ir::ValueId Body::time_function(const std::vector<ExprId>& args, const stdlib::F
 ir::ValueId Body::moment(const std::vector<ExprId>& args, const stdlib::FunctionRow& row) {
   constexpr ir::Scalar kI64 = ir::Scalar::kI64;
   uint32_t first = first_part(row);
-  std::vector<ir::ValueId> given;
+  ir::ValueList given;
   for (ExprId arg : args) {
     Typed part = natural(arg);
     given.push_back(machine_convert(part.value, scalar(part.type), kI64));
   }
-  std::vector<ir::ValueId> parts;
+  ir::ValueList parts;
   for (uint32_t i = 0; i < kParts; ++i) {
     constexpr uint64_t kEpoch[kParts] = {1970, 1, 1};
     bool is_given = i >= first && i - first < given.size();

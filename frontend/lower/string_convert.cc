@@ -148,7 +148,7 @@ ir::ValueId Body::from_string(ExprId source, ir::TypeId to) {
   if (is_character_kind(kind)) return character_of(text, to);
   text = narrow_string(text, wide(text.type));
   TextForm form = value_form(kind, scalar(to));
-  std::vector<ir::ValueId> operands{string_value(text)};
+  ir::ValueList operands{string_value(text)};
   if (form.native == NativeId::kStringToDate) {
     operands.push_back(build_.constant(ir::Scalar::kI32, static_cast<uint64_t>(kind)));
   }
@@ -178,7 +178,7 @@ ir::ValueId Body::clamp(ir::ValueId number, ir::Scalar wide, ir::Scalar narrow) 
 }
 
 // Result and arguments are typed by the row in natives.def.
-ir::ValueId Body::native(stdlib::NativeId id, std::vector<ir::ValueId> operands) {
+ir::ValueId Body::native(stdlib::NativeId id, ir::ValueList operands) {
   uint32_t number = static_cast<uint32_t>(id);
   char result = stdlib::native_row(number).result;
   if (result == 'v') {

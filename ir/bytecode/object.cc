@@ -3,10 +3,13 @@
 // another POU of it (E1).
 #include "ir/bytecode/object.h"
 
+#include "base/name_case.h"
+
 namespace ir {
 namespace {
 
 constexpr uint32_t kMaxDepth = 1000;
+constexpr size_t kTypesKept = 24;
 
 class Canonical {
  public:
@@ -37,8 +40,29 @@ class Canonical {
     for (const T& entry : entries) (this->*write)(entry);
   }
 
-  void name(const std::string& text) { out_.text(fold_name(text)); }
-  void type(TypeId id) { out_.text(id.valid() ? fold_name(types_.text(id)) : ""); }
+  void name(const std::string& text) {
+    out_.u32(static_cast<uint32_t>(text.size()));
+    base::fold_name(text, reinterpret_cast<char*>(out_.extend(text.size())));
+  }
+  // The text of a type that came before is taken from there.
+  void type(TypeId id) {
+    if (!id.valid()) return name("");
+    for (const WrittenType& row : written_) {
+      if (row.type == id) return copy(row);
+    }
+    const size_t begin = out_.size();
+    name(types_.text(id));
+    if (written_.size() < kTypesKept) written_.push_back({id, begin, out_.size() - begin});
+  }
+  struct WrittenType {
+    TypeId type;
+    size_t begin;
+    size_t size;
+  };
+  void copy(const WrittenType& row) {
+    uint8_t* const to = out_.extend(row.size);
+    std::memcpy(to, out_.bytes().data() + row.begin, row.size);
+  }
   void region(const Region& region) {
     type(region.type);
     out_.u8(region.dim);
@@ -140,7 +164,8 @@ class Canonical {
     name(range.name);
   }
   void unit(const Unit& unit) {
-    for (uint16_t half : {unit.op, unit.a, unit.b, unit.c}) out_.u16(half);
+    out_.u64(uint64_t{unit.op} | uint64_t{unit.a} << 16 | uint64_t{unit.b} << 32 |
+             uint64_t{unit.c} << 48);
   }
   void merge(const Merge& merge) {
     out_.u32(merge.unit);
@@ -153,6 +178,7 @@ class Canonical {
   const PouNames& names_;
   const TypeTable& types_;
   base::ByteWriter out_;
+  std::vector<WrittenType> written_;
 };
 
 }  // namespace

@@ -53,14 +53,14 @@ struct ObjectPlace {
   PlaceRoot root = PlaceRoot::kSelf;
   uint32_t slot = 0;  // kSlot
   Region region;      // kRegion: what the addr points to
-  std::vector<Step> steps;
+  Steps steps;
   Region result;  // what is at the place
   friend bool operator==(const ObjectPlace&, const ObjectPlace&) = default;
 };
 
 // An entry of the constant pool: raw scalar bytes, or an initial value of a type.
 struct ObjectConstant {
-  base::Bytes bytes;  // scalars: 1, 2, 4 or 8 bytes
+  base::InlineVector<uint8_t, 8> bytes;  // scalars: 1, 2, 4 or 8
   Class cls = Class::kB;
   TypeId type;  // valid: `value` (or the type's default) laid out by the linker
   ConstId value;

@@ -6,7 +6,9 @@ namespace ir::codegen {
 
 // What an in-out slot points to may change in a call.
 void Selector::forget_references() {
-  std::erase_if(addresses_, [](const auto& entry) { return entry.second.by_reference; });
+  for (CachedAddress& address : addresses_.rows) {
+    if (address.by_reference) address.known = false;
+  }
 }
 
 void Selector::select_call(const Inst& inst) {

@@ -7,8 +7,8 @@
 
 namespace ir::codegen {
 
-std::vector<ValueId> Selector::operands_of(const Inst& inst) const {
-  std::vector<ValueId> out = inst.operands;
+ValueList Selector::operands_of(const Inst& inst) const {
+  ValueList out = inst.operands;
   for (PlaceId id : {inst.place, inst.place2}) {
     if (!id.valid()) continue;
     const Place& place = pou_.places[id.index];
@@ -18,7 +18,7 @@ std::vector<ValueId> Selector::operands_of(const Inst& inst) const {
     }
   }
   if (inst.op == Op::kJump || inst.op == Op::kEndTry) {
-    out.insert(out.end(), inst.targets[0].args.begin(), inst.targets[0].args.end());
+    out.insert(out.end(), inst.targets[0].args);
   }
   return out;
 }
@@ -38,7 +38,7 @@ bool Selector::reads(ValueId value, const Conflicts& conflicts) const {
   const ValueState& state = states_[root.index];
   if (state.state != State::kPending) return false;
   if (state.place != nullptr) return conflicts(*state.place);
-  const std::vector<ValueId>& operands = values_[root].definition->operands;
+  const ValueList& operands = values_[root].definition->operands;
   return std::any_of(operands.begin(), operands.end(),
                      [&](ValueId operand) { return reads(operand, conflicts); });
 }

@@ -229,18 +229,31 @@ const std::string& Selector::prefix_key(const Place& place, size_t steps) {
   return prefix_key_;
 }
 
+const Selector::CachedAddress* Selector::find_address(const std::string& key) const {
+  const uint32_t number = addresses_.numbers.find(key);
+  if (number == base::ByteTable::kNone || !addresses_.rows[number].known) return nullptr;
+  return &addresses_.rows[number];
+}
+
+void Selector::keep_address(const std::string& key, const CachedAddress& address) {
+  const uint32_t next = static_cast<uint32_t>(addresses_.rows.size());
+  const uint32_t number = addresses_.numbers.add(key, next);
+  if (number == next) addresses_.rows.emplace_back();
+  addresses_.rows[number] = address;
+}
+
 // Number of steps that an earlier address already covers.
 size_t Selector::resume_from_cache(Location& at, const Place& place) {
   for (size_t steps = place.steps.size(); steps > 0; --steps) {
     if (!needs_address(place.steps[steps - 1], values_)) continue;
-    const auto found = addresses_.find(prefix_key(place, steps));
-    if (found == addresses_.end()) continue;
+    const CachedAddress* const found = find_address(prefix_key(place, steps));
+    if (found == nullptr) continue;
     if (place.value.valid()) consume(place.value);
     for (size_t i = 0; i < steps; ++i) {
       const Step& step = place.steps[i];
       if (step.value.valid() && !values_.is_constant(step.value)) consume(step.value);
     }
-    behind(at, found->second.addr, found->second.region);
+    behind(at, found->addr, found->region);
     return steps;
   }
   return 0;
@@ -249,7 +262,7 @@ size_t Selector::resume_from_cache(Location& at, const Place& place) {
 void Selector::remember(const Place& place, size_t steps, const Location& at) {
   bool by_reference = false;
   for (size_t i = 0; i < steps; ++i) by_reference |= place.steps[i].kind == StepKind::kDeref;
-  addresses_[prefix_key(place, steps)] = {at.addr, at.place.region, by_reference};
+  keep_address(prefix_key(place, steps), {at.addr, at.place.region, by_reference});
 }
 
 // --- fields of instructions ------------------------------------------------------

@@ -39,18 +39,17 @@ Location Selector::locate_target(const Place& place) {
   size_t next = whole ? resume_from_cache(at, place) : 0;
   if (next == 0) {
     const std::string key = prefix_key(place, covered);
-    const auto known = addresses_.find(key);
-    if (known != addresses_.end()) {
+    if (const CachedAddress* const known = find_address(key)) {
       consume(place.value);
       for (size_t i = 0; i < covered; ++i) {
         const Step& step = place.steps[i];
         if (step.value.valid() && !values_.is_constant(step.value)) consume(step.value);
       }
-      behind(at, known->second.addr, known->second.region);
+      behind(at, known->addr, known->region);
     } else {
       at = whole ? root_of(place) : unresolved(place);
       resolve(at, new_register(Class::kA, at.place.result, false));
-      addresses_[key] = {at.addr, at.place.region, false};
+      keep_address(key, {at.addr, at.place.region, false});
     }
     next = covered;
   }

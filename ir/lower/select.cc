@@ -60,7 +60,8 @@ base::Result<Machine> Selector::run() {
 
 void Selector::select_block(uint32_t position) {
   machine_.blocks.emplace_back();
-  addresses_.clear();
+  addresses_.numbers.clear();
+  addresses_.rows.clear();
   pending_.clear();
   const FlowBlock& flow_block = flow_.blocks[position];
   block().handler = flow_block.handler;

@@ -11,7 +11,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "base/result.h"
@@ -57,6 +56,12 @@ class Selector {
     Operand addr;
     Region region;
     bool by_reference = false;  // forgotten at calls
+    bool known = true;
+  };
+  // By prefix_key().
+  struct Addresses {
+    base::ByteTable numbers;
+    std::vector<CachedAddress> rows;
   };
 
   // select.cc
@@ -79,7 +84,7 @@ class Selector {
   void flush_call(const Inst& inst);
   void flush_native(const Inst& inst);
   void materialise(ValueId value);
-  std::vector<ValueId> operands_of(const Inst& inst) const;
+  ValueList operands_of(const Inst& inst) const;
   void count_in_tree(ValueId value, std::vector<ValueId>& counted) const;
   bool reads(ValueId value, const Conflicts& conflicts) const;
   void consume(ValueId value);
@@ -120,6 +125,8 @@ class Selector {
   void step_enter(Location& at);
   void step_dereference(Location& at);
   size_t resume_from_cache(Location& at, const Place& place);
+  const CachedAddress* find_address(const std::string& key) const;
+  void keep_address(const std::string& key, const CachedAddress& address);
   void remember(const Place& place, size_t steps, const Location& at);
   const std::string& prefix_key(const Place& place, size_t steps);  // until the next one
   void behind(Location& at, Operand addr, Region region) const;
@@ -186,8 +193,8 @@ class Selector {
   Machine machine_;
   std::vector<ValueState> states_;
   std::vector<ValueId> pending_;
-  std::vector<uint32_t> local_registers_;                     // kNoNumber for aggregates
-  std::unordered_map<std::string, CachedAddress> addresses_;  // of this block
+  std::vector<uint32_t> local_registers_;  // kNoNumber for aggregates
+  Addresses addresses_;                    // of this block
   std::string prefix_key_;
   uint32_t line_ = 0;
   std::optional<base::Error> error_;

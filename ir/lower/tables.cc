@@ -32,9 +32,10 @@ class Key {
 // `make` gives the entry whose key was written, if it is a new one.
 template <class T, class Make>
 uint32_t Tables::intern(std::vector<T>& table, const Make& make) {
-  const auto [entry, added] = numbers_.try_emplace(key_, static_cast<uint32_t>(table.size()));
-  if (added) table.push_back(make());
-  return entry->second;
+  const uint32_t next = static_cast<uint32_t>(table.size());
+  const uint32_t number = numbers_.add(key_, next);
+  if (number == next) table.push_back(make());
+  return number;
 }
 
 uint32_t Tables::place(const ObjectPlace& place) {

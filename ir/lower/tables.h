@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
+#include "base/byte_table.h"
 #include "ir/bytecode/object.h"
 
 namespace ir::codegen {
@@ -30,7 +30,7 @@ class Tables {
 
   Object& object_;
   std::string key_;  // of the entry that is looked up
-  std::unordered_map<std::string, uint32_t> numbers_;
+  base::ByteTable numbers_;
 };
 
 }  // namespace ir::codegen

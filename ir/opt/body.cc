@@ -8,7 +8,9 @@ namespace ir::opt {
 Constants::Constants(const Pou& pou) : known_(pou.values.size()), bits_(pou.values.size()) {
   for (const Block& block : pou.blocks) {
     for (const Inst& inst : block.insts) {
-      if (inst.op == Op::kConst) set(inst.result, canonical(inst.scalar, inst.imm));
+      if (inst.op != Op::kConst) continue;
+      known_[inst.result.index] = true;
+      bits_[inst.result.index] = canonical(inst.scalar, inst.imm);
     }
   }
 }
@@ -76,6 +78,7 @@ bool is_call(Op op) {
 
 Facts::Facts(const Program& program, const Pou& pou)
     : AliasFacts(program.types), constants(pou), escapes_(pou.locals.size()) {
+  if (pou.locals.empty()) return;
   for (const Block& block : pou.blocks) {
     for (const Inst& inst : block.insts) {
       if (const auto local = exposed_local(inst, pou)) escapes_[*local] = true;

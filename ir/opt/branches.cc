@@ -26,7 +26,7 @@ class Branches {
       changed_ = false;
       for (Block& block : pou_.blocks) straighten(block);
       const bool straightened = changed_;
-      if (straightened || round == 0) remove_unreachable();
+      if (straightened || (round == 0 && unreachable_)) remove_unreachable();
       join_blocks();
       any = any || changed_;
       if (!straightened) return any;
@@ -46,6 +46,7 @@ class Branches {
     position_.assign(pou_.blocks.size(), 0);
     uint32_t next = 0;
     for (const uint32_t b : reverse_post_order(pou_)) position_[b] = ++next;
+    unreachable_ = next != pou_.blocks.size();
     loops_.assign(pou_.blocks.size(), false);
     for (uint32_t b = 0; b < pou_.blocks.size(); ++b) {
       for (const Target& target : pou_.blocks[b].insts.back().targets) {
@@ -233,6 +234,7 @@ class Branches {
   std::vector<bool> handlers_;
   std::vector<uint32_t> position_;  // in reverse post order, as the round began
   std::vector<bool> loops_;         // is jumped to backwards
+  bool unreachable_ = false;        // there are such blocks, as the round began
   bool changed_ = false;
 };
 

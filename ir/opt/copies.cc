@@ -74,7 +74,7 @@ class Copies {
     for (Block& block : pou_.blocks) {
       for (Target& target : block.insts.back().targets) {
         const std::vector<ValueId>& params = pou_.blocks[target.block.index].params;
-        std::vector<ValueId> kept;
+        ValueList kept;
         for (size_t i = 0; i < params.size(); ++i) {
           if (!gone(params[i])) kept.push_back(target.args[i]);
         }

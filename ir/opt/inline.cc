@@ -115,10 +115,12 @@ class Inliner {
   }
 
   void find_candidates() {
-    std::vector<bool> seen(program_.pous.size());
+    std::vector<bool> seen;
     for (const Block& block : pou_.blocks) {
       for (const Inst& inst : block.insts) {
-        if (inst.op != Op::kCallFunction || seen[inst.pou.index]) continue;
+        if (inst.op != Op::kCallFunction) continue;
+        seen.resize(program_.pous.size());
+        if (seen[inst.pou.index]) continue;
         seen[inst.pou.index] = true;
         const Pou& callee = program_.pous[inst.pou.index];
         const uint32_t size = &callee == &pou_ ? 0 : Candidate(program_, callee).size();

@@ -216,8 +216,20 @@ class Loops {
   bool changed_ = false;
 };
 
+// A circle of blocks has a way to a block of no higher number, however they are numbered.
+bool goes_back(const Pou& pou) {
+  for (uint32_t b = 0; b < pou.blocks.size(); ++b) {
+    for (const Target& target : pou.blocks[b].insts.back().targets) {
+      if (target.block.index <= b) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
-bool hoist_invariants(const Program& program, Pou& pou) { return Loops(program, pou).run(); }
+bool hoist_invariants(const Program& program, Pou& pou) {
+  return goes_back(pou) && Loops(program, pou).run();
+}
 
 }  // namespace ir::opt

@@ -51,17 +51,23 @@ class Operations {
     ValueId value;
     uint32_t block = 0;
   };
-  explicit Operations(size_t most) : rows_(std::bit_ceil(2 * most + 1)) {}
-  // The row of the key; without a value when the key is new.
+  explicit Operations(size_t most) : slots_(std::bit_ceil(2 * most + 1), kNobody) {
+    rows_.reserve(most);
+  }
+  // The row of the key, until the next call; without a value when the key is new.
   Row& at(const Key& key) {
-    const size_t mask = rows_.size() - 1;
+    const size_t mask = slots_.size() - 1;
     for (size_t i = hash_of(key) & mask;; i = (i + 1) & mask) {
-      if (!rows_[i].value.valid()) rows_[i].key = key;
-      if (rows_[i].key == key) return rows_[i];
+      if (slots_[i] == kNobody) {
+        slots_[i] = static_cast<uint32_t>(rows_.size());
+        return rows_.emplace_back(Row{key, {}, 0});
+      }
+      if (rows_[slots_[i]].key == key) return rows_[slots_[i]];
     }
   }
 
  private:
+  std::vector<uint32_t> slots_;  // numbers of rows
   std::vector<Row> rows_;
 };
 
@@ -75,9 +81,12 @@ uint32_t hash_of(const Place& place) {
   return hash;
 }
 
-size_t count_insts(const Pou& pou) {
+// Instructions that may have a key.
+size_t count_operations(const Pou& pou) {
   size_t count = 0;
-  for (const Block& block : pou.blocks) count += block.insts.size();
+  for (const Block& block : pou.blocks) {
+    for (const Inst& inst : block.insts) count += inst.result.valid() && inst.op != Op::kLoad;
+  }
   return count;
 }
 
@@ -103,7 +112,7 @@ class Numbers {
         goes_to_memory_(pou.values.size()),
         number_(pou.values.size()),
         same_(pou),
-        operations_(count_insts(pou)),
+        operations_(count_operations(pou)),
         known_at_end_(pou.blocks.size()),
         before_(pou.blocks.size(), kNobody),
         apart_(pou.places.size()) {
@@ -129,7 +138,7 @@ class Numbers {
         known_ = known_at_end_[from];
       }
       for (const Inst& inst : pou_.blocks[b].insts) look_at(inst);
-      const std::vector<Target>& targets = pou_.blocks[b].insts.back().targets;
+      const Targets& targets = pou_.blocks[b].insts.back().targets;
       const bool wanted = std::any_of(targets.begin(), targets.end(), [&](const Target& target) {
         return follows(b, target.block.index);
       });

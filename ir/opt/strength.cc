@@ -36,7 +36,7 @@ class Strength {
  private:
   struct Definition {
     Op op = Op::kConst;
-    std::vector<ValueId> operands;
+    ValueList operands;
   };
 
   // k where the value is 2 to the power of k, k > 0.

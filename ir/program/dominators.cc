@@ -1,37 +1,31 @@
 #include "ir/program/dominators.h"
 
-#include <algorithm>
-
 namespace ir {
 
 // By an explicit stack: blocks come from outside.
 std::vector<uint32_t> reverse_post_order(const Pou& pou) {
-  struct Visit {
-    uint32_t block;
-    size_t next_target;
-  };
-  std::vector<uint32_t> order;
-  order.reserve(pou.blocks.size());
-  std::vector<bool> seen(pou.blocks.size());
-  std::vector<Visit> open;
-  open.reserve(32);
-  open.push_back({0, 0});
-  seen[0] = true;
-  while (!open.empty()) {
-    Visit& visit = open.back();
-    const std::vector<Target>& targets = pou.blocks[visit.block].insts.back().targets;
-    if (visit.next_target == targets.size()) {
-      order.push_back(visit.block);
-      open.pop_back();
+  const size_t count = pou.blocks.size();
+  std::vector<uint32_t> next_target(count);  // 0: not seen yet; else its number, plus 1
+  std::vector<uint32_t> order(count);        // open blocks in front, finished ones from behind
+  size_t open = 1;
+  size_t finished = count;
+  next_target[0] = 1;
+  while (open > 0) {
+    const uint32_t block = order[open - 1];
+    const Targets& targets = pou.blocks[block].insts.back().targets;
+    const uint32_t target = next_target[block] - 1;
+    if (target == targets.size()) {
+      --open;
+      order[--finished] = block;
       continue;
     }
-    const uint32_t next = targets[visit.next_target++].block.index;
-    if (!seen[next]) {
-      seen[next] = true;
-      open.push_back({next, 0});
-    }
+    ++next_target[block];
+    const uint32_t next = targets[target].block.index;
+    if (next_target[next] != 0) continue;
+    next_target[next] = 1;
+    order[open++] = next;
   }
-  std::reverse(order.begin(), order.end());
+  order.erase(order.begin(), order.begin() + static_cast<ptrdiff_t>(finished));
   return order;
 }
 

@@ -94,6 +94,8 @@
 
 #include "base/hash.h"
 #include "base/ids.h"
+#include "base/inline_vector.h"
+#include "base/slim_vector.h"
 #include "ir/program/task_policy.h"
 #include "ir/types/constants.h"
 #include "ir/types/types.h"
@@ -139,6 +141,8 @@ struct Step {
   friend bool operator==(const Step&, const Step&) = default;
 };
 
+using Steps = base::InlineVector<Step, 1>;
+
 struct Place {
   PlaceBase base = PlaceBase::kSelf;
   uint32_t base_index = 0;  // kLocal, kArg
@@ -146,8 +150,8 @@ struct Place {
   ValueId value;            // kPointee, kTarget
   ConstId constant;         // kConst
   TypeId base_type;         // type of the base itself
-  std::vector<Step> steps;
-  TypeId type;  // type of the whole place
+  TypeId type;              // type of the whole place
+  Steps steps;
   friend bool operator==(const Place&, const Place&) = default;
 };
 
@@ -155,28 +159,32 @@ struct Place {
 struct PlaceTag;
 using PlaceId = base::Id<PlaceTag>;
 
+using ValueList = base::InlineVector<ValueId, 2>;
+
 struct Target {
   BlockId block;
-  std::vector<ValueId> args;
+  ValueList args;
 };
+using Targets = base::SlimVector<Target>;
 
+// Small, as a program has more of them than lines.
 struct Inst {
   Op op = Op::kReturn;
   Scalar scalar = Scalar::kBool;
-  ValueId result;  // invalid when there is none
-  std::vector<ValueId> operands;
-  uint64_t imm = 0;  // kConst
+  TrapKind trap = TrapKind::kAssert;
+  ValueId result;     // invalid when there is none
+  uint32_t line = 0;  // 1-based line in Pou::file; 0 for none
   PlaceId place;
   PlaceId place2;       // kCopy source
   ConstId constant;     // kInit; invalid: the type's default
   PouId pou;            // calls of functions and methods
   TypeId type;          // kIsType, kCallReference, kSizeOf
   uint32_t native = 0;  // kCallNative: row of stdlib/native/natives.def
-  int64_t low = 0;      // kCheckRange, kSwitch
+  ValueList operands;
+  uint64_t imm = 0;  // kConst
+  int64_t low = 0;   // kCheckRange, kSwitch
   int64_t high = 0;
-  TrapKind trap = TrapKind::kAssert;
-  std::vector<Target> targets;
-  uint32_t line = 0;  // 1-based line in Pou::file; 0 for none
+  Targets targets;
 };
 
 struct Block {

@@ -175,7 +175,7 @@ class BodyParser {
 
   static bool at_value(const LineReader& line) { return line.peek().starts_with('v'); }
 
-  static void parse_values(LineReader& line, std::vector<ValueId>& values) {
+  static void parse_values(LineReader& line, ValueList& values) {
     if (!at_value(line)) {
       return;
     }

@@ -9,7 +9,7 @@ namespace {
 
 std::string value_name(ValueId value) { return "v" + std::to_string(value.index); }
 
-std::string list(const std::vector<ValueId>& values) {
+std::string list(const ValueList& values) {
   std::string text;
   for (const ValueId value : values) {
     text += (text.empty() ? "" : ", ") + value_name(value);

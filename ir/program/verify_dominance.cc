@@ -29,7 +29,7 @@ std::vector<Definition> find_definitions(const Pou& pou) {
   return definitions;
 }
 
-void add_place_values(const Pou& pou, PlaceId id, std::vector<ValueId>& values) {
+void add_place_values(const Pou& pou, PlaceId id, ValueList& values) {
   if (!id.valid()) {
     return;
   }
@@ -46,12 +46,12 @@ void add_place_values(const Pou& pou, PlaceId id, std::vector<ValueId>& values) 
 
 }  // namespace
 
-std::vector<ValueId> used_values(const Pou& pou, const Inst& inst) {
-  std::vector<ValueId> values = inst.operands;
+ValueList used_values(const Pou& pou, const Inst& inst) {
+  ValueList values = inst.operands;
   add_place_values(pou, inst.place, values);
   add_place_values(pou, inst.place2, values);
   for (const Target& target : inst.targets) {
-    values.insert(values.end(), target.args.begin(), target.args.end());
+    values.insert(values.end(), target.args);
   }
   return values;
 }

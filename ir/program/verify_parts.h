@@ -50,6 +50,6 @@ base::Status verify_calls(const Program& program, const Pou& pou);
 std::string inst_place(const Pou& pou, size_t block, size_t inst);
 
 // Values that an instruction uses, those inside its places included.
-std::vector<ValueId> used_values(const Pou& pou, const Inst& inst);
+ValueList used_values(const Pou& pou, const Inst& inst);
 
 }  // namespace ir

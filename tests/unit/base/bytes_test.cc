@@ -31,7 +31,7 @@ TEST(Bytes, WrittenValuesComeBack) {
 TEST(Bytes, LittleEndian) {
   ByteWriter writer;
   writer.u32(0x04030201);
-  EXPECT_EQ(writer.bytes(), (Bytes{1, 2, 3, 4}));
+  EXPECT_EQ(writer.take(), (Bytes{1, 2, 3, 4}));
 }
 
 TEST(Bytes, ReadingPastTheEndLatches) {
