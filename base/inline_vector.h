@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <initializer_list>
-#include <iterator>
+#include <memory>
 #include <span>
 #include <type_traits>
 
@@ -104,14 +104,14 @@ class InlineVector {
   }
   void grow(size_t wanted) {
     const size_t capacity = std::max<size_t>(wanted, size_t{capacity_} * 2);
-    T* const made = new T[capacity];
+    T* const made = std::allocator<T>().allocate(capacity);
     std::memcpy(static_cast<void*>(made), data(), size_ * sizeof(T));
     release();
     heap_ = made;
     capacity_ = static_cast<uint32_t>(capacity);
   }
   void release() {
-    if (!in_place()) delete[] heap_;
+    if (!in_place()) std::allocator<T>().deallocate(heap_, capacity_);
   }
   void take(InlineVector& other) {
     std::memcpy(static_cast<void*>(this), &other, sizeof *this);

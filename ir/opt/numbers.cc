@@ -43,32 +43,30 @@ uint64_t hash_of(const Key& key) {
   return hash;
 }
 
+struct Operation {
+  Key key;
+  ValueId value;
+  uint32_t block = 0;
+};
+
 // The last value that was computed for each key, and where. Open addressing, of fixed size.
 class Operations {
  public:
-  struct Row {
-    Key key;
-    ValueId value;
-    uint32_t block = 0;
-  };
-  explicit Operations(size_t most) : slots_(std::bit_ceil(2 * most + 1), kNobody) {
-    rows_.reserve(most);
-  }
+  explicit Operations(size_t most) : slots_(std::bit_ceil(2 * most + 1), kNobody) {}
   // The row of the key, until the next call; without a value when the key is new.
-  Row& at(const Key& key) {
+  Operation& at(const Key& key) {
     const size_t mask = slots_.size() - 1;
     for (size_t i = hash_of(key) & mask;; i = (i + 1) & mask) {
-      if (slots_[i] == kNobody) {
-        slots_[i] = static_cast<uint32_t>(rows_.size());
-        return rows_.emplace_back(Row{key, {}, 0});
-      }
-      if (rows_[slots_[i]].key == key) return rows_[slots_[i]];
+      if (slots_[i] != kNobody && rows_[slots_[i]].key != key) continue;
+      if (slots_[i] != kNobody) return rows_[slots_[i]];
+      slots_[i] = static_cast<uint32_t>(rows_.size());
+      return rows_.emplace_back(Operation{key, {}, 0});
     }
   }
 
  private:
   std::vector<uint32_t> slots_;  // numbers of rows
-  std::vector<Row> rows_;
+  std::vector<Operation> rows_;
 };
 
 // Equal for places that are the same, whatever their indices are.
@@ -226,7 +224,7 @@ class Numbers {
 
   void number_constant(const Inst& inst) {
     Key key{Op::kConst, inst.scalar, {}, *facts_.constants[inst.result], 0};
-    Operations::Row& row = operations_.at(key);
+    Operation& row = operations_.at(key);
     if (!row.value.valid()) row.value = inst.result;
     number_[inst.result.index] = row.value.index;
   }
@@ -250,7 +248,7 @@ class Numbers {
     if (!inst.operands.empty()) {
       key.high ^= static_cast<uint64_t>(pou_.values[inst.operands[0].index].scalar) << 56;
     }
-    Operations::Row& row = operations_.at(key);
+    Operation& row = operations_.at(key);
     if (!row.value.valid() || !leads_here(row.block)) {
       row.value = inst.result;
       row.block = block_;

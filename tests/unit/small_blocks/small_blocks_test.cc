@@ -1,6 +1,7 @@
 // The heap of stc, which this program is linked with (but for sanitizers, which have their own).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <new>
@@ -74,6 +75,48 @@ TEST(SmallBlocks, BlocksGoFromThreadToThread) {
     EXPECT_TRUE(is_whole(block));
     ::operator delete(block.bytes);
   }
+}
+
+TEST(SmallBlocks, LargeBlocksAreApartWhileTheyLive) {
+  base::for_each_index(4, 4, 1, [](size_t thread) {
+    std::minstd_rand random(static_cast<unsigned>(thread) + 1);
+    std::vector<Block> live(24);
+    for (int step = 0; step < 600; ++step) {
+      Block& block = live[random() % live.size()];
+      if (block.bytes != nullptr) {
+        base::check(is_whole(block), "nobody else wrote into the block");
+        ::operator delete(block.bytes);
+      }
+      block = make(random() % (size_t{1} << (10 + random() % 11)),
+                   static_cast<unsigned char>(random()));
+    }
+    for (const Block& block : live) {
+      base::check(block.bytes == nullptr || is_whole(block), "nobody else wrote into the block");
+      ::operator delete(block.bytes);
+    }
+  });
+}
+
+TEST(SmallBlocks, WhatLargeBlocksLeaveIsForAllSizes) {
+  constexpr size_t kPart = size_t{400} << 20;  // of addresses; larger than what others left
+  void* parts[3];
+  for (void*& part : parts) part = ::operator new(kPart);
+  const auto* begin = static_cast<unsigned char*>(*std::min_element(parts, parts + 3));
+  for (const size_t part : {0, 2, 1}) ::operator delete(parts[part]);  // the last joins both
+  // What is free in front of them may be joined, too.
+  const auto overlaps = [&](const void* block, size_t size) {
+    const auto* at = static_cast<const unsigned char*>(block);
+    return at < begin + 3 * kPart && at + size > begin;
+  };
+  void* whole = ::operator new(kPart * 5 / 2);
+  EXPECT_TRUE(overlaps(whole, kPart * 5 / 2));
+  ::operator delete(whole);
+  std::vector<void*> small;
+  do {
+    small.push_back(::operator new(15'000));
+  } while (!overlaps(small.back(), 1) && small.size() < 20'000);
+  EXPECT_TRUE(overlaps(small.back(), 1));
+  for (void* block : small) ::operator delete(block);
 }
 
 TEST(SmallBlocks, MemoryThatRunsOutIsStillAnException) {
