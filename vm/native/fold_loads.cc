@@ -46,6 +46,8 @@ class Folder {
       for (const SlotValue& slot : exit.slots) use(slot.value);
     }
     for (const BasicBlock& block : f_.blocks) {
+      for (const Reload& reload : block.reloads) use(reload.value);
+      for (const SlotValue& slot : block.dirty) use(slot.value);
       for (const Val v : block.end.in) use(v);
       for (const std::vector<Val>& args : block.end.args) {
         for (const Val v : args) use(v);
