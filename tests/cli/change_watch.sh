@@ -158,9 +158,24 @@ sed 's/Cycles + 6 + 2/Cycles + 6/' plant/main.st | save plant/main.st
 follow --yes --permanent
 until_said 1 'accepted: it boots next'
 
+# A file that an editor takes away and makes again is never left out of the program.
+end_follow
+follow --yes --permanent --allow-loss
+until_said 1 'what was saved is what runs'
+expect 0 stvm set --dir plc Main.Last=123456
+cp plant/main.st away.st
+rm plant/main.st
+sed 's/Hours := Hours/Hours := 1 * Hours/' plant/pump.st | save plant/pump.st
+sleep 0.4
+sed 's/Cycles + 6/Cycles + 9/' away.st | save plant/main.st
+until_said 1 'accepted: it boots next'
+expect 0 stvm get --dir plc Main.Last
+said '123456'
+grep -qE 'dropped +[1-9]|error\[' watch.out watch.log && fail "without a file that was just away"
+
 # The controller ends, and with it the watch.
 expect 0 stvm stop --dir plc
-sed 's/Cycles + 6/Cycles + 7/' plant/main.st | save plant/main.st
+sed 's/Cycles + 9/Cycles + 7/' plant/main.st | save plant/main.st
 code=0
 wait "$(cat watch.pid)" || code=$?
 rm watch.pid

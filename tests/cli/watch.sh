@@ -105,15 +105,39 @@ save plant/main.st <kept.st
 built 10
 same 'readable again'
 
+# Editors that take a file away and write it anew: nothing is built in between, whatever else is
+# saved. One that stays away is gone (above).
+lines=$(wc -l <watch.log)
+mv plant/pump.st away.st
+sleep 0.3
+[ "$(wc -l <watch.log)" -eq "$lines" ] || fail "built without a file that was just away"
+sed 's/TRUE/(TRUE)/' plant/main.st | save plant/main.st
+sleep 0.2
+[ "$(wc -l <watch.log)" -eq "$lines" ] || fail "built without a file that was just away, for another one"
+mv away.st plant/pump.st
+built 11
+same 'away for a moment, beside another save'
+cp plant/pump.st away.st
+rm plant/pump.st
+{ head -3 away.st && sleep 0.3 && sed 1,3d away.st; } >plant/pump.st
+built 12
+same 'removed and written piece by piece'
+: >plant/pump.st
+sleep 0.3
+cat away.st >plant/pump.st
+built 13
+same 'empty for a moment'
+tail -3 watch.log | grep -qv '^built ' && fail "something was wrong in between"
+
 # The system says what is saved, also in folders that are made later.
 grep -q inotify /proc/"$(cat watch.pid)"/fdinfo/* || fail "polls where the system says what is saved"
 mkdir plant/more
 printf 'FUNCTION Thrice : INT VAR_INPUT x : INT; END_VAR Thrice := 3 * x; END_FUNCTION\n' |
   save plant/more/thrice.st
-built 11
+built 14
 same 'a new folder'
 mv plant/more elsewhere
-built 12
+built 15
 same 'a folder less'
 
 # What the system does not say is looked for, however much else it says.
@@ -125,23 +149,23 @@ done) &
 printf 'FUNCTION Half : INT VAR_INPUT x : INT; END_VAR Half := x / 2; END_FUNCTION\n' >elsewhere/half.st
 sleep 0.3
 ln elsewhere/half.st plant/half.st
-built 13
+built 16
 touch quiet
 same 'a second name, beside a file that is written all the time'
 
 # A link that leads to itself is no source.
 ln -s loop.st plant/loop.st
 sed 's/Hours + 2/Hours + 4/' plant/pump.st | save plant/pump.st
-built 14
+built 17
 same 'beside a link that leads to itself'
 sed 's/Hours + 4/Hours + 2/' plant/pump.st | save plant/pump.st
-built 15
+built 18
 rm plant/loop.st
 
 # What a link leads to is polled.
 cp plant/pump.st linked.st
 ln -s ../linked.st pump.link && mv pump.link plant/pump.st
-built 16
+built 19
 sed 's/Hours + 2/Hours + 5/' linked.st | save linked.st
-built 17
+built 20
 same 'behind a link'

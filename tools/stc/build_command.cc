@@ -24,8 +24,6 @@ constexpr tools::Command kCommand{"build", "PATHS...", "Compiles and links sourc
 int run(const tools::Options& options) {
   auto format = diagnostic_format(options);
   if (!format.ok()) return tools::refuse("stc", format.error());
-  base::Result<Project> project = open_project(options, options.arguments());
-  if (!project.ok()) return tools::refuse("stc", project.error());
   std::shared_ptr<const ir::Image> base_image;
   if (options.has("--base")) {
     base::Result<Version> read = read_image(options.text("--base"));
@@ -36,8 +34,10 @@ int run(const tools::Options& options) {
   BuildOptions build_options{base_image.get(), options.has("--move-all")};
   if (options.has("--watch")) {
     WatchedImage target(options.text("--output"), with_line, base_image);
-    return watch(options, std::move(*project), build_options.move_all, *format, target);
+    return watch(options, build_options.move_all, *format, target);
   }
+  base::Result<Project> project = open_project(options, options.arguments());
+  if (!project.ok()) return tools::refuse("stc", project.error());
   base::Diagnostics diagnostics;
   auto versions = build_resources(*project, build_options, diagnostics);
   report(*project, diagnostics, *format);

@@ -38,6 +38,7 @@ bool is_local(const std::string& folder) {
 
 void FileEvents::end() {
   folders_.clear();
+  begun_.clear();
   if (events_ >= 0) ::close(std::exchange(events_, -1));
 }
 
@@ -80,8 +81,14 @@ bool FileEvents::read_into(std::set<std::string>& files) {
       const auto folder = folders_.find(event.wd);
       if (folder == folders_.end() || event.len == 0 || (event.mask & kOfFolders) != 0) {
         known = false;
-      } else if ((event.mask & IN_CREATE) == 0) {
-        files.insert((std::filesystem::path(folder->second) / name).string());
+        continue;
+      }
+      const std::string file = (std::filesystem::path(folder->second) / name).string();
+      if ((event.mask & IN_CREATE) != 0) {
+        begun_.insert(file);
+      } else {
+        begun_.erase(file);
+        files.insert(file);
       }
     }
   }

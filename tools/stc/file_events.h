@@ -27,6 +27,8 @@ class FileEvents {
   // ones is not known, or there are other folders now. Files that are saved together come together:
   // it waits until nothing has happened for `quiet`, but not for ever.
   std::optional<std::set<std::string>> take(std::chrono::milliseconds quiet);
+  // It has been created and was not closed behind writing when take() looked last.
+  bool is_begun(const std::string& file) const { return begun_.contains(file); }
 
  private:
   void end();
@@ -34,6 +36,7 @@ class FileEvents {
 
   int events_ = -1;
   std::map<int, std::string> folders_;  // by watch
+  std::set<std::string> begun_;
 };
 
 }  // namespace stc

@@ -50,13 +50,10 @@ int follow(const tools::Options& options) {
   }
   base::Result<Version> running = read_image(options.text("--base"));
   if (!running.ok()) return tools::refuse("stc", running.error());
-  base::Result<Project> project = open_project(options, options.arguments());
-  if (!project.ok()) return tools::refuse("stc", project.error());
   WatchedPackages target(STDOUT_FILENO, options.has("--restricted"));
   base::Status begun = target.begin(std::move(running->bytes));
   if (!begun.ok()) return tools::refuse("stc", begun.error());
-  return watch(options, std::move(*project), options.has("--move-all"),
-               base::DiagnosticFormat::kText, target);
+  return watch(options, options.has("--move-all"), base::DiagnosticFormat::kText, target);
 }
 
 int run(const tools::Options& options) {

@@ -30,6 +30,10 @@ constexpr int kRest = 10;
 // Where the system says what is saved, for what it does not know itself.
 constexpr auto kLookRarely = std::chrono::seconds(2);
 constexpr auto kQuiet = std::chrono::milliseconds(4);  // between files that are saved together
+// Editors save by writing another file and renaming it, or remove the old one first: a file that is
+// away, empty or begun is believed to be so when it has stayed so for as long. Until then nothing
+// is built: a program without its variables is not what anybody saved.
+constexpr auto kBelievedGone = std::chrono::seconds(1);
 constexpr auto kLongestLook = std::chrono::seconds(10);
 constexpr const char* kSettings = "stc.toml";
 
@@ -38,18 +42,17 @@ using Next = WatchTarget::Next;
 
 class Watch {
  public:
-  Watch(const tools::Options& options, Project project, bool move_all,
-        base::DiagnosticFormat format, WatchTarget& target)
-      : options_(options),
-        project_(std::move(project)),
-        move_all_(move_all),
-        format_(format),
-        target_(target) {}
+  Watch(const tools::Options& options, bool move_all, base::DiagnosticFormat format,
+        WatchTarget& target)
+      : options_(options), move_all_(move_all), format_(format), target_(target) {}
 
   int run() {
-    watch_folders();
-    stamps_ = look();
-    begin_anew();
+    std::optional<base::Status> opened;
+    while (!opened) {
+      stamps_ = look();
+      opened = open();
+    }
+    if (!opened->ok()) return tools::refuse("stc", opened->error());
     for (;;) {
       const Next next = build();
       tools::keep_large_pieces();  // from now on there are edits
@@ -68,6 +71,12 @@ class Watch {
  private:
   // Every file that a build may read: those of the project, and what has come into its folders.
   Stamps look() const {
+    Stamps found = look_at_folders();
+    add_files_of(project_, found);
+    return found;
+  }
+
+  Stamps look_at_folders() const {
     Stamps found;
     const auto add = [&](const base::Result<std::vector<std::string>>& files) {
       if (!files.ok()) return;
@@ -82,11 +91,14 @@ class Watch {
       add(source_files(path));
       add(importable_files(path, false));
     }
-    for (uint32_t file = 0; file < project_.sources.file_count(); ++file) {
-      const std::string name(project_.sources.file_name(file));
+    return found;
+  }
+
+  static void add_files_of(const Project& project, Stamps& found) {
+    for (uint32_t file = 0; file < project.sources.file_count(); ++file) {
+      const std::string name(project.sources.file_name(file));
       if (!found.contains(name)) found.emplace(name, stamp_of(name));
     }
-    return found;
   }
 
   // Until something has changed, and the project is what the files say now. False: nobody waits
@@ -99,7 +111,9 @@ class Watch {
       const Clock::duration rest =
           told_ ? kLookRarely : std::max<Clock::duration>(kLookEvery, kRest * (looked - begin));
       // However much the system says meanwhile: it does not say everything.
-      for (auto left = rest; left > Clock::duration(0); left = looked + rest - Clock::now()) {
+      for (;;) {
+        const Clock::duration left = std::min(looked + rest, look_at_) - Clock::now();
+        if (left <= Clock::duration::zero()) break;
         const WatchTarget::Rest rested = target_.rest(left, events_.descriptor());
         if (rested == WatchTarget::Rest::kEnd) return false;
         if (rested == WatchTarget::Rest::kOver) break;
@@ -134,9 +148,10 @@ class Watch {
 
   // What the system has said, without a look at all the others.
   bool look_at_events() {
-    const std::optional<std::set<std::string>> files = events_.take(kQuiet);
+    std::optional<std::set<std::string>> files = events_.take(kQuiet);
     if (!files) watch_folders();
     if (!files || broken_) return look_again();
+    for (const auto& [file, since] : away_) files->insert(file);
     const auto begin = Clock::now();
     Stamps now = stamps_;
     for (const std::string& file : *files) {
@@ -158,11 +173,40 @@ class Watch {
   }
 
   bool take(Stamps now, Clock::time_point begin) {
-    if (now == stamps_) return false;
+    look_at_ = Clock::time_point::max();
+    if (awaits(now, begin) || now == stamps_) return false;
     seen_ = begin;
-    const Stamps before = std::exchange(stamps_, std::move(now));
+    Stamps before = std::exchange(stamps_, std::move(now));
     saved_ = save_of(before);
-    if (broken_ || !take_texts(before)) reload();
+    if (!broken_ && take_texts(before)) return true;
+    const std::optional<base::Status> opened = open();
+    if (!opened) {
+      stamps_ = std::move(before);
+      look_at_ = Clock::now() + kLookEvery;
+      return false;
+    }
+    if (!opened->ok()) tools::refuse("stc", opened->error());
+    return true;
+  }
+
+  // Is a file away that may come back?
+  bool awaits(const Stamps& now, Clock::time_point time) {
+    std::map<std::string, Clock::time_point> away;
+    Clock::time_point last = Clock::time_point::min();
+    auto at = now.begin();
+    for (const auto& [path, stamp] : stamps_) {
+      if (stamp.bytes == 0) continue;
+      while (at != now.end() && at->first < path) ++at;
+      const bool there = at != now.end() && at->first == path && at->second.bytes != 0;
+      if (there && !events_.is_begun(path)) continue;
+      const auto known = away_.find(path);
+      const Clock::time_point since = known == away_.end() ? time : known->second;
+      away.emplace(path, since);
+      last = std::max(last, since);
+    }
+    away_ = std::move(away);
+    if (away_.empty() || time - last >= kBelievedGone) return false;
+    look_at_ = last + kBelievedGone;
     return true;
   }
 
@@ -189,6 +233,7 @@ class Watch {
       if (old->second == stamp) continue;
       base::Result<std::string> text = tools::read_text(path);
       if (!text.ok() || text->find('\0') != std::string::npos) return false;
+      if (stamp_of(path) != stamp) return false;
       texts.emplace(path, std::move(*text));
     }
     if (stamps_.size() != before.size()) return false;
@@ -202,18 +247,21 @@ class Watch {
     return saved_files_.size() == texts.size();
   }
 
-  // Settings, or which files there are.
-  void reload() {
+  // Settings, or which files there are. Nullopt: they are being written at this moment.
+  std::optional<base::Status> open() {
     base::Result<Project> project = open_project(options_, options_.arguments());
+    Stamps found = look_at_folders();
+    Stamps known = found;
+    add_files_of(project_, known);
+    if (known != stamps_) return std::nullopt;
     broken_ = !project.ok();
-    if (broken_) {
-      tools::refuse("stc", project.error());
-      return;
-    }
+    if (broken_) return base::Status(project.error());
     project_ = std::move(*project);
+    add_files_of(project_, found);
+    stamps_ = std::move(found);
     watch_folders();
-    stamps_ = look();
     begin_anew();
+    return base::Status(base::Ok{});
   }
 
   void begin_anew() {
@@ -285,6 +333,8 @@ class Watch {
   std::shared_ptr<const ir::Image> base_;  // of build_
   std::unique_ptr<workspace::IncrementalBuild> build_;
   Stamps stamps_;
+  std::map<std::string, Clock::time_point> away_;         // since when
+  Clock::time_point look_at_ = Clock::time_point::max();  // at the latest
   FileEvents events_;
   bool told_ = false;                  // by them, of whatever is written to files of the project
   std::vector<uint32_t> saved_files_;  // since the last build, when it was not begun anew
@@ -301,9 +351,9 @@ void Built::print() const {
   std::fprintf(stderr, "built %s in %.0f ms\n", what.c_str(), ms);
 }
 
-int watch(const tools::Options& options, Project project, bool move_all,
-          base::DiagnosticFormat format, WatchTarget& target) {
-  return Watch(options, std::move(project), move_all, format, target).run();
+int watch(const tools::Options& options, bool move_all, base::DiagnosticFormat format,
+          WatchTarget& target) {
+  return Watch(options, move_all, format, target).run();
 }
 
 }  // namespace stc

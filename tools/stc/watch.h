@@ -55,10 +55,10 @@ class WatchTarget {
   virtual Rest rest(std::chrono::nanoseconds time, int descriptor) = 0;
 };
 
-// Until it is ended by a signal or by the target; an exit code only then, and when the first build
-// cannot even begin. Mistakes in sources and files that cannot be read are reported, and it goes
-// on.
-int watch(const tools::Options& options, Project project, bool move_all,
-          base::DiagnosticFormat format, WatchTarget& target);
+// Of the project that the arguments name. Until it is ended by a signal or by the target; an exit
+// code only then, and when the project cannot be opened at first. Mistakes in sources and files
+// that cannot be read are reported, and it goes on. A file that is away is waited for.
+int watch(const tools::Options& options, bool move_all, base::DiagnosticFormat format,
+          WatchTarget& target);
 
 }  // namespace stc
