@@ -8,6 +8,7 @@
 
 namespace differential {
 
+// `seconds` of processor time at most; a check that waits for ever is ended much later.
 Finding isolated(const std::function<Finding()>& check, unsigned seconds);
 
 }  // namespace differential
