@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "base/wrapped.h"
 #include "frontend/draw/chart_parts.h"
 #include "frontend/draw/pictures.h"
 #include "frontend/draw/shapes.h"
@@ -110,7 +111,7 @@ std::vector<std::string> ChartPicture::condition(const sfc::Transition& transiti
   if (decl.has_priority) {
     head += (head.empty() ? "" : " ") + ("[" + std::to_string(decl.priority) + "]");
   }
-  std::vector<std::string> out = wrapped(text(decl.condition), kWrap);
+  std::vector<std::string> out = base::wrapped(text(decl.condition), kWrap);
   if (!head.empty()) out.insert(out.begin(), head);
   if (out.empty()) out.push_back("?");
   return out;

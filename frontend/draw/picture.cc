@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/wrapped.h"
 #include "frontend/draw/pictures.h"
 #include "frontend/draw/shapes.h"
 
@@ -37,7 +38,7 @@ double heading(Svg& svg, const network::Network& network, size_t number, double 
   double at = y;
   auto comment = [&](const std::string& text) {
     for (const std::string& paragraph : lines_of(text)) {
-      for (const std::string& line : wrapped(paragraph, kCommentColumns)) {
+      for (const std::string& line : base::wrapped(paragraph, kCommentColumns)) {
         svg.text(x, at + 12, line, Type::kComment);
         at += kLineHeight;
       }

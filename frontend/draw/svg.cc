@@ -112,28 +112,6 @@ double column_width(Type type) {
 
 }  // namespace
 
-std::vector<std::string> wrapped(std::string_view text, size_t columns) {
-  std::vector<std::string> out;
-  std::string line;
-  std::string word;
-  auto end_word = [&] {
-    if (word.empty()) return;
-    if (!line.empty() && line.size() + 1 + word.size() > columns)
-      out.push_back(std::exchange(line, {}));
-    line += (line.empty() ? "" : " ") + std::exchange(word, {});
-  };
-  for (char c : text) {
-    if (is_space(c)) {
-      end_word();
-    } else {
-      word += c;
-    }
-  }
-  end_word();
-  if (!line.empty()) out.push_back(line);
-  return out;
-}
-
 double text_columns(std::string_view text) {
   if (!network::is_utf8(text)) return static_cast<double>(text.size());
   double columns = 0;

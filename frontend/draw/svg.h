@@ -53,10 +53,6 @@ class Svg {
   double height_ = 0;
 };
 
-// Broken at blanks into lines of at most so many bytes, but for longer words; blanks and line ends
-// in a row are one blank.
-std::vector<std::string> wrapped(std::string_view text, size_t columns);
-
 // Columns of a text: East Asian characters take two.
 double text_columns(std::string_view text);
 double text_width(std::string_view text, Type type = Type::kMono);

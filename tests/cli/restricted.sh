@@ -1,6 +1,6 @@
 #!/bin/sh
 # D7: the restricted mode refuses edits of a POU's interface, in stc diff, stc package and stvm change; X1: the report names POUs
-# whose code is another one, and says where instances go on with their values under it (case 41).
+# whose code is another one, and says where instances keep their values under it (case 41).
 . "$(dirname "$0")/lib.sh"
 
 cat >v1.st <<'ST'
@@ -13,8 +13,12 @@ sed 's/ IF c.*END_IF//; s/valve : BOOL/valve : BOOL; lamp : BOOL/; s/END_PROGRAM
 
 expect 0 stc diff --restricted v1.st gain.st
 said 'code +Pid'
-said '3 instances go on with their values: outputs may jump'
+said '3 instances keep their values: outputs may jump'
 said 'constant changed'
+sed 's/1\.5/2.5/; s/VAR_INPUT pv : REAL/VAR_INPUT process_value_of_the_loop : DINT/; s/pv/process_value_of_the_loop/g' v1.st >long.st
+expect 0 stc diff v1.st long.st
+said 'process_value_of_the_loop'
+[ "$(awk 'length > 80' out | wc -l)" = 0 ] || fail "the report is wider than 80 columns: $(cat out)"
 expect 0 stc diff v1.st gain.st --format json
 said '"change": *"body"'
 expect 7 stc diff --restricted v1.st input.st

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "base/wrapped.h"
 #include "tools/common/table.h"
 
 namespace tools {
@@ -62,7 +63,7 @@ std::string row_text(const FateRow& row, const LiveValues& live) {
   return text + "\n" + std::string(21, ' ') + rest + "\n";
 }
 
-// "code               Motor  (body; 3 instances go on with their values: outputs may jump)"
+// "code               Motor  (body; 3 instances keep their values: outputs may jump)"
 std::string edit_text(const PouEdit& edit) {
   std::string text = "code";
   text.resize(19, ' ');
@@ -71,12 +72,16 @@ std::string edit_text(const PouEdit& edit) {
   if (!edit.what.empty()) rest += ": " + edit.what;
   if (edit.instances != 0) {
     rest += "; " + std::to_string(edit.instances) +
-            (edit.instances == 1 ? " instance goes" : " instances go") + " on with " +
-            (edit.instances == 1 ? "its" : "their") + " values: outputs may jump";
+            (edit.instances == 1 ? " instance keeps its" : " instances keep their") +
+            " values: outputs may jump";
   }
   rest += ")";
   if (text.size() + 2 + rest.size() <= kWidth) return text + "  " + rest + "\n";
-  return text + "\n" + std::string(21, ' ') + rest + "\n";
+  text += "\n";
+  for (const std::string& line : base::wrapped(rest, kWidth - 21)) {
+    text += std::string(21, ' ') + line + "\n";
+  }
+  return text;
 }
 
 }  // namespace
