@@ -10,8 +10,8 @@
 #include "bench/measure.h"
 
 extern "C" {
-#define PROGRAM(name, source, group, scans) \
-  void name##_scan(int64_t now_ns);         \
+#define PROGRAM(name, source, group, scans, peers) \
+  void name##_scan(int64_t now_ns);                \
   uint32_t name##_checksum();
 #include "bench/programs.def"
 #undef PROGRAM
@@ -105,8 +105,8 @@ bool check_state(const CompareOptions& options, const std::vector<size_t>& tiers
 
 const std::vector<Program>& programs() {
   static const std::vector<Program> kPrograms = {
-#define PROGRAM(name, source, group, scans) \
-  {#name, #source, #group, scans, &name##_scan, &name##_checksum},
+#define PROGRAM(name, source, group, scans, peers) \
+  {#name, #source, #group, scans, peers, &name##_scan, &name##_checksum},
 #include "bench/programs.def"
 #undef PROGRAM
   };

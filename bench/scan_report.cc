@@ -1,5 +1,6 @@
 #include "bench/scan_report.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -33,7 +34,19 @@ std::string mean_row(const std::vector<size_t>& tiers, const std::vector<Result>
   for (size_t tier : tiers) {
     row += "| | **" + number(geometric_mean(results, tier, group), "%.2f") + "** ";
   }
-  return row + "|\n";
+  return row + "| |\n";
+}
+
+// What is aimed at on one program.
+double limit(const Tier& tier, const Program& program) {
+  return tier.against_peers && program.peers != 0 ? std::min(tier.goal, program.peers) : tier.goal;
+}
+
+std::string peer_of(const Tier& tier, const Result& result) {
+  const double peers = result.program->peers;
+  const bool behind =
+      tier.against_peers && peers != 0 && result.tiers[&tier - kTiers].ratio > peers;
+  return behind ? " (peer " + number(peers, "%.2f") + ")" : "";
 }
 
 std::string reasons_of(const std::vector<size_t>& tiers, const std::vector<Result>& results,
@@ -41,13 +54,17 @@ std::string reasons_of(const std::vector<size_t>& tiers, const std::vector<Resul
   std::string page;
   for (size_t tier : tiers) {
     const std::string name = kTiers[tier].name;
-    page += "\n### " + name + ", above " + number(kTiers[tier].goal, "%g") + "\n\n";
+    page += "\n### " + name + ", above " + number(kTiers[tier].goal, "%g") +
+            (kTiers[tier].against_peers ? " or above a peer" : "") + "\n\n";
     std::string rows;
     for (const Result& result : results) {
-      if (!result.tiers[tier].ran || result.tiers[tier].ratio <= kTiers[tier].goal) continue;
+      if (!result.tiers[tier].ran ||
+          result.tiers[tier].ratio <= limit(kTiers[tier], *result.program)) {
+        continue;
+      }
       const auto reason = reasons.find(name + " " + result.program->name);
       rows += "- `" + std::string(result.program->name) + "` " +
-              number(result.tiers[tier].ratio, "%.1f") + ": " +
+              number(result.tiers[tier].ratio, "%.1f") + peer_of(kTiers[tier], result) + ": " +
               (reason == reasons.end() ? "not looked into yet" : reason->second) + "\n";
     }
     page += rows.empty() ? "No program.\n" : rows;
@@ -166,17 +183,19 @@ std::string scan_chart(const std::vector<size_t>& tiers, const std::vector<Resul
 
 std::string scan_page(const std::vector<size_t>& tiers, const std::vector<Result>& results,
                       uint32_t repeats, const Reasons& reasons) {
-  std::string page = "## Scan time\n\nNanoseconds of one scan, median of " +
-                     std::to_string(repeats) +
-                     " repeats, the sides in turn on one pinned core. `ratio`: to C. What the "
-                     "programs do: bench/README.md.\n\n![Ratios per program](performance.svg)\n\n"
-                     "| program | C |";
+  std::string page =
+      "## Scan time\n\nNanoseconds of one scan, median of " + std::to_string(repeats) +
+      " repeats, the sides in turn on one pinned core. `ratio`: to C. What the "
+      "programs do: bench/README.md. `peers`: the ratio of the better one of two other "
+      "compilers to C, of other sources (bench/programs.def).\n\n![Ratios per "
+      "program](performance.svg)\n\n"
+      "| program | C |";
   std::string rule = "| --- | ---: |";
   for (size_t tier : tiers) {
     page += std::string(" ") + kTiers[tier].name + " | ratio |";
     rule += " ---: | ---: |";
   }
-  page += "\n" + rule + "\n";
+  page += " peers |\n" + rule + " ---: |\n";
   for (const Result& result : results) {
     page += "| `" + std::string(result.program->name) + "` | " + ns_text(result.c_ns) + " |";
     for (size_t tier : tiers) {
@@ -184,7 +203,8 @@ std::string scan_page(const std::vector<size_t>& tiers, const std::vector<Result
       page += found.ran ? " " + ns_text(found.ns) + " | " + number(found.ratio, "%.2f") + " |"
                         : std::string(" - | - |");
     }
-    page += "\n";
+    const double peers = result.program->peers;
+    page += (peers == 0 ? "" : " " + number(peers, "%.2f")) + " |\n";
   }
   for (const std::string& group : groups_of(results)) page += mean_row(tiers, results, group);
   page += mean_row(tiers, results, "");
@@ -194,7 +214,9 @@ std::string scan_page(const std::vector<size_t>& tiers, const std::vector<Result
     page += comma + std::string(tier.name) + " " + number(tier.goal, "%g");
     comma = ", ";
   }
-  page += ".\n\n## What was lost where\n\nEvery program above the goal, and where its time goes.\n";
+  page +=
+      "; native on every program at least as fast as `peers`.\n\n## What was lost where\n\n"
+      "Every program above the goal, and where its time goes.\n";
   return page + reasons_of(tiers, results, reasons);
 }
 
