@@ -35,8 +35,16 @@ class ChartBody {
   // --- steps and transitions (chart.cc)
   void read_clock();
   void pass_time(VarId variable, const char* member);
-  void step_times();
+  void find_leaves();
+  bool asks_only(ExprId condition, uint32_t step);
+  void active_steps();
+  void active_step(uint32_t step);
+  void stored_times();
+  void go_on_if(ir::ValueId condition, bool holds, ir::BlockId otherwise);
   void transition(uint32_t number);
+  void fire(uint32_t number);
+  void leave(uint32_t number);
+  void each_fired(const std::function<void(uint32_t)>& then);
   void moves();
   void enter(uint32_t step);
   void starts();
@@ -45,6 +53,10 @@ class ChartBody {
   void unused_actions();
   void action_statements(const ChartAction& action, ir::BlockId next);
   void step_uses();
+  // Does one of the steps that use the action so hold `of` it? Invalid: none uses it so.
+  ir::ValueId any_user(uint32_t action, ActionQualifier qualifier,
+                       const std::function<ir::ValueId(uint32_t)>& of);
+  ir::ValueId either(ir::ValueId a, ir::ValueId b);
   void add_to(const ir::Place& flag, ir::ValueId value);
   void request(uint32_t step, const sfc::Use& use);
   void begin(VarId record, const sfc::Use& use);
@@ -67,26 +79,32 @@ class ChartBody {
   std::vector<VarId> steps_;  // variables of the steps and action records
   std::vector<VarId> actions_;
   VarId clock_;
-  std::vector<uint16_t> qualifiers_;  // by action: bit 1 << ActionQualifier
-  ir::ValueId elapsed_;               // ns since the last call
+  struct User {
+    uint32_t step = 0;
+    ActionQualifier qualifier = ActionQualifier::kN;
+  };
+  std::vector<std::vector<User>> users_;  // by action
+  std::vector<uint16_t> qualifiers_;      // by action: bit 1 << ActionQualifier
+  ir::ValueId elapsed_;                   // ns since the last call
+  // By step: whether its transitions are tried where its time grows, as their conditions ask for
+  // nothing that other steps have, cannot trap and call nothing.
+  std::vector<bool> alone_;
+  bool leaves_at_once_ = false;  // so are all conditions: none sees that a step was left
+
+  std::vector<ir::ValueId> active_;  // by network: one of its steps is
+  std::vector<ir::Place> fired_;     // a bit for each transition
 
   // What is known within one call: an array of BOOL in the frame, all FALSE when the call
   // begins. Numbers of its elements; kNone where nobody asks.
   ir::Place flags_;
   uint32_t flag_count_ = 0;
   using Numbers = std::vector<uint32_t>;
-  Numbers active_;      // by network: one of its steps is
-  Numbers fired_;       // by transition
-  Numbers spent_;       // by step: a transition that leaves it has fired, of several
-  Numbers entered_;     // by step
-  Numbers left_;        // by step
-  Numbers wanted_;      // by action: Q, with a final scan
-  Numbers pulsed_;      // by action: P1
-  Numbers released_;    // by action: P0
-  Numbers reset_;       // by action
-  Numbers late_;        // by action: its statements run behind those that end
-  uint32_t moved_ = 0;  // some transition has fired
-  uint32_t early_ = 0;  // some action has its final scan, or runs by P0
+  Numbers spent_;    // by step that is not alone: a transition that leaves it has fired, of several
+  Numbers entered_;  // by step
+  Numbers left_;     // by step
+  Numbers wanted_;   // by action: Q, with a final scan; of L, D, P
+  std::vector<ir::ValueId> late_;  // by action: its statements run behind those that end
+  ir::ValueId early_;              // some action has its final scan, or runs by P0
 };
 
 }  // namespace frontend

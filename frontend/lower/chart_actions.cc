@@ -50,16 +50,11 @@ void ChartBody::step_uses() {
         const VarId variable = sema_.infer(indicator).variable;
         if (variable.valid()) sema_.mark_written(variable);  // by what the action says
       }
-      body_.set_line(use.decl->span);
       switch (use.decl->qualifier) {
-        case ActionQualifier::kN:
-          add_to(flag(wanted_[use.action]), build_.load(part(steps_[step], "X"), kBool));
-          break;
-        case ActionQualifier::kP1:  // what was entered is active
-          add_to(flag(pulsed_[use.action]), is_raised(entered_[step]));
-          break;
+        case ActionQualifier::kN:  // control()
+        case ActionQualifier::kR:
+        case ActionQualifier::kP1:
         case ActionQualifier::kP0:
-          when(is_raised(left_[step]), [&] { raise(released_[use.action]); });
           break;
         default:
           active = true;
@@ -71,6 +66,20 @@ void ChartBody::step_uses() {
       for (const sfc::Use& use : uses) request(step, use);
     });
   }
+}
+
+ir::ValueId ChartBody::either(ir::ValueId a, ir::ValueId b) {
+  if (!a.valid() || !b.valid()) return a.valid() ? a : b;
+  return build_.binary(ir::Op::kOr, kBool, a, b);
+}
+
+ir::ValueId ChartBody::any_user(uint32_t action, ActionQualifier qualifier,
+                                const std::function<ir::ValueId(uint32_t)>& of) {
+  ir::ValueId any;
+  for (const User& user : users_[action]) {
+    if (user.qualifier == qualifier) any = either(any, of(user.step));
+  }
+  return any;
 }
 
 void ChartBody::add_to(const ir::Place& flag, ir::ValueId value) {
@@ -88,8 +97,6 @@ void ChartBody::request(uint32_t step, const sfc::Use& use) {
   auto elapsed = [&] { return build_.unary(ir::Op::kNot, kBool, still_shorter()); };
   body_.set_line(use.decl->span);
   switch (use.decl->qualifier) {
-    case ActionQualifier::kR:
-      return raise(reset_[use.action]);
     case ActionQualifier::kS:
       return set_flag(part(record, "S"));
     case ActionQualifier::kL:
@@ -100,7 +107,8 @@ void ChartBody::request(uint32_t step, const sfc::Use& use) {
       return add_to(part(record, "DS"), elapsed());
     case ActionQualifier::kP:
       return add_to(flag(wanted_[use.action]), is_raised(entered_[step]));
-    case ActionQualifier::kN:  // step_uses()
+    case ActionQualifier::kN:  // control()
+    case ActionQualifier::kR:
     case ActionQualifier::kP1:
     case ActionQualifier::kP0:
       return;
@@ -136,8 +144,11 @@ void ChartBody::controls() {
 // What steps ask of an action and what they stored, without pulses. `keep`: no R; may be invalid.
 ir::ValueId ChartBody::wants(uint32_t action, ir::ValueId keep) {
   VarId record = actions_[action];
-  ir::ValueId wanted = is_raised(wanted_[action]);
-  auto add = [&](ir::ValueId value) { wanted = build_.binary(ir::Op::kOr, kBool, wanted, value); };
+  ir::ValueId wanted = any_user(action, ActionQualifier::kN, [&](uint32_t step) {
+    return build_.load(part(steps_[step], "X"), kBool);
+  });
+  auto add = [&](ir::ValueId value) { wanted = either(wanted, value); };
+  if (wanted_[action] != sfc::kNone) add(is_raised(wanted_[action]));
   auto stored = [&](const char* member) {
     ir::Place place = part(record, member);
     ir::ValueId value = build_.load(place, kBool);
@@ -160,6 +171,7 @@ ir::ValueId ChartBody::wants(uint32_t action, ir::ValueId keep) {
   if (uses(action, kLimited.qualifier)) {
     add(build_.binary(ir::Op::kAnd, kBool, stored(kLimited.stored), running(kLimited)));
   }
+  if (!wanted.valid()) return build_.constant(kBool, 0);
   return keep.valid() ? build_.binary(ir::Op::kAnd, kBool, wanted, keep) : wanted;
 }
 
@@ -172,28 +184,25 @@ void ChartBody::control(uint32_t number) {
   auto both = [&](ir::ValueId a, ir::ValueId b) {
     return build_.binary(ir::Op::kAnd, kBool, a, b);
   };
-  auto either = [&](ir::ValueId a, ir::ValueId b) {
-    return build_.binary(ir::Op::kOr, kBool, a, b);
-  };
   auto no = [&](ir::ValueId value) { return build_.unary(ir::Op::kNot, kBool, value); };
   body_.set_line(action.decl != nullptr ? action.name.span : tree_[action.target].span);
-  ir::ValueId keep;
-  if (reset_[number] != sfc::kNone) keep = no(is_raised(reset_[number]));
-  auto pulse = [&](uint32_t flag) {
-    ir::ValueId value = is_raised(flag);
-    return keep.valid() ? both(value, keep) : value;
+  auto is_active = [&](uint32_t step) { return build_.load(part(steps_[step], "X"), kBool); };
+  ir::ValueId reset = any_user(number, ActionQualifier::kR, is_active);
+  ir::ValueId keep = reset.valid() ? no(reset) : reset;
+  auto pulse = [&](ActionQualifier qualifier, const Numbers& flags) {
+    ir::ValueId value =
+        any_user(number, qualifier, [&](uint32_t step) { return is_raised(flags[step]); });
+    return value.valid() && keep.valid() ? both(value, keep) : value;
   };
   ir::ValueId q = wants(number, keep);
-  ir::ValueId late = q;
-  if (pulsed_[number] != sfc::kNone) late = either(q, pulse(pulsed_[number]));
+  ir::ValueId late =
+      either(q, pulse(ActionQualifier::kP1, entered_));  // what was entered is active
   ir::Place due = part(record, "FINAL_DUE");
   ir::ValueId early = both(build_.load(due, kBool), no(q));
   build_.store(due, kBool, q);
-  if (released_[number] != sfc::kNone) {
-    ir::ValueId released = pulse(released_[number]);
-    early = either(early, released);
-    if (action.decl == nullptr) late = either(late, released);
-  }
+  ir::ValueId released = pulse(ActionQualifier::kP0, left_);
+  early = either(early, released);
+  if (action.decl == nullptr) late = either(late, released);
   build_.store(part(record, "A"), kBool, either(late, early));
   build_.store(part(record, "Q"), kBool, action.decl != nullptr ? q : late);
   if (action.decl == nullptr) {
@@ -201,9 +210,8 @@ void ChartBody::control(uint32_t number) {
     if (variable) body_.store(*variable, late);
     return;
   }
-  build_.store(flag(late_[number]), kBool, late);
-  ir::Place any = flag(early_);
-  build_.store(any, kBool, either(build_.load(any, kBool), both(early, no(late))));
+  late_[number] = late;
+  early_ = either(early_, both(early, no(late)));
 }
 
 // An action that is a BOOL variable.
@@ -244,7 +252,7 @@ void ChartBody::bodies() {
   ir::BlockId again = build_.new_block();
   ir::BlockId done = build_.new_block();
   ir::ValueId early = build_.add_param(head, kBool);
-  build_.jump(head, {is_raised(early_)});
+  build_.jump(head, {early_});
   build_.start(head);
   for (uint32_t number = 0; number < net_.actions.size(); ++number) {
     const sfc::Action& action = net_.actions[number];
@@ -252,9 +260,8 @@ void ChartBody::bodies() {
     body_.set_line(action.name.span);
     ir::BlockId run = build_.new_block();
     ir::BlockId next = build_.new_block();
-    ir::ValueId late = is_raised(late_[number]);
     ir::ValueId a = build_.load(part(actions_[number], "A"), kBool);
-    ir::ValueId turn = build_.binary(ir::Op::kXor, kBool, late, early);
+    ir::ValueId turn = build_.binary(ir::Op::kXor, kBool, late_[number], early);
     build_.branch(build_.binary(ir::Op::kAnd, kBool, a, turn), run, next);
     build_.start(run);
     action_statements(*action.decl, next);
