@@ -7,6 +7,7 @@ namespace vm::native {
 namespace {
 
 constexpr uint32_t kFreeInLoops = 2;  // registers for what the body computes
+constexpr uint32_t kFarAway = 24;     // a use: what memory holds stays there until then
 }  // namespace
 
 bool Allocator::lives_into(Block block, Val v, const std::vector<Val>& params) const {
@@ -185,6 +186,15 @@ void Allocator::choose_for_loop(Block block, Snapshot& state) {
   std::erase_if(state, [&](const Held& h) { return h.reg < 0 && is_constant(h.v); });
 }
 
+// The variable whose memory holds a parameter on every way here; kNone: none does.
+uint32_t Allocator::home_of_parameter(Val p, const Snapshot& state) const {
+  if (f_.values[p].bits == 0) return kNone;
+  const auto home = static_cast<uint32_t>(f_.values[p].bits - 1);
+  const bool taken =
+      std::any_of(state.begin(), state.end(), [&](const Held& held) { return held.home == home; });
+  return taken ? kNone : home;
+}
+
 // In the register of an argument that ends here, or in any other.
 void Allocator::place_parameters(Block block, Snapshot& state) {
   uint32_t used[2] = {0, 0};
@@ -199,8 +209,10 @@ void Allocator::place_parameters(Block block, Snapshot& state) {
     const bool fl = floating(p);
     const uint32_t room =
         f_.blocks[block].head ? count_[fl] - std::min(count_[fl], kFreeInLoops) : count_[fl];
+    const uint32_t home = home_of_parameter(p, state);
+    const bool waits = home != kNone && next_use(p, position_) > position_ + kFarAway;
     int reg = -1;
-    if (placed[fl] < room) {
+    if (placed[fl] < room && !waits) {
       for (const Pred& pred : preds(block)) {
         const Val arg = f_.blocks[pred.block].end.args[pred.target][i];
         for (const Held& held : ends_[pred.block]) {
@@ -213,11 +225,12 @@ void Allocator::place_parameters(Block block, Snapshot& state) {
         if ((used[fl] >> r & 1) == 0) reg = static_cast<int>(r);
       }
     }
-    Held held{p, static_cast<int8_t>(reg), false, false, kNone, kNone};
+    Held held{p, static_cast<int8_t>(reg), false, false, home, kNone};
+    held.clean = home != kNone && !f_.variables[home].boolean;
     if (reg >= 0) {
       used[fl] |= 1u << reg;
       ++placed[fl];
-    } else {
+    } else if (home == kNone) {
       held.slot = spill_slot(p);
       held.saved = true;
     }

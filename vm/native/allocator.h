@@ -81,6 +81,7 @@ class Allocator {
   Held met(Val v, Block block);
   static void keep_homes_of_reloads(const BasicBlock& block, Snapshot& state);
   void choose_for_loop(Block block, Snapshot& state);
+  uint32_t home_of_parameter(Val p, const Snapshot& state) const;
   void place_parameters(Block block, Snapshot& state);
   void stamp(const Snapshot& snapshot);
   const Held* stamped(Val v) const;

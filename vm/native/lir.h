@@ -151,7 +151,7 @@ struct Value {
   bool floating = false;
   uint8_t width = 0;
   bool constant = false;
-  uint64_t bits = 0;      // of a constant
+  uint64_t bits = 0;      // of a constant; of a parameter 1 + the variable that holds it, too, or 0
   uint32_t node = kNone;  // that makes it; kNone: a block parameter
   Block block = 0;
 };
