@@ -3,6 +3,7 @@
 
 #include "frontend/sema/folder.h"
 #include "frontend/sema/operators.h"
+#include "ir/types/not_a_number.h"
 
 namespace frontend {
 
@@ -67,6 +68,7 @@ std::optional<Constant> Folder::real_binary(const Expr& expr, double a, double b
                   std::string(operator_text(expr.binary)) + " is not defined for reals");
       return std::nullopt;
   }
+  value = ir::with_nan_of(value, a, b);
   Traits traits = traits_of(sema_.program.types, result.type);
   if (result.flex == Flex::kNone && traits.duration) {
     if (!(std::fabs(value) < 9.2e18)) {

@@ -3,6 +3,7 @@
 
 #include "ir/lower/opcodes.h"
 #include "ir/lower/select.h"
+#include "ir/types/not_a_number.h"
 
 namespace ir::codegen {
 namespace {
@@ -94,7 +95,8 @@ void Selector::compute(const Inst& inst, Operand dest) {
 void Selector::compute_binary(const Inst& inst, Operand dest) {
   ValueId left = inst.operands[0];
   ValueId right = inst.operands[1];
-  if (commutes(inst.op) && values_.is_constant(left) && !values_.is_constant(right)) {
+  if (commutes(inst.op) && values_.is_constant(left) && !values_.is_constant(right) &&
+      !ir::is_nan(inst.scalar, values_.constant_bits(left))) {
     std::swap(left, right);
   }
   const Operand b = use(left);

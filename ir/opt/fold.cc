@@ -1,22 +1,15 @@
 // Constant folding with the evaluator's own operations, and identities that hold for every value.
-// What traps is left to run. A float that is not a number is left, too: which one comes out
-// is the machine's choice.
+// What traps is left to run. A float that is not a number is left, too: as text there is but one.
 #include <array>
-#include <bit>
-#include <cmath>
 
 #include "ir/opt/body.h"
 #include "ir/opt/passes.h"
 #include "ir/program/dominators.h"
 #include "ir/program/eval_scalar.h"
+#include "ir/types/not_a_number.h"
 
 namespace ir::opt {
 namespace {
-
-bool is_nan(Scalar scalar, uint64_t bits) {
-  if (scalar == Scalar::kF32) return std::isnan(std::bit_cast<float>(static_cast<uint32_t>(bits)));
-  return scalar == Scalar::kF64 && std::isnan(std::bit_cast<double>(bits));
-}
 
 class Folder {
  public:

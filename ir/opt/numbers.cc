@@ -96,9 +96,10 @@ struct Known {
   uint32_t block = 0;
 };
 
-bool commutes(Op op) {
-  return op == Op::kAdd || op == Op::kMul || op == Op::kAnd || op == Op::kOr || op == Op::kXor ||
-         op == Op::kEq || op == Op::kNe;
+// Of two floats that are no numbers the first one comes out (ir/types/not_a_number.h).
+bool commutes(Op op, Scalar scalar) {
+  if (op == Op::kAdd || op == Op::kMul) return !is_float(scalar);
+  return op == Op::kAnd || op == Op::kOr || op == Op::kXor || op == Op::kEq || op == Op::kNe;
 }
 
 class Numbers {
@@ -239,7 +240,7 @@ class Numbers {
             static_cast<uint64_t>(inst.low),
             static_cast<uint64_t>(inst.high)};
     for (size_t i = 0; i < inst.operands.size(); ++i) key.operands[i] = number(inst.operands[i]);
-    if (commutes(inst.op) && key.operands[0] > key.operands[1]) {
+    if (commutes(inst.op, inst.scalar) && key.operands[0] > key.operands[1]) {
       std::swap(key.operands[0], key.operands[1]);
     }
     if (inst.op == Op::kSizeOf) key.low = inst.type.index;

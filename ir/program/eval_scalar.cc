@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 
+#include "ir/types/not_a_number.h"
+
 namespace ir {
 namespace {
 
@@ -81,13 +83,13 @@ template <class Float>
 uint64_t float_binary(Op op, Float a, Float b) {
   switch (op) {
     case Op::kAdd:
-      return from_float(static_cast<Float>(a + b));
+      return from_float(with_nan_of(static_cast<Float>(a + b), a, b));
     case Op::kSub:
-      return from_float(static_cast<Float>(a - b));
+      return from_float(with_nan_of(static_cast<Float>(a - b), a, b));
     case Op::kMul:
-      return from_float(static_cast<Float>(a * b));
+      return from_float(with_nan_of(static_cast<Float>(a * b), a, b));
     case Op::kDiv:
-      return from_float(static_cast<Float>(a / b));
+      return from_float(with_nan_of(static_cast<Float>(a / b), a, b));
     case Op::kMin:
       return from_float(b < a ? b : a);
     case Op::kMax:
@@ -111,7 +113,7 @@ uint64_t float_unary(Op op, Float a) {
     case Op::kAbs:
       return from_float(std::fabs(a));
     default:
-      return from_float(std::sqrt(a));
+      return from_float(with_nan_of(std::sqrt(a), a, a));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ir/types/not_a_number.h"
 #include "vm/exec/step.h"
 
 namespace vm {
@@ -13,7 +14,14 @@ namespace vm {
   STC_BINARY(SUB_##suffix, T, T, T, Wide<T>(b) - Wide<T>(c)) \
   STC_BINARY(MUL_##suffix, T, T, T, Wide<T>(b) * Wide<T>(c))
 STC_WORDS(SUMS)
-STC_FLOATS(SUMS)
+
+#define FLOATS(suffix, T)                                         \
+  STC_BINARY(ADD_##suffix, T, T, T, ir::with_nan_of(b + c, b, c)) \
+  STC_BINARY(SUB_##suffix, T, T, T, ir::with_nan_of(b - c, b, c)) \
+  STC_BINARY(MUL_##suffix, T, T, T, ir::with_nan_of(b* c, b, c))  \
+  STC_BINARY(DIV_##suffix, T, T, T, ir::with_nan_of(b / c, b, c)) \
+  STC_UNARY(SQRT_##suffix, T, T, ir::with_nan_of(std::sqrt(b), b, b))
+STC_FLOATS(FLOATS)
 
 #define NEGATION(suffix, T) STC_UNARY(NEG_##suffix, T, T, Wide<T>(0) - Wide<T>(b))
 STC_WORDS(NEGATION)
@@ -26,11 +34,6 @@ STC_UNARY(NEG_F64, double, double, -b)
 STC_SIGNED(ABSOLUTE)
 STC_UNARY(ABS_F32, float, float, std::fabs(b))
 STC_UNARY(ABS_F64, double, double, std::fabs(b))
-STC_UNARY(SQRT_F32, float, float, std::sqrt(b))
-STC_UNARY(SQRT_F64, double, double, std::sqrt(b))
-
-STC_BINARY(DIV_F32, float, float, float, b / c)
-STC_BINARY(DIV_F64, double, double, double, b / c)
 
 // The divisor -1 is apart: most negative / -1 wraps here, but faults in the processor.
 template <class T>

@@ -1,4 +1,7 @@
 // Floating point.
+#include <bit>
+
+#include "ir/types/not_a_number.h"
 #include "vm/native/arm64/emitter.h"
 
 namespace vm::native::arm64 {
@@ -31,8 +34,17 @@ Condition float_condition_of(Cond cond) {
 void Emitter::floating(const Node& n, const Step& step) {
   const Place& a = step.in[0];
   const auto to = [&] { return float_register(step.result); };
+  // What is no number is made of the operands: they must be there still.
+  const auto result_beside = [&](uint8_t x, uint8_t y) {
+    return to() == x || to() == y ? kFloatScratch : to();
+  };
   const auto binary = [&](FloatBinary op) {
-    a_.float_binary(op, to(), float_register(a), float_register(step.in[1]), n.width);
+    const uint8_t x = float_register(a);
+    const uint8_t y = float_register(step.in[1]);
+    const uint8_t result = result_beside(x, y);
+    a_.float_binary(op, result, x, y, n.width);
+    settle_nan(result, x, y, n.width);
+    if (result != to()) a_.float_move(to(), result);
   };
   const auto unary = [&](FloatUnary op) { a_.float_unary(op, to(), float_register(a), n.width); };
   switch (n.op) {
@@ -56,8 +68,13 @@ void Emitter::floating(const Node& n, const Step& step) {
       return unary(FloatUnary::kNeg);
     case Op::kFAbs:
       return unary(FloatUnary::kAbs);
-    case Op::kFSqrt:
-      return unary(FloatUnary::kSqrt);
+    case Op::kFSqrt: {
+      const uint8_t result = result_beside(float_register(a), float_register(a));
+      a_.float_unary(FloatUnary::kSqrt, result, float_register(a), n.width);
+      settle_nan(result, float_register(a), float_register(a), n.width);
+      if (result != to()) a_.float_move(to(), result);
+      return;
+    }
     case Op::kFSelect:
       test_bool(integer_register(a));
       return a_.float_select(Condition::kNotEqual, to(), float_register(step.in[1]),
@@ -74,6 +91,37 @@ void Emitter::floating(const Node& n, const Step& step) {
       return a_.float_to_bits(integer_register(step.result), float_register(a), n.width);
     default:
       return a_.trap();
+  }
+}
+
+// The machine prefers a signalling NaN to the first one, and makes a positive one by itself. The
+// rule: ir/types/not_a_number.h.
+void Emitter::settle_nan(uint8_t result, uint8_t a, uint8_t b, uint8_t width) {
+  const NanStub stub{a_.label(), a_.label(), result, a, b, width};
+  a_.float_compare(result, result, width);
+  a_.jump_if(Condition::kOverflow, stub.label);
+  a_.bind(stub.back);
+  nan_stubs_.push_back(stub);
+}
+
+void Emitter::nan_stubs() {
+  for (const NanStub& stub : nan_stubs_) {
+    const Label not_a = a_.label();
+    a_.bind(stub.label);
+    a_.float_compare(stub.a, stub.a, stub.width);
+    a_.jump_if(Condition::kNoOverflow, not_a);
+    a_.float_binary(FloatBinary::kAdd, stub.result, stub.a, stub.a, stub.width);
+    a_.jump(stub.back);
+    a_.bind(not_a);
+    if (stub.b != stub.a) {  // if that is none, the machine has taken it
+      a_.float_compare(stub.b, stub.b, stub.width);
+      a_.jump_if(Condition::kOverflow, stub.back);
+    }
+    const bool single = stub.width == 4;
+    a_.move_imm(kScratch, single ? std::bit_cast<uint32_t>(ir::default_nan<float>())
+                                 : std::bit_cast<uint64_t>(ir::default_nan<double>()));
+    a_.bits_to_float(stub.result, kScratch, stub.width);
+    a_.jump(stub.back);
   }
 }
 

@@ -99,6 +99,7 @@ void Emitter::function() {
   table_stubs_.clear();
   stops_.clear();
   call_stubs_.clear();
+  nan_stubs_.clear();
   inlined_.clear();
   for (size_t i = 0; i < f_.blocks.size(); ++i) blocks_.push_back(a_.label());
   for (size_t i = 0; i < f_.inlined.size(); ++i) inlined_.push_back(a_.label());
@@ -364,6 +365,7 @@ void Emitter::stubs() {
     a_.move_imm(kFuelRegister, 1);
     leave_at_side(side);
   }
+  nan_stubs();
   for (uint32_t i = 0; i < inlined_.size(); ++i) {
     if (f_.inlined[i].leaves) activation(i);
   }

@@ -64,6 +64,14 @@ class Emitter {
     uint32_t side;
     uint32_t exit;
   };
+  struct NanStub {  // a float whose bits this machine would choose otherwise
+    Label label;
+    Label back;
+    uint8_t result;
+    uint8_t a;
+    uint8_t b;
+    uint8_t width;
+  };
 
   // emitter.cc: blocks, moves, exits
   void function();
@@ -120,6 +128,8 @@ class Emitter {
   void floating(const Node& node, const Step& step);
   void float_compare(const Node& node, const Step& step);
   void float_to_int(const Node& node, const Step& step);
+  void settle_nan(uint8_t result, uint8_t a, uint8_t b, uint8_t width);
+  void nan_stubs();
 
   // emit_call.cc
   void call(const Node& node);
@@ -152,7 +162,8 @@ class Emitter {
   std::vector<TableStub> table_stubs_;
   std::vector<std::pair<Label, uint32_t>> stops_;  // a helper that trapped: its unit
   std::vector<CallStub> call_stubs_;               // out of fuel at a call
-  std::vector<Label> inlined_;                     // by Function::inlined: makes the activation
+  std::vector<NanStub> nan_stubs_;
+  std::vector<Label> inlined_;  // by Function::inlined: makes the activation
   Label leave_ = 0;
 };
 
