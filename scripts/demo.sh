@@ -9,7 +9,8 @@ cleanup() {
   "$bin/stvm" stop --dir "$state/plc" >/dev/null 2>&1 || true
   rm -rf "$state"
 }
-trap cleanup EXIT INT TERM
+trap cleanup EXIT
+trap 'exit 1' HUP INT PIPE TERM
 
 bold='' plain=''
 if [ -t 1 ] && [ -z "${NO_COLOR:-}" ]; then
