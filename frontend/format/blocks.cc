@@ -25,25 +25,49 @@ Outline Outliner::run() {
   return std::move(out_);
 }
 
+namespace {
+
+// The first word of each pragma in front of token `i`.
+template <class Visit>
+void for_each_pragma(const Text& text, uint32_t i, Visit visit) {
+  const Gap& gap = text.gap(i);
+  for (uint32_t p = gap.first; p < gap.first + gap.count; ++p) {
+    const Piece& piece = text.piece(p);
+    if (piece.kind != PieceKind::kPragma) continue;
+    std::string_view word = text.piece_text(piece).substr(1);
+    word.remove_prefix(std::min(word.find_first_not_of(" \t"), word.size()));
+    visit(word.substr(0, word.find_first_of(" \t}(")));
+  }
+}
+
+bool begins_other_branch(std::string_view word) {
+  return ir::same_name(word, "ELSE") || ir::same_name(word, "ELSIF");
+}
+
+}  // namespace
+
 // Branches of conditional compilation begin with the same open blocks, as only one of them counts.
 void Outliner::follow_conditions() {
-  const Gap& gap = text_.gap(at_);
-  for (uint32_t p = gap.first; p < gap.first + gap.count; ++p) {
-    const Piece& piece = text_.piece(p);
-    if (piece.kind != PieceKind::kPragma) continue;
-    std::string_view word = text_.piece_text(piece).substr(1);
-    word.remove_prefix(std::min(word.find_first_not_of(" \t"), word.size()));
-    word = word.substr(0, word.find_first_of(" \t}("));
+  for_each_pragma(text_, at_, [this](std::string_view word) {
     if (ir::same_name(word, "IF")) {
       if (conditions_.size() < base::kMaxNesting) conditions_.push_back(blocks_);
     } else if (conditions_.empty()) {
-      continue;
-    } else if (ir::same_name(word, "ELSE") || ir::same_name(word, "ELSIF")) {
+      return;
+    } else if (begins_other_branch(word)) {
       blocks_ = conditions_.back();
     } else if (ir::same_name(word, "END_IF")) {
       conditions_.pop_back();
     }
-  }
+  });
+}
+
+// Does a branch end in front of token `i`?
+bool Outliner::ends_branch(uint32_t i) const {
+  bool ends = false;
+  for_each_pragma(text_, i, [&](std::string_view word) {
+    ends = ends || begins_other_branch(word) || ir::same_name(word, "END_IF");
+  });
+  return ends;
 }
 
 void Outliner::push(TokenKind end, BlockKind kind, uint32_t inner) {
