@@ -16,7 +16,7 @@ serve plc first.img
 folders() { find tmp -name running.img | grep -vc stvm-notes || true; }
 
 watch() {
-  "$bin/stvm" change --watch --yes main.st --dir plc >"$1.log" 2>&1 </dev/null &
+  env ${preload:+"LD_PRELOAD=$preload"} "$bin/stvm" change --watch --yes main.st --dir plc >"$1.log" 2>&1 </dev/null &
   echo $! >"$1.pid"
   for _ in $(seq 300); do
     grep -q 'what was saved is what runs' "$1.log" && return 0
@@ -41,3 +41,14 @@ rm living.pid
 expect 0 stvm change --dry-run next.st --dir plc
 [ "$(folders)" -eq 0 ] || fail "left: $(find tmp)"
 [ "$(cat tmp/stvm-notes/running.img)" = mine ] || fail "took what is not its own"
+
+# Where files cannot be locked a folder is made all the same, and none is taken for one that was left.
+preload=$2/tests/libno_locks.so
+ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}verify_asan_link_order=0
+export ASAN_OPTIONS
+[ -e "$preload" ] || fail "no $preload"
+watch unlocked
+[ "$(folders)" -eq 1 ] || fail "no folder without locks"
+expect 0 env LD_PRELOAD="$preload" "$bin/stvm" change --dry-run next.st --dir plc
+[ "$(folders)" -eq 1 ] || fail "the folder of a tool that lives, without locks: $(find tmp)"
+kill -0 "$(cat unlocked.pid)" || fail "the other watch ended"
