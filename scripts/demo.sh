@@ -25,6 +25,15 @@ step() {
 stc() { "$bin/stc" "$@"; }
 stvm() { "$bin/stvm" "$@" --dir "$state/plc"; }
 count() { stvm get "$1" | sed 's/.*=//'; }
+# The last lines of what a command says, whose beginning was shown before.
+tail_of() {
+  printf '%s$ %s | tail -2%s\n' "$bold" "$*" "$plain"
+  "$@" | tail -2
+}
+missed() {
+  stvm status --format json | tr ',{' '\n\n' | sed -n 's/.*"missed":\([0-9]*\).*/\1/p' |
+    awk '{sum += $1} END {print sum + 0}'
+}
 
 counters='BottlesInfed BottlesFilled BottlesCapped Machine.Scans'
 
@@ -43,6 +52,7 @@ step stvm watch BottlesInfed BottlesFilled BottlesCapped TankLevel Machine.Blink
   --interval 5000 --count 7
 
 say "3. Version 2: a reject station, soft start in 13 drives, a wider counter, another recipe"
+before=$(missed)
 filled=$(count BottlesFilled)
 scans=$(count Machine.Scans)
 step stvm change examples/bottling_line_v2 --yes --allow-loss
@@ -60,12 +70,12 @@ step stvm undo
 # shellcheck disable=SC2086
 step stvm watch $counters --interval 1000 --count 3
 
-missed=$(stvm status --format json | tr ',{' '\n\n' | sed -n 's/.*"missed":\([0-9]*\).*/\1/p' |
-  awk '{sum += $1} END {print sum + 0}')
-say "Scans missed from the first to the last: $missed"
+after=$(missed)
+say "Scans missed by the change and its undo: $((after - before)) (and $before before them)"
 
 # kill -9 in the place of a power cut: the process is gone at whatever instruction it is.
 power_cut() {
+  printf '%s$ kill -9 %s%s\n' "$bold" "$plc" "$plain"
   kill -9 "$plc"
   wait "$plc" 2>/dev/null || true
   echo "(the process is gone)"
@@ -81,7 +91,7 @@ power_on() {
 }
 
 say "6. Version 2 again, and the power goes while it is on trial: what was accepted boots"
-stvm change examples/bottling_line_v2 --yes --allow-loss | tail -2
+tail_of stvm change examples/bottling_line_v2 --yes --allow-loss
 sleep 2
 step stvm get TotalBottles
 power_cut
@@ -90,7 +100,7 @@ step stvm status | head -8
 step stvm get TotalBottles
 
 say "7. Version 2, accepted, and the power goes: version 2 boots, with its retained values"
-stvm change examples/bottling_line_v2 --yes --allow-loss | tail -2
+tail_of stvm change examples/bottling_line_v2 --yes --allow-loss
 step stvm accept
 sleep 2
 power_cut
