@@ -110,8 +110,8 @@ struct Dispatch {
 };
 
 // The dispatches that happen, those behind jumps too.
-std::vector<Dispatch> cover(const Pou& pou, const Table& table) {
-  const std::vector<uint32_t> chosen = vm::choose_fusions(pou.line, table);
+std::vector<Dispatch> cover(const Pou& pou, const Table& table, const vm::FusionTree& tree) {
+  const std::vector<uint32_t> chosen = vm::choose_fusions(pou.line, tree);
   std::vector<bool> seen(pou.line.size() + 1, false);
   std::vector<uint32_t> open;
   std::vector<Dispatch> out;
@@ -150,13 +150,14 @@ struct Round {
 Round try_table(const std::vector<Code>& codes, const Table& table) {
   Round out;
   out.used.resize(table.size(), 0);
+  const vm::FusionTree tree(table);
   for (const Code& code : codes) {
     std::vector<std::vector<Dispatch>> covers;
     double left = 1e-9;
     for (const Pou& pou : code.pous) {
       covers.emplace_back();
       if (pou.weight.empty() || pou.weight[0] == 0) continue;
-      covers.back() = cover(pou, table);
+      covers.back() = cover(pou, table, tree);
       for (const Dispatch& d : covers.back()) left += pou.weight[d.unit];
     }
     out.left.push_back(left);

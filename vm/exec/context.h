@@ -87,6 +87,7 @@ struct Context {
   TryRecord* tries_end = nullptr;
   Trap caught;                  // last
   bool trap_has_place = false;  // `trap` says already where it was
+  bool trapped = false;         // since it began: `trap` or `caught` is not empty
 };
 
 #define STC_HANDLER_ARGS                                                \

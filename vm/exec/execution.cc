@@ -33,6 +33,7 @@ bool catch_trap(Context& ctx) {
   if (ctx.try_top == ctx.tries_begin || !ir::can_be_caught(ctx.trap.kind)) return false;
   const TryRecord& record = *--ctx.try_top;
   place_trap(ctx);
+  ctx.trapped = true;
   ctx.caught = ctx.trap;
   ctx.trap = {};
   ctx.trap_has_place = false;
@@ -82,22 +83,25 @@ void Execution::start(const Generation& generation, const CodeTable& code, uint8
                       uint32_t id, uint32_t stack, int64_t task_time_ns) {
   const InstanceEntry& instance = generation.instances()[id];
   base::check(instance.data != 0, "an execution starts with a live program instance");
-  call(generation, code, memory, instance.pou, stack);
+  begin(generation, code, memory, instance.pou, stack);
   state_->instance = id;
   state_->self = memory + instance.data;
   state_->task_time_ns = task_time_ns;
 }
 
 void Execution::call(const Generation& generation, uint8_t* memory, uint32_t pou, uint32_t frame) {
-  call(generation, *generation.code(), memory, pou, frame);
+  begin(generation, *generation.code(), memory, pou, frame);
+  state_->instance = 0;
+  state_->self = memory;
+  state_->task_time_ns = 0;
 }
 
-void Execution::call(const Generation& generation, const CodeTable& code, uint8_t* memory,
-                     uint32_t pou, uint32_t frame) {
+// What stays the same from scan to scan, and what traps leave behind.
+STC_COLD void Execution::prepare(const Generation& generation, const CodeTable& code,
+                                 uint8_t* memory) {
   Context& ctx = *state_;
   ctx.generation = &generation;
   ctx.native = code.native.get();
-  ctx.entries = 0;
   ctx.memory = memory;
   ctx.consts = memory + generation.pool_offset();
   ctx.pous = code.pous.data();
@@ -105,20 +109,28 @@ void Execution::call(const Generation& generation, const CodeTable& code, uint8_
   ctx.instance_count = static_cast<uint32_t>(generation.instances().size());
   ctx.bounds = generation.bounds().data();
   ctx.ranges = generation.ranges().data();
+  ctx.caught = {};
+  ctx.trap = {};
+  ctx.trap_has_place = false;
+  prepared_ = code.number.value;
+}
+
+inline void Execution::begin(const Generation& generation, const CodeTable& code, uint8_t* memory,
+                             uint32_t pou, uint32_t frame) {
+  Context& ctx = *state_;
+  const bool prepared = prepared_ == code.number.value && ctx.memory == memory && !ctx.trapped;
+  if (!prepared) [[unlikely]]
+    prepare(generation, code, memory);
+  ctx.trapped = false;
+  ctx.entries = 0;
   ctx.call = ctx.calls_begin;
   ctx.exposed = nullptr;
   ctx.exposure_count = 0;
   ctx.try_top = ctx.tries_begin;
-  ctx.caught = {};
-  ctx.trap = {};
-  ctx.trap_has_place = false;
   ctx.exit = Exit::kDone;
   ctx.pou = pou;
-  ctx.instance = 0;
-  ctx.pc = code.pous[pou].entry;
+  ctx.pc = ctx.pous[pou].entry;
   ctx.frame = memory + frame;
-  ctx.self = memory;
-  ctx.task_time_ns = 0;
   fuel_used_ = 0;
 }
 
@@ -144,7 +156,10 @@ Exit Execution::run(uint64_t fuel) {
   }
   ctx.running = true;
   dispatch(ctx);
-  if (ctx.exit == Exit::kTrap) place_trap(ctx);
+  if (ctx.exit == Exit::kTrap) {
+    place_trap(ctx);
+    ctx.trapped = true;
+  }
   fuel_used_ += given - ctx.fuel;
   return ctx.exit;
 }

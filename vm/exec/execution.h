@@ -97,14 +97,16 @@ class Execution {
   uint64_t machine_entries() const;  // how often the interpreter went on in machine code
 
  private:
-  void call(const Generation& generation, const CodeTable& code, uint8_t* memory, uint32_t pou,
-            uint32_t frame);
+  void prepare(const Generation& generation, const CodeTable& code, uint8_t* memory);
+  void begin(const Generation& generation, const CodeTable& code, uint8_t* memory, uint32_t pou,
+             uint32_t frame);
 
   std::vector<CallRecord> calls_;
   std::vector<Exposure> exposures_;
   std::vector<TryRecord> tries_;
   std::unique_ptr<Context> state_;  // where it is; kept, as little of it is new in a scan
   uint64_t fuel_used_ = 0;
+  uint64_t prepared_ = 0;  // CodeTable::number for which the state is prepared; 0: none
 };
 
 }  // namespace vm

@@ -142,7 +142,45 @@ bool StepWalk::take(StepKey& key) {
   return true;
 }
 
-std::vector<uint32_t> choose_fusions(const StepLine& line, std::span<const Fusion> table) {
+FusionTree::FusionTree(std::span<const Fusion> table) : nodes_(1), first_(kHandlerLimit, 0) {
+  struct Rows {  // that begin with the steps of a node
+    uint32_t first, behind, depth;
+  };
+  std::vector<Rows> rows = {{0, static_cast<uint32_t>(table.size()), 0}};
+  for (uint32_t n = 0; n < nodes_.size(); ++n) {
+    auto [at, behind, depth] = rows[n];
+    if (at < behind && table[at].length == depth) nodes_[n].row = at++;
+    nodes_[n].first = static_cast<uint32_t>(nodes_.size());
+    while (at < behind) {
+      const uint32_t first = at;
+      const StepKey key = table[at].keys[depth];
+      while (at < behind && table[at].keys[depth] == key) ++at;
+      const auto place = std::find_if(nodes_.begin() + nodes_[n].first, nodes_.end(),
+                                      [&](const Node& o) { return o.order > order_of(key); });
+      rows.insert(rows.begin() + (place - nodes_.begin()), {first, at, depth + 1});
+      nodes_.insert(place, {order_of(key), kNoFusion, 0, 0});
+    }
+    nodes_[n].behind = static_cast<uint32_t>(nodes_.size());
+  }
+  for (uint32_t n = nodes_[0].first; n < nodes_[0].behind; ++n) {
+    first_[nodes_[n].order >> 16] = static_cast<uint16_t>(n);
+  }
+}
+
+const FusionTree::Node* FusionTree::next_step(const Node& node, StepWalk& walk) const {
+  uint32_t handler = 0;
+  if (node.first == node.behind || !walk.next_handler(handler)) return nullptr;
+  const auto before = [](const Node& n, uint32_t order) { return n.order < order; };
+  const auto end = nodes_.begin() + node.behind;
+  auto at = std::lower_bound(nodes_.begin() + node.first, end, order_of(handler), before);
+  if (at == end || at->order >> 16 != handler) return nullptr;
+  StepKey key = 0;
+  walk.take(key);
+  at = std::lower_bound(at, end, order_of(key), before);
+  return at == end || at->order != order_of(key) ? nullptr : &*at;
+}
+
+std::vector<uint32_t> choose_fusions(const StepLine& line, const FusionTree& tree) {
   std::vector<uint32_t> chosen(line.size(), kNoFusion);
   std::vector<uint32_t> cost(size_t{line.size()} + 1, 0);
   for (uint32_t i = line.size(); i-- > 0;) {
@@ -150,22 +188,13 @@ std::vector<uint32_t> choose_fusions(const StepLine& line, std::span<const Fusio
     const StepLine::Unit& unit = line[i];
     const bool back = unit.jumps && unit.next <= i;
     cost[i] = kDispatch + (back || unit.next > line.size() ? 0 : cost[unit.next]);
-    size_t low = 0;
-    size_t high = table.size();
+    const FusionTree::Node* node = unit.is_step ? tree.first_step(unit.handler) : nullptr;
+    if (node == nullptr) continue;
     StepWalk walk(line, i);
     StepKey key = 0;
-    while (low < high && walk.take(key)) {
-      const uint32_t depth = walk.length() - 1;
-      const auto begin = table.begin();
-      const auto first = std::partition_point(
-          begin + static_cast<ptrdiff_t>(low), begin + static_cast<ptrdiff_t>(high),
-          [&](const Fusion& f) { return f.length <= depth || f.keys[depth] < key; });
-      const auto behind =
-          std::partition_point(first, begin + static_cast<ptrdiff_t>(high),
-                               [&](const Fusion& f) { return f.keys[depth] == key; });
-      low = static_cast<size_t>(first - begin);
-      high = static_cast<size_t>(behind - begin);
-      if (low == high || table[low].length != walk.length()) continue;
+    walk.take(key);  // no step before it: its handler
+    while ((node = tree.next_step(*node, walk)) != nullptr) {
+      if (node->row == kNoFusion) continue;
       uint32_t with = kDispatch;
       if (!walk.goes_back()) {
         with += walk.next() > line.size() ? 0 : cost[walk.next()];
@@ -174,7 +203,7 @@ std::vector<uint32_t> choose_fusions(const StepLine& line, std::span<const Fusio
       }
       if (with > cost[i]) continue;
       cost[i] = with;
-      chosen[i] = static_cast<uint32_t>(low);
+      chosen[i] = node->row;
     }
   }
   return chosen;
@@ -182,7 +211,8 @@ std::vector<uint32_t> choose_fusions(const StepLine& line, std::span<const Fusio
 
 void fuse(const StepLine& line, std::span<ir::Unit> prepared, uint64_t seed) {
   const std::span<const Fusion> table = fusions();
-  const std::vector<uint32_t> chosen = choose_fusions(line, table);
+  static const FusionTree tree(table);
+  const std::vector<uint32_t> chosen = choose_fusions(line, tree);
   for (uint32_t i = 0; i < line.size(); ++i) {
     if (chosen[i] == kNoFusion || (seed != 0 && takes_random_place(seed, i))) continue;
     prepared[i].op = table[chosen[i]].handler;

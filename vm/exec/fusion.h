@@ -98,6 +98,13 @@ class StepWalk {
   StepWalk(const StepLine& line, uint32_t unit) : line_(line), next_(unit) {}
   // The next one's key; false: there is none.
   bool take(StepKey& key);
+  // Its handler alone, which is found at once; false: as take().
+  bool next_handler(uint32_t& handler) const {
+    if (is_over_ || length_ == kMaxSteps || next_ >= line_.size()) return false;
+    if (!line_[next_].is_step) return false;
+    handler = line_[next_].handler;
+    return true;
+  }
   uint32_t length() const { return length_; }
   uint32_t unit(uint32_t step) const { return taken_[step]; }
   uint32_t next() const { return next_; }                // unit behind
@@ -115,10 +122,33 @@ class StepWalk {
   bool is_over_ = false;
 };
 
-// For each unit the fusion of `table` (sorted by keys) that begins there, by its index; kNoFusion.
-// Chosen so that there are few dispatches.
 inline constexpr uint32_t kNoFusion = 0xffffffffu;
-std::vector<uint32_t> choose_fusions(const StepLine& line, std::span<const Fusion> table);
+
+// Rows of a table (sorted by keys) as a tree of their steps.
+class FusionTree {
+ public:
+  explicit FusionTree(std::span<const Fusion> table);
+  struct Node {
+    uint32_t order = 0;              // of its step among those that can stand there: order_of()
+    uint32_t row = kNoFusion;        // that ends with this step
+    uint32_t first = 0, behind = 0;  // nodes of the next step, in their order
+  };
+  // By handler, then by where the operands come from.
+  static uint32_t order_of(StepKey key) { return key << 16 | key >> 16; }
+  const Node* first_step(uint32_t handler) const {
+    return first_[handler] == 0 ? nullptr : &nodes_[first_[handler]];
+  }
+  // Of the step that stands next in `walk`, which it takes; null: no row goes on so.
+  const Node* next_step(const Node& node, StepWalk& walk) const;
+
+ private:
+  std::vector<Node> nodes_;      // [0] stands for no step
+  std::vector<uint16_t> first_;  // by handler: its node, or 0
+};
+
+// For each unit the fusion of the tree's table that begins there, by its index; kNoFusion. Chosen
+// so that there are few dispatches.
+std::vector<uint32_t> choose_fusions(const StepLine& line, const FusionTree& tree);
 
 // Puts fused handlers into the op fields of `prepared`, the units of `line` with their handlers.
 // A pure function of its arguments. Seed not 0: at every other place, at random.

@@ -109,7 +109,11 @@ void resume_native(STC_HANDLER_ARGS) {
   const void* const code = reinterpret_cast<const void*>(unit >> 16);
   ++ctx->entries;
   if (ctx->native->enter(code, frame, self, mem, ctx)) {
-    if (ctx->call == ctx->calls_begin) return stop(ctx, Exit::kDone, ctx->pc, frame, self);
+    if (ctx->call == ctx->calls_begin) {  // as stop() does, which is far away
+      ctx->running = false;
+      ctx->exit = Exit::kDone;
+      return;
+    }
     const CallRecord& caller = *--ctx->call;
     ctx->pou = caller.pou;
     ctx->instance = caller.instance;

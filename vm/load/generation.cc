@@ -62,6 +62,11 @@ void write_initial_data(const ir::Image& image, uint8_t* memory) {
   }
 }
 
+uint64_t CodeNumber::next() {
+  static std::atomic<uint64_t> last = 0;
+  return last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
 uint32_t Generation::pool_offset() const {
   return number_ % 2 == 0 ? ir::kConstPoolA : ir::kConstPoolB;
 }

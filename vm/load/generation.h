@@ -28,12 +28,25 @@ struct PouEntry {
   uint32_t recursion_depth = 0;  // 0: never in a circle of calls
 };
 
+// Another number for each object, also for a copy and for what is assigned.
+struct CodeNumber {
+  uint64_t value = next();
+  CodeNumber() = default;
+  CodeNumber(const CodeNumber&) {}
+  CodeNumber& operator=(const CodeNumber&) {
+    value = next();
+    return *this;
+  }
+  static uint64_t next();
+};
+
 // What executions run. Immutable once made, so that another table of the same generation can be
 // prepared beside it and takes its place between two scans by one store (TaskTables::code).
 struct CodeTable {
   std::vector<PouEntry> pous;
   std::shared_ptr<const native::Program> native;  // null: everything is interpreted
   bool clean_bools = false;                       // ir::Bools::stay_clean, for machine code
+  CodeNumber number = {};                         // what an execution remembers
 };
 
 struct InstanceEntry {

@@ -306,13 +306,6 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_
   return made;
 }
 
-bool Program::enter(const void* code, uint8_t* frame, uint8_t* self, uint8_t* memory,
-                    Context* ctx) const {
-  using Enter = uint64_t (*)(const void*, uint8_t*, uint8_t*, uint8_t*, Context*);
-  const auto go = reinterpret_cast<Enter>(reinterpret_cast<uintptr_t>(enter_));
-  return go(code, frame, self, memory + (uint64_t{1} << 31), ctx) == 0;
-}
-
 const ir::Unit* Program::entry(uint32_t pou, const ir::Unit* unit) const {
   const PouNative& native = *pous_[pou];
   if (native.machine == nullptr) return unit;

@@ -49,7 +49,11 @@ class Program {
 
   // Runs machine code. True: its POU returned, and the caller's record is on top; else the Context
   // says where the interpreter goes on, or that it has stopped.
-  bool enter(const void* code, uint8_t* frame, uint8_t* self, uint8_t* memory, Context* ctx) const;
+  bool enter(const void* code, uint8_t* frame, uint8_t* self, uint8_t* memory, Context* ctx) const {
+    using Enter = uint64_t (*)(const void*, uint8_t*, uint8_t*, uint8_t*, Context*);
+    const auto go = reinterpret_cast<Enter>(reinterpret_cast<uintptr_t>(enter_));
+    return go(code, frame, self, memory + (uint64_t{1} << 31), ctx) == 0;
+  }
   // Where to go on at `unit` of POU number `pou`: a side unit when it is an entry of machine code.
   const ir::Unit* entry(uint32_t pou, const ir::Unit* unit) const;
   // The POU's own unit that a side unit stands for.
