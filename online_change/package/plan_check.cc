@@ -33,7 +33,6 @@ PlanCheck::PlanCheck(const Plan& plan, const ir::Image& old_image, const ir::Ima
 
 base::Status PlanCheck::run() {
   bool good = check_calls() && check_forms();
-  if (good) expand();
   good = good && check_targets();
   for (uint32_t id = 0; good && id < new_.instances.size(); ++id) {
     if (new_.instances[id].live) good = check_area(id);
@@ -42,16 +41,28 @@ base::Status PlanCheck::run() {
   return base::Error{base::Refusal::kBadPackage, "change package: " + why_};
 }
 
+// Nearly always in order, so that a number for each step is enough.
 void PlanCheck::reach(const Target& first, uint32_t count) {
-  const auto at = reached_.begin() + (&first - targets_.data());
-  std::fill(at, at + count, true);
+  uint32_t& reached = reached_[first.step];
+  if (first.index > reached) {
+    uint32_t& early = reached_early_[{first.step, first.index}];
+    early = std::max(early, count);
+    return;
+  }
+  reached = std::max(reached, first.index + count);
+  for (auto at = reached_early_.lower_bound({first.step, 0});
+       at != reached_early_.end() && at->first.first == first.step && at->first.second <= reached;
+       at = reached_early_.erase(at)) {
+    reached = std::max(reached, at->first.second + at->second);
+  }
 }
 
 bool PlanCheck::check_reached() {
-  for (size_t i = 0; i < targets_.size(); ++i) {
-    const StepKind kind = step_of(targets_[i]).kind;
-    const bool plain = kind == StepKind::kInitialise || kind == StepKind::kCopy;
-    if (!plain && !reached_[i]) return fail(targets_[i].to, "is made, but no variable is there");
+  for (size_t i = 0; i < plan_.steps.size(); ++i) {
+    const UpdateStep& step = plan_.steps[i];
+    const bool plain = step.kind == StepKind::kInitialise || step.kind == StepKind::kCopy;
+    if (plain || reached_[i] == step.count) continue;
+    return fail(step.to + reached_[i] * step.to_stride, "is made, but no variable is there");
   }
   return true;
 }
@@ -102,30 +113,14 @@ bool PlanCheck::check_form(const UpdateStep& step) {
   return true;
 }
 
-void PlanCheck::expand() {
-  for (uint32_t number = 0; number < plan_.steps.size(); ++number) {
-    const UpdateStep& step = plan_.steps[number];
-    for (uint32_t i = 0; i < step.count; ++i) {
-      targets_.push_back({step.to + i * step.to_stride, step.size, number, i});
-    }
-  }
-  auto by_place = [](const Target& a, const Target& b) { return a.to < b.to; };
-  if (!std::is_sorted(targets_.begin(), targets_.end(), by_place)) {
-    std::sort(targets_.begin(), targets_.end(), by_place);
-  }
-  reached_.resize(targets_.size());
-}
-
 bool PlanCheck::check_targets() {
   for (const UpdateStep& step : plan_.steps) {
     if (!check_places(step)) return false;
   }
-  uint64_t end = 0;
-  for (const Target& target : targets_) {
-    if (target.to < end) return fail(target.to, "is written twice");
-    end = target.end();
-  }
-  return true;
+  reached_.resize(plan_.steps.size());
+  values_.emplace(plan_.steps);
+  const std::optional<uint32_t> twice = values_->overlap();
+  return !twice || fail(*twice, "is written twice");
 }
 
 // All values of a step lie in one area, and come from one area.
@@ -196,10 +191,8 @@ bool PlanCheck::check_area(uint32_t id) {
   }
   Node area{new_.instances[id].type, new_areas_.begin(id), false};
   uint32_t used = new_areas_.used(id);
-  auto first = std::partition_point(targets_.begin(), targets_.end(), [&](const Target& target) {
-    return target.end() <= area.begin;
-  });
-  bool touched = first != targets_.end() && first->to < uint64_t{area.begin} + used;
+  const std::optional<Target> first = first_behind(area.begin);
+  bool touched = first && first->to < uint64_t{area.begin} + used;
   uint32_t from = area.begin;
   if (touched && step_of(*first).kind == StepKind::kCopy && first->to == area.begin &&
       first->size >= used) {
@@ -217,10 +210,8 @@ bool PlanCheck::check_area(uint32_t id) {
 bool PlanCheck::check_node(Node node, uint32_t depth) {
   if (depth > kMaxDepth || is_area(new_, node)) return fail(node.begin, "is nested too deeply");
   uint64_t end = uint64_t{node.begin} + size_of(node);
-  auto first = std::partition_point(targets_.begin(), targets_.end(), [&](const Target& target) {
-    return target.end() <= node.begin;
-  });
-  if (first == targets_.end() || first->to >= end) return check_carried(node, node.begin, depth);
+  const std::optional<Target> first = first_behind(node.begin);
+  if (!first || first->to >= end) return check_carried(node, node.begin, depth);
   if (first->to <= node.begin && first->end() >= end) return check_written(node, *first, depth);
   if (!has_parts(node)) return fail(node.begin, "is written in part only");
   if (new_.types[node.type].kind == ir::Kind::kArray) return check_elements(node, depth);
@@ -241,10 +232,8 @@ bool PlanCheck::check_elements(Node array, uint32_t depth) {
 }
 
 uint32_t PlanCheck::converted_run(Node first, uint32_t most) {
-  auto found = std::partition_point(targets_.begin(), targets_.end(), [&](const Target& target) {
-    return target.end() <= first.begin;
-  });
-  if (found == targets_.end() || found->to != first.begin || has_parts(first)) return 0;
+  const std::optional<Target> found = first_behind(first.begin);
+  if (!found || found->to != first.begin || has_parts(first)) return 0;
   const UpdateStep& step = step_of(*found);
   uint32_t run = std::min(most, step.count - found->index);
   bool right = step.kind == StepKind::kConvert && step.new_type == first.type &&

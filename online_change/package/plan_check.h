@@ -5,11 +5,15 @@
 // such a variable. So nothing is reinterpreted, whatever the package says.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
 #include "online_change/diff/initial_data.h"
+#include "online_change/package/step_values.h"
 #include "online_change/package/type_fit.h"
 #include "online_change/plan/plan.h"
 
@@ -23,17 +27,10 @@ class PlanCheck {
   base::Status run();
 
  private:
-  struct Target {  // one value of a step
-    uint32_t to = 0;
-    uint32_t size = 0;
-    uint32_t step = 0;
-    uint32_t index = 0;  // of the value in its step
-    uint64_t end() const { return uint64_t{to} + size; }
-  };
+  using Target = StepValue;
 
   bool check_forms();
   bool check_form(const UpdateStep& step);
-  void expand();
   bool check_targets();
   bool check_places(const UpdateStep& step);
   bool check_area(uint32_t id);
@@ -57,6 +54,7 @@ class PlanCheck {
   uint32_t size_of(Node node) const;
   uint32_t source_of(const Target& target) const;
   const UpdateStep& step_of(const Target& target) const { return plan_.steps[target.step]; }
+  std::optional<Target> first_behind(uint32_t place) const { return values_->first_behind(place); }
   // Values that are not just copied were looked at where the variable is that they are made for.
   void reach(const Target& first, uint32_t count = 1);
   bool check_reached();
@@ -71,9 +69,11 @@ class PlanCheck {
   InitialData old_data_;
   InitialData new_data_;
   TypeFit fit_;
-  std::vector<Target> targets_;  // sorted, disjoint after check_targets()
-  std::vector<bool> reached_;    // of targets_
-  uint32_t stamp_at_ = 0;        // of the instance that is looked at
+  std::optional<StepValues> values_;  // disjoint behind check_targets()
+  // By step: so many values from the first on; those that were reached before one in front of them.
+  std::vector<uint32_t> reached_;
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> reached_early_;
+  uint32_t stamp_at_ = 0;  // of the instance that is looked at
   std::string why_;
 };
 

@@ -14,11 +14,13 @@ namespace {
 bool counting = false;
 int64_t until_failure = -1;  // allocations that still succeed; -1: all
 int64_t allocations = 0;
+uint64_t bytes = 0;
 int64_t live = 0;
 
 void* allocate(size_t size) {
   if (counting) {
     ++allocations;
+    bytes += size;
     if (until_failure == 0) return nullptr;
     if (until_failure > 0) --until_failure;
   }
@@ -148,6 +150,26 @@ TEST(Allocation, C1_case51_every_allocation_fails_in_place) {
 
 TEST(Allocation, C1_case51_every_allocation_fails_by_standby) {
   try_every_allocation(Strategy::kStandby);
+}
+
+// A member of each of many structures is one step.
+TEST(Allocation, V17_checking_a_package_takes_no_memory_for_each_value) {
+  const std::string numbers = "TYPE Pair : STRUCT a : ";
+  const std::string rest =
+      " k : LINT; END_STRUCT; END_TYPE\n"
+      "PROGRAM Main VAR list : ARRAY[1..200000] OF Pair; END_VAR END_PROGRAM";
+  linker::Slack room;
+  room.free_bytes = 16 << 20;
+  Plant plant(numbers + "INT; b : INT;" + rest, room);
+  const base::Result<Package> package = decode(plant.package(numbers + "DINT; b : DINT;" + rest));
+  ASSERT_TRUE(package.ok());
+  const base::Result<ir::VerifiedImage> next = ir::verify(package->image);
+  ASSERT_TRUE(next.ok());
+  bytes = 0;
+  const base::Status sound = with_allocations(
+      -1, [&] { return check_package(*package, plant.controller().image(), next->image()); });
+  EXPECT_TRUE(sound.ok());
+  EXPECT_LT(bytes, 200'000u);
 }
 
 // FB_Exit has run when memory runs out: the instance is made again before the old program goes on.
