@@ -32,11 +32,12 @@ class ChartBody {
   void when(ir::ValueId condition, const std::function<void()>& then);
   void when(const ir::Place& flag, const std::function<void()>& then);
 
-  // --- steps and transitions (chart.cc)
+  // --- steps and transitions (chart_steps.cc)
   void read_clock();
   void pass_time(VarId variable, const char* member);
   void find_leaves();
   bool asks_only(ExprId condition, uint32_t step);
+  bool moves_at_once(uint32_t number) const;
   void active_steps();
   void active_step(uint32_t step);
   void stored_times();
@@ -46,6 +47,7 @@ class ChartBody {
   void leave(uint32_t number);
   void each_fired(const std::function<void(uint32_t)>& then);
   void moves();
+  void enter_all(uint32_t number);
   void enter(uint32_t step);
   void starts();
 
@@ -92,7 +94,9 @@ class ChartBody {
   bool leaves_at_once_ = false;  // so are all conditions: none sees that a step was left
 
   std::vector<ir::ValueId> active_;  // by network: one of its steps is
-  std::vector<ir::Place> fired_;     // a bit for each transition
+  std::vector<ir::Place> fired_;     // a bit for each transition that waits
+  std::vector<uint32_t> waiting_;    // transitions that enter their steps when all have been tried
+  std::vector<uint32_t> bit_;        // by transition: its bit; kNone: it does not wait
 
   // What is known within one call: an array of BOOL in the frame, all FALSE when the call
   // begins. Numbers of its elements; kNone where nobody asks.
