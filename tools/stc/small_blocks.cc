@@ -191,6 +191,7 @@ void give_run(size_t span) {
 }
 
 // --- blocks --------------------------------------------------------------------
+// What is seldom stays out of line, so that the usual way saves no registers.
 
 // A span for blocks of one size; 0 when there is none.
 uintptr_t new_span(size_t number) {
@@ -201,7 +202,7 @@ uintptr_t new_span(size_t number) {
   return range.begin + span * kSpan;
 }
 
-void* large_block(size_t size) {
+[[gnu::noinline]] void* large_block(size_t size) {
   if (size >= kRange) return from_malloc(size);
   const std::lock_guard lock(range.mutex);
   const size_t length = (size + kSpan - 1) / kSpan;
@@ -213,7 +214,7 @@ void* large_block(size_t size) {
   return reinterpret_cast<void*>(range.begin + span * kSpan);
 }
 
-void* fresh_block(size_t size, size_t number) {
+[[gnu::noinline]] void* fresh_block(size_t size, size_t number) {
   if (lists == nullptr && !join()) return from_malloc(size);
   if (FreeBlock* block = lists->freed[number]) {  // of a thread that ended
     lists->freed[number] = block->next;
@@ -229,6 +230,15 @@ void* fresh_block(size_t size, size_t number) {
   const uintptr_t block = lists->fresh[number];
   lists->fresh[number] += bytes;
   return reinterpret_cast<void*>(block);
+}
+
+// A large block, or the first thing that a thread frees.
+[[gnu::noinline]] void seldom_freed(void* memory, size_t number) {
+  if (number == kLargeBlock) {
+    const std::lock_guard lock(range.mutex);
+    return give_run((reinterpret_cast<uintptr_t>(memory) - range.begin) / kSpan);
+  }
+  if (join()) lists->freed[number] = ::new (memory) FreeBlock{lists->freed[number]};
 }
 
 }  // namespace
@@ -247,11 +257,7 @@ void operator delete(void* memory) noexcept {
   const uintptr_t at = reinterpret_cast<uintptr_t>(memory) - begin;
   if (begin == 0 || at >= kRange) return std::free(memory);
   const size_t number = numbers[at / kSpan];
-  if (number == kLargeBlock) {
-    const std::lock_guard lock(range.mutex);
-    return give_run(at / kSpan);
-  }
-  if (lists == nullptr && !join()) return;
+  if (number == kLargeBlock || lists == nullptr) return seldom_freed(memory, number);
   lists->freed[number] = ::new (memory) FreeBlock{lists->freed[number]};
 }
 
