@@ -34,7 +34,15 @@ BlockId Builder::new_block() {
   return BlockId(static_cast<uint32_t>(pou_.blocks.size() - 1));
 }
 
+void Builder::end_block() {
+  pou_.blocks[current_.index].insts.assign(std::make_move_iterator(insts_.begin()),
+                                           std::make_move_iterator(insts_.end()));
+  insts_.clear();
+  current_ = {};
+}
+
 void Builder::start(BlockId block) {
+  if (current_.valid()) end_block();
   current_ = block;
   pou_.blocks[block.index].handler = handler_;
   order_.push_back(block);
@@ -57,7 +65,7 @@ ValueId Builder::add_param(BlockId block, Scalar scalar) {
 
 Inst& Builder::emit(Op op, Scalar scalar) {
   if (!current_.valid()) start(new_block());
-  Inst& inst = pou_.blocks[current_.index].insts.emplace_back();
+  Inst& inst = insts_.emplace_back();
   inst.op = op;
   inst.scalar = scalar;
   inst.line = line_;
@@ -250,14 +258,14 @@ void Builder::advance_time(ValueId ns) {
 
 void Builder::jump(BlockId block, ValueList args) {
   emit(Op::kJump, Scalar::kBool).targets.push_back({block, std::move(args)});
-  current_ = {};
+  end_block();
 }
 
 void Builder::branch(ValueId condition, BlockId if_true, BlockId if_false) {
   Inst& inst = emit(Op::kBranch, Scalar::kBool);
   inst.operands = {condition};
   inst.targets = {{if_true, {}}, {if_false, {}}};
-  current_ = {};
+  end_block();
 }
 
 void Builder::switch_on(Scalar scalar, ValueId value, int64_t low,
@@ -268,34 +276,34 @@ void Builder::switch_on(Scalar scalar, ValueId value, int64_t low,
   inst.high = low + static_cast<int64_t>(targets.size()) - 1;
   inst.targets.push_back({otherwise, {}});
   for (const BlockId target : targets) inst.targets.push_back({target, {}});
-  current_ = {};
+  end_block();
 }
 
 void Builder::ret() {
   emit(Op::kReturn, Scalar::kBool);
-  current_ = {};
+  end_block();
 }
 
 void Builder::trap(ir::TrapKind kind) {
   emit(Op::kTrap, Scalar::kBool).trap = kind;
-  current_ = {};
+  end_block();
 }
 
 ValueId Builder::trap_kind() { return result(emit(Op::kTrapKind, Scalar::kU32)); }
 
 void Builder::trap_again(ValueId kind) {
   emit(Op::kTrapAgain, Scalar::kBool).operands = {kind};
-  current_ = {};
+  end_block();
 }
 
 void Builder::begin_try(BlockId body, BlockId handler) {
   emit(Op::kTry, Scalar::kBool).targets = {{body, {}}, {handler, {}}};
-  current_ = {};
+  end_block();
 }
 
 void Builder::end_try(BlockId behind) {
   emit(Op::kEndTry, Scalar::kBool).targets = {{behind, {}}};
-  current_ = {};
+  end_block();
 }
 
 BlockId Builder::set_handler(BlockId handler) {

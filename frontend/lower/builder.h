@@ -80,6 +80,7 @@ class Builder {
 
  private:
   ir::Inst& emit(ir::Op op, ir::Scalar scalar);
+  void end_block();  // behind its terminator
   ir::ValueId result(ir::Inst& inst);
   ir::PlaceId intern(const ir::Place& place);
   void grow_place_table();
@@ -87,6 +88,7 @@ class Builder {
 
   ir::Pou& pou_;
   ir::BlockId current_;
+  std::vector<ir::Inst> insts_;  // of the current block; it gets no more room than they need
   ir::BlockId handler_;
   std::vector<ir::BlockId> order_;     // in which blocks were started: the final order
   std::vector<uint32_t> place_table_;  // open addressing; place number + 1, 0: free

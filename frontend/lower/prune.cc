@@ -26,6 +26,19 @@ std::vector<bool> reachable_blocks(const ir::Pou& pou) {
   return seen;
 }
 
+// Are values and places numbered in order of their appearance? They are made in that order, but for
+// parameters of blocks; what a block that goes has made leaves gaps.
+bool has_gaps(const ir::Pou& pou, const std::vector<bool>& live) {
+  for (size_t b = 0; b < live.size(); ++b) {
+    if (!pou.blocks[b].params.empty()) return true;
+    if (live[b]) continue;
+    for (const ir::Inst& inst : pou.blocks[b].insts) {
+      if (inst.result.valid() || inst.place.valid()) return true;
+    }
+  }
+  return false;
+}
+
 // Gives values and places new numbers in order of their appearance.
 class Renumber {
  public:
@@ -88,6 +101,7 @@ class Renumber {
 void Builder::finish() {
   if (current_.valid()) ret();
   std::vector<bool> live = reachable_blocks(pou_);
+  const bool gaps = has_gaps(pou_, live);
   std::vector<BlockId> renamed(live.size());
   std::vector<ir::Block> blocks;
   blocks.reserve(pou_.blocks.size());
@@ -97,7 +111,6 @@ void Builder::finish() {
     in_order = in_order && id.index == blocks.size();
     renamed[id.index] = BlockId(static_cast<uint32_t>(blocks.size()));
     blocks.push_back(std::move(pou_.blocks[id.index]));
-    blocks.back().insts.shrink_to_fit();  // all POUs are in memory at the same time
   }
   in_order = in_order && blocks.size() == live.size();
   pou_.blocks = std::move(blocks);
@@ -108,7 +121,7 @@ void Builder::finish() {
       target.block = renamed[target.block.index];
     }
   }
-  Renumber(pou_).run();
+  if (gaps) Renumber(pou_).run();
 }
 
 }  // namespace frontend

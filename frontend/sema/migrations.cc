@@ -10,6 +10,11 @@
 namespace frontend {
 namespace {
 
+bool names_pou(ir::Op op) {
+  return op == ir::Op::kCallFunction || op == ir::Op::kCallMethod || op == ir::Op::kCallBody ||
+         op == ir::Op::kCallVirtual;
+}
+
 constexpr std::string_view kGlobalsName = "VAR_GLOBAL";
 
 std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
@@ -179,7 +184,7 @@ void Migrations::check_function(const ir::Migration& row) {
     }
     for (const ir::Block& block : pou.blocks) {
       for (const ir::Inst& inst : block.insts) {
-        if (inst.pou.valid() && seen.insert(inst.pou).second) reached.push_back(inst.pou);
+        if (names_pou(inst.op) && seen.insert(inst.pou).second) reached.push_back(inst.pou);
       }
     }
   }

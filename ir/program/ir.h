@@ -167,7 +167,8 @@ struct Target {
 };
 using Targets = base::SlimVector<Target>;
 
-// Small, as a program has more of them than lines.
+// One line of the cache, as a program has more of them than lines of text. What belongs to single
+// operations shares its room.
 struct Inst {
   Op op = Op::kReturn;
   Scalar scalar = Scalar::kBool;
@@ -175,17 +176,24 @@ struct Inst {
   ValueId result;     // invalid when there is none
   uint32_t line = 0;  // 1-based line in Pou::file; 0 for none
   PlaceId place;
-  PlaceId place2;       // kCopy source
-  ConstId constant;     // kInit; invalid: the type's default
-  PouId pou;            // calls of functions and methods
-  TypeId type;          // kIsType, kCallReference, kSizeOf
-  uint32_t native = 0;  // kCallNative: row of stdlib/native/natives.def
+  PlaceId place2;  // kCopy source
+  union {
+    ConstId constant = {};  // kInit; invalid: the type's default
+    PouId pou;              // calls of functions and methods
+    TypeId type;            // kIsType, kCallReference, kSizeOf
+    uint32_t native;        // kCallNative: row of stdlib/native/natives.def
+  };
   ValueList operands;
-  uint64_t imm = 0;  // kConst
-  int64_t low = 0;   // kCheckRange, kSwitch
+  union {
+    uint64_t imm = 0;  // kConst
+    int64_t low;       // kCheckRange, kSwitch
+  };
   int64_t high = 0;
   Targets targets;
+
+  Inst() {}
 };
+static_assert(sizeof(Inst) == 64);
 
 struct Block {
   std::vector<ValueId> params;
