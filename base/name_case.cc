@@ -79,14 +79,17 @@ uint64_t read(const char* at) {
   return value;
 }
 
-// What stands there: of short names by two readings that overlap, without a loop.
-uint64_t piece_at(std::string_view name, size_t at) {
-  const char* begin = name.data() + at;
-  const size_t size = name.size() - at;
-  if (size >= kPiece) return read<uint64_t>(begin);
+// The last piece: fewer than eight bytes, by two readings that overlap, without a loop.
+inline uint64_t rest_at(const char* begin, size_t size) {
   if (size >= 4) return read<uint32_t>(begin) | read<uint32_t>(begin + size - 4) << 8 * (size - 4);
   if (size >= 2) return read<uint16_t>(begin) | read<uint16_t>(begin + size - 2) << 8 * (size - 2);
   return static_cast<uint8_t>(*begin);
+}
+
+inline uint64_t piece_at(std::string_view name, size_t at) {
+  const size_t size = name.size() - at;
+  const char* begin = name.data() + at;
+  return size >= kPiece ? read<uint64_t>(begin) : rest_at(begin, size);
 }
 
 bool is_ascii(uint64_t piece) { return (piece & 0x80 * kEach) == 0; }
@@ -100,23 +103,24 @@ uint64_t fold_piece(uint64_t piece) {
   return piece | capital >> 2;
 }
 
-// nullopt when not all of it is ASCII and `any` is false.
-std::optional<uint64_t> hash_pieces(std::string_view name, bool any) {
+// Of the bytes as they are, but for capitals below 0x80; `all` gathers the bits of all bytes.
+uint64_t hash_pieces(std::string_view name, uint64_t& all) {
   uint64_t hash = 0xcbf29ce484222325u;
-  uint64_t all = 0;
-  for (size_t at = 0; at < name.size(); at += kPiece) {
-    const uint64_t piece = piece_at(name, at);
+  const auto mix = [&](uint64_t piece) {
     all |= piece;
     hash = (hash ^ fold_piece(piece)) * 0x9e3779b97f4a7c15u;
     hash ^= hash >> 32;
-  }
-  return any || is_ascii(all) ? std::optional(hash) : std::nullopt;
+  };
+  const char* at = name.data();
+  size_t left = name.size();
+  for (; left >= kPiece; left -= kPiece, at += kPiece) mix(read<uint64_t>(at));
+  if (left != 0) mix(rest_at(at, left));
+  return hash;
 }
 
 }  // namespace
 
-bool same_name(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) return false;
+bool same_letters(std::string_view a, std::string_view b) {
   bool plain = true;
   for (size_t at = 0; at < a.size() && plain; at += kPiece) {
     const uint64_t left = piece_at(a, at);
@@ -156,8 +160,9 @@ std::string fold_name(std::string_view name) {
 }
 
 uint64_t name_hash(std::string_view name) {
-  if (const auto hash = hash_pieces(name, false)) return *hash;
-  return *hash_pieces(fold_name(name), true);
+  uint64_t all = 0;
+  const uint64_t hash = hash_pieces(name, all);
+  return is_ascii(all) ? hash : hash_pieces(fold_name(name), all);
 }
 
 }  // namespace base

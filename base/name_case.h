@@ -10,7 +10,10 @@
 
 namespace base {
 
-bool same_name(std::string_view a, std::string_view b);
+bool same_letters(std::string_view a, std::string_view b);  // of names of one length
+inline bool same_name(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && same_letters(a, b);
+}
 std::string fold_name(std::string_view name);
 void fold_name(std::string_view name, char* out);  // as many bytes as the name has
 // Equal for equal names.

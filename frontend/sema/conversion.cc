@@ -89,17 +89,30 @@ ir::TypeId signed_holding(const ir::TypeTable& types, uint32_t magnitude_bits) {
   return types.elementary(kind);
 }
 
+constexpr Traits traits_of(Kind kind, Group group) {
+  Traits traits;
+  traits.boolean = kind == Kind::kBool;
+  traits.bits = group == Group::kBit && kind != Kind::kBool;
+  traits.integer = group == Group::kSigned || group == Group::kUnsigned;
+  traits.real = group == Group::kReal;
+  traits.duration = group == Group::kDuration;
+  traits.date = group == Group::kDate;
+  traits.character = group == Group::kChar;
+  return traits;
+}
+
+constexpr Traits kTraits[ir::kElementaryCount] = {
+#define ELEMENTARY(id, name, scalar, group) traits_of(Kind::id, Group::group),
+#include "ir/types/elementary.def"
+#undef ELEMENTARY
+};
+
 }  // namespace
 
 std::optional<Kind> kind_of_name(std::string_view name) {
   auto found = kinds_by_name().find(name);
   if (found == kinds_by_name().end()) return std::nullopt;
   return found->second;
-}
-
-ir::TypeId without_range(const ir::TypeTable& types, ir::TypeId type) {
-  while (type.valid() && types[type].kind == Kind::kSubrange) type = types[type].base;
-  return type;
 }
 
 bool is_enum(const ir::TypeTable& types, ir::TypeId type) {
@@ -112,20 +125,12 @@ bool is_string(const ir::TypeTable& types, ir::TypeId type) {
 }
 
 Traits traits_of(const ir::TypeTable& types, ir::TypeId type) {
-  Traits traits;
   type = without_range(types, type);
-  if (!type.valid()) return traits;
-  Kind kind = types[type].kind;
+  if (!type.valid()) return {};
+  const Kind kind = types[type].kind;
+  if (ir::is_elementary(kind)) return kTraits[static_cast<size_t>(kind)];
+  Traits traits;
   traits.enumeration = kind == Kind::kEnum;
-  if (!ir::is_elementary(kind)) return traits;
-  Group group = ir::elementary_group(kind);
-  traits.boolean = kind == Kind::kBool;
-  traits.bits = group == Group::kBit && kind != Kind::kBool;
-  traits.integer = group == Group::kSigned || group == Group::kUnsigned;
-  traits.real = group == Group::kReal;
-  traits.duration = group == Group::kDuration;
-  traits.date = group == Group::kDate;
-  traits.character = group == Group::kChar;
   return traits;
 }
 

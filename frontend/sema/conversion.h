@@ -40,7 +40,10 @@ Fit implicit_fit(const ir::TypeTable& types, ir::TypeId from, ir::TypeId to, Dia
 ir::TypeId common_type(const ir::TypeTable& types, ir::TypeId a, ir::TypeId b, Dialect dialect);
 
 // The type without its subranges: what arithmetic is done in.
-ir::TypeId without_range(const ir::TypeTable& types, ir::TypeId type);
+inline ir::TypeId without_range(const ir::TypeTable& types, ir::TypeId type) {
+  while (type.valid() && types[type].kind == ir::Kind::kSubrange) type = types[type].base;
+  return type;
+}
 bool is_enum(const ir::TypeTable& types, ir::TypeId type);
 bool is_string(const ir::TypeTable& types, ir::TypeId type);  // STRING or WSTRING
 

@@ -33,7 +33,7 @@ std::string_view last_name(std::string_view name) { return name.substr(name.rfin
 
 }  // namespace
 
-size_t FoldHash::operator()(std::string_view name) const noexcept {
+size_t FoldHash::operator()(std::string_view name) const {
   const uint64_t hash = base::name_hash(name);
   return static_cast<size_t>(hash ^ (hash >> 32));
 }

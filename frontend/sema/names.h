@@ -9,8 +9,10 @@
 
 namespace frontend {
 
+// Not noexcept: tables keep the hashes of their keys then, instead of folding the names that they
+// pass again and again.
 struct FoldHash {
-  size_t operator()(std::string_view name) const noexcept;
+  size_t operator()(std::string_view name) const;
 };
 struct FoldEqual {
   bool operator()(std::string_view a, std::string_view b) const noexcept;

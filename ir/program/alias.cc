@@ -86,8 +86,7 @@ bool is_static(const Place& place, const AliasFacts& facts) {
   });
 }
 
-std::optional<uint32_t> exposed_local(const Inst& inst, const Pou& pou) {
-  if (inst.op != Op::kAddress && inst.op != Op::kHandle) return std::nullopt;
+std::optional<uint32_t> local_of_address(const Inst& inst, const Pou& pou) {
   const Place& place = pou.places[inst.place.index];
   const bool behind = !place.steps.empty() && place.steps[0].kind == StepKind::kDeref;
   if (place.base != PlaceBase::kLocal || behind) return std::nullopt;

@@ -35,6 +35,10 @@ bool calls_may_change(const Place& place, const AliasFacts& facts);
 // A fixed offset from a fixed root: reading it needs no instruction and cannot trap.
 bool is_static(const Place& place, const AliasFacts& facts);
 // Does an instruction on this place take a local's address (kAddress, kHandle)? Its number.
-std::optional<uint32_t> exposed_local(const Inst& inst, const Pou& pou);
+std::optional<uint32_t> local_of_address(const Inst& inst, const Pou& pou);
+inline std::optional<uint32_t> exposed_local(const Inst& inst, const Pou& pou) {
+  if (inst.op != Op::kAddress && inst.op != Op::kHandle) return std::nullopt;
+  return local_of_address(inst, pou);
+}
 
 }  // namespace ir

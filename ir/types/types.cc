@@ -5,21 +5,16 @@
 
 #include "base/check.h"
 #include "base/limits.h"
-#include "base/name_case.h"
 
 namespace ir {
 namespace {
 
-struct ScalarRow {
-  std::string_view text;
-  uint32_t bytes;
-};
-constexpr auto kScalars = std::to_array<ScalarRow>({
-#define SCALAR(id, text, bytes) {text, bytes},
+constexpr auto kScalarNames = std::to_array<std::string_view>({
+#define SCALAR(id, text, bytes) text,
 #include "ir/types/scalars.def"
 #undef SCALAR
 });
-static_assert(kScalars.size() == kScalarCount);
+static_assert(kScalarNames.size() == kScalarCount);
 
 struct ElementaryRow {
   std::string_view name;
@@ -49,18 +44,10 @@ std::string dimensions_text(const std::vector<Dimension>& dims) {
 
 }  // namespace
 
-std::string_view scalar_name(Scalar scalar) { return kScalars[static_cast<size_t>(scalar)].text; }
-uint32_t scalar_size(Scalar scalar) { return kScalars[static_cast<size_t>(scalar)].bytes; }
-bool is_signed(Scalar scalar) { return scalar >= Scalar::kI8 && scalar <= Scalar::kI64; }
-bool is_integer(Scalar scalar) { return scalar >= Scalar::kI8 && scalar <= Scalar::kU64; }
-bool is_float(Scalar scalar) { return scalar == Scalar::kF32 || scalar == Scalar::kF64; }
-
-bool is_elementary(Kind kind) { return static_cast<uint32_t>(kind) < kElementaryCount; }
+std::string_view scalar_name(Scalar scalar) { return kScalarNames[static_cast<size_t>(scalar)]; }
 std::string_view elementary_name(Kind kind) {
   return is_elementary(kind) ? row(kind).name : std::string_view();
 }
-bool is_reference(Kind kind) { return kind >= Kind::kPointer && kind <= Kind::kReferenceTo; }
-bool is_structure(Kind kind) { return kind == Kind::kStruct || kind == Kind::kUnion; }
 Group elementary_group(Kind kind) { return is_elementary(kind) ? row(kind).group : Group::kNone; }
 
 TypeTable::TypeTable() {
@@ -139,7 +126,7 @@ TypeId TypeTable::reference(Kind kind, TypeId target) {
 }
 
 // The table may come from a damaged image, so the chain of bases may be endless.
-Kind TypeTable::root_kind(TypeId id) const {
+Kind TypeTable::kind_below(TypeId id) const {
   Kind kind = Kind::kStruct;
   for (uint32_t depth = 0; depth < base::kMaxNesting && contains(id); ++depth) {
     kind = types_[id.index].kind;
@@ -149,11 +136,6 @@ Kind TypeTable::root_kind(TypeId id) const {
     id = types_[id.index].base;
   }
   return kind;
-}
-
-bool TypeTable::is_scalar(TypeId id) const {
-  const Kind root = root_kind(id);
-  return is_elementary(root) || ir::is_reference(root);
 }
 
 Scalar TypeTable::scalar(TypeId id) const {
@@ -168,20 +150,6 @@ Scalar TypeTable::scalar(TypeId id) const {
 bool TypeTable::has_members(TypeId id) const {
   return contains(id) && types_[id.index].kind >= Kind::kStruct &&
          types_[id.index].kind <= Kind::kGlobals;
-}
-
-bool TypeTable::is_reference(TypeId id) const {
-  return contains(id) && ir::is_reference(types_[id.index].kind);
-}
-
-bool TypeTable::overlaps(TypeId id) const {
-  return contains(id) && (types_[id.index].kind == Kind::kUnion ||
-                          (types_[id.index].kind == Kind::kStruct && types_[id.index].overlap));
-}
-
-bool TypeTable::is_instance(TypeId id) const {
-  return contains(id) &&
-         (types_[id.index].kind == Kind::kFunctionBlock || types_[id.index].kind == Kind::kProgram);
 }
 
 // The table may come from a damaged image, so the chain of bases may be endless.
@@ -313,9 +281,5 @@ std::string TypeTable::text(TypeId id) const {
   text.append(id, 0);
   return text.take();
 }
-
-bool same_name(std::string_view a, std::string_view b) { return base::same_name(a, b); }
-
-std::string fold_name(std::string_view name) { return base::fold_name(name); }
 
 }  // namespace ir

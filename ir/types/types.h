@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "base/ids.h"
+#include "base/name_case.h"
 
 namespace ir {
 
@@ -40,10 +41,17 @@ enum class Scalar : uint8_t {
 };
 inline constexpr uint32_t kScalarCount = 14;
 std::string_view scalar_name(Scalar scalar);
-uint32_t scalar_size(Scalar scalar);
-bool is_signed(Scalar scalar);   // kI8..kI64
-bool is_integer(Scalar scalar);  // kI8..kU64
-bool is_float(Scalar scalar);
+constexpr uint32_t scalar_size(Scalar scalar) {
+  constexpr uint8_t kBytes[] = {
+#define SCALAR(id, text, bytes) bytes,
+#include "ir/types/scalars.def"
+#undef SCALAR
+  };
+  return kBytes[static_cast<size_t>(scalar)];
+}
+constexpr bool is_signed(Scalar scalar) { return scalar >= Scalar::kI8 && scalar <= Scalar::kI64; }
+constexpr bool is_integer(Scalar scalar) { return scalar >= Scalar::kI8 && scalar <= Scalar::kU64; }
+constexpr bool is_float(Scalar scalar) { return scalar == Scalar::kF32 || scalar == Scalar::kF64; }
 
 enum class Kind : uint8_t {
 #define ELEMENTARY(id, name, scalar, group) id,
@@ -69,9 +77,11 @@ inline constexpr uint32_t kElementaryCount = 25;
 inline constexpr uint32_t kKindCount = 39;
 
 enum class Group : uint8_t { kBit, kSigned, kUnsigned, kReal, kDuration, kDate, kChar, kNone };
-bool is_elementary(Kind kind);
-bool is_reference(Kind kind);  // kPointer, kRefTo, kReferenceTo
-bool is_structure(Kind kind);  // kStruct, kUnion
+constexpr bool is_elementary(Kind kind) { return static_cast<uint32_t>(kind) < kElementaryCount; }
+constexpr bool is_reference(Kind kind) {
+  return kind >= Kind::kPointer && kind <= Kind::kReferenceTo;
+}
+constexpr bool is_structure(Kind kind) { return kind == Kind::kStruct || kind == Kind::kUnion; }
 std::string_view elementary_name(Kind kind);
 Group elementary_group(Kind kind);  // kNone for other kinds
 
@@ -190,16 +200,30 @@ class TypeTable {
   bool contains(TypeId id) const { return id.index < types_.size(); }
 
   // Elementary or a reference, at any depth of subrange or enumeration?
-  bool is_scalar(TypeId id) const;
+  bool is_scalar(TypeId id) const {
+    const Kind root = root_kind(id);
+    return is_elementary(root) || ir::is_reference(root);
+  }
   // The machine scalar of a scalar type.
   Scalar scalar(TypeId id) const;
   // Elementary kind below subranges and enumerations; the kind itself otherwise.
-  Kind root_kind(TypeId id) const;
+  Kind root_kind(TypeId id) const {
+    const Kind kind = contains(id) ? types_[id.index].kind : Kind::kStruct;
+    return kind == Kind::kSubrange || kind == Kind::kEnum ? kind_below(id) : kind;
+  }
   bool has_members(TypeId id) const;
-  bool is_reference(TypeId id) const;
+  bool is_reference(TypeId id) const {
+    return contains(id) && ir::is_reference(types_[id.index].kind);
+  }
   // Do members lie on top of each other (Type::overlap)?
-  bool overlaps(TypeId id) const;
-  bool is_instance(TypeId id) const;  // function block or program
+  bool overlaps(TypeId id) const {
+    return contains(id) && (types_[id.index].kind == Kind::kUnion ||
+                            (types_[id.index].kind == Kind::kStruct && types_[id.index].overlap));
+  }
+  bool is_instance(TypeId id) const {  // function block or program
+    return contains(id) && (types_[id.index].kind == Kind::kFunctionBlock ||
+                            types_[id.index].kind == Kind::kProgram);
+  }
   // Is `id` the type `wanted`, or does it extend or implement it?
   bool is_a(TypeId id, TypeId wanted) const;
   // Index of the member with that name (without case); -1 when there is none.
@@ -210,6 +234,7 @@ class TypeTable {
 
  private:
   TypeId intern(std::string key, Type type);
+  Kind kind_below(TypeId id) const;  // of a subrange or enumeration: see root_kind()
 
   std::vector<Type> types_;
   std::unordered_map<std::string, TypeId> interned_;
@@ -219,7 +244,7 @@ class TypeTable {
 };
 
 // Comparison and folding of IEC identifiers (base/name_case.h).
-bool same_name(std::string_view a, std::string_view b);
-std::string fold_name(std::string_view name);
+using base::fold_name;
+using base::same_name;
 
 }  // namespace ir
