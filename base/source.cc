@@ -8,7 +8,8 @@ SourcePos SourceMap::add(std::string name, std::string text, TextUse use) {
   SourcePos begin{next_base_};
   // One byte between files, so that an end position is never the next file's begin.
   next_base_ += static_cast<uint32_t>(text.size()) + 1;
-  files_.push_back({std::move(name), std::move(text), begin.offset, use, {}});
+  auto kept = std::make_shared<const std::string>(std::move(text));
+  files_.push_back({std::move(name), std::move(kept), begin.offset, use, {}});
   return begin;
 }
 
@@ -20,12 +21,12 @@ uint32_t SourceMap::file_of(SourcePos pos) const {
 }
 
 void SourceMap::replace(uint32_t file, std::string text) {
-  files_[file].text = std::move(text);
+  files_[file].text = std::make_shared<const std::string>(std::move(text));
   files_[file].line_starts.clear();
   next_base_ = files_[file].base;
   for (uint32_t i = file; i < file_count(); ++i) {
     files_[i].base = next_base_;
-    next_base_ += static_cast<uint32_t>(files_[i].text.size()) + 1;
+    next_base_ += static_cast<uint32_t>(files_[i].text->size()) + 1;
   }
 }
 
@@ -45,18 +46,18 @@ SourceLocation SourceMap::locate(SourcePos pos) const {
   uint32_t index = file_of(pos);
   if (index == file_count()) return {};
   const File& file = files_[index];
+  const std::string_view text = *file.text;
   if (file.line_starts.empty()) {
     file.line_starts.push_back(0);
-    for (size_t at = 0; (at = file.text.find('\n', at)) != std::string::npos;) {
+    for (size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) {
       file.line_starts.push_back(static_cast<uint32_t>(++at));
     }
   }
   uint32_t offset = pos.offset - file.base;
   auto after = std::upper_bound(file.line_starts.begin(), file.line_starts.end(), offset);
   uint32_t start = *(after - 1);
-  size_t end = file.text.find('\n', start);
-  std::string_view line = std::string_view(file.text).substr(
-      start, end == std::string::npos ? std::string::npos : end - start);
+  const size_t end = text.find('\n', start);
+  std::string_view line = text.substr(start, end == text.npos ? text.npos : end - start);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   return {file.name, static_cast<uint32_t>(after - file.line_starts.begin()), offset - start + 1,
           line};

@@ -1,12 +1,14 @@
 // Source texts and positions. A SourceMap owns every text of one compilation;
 // a SourcePos is a 32-bit offset into their concatenation, so that tokens and
 // nodes carry four bytes and line numbers are computed only for messages.
-// Views into a text stay valid while others are added. Who keeps a tree over edits of its sources
-// adds later texts behind the first ones, and says which pieces of the first ones live on where.
+// Views into a text stay valid while others are added. Copies of a SourceMap share the texts. Who
+// keeps a tree over edits of its sources adds later texts behind the first ones, and says which
+// pieces of the first ones live on where.
 #pragma once
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,7 +47,7 @@ class SourceMap {
   bool is_source(uint32_t file) const { return files_[file].use == TextUse::kSource; }
   uint32_t file_count() const { return static_cast<uint32_t>(files_.size()); }
   std::string_view file_name(uint32_t file) const { return files_[file].name; }
-  std::string_view text(uint32_t file) const { return files_[file].text; }
+  std::string_view text(uint32_t file) const { return *files_[file].text; }
   SourcePos begin(uint32_t file) const { return {files_[file].base}; }
   // The file that holds `pos`; file_count() when none.
   uint32_t file_of(SourcePos pos) const;
@@ -69,12 +71,12 @@ class SourceMap {
  private:
   struct File {
     std::string name;
-    std::string text;
+    std::shared_ptr<const std::string> text;
     uint32_t base;
     TextUse use;
     mutable std::vector<uint32_t> line_starts;  // filled by the first locate()
   };
-  std::deque<File> files_;  // texts do not move
+  std::deque<File> files_;  // names do not move
   std::vector<Piece> pieces_;
   uint32_t next_base_ = 0;
 };

@@ -116,7 +116,7 @@ base::Result<base::Bytes> read_first(const std::string& path, size_t count) {
 base::Result<std::string> read_text(const std::string& path, uint64_t limit) {
   base::Result<base::Bytes> bytes = read_bytes(path, limit);
   if (!bytes.ok()) return bytes.error();
-  return std::string(bytes->begin(), bytes->end());
+  return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
 }
 
 base::Status write_file(const std::string& path, base::ByteSpan bytes) {
