@@ -20,16 +20,20 @@ namespace frontend {
 
 namespace {
 
-// For as many nodes as usual sources have of the two largest kinds: growing copies all of them.
+// For as many nodes as usual sources have of the largest kinds: growing copies all of them.
 void make_room(const base::SourceMap& sources, Tree& tree) {
   constexpr size_t kBytesPerExpression = 12;
   constexpr size_t kBytesPerStatement = 48;
+  constexpr size_t kBytesPerLiteral = 54;
+  constexpr size_t kBytesPerSpec = 96;
   size_t bytes = 0;
   for (uint32_t file = 0; file < sources.file_count(); ++file) {
     if (sources.is_source(file)) bytes += sources.text(file).size();
   }
   tree.exprs.reserve(tree.exprs.size() + bytes / kBytesPerExpression);
   tree.stmts.reserve(tree.stmts.size() + bytes / kBytesPerStatement);
+  tree.literals.reserve(tree.literals.size() + bytes / kBytesPerLiteral);
+  tree.specs.reserve(tree.specs.size() + bytes / kBytesPerSpec);
 }
 
 }  // namespace

@@ -66,14 +66,16 @@ SpecId Parser::parse_struct() {
     take();
     spec.element = parse_type_name();
   }
+  const size_t mark = var_stack_.size();
   while (kind() != end) {
     if (accept(TokenKind::kSemicolon)) continue;
     if (kind() == TokenKind::kEnd || is_closing(kind()) || is_file_level_start(kind()) ||
         is_var_start(kind())) {
       break;
     }
-    parse_variable_declaration(spec.fields);
+    parse_variable_declaration();
   }
+  spec.fields = take_variables(mark);
   if (!accept(end)) {
     report_missing_end(opening, end);
     panic_ = true;  // the declaration around it has no end either

@@ -298,7 +298,7 @@ Name Parser::Diagram::memory(const std::string& of, Modifier modifier, base::Sou
   spec.name = {"BOOL", span};
   spec.span = span;
   VarDecl decl;
-  decl.names = {{made(std::move(text)), span}};
+  decl.names.push_back({made(std::move(text)), span});
   decl.spec = p_.add_spec(std::move(spec));
   decl.span = span;
   kept_.vars.push_back(decl);

@@ -51,12 +51,6 @@ Parser::Parser(const base::SourceMap& sources, uint32_t file, const TokenList& t
       tree_(tree),
       diagnostics_(diagnostics) {}
 
-bool Parser::accept(TokenKind wanted) {
-  if (kind() != wanted) return false;
-  take();
-  return true;
-}
-
 bool Parser::expect(TokenKind wanted, const char* where) {
   if (accept(wanted)) return true;
   std::string what(token_text(wanted));
@@ -85,12 +79,6 @@ Name Parser::parse_name(const char* what) {
   return {};
 }
 
-base::SourcePos Parser::last_end() const {
-  if (current_ == first_) return here();
-  const Token& before = current_[-1];
-  return {before.begin + before.length};
-}
-
 bool Parser::on_new_line() const {
   if (current_ == first_) return true;
   uint32_t from = last_end().offset - base_;
@@ -110,8 +98,7 @@ std::string Parser::with_article(const char* noun) {
   return (vowel ? "an " : "a ") + std::string(noun);
 }
 
-bool Parser::enter() {
-  if (++depth_ <= base::kMaxNesting) return true;
+bool Parser::report_too_deep() {
   report_here(Code::kTooDeep,
               "this is nested more than " + std::to_string(base::kMaxNesting) + " levels deep",
               "move a part into a function or a variable of its own");

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "base/limits.h"
 #include "frontend/lex/lexer.h"
 #include "frontend/lex/literals.h"
 #include "frontend/parse/tree.h"
@@ -37,7 +38,11 @@ class Parser {
   }
   TokenKind next_kind() const { return peek(1).kind; }
   const Token& take() { return current_ == last_ ? *last_ : *current_++; }
-  bool accept(TokenKind wanted);
+  bool accept(TokenKind wanted) {
+    if (kind() != wanted) return false;
+    take();
+    return true;
+  }
   // Takes `wanted`, or reports that it is missing; `where` continues "expected X".
   bool expect(TokenKind wanted, const char* where);
   std::string_view text(const Token& token) const {
@@ -48,7 +53,10 @@ class Parser {
   // A name, or an empty one after a report; `what` is "variable", "program", ...
   Name parse_name(const char* what);
   base::SourcePos here() const { return {current_->begin}; }
-  base::SourcePos last_end() const;
+  base::SourcePos last_end() const {
+    if (current_ == first_) return here();
+    return {current_[-1].begin + current_[-1].length};
+  }
   base::SourceSpan span_from(base::SourcePos begin) const { return {begin, last_end()}; }
   bool on_new_line() const;  // is the current token the first of its line?
   std::string describe(const Token& token) const;
@@ -78,7 +86,9 @@ class Parser {
   Range32 join_attributes(Range32 a, Range32 b);
 
   class Nesting;
-  bool enter();  // false, after a report, when nested too deeply
+  // False, after a report, when nested too deeply.
+  bool enter() { return ++depth_ <= base::kMaxNesting || report_too_deep(); }
+  bool report_too_deep();
 
   template <class T>
   static Range32 move_tail(std::vector<T>& stack, size_t mark, std::vector<T>& store) {
@@ -237,12 +247,13 @@ class Parser {
   void parse_var_block(std::vector<VarBlock>& blocks, Range32 attributes);
   void parse_qualifiers(VarBlock& block);
   void parse_variables(VarBlock& block, const Token& opening);
-  void parse_access_path(std::vector<VarDecl>& out);      // VAR_ACCESS
-  void parse_config_variable(std::vector<VarDecl>& out);  // VAR_CONFIG
+  void parse_access_path();      // VAR_ACCESS
+  void parse_config_variable();  // VAR_CONFIG
   bool variables_end();
   bool end_var_ahead();
-  // Declares names : type := value; appends when anything usable was found.
-  void parse_variable_declaration(std::vector<VarDecl>& out);
+  // Declares names : type := value; onto the stack when anything usable was found.
+  void parse_variable_declaration();
+  base::SlimVector<VarDecl> take_variables(size_t mark);
   void parse_location(VarDecl& decl);
   Edge parse_edge();
   void parse_default(ExprId& init, bool* binds = nullptr);
@@ -334,6 +345,7 @@ class Parser {
   std::vector<Branch> branch_stack_;
   std::vector<CaseArm> case_stack_;
   std::vector<CaseLabel> label_stack_;
+  std::vector<VarDecl> var_stack_;
 };
 
 // Counts a level of nesting for as long as it lives.

@@ -65,7 +65,7 @@ std::string Printer::fields(const Spec& spec) const {
   if (spec.element.valid()) out += " EXTENDS " + this->spec(spec.element);
   out += '{';
   for (const VarDecl& field : spec.fields) {
-    if (&field != &spec.fields.front()) out += "; ";
+    if (&field != spec.fields.begin()) out += "; ";
     out += variable(field);
   }
   return out + '}';

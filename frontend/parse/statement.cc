@@ -11,6 +11,9 @@ Range32 Parser::parse_statements(bool in_case) {
 }
 
 bool Parser::list_ends(bool in_case) {
+  // What most statements begin with.
+  if (kind() == TokenKind::kName) return in_case && at_case_label();
+  if (is_statement_keyword(kind())) return false;
   for (;;) {
     if (kind() == TokenKind::kEnd || is_file_level_start(kind()) || is_pou_end(kind())) return true;
     if (at_member() || at_soft_declaration() || at_mock_function_block()) return true;

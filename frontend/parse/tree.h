@@ -16,6 +16,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/inline_vector.h"
+#include "base/slim_vector.h"
 #include "frontend/network/network.h"
 #include "frontend/parse/chart.h"
 #include "frontend/parse/code_nodes.h"
@@ -52,7 +54,7 @@ enum class Edge : uint8_t { kNone, kRising, kFalling };
 // An address without an area (AT %B4 in a structure) is relative to the structure; `%I*`
 // has an area and `incomplete`, and a size when one is written (%IW*).
 struct VarDecl {
-  std::vector<Name> names;  // several share one spec; none in VAR_CONFIG
+  base::InlineVector<Name, 1> names;  // several share one spec; none in VAR_CONFIG
   SpecId spec;
   ExprId init;  // may be invalid
   bool has_address = false;
@@ -82,9 +84,9 @@ struct Spec {
   ExprId length;
   SpecId element;
   ExprId low, high;
-  std::vector<DimSpec> dims;
-  std::vector<VarDecl> fields;
-  std::vector<Enumerator> enumerators;
+  base::SlimVector<DimSpec> dims;
+  base::SlimVector<VarDecl> fields;
+  base::SlimVector<Enumerator> enumerators;
 };
 
 enum class VarSection : uint8_t {
@@ -112,7 +114,7 @@ struct VarBlock {
   Range32 attributes;  // of the block: {attribute 'qualified_only'} in front of VAR_GLOBAL
   ScopeId scope;
   base::SourceSpan span;
-  std::vector<VarDecl> vars;
+  base::SlimVector<VarDecl> vars;
 };
 
 // --- declarations ------------------------------------------------------------

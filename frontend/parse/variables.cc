@@ -45,7 +45,9 @@ void Parser::parse_var_block(std::vector<VarBlock>& blocks, Range32 attributes) 
   block.scope = scope_;
   parse_qualifiers(block);
   block.span = span_from({opening.begin});
+  const size_t mark = var_stack_.size();
   parse_variables(block, opening);
+  block.vars = take_variables(mark);
   blocks.push_back(std::move(block));
 }
 
@@ -93,11 +95,11 @@ void Parser::parse_variables(VarBlock& block, const Token& opening) {
     if (accept(TokenKind::kSemicolon)) continue;
     if (variables_end()) return report_missing_end(opening, TokenKind::kEndVar);
     if (block.section == VarSection::kAccess) {
-      parse_access_path(block.vars);
+      parse_access_path();
     } else if (block.section == VarSection::kConfig) {
-      parse_config_variable(block.vars);
+      parse_config_variable();
     } else {
-      parse_variable_declaration(block.vars);
+      parse_variable_declaration();
     }
   }
   take();
@@ -131,7 +133,15 @@ bool Parser::end_var_ahead() {
   return var_scan_end_->kind == TokenKind::kEndVar;
 }
 
-void Parser::parse_variable_declaration(std::vector<VarDecl>& out) {
+base::SlimVector<VarDecl> Parser::take_variables(size_t mark) {
+  base::SlimVector<VarDecl> taken;
+  taken.reserve(var_stack_.size() - mark);
+  for (size_t i = mark; i < var_stack_.size(); ++i) taken.push_back(std::move(var_stack_[i]));
+  var_stack_.resize(mark);
+  return taken;
+}
+
+void Parser::parse_variable_declaration() {
   VarDecl decl;
   decl.attributes = take_attributes();
   base::SourcePos begin = here();
@@ -158,7 +168,7 @@ void Parser::parse_variable_declaration(std::vector<VarDecl>& out) {
   decl.edge = parse_edge();
   parse_default(decl.init, &decl.binds);
   decl.span = span_from(begin);
-  out.push_back(std::move(decl));
+  var_stack_.push_back(std::move(decl));
   finish_declaration("declaration");
 }
 
@@ -183,7 +193,7 @@ Edge Parser::parse_edge() {
 }
 
 // VAR_ACCESS: name : Resource.Program.x : INT READ_WRITE;
-void Parser::parse_access_path(std::vector<VarDecl>& out) {
+void Parser::parse_access_path() {
   VarDecl decl;
   decl.attributes = take_attributes();
   base::SourcePos begin = here();
@@ -198,12 +208,12 @@ void Parser::parse_access_path(std::vector<VarDecl>& out) {
   decl.spec = parse_spec();
   if (!panic_ && !accept(TokenKind::kReadOnly)) decl.writable = accept(TokenKind::kReadWrite);
   decl.span = span_from(begin);
-  out.push_back(std::move(decl));
+  var_stack_.push_back(std::move(decl));
   finish_declaration("declaration");
 }
 
 // VAR_CONFIG: Resource.Program.x AT %IX0.0 : BOOL := value;
-void Parser::parse_config_variable(std::vector<VarDecl>& out) {
+void Parser::parse_config_variable() {
   VarDecl decl;
   decl.attributes = take_attributes();
   base::SourcePos begin = here();
@@ -217,7 +227,7 @@ void Parser::parse_config_variable(std::vector<VarDecl>& out) {
   decl.spec = parse_spec();
   parse_default(decl.init, &decl.binds);
   decl.span = span_from(begin);
-  out.push_back(std::move(decl));
+  var_stack_.push_back(std::move(decl));
   finish_declaration("declaration");
 }
 

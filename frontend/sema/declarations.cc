@@ -111,7 +111,7 @@ bool Sema::use_library_literal(std::string_view name) {
   const TypeDecl& decl = *found->second;
   use_library_type(decl.name.text);
   if (types_.find(decl.name.text)->second != decl.spec) return false;
-  const std::vector<Enumerator>& enumerators = tree[decl.spec].enumerators;
+  const auto& enumerators = tree[decl.spec].enumerators;
   for (uint32_t i = 0; i < enumerators.size(); ++i) {
     if (ir::same_name(enumerators[i].name.text, name)) {
       literals_[enumerators[i].name.text].push_back({decl.spec, i});

@@ -77,10 +77,11 @@ uint32_t Pools::add_box(const TypeDecl& decl, std::string_view name) {
   block.access = Access::kPublic;
   block.scope = decl.scope;
   block.span = decl.name.span;
-  VarDecl& value = block.vars.emplace_back();
+  VarDecl value;
   value.names.push_back({"value", decl.name.span});
   value.spec = decl.spec;
   value.span = decl.name.span;
+  block.vars.push_back(std::move(value));
   const uint32_t number = sema_.add_pou(made, false, made.name.text);
   sema_.objects.inherit();
   sema_.resolve_interface(number);
