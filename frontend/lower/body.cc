@@ -1,6 +1,6 @@
 #include "frontend/lower/body.h"
 
-#include <cstring>
+#include <algorithm>
 
 #include "base/hash.h"
 #include "frontend/lower/chart.h"
@@ -26,8 +26,8 @@ void Body::run() {
   line_file_ = sema_.sources.file_of(decl.span.begin);
   out_.file = head.file;
   out_.line = head.line;
-  line_offset_ = decl.span.begin.offset;
-  line_begin_ = line_offset_;
+  line_begin_ = decl.span.begin.offset;
+  line_end_ = line_begin_;
   line_ = head.line;
   uint32_t base = sema_.sources.begin(line_file_).offset;
   std::string_view text =
@@ -81,35 +81,38 @@ bool Body::is_outside(base::SourcePos pos) const {
 
 void Body::set_line(base::SourceSpan span) {
   if (!span.begin.valid()) return;
-  uint32_t offset = span.begin.offset;
   if (sema_.log != nullptr && is_outside(span.begin)) sema_.log->other_lines = true;
-  if (offset >= line_begin_ && offset <= line_offset_) return build_.set_line(line_);
+  const uint32_t offset = span.begin.offset;
+  if (offset < line_begin_ || offset > line_end_) find_line(span.begin);
+  build_.set_line(line_);
+}
+
+void Body::find_line(base::SourcePos pos) {
+  const uint32_t offset = pos.offset;
   uint32_t base = sema_.sources.begin(line_file_).offset;
   if (offset < base || offset - base >= sema_.sources.text(line_file_).size()) {
-    line_file_ = sema_.sources.file_of(span.begin);
+    line_file_ = sema_.sources.file_of(pos);
     base = sema_.sources.begin(line_file_).offset;
   }
   // A type's initial values may stand in another file than the variable; a drawing goes up and
   // down in its rows.
   constexpr uint32_t kFar = 4096;
-  const bool far = offset < line_offset_ || line_offset_ < base || offset - line_offset_ > kFar;
+  const bool far = offset < line_end_ || line_end_ < base || offset - line_end_ > kFar;
   if (far || sema_.sources.has_pieces()) {
-    const base::SourceLocation location = sema_.sources.locate(span.begin);
+    const base::SourceLocation location = sema_.sources.locate(pos);
     line_ = location.line;
     line_begin_ = offset + 1 - location.column;
-  } else {
-    std::string_view text = sema_.sources.text(line_file_);
-    const char* at = text.data() + (line_offset_ - base);
-    const char* end = text.data() + (offset - base);
-    while ((at = static_cast<const char*>(std::memchr(at, '\n', static_cast<size_t>(end - at)))) !=
-           nullptr) {
-      ++line_;
-      ++at;
-      line_begin_ = base + static_cast<uint32_t>(at - text.data());
-    }
+    line_end_ = offset;
+    return;
   }
-  line_offset_ = offset;
-  build_.set_line(line_);
+  const std::string_view text = sema_.sources.text(line_file_);
+  size_t end = text.find('\n', line_end_ - base);
+  while (end < offset - base) {
+    ++line_;
+    line_begin_ = base + static_cast<uint32_t>(++end);
+    end = text.find('\n', end);
+  }
+  line_end_ = base + static_cast<uint32_t>(std::min(end, text.size()));
 }
 
 ir::ValueId Body::zero(ir::TypeId type) {

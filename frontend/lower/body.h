@@ -318,6 +318,7 @@ class Body {
   void leave();
   void initialise(const ir::Place& where, const Variable& variable);
   void set_line(base::SourceSpan span);
+  void find_line(base::SourcePos pos);
   bool is_outside(base::SourcePos pos) const;
   const ir::TypeTable& types() const { return sema_.program.types; }
   ir::Scalar scalar(ir::TypeId type) const { return types().scalar(type); }
@@ -353,9 +354,9 @@ class Body {
   static constexpr uint32_t kNoLocal = 0xffffffffu;
   std::array<uint32_t, 3> message_buffers_{kNoLocal, kNoLocal, kNoLocal};
   // Where the last line was found; positions mostly go forward.
-  uint32_t line_offset_ = 0;  // where the line was last known,
-  uint32_t line_begin_ = 0;   // and from where on it is the same line
-  uint32_t line_file_ = 0;    // which file that is, most likely
+  uint32_t line_begin_ = 0;  // from where on,
+  uint32_t line_end_ = 0;    // and how far it is the same line
+  uint32_t line_file_ = 0;   // which file that is, most likely
   uint32_t line_ = 0;
 };
 

@@ -15,7 +15,7 @@ std::optional<Constant> Body::evaluate(Sema& sema, ExprId id, ir::TypeId context
   Body body(sema, info, kNoPou, ir::Pou{});
   body.evaluating_ = true;
   base::SourceSpan span = sema.tree[id].span;
-  body.line_offset_ = span.begin.offset;
+  body.line_end_ = span.begin.offset;
   Note note = sema.infer(id);
   ir::TypeId type = without_range(sema.program.types, body.own_type(note, context));
   if (sema.program.types.is_scalar(type)) {

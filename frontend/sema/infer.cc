@@ -40,13 +40,7 @@ SpecInfo& Sema::spec_info(SpecId id) {
   return own ? pou.meaning->specs[id.index] : specs_[id.index];
 }
 
-Note& Sema::note(ExprId id) {
-  return meaning_ != nullptr ? meaning_->notes[id.index] : notes_[id.index];
-}
-
-const Note& Sema::infer(ExprId id) {
-  Note& note = this->note(id);
-  if (note.progress == Progress::kDone) return note;
+const Note& Sema::infer_now(ExprId id, Note& note) {
   const Expr& expr = tree[id];
   if (depth_ > kMaxDepth) {
     error(DiagnosticCode::kTooDeep, expr.span, "the expression is nested too deeply",

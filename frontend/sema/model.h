@@ -91,6 +91,20 @@ struct OuterUse {
   base::SourceSpan span = {};
 };
 
+// Where a structure keeps what a name means.
+struct StructureField {
+  uint32_t member = 0;
+  int32_t bit = -1;  // of a BIT member: its number in the BYTE
+  SpecId spec = {};  // as written
+};
+
+// A MOCK_FUNCTION declaration, and the POU that it became.
+struct MockBody {
+  const PouDecl* decl;
+  bool inside_test;
+  uint32_t pou;
+};
+
 // A type expression after resolution. `init` is the default of a derived type.
 struct TypeUse {
   ir::TypeId type;

@@ -61,17 +61,15 @@ class Sema {
   void check_containment();
 
   // --- variables and members (variables.cc)
-  const Variable& resolve(VarId id);
+  const Variable& resolve(VarId id) {
+    const Variable& variable = variables_[id.index];
+    return variable.progress == Progress::kDone ? variable : resolve_now(id);
+  }
   VarId find_variable(const Name& name);
   VarId find_variable(const Expr& name);  // `.name` means a global
   // The instance type's POU; the POU's variable of that name.
   const PouInfo* pou_of(ir::TypeId instance) const;
-  // Where a structure keeps what that name means.
-  struct Field {
-    uint32_t member = 0;
-    int32_t bit = -1;  // of a BIT member: its number in the BYTE
-    SpecId spec = {};  // as written
-  };
+  using Field = StructureField;
   const Field* find_field(ir::TypeId structure, std::string_view name) const;
   // -1 for BIT members too.
   int32_t find_member(ir::TypeId structure, std::string_view name) const;
@@ -81,7 +79,10 @@ class Sema {
   std::string name_suggestion(std::string_view name, bool callable, bool instruction = false) const;
 
   // --- expressions (infer*.cc)
-  const Note& infer(ExprId expr);
+  const Note& infer(ExprId expr) {
+    Note& known = note(expr);
+    return known.progress == Progress::kDone ? known : infer_now(expr, known);
+  }
   Callee callee(const Expr& call);
   // Does a conversion to a string give the names of this enumeration's literals?
   bool prints_names(ir::TypeId enumeration) const;
@@ -232,6 +233,7 @@ class Sema {
   ir::Member member_of(const Variable& variable, ir::Section section);
 
   // variables.cc
+  const Variable& resolve_now(VarId id);
   void resolve_variable(VarId id);
   void resolve_external(Variable& variable);
   void resolve_initial(Variable& variable);
@@ -284,6 +286,7 @@ class Sema {
   void mark_enabled(const Expr& call, Note& note) const;
 
   // infer*.cc
+  const Note& infer_now(ExprId id, Note& note);
   Note infer_kind(ExprId id, const Expr& expr);
   Note infer_literal(const Expr& expr);
   Note infer_name(const Expr& expr);
@@ -359,11 +362,6 @@ class Sema {
   Purpose purpose_;
   uint32_t test_message_ = 0;
   std::deque<PouDecl> made_decls_;
-  struct MockBody {
-    const PouDecl* decl;
-    bool inside_test;
-    uint32_t pou;
-  };
   std::vector<MockBody> mock_bodies_;
   uint32_t library_file_;
   uint32_t library_end_;
@@ -374,7 +372,9 @@ class Sema {
   uint32_t depth_ = 0;
   std::deque<Variable> variables_;  // stable addresses, as pous
   SpecInfo& spec_info(SpecId spec);
-  Note& note(ExprId expr);
+  Note& note(ExprId expr) {
+    return meaning_ != nullptr ? meaning_->notes[expr.index] : notes_[expr.index];
+  }
   std::vector<SpecInfo> specs_;
   std::vector<Note> notes_;
   std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> instances_;

@@ -29,9 +29,8 @@ VarId Sema::find_variable(const Expr& name) {
   return found == globals_.end() ? VarId() : found->second;
 }
 
-const Variable& Sema::resolve(VarId id) {
+const Variable& Sema::resolve_now(VarId id) {
   Variable& variable = variables_[id.index];
-  if (variable.progress == Progress::kDone) return variable;
   if (variable.progress == Progress::kBusy || depth_ >= kMaxChain) {
     if (!variable.type.valid() || variable.constant) {
       error(DiagnosticCode::kRecursiveConstant, variable.name.span,
