@@ -115,14 +115,17 @@ void Replacements::apply(Pou& pou) {
 
 std::vector<uint32_t> count_uses(const Pou& pou) {
   std::vector<uint32_t> uses(pou.values.size());
+  std::vector<uint32_t> named(pou.places.size());
   const auto use = [&uses](ValueId value) { ++uses[value.index]; };
   for (const Block& block : pou.blocks) {
     for (const Inst& inst : block.insts) {
       for_each_operand(inst, use);
-      for (const PlaceId id : {inst.place, inst.place2}) {
-        if (id.valid()) for_each_value(pou.places[id.index], use);
-      }
+      if (inst.place.valid()) ++named[inst.place.index];
+      if (inst.place2.valid()) ++named[inst.place2.index];
     }
+  }
+  for (size_t i = 0; i < named.size(); ++i) {
+    for_each_value(pou.places[i], [&](ValueId value) { uses[value.index] += named[i]; });
   }
   return uses;
 }

@@ -35,8 +35,8 @@ struct Key {
 
 uint64_t hash_of(const Key& key) {
   uint64_t hash = static_cast<uint64_t>(key.op) << 8 | static_cast<uint64_t>(key.scalar);
-  for (const uint64_t part : {uint64_t{key.operands[0]}, uint64_t{key.operands[1]},
-                              uint64_t{key.operands[2]}, key.low, key.high}) {
+  const uint64_t both = uint64_t{key.operands[0]} << 32 | key.operands[1];
+  for (const uint64_t part : {both, key.operands[2] ^ key.high, key.low}) {
     hash = (hash ^ part) * 0x9e3779b97f4a7c15u;
     hash ^= hash >> 29;
   }
@@ -52,7 +52,9 @@ struct Operation {
 // The last value that was computed for each key, and where. Open addressing, of fixed size.
 class Operations {
  public:
-  explicit Operations(size_t most) : slots_(std::bit_ceil(2 * most + 1), kNobody) {}
+  explicit Operations(size_t most) : slots_(std::bit_ceil(2 * most + 1), kNobody) {
+    rows_.reserve(most);
+  }
   // The row of the key, until the next call; without a value when the key is new.
   Operation& at(const Key& key) {
     const size_t mask = slots_.size() - 1;
@@ -88,8 +90,14 @@ size_t count_operations(const Pou& pou) {
   return count;
 }
 
+// What is known of a place without looking at it.
+struct PlaceNumbers {
+  uint32_t hash = 0;
+  uint32_t area = 0;  // places with different ones never meet; 0: may be anywhere
+};
+
 struct Known {
-  uint32_t hash = 0;  // of the place
+  PlaceNumbers numbers;  // of the place
   PlaceId place;
   ValueId value;
   bool stored = false;  // by a store; else loaded
@@ -113,14 +121,10 @@ class Numbers {
         same_(pou),
         operations_(count_operations(pou)),
         known_at_end_(pou.blocks.size()),
-        before_(pou.blocks.size(), kNobody),
-        apart_(pou.places.size()) {
+        before_(pou.blocks.size(), kNobody) {
     for (uint32_t v = 0; v < number_.size(); ++v) number_[v] = v;
-    hashes_.reserve(pou.places.size());
-    for (size_t i = 0; i < apart_.size(); ++i) {
-      apart_[i] = is_apart(pou.places[i]);
-      hashes_.push_back(hash_of(pou.places[i]));
-    }
+    places_.reserve(pou.places.size());
+    for (const Place& each : pou.places) places_.push_back({hash_of(each), area_of(each)});
   }
 
   bool run() {
@@ -160,14 +164,16 @@ class Numbers {
     return end.op == Op::kTry && end.targets[1].block.index == to;
   }
 
-  // Begins with a member of the own instance or of the globals, and stays there: such places meet
-  // only when that member is the same.
-  static bool is_apart(const Place& place) {
+  // Of a place that begins with a member of the own instance or of the globals, and stays there:
+  // such places meet only when that member is the same.
+  static uint32_t area_of(const Place& place) {
     const bool base = place.base == PlaceBase::kSelf || place.base == PlaceBase::kGlobal;
-    return base && !place.steps.empty() && place.steps[0].kind == StepKind::kMember &&
-           std::all_of(place.steps.begin(), place.steps.end(), [](const Step& step) {
-             return step.kind == StepKind::kMember || step.kind == StepKind::kIndex;
-           });
+    const bool apart = base && !place.steps.empty() && place.steps[0].kind == StepKind::kMember &&
+                       std::all_of(place.steps.begin(), place.steps.end(), [](const Step& step) {
+                         return step.kind == StepKind::kMember || step.kind == StepKind::kIndex;
+                       });
+    if (!apart) return 0;
+    return 2 * place.steps[0].index + (place.base == PlaceBase::kSelf ? 2 : 3);
   }
 
   // What is stored there is not what is read behind it while the variable is forced: such stores
@@ -178,16 +184,6 @@ class Numbers {
            std::any_of(place.steps.begin(), place.steps.end(), [](const Step& step) {
              return step.kind == StepKind::kDeref || step.kind == StepKind::kEnter;
            });
-  }
-
-  bool may_meet(PlaceId a, PlaceId b) const {
-    const Place& left = place(a);
-    const Place& right = place(b);
-    if (apart_[a.index] && apart_[b.index] &&
-        (left.base != right.base || left.steps[0].index != right.steps[0].index)) {
-      return false;
-    }
-    return may_alias(left, right, facts_);
   }
 
   // Values that are computed right where they are wanted: stored, or passed to a parameter.
@@ -327,24 +323,25 @@ class Numbers {
 
   void load(const Inst& inst) {
     if (inst.scalar == Scalar::kAddr) return;
-    const uint32_t hash = hashes_[inst.place.index];
+    const PlaceNumbers numbers = places_[inst.place.index];
     for (Known& known : known_) {
-      if (known.hash != hash || !same_place(place(known.place), place(inst.place))) continue;
+      if (known.numbers.hash != numbers.hash || !same_place(place(known.place), place(inst.place)))
+        continue;
       if (pou_.values[known.value.index].scalar != inst.scalar) return;
       const bool here = known.block == block_;
       const bool fixed = is_static(place(inst.place), facts_);
       if (known.stored && can_be_forced(place(inst.place))) {
-        known = {hash, inst.place, inst.result, false, block_};
+        known = {numbers, inst.place, inst.result, false, block_};
         return;
       }
       number_[inst.result.index] = number(known.value);
       const bool pays = facts_.constants.known(known.value) ||
                         (fixed ? here && !known.stored : here || !known.stored);
       if (pays) return replace(inst.result, known.value);
-      known = {hash, inst.place, inst.result, false, block_};
+      known = {numbers, inst.place, inst.result, false, block_};
       return;
     }
-    remember({hash, inst.place, inst.result, false, block_});
+    remember({numbers, inst.place, inst.result, false, block_});
   }
 
   void remember(const Known& known) {
@@ -360,11 +357,15 @@ class Numbers {
       return;
     }
     forget(inst.place);
-    remember({hashes_[inst.place.index], inst.place, inst.operands[0], true, block_});
+    remember({places_[inst.place.index], inst.place, inst.operands[0], true, block_});
   }
 
   void forget(PlaceId written) {
-    std::erase_if(known_, [&](const Known& known) { return may_meet(known.place, written); });
+    const uint32_t area = places_[written.index].area;
+    std::erase_if(known_, [&](const Known& known) {
+      const bool apart = area != 0 && known.numbers.area != 0 && known.numbers.area != area;
+      return !apart && may_alias(place(known.place), place(written), facts_);
+    });
   }
 
   // A native function uses the next frame, and writes into the string that it is given.
@@ -388,8 +389,7 @@ class Numbers {
   std::vector<Known> known_;                      // at the instruction at hand
   std::vector<std::vector<Known>> known_at_end_;  // of blocks that others follow
   std::vector<uint32_t> before_;                  // the block that leads here, or kNobody
-  std::vector<uint32_t> hashes_;                  // by place
-  std::vector<bool> apart_;                       // by place
+  std::vector<PlaceNumbers> places_;
   uint32_t block_ = 0;
 };
 
