@@ -12,10 +12,10 @@ namespace ir::codegen {
 inline constexpr uint32_t kNoHandler = 0xffffffffu;
 
 struct FlowBlock {
-  BlockId source;                    // invalid: a split edge
-  const Target* edge = nullptr;      // of a split edge: where it goes
-  std::vector<uint32_t> successors;  // positions, parallel to the terminator's targets
-  uint32_t handler = kNoHandler;     // position of the handler of its try
+  BlockId source;                              // invalid: a split edge
+  uint32_t handler = kNoHandler;               // position of the handler of its try
+  const Target* edge = nullptr;                // of a split edge: where it goes
+  base::InlineVector<uint32_t, 2> successors;  // positions, parallel to the terminator's targets
 };
 
 struct Flow {

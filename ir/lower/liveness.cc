@@ -1,5 +1,8 @@
 #include "ir/lower/liveness.h"
 
+#include <array>
+#include <span>
+
 namespace ir::codegen {
 namespace {
 
@@ -8,24 +11,47 @@ struct Effects {
   RegisterSet writes;
 };
 
-template <class Visit>
-void for_each_access(const MachineBlock& block, Visit visit) {
-  for (const MachineInst& inst : block.insts) {
-    for_each_register(inst, [&](uint32_t r, bool reads, bool) {
-      if (reads) visit(r, false);
-    });
-    for_each_register(inst, [&](uint32_t r, bool, bool writes) {
-      if (writes) visit(r, true);
-    });
+struct Access {
+  uint32_t r;
+  bool write;
+};
+
+// Of all blocks, one behind the other. An instruction reads before it writes.
+struct Accesses {
+  explicit Accesses(const Machine& machine) {
+    begins.push_back(0);
+    for (const MachineBlock& block : machine.blocks) {
+      for (const MachineInst& inst : block.insts) add(inst);
+      if (block.end.condition.is_register()) all.push_back({block.end.condition.index, false});
+      begins.push_back(all.size());
+    }
   }
-  if (block.end.condition.is_register()) visit(block.end.condition.index, false);
-}
+  std::span<const Access> of(size_t block) const {
+    return std::span(all).subspan(begins[block], begins[block + 1] - begins[block]);
+  }
+
+  std::vector<Access> all;
+  std::vector<size_t> begins;
+
+ private:
+  void add(const MachineInst& inst) {
+    std::array<uint32_t, 3> written{};
+    size_t count = 0;
+    for_each_register(inst, [&](uint32_t r, bool reads, bool writes) {
+      if (reads) all.push_back({r, false});
+      if (writes) written[count++] = r;
+    });
+    for (size_t i = 0; i < count; ++i) all.push_back({written[i], true});
+  }
+};
 
 class Analysis {
  public:
   explicit Analysis(const Machine& machine) : machine_(machine), blocks_(machine.blocks.size()) {
-    find_tracked();
-    for (const MachineBlock& block : machine.blocks) effects_.push_back(effects_of(block));
+    const Accesses accesses(machine);
+    find_tracked(accesses);
+    effects_.reserve(blocks_);
+    for (size_t b = 0; b < blocks_; ++b) effects_.push_back(effects_of(accesses.of(b)));
   }
 
   Liveness run(const std::vector<uint32_t>& written_at_entry) {
@@ -43,17 +69,17 @@ class Analysis {
   RegisterSet empty_set() const { return RegisterSet(liveness_.registers.size()); }
 
   // A temporary that one block writes before it reads is nobody else's business.
-  void find_tracked() {
+  void find_tracked(const Accesses& accesses) {
     std::vector<uint32_t> home(machine_.registers.size(), kNoNumber);
     std::vector<bool> tracked(machine_.registers.size());
     for (uint32_t r = 0; r < tracked.size(); ++r) {
       tracked[r] = machine_.registers[r].slot != kNoNumber;
     }
     for (uint32_t b = 0; b < blocks_; ++b) {
-      for_each_access(machine_.blocks[b], [&](uint32_t r, bool write) {
+      for (const auto [r, write] : accesses.of(b)) {
         if (home[r] == kNoNumber && write) home[r] = b;
         if (home[r] != b) tracked[r] = true;
-      });
+      }
     }
     number_.assign(tracked.size(), kNoNumber);
     for (uint32_t r = 0; r < tracked.size(); ++r) {
@@ -63,17 +89,17 @@ class Analysis {
     }
   }
 
-  Effects effects_of(const MachineBlock& block) const {
+  Effects effects_of(std::span<const Access> accesses) const {
     Effects effects{empty_set(), empty_set()};
-    for_each_access(block, [&](uint32_t r, bool write) {
+    for (const auto [r, write] : accesses) {
       const uint32_t number = number_[r];
-      if (number == kNoNumber) return;
+      if (number == kNoNumber) continue;
       if (write) {
         effects.writes.add(number);
       } else if (!effects.writes.has(number)) {
         effects.reads.add(number);
       }
-    });
+    }
     return effects;
   }
 

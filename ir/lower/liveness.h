@@ -2,18 +2,22 @@
 // (assigned), per block.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "base/inline_vector.h"
 #include "ir/lower/machine.h"
 
 namespace ir::codegen {
 
 class RegisterSet {
  public:
-  explicit RegisterSet(size_t size = 0, bool full = false)
-      : words_((size + 63) / 64, full ? ~uint64_t{0} : 0) {}
+  explicit RegisterSet(size_t size = 0, bool full = false) {
+    words_.resize((size + 63) / 64);
+    if (full) std::fill(words_.begin(), words_.end(), ~uint64_t{0});
+  }
   bool has(uint32_t r) const { return (words_[r / 64] >> (r % 64) & 1) != 0; }
   void add(uint32_t r) { words_[r / 64] |= uint64_t{1} << (r % 64); }
   void remove(uint32_t r) { words_[r / 64] &= ~(uint64_t{1} << (r % 64)); }
@@ -31,7 +35,7 @@ class RegisterSet {
   }
 
  private:
-  std::vector<uint64_t> words_;
+  base::InlineVector<uint64_t, 1> words_;
 };
 
 // Sets over the registers that matter beyond one block; most temporaries do not,

@@ -13,8 +13,11 @@ void Selector::select_store(const Inst& inst) {
   flush_writes(inst, place);
   if (inst.scalar == Scalar::kAddr) return bind_reference(inst);
   const Class cls = class_of(inst.scalar);
+  if (const Operand fixed = fixed_operand(inst.place, cls); !fixed.none()) {
+    return assign(fixed, inst.operands[0]);
+  }
   const Location at = locate(place);
-  if (!at.behind_addr) return assign(operand_of(at, cls), inst.operands[0]);
+  if (!at.behind_addr) return assign(fix_operand(inst.place, at, cls), inst.operands[0]);
   store_operand(at, cls, use(inst.operands[0]));
 }
 

@@ -24,7 +24,7 @@ ValueList Selector::operands_of(const Inst& inst) const {
 }
 
 // Every pending value that selecting `value` now would use, once per use.
-void Selector::count_in_tree(ValueId value, std::vector<ValueId>& counted) const {
+void Selector::count_in_tree(ValueId value, OwnValues& counted) const {
   const ValueId root = values_.root(value);
   const ValueState& state = states_[root.index];
   if (state.state != State::kPending) return;
@@ -44,15 +44,15 @@ bool Selector::reads(ValueId value, const Conflicts& conflicts) const {
 }
 
 // What selecting `inst` uses of the pending values, once per use.
-std::vector<ValueId> Selector::own_values(const Inst& inst) const {
-  std::vector<ValueId> own;
+Selector::OwnValues Selector::own_values(const Inst& inst) const {
+  OwnValues own;
   for (ValueId operand : operands_of(inst)) count_in_tree(operand, own);
   return own;
 }
 
 // Gives registers to pending values that read a conflicting place and are not used
 // up by `own`.
-void Selector::flush(const std::vector<ValueId>& own, const Conflicts& conflicts) {
+void Selector::flush(const OwnValues& own, const Conflicts& conflicts) {
   std::erase_if(pending_, [&](ValueId v) { return states_[v.index].state != State::kPending; });
   // Trees first: they use up loads.
   for (const bool loads : {false, true}) {

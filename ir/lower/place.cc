@@ -290,4 +290,10 @@ Operand Selector::operand_of(const Location& at, Class cls) {
   return named ? Operand::reg(local_registers_[slot]) : Operand::slot(slot);
 }
 
+Operand Selector::fix_operand(PlaceId place, const Location& at, Class cls) {
+  const Operand operand = operand_of(at, cls);
+  if (!at.behind_handle) fixed_[place.index] = {operand, cls};
+  return operand;
+}
+
 }  // namespace ir::codegen

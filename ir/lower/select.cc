@@ -17,7 +17,8 @@ Selector::Selector(const Program& program, const Pou& pou, Object& object)
       tables_(object),
       flow_(order_blocks(pou)),
       values_(program.types, pou, flow_),
-      states_(pou.values.size()) {
+      states_(pou.values.size()),
+      fixed_(pou.places.size()) {
   for (uint32_t i = 0; i < states_.size(); ++i) states_[i].remaining = values_[ValueId(i)].uses;
 }
 
@@ -51,6 +52,7 @@ void Selector::add_named_slots() {
 
 base::Result<Machine> Selector::run() {
   add_named_slots();
+  machine_.blocks.reserve(flow_.blocks.size());
   for (uint32_t position = 0; position < flow_.blocks.size() && !error_; ++position) {
     select_block(position);
   }
@@ -70,6 +72,7 @@ void Selector::select_block(uint32_t position) {
     return;
   }
   const Block& source = pou_.blocks[flow_block.source.index];
+  block().insts.reserve(source.insts.size());
   for (ValueId param : source.params) register_for(param);
   for (size_t i = 0; i + 1 < source.insts.size(); ++i) {
     line_ = source.insts[i].line;
@@ -150,24 +153,33 @@ void Selector::select_load(const Inst& inst) {
   const Class cls = class_of(inst.scalar);
   std::optional<uint64_t> bits;
   if (place.base == PlaceBase::kConst && is_static(place, values_)) bits = constant_scalar(place);
-  if (bits) return pend_load(inst, place, Operand::constant(tables_.scalar(cls, *bits)));
-  Location at = locate(place);
+  if (bits) return pend_load(inst, Operand::constant(tables_.scalar(cls, *bits)));
   if (inst.scalar == Scalar::kAddr) {
+    Location at = locate(place);
     step_dereference(at);
     return move(cls, register_for(inst.result), at.addr);
   }
+  if (const Operand fixed = fixed_operand(inst.place, cls); !fixed.none()) {
+    return load_memory(inst, fixed);
+  }
+  const Location at = locate(place);
   if (at.behind_addr) return load_into(at, cls, register_for(inst.result));
-  const Operand memory = operand_of(at, cls);
-  if (pending_.size() >= kMaxPending) return move(cls, register_for(inst.result), memory);
-  pend_load(inst, place, memory);
+  load_memory(inst, fix_operand(inst.place, at, cls));
 }
 
-void Selector::pend_load(const Inst& inst, const Place& place, Operand memory) {
+void Selector::load_memory(const Inst& inst, Operand memory) {
+  if (pending_.size() >= kMaxPending) {
+    return move(class_of(inst.scalar), register_for(inst.result), memory);
+  }
+  pend_load(inst, memory);
+}
+
+void Selector::pend_load(const Inst& inst, Operand memory) {
   if (values_[inst.result].uses == 0) return;
   ValueState& state = states_[inst.result.index];
   state.state = State::kPending;
   state.memory = memory;
-  state.place = &place;
+  state.place = &pou_.places[inst.place.index];
   pending_.push_back(inst.result);
 }
 

@@ -58,6 +58,11 @@ class Selector {
     bool by_reference = false;  // forgotten at calls
     bool known = true;
   };
+  // What a scalar at a fixed place is, once it was asked for: places are named again and again.
+  struct FixedPlace {
+    Operand operand;
+    Class cls = Class::kB;
+  };
   // By prefix_key().
   struct Addresses {
     base::ByteTable numbers;
@@ -70,22 +75,24 @@ class Selector {
   void select_inst(const Inst& inst);
   void select_value(const Inst& inst);
   void select_load(const Inst& inst);
-  void pend_load(const Inst& inst, const Place& place, Operand memory);
+  void load_memory(const Inst& inst, Operand memory);
+  void pend_load(const Inst& inst, Operand memory);
   void select_check(const Inst& inst);
   bool deferrable(const Inst& inst) const;
   void defer(const Inst& inst);
 
   // pending.cc
   using Conflicts = std::function<bool(const Place&)>;
-  std::vector<ValueId> own_values(const Inst& inst) const;
-  void flush(const std::vector<ValueId>& own, const Conflicts& conflicts);
+  using OwnValues = base::InlineVector<ValueId, 8>;
+  OwnValues own_values(const Inst& inst) const;
+  void flush(const OwnValues& own, const Conflicts& conflicts);
   void flush_all(const Inst& inst);
   void flush_writes(const Inst& inst, const Place& written);
   void flush_call(const Inst& inst);
   void flush_native(const Inst& inst);
   void materialise(ValueId value);
   ValueList operands_of(const Inst& inst) const;
-  void count_in_tree(ValueId value, std::vector<ValueId>& counted) const;
+  void count_in_tree(ValueId value, OwnValues& counted) const;
   bool reads(ValueId value, const Conflicts& conflicts) const;
   void consume(ValueId value);
   Operand use(ValueId value);
@@ -135,6 +142,12 @@ class Selector {
   uint32_t extension_of(const Location& at);
   bool is_scalar_leaf(const Location& at) const;
   Operand operand_of(const Location& at, Class cls);
+  // Nothing when it is not fixed, or was not asked for.
+  Operand fixed_operand(PlaceId place, Class cls) const {
+    const FixedPlace& fixed = fixed_[place.index];
+    return fixed.cls == cls ? fixed.operand : Operand();
+  }
+  Operand fix_operand(PlaceId place, const Location& at, Class cls);
 
   // reference.cc
   Location locate_target(const Place& place);
@@ -192,6 +205,7 @@ class Selector {
   Values values_;
   Machine machine_;
   std::vector<ValueState> states_;
+  std::vector<FixedPlace> fixed_;  // by place
   std::vector<ValueId> pending_;
   std::vector<uint32_t> local_registers_;  // kNoNumber for aggregates
   Addresses addresses_;                    // of this block
