@@ -6,17 +6,15 @@ namespace linker {
 
 void Extents::add(uint64_t begin, uint64_t size) {
   if (size == 0) return;
-  uint64_t end = begin + size;
+  const uint64_t end = begin + size;
   auto next = ranges_.upper_bound(begin);
-  if (next != ranges_.begin() && std::prev(next)->second >= begin) {
-    --next;
-    begin = next->first;
-  }
-  while (next != ranges_.end() && next->first <= end) {
-    end = std::max(end, next->second);
+  const bool touches = next != ranges_.begin() && std::prev(next)->second >= begin;
+  uint64_t& own_end = (touches ? std::prev(next) : ranges_.emplace_hint(next, begin, end))->second;
+  own_end = std::max(own_end, end);
+  while (next != ranges_.end() && next->first <= own_end) {
+    own_end = std::max(own_end, next->second);
     next = ranges_.erase(next);
   }
-  ranges_.emplace(begin, end);
 }
 
 void Extents::remove(uint64_t begin, uint64_t size) {

@@ -285,13 +285,15 @@ class Builder {
   // this change frees, and beyond the capacity.
   void place_added(TypeId id, TypeId old, uint32_t capacity, const std::vector<size_t>& added,
                    Extents& taken, std::vector<uint32_t>& offsets) {
-    Extents before = taken;
     const uint64_t floor = inherited_capacity(id);
     uint64_t old_used = floor;
+    Extents kept;
     if (old.valid()) {
       old_used = std::max<uint64_t>(base_->layouts[old].used, floor);
-      for (const Extent64& range : old_ranges(old)) before.add(range.begin, range.size);
+      kept = taken;
+      for (const Extent64& range : old_ranges(old)) kept.add(range.begin, range.size);
     }
+    Extents& before = old.valid() ? kept : taken;
     const uint64_t unlimited = uint64_t{1} << 40;
     const uint64_t end = capacity != 0 ? capacity : unlimited;
     std::map<std::pair<uint64_t, uint64_t>, uint64_t> hints;
@@ -309,8 +311,8 @@ class Builder {
       if (*at >= hint) hint = *at;
       if (*at + size > base::kMaxDataBytes) return too_large(id, *at + size, base::kMaxDataBytes);
       offsets[i] = static_cast<uint32_t>(*at);
-      before.add(*at, size);
       taken.add(*at, size);
+      if (old.valid()) before.add(*at, size);
     }
   }
 

@@ -39,14 +39,12 @@ std::optional<uint32_t> ConstantPool::in_base(base::ByteSpan entry) const {
 }
 
 uint32_t ConstantPool::intern(base::ByteSpan entry) {
-  const std::optional<uint32_t> known = in_base(entry);
-  const auto [found, added] =
-      offsets_.try_emplace(std::string(entry.begin(), entry.end()),
-                           known ? *known : static_cast<uint32_t>(bytes_.size()));
-  if (added && !known) {
-    bytes_.insert(bytes_.end(), entry.begin(), entry.end());
-    bytes_.resize((bytes_.size() + kPoolAlign - 1) / kPoolAlign * kPoolAlign);
-  }
+  const auto [found, added] = offsets_.try_emplace(std::string(entry.begin(), entry.end()), 0);
+  if (!added) return found->second;
+  if (const std::optional<uint32_t> known = in_base(entry)) return found->second = *known;
+  found->second = static_cast<uint32_t>(bytes_.size());
+  bytes_.insert(bytes_.end(), entry.begin(), entry.end());
+  bytes_.resize((bytes_.size() + kPoolAlign - 1) / kPoolAlign * kPoolAlign);
   return found->second;
 }
 

@@ -34,6 +34,7 @@ class Pass {
 
   void run() {
     starts_.resize(object_.code.size() + 1);
+    code_.reserve(object_.code.size());
     for (uint32_t i = 0; i < object_.code.size() && !error_;) {
       starts_[i] = static_cast<uint32_t>(code_.size());
       i += link_inst(i);
@@ -188,7 +189,7 @@ class Pass {
   }
 
   void append(const std::vector<Unit>& units) {
-    code_.insert(code_.end(), units.begin(), units.end());
+    if (!units.empty()) code_.insert(code_.end(), units.begin(), units.end());
   }
 
   const LinkContext& context_;
