@@ -15,11 +15,36 @@ namespace vm {
   STC_BINARY(MUL_##suffix, T, T, T, Wide<T>(b) * Wide<T>(c))
 STC_WORDS(SUMS)
 
-#define FLOATS(suffix, T)                                         \
-  STC_BINARY(ADD_##suffix, T, T, T, ir::with_nan_of(b + c, b, c)) \
-  STC_BINARY(SUB_##suffix, T, T, T, ir::with_nan_of(b - c, b, c)) \
-  STC_BINARY(MUL_##suffix, T, T, T, ir::with_nan_of(b* c, b, c))  \
-  STC_BINARY(DIV_##suffix, T, T, T, ir::with_nan_of(b / c, b, c)) \
+// x86-64 gives the NaN of ir::with_nan_of by itself when the operands stand in this order, which
+// the compiler may exchange in sums and products.
+#if defined(__x86_64__)
+#define FLOAT_OPERATION(name, operation, instruction) \
+  STC_INLINE float name(float b, float c) {           \
+    asm(instruction "ss %1, %0" : "+x"(b) : "xm"(c)); \
+    return b;                                         \
+  }                                                   \
+  STC_INLINE double name(double b, double c) {        \
+    asm(instruction "sd %1, %0" : "+x"(b) : "xm"(c)); \
+    return b;                                         \
+  }
+#else
+#define FLOAT_OPERATION(name, operation, instruction) \
+  template <class T>                                  \
+  STC_INLINE T name(T b, T c) {                       \
+    return ir::with_nan_of(b operation c, b, c);      \
+  }
+#endif
+FLOAT_OPERATION(float_sum, +, "add")
+FLOAT_OPERATION(float_difference, -, "sub")
+FLOAT_OPERATION(float_product, *, "mul")
+FLOAT_OPERATION(float_quotient, /, "div")
+#undef FLOAT_OPERATION
+
+#define FLOATS(suffix, T)                                   \
+  STC_BINARY(ADD_##suffix, T, T, T, float_sum(b, c))        \
+  STC_BINARY(SUB_##suffix, T, T, T, float_difference(b, c)) \
+  STC_BINARY(MUL_##suffix, T, T, T, float_product(b, c))    \
+  STC_BINARY(DIV_##suffix, T, T, T, float_quotient(b, c))   \
   STC_UNARY(SQRT_##suffix, T, T, ir::with_nan_of(std::sqrt(b), b, b))
 STC_FLOATS(FLOATS)
 
