@@ -232,7 +232,7 @@ Note Sema::infer_enum_name(const Expr& expr) {
                standard_.contains(name);
     error(pou ? DiagnosticCode::kNotAValue : DiagnosticCode::kUnknownName, expr.span,
           "`" + std::string(name) + (pou ? "` is not a variable" : "` is not declared"),
-          pou ? std::string() : name_suggestion(name, false));
+          pou ? Fix() : name_suggestion(name, false));
     return {};
   }
   Note note;

@@ -10,17 +10,22 @@ namespace {
 
 constexpr size_t kLongestCompared = 64;
 
-// Levenshtein distance, given up once it exceeds `limit`.
+// Letters that are other ones, too many, missing or exchanged with the next; given up once there
+// are more than `limit`.
 uint32_t distance(std::string_view a, std::string_view b, uint32_t limit) {
   std::vector<uint32_t> row(b.size() + 1);
   for (uint32_t j = 0; j < row.size(); ++j) row[j] = j;
+  std::vector<uint32_t> before = row;  // the two rows in front of it
+  std::vector<uint32_t> earlier = row;
   for (uint32_t i = 1; i <= a.size(); ++i) {
-    uint32_t diagonal = row[0];
+    earlier.swap(before);
+    before.swap(row);
     uint32_t smallest = row[0] = i;
     for (uint32_t j = 1; j < row.size(); ++j) {
-      uint32_t replace = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replace, row[j] + 1, row[j - 1] + 1});
+      const bool same = a[i - 1] == b[j - 1];
+      row[j] = std::min({before[j - 1] + (same ? 0 : 1), before[j] + 1, row[j - 1] + 1});
+      const bool exchanged = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (exchanged) row[j] = std::min(row[j], earlier[j - 2] + 1);
       smallest = std::min(smallest, row[j]);
     }
     if (smallest > limit) return limit + 1;
@@ -61,8 +66,11 @@ void NearestName::offer(std::string_view candidate) {
   best_ = candidate;
 }
 
-std::string NearestName::fix() const {
-  return best_.empty() ? std::string() : "did you mean `" + best_ + "`?";
+Fix NearestName::fix() const {
+  if (best_.empty()) return {};
+  Fix fix("did you mean `" + best_ + "`?");
+  fix.name = best_;
+  return fix;
 }
 
 }  // namespace frontend

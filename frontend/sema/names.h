@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace frontend {
@@ -20,6 +21,17 @@ struct FoldEqual {
 template <class T>
 using NameMap = std::unordered_map<std::string_view, T, FoldHash, FoldEqual>;
 
+// The way out of a mistake.
+struct Fix {
+  Fix() = default;
+  Fix(std::string way) : text(std::move(way)) {}  // NOLINT(google-explicit-constructor)
+  Fix(const char* way) : text(way) {}             // NOLINT(google-explicit-constructor)
+  operator std::string() const { return text; }   // NOLINT(google-explicit-constructor)
+
+  std::string text;
+  std::string name;  // that was meant, perhaps
+};
+
 // Keeps the candidate that is nearest to what was written, for "did you mean".
 // Names further away than a third of their letters are no help and stay out. A name without dots
 // is compared with the last part of A.B.Name, too, which a USING would make visible.
@@ -32,7 +44,7 @@ class NearestName {
     for (const auto& entry : names) offer(entry.first);
   }
   // "did you mean `X`?" or "".
-  std::string fix() const;
+  Fix fix() const;
 
  private:
   std::string written_;

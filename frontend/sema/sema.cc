@@ -37,13 +37,47 @@ void Sema::mark_written(VarId id) {
   if (log != nullptr) log->marks.push_back(2 * id.index + 1);
 }
 
-void Sema::error(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix) {
+// Of a name that could have been meant where nothing has the one that is written: perhaps the
+// mistake is there.
+base::SourceSpan Sema::declared_at(DiagnosticCode code, std::string_view name) const {
+  const auto variable = [&](const NameMap<VarId>& names) -> const Name* {
+    const auto found = names.find(name);
+    return found == names.end() ? nullptr : &variables_[found->second.index].name;
+  };
+  const Name* place = nullptr;
+  if (code == DiagnosticCode::kUnknownName) {
+    if (current_pou_ != kNoPou) place = variable(pous[current_pou_].names);
+    for (uint32_t at = objects.block_of(current_pou_); place == nullptr && at != kNoPou;) {
+      place = variable(pous[at].names);
+      at = pous[at].base;
+    }
+    if (place == nullptr) place = variable(globals_);
+  } else if (code == DiagnosticCode::kUnknownType) {
+    const auto found = types_.find(name);
+    for (const TypeDecl& decl : tree.types) {
+      if (found != types_.end() && decl.spec == found->second) place = &decl.name;
+    }
+  } else if (code != DiagnosticCode::kUnknownProgram) {
+    return {};
+  }
+  const PouInfo* const pou = place == nullptr ? find_pou(name) : nullptr;
+  if (pou != nullptr) place = &pou->decl->name;
+  return place == nullptr || in_library(place->span) ? base::SourceSpan() : place->span;
+}
+
+void Sema::error(DiagnosticCode code, base::SourceSpan span, std::string text, Fix fix) {
   const PouDecl* within = current_pou_ == kNoPou ? nullptr : pous[current_pou_].decl;
   if (within != nullptr && pous[current_pou_].owner != kNoPou) {
     within = pous[pous[current_pou_].owner].decl;
   }
   if (follow_ups_.silences(code, within, text)) return;
-  diagnostics_.add(code, span, std::move(text), std::move(fix));
+  base::Diagnostic message{code, span, std::move(text), std::move(fix.text), {}};
+  const base::SourceSpan meant =
+      fix.name.empty() ? base::SourceSpan() : declared_at(code, fix.name);
+  if (meant.begin.valid()) {
+    message.notes.push_back({meant, "`" + fix.name + "` is declared here"});
+  }
+  diagnostics_.add(std::move(message));
 }
 
 void Sema::warning(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix) {

@@ -71,12 +71,11 @@ class Sema {
   const PouInfo* pou_of(ir::TypeId instance) const;
   using Field = StructureField;
   const Field* find_field(ir::TypeId structure, std::string_view name) const;
-  // -1 for BIT members too.
-  int32_t find_member(ir::TypeId structure, std::string_view name) const;
+  int32_t find_member(ir::TypeId structure, std::string_view name) const;  // -1: BITs too
   const PouInfo* find_pou(std::string_view qualified) const;
   // The global pseudo variable of a direct address.
   uint32_t direct_member(const Expr& expr);
-  std::string name_suggestion(std::string_view name, bool callable, bool instruction = false) const;
+  Fix name_suggestion(std::string_view name, bool callable, bool instruction = false) const;
 
   // --- expressions (infer*.cc)
   const Note& infer(ExprId expr) {
@@ -129,7 +128,7 @@ class Sema {
   std::optional<TypeUse> initial_part(ExprId expr);
 
   // --- messages
-  void error(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix = {});
+  void error(DiagnosticCode code, base::SourceSpan span, std::string text, Fix fix = {});
   void warning(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix = {});
   // Reports an implicit conversion that may lose; false when the dialect forbids it.
   bool allow_narrowing(ir::TypeId from, ir::TypeId to, base::SourceSpan span);
@@ -182,6 +181,7 @@ class Sema {
   bool use_library_type(std::string_view name);
   bool use_library_literal(std::string_view name);
   bool in_library(base::SourceSpan span) const;
+  base::SourceSpan declared_at(DiagnosticCode code, std::string_view name) const;
   void forward_declare(const TypeDecl& decl, std::string_view name);
   void collect_enumerators(SpecId spec, ScopeId scope, Access access = Access::kDefault);
   void collect_globals(const VarBlock& block, std::string_view list);

@@ -134,8 +134,7 @@ void Sema::check_placement(const Variable& variable) {
     objects.check_instance(variable.type, variable.name.span);
   bool holds_instance = type.kind == ir::Kind::kFunctionBlock;
   bool anew = variable.storage == Storage::kLocal || variable.section == VarSection::kTemp;
-  if (holds_instance && anew &&
-      variable.section != VarSection::kInOut) {
+  if (holds_instance && anew && variable.section != VarSection::kInOut) {
     error(DiagnosticCode::kSectionNotAllowed, variable.name.span,
           quoted(variable.name) + " is an instance of `" + type.name +
               "`, but is made anew at each call",
@@ -153,7 +152,7 @@ const PouInfo* Sema::find_pou(std::string_view qualified) const {
   return found == pou_names_.end() ? nullptr : &pous[found->second];
 }
 
-std::string Sema::name_suggestion(std::string_view name, bool callable, bool instruction) const {
+Fix Sema::name_suggestion(std::string_view name, bool callable, bool instruction) const {
   NearestName nearest(name);
   if (current_pou_ != kNoPou) nearest.offer_all(pous[current_pou_].names);
   for (uint32_t at = objects.block_of(current_pou_); at != kNoPou; at = pous[at].base) {

@@ -208,6 +208,30 @@ TEST(Suggestions, NameTheNearest) {
   EXPECT_NE(type.text.find("did you mean `T"), std::string::npos) << type.text;
 }
 
+// Perhaps the mistake is where the name is declared.
+TEST(Suggestions, WhatMayBeMeantIsShownWhereItIsDeclared) {
+  const auto said = [](const std::string& source, const std::string& text) {
+    const Compiled compiled = compile(source);
+    EXPECT_NE(compiled.text.find(text), std::string::npos) << compiled.text;
+  };
+  said("FUNCTION_BLOCK Plup\nEND_FUNCTION_BLOCK\nPROGRAM M VAR p : Pulp; END_VAR p(); END_PROGRAM",
+       ":1:16: note: `Plup` is declared here");
+  said("PROGRAM M\nVAR dod : INT; END_VAR\nodd := 1; END_PROGRAM",
+       ":2:5: note: `dod` is declared here");
+  said("VAR_GLOBAL\ntakn : INT; END_VAR\nPROGRAM M tank := 1; END_PROGRAM",
+       ":2:1: note: `takn` is declared here");
+  said(
+      "FUNCTION Sacle : INT Sacle := 1; END_FUNCTION\nPROGRAM M VAR n : INT; END_VAR\n"
+      "n := Scale(); END_PROGRAM",
+      ":1:10: note: `Sacle` is declared here");
+  const Compiled member = compile(
+      "TYPE S : STRUCT a : INT; END_STRUCT; END_TYPE\n"
+      "PROGRAM M VAR s : S; low : INT; END_VAR s.lwo := low; END_PROGRAM");
+  EXPECT_EQ(member.text.find("note:"), std::string::npos) << member.text;
+  const Compiled library = compile("PROGRAM M VAR t : TOM; END_VAR END_PROGRAM");
+  EXPECT_EQ(library.text.find("note:"), std::string::npos) << library.text;
+}
+
 TEST(Rejecting, DeepExpressionsAreAnswered) {
   std::string sum = "1";
   for (int i = 0; i < 20000; ++i) sum += " + 1";
