@@ -11,6 +11,12 @@ namespace {
 // Whole blocks at once; bytes of a block that is not whole are kept.
 class Sha256 {
  public:
+  Sha256() = default;
+  // Behind `length` bytes, which are whole blocks.
+  Sha256(const Sha256State& state, uint64_t length) : state_(state), length_(length) {}
+
+  const Sha256State& state() const { return state_; }
+
   void add(ByteSpan bytes) {
     length_ += bytes.size();
     if (rest_ != 0) bytes = fill(bytes);
@@ -61,6 +67,21 @@ Digest sha256(ByteSpan first, ByteSpan second) {
   Sha256 sum;
   sum.add(first);
   sum.add(second);
+  return sum.finish();
+}
+
+Digest sha256(ByteSpan bytes, const Sha256Trail& known, size_t same, Sha256Trail& trail) {
+  constexpr size_t kStep = Sha256Trail::kStep;
+  const size_t known_steps = std::min(std::min(same, bytes.size()) / kStep, known.states.size());
+  trail.states.assign(known.states.begin(), known.states.begin() + known_steps);
+  Sha256 sum;
+  if (known_steps != 0) sum = Sha256(trail.states.back(), known_steps * kStep);
+  for (bytes = bytes.subspan(known_steps * kStep); bytes.size() >= kStep;
+       bytes = bytes.subspan(kStep)) {
+    sum.add(bytes.first(kStep));
+    trail.states.push_back(sum.state());
+  }
+  sum.add(bytes);
   return sum.finish();
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "base/hash.h"
 
@@ -22,5 +23,15 @@ bool sha256_blocks_x86(Sha256State& state, const uint8_t* data, size_t blocks);
 
 // Of one behind the other.
 Digest sha256(ByteSpan first, ByteSpan second);
+
+// States on the way through long bytes, one behind each kStep of them: the sum of others that begin
+// alike goes on from there.
+struct Sha256Trail {
+  static constexpr size_t kStep = 64 << 10;  // whole blocks
+  std::vector<Sha256State> states;
+};
+// `known` is the trail of bytes of which the first `same` are those of `bytes` too (0: of none).
+// `trail`, another one, becomes the trail of `bytes`.
+Digest sha256(ByteSpan bytes, const Sha256Trail& known, size_t same, Sha256Trail& trail);
 
 }  // namespace base

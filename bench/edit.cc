@@ -3,8 +3,8 @@
 //
 //   bench_edit --sources FOLDER --out FOLDER --section NAME --title TEXT [--repeats N]
 //
-// Each edit changes the statements of one function block, there and back; its image is compared
-// with that of a build from nothing. Writes NAME.json and NAME.md. Times are processor time.
+// Each edit gives one function block other statements; the image of the last one is compared with
+// that of a build from nothing. Writes NAME.json and NAME.md. Times are processor time.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -15,6 +15,7 @@
 #include "bench/edits.h"
 #include "bench/measure.h"
 #include "bench/project_sources.h"
+#include "ir/bytecode/image_beside.h"
 #include "tools/common/heap.h"
 #include "workspace/incremental_build.h"
 
@@ -53,15 +54,19 @@ int main(int argc, char** argv) {
   const uint32_t file = sources.file_count() / 2;
   const std::string original(sources.text(file));
   workspace::IncrementalBuild build({});
+  ir::Image before;
+  ir::WrittenImage written;
+  // As `stc package --watch` does, which knows what runs.
   const auto built = [&](double& build_ms, double& encode_ms) {
     base::Diagnostics messages;
     const double begin = bench::cpu_seconds();
     const ir::Image* image = taken(build.build(sources, {file}, messages));
     const double linked = bench::cpu_seconds();
-    base::Bytes bytes = ir::encode(*image);
+    const ir::KnownImage known{before, written.bytes, written.places};
+    written = ir::encode(*image, written.bytes.empty() ? nullptr : &known);
     build_ms = (linked - begin) * 1e3;
     encode_ms = (bench::cpu_seconds() - linked) * 1e3;
-    return bytes;
+    before = *image;
   };
   double whole_ms = 0;
   double whole_encode_ms = 0;
@@ -70,20 +75,15 @@ int main(int argc, char** argv) {
   for (const bench::Edit& edit : bench::kEdits) {
     std::vector<double> build_ms;
     std::vector<double> encode_ms;
-    base::Bytes last;
-    for (int i = 0; i < repeats; ++i) {
-      for (const bool there : {true, false}) {
-        sources.replace(file, there ? bench::edited(original, edit.text) : original);
-        base::Bytes bytes = built(build_ms.emplace_back(), encode_ms.emplace_back());
-        if (there) last = std::move(bytes);
-      }
+    for (int i = 0; i < 2 * repeats; ++i) {
+      sources.replace(file, bench::edited(original, edit.text(static_cast<uint32_t>(i))));
+      built(build_ms.emplace_back(), encode_ms.emplace_back());
     }
     rows.push_back({edit.what, bench::median(build_ms), bench::median(encode_ms)});
-    sources.replace(file, bench::edited(original, edit.text));
     base::Diagnostics messages;
     workspace::IncrementalBuild anew({});
     const base::Bytes clean = ir::encode(*taken(anew.build(sources, messages)));
-    base::check(clean == last, "an edit gives the image of a build from nothing");
+    base::check(clean == written.bytes, "an edit gives the image of a build from nothing");
   }
   std::printf("whole builds %llu, edits %llu, bodies %llu\n",
               static_cast<unsigned long long>(build.counts().whole),

@@ -4,7 +4,7 @@
 //   bench_live_edit --stc PATH --stvm PATH --sources FOLDER --out FOLDER --section NAME
 //                   --title TEXT [--repeats N]
 //
-// Each edit changes the statements of one function block, there and back. Writes NAME.json and
+// Each edit gives one function block statements that it never had before. Writes NAME.json and
 // NAME.md. Times are wall time, as stvm says them; the files are as they were in the end.
 #include <poll.h>
 #include <unistd.h>
@@ -141,8 +141,7 @@ int main(int argc, char** argv) {
     for (const bench::Edit& edit : bench::kEdits) {
       std::map<std::string, std::vector<double>> times;
       for (int i = 0; i < 2 * repeats + 2; ++i) {
-        const bool there = i % 2 == 0;
-        save(path, there ? bench::edited(original, edit.text) : original);
+        save(path, bench::edited(original, edit.text(static_cast<uint32_t>(i))));
         double all = 0;
         names.clear();
         for (const auto& [name, ms] : steps_of(changing.next("running "))) {
@@ -156,7 +155,7 @@ int main(int argc, char** argv) {
       for (const auto& [name, values] : times) rows.back().second[name] = bench::median(values);
     }
     bench::run_child({stvm, "stop", "--dir", state}, true);
-    save(path, bench::edited(original, bench::kEdits[0].text));  // and the watch finds nobody
+    save(path, bench::edited(original, bench::kEdits[0].text(0)));  // and the watch finds nobody
   }
   save(path, original);
   std::filesystem::remove(tasks);

@@ -64,7 +64,7 @@ class DataTables {
       store_id(nodes_[child].id, bytes.data() + nodes_[child].slot_offset);
     }
     if (&node == &nodes_[kGlobalsNode]) name_programs(bytes);
-    add_runs(data_of(node), bytes, image_.data);
+    add_runs(data_of(node), bytes, image_.data.own());
   }
 
   // A global of program type holds the ID of the program instance of its name.

@@ -259,7 +259,7 @@ class Builder {
     const TypeId old = old_of(id);
     std::vector<uint32_t>& offsets = layouts_.of[id.index].member_offsets;
     offsets.assign(type.members.size(), 0);
-    ir::MemberFinder old_members(base_ != nullptr ? base_->types : types_, old);
+    ir::MemberFinder old_members(base_ != nullptr ? *base_->types : types_, old);
     std::vector<size_t> added;
     Extents taken;  // what lives on
     const size_t inherited = inherit(id, taken);

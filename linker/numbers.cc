@@ -37,7 +37,7 @@ uint64_t Numbers::slot_offset(uint32_t number) const {
 uint64_t Numbers::find_place(const ir::ObjectPlace& place) const {
   uint64_t offset = place_offset(place, object_, context_.program, context_.image.layouts);
   if (place.root == ir::PlaceRoot::kSlot) offset += slot_offset(place.slot);
-  if (place.root == ir::PlaceRoot::kGlobal) offset += context_.image.instances[0].data;
+  if (place.root == ir::PlaceRoot::kGlobal) offset += context_.image.instances.all()[0].data;
   return offset;
 }
 

@@ -198,12 +198,28 @@ class Relinker {
   LinkContext context_;
 };
 
+bool same_constant(const ir::ConstValue& a, const ir::ConstValue& b) {
+  return a.bits == b.bits && a.text == b.text &&
+         std::equal(a.elements.begin(), a.elements.end(), b.elements.begin(), b.elements.end(),
+                    [](const ir::ConstElement& x, const ir::ConstElement& y) {
+                      return x.first == y.first && x.count == y.count && x.value == y.value;
+                    });
+}
+
+// Without a difference the table stays one with that of the version before.
 void copy_constants(LinkState& state, const ir::Program& program, EditedConstants range) {
-  state.image.constants.set_next(range.first);
-  for (uint32_t i = range.first; i < range.end; ++i) {
-    state.image.constants.add(program.constants[ir::ConstId(i)]);
+  const base::Shared<ir::ConstTable>& known = state.image.constants;
+  while (range.first < range.end && same_constant(known[ir::ConstId(range.first)],
+                                                  program.constants[ir::ConstId(range.first)])) {
+    ++range.first;
   }
-  state.image.constants.set_next(state.image.constants.size());
+  if (range.first == range.end) return;
+  ir::ConstTable& constants = state.image.constants.own();
+  constants.set_next(range.first);
+  for (uint32_t i = range.first; i < range.end; ++i) {
+    constants.add(program.constants[ir::ConstId(i)]);
+  }
+  constants.set_next(constants.size());
 }
 
 }  // namespace

@@ -105,8 +105,8 @@ void fill_tables(LinkContext& context, const ir::Image* base, const TypeNumbers&
       if (base->ranges[i].name != kUnused) ranges.keep(range_key(base->ranges[i]), i);
     }
   }
-  bounds.finish(context.image.bounds, context.table_numbers);
-  ranges.finish(context.image.ranges, context.table_numbers);
+  bounds.finish(context.image.bounds.own(), context.table_numbers);
+  ranges.finish(context.image.ranges.own(), context.table_numbers);
 }
 
 }  // namespace linker

@@ -109,15 +109,18 @@ void TypeNumbers::apply(ir::Image& image) const {
   for (uint32_t i = 0; i < number_of_.size(); ++i) {
     types[number_of_[i]] = image.types[TypeId(i)];
     type_fields(renumber, types[number_of_[i]]);
-    layouts[number_of_[i]] = std::move(image.layouts.of[i]);
+    layouts[number_of_[i]] = image.layouts->of[i];
   }
   ir::TypeTable table;
   table.set_old_names(image.types.old_names());
   for (uint32_t i = ir::kElementaryCount; i < count_; ++i) table.declare(std::move(types[i]));
   image.types = std::move(table);
-  image.layouts.of = std::move(layouts);
+  image.layouts = ir::Layouts{std::move(layouts)};
   renumber(image.globals);
-  for (ir::LinkedPou& pou : image.pous) pou_fields(renumber, pou);
+  for (ir::LinkedPou& pou : image.pous) {
+    pou_fields(renumber, pou);
+    slots_of(renumber, pou.slots.own());
+  }
   renumber_code(image.code, renumber);
   for (ir::LinkedBound& bound : image.bounds) bound_fields(renumber, bound);
   for (ir::LinkedOverride& row : image.overrides) override_fields(renumber, row);

@@ -210,15 +210,18 @@ bool IncrementalBuild::optimise_with_callers(std::vector<ir::PouId>& pous) {
 }
 
 void IncrementalBuild::move_lines(const std::vector<frontend::Resident::FileLines>& files) {
-  const auto move = [&](const std::string& file, std::vector<ir::LineEntry>& lines) {
-    for (const frontend::Resident::FileLines& edited : files) {
-      if (edited.file != file) continue;
+  for (const frontend::Resident::FileLines& edited : files) {
+    const auto is_moved = [&](const ir::LineEntry& entry) {
+      return moved(entry.line, edited.shifts) != entry.line;
+    };
+    // Lines that stay are not touched: versions share them.
+    const auto move = [&](const std::string& file, const auto& now, auto& lines) {
+      if (edited.file != file || std::none_of(now.begin(), now.end(), is_moved)) return;
       for (ir::LineEntry& entry : lines) entry.line = moved(entry.line, edited.shifts);
-    }
-  };
-  if (files.empty()) return;
-  for (ir::Object& object : kept_->objects) move(object.file, object.lines);
-  for (ir::LinkedPou& pou : kept_->linked->image.pous) move(pou.file, pou.lines);
+    };
+    for (ir::Object& object : kept_->objects) move(object.file, object.lines, object.lines);
+    for (ir::LinkedPou& pou : kept_->linked->image.pous) move(pou.file, pou.lines, pou.lines);
+  }
 }
 
 // Objects that were not made anew name theirs by number.

@@ -1,6 +1,8 @@
 #include "ir/bytecode/bools.h"
 
 #include <array>
+#include <cstring>
+#include <span>
 
 #include "base/limits.h"
 #include "ir/bytecode/regions.h"
@@ -20,10 +22,53 @@ const std::array<uint8_t, kOpcodeCount>& unit_counts() {
   return kUnits;
 }
 
+std::span<const Unit> code_of(const Image& image, const LinkedPou& pou) {
+  return std::span(image.code).subspan(pou.first_unit, pou.unit_count);
+}
+
+bool same_code(std::span<const Unit> a, std::span<const Unit> b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+// Through references, which may have been converted?
+bool writes_through_references(const TypeTable& types, std::span<const Unit> code) {
+  const std::array<uint8_t, kOpcodeCount>& units = unit_counts();
+  for (size_t i = 0, next = 0; i < code.size(); i = next) {
+    const Opcode op = code[i].opcode();
+    next = i + units[static_cast<size_t>(op)];
+    if (op < Opcode::RESOLVE || op > Opcode::RESOLVE_W) continue;
+    // An instance is exactly that, or of a type that extends it.
+    const bool plain =
+        op == Opcode::RESOLVE && !types.is_instance(region_of_field(code[i + 1].x()).type);
+    if (plain || op == Opcode::RESOLVE_S || op == Opcode::RESOLVE_W) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
-Bools::Bools(const Image& image) : image_(image), holds_(image.types.size(), Holds::kUnknown) {
+Bools::Bools(const Image& image, const Bools* known) : image_(image) {
+  if (known != nullptr && stay_alike(known->image_, image)) {
+    holds_ = known->holds_;
+    stay_clean_ = known->stay_clean_;
+    return;
+  }
+  holds_.resize(image.types.size(), Holds::kUnknown);
   stay_clean_ = !writes_as_others();
+}
+
+bool stay_alike(const Image& a, const Image& b) {
+  if (!a.types.is_one_with(b.types) || a.pous.size() != b.pous.size()) return false;
+  for (size_t i = 0; i < a.pous.size(); ++i) {
+    const std::span<const Unit> before = code_of(a, a.pous[i]);
+    const std::span<const Unit> after = code_of(b, b.pous[i]);
+    if (same_code(before, after)) continue;
+    if (writes_through_references(a.types, before) || writes_through_references(b.types, after)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 // IDs and addresses, not the value itself.
@@ -50,7 +95,7 @@ bool Bools::find(TypeId id, uint32_t depth) {
   return found;
 }
 
-// Through members that overlap, or through references, which may have been converted.
+// Through members that overlap, or through references.
 bool Bools::writes_as_others() {
   bool found = false;
   for (uint32_t i = 0; i < image_.types.size(); ++i) {
@@ -58,17 +103,7 @@ bool Bools::writes_as_others() {
     found |= holds && image_.types.overlaps(TypeId(i));
   }
   // Every unit belongs to one POU.
-  const std::array<uint8_t, kOpcodeCount>& units = unit_counts();
-  for (size_t i = 0, next = 0; i < image_.code.size() && !found; i = next) {
-    const Opcode op = image_.code[i].opcode();
-    next = i + units[static_cast<size_t>(op)];
-    if (op < Opcode::RESOLVE || op > Opcode::RESOLVE_W) continue;
-    // An instance is exactly that, or of a type that extends it.
-    const bool plain = op == Opcode::RESOLVE &&
-                       !image_.types.is_instance(region_of_field(image_.code[i + 1].x()).type);
-    found = plain || op == Opcode::RESOLVE_S || op == Opcode::RESOLVE_W;
-  }
-  return found;
+  return found || writes_through_references(image_.types, image_.code);
 }
 
 uint64_t Bools::count_in(TypeId id, uint32_t depth) const {

@@ -11,8 +11,9 @@ namespace ir {
 
 class Bools {
  public:
-  // Of a verified image, which is borrowed.
-  explicit Bools(const Image& image);
+  // Of a verified image, which is borrowed. `known`: of another version, whose code is looked at
+  // no more where it is the same; null: of none.
+  explicit Bools(const Image& image, const Bools* known = nullptr);
 
   // Do instructions of this image write nothing but 0 and 1 to bytes of BOOLs?
   bool stay_clean() const { return stay_clean_; }
@@ -37,6 +38,9 @@ class Bools {
 
 // Bytes that are BOOLs.
 void normalise_bools(uint8_t* at, size_t count);
+
+// Do both stay clean, or neither? Where code that differs does not matter; false says nothing.
+bool stay_alike(const Image& a, const Image& b);
 
 // Must a change from `before` to `after` normalise data memory?
 inline bool needs_normalising(const Bools& before, const Bools& after) {

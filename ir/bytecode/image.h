@@ -15,6 +15,7 @@
 
 #include "base/hash.h"
 #include "base/result.h"
+#include "base/shared.h"
 #include "ir/bytecode/code.h"
 #include "ir/bytecode/devices.h"
 #include "ir/bytecode/object.h"
@@ -61,9 +62,9 @@ struct LinkedPou {
   uint32_t frame_size = 0;  // multiple of 8
   uint32_t first_unit = 0;  // in Image::code
   uint32_t unit_count = 0;
-  std::vector<FrameSlot> slots;  // sorted by offset; params first
-  std::vector<Merge> merges;     // units relative to first_unit; `slots` index FrameSlots
-  std::vector<LineEntry> lines;
+  base::SharedVector<FrameSlot> slots;  // sorted by offset; params first
+  base::SharedVector<Merge> merges;     // units relative to first_unit; `slots` index FrameSlots
+  base::SharedVector<LineEntry> lines;
 };
 
 struct LinkedBound {
@@ -146,19 +147,42 @@ struct LinkedMigration {
   std::vector<MigratedName> values;
 };
 
+// A TypeTable that versions have in common.
+class ImageTypes : public base::Shared<TypeTable> {
+ public:
+  using Shared::Shared;
+  TypeId elementary(Kind kind) const { return (*this)->elementary(kind); }
+  bool knows(OldNameId id) const { return (*this)->knows(id); }
+  const std::string& old_name(OldNameId id) const { return (*this)->old_name(id); }
+  const std::vector<std::string>& old_names() const { return (*this)->old_names(); }
+  bool is_scalar(TypeId id) const { return (*this)->is_scalar(id); }
+  Scalar scalar(TypeId id) const { return (*this)->scalar(id); }
+  Kind root_kind(TypeId id) const { return (*this)->root_kind(id); }
+  bool has_members(TypeId id) const { return (*this)->has_members(id); }
+  bool is_reference(TypeId id) const { return (*this)->is_reference(id); }
+  bool overlaps(TypeId id) const { return (*this)->overlaps(id); }
+  bool is_instance(TypeId id) const { return (*this)->is_instance(id); }
+  bool is_a(TypeId id, TypeId wanted) const { return (*this)->is_a(id, wanted); }
+  int32_t find_member(TypeId id, std::string_view name) const {
+    return (*this)->find_member(id, name);
+  }
+  std::string text(TypeId id) const { return (*this)->text(id); }
+};
+
+// A copy shares its large tables with the original until either changes them.
 struct Image {
   std::string name;
-  TypeTable types;
-  ConstTable constants;  // initial values, for planning later versions
-  Layouts layouts;
+  ImageTypes types;
+  base::Shared<ConstTable> constants;  // initial values, for planning later versions
+  base::Shared<Layouts> layouts;
   TypeId globals;
   std::vector<LinkedPou> pous;
   std::vector<Unit> code;
   base::Bytes pool;  // constant pool
-  std::vector<LinkedBound> bounds;
-  std::vector<Range> ranges;
+  base::SharedVector<LinkedBound> bounds;
+  base::SharedVector<Range> ranges;
   std::vector<LinkedOverride> overrides;  // sorted by type, then prototype; no pair twice
-  std::vector<Instance> instances;
+  base::SharedVector<Instance> instances;
   std::vector<Extent> free;  // sorted, disjoint, never adjacent
   std::vector<ImageTask> tasks;
   std::vector<AccessPath> access;
@@ -167,7 +191,7 @@ struct Image {
   std::vector<SafeOutput> safe;  // sorted by bit_offset, disjoint
   std::vector<RetainRange> retain;
   std::vector<SharedGlobal> shared;  // by member
-  std::vector<DataRun> data;         // sorted by offset
+  base::SharedVector<DataRun> data;  // sorted by offset
   uint32_t data_capacity = 0;
   uint32_t stack_bytes = 0;  // for the deepest chain, over all priorities
   uint32_t call_depth = 0;

@@ -50,6 +50,17 @@ class ImageWriter {
     count(v.size());
     for (const T& item : v) each(item);
   }
+  template <class T, class Each>
+  void list(const base::SharedVector<T>& v, size_t min_size, Each&& each) {
+    list(v.all(), min_size, each);
+  }
+  // `bytes`: of the same value in another version.
+  template <class V>
+  bool shares(const V& v, const V& known, base::ByteSpan bytes) {
+    if (!v.is_one_with(known)) return false;
+    raw(bytes);
+    return true;
+  }
 
   void raw(base::ByteSpan v) {
     if (v.size() > sizeof gathered_ - used_) flush();
@@ -61,6 +72,9 @@ class ImageWriter {
     }
   }
   size_t size() const { return bytes_.size() + used_; }
+  // The same, from the beginning of the section.
+  size_t at() const { return size() - section_; }
+  void begin_section() { section_ = size(); }
   // What was written before.
   void patch_u32(size_t at, uint32_t v) {
     flush();
@@ -86,12 +100,14 @@ class ImageWriter {
 
   base::Bytes bytes_;
   uint8_t gathered_[4096];
-  size_t used_ = 0;  // of these
+  size_t used_ = 0;     // of these
+  size_t section_ = 0;  // where it began
 };
 
 class ImageReader {
  public:
-  explicit ImageReader(base::ByteReader& in) : in_(in) {}
+  // `content`: all that `in` reads.
+  ImageReader(base::ByteReader& in, base::ByteSpan content) : in_(in), content_(content) {}
   void operator()(bool& v) { v = in_.boolean(); }
   void operator()(uint8_t& v) { v = in_.u8(); }
   void operator()(uint16_t& v) { v = in_.u16(); }
@@ -131,6 +147,27 @@ class ImageReader {
       each(item);
     }
   }
+  template <class T, class Each>
+  void list(base::SharedVector<T>& v, size_t min_size, Each each) {
+    std::vector<T> all;
+    list(all, min_size, each);
+    v = std::move(all);
+  }
+  // `bytes`: of `known` in another version. The same bytes are the same value.
+  template <class V>
+  bool shares(V& v, const V& known, base::ByteSpan bytes) {
+    if (!takes(bytes)) return false;
+    v = known;
+    return true;
+  }
+  // Behind bytes that are these; else where it was.
+  bool takes(base::ByteSpan bytes) {
+    if (in_.left() < bytes.size()) return false;
+    if (!std::equal(bytes.begin(), bytes.end(), content_.begin() + in_.at())) return false;
+    in_.raw(bytes.size());
+    return true;
+  }
+  size_t at() const { return in_.at(); }
   // A list that goes elsewhere: one after the other.
   template <class Each>
   void each(size_t min_size, Each each) {
@@ -139,6 +176,7 @@ class ImageReader {
 
  private:
   base::ByteReader& in_;
+  base::ByteSpan content_;
 };
 
 // Each `record` below takes `T` or `const T`, as the archive needs.
@@ -231,12 +269,22 @@ void pou_fields(Archive& a, T& v) {
   a(v.frame_size);
   a(v.first_unit);
   a(v.unit_count);
-  a.list(v.slots, 17, [&](auto& slot) { slot_fields(a, slot); });
-  a.list(v.merges, 8, [&](auto& merge) {
+}
+// Its tables follow.
+template <class Archive, class T>
+void slots_of(Archive& a, T& v) {
+  a.list(v, 17, [&](auto& slot) { slot_fields(a, slot); });
+}
+template <class Archive, class T>
+void merges_of(Archive& a, T& v) {
+  a.list(v, 8, [&](auto& merge) {
     a(merge.unit);
     a.list(merge.slots, 2, a);
   });
-  a.list(v.lines, 8, [&](auto& line) {
+}
+template <class Archive, class T>
+void lines_of(Archive& a, T& v) {
+  a.list(v, 8, [&](auto& line) {
     a(line.unit);
     a(line.line);
   });

@@ -20,6 +20,7 @@ bool same_slot(const FrameSlot& a, const FrameSlot& b) {
 }
 
 bool same_slots(const LinkedPou& a, const LinkedPou& b) {
+  if (a.slots.is_one_with(b.slots)) return true;
   return std::equal(a.slots.begin(), a.slots.end(), b.slots.begin(), b.slots.end(), same_slot);
 }
 
@@ -27,6 +28,7 @@ bool same_merges(const LinkedPou& a, const LinkedPou& b) {
   const auto same = [](const Merge& x, const Merge& y) {
     return x.unit == y.unit && x.slots == y.slots;
   };
+  if (a.merges.is_one_with(b.merges)) return true;
   return std::equal(a.merges.begin(), a.merges.end(), b.merges.begin(), b.merges.end(), same);
 }
 
@@ -44,6 +46,12 @@ bool same_instance(const Instance& a, const Instance& b) {
          a.live == b.live && a.old_name == b.old_name;
 }
 
+bool same_instances(const Image& a, const Image& b) {
+  if (a.instances.is_one_with(b.instances)) return true;
+  return std::equal(a.instances.begin(), a.instances.end(), b.instances.begin(), b.instances.end(),
+                    same_instance);
+}
+
 }  // namespace
 
 Likeness::Likeness(const Proof* like, base::ByteSpan encoded, const Image& image)
@@ -53,15 +61,15 @@ Likeness::Likeness(const Proof* like, base::ByteSpan encoded, const Image& image
   const auto same = [&](ImageSection section) {
     return same_section(like_->encoded, encoded, section);
   };
-  types_ =
-      known.globals == image_.globals && same(ImageSection::kTypes) && same(ImageSection::kLayouts);
+  types_ = known.globals == image_.globals &&
+           (known.types.is_one_with(image_.types) || same(ImageSection::kTypes)) &&
+           (known.layouts.is_one_with(image_.layouts) || same(ImageSection::kLayouts));
   if (!types_) return;
-  constants_ = same(ImageSection::kConstants);
+  constants_ = known.constants.is_one_with(image_.constants) || same(ImageSection::kConstants);
   if (!same_roles()) return;
   instances_ = known.data_capacity == image_.data_capacity && known.free == image_.free &&
-               same(ImageSection::kData) &&
-               std::equal(known.instances.begin(), known.instances.end(), image_.instances.begin(),
-                          image_.instances.end(), same_instance);
+               (known.data.is_one_with(image_.data) || same(ImageSection::kData)) &&
+               same_instances(known, image_);
   code_ = !image_.instances.empty() && image_.instances[0].data == known.instances[0].data;
   if (!code_) return;
   const auto pool =
@@ -100,17 +108,17 @@ bool Likeness::same_code(uint32_t pou) const {
          same_slots(a, b) && same_merges(a, b);
 }
 
-const CodeFacts* Likeness::code(uint32_t pou) const {
+std::shared_ptr<const CodeFacts> Likeness::code(uint32_t pou) const {
   if (!code_ || !same_code(pou)) return nullptr;
-  const CodeFacts& facts = like_->code[pou];
-  if (facts.pool_end > same_pool_ || facts.bounds_end > same_bounds_ ||
-      facts.ranges_end > image_.ranges.size()) {
+  const std::shared_ptr<const CodeFacts>& facts = like_->code[pou];
+  if (facts == nullptr || facts->pool_end > same_pool_ || facts->bounds_end > same_bounds_ ||
+      facts->ranges_end > image_.ranges.size()) {
     return nullptr;
   }
-  for (const uint32_t named : facts.parameters_of) {
+  for (const uint32_t named : facts->parameters_of) {
     if (new_parameters_[named]) return nullptr;
   }
-  return &facts;
+  return facts;
 }
 
 }  // namespace ir::verification

@@ -10,6 +10,7 @@
 #include "base/bytes.h"
 #include "base/result.h"
 #include "ir/bytecode/image.h"
+#include "ir/bytecode/image_beside.h"
 #include "ir/bytecode/verify.h"
 #include "ir/bytecode/verify_parts.h"
 
@@ -18,8 +19,9 @@ namespace ir::verification {
 struct Proof {
   base::Bytes encoded;
   Image image;  // the same, decoded
-  std::vector<TypeFacts> types;
-  std::vector<CodeFacts> code;  // by POU
+  ImagePlaces places;
+  std::shared_ptr<const std::vector<TypeFacts>> types;
+  CodeFactsOfAll code;
   std::vector<OutputWriter> writers;
 };
 
@@ -38,7 +40,7 @@ class Likeness {
   // Whatever verify_instances() reads.
   bool instances() const { return instances_; }
   // Of a POU with the same code, which names nothing that is another; null: it must be looked at.
-  const CodeFacts* code(uint32_t pou) const;
+  std::shared_ptr<const CodeFacts> code(uint32_t pou) const;
 
  private:
   bool same_roles() const;

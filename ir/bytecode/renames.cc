@@ -202,9 +202,9 @@ class Renamer {
   }
 
   void forget_rules() {
-    out_.types.set_old_names({});
+    out_.types.own().set_old_names({});
     for (uint32_t i = 0; i < out_.types.size(); ++i) {
-      Type& type = out_.types.edit(TypeId(i));
+      Type& type = out_.types.own().edit(TypeId(i));
       type.old_name = {};
       for (Member& member : type.members) member.old_name = {};
       for (EnumLiteral& literal : type.literals) literal.old_name = {};
@@ -213,21 +213,21 @@ class Renamer {
   }
 
   void rename_to(std::string& name, OldNameId& old_name, const std::string& next) {
-    old_name = out_.types.add_old_name(std::move(name));
+    old_name = out_.types.own().add_old_name(std::move(name));
     name = next;
   }
 
   void rename() {
     for (const NewName& row : type_names_) {
-      Type& type = out_.types.edit(row.type);
+      Type& type = out_.types.own().edit(row.type);
       rename_to(type.name, type.old_name, row.name);
     }
     for (const NewName& row : member_names_) {
-      Member& member = out_.types.edit(row.type).members[row.number];
+      Member& member = out_.types.own().edit(row.type).members[row.number];
       rename_to(member.name, member.old_name, row.name);
     }
     for (const NewName& row : literal_names_) {
-      EnumLiteral& literal = out_.types.edit(row.type).literals[row.number];
+      EnumLiteral& literal = out_.types.own().edit(row.type).literals[row.number];
       rename_to(literal.name, literal.old_name, row.name);
     }
     for (const NewName& row : program_names_) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <mutex>
+#include <optional>
 
 #include "base/memory_limit.h"
 #include "base/parallel.h"
@@ -16,20 +17,21 @@ constexpr size_t kUnitsForThreads = 1 << 15;  // below, threads cost more than t
 constexpr size_t kPousAtATime = 32;
 
 // One POU after the other, or several at once; the first error is the answer in any case.
-base::Result<std::vector<verification::CodeFacts>> verify_pous(
-    const verification::Context& context, const verification::Likeness& likeness) {
+base::Result<verification::CodeFactsOfAll> verify_pous(const verification::Context& context,
+                                                       const verification::Likeness& likeness) {
   const Image& image = context.image;
-  std::vector<verification::CodeFacts> facts(image.pous.size());
+  verification::CodeFactsOfAll facts(image.pous.size());
+  const auto share = [](verification::CodeFacts made) {
+    return std::make_shared<const verification::CodeFacts>(std::move(made));
+  };
   std::vector<uint8_t> bad(image.pous.size(), 0);
   const auto check = [&](size_t pou) {
     const auto number = static_cast<uint32_t>(pou);
     if (image.pous[number].unit_count == 0) return true;  // a number whose POU was removed
-    if (const verification::CodeFacts* known = likeness.code(number)) {
-      facts[number] = *known;
-      return true;
-    }
+    facts[number] = likeness.code(number);
+    if (facts[number] != nullptr) return true;
     auto checked = verification::verify_code(context, number);
-    if (checked) facts[number] = std::move(checked).value();
+    if (checked) facts[number] = share(std::move(checked).value());
     return checked.ok();
   };
   const uint32_t jobs = image.code.size() < kUnitsForThreads ? 1 : base::usable_cores();
@@ -40,7 +42,7 @@ base::Result<std::vector<verification::CodeFacts>> verify_pous(
     if (bad[pou] == 0) continue;
     auto again = verification::verify_code(context, pou);  // in the caller's memory limit
     if (!again) return again.error();
-    facts[pou] = std::move(again).value();
+    facts[pou] = share(std::move(again).value());
   }
   return facts;
 }
@@ -80,11 +82,14 @@ Proofs& proofs() {
 namespace verification {
 
 base::Result<std::shared_ptr<const Proof>> prove(base::Bytes encoded, const Proof* like) {
-  base::Result<Image> decoded = decode(encoded);
+  std::optional<KnownImage> known;
+  if (like != nullptr) known.emplace(KnownImage{like->image, like->encoded, like->places});
+  base::Result<DecodedImage> decoded = decode(encoded, known ? &*known : nullptr);
   if (!decoded) return decoded.error();
   auto proof = std::make_shared<Proof>();
   proof->encoded = std::move(encoded);
-  proof->image = std::move(decoded).value();
+  proof->image = std::move(decoded->image);
+  proof->places = std::move(decoded->places);
   const Image& image = proof->image;
   const Likeness likeness(like, proof->encoded, image);
   if (likeness.types()) {
@@ -92,12 +97,12 @@ base::Result<std::shared_ptr<const Proof>> prove(base::Bytes encoded, const Proo
   } else {
     auto facts = verify_types(image);
     if (!facts) return facts.error();
-    proof->types = std::move(facts).value();
+    proof->types = std::make_shared<const std::vector<TypeFacts>>(std::move(facts).value());
   }
   if (!likeness.constants()) {
     if (base::Status s = verify_constants(image); !s) return s.error();
   }
-  Context context(image, proof->types);
+  Context context(image, *proof->types);
   if (base::Status s = verify_tables(context); !s) return s.error();
   if (base::Status s = verify_overrides(image); !s) return s.error();
   if (base::Status s = verify_migrations(image); !s) return s.error();

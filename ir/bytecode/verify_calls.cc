@@ -12,11 +12,15 @@ namespace {
 
 class CallGraph {
  public:
-  CallGraph(const Context& context, const std::vector<CodeFacts>& code)
+  CallGraph(const Context& context, const CodeFactsOfAll& code)
       : image_(context.image), nodes_(code.size()), code_(code) {
     for (uint32_t i = 0; i < code.size(); ++i) {
       const LinkedPou& pou = image_.pous[i];
-      nodes_[i] = {code[i].callees, pou.frame_size, code[i].native_bytes, pou.recursion_depth};
+      nodes_[i].frame_bytes = pou.frame_size;
+      nodes_[i].recursion_depth = pou.recursion_depth;
+      if (code[i] == nullptr) continue;
+      nodes_[i].callees = code[i]->callees;
+      nodes_[i].native_bytes = code[i]->native_bytes;
     }
     DynamicCalls(image_).add_nodes(image_, context.pou_of_type, nodes_);
   }
@@ -74,7 +78,8 @@ class CallGraph {
     for (uint32_t t = 0; t < image_.tasks.size(); ++t) {
       if (image_.tasks[t].once) continue;  // it is over before others begin
       for (uint32_t pou : reachable(image_.tasks[t])) {
-        for (const Extent& output : code_[pou].written_outputs) {
+        if (code_[pou] == nullptr) continue;
+        for (const Extent& output : code_[pou]->written_outputs) {
           const auto [entry, added] =
               writer.try_emplace(output.offset, OutputWriter{output.offset, output.size, t});
           if (entry->second.task == t) continue;
@@ -108,14 +113,14 @@ class CallGraph {
 
   const Image& image_;
   std::vector<CallNode> nodes_;
-  const std::vector<CodeFacts>& code_;
+  const CodeFactsOfAll& code_;
   CallMeasure needs_;
 };
 
 }  // namespace
 
 base::Result<std::vector<OutputWriter>> verify_calls(const Context& context,
-                                                     const std::vector<CodeFacts>& code) {
+                                                     const CodeFactsOfAll& code) {
   return CallGraph(context, code).run();
 }
 

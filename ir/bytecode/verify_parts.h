@@ -2,6 +2,7 @@
 // Later parts rely on what earlier ones have proven, in the order of this header.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -32,10 +33,11 @@ base::Status verify_constants(const Image& image);
 
 // What the parts behind it share.
 struct Context {
-  Context(const Image& i, std::vector<TypeFacts> f)
-      : image(i), facts(std::move(f)), regions(i.types, i.layouts) {}
+  // Borrows both.
+  Context(const Image& i, const std::vector<TypeFacts>& f)
+      : image(i), facts(f), regions(i.types, i.layouts) {}
   const Image& image;
-  std::vector<TypeFacts> facts;
+  const std::vector<TypeFacts>& facts;
   RegionMap regions;
   std::vector<uint32_t> pou_of_type;  // bodies, by type number; kNone
   bool valid(Region region) const;    // names an existing type and dimension
@@ -73,7 +75,9 @@ base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou,
                                     std::span<const Unit> code);
 
 // --- verify_calls.cc: call graph, stack, output writers (V11, V14) --------------
+// By POU, shared by versions; null: a number without one.
+using CodeFactsOfAll = std::vector<std::shared_ptr<const CodeFacts>>;
 base::Result<std::vector<OutputWriter>> verify_calls(const Context& context,
-                                                     const std::vector<CodeFacts>& code);
+                                                     const CodeFactsOfAll& code);
 
 }  // namespace ir::verification

@@ -16,9 +16,10 @@ class TypesVerifier {
       : image_(image), types_(image.types), facts_(image.types.size()) {}
 
   base::Result<std::vector<TypeFacts>> run() {
-    if (image_.layouts.of.size() != types_.size()) {
+    if (image_.layouts->of.size() != types_.size()) {
       return refuse(Refusal::kBadFormat, std::to_string(types_.size()) + " types, but " +
-                                             std::to_string(image_.layouts.of.size()) + " layouts");
+                                             std::to_string(image_.layouts->of.size()) +
+                                             " layouts");
     }
     for (uint32_t i = 0; i < types_.size(); ++i) {
       if (base::Status s = check_references(i); !s) return s.error();
@@ -126,7 +127,7 @@ class TypesVerifier {
           same_name(own.name, inherited[m].name) && own.type == inherited[m].type &&
           own.section == inherited[m].section && own.constant == inherited[m].constant &&
           own.address == inherited[m].address &&
-          image_.layouts.of[i].member_offsets[m] == image_.layouts[type.base].member_offsets[m];
+          image_.layouts->of[i].member_offsets[m] == image_.layouts[type.base].member_offsets[m];
       if (!same) return bad(i, "member `" + own.name + "` is not that of its base");
     }
     return base::Ok{};
@@ -159,7 +160,7 @@ class TypesVerifier {
 
   base::Status check_layout(uint32_t i) {
     const Type& type = types_[TypeId(i)];
-    const TypeLayout& layout = image_.layouts.of[i];
+    const TypeLayout& layout = image_.layouts->of[i];
     const bool power_of_two = layout.align != 0 && (layout.align & (layout.align - 1)) == 0;
     if (!power_of_two || layout.align > 4096) return bad(i, "its alignment is no power of two");
     if (types_.has_members(TypeId(i))) return check_members(i);
@@ -178,9 +179,9 @@ class TypesVerifier {
   }
 
   base::Status check_size(uint32_t i, uint64_t size) const {
-    if (size == image_.layouts.of[i].size) return base::Ok{};
+    if (size == image_.layouts->of[i].size) return base::Ok{};
     return bad(i, "takes " + std::to_string(size) + " bytes, its layout says " +
-                      std::to_string(image_.layouts.of[i].size));
+                      std::to_string(image_.layouts->of[i].size));
   }
 
   base::Status check_array(uint32_t i) {
@@ -201,7 +202,7 @@ class TypesVerifier {
 
   base::Status check_members(uint32_t i) {
     const Type& type = types_[TypeId(i)];
-    const TypeLayout& layout = image_.layouts.of[i];
+    const TypeLayout& layout = image_.layouts->of[i];
     if (layout.member_offsets.size() != type.members.size()) {
       return bad(i, std::to_string(type.members.size()) + " members, but " +
                         std::to_string(layout.member_offsets.size()) + " offsets");
@@ -234,7 +235,7 @@ class TypesVerifier {
           facts_[member.type.index].has_slots) {
         return bad(i, "member `" + member.name + "` overlaps others and holds an instance");
       }
-      if (uint64_t{image_.layouts.of[i].member_offsets[m]} + image_.layouts[member.type].size >
+      if (uint64_t{image_.layouts->of[i].member_offsets[m]} + image_.layouts[member.type].size >
           limit) {
         return bad(i, "member `" + member.name + "` ends behind its end");
       }
@@ -249,7 +250,7 @@ class TypesVerifier {
     bool sorted = true;
     for (size_t m = 0; m < type.members.size(); ++m) {
       const Member& member = type.members[m];
-      const uint64_t begin = image_.layouts.of[i].member_offsets[m];
+      const uint64_t begin = image_.layouts->of[i].member_offsets[m];
       const uint64_t size =
           member.section == Section::kInOut ? 4 : image_.layouts[member.type].size;
       if (begin + size > limit) {

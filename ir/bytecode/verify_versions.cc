@@ -31,7 +31,7 @@ std::vector<base::Status> verify_versions(const VerifiedImage& verified,
   const Image& image = verified.image();
   auto facts = verification::verify_types(image);
   if (!facts) return std::vector<base::Status>(versions.size(), facts.error());
-  verification::Context context(image, std::move(facts).value());
+  verification::Context context(image, *facts);
   if (base::Status s = verification::verify_tables(context); !s) {
     return std::vector<base::Status>(versions.size(), s);
   }

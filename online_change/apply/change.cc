@@ -348,7 +348,10 @@ void Change::cancel() {
 void Change::collect() {
   retired_area_.reset();
   retired_pending_.reset();
-  if (state_ == State::kIdle) controller_.settle_devices();
+  controller_.make_native();
+  if (state_ != State::kIdle) return;
+  controller_.settle_devices();
+  retired_.reset();
 }
 
 // At a boundary too: what was taken is freed later.

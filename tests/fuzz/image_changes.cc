@@ -70,8 +70,8 @@ void change_unit(ir::Unit& unit, const Change& change) {
 void change_type(ir::Image& image, const Change& change) {
   const uint32_t number =
       ir::kElementaryCount + change.where % (image.types.size() - ir::kElementaryCount);
-  ir::Type& type = image.types.edit(ir::TypeId(number));
-  ir::TypeLayout& layout = image.layouts.of[number];
+  ir::Type& type = image.types.own().edit(ir::TypeId(number));
+  ir::TypeLayout& layout = image.layouts.own().of[number];
   switch (change.how / 4 % 7) {
     case 0:
       return alter(type.base.index, change);

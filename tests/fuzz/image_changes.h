@@ -43,6 +43,11 @@ T* pick(std::vector<T>& list, uint32_t where) {
   return list.empty() ? nullptr : &list[where % list.size()];
 }
 
+template <class T>
+T* pick(base::SharedVector<T>& list, uint32_t where) {
+  return list.empty() ? nullptr : &list[where % list.size()];
+}
+
 void apply(ir::Image& image, const Change& change);
 
 }  // namespace fuzz

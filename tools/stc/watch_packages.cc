@@ -21,25 +21,17 @@ int64_t monotonic_ns(Clock::time_point time) {
 }  // namespace
 
 base::Status WatchedPackages::begin(base::Bytes running) {
-  base::Result<ir::Image> image = ir::decode(running);
+  base::Result<ir::DecodedImage> image = ir::decode(running, nullptr);
   if (!image.ok()) return image.error();
-  bytes_ = std::move(running);
-  running_ = std::make_shared<ir::Image>(std::move(*image));
-  before_.reset();
+  written_ = {std::move(running), std::move(image->places)};
+  running_ = std::make_shared<const ir::Image>(std::move(image->image));
   return base::Ok{};
-}
-
-// A copy in the place of another image costs less than one by itself, or than decoding.
-void WatchedPackages::keep(const ir::Image& image, base::Bytes bytes) {
-  if (before_ == nullptr || before_.use_count() != 1) before_ = std::make_shared<ir::Image>();
-  *before_ = image;
-  running_.swap(before_);
-  bytes_ = std::move(bytes);
 }
 
 base::Result<WatchTarget::Next> WatchedPackages::take(const ir::Image& image, const Project&,
                                                       const Built& built) {
-  return bring(image, ir::encode(image), built);
+  const ir::KnownImage known{*running_, written_.bytes, written_.places};
+  return bring(image, ir::encode(image, &known), built);
 }
 
 base::Result<WatchTarget::Next> WatchedPackages::take(std::vector<ResourceVersion>& versions,
@@ -48,30 +40,31 @@ base::Result<WatchTarget::Next> WatchedPackages::take(std::vector<ResourceVersio
     return base::Error{base::Refusal::kUsage,
                        "there are several RESOURCEs, but what runs is of none of them"};
   }
-  Version& version = versions.front().version;
-  return bring(version.image, std::move(version.bytes), built);
+  const ir::Image& image = versions.front().version.image;
+  return bring(image, ir::encode(image, nullptr), built);
 }
 
-base::Result<WatchTarget::Next> WatchedPackages::bring(const ir::Image& image, base::Bytes bytes,
-                                                       const Built& built) {
-  if (bytes == bytes_) return send(built, {}, image, std::move(bytes));
-  const online_change::EncodedImage before{*running_, bytes_};
-  const online_change::EncodedImage after{image, bytes};
+base::Result<WatchTarget::Next> WatchedPackages::bring(const ir::Image& image,
+                                                       ir::WrittenImage made, const Built& built) {
+  if (made.bytes == written_.bytes) return send(built, {}, image, std::move(made));
+  const online_change::EncodedImage before{*running_, written_.bytes};
+  const online_change::EncodedImage after{image, made.bytes};
   if (restricted_) {
     base::Status kept = online_change::check_restricted(online_change::pou_edits(before, after));
     if (!kept.ok()) return kept.error();
   }
   auto package = online_change::make_short_package(before, after);
   if (!package.ok()) return package.error();
-  return send(built, std::move(*package), image, std::move(bytes));
+  return send(built, std::move(*package), image, std::move(made));
 }
 
 // No package: nothing has changed since the base, if that still runs.
 base::Result<WatchTarget::Next> WatchedPackages::send(const Built& built, base::Bytes package,
-                                                      const ir::Image& image, base::Bytes made) {
-  const tools::FollowedChange change{monotonic_ns(built.saved), monotonic_ns(built.seen),
-                                     monotonic_ns(built.made),  monotonic_ns(Clock::now()),
-                                     ir::digest(bytes_),        std::move(package)};
+                                                      const ir::Image& image,
+                                                      ir::WrittenImage made) {
+  const tools::FollowedChange change{monotonic_ns(built.saved),  monotonic_ns(built.seen),
+                                     monotonic_ns(built.made),   monotonic_ns(Clock::now()),
+                                     ir::digest(written_.bytes), std::move(package)};
   if (!tools::send_message(socket_, encode(change)).ok()) return Next::kEnd;
   base::Result<base::Bytes> message = tools::receive_message(socket_);
   if (!message.ok()) return Next::kEnd;
@@ -90,7 +83,8 @@ base::Result<WatchTarget::Next> WatchedPackages::send(const Built& built, base::
       break;
   }
   if (answer->end == tools::FollowedEnd::kRuns) {
-    keep(image, std::move(made));
+    running_ = std::make_shared<const ir::Image>(image);
+    written_ = std::move(made);
     return Next::kBase;
   }
   base::Status begun = begin(std::move(answer->image));

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "ir/bytecode/image_beside.h"
 #include "tools/common/followed_change.h"
 #include "tools/stc/watch.h"
 
@@ -24,16 +25,14 @@ class WatchedPackages : public WatchTarget {
   Rest rest(std::chrono::nanoseconds time, int descriptor) override;
 
  private:
-  base::Result<Next> bring(const ir::Image& image, base::Bytes bytes, const Built& built);
+  base::Result<Next> bring(const ir::Image& image, ir::WrittenImage made, const Built& built);
   base::Result<Next> send(const Built& built, base::Bytes package, const ir::Image& image,
-                          base::Bytes made);
-  void keep(const ir::Image& image, base::Bytes bytes);
+                          ir::WrittenImage made);
 
   int socket_;
   bool restricted_;
-  base::Bytes bytes_;
-  std::shared_ptr<ir::Image> running_;  // the same, decoded
-  std::shared_ptr<ir::Image> before_;   // what ran before it: its memory takes the next one
+  ir::WrittenImage written_;                  // what runs
+  std::shared_ptr<const ir::Image> running_;  // the same, decoded
 };
 
 }  // namespace stc

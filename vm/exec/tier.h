@@ -19,7 +19,7 @@ enum class Fusing : uint8_t {
 };
 
 // When is machine code of the first version made? That of later ones is there when they are
-// prepared.
+// prepared, if that of the one before them is.
 enum class Making : uint8_t {
   kAtOnce,
   kBeside,  // by another thread, while the program is interpreted (vm/runtime/controller.h)

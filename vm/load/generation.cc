@@ -40,8 +40,10 @@ bool decodes_alike(const Generation& a, const Generation& b) {
   const std::vector<ir::LinkedPou>& x = a.image().pous;
   const std::vector<ir::LinkedPou>& y = b.image().pous;
   return a.bools().stay_clean() == b.bools().stay_clean() &&
-         same_section(a.verified(), b.verified(), ir::ImageSection::kTypes) &&
-         same_section(a.verified(), b.verified(), ir::ImageSection::kLayouts) &&
+         (a.image().types.is_one_with(b.image().types) ||
+          same_section(a.verified(), b.verified(), ir::ImageSection::kTypes)) &&
+         (a.image().layouts.is_one_with(b.image().layouts) ||
+          same_section(a.verified(), b.verified(), ir::ImageSection::kLayouts)) &&
          std::equal(x.begin(), x.end(), y.begin(), y.end(),
                     [](const auto& p, const auto& q) { return p.self == q.self; });
 }
@@ -52,6 +54,72 @@ bool same_units(const ir::Image& a, const ir::Image& b, uint32_t number) {
   return x.unit_count == y.unit_count &&
          std::equal(a.code.begin() + x.first_unit, a.code.begin() + x.first_unit + x.unit_count,
                     b.code.begin() + y.first_unit);
+}
+
+// Slots are listed once per type.
+void add_areas(const ir::Image& image, DataTables& out) {
+  ir::SlotFinder finder(image.types, image.layouts);
+  std::unordered_map<ir::TypeId, std::pair<uint32_t, uint32_t>> known;
+  out.areas.resize(image.instances.size());
+  for (uint32_t id = 0; id < out.areas.size(); ++id) {
+    const ir::Instance& row = image.instances[id];
+    if (!row.live) continue;
+    const ir::TypeLayout& layout = image.layouts[row.type];
+    const auto [slots, added] = known.try_emplace(row.type);
+    if (added) {
+      const std::vector<uint32_t> found = finder.inside(row.type);
+      slots->second = {static_cast<uint32_t>(out.area_slots.size()),
+                       static_cast<uint32_t>(found.size())};
+      out.area_slots.insert(out.area_slots.end(), found.begin(), found.end());
+    }
+    out.areas[id] = {ir::area_segment(id, row.generation),
+                     row.data,
+                     layout.used,
+                     std::max(layout.used, layout.area_capacity),
+                     slots->second.first,
+                     slots->second.second,
+                     row.type.index};
+    out.areas_by_data.push_back(id);
+  }
+  std::sort(out.areas_by_data.begin(), out.areas_by_data.end(),
+            [&](uint32_t a, uint32_t b) { return out.areas[a].data < out.areas[b].data; });
+}
+
+// Looked for once per type: a switch looks stamps up, and types have as many members as they like.
+void add_stamps(const ir::Image& image, DataTables& out) {
+  std::unordered_map<ir::TypeId, uint32_t> known;  // offset in the type; none: no stamp
+  for (uint32_t i = 0; i < image.types.size(); ++i) {
+    const std::vector<ir::Member>& members = image.types[ir::TypeId(i)].members;
+    for (size_t member = 0; member < members.size(); ++member) {
+      if (members[member].section != ir::Section::kStamp) continue;
+      known[ir::TypeId(i)] = image.layouts[ir::TypeId(i)].member_offsets[member];
+    }
+  }
+  out.stamps.resize(image.instances.size());
+  for (uint32_t id = 0; id < out.stamps.size() && !known.empty(); ++id) {
+    const auto found = known.find(image.instances[id].type);
+    if (found != known.end()) out.stamps[id] = image.instances[id].data + found->second;
+  }
+}
+
+std::shared_ptr<const DataTables> data_tables(const ir::Image& image) {
+  auto out = std::make_shared<DataTables>();
+  for (const ir::Instance& row : image.instances) {
+    const bool callable = row.live && row.type != image.globals;
+    out->instances.push_back(callable ? InstanceEntry{row.data, row.pou} : InstanceEntry{});
+  }
+  add_areas(image, *out);
+  add_stamps(image, *out);
+  return out;
+}
+
+bool has_native(const TierOptions& tier, uint32_t number) {
+  return tier.tier != Tier::kInterpreter && (!tier.alternates || number % 2 == 0);
+}
+
+bool have_one_data(const ir::Image& a, const ir::Image& b) {
+  return a.types.is_one_with(b.types) && a.layouts.is_one_with(b.layouts) &&
+         a.instances.is_one_with(b.instances) && a.globals == b.globals;
 }
 
 }  // namespace
@@ -74,54 +142,6 @@ uint32_t Generation::pool_offset() const {
 void Generation::write_pool(uint8_t* memory) const {
   const base::Bytes& pool = image().pool;
   if (!pool.empty()) std::memcpy(memory + pool_offset(), pool.data(), pool.size());
-}
-
-// Slots are listed once per type.
-void Generation::build_areas() {
-  const ir::Image& image = image_.image();
-  ir::SlotFinder finder(image.types, image.layouts);
-  std::unordered_map<ir::TypeId, std::pair<uint32_t, uint32_t>> known;
-  areas_.resize(image.instances.size());
-  for (uint32_t id = 0; id < areas_.size(); ++id) {
-    const ir::Instance& row = image.instances[id];
-    if (!row.live) continue;
-    const ir::TypeLayout& layout = image.layouts[row.type];
-    const auto [slots, added] = known.try_emplace(row.type);
-    if (added) {
-      const std::vector<uint32_t> found = finder.inside(row.type);
-      slots->second = {static_cast<uint32_t>(area_slots_.size()),
-                       static_cast<uint32_t>(found.size())};
-      area_slots_.insert(area_slots_.end(), found.begin(), found.end());
-    }
-    areas_[id] = {ir::area_segment(id, row.generation),
-                  row.data,
-                  layout.used,
-                  std::max(layout.used, layout.area_capacity),
-                  slots->second.first,
-                  slots->second.second,
-                  row.type.index};
-    areas_by_data_.push_back(id);
-  }
-  std::sort(areas_by_data_.begin(), areas_by_data_.end(),
-            [this](uint32_t a, uint32_t b) { return areas_[a].data < areas_[b].data; });
-}
-
-// Looked for once per type: a switch looks stamps up, and types have as many members as they like.
-void Generation::build_stamps() {
-  const ir::Image& image = image_.image();
-  std::unordered_map<ir::TypeId, uint32_t> known;  // offset in the type; none: no stamp
-  for (uint32_t i = 0; i < image.types.size(); ++i) {
-    const std::vector<ir::Member>& members = image.types[ir::TypeId(i)].members;
-    for (size_t member = 0; member < members.size(); ++member) {
-      if (members[member].section != ir::Section::kStamp) continue;
-      known[ir::TypeId(i)] = image.layouts[ir::TypeId(i)].member_offsets[member];
-    }
-  }
-  stamps_.resize(image.instances.size());
-  for (uint32_t id = 0; id < stamps_.size() && !known.empty(); ++id) {
-    const auto found = known.find(image.instances[id].type);
-    if (found != known.end()) stamps_[id] = image.instances[id].data + found->second;
-  }
 }
 
 // At most half full, so that a search is short.
@@ -175,19 +195,15 @@ base::Result<std::unique_ptr<Generation>> Generation::build(ir::VerifiedImage ve
                                                             std::shared_ptr<CodeSlots> slots,
                                                             const Generation* running,
                                                             const TierOptions& tier) {
-  auto made = std::unique_ptr<Generation>(new Generation(std::move(verified)));
+  auto made = std::unique_ptr<Generation>(new Generation(std::move(verified), running));
   const ir::Image& image = made->image();
   made->number_ = number;
   made->slots_ = std::move(slots);
   const auto code = std::make_shared<CodeTable>();
   base::Status placed = made->place_code(running, tier, *code);
   if (!placed.ok()) return placed.error();
-  for (const ir::Instance& row : image.instances) {
-    const bool callable = row.live && row.type != image.globals;
-    made->instances_.push_back(callable ? InstanceEntry{row.data, row.pou} : InstanceEntry{});
-  }
-  made->build_areas();
-  made->build_stamps();
+  const bool shares = running != nullptr && have_one_data(running->image(), image);
+  made->data_ = shares ? running->data_ : data_tables(image);
   made->build_overrides();
   for (const ir::LinkedBound& bound : image.bounds) {
     made->bounds_.push_back({bound.low, bound.count, bound.stride});
@@ -195,22 +211,38 @@ base::Result<std::unique_ptr<Generation>> Generation::build(ir::VerifiedImage ve
   for (const ir::Range& range : image.ranges) made->ranges_.push_back({range.low, range.high});
   made->write_pool(memory);
   code->clean_bools = made->bools_.stay_clean();
-  const bool later = tier.making == Making::kBeside && running == nullptr;
-  if (!later && (!tier.alternates || number % 2 == 0)) {
+  const std::shared_ptr<const CodeTable> known = running == nullptr ? nullptr : running->code();
+  const bool later =
+      tier.making == Making::kBeside && (known == nullptr || known->native == nullptr);
+  if (!later && has_native(tier, number)) {
+    const bool alike = known != nullptr && known->clean_bools == code->clean_bools;
     code->native = native::Program::make(image, code->clean_bools, code->pous, tier,
-                                         running == nullptr ? nullptr : running->native());
+                                         known == nullptr ? nullptr : known->native.get(), {},
+                                         nullptr, alike ? &running->image() : nullptr);
   }
-  made->code_ = code;
+  made->code_->first = code;
   return made;
 }
 
-void Generation::make_native(const TierOptions& tier, native::Progress& progress) {
-  const auto table = std::make_shared<CodeTable>(*code_);
-  table->native =
-      native::Program::make(image(), table->clean_bools, table->pous, tier, nullptr, {}, &progress);
-  if (table->native == nullptr) return;
-  with_native_ = table;
-  newest_.store(&with_native_, std::memory_order_release);
+std::function<void(native::Progress&)> Generation::native_work(const TierOptions& tier,
+                                                               std::optional<MadeCode> like) const {
+  if (!has_native(tier, number_)) return [](native::Progress&) {};
+  return [version = image_, code = code_, slots = slots_, tier,
+          like = std::move(like)](native::Progress& progress) {
+    const auto table = std::make_shared<CodeTable>(*code->first);
+    const native::Program* const known = like ? like->table->native.get() : nullptr;
+    const bool alike = known != nullptr && like->table->clean_bools == table->clean_bools;
+    table->native =
+        native::Program::make(version.image(), table->clean_bools, table->pous, tier, known, {},
+                              &progress, alike ? &like->version.image() : nullptr);
+    if (table->native == nullptr) return;
+    if (progress.stop) {
+      progress.stopped = table;
+      return;
+    }
+    code->with_native = table;
+    code->newest.store(&code->with_native, std::memory_order_release);
+  };
 }
 
 }  // namespace vm

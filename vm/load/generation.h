@@ -5,7 +5,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "ir/bytecode/bools.h"
@@ -49,6 +51,19 @@ struct CodeTable {
   CodeNumber number = {};                         // what an execution remembers
 };
 
+// Of a generation, whose machine code may be made beside it, and when it has ended.
+struct NewestCode {
+  std::shared_ptr<const CodeTable> first;
+  std::shared_ptr<const CodeTable> with_native;  // made beside
+  std::atomic<const std::shared_ptr<const CodeTable>*> newest = &first;
+};
+
+// Code of a version, and what it is code of.
+struct MadeCode {
+  ir::VerifiedImage version;
+  std::shared_ptr<const CodeTable> table;
+};
+
 struct InstanceEntry {
   uint32_t data = 0;  // 0: the ID is free
   uint32_t pou = 0;
@@ -83,6 +98,15 @@ struct OverrideEntry {
 };
 inline constexpr uint32_t kNoTarget = 0xffffffffu;
 
+// What follows from instances, types and layouts: versions with the same ones share it.
+struct DataTables {
+  std::vector<InstanceEntry> instances;
+  std::vector<AreaEntry> areas;
+  std::vector<uint32_t> area_slots;
+  std::vector<uint32_t> areas_by_data;
+  std::vector<uint32_t> stamps;
+};
+
 // A cold start's data: `memory` is all zero before.
 void write_initial_data(const ir::Image& image, uint8_t* memory);
 
@@ -110,20 +134,24 @@ class Generation {
   // Of its image as it is; what is newest of it. Any thread. It can be held longer than the
   // generation.
   const std::shared_ptr<const CodeTable>& code() const {
-    return *newest_.load(std::memory_order_acquire);
+    return *code_->newest.load(std::memory_order_acquire);
   }
+  const std::shared_ptr<const CodeTable>& first_code() const { return code_->first; }
   const std::vector<PouEntry>& pous() const { return code()->pous; }
-  // Makes the machine code that build() left out (Making::kBeside), on any thread, once. Executions
-  // go on with the table that they began with.
-  void make_native(const TierOptions& tier, native::Progress& progress);
-  const std::vector<InstanceEntry>& instances() const { return instances_; }
-  const std::vector<AreaEntry>& areas() const { return areas_; }
-  const std::vector<uint32_t>& area_slots() const { return area_slots_; }
+  // What makes the machine code that build() left out (Making::kBeside), on any thread, once.
+  // Executions go on with the table that they began with. It holds whatever it needs; but no two
+  // versions may be built meanwhile on top of another one. `like`: shared where it is the same;
+  // its version is the one that this was built on, or one that was built on this.
+  std::function<void(native::Progress&)> native_work(const TierOptions& tier,
+                                                     std::optional<MadeCode> like) const;
+  const std::vector<InstanceEntry>& instances() const { return data_->instances; }
+  const std::vector<AreaEntry>& areas() const { return data_->areas; }
+  const std::vector<uint32_t>& area_slots() const { return data_->area_slots; }
   // IDs of all areas by their place in data memory.
-  const std::vector<uint32_t>& areas_by_data() const { return areas_by_data_; }
+  const std::vector<uint32_t>& areas_by_data() const { return data_->areas_by_data; }
   // Data offset of the stamp of an instance (ir/types/stamps.h), and of the globals' change flag
   // (ID 0); 0: none.
-  uint32_t stamp(uint32_t id) const { return stamps_[id]; }
+  uint32_t stamp(uint32_t id) const { return data_->stamps[id]; }
   const std::vector<BoundEntry>& bounds() const { return bounds_; }
   const std::vector<RangeEntry>& ranges() const { return ranges_; }
   // POU that stands for the prototype on instances of the type; kNoTarget: none.
@@ -134,33 +162,27 @@ class Generation {
       if (overrides_[at].key == ~uint64_t{0}) return kNoTarget;
     }
   }
-  // Machine code of its POUs; null: everything is interpreted.
+  // Machine code of its POUs; null: everything is interpreted, or not made yet.
   const native::Program* native() const { return code()->native.get(); }
   const ir::Bools& bools() const { return bools_; }
   // Tries that one POU can have open at once, at most.
   uint32_t try_depth() const { return try_depth_; }
 
  private:
-  explicit Generation(ir::VerifiedImage image) : image_(std::move(image)), bools_(image_.image()) {}
+  Generation(ir::VerifiedImage image, const Generation* running)
+      : image_(std::move(image)),
+        bools_(image_.image(), running == nullptr ? nullptr : &running->bools_) {}
   base::Status place_code(const Generation* running, const TierOptions& tier, CodeTable& code);
-  void build_areas();
-  void build_stamps();
   void build_overrides();
   size_t first_place(uint64_t key) const {
     return static_cast<size_t>(key * 0x9e3779b97f4a7c15u >> 32) & override_mask_;
   }
   ir::VerifiedImage image_;
   ir::Bools bools_;
-  std::vector<AreaEntry> areas_;
-  std::vector<uint32_t> area_slots_;
-  std::vector<uint32_t> areas_by_data_;
-  std::vector<uint32_t> stamps_;
+  std::shared_ptr<const DataTables> data_;
   uint32_t number_ = 0;
   std::shared_ptr<CodeSlots> slots_;
-  std::shared_ptr<const CodeTable> code_;
-  std::shared_ptr<const CodeTable> with_native_;  // made beside
-  std::atomic<const std::shared_ptr<const CodeTable>*> newest_ = &code_;
-  std::vector<InstanceEntry> instances_;
+  std::shared_ptr<NewestCode> code_ = std::make_shared<NewestCode>();
   std::vector<BoundEntry> bounds_;
   std::vector<RangeEntry> ranges_;
   std::vector<OverrideEntry> overrides_;  // at least one is free

@@ -18,6 +18,7 @@ struct PouNative {
   std::string reason;  // not empty: there is no code
   const ir::Unit* units = nullptr;
   base::Digest facts{};
+  bool has_facts = true;
   std::shared_ptr<const CodeMemory> code;
   const uint8_t* machine = nullptr;
   SideUnits side;
@@ -205,7 +206,45 @@ struct Job {
   const PouNatives* running = nullptr;  // null: none
   std::span<const ir::PouVersion> versions;
   Progress* progress = nullptr;
+  const ir::Image* running_image = nullptr;
 };
+
+// Of all POUs; what is the same as it was is taken from what runs.
+std::vector<base::Digest> facts_of_all(const Job& job, const ImageFacts& common,
+                                       std::vector<uint64_t>& scratch) {
+  std::vector<base::Digest> facts;
+  if (job.running == nullptr) return facts;
+  facts.reserve(job.image.pous.size());
+  const bool alike = job.running_image != nullptr && job.versions.empty() &&
+                     rely_on_the_same(*job.running_image, job.image);
+  for (uint32_t number = 0; number < job.image.pous.size(); ++number) {
+    const bool same = alike && number < job.running->size() && (*job.running)[number]->has_facts &&
+                      have_same_facts(*job.running_image, job.image, number);
+    facts.push_back(same ? (*job.running)[number]->facts
+                         : facts_of(job.image, common, job.image.pous[number], scratch));
+  }
+  return facts;
+}
+
+// The others are interpreted; whose bodies stand in what was made, of those the facts are known.
+void leave_out_rest(const Job& job, const ImageFacts& common, PouNatives& made) {
+  std::vector<bool> inlined(job.pous.size());
+  for (const auto& pou : made) {
+    for (const uint32_t number : pou->inlined) inlined[number] = true;
+  }
+  std::vector<uint64_t> scratch;
+  while (made.size() < job.pous.size()) {
+    const size_t number = made.size();
+    const auto pou = std::make_shared<PouNative>();
+    pou->reason = "it was not made yet";
+    pou->units = job.pous[number].code;
+    pou->has_facts = inlined[number];
+    if (inlined[number]) {
+      pou->facts = facts_of(job.image, common, job.image.pous[number], scratch);
+    }
+    made.push_back(pou);
+  }
+}
 
 // Machine code of all POUs but those whose running code is still right.
 std::vector<Emitted> emit_all(const Job& job, const host::Shared& shared,
@@ -219,12 +258,8 @@ std::vector<Emitted> emit_all(const Job& job, const host::Shared& shared,
   std::vector<Emitted> all;
   all.reserve(job.pous.size());
   std::vector<uint64_t> scratch;
-  std::vector<base::Digest> facts_by_pou;  // where some code may be right
-  if (job.running != nullptr) {
-    for (const ir::LinkedPou& pou : job.image.pous) {
-      facts_by_pou.push_back(facts_of(job.image, common, pou, scratch));
-    }
-  }
+  // Where some code may be right.
+  const std::vector<base::Digest> facts_by_pou = facts_of_all(job, common, scratch);
   // Is what runs of a POU, or was inlined of it, still right?
   const auto is_same = [&](uint32_t number) {
     if (job.running == nullptr || number >= job.running->size() || number >= job.pous.size())
@@ -259,6 +294,7 @@ std::vector<Emitted> emit_all(const Job& job, const host::Shared& shared,
     assembler.forget_labels(shared_labels);
   }
   assembler.patch();
+  leave_out_rest(job, common, made);
   return all;
 }
 
@@ -272,16 +308,15 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_
                                              std::vector<PouEntry>& pous,
                                              const TierOptions& options, const Program* running,
                                              std::span<const ir::PouVersion> versions,
-                                             Progress* progress) {
+                                             Progress* progress, const ir::Image* running_image) {
   if (options.tier == Tier::kInterpreter || !is_available()) return nullptr;
   const auto made = std::make_shared<Program>(Key());
   host::Assembler assembler;
   const host::Shared shared = host::emit_shared(assembler);
   const std::vector<Emitted> all =
       emit_all({image, clean_bools, pous, options, running == nullptr ? nullptr : &running->pous_,
-                versions, progress},
+                versions, progress, running_image},
                shared, assembler, made->pous_);
-  if (progress != nullptr && progress->stop) return nullptr;
   made->shared_code_ = CodeMemory::make(assembler.code());
   if (made->shared_code_ == nullptr) return nullptr;
   const uint8_t* const base = made->shared_code_->data();

@@ -13,6 +13,7 @@
 #include "vm/exec/tier.h"
 
 namespace vm {
+struct CodeTable;
 struct Context;
 struct PouEntry;
 }  // namespace vm
@@ -27,8 +28,9 @@ bool is_available();
 
 // Of a Program that is made while others look.
 struct Progress {
-  std::atomic<bool> stop = false;  // it is not wanted any more: what is made is null
+  std::atomic<bool> stop = false;  // no more POUs: those that are not done are interpreted
   std::atomic<uint32_t> pous = 0;  // are done
+  std::shared_ptr<const CodeTable> stopped;  // what had been made by then, for another one to share
 };
 
 class Program {
@@ -37,15 +39,17 @@ class Program {
  public:
   explicit Program(Key) {}
   ~Program();
-  // Sets entry and machine of `pous`. Code of `running` that is still right is shared. Null when
-  // everything is interpreted.
+  // Sets entry and machine of `pous`. Code of `running` that is still right is shared; with the
+  // image that it is of, made without `versions` and with the same `clean_bools`, it is not looked
+  // at what is the same there. Null when everything is interpreted.
   // `versions`: code that stands for that of the image, sorted by POU (forced_code.h).
   // `clean_bools`: BOOLs of the image are 0 or 1 wherever they lie (ir/bytecode/bools.h).
   static std::shared_ptr<const Program> make(const ir::Image& image, bool clean_bools,
                                              std::vector<PouEntry>& pous,
                                              const TierOptions& options, const Program* running,
                                              std::span<const ir::PouVersion> versions = {},
-                                             Progress* progress = nullptr);
+                                             Progress* progress = nullptr,
+                                             const ir::Image* running_image = nullptr);
 
   // Runs machine code. True: its POU returned, and the caller's record is on top; else the Context
   // says where the interpreter goes on, or that it has stopped.

@@ -1,14 +1,15 @@
 #include "vm/runtime/controller.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <map>
 
 #include "base/check.h"
 #include "vm/runtime/native_maker.h"
+#include "vm/runtime/output_values.h"
 #include "vm/runtime/scheduler.h"
 #include "vm/runtime/stamp_ref.h"
+#include "vm/runtime/summaries.h"
 #include "vm/runtime/task_tables.h"
 
 namespace vm {
@@ -26,18 +27,6 @@ void write_retained(const ir::Image& image, base::ByteSpan values, uint8_t* memo
     std::memcpy(memory + range.data, values.data(), range.size);
     values = values.subspan(range.size);
   }
-}
-
-TimeSummary summary_of(const Histogram& times) {
-  return {times.min(), times.average(), times.quantile(0.99), times.max(), times.total()};
-}
-
-std::vector<TimeClass> classes_of(const Histogram& times) {
-  std::vector<TimeClass> rows;
-  for (uint32_t i = 0; i < Histogram::kClasses; ++i) {
-    if (times.in_class(i) != 0) rows.push_back({Histogram::class_end(i), times.in_class(i)});
-  }
-  return rows;
 }
 
 }  // namespace
@@ -159,28 +148,6 @@ base::Result<std::string> Controller::get(std::string_view path) const {
   return ir::format_value(image(), *symbol, impl_->memory.view());
 }
 
-namespace {
-
-// NaN is sent to no device: a drive would take it for some number.
-base::Status fits_output(const ir::Image& image, const ir::Symbol& symbol,
-                         const base::Bytes& bytes) {
-  if (!symbol.output || !image.types.is_scalar(symbol.type)) return base::Ok{};
-  const ir::Scalar scalar = image.types.scalar(symbol.type);
-  if (!ir::is_float(scalar)) return base::Ok{};
-  float single = 0;
-  double number = 0;
-  if (bytes.size() == sizeof single) {
-    std::memcpy(&single, bytes.data(), sizeof single);
-    number = single;
-  } else {
-    std::memcpy(&number, bytes.data(), sizeof number);
-  }
-  if (!std::isnan(number)) return base::Ok{};
-  return base::Error{base::Refusal::kBadValue, "an output cannot be NaN"};
-}
-
-}  // namespace
-
 base::Status Controller::set(std::string_view path, std::string_view value) {
   base::check(at_boundary(), "a value is set while a task is inside a scan");
   base::Result<ir::Symbol> symbol = impl_->writable(path);
@@ -262,7 +229,12 @@ uint32_t Controller::pous_to_make() const { return impl_->native_maker.to_make()
 
 base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage next_image) {
   const Generation* running = impl_->running.get();
-  impl_->native_maker.wait();  // code that stays the same is shared
+  // It would read code slots that are written now; and forced versions keep what they were made of.
+  if (!impl_->native_maker.is_for(*running)) {
+    impl_->native_maker.stop();
+    (void)impl_->native_maker.take_stopped();
+  }
+  if (!forces().empty()) impl_->native_maker.wait();
   std::erase_if(impl_->tables, [&](const auto& row) { return row.first != running; });
   auto next = Generation::build(std::move(next_image), running->number() + 1, impl_->memory.data(),
                                 impl_->code_slots, running, impl_->tier);
@@ -296,7 +268,26 @@ std::unique_ptr<Generation> Controller::publish(std::unique_ptr<Generation> next
   return next;
 }
 
-void Controller::settle_devices() { impl_->io_port.settle(); }
+// The version that runs was built on the other one, or that one on it.
+void Controller::make_native() {
+  Impl& impl = *impl_;
+  const Generation& running = *impl.running;
+  if (impl.tier.making != Making::kBeside || impl.native_maker.is_for(running)) return;
+  if (running.native() != nullptr) return;
+  impl.native_maker.stop();
+  std::optional<MadeCode> like = impl.native_maker.take_stopped();
+  for (const auto& [generation, tables] : impl.tables) {
+    if (generation == &running || tables->own_code->native == nullptr) continue;
+    like.emplace(MadeCode{tables->version, tables->own_code});
+  }
+  impl.native_maker.start(running, impl.tier, std::move(like));
+}
+
+// Nothing runs of another version, nor will.
+void Controller::settle_devices() {
+  std::erase_if(impl_->tables, [&](const auto& row) { return row.first != impl_->running.get(); });
+  impl_->io_port.settle();
+}
 std::vector<DeviceStatus> Controller::devices() const { return impl_->io_port.status(); }
 
 void Controller::construct() {

@@ -161,6 +161,9 @@ class Controller {
   std::unique_ptr<Generation> publish(std::unique_ptr<Generation> next, Memory* data = nullptr);
   // Off the control thread: devices that only a version which never runs again has are closed.
   void settle_devices();
+  // Off the control thread, behind a switch that did not wait for machine code (Making::kBeside):
+  // begins to make that of the version that runs now.
+  void make_native();
   std::vector<DeviceStatus> devices() const;
   // Behind a change: the next cycle begins with the start code, which constructs what is new.
   void construct();

@@ -6,17 +6,35 @@
 
 namespace vm {
 
-NativeMaker::~NativeMaker() {
-  progress_.stop = true;
-  wait();
+void NativeMaker::start(const Generation& of, const TierOptions& tier,
+                        std::optional<MadeCode> like) {
+  stop();
+  progress_.stop = false;
+  progress_.pous = 0;
+  pous_ = static_cast<uint32_t>(of.pous().size());
+  progress_.stopped.reset();
+  for_ = of.first_code();
+  version_ = of.verified();
+  done_ = std::async(std::launch::async, [this, work = of.native_work(tier, std::move(like))] {
+            run_in_background();
+            work(progress_);
+          }).share();
 }
 
-void NativeMaker::start(Generation& first, const TierOptions& tier) {
-  pous_ = static_cast<uint32_t>(first.pous().size());
-  done_ = std::async(std::launch::async, [this, &first, tier] {
-            run_in_background();
-            first.make_native(tier, progress_);
-          }).share();
+void NativeMaker::stop() {
+  progress_.stop = true;
+  wait();
+  for_.reset();
+}
+
+std::optional<MadeCode> NativeMaker::take_stopped() {
+  std::optional<MadeCode> made;
+  if (progress_.stopped != nullptr && version_) {
+    made.emplace(MadeCode{*version_, std::move(progress_.stopped)});
+  }
+  progress_.stopped.reset();
+  version_.reset();
+  return made;
 }
 
 void NativeMaker::wait() const {

@@ -1,10 +1,12 @@
-// Makes the first version's machine code on a thread in the background (Making::kBeside), so that
-// its first scan need not wait for it. The program is interpreted until then, and on when there is
+// Makes machine code on a thread in the background (Making::kBeside), so that neither the first
+// scan nor a change need wait for it. The program is interpreted until then, and on when there is
 // no room for machine code.
 #pragma once
 
 #include <cstdint>
 #include <future>
+#include <memory>
+#include <optional>
 
 #include "vm/load/generation.h"
 #include "vm/native/program.h"
@@ -12,23 +14,33 @@
 
 namespace vm {
 
+// One thread at a time calls what is not marked otherwise.
 class NativeMaker {
  public:
-  ~NativeMaker();  // stops it; what it makes is lost
+  ~NativeMaker() { stop(); }
 
-  // `first` outlives what this makes: call wait() before anything ends that generation.
-  void start(Generation& first, const TierOptions& tier);
+  // Of this generation from now on, and of no other one; once for each. `like`: Generation.
+  void start(const Generation& of, const TierOptions& tier, std::optional<MadeCode> like = {});
+  // What is not made yet is not made; waits for the POU that is being made.
+  void stop();
+  // Behind stop(), once: what it had made, for start() of the version that was built on that one,
+  // or that it was built on.
+  std::optional<MadeCode> take_stopped();
   void wait() const;
-  // POUs that are still to be made; 0: it is done, or was never started. Any thread.
+  // Is it at work for this generation, or has it done that last?
+  bool is_for(const Generation& generation) const { return for_ == generation.first_code(); }
+  // POUs that are still to be made; 0: it is done, or was never started.
   uint32_t to_make() const;
   // Control thread, between scans: what is made takes its place by one store. Executions that are
   // suspended go on with what they began with. With `at` (TierOptions::take_at), not before and at
-  // once behind that cycle.
+  // once behind that cycle; then no other thread calls anything.
   void take(TaskTables& tables, uint64_t at, uint64_t cycle) const;
 
  private:
   native::Progress progress_;
   uint32_t pous_ = 0;
+  std::shared_ptr<const CodeTable> for_;
+  std::optional<ir::VerifiedImage> version_;  // likewise
   std::shared_future<void> done_;
 };
 

@@ -53,7 +53,7 @@ ir::EvalMemory memory_of(const ir::Image& image, const ir::TypeTable& types) {
   memory.layouts.of.resize(types.size());
   for (uint32_t i = 0; i < image.types.size(); ++i) {
     const ir::TypeId id = numbers.of_base(ir::TypeId(i));
-    if (id.valid()) memory.layouts.of[id.index] = image.layouts.of[i];
+    if (id.valid()) memory.layouts.of[id.index] = image.layouts->of[i];
   }
   for (uint32_t id = 0; id < image.instances.size(); ++id) {
     const ir::Instance& row = image.instances[id];

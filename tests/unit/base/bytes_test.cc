@@ -70,6 +70,31 @@ TEST(Hash, Sha256KnownAnswers) {
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
+// Whatever two texts have in common, and whatever is said of it that is true.
+TEST(Hash, Sha256GoesOnWhereAnotherBegan) {
+  constexpr size_t kStep = Sha256Trail::kStep;
+  Bytes first(3 * kStep + 100);
+  for (size_t i = 0; i < first.size(); ++i) first[i] = static_cast<uint8_t>(i * 7 + i / 251);
+  Sha256Trail known;
+  EXPECT_EQ(sha256(first, {}, 0, known), sha256(first));
+  EXPECT_EQ(known.states.size(), 3u);
+  for (const size_t at :
+       {size_t{0}, kStep - 1, kStep, 2 * kStep + 5, 3 * kStep, first.size() - 1}) {
+    for (const size_t size : {at + 1, kStep, 3 * kStep, first.size(), 5 * kStep + 1}) {
+      Bytes other = first;
+      other.resize(size, 3);
+      if (at < size) other[at] ^= 1;
+      Sha256Trail alone;
+      EXPECT_EQ(sha256(other, {}, 0, alone), sha256(other));
+      for (const size_t same : {std::min(at, size), std::min(at, size) / 2}) {
+        Sha256Trail trail;
+        EXPECT_EQ(sha256(other, known, same, trail), sha256(other));
+        EXPECT_EQ(trail.states, alone.states);
+      }
+    }
+  }
+}
+
 TEST(Hash, HexRoundTrip) {
   Digest digest = sha256(as_bytes("abc"));
   Digest back{};

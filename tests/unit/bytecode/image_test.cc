@@ -22,8 +22,8 @@ TEST(Image, AnonymousTypesAreFoundByContentAfterDecoding) {
   auto decoded = ir::decode(ir::encode(sample::busy_image()));
   ASSERT_TRUE(decoded.ok());
   const uint32_t before = decoded->types.size();
-  decoded->types.string(10);
-  decoded->types.array(decoded->types.elementary(ir::Kind::kInt), {{1, 4}});
+  decoded->types.own().string(10);
+  decoded->types.own().array(decoded->types.elementary(ir::Kind::kInt), {{1, 4}});
   EXPECT_EQ(decoded->types.size(), before);
 }
 

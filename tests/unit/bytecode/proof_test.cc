@@ -13,7 +13,11 @@ namespace {
 
 using Proven = base::Result<std::shared_ptr<const Proof>>;
 
-bool same_facts(const CodeFacts& a, const CodeFacts& b) {
+bool same_facts(const std::shared_ptr<const CodeFacts>& x,
+                const std::shared_ptr<const CodeFacts>& y) {
+  if (x == nullptr || y == nullptr) return x == y;
+  const CodeFacts& a = *x;
+  const CodeFacts& b = *y;
   return a.callees == b.callees && a.written_outputs == b.written_outputs &&
          a.native_bytes == b.native_bytes && a.parameters_of == b.parameters_of &&
          a.pool_end == b.pool_end && a.bounds_end == b.bounds_end && a.ranges_end == b.ranges_end;
@@ -31,10 +35,11 @@ void expect_same(const Proven& alone, const Proven& helped) {
   }
   const Proof& a = **alone;
   const Proof& b = **helped;
+  EXPECT_EQ(encode(b.image), encode(a.image));
   EXPECT_TRUE(std::equal(a.code.begin(), a.code.end(), b.code.begin(), b.code.end(), same_facts));
   EXPECT_TRUE(std::equal(a.writers.begin(), a.writers.end(), b.writers.begin(), b.writers.end(),
                          same_writer));
-  EXPECT_TRUE(std::equal(a.types.begin(), a.types.end(), b.types.begin(), b.types.end(),
+  EXPECT_TRUE(std::equal(a.types->begin(), a.types->end(), b.types->begin(), b.types->end(),
                          [](const TypeFacts& x, const TypeFacts& y) {
                            return x.has_slots == y.has_slots && x.depth == y.depth;
                          }));

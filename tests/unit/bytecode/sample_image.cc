@@ -51,16 +51,16 @@ TypeId declare(Image& image, Kind kind, const char* name, const std::vector<Plac
     layout.member_offsets.push_back(placed.offset);
     layout.used = std::max(layout.used, placed.offset);
   }
-  const TypeId id = image.types.declare(std::move(type));
-  image.layouts.of.resize(image.types.size());
-  image.layouts.of[id.index] = layout;
+  const TypeId id = image.types.own().declare(std::move(type));
+  image.layouts.own().of.resize(image.types.size());
+  image.layouts.own().of[id.index] = layout;
   return id;
 }
 
 void lay_out_scalars(Image& image) {
-  image.layouts.of.resize(image.types.size());
+  image.layouts.own().of.resize(image.types.size());
   for (uint32_t i = 0; i < image.types.size(); ++i) {
-    ir::TypeLayout& layout = image.layouts.of[i];
+    ir::TypeLayout& layout = image.layouts.own().of[i];
     const TypeId id(i);
     if (layout.size != 0) continue;
     const ir::Type& type = image.types[id];
@@ -75,7 +75,7 @@ void lay_out_scalars(Image& image) {
 }
 
 void add_types(Image& image) {
-  ir::TypeTable& types = image.types;
+  ir::TypeTable& types = image.types.own();
   const TypeId bit = types.elementary(Kind::kBool);
   const TypeId integer = types.elementary(Kind::kInt);
   const TypeId text = types.string(10);

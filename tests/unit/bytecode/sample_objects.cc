@@ -28,9 +28,9 @@ TypeId declare(Image& image, ir::Type type, std::vector<uint32_t> offsets, uint3
   layout.member_offsets = std::move(offsets);
   layout.used = layout.area_capacity = capacity;
   if (interface) layout = {};
-  const TypeId id = image.types.declare(std::move(type));
-  image.layouts.of.resize(image.types.size());
-  image.layouts.of[id.index] = layout;
+  const TypeId id = image.types.own().declare(std::move(type));
+  image.layouts.own().of.resize(image.types.size());
+  image.layouts.own().of[id.index] = layout;
   return id;
 }
 
@@ -43,9 +43,9 @@ ir::Type type_of(Kind kind, const char* name) {
 
 void add_types(Image& image) {
   const TypeId integer = image.types.elementary(Kind::kInt);
-  image.layouts.of.resize(image.types.size());
+  image.layouts.own().of.resize(image.types.size());
   for (uint32_t i = 0; i < image.types.size(); ++i) {
-    image.layouts.of[i].size = ir::scalar_size(image.types.scalar(TypeId(i)));
+    image.layouts.own().of[i].size = ir::scalar_size(image.types.scalar(TypeId(i)));
   }
   const TypeId adder = declare(image, type_of(Kind::kInterface, "Adder"), {}, 0);
   ir::Type base = type_of(Kind::kFunctionBlock, "Base");

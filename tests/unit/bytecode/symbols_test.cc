@@ -113,17 +113,17 @@ TEST_F(Symbols, HashIgnoresPlacesAndWhatFollowsAStringsEnd) {
 TEST_F(Symbols, AMillionLeavesAreWalkedInLinearTime) {
   ir::Image big;
   const auto bit = big.types.elementary(ir::Kind::kBool);
-  const auto array = big.types.array(bit, {{1, 1'000'000}});
+  const auto array = big.types.own().array(bit, {{1, 1'000'000}});
   ir::Type globals;
   globals.kind = ir::Kind::kGlobals;
   ir::Member member;
   member.name = "a";
   member.type = array;
   globals.members = {member};
-  big.globals = big.types.declare(globals);
-  big.layouts.of.resize(big.types.size());
-  big.layouts.of[bit.index].size = 1;
-  big.layouts.of[big.globals.index].member_offsets = {0};
+  big.globals = big.types.own().declare(globals);
+  big.layouts.own().of.resize(big.types.size());
+  big.layouts.own().of[bit.index].size = 1;
+  big.layouts.own().of[big.globals.index].member_offsets = {0};
   big.instances.resize(1);
   big.instances[0].data = 64;
   uint64_t count = 0;

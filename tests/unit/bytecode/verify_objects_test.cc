@@ -42,7 +42,9 @@ const uint32_t kInt = static_cast<uint32_t>(ir::Kind::kInt);
 TEST(VerifyObjects, TheSampleIsAccepted) { EXPECT_EQ(outcome(busy_object_image()), "accepted"); }
 
 TEST(VerifyObjects, V1_WhatExtendsABlockBeginsAsTheBlock) {
-  const auto derived = [](Image& i) -> ir::Type& { return i.types.edit(object_types(i).derived); };
+  const auto derived = [](Image& i) -> ir::Type& {
+    return i.types.own().edit(object_types(i).derived);
+  };
   expect_refused(Refusal::kBadFormat, "no block as base",
                  [&](Image& i) { derived(i).base = ir::TypeId(kInt); });
   expect_refused(Refusal::kBadFormat, "no type as base",
@@ -54,11 +56,11 @@ TEST(VerifyObjects, V1_WhatExtendsABlockBeginsAsTheBlock) {
   expect_refused(Refusal::kBadFormat, "no type as interface",
                  [&](Image& i) { derived(i).interfaces = {ir::TypeId(999)}; });
   expect_refused(Refusal::kBadFormat, "a program that implements something", [&](Image& i) {
-    i.types.edit(object_types(i).main).interfaces = {object_types(i).adder};
+    i.types.own().edit(object_types(i).main).interfaces = {object_types(i).adder};
   });
   expect_refused(Refusal::kBadFormat, "a member of the base is missing", [&](Image& i) {
-    i.types.edit(object_types(i).base).members.resize(3, derived(i).members[1]);
-    i.layouts.of[object_types(i).base.index].member_offsets = {0, 2, 4};
+    i.types.own().edit(object_types(i).base).members.resize(3, derived(i).members[1]);
+    i.layouts.own().of[object_types(i).base.index].member_offsets = {0, 2, 4};
   });
   expect_refused(Refusal::kBadFormat, "another name",
                  [&](Image& i) { derived(i).members[0].name = "m"; });
@@ -73,24 +75,24 @@ TEST(VerifyObjects, V1_WhatExtendsABlockBeginsAsTheBlock) {
     derived(i).members[0].address = {ir::DirectArea::kInput, 0, 16};
   });
   expect_refused(Refusal::kBadFormat, "another offset", [&](Image& i) {
-    i.layouts.of[object_types(i).derived.index].member_offsets[0] = 2;
+    i.layouts.own().of[object_types(i).derived.index].member_offsets[0] = 2;
   });
 }
 
 TEST(VerifyObjects, V1_NothingIsAnInterfaceAndProgramsAreInTheGlobalsOnly) {
   expect_refused(Refusal::kBadFormat, "an interface as member", [](Image& i) {
-    i.types.edit(object_types(i).main).members[2].type = object_types(i).adder;
+    i.types.own().edit(object_types(i).main).members[2].type = object_types(i).adder;
   });
   expect_refused(Refusal::kBadFormat, "a program as member of a block", [](Image& i) {
-    i.types.edit(object_types(i).derived).members[1].type = object_types(i).main;
+    i.types.own().edit(object_types(i).derived).members[1].type = object_types(i).main;
   });
   expect_refused(Refusal::kBadFormat, "an array of programs", [](Image& i) {
-    i.types.array(object_types(i).main, {{1, 2}});
-    i.layouts.of.resize(i.types.size());
-    i.layouts.of.back().size = 8;
+    i.types.own().array(object_types(i).main, {{1, 2}});
+    i.layouts.own().of.resize(i.types.size());
+    i.layouts.own().of.back().size = 8;
   });
   expect_refused(Refusal::kBadFormat, "an interface with a size",
-                 [](Image& i) { i.layouts.of[object_types(i).adder.index].size = 4; });
+                 [](Image& i) { i.layouts.own().of[object_types(i).adder.index].size = 4; });
   expect_code_refused(
       Refusal::kBadReference, "the address of an interface",
       ext(Opcode::LEA, F(kAddr), C(0), {}, 0, object_types(busy_object_image()).adder.index) +
@@ -104,8 +106,8 @@ TEST(VerifyObjects, V13_ProgramsAmongTheGlobals) {
     ir::Member main;
     main.name = "Main";
     main.type = object_types(image).main;
-    image.types.edit(image.globals).members = {main};
-    image.layouts.of[image.globals.index].member_offsets = {0};
+    image.types.own().edit(image.globals).members = {main};
+    image.layouts.own().of[image.globals.index].member_offsets = {0};
     image.data.insert(image.data.begin(), {64, {static_cast<uint8_t>(id), 0, 0, 0}});
     return outcome(image);
   };

@@ -58,23 +58,25 @@ TEST(Verify, TheSampleIsAccepted) { EXPECT_EQ(outcome(busy_image()), "accepted")
 
 TEST(Verify, V1_FormOfTables) {
   expect_refused(Refusal::kBadFormat, "a layout is missing",
-                 [](Image& i) { i.layouts.of.pop_back(); });
+                 [](Image& i) { i.layouts.own().of.pop_back(); });
   expect_refused(Refusal::kBadFormat, "a type contains itself", [](Image& i) {
-    i.types.edit(types_of(i).pair).members[0].type = types_of(i).pair;
+    i.types.own().edit(types_of(i).pair).members[0].type = types_of(i).pair;
   });
-  expect_refused(Refusal::kBadFormat, "members overlap",
-                 [](Image& i) { i.layouts.of[types_of(i).pair.index].member_offsets[1] = 1; });
-  expect_refused(Refusal::kBadFormat, "a member behind the end",
-                 [](Image& i) { i.layouts.of[types_of(i).pair.index].member_offsets[1] = 4; });
+  expect_refused(Refusal::kBadFormat, "members overlap", [](Image& i) {
+    i.layouts.own().of[types_of(i).pair.index].member_offsets[1] = 1;
+  });
+  expect_refused(Refusal::kBadFormat, "a member behind the end", [](Image& i) {
+    i.layouts.own().of[types_of(i).pair.index].member_offsets[1] = 4;
+  });
   expect_refused(Refusal::kBadFormat, "a size that the type does not have",
-                 [](Image& i) { i.layouts.of[types_of(i).numbers.index].size = 10; });
+                 [](Image& i) { i.layouts.own().of[types_of(i).numbers.index].size = 10; });
   expect_refused(Refusal::kBadFormat, "array bounds the wrong way round", [](Image& i) {
-    i.types.edit(types_of(i).numbers).dims = {{4, 1}};
+    i.types.own().edit(types_of(i).numbers).dims = {{4, 1}};
   });
   expect_refused(Refusal::kBadFormat, "a subrange of a structure",
-                 [](Image& i) { i.types.edit(types_of(i).level).base = types_of(i).pair; });
+                 [](Image& i) { i.types.own().edit(types_of(i).level).base = types_of(i).pair; });
   expect_refused(Refusal::kBadFormat, "a member type that does not exist", [](Image& i) {
-    i.types.edit(types_of(i).main).members[0].type = ir::TypeId(999);
+    i.types.own().edit(types_of(i).main).members[0].type = ir::TypeId(999);
   });
   expect_refused(Refusal::kBadFormat, "the globals are something else",
                  [](Image& i) { i.globals = types_of(i).pair; });
@@ -84,7 +86,7 @@ TEST(Verify, V1_FormOfTables) {
     i.data.push_back({1020, base::Bytes(8)});
   });
   expect_refused(Refusal::kBadFormat, "a string that is too large", [](Image& i) {
-    i.types.edit(types_of(i).text).capacity = base::kMaxStringCapacity + 1;
+    i.types.own().edit(types_of(i).text).capacity = base::kMaxStringCapacity + 1;
   });
 }
 
@@ -237,9 +239,9 @@ TEST(Verify, V10_ConstantsVariablesMembers) {
     i.ranges[0] = {5, 4, "level"};
   });
   expect_refused(Refusal::kBadReference, "an initial value that does not exist",
-                 [](Image& i) { i.types.edit(types_of(i).pair).init = ir::ConstId(5); });
+                 [](Image& i) { i.types.own().edit(types_of(i).pair).init = ir::ConstId(5); });
   expect_refused(Refusal::kBadReference, "an initial value that contains itself", [](Image& i) {
-    i.constants.add({0, {}, {{0, 1, ir::ConstId(0)}}});
+    i.constants.own().add({0, {}, {{0, 1, ir::ConstId(0)}}});
   });
   expect_refused(Refusal::kBadReference, "two POUs of one type", [](Image& i) {
     i.pous[kAddPou].kind = ir::PouKind::kFunctionBlock;
@@ -421,9 +423,9 @@ TEST(Verify, V14_InputsAndOutputs) {
     ir::Type type = i.types[types_of(i).main];
     type.name = "OtherType";
     type.members.clear();
-    const ir::TypeId other = i.types.declare(type);
-    i.layouts.of.resize(i.types.size());
-    i.layouts.of.back() = {4, 4, {}, 0, 8};
+    const ir::TypeId other = i.types.own().declare(type);
+    i.layouts.own().of.resize(i.types.size());
+    i.layouts.own().of.back() = {4, 4, {}, 0, 8};
     ir::LinkedPou pou;
     pou.name = "Other";
     pou.kind = ir::PouKind::kProgram;

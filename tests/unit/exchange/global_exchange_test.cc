@@ -28,26 +28,26 @@ ir::VerifiedImage image_of(const std::string& name, bool writes, uint32_t paddin
   ir::Type globals;
   globals.kind = ir::Kind::kGlobals;
   const ir::TypeId arrays[] = {
-      image.types.array(image.types.elementary(ir::Kind::kLword), {{1, kFirst}}),
-      image.types.array(image.types.elementary(element), {{1, kSecond}})};
+      image.types.own().array(image.types.elementary(ir::Kind::kLword), {{1, kFirst}}),
+      image.types.own().array(image.types.elementary(element), {{1, kSecond}})};
   for (uint32_t i = 0; i < 2; ++i) {
     ir::Member member;
     member.name = i == 0 ? "head" : "tail";
     member.type = arrays[i];
     globals.members.push_back(member);
   }
-  image.globals = image.types.declare(globals);
-  image.layouts.of.resize(image.types.size());
+  image.globals = image.types.own().declare(globals);
+  image.layouts.own().of.resize(image.types.size());
   for (uint32_t i = 0; i < image.types.size(); ++i) {
     const ir::TypeId id(i);
-    ir::TypeLayout& layout = image.layouts.of[i];
+    ir::TypeLayout& layout = image.layouts.own().of[i];
     layout.align = 8;
     if (image.types.is_scalar(id)) layout.size = ir::scalar_size(image.types.scalar(id));
   }
   for (uint32_t i = 0; i < 2; ++i) {
-    image.layouts.of[arrays[i].index].size = (i == 0 ? kFirst : kSecond) * 8;
+    image.layouts.own().of[arrays[i].index].size = (i == 0 ? kFirst : kSecond) * 8;
   }
-  ir::TypeLayout& layout = image.layouts.of[image.globals.index];
+  ir::TypeLayout& layout = image.layouts.own().of[image.globals.index];
   layout.member_offsets = {padding, 2 * padding + kFirst * 8};
   layout.used = 2 * padding + (kFirst + kSecond) * 8;
   layout.area_capacity = layout.size = layout.used;

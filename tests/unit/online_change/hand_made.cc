@@ -32,7 +32,7 @@ ir::TypeId Version::enumeration(const std::string& name, std::vector<ir::EnumLit
   type.name = name;
   type.base = elementary(ir::Kind::kInt);
   type.literals = std::move(literals);
-  return image.types.declare(std::move(type));
+  return image.types.own().declare(std::move(type));
 }
 
 ir::TypeId Version::declare(ir::Kind kind, const std::string& name, const std::vector<Var>& vars) {
@@ -44,17 +44,17 @@ ir::TypeId Version::declare(ir::Kind kind, const std::string& name, const std::v
     member.name = var.name;
     member.type = var.type;
     member.constant = var.constant;
-    if (var.init != 0) member.init = image.constants.scalar(var.init);
+    if (var.init != 0) member.init = image.constants.own().scalar(var.init);
     type.members.push_back(member);
   }
-  return image.types.declare(std::move(type));
+  return image.types.own().declare(std::move(type));
 }
 
 void Version::lay_out(ir::TypeId id, const ir::Image* base) {
   if (laid_out_[id.index]) return;
   laid_out_[id.index] = true;
   const ir::Type& type = image.types[id];
-  ir::TypeLayout& layout = image.layouts.of[id.index];
+  ir::TypeLayout& layout = image.layouts.own().of[id.index];
   if (image.types.has_members(id)) return lay_out_members(id, base);
   if (type.kind == ir::Kind::kArray) {
     lay_out(type.base, base);
@@ -93,7 +93,7 @@ void Version::lay_out_members(ir::TypeId id, const ir::Image* base) {
       end = offsets[i] + part.size;
     }
   }
-  ir::TypeLayout& layout = image.layouts.of[id.index];
+  ir::TypeLayout& layout = image.layouts.own().of[id.index];
   layout.member_offsets = offsets;
   layout.used = end;
   layout.align = align;
@@ -200,7 +200,7 @@ void Version::link(const Version* base, uint32_t slack, bool move) {
   slack_ = slack;
   image.globals = declare(ir::Kind::kGlobals, "", globals_);
   laid_out_.assign(image.types.size(), false);
-  image.layouts.of.resize(image.types.size());
+  image.layouts.own().of.resize(image.types.size());
   for (uint32_t i = 0; i < image.types.size(); ++i) {
     lay_out(ir::TypeId(i), base != nullptr ? &base->image : nullptr);
   }

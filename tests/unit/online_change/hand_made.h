@@ -27,7 +27,7 @@ class Version {
 
   ir::TypeId elementary(ir::Kind kind) { return image.types.elementary(kind); }
   ir::TypeId array(ir::TypeId element, std::vector<ir::Dimension> dims) {
-    return image.types.array(element, std::move(dims));
+    return image.types.own().array(element, std::move(dims));
   }
   ir::TypeId enumeration(const std::string& name, std::vector<ir::EnumLiteral> literals);
   ir::TypeId structure(const std::string& name, const std::vector<Var>& vars) {

@@ -32,13 +32,13 @@ std::unique_ptr<Pair> make_pair() {
     ir::TypeId integer = v.elementary(Kind::kInt);
     ir::TypeId inner = v.block("Inner", {{"n", integer, 2}});
     std::vector<hand_made::Var> vars = {
-        {"i", inner}, {"k", integer}, {"s", v.image.types.string(8)}};
+        {"i", inner}, {"k", integer}, {"s", v.image.types.own().string(8)}};
     if (edited) vars.push_back({"big", v.array(integer, {{0, 99}})});
     ir::TypeId outer = v.block("Outer", vars);
     ir::TypeId element = edited ? v.elementary(Kind::kLint) : integer;
     v.program("Main", {{"o", outer},
                        {"v", v.array(element, {{0, 4}})},
-                       {"w", edited ? v.image.types.string(4) : integer},
+                       {"w", edited ? v.image.types.own().string(4) : integer},
                        {"x", integer},
                        {"c", integer, edited ? 2u : 1u, true}});
   };

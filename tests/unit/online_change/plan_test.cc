@@ -336,7 +336,7 @@ TEST(Plan, case12_constant_follows_the_source) {
 TEST(Plan, law_identity_with_everything_moved) {
   auto make = [](Version& v) {
     ir::TypeId inner = v.block("Inner", {{"n", v.elementary(Kind::kInt), 3}});
-    ir::TypeId rec = v.structure("Rec", {{"s", v.image.types.string(7)}, {"f", inner}});
+    ir::TypeId rec = v.structure("Rec", {{"s", v.image.types.own().string(7)}, {"f", inner}});
     ir::TypeId outer = v.block("Outer", {{"i", inner}, {"x", v.elementary(Kind::kLreal)}});
     v.globals({{"g", outer}, {"flag", v.elementary(Kind::kBool), 1}});
     v.program("Main", {{"o", v.array(outer, {{1, 3}})}});
@@ -368,7 +368,7 @@ TEST(Plan, neighbours_exchange_places) {
   Version b;
   b.program("Main", {{"x", b.elementary(Kind::kInt)}, {"y", b.elementary(Kind::kInt)}});
   b.link(&a);
-  ir::TypeLayout& layout = b.image.layouts.of[b.image.instances[1].type.index];
+  ir::TypeLayout& layout = b.image.layouts.own().of[b.image.instances[1].type.index];
   std::swap(layout.member_offsets[0], layout.member_offsets[1]);
   Running run(a);
   run.set("Main.x", "1");

@@ -193,7 +193,8 @@ TEST(Renames, X2_V17_a_rule_of_a_damaged_image_is_followed_into_no_wrong_type) {
   after.link();
   for (uint32_t i = 0; i < after.image.types.size(); ++i) {
     if (after.image.types[ir::TypeId(i)].kind != ir::Kind::kProgram) continue;
-    after.image.types.edit(ir::TypeId(i)).members[0].old_name = after.image.types.add_old_name("a");
+    after.image.types.own().edit(ir::TypeId(i)).members[0].old_name =
+        after.image.types.own().add_old_name("a");
   }
   const auto renamed = ir::under_new_names(before.image, after.image);
   ASSERT_TRUE(renamed.has_value());

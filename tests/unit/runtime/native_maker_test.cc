@@ -1,4 +1,6 @@
 // Machine code of the first version is made beside its first scans.
+#include <thread>
+
 #include "tests/unit/runtime/plant.h"
 #include "vm/native/program.h"
 
@@ -61,13 +63,69 @@ TEST(NativeMaker, ScansDoNotWaitForMachineCodeAndGoOnWithIt) {
   EXPECT_EQ(plant.get("A.b7.n"), std::to_string(6 * (cycles + 2)));
 }
 
-TEST(NativeMaker, AChangePreparedMeanwhileSharesItsCode) {
+void wait_for_machine_code(Plant& plant) {
+  while (plant->pous_to_make() != 0) std::this_thread::yield();
+}
+
+// Does all of what runs have machine code?
+void expect_machine_code(Plant& plant) {
+  ASSERT_NE(plant->generation().native(), nullptr);
+  EXPECT_EQ(plant->generation().native()->native_pous(), plant->image().pous.size());
+  EXPECT_EQ(plant->code().native.get(), plant->generation().native());
+}
+
+// What is prepared is interpreted, and its machine code is made behind the switch; also when
+// somebody takes the switch back before it is, or behind it.
+TEST(NativeMaker, AChangeMeanwhileDoesNotWaitForIt) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier for this machine";
+  for (const bool waits_for_first : {false, true}) {
+    Plant plant(many_blocks(), beside());
+    ASSERT_TRUE(plant.ok());
+    plant.cycles(1);
+    auto next = plant->prepare(plant->verified());
+    ASSERT_TRUE(next.ok());
+    const bool meanwhile = plant->generation().native() == nullptr;
+    EXPECT_TRUE(meanwhile) << "300 blocks before one version is prepared";
+    EXPECT_EQ((*next)->native() == nullptr, meanwhile);
+    if (waits_for_first) wait_for_machine_code(plant);
+    auto old = plant->publish(std::move(*next));
+    plant.cycles(1);
+    plant->make_native();
+    wait_for_machine_code(plant);
+    plant.cycles(1);
+    expect_machine_code(plant);
+    auto newer = plant->publish(std::move(old));
+    plant->make_native();
+    plant.cycles(1);
+    wait_for_machine_code(plant);
+    plant.cycles(1);
+    expect_machine_code(plant);
+    EXPECT_EQ(plant.get("A.scans"), "5");
+    EXPECT_EQ(plant.get("A.b7.n"), std::to_string(6 * 5));
+  }
+}
+
+// Neither what it was made for nor those who asked for it need live as long.
+TEST(NativeMaker, VersionsMayEndMeanwhile) {
+  Plant plant(many_blocks(), beside());
+  ASSERT_TRUE(plant.ok());
+  for (int i = 0; i < 5; ++i) {
+    auto next = plant->prepare(plant->verified());
+    ASSERT_TRUE(next.ok());
+    plant->publish(std::move(*next)).reset();
+    if (i % 2 == 0) plant->make_native();
+    plant.cycles(1);
+  }
+  EXPECT_EQ(plant.get("A.b7.n"), std::to_string(6 * 5));
+}
+
+TEST(NativeMaker, AChangePreparedBehindItSharesItsCode) {
   if (!vm::native::is_available()) GTEST_SKIP() << "no native tier for this machine";
   Plant plant(many_blocks(), beside());
   ASSERT_TRUE(plant.ok());
+  wait_for_machine_code(plant);
   auto next = plant->prepare(plant->verified());
   ASSERT_TRUE(next.ok());
-  EXPECT_EQ(plant->pous_to_make(), 0u);
   for (uint32_t pou = 0; pou < plant->image().pous.size(); ++pou) {
     EXPECT_NE((*next)->pous()[pou].machine, nullptr);
     EXPECT_EQ((*next)->pous()[pou].machine, plant->generation().pous()[pou].machine);
