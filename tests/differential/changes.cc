@@ -20,20 +20,6 @@ namespace {
 
 using Wide = __int128;
 
-Finding failure(std::string key, std::string text) {
-  Finding out;
-  out.failed = true;
-  out.key = std::move(key);
-  out.text = std::move(text);
-  return out;
-}
-
-Finding skipped() {
-  Finding out;
-  out.key = "skipped";
-  return out;
-}
-
 bool is_whole(const ir::TypeTable& types, ir::TypeId type) {
   if (!types.is_scalar(type) || types[type].kind == ir::Kind::kEnum) return false;
   ir::Group group = ir::elementary_group(types.root_kind(type));

@@ -253,11 +253,7 @@ Run run(Subject& forced, const std::vector<vm::NamedValue>& values, int scans) {
 }
 
 Finding failed(const Mode& mode, const char* what, const std::string& text) {
-  Finding out;
-  out.failed = true;
-  out.key = std::string(what) + " " + mode.name;
-  out.text = std::string(mode.name) + ": " + text;
-  return out;
+  return failure(std::string(what) + " " + mode.name, std::string(mode.name) + ": " + text);
 }
 
 // Those that hold everywhere in this program.
@@ -299,11 +295,8 @@ Finding examine_forces(const std::string& source, uint64_t seed, int scans,
     const base::Status kept = keep_certain(*image, values);
     if (!kept.ok()) return failed(kModes[0], "force", base::to_string(kept.error()));
   }
+  if (values.empty()) return skipped();
   Finding out;
-  if (values.empty()) {
-    out.key = "skipped";
-    return out;
-  }
   Evaluated oracle(*plain, images[0]->image());
   const Run expected = run(oracle, values, scans);
   for (const Mode& mode : kModes) {

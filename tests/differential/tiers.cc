@@ -59,6 +59,20 @@ std::string code_of(const std::string& text) {
 
 }  // namespace
 
+Finding failure(std::string key, std::string text) {
+  Finding out;
+  out.failed = true;
+  out.key = std::move(key);
+  out.text = std::move(text);
+  return out;
+}
+
+Finding skipped() {
+  Finding out;
+  out.key = "skipped";
+  return out;
+}
+
 Finding first_difference(const std::string& oracle, const std::string& other) {
   Finding out;
   std::string_view left = oracle;
@@ -85,19 +99,16 @@ Finding examine(const std::string& source, int scans, const std::string& passes)
   Finding out;
   base::Result<golden::Program> program = compiled(source, passes);
   if (!program.ok()) {
-    out.failed = true;
-    out.text = base::to_string(program.error());
-    out.key = "compile " + code_of(out.text);
-    return out;
+    const std::string text = base::to_string(program.error());
+    return failure("compile " + code_of(text), text);
   }
   Run oracle;
   for (golden::Tier tier : golden::kTiers) {
     base::Result<Run> run = run_on(tier, *program, scans);
     if (!run.ok()) {
-      out.failed = true;
-      out.text = std::string(golden::tier_name(tier)) + ": " + base::to_string(run.error());
-      out.key = std::string("refused ") + golden::tier_name(tier) + code_of(out.text);
-      return out;
+      const std::string text =
+          std::string(golden::tier_name(tier)) + ": " + base::to_string(run.error());
+      return failure(std::string("refused ") + golden::tier_name(tier) + code_of(text), text);
     }
     if (tier == golden::Tier::kEvaluator) {
       oracle = std::move(*run);

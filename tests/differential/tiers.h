@@ -20,6 +20,8 @@ struct Finding {
 Finding examine(const std::string& source, int scans, const std::string& passes);
 // The passes for the program of a seed: all, none, or some.
 std::string random_passes(uint64_t seed);
+Finding failure(std::string key, std::string text);
+Finding skipped();  // its key says so
 // The first line in which two states differ.
 Finding first_difference(const std::string& oracle, const std::string& other);
 

@@ -28,6 +28,14 @@ bool has(const std::string& text, const std::string& what) {
   return text.find(what) != std::string::npos;
 }
 
+void expect_all_native(sample::Machine& machine) {
+  ASSERT_TRUE(machine.good());
+  const vm::native::Program& native = *machine.generation().native();
+  for (uint32_t pou = 0; pou < machine.image().pous.size(); ++pou) {
+    EXPECT_EQ(native.reason(pou), "");
+  }
+}
+
 TEST(Native, AChecksThatCountedLoopsProveAreGone) {
   const std::string text = function_of(build(R"(
 PROGRAM Main VAR a : ARRAY[0..9] OF INT; i : INT; s : INT; END_VAR
@@ -90,7 +98,7 @@ END_PROGRAM)"),
 // Nothing lives in registers across a call, so nothing leaves a loop that has one.
 TEST(Native, NothingIsMovedOutOfALoopThatCalls) {
   if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
-  const ir::Image image = build(R"(
+  sample::Machine machine(build(R"(
 TYPE Row : STRUCT a, b, c : LINT; END_STRUCT; END_TYPE
 FUNCTION Sum : INT VAR_INPUT n : INT; END_VAR VAR k : INT; END_VAR
   FOR k := 1 TO n DO Sum := Sum + k; END_FOR;
@@ -100,11 +108,8 @@ PROGRAM Main VAR i, n : INT; row : Row; END_VAR
     n := n + Sum(i);
     row := (a := 5, b := 6, c := 7);
   END_FOR;
-END_PROGRAM)");
-  sample::Machine machine(image);
-  ASSERT_TRUE(machine.good());
-  const vm::native::Program* const native = machine.generation().native();
-  EXPECT_EQ(native->native_pous(), image.pous.size());
+END_PROGRAM)"));
+  expect_all_native(machine);
 }
 
 TEST(Native, WhatOnlyAnOuterLoopReadsLivesThroughTheInnerOne) {
@@ -116,8 +121,7 @@ PROGRAM Main VAR i, j, a, x, y : DINT; END_VAR
     FOR j := 1 TO 3 DO y := y + j; END_FOR;
   END_FOR;
 END_PROGRAM)"));
-  ASSERT_TRUE(machine.good());
-  EXPECT_EQ(machine.generation().native()->native_pous(), 1u);
+  expect_all_native(machine);
 }
 
 // Left in the middle of a body that stands in the place of a call, an execution is in machine code
@@ -154,11 +158,7 @@ END_FUNCTION
 PROGRAM Main VAR r : REAL; i : INT; END_VAR
   FOR i := 1 TO 3 DO r := Largest(r, INT_TO_REAL(i)); END_FOR;
 END_PROGRAM)"));
-  ASSERT_TRUE(machine.good());
-  const vm::native::Program& native = *machine.generation().native();
-  for (uint32_t pou = 0; pou < machine.image().pous.size(); ++pou) {
-    EXPECT_EQ(native.reason(pou), "");
-  }
+  expect_all_native(machine);
   EXPECT_EQ(machine.scan(), vm::Exit::kDone);
   EXPECT_EQ(machine.value("Main.r"), "3.0");
 }

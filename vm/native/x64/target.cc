@@ -100,30 +100,8 @@ bool X64Target::takes_constant(const Function& f, const Node& node, uint32_t ope
 }
 
 bool X64Target::takes_memory(const Function&, const Node& node, uint32_t operand) const {
-  switch (node.op) {
-    case Op::kAdd:
-    case Op::kSub:
-    case Op::kAnd:
-    case Op::kOr:
-    case Op::kXor:
-    case Op::kFAdd:
-    case Op::kFSub:
-    case Op::kFMul:
-    case Op::kFDiv:
-    case Op::kAndNot:
-    case Op::kOrNot:
-      return operand == 1;
-    case Op::kCompare:
-    case Op::kExitIf:
-      return operand == 1 && !asks_bits(node.cond);
-    case Op::kSext:
-    case Op::kZext:
-      return operand == 0;
-    case Op::kMul:
-      return operand == 1 && node.width >= 4;
-    default:
-      return false;
-  }
+  const bool and_not = node.op == Op::kAndNot || node.op == Op::kOrNot;
+  return static_cast<int>(operand) == (and_not ? 1 : folds(node));
 }
 
 int X64Target::folds(const Node& node) const {
