@@ -78,6 +78,10 @@ bool ChartBody::asks_only(ExprId condition, uint32_t step) {
   const Expr& expr = tree_[condition];
   if (note.calls || note.can_trap || !note.type.valid()) return false;
   if (note.constant) return true;
+  // What the caller gave may be a part of a step.
+  const bool in_out =
+      note.variable.valid() && sema_.resolve(note.variable).section == VarSection::kInOut;
+  if (in_out) return false;
   switch (expr.kind) {
     case ExprKind::kLiteral:
     case ExprKind::kName:

@@ -196,11 +196,12 @@ Note Sema::variable_note(VarId id) {
   Note note;
   note.variable = id;
   note.type = variable->type;
+  const bool known = has_known_value(*variable);
   note.constant =
-      variable->constant && variable->type.valid() &&
+      known && variable->type.valid() &&
       (program.types.is_scalar(variable->type) || is_string(program.types, variable->type));
   bool has_initial = variable->section != VarSection::kInOut;
-  note.known = variable->constant ? Known::kConstant : has_initial ? Known::kInitially : Known::kNo;
+  note.known = known ? Known::kConstant : has_initial ? Known::kInitially : Known::kNo;
   return note;
 }
 

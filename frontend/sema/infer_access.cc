@@ -84,7 +84,8 @@ std::optional<Note> Sema::infer_named_bit(const Expr& expr, const Note& operand)
   const Variable& constant = resolve(id);
   mark_used(id);
   allow_extension("a constant as the number of a bit", expr.span);
-  if (!constant.constant || !traits_of(program.types, constant.type).integer) return std::nullopt;
+  if (!has_known_value(constant) || !traits_of(program.types, constant.type).integer)
+    return std::nullopt;
   ir::ConstId init = constant.init;
   uint64_t number = init.valid() ? program.constants[init].bits : 0;
   uint32_t bit = static_cast<uint32_t>(std::min<uint64_t>(number, 0xffff'ffffu));

@@ -24,7 +24,8 @@ class InitialBuilder {
   struct Slot {
     int32_t member = -1;
     ir::TypeId type;
-    int32_t bit = -1;  // of a BIT member
+    int32_t bit = -1;    // of a BIT member
+    bool fixed = false;  // a CONSTANT of a block
   };
 
   ir::ConstId whole(ExprId id, ir::TypeId type);
@@ -210,7 +211,8 @@ InitialBuilder::Slot InitialBuilder::find_slot(ir::TypeId type, const Name& name
   const Variable& variable = sema_.resolve(found);
   bool settable = variable.storage == Storage::kMember && variable.section != VarSection::kInOut &&
                   variable.section != VarSection::kExternal;
-  return {settable ? static_cast<int32_t>(variable.index) : -1, variable.type, -1};
+  return {settable ? static_cast<int32_t>(variable.index) : -1, variable.type, -1,
+          has_known_value(variable)};
 }
 
 ir::ConstId InitialBuilder::structure(const Expr& expr, ir::TypeId type, ir::ConstId otherwise) {
@@ -220,6 +222,13 @@ ir::ConstId InitialBuilder::structure(const Expr& expr, ir::TypeId type, ir::Con
   for (uint32_t i = 0; i < expr.list.count; ++i) {
     const Arg& arg = sema_.tree.args[expr.list.first + i];
     Slot slot = find_slot(type, arg.name);
+    if (slot.fixed) {
+      sema_.error(DiagnosticCode::kAssignToConstant, arg.span,
+                  "`" + std::string(arg.name.text) + "` is a constant of `" +
+                      sema_.type_text(type) + "`: every instance has the same value",
+                  "declare it in VAR or VAR_INPUT to set it for each instance");
+      return {};
+    }
     if (slot.member < 0 || arg.output || !arg.value.valid()) {
       sema_.error(DiagnosticCode::kUnknownMember, arg.span,
                   "`" + sema_.type_text(type) + "` has no member `" + std::string(arg.name.text) +

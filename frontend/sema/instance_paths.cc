@@ -8,7 +8,8 @@ namespace frontend {
 struct InstancePaths::Path {
   std::string text;  // "" while only the resource was named
   bool global = false;
-  uint32_t root = 0;  // number of the program instance, or of the global variable
+  bool fixed = false;  // to a constant, or a part of one
+  uint32_t root = 0;   // number of the program instance, or of the global variable
   std::vector<uint32_t> steps;
   ir::TypeId type;
   ir::DirectAddress address;  // as its member declares it
@@ -29,6 +30,7 @@ bool InstancePaths::global(VarId id, Path& path) {
   const ir::Member& member = sema_.program.types[sema_.program.globals].members[variable.index];
   path.text = member.name;
   path.global = true;
+  path.fixed = has_known_value(variable);
   path.root = variable.index;
   path.type = variable.type;
   path.address = member.address;
@@ -67,6 +69,7 @@ bool InstancePaths::member(const Expr& expr, Path& path) {
     const VarId found = sema_.objects.find_variable(block->number, expr.name.text);
     if (found.valid() && sema_.resolve(found).storage == Storage::kMember) {
       variable = found;
+      path.fixed = path.fixed || has_known_value(sema_.resolve(found));
       sema_.variables_[found.index].used = sema_.variables_[found.index].written = true;
       member = static_cast<int32_t>(sema_.resolve(found).index);
     }
@@ -168,6 +171,12 @@ void InstancePaths::configure_variable(const VarDecl& decl) {
     sema_.program.located.push_back({path.text, decl.address});
   }
   if (!decl.init.valid()) return;
+  if (path.fixed) {
+    sema_.error(DiagnosticCode::kAssignToConstant, decl.span,
+                "`" + path.text + "` is a constant: it is what its declaration says",
+                "declare it in VAR or VAR_INPUT to set it here");
+    return;
+  }
   auto configure = [&](ir::ConstId before, ir::TypeId type) {
     return with_initial(before, type, path.steps, 0, decl.init);
   };

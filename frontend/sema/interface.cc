@@ -75,7 +75,7 @@ ir::Member Sema::member_of(const Variable& variable, ir::Section section) {
   member.name += variable.name.text;
   member.type = variable.type;
   member.section = variable.stamp ? ir::Section::kStamp : section;
-  member.constant = variable.constant;
+  member.constant = has_known_value(variable);
   member.retain = variable.retain;
   member.init = variable.init;
   if (variable.decl != nullptr && variable.decl->has_address && !variable.hidden) {

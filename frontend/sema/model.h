@@ -35,7 +35,7 @@ struct Variable {
   const VarDecl* decl = nullptr;  // null: a function's result, or what a setter is given
   VarSection section = VarSection::kLocal;
   Access access = Access::kDefault;
-  bool constant = false;
+  bool constant = false;  // is not written; whether its value is known: has_known_value()
   bool retain = false;
   bool non_retain = false;  // says NON_RETAIN
   bool used = false;
@@ -56,6 +56,12 @@ struct Variable {
   ir::TypeId type;          // invalid: could not be resolved (already reported)
   ir::ConstId init;         // invalid: the type's default
 };
+
+// CONSTANT inputs and in-outs are only read here: who calls says what they are.
+inline bool has_known_value(const Variable& variable) {
+  return variable.constant && variable.section != VarSection::kInput &&
+         variable.section != VarSection::kInOut;
+}
 
 // The global variables of one file, CONFIGURATION, RESOURCE or {attribute 'list' := 'Name'}.
 struct GlobalList {

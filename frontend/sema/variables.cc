@@ -119,7 +119,8 @@ void Sema::resolve_initial(Variable& variable) {
   const bool parameter = variable.storage == Storage::kLocal &&
                          (variable.section == VarSection::kInput || variable.constant);
   const bool saved = std::exchange(binds_at_start_, !variable.constant && !parameter);
-  variable.init = initial_value(init, variable.type, variable.init);
+  const Known least = at_call && variable.constant ? Known::kByCall : Known::kInitially;
+  variable.init = initial_value(init, variable.type, variable.init, least);
   binds_at_start_ = saved;
 }
 
