@@ -162,10 +162,58 @@ sed 's/Hours + 4/Hours + 2/' plant/pump.st | save plant/pump.st
 built 18
 rm plant/loop.st
 
+# Written in place, with a pause: nothing is built of a half, whatever else is saved meanwhile.
+# slowly FILE SECONDS
+slowly() {
+  cat >slow.new
+  { head -3 slow.new && sleep "$2" && sed 1,3d slow.new; } >"$1"
+}
+# one_more COUNT WHAT: it was built for that time, once, and nothing else was said.
+events() { grep -vc '^watched.img' watch.log; }
+one_more() {
+  built "$1"
+  same "$2"
+  [ "$(events)" -eq $((lines + 1)) ] || fail "built of a half: $2: $(tail -3 watch.log)"
+  lines=$((lines + 1))
+}
+lines=$(events)
+cp plant/main.st kept.st
+sed 's/FALSE/TRUE/' kept.st | slowly plant/main.st 2.4
+one_more 19 'written in place'
+slowly plant/main.st 0.8 <kept.st &
+sleep 0.2
+sed 's/Hours + 2/Hours + 6/' plant/pump.st | save plant/pump.st
+wait $!
+one_more 20 'written in place, beside another save'
+printf 'FUNCTION Four : INT\nVAR_INPUT x : INT; END_VAR\n\nFour := 4 * x;\nEND_FUNCTION\n' |
+  slowly plant/four.st 2.4 &
+sleep 0.2
+sed 's/Hours + 6/Hours + 2/' plant/pump.st | save plant/pump.st
+wait $!
+one_more 21 'a new file, beside another save'
+# A writer that never closes is not waited for.
+exec 4>plant/main.st
+sed 's/FALSE/TRUE/' kept.st >&4
+sleep 1
+[ "$(events)" -eq "$lines" ] || fail "built of a file that is still open"
+one_more 22 'still open'
+exec 4>&-
+# More happens than the system can tell.
+kill -STOP "$(cat watch.pid)"
+for _ in $(seq $(($(cat /proc/sys/fs/inotify/max_queued_events) / 4 + 1))); do
+  echo >>plant/noise.log
+  echo >>plant/noise2.log
+done
+slowly plant/main.st 1 <kept.st &
+sleep 0.2
+kill -CONT "$(cat watch.pid)"
+wait $!
+one_more 23 'more than can be told'
+
 # What a link leads to is polled.
 cp plant/pump.st linked.st
 ln -s ../linked.st pump.link && mv pump.link plant/pump.st
-built 19
+built 24
 sed 's/Hours + 2/Hours + 5/' linked.st | save linked.st
-built 20
+built 25
 same 'behind a link'

@@ -18,7 +18,8 @@ namespace {
 constexpr int kLongestBurst = 50;  // looks at what has happened, before somebody is told
 
 // What is written piece by piece is looked at when it is closed.
-constexpr uint32_t kWanted = IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_CREATE | IN_DELETE |
+constexpr uint32_t kBegun = IN_CREATE | IN_MODIFY;
+constexpr uint32_t kWanted = kBegun | IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE |
                              IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
 constexpr uint32_t kOfFolders = IN_ISDIR | IN_DELETE_SELF | IN_MOVE_SELF | IN_UNMOUNT | IN_IGNORED;
 
@@ -37,40 +38,43 @@ bool is_local(const std::string& folder) {
 }  // namespace
 
 void FileEvents::end() {
-  folders_.clear();
-  begun_.clear();
   if (events_ >= 0) ::close(std::exchange(events_, -1));
 }
 
 bool FileEvents::watch(const std::set<std::string>& folders) {
-  end();
-  events_ = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+  if (events_ < 0) events_ = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
   if (events_ < 0) return false;
   bool all = true;
+  const std::map<int, std::string> before = std::exchange(folders_, {});
   for (const std::string& folder : folders) {
     const std::string path = folder.empty() ? "." : folder;
     const int number = ::inotify_add_watch(events_, path.c_str(), kWanted);
     // One folder by two names has one watch: only one of them would be told.
     all = number >= 0 && folders_.emplace(number, folder).second && is_local(path) && all;
   }
+  for (const auto& [number, folder] : before) {
+    if (!folders_.contains(number)) ::inotify_rm_watch(events_, number);
+  }
   return all;
 }
 
 std::optional<std::set<std::string>> FileEvents::take(std::chrono::milliseconds quiet) {
-  std::set<std::string> files;
-  bool known = true;
   pollfd more = {events_, POLLIN, 0};
+  Time end = Time::min();
   for (int burst = 0; burst < kLongestBurst; ++burst) {
-    known = read_into(files) && known;
-    if (::poll(&more, 1, static_cast<int>(quiet.count())) <= 0) break;
+    const Time now = std::chrono::steady_clock::now();
+    if (read() || burst == 0) end = now + quiet;
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - now).count();
+    if (left <= 0 || ::poll(&more, 1, static_cast<int>(left)) <= 0) break;
   }
-  if (!known) return std::nullopt;
+  std::set<std::string> files = std::exchange(files_, {});
+  if (!std::exchange(known_, true)) return std::nullopt;
   return files;
 }
 
-// False: more has happened than can be told by files.
-bool FileEvents::read_into(std::set<std::string>& files) {
-  bool known = true;
+bool FileEvents::read() {
+  bool told = false;
+  const Time now = std::chrono::steady_clock::now();
   alignas(inotify_event) char buffer[16 << 10];
   for (ssize_t n; (n = ::read(events_, buffer, sizeof buffer)) > 0;) {
     for (ssize_t at = 0; at < n;) {
@@ -78,21 +82,26 @@ bool FileEvents::read_into(std::set<std::string>& files) {
       std::memcpy(&event, buffer + at, sizeof event);
       const char* const name = buffer + at + sizeof event;
       at += static_cast<ssize_t>(sizeof event + event.len);
+      if ((event.mask & IN_Q_OVERFLOW) != 0) lost_ = now;
       const auto folder = folders_.find(event.wd);
-      if (folder == folders_.end() || event.len == 0 || (event.mask & kOfFolders) != 0) {
-        known = false;
+      if (folder == folders_.end() && event.wd >= 0) continue;  // no longer wanted
+      if (event.wd < 0 || event.len == 0 || (event.mask & kOfFolders) != 0) {
+        known_ = false;
+        told = true;
         continue;
       }
-      const std::string file = (std::filesystem::path(folder->second) / name).string();
-      if ((event.mask & IN_CREATE) != 0) {
-        begun_.insert(file);
+      std::string file = (std::filesystem::path(folder->second) / name).string();
+      if ((event.mask & kBegun) != 0) {
+        begun_[std::move(file)] = now;
       } else {
         begun_.erase(file);
-        files.insert(file);
+        files_.insert(std::move(file));
+        told = true;
       }
     }
   }
-  return known;
+  std::erase_if(begun_, [&](const auto& file) { return now - file.second >= kLongestPause; });
+  return told;
 }
 
 }  // namespace stc

@@ -31,8 +31,9 @@ constexpr int kRest = 10;
 constexpr auto kLookRarely = std::chrono::seconds(2);
 constexpr auto kQuiet = std::chrono::milliseconds(4);  // between files that are saved together
 // Editors save by writing another file and renaming it, or remove the old one first: a file that is
-// away, empty or begun is believed to be so when it has stayed so for as long. Until then nothing
-// is built: a program without its variables is not what anybody saved.
+// away or empty is believed to be so when it has stayed so for as long. Until then nothing is
+// built, and nothing while a file is being written (FileEvents): a program without its variables is
+// not what anybody saved.
 constexpr auto kBelievedGone = std::chrono::seconds(1);
 constexpr auto kLongestLook = std::chrono::seconds(10);
 constexpr const char* kSettings = "stc.toml";
@@ -107,6 +108,7 @@ class Watch {
     for (;;) {
       const auto begin = Clock::now();
       if (look_again()) return true;
+      if (events_.has_more_to_take() && look_at_events()) return true;
       const auto looked = Clock::now();
       const Clock::duration rest =
           told_ ? kLookRarely : std::max<Clock::duration>(kLookEvery, kRest * (looked - begin));
@@ -149,9 +151,9 @@ class Watch {
   // What the system has said, without a look at all the others.
   bool look_at_events() {
     std::optional<std::set<std::string>> files = events_.take(kQuiet);
+    if (files && files->empty()) return false;
     if (!files) watch_folders();
-    if (!files || broken_) return look_again();
-    for (const auto& [file, since] : away_) files->insert(file);
+    if (!files || broken_ || left_ || is_new_begun()) return look_again();
     const auto begin = Clock::now();
     Stamps now = stamps_;
     for (const std::string& file : *files) {
@@ -160,6 +162,13 @@ class Watch {
       if (known != now.end()) known->second = stamp_of(file);
     }
     return take(std::move(now), begin);
+  }
+
+  // Is a file that is not known being written?
+  bool is_new_begun() const {
+    return std::any_of(events_.begun().begin(), events_.begun().end(), [&](const auto& begun) {
+      return !stamps_.contains(begun.first) && may_belong(begun.first);
+    });
   }
 
   // To the project, by its name.
@@ -174,7 +183,10 @@ class Watch {
 
   bool take(Stamps now, Clock::time_point begin) {
     look_at_ = Clock::time_point::max();
-    if (awaits(now, begin) || now == stamps_) return false;
+    events_.read();  // behind the look: what is being written at it is known
+    const bool differs = now != stamps_;
+    left_ = awaits(now, begin) && differs;
+    if (left_ || !differs) return false;
     seen_ = begin;
     Stamps before = std::exchange(stamps_, std::move(now));
     saved_ = save_of(before);
@@ -189,24 +201,29 @@ class Watch {
     return true;
   }
 
-  // Is a file away that may come back?
+  // Is a file away that may come back, or being written?
   bool awaits(const Stamps& now, Clock::time_point time) {
     std::map<std::string, Clock::time_point> away;
-    Clock::time_point last = Clock::time_point::min();
+    Clock::time_point until = Clock::time_point::min();
     auto at = now.begin();
     for (const auto& [path, stamp] : stamps_) {
       if (stamp.bytes == 0) continue;
       while (at != now.end() && at->first < path) ++at;
-      const bool there = at != now.end() && at->first == path && at->second.bytes != 0;
-      if (there && !events_.is_begun(path)) continue;
+      if (at != now.end() && at->first == path && at->second.bytes != 0) continue;
       const auto known = away_.find(path);
       const Clock::time_point since = known == away_.end() ? time : known->second;
       away.emplace(path, since);
-      last = std::max(last, since);
+      until = std::max(until, since + kBelievedGone);
     }
     away_ = std::move(away);
-    if (away_.empty() || time - last >= kBelievedGone) return false;
-    look_at_ = last + kBelievedGone;
+    for (const auto& [path, written] : events_.begun()) {
+      if (!stamps_.contains(path) && !now.contains(path)) continue;
+      until = std::max(until, written + FileEvents::kLongestPause);
+    }
+    // Whatever differs may be being written.
+    if (now != stamps_) until = std::max(until, events_.lost() + FileEvents::kLongestPause);
+    if (time >= until) return false;
+    look_at_ = until;
     return true;
   }
 
@@ -335,6 +352,7 @@ class Watch {
   Stamps stamps_;
   std::map<std::string, Clock::time_point> away_;         // since when
   Clock::time_point look_at_ = Clock::time_point::max();  // at the latest
+  bool left_ = false;  // something that was saved, until other files are complete
   FileEvents events_;
   bool told_ = false;                  // by them, of whatever is written to files of the project
   std::vector<uint32_t> saved_files_;  // since the last build, when it was not begun anew
