@@ -229,6 +229,7 @@ std::function<void(native::Progress&)> Generation::native_work(const TierOptions
   if (!has_native(tier, number_)) return [](native::Progress&) {};
   return [version = image_, code = code_, slots = slots_, tier,
           like = std::move(like)](native::Progress& progress) {
+    if (progress.stop) return;
     const auto table = std::make_shared<CodeTable>(*code->first);
     const native::Program* const known = like ? like->table->native.get() : nullptr;
     const bool alike = known != nullptr && like->table->clean_bools == table->clean_bools;

@@ -293,6 +293,7 @@ std::vector<Emitted> emit_all(const Job& job, const host::Shared& shared,
     assembler.patch();
     assembler.forget_labels(shared_labels);
   }
+  if (job.progress != nullptr && job.progress->unwanted) return {};
   assembler.patch();
   leave_out_rest(job, common, made);
   return all;
@@ -317,6 +318,7 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_
       emit_all({image, clean_bools, pous, options, running == nullptr ? nullptr : &running->pous_,
                 versions, progress, running_image},
                shared, assembler, made->pous_);
+  if (progress != nullptr && progress->unwanted) return nullptr;
   made->shared_code_ = CodeMemory::make(assembler.code());
   if (made->shared_code_ == nullptr) return nullptr;
   const uint8_t* const base = made->shared_code_->data();

@@ -29,6 +29,7 @@ bool is_available();
 // Of a Program that is made while others look.
 struct Progress {
   std::atomic<bool> stop = false;  // no more POUs: those that are not done are interpreted
+  std::atomic<bool> unwanted = false;  // with `stop`: nor what is done
   std::atomic<uint32_t> pous = 0;  // are done
   std::shared_ptr<const CodeTable> stopped;  // what had been made by then, for another one to share
 };

@@ -17,7 +17,10 @@ namespace vm {
 // One thread at a time calls what is not marked otherwise.
 class NativeMaker {
  public:
-  ~NativeMaker() { stop(); }
+  ~NativeMaker() {
+    progress_.unwanted = true;
+    stop();
+  }
 
   // Of this generation from now on, and of no other one; once for each. `like`: Generation.
   void start(const Generation& of, const TierOptions& tier, std::optional<MadeCode> like = {});
