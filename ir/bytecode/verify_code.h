@@ -56,8 +56,8 @@ class CodeVerifier {
     bool reached = false;
     uint32_t scope = 0;  // tries that are open there
     bool loop_head = false;
-    bool calls_inside = false;    // a loop head whose loop calls something
-    std::vector<bool> read_only;  // parallel to Merge::slots
+    bool calls_inside = false;  // a loop head whose loop calls something
+    size_t slots = 0;           // where its slots begin in `arrives_read_only_`
     Results results;
   };
   struct Place {  // of a BC32 or P32 field
@@ -162,6 +162,8 @@ class CodeVerifier {
   const Context& context_;
   const Image& image_;
   const LinkedPou& pou_;
+  const std::vector<FrameSlot>& slots_;  // its
+  const uint32_t globals_begin_;
   std::span<const Unit> code_;
   CodeFacts facts_;
   std::optional<base::Error> error_;
@@ -185,7 +187,8 @@ class CodeVerifier {
   uint64_t pending_begin_ = ~uint64_t{0};
   uint64_t pending_end_ = 0;
   Results results_;
-  std::vector<Arrival> arrivals_;  // by merge
+  std::vector<Arrival> arrivals_;        // by merge
+  std::vector<bool> arrives_read_only_;  // by merge and its slots
 
   // Open tries as a tree: an entry is a try inside that of `parent`, with its handler's merge.
   // 0: none is open.

@@ -13,6 +13,8 @@ CodeVerifier::CodeVerifier(const Context& context, uint32_t pou, std::span<const
     : context_(context),
       image_(context.image),
       pou_(image_.pous[pou]),
+      slots_(pou_.slots),
+      globals_begin_(image_.instances[0].data),
       code_(code),
       written_(pou_.slots.size()),
       read_only_(pou_.slots.size()),
@@ -57,7 +59,7 @@ bool CodeVerifier::fail_without_slot(Refusal refusal, Class cls, uint32_t offset
 base::Result<CodeFacts> CodeVerifier::run() {
   if (!scan_instructions()) return *error_;
   for (uint32_t i = 0; i < pou_.slots.size(); ++i) {
-    const FrameSlot& slot = pou_.slots[i];
+    const FrameSlot& slot = slots_[i];
     const bool given = slot.kind == SlotKind::kParam &&
                        (slot.local == LocalKind::kInput || slot.local == LocalKind::kInOut);
     if (given && !slot.aggregate) mark_written(i, false, 0);
@@ -108,6 +110,7 @@ bool CodeVerifier::scan_instructions() {
 }
 
 bool CodeVerifier::check_merges() {
+  size_t slots = 0;
   for (size_t i = 0; i < pou_.merges.size(); ++i) {
     const Merge& merge = pou_.merges[i];
     unit_ = merge.unit;
@@ -115,13 +118,14 @@ bool CodeVerifier::check_merges() {
       return fail(Refusal::kBadTyping, "merges are out of order");
     }
     for (size_t s = 0; s < merge.slots.size(); ++s) {
-      const bool good = merge.slots[s] < pou_.slots.size() &&
-                        !pou_.slots[merge.slots[s]].aggregate &&
+      const bool good = merge.slots[s] < pou_.slots.size() && !slots_[merge.slots[s]].aggregate &&
                         (s == 0 || merge.slots[s - 1] < merge.slots[s]);
       if (!good) return fail(Refusal::kBadTyping, "merge names a slot that it cannot");
     }
-    arrivals_[i].read_only.resize(merge.slots.size());
+    arrivals_[i].slots = slots;
+    slots += merge.slots.size();
   }
+  arrives_read_only_.resize(slots);
   return true;
 }
 
@@ -195,7 +199,7 @@ bool CodeVerifier::enter_merge(uint32_t unit) {
   if (!arrival.reached) return fail(Refusal::kUnreachable, "nothing leads here");
   ++epoch_;
   for (size_t i = 0; i < merge.slots.size(); ++i) {
-    mark_written(merge.slots[i], arrival.read_only[i], 0);
+    mark_written(merge.slots[i], arrives_read_only_[arrival.slots + i], 0);
   }
   // What a loop calls may not leave results that its start expects.
   results_ = arrival.loop_head && arrival.calls_inside ? Results{} : arrival.results;
@@ -217,15 +221,15 @@ bool CodeVerifier::arrive(uint32_t number, bool backwards) {
   }
   for (size_t i = 0; i < merge.slots.size(); ++i) {
     const uint16_t slot = merge.slots[i];
-    const auto name = [&] { return "slot at " + std::to_string(pou_.slots[slot].offset); };
+    const auto name = [&] { return "slot at " + std::to_string(slots_[slot].offset); };
     if (!is_written(slot) || outgoing_[slot] != 0) {
       return fail(Refusal::kBadTyping,
                   name() + " holds no value for the merge at unit " + std::to_string(merge.unit));
     }
-    if (backwards && read_only_[slot] && !arrival.read_only[i]) {
+    if (backwards && read_only_[slot] && !arrives_read_only_[arrival.slots + i]) {
       return fail(Refusal::kBadTyping, name() + " is read-only in a later turn of the loop");
     }
-    if (!backwards && read_only_[slot]) arrival.read_only[i] = true;
+    if (!backwards && read_only_[slot]) arrives_read_only_[arrival.slots + i] = true;
   }
   if (backwards) {
     if (arrival.results.of != ResultsOf::kNobody && arrival.results != results_) {
@@ -281,7 +285,7 @@ bool CodeVerifier::check_return() {
   if (!end_of_arguments("the return")) return false;
   if (scope_ != 0) return fail(Refusal::kBadJump, "returns while a try is open");
   for (uint32_t i = 0; i < pou_.slots.size(); ++i) {
-    const FrameSlot& slot = pou_.slots[i];
+    const FrameSlot& slot = slots_[i];
     const bool result = slot.kind == SlotKind::kParam && !slot.aggregate &&
                         (slot.local == LocalKind::kOutput || slot.local == LocalKind::kReturn);
     if (result && !is_written(i)) {

@@ -105,12 +105,11 @@ std::optional<Region> CodeVerifier::root_region(Place& place) {
     fail(Refusal::kBadReference, "a function has no variables of its own");
     return std::nullopt;
   }
-  const uint32_t begin = image_.instances[0].data;
-  if (place.offset < begin) {
+  if (place.offset < globals_begin_) {
     fail_at(Refusal::kBadReference, "no global", place.offset);
     return std::nullopt;
   }
-  place.offset -= begin;
+  place.offset -= globals_begin_;
   return Region{image_.globals, 0};
 }
 
@@ -166,7 +165,7 @@ uint32_t CodeVerifier::slot_at(uint32_t offset) const {
 uint32_t CodeVerifier::scalar_slot(uint32_t offset, Class cls) const {
   const uint32_t slot = slot_at(offset);
   if (slot == kNone) return kNone;
-  const FrameSlot& s = pou_.slots[slot];
+  const FrameSlot& s = slots_[slot];
   return s.offset == offset && !s.aggregate && s.cls == cls ? slot : kNone;
 }
 
@@ -179,11 +178,11 @@ void CodeVerifier::mark_written(uint32_t slot, bool read_only, uint32_t outgoing
 bool CodeVerifier::frame_scalar(uint32_t offset, Class cls, bool write) {
   if (offset >= pou_.frame_size) return next_scalar(offset - pou_.frame_size, cls, write);
   const uint32_t slot = slot_at(offset);
-  if (slot != kNone && pou_.slots[slot].aggregate) {
-    const FrameSlot& s = pou_.slots[slot];
+  if (slot != kNone && slots_[slot].aggregate) {
+    const FrameSlot& s = slots_[slot];
     return leaf_access(s.region, offset - s.offset, cls, write, "frame");
   }
-  if (slot == kNone || pou_.slots[slot].offset != offset || pou_.slots[slot].cls != cls) {
+  if (slot == kNone || slots_[slot].offset != offset || slots_[slot].cls != cls) {
     return fail_without_slot(Refusal::kBadTyping, cls, offset);
   }
   if (write) {
@@ -204,7 +203,7 @@ std::optional<Pointer> CodeVerifier::read_pointer(uint32_t offset, Class cls) {
     fail_at(Refusal::kReadBeforeWrite, "the slot", offset, " holds no value yet");
     return std::nullopt;
   }
-  return Pointer{pou_.slots[slot].region, read_only_[slot], outgoing_[slot]};
+  return Pointer{slots_[slot].region, read_only_[slot], outgoing_[slot]};
 }
 
 bool CodeVerifier::write_pointer(uint32_t offset, Class cls, const Pointer& pointer) {
@@ -213,10 +212,10 @@ bool CodeVerifier::write_pointer(uint32_t offset, Class cls, const Pointer& poin
   if (slot == kNone) {
     return fail_without_slot(Refusal::kBadReferenceSlot, cls, offset);
   }
-  if (cls == Class::kA && !context_.regions.same(pointer.region, pou_.slots[slot].region)) {
+  if (cls == Class::kA && !context_.regions.same(pointer.region, slots_[slot].region)) {
     return fail(Refusal::kBadTyping, "the slot" + at_text(offset) + " is for addresses of " +
-                                         image_.types.text(pou_.slots[slot].region.type) +
-                                         ", not of " + image_.types.text(pointer.region.type));
+                                         image_.types.text(slots_[slot].region.type) + ", not of " +
+                                         image_.types.text(pointer.region.type));
   }
   if (!outlives_traps(slot, pointer)) return false;
   mark_written(slot, pointer.read_only, pointer.outgoing);
@@ -251,7 +250,7 @@ std::optional<Pointer> CodeVerifier::point_to(Place place, Region wanted) {
   }
   const uint32_t slot = slot_at(place.offset);
   if (slot == kNone) return bad();
-  const FrameSlot& s = pou_.slots[slot];
+  const FrameSlot& s = slots_[slot];
   if (s.aggregate) {
     if (!context_.regions.find(s.region, place.offset - s.offset, wanted)) return bad();
     return Pointer{wanted, false, 0};
@@ -304,8 +303,8 @@ std::optional<Pointer> CodeVerifier::point_to_string(Place place, Class cls, uin
     return Pointer{{}, false, static_cast<uint32_t>(ways_.size())};
   }
   const uint32_t slot = slot_at(place.offset);
-  if (slot != kNone && pou_.slots[slot].aggregate) {
-    return check_leaf(pou_.slots[slot].region, place.offset - pou_.slots[slot].offset);
+  if (slot != kNone && slots_[slot].aggregate) {
+    return check_leaf(slots_[slot].region, place.offset - slots_[slot].offset);
   }
   fail_at(Refusal::kBadReference, "no string", place.offset);
   return std::nullopt;

@@ -37,9 +37,8 @@ bool CodeVerifier::outlives_traps(uint32_t slot, const Pointer& pointer) {
     const auto found = std::lower_bound(slots.begin(), slots.end(), slot);
     if (found == slots.end() || *found != slot) continue;
     const auto number = static_cast<size_t>(found - slots.begin());
-    if (pointer.outgoing == 0 && (!pointer.read_only || arrivals_[handler].read_only[number])) {
-      continue;
-    }
+    const size_t arrival = arrivals_[handler].slots + number;
+    if (pointer.outgoing == 0 && (!pointer.read_only || arrives_read_only_[arrival])) continue;
     return fail(Refusal::kBadTyping, "the slot at " + std::to_string(pou_.slots[slot].offset) +
                                          " gets what its handler cannot use");
   }
