@@ -6,8 +6,23 @@
 
 #include "tools/common/child.h"
 #include "tools/common/files.h"
+#include "tools/common/heap.h"
 
 namespace stvm {
+namespace {
+
+// More or less what images take in memory, with all that is made of them until they run.
+size_t bytes_to_run(const std::vector<std::string>& images) {
+  size_t bytes = 0;
+  for (const std::string& path : images) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path, error);
+    if (!error) bytes += size + size / 2 * 5;
+  }
+  return bytes;
+}
+
+}  // namespace
 
 Sources sources_of(const tools::Options& options) {
   return {options.arguments(), options.text("--dialect")};
@@ -56,6 +71,7 @@ base::Result<std::vector<ir::VerifiedImage>> load_programs(const Sources& source
     }
     std::sort(paths.begin(), paths.end());
   }
+  tools::expect_pieces(bytes_to_run(paths));
   std::vector<ir::VerifiedImage> images;
   for (const std::string& path : paths) {
     base::Result<base::Bytes> bytes = tools::read_bytes(path);
