@@ -348,7 +348,8 @@ void Change::cancel() {
 void Change::collect() {
   retired_area_.reset();
   retired_pending_.reset();
-  controller_.make_native();
+  // Behind a switch, which nothing takes back: without memory for it the program is interpreted.
+  base::within_memory([&] { return controller_.make_native(), true; }, [] { return false; });
   if (state_ != State::kIdle) return;
   controller_.settle_devices();
   retired_.reset();

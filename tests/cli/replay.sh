@@ -36,7 +36,11 @@ expect 0 stvm unforce --dir plc F.n
 expect 0 stvm change v2.st --dir plc --yes --allow-loss --strategy standby
 expect 0 stvm accept --dir plc
 expect 0 stvm restart --dir plc --warm
-sleep 0.1
+for try in 1 2 3 4 5 6; do
+  expect 0 stvm restart --dir plc --cold
+  sleep 0.1
+done
+expect 0 stvm set --dir plc M.k=5
 expect 0 stvm get --dir plc M.k
 cp out was
 expect 0 stvm stop --dir plc

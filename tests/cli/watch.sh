@@ -162,6 +162,16 @@ sed 's/Hours + 4/Hours + 2/' plant/pump.st | save plant/pump.st
 built 18
 rm plant/loop.st
 
+# Neither longer nor, by its time of modification, newer, and in place.
+cp -p plant/pump.st aged.st
+sed 's/Hours + 2/Hours + 3/' plant/pump.st >aged.st
+touch -r plant/pump.st aged.st
+cp -p aged.st plant/pump.st
+built 19
+same 'of the same time'
+sed 's/Hours + 3/Hours + 2/' plant/pump.st | save plant/pump.st
+built 20
+
 # Written in place, with a pause: nothing is built of a half, whatever else is saved meanwhile.
 # slowly FILE SECONDS
 slowly() {
@@ -179,24 +189,24 @@ one_more() {
 lines=$(events)
 cp plant/main.st kept.st
 sed 's/FALSE/TRUE/' kept.st | slowly plant/main.st 2.4
-one_more 19 'written in place'
+one_more 21 'written in place'
 slowly plant/main.st 0.8 <kept.st &
 sleep 0.2
 sed 's/Hours + 2/Hours + 6/' plant/pump.st | save plant/pump.st
 wait $!
-one_more 20 'written in place, beside another save'
+one_more 22 'written in place, beside another save'
 printf 'FUNCTION Four : INT\nVAR_INPUT x : INT; END_VAR\n\nFour := 4 * x;\nEND_FUNCTION\n' |
   slowly plant/four.st 2.4 &
 sleep 0.2
 sed 's/Hours + 6/Hours + 2/' plant/pump.st | save plant/pump.st
 wait $!
-one_more 21 'a new file, beside another save'
+one_more 23 'a new file, beside another save'
 # A writer that never closes is not waited for.
 exec 4>plant/main.st
 sed 's/FALSE/TRUE/' kept.st >&4
 sleep 1
 [ "$(events)" -eq "$lines" ] || fail "built of a file that is still open"
-one_more 22 'still open'
+one_more 24 'still open'
 exec 4>&-
 # More happens than the system can tell.
 kill -STOP "$(cat watch.pid)"
@@ -208,12 +218,12 @@ slowly plant/main.st 1 <kept.st &
 sleep 0.2
 kill -CONT "$(cat watch.pid)"
 wait $!
-one_more 23 'more than can be told'
+one_more 25 'more than can be told'
 
 # What a link leads to is polled.
 cp plant/pump.st linked.st
 ln -s ../linked.st pump.link && mv pump.link plant/pump.st
-built 24
+built 26
 sed 's/Hours + 2/Hours + 5/' linked.st | save linked.st
-built 25
+built 27
 same 'behind a link'

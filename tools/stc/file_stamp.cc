@@ -13,7 +13,7 @@ int64_t changed_ns(const std::string& path) {
 FileStamp stamp_of(const std::string& path) {
   struct stat found = {};
   if (::stat(path.c_str(), &found) != 0) return {};
-  return {found.st_mtim.tv_sec, found.st_mtim.tv_nsec, found.st_size, found.st_ino};
+  return {found.st_ctim.tv_sec, found.st_ctim.tv_nsec, found.st_size, found.st_ino};
 }
 
 }  // namespace stc

@@ -1,4 +1,5 @@
-// What tells one content of a file from the next.
+// What tells one content of a file from the next: the system's time of its last change, which
+// nobody sets back, as copies and archives do with the time of modification.
 #pragma once
 
 #include <cstdint>

@@ -63,7 +63,7 @@ online_change::Snapshot ControllerService::empty_snapshot() const {
 
 base::Status ControllerService::save_retained_now() {
   online_change::Snapshot now = empty_snapshot();
-  base::Status taken = at_boundary([&] { keeper_.take(now); });
+  base::Status taken = look_at_boundary([&] { keeper_.take(now); });
   return taken.ok() ? keeper_.save(now) : taken;
 }
 

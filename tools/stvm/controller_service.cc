@@ -122,11 +122,17 @@ base::Status ControllerService::check_expected(const vm::Request& request) const
 }
 
 base::Status ControllerService::at_boundary(const std::function<void()>& job) {
+  if (recorder_ == nullptr) return look_at_boundary(job);
+  return look_at_boundary([&] {
+    const vm::RecordedJob recorded(*recorder_, controller_);
+    job();
+  });
+}
+
+base::Status ControllerService::look_at_boundary(const std::function<void()>& job) {
   bool had_memory = true;
   const auto guarded = [&] {
-    if (recorder_ != nullptr) recorder_->begin_job(controller_);
     had_memory = base::within_memory([&] { return job(), true; }, [] { return false; });
-    if (recorder_ != nullptr) recorder_->end_job(controller_);
   };
   switch (boundary_.run(guarded, kBoundaryPatienceNs)) {
     case vm::Boundary::Outcome::kDone:

@@ -67,6 +67,8 @@ class ControllerService : public vm::Service {
   base::Status check_expected(const vm::Request& request) const;
   // Runs `job` on the control thread at a boundary and waits for its end.
   base::Status at_boundary(const std::function<void()>& job);
+  // The same of a job that only reads: a recording has nothing of it.
+  base::Status look_at_boundary(const std::function<void()>& job);
   base::Status check_assignments(const vm::Request& request, bool inputs_too) const;
   // In the version that the report is about; `back`: by undo.
   FateLine live_line(const online_change::FateRow& row, const ir::Image& next, bool back) const;

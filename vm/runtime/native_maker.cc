@@ -1,6 +1,7 @@
 #include "vm/runtime/native_maker.h"
 
 #include <chrono>
+#include <system_error>
 
 #include "vm/runtime/realtime.h"
 
@@ -15,10 +16,14 @@ void NativeMaker::start(const Generation& of, const TierOptions& tier,
   progress_.stopped.reset();
   for_ = of.first_code();
   version_ = of.verified();
-  done_ = std::async(std::launch::async, [this, work = of.native_work(tier, std::move(like))] {
-            run_in_background();
-            work(progress_);
-          }).share();
+  done_ = {};
+  try {
+    done_ = std::async(std::launch::async, [this, work = of.native_work(tier, std::move(like))] {
+              run_in_background();
+              work(progress_);
+            }).share();
+  } catch (const std::system_error&) {  // no thread can be had
+  }
 }
 
 void NativeMaker::stop() {

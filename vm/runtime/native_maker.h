@@ -1,6 +1,6 @@
 // Makes machine code on a thread in the background (Making::kBeside), so that neither the first
 // scan nor a change need wait for it. The program is interpreted until then, and on when there is
-// no room for machine code.
+// no room for machine code, or no thread.
 #pragma once
 
 #include <cstdint>

@@ -34,6 +34,7 @@ Recorder::Recorder(std::FILE* file, Clock& clock, IoPort& io)
   now_.observed.changed.reserve(kMaxChanged);
   now_.observed.lost.reserve(base::kMaxTasks);
   job_clock_.reserve(kMaxReads);
+  request_.clock.reserve(kMaxReads);
 }
 
 Recorder::~Recorder() {
@@ -142,7 +143,7 @@ void Recorder::end_job(const Controller& controller) {
   if (switched_) return;
   switched_ = before_job_ != &controller.generation();
   request_.cycle = now_.number - 1;  // of the last one that ended
-  request_.clock = job_clock_;
+  request_.clock.swap(job_clock_);
 }
 
 void Recorder::note(base::ByteSpan request) {

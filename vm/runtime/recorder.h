@@ -93,4 +93,20 @@ class Recorder : public Clock, public IoPort {
   std::thread writer_;
 };
 
+// A job at a boundary.
+class RecordedJob {
+ public:
+  RecordedJob(Recorder& recorder, const Controller& controller)
+      : recorder_(recorder), controller_(controller) {
+    recorder_.begin_job(controller_);
+  }
+  ~RecordedJob() { recorder_.end_job(controller_); }
+  RecordedJob(const RecordedJob&) = delete;
+  RecordedJob& operator=(const RecordedJob&) = delete;
+
+ private:
+  Recorder& recorder_;
+  const Controller& controller_;
+};
+
 }  // namespace vm

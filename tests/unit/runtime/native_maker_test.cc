@@ -1,4 +1,8 @@
 // Machine code of the first version is made beside its first scans.
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <thread>
 
 #include "tests/unit/runtime/plant.h"
@@ -117,6 +121,38 @@ TEST(NativeMaker, VersionsMayEndMeanwhile) {
     plant.cycles(1);
   }
   EXPECT_EQ(plant.get("A.b7.n"), std::to_string(6 * 5));
+}
+
+// The limit of threads does not hold for root.
+void have_no_more_threads() {
+  constexpr uid_t kNobody = 65534;
+  const rlimit none{0, 0};
+  const bool dropped = ::geteuid() != 0 || ::setuid(kNobody) == 0;
+  if (!dropped || ::setrlimit(RLIMIT_NPROC, &none) != 0) ::_exit(2);
+}
+
+TEST(NativeMaker, WithoutAThreadAChangeIsInterpreted) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier for this machine";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    have_no_more_threads();
+    Plant plant(many_blocks(), beside());
+    if (!plant.ok()) ::_exit(3);
+    for (int i = 0; i < 2; ++i) {
+      plant.cycles(1);
+      if (plant->pous_to_make() != 0 || plant->generation().native() != nullptr) ::_exit(4);
+      auto next = plant->prepare(plant->verified());
+      if (!next.ok()) ::_exit(5);
+      const auto old = plant->publish(std::move(*next));
+      plant->make_native();
+    }
+    plant.cycles(1);
+    ::_exit(plant.get("A.scans") == "3" ? 0 : 6);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status)) << "it ended by signal " << WTERMSIG(status);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 TEST(NativeMaker, AChangePreparedBehindItSharesItsCode) {
