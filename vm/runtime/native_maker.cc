@@ -1,11 +1,18 @@
 #include "vm/runtime/native_maker.h"
 
 #include <chrono>
-#include <system_error>
 
 #include "vm/runtime/realtime.h"
 
 namespace vm {
+namespace {
+
+void* enter(void* task) {
+  (*static_cast<std::packaged_task<void()>*>(task))();
+  return nullptr;
+}
+
+}  // namespace
 
 void NativeMaker::start(const Generation& of, const TierOptions& tier,
                         std::optional<MadeCode> like) {
@@ -16,19 +23,21 @@ void NativeMaker::start(const Generation& of, const TierOptions& tier,
   progress_.stopped.reset();
   for_ = of.first_code();
   version_ = of.verified();
+  task_ = std::packaged_task<void()>([this, work = of.native_work(tier, std::move(like))] {
+    run_in_background();
+    work(progress_);
+  });
   done_ = {};
-  try {
-    done_ = std::async(std::launch::async, [this, work = of.native_work(tier, std::move(like))] {
-              run_in_background();
-              work(progress_);
-            }).share();
-  } catch (const std::system_error&) {  // no thread can be had
-  }
+  pthread_t thread;
+  if (::pthread_create(&thread, nullptr, enter, &task_) != 0) return;
+  thread_ = thread;
+  done_ = task_.get_future().share();
 }
 
 void NativeMaker::stop() {
   progress_.stop = true;
-  wait();
+  if (thread_) ::pthread_join(*thread_, nullptr);
+  thread_.reset();
   for_.reset();
 }
 

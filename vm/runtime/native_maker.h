@@ -3,6 +3,8 @@
 // no room for machine code, or no thread.
 #pragma once
 
+#include <pthread.h>
+
 #include <cstdint>
 #include <future>
 #include <memory>
@@ -44,7 +46,9 @@ class NativeMaker {
   uint32_t pous_ = 0;
   std::shared_ptr<const CodeTable> for_;
   std::optional<ir::VerifiedImage> version_;  // likewise
-  std::shared_future<void> done_;
+  std::packaged_task<void()> task_;
+  std::optional<pthread_t> thread_;  // a POSIX one: that none can be had is an answer there
+  std::shared_future<void> done_;    // invalid: there was no thread
 };
 
 }  // namespace vm
