@@ -9,20 +9,6 @@
 #include "tools/common/heap.h"
 
 namespace stvm {
-namespace {
-
-// More or less what images take in memory, with all that is made of them until they run.
-size_t bytes_to_run(const std::vector<std::string>& images) {
-  size_t bytes = 0;
-  for (const std::string& path : images) {
-    std::error_code error;
-    const auto size = std::filesystem::file_size(path, error);
-    if (!error) bytes += size + size / 2 * 5;
-  }
-  return bytes;
-}
-
-}  // namespace
 
 Sources sources_of(const tools::Options& options) {
   return {options.arguments(), options.text("--dialect")};
@@ -43,6 +29,17 @@ bool is_image(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, error)) return false;
   base::Result<base::Bytes> first = tools::read_first(path, ir::kImageMagic.size());
   return first.ok() && ir::has_image_magic(*first);
+}
+
+void expect_programs(const Sources& sources) {
+  size_t bytes = 0;
+  for (const std::string& path : sources.paths) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path, error);
+    // More or less, with all that is made of it until it runs.
+    if (!error && is_image(path)) bytes += size + size / 2 * 5;
+  }
+  tools::expect_pieces(bytes);
 }
 
 base::Result<ir::VerifiedImage> load_program(const Sources& sources) {
@@ -71,7 +68,6 @@ base::Result<std::vector<ir::VerifiedImage>> load_programs(const Sources& source
     }
     std::sort(paths.begin(), paths.end());
   }
-  tools::expect_pieces(bytes_to_run(paths));
   std::vector<ir::VerifiedImage> images;
   for (const std::string& path : paths) {
     base::Result<base::Bytes> bytes = tools::read_bytes(path);

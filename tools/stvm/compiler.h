@@ -21,6 +21,9 @@ Sources sources_of(const tools::Options& options);
 // `stc COMMAND OPTIONS... SOURCES...`
 std::vector<std::string> stc_arguments(std::vector<std::string> command, const Sources& sources);
 
+// Before image files are loaded by a process that ends with them: heap.h. A controller that serves
+// would keep memory that it needed once.
+void expect_programs(const Sources& sources);
 // An image file, or sources that are compiled first. Verified, so it can run.
 base::Result<ir::VerifiedImage> load_program(const Sources& sources);
 // Image files, or sources that are compiled first: an image for each RESOURCE, by name.

@@ -188,6 +188,7 @@ base::Result<int> run_program(const tools::Options& options) {
   }
   base::Status possible = check_hard_mode(settings->hard_mode, sources_of(options));
   if (!possible.ok()) return possible.error();
+  expect_programs(sources_of(options));
   auto images = load_programs(sources_of(options));
   if (!images.ok()) return images.error();
   // They end with the process: taking their tables apart would cost a part of a short run.
