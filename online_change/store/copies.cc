@@ -28,10 +28,14 @@ void Copies::recover(uint64_t payload_bytes) {
   }
 }
 
-base::Status Copies::reserve(size_t number, uint64_t payload_bytes) {
+base::Status Copies::reserve(size_t number, uint64_t payload_bytes, uint64_t spare) {
   Copy& copy = copies_[number];
   if (copy.dead) return base::Error{base::Refusal::kStorageFailed, complaint_};
-  base::Status opened = storage_.open(copy.name, record_bytes(payload_bytes));
+  const base::Result<uint64_t> size = storage_.size(copy.name);
+  const uint64_t wanted = record_bytes(payload_bytes);
+  const bool fits = size.ok() && *size >= wanted;
+  base::Status opened = storage_.open(copy.name, fits ? wanted : wanted + spare);
+  if (!opened.ok() && !fits && spare != 0) opened = storage_.open(copy.name, wanted);
   // The copy holds what it held: no room is not the end of it.
   if (!opened.ok()) return base::Error{base::Refusal::kStorageFailed, opened.error().text};
   return opened;

@@ -25,8 +25,9 @@ class Copies {
   // when the last process ended is made durable first: nothing is built on what a power cut could
   // still take away.
   void recover(uint64_t payload_bytes);
-  // Room for a longer payload in one copy.
-  base::Status reserve(size_t number, uint64_t payload_bytes);
+  // Room for a longer payload in one copy; where it must become longer, for so many bytes more, if
+  // the storage has them: a longer file costs a flush of the disk.
+  base::Status reserve(size_t number, uint64_t payload_bytes, uint64_t spare = 0);
   // Over whatever the copy holds, with the next sequence number.
   base::Status write(size_t number, const Payload& payload);
 

@@ -77,7 +77,6 @@ base::Status write_record(vm::Storage& storage, const std::string& name, RecordK
   if (done.ok() && !payload.second.empty()) {
     done = storage.write(name, kSectorBytes + payload.first.size(), payload.second);
   }
-  if (done.ok()) done = storage.sync(name);
   if (done.ok()) done = storage.write(name, 0, record_header(kind, sequence, payload));
   if (done.ok()) done = storage.sync(name);
   return done;

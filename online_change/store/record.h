@@ -1,7 +1,7 @@
 // One durable record in a file of its own: a header in the first sector, the payload behind it. A
-// record is valid when its checksums are right, and by nothing else. It is written payload first,
-// then, when that is on disk, the header; so a cut leaves the record as it was, or as it shall be,
-// or one that is seen not to be valid. docs/adr/0013-durable-storage.md has the format.
+// record is valid when its checksums are right, and by nothing else: a cut leaves the record as it
+// was, or as it shall be, or one that is seen not to be valid, in whatever order the disk has
+// written it. docs/adr/0013-durable-storage.md has the format.
 #pragma once
 
 #include <cstdint>

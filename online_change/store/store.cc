@@ -6,6 +6,7 @@ namespace online_change {
 namespace {
 
 constexpr size_t kDigestBytes = sizeof(base::Digest);
+constexpr uint64_t kSpareParts = 16;  // of an image, for the edits that come: one more
 
 base::Error failed(std::string text) { return {base::Refusal::kStorageFailed, std::move(text)}; }
 
@@ -143,7 +144,8 @@ base::Status Store::write_image(size_t slot, const ImageToStore& image, uint64_t
     if (!room.ok()) return room;
   }
   if (written_[slot] && in_slot_[slot] == image.digest) return base::Ok{};
-  base::Status room = slots_.reserve(slot, kDigestBytes + image.bytes.size());
+  const uint64_t bytes = kDigestBytes + image.bytes.size();
+  base::Status room = slots_.reserve(slot, bytes, bytes / kSpareParts);
   if (!room.ok()) return room;
   in_slot_[slot].reset();
   written_[slot] = false;

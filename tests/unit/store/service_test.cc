@@ -129,7 +129,7 @@ TEST(Service, X5_case54_PowerFailsAtEveryCallToStorage) {
   for (; at < steps.size(); ++at) ASSERT_TRUE(steps[at].run(plc, disk)) << "step " << at;
   std::printf("%llu tried, %llu failed\n", static_cast<unsigned long long>(tried),
               static_cast<unsigned long long>(failed));
-  EXPECT_GT(tried, 500u);
+  EXPECT_GT(tried, 450u);
 }
 
 // --- real files, a real process -----------------------------------------------------
@@ -259,7 +259,7 @@ TEST(Service, case56_AChangeThatCannotBeStoredIsRefused) {
 }
 
 TEST(Service, case56_AnAcceptThatCannotBeStoredLeavesTheTrial) {
-  for (int number = 1; number <= 4; ++number) {
+  for (int number = 1; number <= 3; ++number) {  // payload, header, sync
     sim::SimStorage disk;
     Plc plc(disk);
     ASSERT_TRUE(plc.boot(source(1)).ok());
