@@ -8,7 +8,7 @@
 namespace stvm {
 namespace {
 
-// Commands are answered between cycles too, so a long period does not make them slow.
+// Commands are answered between cycles too, at once, and what the keeper wants within such a time.
 constexpr int64_t kLookNs = 2'000'000;
 constexpr int64_t kFaultLookNs = 10'000'000;
 
@@ -78,7 +78,7 @@ void ServedResource::idle(const std::function<bool()>& stop, const std::function
     const int64_t now = clock_->now_ns();
     const int64_t next = controller().next_cycle_ns();
     if (next - now <= kLookNs) return;
-    clock_->wait_until(std::min(now + kLookNs, next - kLookNs));
+    mailbox_.wait(std::min(now + kLookNs, next - kLookNs) - now);
     mailbox_.serve();
     service_->keeper().serve(controller().next_cycle_ns() - clock_->now_ns());
   }
@@ -92,7 +92,7 @@ void ServedResource::run(const std::function<bool()>& stop, const std::function<
     mailbox_.serve();
     service_->keeper().serve(controller().next_cycle_ns() - clock_->now_ns());
     if (controller().faulted()) {
-      clock_->wait_until(clock_->now_ns() + kFaultLookNs);
+      mailbox_.wait(kFaultLookNs);
     } else {
       idle(stop, alive);
     }

@@ -1,6 +1,11 @@
 #include "vm/runtime/mailbox.h"
 
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
 #include <chrono>
+#include <ctime>
 #include <thread>
 
 namespace vm {
@@ -8,6 +13,7 @@ namespace {
 
 // Short enough that a command feels immediate, long enough to cost nothing.
 constexpr auto kPoll = std::chrono::microseconds(100);
+constexpr int64_t kNsPerSecond = 1'000'000'000;
 
 }  // namespace
 
@@ -18,6 +24,7 @@ Mailbox::Outcome Mailbox::run(const std::function<void()>& job, int64_t timeout_
   if (!state_.compare_exchange_strong(expected, kPosted, std::memory_order_acq_rel)) {
     return Outcome::kClosed;
   }
+  ::syscall(SYS_futex, &state_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
   for (;;) {
     uint32_t state = state_.load(std::memory_order_acquire);
     if (state == kDone) {
@@ -38,6 +45,14 @@ Mailbox::Outcome Mailbox::run(const std::function<void()>& job, int64_t timeout_
 }
 
 void Mailbox::pause(int64_t ns) { std::this_thread::sleep_for(std::chrono::nanoseconds(ns)); }
+
+// Whatever ends it early is looked at by the caller, as the end of the time is.
+void Mailbox::wait(int64_t ns) {
+  const uint32_t seen = state_.load(std::memory_order_acquire);
+  if (seen == kPosted || ns <= 0) return;
+  const timespec time{ns / kNsPerSecond, ns % kNsPerSecond};
+  ::syscall(SYS_futex, &state_, FUTEX_WAIT_PRIVATE, seen, &time, nullptr, 0);
+}
 
 void Mailbox::serve() {
   uint32_t expected = kPosted;

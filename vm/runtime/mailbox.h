@@ -1,5 +1,6 @@
 // Hand-over of commands from one channel thread to the control thread. The control thread runs a
-// waiting job at a boundary and never waits itself: without a job, serve() is one load.
+// waiting job at a boundary and never waits for one but in its idle time: without a job, serve() is
+// one load.
 #pragma once
 
 #include <atomic>
@@ -18,6 +19,8 @@ class Mailbox : public Boundary {
 
   // Control thread, at a boundary.
   void serve();
+  // Control thread, in its idle time: at most so long, until a job is there.
+  void wait(int64_t ns);
   // Control thread, when it ends: no job is taken any more.
   void close();
 

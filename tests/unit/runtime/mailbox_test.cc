@@ -61,6 +61,32 @@ TEST(Mailbox, TimeoutsAndDeliveryRace) {
   EXPECT_EQ(ran, done);
 }
 
+TEST(Mailbox, AJobEndsTheWaitOfTheControlThread) {
+  Mailbox mailbox;
+  std::atomic<bool> end{false};
+  std::thread control([&] {
+    while (!end.load()) {
+      mailbox.wait(60 * kSecond);
+      mailbox.serve();
+    }
+    mailbox.close();
+  });
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_EQ(mailbox.run([&] { end.store(i == 199); }, 30 * kSecond), Mailbox::Outcome::kDone);
+  }
+  control.join();
+}
+
+TEST(Mailbox, TheControlThreadWaitsNoLongerThanItSays) {
+  Mailbox mailbox;
+  const auto begin = std::chrono::steady_clock::now();
+  mailbox.wait(0);
+  mailbox.wait(-1);
+  mailbox.wait(5'000'000);
+  mailbox.serve();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+}
+
 TEST(Mailbox, ClosedTakesNothing) {
   Mailbox mailbox;
   mailbox.close();
