@@ -107,6 +107,14 @@ class Body {
   void case_test(const CaseTests& tests, const Interval& interval, ir::BlockId next);
   void case_table(const CaseTests& tests, const CaseLeaf& leaf, ir::BlockId next);
 
+  // --- what may be written (writable.cc)
+  bool has_address(ExprId expr);
+  bool check_writable(ExprId expr);
+  bool check_writable_name(const Expr& expr);
+  bool check_writable_variable(const Expr& expr, VarId variable);
+  bool check_writable_field(const Expr& expr);
+  bool is_input_field(const Expr& expr);
+
   // --- places (place.cc)
   ir::Place variable_place(VarId id);
   ir::Place member_variable_place(const Variable& variable);
@@ -120,10 +128,6 @@ class Body {
   ir::Place global_place(uint32_t member);
   ir::Place local_place(uint32_t local);
   ir::Place temporary_place(ir::TypeId type);
-  bool check_writable(ExprId expr);
-  bool check_writable_name(const Expr& expr);
-  bool check_writable_variable(const Expr& expr, VarId variable);
-  bool check_writable_field(const Expr& expr);
   void note_output(const ir::DirectAddress& address, ir::TypeId type, base::SourceSpan span);
   void note_outer_use(VarId global, bool written, base::SourceSpan span);
   std::optional<Target> target(ExprId expr);
@@ -228,6 +232,7 @@ class Body {
   bool check_in_outs(const Expr& call, const PouInfo& callee, const std::vector<Binding>& bindings);
   void evaluate_input(Binding& binding, bool keep);
   bool evaluate_in_out(Binding& binding);
+  bool evaluate_read_only(Binding& binding);
   bool may_call(ExprId expr);
   void evaluate_arguments(const Expr& call, std::vector<Binding>& bindings);
   void pass_input(const Binding& binding, const ir::Place& parameter);

@@ -49,6 +49,22 @@ void Body::evaluate_input(Binding& binding, bool keep) {
   binding.place = kept;
 }
 
+// A CONSTANT in-out of a value that has no place of its own.
+bool Body::evaluate_read_only(Binding& binding) {
+  Binding given = binding;
+  evaluate_input(given, false);
+  if (!given.place && !given.value.valid()) return false;
+  const ir::TypeId type = sema_.resolve(binding.variable).type;
+  const ir::Place read = temporary_place(type);
+  if (given.place) {
+    build_.copy(read, *given.place);
+  } else {
+    build_.store(read, scalar(type), given.value);
+  }
+  binding.value = build_.address(read);
+  return true;
+}
+
 bool Body::evaluate_in_out(Binding& binding) {
   const Variable& parameter = sema_.resolve(binding.variable);
   ExprId id = binding.arg->value;
@@ -58,7 +74,10 @@ bool Body::evaluate_in_out(Binding& binding) {
     binding.value = reference_value(id, parameter.type);
     return true;
   }
-  if (!check_writable(id)) return false;
+  const bool convertible = types().is_scalar(note.type) || is_string(types(), note.type);
+  const bool copied = !has_address(id) || (convertible && note.type != parameter.type);
+  if (parameter.constant && copied) return evaluate_read_only(binding);
+  if (!parameter.constant && !check_writable(id)) return false;
   if (note.bit_size != 0 || is_character(id)) {
     sema_.error(DiagnosticCode::kInOutNeedsVariable, binding.arg->span,
                 quoted_name(parameter.name) + " cannot be bound to a part of a variable",

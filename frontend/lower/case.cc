@@ -35,7 +35,7 @@ constexpr size_t kLinearTests = 4;
 // A table has an entry for each value between its first label and its last: 8 bytes of code, where
 // a test takes 16.
 constexpr size_t kLeastIntervals = 5;  // fewer tests are as quick
-constexpr Wide kMostAlike = 4;  // values of one interval, and between two
+constexpr Wide kMostAlike = 4;         // values of one interval, and between two
 constexpr Wide kMostEntries = 1024;
 
 }  // namespace

@@ -1,5 +1,4 @@
-// Places: where variables, members, elements and constants are, and whether code may
-// write there.
+// Places: where variables, members, elements and constants are.
 #include <algorithm>
 
 #include "frontend/lower/body.h"
@@ -170,70 +169,6 @@ ir::Place Body::constant_place(ExprId id) {
   return place;
 }
 
-bool Body::check_writable(ExprId id) {
-  const Expr& expr = tree_[id];
-  if (sema_.infer(id).property != kNoPou) {
-    if (sema_.infer(id).reference.valid()) return true;  // what it leads to
-    sema_.error(DiagnosticCode::kPropertyAccess, expr.span,
-                "`" + std::string(expr.name.text) + "` is a property: its value has no place",
-                "assign the property as a whole");
-    return false;
-  }
-  switch (expr.kind) {
-    case ExprKind::kName:
-      return check_writable_name(expr);
-    case ExprKind::kDirect: {
-      const ir::DirectAddress address = tree_.directs[expr.number].address;
-      note_output(address, sema_.infer(id).type, expr.span);
-      if (address.area != ir::DirectArea::kInput) return true;
-      sema_.error(DiagnosticCode::kAssignToInput, expr.span,
-                  "`" + std::string(expr.name.text) + "` is an input of the process image");
-      return false;
-    }
-    case ExprKind::kMember: {
-      if (VarId global = sema_.infer(id).variable; global.valid()) {
-        return check_writable_variable(expr, global);
-      }
-      const PouInfo* block = sema_.pou_of(sema_.infer(expr.operand).type);
-      if (block == nullptr) return check_writable_field(expr) && check_writable(expr.operand);
-      const Variable& variable =
-          sema_.resolve(sema_.objects.find_parameter(*block, expr.name.text));
-      if (variable.section == VarSection::kInput) return true;
-      if (variable.section != VarSection::kOutput)
-        return check_writable_variable(expr, sema_.objects.find_parameter(*block, expr.name.text));
-      sema_.error(DiagnosticCode::kNotAssignable, expr.span,
-                  "`" + std::string(expr.name.text) + "` is an output of `" +
-                      std::string(block->decl->name.text) + "`; only the block itself writes it");
-      return false;
-    }
-    case ExprKind::kDeref:
-    case ExprKind::kResult:
-      return true;
-    case ExprKind::kIndex:
-      if (types().is_reference(sema_.infer(expr.operand).type)) return true;
-      return check_writable(expr.operand);
-    case ExprKind::kBit:
-      return check_writable(expr.operand);
-    default:
-      if (sema_.infer(id).reference.valid()) return true;  // what a method returns
-      sema_.error(DiagnosticCode::kNotAssignable, expr.span, "this is a value, not a variable");
-      return false;
-  }
-}
-
-// A member of a structure.
-bool Body::check_writable_field(const Expr& expr) {
-  ir::TypeId structure = sema_.infer(expr.operand).type;
-  int32_t member = sema_.find_member(structure, expr.name.text);
-  if (member < 0) return true;
-  const ir::Member& field = types()[structure].members[static_cast<size_t>(member)];
-  if (field.address.area != ir::DirectArea::kInput) return true;
-  sema_.error(DiagnosticCode::kAssignToInput, expr.span,
-              "`" + std::string(expr.name.text) + "` is an input",
-              "copy it to a variable of its own");
-  return false;
-}
-
 void Body::note_output(const ir::DirectAddress& address, ir::TypeId type, base::SourceSpan span) {
   bool known = address.bit_size != 0 && type.valid();
   if (address.area == ir::DirectArea::kOutput && known) {
@@ -243,53 +178,6 @@ void Body::note_output(const ir::DirectAddress& address, ir::TypeId type, base::
 
 void Body::note_outer_use(VarId global, bool written, base::SourceSpan span) {
   if (CommonUses(sema_).is_outer(global)) info_.outer_uses.push_back({global, written, span});
-}
-
-bool Body::check_writable_name(const Expr& expr) {
-  VarId id = sema_.find_variable(expr);
-  if (id.valid()) return check_writable_variable(expr, id);
-  sema_.error(DiagnosticCode::kNotAssignable, expr.span,
-              "`" + std::string(expr.name.text) + "` is not a variable");
-  return false;
-}
-
-bool Body::check_writable_variable(const Expr& expr, VarId id) {
-  const auto name = [&expr] { return "`" + std::string(expr.name.text) + "`"; };
-  const Variable* variable = &sema_.resolve(id);
-  bool constant = variable->constant;
-  if (variable->external.valid()) {
-    id = variable->external;
-    variable = &sema_.resolve(id);
-  }
-  if (variable->decl != nullptr && variable->decl->implied) {
-    sema_.error(DiagnosticCode::kNotAssignable, expr.span,
-                name() + " belongs to the chart, which alone changes it",
-                "steps change by transitions, actions by the steps that use them");
-    return false;
-  }
-  if (constant || variable->constant) {
-    sema_.error(DiagnosticCode::kAssignToConstant, expr.span, name() + " is a constant");
-    return false;
-  }
-  bool located_input = variable->decl != nullptr && variable->decl->has_address &&
-                       variable->decl->address.area == ir::DirectArea::kInput;
-  bool own_input =
-      variable->section == VarSection::kInput && sema_.options.dialect == Dialect::kIec;
-  if (located_input || own_input) {
-    sema_.error(DiagnosticCode::kAssignToInput, expr.span, name() + " is an input",
-                "copy it to a variable of its own");
-    return false;
-  }
-  sema_.mark_written(id);
-  note_outer_use(id, true, expr.span);
-  if (variable->decl != nullptr && variable->decl->has_address) {
-    note_output(variable->decl->address, variable->type, expr.span);
-  }
-  if (std::find(for_variables_.begin(), for_variables_.end(), id) != for_variables_.end()) {
-    sema_.warning(DiagnosticCode::kForVariableAssigned, expr.span,
-                  name() + " counts the surrounding FOR loop");
-  }
-  return true;
 }
 
 // Evaluates the indices of an assignment's left side; reports what cannot be written.
