@@ -4,6 +4,7 @@
 // one thread while nobody else uses it.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <initializer_list>
 #include <memory>
@@ -11,6 +12,14 @@
 #include <vector>
 
 namespace base {
+
+// Nobody else holds it, and whoever did has read it before.
+template <class T>
+bool is_alone(const std::shared_ptr<T>& value) {
+  if (value.use_count() != 1) return false;
+  std::atomic_thread_fence(std::memory_order_acquire);
+  return true;
+}
 
 template <class T>
 class Shared {
@@ -35,7 +44,7 @@ class Shared {
   }
   // To be changed.
   T& own() {
-    if (value_.use_count() != 1) value_ = std::make_shared<T>(*value_);
+    if (!is_alone(value_)) value_ = std::make_shared<T>(*value_);
     return *value_;
   }
   // Are they one, and so equal? False says nothing.
@@ -74,7 +83,7 @@ class SharedVector {
   std::vector<T>& own() {
     if (all_ == nullptr) {
       all_ = std::make_shared<std::vector<T>>();
-    } else if (all_.use_count() != 1) {
+    } else if (!is_alone(all_)) {
       all_ = std::make_shared<std::vector<T>>(*all_);
     }
     return *all_;
