@@ -208,6 +208,27 @@ sleep 1
 [ "$(events)" -eq "$lines" ] || fail "built of a file that is still open"
 one_more 24 'still open'
 exec 4>&-
+# One that goes on and on holds everything back, and is named, once.
+(while [ ! -e written ]; do
+  printf '(* more *)\n' >&4
+  sleep 0.3
+done) 4>plant/endless.st &
+sed 's/Hours + 2/Hours + 7/' plant/pump.st | save plant/pump.st
+for _ in $(seq 200); do
+  grep -q '^waiting' watch.log && break
+  sleep 0.05
+done
+grep -q '^waiting with what was saved: plant/endless.st is being written' watch.log ||
+  fail "held back, and not by whom"
+sleep 1
+[ "$(events)" -eq $((lines + 1)) ] || fail "named more than once, or built: $(tail -3 watch.log)"
+lines=$((lines + 1))
+touch written
+wait $!
+one_more 25 'behind an endless writer'
+rm plant/endless.st
+sed 's/Hours + 7/Hours + 2/' plant/pump.st | save plant/pump.st
+one_more 26 'without it'
 # More happens than the system can tell.
 kill -STOP "$(cat watch.pid)"
 for _ in $(seq $(($(cat /proc/sys/fs/inotify/max_queued_events) / 4 + 1))); do
@@ -218,12 +239,12 @@ slowly plant/main.st 1 <kept.st &
 sleep 0.2
 kill -CONT "$(cat watch.pid)"
 wait $!
-one_more 25 'more than can be told'
+one_more 27 'more than can be told'
 
 # What a link leads to is polled.
 cp plant/pump.st linked.st
 ln -s ../linked.st pump.link && mv pump.link plant/pump.st
-built 26
+built 28
 sed 's/Hours + 2/Hours + 5/' linked.st | save linked.st
-built 27
+built 29
 same 'behind a link'

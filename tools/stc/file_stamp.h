@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 
 namespace stc {
@@ -14,6 +15,8 @@ struct FileStamp {
   uint64_t file = 0;
   friend bool operator==(const FileStamp&, const FileStamp&) = default;
 };
+
+using Stamps = std::map<std::string, FileStamp>;  // by path
 
 // When the file became what it is, by the system's clock; 0: there is none.
 int64_t changed_ns(const std::string& path);

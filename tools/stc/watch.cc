@@ -15,6 +15,7 @@
 #include "tools/stc/file_stamp.h"
 #include "tools/stc/importer.h"
 #include "tools/stc/session.h"
+#include "tools/stc/unfinished.h"
 #include "workspace/incremental_build.h"
 
 namespace stc {
@@ -30,15 +31,9 @@ constexpr int kRest = 10;
 // Where the system says what is saved, for what it does not know itself.
 constexpr auto kLookRarely = std::chrono::seconds(2);
 constexpr auto kQuiet = std::chrono::milliseconds(4);  // between files that are saved together
-// Editors save by writing another file and renaming it, or remove the old one first: a file that is
-// away or empty is believed to be so when it has stayed so for as long. Until then nothing is
-// built, and nothing while a file is being written (FileEvents): a program without its variables is
-// not what anybody saved.
-constexpr auto kBelievedGone = std::chrono::seconds(1);
 constexpr auto kLongestLook = std::chrono::seconds(10);
 constexpr const char* kSettings = "stc.toml";
 
-using Stamps = std::map<std::string, FileStamp>;
 using Next = WatchTarget::Next;
 
 class Watch {
@@ -182,10 +177,11 @@ class Watch {
   }
 
   bool take(Stamps now, Clock::time_point begin) {
-    look_at_ = Clock::time_point::max();
     events_.read();  // behind the look: what is being written at it is known
     const bool differs = now != stamps_;
-    left_ = awaits(now, begin) && differs;
+    const auto complete = unfinished_.until(stamps_, now, events_, begin);
+    look_at_ = complete.value_or(Clock::time_point::max());
+    left_ = complete && differs;
     if (left_ || !differs) return false;
     seen_ = begin;
     Stamps before = std::exchange(stamps_, std::move(now));
@@ -198,32 +194,6 @@ class Watch {
       return false;
     }
     if (!opened->ok()) tools::refuse("stc", opened->error());
-    return true;
-  }
-
-  // Is a file away that may come back, or being written?
-  bool awaits(const Stamps& now, Clock::time_point time) {
-    std::map<std::string, Clock::time_point> away;
-    Clock::time_point until = Clock::time_point::min();
-    auto at = now.begin();
-    for (const auto& [path, stamp] : stamps_) {
-      if (stamp.bytes == 0) continue;
-      while (at != now.end() && at->first < path) ++at;
-      if (at != now.end() && at->first == path && at->second.bytes != 0) continue;
-      const auto known = away_.find(path);
-      const Clock::time_point since = known == away_.end() ? time : known->second;
-      away.emplace(path, since);
-      until = std::max(until, since + kBelievedGone);
-    }
-    away_ = std::move(away);
-    for (const auto& [path, written] : events_.begun()) {
-      if (!stamps_.contains(path) && !now.contains(path)) continue;
-      until = std::max(until, written + FileEvents::kLongestPause);
-    }
-    // Whatever differs may be being written.
-    if (now != stamps_) until = std::max(until, events_.lost() + FileEvents::kLongestPause);
-    if (time >= until) return false;
-    look_at_ = until;
     return true;
   }
 
@@ -350,7 +320,7 @@ class Watch {
   std::shared_ptr<const ir::Image> base_;  // of build_
   std::unique_ptr<workspace::IncrementalBuild> build_;
   Stamps stamps_;
-  std::map<std::string, Clock::time_point> away_;         // since when
+  Unfinished unfinished_;
   Clock::time_point look_at_ = Clock::time_point::max();  // at the latest
   bool left_ = false;  // something that was saved, until other files are complete
   FileEvents events_;
