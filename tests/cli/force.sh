@@ -18,6 +18,15 @@
 sed 's/level + 1/level + 2/' v1.st >v2.st
 serve plc v1.st
 
+# What it says of machine code, when that is made.
+with_machine_code() {
+  for _ in $(seq 200); do
+    stvm status --dir plc >out
+    grep -q 'code  *native' out && return 0
+    sleep 0.05
+  done
+  fail "no machine code"
+}
 expect 0 stvm force --dir plc level=40 Main.a.open=7 shared=3
 said '^level=40  everywhere$'
 said '^Main.a.open=7  everywhere$'
@@ -35,6 +44,7 @@ said '"everywhere":true'
 expect 0 stvm get --dir plc --forces --format json
 said '"everywhere":false'
 said '"reason":"`F1` in line 5'
+with_machine_code
 expect 0 stvm status --dir plc
 said 'forces +3, 1 at the boundaries of cycles'
 said 'Valve: it writes where a variable is forced'

@@ -12,6 +12,7 @@ namespace stvm {
 namespace {
 
 // A long scan of a slow task postpones the boundary; longer than this is an answer of its own.
+constexpr int64_t kKeepUpPatienceNs = 200'000'000;
 constexpr int64_t kBoundaryPatienceNs = 5'000'000'000;
 
 base::Bytes nothing() { return {}; }
@@ -160,6 +161,8 @@ void report_tier(const ir::Image& image, const vm::CodeTable& code, vm::StatusRe
 
 base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   vm::StatusReport report;
+  report.pous_to_make = controller_.pous_to_make();
+  if (report.pous_to_make == 0) keep_up();
   const vm::CodeTable* code = nullptr;
   base::Status taken = at_boundary([&] {
     report.cycles = controller_.cycles();
@@ -189,7 +192,6 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.devices = controller_.devices();
   report.memory = vm::memory_report(controller_.image());
   report_tier(controller_.image(), *code, report);
-  report.pous_to_make = controller_.pous_to_make();
   return vm::encode(report);
 }
 
@@ -282,6 +284,17 @@ base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request)
   base::Status taken = at_boundary([&] { controller_.use(**change); });
   if (!taken.ok()) return taken.error();
   return nothing();
+}
+
+// Nothing of it is to be seen, so a recording need not have it; and what fails is tried again.
+void ControllerService::keep_up() {
+  const auto renew = [&] {
+    if (auto change = controller_.renew_forces()) {
+      boundary_.run([&] { controller_.use(*change); }, kKeepUpPatienceNs);
+    }
+    return true;
+  };
+  base::within_memory(renew, [] { return false; });
 }
 
 base::Result<base::Bytes> ControllerService::forces(const vm::Request&) { return force_rows({}); }

@@ -35,6 +35,8 @@ class ControllerService : public vm::Service {
   void record(vm::Recorder& recorder) { recorder_ = &recorder; }
   void asked_by(const std::string& user) override { who_ = user; }
   base::Bytes answer(base::ByteSpan request, bool& keep_open) override;
+  // Forces run in machine code as soon as there is some.
+  void keep_up() override;
   bool stop_wanted() const { return stop_wanted_.load(std::memory_order_relaxed); }
   online_change::RetainKeeper& keeper() { return keeper_; }
 

@@ -193,6 +193,13 @@ base::Result<std::unique_ptr<ForceChange>> Controller::prepare_unforce(
   return impl_->prepare_forces(std::move(next));
 }
 
+std::unique_ptr<ForceChange> Controller::renew_forces() const {
+  const ForcedSet& forced = impl_->scheduler.tables().forced;
+  const uint64_t newest = impl_->running->code()->number.value;
+  if (forced.code == nullptr || forced.made_of == newest) return nullptr;
+  return impl_->prepare_forces(forced.forces);
+}
+
 void Controller::use(ForceChange& change) {
   base::check(at_boundary(), "a variable is forced while a task is inside a scan");
   for (ForceChange::Row& row : change.rows) {
@@ -229,12 +236,11 @@ uint32_t Controller::pous_to_make() const { return impl_->native_maker.to_make()
 
 base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage next_image) {
   const Generation* running = impl_->running.get();
-  // It would read code slots that are written now; and forced versions keep what they were made of.
+  // It would read code slots that are written now.
   if (!impl_->native_maker.is_for(*running)) {
     impl_->native_maker.stop();
     (void)impl_->native_maker.take_stopped();
   }
-  if (!forces().empty()) impl_->native_maker.wait();
   std::erase_if(impl_->tables, [&](const auto& row) { return row.first != running; });
   auto next = Generation::build(std::move(next_image), running->number() + 1, impl_->memory.data(),
                                 impl_->code_slots, running, impl_->tier);
@@ -374,7 +380,6 @@ base::Result<ir::Symbol> Controller::Impl::writable(std::string_view path) const
 
 // Prepared tables carry the forces too, so that a switch need not look them up.
 std::unique_ptr<ForceChange> Controller::Impl::prepare_forces(std::vector<Force> forces) const {
-  native_maker.wait();  // what has no version keeps its machine code
   auto change = std::make_unique<ForceChange>();
   for (const auto& [generation, other] : tables) {
     if (generation == running.get()) continue;

@@ -139,6 +139,9 @@ class Controller {
       std::span<const NamedValue> values) const;
   base::Result<std::unique_ptr<ForceChange>> prepare_unforce(
       std::span<const std::string> paths) const;
+  // Likewise: the code of forces that was made while machine code was still being made, so that all
+  // is interpreted, with that. Null: there is nothing to make anew.
+  std::unique_ptr<ForceChange> renew_forces() const;
   // At a boundary: what was prepared for the version that runs comes into force. `change` has what
   // was before, which takes time to free.
   void use(ForceChange& change);

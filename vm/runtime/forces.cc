@@ -66,6 +66,7 @@ ForcedSet ForcedSet::make(const ir::VerifiedImage& image, const CodeTable& own,
     variables.push_back({{force.symbol.data, size, force.symbol.type}, force.value});
   }
   set.code = ForcedCode::make(image, own, variables, tier);
+  set.made_of = own.number.value;
   for (size_t i = 0; i < set.forces.size(); ++i) {
     set.forces[i].reason = set.code == nullptr ? std::string() : set.code->reason(i);
   }

@@ -32,6 +32,7 @@ struct ForcedSet {
   std::vector<Force> forces;
   std::vector<std::string> ended;          // paths of those that were not adopted
   std::shared_ptr<const ForcedCode> code;  // null: that of the generation
+  uint64_t made_of = 0;                    // CodeTable::number of the generation's code
   // Finds out how `forces` hold on variables of the image, and makes the code.
   static ForcedSet make(const ir::VerifiedImage& image, const CodeTable& own,
                         std::vector<Force> forces, const TierOptions& tier);

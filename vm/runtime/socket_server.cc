@@ -189,6 +189,7 @@ void SocketServer::serve() {
       }
     }
     if ((set[1].revents & POLLIN) != 0) take_connection(listener_.get(), connections);
+    service_.keep_up();
     return true;
   };
   // When memory runs out, all connections end: the program runs on, and there is memory again.

@@ -21,6 +21,8 @@ class Service {
   virtual void asked_by(const std::string& /*user*/) {}
   // On the server's thread. `keep_open` false closes the connection after the answer.
   virtual base::Bytes answer(base::ByteSpan request, bool& keep_open) = 0;
+  // On the server's thread, behind answers and at least once in a second.
+  virtual void keep_up() {}
 };
 
 class SocketServer {

@@ -174,6 +174,43 @@ TEST(NativeMaker, AChangePreparedBehindItSharesItsCode) {
   EXPECT_EQ(plant.get("A.scans"), "3");
 }
 
+// Its code is interpreted as everything is, and is machine code when that is there.
+TEST(NativeMaker, AForceMeanwhileDoesNotWaitForIt) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier for this machine";
+  Plant plant(many_blocks(), beside());
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(1);
+  ASSERT_TRUE(plant->force("A.scans", "70").ok());
+  EXPECT_NE(plant->pous_to_make(), 0u) << "300 blocks before one force is prepared";
+  EXPECT_EQ(plant->renew_forces(), nullptr);
+  plant.cycles(2);
+  EXPECT_EQ(plant.get("A.scans"), "70");
+  EXPECT_EQ(plant->code().native, nullptr);
+  auto next = plant->prepare(plant->verified());
+  ASSERT_TRUE(next.ok());
+  EXPECT_NE(plant->pous_to_make(), 0u) << "300 blocks before a change with a force is prepared";
+  auto old = plant->publish(std::move(*next));
+  plant->make_native();
+  plant.cycles(1);
+  wait_for_machine_code(plant);
+  plant.cycles(1);
+  EXPECT_EQ(plant->code().native, nullptr);
+  const auto renewed = plant->renew_forces();
+  ASSERT_NE(renewed, nullptr);
+  plant->use(*renewed);
+  EXPECT_EQ(plant->renew_forces(), nullptr);
+  ASSERT_NE(plant->code().native, nullptr);
+  EXPECT_NE(plant->code().native, plant->generation().code()->native);
+  EXPECT_EQ(plant->code().native->native_pous(), plant->image().pous.size());
+  plant.cycles(2);
+  EXPECT_EQ(plant.get("A.scans"), "70");
+  ASSERT_TRUE(plant->unforce("A.scans").ok());
+  plant.cycles(2);
+  expect_machine_code(plant);
+  EXPECT_EQ(plant.get("A.scans"), "72");
+  EXPECT_EQ(plant.get("A.b7.n"), std::to_string(6 * 9));
+}
+
 TEST(NativeMaker, AForceMeanwhileIsAVersionOfMachineCodeAndEndsWithIt) {
   if (!vm::native::is_available()) GTEST_SKIP() << "no native tier for this machine";
   Plant plant(many_blocks(), beside(3));
