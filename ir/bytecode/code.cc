@@ -96,13 +96,9 @@ constexpr Class kScalarClasses[kScalarCount] = {
     Class::kF32, Class::kF64, Class::kA,  Class::kS,  Class::kW,
 };
 
-constexpr uint32_t kClassSizes[kClassCount] = {1, 1, 2, 4, 8, 4, 8, 4, 8, 8};
-
 }  // namespace
 
 Class class_of(Scalar scalar) { return kScalarClasses[static_cast<uint32_t>(scalar)]; }
-
-uint32_t class_size(Class cls) { return kClassSizes[static_cast<uint32_t>(cls)]; }
 
 std::string_view class_name(Class cls) { return kClassNames[static_cast<uint32_t>(cls)]; }
 

@@ -28,7 +28,10 @@ enum class Base : uint8_t { kFrame, kSelf, kGlobal, kConst };
 enum class Class : uint8_t { kB, k8, k16, k32, k64, kF32, kF64, kA, kS, kW };
 inline constexpr uint32_t kClassCount = 10;
 Class class_of(Scalar scalar);
-uint32_t class_size(Class cls);
+constexpr uint32_t class_size(Class cls) {
+  constexpr uint8_t kBytes[kClassCount] = {1, 1, 2, 4, 8, 4, 8, 4, 8, 8};
+  return kBytes[static_cast<uint32_t>(cls)];
+}
 std::string_view class_name(Class cls);
 
 enum class FieldKind : uint8_t {

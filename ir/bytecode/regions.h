@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "ir/bytecode/code.h"
@@ -74,6 +75,11 @@ class RegionMap {
   RegionMap(const TypeTable& types, const Layouts& layouts);
 
   uint32_t size(Region region) const { return region_size(types_, layouts_, region); }
+  // What is a scalar by itself in that type, by offset. Not all where members overlap.
+  std::span<const ScalarPlace> scalars(TypeId type) const {
+    const uint32_t first = first_scalar_[type.index];
+    return std::span(scalars_).subspan(first, first_scalar_[type.index + 1] - first);
+  }
   // Most of what code names, without going down: null says nothing.
   const ScalarPlace* scalar_at(Region region, uint32_t offset) const;
   // The first one that `accept` takes, where several lie on top of each other.

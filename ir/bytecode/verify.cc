@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "ir/bytecode/image_sections.h"
 #include "ir/bytecode/proof.h"
+#include "ir/bytecode/verify_code.h"
 
 namespace ir {
 namespace {
@@ -25,18 +26,23 @@ base::Result<verification::CodeFactsOfAll> verify_pous(const verification::Conte
     return std::make_shared<const verification::CodeFacts>(std::move(made));
   };
   std::vector<uint8_t> bad(image.pous.size(), 0);
-  const auto check = [&](size_t pou) {
-    const auto number = static_cast<uint32_t>(pou);
-    if (image.pous[number].unit_count == 0) return true;  // a number whose POU was removed
-    facts[number] = likeness.code(number);
-    if (facts[number] != nullptr) return true;
-    auto checked = verification::verify_code(context, number);
-    if (checked) facts[number] = share(std::move(checked).value());
+  const auto check = [&](verification::CodeRoom& room, uint32_t pou) {
+    if (image.pous[pou].unit_count == 0) return true;  // a number whose POU was removed
+    facts[pou] = likeness.code(pou);
+    if (facts[pou] != nullptr) return true;
+    auto checked = verification::verify_code(context, room, pou);
+    if (checked) facts[pou] = share(std::move(checked).value());
     return checked.ok();
   };
   const uint32_t jobs = image.code.size() < kUnitsForThreads ? 1 : base::usable_cores();
-  base::for_each_index(image.pous.size(), jobs, kPousAtATime, [&](size_t pou) {
-    bad[pou] = base::within_memory([&] { return check(pou); }, [] { return false; }) ? 0 : 1;
+  const size_t parts = (image.pous.size() + kPousAtATime - 1) / kPousAtATime;
+  base::for_each_index(parts, jobs, 1, [&](size_t part) {
+    verification::CodeRoom room;
+    const size_t end = std::min(image.pous.size(), (part + 1) * kPousAtATime);
+    for (size_t i = part * kPousAtATime; i < end; ++i) {
+      const auto pou = static_cast<uint32_t>(i);
+      bad[i] = base::within_memory([&] { return check(room, pou); }, [] { return false; }) ? 0 : 1;
+    }
   });
   for (uint32_t pou = 0; pou < image.pous.size(); ++pou) {
     if (bad[pou] == 0) continue;

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 #include <span>
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include "ir/bytecode/code.h"
+#include "ir/bytecode/verify_checks.h"
 #include "ir/bytecode/verify_parts.h"
 
 namespace ir::verification {
@@ -30,12 +32,23 @@ struct Pointer {
   uint32_t outgoing = 0;   // not 0: into the next frame, entry outgoing - 1 of CodeVerifier::ways
 };
 
-class CodeVerifier {
- public:
-  CodeVerifier(const Context& context, uint32_t pou, std::span<const Unit> code);
-  base::Result<CodeFacts> run();
+// In entries of CodeRoom::frame and CodeRoom::own; 0: no scalar begins there.
+constexpr uint32_t number_of(Class cls) { return static_cast<uint32_t>(cls) + 1; }
+// Entries of CodeRoom::frame: the slot that covers the offset, and the number of the class.
+inline constexpr uint32_t kNoSlot = 0xffffff;
+inline constexpr uint32_t kClassShift = 24;
+// Entries of CodeRoom::own: the number of the class, and this flag.
+inline constexpr uint32_t kReadOnly = 0x80;
 
- private:
+// The room that the check of one POU takes, and leaves for the next: most POUs are small, and
+// allocating would cost as much as checking. For one thread.
+struct CodeRoom {
+  // A slot with what is known of the value in it.
+  struct SlotState {
+    uint32_t written = 0;  // when it is the epoch: the slot holds a value
+    uint32_t outgoing = 0;
+    bool read_only = false;
+  };
   // Something that was put into the next frame, or pointed to there.
   struct Outgoing {
     uint32_t offset = 0;     // in the next frame
@@ -57,24 +70,62 @@ class CodeVerifier {
     uint32_t scope = 0;  // tries that are open there
     bool loop_head = false;
     bool calls_inside = false;  // a loop head whose loop calls something
-    size_t slots = 0;           // where its slots begin in `arrives_read_only_`
+    size_t slots = 0;           // where its slots begin in `arrives_read_only`
     Results results;
   };
+  // Open tries as a tree: an entry is a try inside that of `parent`, with its handler's merge.
+  // 0: none is open.
+  struct Scope {
+    uint32_t parent = 0;
+    uint32_t handler = kNone;
+    uint32_t depth = 0;
+  };
+
+  std::vector<uint32_t> frame;  // by offset, where slots fill the frame; else empty
+  std::vector<uint8_t> own;     // by offset in the own instance; empty where that is large
+  std::vector<SlotState> slots;
+  std::vector<Outgoing> ways;           // targets of pointers into the next frame
+  std::vector<Outgoing> pending;        // arguments of the call in preparation
+  std::vector<bool> given;              // slots of its callee
+  std::vector<Arrival> arrivals;        // by merge
+  std::vector<bool> arrives_read_only;  // by merge and its slots
+  std::vector<Scope> scopes;
+  std::vector<uint32_t> merge_of;  // by unit; kNone
+  std::vector<uint32_t> results;   // slots that hold a value at every return
+  std::vector<uint32_t> calls;     // units
+  std::vector<uint32_t> loops;
+};
+
+class CodeVerifier {
+ public:
+  // Borrows all.
+  CodeVerifier(const Context& context, CodeRoom& room, uint32_t pou, std::span<const Unit> code);
+  base::Result<CodeFacts> run();
+
+ private:
+  using Outgoing = CodeRoom::Outgoing;
+  using ResultsOf = CodeRoom::ResultsOf;
+  using Results = CodeRoom::Results;
+  using Arrival = CodeRoom::Arrival;
+  using Scope = CodeRoom::Scope;
   struct Place {  // of a BC32 or P32 field
     Base base = Base::kFrame;
     uint32_t offset = 0;
   };
 
   // verify_flow.cc
-  void list_offsets();
+  void list_slots();
+  void list_own_scalars();
+  void list_parameters();
   bool scan_instructions();
-  bool find_loops(const std::vector<uint32_t>& calls, const std::vector<uint32_t>& loops);
+  bool find_loops();
   bool check_merges();
-  bool step(uint32_t unit, const OpcodeRow& row);
+  bool step(uint32_t unit, const OpcodeChecks& checks);
+  bool control(uint32_t next);
   bool enter_merge(uint32_t unit);
   bool arrive(uint32_t merge, bool backwards);
   bool jump(uint32_t next, bool backwards);
-  bool check_switch(const OpcodeRow& row, uint32_t next);
+  bool check_switch(uint32_t next);
   bool check_table(uint32_t unit);
   bool check_return();
 
@@ -82,7 +133,9 @@ class CodeVerifier {
   bool check_try(uint32_t next);
   bool check_end_try();
   bool outlives_traps(uint32_t slot, const Pointer& pointer);
-  uint32_t merge_at(uint32_t unit) const;
+  uint32_t merge_at(uint32_t unit) const {
+    return unit < room_.merge_of.size() ? room_.merge_of[unit] : kNone;
+  }
   // Texts are put together here, so that what checks has none of that in it. False.
   [[gnu::cold]] bool fail(Refusal refusal, const std::string& why);
   [[gnu::cold]] bool fail(Refusal refusal, const char* why);
@@ -91,8 +144,12 @@ class CodeVerifier {
   [[gnu::cold]] bool fail_without_slot(Refusal refusal, Class cls, uint32_t offset);
 
   // verify_operands.cc
-  bool check_unused(const OpcodeRow& row);
-  bool near_operand(const Field& field, Base base, uint32_t offset, bool write);
+  bool check_unused(const OpcodeChecks& checks);
+  bool plain(const OpcodeChecks& checks);
+  bool near_operand(const Field& field, Base base, uint32_t offset, bool write) {
+    return operand(field.cls, base, offset, write);
+  }
+  bool operand(Class cls, Base base, uint32_t offset, bool write);
   bool scalar_access(Place place, Class cls, bool write);
   bool frame_scalar(uint32_t offset, Class cls, bool write);
   bool leaf_access(Region region, uint32_t offset, Class cls, bool write, const char* base);
@@ -100,7 +157,7 @@ class CodeVerifier {
   bool check_access(const ScalarPlace& there, Class cls, bool write);
   uint32_t slot_at(uint32_t offset) const;                 // that covers it; kNone
   uint32_t scalar_slot(uint32_t offset, Class cls) const;  // that starts there; kNone
-  bool is_written(uint32_t slot) const { return written_[slot] == epoch_; }
+  bool is_written(uint32_t slot) const { return states_[slot].written == epoch_; }
   void mark_written(uint32_t slot, bool read_only, uint32_t outgoing);
   std::optional<Pointer> read_pointer(uint32_t offset, Class cls);
   bool write_pointer(uint32_t offset, Class cls, const Pointer& pointer);
@@ -164,7 +221,11 @@ class CodeVerifier {
   const LinkedPou& pou_;
   const std::vector<FrameSlot>& slots_;  // its
   const uint32_t globals_begin_;
+  const std::array<OpcodeChecks, kOpcodeCount>& checks_ = opcode_checks();
   std::span<const Unit> code_;
+  CodeRoom& room_;
+  std::span<const uint32_t> frame_;  // of the room
+  std::span<const uint8_t> own_;
   CodeFacts facts_;
   std::optional<base::Error> error_;
 
@@ -177,29 +238,33 @@ class CodeVerifier {
   uint32_t next_merge_unit_ = kNone;
 
   uint32_t epoch_ = 1;
-  std::vector<uint32_t> slot_offsets_;
-  std::vector<uint32_t> slot_of_;   // by offset, in frames that slots fill; else empty
-  std::vector<uint32_t> written_;   // by slot: == epoch_
-  std::vector<bool> read_only_;     // by slot
-  std::vector<uint32_t> outgoing_;  // by slot
-  std::vector<Outgoing> ways_;      // targets of pointers into the next frame
-  std::vector<Outgoing> pending_;   // arguments of the call in preparation
+  std::span<CodeRoom::SlotState> states_;  // by slot
+  std::vector<Outgoing>& ways_;
+  std::vector<Outgoing>& pending_;
   uint64_t pending_begin_ = ~uint64_t{0};
   uint64_t pending_end_ = 0;
   Results results_;
-  std::vector<Arrival> arrivals_;        // by merge
-  std::vector<bool> arrives_read_only_;  // by merge and its slots
-
-  // Open tries as a tree: an entry is a try inside that of `parent`, with its handler's merge.
-  // 0: none is open.
-  struct Scope {
-    uint32_t parent = 0;
-    uint32_t handler = kNone;
-    uint32_t depth = 0;
-  };
-  std::vector<Scope> scopes_ = {Scope{}};
+  std::vector<Arrival>& arrivals_;
+  std::vector<bool>& arrives_read_only_;
+  std::vector<Scope>& scopes_;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> scope_numbers_;  // by parent and handler
   uint32_t scope_ = 0;
 };
+
+// As scalar_access(), which has the last word: what most operands are is found in a table.
+inline bool CodeVerifier::operand(Class cls, Base base, uint32_t offset, bool write) {
+  if (base == Base::kFrame && offset < frame_.size()) {
+    const uint32_t entry = frame_[offset];
+    if (entry >> kClassShift == number_of(cls)) {
+      CodeRoom::SlotState& state = states_[entry & kNoSlot];
+      if (write) state = {epoch_, 0, false};
+      if (state.written == epoch_) return true;
+    }
+  } else if (base == Base::kSelf && offset < own_.size()) {
+    const uint32_t entry = own_[offset];
+    if (entry == number_of(cls) || (!write && entry == number_of(cls) + kReadOnly)) return true;
+  }
+  return scalar_access({base, offset}, cls, write);
+}
 
 }  // namespace ir::verification

@@ -6,34 +6,63 @@ namespace ir::verification {
 namespace {
 
 constexpr size_t kBytesOfSlot = 64;
+constexpr uint32_t kMostOwnBytes = 2048;
 
 }  // namespace
 
-CodeVerifier::CodeVerifier(const Context& context, uint32_t pou, std::span<const Unit> code)
+CodeVerifier::CodeVerifier(const Context& context, CodeRoom& room, uint32_t pou,
+                           std::span<const Unit> code)
     : context_(context),
       image_(context.image),
       pou_(image_.pous[pou]),
       slots_(pou_.slots),
       globals_begin_(image_.instances[0].data),
       code_(code),
-      written_(pou_.slots.size()),
-      read_only_(pou_.slots.size()),
-      outgoing_(pou_.slots.size()),
-      arrivals_(pou_.merges.size()) {
-  slot_offsets_.reserve(pou_.slots.size());
-  for (const FrameSlot& slot : pou_.slots) slot_offsets_.push_back(slot.offset);
-  list_offsets();
+      room_(room),
+      ways_(room.ways),
+      pending_(room.pending),
+      arrivals_(room.arrivals),
+      arrives_read_only_(room.arrives_read_only),
+      scopes_(room.scopes) {
+  room.slots.assign(slots_.size(), {});
+  states_ = room.slots;
+  ways_.clear();
+  pending_.clear();
+  arrivals_.assign(pou_.merges.size(), {});
+  scopes_.assign(1, Scope{});
+  list_slots();
+  list_own_scalars();
   if (!pou_.merges.empty()) next_merge_unit_ = pou_.merges[0].unit;
 }
 
 // Not of frames that are large without reason: the cost stays linear in the image.
-void CodeVerifier::list_offsets() {
-  if (pou_.frame_size > kBytesOfSlot * slot_offsets_.size()) return;
-  slot_of_.reserve(pou_.frame_size);
-  for (uint32_t i = 0; i < slot_offsets_.size(); ++i) {
-    slot_of_.resize(slot_offsets_[i], i == 0 ? kNone : i - 1);
+void CodeVerifier::list_slots() {
+  std::vector<uint32_t>& frame = room_.frame;
+  frame.clear();
+  if (pou_.frame_size > kBytesOfSlot * slots_.size() || slots_.size() >= kNoSlot) return;
+  frame.resize(pou_.frame_size, kNoSlot);
+  for (uint32_t i = 0; i < slots_.size(); ++i) {
+    const uint32_t end = i + 1 == slots_.size() ? pou_.frame_size : slots_[i + 1].offset;
+    for (uint32_t at = slots_[i].offset; at < end; ++at) frame[at] = i;
+    if (!slots_[i].aggregate && slots_[i].offset < end) {
+      frame[slots_[i].offset] |= number_of(slots_[i].cls) << kClassShift;
+    }
   }
-  slot_of_.resize(pou_.frame_size, static_cast<uint32_t>(slot_offsets_.size() - 1));
+  frame_ = frame;
+}
+
+void CodeVerifier::list_own_scalars() {
+  std::vector<uint8_t>& own = room_.own;
+  own.clear();
+  if (!pou_.self.valid()) return;
+  const std::span<const ScalarPlace> scalars = context_.regions.scalars(pou_.self);
+  if (scalars.empty() || scalars.back().offset >= kMostOwnBytes) return;
+  own.resize(scalars.back().offset + 1);
+  for (const ScalarPlace& scalar : scalars) {
+    const bool read_only = scalar.flags.input || scalar.flags.constant;
+    own[scalar.offset] = static_cast<uint8_t>(number_of(scalar.cls) + (read_only ? kReadOnly : 0));
+  }
+  own_ = own;
 }
 
 bool CodeVerifier::fail(Refusal refusal, const std::string& why) {
@@ -58,17 +87,12 @@ bool CodeVerifier::fail_without_slot(Refusal refusal, Class cls, uint32_t offset
 
 base::Result<CodeFacts> CodeVerifier::run() {
   if (!scan_instructions()) return *error_;
-  for (uint32_t i = 0; i < pou_.slots.size(); ++i) {
-    const FrameSlot& slot = slots_[i];
-    const bool given = slot.kind == SlotKind::kParam &&
-                       (slot.local == LocalKind::kInput || slot.local == LocalKind::kInOut);
-    if (given && !slot.aggregate) mark_written(i, false, 0);
-  }
+  list_parameters();
   for (uint32_t unit = 0; unit < code_.size();) {
     unit_ = unit;
-    const OpcodeRow& row = opcode_row(code_[unit].opcode());
-    if (!step(unit, row)) return *error_;
-    unit += row.extended ? 2 : 1;
+    const OpcodeChecks& checks = checks_[code_[unit].opcode_number()];
+    if (!step(unit, checks)) return *error_;
+    unit += checks.extended ? 2 : 1;
   }
   if (falls_through_) {
     fail(Refusal::kNoReturn, "the code ends without a return");
@@ -82,10 +106,33 @@ base::Result<CodeFacts> CodeVerifier::run() {
   return std::move(facts_);
 }
 
+// What a caller gives is there from the beginning; what he gets must be there at the end.
+void CodeVerifier::list_parameters() {
+  room_.results.clear();
+  for (uint32_t i = 0; i < slots_.size(); ++i) {
+    const FrameSlot& slot = slots_[i];
+    if (slot.kind != SlotKind::kParam || slot.aggregate) continue;
+    switch (slot.local) {
+      case LocalKind::kInput:
+      case LocalKind::kInOut:
+        mark_written(i, false, 0);
+        break;
+      case LocalKind::kOutput:
+      case LocalKind::kReturn:
+        room_.results.push_back(i);
+        break;
+      default:
+        break;
+    }
+  }
+}
+
 // Opcodes, extensions and the merge table; where the loops are.
 bool CodeVerifier::scan_instructions() {
-  std::vector<uint32_t> calls;
-  std::vector<uint32_t> loops;
+  std::vector<uint32_t>& calls = room_.calls;
+  std::vector<uint32_t>& loops = room_.loops;
+  calls.clear();
+  loops.clear();
   for (uint32_t unit = 0; unit < code_.size(); ++unit) {
     const Unit u = code_[unit];
     unit_ = unit;
@@ -94,22 +141,23 @@ bool CodeVerifier::scan_instructions() {
       return fail(Refusal::kBadOpcode, "opcode " + std::to_string(u.opcode_number()));
     }
     const Opcode op = u.opcode();
-    const OpcodeRow& row = opcode_row(op);
-    if (row.calls || op == Opcode::NATIVE) calls.push_back(unit);
+    const OpcodeChecks& checks = checks_[u.opcode_number()];
+    if (checks.calls) calls.push_back(unit);
     // Where a handler begins, no results are left, as behind a call.
     if (op == Opcode::TRY) calls.push_back(unit + 1 + u.bc());
     if (op == Opcode::LOOP) loops.push_back(unit);
     u_ = u;
-    if (row.extended && ++unit == code_.size()) {
+    if (checks.extended && ++unit == code_.size()) {
       unit_ = unit;
       return fail(Refusal::kBadOpcode, "its second unit is missing");
     }
   }
-  std::sort(calls.begin(), calls.end());
-  return check_merges() && find_loops(calls, loops);
+  return check_merges() && find_loops();
 }
 
 bool CodeVerifier::check_merges() {
+  std::vector<uint32_t>& merge_of = room_.merge_of;
+  merge_of.assign(code_.size(), kNone);
   size_t slots = 0;
   for (size_t i = 0; i < pou_.merges.size(); ++i) {
     const Merge& merge = pou_.merges[i];
@@ -122,16 +170,18 @@ bool CodeVerifier::check_merges() {
                         (s == 0 || merge.slots[s - 1] < merge.slots[s]);
       if (!good) return fail(Refusal::kBadTyping, "merge names a slot that it cannot");
     }
+    if (merge.unit < merge_of.size()) merge_of[merge.unit] = static_cast<uint32_t>(i);
     arrivals_[i].slots = slots;
     slots += merge.slots.size();
   }
-  arrives_read_only_.resize(slots);
+  arrives_read_only_.assign(slots, false);
   return true;
 }
 
-bool CodeVerifier::find_loops(const std::vector<uint32_t>& calls,
-                              const std::vector<uint32_t>& loops) {
-  for (const uint32_t loop : loops) {
+bool CodeVerifier::find_loops() {
+  std::vector<uint32_t>& calls = room_.calls;
+  if (!room_.loops.empty()) std::sort(calls.begin(), calls.end());
+  for (const uint32_t loop : room_.loops) {
     unit_ = loop;
     u_ = code_[unit_];
     const uint32_t head = merge_at(unit_ + 1 + u_.bc());
@@ -145,22 +195,31 @@ bool CodeVerifier::find_loops(const std::vector<uint32_t>& calls,
   return true;
 }
 
-uint32_t CodeVerifier::merge_at(uint32_t unit) const {
-  const auto found = std::lower_bound(pou_.merges.begin(), pou_.merges.end(), unit,
-                                      [](const Merge& m, uint32_t at) { return m.unit < at; });
-  if (found == pou_.merges.end() || found->unit != unit) return kNone;
-  return static_cast<uint32_t>(found - pou_.merges.begin());
+// Fields that an instruction does not use are zero, and no operand has a base that
+// the interpreter lacks (V3).
+inline bool CodeVerifier::check_unused(const OpcodeChecks& checks) {
+  const uint32_t bases = u_.op >> 10;
+  if ((checks.bases >> bases & 1) == 0) {
+    return fail(Refusal::kBadOpcode, "an operand has a base that it cannot have");
+  }
+  const uint64_t bits = (bits_of(u_) & checks.first) | (bits_of(extension_) & checks.second);
+  return bits == 0 || fail(Refusal::kBadOpcode, "a field that it does not use is not zero");
 }
 
-bool CodeVerifier::step(uint32_t unit, const OpcodeRow& row) {
+bool CodeVerifier::step(uint32_t unit, const OpcodeChecks& checks) {
   u_ = code_[unit];
   if (unit <= table_end_ && !check_table(unit)) return false;
   if (unit >= next_merge_unit_ && !enter_merge(unit)) return false;
   if (!falls_through_) return fail(Refusal::kUnreachable, "nothing leads here");
-  const uint32_t next = unit + (row.extended ? 2 : 1);
-  extension_ = row.extended ? code_[unit + 1] : Unit{};
-  if (!check_unused(row)) return false;
-  falls_through_ = !row.ends;
+  extension_ = checks.extended ? code_[unit + 1] : Unit{};
+  if (!check_unused(checks)) return false;
+  falls_through_ = !checks.ends;
+  if (checks.plain) return plain(checks);
+  return control(unit + (checks.extended ? 2 : 1));
+}
+
+// Or what is none, then special().
+bool CodeVerifier::control(uint32_t next) {
   switch (u_.opcode()) {
     case Opcode::JMP:
       return jump(next, false);
@@ -168,12 +227,12 @@ bool CodeVerifier::step(uint32_t unit, const OpcodeRow& row) {
       return jump(next, true);
     case Opcode::JT:
     case Opcode::JF:
-      return near_operand(row.a, u_.base_a(), u_.a, false) && jump(next, false);
+      return operand(Class::kB, u_.base_a(), u_.a, false) && jump(next, false);
     case Opcode::SWITCH_8:
     case Opcode::SWITCH_16:
     case Opcode::SWITCH_32:
     case Opcode::SWITCH_64:
-      return check_switch(row, next);
+      return check_switch(next);
     case Opcode::TRY:
       return check_try(next);
     case Opcode::END_TRY:
@@ -181,7 +240,7 @@ bool CodeVerifier::step(uint32_t unit, const OpcodeRow& row) {
     case Opcode::RET:
       return check_return();
     default:
-      return special(row);
+      return special(opcode_row(u_.opcode()));
   }
 }
 
@@ -222,14 +281,15 @@ bool CodeVerifier::arrive(uint32_t number, bool backwards) {
   for (size_t i = 0; i < merge.slots.size(); ++i) {
     const uint16_t slot = merge.slots[i];
     const auto name = [&] { return "slot at " + std::to_string(slots_[slot].offset); };
-    if (!is_written(slot) || outgoing_[slot] != 0) {
+    const CodeRoom::SlotState& state = states_[slot];
+    if (state.written != epoch_ || state.outgoing != 0) {
       return fail(Refusal::kBadTyping,
                   name() + " holds no value for the merge at unit " + std::to_string(merge.unit));
     }
-    if (backwards && read_only_[slot] && !arrives_read_only_[arrival.slots + i]) {
+    if (backwards && state.read_only && !arrives_read_only_[arrival.slots + i]) {
       return fail(Refusal::kBadTyping, name() + " is read-only in a later turn of the loop");
     }
-    if (!backwards && read_only_[slot]) arrives_read_only_[arrival.slots + i] = true;
+    if (!backwards && state.read_only) arrives_read_only_[arrival.slots + i] = true;
   }
   if (backwards) {
     if (arrival.results.of != ResultsOf::kNobody && arrival.results != results_) {
@@ -258,7 +318,8 @@ bool CodeVerifier::jump(uint32_t next, bool backwards) {
   return arrive(merge, backwards);
 }
 
-bool CodeVerifier::check_switch(const OpcodeRow& row, uint32_t next) {
+bool CodeVerifier::check_switch(uint32_t next) {
+  const OpcodeRow& row = opcode_row(u_.opcode());
   if (!near_operand(row.b, u_.base_b(), u_.b, false)) return false;
   const uint32_t entries = extension_.y();
   const uint32_t bits = 8 * class_size(row.b.cls);
@@ -284,26 +345,28 @@ bool CodeVerifier::check_table(uint32_t unit) {
 bool CodeVerifier::check_return() {
   if (!end_of_arguments("the return")) return false;
   if (scope_ != 0) return fail(Refusal::kBadJump, "returns while a try is open");
-  for (uint32_t i = 0; i < pou_.slots.size(); ++i) {
-    const FrameSlot& slot = slots_[i];
-    const bool result = slot.kind == SlotKind::kParam && !slot.aggregate &&
-                        (slot.local == LocalKind::kOutput || slot.local == LocalKind::kReturn);
-    if (result && !is_written(i)) {
-      return fail(Refusal::kBadCall, "result `" + slot.name + "` has not been written");
-    }
+  for (const uint32_t slot : room_.results) {
+    if (is_written(slot)) continue;
+    return fail(Refusal::kBadCall, "result `" + slots_[slot].name + "` has not been written");
   }
   return true;
 }
 
-base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou) {
+base::Result<CodeFacts> verify_code(const Context& context, CodeRoom& room, uint32_t pou) {
   const LinkedPou& row = context.image.pous[pou];
-  return verify_code(context, pou,
-                     std::span(context.image.code).subspan(row.first_unit, row.unit_count));
+  const auto code = std::span(context.image.code).subspan(row.first_unit, row.unit_count);
+  return CodeVerifier(context, room, pou, code).run();
+}
+
+base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou) {
+  CodeRoom room;
+  return verify_code(context, room, pou);
 }
 
 base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou,
                                     std::span<const Unit> code) {
-  return CodeVerifier(context, pou, code).run();
+  CodeRoom room;
+  return CodeVerifier(context, room, pou, code).run();
 }
 
 }  // namespace ir::verification

@@ -124,7 +124,8 @@ bool CodeVerifier::check_call() {
 bool CodeVerifier::pass_arguments(uint32_t pou) {
   const LinkedPou& callee = image_.pous[pou];
   facts_.parameters_of.push_back(pou);
-  std::vector<bool> given(callee.slots.size());
+  std::vector<bool>& given = room_.given;
+  given.assign(callee.slots.size(), false);
   for (const Outgoing& out : pending_) {
     const FrameSlot* slot = callee_slot(callee, out.offset);
     if (slot == nullptr || !fits(out, *slot)) {

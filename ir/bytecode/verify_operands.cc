@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <cstring>
 
 #include "base/limits.h"
 #include "ir/bytecode/verify_code.h"
@@ -10,68 +8,17 @@ namespace {
 
 std::string at_text(uint32_t offset) { return " at offset " + std::to_string(offset); }
 
-uint64_t bits_of(const Unit& unit) {
-  uint64_t bits;
-  std::memcpy(&bits, &unit, sizeof bits);
-  return bits;
-}
-
-// What an instruction leaves unused: bits that are zero, and which bases it may have, as a bit for
-// each value of the three fields together.
-struct Unused {
-  uint64_t bases = 0;
-  uint64_t first = 0;
-  uint64_t second = 0;
-};
-
-Unused unused_of(const OpcodeRow& row) {
-  const auto mask = [](const Field& field) {
-    const bool unused = field.kind == FieldKind::kNone || field.kind == FieldKind::kBase;
-    return unused ? uint16_t{0xffff} : uint16_t{0};
-  };
-  const bool wide = row.b.kind == FieldKind::kBc32 || row.b.kind == FieldKind::kRel32;
-  Unused out;
-  out.first = bits_of({0, mask(row.a), mask(row.b), wide ? uint16_t{0} : mask(row.c)});
-  const auto extension = [](const Field& field) {
-    return field.kind == FieldKind::kNone ? 0xffffffffu : 0u;
-  };
-  out.second = bits_of(Unit::extension(extension(row.x), extension(row.y)));
-  for (uint32_t bases = 0; bases < 64; ++bases) {
-    const auto base = [&](uint32_t field) { return static_cast<Base>(bases >> 2 * field & 3); };
-    const bool allowed = row.a.allows(base(0)) && row.b.allows(base(1)) && row.c.allows(base(2));
-    out.bases |= uint64_t{allowed} << bases;
-  }
-  return out;
-}
-
-const Unused& unused_of(Opcode op) {
-  static const std::array<Unused, kOpcodeCount> kRows = [] {
-    std::array<Unused, kOpcodeCount> rows;
-    for (uint32_t i = 0; i < kOpcodeCount; ++i) {
-      rows[i] = unused_of(opcode_row(static_cast<Opcode>(i)));
-    }
-    return rows;
-  }();
-  return kRows[static_cast<size_t>(op)];
-}
-
 }  // namespace
 
-// Fields that an instruction does not use are zero, and no operand has a base that
-// the interpreter lacks (V3).
-bool CodeVerifier::check_unused(const OpcodeRow& row) {
-  const Unused& unused = unused_of(u_.opcode());
-  const uint32_t bases = u_.op >> 10;
-  if ((unused.bases >> bases & 1) == 0) {
-    return fail(Refusal::kBadOpcode, "an operand has a base that it cannot have");
-  }
-  const bool zero = (bits_of(u_) & unused.first) == 0 &&
-                    (!row.extended || (bits_of(extension_) & unused.second) == 0);
-  return zero || fail(Refusal::kBadOpcode, "a field that it does not use is not zero");
-}
-
-bool CodeVerifier::near_operand(const Field& field, Base base, uint32_t offset, bool write) {
-  return scalar_access({base, offset}, field.cls, write);
+// Reads come before writes.
+bool CodeVerifier::plain(const OpcodeChecks& checks) {
+  const OperandCheck& a = checks.a;
+  const OperandCheck& b = checks.b;
+  const OperandCheck& c = checks.c;
+  return (!b.reads || operand(b.cls, u_.base_b(), u_.b, false)) &&
+         (!c.reads || operand(c.cls, u_.base_c(), u_.c, false)) &&
+         (!a.reads || operand(a.cls, u_.base_a(), u_.a, false)) &&
+         (!a.writes || operand(a.cls, u_.base_a(), u_.a, true));
 }
 
 bool CodeVerifier::scalar_access(Place place, Class cls, bool write) {
@@ -155,14 +102,20 @@ bool CodeVerifier::pool_scalar(uint32_t offset, Class cls) {
 }
 
 uint32_t CodeVerifier::slot_at(uint32_t offset) const {
-  if (offset < slot_of_.size()) return slot_of_[offset];
-  const auto behind = std::upper_bound(slot_offsets_.begin(), slot_offsets_.end(), offset);
-  return behind == slot_offsets_.begin()
-             ? kNone
-             : static_cast<uint32_t>(behind - slot_offsets_.begin() - 1);
+  if (offset < frame_.size()) {
+    const uint32_t slot = frame_[offset] & kNoSlot;
+    return slot == kNoSlot ? kNone : slot;
+  }
+  const auto behind =
+      std::upper_bound(slots_.begin(), slots_.end(), offset,
+                       [](uint32_t at, const FrameSlot& slot) { return at < slot.offset; });
+  return behind == slots_.begin() ? kNone : static_cast<uint32_t>(behind - slots_.begin() - 1);
 }
 
 uint32_t CodeVerifier::scalar_slot(uint32_t offset, Class cls) const {
+  if (offset < frame_.size()) {
+    return frame_[offset] >> kClassShift == number_of(cls) ? frame_[offset] & kNoSlot : kNone;
+  }
   const uint32_t slot = slot_at(offset);
   if (slot == kNone) return kNone;
   const FrameSlot& s = slots_[slot];
@@ -170,9 +123,7 @@ uint32_t CodeVerifier::scalar_slot(uint32_t offset, Class cls) const {
 }
 
 void CodeVerifier::mark_written(uint32_t slot, bool read_only, uint32_t outgoing) {
-  written_[slot] = epoch_;
-  read_only_[slot] = read_only;
-  outgoing_[slot] = outgoing;
+  states_[slot] = {epoch_, outgoing, read_only};
 }
 
 bool CodeVerifier::frame_scalar(uint32_t offset, Class cls, bool write) {
@@ -203,7 +154,7 @@ std::optional<Pointer> CodeVerifier::read_pointer(uint32_t offset, Class cls) {
     fail_at(Refusal::kReadBeforeWrite, "the slot", offset, " holds no value yet");
     return std::nullopt;
   }
-  return Pointer{slots_[slot].region, read_only_[slot], outgoing_[slot]};
+  return Pointer{slots_[slot].region, states_[slot].read_only, states_[slot].outgoing};
 }
 
 bool CodeVerifier::write_pointer(uint32_t offset, Class cls, const Pointer& pointer) {

@@ -69,6 +69,8 @@ struct CodeFacts {
   uint32_t bounds_end = 0;              // numbers of bounds are below
   uint32_t ranges_end = 0;
 };
+struct CodeRoom;  // verify_code.h
+base::Result<CodeFacts> verify_code(const Context& context, CodeRoom& room, uint32_t pou);
 base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou);
 // Of other code in its place (pou_version.h).
 base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou,
