@@ -70,7 +70,8 @@ class ByteWriter {
 
 class ByteReader {
  public:
-  explicit ByteReader(ByteSpan bytes) : bytes_(bytes) {}
+  explicit ByteReader(ByteSpan bytes)
+      : begin_(bytes.data()), at_(begin_), end_(begin_ + bytes.size()) {}
 
   uint8_t u8() { return fixed<uint8_t>(); }
   uint16_t u16() { return fixed<uint16_t>(); }
@@ -87,7 +88,7 @@ class ByteReader {
       fail();
       return {};
     }
-    ByteSpan out = bytes_.subspan(at_, n);
+    const ByteSpan out(at_, n);
     at_ += n;
     return out;
   }
@@ -116,11 +117,14 @@ class ByteReader {
     }
     return static_cast<E>(v);
   }
-  void fail() { failed_ = true; }
+  void fail() {
+    failed_ = true;
+    end_ = at_;  // nothing is left
+  }
   bool failed() const { return failed_; }
-  size_t left() const { return failed_ ? 0 : bytes_.size() - at_; }
-  size_t at() const { return at_; }
-  bool done() const { return !failed_ && at_ == bytes_.size(); }
+  size_t left() const { return static_cast<size_t>(end_ - at_); }
+  size_t at() const { return static_cast<size_t>(at_ - begin_); }
+  bool done() const { return !failed_ && at_ == end_; }
 
  private:
   template <class T>
@@ -130,12 +134,13 @@ class ByteReader {
       fail();
       return T{};
     }
-    std::memcpy(&v, bytes_.data() + at_, sizeof v);
+    std::memcpy(&v, at_, sizeof v);
     at_ += sizeof v;
     return v;
   }
-  ByteSpan bytes_;
-  size_t at_ = 0;
+  const uint8_t* begin_;
+  const uint8_t* at_;
+  const uint8_t* end_;
   bool failed_ = false;
 };
 

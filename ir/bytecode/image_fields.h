@@ -3,6 +3,8 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.h"
@@ -32,10 +34,6 @@ class ImageWriter {
     raw(v);
   }
   void operator()(const base::Digest& v) { raw(v); }
-  void operator()(const std::vector<Unit>& v) {
-    count(v.size());
-    raw({reinterpret_cast<const uint8_t*>(v.data()), v.size() * sizeof(Unit)});
-  }
   template <class Tag>
   void operator()(const base::Id<Tag>& v) {
     number(v.index);
@@ -53,6 +51,17 @@ class ImageWriter {
   template <class T, class Each>
   void list(const base::SharedVector<T>& v, size_t min_size, Each&& each) {
     list(v.all(), min_size, each);
+  }
+  // Records that are stored as they lie in memory.
+  template <class T>
+  void plain_list(const std::vector<T>& v) {
+    static_assert(std::has_unique_object_representations_v<T>);
+    count(v.size());
+    raw({reinterpret_cast<const uint8_t*>(v.data()), v.size() * sizeof(T)});
+  }
+  template <class T>
+  void plain_list(const base::SharedVector<T>& v) {
+    plain_list(v.all());
   }
   // `bytes`: of the same value in another version.
   template <class V>
@@ -105,6 +114,16 @@ class ImageWriter {
 };
 
 class ImageReader {
+  template <class T>
+  struct Stored {  // at any address
+    uint8_t bytes[sizeof(T)];
+    operator T() const {  // NOLINT: that is what it is
+      T v;
+      std::memcpy(&v, bytes, sizeof v);
+      return v;
+    }
+  };
+
  public:
   // `content`: all that `in` reads.
   ImageReader(base::ByteReader& in, base::ByteSpan content) : in_(in), content_(content) {}
@@ -125,11 +144,6 @@ class ImageReader {
   void operator()(base::Digest& v) {
     const base::ByteSpan bytes = in_.raw(v.size());
     std::copy(bytes.begin(), bytes.end(), v.begin());
-  }
-  void operator()(std::vector<Unit>& v) {
-    const base::ByteSpan bytes = in_.raw(size_t{in_.count(sizeof(Unit))} * sizeof(Unit));
-    v.resize(bytes.size() / sizeof(Unit));
-    if (!bytes.empty()) std::memcpy(v.data(), bytes.data(), bytes.size());
   }
   template <class Tag>
   void operator()(base::Id<Tag>& v) {
@@ -153,6 +167,19 @@ class ImageReader {
     list(all, min_size, each);
     v = std::move(all);
   }
+  template <class T>
+  void plain_list(std::vector<T>& v) {
+    const auto count = in_.count(sizeof(T));
+    const base::ByteSpan bytes = in_.raw(size_t{count} * sizeof(T));
+    const auto* const first = reinterpret_cast<const Stored<T>*>(bytes.data());
+    if (!bytes.empty()) v.assign(first, first + count);  // not made empty first, as by resize()
+  }
+  template <class T>
+  void plain_list(base::SharedVector<T>& v) {
+    std::vector<T> all;
+    plain_list(all);
+    v = std::move(all);
+  }
   // `bytes`: of `known` in another version. The same bytes are the same value.
   template <class V>
   bool shares(V& v, const V& known, base::ByteSpan bytes) {
@@ -168,10 +195,11 @@ class ImageReader {
     return true;
   }
   size_t at() const { return in_.at(); }
-  // A list that goes elsewhere: one after the other.
-  template <class Each>
-  void each(size_t min_size, Each each) {
-    for (uint32_t left = in_.count(min_size); left != 0 && !in_.failed(); --left) each();
+  // A list that goes into `table`, one after the other.
+  template <class Table, class Each>
+  void each(size_t min_size, Table& table, Each each) {
+    uint32_t left = in_.count(min_size);
+    for (table.reserve(table.size() + left); left != 0 && !in_.failed(); --left) each();
   }
 
  private:
@@ -236,7 +264,7 @@ template <class Archive, class T>
 void layout_fields(Archive& a, T& v) {
   a(v.size);
   a(v.align);
-  a.list(v.member_offsets, 4, a);
+  a.plain_list(v.member_offsets);
   a(v.used);
   a(v.area_capacity);
 }
@@ -279,15 +307,12 @@ template <class Archive, class T>
 void merges_of(Archive& a, T& v) {
   a.list(v, 8, [&](auto& merge) {
     a(merge.unit);
-    a.list(merge.slots, 2, a);
+    a.plain_list(merge.slots);
   });
 }
 template <class Archive, class T>
 void lines_of(Archive& a, T& v) {
-  a.list(v, 8, [&](auto& line) {
-    a(line.unit);
-    a(line.line);
-  });
+  a.plain_list(v);
 }
 
 template <class Archive, class T>
@@ -318,7 +343,7 @@ void task_fields(Archive& a, T& v) {
   a(v.watchdog_ns);
   a(v.priority);
   a(v.event);
-  a.list(v.programs, 4, a);
+  a.plain_list(v.programs);
   a(v.once);
   a.enumerator(v.policy.io, 2);
   a.enumerator(v.policy.input_buffer, 5);

@@ -87,7 +87,7 @@ inline void types_section(ImageReader& a, TypeTable& types) {
   std::vector<std::string> old_names;
   a.list(old_names, 4, a);
   types.set_old_names(std::move(old_names));
-  a.each(54, [&] {
+  a.each(54, types, [&] {
     Type type;
     type_fields(a, type);
     add_type(types, std::move(type));
@@ -100,7 +100,7 @@ inline void constants_section(ImageWriter& a, const ConstTable& constants) {
 }
 
 inline void constants_section(ImageReader& a, ConstTable& constants) {
-  a.each(16, [&] {
+  a.each(16, constants, [&] {
     ConstValue value;
     constant_fields(a, value);
     constants.add(std::move(value));
@@ -225,7 +225,7 @@ void section(Archive& a, I& image, uint32_t number, const Beside& beside) {
     case 4:
       return pous_section(a, image, beside);
     case 5:
-      return a(image.code);
+      return a.plain_list(image.code);
     case 6:
       return tables_section(a, image, beside);
     case 7:

@@ -40,6 +40,7 @@ class ConstTable {
   ConstId scalar(uint64_t bits) { return add({bits, {}, {}}); }
   const ConstValue& operator[](ConstId id) const { return values_[id.index]; }
   uint32_t size() const { return static_cast<uint32_t>(values_.size()); }
+  void reserve(uint32_t count) { values_.reserve(count); }
   bool contains(ConstId id) const { return id.index < values_.size(); }
 
  private:

@@ -197,6 +197,7 @@ class TypeTable {
   bool came_in_turn(uint32_t end) const { return in_turn_ && next_in_turn_ == end; }
 
   uint32_t size() const { return static_cast<uint32_t>(types_.size()); }
+  void reserve(uint32_t count) { types_.reserve(count); }
   bool contains(TypeId id) const { return id.index < types_.size(); }
 
   // Elementary or a reference, at any depth of subrange or enumeration?

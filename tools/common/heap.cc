@@ -39,7 +39,7 @@ void expect_pieces(size_t bytes) {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   mallopt(M_TOP_PAD, static_cast<int>(bytes));
   void* const first = std::malloc(1 << 20);  // more than is left: the heap grows by all of it
-  mallopt(M_TOP_PAD, 128 << 10);
+  mallopt(M_TOP_PAD, 1 << 20);  // of heaps of other threads: what a system call gives at once
   const auto at = reinterpret_cast<uintptr_t>(first);
   const uintptr_t begin = (at + kLargePage - 1) / kLargePage * kLargePage;
   const auto end = reinterpret_cast<uintptr_t>(::sbrk(0));
