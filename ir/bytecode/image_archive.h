@@ -1,0 +1,211 @@
+// The two archives of images (image_fields.h): one writes fields, the other reads them.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/bytes.h"
+#include "ir/bytecode/image.h"
+
+namespace ir {
+
+// As base::ByteWriter; the fields of a large image are many, so they are gathered first.
+class ImageWriter {
+ public:
+  // `expected` bytes, or some more: what is not written takes no memory.
+  explicit ImageWriter(size_t expected) { bytes_.reserve(expected); }
+  ImageWriter(const ImageWriter&) = delete;
+  ImageWriter& operator=(const ImageWriter&) = delete;
+  void operator()(const bool& v) { number(static_cast<uint8_t>(v ? 1 : 0)); }
+  void operator()(const uint8_t& v) { number(v); }
+  void operator()(const uint16_t& v) { number(v); }
+  void operator()(const uint32_t& v) { number(v); }
+  void operator()(const uint64_t& v) { number(v); }
+  void operator()(const int64_t& v) { number(v); }
+  void operator()(const std::string& v) {
+    count(v.size());
+    raw(base::as_bytes(v));
+  }
+  void operator()(const base::Bytes& v) {
+    count(v.size());
+    raw(v);
+  }
+  void operator()(const base::Digest& v) { raw(v); }
+  template <class Tag>
+  void operator()(const base::Id<Tag>& v) {
+    number(v.index);
+  }
+  template <class E>
+  void enumerator(const E& v, uint32_t) {
+    number(static_cast<uint8_t>(v));
+  }
+  // `min_size`: bytes of the smallest record.
+  template <class T, class Each>
+  void list(const std::vector<T>& v, size_t, Each&& each) {
+    count(v.size());
+    for (const T& item : v) each(item);
+  }
+  template <class T, class Each>
+  void list(const base::SharedVector<T>& v, size_t min_size, Each&& each) {
+    list(v.all(), min_size, each);
+  }
+  // Records that are stored as they lie in memory.
+  template <class T>
+  void plain_list(const std::vector<T>& v) {
+    static_assert(std::has_unique_object_representations_v<T>);
+    count(v.size());
+    raw({reinterpret_cast<const uint8_t*>(v.data()), v.size() * sizeof(T)});
+  }
+  template <class T>
+  void plain_list(const base::SharedVector<T>& v) {
+    plain_list(v.all());
+  }
+  // `bytes`: of the same value in another version.
+  template <class V>
+  bool shares(const V& v, const V& known, base::ByteSpan bytes) {
+    if (!v.is_one_with(known)) return false;
+    raw(bytes);
+    return true;
+  }
+
+  void raw(base::ByteSpan v) {
+    if (v.size() > sizeof gathered_ - used_) flush();
+    if (v.size() > sizeof gathered_) {
+      bytes_.insert(bytes_.end(), v.begin(), v.end());
+    } else if (!v.empty()) {
+      std::memcpy(gathered_ + used_, v.data(), v.size());
+      used_ += v.size();
+    }
+  }
+  size_t size() const { return bytes_.size() + used_; }
+  // The same, from the beginning of the section.
+  size_t at() const { return size() - section_; }
+  void begin_section() { section_ = size(); }
+  // What was written before.
+  void patch_u32(size_t at, uint32_t v) {
+    flush();
+    std::memcpy(bytes_.data() + at, &v, sizeof v);
+  }
+  base::Bytes take() {
+    flush();
+    return std::move(bytes_);
+  }
+
+ private:
+  void count(size_t n) { number(static_cast<uint32_t>(n)); }
+  template <class T>
+  [[gnu::always_inline]] void number(T v) {
+    if (sizeof v > sizeof gathered_ - used_) flush();
+    std::memcpy(gathered_ + used_, &v, sizeof v);
+    used_ += sizeof v;
+  }
+  void flush() {
+    bytes_.insert(bytes_.end(), gathered_, gathered_ + used_);
+    used_ = 0;
+  }
+
+  base::Bytes bytes_;
+  uint8_t gathered_[4096];
+  size_t used_ = 0;     // of these
+  size_t section_ = 0;  // where it began
+};
+
+class ImageReader {
+  template <class T>
+  struct Stored {  // at any address
+    uint8_t bytes[sizeof(T)];
+    operator T() const {  // NOLINT: that is what it is
+      T v;
+      std::memcpy(&v, bytes, sizeof v);
+      return v;
+    }
+  };
+
+ public:
+  // `content`: all that `in` reads.
+  ImageReader(base::ByteReader& in, base::ByteSpan content) : in_(in), content_(content) {}
+  void operator()(bool& v) { v = in_.boolean(); }
+  void operator()(uint8_t& v) { v = in_.u8(); }
+  void operator()(uint16_t& v) { v = in_.u16(); }
+  void operator()(uint32_t& v) { v = in_.u32(); }
+  void operator()(uint64_t& v) { v = in_.u64(); }
+  void operator()(int64_t& v) { v = in_.i64(); }
+  void operator()(std::string& v) {
+    const base::ByteSpan bytes = in_.blob();
+    if (!bytes.empty()) v.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  }
+  void operator()(base::Bytes& v) {
+    const base::ByteSpan bytes = in_.blob();
+    v.assign(bytes.begin(), bytes.end());
+  }
+  void operator()(base::Digest& v) {
+    const base::ByteSpan bytes = in_.raw(v.size());
+    std::copy(bytes.begin(), bytes.end(), v.begin());
+  }
+  template <class Tag>
+  void operator()(base::Id<Tag>& v) {
+    v = base::Id<Tag>(in_.u32());
+  }
+  template <class E>
+  void enumerator(E& v, uint32_t limit) {
+    v = in_.enumerator<E>(limit);
+  }
+  template <class T, class Each>
+  void list(std::vector<T>& v, size_t min_size, Each each) {
+    v.resize(in_.count(min_size));
+    for (T& item : v) {
+      if (in_.failed()) return;
+      each(item);
+    }
+  }
+  template <class T, class Each>
+  void list(base::SharedVector<T>& v, size_t min_size, Each each) {
+    std::vector<T> all;
+    list(all, min_size, each);
+    v = std::move(all);
+  }
+  template <class T>
+  void plain_list(std::vector<T>& v) {
+    const auto count = in_.count(sizeof(T));
+    const base::ByteSpan bytes = in_.raw(size_t{count} * sizeof(T));
+    const auto* const first = reinterpret_cast<const Stored<T>*>(bytes.data());
+    if (!bytes.empty()) v.assign(first, first + count);  // not made empty first, as by resize()
+  }
+  template <class T>
+  void plain_list(base::SharedVector<T>& v) {
+    std::vector<T> all;
+    plain_list(all);
+    v = std::move(all);
+  }
+  // `bytes`: of `known` in another version. The same bytes are the same value.
+  template <class V>
+  bool shares(V& v, const V& known, base::ByteSpan bytes) {
+    if (!takes(bytes)) return false;
+    v = known;
+    return true;
+  }
+  // Behind bytes that are these; else where it was.
+  bool takes(base::ByteSpan bytes) {
+    if (in_.left() < bytes.size()) return false;
+    if (!std::equal(bytes.begin(), bytes.end(), content_.begin() + in_.at())) return false;
+    in_.raw(bytes.size());
+    return true;
+  }
+  size_t at() const { return in_.at(); }
+  // A list that goes into `table`, one after the other.
+  template <class Table, class Each>
+  void each(size_t min_size, Table& table, Each each) {
+    uint32_t left = in_.count(min_size);
+    for (table.reserve(table.size() + left); left != 0 && !in_.failed(); --left) each();
+  }
+
+ private:
+  base::ByteReader& in_;
+  base::ByteSpan content_;
+};
+
+}  // namespace ir
