@@ -224,6 +224,10 @@ base::ByteSpan section_of(base::ByteSpan encoded, ImageSection section) {
   return in.failed() ? base::ByteSpan() : content;
 }
 
+base::ByteSpan sealed_part(base::ByteSpan encoded) {
+  return encoded.subspan(std::min(kHeaderBytes, encoded.size()));
+}
+
 size_t layout_end(base::ByteSpan encoded) {
   const base::ByteSpan last = section_of(encoded, ImageSection::kLayouts);
   if (last.data() == nullptr) return encoded.size();

@@ -21,5 +21,7 @@ enum class ImageSection : uint8_t {
 };
 // Its content; empty when the image is cut off before its end.
 base::ByteSpan section_of(base::ByteSpan encoded, ImageSection section);
+// What digest() is the SHA-256 of in a sound image; empty when there is not even a header.
+base::ByteSpan sealed_part(base::ByteSpan encoded);
 
 }  // namespace ir

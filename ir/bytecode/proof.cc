@@ -59,7 +59,7 @@ Likeness::Likeness(const Proof* like, base::ByteSpan encoded, const Image& image
   if (like_ == nullptr) return;
   const Image& known = like_->image;
   const auto same = [&](ImageSection section) {
-    return same_section(like_->encoded, encoded, section);
+    return same_section(*like_->encoded, encoded, section);
   };
   types_ = known.globals == image_.globals &&
            (known.types.is_one_with(image_.types) || same(ImageSection::kTypes)) &&

@@ -17,7 +17,7 @@
 namespace ir::verification {
 
 struct Proof {
-  base::Bytes encoded;
+  std::shared_ptr<const base::Bytes> encoded;
   Image image;  // the same, decoded
   ImagePlaces places;
   std::shared_ptr<const std::vector<TypeFacts>> types;
@@ -26,7 +26,8 @@ struct Proof {
 };
 
 // All rules, without those whose answer `like` knows; null: it knows none.
-base::Result<std::shared_ptr<const Proof>> prove(base::Bytes encoded, const Proof* like);
+base::Result<std::shared_ptr<const Proof>> prove(std::shared_ptr<const base::Bytes> encoded,
+                                                 const Proof* like);
 
 // What an image has in common with one that was proven. Borrows both.
 class Likeness {

@@ -63,7 +63,7 @@ class Proofs {
     for (const auto& row : rows_) {
       std::shared_ptr<const verification::Proof> proof = row.lock();
       if (proof == nullptr) continue;
-      if (section_of(proof->encoded, ImageSection::kTypes).size() == types) return proof;
+      if (section_of(*proof->encoded, ImageSection::kTypes).size() == types) return proof;
     }
     return nullptr;
   }
@@ -87,17 +87,18 @@ Proofs& proofs() {
 
 namespace verification {
 
-base::Result<std::shared_ptr<const Proof>> prove(base::Bytes encoded, const Proof* like) {
+base::Result<std::shared_ptr<const Proof>> prove(std::shared_ptr<const base::Bytes> encoded,
+                                                 const Proof* like) {
   std::optional<KnownImage> known;
-  if (like != nullptr) known.emplace(KnownImage{like->image, like->encoded, like->places});
-  base::Result<DecodedImage> decoded = decode(encoded, known ? &*known : nullptr);
+  if (like != nullptr) known.emplace(KnownImage{like->image, *like->encoded, like->places});
+  base::Result<DecodedImage> decoded = decode(*encoded, known ? &*known : nullptr);
   if (!decoded) return decoded.error();
   auto proof = std::make_shared<Proof>();
   proof->encoded = std::move(encoded);
   proof->image = std::move(decoded->image);
   proof->places = std::move(decoded->places);
   const Image& image = proof->image;
-  const Likeness likeness(like, proof->encoded, image);
+  const Likeness likeness(like, *proof->encoded, image);
   if (likeness.types()) {
     proof->types = like->types;
   } else {
@@ -129,7 +130,11 @@ base::Result<std::shared_ptr<const Proof>> prove(base::Bytes encoded, const Proo
 }  // namespace verification
 
 base::Result<VerifiedImage> verify(base::Bytes encoded) {
-  const std::shared_ptr<const verification::Proof> like = proofs().like(encoded);
+  return verify(std::make_shared<const base::Bytes>(std::move(encoded)));
+}
+
+base::Result<VerifiedImage> verify(std::shared_ptr<const base::Bytes> encoded) {
+  const std::shared_ptr<const verification::Proof> like = proofs().like(*encoded);
   auto proven = verification::prove(std::move(encoded), like.get());
   if (!proven) return proven.error();
   const std::shared_ptr<const verification::Proof>& proof = *proven;
@@ -137,8 +142,8 @@ base::Result<VerifiedImage> verify(base::Bytes encoded) {
   VerifiedImage verified;
   verified.image_ = {proof, &proof->image};
   verified.output_writers_ = {proof, &proof->writers};
-  verified.encoded_ = {proof, &proof->encoded};
-  verified.digest_ = digest(proof->encoded);
+  verified.encoded_ = proof->encoded;
+  verified.digest_ = digest(*proof->encoded);
   return verified;
 }
 

@@ -30,7 +30,7 @@ class VerifiedImage {
   const std::vector<OutputWriter>& output_writers() const { return *output_writers_; }
 
  private:
-  friend base::Result<VerifiedImage> verify(base::Bytes encoded);
+  friend base::Result<VerifiedImage> verify(std::shared_ptr<const base::Bytes> encoded);
   VerifiedImage() = default;
   std::shared_ptr<const Image> image_;
   std::shared_ptr<const base::Bytes> encoded_;
@@ -40,5 +40,7 @@ class VerifiedImage {
 
 // Keeps `encoded`. Cost: linear in its size.
 base::Result<VerifiedImage> verify(base::Bytes encoded);
+// The same bytes, also for whoever else has them.
+base::Result<VerifiedImage> verify(std::shared_ptr<const base::Bytes> encoded);
 
 }  // namespace ir

@@ -85,7 +85,9 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy,
   if (package->base != running) return stale_base(package->base, running);
   state_ = State::kStaged;
   if (interrupted()) return abandoned("when it was received");
-  base::Result<ir::VerifiedImage> image = ir::verify(std::move(package->image));
+  auto received = std::make_shared<const base::Bytes>(std::move(package->image));
+  if (received_) received_(received);
+  base::Result<ir::VerifiedImage> image = ir::verify(std::move(received));
   if (!image.ok()) return image.error();
   state_ = State::kVerified;
   if (interrupted()) return abandoned("when it was verified");

@@ -101,6 +101,10 @@ class Change {
   void set_interruption(std::function<bool()> interrupted) {
     interrupted_ = std::move(interrupted);
   }
+  // Told of the image that stage() has received, before it is verified: whoever takes it may store
+  // it meanwhile, and shares its bytes. Nothing is known of them yet.
+  using Received = std::function<void(std::shared_ptr<const base::Bytes> image)>;
+  void set_received(Received received) { received_ = std::move(received); }
 
  private:
   struct Pending;
@@ -142,6 +146,7 @@ class Change {
   std::unique_ptr<Standby> retired_area_;
   std::unique_ptr<Pending> retired_pending_;  // freed by collect(), not at a boundary
   std::function<bool()> interrupted_;
+  Received received_;
 };
 
 }  // namespace online_change

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "base/large_pages.h"
 #include "base/limits.h"
 #include "ir/bytecode/verify.h"
 #include "online_change/package/delta.h"
@@ -208,6 +209,7 @@ std::array<base::ByteSpan, 2> parts_of(base::ByteSpan image) {
 base::Result<base::Bytes> image_of(const Parts& parts, base::ByteSpan base_image) {
   base::Bytes image;
   image.reserve(base_image.size() + base_image.size() / 8);  // for both parts
+  base::expect_whole_use(image.data(), base_image.size());
   const auto base_parts = parts_of(base_image);
   for (size_t i = 0; i < base_parts.size(); ++i) {
     const size_t limit = base::kMaxImageBytes - image.size();

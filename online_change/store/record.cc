@@ -10,26 +10,44 @@ namespace {
 
 constexpr uint64_t kMagic = 0x44524f4345524353;  // "SCRECORD"
 constexpr uint32_t kVersion = 1;
+// The payload is of two parts, and the hash one of their hashes: the second one's is often known.
+constexpr uint32_t kInParts = 2;
 constexpr size_t kChecksumAt = kSectorBytes - 4;  // of all bytes before it
 
 struct Header {
   RecordKind kind{};
   uint64_t sequence = 0;
   uint64_t length = 0;
-  base::Digest hash{};  // of the payload
+  base::Digest hash{};                   // of the payload
+  std::optional<uint64_t> first_length;  // kInParts
 };
+
+base::Digest sum_of_parts(base::ByteSpan first, const base::Digest& second) {
+  return base::sha256(base::sha256(first), second);
+}
+
+bool is_intact(const Header& header, base::ByteSpan payload) {
+  if (payload.size() != header.length) return false;
+  if (!header.first_length) return base::sha256(payload) == header.hash;
+  if (*header.first_length > payload.size()) return false;
+  const base::ByteSpan first = payload.first(*header.first_length);
+  return sum_of_parts(first, base::sha256(payload.subspan(first.size()))) == header.hash;
+}
 
 bool decode(base::ByteSpan sector, Header& out) {
   if (sector.size() != kSectorBytes) return false;
   base::ByteReader tail(sector.subspan(kChecksumAt));
   if (base::crc32c(sector.first(kChecksumAt)) != tail.u32()) return false;
   base::ByteReader in(sector);
-  if (in.u64() != kMagic || in.u32() != kVersion) return false;
+  if (in.u64() != kMagic) return false;
+  const uint32_t version = in.u32();
+  if (version != kVersion && version != kInParts) return false;
   out.kind = static_cast<RecordKind>(in.u32());
   out.sequence = in.u64();
   out.length = in.u64();
   base::ByteSpan hash = in.raw(out.hash.size());
   std::copy(hash.begin(), hash.end(), out.hash.begin());
+  if (version == kInParts) out.first_length = in.u64();
   return true;
 }
 
@@ -42,11 +60,16 @@ bool all_zero(base::ByteSpan bytes) {
 base::Bytes record_header(RecordKind kind, uint64_t sequence, const Payload& payload) {
   base::ByteWriter out;
   out.u64(kMagic);
-  out.u32(kVersion);
+  out.u32(payload.second_sum ? kInParts : kVersion);
   out.u32(static_cast<uint32_t>(kind));
   out.u64(sequence);
   out.u64(payload.first.size() + payload.second.size());
-  out.raw(base::sha256(payload.first, payload.second));
+  if (payload.second_sum) {
+    out.raw(sum_of_parts(payload.first, *payload.second_sum));
+    out.u64(payload.first.size());
+  } else {
+    out.raw(base::sha256(payload.first));
+  }
   base::Bytes sector = out.take();
   sector.resize(kSectorBytes);
   const uint32_t checksum = base::crc32c(base::ByteSpan(sector).first(kChecksumAt));
@@ -65,9 +88,7 @@ Record read_record(vm::Storage& storage, const std::string& name, RecordKind kin
   if (!fits) return {RecordState::kDamaged, 0, {}};
   base::Result<base::Bytes> payload = storage.read(name, kSectorBytes, header.length);
   if (!payload.ok()) return {RecordState::kUnreadable, 0, {}};
-  if (payload->size() != header.length || base::sha256(*payload) != header.hash) {
-    return {RecordState::kDamaged, 0, {}};
-  }
+  if (!is_intact(header, *payload)) return {RecordState::kDamaged, 0, {}};
   return {RecordState::kValid, header.sequence, std::move(*payload)};
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "vm/runtime/ports.h"
@@ -35,9 +36,12 @@ struct Record {
 struct Payload {
   Payload(base::ByteSpan all) : first(all) {}      // NOLINT: most are in one piece
   Payload(const base::Bytes& all) : first(all) {}  // NOLINT
-  Payload(base::ByteSpan a, base::ByteSpan b) : first(a), second(b) {}
+  // `sum`: the SHA-256 of the second one, which is known already.
+  Payload(base::ByteSpan a, base::ByteSpan b, const base::Digest& sum)
+      : first(a), second(b), second_sum(sum) {}
   base::ByteSpan first;
   base::ByteSpan second;
+  std::optional<base::Digest> second_sum;
 };
 
 constexpr uint64_t record_bytes(uint64_t payload) { return kSectorBytes + payload; }

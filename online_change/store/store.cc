@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "ir/bytecode/image.h"
+#include "ir/bytecode/image_sections.h"
+
 namespace online_change {
 namespace {
 
@@ -32,6 +35,7 @@ Store::Store(vm::Storage& storage, StoreSizes sizes)
       traps_(storage, kTrapsFile, sizes.trap_entries) {
   recover_control();
   recover_images();
+  slots_complaint_ = slots_.complaint();
   recover_retained();
   journal_.recover();
   traps_.recover();
@@ -137,6 +141,19 @@ base::Status Store::write_control(const ControlRecord& next) {
   return written;
 }
 
+// With slots_mutex_; what was in the slot is forgotten already.
+base::Status Store::write_slot(size_t slot, const ImageToStore& image) {
+  const uint64_t bytes = kDigestBytes + image.bytes.size();
+  base::Status room = slots_.reserve(slot, bytes, bytes / kSpareParts);
+  if (!room.ok()) return room;
+  // What the image's own digest is of is not hashed again.
+  const base::ByteSpan sealed = ir::sealed_part(image.bytes);
+  const base::ByteSpan head = image.bytes.first(image.bytes.size() - sealed.size());
+  base::Bytes first(image.digest.begin(), image.digest.end());
+  first.insert(first.end(), head.begin(), head.end());
+  return slots_.write(slot, {first, sealed, ir::digest(image.bytes)});
+}
+
 base::Status Store::write_image(size_t slot, const ImageToStore& image, uint64_t retain_bytes) {
   for (size_t i = 0; i < retained_.count(); ++i) {
     if (retained_[i].dead) continue;
@@ -144,16 +161,42 @@ base::Status Store::write_image(size_t slot, const ImageToStore& image, uint64_t
     if (!room.ok()) return room;
   }
   if (written_[slot] && in_slot_[slot] == image.digest) return base::Ok{};
-  const uint64_t bytes = kDigestBytes + image.bytes.size();
-  base::Status room = slots_.reserve(slot, bytes, bytes / kSpareParts);
-  if (!room.ok()) return room;
-  in_slot_[slot].reset();
-  written_[slot] = false;
-  base::Status written = slots_.write(slot, {image.digest, image.bytes});
-  if (!written.ok()) return written;
+  const bool aside = aside_ != nullptr && aside_->data() == image.bytes.data() &&
+                     aside_->size() == image.bytes.size();
+  aside_.reset();
+  if (!aside) {
+    in_slot_[slot].reset();
+    written_[slot] = false;
+    base::Status written = write_slot(slot, image);
+    slots_complaint_ = slots_.complaint();
+    if (!written.ok()) return written;
+  }
   in_slot_[slot] = image.digest;
   written_[slot] = true;
-  return written;
+  return base::Ok{};
+}
+
+void Store::lay_aside(std::shared_ptr<const base::Bytes> image) {
+  std::lock_guard slots_lock(slots_mutex_);
+  size_t slot = 0;
+  {
+    std::lock_guard lock(mutex_);
+    aside_.reset();
+    if (!may_begin_trial().ok()) return;
+    slot = 1 - control_.slot;
+    in_slot_[slot].reset();
+    written_[slot] = false;
+  }
+  const base::Status written = write_slot(slot, {ir::digest(*image), *image});
+  std::lock_guard lock(mutex_);
+  slots_complaint_ = slots_.complaint();
+  if (written.ok()) aside_ = std::move(image);
+}
+
+void Store::forget_aside() {
+  std::lock_guard slots_lock(slots_mutex_);
+  std::lock_guard lock(mutex_);
+  aside_.reset();
 }
 
 // Without a program that boots: not the one whose layout the retained values have.
@@ -165,6 +208,7 @@ size_t Store::free_slot() const {
 }
 
 base::Status Store::install(const ImageToStore& image, uint64_t retain_bytes) {
+  std::lock_guard slots_lock(slots_mutex_);
   std::lock_guard lock(mutex_);
   if (boots_valid() && control_.boots == image.digest) return end_trial_locked();
   if (boots_valid() && !retained_fits_locked()) {
@@ -178,13 +222,19 @@ base::Status Store::install(const ImageToStore& image, uint64_t retain_bytes) {
   return settle_locked();
 }
 
-base::Status Store::begin_trial(const ImageToStore& image, uint64_t retain_bytes) {
-  std::lock_guard lock(mutex_);
+base::Status Store::may_begin_trial() const {
   if (!boots_valid()) return failed("no program is stored that the change could be undone to");
   if (control_.trial) return base::Error{base::Refusal::kChangePending, "a trial is not over"};
   if (!retained_fits_locked()) {
     return failed("the retained values are those of another program still");
   }
+  return base::Ok{};
+}
+
+base::Status Store::begin_trial(const ImageToStore& image, uint64_t retain_bytes) {
+  std::lock_guard slots_lock(slots_mutex_);
+  std::lock_guard lock(mutex_);
+  if (base::Status may = may_begin_trial(); !may.ok()) return may;
   base::Status stored = write_image(1 - control_.slot, image, retain_bytes);
   if (!stored.ok()) return stored;
   ControlRecord next = control_;
@@ -268,17 +318,17 @@ base::Status Store::save_retained(const base::Digest& image, uint64_t cycle,
 // --- journal ----------------------------------------------------------------------
 
 void Store::note(JournalEntry entry) {
-  std::lock_guard lock(mutex_);
+  std::lock_guard lock(journal_mutex_);
   (void)journal_.add(std::move(entry)).ok();  // complaints() has the error
 }
 
 void Store::note_trap(JournalEntry entry) {
-  std::lock_guard lock(mutex_);
+  std::lock_guard lock(journal_mutex_);
   (void)traps_.add(std::move(entry)).ok();
 }
 
 base::Result<std::vector<JournalEntry>> Store::history() const {
-  std::lock_guard lock(mutex_);
+  std::lock_guard lock(journal_mutex_);
   auto entries = journal_.read();
   if (!entries.ok()) return entries.error();
   auto traps = traps_.read();
@@ -293,9 +343,10 @@ base::Digest Store::boots() const {
 
 std::vector<std::string> Store::complaints() const {
   std::lock_guard lock(mutex_);
+  std::lock_guard journal_lock(journal_mutex_);
   std::vector<std::string> out;
   for (const std::string* text :
-       {&control_copies_.complaint(), &slots_.complaint(), &retained_.complaint(),
+       {&control_copies_.complaint(), &slots_complaint_, &retained_.complaint(),
         &journal_.complaint(), &traps_.complaint()}) {
     if (!text->empty()) out.push_back(*text);
   }

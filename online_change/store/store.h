@@ -11,6 +11,7 @@
 // Thread-safe. Never called by the control thread: every operation waits for the disk.
 #pragma once
 
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -38,7 +39,8 @@ struct StoredImage {
   base::Bytes bytes;
 };
 
-// The same, borrowed.
+// The same, borrowed. What the image says of itself is its digest: other bytes are found to be
+// damaged when they are read.
 struct ImageToStore {
   ImageToStore(const base::Digest& sum, base::ByteSpan all) : digest(sum), bytes(all) {}
   ImageToStore(const StoredImage& image)  // NOLINT: as good as borrowed
@@ -73,6 +75,11 @@ class Store {
 
   // This program boots from now on, nothing is on trial. `retain_bytes`: of its retained values.
   base::Status install(const ImageToStore& image, uint64_t retain_bytes);
+  // Writes an image of which nothing is known yet into the slot that begin_trial() would take,
+  // beside whatever else is done, and keeps its bytes until then: begin_trial() of the same bytes
+  // (in memory: not of the same digest) need not write it. Where it cannot be, nothing is done.
+  void lay_aside(std::shared_ptr<const base::Bytes> image);
+  void forget_aside();
   // The program is stored and on trial: what boots stays. The newest retained values must be those
   // of the program that boots (kStorageFailed).
   base::Status begin_trial(const ImageToStore& image, uint64_t retain_bytes);
@@ -104,9 +111,12 @@ class Store {
   void recover_images();
   void recover_retained();
   base::Status write_control(const ControlRecord& next);
+  base::Status write_slot(size_t slot, const ImageToStore& image);
   base::Status write_image(size_t slot, const ImageToStore& image, uint64_t retain_bytes);
   base::Status end_trial_locked();
   base::Status settle_locked();
+  // Is there a slot for a trial?
+  base::Status may_begin_trial() const;
   bool boots_valid() const { return has_control_ && in_slot_[control_.slot] == control_.boots; }
   bool in_a_slot(const base::Digest& image) const;
   size_t free_slot() const;
@@ -118,7 +128,11 @@ class Store {
   std::optional<size_t> newest_accepted() const;
   bool retained_fits_locked() const;
 
+  // In this order: of the slots and which of them counts, held as long as one is written; of all
+  // else but the journals; of those.
+  std::mutex slots_mutex_;
   mutable std::mutex mutex_;
+  mutable std::mutex journal_mutex_;
   StoreSizes sizes_;
   Copies control_copies_;
   Copies slots_;
@@ -129,7 +143,9 @@ class Store {
   ControlRecord control_;
   // By slot and by copy; of valid ones.
   std::optional<base::Digest> in_slot_[2];
-  bool written_[2] = {false, false};  // by this process, so it is what its digest says
+  bool written_[2] = {false, false};          // by this process, so it is what its digest says
+  std::shared_ptr<const base::Bytes> aside_;  // it is in the slot that does not boot
+  std::string slots_complaint_;
   std::optional<RetainHead> in_copy_[3];
   Recovered recovered_;
 };

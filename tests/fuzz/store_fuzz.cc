@@ -11,6 +11,7 @@
 #include "base/check.h"
 #include "base/crc32c.h"
 #include "base/hash.h"
+#include "base/sha256.h"
 #include "online_change/store/boot.h"
 #include "tests/unit/bytecode/sample_objects.h"
 #include "tests/unit/store/sim_storage.h"
@@ -47,13 +48,23 @@ sim::SimStorage good_disk() {
 
 // The header's hash and checksum fit what they are of.
 void repair(base::Bytes& content) {
+  constexpr size_t kVersionAt = 8;
+  constexpr uint8_t kInParts = 2;
   constexpr size_t kLengthAt = 24;
   constexpr size_t kHashAt = 32;
+  constexpr size_t kFirstLengthAt = 64;
   if (content.size() < 512) return;
   uint64_t length = 0;
   std::memcpy(&length, content.data() + kLengthAt, 8);
   length = std::min<uint64_t>(length, content.size() - 512);
-  const base::Digest hash = base::sha256(base::ByteSpan(content).subspan(512, length));
+  const base::ByteSpan payload = base::ByteSpan(content).subspan(512, length);
+  base::Digest hash = base::sha256(payload);
+  if (content[kVersionAt] == kInParts) {
+    uint64_t first = 0;
+    std::memcpy(&first, content.data() + kFirstLengthAt, 8);
+    first = std::min(first, length);
+    hash = base::sha256(base::sha256(payload.first(first)), base::sha256(payload.subspan(first)));
+  }
   std::memcpy(content.data() + kHashAt, hash.data(), hash.size());
   for (size_t at = 0; at + 512 <= content.size(); at += 512) {
     const uint32_t checksum = base::crc32c(base::ByteSpan(content).subspan(at, 508));

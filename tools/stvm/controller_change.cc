@@ -97,6 +97,7 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
       [this](const auto& job) { return at_boundary(job); });
   if (!staged.ok()) {
     change_.collect();  // devices that it opened
+    forget_staged();
     return refused(staged.error());
   }
   staged_ = *change_.next();
@@ -175,6 +176,8 @@ FateLine ControllerService::live_line(const FateRow& row, const ir::Image& next,
 }
 
 void ControllerService::forget_staged() {
+  aside_.wait();
+  store_.forget_aside();
   staged_.reset();
   live_.reset();
 }

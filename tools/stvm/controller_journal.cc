@@ -1,6 +1,7 @@
 // What the serving controller stores around a change, and what it writes into its journal.
 #include <algorithm>
 #include <chrono>
+#include <memory>
 
 #include "online_change/store/retained_values.h"
 #include "tools/stvm/controller_service.h"
@@ -67,6 +68,11 @@ base::Status ControllerService::save_retained_now() {
   return taken.ok() ? keeper_.save(now) : taken;
 }
 
+void ControllerService::store_beside() {
+  change_.set_received(
+      [this](const std::shared_ptr<const base::Bytes>& image) { aside_.start(image); });
+}
+
 base::Status ControllerService::store_trial() {
   if (!staged_) return base::Error{base::Refusal::kBusy, "no change is staged"};
   const base::Result<uint64_t> bytes = online_change::retained_bytes(staged_->image());
@@ -76,6 +82,7 @@ base::Status ControllerService::store_trial() {
     base::Status saved = save_retained_now();
     if (!saved.ok()) return saved;
   }
+  aside_.wait();
   return store_.begin_trial({staged_->digest(), staged_->encoded()}, *bytes);
 }
 

@@ -34,7 +34,8 @@ ControllerService::ControllerService(vm::Controller& controller, vm::Clock& cloc
       start_(std::move(start)),
       wall_time_(std::move(wall_time)),
       keeper_(controller, store, wall_time_),
-      change_(controller) {}
+      change_(controller),
+      aside_(store) {}
 
 // When memory runs out, so that the answer needs none: it was made before.
 base::Bytes ControllerService::answer(base::ByteSpan bytes, bool& keep_open) {

@@ -9,6 +9,7 @@
 #include "online_change/apply/change.h"
 #include "online_change/store/boot.h"
 #include "online_change/store/retain_keeper.h"
+#include "tools/stvm/aside_writer.h"
 #include "tools/stvm/fate_message.h"
 #include "tools/stvm/live_report.h"
 #include "vm/runtime/boundary.h"
@@ -33,6 +34,9 @@ class ControllerService : public vm::Service {
                     online_change::RetainKeeper::WallTime wall_time = wall_time_ns);
   // What changes something from now on is noted there; it must outlive this.
   void record(vm::Recorder& recorder) { recorder_ = &recorder; }
+  // From now on an image that is staged is written to the store by a thread of its own, beside its
+  // verification: the storage must allow that threads use different files at once.
+  void store_beside();
   void asked_by(const std::string& user) override { who_ = user; }
   base::Bytes answer(base::ByteSpan request, bool& keep_open) override;
   // Forces run in machine code as soon as there is some.
@@ -120,6 +124,7 @@ class ControllerService : public vm::Service {
   std::optional<ir::VerifiedImage> previous_;         // during a trial
   uint64_t edition_ = 0;
   std::atomic<bool> stop_wanted_{false};
+  AsideWriter aside_;  // by store_beside()
 };
 
 }  // namespace stvm

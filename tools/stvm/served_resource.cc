@@ -57,6 +57,7 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
   running_ = std::move(*running);
   service_ = std::make_unique<ControllerService>(controller(), clock, store_, mailbox_,
                                                  StartReport{boot_->trial_lost, boot_->alarms});
+  service_->store_beside();
   if (running_->recorder() != nullptr) service_->record(*running_->recorder());
   auto server = vm::SocketServer::open(directory_, *service_);
   if (!server.ok()) return server.error();

@@ -100,19 +100,31 @@ base::Status FileStorage::open(std::string_view name, uint64_t size) {
     if (created) ::unlink(file_path->c_str());
     return allocated;
   }
-  files_[std::string(name)] = std::move(*file);
+  keep(name, std::move(*file));
   return base::Ok{};
 }
 
+const FileStorage::File* FileStorage::find(std::string_view name) {
+  std::lock_guard lock(mutex_);
+  const auto found = files_.find(name);
+  return found == files_.end() ? nullptr : &found->second;
+}
+
+const FileStorage::File* FileStorage::keep(std::string_view name, File file) {
+  std::lock_guard lock(mutex_);
+  File& kept = files_[std::string(name)];
+  kept = std::move(file);
+  return &kept;
+}
+
 base::Result<const FileStorage::File*> FileStorage::readable(std::string_view name) {
-  auto found = files_.find(name);
-  if (found != files_.end()) return &found->second;
+  if (const File* open = find(name)) return open;
   base::Result<std::string> file_path = path(name);
   if (!file_path.ok()) return file_path.error();
   bool created = false;
   base::Result<File> file = take(*file_path, false, created);
   if (!file.ok()) return file.error();
-  return &(files_[std::string(name)] = std::move(*file));
+  return keep(name, std::move(*file));
 }
 
 base::Result<uint64_t> FileStorage::size(std::string_view name) {
@@ -140,11 +152,11 @@ base::Result<base::Bytes> FileStorage::read(std::string_view name, uint64_t offs
 }
 
 base::Status FileStorage::write(std::string_view name, uint64_t offset, base::ByteSpan bytes) {
-  auto found = files_.find(name);
-  if (found == files_.end() || !found->second.writable) {
+  const File* const found = find(name);
+  if (found == nullptr || !found->writable) {
     return failed(base::Refusal::kFileUnwritable, std::string(name), EROFS);
   }
-  const File& file = found->second;
+  const File& file = *found;
   if (offset > file.size || bytes.size() > file.size - offset) {
     return failed(base::Refusal::kFileUnwritable, *path(name), EFBIG);
   }
@@ -155,10 +167,9 @@ base::Status FileStorage::write(std::string_view name, uint64_t offset, base::By
 
 // A failed one is not tried again: the system may have forgotten what it could not write.
 base::Status FileStorage::sync(std::string_view name) {
-  auto found = files_.find(name);
-  if (found == files_.end())
-    return failed(base::Refusal::kFileUnwritable, std::string(name), EBADF);
-  if (::fdatasync(found->second.descriptor.get()) == 0) return base::Ok{};
+  const File* const found = find(name);
+  if (found == nullptr) return failed(base::Refusal::kFileUnwritable, std::string(name), EBADF);
+  if (::fdatasync(found->descriptor.get()) == 0) return base::Ok{};
   return failed(base::Refusal::kFileUnwritable, *path(name), errno);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <mutex>
 #include <string>
 
 #include "vm/runtime/descriptor.h"
@@ -10,6 +11,7 @@
 
 namespace vm {
 
+// Threads may use it at once, but not the same file.
 class FileStorage : public Storage {
  public:
   explicit FileStorage(std::string directory) : directory_(std::move(directory)) {}
@@ -32,10 +34,14 @@ class FileStorage : public Storage {
   base::Result<std::string> path(std::string_view name) const;
   base::Result<File> take(const std::string& path, bool create, bool& created) const;
   base::Status allocate(File& file, const std::string& path, uint64_t size, bool created) const;
+  // Null: it is not open. What it points to stays until the file is opened again.
+  const File* find(std::string_view name);
+  const File* keep(std::string_view name, File file);
   // One that is open already, or is opened for reading only.
   base::Result<const File*> readable(std::string_view name);
 
   std::string directory_;
+  std::mutex mutex_;  // of the map alone
   std::map<std::string, File, std::less<>> files_;
 };
 

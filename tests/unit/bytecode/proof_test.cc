@@ -13,6 +13,10 @@ namespace {
 
 using Proven = base::Result<std::shared_ptr<const Proof>>;
 
+std::shared_ptr<const base::Bytes> shared(base::Bytes bytes) {
+  return std::make_shared<const base::Bytes>(std::move(bytes));
+}
+
 bool same_facts(const std::shared_ptr<const CodeFacts>& x,
                 const std::shared_ptr<const CodeFacts>& y) {
   if (x == nullptr || y == nullptr) return x == y;
@@ -59,7 +63,7 @@ uint32_t left_out(const Proof& like, const Image& image) {
 // What was accepted is what the next ones are compared with.
 void expect_same_of_changes(const Image& first, uint32_t seed) {
   constexpr int kImages = 6000;
-  Proven like = prove(encode(first), nullptr);
+  Proven like = prove(shared(encode(first)), nullptr);
   ASSERT_TRUE(like.ok());
   std::mt19937 random(seed);
   int accepted = 0;
@@ -71,8 +75,8 @@ void expect_same_of_changes(const Image& first, uint32_t seed) {
                           static_cast<uint16_t>(random()), static_cast<uint8_t>(random())});
     }
     const base::Bytes bytes = encode(image);
-    const Proven alone = prove(bytes, nullptr);
-    expect_same(alone, prove(bytes, like->get()));
+    const Proven alone = prove(shared(bytes), nullptr);
+    expect_same(alone, prove(shared(bytes), like->get()));
     if (testing::Test::HasFailure()) return;
     if (!alone.ok()) continue;
     ++accepted;
@@ -96,7 +100,7 @@ TEST(Proof, ChangedImagesWithMethodsGetTheAnswerThatTheyGetAlone) {
 }
 
 TEST(Proof, OnlyThePouThatDiffersIsLookedAt) {
-  const Proven first = prove(encode(sample::busy_image()), nullptr);
+  const Proven first = prove(shared(encode(sample::busy_image())), nullptr);
   ASSERT_TRUE(first.ok());
   Image image = sample::busy_image();
   const auto pous = static_cast<uint32_t>(image.pous.size());
@@ -117,7 +121,7 @@ TEST(Proof, VersionsThatAreHeldAnswerAsTheyDoAlone) {
   Image image = sample::busy_image();
   image.code[image.pous[sample::kMainPou].first_unit].a ^= 1;
   const base::Bytes bytes = encode(image);
-  const Proven alone = prove(bytes, nullptr);
+  const Proven alone = prove(shared(bytes), nullptr);
   const auto beside = verify(bytes);
   ASSERT_EQ(alone.ok(), beside.ok());
   if (!alone.ok()) {

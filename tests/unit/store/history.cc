@@ -1,6 +1,10 @@
 #include "tests/unit/store/history.h"
 
 #include <cstring>
+#include <map>
+
+#include "base/hash.h"
+#include "ir/bytecode/image_sections.h"
 
 namespace history {
 
@@ -9,10 +13,11 @@ using online_change::StoredImage;
 
 namespace {
 
+std::map<base::Digest, uint32_t> versions;  // that program() has made
+
 uint32_t version_of(const base::Digest& digest) {
-  uint32_t version = 0;
-  std::memcpy(&version, digest.data(), sizeof version);
-  return version;
+  const auto known = versions.find(digest);
+  return known == versions.end() ? 0 : known->second;
 }
 
 uint64_t count_of(const RetainRecord& record) {
@@ -34,8 +39,10 @@ std::string text(const std::optional<uint32_t>& version) {
 // A later version needs more room.
 StoredImage program(uint32_t version) {
   StoredImage image;
-  std::memcpy(image.digest.data(), &version, sizeof version);
   image.bytes.assign(500 + version * 20, static_cast<uint8_t>(version));
+  image.digest = base::sha256(ir::sealed_part(image.bytes));
+  std::memcpy(image.bytes.data() + 16, image.digest.data(), image.digest.size());  // ir::digest()
+  versions[image.digest] = version;
   return image;
 }
 
@@ -163,9 +170,15 @@ bool History::save() {
 
 bool History::begin_trial(uint32_t version) {
   if (!store_->retained_fits() && !save()) return false;
+  const StoredImage next = program(version);
+  auto aside = std::make_shared<base::Bytes>(next.bytes);
+  if (version % 2 == 0) store_->lay_aside(aside);  // promises nothing
+  // Others of the same name may have been there.
+  const bool others = version % 4 == 0;
   now_.trial = version;
   now_.trial_sure = false;
-  if (!store_->begin_trial(program(version), values(version, 0).size()).ok()) return false;
+  const online_change::ImageToStore image{next.digest, others ? next.bytes : *aside};
+  if (!store_->begin_trial(image, values(version, 0).size()).ok()) return false;
   now_.trial_sure = true;
   return true;
 }

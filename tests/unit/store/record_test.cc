@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/hash.h"
 #include "online_change/store/control_record.h"
 #include "online_change/store/copies.h"
 #include "online_change/store/journal.h"
@@ -25,6 +26,46 @@ TEST(Record, IsWhatWasWritten) {
   EXPECT_EQ(record.payload, base::Bytes(700, 3));
   EXPECT_EQ(read_record(disk, "r", RecordKind::kImage).state, RecordState::kDamaged);
   EXPECT_EQ(read_record(disk, "other", kKind).state, RecordState::kUnreadable);
+}
+
+TEST(Record, OfTwoPartsIsWhatWasWritten) {
+  const base::Bytes first(80, 4);
+  const base::Bytes second(620, 5);
+  sim::SimStorage disk;
+  ASSERT_TRUE(disk.open("r", record_bytes(700)).ok());
+  ASSERT_TRUE(write_record(disk, "r", kKind, 7, {first, second, base::sha256(second)}).ok());
+  const Record record = read_record(disk, "r", kKind);
+  EXPECT_EQ(record.state, RecordState::kValid);
+  base::Bytes both = first;
+  both.insert(both.end(), second.begin(), second.end());
+  EXPECT_EQ(record.payload, both);
+}
+
+// Whoever says what the sum is says which bytes are sound.
+TEST(Record, ASumOfOtherBytesIsDamage) {
+  const base::Bytes first(80, 4);
+  base::Bytes second(620, 5);
+  const base::Digest sum = base::sha256(second);
+  second.back() ^= 1;
+  sim::SimStorage disk;
+  ASSERT_TRUE(disk.open("r", record_bytes(700)).ok());
+  ASSERT_TRUE(write_record(disk, "r", kKind, 7, {first, second, sum}).ok());
+  EXPECT_EQ(read_record(disk, "r", kKind).state, RecordState::kDamaged);
+}
+
+TEST(Record, EveryFlippedBitOfTwoPartsIsSeen) {
+  const base::Bytes first(40, 9);
+  const base::Bytes second(60, 8);
+  sim::SimStorage disk;
+  ASSERT_TRUE(disk.open("r", record_bytes(100)).ok());
+  ASSERT_TRUE(write_record(disk, "r", kKind, 1, {first, second, base::sha256(second)}).ok());
+  base::Bytes& content = disk.content(0);
+  for (size_t bit = 0; bit < (kSectorBytes + 100) * 8; ++bit) {
+    content[bit / 8] ^= static_cast<uint8_t>(1u << bit % 8);
+    EXPECT_EQ(read_record(disk, "r", kKind).state, RecordState::kDamaged) << "bit " << bit;
+    content[bit / 8] ^= static_cast<uint8_t>(1u << bit % 8);
+  }
+  EXPECT_EQ(read_record(disk, "r", kKind).state, RecordState::kValid);
 }
 
 TEST(Record, EveryFlippedBitIsSeen) {
