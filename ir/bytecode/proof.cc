@@ -52,6 +52,24 @@ bool same_instances(const Image& a, const Image& b) {
                     same_instance);
 }
 
+// Of the graph of calls.
+bool same_node(const LinkedPou& a, const LinkedPou& b) {
+  return a.frame_size == b.frame_size && a.recursion_depth == b.recursion_depth;
+}
+
+bool same_facts(const CodeFacts& a, const CodeFacts& b) {
+  return a.callees == b.callees && a.native_bytes == b.native_bytes &&
+         a.written_outputs == b.written_outputs;
+}
+
+bool same_calls(const ImageTask& a, const ImageTask& b) {
+  return a.priority == b.priority && a.once == b.once && a.programs == b.programs;
+}
+
+bool same_override(const LinkedOverride& a, const LinkedOverride& b) {
+  return a.type == b.type && a.prototype == b.prototype && a.target == b.target;
+}
+
 }  // namespace
 
 Likeness::Likeness(const Proof* like, base::ByteSpan encoded, const Image& image)
@@ -80,6 +98,43 @@ Likeness::Likeness(const Proof* like, base::ByteSpan encoded, const Image& image
       [](const LinkedBound& a, const LinkedBound& b) { return a.from == b.from; });
   same_bounds_ = static_cast<size_t>(bounds.first - known.bounds.begin());
   find_changed_parameters();
+}
+
+bool Likeness::regions() const {
+  return types_ && like_->image.types.is_one_with(image_.types) &&
+         like_->image.layouts.is_one_with(image_.layouts);
+}
+
+bool Likeness::slots(uint32_t pou) const {
+  if (!types_ || pou >= like_->image.pous.size()) return false;
+  const LinkedPou& a = like_->image.pous[pou];
+  const LinkedPou& b = image_.pous[pou];
+  return a.kind == b.kind && a.frame_size == b.frame_size && a.slots.is_one_with(b.slots);
+}
+
+bool Likeness::bounds() const { return types_ && like_->image.bounds.is_one_with(image_.bounds); }
+
+bool Likeness::ranges() const {
+  return like_ != nullptr && like_->image.ranges.is_one_with(image_.ranges);
+}
+
+bool Likeness::calls(const CodeFactsOfAll& code) const {
+  if (!instances_ || !image_.migrations.empty() || !like_->image.migrations.empty()) return false;
+  const Image& known = like_->image;
+  if (known.stack_bytes != image_.stack_bytes || known.call_depth != image_.call_depth ||
+      !std::equal(known.tasks.begin(), known.tasks.end(), image_.tasks.begin(), image_.tasks.end(),
+                  same_calls) ||
+      !std::equal(known.overrides.begin(), known.overrides.end(), image_.overrides.begin(),
+                  image_.overrides.end(), same_override)) {
+    return false;
+  }
+  for (size_t i = 0; i < code.size(); ++i) {
+    if (!same_node(known.pous[i], image_.pous[i])) return false;
+    if (code[i] == like_->code[i]) continue;
+    if (code[i] == nullptr || like_->code[i] == nullptr) return false;
+    if (!same_facts(*code[i], *like_->code[i])) return false;
+  }
+  return true;
 }
 
 // Every number is a POU of the same kind and type, or none.

@@ -21,6 +21,8 @@ struct Proof {
   Image image;  // the same, decoded
   ImagePlaces places;
   std::shared_ptr<const std::vector<TypeFacts>> types;
+  std::shared_ptr<const RegionMap> regions;  // borrows the image's types and layouts
+  std::shared_ptr<const std::vector<uint32_t>> areas;
   CodeFactsOfAll code;
   std::vector<OutputWriter> writers;
 };
@@ -38,8 +40,17 @@ class Likeness {
   bool types() const { return types_; }
   // Types and initial values.
   bool constants() const { return constants_; }
+  // Types and layouts are the same objects: whatever borrows them can be shared.
+  bool regions() const;
+  // Slots of a POU, in a frame of the same size.
+  bool slots(uint32_t pou) const;
+  // Whatever the verification of bounds and ranges reads.
+  bool bounds() const;
+  bool ranges() const;
   // Whatever verify_instances() reads.
   bool instances() const { return instances_; }
+  // Whatever verify_calls() reads; `code` is of the image.
+  bool calls(const CodeFactsOfAll& code) const;
   // Of a POU with the same code, which names nothing that is another; null: it must be looked at.
   std::shared_ptr<const CodeFacts> code(uint32_t pou) const;
 

@@ -109,18 +109,28 @@ base::Result<std::shared_ptr<const Proof>> prove(std::shared_ptr<const base::Byt
   if (!likeness.constants()) {
     if (base::Status s = verify_constants(image); !s) return s.error();
   }
-  Context context(image, *proof->types);
-  if (base::Status s = verify_tables(context); !s) return s.error();
+  proof->regions = likeness.regions()
+                       ? like->regions
+                       : std::make_shared<const RegionMap>(image.types, image.layouts);
+  Context context(image, *proof->types, *proof->regions);
+  if (base::Status s = verify_tables(context, likeness); !s) return s.error();
   if (base::Status s = verify_overrides(image); !s) return s.error();
   if (base::Status s = verify_migrations(image); !s) return s.error();
   if (base::Status s = verify_initial_data(image); !s) return s.error();
   if (!likeness.instances()) {
     if (base::Status s = verify_instances(context); !s) return s.error();
   }
-  if (base::Status s = verify_resources(context); !s) return s.error();
+  proof->areas = likeness.instances()
+                     ? like->areas
+                     : std::make_shared<const std::vector<uint32_t>>(areas_in_order(image));
+  if (base::Status s = verify_resources(context, *proof->areas); !s) return s.error();
   auto code = verify_pous(context, likeness);
   if (!code) return code.error();
   proof->code = std::move(code).value();
+  if (likeness.calls(proof->code)) {
+    proof->writers = like->writers;
+    return std::shared_ptr<const Proof>(std::move(proof));
+  }
   auto writers = verify_calls(context, proof->code);
   if (!writers) return writers.error();
   proof->writers = std::move(writers).value();

@@ -31,20 +31,22 @@ struct TypeFacts {
 base::Result<std::vector<TypeFacts>> verify_types(const Image& image);
 base::Status verify_constants(const Image& image);
 
+class Likeness;  // proof.h
+
 // What the parts behind it share.
 struct Context {
-  // Borrows both.
-  Context(const Image& i, const std::vector<TypeFacts>& f)
-      : image(i), facts(f), regions(i.types, i.layouts) {}
+  // Borrows all. `r`: of the image's types and layouts.
+  Context(const Image& i, const std::vector<TypeFacts>& f, const RegionMap& r)
+      : image(i), facts(f), regions(r) {}
   const Image& image;
   const std::vector<TypeFacts>& facts;
-  RegionMap regions;
+  const RegionMap& regions;
   std::vector<uint32_t> pou_of_type;  // bodies, by type number; kNone
   bool valid(Region region) const;    // names an existing type and dimension
 };
 
 // --- verify_tables.cc: POU table, slots, bounds, ranges, limits -----------------
-base::Status verify_tables(Context& context);
+base::Status verify_tables(Context& context, const Likeness& likeness);
 
 // --- verify_overrides.cc: what virtual calls find -------------------------------
 base::Status verify_overrides(const Image& image);
@@ -56,7 +58,10 @@ base::Status verify_migrations(const Image& image);
 base::Status verify_instances(const Context& context);
 // --- verify_resources.cc: tasks, I/O, retain, initial data (V14 to V16) ---------
 base::Status verify_initial_data(const Image& image);
-base::Status verify_resources(const Context& context);
+// Instances that have an area, by its place. Only what lies in one of them can be exchanged or
+// kept.
+std::vector<uint32_t> areas_in_order(const Image& image);
+base::Status verify_resources(const Context& context, const std::vector<uint32_t>& areas);
 
 // --- verify_code.cc: one POU in one pass (V3 to V10, V12, V19, V20) -------------
 struct CodeFacts {

@@ -14,11 +14,11 @@ namespace {
 
 class ResourcesVerifier {
  public:
-  explicit ResourcesVerifier(const Context& context) : context_(context), image_(context.image) {}
+  ResourcesVerifier(const Context& context, const std::vector<uint32_t>& areas)
+      : context_(context), image_(context.image), areas_(areas) {}
 
   base::Status run() {
     if (base::Status s = check_tasks(); !s) return s;
-    collect_areas();
     const Layouts natural = image_.io.empty() ? Layouts{} : natural_layouts(image_.types);
     for (uint32_t i = 0; i < image_.io.size(); ++i) {
       if (base::Status s = check_binding(natural, i); !s) return s;
@@ -94,15 +94,6 @@ class ResourcesVerifier {
       if (image_.types.root_kind(globals.members[i].type) == Kind::kBool) return true;
     }
     return false;
-  }
-
-  void collect_areas() {
-    for (uint32_t id = 0; id < image_.instances.size(); ++id) {
-      if (id == 0 || image_.instances[id].live) areas_.push_back(id);
-    }
-    std::sort(areas_.begin(), areas_.end(), [&](uint32_t a, uint32_t b) {
-      return image_.instances[a].data < image_.instances[b].data;
-    });
   }
 
   // The instance whose area holds the bytes; kNone.
@@ -182,7 +173,7 @@ class ResourcesVerifier {
 
   const Context& context_;
   const Image& image_;
-  std::vector<uint32_t> areas_;  // by offset
+  const std::vector<uint32_t>& areas_;
 };
 
 }  // namespace
@@ -202,6 +193,19 @@ base::Status verify_initial_data(const Image& image) {
   return base::Ok{};
 }
 
-base::Status verify_resources(const Context& context) { return ResourcesVerifier(context).run(); }
+std::vector<uint32_t> areas_in_order(const Image& image) {
+  std::vector<uint32_t> areas;
+  for (uint32_t id = 0; id < image.instances.size(); ++id) {
+    if (id == 0 || image.instances[id].live) areas.push_back(id);
+  }
+  std::sort(areas.begin(), areas.end(), [&](uint32_t a, uint32_t b) {
+    return image.instances[a].data < image.instances[b].data;
+  });
+  return areas;
+}
+
+base::Status verify_resources(const Context& context, const std::vector<uint32_t>& areas) {
+  return ResourcesVerifier(context, areas).run();
+}
 
 }  // namespace ir::verification

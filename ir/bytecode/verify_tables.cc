@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "ir/bytecode/proof.h"
 #include "ir/bytecode/verify_parts.h"
 
 namespace ir::verification {
@@ -8,7 +9,8 @@ namespace {
 
 class TablesVerifier {
  public:
-  explicit TablesVerifier(Context& context) : context_(context), image_(context.image) {}
+  TablesVerifier(Context& context, const Likeness& likeness)
+      : context_(context), image_(context.image), likeness_(likeness) {}
 
   base::Status run() {
     if (base::Status s = check_limits(); !s) return s;
@@ -17,9 +19,12 @@ class TablesVerifier {
     for (uint32_t i = 0; i < image_.pous.size(); ++i) {
       if (base::Status s = check_pou(i); !s) return s;
     }
-    for (uint32_t i = 0; i < image_.bounds.size(); ++i) {
-      if (base::Status s = check_bound(i); !s) return s;
+    if (!likeness_.bounds()) {
+      for (uint32_t i = 0; i < image_.bounds.size(); ++i) {
+        if (base::Status s = check_bound(i); !s) return s;
+      }
     }
+    if (likeness_.ranges()) return base::Ok{};
     for (const Range& range : image_.ranges) {
       if (range.low > range.high) {
         return refuse(Refusal::kBadReference, "range `" + range.name + "` is empty");
@@ -91,7 +96,7 @@ class TablesVerifier {
       return bad_frame(pou, "recursion depth " + std::to_string(pou.recursion_depth));
     }
     if (base::Status s = check_self(pou, number); !s) return s;
-    return check_slots(pou);
+    return likeness_.slots(number) ? base::Status(base::Ok{}) : check_slots(pou);
   }
 
   base::Status check_self(const LinkedPou& pou, uint32_t number) {
@@ -189,10 +194,13 @@ class TablesVerifier {
 
   Context& context_;
   const Image& image_;
+  const Likeness& likeness_;
 };
 
 }  // namespace
 
-base::Status verify_tables(Context& context) { return TablesVerifier(context).run(); }
+base::Status verify_tables(Context& context, const Likeness& likeness) {
+  return TablesVerifier(context, likeness).run();
+}
 
 }  // namespace ir::verification

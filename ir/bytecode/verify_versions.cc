@@ -1,4 +1,5 @@
 #include "ir/bytecode/pou_version.h"
+#include "ir/bytecode/proof.h"
 #include "ir/bytecode/verify_parts.h"
 
 namespace ir {
@@ -31,8 +32,10 @@ std::vector<base::Status> verify_versions(const VerifiedImage& verified,
   const Image& image = verified.image();
   auto facts = verification::verify_types(image);
   if (!facts) return std::vector<base::Status>(versions.size(), facts.error());
-  verification::Context context(image, *facts);
-  if (base::Status s = verification::verify_tables(context); !s) {
+  const RegionMap regions(image.types, image.layouts);
+  verification::Context context(image, *facts, regions);
+  const verification::Likeness none(nullptr, {}, image);
+  if (base::Status s = verification::verify_tables(context, none); !s) {
     return std::vector<base::Status>(versions.size(), s);
   }
   std::vector<base::Status> answers;

@@ -114,6 +114,40 @@ TEST(Proof, OnlyThePouThatDiffersIsLookedAt) {
   EXPECT_EQ(left_out(**first, image), 0u);
 }
 
+// The graph of calls goes by what the code of POUs calls and what their frames take.
+TEST(Proof, CallsAreMeasuredWhereTheyDiffer) {
+  const Proven first = prove(shared(encode(sample::busy_image())), nullptr);
+  ASSERT_TRUE(first.ok());
+  const auto knows_calls = [&](const Image& image) {
+    const base::Bytes bytes = encode(image);
+    const KnownImage known{(*first)->image, *(*first)->encoded, (*first)->places};
+    const Image beside = decode(bytes, &known)->image;
+    return Likeness(first->get(), bytes, beside).calls((*first)->code);
+  };
+  Image image = sample::busy_image();
+  EXPECT_TRUE(knows_calls(image));
+  image.pous[sample::kCounterPou].frame_size += 8;
+  EXPECT_FALSE(knows_calls(image));
+  image = sample::busy_image();
+  image.stack_bytes -= 8;
+  EXPECT_FALSE(knows_calls(image));
+  image = sample::busy_image();
+  image.tasks[0].priority += 1;
+  EXPECT_FALSE(knows_calls(image));
+  image = sample::busy_image();
+  image.call_depth += 1;
+  EXPECT_FALSE(knows_calls(image));
+}
+
+TEST(Proof, WhatLookupsGoByIsShared) {
+  const Proven first = prove(shared(encode(sample::busy_image())), nullptr);
+  ASSERT_TRUE(first.ok());
+  const Proven same = prove(shared(encode(sample::busy_image())), first->get());
+  ASSERT_TRUE(same.ok());
+  EXPECT_EQ((*same)->regions, (*first)->regions);
+  EXPECT_EQ((*same)->areas, (*first)->areas);
+}
+
 // verify() finds what is held by itself.
 TEST(Proof, VersionsThatAreHeldAnswerAsTheyDoAlone) {
   const auto held = verify(encode(sample::busy_image()));
