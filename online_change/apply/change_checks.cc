@@ -1,5 +1,6 @@
 // What is known of a change before it is armed, and what speaks against it.
 #include <algorithm>
+#include <optional>
 
 #include "online_change/apply/losses.h"
 #include "online_change/apply/pending.h"
@@ -92,17 +93,21 @@ std::vector<LiveLoss> Change::live_losses(std::span<const uint8_t> memory) const
 uint64_t Change::find_losses(std::span<const uint8_t> memory, size_t most,
                              std::vector<LiveLoss>& rows) const {
   uint64_t count = 0;
-  Areas areas(pending_->new_image.image());
-  Areas old_areas(pending_->old());
+  // Made when there is something to tell.
+  std::optional<Areas> areas;
+  std::optional<Areas> old_areas;
   pending_->forward.losses(memory.data(), [&](const Loss& loss) {
     if (count++ < most) {
-      rows.push_back(describe(loss, pending_->forward, areas, memory.data()));
+      if (!areas) areas.emplace(pending_->new_image.image());
+      rows.push_back(describe(loss, pending_->forward, *areas, memory.data()));
     }
     return true;
   });
   count += values_without_place(plan(), pending_->old(), memory, most, rows);
   pending_->handles.for_each_broken(memory.data(), [&](uint32_t at, ir::TypeId type) {
-    if (count++ < most) rows.push_back(describe_broken(old_areas, at, type, memory));
+    if (count++ >= most) return;
+    if (!old_areas) old_areas.emplace(pending_->old());
+    rows.push_back(describe_broken(*old_areas, at, type, memory));
   });
   for (const std::string& path : controller_.ended_forces(*pending_->waiting)) {
     if (count++ < most) rows.push_back({path, "forced", "", "loses its force"});

@@ -134,7 +134,9 @@ bool same_parameter(const ir::FrameSlot& a, const ir::FrameSlot& b) {
 // Where types are the same: the same POU, with the same code and the same interface.
 bool same_pou(const ir::LinkedPou& a, const ir::LinkedPou& b) {
   return a.identity == b.identity && a.name == b.name && a.kind == b.kind && a.self == b.self &&
-         std::equal(a.slots.begin(), a.slots.end(), b.slots.begin(), b.slots.end(), same_parameter);
+         (a.slots.is_one_with(b.slots) ||
+          std::equal(a.slots.begin(), a.slots.end(), b.slots.begin(), b.slots.end(),
+                     same_parameter));
 }
 
 // Live instances of each POU.

@@ -25,7 +25,8 @@ class WatchedPackages : public WatchTarget {
   Rest rest(std::chrono::nanoseconds time, int descriptor) override;
 
  private:
-  base::Result<Next> bring(const ir::Image& image, ir::WrittenImage made, const Built& built);
+  // `known`: null where the image has nothing in common with what runs.
+  base::Result<Next> bring(const ir::Image& image, const ir::KnownImage* known, const Built& built);
   base::Result<Next> send(const Built& built, base::Bytes package, const ir::Image& image,
                           ir::WrittenImage made);
 
