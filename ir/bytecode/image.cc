@@ -147,12 +147,6 @@ size_t rough_bytes(const Image& image) {
 base::Bytes encode(const Image& image) { return encode(image, nullptr).bytes; }
 
 WrittenImage encode(const Image& image, const KnownImage* known) {
-  WrittenImage made = encode_unsealed(image, known);
-  seal(made, known);
-  return made;
-}
-
-WrittenImage encode_unsealed(const Image& image, const KnownImage* known) {
   WrittenImage made;
   ImageWriter out(known == nullptr ? rough_bytes(image) : known->bytes.size() + kBytesForThreads);
   const Contents known_contents = contents_of(known);
@@ -170,12 +164,9 @@ WrittenImage encode_unsealed(const Image& image, const KnownImage* known) {
   }
   out.patch_u32(kImageMagic.size() + 4, static_cast<uint32_t>(out.size()));
   made.bytes = out.take();
-  return made;
-}
-
-void seal(WrittenImage& made, const KnownImage* known) {
   const base::Digest sum = sum_of(made.bytes, known, made.places.trail);
   std::copy(sum.begin(), sum.end(), made.bytes.begin() + kDigestAt);
+  return made;
 }
 
 base::Result<Image> decode(base::ByteSpan bytes) {

@@ -53,9 +53,5 @@ struct WrittenImage {
 // `known`: null where there is none.
 base::Result<DecodedImage> decode(base::ByteSpan bytes, const KnownImage* known);
 WrittenImage encode(const Image& image, const KnownImage* known);
-// The same in two steps, for whoever has something else to do beside the second one: all but the
-// digest and the trail; and these. Until then the digest is zero.
-WrittenImage encode_unsealed(const Image& image, const KnownImage* known);
-void seal(WrittenImage& made, const KnownImage* known);
 
 }  // namespace ir

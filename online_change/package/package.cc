@@ -4,8 +4,6 @@
 
 #include "base/large_pages.h"
 #include "base/limits.h"
-#include "base/memory_limit.h"
-#include "base/parallel.h"
 #include "ir/bytecode/verify.h"
 #include "online_change/package/delta.h"
 
@@ -22,7 +20,6 @@ constexpr uint32_t kVersion = 4;
 constexpr uint32_t kShortVersion = 5;  // layout and program are deltas to those of the base
 constexpr const char* kPartNames[] = {"layout", "program", "commands"};
 constexpr size_t kParts = std::size(kPartNames);
-constexpr size_t kBytesForThreads = 1 << 20;  // below, threads cost more than they save
 constexpr size_t kMinRowBytes = 1 + 3 * 4 + 1 + 4 + 8 + 4;
 constexpr size_t kMinStepBytes = 2 + 9 * 4 + 4;
 constexpr uint32_t kFateKinds = 5;
@@ -226,15 +223,12 @@ base::Result<base::Bytes> image_of(const Parts& parts, base::ByteSpan base_image
   return image;
 }
 
-base::Bytes program_delta(base::ByteSpan image, base::ByteSpan base_image) {
-  return make_delta(parts_of(base_image)[1], parts_of(image)[1]);
-}
-
-base::Bytes encode_short(const Package& plans, base::ByteSpan program, base::ByteSpan image,
-                         base::ByteSpan base_image) {
+base::Bytes encode_short(const Package& plans, base::ByteSpan image, base::ByteSpan base_image) {
   const base::Bytes commands = encode_commands(plans);
-  const base::Bytes layout = make_delta(parts_of(base_image)[0], parts_of(image)[0]);
-  return put_together(kShortVersion, {layout, program, commands});
+  const auto [layout, program] = parts_of(image);
+  const auto [base_layout, base_program] = parts_of(base_image);
+  return put_together(kShortVersion, {make_delta(base_layout, layout),
+                                      make_delta(base_program, program), commands});
 }
 
 // A package without its image.
@@ -267,7 +261,7 @@ base::Bytes encode(const Package& package) {
 }
 
 base::Bytes encode_short(const Package& package, base::ByteSpan base_image) {
-  return encode_short(package, program_delta(package.image, base_image), package.image, base_image);
+  return encode_short(package, package.image, base_image);
 }
 
 base::Error stale_base(const base::Digest& base, const base::Digest& running) {
@@ -321,28 +315,9 @@ base::Result<Package> make_package(const EncodedImage& from, const EncodedImage&
 }
 
 base::Result<base::Bytes> make_short_package(const EncodedImage& from, const EncodedImage& to) {
-  return make_short_package(from, to, [] {});
-}
-
-// The digest lies in the layout part, which is made behind it.
-base::Result<base::Bytes> make_short_package(const EncodedImage& from, const EncodedImage& to,
-                                             const std::function<void()>& seal) {
-  base::Result<Package> package = Package();
-  base::Bytes program;
-  const auto make_plans = [&] {
-    package = plans_for(from, to);
-    if (package.ok()) program = program_delta(to.bytes, from.bytes);
-  };
-  const uint32_t jobs = to.bytes.size() < kBytesForThreads ? 1 : base::usable_cores();
-  bool no_memory[2] = {};
-  base::for_each_index(2, jobs, 1, [&](size_t number) {
-    no_memory[number] = base::within_memory(
-        [&] { return number == 0 ? make_plans() : seal(), false; }, [] { return true; });
-  });
-  if (no_memory[0]) make_plans();  // once more, in the caller's memory limit
-  if (no_memory[1]) seal();
+  base::Result<Package> package = plans_for(from, to);
   if (!package.ok()) return package.error();
-  return encode_short(*package, program, to.bytes, from.bytes);
+  return encode_short(*package, to.bytes, from.bytes);
 }
 
 bool leaves_all(const Package& package) {

@@ -3,8 +3,6 @@
 // image, the plan and the inverse plan. The controller checks all of it (V17).
 #pragma once
 
-#include <functional>
-
 #include "base/hash.h"
 #include "base/result.h"
 #include "ir/bytecode/image.h"
@@ -38,10 +36,6 @@ base::Result<Package> make_package(base::ByteSpan old_image, base::ByteSpan new_
 base::Result<Package> make_package(const EncodedImage& from, const EncodedImage& to);
 // The same in the short form, without a package in between.
 base::Result<base::Bytes> make_short_package(const EncodedImage& from, const EncodedImage& to);
-// Of an image without its digest: `seal` puts it into to.bytes, on another thread where there is
-// one, while the rest of the package is made. Called once, whatever the result is.
-base::Result<base::Bytes> make_short_package(const EncodedImage& from, const EncodedImage& to,
-                                             const std::function<void()>& seal);
 // Does it do nothing to data, there and back? Sound where the two versions have the same_data().
 bool leaves_all(const Package& package);
 

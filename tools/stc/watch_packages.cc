@@ -2,10 +2,8 @@
 
 #include <poll.h>
 
-#include <algorithm>
 #include <cstdio>
 
-#include "ir/bytecode/image_sections.h"
 #include "online_change/package/package.h"
 #include "online_change/plan/pou_edits.h"
 #include "tools/common/child.h"
@@ -33,7 +31,7 @@ base::Status WatchedPackages::begin(base::Bytes running) {
 base::Result<WatchTarget::Next> WatchedPackages::take(const ir::Image& image, const Project&,
                                                       const Built& built) {
   const ir::KnownImage known{*running_, written_.bytes, written_.places};
-  return bring(image, &known, built);
+  return bring(image, ir::encode(image, &known), built);
 }
 
 base::Result<WatchTarget::Next> WatchedPackages::take(std::vector<ResourceVersion>& versions,
@@ -42,27 +40,20 @@ base::Result<WatchTarget::Next> WatchedPackages::take(std::vector<ResourceVersio
     return base::Error{base::Refusal::kUsage,
                        "there are several RESOURCEs, but what runs is of none of them"};
   }
-  return bring(versions.front().version.image, nullptr, built);
+  const ir::Image& image = versions.front().version.image;
+  return bring(image, ir::encode(image, nullptr), built);
 }
 
 base::Result<WatchTarget::Next> WatchedPackages::bring(const ir::Image& image,
-                                                       const ir::KnownImage* known,
-                                                       const Built& built) {
-  ir::WrittenImage made = ir::encode_unsealed(image, known);
-  const auto seal = [&] { ir::seal(made, known); };
-  const base::ByteSpan content = ir::sealed_part(made.bytes);
-  const base::ByteSpan running = ir::sealed_part(written_.bytes);
-  if (std::equal(content.begin(), content.end(), running.begin(), running.end())) {
-    seal();
-    return send(built, {}, image, std::move(made));
-  }
+                                                       ir::WrittenImage made, const Built& built) {
+  if (made.bytes == written_.bytes) return send(built, {}, image, std::move(made));
   const online_change::EncodedImage before{*running_, written_.bytes};
   const online_change::EncodedImage after{image, made.bytes};
   if (restricted_) {
     base::Status kept = online_change::check_restricted(online_change::pou_edits(before, after));
     if (!kept.ok()) return kept.error();
   }
-  auto package = online_change::make_short_package(before, after, seal);
+  auto package = online_change::make_short_package(before, after);
   if (!package.ok()) return package.error();
   return send(built, std::move(*package), image, std::move(made));
 }

@@ -25,8 +25,7 @@ class WatchedPackages : public WatchTarget {
   Rest rest(std::chrono::nanoseconds time, int descriptor) override;
 
  private:
-  // `known`: null where the image has nothing in common with what runs.
-  base::Result<Next> bring(const ir::Image& image, const ir::KnownImage* known, const Built& built);
+  base::Result<Next> bring(const ir::Image& image, ir::WrittenImage made, const Built& built);
   base::Result<Next> send(const Built& built, base::Bytes package, const ir::Image& image,
                           ir::WrittenImage made);
 
