@@ -60,7 +60,10 @@ class InstancesVerifier {
     const Instance& row = image_.instances[id];
     if (!image_.types.knows(row.old_name)) return bad(id, "has an old name that is nowhere");
     if (!is_live(id)) return base::Ok{};
-    if (id != 0) {
+    if (id == 0) {
+      const bool root = row.live && row.parent == 0 && row.pou == 0 && row.name.empty();
+      if (!root) return bad(id, "is not the root of all others");
+    } else {
       if (!image_.types.is_instance(row.type)) return bad(id, "has no instance type");
       if (context_.pou_of_type[row.type.index] != row.pou || row.pou >= image_.pous.size()) {
         return bad(id, "POU " + std::to_string(row.pou) + " is not that of its type");
@@ -68,6 +71,7 @@ class InstancesVerifier {
       if (row.parent >= image_.instances.size() || !is_live(row.parent)) {
         return bad(id, "its parent " + std::to_string(row.parent) + " is not live");
       }
+      if (is_program(id) && row.parent != 0) return bad(id, "is a program and has a parent");
     }
     const uint64_t end = uint64_t{row.data} + image_.layouts[row.type].area_capacity;
     if (row.data < kDataBegin || end > image_.data_capacity) {

@@ -169,8 +169,18 @@ class TablesVerifier {
       if (slot.region.dim == 0 && types.is_scalar(slot.region.type)) {
         return bad("a scalar is no aggregate");
       }
+    } else if (slot.cls != Class::kA && !right_scalar(slot)) {
+      return bad("its type is none of its class");
     }
     return base::Ok{};
+  }
+
+  // A parameter's type is part of what callers see; of others debuggers know it, or nobody.
+  bool right_scalar(const FrameSlot& slot) const {
+    const TypeId type = slot.region.type;
+    if (!type.valid()) return slot.kind != SlotKind::kParam;
+    return slot.region.dim == 0 && image_.types.is_scalar(type) &&
+           class_of(image_.types.scalar(type)) == slot.cls;  // so none of a string's place
   }
 
   base::Status check_bound(uint32_t number) const {

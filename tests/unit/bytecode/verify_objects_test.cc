@@ -156,7 +156,10 @@ TEST(VerifyObjects, V12_OverridesFit) {
     pou.slots[2].offset = 6;
   });
   with_slots("of another kind", [](auto& pou) { pou.slots[0].local = ir::LocalKind::kOutput; });
-  with_slots("of another class", [](auto& pou) { pou.slots[0].cls = Class::k8; });
+  with_slots("of another class", [](auto& pou) {
+    pou.slots[0].cls = Class::k8;
+    pou.slots[0].region.type = ir::TypeId(static_cast<uint32_t>(ir::Kind::kSint));
+  });
 }
 
 TEST(VerifyObjects, V12_CallsOfMethodsFit) {
@@ -209,6 +212,7 @@ TEST(VerifyObjects, V11_VirtualCallsHaveNoCircle) {
   image.pous[kBaseAdd].slots.push_back(image.pous[kBaseAdd].slots[0]);
   image.pous[kBaseAdd].slots[2].offset = 8;
   image.pous[kBaseAdd].slots[2].cls = Class::k64;
+  image.pous[kBaseAdd].slots[2].region = {};
   image.pous[kBaseAdd].slots[2].kind = ir::SlotKind::kTemp;
   set_code(image, kBaseAdd,
            ext(Opcode::HANDLE, F(8), S(0), {}, 0, 0) + op(Opcode::MOV_16, F(16), F(0)) +

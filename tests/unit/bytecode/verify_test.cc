@@ -45,6 +45,8 @@ void expect_code_refused(Refusal refusal, const char* what, const Code& code,
 
 const Code kRet = op(Opcode::RET);
 const uint32_t kInt = static_cast<uint32_t>(ir::Kind::kInt);
+const ir::TypeId kIntType(kInt);
+const ir::TypeId kDint(static_cast<uint32_t>(ir::Kind::kDint));
 
 Code load_w0() { return op(Opcode::MOV_16, F(kW0), C(kOne16)); }
 Code load_b0() { return op(Opcode::MOV_B, F(kB0), C(kTrue)); }
@@ -181,6 +183,19 @@ TEST(Verify, V8_Frames) {
                  [](Image& i) { i.pous[kCounterPou].frame_size = base::kMaxFrameBytes + 8; });
   expect_refused(Refusal::kBadFrame, "an instance in a frame", [](Image& i) {
     i.pous[kMainPou].slots[12].region = {types_of(i).counters, 0};
+  });
+  // Whoever compares what callers see looks at the types of parameters.
+  for (const ir::Region region : {ir::Region{}, ir::Region{ir::TypeId(999), 0},
+                                  ir::Region{ir::TypeId(1u << 30), 0}, ir::Region{kDint, 0},
+                                  ir::Region{kIntType, 1}}) {
+    expect_refused(Refusal::kBadFrame, "a parameter of a type that is not of its class",
+                   [&](Image& i) { i.pous[kAddPou].slots[0].region = region; });
+  }
+  expect_refused(Refusal::kBadFrame, "a scalar that is a structure", [](Image& i) {
+    i.pous[kMainPou].slots[1].region = {types_of(i).pair, 0};
+  });
+  expect_refused(Refusal::kBadFrame, "a string's place of a type that is nowhere", [](Image& i) {
+    i.pous[kMainPou].slots[10].region = {ir::TypeId(999), 0};
   });
 }
 
@@ -396,6 +411,19 @@ TEST(Verify, V13_Instances) {
                  [](Image& i) { i.data[3].bytes[4] = 2; });
   expect_refused(Refusal::kBadInstance, "another parent",
                  [](Image& i) { i.instances[2].parent = 0; });
+  // Whoever looks for the root of an instance goes up until there is no parent.
+  expect_refused(Refusal::kBadInstance, "globals below an instance",
+                 [](Image& i) { i.instances[0].parent = 4; });
+  expect_refused(Refusal::kBadInstance, "globals below what is not there",
+                 [](Image& i) { i.instances[0].parent = 1u << 30; });
+  expect_refused(Refusal::kBadInstance, "globals that are free",
+                 [](Image& i) { i.instances[0].live = false; });
+  expect_refused(Refusal::kBadInstance, "globals with code",
+                 [](Image& i) { i.instances[0].pou = kMainPou; });
+  expect_refused(Refusal::kBadInstance, "globals with a name",
+                 [](Image& i) { i.instances[0].name = "Main"; });
+  expect_refused(Refusal::kBadInstance, "a program below an instance",
+                 [](Image& i) { i.instances[kMainInstance].parent = 5; });
   expect_refused(Refusal::kBadInstance, "an instance that no slot names", [](Image& i) {
     i.instances[6] = i.instances[2];
     i.instances[6].data = 448;
