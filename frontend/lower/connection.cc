@@ -6,40 +6,42 @@ namespace frontend {
 
 void Body::connect_inputs() {
   for (const Connection& connection : info_.connections) {
+    const Arg& arg = tree_.args[connection.arg];
     const Variable& input = sema_.resolve(connection.parameter);
     if (input.section != VarSection::kInput || !input.type.valid()) continue;
     Target target;
     target.place = member_variable_place(input);
     target.type = input.type;
     Sema::Within outside(sema_, kNoPou);
-    set_line(connection.arg->span);
+    set_line(arg.span);
     if (types().is_scalar(input.type)) {
-      store(target, value(connection.arg->value, input.type));
+      store(target, value(arg.value, input.type));
     } else {
-      assign_aggregate(target, connection.arg->value);
+      assign_aggregate(target, arg.value);
     }
   }
 }
 
 void Body::connect_outputs() {
   for (const Connection& connection : info_.connections) {
+    const Arg& arg = tree_.args[connection.arg];
     const Variable& output = sema_.resolve(connection.parameter);
     if (output.section != VarSection::kOutput || !output.type.valid()) continue;
     ir::Place from = member_variable_place(output);
     Sema::Within outside(sema_, kNoPou);
-    set_line(connection.arg->span);
-    auto to = target(connection.arg->value);
+    set_line(arg.span);
+    auto to = target(arg.value);
     if (!to) continue;
     bool strings = is_string(types(), output.type) && is_string(types(), to->type) &&
                    wide(output.type) == wide(to->type);
     if (types().is_scalar(output.type) && types().is_scalar(to->type)) {
       ir::ValueId now = build_.load(from, scalar(output.type));
-      if (connection.arg->negated) now = build_.unary(ir::Op::kNot, scalar(output.type), now);
-      store(*to, convert({now, output.type}, to->type, connection.arg->span));
+      if (arg.negated) now = build_.unary(ir::Op::kNot, scalar(output.type), now);
+      store(*to, convert({now, output.type}, to->type, arg.span));
     } else if (strings || output.type == to->type) {
       build_.copy(to->place, from);
     } else {
-      sema_.error(DiagnosticCode::kWrongArgument, connection.arg->span,
+      sema_.error(DiagnosticCode::kWrongArgument, arg.span,
                   "`" + std::string(output.name.text) + "` is `" + sema_.type_text(output.type) +
                       "`, its target is `" + sema_.type_text(to->type) + "`");
     }

@@ -228,7 +228,7 @@ ir::ConstId Sema::program_arguments(const ProgramDecl& decl, const PouInfo& info
     bool list = kind == ExprKind::kArrayInit || kind == ExprKind::kStructInit;
     bool constant = !output && (list || infer(arg.value).known >= Known::kByCall);
     if (!constant) {
-      connections.push_back({found->second, &arg});
+      connections.push_back({found->second, decl.args.first + i});
       continue;
     }
     ir::ConstId init = initial_value(arg.value, variable->type, variable->init);

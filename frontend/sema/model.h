@@ -68,10 +68,11 @@ struct GlobalList {
   NameMap<VarId> names;
 };
 
-// An argument of a program instance that is copied at each scan.
+// An argument of a program instance that is copied at each scan: of Tree::args, by number, for the
+// list moves when later texts are read.
 struct Connection {
   VarId parameter;
-  const Arg* arg;
+  uint32_t arg;
 };
 
 // What stands at an address: a variable, or the address itself in code.

@@ -226,6 +226,29 @@ TEST(Edits, SeveralFilesAtOnce) {
   EXPECT_EQ(project.whole, 0u);
 }
 
+// What a CONFIGURATION says of a program is read again whenever the program's body is lowered,
+// among the nodes of all later texts.
+TEST(Edits, ConnectionsOutliveEditsOfTheirProgram) {
+  Project project({R"(VAR_GLOBAL g : INT; h : INT; s : STRING[8]; b : BOOL; END_VAR
+PROGRAM Turn
+VAR_INPUT in : INT; name : STRING[8]; END_VAR
+VAR_OUTPUT out : INT; done : BOOL; END_VAR
+  out := in + LEN(name) + SHL(IN := in, N := 0);
+  done := in > 0;
+END_PROGRAM
+CONFIGURATION c
+  TASK t(INTERVAL := T#10ms, PRIORITY := 1);
+  PROGRAM p WITH t : Turn(in := g + 1, name := s, out => h, NOT done => b);
+  PROGRAM q WITH t : Turn(in := h, out => g);
+END_CONFIGURATION
+)"});
+  for (int save = 0; save < 12; ++save) {
+    project.edit(0, "N := " + std::to_string(save), "N := " + std::to_string(save + 1));
+    EXPECT_EQ(project.whole, 0u);
+    EXPECT_EQ(project.lowered, 3u);  // itself, and as p and q
+  }
+}
+
 // Texts and nodes of former edits go when there are too many of them.
 TEST(Edits, TenThousandEditsKeepTheirMemory) {
   workspace::Settings settings;
