@@ -1,5 +1,7 @@
 // stvm image: the running program as a file, for `stc diff` and `stc package`: a lost build folder
 // never forces a stop (X1).
+#include <sys/stat.h>
+
 #include <cstdio>
 
 #include "tools/common/exit.h"
@@ -25,6 +27,7 @@ base::Status fetch(const tools::Options& options) {
   if (!status.ok()) return status.error();
   base::Result<base::Bytes> image = client->image();
   if (!image.ok()) return image.error();
+  ::umask(077);  // for its owner only
   return tools::write_file(options.text("--output"), *image);
 }
 

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -17,11 +18,43 @@ base::Error unwritable(const std::string& path, const char* why) {
 }
 
 base::Status make_folder(const std::string& path) {
-  std::error_code error;
-  std::filesystem::path parent = std::filesystem::path(path).parent_path();
-  if (!parent.empty()) std::filesystem::create_directories(parent, error);
   if (::mkdir(path.c_str(), 0700) == 0 || errno == EEXIST) return base::Ok{};
+  const int code = errno;
+  const std::string parent = std::filesystem::path(path).parent_path();
+  if (code != ENOENT || parent.empty() || parent == path) {
+    return unwritable(path, std::strerror(code));
+  }
+  if (base::Status made = make_folder(parent); !made.ok()) return made;
+  if (::mkdir(path.c_str(), 0700) == 0) return base::Ok{};
   return unwritable(path, std::strerror(errno));
+}
+
+// Who writes a folder can exchange what is in it, but not in a sticky one what belongs to others.
+base::Status check_folder(const std::string& path, bool parent) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) return unwritable(path, std::strerror(errno));
+  const bool ours = info.st_uid == ::geteuid() || info.st_uid == 0;
+  if (!parent && !ours) {
+    return unwritable(path, "it belongs to another user, who could exchange what runs; use another "
+                            "directory, or `chown` it");
+  }
+  const bool by_others = (info.st_mode & (S_IWGRP | S_IWOTH)) != 0;
+  if (!by_others || (parent && (info.st_mode & S_ISVTX) != 0)) return base::Ok{};
+  const std::string why =
+      "others can write it and could exchange what runs: `chmod go-w " + path + "`";
+  return unwritable(path, why.c_str());
+}
+
+base::Status check_folders(const std::string& path) {
+  std::error_code error;
+  std::filesystem::path at = std::filesystem::canonical(path, error);
+  if (error) return unwritable(path, error.message().c_str());
+  base::Status safe = check_folder(at, false);
+  while (safe.ok() && at != at.root_path()) {
+    at = at.parent_path();
+    safe = check_folder(at, true);
+  }
+  return safe;
 }
 
 }  // namespace
@@ -29,6 +62,8 @@ base::Status make_folder(const std::string& path) {
 base::Result<StateFolder> StateFolder::open(const std::string& path) {
   base::Status made = make_folder(path);
   if (!made.ok()) return made.error();
+  base::Status safe = check_folders(path);
+  if (!safe.ok()) return safe.error();
   std::string file = path + "/lock";
   vm::Descriptor lock(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
   if (!lock.valid()) return unwritable(file, std::strerror(errno));

@@ -11,8 +11,9 @@ namespace stvm {
 
 class StateFolder {
  public:
-  // Makes the directory (owner only) when it is not there, and locks it until the owner goes.
-  // kAlreadyRunning, kFileUnwritable.
+  // Makes the directory (owner only) when it is not there, and locks it until the owner goes. One
+  // that others can write is refused: they could exchange what runs. kAlreadyRunning,
+  // kFileUnwritable.
   static base::Result<StateFolder> open(const std::string& path);
 
  private:

@@ -1,5 +1,8 @@
 #include "vm/runtime/recorder.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -19,7 +22,12 @@ constexpr size_t kMaxWaiting = size_t{64} << 20;  // bytes that the disk is behi
 
 base::Result<std::unique_ptr<Recorder>> Recorder::create(const std::string& path, Clock& clock,
                                                          IoPort& io, const RecordedStart& start) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
+  // For its owner only: it has all that the program knows of the plant.
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  struct stat info {};
+  const bool plain = descriptor >= 0 && ::fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode);
+  const bool kept = descriptor >= 0 && (!plain || ::fchmod(descriptor, 0600) == 0);
+  std::FILE* file = kept ? ::fdopen(descriptor, "wb") : nullptr;
   if (file == nullptr) {
     return base::Error{base::Refusal::kFileUnwritable, path + ": " + std::strerror(errno)};
   }
