@@ -213,7 +213,7 @@ base::Status serve(const tools::Options& options) {
   if (!limits.ok()) return limits.error();
   base::Result<vm::RealTimeOptions> real_time = real_time_options(options);
   if (!real_time.ok()) return real_time.error();
-  StopSignal::install();
+  StopSignal::install_service();
   // What the resources use outlives them.
   vm::RealClock real_clock;
   vm::VirtualClock virtual_clock;

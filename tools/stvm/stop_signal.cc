@@ -1,27 +1,47 @@
 #include "tools/stvm/stop_signal.h"
 
+#include <atomic>
 #include <csignal>
 
 namespace stvm {
 namespace {
 
-volatile std::sig_atomic_t stop_received = 0;
+std::atomic<bool> stop_received{false};
+std::atomic<bool> hangup_received{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
 
-void on_signal(int) { stop_received = 1; }
+void on_stop(int) { stop_received = true; }
+void on_hangup(int) { hangup_received = true; }
+
+void handle(int number, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  sigemptyset(&action.sa_mask);
+  sigaction(number, &action, nullptr);
+}
 
 }  // namespace
 
 void StopSignal::install() {
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  handle(SIGINT, on_stop);
+  handle(SIGTERM, on_stop);
   // A file that may not grow any further is an error of the write, not the end of the process.
-  action.sa_handler = SIG_IGN;
-  sigaction(SIGXFSZ, &action, nullptr);
+  handle(SIGXFSZ, SIG_IGN);
 }
 
-bool StopSignal::received() { return stop_received != 0; }
+void StopSignal::install_service() {
+  install();
+  for (const int number : {SIGQUIT, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGPOLL,
+                           SIGPWR, SIGSTKFLT}) {
+    handle(number, on_stop);
+  }
+  for (int number = SIGRTMIN; number <= SIGRTMAX; ++number) handle(number, on_stop);
+  for (const int number : {SIGPIPE, SIGTSTP, SIGTTIN, SIGTTOU}) handle(number, SIG_IGN);
+  handle(SIGHUP, on_hangup);
+}
+
+bool StopSignal::received() { return stop_received; }
+
+bool StopSignal::take_hangup() { return hangup_received && hangup_received.exchange(false); }
 
 }  // namespace stvm
