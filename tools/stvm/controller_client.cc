@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "base/visible_text.h"
 #include "online_change/store/record.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/remote_client.h"
@@ -152,6 +153,8 @@ base::Result<std::vector<online_change::JournalEntry>> ControllerClient::journal
     for (size_t at = 0; at < body->size(); at += bytes) {
       auto entry = online_change::decode_entry(base::ByteSpan(*body).subspan(at, bytes));
       if (!entry) return base::Error{base::Refusal::kProtocol, "message not understood: journal"};
+      entry->who = base::visible(entry->who);
+      entry->text = base::visible(entry->text);
       all.push_back(std::move(*entry));
     }
   }

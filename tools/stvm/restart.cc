@@ -1,6 +1,7 @@
 // stvm restart: all tasks run again, also behind a fault.
 #include <cstdio>
 
+#include "base/visible_text.h"
 #include "tools/common/exit.h"
 #include "tools/common/json.h"
 #include "tools/stvm/commands.h"
@@ -51,7 +52,7 @@ base::Status restart(const tools::Options& options) {
   request.flags = static_cast<uint32_t>(kind->restart);
   base::Result<base::Bytes> answer = client->call(request);
   if (!answer.ok()) return answer.error();
-  const std::string left(answer->begin(), answer->end());
+  const std::string left = base::visible(std::string(answer->begin(), answer->end()));
   if (!*json) {
     std::printf("restarted, %s\n", kind->name);
     if (!left.empty()) std::printf("  not all instances left: %s\n", left.c_str());

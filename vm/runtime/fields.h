@@ -8,6 +8,7 @@
 
 #include "base/bytes.h"
 #include "base/hash.h"
+#include "base/visible_text.h"
 #include "vm/runtime/protocol.h"
 
 namespace vm {
@@ -33,13 +34,19 @@ class FieldWriter {
   base::ByteWriter out_;
 };
 
+// kVisible: texts are for people, so that whatever they would do to a terminal is shown instead
+// (base/visible_text.h); of all answers. kAsSent: of requests.
+enum class Texts : uint8_t { kVisible, kAsSent };
+
 class FieldReader {
  public:
-  explicit FieldReader(base::ByteSpan bytes) : in_(bytes) {}
+  explicit FieldReader(base::ByteSpan bytes, Texts texts = Texts::kVisible)
+      : in_(bytes), texts_(texts) {}
   void operator()(std::string& v) {
     base::ByteSpan bytes = in_.blob();
     if (bytes.size() > kMaxNameBytes) in_.fail();
     v.assign(bytes.begin(), bytes.end());
+    if (texts_ == Texts::kVisible) v = base::visible(v);
   }
   void operator()(base::Bytes& v) {
     base::ByteSpan bytes = in_.blob();
@@ -65,6 +72,7 @@ class FieldReader {
 
  private:
   base::ByteReader in_;
+  Texts texts_;
 };
 
 inline void fields(FieldWriter& a, const std::string& v) { a(v); }

@@ -1,0 +1,34 @@
+// What a hostile name may do to a terminal: nothing.
+#include "base/visible_text.h"
+
+#include <gtest/gtest.h>
+
+namespace base {
+namespace {
+
+TEST(VisibleText, KeepsWhatPeopleRead) {
+  for (const char* text : {"", "Line.Filler.Count", "16#00FF 'ab$'c' \\ ~", "Füllstand µ € 漢 😀"}) {
+    EXPECT_EQ(visible(text), text);
+  }
+}
+
+TEST(VisibleText, ShowsControlCharacters) {
+  EXPECT_EQ(visible("\x1b[2Jx\x1b]0;title\x07"), "\\x1b[2Jx\\x1b]0;title\\x07");
+  EXPECT_EQ(visible("a\nb\r\tc\x7f"), "a\\x0ab\\x0d\\x09c\\x7f");
+  EXPECT_EQ(visible(std::string("\0", 1)), "\\x00");
+  EXPECT_EQ(visible("\xc2\x9b" "31m"), "\\xc2\\x9b31m") << "CSI as one character";
+  EXPECT_EQ(visible("\x9b" "31m"), "\\x9b31m") << "CSI as one byte";
+}
+
+TEST(VisibleText, ShowsWhatIsNoUtf8) {
+  EXPECT_EQ(visible("\xc3"), "\\xc3");
+  EXPECT_EQ(visible("\xc0\x9b"), "\\xc0\\x9b");
+  EXPECT_EQ(visible("\xe0\x82\x9b"), "\\xe0\\x82\\x9b") << "longer than need be";
+  EXPECT_EQ(visible("\xed\xa0\x80"), "\\xed\\xa0\\x80");
+  EXPECT_EQ(visible("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");
+  EXPECT_EQ(visible("\xf0\x9f\x98"), "\\xf0\\x9f\\x98");
+  EXPECT_EQ(visible("\xff\xfe"), "\\xff\\xfe");
+}
+
+}  // namespace
+}  // namespace base
