@@ -11,34 +11,15 @@
 #include <unistd.h>
 
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 
+#include "tests/unit/counted_allocations.h"
 #include "tests/unit/runtime/plant.h"
 
 namespace {
 
-thread_local bool watched = false;
-thread_local uint64_t allocations = 0;
 thread_local uint64_t locks = 0;
 
-void* allocate(size_t size) {
-  if (watched) ++allocations;
-  return std::malloc(size != 0 ? size : 1);
-}
-
 }  // namespace
-
-[[gnu::noinline]] void* operator new(size_t size) {
-  void* memory = allocate(size);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-[[gnu::noinline]] void* operator new(size_t size, const std::nothrow_t&) noexcept {
-  return allocate(size);
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept { std::free(memory); }
 
 // Stands in front of the C library's.
 extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
