@@ -3,7 +3,7 @@
 #include <bit>
 
 #include "base/limits.h"
-#include "ir/bytecode/symbols.h"
+#include "ir/bytecode/value_ranges.h"
 #include "ir/types/handle.h"
 #include "ir/types/inside.h"
 #include "ir/types/value_text.h"
@@ -35,7 +35,8 @@ std::string_view string_bytes(const Type& type, const uint8_t* at) {
 
 class Formatter {
  public:
-  Formatter(const Image& image, Memory memory) : image_(image), memory_(memory) {}
+  Formatter(const Image& image, Memory memory, size_t max_bytes)
+      : image_(image), memory_(memory), max_bytes_(max_bytes) {}
 
   std::string text(TypeId id, uint32_t data, uint32_t depth) {
     const Type& type = image_.types[id];
@@ -79,7 +80,7 @@ class Formatter {
     uint64_t count = 1;
     for (const Dimension& dim : type.dims) count *= dim.count();
     std::string out = "[";
-    for (uint64_t i = 0; i < count; ++i) {
+    for (uint64_t i = 0; i < count && out.size() <= max_bytes_; ++i) {
       if (i != 0) out += ", ";
       out += part(type.base, data + static_cast<uint32_t>(i * image_.layouts[type.base].size),
                   depth + 1);
@@ -90,7 +91,7 @@ class Formatter {
   std::string members(TypeId id, uint32_t data, uint32_t depth) {
     const Type& type = image_.types[id];
     std::string out = "(";
-    for (size_t i = 0; i < type.members.size(); ++i) {
+    for (size_t i = 0; i < type.members.size() && out.size() <= max_bytes_; ++i) {
       if (!is_listed(type.members[i])) continue;
       if (out.size() > 1) out += ", ";
       out += type.members[i].name + " := " +
@@ -101,6 +102,7 @@ class Formatter {
 
   const Image& image_;
   Memory memory_;
+  size_t max_bytes_;
 };
 
 base::Result<base::Bytes> string_value(const Type& type, std::string_view text) {
@@ -134,7 +136,12 @@ void add_leaf_value(const Image& image, const Symbol& symbol, Memory memory,
 
 std::string format_value(const Image& image, const Symbol& symbol,
                          std::span<const uint8_t> memory) {
-  return Formatter(image, memory).text(symbol.type, symbol.data, 0);
+  return format_value(image, symbol, memory, SIZE_MAX);
+}
+
+std::string format_value(const Image& image, const Symbol& symbol, std::span<const uint8_t> memory,
+                         size_t max_bytes) {
+  return Formatter(image, memory, max_bytes).text(symbol.type, symbol.data, 0);
 }
 
 base::Result<base::Bytes> parse_value(const Image& image, TypeId id, std::string_view text) {

@@ -59,7 +59,7 @@ void RetainKeeper::serve(int64_t free_ns) {
   take(snapshot_);
   const uint64_t count = controller_.trap_count();
   if (count != traps_seen_) {
-    const std::vector<vm::TrapRecord>& all = controller_.traps();
+    const vm::Traps& all = controller_.traps();
     const uint64_t added = std::min<uint64_t>(count - traps_seen_, all.size());
     traps_.assign(all.end() - static_cast<std::ptrdiff_t>(added), all.end());
     traps_seen_ = count;
@@ -111,14 +111,15 @@ void RetainKeeper::run() {
 }
 
 void RetainKeeper::note_traps() {
-  for (const vm::TrapRecord& trap : traps_) {
+  for (const auto& trap : traps_) {
     JournalEntry entry;
     entry.time_ns = wall_time_();
     entry.event = Event::kTrap;
     entry.to = snapshot_.image;
-    entry.cycle = trap.cycle;
-    entry.text = "task " + trap.task + ": " + trap.text.file + ":" +
-                 std::to_string(trap.text.line) + " (" + trap.text.pou + "): " + trap.text.text;
+    entry.cycle = trap->cycle;
+    const vm::TrapText& text = trap->text;
+    entry.text = "task " + trap->task + ": " + text.file + ":" + std::to_string(text.line) + " (" +
+                 text.pou + "): " + text.text;
     store_.note_trap(std::move(entry));
   }
   traps_.clear();

@@ -63,7 +63,7 @@ class RetainKeeper {
   // Belong to the control thread in kWanted and kUrgent, to the keeper's otherwise.
   std::atomic<uint32_t> state_{kIdle};
   Snapshot snapshot_;
-  std::vector<vm::TrapRecord> traps_;
+  vm::Traps traps_;
   uint64_t traps_seen_ = 0;
 
   std::mutex saving_;  // guards saved_

@@ -68,3 +68,39 @@ said 'output'
 # A client that goes away in the middle of a message, and one that says nothing, leave the controller alone.
 printf '\377\377\377' | stvm bridge --dir "$directory" >/dev/null || true
 expect 0 stvm stop --host plant7 --dir "$work/$directory"
+
+# A controller ends connections that ask nothing for long. The bridge finds it again with the next request, and ends when
+# there is none: here it was started anew in the meantime. Any answer will do, also one to another version of the protocol.
+end() {  # until it has given its folder back
+  expect 0 stvm stop --dir "$directory"
+  wait "$(cat "$directory.pid")" || true
+}
+wait "$(cat "$directory.pid")" || true
+serve "$directory"
+mkfifo requests
+stvm bridge --dir "$directory" <requests >answers 2>bridge.err &
+bridge=$!
+echo "$bridge" >bridge.pid
+exec 3>requests
+asked() {  # a request of two bytes; until there is more of answers than before
+  before=$(stat -c %s answers)
+  printf '\002\000\000\000\000\000' >&3
+  for _ in $(seq 600); do
+    [ "$(stat -c %s answers)" -gt "$before" ] && return
+    sleep 0.05
+  done
+  fail 'the bridge brings no answer'
+}
+asked
+end
+serve "$directory"
+asked
+asked
+end
+printf '\002\000\000\000\000\000' >&3
+code=0
+wait "$bridge" || code=$?
+rm bridge.pid
+[ "$code" -eq 7 ] || fail "exit code $code of a bridge without a controller"
+grep -q R0404 bridge.err || fail 'the bridge does not say why it ends'
+exec 3>&-

@@ -134,10 +134,10 @@ class Forced : public Subject {
   std::string scan() override {
     controller_->cycle();
     for (; traps_seen_ < controller_->trap_count(); ++traps_seen_) {
-      const std::vector<vm::TrapRecord>& kept = controller_->traps();
+      const vm::Traps& kept = controller_->traps();
       const size_t back = static_cast<size_t>(controller_->trap_count() - traps_seen_);
       if (back > kept.size()) continue;
-      const vm::TrapRecord& trap = kept[kept.size() - back];
+      const vm::TrapRecord& trap = *kept[kept.size() - back];
       traps_ += trap_line(trap.trap.kind, trap.text.pou, trap.text.line);
       out_of_fuel_ |= trap.trap.kind == ir::TrapKind::kFuel;
     }

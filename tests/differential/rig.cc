@@ -24,9 +24,9 @@ base::Result<std::unique_ptr<Rig>> Rig::start(const golden::Program& program,
 std::string Rig::scan() {
   size_t before = controller_->traps().size();
   controller_->cycle();
-  const std::vector<vm::TrapRecord>& traps = controller_->traps();
+  const vm::Traps& traps = controller_->traps();
   if (traps.size() == before) return {};
-  const vm::TrapRecord& first = traps[before];
+  const vm::TrapRecord& first = *traps[before];
   return std::string(ir::trap_name(first.trap.kind)) + " " + first.text.pou + ":" +
          std::to_string(first.text.line);
 }

@@ -38,20 +38,39 @@ bool pass_on(int from, int to) {
   return n > 0 && write_all(to, buffer, static_cast<size_t>(n));
 }
 
-void relay(int controller) {
-  pollfd ends[] = {{STDIN_FILENO, POLLIN, 0}, {controller, POLLIN, 0}};
+base::Result<vm::Descriptor> connect(const std::string& directory) {
+  return vm::SocketClient::open(directory, vm::SocketClient::For::kAnother);
+}
+
+// A controller ends connections that have asked nothing for long; the next request looks for it
+// again. One that ends before it has answered is gone.
+base::Status relay(const std::string& directory, vm::Descriptor controller) {
+  bool asked = false;
   for (;;) {
-    if (::poll(ends, 2, -1) < 0 && errno != EINTR) return;
-    if (ends[0].revents != 0 && !pass_on(STDIN_FILENO, controller)) return;
-    if (ends[1].revents != 0 && !pass_on(controller, STDOUT_FILENO)) return;
+    pollfd ends[] = {{STDIN_FILENO, POLLIN, 0}, {controller.get(), POLLIN, 0}};
+    if (::poll(ends, 2, -1) < 0 && errno != EINTR) return base::Ok{};
+    if (ends[1].revents != 0) {
+      const bool more = pass_on(controller.get(), STDOUT_FILENO);
+      if (!more && asked) return base::Ok{};
+      if (!more) controller = {};
+      asked = false;
+    }
+    if (ends[0].revents == 0) continue;
+    if (!controller.valid()) {
+      base::Result<vm::Descriptor> again = connect(directory);
+      if (!again.ok()) return again.error();
+      controller = std::move(*again);
+    }
+    if (!pass_on(STDIN_FILENO, controller.get())) return base::Ok{};
+    asked = true;
   }
 }
 
 int run(const tools::Options& options) {
-  base::Result<vm::Descriptor> socket = vm::SocketClient::open(state_directory(options));
+  base::Result<vm::Descriptor> socket = connect(state_directory(options));
   if (!socket.ok()) return refuse(socket.error());
-  relay(socket->get());
-  return tools::kOk;
+  base::Status relayed = relay(state_directory(options), std::move(*socket));
+  return relayed.ok() ? tools::kOk : refuse(relayed.error());
 }
 
 }  // namespace

@@ -16,7 +16,6 @@ constexpr size_t kShownLosses = 500;
 constexpr size_t kShownEdits = 1000;
 // A switch that finds too little time before the next cycle is tried again after it.
 constexpr int kSwitchAttempts = 200;
-constexpr int64_t kBetweenAttemptsNs = 1'000'000;
 // So many times in turn without any idle time, and a change that needs some is given up.
 constexpr int kIdleAttempts = 200;
 
@@ -64,9 +63,13 @@ uint64_t line_bytes(const FateLine& line) {
 
 }  // namespace
 
+// One at a time: whoever begins one ends that of another connection, which is told so.
 base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) {
-  if (request.offset == 0) upload_.clear();
-  if (request.offset != upload_.size()) {
+  if (request.offset == 0) {
+    upload_ = base::Bytes();
+    upload_of_ = session_;
+  }
+  if (request.offset != upload_.size() || upload_of_ != session_) {
     return base::Error{base::Refusal::kProtocol, "parts of the package are missing"};
   }
   if (upload_.size() + request.data.size() > base::kMaxImageBytes) {
@@ -121,9 +124,10 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
   if (request.offset == 0 || !live_) {
     live_.reset();
     auto taken = LiveReport::take(controller_, change_, back ? nullptr : &next_image,
-                                  [this](const auto& job) { return at_boundary(job); });
+                                  [this](auto ranges) { return copy_of(std::move(ranges)); });
     if (!taken.ok()) return taken.error();
     live_.emplace(std::move(*taken));
+    live_of_ = session_;
   }
   const online_change::Plan& plan = back ? change_.undo_plan() : change_.plan();
   FatePage page{plan.counts,

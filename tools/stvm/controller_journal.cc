@@ -93,13 +93,14 @@ base::Result<base::Bytes> ControllerService::journal(const vm::Request& request)
     auto all = store_.history();
     if (!all.ok()) return all.error();
     history_ = std::move(*all);
+    history_of_ = session_;
   }
   base::Bytes page;
   for (uint64_t i = request.offset; i < history_.size() && page.size() < vm::kChunkBytes; ++i) {
     const base::Bytes entry = online_change::encode(history_[i]);
     page.insert(page.end(), entry.begin(), entry.end());
   }
-  if (page.empty()) history_.clear();
+  if (page.empty()) history_ = std::vector<JournalEntry>();
   return page;
 }
 

@@ -1,11 +1,13 @@
 #include "tools/stvm/controller_service.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include "base/limits.h"
 #include "base/memory_limit.h"
 #include "tools/stvm/commands.h"
+#include "tools/stvm/stop_signal.h"
 #include "vm/native/program.h"
 
 namespace stvm {
@@ -16,10 +18,6 @@ constexpr int64_t kKeepUpPatienceNs = 200'000'000;
 constexpr int64_t kBoundaryPatienceNs = 5'000'000'000;
 
 base::Bytes nothing() { return {}; }
-
-vm::ValueRow value_row(const ir::Image& image, const std::string& path, const ir::Symbol& symbol) {
-  return {path, image.types.text(symbol.type), {}};
-}
 
 }  // namespace
 
@@ -36,6 +34,13 @@ ControllerService::ControllerService(vm::Controller& controller, vm::Clock& cloc
       keeper_(controller, store, wall_time_),
       change_(controller),
       aside_(store) {}
+
+void ControllerService::ended(uint64_t session) {
+  // Not `= {}`, which keeps the room.
+  if (session == upload_of_) upload_ = base::Bytes();
+  if (session == live_of_) live_.reset();
+  if (session == history_of_) history_ = std::vector<online_change::JournalEntry>();
+}
 
 // When memory runs out, so that the answer needs none: it was made before.
 base::Bytes ControllerService::answer(base::ByteSpan bytes, bool& keep_open) {
@@ -63,7 +68,7 @@ base::Bytes ControllerService::answer_within_memory(base::ByteSpan bytes, bool& 
   }
   if (!body.ok()) return vm::encode_answer(body.error());
   if (body->size() + 16 > vm::kMaxMessageBytes) {
-    return vm::encode_answer({base::Refusal::kTooMany, "the answer is too long; ask for less"});
+    return vm::encode_answer(too_long());
   }
   return vm::encode_answer(*body);
 }
@@ -165,17 +170,22 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.pous_to_make = controller_.pous_to_make();
   if (report.pous_to_make == 0) keep_up();
   const vm::CodeTable* code = nullptr;
-  base::Status taken = at_boundary([&] {
+  vm::TaskCopy tasks(controller_, "");
+  vm::Traps traps;
+  traps.reserve(vm::kKeptTraps);
+  base::Status taken = look_at_boundary([&] {
     report.cycles = controller_.cycles();
     code = &controller_.code();
     report.faulted = controller_.faulted();
-    report.tasks = controller_.tasks();
     report.uptime_ns = clock_.now_ns();
-    for (const vm::TrapRecord& trap : controller_.traps()) {
-      report.traps.push_back({trap.cycle, trap.task, trap.text});
-    }
+    traps = controller_.traps();
   });
+  if (taken.ok()) {
+    taken = copy_at_boundaries([&](int64_t free_ns) { return tasks.take(controller_, free_ns); });
+  }
   if (!taken.ok()) return taken.error();
+  for (const vm::TaskSample& task : tasks.samples()) report.tasks.push_back(vm::status_of(task));
+  for (const auto& trap : traps) report.traps.push_back({trap->cycle, trap->task, trap->text});
   report.name = controller_.image().name;
   report.running = controller_.verified().digest();
   report.edition = edition_;
@@ -198,97 +208,21 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
 
 base::Result<base::Bytes> ControllerService::times(const vm::Request& request) {
   const std::string name = request.names.empty() ? "" : request.names.front();
-  std::optional<vm::TaskTimes> times;
-  base::Status taken = at_boundary([&] { times = controller_.task_times(name); });
-  if (!taken.ok()) return taken.error();
-  if (!times) return base::Error{base::Refusal::kNoSuchTask, "`" + name + "`"};
-  return vm::encode(*times);
-}
-
-base::Result<base::Bytes> ControllerService::get(const vm::Request& request) {
-  const ir::Image& image = controller_.image();
-  vm::Values values;
-  std::vector<ir::Symbol> symbols;
-  for (const std::string& name : request.names) {
-    base::Result<ir::Symbol> symbol = ir::find_symbol(image, name);
-    if (!symbol.ok()) return symbol.error();
-    symbols.push_back(*symbol);
-    values.rows.push_back(value_row(image, name, *symbol));
+  vm::TaskCopy task(controller_, name);
+  if (name.empty() || task.samples().empty()) {
+    return base::Error{base::Refusal::kNoSuchTask, "`" + name + "`"};
   }
-  base::Status taken = at_boundary([&] {
-    values.cycle = controller_.cycles();
-    auto memory = controller_.memory().view();
-    for (size_t i = 0; i < symbols.size(); ++i) {
-      values.rows[i].value = ir::format_value(image, symbols[i], memory);
-    }
-  });
+  base::Status taken =
+      copy_at_boundaries([&](int64_t free_ns) { return task.take(controller_, free_ns); });
   if (!taken.ok()) return taken.error();
-  return vm::encode(values);
-}
-
-// All or none: a mistake in the last of several is found before the first is written.
-base::Status ControllerService::check_assignments(const vm::Request& request,
-                                                  bool inputs_too) const {
-  for (size_t i = 0; i < request.names.size(); ++i) {
-    const std::string& name = request.names[i];
-    base::Result<ir::Symbol> symbol = ir::find_symbol(controller_.image(), name);
-    if (!symbol.ok()) return symbol.error();
-    if (symbol->constant) {
-      return base::Error{base::Refusal::kReadOnly, "`" + name + "` is a constant"};
-    }
-    if (symbol->input && !inputs_too) {
-      return base::Error{base::Refusal::kReadOnly, "`" + name + "` is an input; force it instead"};
-    }
-    base::Result<base::Bytes> value =
-        ir::parse_value(controller_.image(), symbol->type, request.values[i]);
-    if (!value.ok()) return base::Error{value.error().refusal, name + ": " + value.error().text};
-  }
-  return base::Ok{};
-}
-
-base::Result<base::Bytes> ControllerService::set(const vm::Request& request) {
-  base::Status checked = check_assignments(request, false);
-  if (!checked.ok()) return checked.error();
-  base::Status done = base::Ok{};
-  base::Status taken = at_boundary([&] {
-    for (size_t i = 0; i < request.names.size() && done.ok(); ++i) {
-      done = controller_.set(request.names[i], request.values[i]);
-    }
-  });
-  if (!taken.ok()) return taken.error();
-  if (!done.ok()) return done.error();
-  return nothing();
-}
-
-// The code for it is made here, beside the running program; the boundary only exchanges it.
-base::Result<base::Bytes> ControllerService::force(const vm::Request& request) {
-  base::Status checked = check_assignments(request, true);
-  if (!checked.ok()) return checked.error();
-  std::vector<vm::NamedValue> values;
-  for (size_t i = 0; i < request.names.size(); ++i) {
-    values.push_back({request.names[i], request.values[i]});
-  }
-  auto change = controller_.prepare_force(values);
-  if (!change.ok()) return change.error();
-  base::Status taken = at_boundary([&] { controller_.use(**change); });
-  if (!taken.ok()) return taken.error();
-  return force_rows(request.names);
-}
-
-base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request) {
-  std::vector<std::string> names = request.names;
-  if (names.empty()) {
-    for (const vm::Force& force : controller_.forces()) names.push_back(force.path);
-  }
-  auto change = controller_.prepare_unforce(names);
-  if (!change.ok()) return change.error();
-  base::Status taken = at_boundary([&] { controller_.use(**change); });
-  if (!taken.ok()) return taken.error();
-  return nothing();
+  return vm::encode(vm::times_of(task.samples().front()));
 }
 
 // Nothing of it is to be seen, so a recording need not have it; and what fails is tried again.
 void ControllerService::keep_up() {
+  if (StopSignal::take_hangup()) {
+    std::fputs("SIGHUP: there is no log file to open anew; the controller runs on\n", stderr);
+  }
   const auto renew = [&] {
     if (auto change = controller_.renew_forces()) {
       boundary_.run([&] { controller_.use(*change); }, kKeepUpPatienceNs);
@@ -296,25 +230,6 @@ void ControllerService::keep_up() {
     return true;
   };
   base::within_memory(renew, [] { return false; });
-}
-
-base::Result<base::Bytes> ControllerService::forces(const vm::Request&) { return force_rows({}); }
-
-// Of the variables with these names, or all. Only this thread's commands change forces, so they can
-// be read here.
-base::Bytes ControllerService::force_rows(const std::vector<std::string>& names) const {
-  vm::ForceRows forces;
-  const ir::Image& image = controller_.image();
-  for (const vm::Force& force : controller_.forces()) {
-    const bool wanted =
-        names.empty() || std::find(names.begin(), names.end(), force.path) != names.end();
-    if (!wanted) continue;
-    ir::Symbol alone = force.symbol;
-    alone.data = 0;
-    forces.rows.push_back({force.path, image.types.text(force.symbol.type),
-                           ir::format_value(image, alone, force.value), force.reason});
-  }
-  return vm::encode(forces);
 }
 
 base::Result<base::Bytes> ControllerService::image(const vm::Request& request) {

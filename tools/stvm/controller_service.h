@@ -1,6 +1,8 @@
 // What a serving controller answers. Runs on the channel's thread; whatever reads or writes live
-// data goes to the control thread through vm::Boundary and is done at one boundary. Everything
-// else (decoding, checking, planning, formatting) stays here, beside the running program.
+// data goes to the control thread through vm::Boundary: what is read is copied there, in portions
+// that no scan waits for (live_copy.h), what is set is written at one boundary. Everything else
+// (decoding, finding names, checking, planning, formatting) stays here, beside the running program.
+// This thread alone changes which version runs.
 #pragma once
 
 #include <atomic>
@@ -13,6 +15,7 @@
 #include "tools/stvm/fate_message.h"
 #include "tools/stvm/live_report.h"
 #include "vm/runtime/boundary.h"
+#include "vm/runtime/live_copy.h"
 #include "vm/runtime/protocol.h"
 #include "vm/runtime/recorder.h"
 #include "vm/runtime/socket_server.h"
@@ -24,6 +27,8 @@ struct StartReport {
   std::optional<base::Digest> trial_lost;
   std::vector<std::string> alarms;
 };
+// What finds too little time before the next cycle is tried again so much later.
+inline constexpr int64_t kBetweenAttemptsNs = 1'000'000;
 // ns since 1970.
 int64_t wall_time_ns();
 
@@ -37,7 +42,12 @@ class ControllerService : public vm::Service {
   // From now on an image that is staged is written to the store by a thread of its own, beside its
   // verification: the storage must allow that threads use different files at once.
   void store_beside();
-  void asked_by(const std::string& user) override { who_ = user; }
+  void asked_by(const std::string& user, uint64_t session) override {
+    who_ = user;
+    session_ = session;
+  }
+  // What was uploaded over it, and what the pages of its reports are of, is given back.
+  void ended(uint64_t session) override;
   base::Bytes answer(base::ByteSpan request, bool& keep_open) override;
   // Forces run in machine code as soon as there is some.
   void keep_up() override;
@@ -56,6 +66,7 @@ class ControllerService : public vm::Service {
   Answer force(const vm::Request& request);
   Answer unforce(const vm::Request& request);
   Answer forces(const vm::Request& request);
+  static base::Error too_long();
   base::Bytes force_rows(const std::vector<std::string>& names) const;
   Answer list(const vm::Request& request);
   Answer image(const vm::Request& request);
@@ -75,7 +86,9 @@ class ControllerService : public vm::Service {
   base::Status at_boundary(const std::function<void()>& job);
   // The same of a job that only reads: a recording has nothing of it.
   base::Status look_at_boundary(const std::function<void()>& job);
-  base::Status check_assignments(const vm::Request& request, bool inputs_too) const;
+  // `take(free_ns)` at boundaries until it has everything.
+  base::Status copy_at_boundaries(const std::function<vm::Copied(int64_t)>& take);
+  base::Result<vm::LiveCopy> copy_of(std::vector<ir::DataRange> ranges);
   // In the version that the report is about; `back`: by undo.
   FateLine live_line(const online_change::FateRow& row, const ir::Image& next, bool back) const;
   void forget_staged();
@@ -115,8 +128,12 @@ class ControllerService : public vm::Service {
   online_change::RetainKeeper::WallTime wall_time_;
   online_change::RetainKeeper keeper_;
   std::string who_;
+  uint64_t session_ = 0;
   online_change::Change change_;
   base::Bytes upload_;
+  uint64_t upload_of_ = 0;   // session
+  uint64_t live_of_ = 0;
+  uint64_t history_of_ = 0;
   base::Bytes no_memory_;  // the answer that says so
   std::optional<ir::VerifiedImage> staged_;
   std::optional<LiveReport> live_;                    // of the staged change

@@ -66,6 +66,12 @@ base::Status show(const tools::Options& options) {
   base::Result<vm::Values> values = client->get(options.arguments());
   if (!values.ok()) return values.error();
   std::fputs((*json ? values_json(*values) : values_text(*values)).c_str(), stdout);
+  if (!*json && values->last_cycle != values->cycle) {
+    std::fprintf(stderr,
+                 "note: too much for one boundary: these are values of cycles %llu to %llu\n",
+                 static_cast<unsigned long long>(values->cycle),
+                 static_cast<unsigned long long>(values->last_cycle));
+  }
   return base::Ok{};
 }
 

@@ -1,5 +1,5 @@
-// The live values behind a fate report: a copy of data memory, taken in slices between scans, so
-// that however much there is to say, no scan waits for it. Whether the values are still such is
+// The live values behind a fate report: a copy of data memory (vm/runtime/live_copy.h), so that
+// however much there is to say, no scan waits for it. Whether the values are still such is
 // looked at again when the switch comes.
 #pragma once
 
@@ -10,17 +10,18 @@
 #include <vector>
 
 #include "online_change/apply/change.h"
-#include "vm/exec/memory.h"
 #include "vm/runtime/controller.h"
+#include "vm/runtime/live_copy.h"
 
 namespace stvm {
 
 class LiveReport {
  public:
+  using CopyRanges = std::function<base::Result<vm::LiveCopy>(std::vector<ir::DataRange>)>;
   // `next`: the version whose names the fate rows have, when it is not the one that runs.
   static base::Result<LiveReport> take(vm::Controller& controller,
                                        const online_change::Change& change, const ir::Image* next,
-                                       const online_change::AtBoundary& at_boundary);
+                                       const CopyRanges& copy_of);
 
   // Of the variable that the row is about, in the program that runs; "" when there is none.
   std::string value(const online_change::FateRow& row) const;
@@ -28,12 +29,12 @@ class LiveReport {
   const online_change::LiveLoss* loss(const std::string& path) const;
 
  private:
-  LiveReport(vm::Memory memory, ir::VerifiedImage image)
-      : memory_(std::move(memory)), image_(std::move(image)) {}
+  LiveReport(vm::LiveCopy copy, ir::VerifiedImage image)
+      : copy_(std::move(copy)), image_(std::move(image)) {}
 
   const ir::Image& image() const { return renamed_ ? *renamed_ : image_.image(); }
 
-  vm::Memory memory_;
+  vm::LiveCopy copy_;
   ir::VerifiedImage image_;
   std::optional<ir::Image> renamed_;  // the same under the names of the next version
   std::vector<online_change::LiveLoss> losses_;

@@ -149,7 +149,7 @@ void print_json(const Settings& settings, const tools::Options& options,
     json.field("hash", base::to_hex(ir::state_hash(controller.image(), memory)));
   }
   json.key("traps").begin_array();
-  for (const vm::TrapRecord& trap : controller.traps()) json.value(trap_text(trap));
+  for (const auto& trap : controller.traps()) json.value(trap_text(*trap));
   json.end_array().end_object();
   std::fputs(json.finish().c_str(), stdout);
 }

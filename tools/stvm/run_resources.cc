@@ -162,7 +162,7 @@ void print_resource(tools::JsonWriter& json, ResourceController& resource,
     json.field("hash", base::to_hex(ir::state_hash(controller.image(), memory)));
   }
   json.key("traps").begin_array();
-  for (const vm::TrapRecord& trap : controller.traps()) json.value(trap_text(trap));
+  for (const auto& trap : controller.traps()) json.value(trap_text(*trap));
   json.end_array().end_object();
 }
 
@@ -218,8 +218,8 @@ bool end_run(ResourceController& resource) {
   base::Status left = controller.leave_all(kExitLimitNs);  // its trap is one of these
   controller.make_outputs_safe();
   const std::string where = resource.name().empty() ? "" : resource.name() + ": ";
-  for (const vm::TrapRecord& trap : controller.traps()) {
-    std::fprintf(stderr, "stvm: trap: %s%s\n", where.c_str(), trap_text(trap).c_str());
+  for (const auto& trap : controller.traps()) {
+    std::fprintf(stderr, "stvm: trap: %s%s\n", where.c_str(), trap_text(*trap).c_str());
   }
   return left.ok() && controller.traps().empty();
 }

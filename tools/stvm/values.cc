@@ -13,7 +13,8 @@ std::string values_text(const vm::Values& values) {
 
 std::string values_json(const vm::Values& values) {
   tools::JsonWriter json;
-  json.begin_object().field("cycle", values.cycle).key("values").begin_object();
+  json.begin_object().field("cycle", values.cycle).field("last_cycle", values.last_cycle);
+  json.key("values").begin_object();
   for (const vm::ValueRow& row : values.rows) json.field(row.path, row.value);
   json.end_object().end_object();
   return json.finish();

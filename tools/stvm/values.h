@@ -5,7 +5,7 @@
 
 namespace stvm {
 
-// "path=value" lines; {"cycle":..,"values":{path:value}} as JSON.
+// "path=value" lines; {"cycle":..,"last_cycle":..,"values":{path:value}} as JSON.
 std::string values_text(const vm::Values& values);
 std::string values_json(const vm::Values& values);
 // How forces hold: a line for each; with `json` an object.

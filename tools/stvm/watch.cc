@@ -22,7 +22,9 @@ constexpr tools::Command kCommand{
     "watch", "NAMES...", "Shows values again and again, one line for each sample.", kOptions, 1};
 
 std::string sample_text(const vm::Values& values) {
-  std::string out = std::to_string(values.cycle) + ":";
+  std::string out = std::to_string(values.cycle);
+  if (values.last_cycle != values.cycle) out += ".." + std::to_string(values.last_cycle);
+  out += ":";
   for (const vm::ValueRow& row : values.rows) out += " " + row.path + "=" + row.value;
   return out + "\n";
 }

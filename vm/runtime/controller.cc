@@ -5,8 +5,8 @@
 #include <map>
 
 #include "base/check.h"
+#include "vm/runtime/live_copy.h"
 #include "vm/runtime/native_maker.h"
-#include "vm/runtime/output_values.h"
 #include "vm/runtime/scheduler.h"
 #include "vm/runtime/stamp_ref.h"
 #include "vm/runtime/summaries.h"
@@ -16,10 +16,6 @@ namespace vm {
 namespace {
 
 using TablesByGeneration = std::map<const Generation*, std::unique_ptr<TaskTables>>;
-
-base::Error read_only(std::string_view path, const char* what) {
-  return {base::Refusal::kReadOnly, "`" + std::string(path) + "` is " + what};
-}
 
 void write_retained(const ir::Image& image, base::ByteSpan values, uint8_t* memory) {
   for (const ir::RetainRange& range : image.retain) {
@@ -41,7 +37,6 @@ struct Controller::Impl {
         code_slots(std::make_shared<CodeSlots>(options.code_limit / sizeof(ir::Unit))) {}
 
   const ir::Image& image() const { return running->image(); }
-  base::Result<ir::Symbol> writable(std::string_view path) const;
   std::unique_ptr<ForceChange> prepare_forces(std::vector<Force> forces) const;
   void set_change_flag(bool changed);
   void reset_data(bool retain);
@@ -139,7 +134,14 @@ uint64_t Controller::missed_releases() const {
   return missed;
 }
 
-const std::vector<TrapRecord>& Controller::traps() const { return impl_->scheduler.traps(); }
+void Controller::copy_task(size_t number, TaskSample& out) const {
+  const TaskSlot& task = impl_->scheduler.tables().tasks[number];
+  out.status = task.status;
+  out.run = task.times->run;
+  out.delay = task.times->delay;
+}
+
+const Traps& Controller::traps() const { return impl_->scheduler.traps(); }
 uint64_t Controller::trap_count() const { return impl_->scheduler.trap_count(); }
 
 base::Result<std::string> Controller::get(std::string_view path) const {
@@ -149,29 +151,36 @@ base::Result<std::string> Controller::get(std::string_view path) const {
 }
 
 base::Status Controller::set(std::string_view path, std::string_view value) {
-  base::check(at_boundary(), "a value is set while a task is inside a scan");
-  base::Result<ir::Symbol> symbol = impl_->writable(path);
-  if (!symbol.ok()) return symbol.error();
-  if (symbol->input) return read_only(path, "an input; force it instead");
-  base::Result<base::Bytes> bytes = ir::parse_value(image(), symbol->type, value);
-  if (!bytes.ok()) return bytes.error();
-  if (base::Status fits = fits_output(image(), *symbol, *bytes); !fits.ok()) return fits;
-  std::memcpy(impl_->memory.data() + symbol->data, bytes->data(), bytes->size());
-  if (symbol->output) {
-    impl_->scheduler.variable_set(symbol->data, static_cast<uint32_t>(bytes->size()));
-  }
+  const NamedValue row{std::string(path), std::string(value)};
+  base::Result<WriteSet> set = prepare_set({&row, 1});
+  if (!set.ok()) return set.error();
+  write(*set);
   return base::Ok{};
+}
+
+base::Result<WriteSet> Controller::prepare_set(std::span<const NamedValue> values) const {
+  return WriteSet::make(impl_->scheduler.tables(), values);
+}
+
+bool Controller::write(const WriteSet& set) {
+  base::check(at_boundary(), "a value is set while a task is inside a scan");
+  if (set.generation != generation().number()) return false;
+  for (const WriteSet::Value& value : set.values) {
+    std::memcpy(impl_->memory.data() + value.data, value.bytes.data(), value.bytes.size());
+  }
+  impl_->scheduler.outputs_set(set.outputs);
+  worked(static_cast<int64_t>(set.work_bytes) / kCopyBytesPerNs);
+  return true;
 }
 
 base::Result<std::unique_ptr<ForceChange>> Controller::prepare_force(
     std::span<const NamedValue> values) const {
   std::vector<Force> next = forces();
   for (const NamedValue& row : values) {
-    base::Result<ir::Symbol> symbol = impl_->writable(row.path);
+    base::Result<ir::Symbol> symbol = writable(image(), row.path);
     if (!symbol.ok()) return symbol.error();
-    base::Result<base::Bytes> bytes = ir::parse_value(image(), symbol->type, row.value);
+    base::Result<base::Bytes> bytes = parsed(image(), *symbol, row);
     if (!bytes.ok()) return bytes.error();
-    if (base::Status fits = fits_output(image(), *symbol, *bytes); !fits.ok()) return fits.error();
     Force force{row.path, *symbol, std::move(*bytes)};
     std::erase_if(next, [&](const Force& other) { return overlap(force, other); });
     next.push_back(std::move(force));
@@ -362,7 +371,7 @@ base::Status Controller::Impl::leave(const std::vector<uint32_t>& ids, bool chan
     stamp.set(stamp.get() == ir::kLeavingStamp ? before : ir::kNewStamp);
   }
   if (done) return base::Ok{};
-  const TrapRecord& last = scheduler.traps().back();
+  const TrapRecord& last = *scheduler.traps().back();
   return base::Error{
       base::Refusal::kExitFailed,
       last.text.pou + " in line " + std::to_string(last.text.line) + ": " + last.text.text};
@@ -370,12 +379,6 @@ base::Status Controller::Impl::leave(const std::vector<uint32_t>& ids, bool chan
 
 void Controller::Impl::set_change_flag(bool changed) {
   StampRef(*running, 0, memory.data()).set(changed ? 1 : 0);
-}
-
-base::Result<ir::Symbol> Controller::Impl::writable(std::string_view path) const {
-  base::Result<ir::Symbol> symbol = ir::find_symbol(image(), path);
-  if (symbol.ok() && symbol->constant) return read_only(path, "a constant");
-  return symbol;
 }
 
 // Prepared tables carry the forces too, so that a switch need not look them up.

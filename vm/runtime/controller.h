@@ -25,6 +25,7 @@
 #include "vm/load/generation.h"
 #include "vm/runtime/forces.h"
 #include "vm/runtime/ports.h"
+#include "vm/runtime/write_set.h"
 
 namespace vm {
 
@@ -84,6 +85,10 @@ struct TrapRecord {
   TrapText text;
 };
 
+struct TaskSample;  // live_copy.h
+inline constexpr size_t kKeptTraps = 32;
+using Traps = std::vector<std::shared_ptr<const TrapRecord>>;
+
 class Controller {
  public:
   // Cold start: all variables hold their initial values, and the tasks that run once have run.
@@ -125,12 +130,19 @@ class Controller {
   // Histograms of a task; nullopt: there is none of this name.
   std::optional<TaskTimes> task_times(std::string_view name) const;
   uint64_t missed_releases() const;              // of all tasks
-  const std::vector<TrapRecord>& traps() const;  // the last 32
+  // At a boundary; nothing is allocated where `out` has the task's name already.
+  void copy_task(size_t number, TaskSample& out) const;
+  const Traps& traps() const;                    // the last 32
   uint64_t trap_count() const;                   // all that there were
 
   // Values, at a boundary. Paths as in symbols.h.
   base::Result<std::string> get(std::string_view path) const;
   base::Status set(std::string_view path, std::string_view value);
+  // To be prepared off the control thread, at any time; all or none. kTooMany: more than one
+  // boundary has room for.
+  base::Result<WriteSet> prepare_set(std::span<const NamedValue> values) const;
+  // At a boundary. False, and nothing is written: another version runs than it was prepared for.
+  bool write(const WriteSet& set);
   // A force is imposed when inputs are copied in and before outputs are copied out, and on other
   // variables before and after every scan. Code that writes the variable is exchanged for versions
   // that do not (forced_code.h), or the force says why that cannot be.

@@ -37,6 +37,7 @@ std::optional<base::Bytes> FrameReader::next() {
   auto end = begin + static_cast<std::ptrdiff_t>(length);
   base::Bytes message(begin, end);
   buffer_.erase(buffer_.begin(), end);
+  if (buffer_.empty()) buffer_ = base::Bytes();  // who is idle holds no room either
   return message;
 }
 

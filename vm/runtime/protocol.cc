@@ -178,6 +178,7 @@ void status_fields(A& a, T& report) {
 template <class A, class T>
 void values_fields(A& a, T& values) {
   a(values.cycle);
+  a(values.last_cycle);
   a(values.next);
   a.list(values.rows, 3 * kTextBytes);
 }
@@ -236,7 +237,7 @@ base::Bytes encode(const Request& request) {
 }
 
 base::Result<Request> decode_request(base::ByteSpan bytes) {
-  FieldReader reader(bytes);
+  FieldReader reader(bytes, Texts::kAsSent);
   uint8_t version = 0;
   uint8_t command = 0;
   reader(version);

@@ -18,7 +18,7 @@
 namespace vm {
 
 // Another one with each other layout of a message (tests/unit/store/protocol_layout_test.cc).
-inline constexpr uint8_t kProtocolVersion = 5;
+inline constexpr uint8_t kProtocolVersion = 6;
 inline constexpr uint32_t kMaxMessageBytes = 1u << 20;
 inline constexpr uint32_t kMaxNames = 4096;          // in one request
 inline constexpr uint32_t kMaxNameBytes = 65536;     // of a path or a value
@@ -104,7 +104,10 @@ struct ValueRow {
   std::string value;  // empty in lists
 };
 struct Values {
-  uint64_t cycle = 0;  // of the boundary at which they were taken
+  // Of the boundary at which they were taken; of the last one, where they did not fit into one
+  // (vm/runtime/live_copy.h).
+  uint64_t cycle = 0;
+  uint64_t last_cycle = 0;
   uint64_t next = 0;   // of lists: where the next page begins; 0: this was the last
   std::vector<ValueRow> rows;
 };

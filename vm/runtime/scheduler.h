@@ -26,8 +26,8 @@ class Scheduler {
   void restart();
   // All of them, and they are sent. `for_good`: holds for a time are over at once.
   void make_outputs_safe(bool for_good);
-  // The variable at [data, data + size) was written from outside.
-  void variable_set(uint32_t data, uint32_t size);
+  // Variables that are sent as these were written from outside.
+  void outputs_set(std::span<const WriteSet::OutputBits> outputs);
   void send_outputs() { io_.send(tables_->outputs); }
   // Behind a fault: only outputs that are held for a time are looked after.
   void run_cycle();
@@ -36,7 +36,7 @@ class Scheduler {
   uint64_t cycles() const { return cycles_; }
   int64_t cycle_start_ns() const { return cycle_start_ns_; }
   int64_t next_cycle_ns() const { return next_cycle_ns_; }
-  const std::vector<TrapRecord>& traps() const { return traps_; }
+  const Traps& traps() const { return traps_; }
   uint64_t trap_count() const { return trap_count_; }
 
   // At a boundary: these tables and that data from now on. They must live as long as they are used.
@@ -96,7 +96,7 @@ class Scheduler {
   uint8_t* memory_ = nullptr;
   TaskTables* tables_ = nullptr;
   std::vector<TaskSlot*> active_;  // suspended ones, the running one last
-  std::vector<TrapRecord> traps_;
+  Traps traps_;
   uint64_t trap_count_ = 0;
   uint64_t cycles_ = 0;
   int64_t cycle_start_ns_ = 0;

@@ -10,7 +10,6 @@
 namespace vm {
 namespace {
 
-constexpr size_t kKeptTraps = 32;
 
 }  // namespace
 
@@ -136,7 +135,8 @@ void Scheduler::leave(TaskSlot& task) {
 void Scheduler::trap_in(TaskSlot& task, const Trap& trap) {
   ++trap_count_;
   if (traps_.size() == kKeptTraps) traps_.erase(traps_.begin());
-  traps_.push_back({cycles_, task.status.name, trap, describe(tables_->generation->image(), trap)});
+  traps_.push_back(std::make_shared<TrapRecord>(TrapRecord{
+      cycles_, task.status.name, trap, describe(tables_->generation->image(), trap)}));
   if (leaving_) {
     exit_failed_ = true;
     roll_back_outputs(task);
@@ -295,19 +295,14 @@ void Scheduler::impose_on_outputs() {
   }
 }
 
-void Scheduler::variable_set(uint32_t data, uint32_t size) {
-  base::Bytes& mask = tables_->written;
-  std::fill(mask.begin(), mask.end(), uint8_t{0});
-  tables_->process_image.mark_outputs(data, data + size, mask);
-  for (TaskSlot& task : tables_->tasks) {
-    for (size_t i = 0; i < task.waiting_mask.size(); ++i) {
-      task.waiting_mask[i] &= static_cast<uint8_t>(~mask[i]);
-    }
-  }
-  for (size_t i = 0; i < mask.size(); ++i) {
-    tables_->waiting_mask[i] &= static_cast<uint8_t>(~mask[i]);
-  }
-  outputs_stale_ = true;
+void Scheduler::outputs_set(std::span<const WriteSet::OutputBits> outputs) {
+  const auto take_out = [&](base::Bytes& mask) {
+    if (mask.empty()) return;
+    for (const auto& row : outputs) mask[row.byte] &= static_cast<uint8_t>(~row.mask);
+  };
+  for (TaskSlot& task : tables_->tasks) take_out(task.waiting_mask);
+  take_out(tables_->waiting_mask);
+  outputs_stale_ |= !outputs.empty();
 }
 
 }  // namespace vm

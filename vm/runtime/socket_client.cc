@@ -9,12 +9,19 @@
 #include <cstring>
 
 #include "vm/runtime/frames.h"
+#include "vm/runtime/socket_peer.h"
 #include "vm/runtime/socket_server.h"
 
 namespace vm {
 namespace {
 
 constexpr time_t kPatienceSeconds = 60;
+
+void be_patient(const Descriptor& socket) {
+  timeval patience{kPatienceSeconds, 0};
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+}
 
 }  // namespace
 
@@ -23,12 +30,14 @@ base::Error SocketClient::lost(const char* what) const {
 }
 
 base::Result<std::unique_ptr<SocketClient>> SocketClient::connect(const std::string& directory) {
-  base::Result<Descriptor> socket = open(directory);
+  base::Result<Descriptor> socket = open(directory, For::kThisMachine);
   if (!socket.ok()) return socket.error();
-  return over(std::move(*socket), "in " + directory);
+  auto client = over(std::move(*socket), "in " + directory);
+  client->directory_ = directory;
+  return client;
 }
 
-base::Result<Descriptor> SocketClient::open(const std::string& directory) {
+base::Result<Descriptor> SocketClient::open(const std::string& directory, For whom) {
   Descriptor holder;
   base::Result<std::string> path = socket_path(directory, holder);
   if (!path.ok()) {
@@ -38,22 +47,41 @@ base::Result<Descriptor> SocketClient::open(const std::string& directory) {
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
+  // The server knows a bridge by its end having a name; the system finds one.
+  if (whom == For::kAnother) {
+    (void)::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address.sun_family);
+  }
   std::memcpy(address.sun_path, path->data(), path->size());
   if (::connect(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
     return base::Error{base::Refusal::kNotRunning,
                        "no controller runs in " + directory + ": " + std::strerror(errno)};
   }
+  base::Result<std::string> peer = trusted_peer(socket.get());
+  if (!peer.ok()) {
+    return base::Error{base::Refusal::kNotRunning,
+                       "what runs in " + directory + " is not trusted: " + peer.error().text};
+  }
   return socket;
 }
 
 std::unique_ptr<SocketClient> SocketClient::over(Descriptor socket, std::string place) {
-  timeval patience{kPatienceSeconds, 0};
-  ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-  ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+  be_patient(socket);
   return std::unique_ptr<SocketClient>(new SocketClient(std::move(place), std::move(socket)));
 }
 
+// There are no bytes to come before a request is sent, only an end.
+bool SocketClient::closed_meanwhile() const {
+  char byte = 0;
+  return ::recv(socket_.get(), &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
+}
+
 base::Result<base::Bytes> SocketClient::exchange(base::ByteSpan request) {
+  if (!directory_.empty() && closed_meanwhile()) {
+    base::Result<Descriptor> again = open(directory_, For::kThisMachine);
+    if (!again.ok()) return again.error();
+    socket_ = std::move(*again);
+    be_patient(socket_);
+  }
   base::Bytes out = frame(request);
   for (size_t sent = 0; sent < out.size();) {
     ssize_t n = ::send(socket_.get(), out.data() + sent, out.size() - sent, MSG_NOSIGNAL);

@@ -1,9 +1,10 @@
 // The server side of the control channel: a Unix socket in the state directory, owner only, one
-// thread for all connections, fixed memory for each. It hands every message to a Service and
-// sends what that answers.
+// thread for all connections, bounded memory for each (connection.h). It hands every message to a
+// Service and sends what that answers.
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <string>
 #include <thread>
@@ -17,13 +18,18 @@ namespace vm {
 class Service {
  public:
   virtual ~Service() = default;
-  // Before each answer(): the user at the other end, by name or as a number.
-  virtual void asked_by(const std::string& /*user*/) {}
+  // Before each answer(): the user at the other end, by name or as a number, and over which
+  // connection.
+  virtual void asked_by(const std::string& /*user*/, uint64_t /*session*/) {}
+  // Nothing more comes over it; what was kept for it can go.
+  virtual void ended(uint64_t /*session*/) {}
   // On the server's thread. `keep_open` false closes the connection after the answer.
   virtual base::Bytes answer(base::ByteSpan request, bool& keep_open) = 0;
   // On the server's thread, behind answers and at least once in a second.
   virtual void keep_up() {}
 };
+
+class Connections;
 
 class SocketServer {
  public:
@@ -33,13 +39,21 @@ class SocketServer {
                                                           Service& service);
   // Ends the thread after the request at hand; removes the socket.
   ~SocketServer();
+  // How often a connection was asked for from the system.
+  uint64_t accepts() const { return accepts_.load(); }
 
  private:
   SocketServer(std::string path, Descriptor listener, Descriptor wake, Service& service);
   void serve();
+  bool round(Connections& connections);
+  void take_connection(Connections& connections);
+  Descriptor accept_peer(bool& bridged);
 
   std::string path_;
   Descriptor listener_;
+  Descriptor reserve_;  // given up for a peer when there is no other
+  std::chrono::steady_clock::time_point listen_again_{};
+  std::atomic<uint64_t> accepts_{0};
   Descriptor wake_;  // eventfd: the thread shall end
   Service& service_;
   std::atomic<bool> ending_{false};

@@ -112,9 +112,9 @@ class MachineEngine : public Engine {
     // Those of FB_Init at the start belong to the first scan.
     size_t traps_before = std::exchange(scanned_, true) ? controller_->traps().size() : 0;
     controller_->cycle();
-    const std::vector<vm::TrapRecord>& traps = controller_->traps();
+    const vm::Traps& traps = controller_->traps();
     if (traps.size() > traps_before) {
-      const vm::TrapRecord& first = traps[traps_before];
+      const vm::TrapRecord& first = *traps[traps_before];
       return std::string(ir::trap_name(first.trap.kind)) + " " + first.text.pou + ":" +
              std::to_string(first.text.line);
     }

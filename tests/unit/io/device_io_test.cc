@@ -137,8 +137,8 @@ TEST(DeviceIo, EachLossTrapsTheTaskOnce) {
     fake.broken = true;
     cycles(1);
     ASSERT_EQ((*controller)->trap_count(), loss);  // in the scan that would not see it
-    EXPECT_EQ((*controller)->traps().back().trap.kind, ir::TrapKind::kIoLost);
-    EXPECT_EQ((*controller)->traps().back().task, "T");
+    EXPECT_EQ((*controller)->traps().back()->trap.kind, ir::TrapKind::kIoLost);
+    EXPECT_EQ((*controller)->traps().back()->task, "T");
     cycles(4);
     EXPECT_EQ((*controller)->trap_count(), loss);
     EXPECT_EQ(value("Main.i"), "16#05");

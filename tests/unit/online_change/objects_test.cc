@@ -237,7 +237,7 @@ TEST(Objects, AStartTaskThatTraps) {
   Plant plant(source(parts));
   EXPECT_TRUE(plant.controller().faulted());
   ASSERT_EQ(plant.controller().traps().size(), 1u);
-  EXPECT_EQ(plant.controller().traps()[0].task, "Start");
+  EXPECT_EQ(plant.controller().traps()[0]->task, "Start");
 }
 
 // A global of program type comes with a change: it names the instance that runs.

@@ -82,7 +82,7 @@ ir::VerifiedImage Plant::link(const std::string& source, bool move_all) const {
 
 void Plant::run(int scans) {
   for (int i = 0; i < scans; ++i) controller_->cycle();
-  for (const vm::TrapRecord& trap : controller_->traps()) ADD_FAILURE() << trap.text.text;
+  for (const auto& trap : controller_->traps()) ADD_FAILURE() << trap->text.text;
 }
 
 std::string Plant::get(const std::string& path) const {

@@ -115,8 +115,8 @@ TEST(Scheduling, EndlessLoopIsAFuelTrap) {
   EXPECT_TRUE(plant->faulted());
   EXPECT_TRUE(plant->at_boundary());
   ASSERT_EQ(plant->traps().size(), 1u);
-  EXPECT_EQ(plant->traps()[0].trap.kind, ir::TrapKind::kFuel);
-  EXPECT_EQ(plant->traps()[0].text.pou, "P");
+  EXPECT_EQ(plant->traps()[0]->trap.kind, ir::TrapKind::kFuel);
+  EXPECT_EQ(plant->traps()[0]->text.pou, "P");
   EXPECT_EQ(plant->cycles(), 1u);
 }
 
@@ -129,7 +129,7 @@ TEST(Scheduling, WatchdogIsTenPeriodsOfOwnRunTime) {
   EXPECT_FALSE(plant->faulted());
   EXPECT_TRUE(late->faulted());
   ASSERT_FALSE(late->traps().empty());
-  EXPECT_EQ(late->traps()[0].trap.kind, ir::TrapKind::kWatchdog);
+  EXPECT_EQ(late->traps()[0]->trap.kind, ir::TrapKind::kWatchdog);
 }
 
 constexpr const char* kTrapsInThird = R"(
@@ -169,8 +169,8 @@ TEST(Scheduling, TrapStopsOneTaskWhenThePolicySaysSo) {
   EXPECT_TRUE(plant.task("T1").stopped);
   EXPECT_EQ(plant.task("T1").scans, 2u);
   EXPECT_EQ(plant.get("G.n"), "8");
-  EXPECT_EQ(plant->traps()[0].trap.kind, ir::TrapKind::kDivisionByZero);
-  EXPECT_EQ(plant->traps()[0].task, "T1");
+  EXPECT_EQ(plant->traps()[0]->trap.kind, ir::TrapKind::kDivisionByZero);
+  EXPECT_EQ(plant->traps()[0]->task, "T1");
 }
 
 // What the controller does with its devices, in order.

@@ -9,8 +9,14 @@
 #include <filesystem>
 #include <random>
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "vm/runtime/connection.h"
 #include "vm/runtime/frames.h"
 #include "vm/runtime/socket_client.h"
+#include "vm/runtime/socket_peer.h"
 #include "vm/runtime/socket_server.h"
 
 namespace vm {
@@ -125,6 +131,180 @@ TEST_F(SocketTest, ConnectionsThatSayNothingDoNotKeepOthersOut) {
   auto client = SocketClient::connect(directory_);
   ASSERT_TRUE(client.ok());
   EXPECT_TRUE((*client)->exchange(encode(Request{.command = Command::kStatus})).ok());
+}
+
+bool is_served(const std::string& directory) {
+  auto client = SocketClient::connect(directory);
+  if (!client.ok()) return false;
+  auto answer = (*client)->exchange(encode(Request{.command = Command::kStatus}));
+  return answer.ok() && decode_answer(*answer).ok();
+}
+
+// The last place is for this machine, however many bridges there are.
+TEST_F(SocketTest, BridgesLeaveAPlace) {
+  std::vector<Descriptor> bridges;
+  for (size_t i = 0; i < 3 * kMaxConnections; ++i) {
+    auto bridge = SocketClient::open(directory_, SocketClient::For::kAnother);
+    ASSERT_TRUE(bridge.ok());
+    bridges.push_back(std::move(*bridge));
+  }
+  EXPECT_TRUE(is_served(directory_));
+  EXPECT_TRUE(is_served(directory_));
+}
+
+// Without a descriptor for it, a peer is served all the same, and a second one waits without being
+// asked for again and again.
+TEST_F(SocketTest, DescriptorsThatRunOutAreNoBusyLoop) {
+  ASSERT_TRUE(is_served(directory_));
+  Descriptor first(::socket(AF_UNIX, SOCK_STREAM, 0));
+  Descriptor second(::socket(AF_UNIX, SOCK_STREAM, 0));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string path = directory_ + "/" + kSocketName;
+  std::memcpy(address.sun_path, path.data(), path.size());
+  const auto* const to = reinterpret_cast<const sockaddr*>(&address);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  std::vector<Descriptor> all;  // whatever is free below the limit
+  rlimit low = before;
+  low.rlim_cur = 64;
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &low), 0);
+  for (;;) {
+    Descriptor next(::dup(first.get()));
+    if (!next.valid()) break;
+    all.push_back(std::move(next));
+  }
+  ASSERT_EQ(::connect(first.get(), to, sizeof address), 0);
+  ASSERT_EQ(::connect(second.get(), to, sizeof address), 0);
+  auto client = SocketClient::over(std::move(first), "here");
+  const auto begin = std::chrono::steady_clock::now();
+  const uint64_t accepts = server_->accepts();
+  constexpr int kRounds = 2000;  // each wakes the server, which sees that the second one waits
+  for (int i = 0; i < kRounds; ++i) {
+    ASSERT_TRUE(client->exchange(encode(Request{.command = Command::kStatus})).ok());
+  }
+  const auto elapsed = std::chrono::steady_clock::now() - begin;
+  const auto tries = static_cast<uint64_t>(elapsed / std::chrono::milliseconds(100));
+  EXPECT_LE(server_->accepts() - accepts, 4 + tries);
+  all.clear();
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  auto waiting = SocketClient::over(std::move(second), "here");
+  EXPECT_TRUE(waiting->exchange(encode(Request{.command = Command::kStatus})).ok());
+}
+
+// A client that was idle for too long finds its controller again, but not in the middle of a
+// request.
+TEST_F(SocketTest, AnIdleClientConnectsAgain) {
+  auto client = SocketClient::connect(directory_);
+  ASSERT_TRUE(client.ok());
+  EXPECT_TRUE((*client)->exchange(encode(Request{.command = Command::kStatus})).ok());
+  server_.reset();  // ends its connections
+  auto gone = (*client)->exchange(encode(Request{.command = Command::kStatus}));
+  ASSERT_FALSE(gone.ok());
+  EXPECT_EQ(gone.error().refusal, base::Refusal::kNotRunning);
+  open(directory_);
+  EXPECT_TRUE((*client)->exchange(encode(Request{.command = Command::kStatus})).ok());
+}
+
+TEST(Peer, IsRootOrOneself) {
+  EXPECT_TRUE(is_trusted(0, 0));
+  EXPECT_TRUE(is_trusted(0, 1000));
+  EXPECT_TRUE(is_trusted(1000, 1000));
+  EXPECT_FALSE(is_trusted(1001, 1000));
+  EXPECT_FALSE(is_trusted(1000, 0)) << "a socket that root did not make";
+}
+
+// Neither side talks to another user, whatever the folder permits. Only root can be both.
+TEST_F(SocketTest, OfAnotherUserIsNotTrusted) {
+  if (::geteuid() != 0) GTEST_SKIP() << "needs two users";
+  server_.reset();
+  std::filesystem::permissions(directory_, std::filesystem::perms::all);
+  const std::string path = directory_ + "/" + kSocketName;
+  int ready[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  const pid_t other = ::fork();
+  if (other == 0) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::memcpy(address.sun_path, path.data(), path.size());
+    const int listener = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    const bool listens =
+        ::setuid(65534) == 0 &&
+        ::bind(listener, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0 &&
+        ::listen(listener, 4) == 0;
+    (void)!::write(ready[1], listens ? "y" : "n", 1);
+    ::pause();
+    ::_exit(0);
+  }
+  char answer = 0;
+  ASSERT_EQ(::read(ready[0], &answer, 1), 1);
+  ASSERT_EQ(answer, 'y');
+  auto client = SocketClient::connect(directory_);
+  ::kill(other, SIGKILL);
+  ::waitpid(other, nullptr, 0);
+  ::close(ready[0]);
+  ::close(ready[1]);
+  ASSERT_FALSE(client.ok());
+  EXPECT_EQ(client.error().refusal, base::Refusal::kNotRunning);
+  EXPECT_NE(client.error().text.find("is not trusted"), std::string::npos);
+}
+
+// --- who has a place --------------------------------------------------------------
+
+class Places : public ::testing::Test {
+ protected:
+  class Ends : public EchoService {
+   public:
+    void ended(uint64_t session) override { sessions.push_back(session); }
+    std::vector<uint64_t> sessions;
+  };
+  bool add(bool bridged, std::chrono::seconds at) {
+    Connection connection;
+    connection.bridged = bridged;
+    return connections_.add(connection, Instant() + at);
+  }
+  using seconds = std::chrono::seconds;
+  Ends service_;
+  Connections connections_{service_};
+};
+
+TEST_F(Places, TheLongestIdleMakesRoom) {
+  for (size_t i = 0; i < kMaxConnections; ++i) EXPECT_TRUE(add(false, seconds(i)));
+  connections_[0].active = Instant() + seconds(50);
+  EXPECT_TRUE(add(false, seconds(60)));
+  EXPECT_EQ(service_.sessions, std::vector<uint64_t>{2});
+  EXPECT_EQ(connections_.size(), kMaxConnections);
+}
+
+TEST_F(Places, WhoIsBusyKeepsHis) {
+  for (size_t i = 0; i < kMaxConnections; ++i) EXPECT_TRUE(add(false, seconds(0)));
+  EXPECT_FALSE(add(false, seconds(0))) << "all have just come";
+  for (size_t i = 0; i < kMaxConnections; ++i) connections_[i].out = {1};
+  EXPECT_FALSE(add(false, seconds(5))) << "all wait for an answer";
+  EXPECT_TRUE(service_.sessions.empty());
+}
+
+TEST_F(Places, ABridgeTakesNoneFromThisMachine) {
+  for (size_t i = 1; i < kMaxConnections; ++i) EXPECT_TRUE(add(i == 1, seconds(0)));
+  EXPECT_TRUE(add(true, seconds(9))) << "in place of the other bridge";
+  EXPECT_EQ(service_.sessions, std::vector<uint64_t>{1});
+  EXPECT_FALSE(add(true, seconds(9)));
+  EXPECT_TRUE(add(false, seconds(9))) << "the last place";
+  EXPECT_EQ(connections_.size(), kMaxConnections);
+}
+
+TEST_F(Places, IdleOnesEnd) {
+  EXPECT_TRUE(add(false, seconds(0)));
+  EXPECT_TRUE(add(false, seconds(0)));
+  connections_[1].out = {1};
+  connections_.end_overdue(Instant() + Connections::kPatience);
+  EXPECT_EQ(connections_.size(), 2u);
+  connections_.end_overdue(Instant() + Connections::kPatience + seconds(1));
+  EXPECT_EQ(service_.sessions, std::vector<uint64_t>{2}) << "stopped in the middle";
+  connections_.end_overdue(Instant() + Connections::kIdle);
+  EXPECT_EQ(connections_.size(), 1u);
+  connections_.end_overdue(Instant() + Connections::kIdle + seconds(1));
+  EXPECT_EQ(connections_.size(), 0u);
 }
 
 }  // namespace

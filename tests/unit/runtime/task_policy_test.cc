@@ -67,10 +67,10 @@ TEST(TaskPolicy, B7_FaultEndsTheScan) {
   EXPECT_EQ(plant.task("Long").overruns, 1u);
   EXPECT_EQ(plant.task("Other").scans, 5u);
   ASSERT_EQ(plant->traps().size(), 1u);
-  EXPECT_EQ(plant->traps()[0].trap.kind, ir::TrapKind::kOverrun);
-  EXPECT_EQ(plant->traps()[0].cycle, 1u);
-  EXPECT_EQ(plant->traps()[0].text.pou, "Work");
-  EXPECT_EQ(plant->traps()[0].text.line, 4u);
+  EXPECT_EQ(plant->traps()[0]->trap.kind, ir::TrapKind::kOverrun);
+  EXPECT_EQ(plant->traps()[0]->cycle, 1u);
+  EXPECT_EQ(plant->traps()[0]->text.pou, "Work");
+  EXPECT_EQ(plant->traps()[0]->text.line, 4u);
 }
 
 TEST(TaskPolicy, B7_FaultOfATaskThatCouldNotEvenBegin) {
@@ -226,7 +226,7 @@ class FaultMatrix : public testing::TestWithParam<Fault> {
   static void run_into(Plant& plant) {
     for (int i = 0; i < 20 && plant->trap_count() == 0; ++i) cycles(plant, 1);
     ASSERT_EQ(plant->trap_count(), 1u);
-    EXPECT_EQ(plant->traps()[0].trap.kind, GetParam().kind);
+    EXPECT_EQ(plant->traps()[0]->trap.kind, GetParam().kind);
   }
   static void cycles(Plant& plant, int count) {
     const auto& tasks = plant->verified().image().tasks;
@@ -326,9 +326,9 @@ TEST(TaskPolicy, ALossTrapsTheNextScanAndOnlyThatOne) {
   EXPECT_EQ(plant->trap_count(), 0u);
   plant.cycles(1);
   ASSERT_EQ(plant->trap_count(), 1u);
-  EXPECT_EQ(plant->traps()[0].trap.kind, ir::TrapKind::kIoLost);
-  EXPECT_EQ(plant->traps()[0].task, "Long");
-  EXPECT_EQ(plant->traps()[0].text.pou, "Work");
+  EXPECT_EQ(plant->traps()[0]->trap.kind, ir::TrapKind::kIoLost);
+  EXPECT_EQ(plant->traps()[0]->task, "Long");
+  EXPECT_EQ(plant->traps()[0]->text.pou, "Work");
   EXPECT_EQ(plant.get("W.n"), "1");
   plant.cycles(9);
   EXPECT_EQ(plant->trap_count(), 1u);

@@ -51,7 +51,7 @@ base::Status Plc::boot(const std::optional<ir::VerifiedImage>& given) {
   service_ = std::make_unique<stvm::ControllerService>(
       *controller_, clock_, *store_, *this, stvm::StartReport{boot_->trial_lost, boot_->alarms},
       [] { return int64_t{2}; });
-  service_->asked_by("tester");
+  service_->asked_by("tester", 1);
   return base::Ok{};
 }
 

@@ -44,6 +44,7 @@ class Plc : public vm::Boundary {
   std::function<void()> behind_job;
 
   vm::Controller& controller() { return *controller_; }
+  vm::VirtualClock& clock() { return clock_; }
   vm::Service& service() { return *service_; }
   online_change::Store& store() { return *store_; }
   const online_change::Boot& found() const { return *boot_; }

@@ -102,7 +102,7 @@ std::string layout() {
   add(all, vm::encode_answer(base::Error{base::Refusal::kBusy, "text"}), 1);
   add(all, vm::encode(status()));
   add(all, vm::encode(vm::TaskTimes{"Fast", {{1, 2}}, {{3, 4}}}));
-  add(all, vm::encode(vm::Values{1, 2, {{"path", "type", "value"}}}));
+  add(all, vm::encode(vm::Values{1, 2, 3, {{"path", "type", "value"}}}));
   add(all, vm::encode(vm::ForceRows{{{"path", "type", "value", "reason"}}}));
   add(all, vm::encode(vm::ImagePart{digest(1), 2, {3}}));
   add(all, encode(fates()));
@@ -118,6 +118,7 @@ struct Version {
 constexpr Version kVersions[] = {
     {4, "8ac16b7c3e79"},
     {5, "7f04c328f272"},
+    {6, "63e0412d28b5"},
 };
 
 TEST(ProtocolLayout, BelongsToTheVersion) {

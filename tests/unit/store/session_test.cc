@@ -1,0 +1,60 @@
+// What a connection has uploaded or is reading page by page is kept for it alone, and given back
+// when it ends, however it ends.
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include "tests/unit/store/plc.h"
+#include "tests/unit/store/sim_storage.h"
+
+namespace plc {
+namespace {
+
+using base::Refusal;
+using vm::Command;
+
+uint64_t bytes_in_use() {
+  const auto info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+class Session : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(plc_.boot("PROGRAM P VAR n : INT; END_VAR n := n + 1; END_PROGRAM").ok());
+  }
+  base::Status upload(uint64_t session, uint64_t offset, size_t size) {
+    plc_.service().asked_by("tester", session);
+    vm::Request part{.command = Command::kUpload, .offset = offset};
+    part.data.assign(size, 1);
+    return plc_.ask(std::move(part));
+  }
+  sim::SimStorage disk_;
+  Plc plc_{disk_};
+};
+
+TEST_F(Session, AnUploadEndsWithItsConnection) {
+  const uint64_t before = bytes_in_use();
+  constexpr size_t kPart = vm::kChunkBytes;
+  constexpr uint64_t kAll = 64u << 20;
+  for (uint64_t at = 0; at < kAll; at += kPart) ASSERT_TRUE(upload(1, at, kPart).ok());
+  const uint64_t counted = before == 0 ? 0 : kAll;  // a sanitizer counts nothing
+  EXPECT_GE(bytes_in_use(), before + counted);
+  plc_.service().ended(2);
+  EXPECT_TRUE(upload(1, kAll, 1).ok()) << "another one ended";
+  plc_.service().ended(1);
+  EXPECT_LE(bytes_in_use(), before + (1u << 20));
+  const base::Status rest = upload(3, kAll + 1, 1);
+  ASSERT_FALSE(rest.ok());
+  EXPECT_EQ(rest.error().refusal, Refusal::kProtocol);
+}
+
+TEST_F(Session, OneUploadAtATime) {
+  EXPECT_TRUE(upload(1, 0, 100).ok());
+  EXPECT_FALSE(upload(2, 100, 100).ok()) << "the other one's";
+  EXPECT_TRUE(upload(2, 0, 100).ok());
+  EXPECT_FALSE(upload(1, 100, 100).ok()) << "the newer one has ended it";
+  EXPECT_TRUE(upload(2, 100, 100).ok());
+}
+
+}  // namespace
+}  // namespace plc

@@ -1,0 +1,148 @@
+// What is read and written of the running program's variables.
+#include <algorithm>
+
+#include "tools/stvm/controller_service.h"
+
+namespace stvm {
+namespace {
+
+base::Bytes nothing() { return {}; }
+
+base::Error too_much(const std::string& name) {
+  return {base::Refusal::kTooMany, "one request reads " + std::to_string(vm::kMaxReadBytes) +
+                                       " bytes of variables; with `" + name +
+                                       "` it would be more: name fewer of them, or parts"};
+}
+
+base::Error other_version() { return {base::Refusal::kStaleBase, "another version runs now"}; }
+
+std::vector<vm::NamedValue> named_values(const vm::Request& request) {
+  std::vector<vm::NamedValue> values;
+  for (size_t i = 0; i < request.names.size(); ++i) {
+    values.push_back({request.names[i], request.values[i]});
+  }
+  return values;
+}
+
+vm::ValueRow value_row(const ir::Image& image, const std::string& path, const ir::Symbol& symbol) {
+  return {path, image.types.text(symbol.type), {}};
+}
+
+}  // namespace
+
+base::Error ControllerService::too_long() {
+  return {base::Refusal::kTooMany, "the answer is too long; ask for less"};
+}
+
+// A portion that found no time is tried again a cycle later.
+base::Status ControllerService::copy_at_boundaries(
+    const std::function<vm::Copied(int64_t)>& take) {
+  for (;;) {
+    vm::Copied copied = vm::Copied::kPart;
+    base::Status taken = look_at_boundary(
+        [&] { copied = take(controller_.next_cycle_ns() - clock_.now_ns()); });
+    if (!taken.ok()) return taken;
+    if (copied == vm::Copied::kAll) return base::Ok{};
+    if (copied == vm::Copied::kOtherProgram) return other_version();
+    if (copied == vm::Copied::kLater) boundary_.pause(kBetweenAttemptsNs);
+  }
+}
+
+base::Result<vm::LiveCopy> ControllerService::copy_of(std::vector<ir::DataRange> ranges) {
+  auto copy = vm::LiveCopy::prepare(controller_, std::move(ranges));
+  if (!copy.ok()) return copy.error();
+  base::Status copied =
+      copy_at_boundaries([&](int64_t free_ns) { return copy->take(controller_, free_ns); });
+  if (!copied.ok()) return copied.error();
+  return copy;
+}
+
+base::Result<base::Bytes> ControllerService::get(const vm::Request& request) {
+  const ir::VerifiedImage version = controller_.verified();
+  const ir::Image& image = version.image();
+  vm::Values values;
+  std::vector<ir::Symbol> symbols;
+  ir::ValueRanges ranges(image, vm::kMaxReadBytes);
+  for (const std::string& name : request.names) {
+    base::Result<ir::Symbol> symbol = ir::find_symbol(image, name);
+    if (!symbol.ok()) return symbol.error();
+    if (!ranges.add(*symbol)) return too_much(name);
+    symbols.push_back(*symbol);
+    values.rows.push_back(value_row(image, name, *symbol));
+  }
+  base::Result<vm::LiveCopy> copy = copy_of(ranges.take());
+  if (!copy.ok()) return copy.error();
+  values.cycle = copy->first_cycle();
+  values.last_cycle = copy->last_cycle();
+  size_t left = vm::kMaxMessageBytes;
+  for (size_t i = 0; i < symbols.size(); ++i) {
+    const size_t room = std::min<size_t>(left, vm::kMaxNameBytes);
+    values.rows[i].value = ir::format_value(image, symbols[i], copy->memory(), room);
+    if (values.rows[i].value.size() > room) return too_long();
+    left -= values.rows[i].value.size();
+  }
+  return vm::encode(values);
+}
+
+// All or none: a mistake in the last of several is found before the first is written.
+base::Result<base::Bytes> ControllerService::set(const vm::Request& request) {
+  base::Result<vm::WriteSet> set = controller_.prepare_set(named_values(request));
+  if (!set.ok()) return set.error();
+  if (set->values.empty()) return nothing();
+  vm::BoundaryShare share;
+  base::Status taken = base::Ok{};
+  vm::Copied written = vm::Copied::kLater;
+  for (int attempt = 0; taken.ok() && written == vm::Copied::kLater; ++attempt) {
+    if (attempt != 0) boundary_.pause(kBetweenAttemptsNs);
+    taken = at_boundary([&] {
+      const int64_t free_ns = controller_.next_cycle_ns() - clock_.now_ns();
+      if (share.bytes(controller_, free_ns, set->work_bytes, true) == 0) return;
+      written = controller_.write(*set) ? vm::Copied::kAll : vm::Copied::kOtherProgram;
+    });
+  }
+  if (!taken.ok()) return taken.error();
+  if (written == vm::Copied::kOtherProgram) return other_version();
+  return nothing();
+}
+
+// The code for it is made here, beside the running program; the boundary only exchanges it.
+base::Result<base::Bytes> ControllerService::force(const vm::Request& request) {
+  auto change = controller_.prepare_force(named_values(request));
+  if (!change.ok()) return change.error();
+  base::Status taken = at_boundary([&] { controller_.use(**change); });
+  if (!taken.ok()) return taken.error();
+  return force_rows(request.names);
+}
+
+base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request) {
+  std::vector<std::string> names = request.names;
+  if (names.empty()) {
+    for (const vm::Force& force : controller_.forces()) names.push_back(force.path);
+  }
+  auto change = controller_.prepare_unforce(names);
+  if (!change.ok()) return change.error();
+  base::Status taken = at_boundary([&] { controller_.use(**change); });
+  if (!taken.ok()) return taken.error();
+  return nothing();
+}
+
+base::Result<base::Bytes> ControllerService::forces(const vm::Request&) { return force_rows({}); }
+
+// Of the variables with these names, or all. Only this thread's commands change forces, so they can
+// be read here.
+base::Bytes ControllerService::force_rows(const std::vector<std::string>& names) const {
+  vm::ForceRows forces;
+  const ir::Image& image = controller_.image();
+  for (const vm::Force& force : controller_.forces()) {
+    const bool wanted =
+        names.empty() || std::find(names.begin(), names.end(), force.path) != names.end();
+    if (!wanted) continue;
+    ir::Symbol alone = force.symbol;
+    alone.data = 0;
+    forces.rows.push_back({force.path, image.types.text(force.symbol.type),
+                           ir::format_value(image, alone, force.value), force.reason});
+  }
+  return vm::encode(forces);
+}
+
+}  // namespace stvm

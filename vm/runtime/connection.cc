@@ -1,0 +1,108 @@
+#include "vm/runtime/connection.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <optional>
+
+namespace vm {
+
+short Connection::wanted_events() const { return sending() ? POLLOUT : POLLIN; }
+
+// False when the peer is gone.
+bool Connection::receive(Instant now) {
+  uint8_t buffer[16384];
+  const size_t room = std::min(sizeof buffer, in.room());
+  const ssize_t n = ::recv(socket.get(), buffer, room, MSG_DONTWAIT);
+  if (n < 0) return errno == EAGAIN || errno == EINTR;
+  if (n == 0) return false;
+  in.add({buffer, static_cast<size_t>(n)});
+  active = now;
+  return true;
+}
+
+bool Connection::send_rest(Instant now) {
+  const ssize_t n =
+      ::send(socket.get(), out.data() + sent, out.size() - sent, MSG_DONTWAIT | MSG_NOSIGNAL);
+  if (n < 0) return errno == EAGAIN || errno == EINTR;
+  sent += static_cast<size_t>(n);
+  active = now;
+  if (sending()) return true;
+  out = base::Bytes();
+  sent = 0;
+  return true;
+}
+
+void Connection::put_answer(base::ByteSpan answer, bool keep_open) {
+  out = frame(answer);
+  sent = 0;
+  closing = !keep_open;
+}
+
+// Answers the next complete message; false when there is none.
+bool Connection::answer_next(Service& service) {
+  if (sending() || closing) return false;
+  if (std::optional<base::Bytes> request = in.next()) {
+    bool keep_open = true;
+    service.asked_by(user, session);
+    const base::Bytes answer = service.answer(*request, keep_open);
+    put_answer(answer, keep_open);
+    return true;
+  }
+  if (!in.broken()) return false;
+  put_answer(encode_answer({base::Refusal::kProtocol, "message not understood: too long"}), false);
+  return true;
+}
+
+bool Connection::attend(short events, Service& service, Instant now) {
+  if ((events & (POLLERR | POLLNVAL)) != 0) return false;
+  if ((events & (POLLIN | POLLHUP)) != 0 && !sending() && !receive(now)) return false;
+  do {
+    if (sending() && !send_rest(now)) return false;
+  } while (answer_next(service));
+  return sending() || !closing;
+}
+
+bool Connections::add(Connection& connection, Instant now) {
+  const size_t places = connection.bridged ? kMaxConnections - 1 : kMaxConnections;
+  if (rows_.size() >= places && !make_room(connection.bridged, now)) return false;
+  connection.session = ++sessions_;
+  connection.active = now;
+  rows_.push_back(std::make_unique<Connection>(std::move(connection)));
+  return true;
+}
+
+// A bridge takes the place of another one only.
+bool Connections::make_room(bool bridged, Instant now) {
+  size_t oldest = rows_.size();
+  for (size_t i = 0; i < rows_.size(); ++i) {
+    const Connection& row = *rows_[i];
+    const bool idle = !row.waiting_for_peer() && now - row.active >= kSettled;
+    if (!idle || (bridged && !row.bridged)) continue;
+    if (oldest == rows_.size() || row.active < rows_[oldest]->active) oldest = i;
+  }
+  if (oldest == rows_.size()) return false;
+  end(oldest);
+  return true;
+}
+
+void Connections::end_overdue(Instant now) {
+  for (size_t i = rows_.size(); i-- > 0;) {
+    const Connection& row = *rows_[i];
+    const auto silent = now - row.active;
+    if (silent > (row.waiting_for_peer() ? kPatience : std::chrono::seconds(kIdle))) end(i);
+  }
+}
+
+void Connections::end(size_t i) {
+  service_.ended(rows_[i]->session);
+  rows_.erase(rows_.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
+void Connections::clear() {
+  while (!rows_.empty()) end(rows_.size() - 1);
+}
+
+}  // namespace vm

@@ -1,0 +1,77 @@
+// One peer of the control channel: its socket, what has come of a message, and what is still to be
+// sent. Holds one message each way at most, and nothing while it is idle.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vm/runtime/descriptor.h"
+#include "vm/runtime/frames.h"
+#include "vm/runtime/socket_server.h"
+
+namespace vm {
+
+using Instant = std::chrono::steady_clock::time_point;
+
+inline constexpr size_t kMaxConnections = 16;
+
+struct Connection {
+  Descriptor socket;
+  uint64_t session = 0;  // another one for each connection
+  std::string user;
+  bool bridged = false;  // of another machine, by `stvm bridge`
+  Instant active = {};   // when bytes came or went last
+  FrameReader in = {};
+  base::Bytes out = {};
+  size_t sent = 0;
+  bool closing = false;
+
+  bool sending() const { return sent < out.size(); }
+  bool waiting_for_peer() const { return sending() || !in.empty(); }
+  short wanted_events() const;
+  // One round, with what poll() said; false ends it.
+  bool attend(short events, Service& service, Instant now);
+
+ private:
+  bool receive(Instant now);
+  bool send_rest(Instant now);
+  bool answer_next(Service& service);
+  void put_answer(base::ByteSpan answer, bool keep_open);
+};
+
+// Who may stay, and who gets a place. The last place is for somebody on this machine; when there is
+// none, whoever has been idle longest makes room.
+class Connections {
+ public:
+  // A peer that stops in the middle of a message or does not read its answer is sent away.
+  static constexpr auto kPatience = std::chrono::seconds(10);
+  // One that has asked nothing for so long is, too, and sooner where its place is wanted.
+  static constexpr auto kIdle = std::chrono::minutes(15);
+  static constexpr auto kSettled = std::chrono::seconds(1);
+
+  explicit Connections(Service& service) : service_(service) {}
+  ~Connections() { clear(); }
+  Connections(const Connections&) = delete;
+  Connections& operator=(const Connections&) = delete;
+
+  size_t size() const { return rows_.size(); }
+  Connection& operator[](size_t i) { return *rows_[i]; }
+  const Connection& operator[](size_t i) const { return *rows_[i]; }
+  // False, and it is left where it is: there is no place for it.
+  bool add(Connection& connection, Instant now);
+  // Those that have not kept to these times.
+  void end_overdue(Instant now);
+  void end(size_t i);
+  void clear();
+
+ private:
+  bool make_room(bool bridged, Instant now);
+
+  Service& service_;
+  uint64_t sessions_ = 0;
+  std::vector<std::unique_ptr<Connection>> rows_;
+};
+
+}  // namespace vm

@@ -1,0 +1,37 @@
+#include "vm/runtime/socket_peer.h"
+
+#include <pwd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace vm {
+namespace {
+
+std::string user_name(uid_t id) {
+  char buffer[4096];
+  passwd entry{};
+  passwd* found = nullptr;
+  const bool known = ::getpwuid_r(id, &entry, buffer, sizeof buffer, &found) == 0 && found;
+  return known ? found->pw_name : std::to_string(id);
+}
+
+}  // namespace
+
+bool is_trusted(uid_t peer, uid_t own) { return peer == 0 || peer == own; }
+
+base::Result<std::string> trusted_peer(int socket) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) {
+    return base::Error{base::Refusal::kNotPermitted, std::strerror(errno)};
+  }
+  if (is_trusted(peer.uid, ::geteuid())) return user_name(peer.uid);
+  return base::Error{base::Refusal::kNotPermitted,
+                     "user " + user_name(peer.uid) + " is at the socket, neither root nor " +
+                         user_name(::geteuid())};
+}
+
+}  // namespace vm
