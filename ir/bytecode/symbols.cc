@@ -4,6 +4,7 @@
 #include "ir/bytecode/symbols.h"
 
 #include "base/limits.h"
+#include "ir/bytecode/leaf_walk.h"
 #include "ir/bytecode/regions.h"
 #include "ir/types/inside.h"
 #include "ir/types/listed_name.h"
@@ -196,16 +197,24 @@ class PathReader {
 // not verified may hold instances that contain themselves.
 class LeafWalk {
  public:
-  using Visit = std::function<void(const std::string&, const Symbol&)>;
-  LeafWalk(const Image& image, const Visit& visit) : image_(image), visit_(visit) {}
+  using Visit = std::function<bool(const std::string&, const Symbol&)>;
+  // Without the first `skip` leaves; until a visit is false.
+  LeafWalk(const Image& image, uint64_t skip, const Visit& visit)
+      : image_(image), skip_(skip), visit_(visit) {}
 
   void walk(const Symbol& symbol, uint32_t depth) {
     const Type& type = image_.types[symbol.type];
     if (depth > base::kMaxNesting) return;
     if (type.kind == Kind::kArray) return elements(symbol, depth);
     if (image_.types.has_members(symbol.type)) return members(symbol, depth);
-    visit_(path_, symbol);
+    if (skip_ != 0) {
+      --skip_;
+    } else {
+      ended_ = !visit_(path_, symbol);
+    }
   }
+
+  bool ended() const { return ended_; }
 
   void root(const Symbol& symbol, std::string_view name) {
     path_ = name;
@@ -222,7 +231,7 @@ class LeafWalk {
   void members(const Symbol& symbol, uint32_t depth) {
     const size_t length = path_.size();
     const Type& type = image_.types[symbol.type];
-    for (size_t i = 0; i < type.members.size(); ++i) {
+    for (size_t i = 0; i < type.members.size() && !ended_; ++i) {
       if (!is_listed(type.members[i])) continue;
       if (length != 0) path_ += '.';
       path_ += type.members[i].name;
@@ -243,11 +252,25 @@ class LeafWalk {
     }
     Symbol element = symbol;
     element.type = type.base;
-    for (uint64_t flat = 0; flat < count; ++flat, element.data += stride) {
+    uint64_t flat = is_leaf(type.base) ? std::min(skip_, count) : 0;
+    skip_ -= flat;
+    element.data += static_cast<uint32_t>(flat * stride);
+    set_index(type, flat, index);
+    for (; flat < count && !ended_; ++flat, element.data += stride) {
       append_index(index);
       part(element, depth);
       path_.resize(length);
       advance(type, index);
+    }
+  }
+
+  bool is_leaf(TypeId id) const {
+    return image_.types[id].kind != Kind::kArray && !image_.types.has_members(id);
+  }
+
+  static void set_index(const Type& type, uint64_t flat, std::vector<int64_t>& index) {
+    for (size_t dim = index.size(); dim-- > 0; flat /= type.dims[dim].count()) {
+      index[dim] = type.dims[dim].low + static_cast<int64_t>(flat % type.dims[dim].count());
     }
   }
 
@@ -271,7 +294,9 @@ class LeafWalk {
   }
 
   const Image& image_;
+  uint64_t skip_;
   const Visit& visit_;
+  bool ended_ = false;
   std::string path_;
 };
 
@@ -311,12 +336,21 @@ std::string path_of(const Image& image, const Symbol& symbol) {
 
 void for_each_leaf(const Image& image,
                    const std::function<void(const std::string& path, const Symbol&)>& visit) {
-  LeafWalk walk(image, visit);
+  for_each_leaf_from(image, 0, [&](const std::string& path, const Symbol& symbol) {
+    visit(path, symbol);
+    return true;
+  });
+}
+
+void for_each_leaf_from(const Image& image, uint64_t first,
+                        const std::function<bool(const std::string&, const Symbol&)>& visit) {
+  LeafWalk walk(image, first, visit);
   Symbol globals;
   globals.type = image.globals;
   globals.data = image.instances.empty() ? 0 : image.instances[0].data;
   walk.root(globals, "");
   for (uint32_t id : image.program_ids()) {
+    if (walk.ended()) return;
     Symbol program;
     program.type = image.instances[id].type;
     program.data = image.instances[id].data;

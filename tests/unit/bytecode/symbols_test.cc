@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ir/bytecode/leaf_walk.h"
 #include "tests/unit/bytecode/sample_image.h"
 
 namespace {
@@ -110,10 +111,11 @@ TEST_F(Symbols, HashIgnoresPlacesAndWhatFollowsAStringsEnd) {
   EXPECT_EQ(ir::state_hash(moved, other), before);
 }
 
-TEST_F(Symbols, AMillionLeavesAreWalkedInLinearTime) {
+// One array of BOOLs, `a`.
+ir::Image with_array(std::vector<ir::Dimension> dims) {
   ir::Image big;
   const auto bit = big.types.elementary(ir::Kind::kBool);
-  const auto array = big.types.own().array(bit, {{1, 1'000'000}});
+  const auto array = big.types.own().array(bit, std::move(dims));
   ir::Type globals;
   globals.kind = ir::Kind::kGlobals;
   ir::Member member;
@@ -126,6 +128,11 @@ TEST_F(Symbols, AMillionLeavesAreWalkedInLinearTime) {
   big.layouts.own().of[big.globals.index].member_offsets = {0};
   big.instances.resize(1);
   big.instances[0].data = 64;
+  return big;
+}
+
+TEST_F(Symbols, AMillionLeavesAreWalkedInLinearTime) {
+  const ir::Image big = with_array({{1, 1'000'000}});
   uint64_t count = 0;
   uint32_t last = 0;
   ir::for_each_leaf(big, [&](const std::string&, const ir::Symbol& symbol) {
@@ -134,6 +141,44 @@ TEST_F(Symbols, AMillionLeavesAreWalkedInLinearTime) {
   });
   EXPECT_EQ(count, 1'000'000u);
   EXPECT_EQ(last, 64u + 999'999u);
+}
+
+using Leaves = std::vector<std::pair<std::string, uint32_t>>;
+
+Leaves leaves_from(const ir::Image& image, uint64_t first, size_t most) {
+  Leaves out;
+  ir::for_each_leaf_from(image, first, [&](const std::string& path, const ir::Symbol& symbol) {
+    out.emplace_back(path, symbol.data);
+    return out.size() < most;
+  });
+  return out;
+}
+
+TEST_F(Symbols, PagesAreWhatTheWholeWalkVisits) {
+  for (const ir::Image& one : {image, with_array({{-1, 1}, {0, 4}, {7, 8}})}) {
+    Leaves all;
+    ir::for_each_leaf(one, [&](const std::string& path, const ir::Symbol& symbol) {
+      all.emplace_back(path, symbol.data);
+    });
+    ASSERT_GT(all.size(), 10u);
+    for (size_t first = 0; first <= all.size() + 1; ++first) {
+      for (const size_t most : {size_t{1}, size_t{3}, all.size() + 1}) {
+        const size_t begin = std::min(first, all.size());
+        const size_t end = std::min(begin + most, all.size());
+        const Leaves wanted(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                            all.begin() + static_cast<std::ptrdiff_t>(end));
+        ASSERT_EQ(leaves_from(one, first, most), wanted) << first << ", " << most;
+      }
+    }
+  }
+}
+
+// Or this takes minutes.
+TEST_F(Symbols, APageOfALargeArrayCostsWhatIsOnIt) {
+  const ir::Image large = with_array({{1, 3'000'000'000}, {1, 2}});
+  const Leaves last = leaves_from(large, 5'999'999'999, 10);
+  ASSERT_EQ(last.size(), 1u);
+  EXPECT_EQ(last[0].first, "a[3000000000,2]");
 }
 
 }  // namespace

@@ -235,6 +235,34 @@ TEST_F(Asked, PagesOfAnythingElseNeedNoBoundaryOrABoundedCopy) {
   EXPECT_EQ(jobs_, 0);
 }
 
+// A page looks at so many variables at most, whether they match or not; the next one goes on there.
+TEST_F(Asked, PagesOfAListAreBounded) {
+  vm::Request list{.command = Command::kList};
+  list.names = {"huge[?9999]"};
+  std::vector<std::string> found;
+  for (int pages = 0; pages < 3; ++pages) {
+    auto body = ask(list);
+    ASSERT_TRUE(body.ok());
+    auto page = vm::decode_values(*body);
+    ASSERT_TRUE(page.ok());
+    EXPECT_EQ(page->next, list.offset + 100'000);
+    for (const vm::ValueRow& row : page->rows) found.push_back(row.path);
+    list.offset = page->next;
+  }
+  EXPECT_EQ(found.size(), 9u);
+  EXPECT_EQ(found.front(), "huge[19999]");
+  list.offset = 9'999'990;
+  list.names = {"*"};
+  auto body = ask(list);
+  ASSERT_TRUE(body.ok());
+  EXPECT_EQ(vm::decode_values(*body)->rows.front().path, "huge[9999990]");
+  list.offset = UINT64_MAX;
+  body = ask(list);
+  ASSERT_TRUE(body.ok());
+  EXPECT_TRUE(vm::decode_values(*body)->rows.empty());
+  EXPECT_EQ(vm::decode_values(*body)->next, 0u);
+}
+
 TEST(AskedOfAChange, ItsReportCopiesDataInPortions) {
   sim::SimStorage disk;
   Plc plc(disk);
