@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/limits.h"
 #include "vm/runtime/descriptor.h"
 #include "vm/runtime/frames.h"
 #include "vm/runtime/socket_server.h"
@@ -15,7 +16,7 @@ namespace vm {
 
 using Instant = std::chrono::steady_clock::time_point;
 
-inline constexpr size_t kMaxConnections = 16;
+inline constexpr size_t kMaxConnections = base::kMaxConnections;
 
 struct Connection {
   Descriptor socket;

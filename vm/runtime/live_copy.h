@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "base/limits.h"
 #include "ir/bytecode/value_ranges.h"
 #include "vm/exec/memory.h"
 #include "vm/runtime/controller.h"
@@ -16,8 +17,8 @@
 namespace vm {
 
 // At one boundary, and of one request, in lines.
-inline constexpr uint64_t kMaxBoundaryBytes = 1u << 17;
-inline constexpr uint64_t kMaxReadBytes = 1u << 22;
+inline constexpr uint64_t kMaxBoundaryBytes = base::kMaxBoundaryBytes;
+inline constexpr uint64_t kMaxReadBytes = base::kMaxReadBytes;
 // Copied, read and written together; as in the model of the pause.
 inline constexpr int64_t kCopyBytesPerNs = 2;
 inline constexpr uint64_t kLeastBytes = 1u << 14;
