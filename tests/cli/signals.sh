@@ -76,4 +76,18 @@ for signal in TERM INT QUIT USR1 USR2 ALRM XCPU PROF VTALRM IO PWR; do
   [ "$code" -eq 0 ] || fail "exit code $code by SIG$signal"
   coil FALSE
 done
+
+# `stvm run` has outputs too, and is no service: whatever would end it stops it in order.
+for signal in HUP PIPE QUIT; do
+  "$bin/stvm" run plc.img >run.out 2>&1 &
+  pid=$!
+  echo "$pid" >run.pid
+  coil TRUE
+  kill -s "$signal" "$pid"
+  code=0
+  wait "$pid" || code=$?
+  rm run.pid
+  [ "$code" -eq 0 ] || fail "exit code $code of stvm run by SIG$signal: $(cat run.out)"
+  coil FALSE
+done
 expect 0 stvm stop --dir plant

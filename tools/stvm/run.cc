@@ -171,7 +171,7 @@ base::Result<int> run_alone(const Settings& settings,
   if (!assigned.ok()) return assigned.error();
   base::Status known = check_names(settings.print, controller);
   if (!known.ok()) return known.error();
-  StopSignal::install();
+  StopSignal::install_for_outputs();
   base::Status done = run_scans(settings, options, **running);
   if (!done.ok()) return done.error();
   finish_scan(**running);

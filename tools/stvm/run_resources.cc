@@ -257,7 +257,7 @@ base::Result<int> run_resources(const std::vector<Resource>& resources, const Ru
         apply_assignments(options, resource->name(), resource->controller(), resource->recorder());
     if (!assigned.ok()) return assigned.error();
   }
-  StopSignal::install();
+  StopSignal::install_for_outputs();
   virtual_time ? take_turns(running, settings) : run_in_threads(running, settings);
   for (const auto& resource : running) {
     finish_scan(*resource);

@@ -29,15 +29,20 @@ void StopSignal::install() {
   handle(SIGXFSZ, SIG_IGN);
 }
 
-void StopSignal::install_service() {
+void StopSignal::install_for_outputs() {
   install();
-  for (const int number : {SIGQUIT, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGPOLL,
-                           SIGPWR, SIGSTKFLT}) {
+  for (const int number : {SIGHUP, SIGPIPE, SIGQUIT, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF,
+                           SIGXCPU, SIGPOLL, SIGPWR, SIGSTKFLT}) {
     handle(number, on_stop);
   }
   for (int number = SIGRTMIN; number <= SIGRTMAX; ++number) handle(number, on_stop);
-  for (const int number : {SIGPIPE, SIGTSTP, SIGTTIN, SIGTTOU}) handle(number, SIG_IGN);
+  for (const int number : {SIGTSTP, SIGTTIN, SIGTTOU}) handle(number, SIG_IGN);
+}
+
+void StopSignal::install_service() {
+  install_for_outputs();
   handle(SIGHUP, on_hangup);
+  handle(SIGPIPE, SIG_IGN);
 }
 
 bool StopSignal::received() { return stop_received; }

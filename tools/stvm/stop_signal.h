@@ -8,9 +8,11 @@ class StopSignal {
  public:
   // For commands at a terminal: SIGINT and SIGTERM.
   static void install();
-  // For a service, whose outputs must be safe when it ends: every signal that ends a process and
-  // can be caught in order stops it. SIGHUP is only noted; SIGPIPE and those that would halt it in
-  // the middle of a plant's work (SIGTSTP, SIGTTIN, SIGTTOU) are ignored.
+  // For whoever has outputs, which must be safe when it ends: every signal that ends a process and
+  // can be caught in order stops it; those that would halt it in the middle of a plant's work
+  // (SIGTSTP, SIGTTIN, SIGTTOU) are ignored.
+  static void install_for_outputs();
+  // That, but for a service, whom no terminal may end: SIGHUP is only noted, SIGPIPE ignored.
   static void install_service();
   static bool received();
   // SIGHUP has come since the last call.

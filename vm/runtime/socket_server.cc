@@ -50,7 +50,7 @@ base::Result<std::unique_ptr<SocketServer>> SocketServer::open(const std::string
   base::Result<std::string> address_path = socket_path(directory, holder);
   if (!address_path.ok()) return address_path.error();
   std::string path = directory + "/" + kSocketName;
-  Descriptor listener(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  Descriptor listener(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   Descriptor wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   if (!listener.valid() || !wake.valid()) return socket_error(path, "socket");
   // Before bind(), so that the socket is at no instant open to others.
