@@ -155,7 +155,6 @@ TEST_F(SocketTest, BridgesLeaveAPlace) {
 // Without a descriptor for it, a peer is served all the same, and a second one waits without being
 // asked for again and again.
 TEST_F(SocketTest, DescriptorsThatRunOutAreNoBusyLoop) {
-  ASSERT_TRUE(is_served(directory_));
   Descriptor first(::socket(AF_UNIX, SOCK_STREAM, 0));
   Descriptor second(::socket(AF_UNIX, SOCK_STREAM, 0));
   sockaddr_un address{};
@@ -247,6 +246,42 @@ TEST_F(SocketTest, OfAnotherUserIsNotTrusted) {
   ASSERT_FALSE(client.ok());
   EXPECT_EQ(client.error().refusal, base::Refusal::kNotRunning);
   EXPECT_NE(client.error().text.find("is not trusted"), std::string::npos);
+}
+
+TEST_F(SocketTest, AnotherUserIsSentAway) {
+  if (::geteuid() != 0) GTEST_SKIP() << "needs two users";
+  namespace fs = std::filesystem;
+  const std::string path = directory_ + "/" + kSocketName;
+  fs::permissions(directory_, fs::perms::all);
+  fs::permissions(path, fs::perms::all);
+  int result[2];
+  ASSERT_EQ(::pipe(result), 0);
+  const pid_t other = ::fork();
+  if (other == 0) {  // system calls only: the server's thread is not here
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::memcpy(address.sun_path, path.data(), path.size());
+    const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    char answer[200] = {};
+    ssize_t size = -1;
+    if (::setuid(65534) == 0 &&
+        ::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
+      size = ::recv(socket, answer, sizeof answer, 0);
+    }
+    (void)!::write(result[1], answer, size > 0 ? static_cast<size_t>(size) : 1);
+    ::_exit(0);
+  }
+  char answer[200] = {};
+  const ssize_t size = ::read(result[0], answer, sizeof answer);
+  ::waitpid(other, nullptr, 0);
+  ::close(result[0]);
+  ::close(result[1]);
+  ASSERT_GT(size, 4);
+  const base::Bytes message(answer + 4, answer + size);
+  auto told = decode_answer(message);
+  ASSERT_FALSE(told.ok());
+  EXPECT_EQ(told.error().refusal, base::Refusal::kNotPermitted);
+  EXPECT_TRUE(is_served(directory_));
 }
 
 // --- who has a place --------------------------------------------------------------
