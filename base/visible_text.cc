@@ -42,4 +42,13 @@ std::string visible(std::string_view text) {
   return out;
 }
 
+std::string visible_lines(std::string_view text) {
+  std::string out;
+  for (size_t end = text.find('\n'); end != text.npos; end = text.find('\n')) {
+    out += visible(text.substr(0, end)) + "\n";
+    text.remove_prefix(end + 1);
+  }
+  return out + visible(text);
+}
+
 }  // namespace base

@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "base/visible_text.h"
+
 namespace tools {
 
 int exit_code(const base::Error& error) {
@@ -18,7 +20,7 @@ int exit_code(const base::Error& error) {
 }
 
 int refuse(const char* tool, const base::Error& error) {
-  std::fprintf(stderr, "%s: %s\n", tool, base::to_string(error).c_str());
+  std::fprintf(stderr, "%s: %s\n", tool, base::visible_lines(base::to_string(error)).c_str());
   if (error.refusal != base::Refusal::kSourceErrors) {
     std::fprintf(stderr, "  help: %s\n", base::refusal_help(error.refusal));
   }

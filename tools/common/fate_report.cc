@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "base/visible_text.h"
 #include "base/wrapped.h"
 #include "tools/common/table.h"
 
@@ -117,7 +118,7 @@ std::string fate_report(const online_change::Plan& plan, const LiveValues& live,
   }
   out += "\npredicted pause " + duration(plan.predicted_pause_ns) + " (" +
          std::to_string(plan.boundary_bytes) + " bytes written at the boundary)\n";
-  return out;
+  return base::visible_lines(out);  // names of an image that somebody sent
 }
 
 void fate_report(const online_change::Plan& plan, const LiveValues& live, const PouEdits& edits,

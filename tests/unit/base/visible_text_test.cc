@@ -20,6 +20,12 @@ TEST(VisibleText, ShowsControlCharacters) {
   EXPECT_EQ(visible("\x9b" "31m"), "\\x9b31m") << "CSI as one byte";
 }
 
+TEST(VisibleText, KeepsLines) {
+  EXPECT_EQ(visible_lines("a\x1b\n\nb\r\n"), "a\\x1b\n\nb\\x0d\n");
+  EXPECT_EQ(visible_lines(""), "");
+  EXPECT_EQ(visible_lines("c\x9b"), "c\\x9b");
+}
+
 TEST(VisibleText, ShowsWhatIsNoUtf8) {
   EXPECT_EQ(visible("\xc3"), "\\xc3");
   EXPECT_EQ(visible("\xc0\x9b"), "\\xc0\\x9b");
