@@ -173,16 +173,14 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   vm::TaskCopy tasks(controller_, "");
   vm::Traps traps;
   traps.reserve(vm::kKeptTraps);
-  base::Status taken = look_at_boundary([&] {
+  base::Status taken = copy_at_boundaries([&](int64_t free_ns) {
     report.cycles = controller_.cycles();
     code = &controller_.code();
     report.faulted = controller_.faulted();
     report.uptime_ns = clock_.now_ns();
     traps = controller_.traps();
+    return tasks.take(controller_, free_ns);
   });
-  if (taken.ok()) {
-    taken = copy_at_boundaries([&](int64_t free_ns) { return tasks.take(controller_, free_ns); });
-  }
   if (!taken.ok()) return taken.error();
   for (const vm::TaskSample& task : tasks.samples()) report.tasks.push_back(vm::status_of(task));
   for (const auto& trap : traps) report.traps.push_back({trap->cycle, trap->task, trap->text});
