@@ -19,6 +19,7 @@ bool Connection::receive(Instant now) {
   if (n < 0) return errno == EAGAIN || errno == EINTR;
   if (n == 0) return false;
   in.add({buffer, static_cast<size_t>(n)});
+  silent = false;
   active = now;
   return true;
 }
@@ -79,7 +80,7 @@ bool Connections::make_room(bool bridged, Instant now) {
   size_t oldest = rows_.size();
   for (size_t i = 0; i < rows_.size(); ++i) {
     const Connection& row = *rows_[i];
-    const bool idle = !row.waiting_for_peer() && now - row.active >= kSettled;
+    const bool idle = !row.waiting_for_peer() && (row.silent || now - row.active >= kSettled);
     if (!idle || (bridged && !row.bridged)) continue;
     if (oldest == rows_.size() || row.active < rows_[oldest]->active) oldest = i;
   }

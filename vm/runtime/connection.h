@@ -28,6 +28,7 @@ struct Connection {
   base::Bytes out = {};
   size_t sent = 0;
   bool closing = false;
+  bool silent = true;  // nothing has ever come
 
   bool sending() const { return sent < out.size(); }
   bool waiting_for_peer() const { return sending() || !in.empty(); }
@@ -48,7 +49,8 @@ class Connections {
  public:
   // A peer that stops in the middle of a message or does not read its answer is sent away.
   static constexpr auto kPatience = std::chrono::seconds(10);
-  // One that has asked nothing for so long is, too, and sooner where its place is wanted.
+  // One that has asked nothing for so long is, too. Where its place is wanted it is sooner, and at
+  // once when it never has.
   static constexpr auto kIdle = std::chrono::minutes(15);
   static constexpr auto kSettled = std::chrono::seconds(1);
 
