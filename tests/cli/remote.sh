@@ -70,7 +70,7 @@ printf '\377\377\377' | stvm bridge --dir "$directory" >/dev/null || true
 expect 0 stvm stop --host plant7 --dir "$work/$directory"
 
 # A controller ends connections that ask nothing for long. The bridge finds it again with the next request, and ends when
-# there is none: here it was started anew in the meantime. Any answer will do, also one to another version of the protocol.
+# there is none: here it was started anew in the meantime.
 end() {  # until it has given its folder back
   expect 0 stvm stop --dir "$directory"
   wait "$(cat "$directory.pid")" || true
@@ -82,9 +82,11 @@ stvm bridge --dir "$directory" <requests >answers 2>bridge.err &
 bridge=$!
 echo "$bridge" >bridge.pid
 exec 3>requests
-asked() {  # a request of two bytes; until there is more of answers than before
+version=$(sed -n 's/.*kProtocolVersion = \([0-9]*\);.*/\1/p' "$source_dir/vm/runtime/protocol.h")
+request() { printf "\\002\\000\\000\\000\\$(printf %03o "$version")\\000" >&3; }  # for a status
+asked() {  # until there is more of answers than before
   before=$(stat -c %s answers)
-  printf '\002\000\000\000\000\000' >&3
+  request
   for _ in $(seq 600); do
     [ "$(stat -c %s answers)" -gt "$before" ] && return
     sleep 0.05
@@ -97,7 +99,7 @@ serve "$directory"
 asked
 asked
 end
-printf '\002\000\000\000\000\000' >&3
+request
 code=0
 wait "$bridge" || code=$?
 rm bridge.pid
