@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace online_change {
+namespace {
+
+// What could not be read may have been written so many times more often than what could.
+constexpr uint64_t kUnreadSequences = uint64_t{1} << 32;
+
+}  // namespace
 
 Copies::Copies(vm::Storage& storage, RecordKind kind, std::vector<std::string> names)
     : storage_(storage), kind_(kind) {
@@ -10,49 +16,88 @@ Copies::Copies(vm::Storage& storage, RecordKind kind, std::vector<std::string> n
 }
 
 base::Status Copies::bury(Copy& copy, const base::Error& error) {
+  if (!copy.dead) copy.why = error.text;
   copy.dead = true;
-  if (complaint_.empty()) complaint_ = error.text;
   return base::Error{base::Refusal::kStorageFailed, error.text};
 }
 
 void Copies::recover(uint64_t payload_bytes) {
+  bool unread = false;
   for (Copy& copy : copies_) {
-    base::Status opened = storage_.open(copy.name, record_bytes(payload_bytes));
+    copy.room = record_bytes(payload_bytes);
+    base::Status opened = storage_.open(copy.name, copy.room);
     if (opened.ok()) opened = storage_.sync(copy.name);
     if (!opened.ok()) (void)bury(copy, opened.error()).ok();
     copy.record = read_record(storage_, copy.name, kind_);
-    if (copy.record.state == RecordState::kUnreadable && !copy.dead) {
+    const bool unreadable = copy.record.state == RecordState::kUnreadable;
+    unread |= unreadable;
+    if (unreadable && !copy.dead) {
       (void)bury(copy, {base::Refusal::kFileUnreadable, copy.name + " cannot be read"}).ok();
     }
     last_sequence_ = std::max(last_sequence_, copy.record.sequence);
   }
+  // A later process may be able to read it.
+  if (unread) last_sequence_ = std::min(last_sequence_ + kUnreadSequences, kLastSequence);
 }
 
 base::Status Copies::reserve(size_t number, uint64_t payload_bytes, uint64_t spare) {
   Copy& copy = copies_[number];
-  if (copy.dead) return base::Error{base::Refusal::kStorageFailed, complaint_};
-  const base::Result<uint64_t> size = storage_.size(copy.name);
   const uint64_t wanted = record_bytes(payload_bytes);
-  const bool fits = size.ok() && *size >= wanted;
-  base::Status opened = storage_.open(copy.name, fits ? wanted : wanted + spare);
-  if (!opened.ok() && !fits && spare != 0) opened = storage_.open(copy.name, wanted);
+  if (copy.dead) {
+    if (copy.room < wanted) copy.room = wanted + spare;
+    return base::Ok{};
+  }
+  const base::Result<uint64_t> size = storage_.size(copy.name);
+  if (size.ok() && *size >= wanted) return base::Ok{};
+  base::Status opened = storage_.open(copy.name, wanted + spare);
+  if (!opened.ok() && spare != 0) opened = storage_.open(copy.name, wanted);
   // The copy holds what it held: no room is not the end of it.
   if (!opened.ok()) return base::Error{base::Refusal::kStorageFailed, opened.error().text};
+  copy.room = std::max(copy.room, wanted);
   return opened;
 }
 
 base::Status Copies::write(size_t number, const Payload& payload) {
   Copy& copy = copies_[number];
-  if (copy.dead) return base::Error{base::Refusal::kStorageFailed, complaint_};
   if (last_sequence_ >= kLastSequence) {
     return bury(copy, {base::Refusal::kStorageFailed, copy.name + ": no sequence number is left"});
   }
-  copy.record = {RecordState::kDamaged, 0, {}};
   const uint64_t sequence = ++last_sequence_;
-  base::Status written = write_record(storage_, copy.name, kind_, sequence, payload);
+  if (!copy.dead) copy.record = {RecordState::kDamaged, 0, {}};
+  base::Status written =
+      copy.dead ? replace_record(storage_, copy.name, kind_, sequence, payload, copy.room)
+                : write_record(storage_, copy.name, kind_, sequence, payload);
   if (!written.ok()) return bury(copy, written.error());
   copy.record = {RecordState::kValid, sequence, {}};
+  copy.dead = false;
   return written;
+}
+
+base::Status Copies::renew(size_t number) {
+  Copy& copy = copies_[number];
+  if (!copy.dead || valid(number)) return base::Ok{};
+  base::Status made = storage_.replace(copy.name, copy.room, {});
+  if (!made.ok()) return bury(copy, made.error());
+  copy.record = {};
+  copy.dead = false;
+  return made;
+}
+
+void Copies::check() {
+  for (Copy& copy : copies_) {
+    if (copy.dead && copy.record.state != RecordState::kValid) continue;
+    base::Status there = storage_.check(copy.name);
+    if (there.ok()) continue;
+    (void)bury(copy, there.error()).ok();
+    copy.record = {RecordState::kDamaged, 0, {}};
+  }
+}
+
+std::string Copies::complaint() const {
+  for (const Copy& copy : copies_) {
+    if (copy.dead) return copy.why;
+  }
+  return {};
 }
 
 }  // namespace online_change

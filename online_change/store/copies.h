@@ -1,6 +1,6 @@
 // Several copies of one kind of record, each in a file: the newest valid one counts. A copy on
-// which an operation has failed is dead: nothing is done with it any more, since nobody knows what
-// it holds.
+// which an operation has failed is dead, since nobody knows what its file holds: it is never
+// written in place again, and lives again when a new file has taken the place of that one.
 #pragma once
 
 #include <optional>
@@ -17,6 +17,8 @@ class Copies {
     std::string name;
     Record record;
     bool dead = false;
+    std::string why = {};  // it is dead
+    uint64_t room = 0;     // bytes of a file that replaces it
   };
 
   Copies(vm::Storage& storage, RecordKind kind, std::vector<std::string> names);
@@ -28,8 +30,12 @@ class Copies {
   // Room for a longer payload in one copy; where it must become longer, for so many bytes more, if
   // the storage has them: a longer file costs a flush of the disk.
   base::Status reserve(size_t number, uint64_t payload_bytes, uint64_t spare = 0);
-  // Over whatever the copy holds, with the next sequence number.
+  // Over whatever the copy holds, with the next sequence number; of a dead one in a new file.
   base::Status write(size_t number, const Payload& payload);
+  // A dead copy that holds nothing gets a new file that is empty.
+  base::Status renew(size_t number);
+  // A copy whose file has been removed is dead, and holds nothing.
+  void check();
 
   size_t count() const { return copies_.size(); }
   const Copy& operator[](size_t number) const { return copies_[number]; }
@@ -44,7 +50,8 @@ class Copies {
     }
     return best;
   }
-  // The one to be written next; the newest is never, nor is one that `needed` takes.
+  // The one to be written next; the newest is never written in place, and what `needed` takes is
+  // not written at all. A dead one only when there is no other.
   template <class Needed>
   std::optional<size_t> victim(Needed needed) const {
     const std::optional<size_t> first = newest([](size_t) { return true; });
@@ -54,14 +61,18 @@ class Copies {
       if (copies_[i].dead || first == i || sure == i || (valid(i) && needed(i))) continue;
       if (!best || copies_[i].record.sequence < copies_[*best].record.sequence) best = i;
     }
+    for (size_t i = 0; i < copies_.size() && !best; ++i) {
+      if (copies_[i].dead && !(valid(i) && needed(i))) best = i;
+    }
     return best;
   }
+  bool whole(size_t number) const { return valid(number) && !copies_[number].dead; }
   // What recover() read; kept until then.
   base::Bytes take_payload(size_t number) { return std::move(copies_[number].record.payload); }
   // It is not what it should be.
   void reject(size_t number) { copies_[number].record = {RecordState::kDamaged, 0, {}}; }
-  // The error of the first copy that died; empty while none is dead.
-  const std::string& complaint() const { return complaint_; }
+  // Why the first of the dead ones is; empty while none is dead.
+  std::string complaint() const;
 
  private:
   base::Status bury(Copy& copy, const base::Error& error);
@@ -70,7 +81,6 @@ class Copies {
   RecordKind kind_;
   std::vector<Copy> copies_;
   uint64_t last_sequence_ = 0;
-  std::string complaint_;
 };
 
 }  // namespace online_change

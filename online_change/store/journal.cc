@@ -94,24 +94,38 @@ std::optional<JournalEntry> decode_entry(base::ByteSpan sector) {
   return entry;
 }
 
-base::Result<std::vector<JournalEntry>> read_journal(vm::Storage& storage,
-                                                     const std::string& name) {
+namespace {
+
+// Adds what can be read; the error of what cannot.
+base::Status read_into(vm::Storage& storage, const std::string& name,
+                       std::vector<JournalEntry>& entries) {
   constexpr uint64_t kPiece = 256 * kSectorBytes;
   constexpr uint64_t kMost = 1u << 26;  // a longer file is not one of ours
-  std::vector<JournalEntry> entries;
-  for (uint64_t at = 0; at < kMost; at += kPiece) {
+  base::Result<uint64_t> size = storage.size(name);
+  if (!size.ok()) return size.error();
+  base::Status all = base::Ok{};
+  for (uint64_t at = 0; at < std::min(*size, kMost); at += kPiece) {
     base::Result<base::Bytes> piece = storage.read(name, at, kPiece);
-    if (!piece.ok()) return piece.error();
-    for (size_t i = 0; i + kSectorBytes <= piece->size(); i += kSectorBytes) {
+    if (!piece.ok()) all = piece.error();
+    for (size_t i = 0; piece.ok() && i + kSectorBytes <= piece->size(); i += kSectorBytes) {
       std::optional<JournalEntry> entry =
           decode_entry(base::ByteSpan(*piece).subspan(i, kSectorBytes));
       if (entry) entries.push_back(std::move(*entry));
     }
-    if (piece->size() < kPiece) break;
   }
   std::stable_sort(
       entries.begin(), entries.end(),
       [](const JournalEntry& a, const JournalEntry& b) { return a.sequence < b.sequence; });
+  return all;
+}
+
+}  // namespace
+
+base::Result<std::vector<JournalEntry>> read_journal(vm::Storage& storage,
+                                                     const std::string& name) {
+  std::vector<JournalEntry> entries;
+  base::Status all = read_into(storage, name, entries);
+  if (!all.ok()) return all.error();
   return entries;
 }
 
@@ -138,22 +152,51 @@ void Journal::recover() {
   base::Status opened = storage_.open(name_, uint64_t{entries_} * kSectorBytes);
   if (opened.ok()) opened = storage_.sync(name_);
   if (!opened.ok()) (void)fail(opened.error()).ok();
-  base::Result<std::vector<JournalEntry>> entries = read_journal(storage_, name_);
-  if (!entries.ok()) {
-    (void)fail(entries.error()).ok();
-  } else if (!entries->empty()) {
-    next_ = entries->back().sequence + 1;
-  }
+  std::vector<JournalEntry> found;
+  base::Status read = read_into(storage_, name_, found);
+  unread_ = !read.ok() && read.error().refusal != base::Refusal::kFileNotFound;
+  if (unread_) (void)fail(read.error()).ok();
+  ring_.assign(std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
+  while (ring_.size() > entries_) ring_.pop_front();
+  if (!ring_.empty()) next_ = ring_.back().sequence + 1;
 }
 
 base::Status Journal::add(JournalEntry entry) {
-  if (!complaint_.empty()) return base::Error{base::Refusal::kStorageFailed, complaint_};
   entry.sequence = next_++;
   const uint64_t at = entry.sequence % entries_ * kSectorBytes;
-  base::Status written = storage_.write(name_, at, encode(entry));
+  const base::Bytes sector = encode(entry);
+  if (std::optional<JournalEntry> kept = decode_entry(sector)) ring_.push_back(std::move(*kept));
+  if (ring_.size() > entries_) ring_.pop_front();
+  if (!complaint_.empty()) return base::Error{base::Refusal::kStorageFailed, complaint_};
+  base::Status written = storage_.write(name_, at, sector);
   if (written.ok()) written = storage_.sync(name_);
   if (!written.ok()) return fail(written.error());
   return written;
+}
+
+void Journal::check() {
+  if (!complaint_.empty() && !unread_) return;
+  base::Status there = storage_.check(name_);
+  if (there.ok()) return;
+  unread_ = false;
+  (void)fail(there.error()).ok();
+}
+
+base::Status Journal::renew() {
+  if (complaint_.empty()) return base::Ok{};
+  if (unread_) return base::Error{base::Refusal::kStorageFailed, complaint_};
+  base::Bytes content(uint64_t{entries_} * kSectorBytes, 0);
+  for (const JournalEntry& entry : ring_) {
+    const base::Bytes sector = encode(entry);
+    std::copy(sector.begin(), sector.end(),
+              content.begin() +
+                  static_cast<std::ptrdiff_t>(entry.sequence % entries_ * kSectorBytes));
+  }
+  const vm::Storage::Piece piece{0, content};
+  base::Status made = storage_.replace(name_, content.size(), {&piece, 1});
+  if (!made.ok()) return fail(made.error());
+  complaint_.clear();
+  return made;
 }
 
 }  // namespace online_change

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,14 +51,21 @@ base::Result<std::vector<JournalEntry>> read_journal(vm::Storage& storage, const
 std::vector<JournalEntry> by_time(std::vector<JournalEntry> entries,
                                   std::vector<JournalEntry> traps);
 
+// Its entries are in memory too: so they can be shown while the disk fails, and are written when it
+// is well again.
 class Journal {
  public:
   Journal(vm::Storage& storage, std::string name, uint32_t entries)
       : storage_(storage), name_(std::move(name)), entries_(entries) {}
   void recover();
-  // Durable when it returns without an error; behind one nothing more is written.
+  // Durable when it returns without an error. Behind one nothing more is written before renew().
   base::Status add(JournalEntry entry);
-  base::Result<std::vector<JournalEntry>> read() const { return read_journal(storage_, name_); }
+  // A file that was removed has failed.
+  void check();
+  // Where something has failed: a new file with all entries. One that could not be read is left
+  // alone, since it holds entries that are nowhere else.
+  base::Status renew();
+  std::vector<JournalEntry> entries() const { return {ring_.begin(), ring_.end()}; }
   const std::string& complaint() const { return complaint_; }
 
  private:
@@ -66,7 +74,9 @@ class Journal {
   vm::Storage& storage_;
   std::string name_;
   uint32_t entries_;
+  std::deque<JournalEntry> ring_;
   uint64_t next_ = 1;
+  bool unread_ = false;
   std::string complaint_;  // not empty: dead
 };
 

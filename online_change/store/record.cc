@@ -80,6 +80,7 @@ base::Bytes record_header(RecordKind kind, uint64_t sequence, const Payload& pay
 Record read_record(vm::Storage& storage, const std::string& name, RecordKind kind) {
   base::Result<uint64_t> size = storage.size(name);
   base::Result<base::Bytes> sector = storage.read(name, 0, kSectorBytes);
+  if (!size.ok() && size.error().refusal == base::Refusal::kFileNotFound) return {};
   if (!size.ok() || !sector.ok()) return {RecordState::kUnreadable, 0, {}};
   if (all_zero(*sector)) return {};
   Header header;
@@ -101,6 +102,18 @@ base::Status write_record(vm::Storage& storage, const std::string& name, RecordK
   if (done.ok()) done = storage.write(name, 0, record_header(kind, sequence, payload));
   if (done.ok()) done = storage.sync(name);
   return done;
+}
+
+base::Status replace_record(vm::Storage& storage, const std::string& name, RecordKind kind,
+                            uint64_t sequence, const Payload& payload, uint64_t size) {
+  const base::Bytes header = record_header(kind, sequence, payload);
+  const vm::Storage::Piece pieces[] = {
+      {0, header},
+      {kSectorBytes, payload.first},
+      {kSectorBytes + payload.first.size(), payload.second},
+  };
+  const uint64_t needed = record_bytes(payload.first.size() + payload.second.size());
+  return storage.replace(name, std::max(size, needed), pieces);
 }
 
 }  // namespace online_change

@@ -52,5 +52,9 @@ Record read_record(vm::Storage& storage, const std::string& name, RecordKind kin
 // Durable when it returns. Behind an error the file holds anything.
 base::Status write_record(vm::Storage& storage, const std::string& name, RecordKind kind,
                           uint64_t sequence, const Payload& payload);
+// The same in a new file of `size` bytes at least. Behind an error the file holds what it held, or
+// the record.
+base::Status replace_record(vm::Storage& storage, const std::string& name, RecordKind kind,
+                            uint64_t sequence, const Payload& payload, uint64_t size);
 
 }  // namespace online_change

@@ -1,15 +1,20 @@
 // Keeps the retained values durable while a program runs. The control thread copies them at a
 // boundary when it is asked to; a thread of the keeper asks, and waits for the disk. What did not
-// change is not written again. It also brings traps to the journal.
+// change is not written again. It also brings traps to the journal, has what failed in the store
+// renewed, and says when something is not stored and when it is again: in the journal, and to who
+// wants to hear it.
 #pragma once
 
 #include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
+#include "online_change/store/back_off.h"
 #include "online_change/store/store.h"
 #include "vm/runtime/controller.h"
 
@@ -26,11 +31,23 @@ struct Snapshot {
 class RetainKeeper {
  public:
   using WallTime = std::function<int64_t()>;  // ns since 1970
+  using Say = std::function<void(const std::string& line)>;
+  struct Unsaved {
+    int64_t since_ns = 0;  // wall time
+    std::string why;
+  };
 
-  // Without start() there is no thread: only save() writes.
+  // Without start() there is no thread: only save() writes, or step().
   RetainKeeper(vm::Controller& controller, Store& store, WallTime wall_time);
   ~RetainKeeper();
+  // Of the keeper's thread; before start().
+  void tell(Say say) { say_ = std::move(say); }
   void start();
+  // What the thread does at `now_ns`, of any clock that never goes back; returns after which time
+  // it does the next.
+  int64_t step(int64_t now_ns);
+  // Set while the retained values cannot be saved. Waits for no disk.
+  std::optional<Unsaved> unsaved() const;
 
   // Control thread, at a boundary; `free_ns`: until the next cycle. Without a request: one load.
   void serve(int64_t free_ns);
@@ -51,8 +68,11 @@ class RetainKeeper {
 
   void run();
   bool wait(int64_t ns);  // false: ending
-  bool request();         // a snapshot and traps; false: none came
+  void keep(int64_t now_ns);
+  void renew(int64_t now_ns);
   void note_traps();
+  void note(Event event, const std::string& text);
+  void saved_or_not(const base::Status& saved);
 
   vm::Controller& controller_;
   Store& store_;
@@ -68,6 +88,17 @@ class RetainKeeper {
 
   std::mutex saving_;  // guards saved_
   Snapshot saved_;
+
+  // The keeper's thread.
+  int64_t next_ns_ = 0;   // the next request
+  int64_t asked_ns_ = 0;  // this one
+  BackOff save_again_;
+  BackOff renew_again_;
+  std::vector<std::string> said_;  // complaints of the store
+  Say say_;
+
+  mutable std::mutex unsaved_mutex_;
+  std::optional<Unsaved> unsaved_;
 
   std::mutex ending_mutex_;
   std::condition_variable ending_changed_;

@@ -35,10 +35,13 @@ Store::Store(vm::Storage& storage, StoreSizes sizes)
       traps_(storage, kTrapsFile, sizes.trap_entries) {
   recover_control();
   recover_images();
-  slots_complaint_ = slots_.complaint();
   recover_retained();
   journal_.recover();
   traps_.recover();
+  show_control();
+  show_slots();
+  show_retained();
+  show_journals();
 }
 
 // --- recovery ---------------------------------------------------------------------
@@ -129,15 +132,19 @@ std::optional<size_t> Store::newest_accepted() const {
 void Store::reject_boots() {
   std::lock_guard lock(mutex_);
   if (boots_valid()) in_slot_[control_.slot].reset();
+  show_slots();
 }
 
 base::Status Store::write_control(const ControlRecord& next) {
+  control_copies_.check();
   const std::optional<size_t> copy = control_copies_.victim([](size_t) { return false; });
   if (!copy) return failed("the control record cannot be written: " + control_copies_.complaint());
   base::Status written = control_copies_.write(*copy, encode(next));
+  if (written.ok()) control_ = next;
+  has_control_ |= written.ok();
+  show_control();
+  show_slots();
   if (!written.ok()) return failed("the control record: " + written.error().text);
-  control_ = next;
-  has_control_ = true;
   return written;
 }
 
@@ -156,7 +163,6 @@ base::Status Store::write_slot(size_t slot, const ImageToStore& image) {
 
 base::Status Store::write_image(size_t slot, const ImageToStore& image, uint64_t retain_bytes) {
   for (size_t i = 0; i < retained_.count(); ++i) {
-    if (retained_[i].dead) continue;
     base::Status room = retained_.reserve(i, retain_payload_bytes(retain_bytes));
     if (!room.ok()) return room;
   }
@@ -168,7 +174,7 @@ base::Status Store::write_image(size_t slot, const ImageToStore& image, uint64_t
     in_slot_[slot].reset();
     written_[slot] = false;
     base::Status written = write_slot(slot, image);
-    slots_complaint_ = slots_.complaint();
+    show_slots();
     if (!written.ok()) return written;
   }
   in_slot_[slot] = image.digest;
@@ -189,7 +195,7 @@ void Store::lay_aside(std::shared_ptr<const base::Bytes> image) {
   }
   const base::Status written = write_slot(slot, {ir::digest(*image), *image});
   std::lock_guard lock(mutex_);
-  slots_complaint_ = slots_.complaint();
+  show_slots();
   if (written.ok()) aside_ = std::move(image);
 }
 
@@ -202,6 +208,9 @@ void Store::forget_aside() {
 // Without a program that boots: not the one whose layout the retained values have.
 size_t Store::free_slot() const {
   if (boots_valid()) return 1 - control_.slot;
+  for (size_t slot : {size_t{0}, size_t{1}}) {
+    if (!in_slot_[slot]) return slot;
+  }
   const std::optional<size_t> newest = newest_retained();
   if (!newest) return has_control_ ? control_.slot : 0;
   return in_slot_[0] == in_copy_[*newest]->image ? 1 : 0;
@@ -234,6 +243,7 @@ base::Status Store::may_begin_trial() const {
 base::Status Store::begin_trial(const ImageToStore& image, uint64_t retain_bytes) {
   std::lock_guard slots_lock(slots_mutex_);
   std::lock_guard lock(mutex_);
+  check_slots_locked();
   if (base::Status may = may_begin_trial(); !may.ok()) return may;
   base::Status stored = write_image(1 - control_.slot, image, retain_bytes);
   if (!stored.ok()) return stored;
@@ -259,9 +269,15 @@ base::Status Store::end_trial_locked() {
 }
 
 base::Status Store::accept() {
+  std::lock_guard slots_lock(slots_mutex_);
   std::lock_guard lock(mutex_);
   if (!control_.trial) {
     return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to accept"};
+  }
+  check_slots_locked();
+  const size_t slot = 1 - control_.slot;
+  if (in_slot_[slot] != control_.trial_digest) {
+    return failed("the program on trial is not stored any more: " + slots_[slot].why);
   }
   return write_control(
       {control_.trial_digest, static_cast<uint8_t>(1 - control_.slot), false, 0, {}});
@@ -274,9 +290,12 @@ base::Status Store::settle() {
 }
 
 base::Status Store::settle_locked() {
-  const bool whole = control_copies_.valid(0) && control_copies_.valid(1);
-  if (!has_control_ || whole) return base::Ok{};
-  return write_control(control_);
+  base::Status settled = base::Ok{};
+  for (size_t i = 0; has_control_ && settled.ok() && i < control_copies_.count(); ++i) {
+    const bool whole = control_copies_.whole(0) && control_copies_.whole(1);
+    if (!whole) settled = write_control(control_);
+  }
+  return settled;
 }
 
 // --- retained values --------------------------------------------------------------
@@ -285,6 +304,20 @@ bool Store::retained_fits_locked() const {
   const std::optional<size_t> newest = newest_retained();
   if (!newest) return true;
   return in_copy_[*newest]->image == control_.boots && !in_copy_[*newest]->trial;
+}
+
+bool Store::keeps_retained() const {
+  std::lock_guard lock(mutex_);
+  return saved_copy_ && retained_.valid(*saved_copy_);
+}
+
+bool Store::names_locked(const base::Digest& image) const {
+  return has_control_ && (control_.boots == image || control_.is_trial(image));
+}
+
+bool Store::names(const base::Digest& image) const {
+  std::lock_guard lock(mutex_);
+  return names_locked(image);
 }
 
 bool Store::retained_fits() const {
@@ -299,6 +332,7 @@ base::Status Store::save_retained(const base::Digest& image, uint64_t cycle,
   if (!trial && !(boots_valid() && control_.boots == image)) {
     return failed("the retained values are of a program that is not stored");
   }
+  retained_.check();
   // What a lost trial goes back to stays until the trial is over and newer values are durable.
   const std::optional<size_t> newest = newest_retained();
   const bool on_trial = control_.trial || (newest && in_copy_[*newest]->image != control_.boots);
@@ -308,10 +342,12 @@ base::Status Store::save_retained(const base::Digest& image, uint64_t cycle,
   if (!copy) return failed("no copy of the retained values is left: " + retained_.complaint());
   base::Status room = retained_.reserve(*copy, retain_payload_bytes(values.size()));
   if (!room.ok()) return room;
-  in_copy_[*copy].reset();
+  if (!retained_[*copy].dead) in_copy_[*copy].reset();
   base::Status written = retained_.write(
       *copy, encode(RetainRecord{image, trial, cycle, base::Bytes(values.begin(), values.end())}));
   if (written.ok()) in_copy_[*copy] = RetainHead{image, trial};
+  if (written.ok()) saved_copy_ = copy;
+  show_retained();
   return written;
 }
 
@@ -320,37 +356,18 @@ base::Status Store::save_retained(const base::Digest& image, uint64_t cycle,
 void Store::note(JournalEntry entry) {
   std::lock_guard lock(journal_mutex_);
   (void)journal_.add(std::move(entry)).ok();  // complaints() has the error
+  show_journals();
 }
 
 void Store::note_trap(JournalEntry entry) {
   std::lock_guard lock(journal_mutex_);
   (void)traps_.add(std::move(entry)).ok();
+  show_journals();
 }
 
-base::Result<std::vector<JournalEntry>> Store::history() const {
+std::vector<JournalEntry> Store::history() const {
   std::lock_guard lock(journal_mutex_);
-  auto entries = journal_.read();
-  if (!entries.ok()) return entries.error();
-  auto traps = traps_.read();
-  if (!traps.ok()) return traps.error();
-  return by_time(std::move(*entries), std::move(*traps));
-}
-
-base::Digest Store::boots() const {
-  std::lock_guard lock(mutex_);
-  return control_.boots;
-}
-
-std::vector<std::string> Store::complaints() const {
-  std::lock_guard lock(mutex_);
-  std::lock_guard journal_lock(journal_mutex_);
-  std::vector<std::string> out;
-  for (const std::string* text :
-       {&control_copies_.complaint(), &slots_complaint_, &retained_.complaint(),
-        &journal_.complaint(), &traps_.complaint()}) {
-    if (!text->empty()) out.push_back(*text);
-  }
-  return out;
+  return by_time(journal_.entries(), traps_.entries());
 }
 
 }  // namespace online_change

@@ -8,9 +8,13 @@
 // would read needs it: so the layout of the retained values can always be read. Three copies of the
 // retained values: the newest, the newest from before the trial, and the one written next.
 //
+// Storage may fail and be well again: an operation that has failed changes nothing here, and what
+// it may have left on the disk is superseded by the next one that does not fail, or by renew().
+//
 // Thread-safe. Never called by the control thread: every operation waits for the disk.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -56,7 +60,7 @@ struct Recovered {
   std::optional<RetainRecord> newest;  // retained values; of `boots` or `other`
   std::optional<RetainRecord> before;  // `newest` is of a lost trial: those of `boots` before it
   std::optional<base::Digest> trial_lost;
-  bool virgin = false;              // nothing was ever stored here
+  bool virgin = false;              // nothing was ever stored here, as far as anybody can tell
   std::string nothing;              // why there is no `boots`
   std::vector<std::string> alarms;  // what is damaged
 };
@@ -86,19 +90,32 @@ class Store {
   base::Status end_trial();
   // What is on trial boots from now on.
   base::Status accept();
+  // The slot that shall hold this program, and does not any more, gets it again.
+  base::Status restore(const ImageToStore& image);
 
   // `image` boots or is on trial.
   base::Status save_retained(const base::Digest& image, uint64_t cycle, base::ByteSpan values);
   // Are the newest ones, if there are any, those of the program that boots, not from its trial?
   bool retained_fits() const;
+  // Is what save_retained() has written last still stored?
+  bool keeps_retained() const;
+  // Does the control record name it, as what boots or is on trial?
+  bool names(const base::Digest& image) const;
 
   void note(JournalEntry entry);
   void note_trap(JournalEntry entry);
   // Of both rings, by time.
-  base::Result<std::vector<JournalEntry>> history() const;
+  std::vector<JournalEntry> history() const;
 
+  // To be called now and then; what is busy is left for the next time. Are all files still there?
+  // complaints() has those that are not.
+  void look();
+  // What has failed or is gone gets a new file.
+  base::Status renew();
+
+  // These two wait for no disk.
   base::Digest boots() const;
-  // What storage failed at since the start.
+  // What has failed and is not renewed, or is not stored any more.
   std::vector<std::string> complaints() const;
 
  private:
@@ -115,9 +132,23 @@ class Store {
   base::Status write_image(size_t slot, const ImageToStore& image, uint64_t retain_bytes);
   base::Status end_trial_locked();
   base::Status settle_locked();
+  void check_slots_locked();
+  bool needs_slot(size_t slot) const;
+  bool needs_copy(size_t copy) const;
+  base::Status renew_slots_locked();
+  base::Status renew_retained_locked();
+  base::Status renew_journals();
+  void show_retained() const;
+  void show_journals() const;
+  // For boots() and complaints().
+  enum Shown : size_t { kControl, kSlots, kBoots, kRetained, kJournal, kTraps, kShownKinds };
+  void show(Shown kind, std::string complaint) const;
+  void show_control() const;
+  void show_slots() const;
   // Is there a slot for a trial?
   base::Status may_begin_trial() const;
   bool boots_valid() const { return has_control_ && in_slot_[control_.slot] == control_.boots; }
+  bool names_locked(const base::Digest& image) const;
   bool in_a_slot(const base::Digest& image) const;
   size_t free_slot() const;
   // Of the retained records that can be read, with a layout that is stored.
@@ -129,7 +160,7 @@ class Store {
   bool retained_fits_locked() const;
 
   // In this order: of the slots and which of them counts, held as long as one is written; of all
-  // else but the journals; of those.
+  // else but the journals; of those; of what is shown.
   std::mutex slots_mutex_;
   mutable std::mutex mutex_;
   mutable std::mutex journal_mutex_;
@@ -145,9 +176,13 @@ class Store {
   std::optional<base::Digest> in_slot_[2];
   bool written_[2] = {false, false};          // by this process, so it is what its digest says
   std::shared_ptr<const base::Bytes> aside_;  // it is in the slot that does not boot
-  std::string slots_complaint_;
   std::optional<RetainHead> in_copy_[3];
+  std::optional<size_t> saved_copy_;  // save_retained() has written it last
   Recovered recovered_;
+
+  mutable std::mutex shown_mutex_;
+  mutable base::Digest shown_boots_{};
+  mutable std::array<std::string, kShownKinds> shown_{};  // complaints
 };
 
 }  // namespace online_change

@@ -77,7 +77,7 @@ void World::any_operation() {
   }
 }
 
-// A call of the disk fails; what failed stays so until the controller starts again.
+// Calls of the disk fail; in some worlds nobody renews what has failed before the power goes.
 void World::disk_fault() {
   const vm::StatusReport before = settled();
   const bool from_now_on = random_.one_in(2);
@@ -96,6 +96,10 @@ void World::disk_fault() {
   disk_.fails = nullptr;
   may_boot_.push_back(settled().running);
   ++tally_.faults;
+  if (random_.one_in(2)) return;
+  say("  and is renewed");
+  require(store_->renew().ok(), "what has failed is renewed when the disk is well");
+  disk_failed_ = false;
 }
 
 void World::power_cut() {

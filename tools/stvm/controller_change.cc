@@ -359,7 +359,8 @@ base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
 // Durable first: after a power cut in between, the accepted version boots, as it was asked for.
 base::Status ControllerService::make_permanent() {
   if (change_.state() != online_change::State::kTrial) return change_.accept();
-  base::Status stored = store_.accept();
+  base::Status stored = keep_programs();
+  if (stored.ok()) stored = store_.accept();
   if (!stored.ok()) {
     return refused(
         {stored.error().refusal, stored.error().text + "; the change runs, but is still on trial"});

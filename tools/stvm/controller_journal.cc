@@ -1,6 +1,8 @@
 // What the serving controller stores around a change, and what it writes into its journal.
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <ctime>
 #include <memory>
 
 #include "online_change/store/retained_values.h"
@@ -15,6 +17,17 @@ int64_t wall_time_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())
       .count();
+}
+
+std::string time_text(int64_t time_ns) {
+  const auto seconds = static_cast<std::time_t>(time_ns / 1'000'000'000);
+  std::tm parts{};
+  char text[64];
+  if (time_ns < 0 || ::gmtime_r(&seconds, &parts) == nullptr) return std::to_string(time_ns);
+  size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
+  std::snprintf(text + length, sizeof text - length, ".%03dZ",
+                static_cast<int>(time_ns / 1'000'000 % 1000));
+  return text;
 }
 
 // From what runs to what is staged.
@@ -83,16 +96,33 @@ base::Status ControllerService::store_trial() {
     if (!saved.ok()) return saved;
   }
   aside_.wait();
+  if (base::Status kept = keep_programs(); !kept.ok()) return kept;
+  // One that undo could not end, because the disk failed.
+  base::Status ended = store_.end_trial();
+  if (!ended.ok()) return ended;
   return store_.begin_trial({staged_->digest(), staged_->encoded()}, *bytes);
+}
+
+// Where nothing is wrong this does nothing.
+base::Status ControllerService::keep_programs() {
+  const ir::VerifiedImage& running = controller_.verified();
+  base::Status kept = store_.restore({running.digest(), running.encoded()});
+  if (!kept.ok() || !previous_) return kept;
+  return store_.restore({previous_->digest(), previous_->encoded()});
+}
+
+// What fails is among the complaints of the store.
+void ControllerService::keep_programs_now_and_then() {
+  const int64_t now = clock_.now_ns();
+  if (store_.complaints().empty() || !keep_again_.due(now)) return;
+  if (!keep_programs().ok()) keep_again_.failed(now);
 }
 
 // Entries from number `offset` on, as they lie on the disk; none behind the last. The first page
 // reads it, the others are of the same reading.
 base::Result<base::Bytes> ControllerService::journal(const vm::Request& request) {
   if (request.offset == 0) {
-    auto all = store_.history();
-    if (!all.ok()) return all.error();
-    history_ = std::move(*all);
+    history_ = store_.history();
     history_of_ = session_;
   }
   base::Bytes page;

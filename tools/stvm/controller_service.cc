@@ -33,7 +33,8 @@ ControllerService::ControllerService(vm::Controller& controller, vm::Clock& cloc
       wall_time_(std::move(wall_time)),
       keeper_(controller, store, wall_time_),
       change_(controller),
-      aside_(store) {}
+      aside_(store),
+      keep_again_(1'000'000'000, 8'000'000'000) {}
 
 void ControllerService::ended(uint64_t session) {
   // Not `= {}`, which keeps the room.
@@ -192,6 +193,10 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.boots_next = store_.boots();
   report.trial_lost = start_.trial_lost.value_or(base::Digest{});
   report.alarms = start_.alarms;
+  if (const auto unsaved = keeper_.unsaved()) {
+    report.alarms.push_back("retained values are not being saved since " +
+                            time_text(unsaved->since_ns) + ": " + unsaved->why);
+  }
   for (std::string& text : store_.complaints()) report.alarms.push_back(std::move(text));
   report.base_period_ns = controller_.base_period_ns();
   report.forces = controller_.forces().size();
@@ -228,6 +233,7 @@ void ControllerService::keep_up() {
     return true;
   };
   base::within_memory(renew, [] { return false; });
+  base::within_memory([&] { return keep_programs_now_and_then(), true; }, [] { return false; });
 }
 
 base::Result<base::Bytes> ControllerService::image(const vm::Request& request) {

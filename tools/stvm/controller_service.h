@@ -31,6 +31,8 @@ struct StartReport {
 inline constexpr int64_t kBetweenAttemptsNs = 1'000'000;
 // ns since 1970.
 int64_t wall_time_ns();
+// "2026-03-01T08:00:00.123Z"
+std::string time_text(int64_t time_ns);
 
 class ControllerService : public vm::Service {
  public:
@@ -49,7 +51,8 @@ class ControllerService : public vm::Service {
   // What was uploaded over it, and what the pages of its reports are of, is given back.
   void ended(uint64_t session) override;
   base::Bytes answer(base::ByteSpan request, bool& keep_open) override;
-  // Forces run in machine code as soon as there is some.
+  // Forces run in machine code as soon as there is some, and programs whose files are gone are
+  // stored again.
   void keep_up() override;
   bool stop_wanted() const { return stop_wanted_.load(std::memory_order_relaxed); }
   online_change::RetainKeeper& keeper() { return keeper_; }
@@ -113,6 +116,9 @@ class ControllerService : public vm::Service {
   base::Error refused(const base::Error& error);
   // Stored as being on trial, and durable, before anything of it runs.
   base::Status store_trial();
+  // The program that runs, and the one that undo would bring back.
+  base::Status keep_programs();
+  void keep_programs_now_and_then();
   base::Status save_retained_now();
   online_change::Snapshot empty_snapshot() const;
   void complain(const base::Status& status);
@@ -142,6 +148,7 @@ class ControllerService : public vm::Service {
   uint64_t edition_ = 0;
   std::atomic<bool> stop_wanted_{false};
   AsideWriter aside_;  // by store_beside()
+  online_change::BackOff keep_again_;
 };
 
 }  // namespace stvm

@@ -1,7 +1,6 @@
 // stvm journal: what happened to a controller, from its state directory, where it need not run; on
 // another machine, from the controller.
 #include <cstdio>
-#include <ctime>
 
 #include "online_change/store/store.h"
 #include "tools/common/exit.h"
@@ -9,6 +8,7 @@
 #include "tools/common/json.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
+#include "tools/stvm/controller_service.h"
 #include "vm/runtime/file_storage.h"
 
 namespace stvm {
@@ -36,18 +36,6 @@ base::Result<std::vector<JournalEntry>> entries_of(const tools::Options& options
   base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
   return client->journal();
-}
-
-// "2026-03-01T08:00:00.123Z"
-std::string time_text(int64_t time_ns) {
-  const auto seconds = static_cast<std::time_t>(time_ns / 1'000'000'000);
-  std::tm parts{};
-  char text[64];
-  if (time_ns < 0 || ::gmtime_r(&seconds, &parts) == nullptr) return std::to_string(time_ns);
-  size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
-  std::snprintf(text + length, sizeof text - length, ".%03dZ",
-                static_cast<int>(time_ns / 1'000'000 % 1000));
-  return text;
 }
 
 std::string version_text(const JournalEntry& entry) {

@@ -36,4 +36,13 @@ base::Status MemoryStorage::write(std::string_view name, uint64_t offset, base::
   return base::Ok{};
 }
 
+base::Status MemoryStorage::replace(std::string_view name, uint64_t size,
+                                    std::span<const Piece> pieces) {
+  files_[std::string(name)].assign(size, 0);
+  for (const Piece& piece : pieces) {
+    if (base::Status done = write(name, piece.offset, piece.bytes); !done.ok()) return done;
+  }
+  return base::Ok{};
+}
+
 }  // namespace stvm

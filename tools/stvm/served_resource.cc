@@ -62,6 +62,9 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
   auto server = vm::SocketServer::open(directory_, *service_);
   if (!server.ok()) return server.error();
   server_ = std::move(*server);
+  service_->keeper().tell([](const std::string& line) {
+    std::fprintf(stderr, "%s\n", line.c_str());
+  });
   service_->keeper().start();
   return base::Ok{};
 }

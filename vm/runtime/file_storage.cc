@@ -36,6 +36,7 @@ int sync_directory(const std::string& path) {
 }
 
 constexpr int kFlags = O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW;
+constexpr const char* kFresh = "_new";  // behind the name, until it has its place
 
 }  // namespace
 
@@ -70,41 +71,50 @@ base::Result<FileStorage::File> FileStorage::take(const std::string& path, bool 
   if (!S_ISREG(info.st_mode)) {
     return base::Error{base::Refusal::kFileUnreadable, path + ": not a file"};
   }
-  return File{std::move(descriptor), static_cast<uint64_t>(info.st_size), writable};
+  return File{std::move(descriptor), static_cast<uint64_t>(info.st_size), writable, false};
 }
 
-// A name is durable only when its directory is.
-base::Status FileStorage::allocate(File& file, const std::string& path, uint64_t size,
-                                   bool created) const {
-  if (file.size < size) {
-    if (!file.writable) return failed(base::Refusal::kFileUnwritable, path, EROFS);
-    int code = ::posix_fallocate(file.descriptor.get(), 0, static_cast<off_t>(size));
-    if (code == 0 && ::fsync(file.descriptor.get()) != 0) code = errno;
-    if (code != 0) return failed(base::Refusal::kFileUnwritable, path, code);
-    file.size = size;
-  }
-  if (!created) return base::Ok{};
-  int code = sync_directory(directory_);
+base::Status FileStorage::allocate(File& file, const std::string& path, uint64_t size) const {
+  if (file.size >= size) return base::Ok{};
+  int code = ::posix_fallocate(file.descriptor.get(), 0, static_cast<off_t>(size));
+  if (code == 0 && ::fsync(file.descriptor.get()) != 0) code = errno;
+  if (code != 0) return failed(base::Refusal::kFileUnwritable, path, code);
+  file.size = size;
+  return base::Ok{};
+}
+
+base::Status FileStorage::settle_names() {
+  std::lock_guard lock(mutex_);
+  if (names_settled_) return base::Ok{};
+  const int code = sync_directory(directory_);
+  names_settled_ = code == 0;
   if (code != 0) return failed(base::Refusal::kFileUnwritable, directory_, code);
   return base::Ok{};
 }
 
+// A name is durable only when its directory is.
 base::Status FileStorage::open(std::string_view name, uint64_t size) {
   base::Result<std::string> file_path = path(name);
   if (!file_path.ok()) return file_path.error();
+  const File* const before = find(name);
+  // What a process that was killed in the middle of replace() has left.
+  if (before == nullptr) ::unlink((*file_path + kFresh).c_str());
   bool created = false;
   base::Result<File> file = take(*file_path, true, created);
   if (!file.ok()) return file.error();
-  base::Status allocated = allocate(*file, *file_path, size, created);
-  if (!allocated.ok()) {
-    if (created) ::unlink(file_path->c_str());
-    return allocated;
-  }
+  const bool writable = file->writable;
+  file->known = before != nullptr || created;
+  base::Status done = writable ? allocate(*file, *file_path, size) : base::Ok{};
+  if (!done.ok() && created) ::unlink(file_path->c_str());
+  if (!done.ok()) return done;
   keep(name, std::move(*file));
-  return base::Ok{};
+  if (!writable) return failed(base::Refusal::kFileUnwritable, *file_path, EROFS);
+  const int code = created ? sync_directory(directory_) : 0;
+  if (code != 0) return failed(base::Refusal::kFileUnwritable, directory_, code);
+  return settle_names();
 }
 
-const FileStorage::File* FileStorage::find(std::string_view name) {
+FileStorage::File* FileStorage::find(std::string_view name) {
   std::lock_guard lock(mutex_);
   const auto found = files_.find(name);
   return found == files_.end() ? nullptr : &found->second;
@@ -165,12 +175,68 @@ base::Status FileStorage::write(std::string_view name, uint64_t offset, base::By
   return base::Ok{};
 }
 
-// A failed one is not tried again: the system may have forgotten what it could not write.
+// A failed one is not tried again: the system drops what it could not write, keeps it where reads
+// see it, and says "done" the next time. So before a file of an earlier process is read, whatever
+// the system remembers of it is forgotten, and reads ask the disk.
 base::Status FileStorage::sync(std::string_view name) {
+  File* const file = find(name);
+  if (file == nullptr) return failed(base::Refusal::kFileUnwritable, std::string(name), EBADF);
+  const int fd = file->descriptor.get();
+  if (::fdatasync(fd) != 0) return failed(base::Refusal::kFileUnwritable, *path(name), errno);
+  if (!file->known) ::posix_fadvise(fd, 0, 0, POSIX_FADV_DONTNEED);
+  file->known = true;
+  return check(name);
+}
+
+base::Status FileStorage::check(std::string_view name) {
   const File* const found = find(name);
   if (found == nullptr) return failed(base::Refusal::kFileUnwritable, std::string(name), EBADF);
-  if (::fdatasync(found->descriptor.get()) == 0) return base::Ok{};
-  return failed(base::Refusal::kFileUnwritable, *path(name), errno);
+  const std::string file_path = *path(name);
+  struct stat opened {};
+  struct stat there {};
+  if (::fstat(found->descriptor.get(), &opened) != 0 || ::lstat(file_path.c_str(), &there) != 0) {
+    if (errno != ENOENT) return failed(base::Refusal::kFileUnwritable, file_path, errno);
+    return base::Error{base::Refusal::kFileUnwritable, file_path + ": the file was removed"};
+  }
+  if (opened.st_dev == there.st_dev && opened.st_ino == there.st_ino) return base::Ok{};
+  return base::Error{base::Refusal::kFileUnwritable, file_path + ": another file is there now"};
+}
+
+base::Status FileStorage::write_new(const std::string& path, uint64_t size,
+                                    std::span<const Piece> pieces, File& file) const {
+  ::unlink(path.c_str());
+  Descriptor descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | kFlags, 0600));
+  if (!descriptor.valid()) return failed(base::Refusal::kFileUnwritable, path, errno);
+  file = {std::move(descriptor), 0, true, true};
+  base::Status made = allocate(file, path, size);
+  if (!made.ok()) return made;
+  int code = 0;
+  for (const Piece& piece : pieces) {
+    if (code == 0) code = write_all(file.descriptor.get(), piece.offset, piece.bytes);
+  }
+  if (code == 0 && ::fsync(file.descriptor.get()) != 0) code = errno;
+  if (code != 0) return failed(base::Refusal::kFileUnwritable, path, code);
+  return base::Ok{};
+}
+
+base::Status FileStorage::replace(std::string_view name, uint64_t size,
+                                  std::span<const Piece> pieces) {
+  base::Result<std::string> file_path = path(name);
+  if (!file_path.ok()) return file_path.error();
+  const std::string fresh = *file_path + kFresh;
+  File file;
+  base::Status made = write_new(fresh, size, pieces, file);
+  if (made.ok() && ::rename(fresh.c_str(), file_path->c_str()) != 0) {
+    made = failed(base::Refusal::kFileUnwritable, *file_path, errno);
+  }
+  if (!made.ok()) {
+    ::unlink(fresh.c_str());
+    return made;
+  }
+  keep(name, std::move(file));
+  const int code = sync_directory(directory_);
+  if (code != 0) return failed(base::Refusal::kFileUnwritable, directory_, code);
+  return check(name);
 }
 
 }  // namespace vm

@@ -16,32 +16,41 @@ class FileStorage : public Storage {
  public:
   explicit FileStorage(std::string directory) : directory_(std::move(directory)) {}
 
-  // kFileUnwritable, kFileUnreadable. A long enough file that cannot be written can be read.
+  // kFileUnwritable, kFileUnreadable. A file that cannot be written can be read behind the error.
   base::Status open(std::string_view name, uint64_t size) override;
   base::Result<uint64_t> size(std::string_view name) override;
   base::Result<base::Bytes> read(std::string_view name, uint64_t offset, uint64_t size) override;
   base::Status write(std::string_view name, uint64_t offset, base::ByteSpan bytes) override;
   base::Status sync(std::string_view name) override;
+  base::Status replace(std::string_view name, uint64_t size,
+                       std::span<const Piece> pieces) override;
+  base::Status check(std::string_view name) override;
 
  private:
   struct File {
     Descriptor descriptor;
     uint64_t size = 0;
     bool writable = false;
+    bool known = false;  // what reads see is what the disk holds, as far as this process can tell
   };
 
   // Names are lower-case letters, digits and `_`: no file lies outside the directory.
   base::Result<std::string> path(std::string_view name) const;
   base::Result<File> take(const std::string& path, bool create, bool& created) const;
-  base::Status allocate(File& file, const std::string& path, uint64_t size, bool created) const;
+  base::Status allocate(File& file, const std::string& path, uint64_t size) const;
+  // What the process before has renamed is durable before anything is built on it.
+  base::Status settle_names();
+  base::Status write_new(const std::string& path, uint64_t size, std::span<const Piece> pieces,
+                         File& file) const;
   // Null: it is not open. What it points to stays until the file is opened again.
-  const File* find(std::string_view name);
+  File* find(std::string_view name);
   const File* keep(std::string_view name, File file);
   // One that is open already, or is opened for reading only.
   base::Result<const File*> readable(std::string_view name);
 
   std::string directory_;
-  std::mutex mutex_;  // of the map alone
+  std::mutex mutex_;  // of the map and the flag alone
+  bool names_settled_ = false;
   std::map<std::string, File, std::less<>> files_;
 };
 

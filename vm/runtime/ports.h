@@ -78,13 +78,19 @@ class IoPort {
 };
 
 // Durable files of fixed size, by name ("slot_a", "control_0"). Nothing is repeated behind a
-// failure: what a failed call leaves in its file is unknown, up to a mixture. What is written is
-// durable when sync() of that file has returned without an error, and in no order before.
+// failure: what a failed call leaves in its file is unknown, up to a mixture, and only replace()
+// makes it known again. What is written is durable when sync() of that file has returned without an
+// error, and in no order before.
 class Storage {
  public:
+  struct Piece {
+    uint64_t offset = 0;
+    base::ByteSpan bytes;
+  };
+
   virtual ~Storage() = default;
   // The file is there, durably, with room for at least `size` bytes: what it holds stays, new bytes
-  // are zero. Before anything else is done with it.
+  // are zero. Before anything else is done with it. Behind an error it may still be readable.
   virtual base::Status open(std::string_view name, uint64_t size) = 0;
   // Of a file, opened or not; kFileNotFound.
   virtual base::Result<uint64_t> size(std::string_view name) = 0;
@@ -92,7 +98,16 @@ class Storage {
   virtual base::Result<base::Bytes> read(std::string_view name, uint64_t offset, uint64_t size) = 0;
   // Inside the size that was opened.
   virtual base::Status write(std::string_view name, uint64_t offset, base::ByteSpan bytes) = 0;
+  // An error too when what was written can no longer be found by its name (check()).
   virtual base::Status sync(std::string_view name) = 0;
+  // A new file of `size` bytes, these pieces and zeros, takes the place of whatever the name leads
+  // to. It is durable when it returns without an error; behind an error or a cut the name leads to
+  // the old file or to the whole new one. Nothing of the old one is used, so calls for it may have
+  // failed, and it may be gone.
+  virtual base::Status replace(std::string_view name, uint64_t size,
+                               std::span<const Piece> pieces) = 0;
+  // Does the name still lead to the file that was opened? Somebody may have removed it.
+  virtual base::Status check(std::string_view name) = 0;
 };
 
 // One request in, one answer out; framing is the transport's affair.

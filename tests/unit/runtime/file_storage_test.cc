@@ -119,5 +119,71 @@ TEST_F(FileStorageTest, WhatIsNoFileIsNeitherReadNorWritten) {
   }
 }
 
+// --- files that are replaced --------------------------------------------------------
+
+TEST_F(FileStorageTest, ANewFileTakesThePlaceOfTheOldOne) {
+  FileStorage storage(directory_);
+  ASSERT_TRUE(storage.open("a", 10).ok());
+  ASSERT_TRUE(storage.write("a", 0, base::Bytes(10, 1)).ok());
+  const base::Bytes first{7, 8};
+  const base::Bytes second{9};
+  const Storage::Piece pieces[] = {{1, first}, {5, second}};
+  ASSERT_TRUE(storage.replace("a", 8, pieces).ok());
+  const base::Bytes expected{0, 7, 8, 0, 0, 9, 0, 0};
+  EXPECT_EQ(*storage.read("a", 0, 100), expected);
+  ASSERT_TRUE(storage.write("a", 0, base::Bytes{5}).ok());
+  ASSERT_TRUE(storage.sync("a").ok());
+  FileStorage other(directory_);
+  EXPECT_EQ(other.read("a", 0, 100)->front(), 5);
+  EXPECT_EQ(files(), 1u);
+  ASSERT_TRUE(storage.replace("b", 4, {}).ok()) << "it need not be there before";
+  EXPECT_EQ(*storage.size("b"), 4u);
+}
+
+TEST_F(FileStorageTest, WhereNoNewFileCanBeMadeTheOldOneStays) {
+  FileStorage storage(directory_);
+  ASSERT_TRUE(storage.open("a", 500).ok());
+  ASSERT_TRUE(storage.write("a", 0, base::Bytes{9}).ok());
+  FileSizeLimit limit(1000);
+  EXPECT_EQ(storage.replace("a", 5000, {}).error().refusal, base::Refusal::kFileUnwritable);
+  EXPECT_EQ(*storage.read("a", 0, 1), base::Bytes{9});
+  EXPECT_TRUE(storage.check("a").ok());
+  EXPECT_EQ(files(), 1u) << "half a file is left";
+}
+
+TEST_F(FileStorageTest, WhatAKilledProcessLeftOfANewFileIsRemoved) {
+  std::ofstream(directory_ + "/a_new") << "half";
+  FileStorage storage(directory_);
+  ASSERT_TRUE(storage.open("a", 10).ok());
+  EXPECT_EQ(files(), 1u);
+  std::ofstream(directory_ + "/a_new") << "half of another";
+  ASSERT_TRUE(storage.replace("a", 3, {}).ok());
+  EXPECT_EQ(*storage.read("a", 0, 10), base::Bytes(3, 0));
+}
+
+// A folder that is gone, a file that is removed or exchanged: nothing is durable there.
+TEST_F(FileStorageTest, WhatNobodyCanFindIsNotDurable) {
+  FileStorage storage(directory_);
+  for (const char* name : {"a", "b", "c"}) {
+    ASSERT_TRUE(storage.open(name, 10).ok());
+    ASSERT_TRUE(storage.check(name).ok());
+  }
+  std::filesystem::remove(directory_ + "/a");
+  ASSERT_TRUE(storage.write("a", 0, base::Bytes{1}).ok());
+  const base::Status removed = storage.sync("a");
+  ASSERT_FALSE(removed.ok());
+  EXPECT_NE(removed.error().text.find("the file was removed"), std::string::npos);
+  std::filesystem::copy(directory_ + "/b", directory_ + "/d");
+  std::filesystem::rename(directory_ + "/d", directory_ + "/b");
+  EXPECT_NE(storage.sync("b").error().text.find("another file"), std::string::npos);
+  EXPECT_FALSE(storage.check("b").ok());
+  EXPECT_TRUE(storage.sync("c").ok());
+  ASSERT_TRUE(storage.replace("a", 10, {}).ok());
+  EXPECT_TRUE(storage.sync("a").ok());
+  std::filesystem::remove_all(directory_);
+  EXPECT_FALSE(storage.sync("c").ok());
+  EXPECT_EQ(storage.replace("c", 10, {}).error().refusal, base::Refusal::kFileUnwritable);
+}
+
 }  // namespace
 }  // namespace vm

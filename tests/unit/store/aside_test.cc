@@ -88,10 +88,14 @@ TEST_F(Aside, AFailureIsSaidAndTheTrialIsRefused) {
   const StoredImage next = program(2);
   const auto bytes = shared(next.bytes);
   store_.lay_aside(bytes);
-  disk_.fails = nullptr;
   EXPECT_FALSE(store_.complaints().empty());
   EXPECT_FALSE(store_.begin_trial({next.digest, *bytes}, 100).ok());
   EXPECT_EQ(store_.boots(), program(1).digest);
+  disk_.fails = nullptr;
+  EXPECT_TRUE(store_.begin_trial({next.digest, *bytes}, 100).ok());
+  EXPECT_EQ(accepted(), next.bytes);
+  EXPECT_TRUE(store_.renew().ok());
+  EXPECT_TRUE(store_.complaints().empty());
 }
 
 TEST_F(Aside, AThreadOfItsOwnWritesIt) {

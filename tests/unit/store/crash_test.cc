@@ -16,9 +16,10 @@ constexpr uint64_t kStates = 1'000'000;
 class Cuts {
  public:
   // Looks at all states of this life. Level 0: those of the life; 1: those of what follows a cut.
-  void live_through(History& history, sim::SimStorage& disk, uint64_t seed, uint32_t operations) {
+  void live_through(History& history, sim::SimStorage& disk, uint64_t seed, uint32_t operations,
+                    bool faults) {
     disk.before_call = [&] { look(history, disk, 0); };
-    live(history, seed, operations);
+    live(history, seed, operations, faults);
     disk.before_call = nullptr;
   }
   uint64_t tried() const { return tried_; }
@@ -88,17 +89,24 @@ class Cuts {
   uint64_t failed_ = 0;
 };
 
-TEST(Crash, X5_case54_APowerCutAtAnyInstantLeavesOneVersionWithItsValues) {
+void cut_lives(bool faults) {
   Cuts cuts;
   for (uint64_t seed = 1; cuts.tried() < kStates; ++seed) {
     sim::SimStorage disk;
     History history(disk);
     ASSERT_EQ(history.open(), "");
-    cuts.live_through(history, disk, seed, 30);
+    cuts.live_through(history, disk, seed, 30, faults);
   }
   std::printf("%llu tried, %llu failed\n", static_cast<unsigned long long>(cuts.tried()),
               static_cast<unsigned long long>(cuts.failed()));
   EXPECT_EQ(cuts.failed(), 0u);
+}
+
+TEST(Crash, X5_case54_APowerCutAtAnyInstantLeavesOneVersionWithItsValues) { cut_lives(false); }
+
+// The same while the disk fails now and then and what has failed is renewed.
+TEST(Crash, case56_APowerCutAroundFaultsOfTheDiskLeavesOneVersionWithItsValues) {
+  cut_lives(true);
 }
 
 }  // namespace

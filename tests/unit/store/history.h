@@ -52,6 +52,11 @@ class History {
   bool undo();
   bool accept();
   bool note();
+  // One of these. False: storage failed.
+  bool any_operation(uint64_t seed);
+  // The disk fails at some calls of one of these, in any way, and is well behind it. What has
+  // failed is renewed, or the controller goes on without.
+  void fault(uint64_t seed);
 
   const Promises& promises() const { return now_; }
   bool on_trial() const { return now_.trial.has_value(); }
@@ -63,15 +68,17 @@ class History {
   std::string check_trial() const;
   std::string check_values() const;
   std::string check_journal();
+  void renew();
   std::vector<online_change::JournalEntry> written_notes();
 
   sim::SimStorage& disk_;
   std::unique_ptr<online_change::Store> store_;
   online_change::Recovered found_;
   Promises now_;
+  uint32_t highest_ = 1;  // version
 };
 
-// A whole life, chosen by `seed`; `at_call` is called before each call to the disk.
-void live(History& history, uint64_t seed, uint32_t operations);
+// A whole life, chosen by `seed`; with faults, the disk fails now and then.
+void live(History& history, uint64_t seed, uint32_t operations, bool faults = false);
 
 }  // namespace history

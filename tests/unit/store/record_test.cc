@@ -25,7 +25,7 @@ TEST(Record, IsWhatWasWritten) {
   EXPECT_EQ(record.sequence, 7u);
   EXPECT_EQ(record.payload, base::Bytes(700, 3));
   EXPECT_EQ(read_record(disk, "r", RecordKind::kImage).state, RecordState::kDamaged);
-  EXPECT_EQ(read_record(disk, "other", kKind).state, RecordState::kUnreadable);
+  EXPECT_EQ(read_record(disk, "other", kKind).state, RecordState::kEmpty) << "never written";
 }
 
 TEST(Record, OfTwoPartsIsWhatWasWritten) {
@@ -118,21 +118,92 @@ TEST(Copies, TheNewestIsNeverWrittenOver) {
   EXPECT_EQ(again.take_payload(*again.newest([](size_t) { return true; })), base::Bytes{5});
 }
 
-TEST(Copies, ADeadCopyIsLeftAlone) {
+// Counts the calls of that name, and lets those fail.
+void fail_calls(sim::SimStorage& disk, std::string_view name, int& calls) {
+  disk.fails = [name, &calls](std::string_view call) {
+    if (call != name) return sim::Failure::kNone;
+    ++calls;
+    return sim::Failure::kError;
+  };
+}
+
+// A sync that has failed once says "done" the next time, for a file that does not hold what was
+// written: so the same file is not written, not even when the disk is well.
+TEST(Copies, ADeadCopyIsWrittenInANewFileOnly) {
   sim::SimStorage disk;
   Copies copies(disk, kKind, {"a", "b"});
   copies.recover(10);
   ASSERT_TRUE(copies.write(0, base::Bytes{1}).ok());
-  disk.fails = [](std::string_view call) {
-    return call == "sync" ? sim::Failure::kError : sim::Failure::kNone;
-  };
+  int syncs = 0;
+  fail_calls(disk, "sync", syncs);
   EXPECT_EQ(copies.write(1, base::Bytes{2}).error().refusal, base::Refusal::kStorageFailed);
-  int calls = 0;
-  disk.before_call = [&] { ++calls; };
+  EXPECT_EQ(syncs, 1);
+  int renames = 0;
+  fail_calls(disk, "rename", renames);
   EXPECT_EQ(copies.write(1, base::Bytes{3}).error().refusal, base::Refusal::kStorageFailed);
-  EXPECT_EQ(calls, 0) << "a failed copy is tried again";
-  EXPECT_FALSE(copies.victim([](size_t) { return false; })) << "only the newest is left";
+  EXPECT_EQ(renames, 1) << "it was written in place";
   EXPECT_NE(copies.complaint(), "");
+  EXPECT_EQ(copies.victim([](size_t) { return false; }), 1u);
+  disk.fails = nullptr;
+  ASSERT_TRUE(copies.write(1, base::Bytes{4}).ok());
+  EXPECT_EQ(copies.complaint(), "");
+  Copies again(disk, kKind, {"a", "b"});
+  again.recover(10);
+  EXPECT_EQ(again.newest([](size_t) { return true; }), 1u);
+  EXPECT_EQ(again.take_payload(1), base::Bytes{4});
+}
+
+// What reads see behind a sync that has failed is not what the disk holds: nor for the process that
+// comes next.
+TEST(Copies, WhatASyncHasLostIsNotFoundByTheNextProcess) {
+  sim::SimStorage disk;
+  Copies copies(disk, kKind, {"a", "b"});
+  copies.recover(10);
+  ASSERT_TRUE(copies.write(0, base::Bytes{1}).ok());
+  int syncs = 0;
+  fail_calls(disk, "sync", syncs);
+  ASSERT_FALSE(copies.write(1, base::Bytes{2}).ok());
+  EXPECT_EQ(read_record(disk, "b", kKind).state, RecordState::kValid) << "as a system shows it";
+  sim::SimStorage later = disk.after_kill();
+  Copies next(later, kKind, {"a", "b"});
+  next.recover(10);
+  EXPECT_EQ(next.newest([](size_t) { return true; }), 0u);
+}
+
+// Its number may be higher than those that can be read; it must not come back as the newest.
+TEST(Copies, WhatIsWrittenBesideOneThatCannotBeReadIsNewer) {
+  sim::SimStorage disk;
+  Copies copies(disk, kKind, {"a", "b", "c"});
+  copies.recover(10);
+  for (uint8_t i = 0; i < 6; ++i) ASSERT_TRUE(copies.write(i < 2 ? i : 2u, base::Bytes{i}).ok());
+  int reads = 0;  // of each copy its header and its payload, in their order
+  disk.fails = [&](std::string_view call) {
+    reads += call == "read" ? 1 : 0;
+    return call == "read" && reads == 5 ? sim::Failure::kError : sim::Failure::kNone;
+  };
+  Copies half(disk, kKind, {"a", "b", "c"});
+  half.recover(10);
+  disk.fails = nullptr;
+  ASSERT_EQ(half[2].record.state, RecordState::kUnreadable);
+  ASSERT_TRUE(half.write(0, base::Bytes{9}).ok());
+  Copies whole(disk, kKind, {"a", "b", "c"});
+  whole.recover(10);
+  EXPECT_EQ(whole.newest([](size_t) { return true; }), 0u);
+}
+
+TEST(Copies, ACopyWhoseFileIsGoneIsDeadAndComesBack) {
+  sim::SimStorage disk;
+  Copies copies(disk, kKind, {"a", "b"});
+  copies.recover(10);
+  ASSERT_TRUE(copies.write(0, base::Bytes{1}).ok());
+  disk.remove("a");
+  copies.check();
+  EXPECT_FALSE(copies.valid(0));
+  EXPECT_NE(copies.complaint().find("removed"), std::string::npos);
+  ASSERT_TRUE(copies.renew(0).ok());
+  EXPECT_EQ(copies.complaint(), "");
+  disk.remove("a");
+  EXPECT_FALSE(copies.write(0, base::Bytes{2}).ok()) << "durable, where nobody finds it";
 }
 
 TEST(Journal, EntriesComeBackOldestFirstAndTheRingGoesRound) {
@@ -183,13 +254,38 @@ TEST(Journal, OneThatCannotBeReadIsNotWritten) {
   Journal first(disk, "j", 4);
   first.recover();
   ASSERT_TRUE(first.add({}).ok());
-  disk.fails = [](std::string_view call) {
-    return call == "read" ? sim::Failure::kError : sim::Failure::kNone;
-  };
+  int reads = 0;
+  fail_calls(disk, "read", reads);
   Journal journal(disk, "j", 4);
   journal.recover();
+  disk.fails = nullptr;
   EXPECT_NE(journal.complaint(), "");
   EXPECT_FALSE(journal.add({}).ok());
+  EXPECT_FALSE(journal.renew().ok());
+  EXPECT_EQ(read_journal(disk, "j")->size(), 1u);
+  disk.remove("j");
+  journal.check();
+  EXPECT_TRUE(journal.renew().ok()) << "there is nothing left to lose";
+}
+
+TEST(Journal, WhatCouldNotBeWrittenIsThereWhenTheDiskIsWell) {
+  sim::SimStorage disk;
+  Journal journal(disk, "j", 4);
+  journal.recover();
+  JournalEntry entry;
+  for (entry.cycle = 1; entry.cycle <= 3; ++entry.cycle) ASSERT_TRUE(journal.add(entry).ok());
+  int syncs = 0;
+  fail_calls(disk, "sync", syncs);
+  for (; entry.cycle <= 6; ++entry.cycle) EXPECT_FALSE(journal.add(entry).ok());
+  EXPECT_FALSE(journal.renew().ok());
+  EXPECT_EQ(journal.entries().back().cycle, 6u) << "shown meanwhile";
+  disk.fails = nullptr;
+  EXPECT_TRUE(journal.renew().ok());
+  EXPECT_EQ(journal.complaint(), "");
+  EXPECT_TRUE(journal.add(entry).ok());
+  const std::vector<JournalEntry> entries = *read_journal(disk, "j");
+  ASSERT_EQ(entries.size(), 4u);
+  for (size_t i = 0; i < 4; ++i) EXPECT_EQ(entries[i].cycle, 4 + i);
 }
 
 TEST(Journal, CutsTextsBetweenCharacters) {

@@ -157,6 +157,12 @@ class Deadly : public vm::Storage {
     end_if_now();
     return files_.sync(name);
   }
+  base::Status replace(std::string_view name, uint64_t size,
+                       std::span<const Piece> pieces) override {
+    end_if_now();
+    return files_.replace(name, size, pieces);
+  }
+  base::Status check(std::string_view name) override { return files_.check(name); }
 
  private:
   void end_if_now() {
@@ -256,6 +262,99 @@ TEST(Service, case56_AChangeThatCannotBeStoredIsRefused) {
       EXPECT_EQ(found(later, {nullptr, {1}, {3}}), "") << name << " " << number;
     }
   }
+}
+
+// The disk fails from some call on, for a while in which people go on trying, and is well again:
+// then everything works as before, without a restart.
+TEST(Service, X5_case56_BehindAFaultOfTheDiskChangesArePossibleAgain) {
+  for (int first = 0; first < 60; ++first) {
+    sim::SimStorage disk;
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot(source(1)).ok());
+    ASSERT_TRUE(set_and_save(plc, 3));
+    int calls = 0;
+    disk.fails = [&](std::string_view call) {
+      return call != "read" && calls++ >= first ? sim::Failure::kError : sim::Failure::kNone;
+    };
+    (void)plc.change(source(2)).ok();
+    (void)plc.save().ok();
+    (void)plc.accept().ok();
+    (void)plc.change(source(3)).ok();
+    (void)plc.undo().ok();
+    (void)plc.change(source(3)).ok();
+    disk.fails = nullptr;
+    if (plc.status().change == "trial") {
+      EXPECT_TRUE(plc.undo().ok());
+    }
+    const int next = version_of(plc) == 2 ? 3 : 2;
+    const base::Status changed = plc.change(source(next));
+    ASSERT_TRUE(changed.ok()) << first << ": " << base::to_string(changed.error());
+    ASSERT_TRUE(plc.accept().ok()) << first;
+    ASSERT_TRUE(set_and_save(plc, 8)) << first;
+    EXPECT_TRUE(plc.store().renew().ok());
+    EXPECT_TRUE(plc.status().alarms.empty()) << plc.status().alarms.front();
+    sim::SimStorage later = disk.after_cut(sim::SimStorage::Choice(disk.dirty().size(), 0));
+    EXPECT_EQ(found(later, {nullptr, {next}, {8}}), "") << first;
+  }
+}
+
+TEST(Service, TheStateOfTheRetainedValuesIsAnAlarmOfStatus) {
+  sim::SimStorage disk;
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot(source(1)).ok());
+  disk.fails = [](std::string_view) { return sim::Failure::kError; };
+  EXPECT_FALSE(plc.save().ok());
+  const std::vector<std::string> alarms = plc.status().alarms;
+  ASSERT_FALSE(alarms.empty());
+  EXPECT_EQ(alarms.front().find("retained values are not being saved since 1970-01-01T"), 0u)
+      << alarms.front();
+  disk.fails = nullptr;
+  EXPECT_TRUE(plc.save().ok());
+  EXPECT_TRUE(plc.store().renew().ok());
+  EXPECT_TRUE(plc.status().alarms.empty()) << plc.status().alarms.front();
+}
+
+// Whatever file is removed while a change is on trial: an accept is refused, or what it promises
+// holds.
+TEST(Service, AnAcceptWhoseFilesAreGoneIsRefusedOrHolds) {
+  sim::SimStorage all;
+  Plc first(all);
+  ASSERT_TRUE(first.boot(source(1)).ok());
+  const std::vector<std::string> names = all.names();
+  for (size_t removed = 1; removed < size_t{1} << names.size(); ++removed) {
+    sim::SimStorage disk;
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot(source(1)).ok());
+    ASSERT_TRUE(set_and_save(plc, 3));
+    ASSERT_TRUE(plc.change(source(2)).ok());
+    ASSERT_TRUE(set_and_save(plc, 4));
+    for (size_t i = 0; i < names.size(); ++i) {
+      if ((removed >> i & 1) != 0) disk.remove(names[i]);
+    }
+    base::Status accepted = plc.accept();
+    if (!accepted.ok()) accepted = plc.accept();
+    ASSERT_TRUE(accepted.ok()) << removed << ": " << base::to_string(accepted.error());
+    sim::SimStorage later = disk.after_cut(sim::SimStorage::Choice(disk.dirty().size(), 0));
+    EXPECT_EQ(found(later, {nullptr, {2}, {4}}), "") << removed;
+  }
+}
+
+// The folder itself is gone: no file comes back.
+TEST(Service, AnAcceptWithoutAFolderIsRefused) {
+  sim::SimStorage disk;
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot(source(1)).ok());
+  ASSERT_TRUE(plc.change(source(2)).ok());
+  for (const std::string& name : disk.names()) disk.remove(name);
+  disk.fails = [](std::string_view) { return sim::Failure::kError; };
+  for (int i = 0; i < 3; ++i) {
+    const base::Status accepted = plc.accept();
+    ASSERT_FALSE(accepted.ok());
+    EXPECT_EQ(accepted.error().refusal, base::Refusal::kStorageFailed);
+  }
+  EXPECT_EQ(plc.status().change, "trial");
+  EXPECT_FALSE(plc.status().alarms.empty());
+  EXPECT_TRUE(plc.undo().ok());
 }
 
 TEST(Service, case56_AnAcceptThatCannotBeStoredLeavesTheTrial) {
