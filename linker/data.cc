@@ -38,7 +38,10 @@ void add_runs(uint32_t offset, const base::Bytes& bytes, std::vector<ir::DataRun
 class DataTables {
  public:
   DataTables(ir::Image& image, const std::vector<InstanceNode>& nodes)
-      : image_(image), nodes_(nodes), initial_(image.types, image.constants, image.layouts) {}
+      : image_(image),
+        nodes_(nodes),
+        initial_(image.types, image.constants, image.layouts),
+        slots_(image.types.size(), Slots::kUnknown) {}
 
   void run() {
     std::vector<std::vector<uint32_t>> children(nodes_.size());
@@ -109,7 +112,14 @@ class DataTables {
     }
   }
 
-  bool holds_slots(ir::TypeId id, uint32_t depth) const {
+  enum class Slots : uint8_t { kUnknown, kNone, kSome };
+
+  bool holds_slots(ir::TypeId id, uint32_t depth) {
+    Slots& known = slots_[id.index];
+    if (known == Slots::kUnknown) known = finds_slots(id, depth) ? Slots::kSome : Slots::kNone;
+    return known == Slots::kSome;
+  }
+  bool finds_slots(ir::TypeId id, uint32_t depth) {
     const ir::Type& type = image_.types[id];
     if (image_.types.is_instance(id) || depth > 200) return true;
     if (type.kind == ir::Kind::kArray) return holds_slots(type.base, depth + 1);
@@ -148,6 +158,7 @@ class DataTables {
   ir::Image& image_;
   const std::vector<InstanceNode>& nodes_;
   InitialValues initial_;
+  std::vector<Slots> slots_;  // by type
 };
 
 }  // namespace

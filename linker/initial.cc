@@ -26,6 +26,24 @@ void write_string(const std::string& text, size_t unit_bytes, std::span<uint8_t>
 
 }  // namespace
 
+bool InitialValues::find_default(TypeId id) {
+  if (defaults_[id.index] != Default::kUnknown) return defaults_[id.index] == Default::kZero;
+  const Type& type = types_[id];
+  bool zero = !type.init.valid();
+  defaults_[id.index] = Default::kOther;  // in a circle, which is no type
+  const bool has_base =
+      type.kind == Kind::kArray || type.kind == Kind::kEnum || type.kind == Kind::kSubrange;
+  if (zero && has_base) zero = find_default(type.base);
+  if (ir::is_structure(type.kind)) {
+    zero = zero && std::all_of(type.members.begin(), type.members.end(), [&](const auto& member) {
+             return !member.init.valid() && find_default(member.type);
+           });
+  }
+  if (types_.is_instance(id)) zero = true;
+  defaults_[id.index] = zero ? Default::kZero : Default::kOther;
+  return zero;
+}
+
 void InitialValues::write_value(TypeId type, ConstId value, std::span<uint8_t> out) const {
   write(type, value, out, 0);
 }
@@ -56,6 +74,7 @@ ConstId InitialValues::element_value(TypeId type, ConstId value, uint64_t flat) 
 }
 
 void InitialValues::write(TypeId id, ConstId value, std::span<uint8_t> out, uint32_t depth) const {
+  if (!value.valid() && defaults_[id.index] == Default::kZero) return;
   const Type& type = types_[id];
   if (depth > kMaxDepth || types_.is_instance(id)) return;
   if (ir::is_structure(type.kind)) return write_members(id, value, out, depth);

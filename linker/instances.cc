@@ -1,5 +1,6 @@
 #include "linker/instances.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "base/limits.h"
@@ -216,6 +217,7 @@ base::Result<std::vector<ir::Instance>> number_instances(const ir::Program& prog
       if (!base->instances[id].live) unused.push_back(id);
     }
   }
+  rows.reserve(std::max(rows.size(), nodes.size()));
   size_t next_unused = 0;
   for (size_t i = 1; i < nodes.size(); ++i) {
     InstanceNode& node = nodes[i];

@@ -217,6 +217,7 @@ ExprId Parser::error_expression() {
 }
 
 ExprId Parser::add_expression(const Expr& expr) {
+  make_room_for_one(tree_.exprs);
   uint32_t below = height_below(expr);
   if (below >= base::kMaxExpressionHeight) {
     report(Code::kTooComplex, expr.span,

@@ -7,6 +7,7 @@
 // clear how to go on. Depth is counted by Nesting; every loop takes a token or ends.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -234,6 +235,17 @@ class Parser {
   bool at_reference() const;
   SpecId parse_reference(SpecKind reference);
   SpecId add_spec(Spec spec);
+  // A long list takes room for the rest of the file, as if that went on like this: doubling it
+  // would hold up to three times what it needs.
+  template <class T>
+  void make_room_for_one(std::vector<T>& list) const {
+    constexpr size_t kLong = 1 << 16;
+    if (list.size() < list.capacity() || list.size() < kLong) return;
+    const auto read = static_cast<size_t>(current_ - first_ + 1);
+    const auto left = static_cast<size_t>(last_ - current_);
+    const size_t more = list.size() * (left + left / 16) / read;
+    list.reserve(list.size() + std::clamp(more, list.size() / 8, list.size()));
+  }
   SpecId error_spec(base::SourcePos begin);
 
   // --- aggregates.cc

@@ -71,6 +71,7 @@ void Parser::parse_type(Range32 attributes) {
 }
 
 SpecId Parser::add_spec(Spec spec) {
+  make_room_for_one(tree_.specs);
   tree_.specs.push_back(std::move(spec));
   return SpecId(static_cast<uint32_t>(tree_.specs.size() - 1));
 }

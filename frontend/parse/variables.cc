@@ -168,6 +168,7 @@ void Parser::parse_variable_declaration() {
   decl.edge = parse_edge();
   parse_default(decl.init, &decl.binds);
   decl.span = span_from(begin);
+  make_room_for_one(var_stack_);
   var_stack_.push_back(std::move(decl));
   finish_declaration("declaration");
 }

@@ -1,12 +1,48 @@
 // Variables at addresses (AT %QW4) and addresses in code (%QW4).
 #include <algorithm>
 #include <tuple>
+#include <unordered_set>
 
 #include "frontend/sema/sema.h"
 #include "ir/types/location.h"
 #include "ir/types/natural_layout.h"
 
 namespace frontend {
+namespace {
+
+ir::TypeId element_of(const ir::TypeTable& types, ir::TypeId type) {
+  while (types[type].kind == ir::Kind::kArray) type = types[type].base;
+  return type;
+}
+
+// Is there a member like that in a structure, at any depth? Looks at each type once: of thirty that
+// hold the one before twice, the last has a billion parts.
+template <class Test>
+bool any_member(const ir::TypeTable& types, ir::TypeId structure, Test test) {
+  std::vector<ir::TypeId> open{element_of(types, structure)};
+  std::unordered_set<ir::TypeId> seen;
+  while (!open.empty()) {
+    const ir::TypeId type = open.back();
+    open.pop_back();
+    if (!ir::is_structure(types[type].kind) || !seen.insert(type).second) continue;
+    for (const ir::Member& member : types[type].members) {
+      if (test(member)) return true;
+      open.push_back(element_of(types, member.type));
+    }
+  }
+  return false;
+}
+
+// Where `direct_members_` has what lies at an address: no name begins like this.
+std::string address_key(const ir::DirectAddress& address, ir::TypeId type) {
+  return "@" + std::to_string(static_cast<int>(address.area)) + "." +
+         std::to_string(address.bit_offset) + "." + std::to_string(address.bit_size) + "." +
+         std::to_string(type.index);
+}
+// How many of the globals have their key.
+constexpr const char* kKeyCount = "@";
+
+}  // namespace
 
 // 0: an address with another size than the type's, whatever that is, is none of its own.
 uint32_t Sema::address_bits(ir::TypeId type) const {
@@ -16,11 +52,10 @@ uint32_t Sema::address_bits(ir::TypeId type) const {
 }
 
 bool Sema::holds_instance(ir::TypeId type) const {
-  while (program.types[type].kind == ir::Kind::kArray) type = program.types[type].base;
-  if (!ir::is_structure(program.types[type].kind)) return program.types.is_instance(type);
-  const std::vector<ir::Member>& members = program.types[type].members;
-  return std::any_of(members.begin(), members.end(),
-                     [this](const ir::Member& member) { return holds_instance(member.type); });
+  const ir::TypeTable& types = program.types;
+  const auto is_one = [&](ir::TypeId at) { return types.is_instance(element_of(types, at)); };
+  return is_one(type) ||
+         any_member(types, type, [&](const ir::Member& member) { return is_one(member.type); });
 }
 
 // Why a variable of this type cannot be there; empty: it can. An open address (`%I*`) may leave
@@ -70,11 +105,8 @@ bool Sema::check_field_address(const VarDecl& field, ir::TypeId type) {
 }
 
 bool Sema::holds_input(ir::TypeId type) const {
-  while (program.types[type].kind == ir::Kind::kArray) type = program.types[type].base;
-  if (!ir::is_structure(program.types[type].kind)) return false;
-  const std::vector<ir::Member>& members = program.types[type].members;
-  return std::any_of(members.begin(), members.end(), [this](const ir::Member& member) {
-    return member.address.area == ir::DirectArea::kInput || holds_input(member.type);
+  return any_member(program.types, type, [](const ir::Member& member) {
+    return member.address.area == ir::DirectArea::kInput;
   });
 }
 
@@ -143,14 +175,17 @@ uint32_t Sema::direct_member(const Expr& expr) {
     return known->second;
   }
   ir::Type& globals = program.types.edit(program.globals);
-  const ir::DirectAddress address = tree.directs[expr.number].address;
-  ir::TypeId type = type_of_direct(address);
-  uint32_t index = 0;
-  while (index < globals.members.size() &&
-         !(globals.members[index].address == address && globals.members[index].type == type)) {
-    ++index;
+  uint32_t& keys = direct_members_[kKeyCount];
+  for (; keys < globals.members.size(); ++keys) {
+    const ir::Member& member = globals.members[keys];
+    const bool located = member.address.area != ir::DirectArea::kNone;
+    if (located) direct_members_.emplace(address_key(member.address, member.type), keys);
   }
-  if (index == globals.members.size()) {
+  const ir::DirectAddress address = tree.directs[expr.number].address;
+  const ir::TypeId type = type_of_direct(address);
+  const auto size = static_cast<uint32_t>(globals.members.size());
+  const uint32_t index = direct_members_.emplace(address_key(address, type), size).first->second;
+  if (index == size) {
     ir::Member member;
     member.name = expr.name.text;
     member.type = type;

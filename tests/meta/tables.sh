@@ -25,7 +25,7 @@ pairs() { sed -n "s/^$1(\([A-Za-z0-9_]*\), *\"\([^\"]*\)\".*/\1 \2/p" "$2"; }
 pairs DIAGNOSTIC base/diagnostics.def >"$corpus.rows"
 pairs REFUSAL base/refusals.def >>"$corpus.rows"
 pairs TRAP ir/program/traps.def >>"$corpus.rows"
-sed -n 's/^LIMIT(\([A-Za-z0-9_]*\),.*/\1/p' base/limits.def >>"$corpus.rows"
+sed -n 's/^LIMIT(\([A-Za-z0-9_]*\),.*/\1/p' base/limits.def base/tool_limits.def >>"$corpus.rows"
 sed -n 's/^NATIVE(\([A-Za-z0-9_]*\), *"\([^"]*\)".*/\1 \2/p' stdlib/native/natives.def >>"$corpus.rows"
 while read -r name other; do row "$name" "$other"; done <"$corpus.rows"
 rm -f "$corpus.rows"

@@ -9,6 +9,7 @@
 #include "linker/link.h"
 #include "tools/common/files.h"
 #include "tools/stc/importer.h"
+#include "tools/stc/memory_budget.h"
 
 namespace stc {
 
@@ -154,6 +155,7 @@ base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics&
 base::Result<Version> read_image(const std::string& path) {
   base::Result<base::Bytes> bytes = tools::read_bytes(path);
   if (!bytes.ok()) return bytes.error();
+  expect_input(bytes->size());
   base::Result<ir::Image> image = ir::decode(*bytes);
   if (!image.ok()) {
     return base::Error{image.error().refusal, path + ": " + image.error().text};

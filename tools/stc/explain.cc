@@ -35,6 +35,7 @@ std::string limits_page() {
   tools::Table table({"> limit", "what", "name"});
 #define LIMIT(id, value, what) table.row({std::to_string(static_cast<uint64_t>(value)), what, #id});
 #include "base/limits.def"
+#include "base/tool_limits.def"
 #undef LIMIT
   return fitted(table);
 }

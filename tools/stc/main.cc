@@ -2,6 +2,7 @@
 #include "frontend/dialect.h"
 #include "tools/common/heap.h"
 #include "tools/stc/commands.h"
+#include "tools/stc/memory_budget.h"
 
 namespace {
 
@@ -22,6 +23,7 @@ std::string dialects() {
 
 int main(int argc, char** argv) {
   tools::keep_freed_memory();
+  stc::limit_memory();
   const tools::Entry* const entries[] = {&stc::kCheck, &stc::kBuild,   &stc::kTest,   &stc::kFormat,
                                          &stc::kDiff,  &stc::kPackage, &stc::kImport, &stc::kExport,
                                          &stc::kDraw,  &stc::kDump,    &stc::kExplain};

@@ -11,6 +11,7 @@
 #include "tools/stc/device_tables.h"
 #include "tools/stc/format_settings.h"
 #include "tools/stc/importer.h"
+#include "tools/stc/memory_budget.h"
 
 namespace stc {
 namespace {
@@ -148,6 +149,7 @@ std::string project_name(const std::string& path) {
 
 base::Status count_bytes(uint64_t& bytes, const std::string& file, const std::string& text) {
   bytes += text.size();
+  expect_input(bytes);
   if (bytes <= base::kMaxSourceBytes) return base::Ok{};
   return base::Error{base::Refusal::kTooMany, file + ": the sources are larger than " +
                                                   std::to_string(base::kMaxSourceBytes) +

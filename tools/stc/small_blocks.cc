@@ -3,7 +3,9 @@
 // that is a quarter less time for a build than with the C library's heap. Large blocks are runs of
 // whole spans; what a phase frees of them, the next one takes, be it for large blocks or small
 // ones. What is in between, and everything when the range of addresses cannot be had, comes from
-// malloc. Left out of builds with sanitizers, which want to see every block (CMakeLists.txt).
+// malloc. All of it counts towards the budget (memory_budget.h). Left out of builds with
+// sanitizers, which want to see every block (CMakeLists.txt).
+#include <malloc.h>
 #include <sys/mman.h>
 
 #include <array>
@@ -14,6 +16,8 @@
 #include <mutex>
 #include <new>
 
+#include "tools/stc/memory_budget.h"
+
 namespace {
 
 constexpr size_t kRange = size_t{16} << 30;  // of addresses; memory only where blocks are
@@ -22,6 +26,7 @@ constexpr size_t kFine = 1024;  // up to here a size every 16 bytes, then 4 per 
 constexpr size_t kLargest = 16 << 10;
 constexpr size_t kSizes = kFine / 16 + 1 + 4 * 4;
 constexpr size_t kLeastRun = 128 << 10;  // larger blocks are runs of spans
+constexpr size_t kReturned = 32 << 20;   // tools::keep_freed_memory
 
 constexpr size_t number_of(size_t size) {
   if (size <= kFine) return (size + 15) / 16;
@@ -84,9 +89,24 @@ constinit std::array<uint32_t, 20> free_runs{};   // by bit width of the length:
 constinit thread_local Lists* lists = nullptr;
 
 void* from_malloc(size_t size) {
-  void* block = std::malloc(size == 0 ? 1 : size);
-  if (block == nullptr) std::__throw_bad_alloc();
-  return block;
+  for (;;) {
+    if (stc::take_memory(size)) {
+      if (void* block = std::malloc(size == 0 ? 1 : size)) {
+        const size_t usable = ::malloc_usable_size(block);  // what is given back
+        if (usable > size) stc::count_memory(usable - size);
+        return block;
+      }
+      stc::give_memory(size);
+    }
+    const std::new_handler handler = std::get_new_handler();
+    if (handler == nullptr) std::__throw_bad_alloc();
+    handler();
+  }
+}
+
+void to_malloc(void* block) {
+  if (block != nullptr) stc::give_memory(::malloc_usable_size(block));
+  std::free(block);
 }
 
 struct Leave {
@@ -169,7 +189,7 @@ size_t take_run(size_t length) {
     if (found > length) put_free(span + length, found - length);
     return span;
   }
-  if (kSpans - range.spans < length) return kNoSpan;
+  if (kSpans - range.spans < length || !stc::take_memory(length * kSpan)) return kNoSpan;
   range.spans += length;
   return range.spans - length;
 }
@@ -203,7 +223,9 @@ uintptr_t new_span(size_t number) {
 }
 
 [[gnu::noinline]] void* large_block(size_t size) {
-  if (size >= kRange) return from_malloc(size);
+  // What the C library maps for one block goes back to the system when it is freed.
+  const bool returned = size >= kReturned && stc::is_memory_scarce(size);
+  if (size >= kRange || returned) return from_malloc(size);
   const std::lock_guard lock(range.mutex);
   const size_t length = (size + kSpan - 1) / kSpan;
   const size_t span = take_run(length);
@@ -255,7 +277,7 @@ void* operator new(size_t size) {
 void operator delete(void* memory) noexcept {
   const uintptr_t begin = range_begin.load(std::memory_order_relaxed);
   const uintptr_t at = reinterpret_cast<uintptr_t>(memory) - begin;
-  if (begin == 0 || at >= kRange) return std::free(memory);
+  if (begin == 0 || at >= kRange) return to_malloc(memory);
   const size_t number = numbers[at / kSpan];
   if (number == kLargeBlock || lists == nullptr) return seldom_freed(memory, number);
   lists->freed[number] = ::new (memory) FreeBlock{lists->freed[number]};
