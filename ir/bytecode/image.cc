@@ -23,7 +23,6 @@ constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 
 constexpr const char* kSectionNames[] = {"program", "types",  "constants", "layouts", "pous",
                                          "code",    "tables", "data",      "devices"};
-constexpr uint32_t kSectionCount = 9;
 constexpr size_t kBytesForThreads = 1 << 20;  // below, threads cost more than they save
 
 base::Error bad_format(std::string text) {
@@ -94,12 +93,12 @@ std::string name_of(uint32_t section) {
   return std::string("section `") + kSectionNames[section] + "`";
 }
 
-using Contents = std::array<base::ByteSpan, kSectionCount>;
+using Contents = std::array<base::ByteSpan, kImageSectionCount>;
 
 // What they are, and the error of the first that is not there.
 base::Status split(base::ByteSpan bytes, Contents& contents, uint32_t& count) {
   base::ByteReader in(bytes.subspan(kHeaderBytes));
-  for (count = 0; count < kSectionCount; ++count) {
+  for (count = 0; count < kImageSectionCount; ++count) {
     if (in.u32() != count) return bad_format(name_of(count) + " is missing");
     contents[count] = in.blob();
     if (in.failed()) return bad_format(name_of(count) + " is cut off");
@@ -154,7 +153,7 @@ WrittenImage encode(const Image& image, const KnownImage* known) {
   out(kVersion);
   out(0u);
   out.raw(base::Digest{});
-  for (uint32_t number = 0; number < kSectionCount; ++number) {
+  for (uint32_t number = 0; number < kImageSectionCount; ++number) {
     out(number);
     const size_t length_at = out.size();
     out(0u);

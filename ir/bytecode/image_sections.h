@@ -19,6 +19,7 @@ enum class ImageSection : uint8_t {
   kData,
   kDevices
 };
+inline constexpr uint32_t kImageSectionCount = 9;
 // Its content; empty when the image is cut off before its end.
 base::ByteSpan section_of(base::ByteSpan encoded, ImageSection section);
 // What digest() is the SHA-256 of in a sound image; empty when there is not even a header.

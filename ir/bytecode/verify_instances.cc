@@ -59,9 +59,9 @@ class InstancesVerifier {
   base::Status check_row(uint32_t id) const {
     const Instance& row = image_.instances[id];
     if (!image_.types.knows(row.old_name)) return bad(id, "has an old name that is nowhere");
-    if (!is_live(id)) return base::Ok{};
+    if (!is_live(id)) return check_free(id);
     if (id == 0) {
-      const bool root = row.live && row.parent == 0 && row.pou == 0 && row.name.empty();
+      const bool root = row.live && row.parent == 0 && row.pou == 0;
       if (!root) return bad(id, "is not the root of all others");
     } else {
       if (!image_.types.is_instance(row.type)) return bad(id, "has no instance type");
@@ -83,6 +83,14 @@ class InstancesVerifier {
       return bad(id, "area at " + std::to_string(row.data) + " is not aligned to 8");
     }
     return base::Ok{};
+  }
+
+  // Nobody looks at the row of a free ID, or all find the same: no area, no code, no parent.
+  base::Status check_free(uint32_t id) const {
+    const Instance& row = image_.instances[id];
+    const bool empty = row.type == image_.globals && row.data == 0 && row.pou == 0 &&
+                       row.parent == 0;
+    return empty ? base::Status(base::Ok{}) : bad(id, "is free and has a type or an area");
   }
 
   struct Area {

@@ -207,10 +207,14 @@ class TypesVerifier {
       return bad(i, std::to_string(type.members.size()) + " members, but " +
                         std::to_string(layout.member_offsets.size()) + " offsets");
     }
-    const uint32_t limit = is_area(type.kind) ? layout.area_capacity : layout.size;
-    if (limit > (is_area(type.kind) ? base::kMaxDataBytes : base::kMaxTypeBytes)) {
+    const uint32_t room = is_area(type.kind) ? layout.area_capacity : layout.size;
+    if (room > (is_area(type.kind) ? base::kMaxDataBytes : base::kMaxTypeBytes)) {
       return bad(i, "is too large");
     }
+    if (layout.used > room) {
+      return bad(i, "uses " + std::to_string(layout.used) + " bytes of " + std::to_string(room));
+    }
+    const uint32_t limit = is_area(type.kind) ? layout.used : room;
     if (is_area(type.kind) && type.kind != Kind::kGlobals && layout.size != 4) {
       return bad(i, "its slot takes " + std::to_string(layout.size) + " bytes, not 4");
     }
@@ -235,8 +239,11 @@ class TypesVerifier {
           facts_[member.type.index].has_slots) {
         return bad(i, "member `" + member.name + "` overlaps others and holds an instance");
       }
-      if (uint64_t{image_.layouts->of[i].member_offsets[m]} + image_.layouts[member.type].size >
-          limit) {
+      const uint32_t at = image_.layouts->of[i].member_offsets[m];
+      if (at != member.address.bit_offset / 8) {
+        return bad(i, "member `" + member.name + "` does not lie where its address says");
+      }
+      if (uint64_t{at} + image_.layouts[member.type].size > limit) {
         return bad(i, "member `" + member.name + "` ends behind its end");
       }
     }

@@ -265,7 +265,9 @@ void TypeDiffer::add_member(TypeDiff& diff, const Member& old_member, uint32_t f
   const TypeDiff& inner = value(old_member.type, new_member.type);
   bool becomes_constant = new_member.constant && !(old_member.constant && inner.same);
   bool was_initialised = back_ && old_member.constant && !(new_member.constant && inner.same);
-  if (becomes_constant || was_initialised) {
+  // Of an instance it is the slot, and of a stamp nobody asks: these have no row.
+  const bool has_row = !new_is_instance && new_member.section != Section::kStamp;
+  if (has_row && (becomes_constant || was_initialised)) {
     add_new_member(diff, new_member, to, "constant");
     diff.rows.back().old_type = old_.types.text(old_member.type);
     return;

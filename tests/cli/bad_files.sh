@@ -44,6 +44,25 @@ said 'R0'
 expect 7 stvm run missing.img --virtual-time --scans 1
 said 'R0501'
 
+# Tampered with and hashed anew: what comes behind the name and a number is the size of data memory.
+cp good.img evil.img
+name=$(od -An -tu4 -j56 -N4 good.img | tr -d ' ')
+env printf '\x00\x00\x00\x00' | dd of=evil.img bs=1 seek=$((64 + name)) conv=notrunc 2>/dev/null
+sum=$(tail -c +49 evil.img | sha256sum | cut -c1-64 | sed 's/../\\x&/g')
+env printf "$sum" | dd of=evil.img bs=1 seek=16 conv=notrunc 2>/dev/null
+cmp -s good.img evil.img && fail "nothing was changed"
+expect 7 stvm run evil.img --virtual-time --scans 1
+said 'R0113'
+expect 7 stc dump evil.img
+said 'R0113.*evil.img'
+expect 7 stc diff good.img evil.img
+said 'R0113'
+expect 7 stc diff evil.img good.img
+expect 7 stc build good.st --base evil.img -o x.img
+said 'R0113'
+expect 7 stc package good.st --base evil.img -o x.pkg
+said 'R0113'
+
 printf 'name = 5\n' >empty/stc.toml
 printf 'PROGRAM Main END_PROGRAM\n' >empty/a.st
 expect 7 stc check empty

@@ -8,21 +8,14 @@
 #include <sys/mman.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <optional>
-#include <string>
 
 #include "base/check.h"
 #include "base/hash.h"
-#include "frontend/compile.h"
 #include "ir/bytecode/symbols.h"
-#include "ir/lower/lower.h"
-#include "linker/link.h"
 #include "online_change/apply/change.h"
 #include "tests/fuzz/image_changes.h"
+#include "tests/fuzz/versions.h"
 #include "vm/runtime/clocks.h"
 #include "vm/runtime/controller.h"
 #include "vm/runtime/io.h"
@@ -32,57 +25,11 @@ namespace {
 using namespace online_change;
 using fuzz::alter;
 using fuzz::pick;
+using fuzz::Versions;
 
 constexpr size_t kStep = 7;
 constexpr size_t kMostSteps = 8;
 constexpr uint64_t kMostData = uint64_t{16} << 20;  // of versions that declare more none is run
-constexpr const char* kPairs[] = {
-    "migration",     "migration_of_structure",   "references_moved",   "renamed_steps",
-    "undo_restores", "renamed_out_of_structure", "scalar_conversions", "array_by_index",
-    "objects",       "subrange_enum_string",     "union_structure",    "bools_become_clean"};
-
-// --- versions ---------------------------------------------------------------------
-
-ir::VerifiedImage compiled(const std::string& text, const ir::Image* base) {
-  base::SourceMap sources;
-  sources.add("fuzz.st", text);
-  base::Diagnostics diagnostics;
-  std::optional<ir::Program> program = frontend::compile(sources, {}, diagnostics);
-  base::check(program.has_value(), "a version of a golden file compiles");
-  std::vector<ir::Object> objects;
-  for (uint32_t i = 0; i < program->pous.size(); ++i) {
-    objects.push_back(*ir::lower(*program, ir::PouId(i)));
-  }
-  linker::Options options;
-  options.base = base;
-  return *ir::verify(ir::encode(*linker::link(*program, objects, options)));
-}
-
-struct Pair {
-  ir::VerifiedImage from;
-  ir::VerifiedImage to;
-  Package package;
-};
-
-Pair make_pair(const char* name) {
-  std::ifstream in(STC_SOURCE_DIR "/tests/golden/change/" + std::string(name) + ".st");
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  const size_t second = text.find("// --- v2");
-  base::check(second != std::string::npos, "a golden file of two versions");
-  const size_t third = std::min(text.find("// --- v3"), text.find("// > "));
-  ir::VerifiedImage from = compiled(text.substr(0, second), nullptr);
-  ir::VerifiedImage to = compiled(text.substr(second, third - second), &from.image());
-  base::Result<Package> package = make_package(from.encoded(), to.encoded());
-  base::check(package.ok(), "a golden file's change can be made");
-  return {from, to, *std::move(package)};
-}
-
-const Pair& pair_of(uint8_t number) {
-  static std::optional<Pair> pairs[std::size(kPairs)];
-  std::optional<Pair>& pair = pairs[number % std::size(kPairs)];
-  if (!pair) pair = make_pair(kPairs[number % std::size(kPairs)]);
-  return *pair;
-}
 
 // --- changes to a package -------------------------------------------------------------
 
@@ -255,7 +202,7 @@ bool apply(Package& package, uint8_t part, const fuzz::Change& change) {
   }
 }
 
-base::Bytes scripted(const Pair& pair, bool short_form, const uint8_t* data, size_t size) {
+base::Bytes scripted(const Versions& pair, bool short_form, const uint8_t* data, size_t size) {
   Package package = pair.package;
   std::vector<fuzz::Change> of_bytes;
   for (size_t at = 0; at + kStep <= size && at < kStep * kMostSteps; at += kStep) {
@@ -322,7 +269,7 @@ void check_untouched(vm::Memory& memory, uint64_t begin, uint64_t end) {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size < 2) return 0;
-  const Pair& pair = pair_of(data[0]);
+  const Versions& pair = fuzz::versions(data[0]);
   const bool short_form = (data[1] & 1) != 0;
   const Strategy strategy = (data[1] & 2) != 0 ? Strategy::kStandby : Strategy::kInPlace;
   const base::Bytes bytes = scripted(pair, short_form, data + 2, size - 2);

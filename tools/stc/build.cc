@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "frontend/compile.h"
+#include "ir/bytecode/verify.h"
 #include "ir/lower/lower.h"
 #include "ir/opt/optimise.h"
 #include "ir/program/verify.h"
@@ -156,11 +157,11 @@ base::Result<Version> read_image(const std::string& path) {
   base::Result<base::Bytes> bytes = tools::read_bytes(path);
   if (!bytes.ok()) return bytes.error();
   expect_input(bytes->size());
-  base::Result<ir::Image> image = ir::decode(*bytes);
+  const base::Result<ir::VerifiedImage> image = ir::verify(*bytes);
   if (!image.ok()) {
     return base::Error{image.error().refusal, path + ": " + image.error().text};
   }
-  return Version{std::move(*image), std::move(*bytes)};
+  return Version{image->image(), std::move(*bytes)};
 }
 
 bool is_image(const std::string& path) {

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "ir/bytecode/verify.h"
 #include "online_change/package/package.h"
 #include "online_change/plan/pou_edits.h"
 #include "tools/common/child.h"
@@ -21,6 +22,7 @@ int64_t monotonic_ns(Clock::time_point time) {
 }  // namespace
 
 base::Status WatchedPackages::begin(base::Bytes running) {
+  if (auto sound = ir::verify(running); !sound.ok()) return sound.error();
   base::Result<ir::DecodedImage> image = ir::decode(running, nullptr);
   if (!image.ok()) return image.error();
   written_ = {std::move(running), std::move(image->places)};

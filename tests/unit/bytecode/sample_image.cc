@@ -36,6 +36,11 @@ Placed var(const char* name, TypeId type, uint32_t offset) {
   return {member, offset};
 }
 
+uint32_t size_of(const Image& image, const Member& member) {
+  const bool slot = member.section == ir::Section::kInOut || image.types.is_instance(member.type);
+  return slot ? 4 : image.layouts[member.type].size;
+}
+
 TypeId declare(Image& image, Kind kind, const char* name, const std::vector<Placed>& members,
                uint32_t size, uint32_t capacity) {
   ir::Type type;
@@ -49,7 +54,7 @@ TypeId declare(Image& image, Kind kind, const char* name, const std::vector<Plac
   for (const Placed& placed : members) {
     type.members.push_back(placed.member);
     layout.member_offsets.push_back(placed.offset);
-    layout.used = std::max(layout.used, placed.offset);
+    layout.used = std::max(layout.used, placed.offset + size_of(image, placed.member));
   }
   const TypeId id = image.types.own().declare(std::move(type));
   image.layouts.own().of.resize(image.types.size());
@@ -202,6 +207,7 @@ void add_instances(Image& image, const Types& t) {
                      row(t.counter, 416, kCounterPou, kMainInstance, "fbs[1]"),
                      row(t.counter, 432, kCounterPou, 0, "shared"),
                      {}};
+  image.instances[6].type = image.globals;
   image.data = {{kCount, {5, 0, 0, 0}},
                 {kShared, id_bytes({5})},
                 {kMainData + kX, {10, 0}},

@@ -70,6 +70,19 @@ TEST(Verify, V1_FormOfTables) {
   expect_refused(Refusal::kBadFormat, "a member behind the end", [](Image& i) {
     i.layouts.own().of[types_of(i).pair.index].member_offsets[1] = 4;
   });
+  // Whoever follows a reference goes by what an area uses.
+  expect_refused(Refusal::kBadFormat, "an area that uses more than it has", [](Image& i) {
+    i.layouts.own().of[types_of(i).counter.index].used = 0xfffffff0;
+  });
+  expect_refused(Refusal::kBadFormat, "a member behind what its area uses", [](Image& i) {
+    i.layouts.own().of[types_of(i).counter.index].used = kIo;
+  });
+  expect_refused(Refusal::kBadFormat, "a structure that uses more than it has",
+                 [](Image& i) { i.layouts.own().of[types_of(i).pair.index].used = 9; });
+  // Process images go by the address, memory by the layout.
+  expect_refused(Refusal::kBadFormat, "a member of a union with two places", [](Image& i) {
+    i.types.own().edit(types_of(i).pair).kind = ir::Kind::kUnion;
+  });
   expect_refused(Refusal::kBadFormat, "a size that the type does not have",
                  [](Image& i) { i.layouts.own().of[types_of(i).numbers.index].size = 10; });
   expect_refused(Refusal::kBadFormat, "array bounds the wrong way round", [](Image& i) {
@@ -420,8 +433,15 @@ TEST(Verify, V13_Instances) {
                  [](Image& i) { i.instances[0].live = false; });
   expect_refused(Refusal::kBadInstance, "globals with code",
                  [](Image& i) { i.instances[0].pou = kMainPou; });
-  expect_refused(Refusal::kBadInstance, "globals with a name",
-                 [](Image& i) { i.instances[0].name = "Main"; });
+  // What was prepared for a change looks at rows before it asks whether they are live.
+  expect_refused(Refusal::kBadInstance, "a free ID without a type",
+                 [](Image& i) { i.instances[6].type = {}; });
+  expect_refused(Refusal::kBadInstance, "a free ID with an area",
+                 [](Image& i) { i.instances[6].data = 448; });
+  expect_refused(Refusal::kBadInstance, "a free ID with code",
+                 [](Image& i) { i.instances[6].pou = 1u << 30; });
+  expect_refused(Refusal::kBadInstance, "a free ID with a parent",
+                 [](Image& i) { i.instances[6].parent = 1u << 30; });
   expect_refused(Refusal::kBadInstance, "a program below an instance",
                  [](Image& i) { i.instances[kMainInstance].parent = 5; });
   expect_refused(Refusal::kBadInstance, "an instance that no slot names", [](Image& i) {

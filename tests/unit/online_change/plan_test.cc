@@ -35,6 +35,26 @@ TEST(Plan, A1_unchanged_program_needs_nothing) {
   EXPECT_EQ(plan.counts.total(), 3u);
 }
 
+// No compiler says so of an instance, but an image can.
+TEST(Plan, A1_an_instance_that_becomes_constant_stays) {
+  auto make = [](Version& v, bool constant) {
+    ir::TypeId counter = v.block("Counter", {{"n", v.elementary(Kind::kInt), 5}});
+    v.program("Main", {{"c", counter, 0, constant}});
+  };
+  Version a;
+  make(a, false);
+  a.link();
+  Version b;
+  make(b, true);
+  b.link(&a);
+  Running run(a);
+  run.set("Main.c.n", "42");
+  EXPECT_EQ(run.change(b).counts.kept, 1u);
+  EXPECT_EQ(run.get("Main.c.n"), "42");
+  run.undo();
+  EXPECT_EQ(run.get("Main.c.n"), "42");
+}
+
 TEST(Plan, A2_A15_A19_added_variable_is_initialised_early) {
   Version a;
   a.program("Main", {{"x", a.elementary(Kind::kInt), 7}});

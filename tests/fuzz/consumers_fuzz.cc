@@ -1,0 +1,90 @@
+// Images in which any field was changed, with all hashes made anew: the verifier refuses them, alone
+// and beside a version that it knows with the same words, or every consumer of images lives with
+// them (consumers.h).
+//
+// An input is a script: a byte that names the version (tests/fuzz/versions.h), one that says which
+// consumers, then 8 bytes for each change of a field (field_changes.h).
+#include <memory>
+#include <optional>
+
+#include "base/check.h"
+#include "ir/bytecode/proof.h"
+#include "tests/fuzz/consumers.h"
+#include "tests/fuzz/field_changes.h"
+#include "tests/fuzz/versions.h"
+
+namespace {
+
+constexpr size_t kMostChanges = 3;
+constexpr size_t kVersions = 2 * (fuzz::kEveryTable + 1);
+
+struct Good {
+  ir::VerifiedImage version;
+  std::vector<fuzz::ImageField> fields;
+  std::shared_ptr<const ir::verification::Proof> proof;
+};
+
+const Good& good_version(uint8_t number) {
+  static std::optional<Good> all[kVersions];
+  std::optional<Good>& good = all[number % kVersions];
+  if (good) return *good;
+  const fuzz::Versions& pair = fuzz::versions(static_cast<uint8_t>(number % kVersions / 2));
+  const ir::VerifiedImage& version = number % kVersions % 2 == 0 ? pair.from : pair.to;
+  auto proof = ir::verification::prove(std::make_shared<base::Bytes>(version.encoded()), nullptr);
+  good = Good{version, fuzz::fields_of(version.image()), *proof};
+  return *good;
+}
+
+base::Bytes changed(const Good& good, const uint8_t* data, size_t size) {
+  ir::Image image = good.version.image();
+  for (size_t at = 0; at + fuzz::FieldChange::kBytes <= size && at < 8 * kMostChanges; at += 8) {
+    fuzz::apply(image, good.fields, fuzz::FieldChange(data + at, at));
+  }
+  return ir::encode(image);
+}
+
+// Null: refused.
+std::optional<ir::VerifiedImage> verified(const Good& good, base::Bytes bytes) {
+  const auto shared = std::make_shared<const base::Bytes>(std::move(bytes));
+  const auto alone = ir::verification::prove(shared, nullptr);
+  const auto beside = ir::verification::prove(shared, good.proof.get());
+  base::check(alone.ok() == beside.ok() &&
+                  (alone.ok() || base::to_string(alone.error()) == base::to_string(beside.error())),
+              "a version that is known changes no answer");
+  if (!alone.ok()) {
+    base::check(!alone.error().text.empty(), "a reason");
+    return std::nullopt;
+  }
+  base::Result<ir::VerifiedImage> image = ir::verify(shared);
+  base::check(image.ok(), "what is proven is verified");
+  return *std::move(image);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using online_change::Strategy;
+  if (size < 2) return 0;
+  const Good& good = good_version(data[0]);
+  const auto image = verified(good, changed(good, data + 2, size - 2));
+  if (!image) return 0;
+  const Strategy strategy = (data[1] & 8) != 0 ? Strategy::kStandby : Strategy::kInPlace;
+  fuzz::read_image(*image);
+  fuzz::compare_images(good.version, *image);
+  fuzz::compare_images(*image, good.version);
+  switch (data[1] % 4) {
+    case 0:
+      fuzz::run_image(*image);
+      break;
+    case 1:
+      fuzz::change_images(good.version, *image, strategy);
+      break;
+    case 2:
+      fuzz::change_images(*image, good.version, strategy);
+      break;
+    default:
+      fuzz::exchange_globals(*image, good.version);
+      fuzz::exchange_globals(good.version, *image);
+  }
+  return 0;
+}
