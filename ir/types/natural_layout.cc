@@ -1,13 +1,21 @@
 #include "ir/types/natural_layout.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace ir {
 namespace {
 
 constexpr uint32_t kSlotBytes = 4;
 
-uint32_t align_up(uint32_t value, uint32_t align) { return (value + align - 1) / align * align; }
+// What is larger than any memory stays so: types of an image are as large as it says.
+uint32_t saturated(uint64_t bytes) {
+  return static_cast<uint32_t>(std::min<uint64_t>(bytes, std::numeric_limits<uint32_t>::max()));
+}
+
+uint32_t align_up(uint32_t value, uint32_t align) {
+  return saturated((uint64_t{value} + align - 1) / align * align);
+}
 
 class Builder {
  public:
@@ -44,7 +52,7 @@ class Builder {
         layout.size = of(type.base).size;
         layout.align = layouts_[type.base].align;
         for (const Dimension& dim : type.dims) {
-          layout.size *= static_cast<uint32_t>(dim.count());
+          layout.size = saturated(layout.size * std::min<uint64_t>(dim.count(), 1u << 31));
         }
         return;
       default:
@@ -71,7 +79,7 @@ class Builder {
       const uint32_t at =
           types_.overlaps(id) ? member.address.bit_offset / 8 : align_up(layout.used, align);
       layout.member_offsets.push_back(at);
-      layout.used = std::max(layout.used, at + size);
+      layout.used = std::max(layout.used, saturated(uint64_t{at} + size));
       layout.align = std::max(layout.align, area ? kSlotBytes : align);
     }
     if (!area) {

@@ -149,6 +149,10 @@ TEST(Verify, V6_NoUnreachableCode) {
                       kRet + load_w0() + jump(Opcode::LOOP, -2), {{1, {}}});
   expect_refused(Refusal::kUnreachable, "code of no POU",
                  [](Image& i) { i.code.push_back(Unit::make(Opcode::RET)); });
+  expect_refused(Refusal::kUnreachable, "a POU that was removed, behind all code", [](Image& i) {
+    i.pous.push_back({});
+    i.pous.back().first_unit = 0xfffffff0;
+  });
   expect_refused(Refusal::kUnreachable, "two POUs share code",
                  [](Image& i) { i.pous[kMainPou].first_unit -= 1; });
 }
