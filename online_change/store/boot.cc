@@ -1,5 +1,7 @@
 #include "online_change/store/boot.h"
 
+#include <algorithm>
+
 #include "online_change/store/retained_values.h"
 
 namespace online_change {
@@ -47,8 +49,8 @@ class Booting {
   base::Result<Boot> run(const std::optional<ir::VerifiedImage>& given) {
     std::string why = found_.nothing;
     const std::optional<ir::VerifiedImage> stored = verified(found_.boots, why);
-    if (!stored && !given) return nothing(why);
     if (!stored) store_.reject_boots();
+    if (!stored && !given) return hold(why);
     if (given) {
       base::Result<uint64_t> bytes = retained_bytes(given->image());
       if (!bytes.ok()) return bytes.error();
@@ -84,6 +86,30 @@ class Booting {
   base::Error nothing(const std::string& why) const {
     if (found_.virgin) return {base::Refusal::kFileNotFound, why};
     return {base::Refusal::kNothingBoots, why};
+  }
+
+  // The accepted program is damaged, or the control records are. The newest retained values say
+  // which program ran last, and whether it was on trial.
+  base::Result<Boot> hold(const std::string& why) {
+    const std::optional<RetainRecord>& newest = found_.newest;
+    if (found_.virgin && !newest) return nothing(why);
+    const auto likely = [&](const StoredImage& image) {
+      return newest && (newest->image == image.digest) != newest->trial;
+    };
+    std::stable_partition(found_.held.begin(), found_.held.end(), likely);
+    for (const StoredImage& stored : found_.held) {
+      std::string unused;
+      const std::optional<ir::VerifiedImage> image = verified(stored, unused);
+      if (!image) continue;
+      Boot boot{*image, initial_retained(image->image()), {}, std::move(found_.alarms)};
+      const bool own = newest && newest->image == image->digest();
+      if (own && fits(image->image(), *newest)) boot.retained = newest->values;
+      boot.fault = why + "; program " + base::short_hex(image->digest()) +
+                   " is stored, too: `stvm restart` runs it";
+      note(Event::kAlarm, {}, image->digest(), boot.fault);
+      return boot;
+    }
+    return nothing(why);
   }
 
   // What `boot` holds already stays where there are none.

@@ -77,6 +77,7 @@ void Store::recover_images() {
     }
     in_slot_[i] = image->digest;
     const bool boots = has_control_ && control_.slot == i && control_.boots == image->digest;
+    if (!boots) recovered_.held.push_back(*image);
     (boots ? recovered_.boots : recovered_.other) = std::move(*image);
   }
   if (!has_control_ || recovered_.boots) return;

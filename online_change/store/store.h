@@ -60,6 +60,7 @@ struct Recovered {
   std::optional<RetainRecord> newest;  // retained values; of `boots` or `other`
   std::optional<RetainRecord> before;  // `newest` is of a lost trial: those of `boots` before it
   std::optional<base::Digest> trial_lost;
+  std::vector<StoredImage> held;  // what else the slots hold
   bool virgin = false;              // nothing was ever stored here, as far as anybody can tell
   std::string nothing;              // why there is no `boots`
   std::vector<std::string> alarms;  // what is damaged

@@ -101,8 +101,29 @@ kill_now
 for file in control_0 control_1 retain_0 retain_1 retain_2 journal traps; do
   head -c 3000 /dev/urandom >plc/$file
 done
-expect 7 stvm serve --dir plc
-said 'R0410'
+serve plc
+expect 0 stvm status --dir plc
+said 'FAULT'
+said 'both control records are damaged'
+expect 0 stvm restart --dir plc
+expect 0 stvm status --dir plc
+said ': running'
+expect 0 stvm stop --dir plc
+
+# Any bytes in any one file: it runs, or it is held with the reason, and answers.
+for file in control_0 control_1 slot_b retain_0 retain_1 retain_2 journal traps lock; do
+  for damage in random zeros empty; do
+    case $damage in
+      random) head -c 3000 /dev/urandom >plc/$file ;;
+      zeros) head -c 3000 /dev/zero >plc/$file ;;
+      empty) : >plc/$file ;;
+    esac
+    serve plc
+    expect 0 stvm status --dir plc
+    grep -q ': running\|: FAULT' out || fail "$file, $damage: $(cat out)"
+    expect 0 stvm stop --dir plc
+  done
+done
 serve plc v1.st
 expect 0 stvm stop --dir plc
 expect 7 stvm journal --dir nowhere

@@ -81,6 +81,18 @@ base::Status ControllerService::save_retained_now() {
   return taken.ok() ? keeper_.save(now) : taken;
 }
 
+base::Status ControllerService::install_held() {
+  if (start_.fault.empty()) return base::Ok{};
+  const ir::VerifiedImage& image = controller_.verified();
+  const base::Result<uint64_t> bytes = online_change::retained_bytes(image.image());
+  if (!bytes.ok()) return bytes.error();
+  base::Status installed = store_.install({image.digest(), image.encoded()}, *bytes);
+  if (!installed.ok()) return installed;
+  store_.note(entry(Event::kInstalled));
+  start_.fault.clear();
+  return installed;
+}
+
 void ControllerService::store_beside() {
   change_.set_received(
       [this](const std::shared_ptr<const base::Bytes>& image) { aside_.start(image); });

@@ -193,6 +193,7 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.boots_next = store_.boots();
   report.trial_lost = start_.trial_lost.value_or(base::Digest{});
   report.alarms = start_.alarms;
+  if (!start_.fault.empty()) report.alarms.push_back(start_.fault);
   if (const auto unsaved = keeper_.unsaved()) {
     report.alarms.push_back("retained values are not being saved since " +
                             time_text(unsaved->since_ns) + ": " + unsaved->why);
@@ -258,7 +259,12 @@ base::Result<base::Bytes> ControllerService::restart(const vm::Request& request)
   if (request.flags > static_cast<uint32_t>(vm::Restart::kHot)) {
     return base::Error{base::Refusal::kProtocol, "a restart is cold, warm or hot"};
   }
-  const auto kind = static_cast<vm::Restart>(request.flags);
+  // What never ran has nothing that a hot restart could go on with.
+  const bool held = !start_.fault.empty();
+  const auto kind = held && request.flags == static_cast<uint32_t>(vm::Restart::kHot)
+                        ? vm::Restart::kWarm
+                        : static_cast<vm::Restart>(request.flags);
+  if (base::Status installed = install_held(); !installed.ok()) return installed.error();
   base::Status left = base::Ok{};
   base::Status taken = at_boundary([&] { left = controller_.restart(kind, kExitLimitNs); });
   if (!taken.ok()) return taken.error();

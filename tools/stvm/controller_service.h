@@ -26,6 +26,7 @@ namespace stvm {
 struct StartReport {
   std::optional<base::Digest> trial_lost;
   std::vector<std::string> alarms;
+  std::string fault = {};  // of Boot
 };
 // What finds too little time before the next cycle is tried again so much later.
 inline constexpr int64_t kBetweenAttemptsNs = 1'000'000;
@@ -120,6 +121,8 @@ class ControllerService : public vm::Service {
   base::Status keep_programs();
   void keep_programs_now_and_then();
   base::Status save_retained_now();
+  // A program that was held since nobody knew what boots: now it does.
+  base::Status install_held();
   online_change::Snapshot empty_snapshot() const;
   void complain(const base::Status& status);
   void note_switch(online_change::Event event, const base::Digest& from,

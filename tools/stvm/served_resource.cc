@@ -14,6 +14,7 @@ constexpr int64_t kFaultLookNs = 10'000'000;
 
 void print_boot(const online_change::Boot& boot) {
   for (const std::string& alarm : boot.alarms) std::fprintf(stderr, "alarm: %s\n", alarm.c_str());
+  if (!boot.fault.empty()) std::fprintf(stderr, "fault: %s\n", boot.fault.c_str());
   if (!boot.trial_lost) return;
   std::fprintf(stderr, "the trial of %s was lost; %s runs\n",
                base::short_hex(*boot.trial_lost).c_str(),
@@ -52,11 +53,14 @@ base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
 
 base::Status ServedResource::start(const ResourceController::Settings& settings, vm::Clock& clock) {
   clock_ = &clock;
-  auto running = ResourceController::start(settings, clock, boot_->retained);
+  ResourceController::Settings own = settings;
+  own.limits.halted = !boot_->fault.empty();
+  auto running = ResourceController::start(own, clock, boot_->retained);
   if (!running.ok()) return running.error();
   running_ = std::move(*running);
-  service_ = std::make_unique<ControllerService>(controller(), clock, store_, mailbox_,
-                                                 StartReport{boot_->trial_lost, boot_->alarms});
+  service_ = std::make_unique<ControllerService>(
+      controller(), clock, store_, mailbox_,
+      StartReport{boot_->trial_lost, boot_->alarms, boot_->fault});
   service_->store_beside();
   if (running_->recorder() != nullptr) service_->record(*running_->recorder());
   auto server = vm::SocketServer::open(directory_, *service_);
@@ -112,7 +116,7 @@ void ServedResource::run(const std::function<bool()>& stop, const std::function<
 // A clean end costs nothing of the retained values. In the middle of a scan there is no boundary:
 // then the last one's are stored.
 base::Status ServedResource::end() {
-  if (controller().at_boundary()) {
+  if (controller().at_boundary() && store_.names(controller().verified().digest())) {
     online_change::Snapshot last;
     service_->keeper().take(last);
     base::Status saved = service_->keeper().save(last);

@@ -66,6 +66,10 @@ base::Result<StateFolder> StateFolder::open(const std::string& path) {
   if (!safe.ok()) return safe.error();
   std::string file = path + "/lock";
   vm::Descriptor lock(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  // Of a file system that is read-only, which the program can run from all the same.
+  if (!lock.valid() && errno == EROFS) {
+    lock = vm::Descriptor(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  }
   if (!lock.valid()) return unwritable(file, std::strerror(errno));
   if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK) return unwritable(file, std::strerror(errno));

@@ -75,7 +75,7 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
   io.use(image.digest());
   auto tables = std::make_unique<TaskTables>(*impl.running, impl.scheduler.next_cycle_ns());
   impl.scheduler.use(*tables, impl.memory.data());
-  impl.scheduler.run_start_tasks();
+  options.halted ? impl.scheduler.fault() : impl.scheduler.run_start_tasks();
   if (!impl.scheduler.faulted()) io.publish_globals(tables->shared, impl.memory.data());
   impl.tables[impl.running.get()] = std::move(tables);
   if (impl.tier.making == Making::kBeside) {

@@ -33,6 +33,8 @@ class Scheduler {
   void run_cycle();
   bool at_boundary() const { return active_.empty(); }
   bool faulted() const { return faulted_; }
+  // Nothing runs before restart(); outputs are safe.
+  void fault();
   uint64_t cycles() const { return cycles_; }
   int64_t cycle_start_ns() const { return cycle_start_ns_; }
   int64_t next_cycle_ns() const { return next_cycle_ns_; }
@@ -79,7 +81,6 @@ class Scheduler {
   void roll_back_outputs(const TaskSlot& task);
   void stop_outputs(TaskSlot& task);
   void leave(TaskSlot& task);
-  void fault();
   void refresh_safe_outputs();
   bool end_holds(int64_t now_ns);
   void outputs_to_variables(std::span<const uint8_t> mask);

@@ -44,12 +44,14 @@ base::Status Plc::boot(const std::optional<ir::VerifiedImage>& given) {
   auto found = online_change::boot(*store_, given, "test", 1);
   if (!found.ok()) return found.error();
   boot_ = std::move(*found);
-  auto controller =
-      vm::Controller::start(boot_->image, vm::ControllerOptions(), clock_, io_, boot_->retained);
+  vm::ControllerOptions options;
+  options.halted = !boot_->fault.empty();
+  auto controller = vm::Controller::start(boot_->image, options, clock_, io_, boot_->retained);
   if (!controller.ok()) return controller.error();
   controller_ = std::move(*controller);
   service_ = std::make_unique<stvm::ControllerService>(
-      *controller_, clock_, *store_, *this, stvm::StartReport{boot_->trial_lost, boot_->alarms},
+      *controller_, clock_, *store_, *this,
+      stvm::StartReport{boot_->trial_lost, boot_->alarms, boot_->fault},
       [] { return int64_t{2}; });
   service_->asked_by("tester", 1);
   return base::Ok{};

@@ -378,6 +378,73 @@ TEST(Service, case56_AnAcceptThatCannotBeStoredLeavesTheTrial) {
   }
 }
 
+// --- nobody knows what boots ----------------------------------------------------------
+
+void spoil(sim::SimStorage& disk, const std::string& which, std::mt19937& random) {
+  const std::vector<std::string> names = disk.names();
+  for (size_t file = 0; file < names.size(); ++file) {
+    if (names[file].find(which) != 0) continue;
+    for (uint8_t& byte : disk.content(file)) byte = static_cast<uint8_t>(random());
+    disk.settle(file);
+  }
+}
+
+// The program that was accepted last is held with its values, and runs when somebody says so.
+TEST(Service, case56_WithoutAControlRecordTheProgramIsHeldInFault) {
+  std::mt19937 random(1);
+  for (const bool changed : {false, true}) {
+    sim::SimStorage disk;
+    {
+      Plc plc(disk);
+      ASSERT_TRUE(plc.boot(source(1)).ok());
+      if (changed) {
+        ASSERT_TRUE(plc.change(source(2), vm::kPermanent | vm::kAllowLoss).ok());
+      }
+      ASSERT_TRUE(set_and_save(plc, 5));
+    }
+    spoil(disk, "control_", random);
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot().ok());
+    EXPECT_EQ(version_of(plc), changed ? 2 : 1);
+    vm::StatusReport now = plc.status();
+    EXPECT_TRUE(now.faulted);
+    ASSERT_FALSE(now.alarms.empty());
+    EXPECT_NE(now.alarms.front().find("both control records"), std::string::npos);
+    plc.run(3);
+    EXPECT_EQ(plc.get("P.n"), "0") << "it must not run";
+    EXPECT_EQ(plc.change(source(3)).error().refusal, base::Refusal::kFault);
+    for (const vm::Restart kind : {vm::Restart::kHot, vm::Restart::kWarm}) {
+      vm::Request restart{.command = vm::Command::kRestart};
+      restart.flags = static_cast<uint32_t>(kind);
+      ASSERT_TRUE(plc.ask(restart).ok());
+    }
+    plc.run(3);
+    EXPECT_EQ(plc.get("P.n"), "3");
+    EXPECT_EQ(plc.get("r"), "5");
+    EXPECT_FALSE(plc.status().faulted);
+    EXPECT_TRUE(plc.status().alarms.empty()) << plc.status().alarms.front();
+    sim::SimStorage later = disk.after_cut(sim::SimStorage::Choice(disk.dirty().size(), 0));
+    EXPECT_EQ(found(later, {nullptr, {changed ? 2 : 1}, {5}}), "");
+  }
+}
+
+// What was on trial is not what is held.
+TEST(Service, case56_WithoutAControlRecordATrialIsNotHeld) {
+  std::mt19937 random(2);
+  sim::SimStorage disk;
+  {
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot(source(1)).ok());
+    ASSERT_TRUE(plc.change(source(2)).ok());
+    ASSERT_TRUE(set_and_save(plc, 5));
+  }
+  spoil(disk, "control_", random);
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot().ok());
+  EXPECT_EQ(version_of(plc), 1);
+  EXPECT_TRUE(plc.status().faulted);
+}
+
 // --- journal ------------------------------------------------------------------------
 
 TEST(Service, TheJournalSaysWhoChangedWhatWithWhichFates) {
