@@ -64,6 +64,9 @@ class TypesVerifier {
     const bool needs_base = type.kind == Kind::kArray || type.kind == Kind::kEnum ||
                             type.kind == Kind::kSubrange || is_reference(type.kind);
     if (needs_base && !types_.contains(type.base)) return bad(i, "its base does not exist");
+    if (!needs_base && type.kind != Kind::kFunctionBlock && type.base.valid()) {
+      return bad(i, "has a base, which its kind has not");
+    }
     if (needs_base && types_[type.base].kind == Kind::kGlobals) {
       return bad(i, "is made of the globals");
     }

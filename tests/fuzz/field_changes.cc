@@ -151,7 +151,7 @@ class Changer {
   }
   template <class T>
   void list(const FieldPlace& place, std::vector<T>& v) {
-    const bool whole = kIsRecord<T> || change_.how % 2 == 0;  // else its items are changed
+    const bool whole = kIsRecord<T> || change_.how / 8 % 2 == 0;  // else its items are changed
     if (whole && !look_ && is_it(place)) alter_list(v, change_);
   }
 

@@ -339,7 +339,7 @@ bool Facts::find_liveness(std::string& why) {
     changed = false;
     for (Block b = static_cast<Block>(blocks_.size()); b-- > 0;) {
       walk(b, once);
-      uint64_t* const in = &live_in_[size_t{b} * words_];
+      uint64_t* const in = live_in_.data() + size_t{b} * words_;
       for (size_t w = 0; w < words_; ++w) {
         changed |= !once && in[w] != live[w];
         in[w] = live[w];

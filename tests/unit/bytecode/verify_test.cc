@@ -90,6 +90,11 @@ TEST(Verify, V1_FormOfTables) {
   });
   expect_refused(Refusal::kBadFormat, "a subrange of a structure",
                  [](Image& i) { i.types.own().edit(types_of(i).level).base = types_of(i).pair; });
+  // Whoever describes a type follows its base.
+  expect_refused(Refusal::kBadFormat, "a structure with a base",
+                 [](Image& i) { i.types.own().edit(types_of(i).pair).base = types_of(i).pair; });
+  expect_refused(Refusal::kBadFormat, "a program with a base that does not exist",
+                 [](Image& i) { i.types.own().edit(types_of(i).main).base = ir::TypeId(1u << 30); });
   expect_refused(Refusal::kBadFormat, "a member type that does not exist", [](Image& i) {
     i.types.own().edit(types_of(i).main).members[0].type = ir::TypeId(999);
   });
