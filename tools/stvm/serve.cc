@@ -15,6 +15,7 @@
 #include "tools/stvm/stop_signal.h"
 #include "tools/stvm/tier.h"
 #include "vm/runtime/clocks.h"
+#include "vm/runtime/thread_filter.h"
 
 namespace stvm {
 namespace {
@@ -30,6 +31,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--fifo", "PRIORITY", "SCHED_FIFO for the control thread, 1 to 99"},
     {"--cpu", "N", "keep the control thread on this processor"},
     {"--lock-memory", nullptr, "keep all memory in RAM, and touch it before the first scan"},
+    {"--seccomp", nullptr, "threads may only make the system calls that docs/RUNNING.md names"},
     {"--record", "FILE", "record the run, for `stvm replay`"},
     {"--virtual-time", nullptr, "cycles as fast as they can run, instead of real time"},
     STVM_DEVICE_OPTION,
@@ -132,6 +134,7 @@ base::Result<vm::RealTimeOptions> real_time_options(const tools::Options& option
   out.fifo_priority = static_cast<uint32_t>(*fifo);
   if (options.has("--cpu")) out.cpu = static_cast<uint32_t>(*cpu);
   out.lock_memory = options.has("--lock-memory");
+  out.confined = options.has("--seccomp");
   return out;
 }
 
@@ -220,6 +223,11 @@ base::Status serve(const tools::Options& options) {
   std::unique_ptr<vm::GlobalExchange> exchange;
   base::Result<Served> served = open_all(options);
   if (!served.ok()) return served.error();
+  // Behind the compiler, which is a program of its own, and before all threads.
+  if (real_time->confined) {
+    base::Status confined = vm::confine_thread(vm::ThreadKind::kAny);
+    if (!confined.ok()) return confined;
+  }
   const bool virtual_time = options.has("--virtual-time");
   if (virtual_time && served->size() > 1) {
     return base::Error{base::Refusal::kUsage,

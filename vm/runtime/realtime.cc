@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "vm/runtime/thread_filter.h"
+
 namespace vm {
 namespace {
 
@@ -39,7 +41,7 @@ void touch(uint8_t* begin, uint64_t size) {
 
 }  // namespace
 
-base::Status make_real_time(const RealTimeOptions& options) {
+static base::Status make_timely(const RealTimeOptions& options) {
   if (options.cpu) {
     if (base::Status s = stay_on(*options.cpu); !s.ok()) return s;
   }
@@ -53,6 +55,11 @@ base::Status make_real_time(const RealTimeOptions& options) {
   if (sched_setscheduler(0, SCHED_FIFO, &parameter) == 0) return base::Ok{};
   return refused("SCHED_FIFO with priority " + std::to_string(options.fifo_priority),
                  "raise `ulimit -r`, or LimitRTPRIO in the unit; `stvm doctor` shows the limits");
+}
+
+base::Status make_real_time(const RealTimeOptions& options) {
+  base::Status timely = make_timely(options);
+  return timely.ok() && options.confined ? confine_thread(ThreadKind::kControl) : timely;
 }
 
 void run_in_background() {

@@ -1,0 +1,23 @@
+// What a served controller's threads may ask of Linux at all (seccomp), so that a defect that lets
+// a message or a device run code of its own leads no further: no program is started, no process is
+// looked into, the control thread opens no connection, a device's thread makes no memory
+// executable. The table is system_calls.def.
+//
+// A call that is not permitted fails with EPERM, and the thread goes on: in a plant, outputs that
+// stay under control are worth more than the end of a process that may only have met a newer
+// library. Calls that are newer than the table fail with ENOSYS, so that libraries use older ones.
+#pragma once
+
+#include <cstdint>
+
+#include "base/result.h"
+
+namespace vm {
+
+enum class ThreadKind : uint8_t { kAny, kControl, kDevice };
+
+// Of the calling thread and of those that it begins from now on, for good; a second filter only
+// takes away from the first. kNotPermitted: this kernel or processor has none.
+base::Status confine_thread(ThreadKind kind);
+
+}  // namespace vm
