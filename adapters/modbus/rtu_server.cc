@@ -35,7 +35,7 @@ class RtuServer : public Serving {
       modbus_set_indication_timeout(context(), static_cast<uint32_t>(left / 1'000'000'000),
                                     static_cast<uint32_t>(left % 1'000'000'000 / 1000 + 1));
       const int length = modbus_receive(context(), request);
-      if (length > 0) answer(request, length);
+      if (length > 0) answer(request, length, port_);
       const bool gone = length < 0 && (errno == EIO || errno == EBADF || errno == ENXIO ||
                                        errno == ECONNRESET || errno == ENODEV);
       if (!gone) continue;

@@ -121,12 +121,22 @@ bool ServerTables::permits(const uint8_t* pdu, int length) {
   }
 }
 
-void ServerTables::pass_on(const Written& written, vm::WriteQueue& writes) const {
+std::string ServerTables::text_of(const Written& written) {
+  std::string text(ir::table_rows()[static_cast<size_t>(written.table)].name);
+  text += " " + std::to_string(written.first);
+  if (written.count > 1) text += ".." + std::to_string(written.first + written.count - 1);
+  return text;
+}
+
+void ServerTables::pass_on(const Written& written, const Asking& asking) const {
+  vm::WriteQueue& writes = *asking.writes;
+  bool any = false;
   for (const vm::PointRange& range : points_.outputs) {
     if (!range.writable || range.table != written.table) continue;
     for (uint32_t i = 0; i < written.count; ++i) {
       const uint32_t at = written.first + i;
       if (at < range.first || at - range.first >= range.count) continue;
+      any = true;
       const uint32_t number = at - range.first;
       const uint32_t bit = range.at.bit_offset;
       if (range.table == PointTable::kCoil) {
@@ -138,18 +148,21 @@ void ServerTables::pass_on(const Written& written, vm::WriteQueue& writes) const
     }
   }
   writes.publish();
+  if (any && asking.events != nullptr) asking.events->written(asking.who, text_of(written));
 }
 
 bool ServerTables::answer(modbus_t* context, const uint8_t* request, int length,
-                          vm::WriteQueue* writes) {
+                          const Asking& asking) {
   const int header = modbus_get_header_length(context);
   if (length <= header) return false;
   const uint8_t* const pdu = request + header;
+  const Written written = written_by(pdu, length - header);
   if (!permits(pdu, length - header)) {
+    const bool write = written.count != 0 && asking.events != nullptr;
+    if (write) asking.events->refused(asking.who, text_of(written));
     return modbus_reply_exception(context, request, MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS) >= 0;
   }
-  const Written written = written_by(pdu, length - header);
-  if (writes != nullptr && written.count > writes->room()) {
+  if (asking.writes != nullptr && written.count > asking.writes->room()) {
     return modbus_reply_exception(context, request, MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY) >= 0;
   }
   const int sent = modbus_reply(context, request, length, tables_.get());
@@ -157,7 +170,7 @@ bool ServerTables::answer(modbus_t* context, const uint8_t* request, int length,
   // An exception has two bytes behind its header, and by RTU two more: then nothing was written.
   // To a broadcast nothing is sent.
   const bool done = sent == 0 || sent > header + (header == kRtuHeader ? 4 : 2);
-  if (writes != nullptr && written.count != 0 && done) pass_on(written, *writes);
+  if (asking.writes != nullptr && written.count != 0 && done) pass_on(written, asking);
   return true;
 }
 

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "vm/io/driver.h"
@@ -24,8 +25,14 @@ class ServerTables {
   void use(const vm::DevicePoints& points);
   void show(base::ByteSpan outputs);
   void fetch(std::span<uint8_t> inputs) const;
+  // Who asks, and what becomes of what is written to the program's points; null: nothing.
+  struct Asking {
+    const std::string& who;
+    vm::WriteQueue* writes = nullptr;
+    vm::OutsideEvents* events = nullptr;
+  };
   // Answers a request that libmodbus received; false: the connection is of no use any more.
-  bool answer(modbus_t* context, const uint8_t* request, int length, vm::WriteQueue* writes);
+  bool answer(modbus_t* context, const uint8_t* request, int length, const Asking& asking);
 
  private:
   static constexpr uint32_t kPoints = 65536;
@@ -39,13 +46,14 @@ class ServerTables {
     uint32_t count = 0;
   };
   static Written written_by(const uint8_t* pdu, int length);
+  static std::string text_of(const Written& written);
   struct Free {
     void operator()(modbus_mapping_t* tables) const { modbus_mapping_free(tables); }
   };
   Permission& of(ir::PointTable table);
   bool may(ir::PointTable table, bool write, uint32_t first, uint32_t count);
   bool permits(const uint8_t* pdu, int length);
-  void pass_on(const Written& written, vm::WriteQueue& writes) const;
+  void pass_on(const Written& written, const Asking& asking) const;
 
   const bool high_first_;
   std::unique_ptr<modbus_mapping_t, Free> tables_;

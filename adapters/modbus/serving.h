@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 
 #include "adapters/modbus/line.h"
 #include "adapters/modbus/server_tables.h"
@@ -27,18 +28,23 @@ class Serving : public vm::IoDriver {
   bool ok() const { return tables_.ok(); }
 
   base::Status exchange(const vm::Exchange& exchange) override {
+    idle_ = false;
     base::Status ready = listen();
     if (!ready.ok()) return ready;
     tables_.use(exchange.points);
     writes_ = exchange.writes;
+    events_ = exchange.events;
     if (!exchange.outputs.empty()) tables_.show(exchange.outputs);
     base::Status served = serve(steady_ns() + period_ns_);
     if (!served.ok()) return served;
     if (!exchange.inputs.empty()) tables_.fetch(exchange.inputs);
-    if (steady_ns() - asked_ns_ <= timeout_ns_) return base::Ok{};
+    idle_ = steady_ns() - asked_ns_ > timeout_ns_;
+    if (!idle_) return base::Ok{};
     return vm::exchange_failed("nobody has asked for " + std::to_string(timeout_ns_ / 1'000'000) +
                                " ms");
   }
+
+  bool idle() const override { return idle_; }
 
  protected:
   static constexpr uint32_t kSlowestByteUs = 20'000;
@@ -47,8 +53,8 @@ class Serving : public vm::IoDriver {
   virtual base::Status serve(int64_t until_ns) = 0;
 
   // False: the connection is of no use any more.
-  bool answer(const uint8_t* request, int length) {
-    if (!tables_.answer(context_.get(), request, length, writes_)) return false;
+  bool answer(const uint8_t* request, int length, const std::string& who) {
+    if (!tables_.answer(context_.get(), request, length, {who, writes_, events_})) return false;
     asked_ns_ = steady_ns();
     return true;
   }
@@ -61,6 +67,8 @@ class Serving : public vm::IoDriver {
   const int64_t period_ns_;
   const int64_t timeout_ns_;
   vm::WriteQueue* writes_ = nullptr;
+  vm::OutsideEvents* events_ = nullptr;
+  bool idle_ = false;
   int64_t asked_ns_ = INT64_MIN / 2;
 };
 

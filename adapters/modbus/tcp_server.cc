@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -18,6 +19,28 @@ namespace {
 constexpr int64_t kHalfFrameNs = 1'000'000'000;
 constexpr size_t kHeader = 6;  // up to and with the length of the rest
 
+// "10.0.0.7:40312", "[fe80::1]:40312"
+std::string name_of(const sockaddr_storage& peer, socklen_t size) {
+  char host[64];
+  char port[8];
+  if (::getnameinfo(reinterpret_cast<const sockaddr*>(&peer), size, host, sizeof host, port,
+                    sizeof port, NI_NUMERICHOST | NI_NUMERICSERV) != 0) {
+    return "somebody";
+  }
+  const bool brackets = peer.ss_family == AF_INET6;
+  return (brackets ? "[" + std::string(host) + "]:" : std::string(host) + ":") + port;
+}
+
+// Why nobody can listen there, and what to do.
+std::string way_out() {
+  if (errno == EACCES) {
+    return "; ports below 1024 need CAP_NET_BIND_SERVICE (AmbientCapabilities in the unit), or "
+           "choose a larger one";
+  }
+  if (errno == EADDRINUSE) return "; another process listens there (`ss -ltnp` shows which)";
+  return errno == EADDRNOTAVAIL ? "; this machine has no such address" : "";
+}
+
 class TcpServer : public Serving {
  public:
   TcpServer(const ir::Device& device, Context context)
@@ -35,6 +58,7 @@ class TcpServer : public Serving {
  private:
   struct Client {
     vm::Descriptor socket;
+    std::string name;
     int64_t active_ns = 0;   // last request
     int64_t half_ns = 0;     // since when it has sent half a frame; 0: it has not
     bool looked_at = false;  // in this exchange, and it has no whole frame
@@ -49,7 +73,8 @@ class TcpServer : public Serving {
       ::fcntl(listener_.get(), F_SETFD, FD_CLOEXEC);
       return base::Ok{};
     }
-    return vm::exchange_failed("listening on " + address_ + ": " + reason());
+    const std::string why = reason() + way_out();
+    return vm::exchange_failed("listening on " + address_ + ": " + why);
   }
 
   base::Status serve(int64_t until_ns) override {
@@ -74,7 +99,10 @@ class TcpServer : public Serving {
 
   // When there are too many, whoever has been silent longest makes room.
   void accept() {
-    vm::Descriptor socket(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    sockaddr_storage peer{};
+    socklen_t size = sizeof peer;
+    vm::Descriptor socket(::accept4(listener_.get(), reinterpret_cast<sockaddr*>(&peer), &size,
+                                    SOCK_CLOEXEC));
     if (!socket.valid()) return;
     const timeval patience{0, 100'000};
     const int on = 1;
@@ -87,6 +115,7 @@ class TcpServer : public Serving {
     }
     Client& client = clients_.emplace_back();
     client.socket = std::move(socket);
+    client.name = name_of(peer, size);
     client.active_ns = steady_ns();
   }
 
@@ -115,8 +144,8 @@ class TcpServer : public Serving {
     client.active_ns = steady_ns();
     uint8_t request[MODBUS_TCP_MAX_ADU_LENGTH];
     modbus_set_socket(context(), client.socket.get());
-    client.gone =
-        length < 0 || modbus_receive(context(), request) != length || !answer(request, length);
+    client.gone = length < 0 || modbus_receive(context(), request) != length ||
+                  !answer(request, length, client.name);
   }
 
   const std::string address_;

@@ -34,23 +34,24 @@ void add_default_map(Device& device, const ProcessImageSize& size) {
     add(device, PointTable::kByte, 0, std::min(size.output_bytes, kAllPoints), true, out);
     return;
   }
+  const bool writable = flag_setting(device, "writable");
   const auto registers = [](uint32_t bytes, uint32_t most) {
     return std::min(bytes / 2 + bytes % 2, most);
   };
   add(device, PointTable::kCoil, 0, points(size.output_bytes, 8), true, {DirectArea::kOutput, 0, 1},
-      true);
+      writable);
   add(device, PointTable::kDiscrete, 0, points(size.input_bytes, 8), true,
       {DirectArea::kInput, 0, 1});
   add(device, PointTable::kInput, 0, registers(size.input_bytes, kAllPoints), true,
       {DirectArea::kInput, 0, 16});
   add(device, PointTable::kHolding, 0, registers(size.output_bytes, kWords), true,
-      {DirectArea::kOutput, 0, 16}, true);
+      {DirectArea::kOutput, 0, 16}, writable);
   add(device, PointTable::kHolding, kWords, registers(size.marker_bytes, kWords), true,
-      {DirectArea::kMarker, 0, 16}, true);
+      {DirectArea::kMarker, 0, 16}, writable);
   const uint32_t doubles = (size.marker_bytes + 3) / 4;
   add(device, PointTable::kHolding, 2 * kWords,
       2 * std::min(doubles, (kAllPoints - 2 * kWords) / 2), true, {DirectArea::kMarker, 0, 32},
-      true);
+      writable);
 }
 
 }  // namespace ir

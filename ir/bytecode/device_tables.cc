@@ -127,6 +127,8 @@ std::string bad_value(const SettingRow& row, std::string_view value) {
       return parse_loss(value)
                  ? ""
                  : "must be \"hold\", \"zero\", \"zero after 500 ms\" or \"trap TASK\"";
+    case SettingKind::kFlag:
+      return value == "true" || value == "false" ? "" : "must be true or false";
     case SettingKind::kChoice:
       break;
   }
@@ -151,6 +153,10 @@ int64_t number_setting(const Device& device, std::string_view key) {
   int64_t value = 0;
   parse_number(setting(device, key), value);
   return value;
+}
+
+bool flag_setting(const Device& device, std::string_view key) {
+  return setting(device, key) == "true";
 }
 
 }  // namespace ir

@@ -54,7 +54,7 @@ struct TableRow {
   bool to_device;
   std::string_view meaning;
 };
-enum class SettingKind : uint8_t { kText, kNumber, kLoss, kChoice };
+enum class SettingKind : uint8_t { kText, kNumber, kLoss, kFlag, kChoice };
 struct SettingRow {
   std::string_view key;
   uint32_t families;
@@ -117,6 +117,7 @@ std::string bad_value(const SettingRow& row, std::string_view value);
 // Given or fallback, of a checked device.
 std::string setting(const Device& device, std::string_view key);
 int64_t number_setting(const Device& device, std::string_view key);
+bool flag_setting(const Device& device, std::string_view key);
 
 // The first thing wrong with a list of devices, and where: what the compiler and the verifier both
 // ask. Process image sizes are checked when they are given.
@@ -135,7 +136,8 @@ struct ProcessImageSize {
 std::optional<DeviceFault> find_fault(const std::vector<Device>& devices,
                                       const ProcessImageSize* size);
 // May `map` be left out? Then it is the whole process image (a simulated device, shared memory), or
-// the usual one of soft PLCs (a Modbus server): docs/IO.md.
+// the usual one of soft PLCs (a Modbus server), which others can write when `writable` says so:
+// docs/IO.md.
 bool has_default_map(const Device& device);
 // That map, for a process image of that size.
 void add_default_map(Device& device, const ProcessImageSize& size);

@@ -55,6 +55,23 @@ refused 3:11 '`on_loss` must be a text or a whole number' <<'T'
 driver = "simulated"
 on_loss = true
 T
+refused 3:12 '`writable` must be a text or a whole number' <<'T'
+driver = "modbus-tcp-server"
+writable = ["yes"]
+T
+refused 3:12 '`writable` must be true or false' <<'T'
+driver = "modbus-tcp-server"
+writable = 1
+T
+refused 4:12 '`writable` is for a device without `map`; in a map, `<->` says it' <<'T'
+driver = "modbus-tcp-server"
+map = ["coil 0 <- %QX0.0"]
+writable = true
+T
+refused 3:1 'unknown key `writable`; driver "simulated" knows' <<'T'
+driver = "simulated"
+writable = true
+T
 refused 3:7 '`map` must be a list of texts' <<'T'
 driver = "simulated"
 map = "byte 0 -> %IB0"

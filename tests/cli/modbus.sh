@@ -133,7 +133,7 @@ expect 0 stvm status --dir plc
 said '^hmi +modbus-tcp-server +online '
 expect 0 stvm stop --dir plc
 
-# Without a map: %Q and %M as people who come from other soft PLCs know them, to read and to write.
+# Without a map: %Q and %M as people who come from other soft PLCs know them, to read.
 mkdir plain
 cat >plain/main.st <<'ST'
 VAR_GLOBAL speed AT %MW3 : INT := 17; total AT %MD5 : DINT := 70000; END_VAR
@@ -143,6 +143,21 @@ n := n + 1;
 END_PROGRAM
 ST
 printf '[devices.hmi]\ndriver = "modbus-tcp-server"\naddress = "127.0.0.1:%s"\n' "$port" >plain/stc.toml
+serve plain_plc plain
+expect 0 stc dump plain --image
+said 'coil 0..47 <- %QX0.0$'
+said 'holding 2048..2059 <- %MD0$'
+wait_for ':[[:space:]]+33$' ask -t 4 -r 2 127.0.0.1
+wait_for 'Illegal data address' ask -t 4 -r 1027 127.0.0.1 55
+wait_for 'Illegal data address' ask -t 0 -r 10 127.0.0.1 1
+grep -qE '^device hmi: 127.0.0.1:[0-9]+ was not permitted to write holding 1027$' plain_plc.log ||
+  fail 'no line about the write that was refused'
+expect 2 stvm run plain --scans 1 --device hmi.writable=true
+said '--device hmi.writable belongs to the map, which is part of the program'
+expect 0 stvm stop --dir plain_plc
+
+# To write, too, where the project says so: each write is counted, with who it was.
+echo 'writable = true' >>plain/stc.toml
 serve plain_plc plain
 expect 0 stc dump plain --image
 said 'coil 0..47 <-> %QX0.0$'
@@ -164,5 +179,10 @@ value_is "$program.lamp" TRUE
 wait_for ':[[:space:]]+55$' ask -t 4 -r 1027 127.0.0.1
 wait_for 'Illegal data address' ask -t 4 -r 1036 127.0.0.1
 wait_for 'Illegal data address' ask -t 4 -r 3 127.0.0.1
+grep -qE '^device hmi: 127.0.0.1:[0-9]+ wrote coil 10$' plain_plc.log || fail 'no line about a write'
+expect 0 stvm status --dir plain_plc
+said '^others wrote to hmi: 3 times, last 127.0.0.1:[0-9]+$'
+expect 0 stvm status --dir plain_plc --format json
+said '"writes": ?3'
 expect 0 stvm stop --dir plain_plc
 echo "Modbus: two controllers, mbpoll, and a change between its requests"

@@ -28,6 +28,38 @@ said 'last error of tank: shared memory .*nobody writes the inputs'
 "$bin/shared_memory_client" $name 40 &
 echo $! >client.pid
 wait_for '=TRUE' "$program.connected"
+wait "$(cat client.pid)" || true
+
+# A process that makes the memory smaller all the time ends nobody but itself: the device is lost, and comes back.
+expect 0 stvm stop --dir plc
+touch destroying
+while [ -e destroying ]; do truncate -s 0 /dev/shm$name; done &
+vandal=$!
+echo $vandal >vandal.pid
+serve plc --device tank.name=$name
+for _ in $(seq 200); do
+  stvm get "$program.level" --dir plc >/dev/null || fail 'the controller has ended'
+  grep -q "^device tank: shared memory $name: was made smaller" plc.log && break
+  sleep 0.05
+done
+rm destroying
+wait $vandal
+rm vandal.pid
+"$bin/shared_memory_client" $name 200 >/dev/null 2>&1 &
+echo $! >client.pid
+wait_for '=TRUE' "$program.connected"
+expect 0 stvm stop --dir plc
+grep -q "^device tank: shared memory $name: was made smaller" plc.log || fail 'not said as it happened'
+
+# Memory that others could write is not taken.
+rm -f /dev/shm$name
+(umask 0 && : >/dev/shm$name)
+serve open_plc "$source_dir/examples/shared_memory/plc" --device tank.name=$name
+for _ in $(seq 100); do grep -q '^device tank' open_plc.log && break; sleep 0.05; done
+grep -q "^device tank: shared memory $name: others can write it (mode 0666); remove /dev/shm$name, or permit that by .access.$" \
+  open_plc.log || fail 'memory that everybody can write was taken'
+expect 0 stvm stop --dir open_plc
+
 expect 7 stvm run "$source_dir/examples/shared_memory/plc" --scans 1 --device tank.name=tank
 said 'R0412: device `tank`: `tank` is no name of shared memory'
 echo "shared memory: another process is the tank"

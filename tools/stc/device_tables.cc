@@ -13,6 +13,13 @@ base::Error at(std::string_view file, tools::TomlPlace place, const std::string&
   return {base::Refusal::kBadMapping, tools::toml_error(file, place.line, place.column, text).text};
 }
 
+bool is_flag(std::string_view key) {
+  const auto rows = ir::setting_rows();
+  return std::any_of(rows.begin(), rows.end(), [&](const ir::SettingRow& row) {
+    return row.kind == ir::SettingKind::kFlag && row.key == key;
+  });
+}
+
 // Where the parts of a device stand, for what is found behind them.
 struct Places {
   tools::TomlPlace device;  // its driver
@@ -123,6 +130,8 @@ class Reader {
       setting.value = *text;
     } else if (const auto* number = std::get_if<int64_t>(&value.data)) {
       setting.value = std::to_string(*number);
+    } else if (const auto* flag = std::get_if<bool>(&value.data); flag != nullptr && is_flag(key)) {
+      setting.value = *flag ? "true" : "false";
     } else {
       return at(file_, value.place, "`" + setting.key + "` must be a text or a whole number");
     }
@@ -146,6 +155,10 @@ class Reader {
         }
         const std::string bad = ir::bad_value(*row, setting.value);
         if (!bad.empty()) return at(file_, value.place, "`" + setting.key + "` " + bad);
+        if (row->kind == ir::SettingKind::kFlag && !devices_[device].map.empty()) {
+          return at(file_, value.place,
+                    "`" + setting.key + "` is for a device without `map`; in a map, `<->` says it");
+        }
       }
     }
     return base::Ok{};

@@ -1,5 +1,7 @@
 #include "tools/stvm/device_drivers.h"
 
+#include <cstdio>
+
 #include "vm/io/shared_memory_driver.h"
 #include "vm/io/simulated_driver.h"
 #ifdef STC_HAS_MODBUS
@@ -32,9 +34,13 @@ base::Result<std::unique_ptr<vm::IoDriver>> make_driver(const ir::Device& device
 #endif
 }
 
+// One call for each line, so that those of two threads do not mix.
+static void log_device(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
+
 base::Result<vm::DeviceIo::Options> device_options(const tools::Options& options,
                                                    vm::Clock* virtual_clock) {
-  vm::DeviceIo::Options out{make_driver, {}, virtual_clock};
+  vm::DeviceIo::Options out{make_driver, {}, virtual_clock, log_device,
+                              options.has("--seccomp")};
   for (const std::string& text : options.all("--device")) {
     base::Result<vm::DeviceOverride> row = vm::parse_device_override(text);
     if (!row.ok()) return row.error();

@@ -113,13 +113,19 @@ void print_devices(const std::vector<vm::DeviceStatus>& devices) {
     if (device.error.empty()) continue;
     std::printf("last error of %s: %s\n", device.name.c_str(), device.error.c_str());
   }
+  for (const vm::DeviceStatus& device : devices) {
+    if (device.writes == 0) continue;
+    std::printf("others wrote to %s: %llu times, last %s\n", device.name.c_str(),
+                static_cast<unsigned long long>(device.writes), device.last_writer.c_str());
+  }
 }
 
 void device_json(tools::JsonWriter& json, const vm::DeviceStatus& device) {
   json.begin_object().field("name", device.name).field("driver", device.driver);
   json.field("state", device.state).field("exchanges", device.exchanges);
   json.field("errors", device.errors).field("age_ns", device.age_ns);
-  json.field("error", device.error).end_object();
+  json.field("error", device.error).field("writes", device.writes);
+  json.field("last_writer", device.last_writer).end_object();
 }
 
 std::string period_text(const vm::TaskStatus& task) {

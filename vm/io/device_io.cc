@@ -25,6 +25,14 @@ void set_bit(std::span<uint8_t> bytes, uint32_t bit, bool value) {
   }
 }
 
+// "": the setting can have that value. `setting` null: the driver has none of that name.
+std::string bad_override(const ir::Device& device, const ir::SettingRow* setting,
+                         const std::string& value) {
+  if (setting == nullptr) return "is no setting of \"" + device.driver + "\"";
+  if (setting->kind != ir::SettingKind::kFlag) return ir::bad_value(*setting, value);
+  return "belongs to the map, which is part of the program";
+}
+
 // What the version's outputs become when another one does not exchange them any more: safe, for
 // good (vm/runtime/safe_outputs.h).
 LeftOutputs left_outputs(const ir::Image& image, const DevicePoints& points) {
@@ -113,8 +121,7 @@ base::Status DeviceIo::apply_overrides(const std::vector<ir::Device>& devices,
       return base::Error{base::Refusal::kUsage, what + ": the program has no such device"};
     }
     const ir::SettingRow* setting = ir::find_setting(*ir::find_driver(device->driver), row.key);
-    const std::string bad = setting != nullptr ? ir::bad_value(*setting, row.value)
-                                               : "is no setting of \"" + device->driver + "\"";
+    const std::string bad = bad_override(*device, setting, row.value);
     if (!bad.empty()) return base::Error{base::Refusal::kUsage, what + " " + bad};
     const auto given =
         std::find_if(device->settings.begin(), device->settings.end(),
@@ -138,7 +145,8 @@ base::Result<ExchangePort*> DeviceIo::port_for(const ir::Device& device) {
                        "device `" + device.name + "`: " + driver.error().text};
   }
   ports_.push_back(std::make_unique<ExchangePort>(device, std::move(*driver),
-                                                  options_.virtual_clock == nullptr));
+                                                  options_.virtual_clock == nullptr,
+                                                  options_.log, options_.confined));
   return ports_.back().get();
 }
 

@@ -33,6 +33,8 @@ class DeviceIo : public IoPort {
     std::vector<DeviceOverride> overrides = {};
     // Set: virtual time. Simulated devices exchange in send(), on this clock; others are off.
     Clock* virtual_clock = nullptr;
+    DeviceLog log = {};
+    bool confined = false;  // threads of devices: vm/runtime/thread_filter.h
   };
   explicit DeviceIo(Options options);
   ~DeviceIo() override;

@@ -11,6 +11,7 @@
 #include "base/bytes.h"
 #include "base/result.h"
 #include "ir/bytecode/devices.h"
+#include "vm/io/device_events.h"
 #include "vm/io/write_queue.h"
 
 namespace vm {
@@ -48,6 +49,7 @@ struct Exchange {
   std::span<uint8_t> inputs;     // as they were; empty: nothing is read
   int64_t now_ns = 0;            // since the controller began
   WriteQueue* writes = nullptr;  // of what others write to outputs; null: there are none to write
+  OutsideEvents* events = nullptr;
 };
 
 class IoDriver {
@@ -56,6 +58,8 @@ class IoDriver {
   // Writes and reads once, connecting first where that is needed. After an error nothing is known
   // of what was written, and `inputs` are not used.
   virtual base::Status exchange(const Exchange& exchange) = 0;
+  // Did the last exchange fail only because nobody wanted anything of it?
+  virtual bool idle() const { return false; }
   // Lets the line go; the next exchange connects again.
   virtual void disconnect() {}
 };

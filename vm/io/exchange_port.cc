@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "vm/io/bit_copy.h"
+#include "vm/runtime/thread_filter.h"
 
 namespace vm {
 namespace {
@@ -31,9 +32,10 @@ ExchangeSet::ExchangeSet(DevicePoints what, LeftOutputs behind)
 }
 
 // What port and thread share; the thread may outlive the port.
-struct ExchangePort::Core {
-  Core(ir::Device d, std::unique_ptr<IoDriver> made, bool threaded)
+struct ExchangePort::Core final : OutsideEvents {
+  Core(ir::Device d, std::unique_ptr<IoDriver> made, bool threaded, DeviceLog to)
       : device(std::move(d)),
+        log(std::move(to)),
         own_thread(threaded),
         exclusive(ir::find_driver(device.driver)->exclusive),
         server(ir::find_driver(device.driver)->server),
@@ -41,14 +43,19 @@ struct ExchangePort::Core {
         timeout_ns(ir::number_setting(device, "timeout_ms") * kMs),
         driver(std::move(made)) {}
 
-  void run();
+  void run(bool confined);
   void round(int64_t now);
   base::Status leave_last(ExchangeSet* next, int64_t now);
   base::Status exchange(ExchangeSet& set, bool used, int64_t now);
   void note(const base::Status& status, int64_t now);
+  void note_error(const std::string& text);
+  void written(const std::string& who, const std::string& what) override;
+  void refused(const std::string& who, const std::string& what) override;
+  void say(EventLimit& limit, const std::string& text) const;
   int64_t pause_ns() const;
 
   const ir::Device device;
+  const DeviceLog log;  // null: nobody wants to know
   const bool own_thread;
   const bool exclusive;
   const bool server;
@@ -60,12 +67,14 @@ struct ExchangePort::Core {
   std::atomic<bool> failed{true};
   std::atomic<uint64_t> exchanges{0};
   std::atomic<uint64_t> errors{0};
+  std::atomic<uint64_t> writes{0};
 
   // Never taken by the control thread.
   mutable std::mutex mutex;
   std::condition_variable wake;
   std::vector<std::shared_ptr<ExchangeSet>> sets;
   std::string error;
+  std::string last_writer;
   bool stopping = false;
   bool ended = false;
 
@@ -73,6 +82,9 @@ struct ExchangePort::Core {
   std::unique_ptr<IoDriver> driver;
   std::shared_ptr<ExchangeSet> last_used;
   uint32_t failures = 0;  // in turn
+  std::string said;       // the error that was said last; "": it is online since
+  EventLimit states;
+  EventLimit changes;
 };
 
 int64_t ExchangePort::now_ns() {
@@ -105,7 +117,7 @@ base::Status ExchangePort::Core::leave_last(ExchangeSet* next, int64_t now) {
       outputs_without(last_used->points, next != nullptr ? &next->points : nullptr);
   if (!server && !points.outputs.empty() && last_used->has_outputs) {
     base::Status done =
-        driver->exchange({points, values_left(*last_used, points), {}, now, nullptr});
+        driver->exchange({points, values_left(*last_used, points), {}, now, nullptr, this});
     if (!done.ok()) return done;
   }
   last_used.reset();
@@ -118,7 +130,7 @@ base::Status ExchangePort::Core::exchange(ExchangeSet& set, bool is_used, int64_
   const base::ByteSpan outputs =
       is_used && set.has_outputs ? base::ByteSpan(set.outputs.newest()) : base::ByteSpan();
   base::Status done =
-      driver->exchange({set.points, outputs, set.inputs.work(), now, set.writes.get()});
+      driver->exchange({set.points, outputs, set.inputs.work(), now, set.writes.get(), this});
   if (done.ok()) set.inputs.publish();
   return done;
 }
@@ -157,13 +169,47 @@ void ExchangePort::Core::note(const base::Status& status, int64_t now) {
     received_ns.store(own_thread ? ExchangePort::now_ns() : now, std::memory_order_release);
     failed.store(false, std::memory_order_release);
     failures = 0;
+    if (!said.empty()) say(states, "online");
+    said.clear();
     return;
   }
-  failed.store(true, std::memory_order_release);
-  errors.fetch_add(1, std::memory_order_relaxed);
-  failures = std::min<uint32_t>(failures + 1, 30);
+  note_error(status.error().text);
+}
+
+// A server that nobody has asked yet is none that fails.
+void ExchangePort::Core::note_error(const std::string& text) {
+  const bool was_good = !failed.exchange(true, std::memory_order_acq_rel);
+  const bool idle = driver->idle();
+  if (!idle) {
+    errors.fetch_add(1, std::memory_order_relaxed);
+    failures = std::min<uint32_t>(failures + 1, 30);
+  }
+  if ((was_good || !idle) && text != said) {
+    said = text;
+    say(states, text);
+  }
   std::lock_guard lock(mutex);
-  error = status.error().text;
+  error = text;
+}
+
+void ExchangePort::Core::written(const std::string& who, const std::string& what) {
+  writes.fetch_add(1, std::memory_order_relaxed);
+  say(changes, who + " wrote " + what);
+  std::lock_guard lock(mutex);
+  last_writer = who;
+}
+
+void ExchangePort::Core::refused(const std::string& who, const std::string& what) {
+  say(changes, who + " was not permitted to write " + what);
+}
+
+// In virtual time the control thread exchanges, and has nothing to do with who listens.
+void ExchangePort::Core::say(EventLimit& limit, const std::string& text) const {
+  if (!log || !own_thread) return;
+  const std::optional<uint64_t> omitted = limit.pass(ExchangePort::now_ns());
+  if (!omitted) return;
+  const std::string more = std::to_string(*omitted) + " more such lines were left out";
+  log("device " + device.name + ": " + text + (*omitted == 0 ? "" : "; " + more));
 }
 
 // Longer and longer while nobody answers.
@@ -173,9 +219,13 @@ int64_t ExchangePort::Core::pause_ns() const {
   return std::min(period_ns << std::min<uint32_t>(failures - 1, 20), longest);
 }
 
-void ExchangePort::Core::run() {
+// Without the filter that it should have, nothing is exchanged.
+void ExchangePort::Core::run(bool confined) {
   const int64_t begin = ExchangePort::now_ns();
-  for (bool last = false; !last;) {
+  const base::Status fit =
+      confined ? confine_thread(ThreadKind::kDevice) : base::Status(base::Ok{});
+  if (!fit.ok()) note_error(fit.error().text);
+  for (bool last = !fit.ok(); !last;) {
     {
       std::lock_guard lock(mutex);
       last = stopping;
@@ -194,10 +244,12 @@ void ExchangePort::Core::run() {
   wake.notify_all();
 }
 
-ExchangePort::ExchangePort(ir::Device device, std::unique_ptr<IoDriver> driver, bool own_thread)
-    : core_(std::make_shared<Core>(std::move(device), std::move(driver), own_thread)) {
+ExchangePort::ExchangePort(ir::Device device, std::unique_ptr<IoDriver> driver, bool own_thread,
+                           DeviceLog log, bool confined)
+    : core_(std::make_shared<Core>(std::move(device), std::move(driver), own_thread,
+                                   std::move(log))) {
   if (own_thread) {
-    thread_ = std::thread([core = core_] { core->run(); });
+    thread_ = std::thread([core = core_, confined] { core->run(confined); });
   }
 }
 
@@ -244,6 +296,8 @@ DeviceStatus ExchangePort::status() const {
   out.state = good ? "online" : out.errors == 0 && received == kNever ? "waiting" : "lost";
   std::lock_guard lock(core_->mutex);
   out.error = core_->error;
+  out.writes = core_->writes.load(std::memory_order_relaxed);
+  out.last_writer = core_->last_writer;
   return out;
 }
 

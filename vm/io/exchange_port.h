@@ -48,7 +48,8 @@ class ExchangeSet {
 class ExchangePort {
  public:
   // Without a thread (`own_thread` false), exchange_now() does what it would.
-  ExchangePort(ir::Device device, std::unique_ptr<IoDriver> driver, bool own_thread);
+  ExchangePort(ir::Device device, std::unique_ptr<IoDriver> driver, bool own_thread,
+               DeviceLog log = {}, bool confined = false);
   // The outputs that were sent last go out, if that takes no longer than the timeout and a second;
   // a driver that hangs is left behind.
   ~ExchangePort();

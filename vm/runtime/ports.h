@@ -43,6 +43,8 @@ struct DeviceStatus {
   uint64_t errors = 0;
   int64_t age_ns = -1;  // of the newest inputs; -1: there never were any
   std::string error;    // the last one
+  uint64_t writes = 0;  // of others to %Q and %M
+  std::string last_writer = {};
 };
 
 // Field devices: the process image as the driver sees it. Called by the control

@@ -122,6 +122,8 @@ void device_fields(A& a, T& device) {
   a(device.errors);
   a(device.age_ns);
   a(device.error);
+  a(device.writes);
+  a(device.last_writer);
 }
 
 template <class A, class T>

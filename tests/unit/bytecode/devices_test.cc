@@ -176,6 +176,25 @@ TEST(Devices, SurviveNonsense) {
   EXPECT_GT(good, 100);
 }
 
+// The usual map of a server: others read all of it, and write where `writable` says so.
+TEST(Devices, OthersMayWriteOnlyWhereTheMapSaysSo) {
+  for (const char* writable : {"", "false", "true"}) {
+    Device device{"hmi", "modbus-tcp-server", {}, {}, {}};
+    if (*writable != 0) device.settings = {{"writable", writable}};
+    add_default_map(device, {16, 16, 16});
+    int outside = 0;
+    for (const DeviceMapping& mapping : device.map) {
+      EXPECT_TRUE(mapping.to_device);
+      outside += mapping.writable ? 1 : 0;
+    }
+    EXPECT_EQ(device.map.size(), 6u);
+    EXPECT_EQ(outside, std::string(writable) == "true" ? 4 : 0) << writable;
+    EXPECT_FALSE(find_fault({device}, nullptr).has_value());
+  }
+  expect_refused({{"hmi", "modbus-tcp-server", {{"writable", "yes"}}, {}, {}}},
+                 "must be true or false");
+}
+
 TEST(Devices, AddressesAsText) {
   for (const char* text : {"%IX0.0", "%QX12.7", "%IB3", "%QW4", "%MD10", "%IL2"}) {
     const auto address = parse_address(text);

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <mutex>
 #include <new>
 
 namespace {
@@ -165,6 +166,69 @@ TEST(ExchangePort, ASetThatIsOnlyPreparedIsReadAndNotWritten) {
   EXPECT_TRUE(eventually([&] { return seen->last == 9; }));
   port.use(nullptr);
   EXPECT_TRUE(eventually([&] { return seen->last == 0; }));
+}
+
+TEST(EventLimit, SomeAtOnceThenOneInEachPeriodAndTheOthersAreCounted) {
+  constexpr int64_t kPeriod = EventLimit::kPeriodNs;
+  EventLimit limit;
+  const int64_t begin = 1000 * kPeriod;
+  for (uint64_t i = 0; i < EventLimit::kAtOnce; ++i) EXPECT_EQ(limit.pass(begin), 0u);
+  for (int i = 0; i < 17; ++i) EXPECT_FALSE(limit.pass(begin + i).has_value());
+  EXPECT_FALSE(limit.pass(begin + kPeriod - 1).has_value());
+  EXPECT_EQ(limit.pass(begin + kPeriod), 18u);
+  EXPECT_FALSE(limit.pass(begin + kPeriod).has_value());
+  EXPECT_EQ(limit.pass(begin + 2 * kPeriod), 1u);
+  for (uint64_t i = 0; i < EventLimit::kAtOnce; ++i) EXPECT_EQ(limit.pass(9000 * kPeriod), 0u);
+  EXPECT_FALSE(limit.pass(9000 * kPeriod).has_value());
+}
+
+// Fails as the test says; each exchange is one write of somebody.
+class Faulty : public IoDriver {
+ public:
+  explicit Faulty(std::shared_ptr<std::atomic<int>> how) : how_(std::move(how)) {}
+  base::Status exchange(const Exchange& exchange) override {
+    ++exchanges;
+    if (exchange.events != nullptr) exchange.events->written("somebody", "coil 0");
+    if (*how_ == 0) return base::Ok{};
+    return exchange_failed(*how_ == 1 ? "nobody asks" : "port in use");
+  }
+  bool idle() const override { return *how_ == 1; }
+  inline static std::atomic<uint64_t> exchanges{0};
+
+ private:
+  std::shared_ptr<std::atomic<int>> how_;
+};
+
+TEST(ExchangePort, WhatHappensIsSaidOnceAndIdleIsNoError) {
+  auto how = std::make_shared<std::atomic<int>>(1);
+  std::mutex mutex;
+  std::vector<std::string> lines;
+  ir::Device server = device("1");
+  server.driver = "modbus-tcp-server";  // which does not wait longer when it fails
+  ExchangePort port(server, std::make_unique<Faulty>(how), true, [&](const std::string& line) {
+    std::lock_guard lock(mutex);
+    if (line.find("wrote") == std::string::npos) lines.push_back(line);
+  });
+  const auto set = port.add(points(0, 1), zeros(1));
+  port.use(set.get());
+  const auto goes_on = [&] {
+    const uint64_t begin = Faulty::exchanges;
+    return eventually([&] { return Faulty::exchanges > begin + 5; });
+  };
+  EXPECT_TRUE(goes_on());
+  EXPECT_EQ(port.status().errors, 0u);
+  EXPECT_EQ(port.status().state, "waiting");
+  EXPECT_EQ(port.status().error, "nobody asks");
+  for (const int next : {2, 0, 1, 0}) {
+    *how = next;
+    EXPECT_TRUE(goes_on());
+  }
+  EXPECT_GT(port.status().errors, 0u);
+  EXPECT_GT(port.status().writes, 20u);
+  EXPECT_EQ(port.status().last_writer, "somebody");
+  std::lock_guard lock(mutex);
+  EXPECT_EQ(lines, (std::vector<std::string>{"device d: port in use", "device d: online",
+                                             "device d: nobody asks", "device d: online"}));
 }
 
 TEST(ExchangePort, WhatIsLeftBecomesSafeOrStays) {

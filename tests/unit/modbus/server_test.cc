@@ -190,6 +190,20 @@ TEST(Server, AClientThatReadsNothingIsDropped) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
 }
 
+struct Events : vm::OutsideEvents {
+  void written(const std::string& who, const std::string& what) override {
+    note(who, "wrote " + what);
+  }
+  void refused(const std::string& who, const std::string& what) override {
+    note(who, "may not write " + what);
+  }
+  void note(const std::string& who, const std::string& what) {
+    EXPECT_TRUE(who.starts_with("127.0.0.1:")) << who;
+    lines.push_back(what);
+  }
+  std::vector<std::string> lines;
+};
+
 // `<->`: others see the program's value and can write it; the write goes on to the control thread.
 TEST(Server, WritesToTheProgramsPointsArePassedOnWhole) {
   const int port = free_port();
@@ -199,13 +213,14 @@ TEST(Server, WritesToTheProgramsPointsArePassedOnWhole) {
   Rig rig(device("modbus-tcp-server", {{"address", local(port)}, {"period_ms", "5"}},
                  {words, coils, out(PointTable::kHolding, 4, 1, 16, 128)}));
   vm::WriteQueue queue(6);
+  Events events;
   std::vector<vm::OutsideWrite> taken;
   std::atomic<bool> taking{true};
   std::atomic<size_t> count{0};
   std::atomic<bool> ending{false};
   std::thread serving([&] {
     while (!ending) {
-      (void)rig.driver->exchange({rig.points, rig.outputs, rig.inputs, 0, &queue});
+      (void)rig.driver->exchange({rig.points, rig.outputs, rig.inputs, 0, &queue, &events});
       if (taking) queue.take([&](const vm::OutsideWrite& write) { taken.push_back(write); });
       count = taken.size();
     }
@@ -244,6 +259,26 @@ TEST(Server, WritesToTheProgramsPointsArePassedOnWhole) {
   EXPECT_EQ(taken[2].bit, 64u + 5u);
   EXPECT_EQ(taken[2].bits, 1u);
   EXPECT_EQ(taken[2].value, 1);
+  EXPECT_EQ(events.lines, (std::vector<std::string>{"wrote holding 2..3", "wrote coil 5",
+                                                    "may not write holding 4",
+                                                    "wrote holding 0..3"}));
+}
+
+TEST(Server, WhoListensWithoutAnAddressIsAskedByThisMachineOnly) {
+  EXPECT_EQ(ir::setting(device("modbus-tcp-server", {}, {}), "address"), "127.0.0.1:502");
+}
+
+// Nobody asks: that is a loss of communication, and no error.
+TEST(Server, AServerThatNobodyAsksIsIdle) {
+  const int port = free_port();
+  vm::Descriptor taken = listen_raw(port);
+  Rig rig(device("modbus-tcp-server",
+                 {{"address", local(port)}, {"period_ms", "1"}, {"timeout_ms", "1"}},
+                 {in(PointTable::kHolding, 0, 1, 16)}));
+  EXPECT_FALSE(rig.online());
+  EXPECT_FALSE(rig.driver->idle());
+  taken = vm::Descriptor();
+  EXPECT_TRUE(rig.until([&] { return rig.driver->idle(); }));
 }
 
 TEST(Server, APortThatIsTakenIsAnErrorUntilItIsFree) {
@@ -253,7 +288,8 @@ TEST(Server, APortThatIsTakenIsAnErrorUntilItIsFree) {
                  {in(PointTable::kHolding, 0, 1, 16)}));
   const base::Status done = rig.exchange();
   ASSERT_FALSE(done.ok());
-  EXPECT_NE(done.error().text.find("Address already in use"), std::string::npos);
+  EXPECT_NE(done.error().text.find("Address already in use; another process listens there"),
+            std::string::npos);
   taken = vm::Descriptor();
   (void)rig.exchange();
   EXPECT_TRUE(connect_client(port));

@@ -46,7 +46,7 @@ vm::StatusReport status() {
   out.interpreted = {"Main: why"};
   out.tasks = {{"Fast", 27, 28, 29, 30, 31, 32, summary(33), summary(38), true, false, true}};
   out.traps = {{43, "Slow", {"Pou", "file.st", 44, "text"}}};
-  out.devices = {{"rack", "modbus", "online", 45, 46, 47, "none"}};
+  out.devices = {{"rack", "modbus", "online", 45, 46, 47, "none", 48, "writer"}};
   return out;
 }
 
@@ -119,6 +119,7 @@ constexpr Version kVersions[] = {
     {4, "8ac16b7c3e79"},
     {5, "7f04c328f272"},
     {6, "63e0412d28b5"},
+    {7, "538391035e10"},
 };
 
 TEST(ProtocolLayout, BelongsToTheVersion) {
