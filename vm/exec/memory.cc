@@ -23,7 +23,9 @@ base::Result<Memory> Memory::reserve() {
     if (range != MAP_FAILED) munmap(range, kBytes + kGuard);
     return base::Error{base::Refusal::kTooLarge,
                        std::string("cannot reserve 7 GiB of address space for data memory: ") +
-                           std::strerror(reason) + "; look at `ulimit -v`"};
+                           std::strerror(reason) +
+                           "; raise `ulimit -v` and `ulimit -d`, and leave vm.overcommit_memory "
+                           "at 0 or 1: memory is used only where the program has data"};
   }
   return Memory(static_cast<uint8_t*>(range));
 }
