@@ -7,7 +7,9 @@
 #   make bench    ST against C, and the compiler; writes docs/performance.md
 #   make bench-large   the compiler on a million lines
 #   make bench-pause   how long online changes stop the tasks; writes docs/pause.md
-#   make asan     tests under AddressSanitizer and UBSan (also: ubsan, tsan)
+#   make asan     all tests under AddressSanitizer and UBSan (also: ubsan)
+#   make asan-memory   those of them that touch memory most, as for every commit
+#   make tsan     what has threads under ThreadSanitizer
 #   make fuzz     a million executions of each fuzz target under sanitizers
 #   make differential  5,000 random programs and changes on every tier; SEED=n begins elsewhere
 #   make soak     long differential and hard mode runs
@@ -18,7 +20,7 @@
 BUILD := build/release
 JOBS := $(shell nproc)
 
-.PHONY: all build setup demo test test-arm64 test-minimal minimal bench bench-large bench-pause format asan ubsan tsan fuzz differential soak coverage docs clean
+.PHONY: all build setup demo test test-arm64 test-minimal minimal bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak coverage docs clean
 
 all: build
 
@@ -42,10 +44,24 @@ minimal: setup
 	@cmake --build build/minimal -j $(JOBS)
 	@ctest --test-dir build/minimal --output-on-failure -j $(JOBS)
 
-asan ubsan tsan: setup
+asan ubsan: setup
 	@cmake --preset $@ >/dev/null
 	@cmake --build build/$@ -j $(JOBS)
 	@ctest --test-dir build/$@ --output-on-failure -j $(JOBS)
+
+empty :=
+one_of = ($(subst $(empty) ,|,$(1)))
+MEMORY := exec native runtime io resources exchange online_change references store workspace
+asan-memory: setup
+	@cmake --preset asan >/dev/null
+	@cmake --build build/asan -j $(JOBS) --target $(MEMORY:%=test_%) golden fuzz_targets
+	@ctest --test-dir build/asan --output-on-failure -j $(JOBS) -R '^(unit_$(call one_of,$(MEMORY))|golden_.*|fuzz_.*)$$'
+
+THREADED := base runtime io resources exchange modbus store workspace
+tsan: setup
+	@cmake --preset tsan >/dev/null
+	@cmake --build build/tsan -j $(JOBS) --target $(THREADED:%=test_%)
+	@ctest --test-dir build/tsan --output-on-failure -j $(JOBS) -R '^unit_$(call one_of,$(THREADED))$$'
 
 # For another processor, so apart from `make test`: a build of its own, and qemu is slow.
 test-arm64: setup

@@ -10,9 +10,10 @@ void Layout::measure(const Line& line) {
   first_ = line.first;
   uint32_t count = line.end - line.first;
   blank_.assign(count, false);
-  before_.assign(count, 0);
+  // Behind the last token, too: there an operator may end the line, and nothing stands or breaks.
+  before_.assign(count + 1, 0);
   width_sum_.assign(count + 1, 0);
-  forced_sum_.assign(count + 1, 0);
+  forced_sum_.assign(count + 2, 0);
   match_brackets(line);
   for (uint32_t k = 0; k < count; ++k) {
     uint32_t i = line.first + k;
@@ -21,6 +22,7 @@ void Layout::measure(const Line& line) {
     if (k != 0) measure_gap(i);
     width_sum_[k + 1] = width_sum_[k] + before_[k] + text_.columns(text_.token(i));
   }
+  forced_sum_[count + 1] = forced_sum_[count];
 }
 
 bool Layout::fits_flat(const Line& line, uint32_t prefix_columns) const {

@@ -29,7 +29,8 @@ Stmt Builder::for_statement(int depth) {
                             : std::max<int64_t>(all.low, -3 + static_cast<int>(below(8)));
   int64_t low = start;
   int64_t high = std::min(all.high, start + span);
-  if (one_in(10)) high = start - 1;  // no round at all, if the type has such a value
+  // No round at all, if the type has such a value.
+  if (one_in(10) && start > INT64_MIN) high = start - 1;
   if (high < all.low || low > all.high || low == INT64_MIN) return assignment();
   int64_t from = down ? high : low;
   int64_t to = down ? low : high;

@@ -50,10 +50,17 @@ bool is_no_literal(const ir::Image& image, const std::string& path, const std::s
 Snapshot::Snapshot(vm::Controller& controller) : image_(controller.verified()) {
   const uint8_t* begin = controller.memory().data();
   data_.assign(begin, begin + controller.image().data_capacity);
+  for (const vm::Force& force : controller.forces()) forced_.push_back(force.path);
 }
 
 const Values& Snapshot::values() const {
-  if (!values_) values_ = values_of(image_.image(), data_);
+  if (values_) return *values_;
+  values_ = values_of(image_.image(), data_);
+  for (const std::string& path : forced_) {
+    if (const auto found = values_->find(path); found != values_->end()) {
+      found->second.comparable = false;
+    }
+  }
   return *values_;
 }
 

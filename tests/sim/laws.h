@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ir/bytecode/verify.h"
 #include "tests/sim/violation.h"
@@ -15,7 +16,7 @@ namespace sim {
 struct Value {
   std::string type;
   std::string text;
-  bool comparable = true;  // neither constant nor reference, nor in a union
+  bool comparable = true;  // neither constant nor reference, nor in a union, nor forced
   bool retain = false;
 };
 using Values = std::map<std::string, Value>;  // by path
@@ -31,6 +32,7 @@ class Snapshot {
  private:
   ir::VerifiedImage image_;
   base::Bytes data_;
+  std::vector<std::string> forced_;  // whose scan trapped is not as it is forced until the next one
   mutable std::optional<Values> values_;
 };
 

@@ -1,6 +1,7 @@
-// sim FIRST COUNT [--steps N] [--jobs N] [--trace]: runs of seeds FIRST.. in a simulated plant,
-// each in a process of its own. A seed that breaks a law is printed, and the same seed breaks it
-// again. Ends with counts.
+// sim FIRST COUNT [--steps N | --hours N] [--jobs N] [--trace]: runs of seeds FIRST.. in a simulated
+// plant, each in a process of its own: N steps, or N hours of the plant's time. A seed that breaks a
+// law is printed, and the same seed breaks it again. Ends with counts.
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,12 +16,14 @@
 
 namespace {
 
-constexpr unsigned kSecondsPerSeed = 60;
+// Of processor time: a machine that is busy is no finding.
+constexpr unsigned kSecondsPerSeed = 300;
 
 struct Options {
   uint64_t first = 1;
   uint64_t count = 1;
   int steps = 60;
+  int hours = 0;  // 0: steps
   uint64_t jobs = 1;
   bool trace = false;
 };
@@ -34,6 +37,8 @@ Options parse(int argc, char** argv) {
       out.trace = true;
     } else if (word == "--steps" && i + 1 < argc) {
       out.steps = std::atoi(argv[++i]);
+    } else if (word == "--hours" && i + 1 < argc) {
+      out.hours = std::atoi(argv[++i]);
     } else if (word == "--jobs" && i + 1 < argc) {
       out.jobs = static_cast<uint64_t>(std::max(1, std::atoi(argv[++i])));
     } else {
@@ -58,6 +63,7 @@ struct Sum {
     tally.refusals += other.tally.refusals;
     tally.faults += other.tally.faults;
     tally.cuts += other.tally.cuts;
+    tally.plant_ns += other.tally.plant_ns;
     seeds += other.seeds;
     skipped += other.skipped;
     failed += other.failed;
@@ -67,8 +73,15 @@ struct Sum {
 Sum run_seed(uint64_t seed, const Options& options) {
   Sum out;
   sim::World world(seed, options.trace);
+  const auto hourly = [seed](int hour, uint64_t most) {
+    std::printf("seed %llu, hour %d: %.1f MB of the heap at most\n",
+                static_cast<unsigned long long>(seed), hour, static_cast<double>(most) / 1e6);
+    std::fflush(stdout);
+  };
   try {
-    ++(world.run(options.steps) ? out.seeds : out.skipped);
+    const bool ran =
+        options.hours != 0 ? world.endure(options.hours, hourly) : world.run(options.steps);
+    ++(ran ? out.seeds : out.skipped);
   } catch (const sim::Violation& violation) {
     out.failed = 1;
     std::printf("seed %llu: %s\n", static_cast<unsigned long long>(seed), violation.what());
@@ -85,7 +98,10 @@ Sum isolated(uint64_t seed, const Options& options) {
   std::fflush(stdout);
   const pid_t child = ::fork();
   if (child == 0) {
-    ::alarm(kSecondsPerSeed);
+    if (options.hours == 0) {
+      const rlimit most{kSecondsPerSeed, kSecondsPerSeed};
+      ::setrlimit(RLIMIT_CPU, &most);
+    }
     Sum one = run_seed(seed, options);
     std::fflush(stdout);
     const bool told = ::write(ends[1], &one, sizeof one) == sizeof one;
@@ -95,7 +111,7 @@ Sum isolated(uint64_t seed, const Options& options) {
   if (::read(ends[0], &out, sizeof out) != sizeof out) {
     out = {};
     out.failed = 1;
-    std::printf("seed %llu: crashed, or took longer than %u s\n",
+    std::printf("seed %llu: crashed, or took more than %u s of processor time\n",
                 static_cast<unsigned long long>(seed), kSecondsPerSeed);
   }
   ::close(ends[0]);
@@ -130,9 +146,10 @@ int main(int argc, char** argv) {
   auto number = [](uint64_t n) { return static_cast<unsigned long long>(n); };
   std::printf(
       "%llu seeds, %llu skipped, %llu failed: %llu steps, %llu boundaries, %llu switches, "
-      "%llu refusals, %llu faults, %llu power cuts\n",
+      "%llu refusals, %llu faults, %llu power cuts, %.1f h of the plant\n",
       number(sum.seeds), number(sum.skipped), number(sum.failed), number(sum.tally.steps),
       number(sum.tally.boundaries), number(sum.tally.switches), number(sum.tally.refusals),
-      number(sum.tally.faults), number(sum.tally.cuts));
+      number(sum.tally.faults), number(sum.tally.cuts),
+      static_cast<double>(sum.tally.plant_ns) / 3.6e12);
   return sum.failed != 0 || sum.seeds == 0 ? 1 : 0;
 }

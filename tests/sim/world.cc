@@ -41,7 +41,7 @@ void World::refused(const base::Error& error) {
   require(error.refusal != base::Refusal::kInternal, "internal: " + error.text);
 }
 
-bool World::run(int steps) {
+bool World::begin() {
   auto first = std::make_shared<Version>();
   first->tree = differential::random_program(random_.next(), false);
   std::optional<golden::Program> program = compiled(first->tree);
@@ -49,9 +49,16 @@ bool World::run(int steps) {
   first->compiled = std::move(*program);
   base::Result<ir::VerifiedImage> image = golden::link(first->compiled, nullptr, false);
   if (!image.ok()) return false;
-  versions_[image->digest()] = first;
+  versions_[image->digest()] = first_ = first;
   boot(*image);
+  return true;
+}
+
+bool World::run(int steps) {
+  const int64_t since_ns = clock_.now_ns();
+  if (!begin()) return false;
   for (int i = 0; i < steps; ++i) step();
+  tally_.plant_ns += static_cast<uint64_t>(clock_.now_ns() - since_ns);
   return true;
 }
 
@@ -105,9 +112,11 @@ vm::StatusReport World::settled() {
 std::shared_ptr<World::Version> World::edited_version(const base::Digest& base) {
   const auto known = versions_.find(base);
   require(known != versions_.end(), "what runs is a version that somebody made");
+  const bool large = differential::print(known->second->tree).size() > most_text_;
+  const differential::Program& from = large ? first_->tree : known->second->tree;
   for (int attempt = 0; attempt < 5; ++attempt) {
     auto next = std::make_shared<Version>();
-    next->tree = differential::edited(known->second->tree, random_.next());
+    next->tree = differential::edited(from, random_.next());
     std::optional<golden::Program> program = compiled(next->tree);
     if (!program || has_events(*program)) continue;
     next->compiled = std::move(*program);
@@ -296,12 +305,13 @@ void World::accept() {
   boundary_->guard("");
   const vm::StatusReport now = settled();
   require(now.running == hand.seen.running, "accept does not change what runs");
-  if (done.ok()) {
+  const bool lost = hand.way->lost();
+  if (!done.ok()) refused(done.error());
+  if (done.ok() && !lost) {  // else a bit that was damaged may have made another request of it
     require(trial, "only a trial can be accepted");
     require(now.boots_next == now.running && now.change == "idle", "what is accepted boots next");
   } else {
-    refused(done.error());
-    require(hand.way->lost() || now.boots_next == hand.seen.boots_next,
+    require((lost && trial && now.boots_next == now.running) || now.boots_next == hand.seen.boots_next,
             "an accept that was refused changes nothing");
   }
 }

@@ -3,6 +3,7 @@
 // transport replaced. The same seed is the same run on every machine.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -29,7 +30,11 @@ struct Tally {
   uint64_t refusals = 0;
   uint64_t faults = 0;
   uint64_t cuts = 0;
+  uint64_t plant_ns = 0;  // of the plant's time
 };
+
+// What was used most of the heap, in an hour of the plant's time.
+using Hourly = std::function<void(int hour, uint64_t most_bytes)>;
 
 class World {
  public:
@@ -38,6 +43,9 @@ class World {
   ~World();
   // Throws Violation. False: the seed's program does not compile.
   bool run(int steps);
+  // endurance.cc: a step every few seconds of `hours` of the plant's time, scans in between. Memory
+  // must stay flat: no hour uses much more than the first.
+  bool endure(int hours, const Hourly& hourly);
   const Tally& tally() const { return tally_; }
 
  private:
@@ -51,7 +59,10 @@ class World {
     vm::StatusReport seen;
   };
 
+  bool begin();
   void step();
+  void scan_for(int64_t ns);
+  void forget_versions();
   uint32_t strategy();  // of a change, as a flag of the protocol
   void let_run();
   void change();
@@ -97,6 +108,8 @@ class World {
   std::unique_ptr<SteppedBoundary> boundary_;
   std::unique_ptr<stvm::ControllerService> service_;
   std::map<base::Digest, std::shared_ptr<Version>> versions_;
+  std::shared_ptr<Version> first_;
+  size_t most_text_ = SIZE_MAX;  // of a program that is edited further; the first one, instead
   // What a boot may find: programs, and the retained values of one of these boundaries.
   std::vector<base::Digest> may_boot_;
   std::vector<Values> retained_;

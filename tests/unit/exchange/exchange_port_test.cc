@@ -5,23 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <mutex>
-#include <new>
 
-namespace {
-
-thread_local uint64_t allocations = 0;
-
-}  // namespace
-
-[[gnu::noinline]] void* operator new(size_t size) {
-  ++allocations;
-  if (void* at = std::malloc(size)) return at;
-  std::abort();
-}
-[[gnu::noinline]] void operator delete(void* at) noexcept { std::free(at); }
-[[gnu::noinline]] void operator delete(void* at, size_t) noexcept { std::free(at); }
+#include "tests/unit/allocations.h"
 
 namespace vm {
 namespace {
@@ -88,7 +74,7 @@ TEST(ExchangePort, B8_TheControlSideNeitherWaitsNorAllocates) {
   const auto set = port->add(points(0, 64), zeros(64));
   port->use(set.get());
   ASSERT_TRUE(eventually([&] { return seen->exchanges > 0; }));
-  const uint64_t before = allocations;
+  const uint64_t before = tests::allocations();
   const int64_t begin = ExchangePort::now_ns();
   int fresh = 0;
   uint64_t rounds = 0;
@@ -98,7 +84,7 @@ TEST(ExchangePort, B8_TheControlSideNeitherWaitsNorAllocates) {
     if (set->inputs.take()) ++fresh;
     port->use(set.get());
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(tests::allocations(), before);
   EXPECT_EQ(fresh, 0);          // it hung all the time
   EXPECT_GT(rounds, 100'000u);  // and nobody waited for it
   seen->hang_ms = 0;

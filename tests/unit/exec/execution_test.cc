@@ -6,31 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <new>
-
+#include "tests/unit/allocations.h"
 #include "tests/unit/exec/machine.h"
 #include "vm/native/program.h"
-
-namespace {
-
-uint64_t allocations = 0;
-
-}  // namespace
-
-// Not inlined, or the compiler takes malloc and delete for a mismatched pair.
-[[gnu::noinline]] void* operator new(size_t size) {
-  ++allocations;
-  void* block = std::malloc(size == 0 ? 1 : size);
-  if (block == nullptr) throw std::bad_alloc();
-  return block;
-}
-[[gnu::noinline]] void* operator new(size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size == 0 ? 1 : size);
-}
-[[gnu::noinline]] void operator delete(void* block) noexcept { std::free(block); }
-[[gnu::noinline]] void operator delete(void* block, size_t) noexcept { std::free(block); }
 
 namespace {
 
@@ -131,12 +109,12 @@ TEST(Execution, AMillionStraightInstructionsDoNotGrowTheStack) {
 TEST(Execution, AScanAllocatesNothing) {
   Machine machine(busy_image());
   ASSERT_EQ(machine.scan(), Exit::kDone);
-  const uint64_t before = allocations;
+  const uint64_t before = tests::allocations();
   for (int i = 0; i < 100; ++i) machine.scan();
   machine.start();
   while (machine.execution().run(1) == Exit::kSuspended) {
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(tests::allocations(), before);
 }
 
 // In a process that may do nothing but end: any other system call kills it.

@@ -164,7 +164,7 @@ TEST(DeviceIo, ALossIsOfTheTaskOfThatNameInTheRunningVersion) {
   ASSERT_NE(number(*first), number(*second));
   ASSERT_TRUE(io.prepare(*first).ok());
   io.use(first->digest());
-  base::Bytes inputs(16);
+  base::Bytes inputs(first->image().input_bytes);
   const auto lost = [&] {
     clock.advance(10'000'000);
     io.send(base::Bytes(2));
@@ -180,6 +180,7 @@ TEST(DeviceIo, ALossIsOfTheTaskOfThatNameInTheRunningVersion) {
   };
   EXPECT_EQ(lost(), base::Bytes(2));
   ASSERT_TRUE(io.prepare(*second).ok());
+  ASSERT_EQ(second->image().input_bytes, inputs.size());
   io.use(second->digest());
   fake.broken = true;
   EXPECT_EQ(lost(), only(number(*second)));

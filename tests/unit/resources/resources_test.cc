@@ -1,23 +1,7 @@
 // Several resources of a CONFIGURATION in one process: each with its own cycle, changed by itself,
 // and their globals exchanged at the boundaries.
-#include <cstdlib>
-#include <new>
-
+#include "tests/unit/allocations.h"
 #include "tests/unit/resources/rig.h"
-
-namespace {
-
-thread_local uint64_t allocations = 0;
-
-}  // namespace
-
-[[gnu::noinline]] void* operator new(size_t size) {
-  ++allocations;
-  if (void* at = std::malloc(size)) return at;
-  std::abort();
-}
-[[gnu::noinline]] void operator delete(void* at) noexcept { std::free(at); }
-[[gnu::noinline]] void operator delete(void* at, size_t) noexcept { std::free(at); }
 
 namespace resources_test {
 namespace {
@@ -272,9 +256,9 @@ TEST(Resources, NothingIsAllocatedInACycle) {
   Rig rig(plant(kBlock, kWritesBlock, kReadsBlock));
   ASSERT_TRUE(rig.ok()) << rig.error;
   rig.run_to(100);
-  const uint64_t before = allocations;
+  const uint64_t before = tests::allocations();
   rig.run_to(500);
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(tests::allocations(), before);
   EXPECT_EQ(rig.get(kPack, "p.seen"), "50");
 }
 
