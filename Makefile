@@ -15,12 +15,13 @@
 #   make soak     long differential and hard mode runs
 #   make test-arm64  golden files and random programs on AArch64, under qemu
 #   make minimal  build and test with every adapter off
+#   make clang    build and test by clang 16, without a warning as by g++
 #   make format   clang-format over the whole tree
 
 BUILD := build/release
 JOBS := $(shell nproc)
 
-.PHONY: all build setup demo test test-arm64 test-minimal minimal bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak coverage docs clean
+.PHONY: all build setup demo test test-arm64 test-minimal minimal clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak coverage docs clean
 
 all: build
 
@@ -43,6 +44,12 @@ minimal: setup
 	@cmake --preset minimal >/dev/null
 	@cmake --build build/minimal -j $(JOBS)
 	@ctest --test-dir build/minimal --output-on-failure -j $(JOBS)
+
+clang: setup
+	@scripts/setup.sh clang-16
+	@cmake --preset clang >/dev/null
+	@cmake --build build/clang -j $(JOBS)
+	@ctest --test-dir build/clang --output-on-failure -j $(JOBS)
 
 asan ubsan: setup
 	@cmake --preset $@ >/dev/null

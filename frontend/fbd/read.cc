@@ -322,7 +322,6 @@ class Reader {
   size_t behind_ = 0;           // the last row, in text_
   uint32_t last_row_ = kNoRow;  // its element
   bool label_ = false;          // the last row is a label
-  bool good_ = true;            // the operand that is linked
 };
 
 }  // namespace

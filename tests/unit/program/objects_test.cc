@@ -236,14 +236,6 @@ TEST(IrTry, HandlerSeesEveryStoreBeforeTheTrap) {
                {"n=5", "kind=0"});
 }
 
-constexpr std::string_view kDeepTrap = R"(pou function Deep
-  local input x : DINT
-  local return r : DINT
-  b0:
-    store i32 local.r, v0
-    trap assert
-)";
-
 TEST(IrTry, NestedTriesAndTrapsOfCallees) {
   const std::string deep = R"(pou function Deep
   local input x : DINT
