@@ -1,10 +1,12 @@
 // Bytes of the heap that are in use; under a sanitizer, of its heap.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #ifdef STC_SANITIZED_HEAP
-#include <sanitizer/allocator_interface.h>
+// As <sanitizer/allocator_interface.h> declares it, which not every g++ brings along.
+extern "C" size_t __sanitizer_get_current_allocated_bytes();
 #else
 #include <malloc.h>
 #endif

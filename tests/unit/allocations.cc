@@ -17,7 +17,9 @@ uint64_t allocations() { return counted; }
 
 #ifdef STC_SANITIZED_HEAP
 
-#include <sanitizer/allocator_interface.h>
+// As <sanitizer/allocator_interface.h> declares it, which not every g++ brings along.
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*taken)(const volatile void*, size_t),
+                                                         void (*freed)(const volatile void*));
 
 namespace {
 
