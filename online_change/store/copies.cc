@@ -75,7 +75,7 @@ base::Status Copies::write(size_t number, const Payload& payload) {
 
 base::Status Copies::renew(size_t number) {
   Copy& copy = copies_[number];
-  if (!copy.dead || valid(number)) return base::Ok{};
+  if (!copy.dead || valid(number) || unread(number)) return base::Ok{};
   base::Status made = storage_.replace(copy.name, copy.room, {});
   if (!made.ok()) return bury(copy, made.error());
   copy.record = {};
@@ -84,12 +84,18 @@ base::Status Copies::renew(size_t number) {
 }
 
 void Copies::check() {
-  for (Copy& copy : copies_) {
-    if (copy.dead && copy.record.state != RecordState::kValid) continue;
+  doubt_.clear();
+  for (size_t i = 0; i < copies_.size(); ++i) {
+    Copy& copy = copies_[i];
+    if (copy.dead && !valid(i) && !unread(i)) continue;
     base::Status there = storage_.check(copy.name);
     if (there.ok()) continue;
-    (void)bury(copy, there.error()).ok();
-    copy.record = {RecordState::kDamaged, 0, {}};
+    if (there.error().refusal == base::Refusal::kFileNotFound) {
+      (void)bury(copy, there.error()).ok();
+      reject(i);
+    } else if (doubt_.empty()) {
+      doubt_ = there.error().text;
+    }
   }
 }
 
@@ -97,7 +103,7 @@ std::string Copies::complaint() const {
   for (const Copy& copy : copies_) {
     if (copy.dead) return copy.why;
   }
-  return {};
+  return doubt_;
 }
 
 }  // namespace online_change

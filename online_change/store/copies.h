@@ -1,6 +1,7 @@
 // Several copies of one kind of record, each in a file: the newest valid one counts. A copy on
 // which an operation has failed is dead, since nobody knows what its file holds: it is never
-// written in place again, and lives again when a new file has taken the place of that one.
+// written in place again, and lives again when a new file has taken the place of that one. A file
+// that could not be read may hold what nothing else does: only new content takes its place.
 #pragma once
 
 #include <optional>
@@ -34,7 +35,8 @@ class Copies {
   base::Status write(size_t number, const Payload& payload);
   // A dead copy that holds nothing gets a new file that is empty.
   base::Status renew(size_t number);
-  // A copy whose file has been removed is dead, and holds nothing.
+  // A copy whose file has been removed is dead, and holds nothing. When nobody can tell, that is a
+  // complaint until the next check.
   void check();
 
   size_t count() const { return copies_.size(); }
@@ -67,11 +69,15 @@ class Copies {
     return best;
   }
   bool whole(size_t number) const { return valid(number) && !copies_[number].dead; }
+  // Nobody knows what it holds.
+  bool unread(size_t number) const {
+    return copies_[number].record.state == RecordState::kUnreadable;
+  }
   // What recover() read; kept until then.
   base::Bytes take_payload(size_t number) { return std::move(copies_[number].record.payload); }
   // It is not what it should be.
   void reject(size_t number) { copies_[number].record = {RecordState::kDamaged, 0, {}}; }
-  // Why the first of the dead ones is; empty while none is dead.
+  // Why the first of the dead ones is dead, or what check() could not tell; else empty.
   std::string complaint() const;
 
  private:
@@ -81,6 +87,7 @@ class Copies {
   RecordKind kind_;
   std::vector<Copy> copies_;
   uint64_t last_sequence_ = 0;
+  std::string doubt_;  // of the last check()
 };
 
 }  // namespace online_change

@@ -178,7 +178,7 @@ void Journal::check() {
   if (!complaint_.empty() && !unread_) return;
   base::Status there = storage_.check(name_);
   if (there.ok()) return;
-  unread_ = false;
+  if (there.error().refusal == base::Refusal::kFileNotFound) unread_ = false;
   (void)fail(there.error()).ok();
 }
 

@@ -133,7 +133,7 @@ std::optional<size_t> Store::newest_accepted() const {
 void Store::reject_boots() {
   std::lock_guard lock(mutex_);
   if (boots_valid()) in_slot_[control_.slot].reset();
-  show_slots();
+  show_boots();
 }
 
 base::Status Store::write_control(const ControlRecord& next) {
@@ -144,7 +144,7 @@ base::Status Store::write_control(const ControlRecord& next) {
   if (written.ok()) control_ = next;
   has_control_ |= written.ok();
   show_control();
-  show_slots();
+  show_boots();
   if (!written.ok()) return failed("the control record: " + written.error().text);
   return written;
 }
@@ -163,12 +163,14 @@ base::Status Store::write_slot(size_t slot, const ImageToStore& image) {
 }
 
 base::Status Store::write_image(size_t slot, const ImageToStore& image, uint64_t retain_bytes) {
+  retained_.check();
   for (size_t i = 0; i < retained_.count(); ++i) {
     base::Status room = retained_.reserve(i, retain_payload_bytes(retain_bytes));
     if (!room.ok()) return room;
   }
-  if (written_[slot] && in_slot_[slot] == image.digest) return base::Ok{};
-  const bool aside = aside_ != nullptr && aside_->data() == image.bytes.data() &&
+  const bool whole = slots_.whole(slot);
+  if (whole && written_[slot] && in_slot_[slot] == image.digest) return base::Ok{};
+  const bool aside = whole && aside_ != nullptr && aside_->data() == image.bytes.data() &&
                      aside_->size() == image.bytes.size();
   aside_.reset();
   if (!aside) {

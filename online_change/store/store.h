@@ -145,7 +145,8 @@ class Store {
   enum Shown : size_t { kControl, kSlots, kBoots, kRetained, kJournal, kTraps, kShownKinds };
   void show(Shown kind, std::string complaint) const;
   void show_control() const;
-  void show_slots() const;
+  void show_slots() const;  // with slots_mutex_
+  void show_boots() const;
   // Is there a slot for a trial?
   base::Status may_begin_trial() const;
   bool boots_valid() const { return has_control_ && in_slot_[control_.slot] == control_.boots; }

@@ -37,7 +37,7 @@ bool Store::needs_slot(size_t slot) const {
 base::Status Store::renew_slots_locked() {
   base::Status renewed = base::Ok{};
   for (size_t i = 0; i < slots_.count() && renewed.ok(); ++i) {
-    if (!slots_[i].dead || needs_slot(i)) continue;
+    if (!slots_[i].dead || slots_.unread(i) || needs_slot(i)) continue;
     in_slot_[i].reset();
     slots_.reject(i);
     renewed = slots_.renew(i);
@@ -53,7 +53,8 @@ bool Store::needs_copy(size_t copy) const {
 base::Status Store::renew_retained_locked() {
   base::Status renewed = base::Ok{};
   for (size_t i = 0; i < retained_.count() && renewed.ok(); ++i) {
-    if (!retained_[i].dead || (retained_.valid(i) && needs_copy(i))) continue;
+    const bool needed = retained_.valid(i) && needs_copy(i);
+    if (!retained_[i].dead || retained_.unread(i) || needed) continue;
     in_copy_[i].reset();
     retained_.reject(i);
     renewed = retained_.renew(i);
@@ -122,6 +123,10 @@ void Store::show_journals() const {
 
 void Store::show_slots() const {
   show(kSlots, slots_.complaint());
+  show_boots();
+}
+
+void Store::show_boots() const {
   const bool lost = has_control_ && !boots_valid();
   const bool trial_lost = control_.trial && in_slot_[1 - control_.slot] != control_.trial_digest;
   std::string text;

@@ -71,7 +71,7 @@ base::Result<FileStorage::File> FileStorage::take(const std::string& path, bool 
   if (!S_ISREG(info.st_mode)) {
     return base::Error{base::Refusal::kFileUnreadable, path + ": not a file"};
   }
-  return File{std::move(descriptor), static_cast<uint64_t>(info.st_size), writable, false};
+  return File{std::move(descriptor), static_cast<uint64_t>(info.st_size), writable, code, false};
 }
 
 base::Status FileStorage::allocate(File& file, const std::string& path, uint64_t size) const {
@@ -108,7 +108,7 @@ base::Status FileStorage::open(std::string_view name, uint64_t size) {
   if (!done.ok() && created) ::unlink(file_path->c_str());
   if (!done.ok()) return done;
   keep(name, std::move(*file));
-  if (!writable) return failed(base::Refusal::kFileUnwritable, *file_path, EROFS);
+  if (!writable) return failed(base::Refusal::kFileUnwritable, *file_path, file->refused);
   const int code = created ? sync_directory(directory_) : 0;
   if (code != 0) return failed(base::Refusal::kFileUnwritable, directory_, code);
   return settle_names();
@@ -164,7 +164,8 @@ base::Result<base::Bytes> FileStorage::read(std::string_view name, uint64_t offs
 base::Status FileStorage::write(std::string_view name, uint64_t offset, base::ByteSpan bytes) {
   const File* const found = find(name);
   if (found == nullptr || !found->writable) {
-    return failed(base::Refusal::kFileUnwritable, std::string(name), EROFS);
+    const int code = found == nullptr ? EBADF : found->refused;
+    return failed(base::Refusal::kFileUnwritable, std::string(name), code);
   }
   const File& file = *found;
   if (offset > file.size || bytes.size() > file.size - offset) {
@@ -189,17 +190,20 @@ base::Status FileStorage::sync(std::string_view name) {
 }
 
 base::Status FileStorage::check(std::string_view name) {
-  const File* const found = find(name);
-  if (found == nullptr) return failed(base::Refusal::kFileUnwritable, std::string(name), EBADF);
   const std::string file_path = *path(name);
-  struct stat opened {};
   struct stat there {};
-  if (::fstat(found->descriptor.get(), &opened) != 0 || ::lstat(file_path.c_str(), &there) != 0) {
-    if (errno != ENOENT) return failed(base::Refusal::kFileUnwritable, file_path, errno);
-    return base::Error{base::Refusal::kFileUnwritable, file_path + ": the file was removed"};
+  if (::lstat(file_path.c_str(), &there) != 0) {
+    if (errno != ENOENT) return failed(base::Refusal::kFileUnreadable, file_path, errno);
+    return base::Error{base::Refusal::kFileNotFound, file_path + ": the file was removed"};
+  }
+  const File* const found = find(name);
+  struct stat opened {};
+  if (found == nullptr) return failed(base::Refusal::kFileUnreadable, file_path, EBADF);
+  if (::fstat(found->descriptor.get(), &opened) != 0) {
+    return failed(base::Refusal::kFileUnreadable, file_path, errno);
   }
   if (opened.st_dev == there.st_dev && opened.st_ino == there.st_ino) return base::Ok{};
-  return base::Error{base::Refusal::kFileUnwritable, file_path + ": another file is there now"};
+  return base::Error{base::Refusal::kFileNotFound, file_path + ": another file is there now"};
 }
 
 base::Status FileStorage::write_new(const std::string& path, uint64_t size,
@@ -207,7 +211,7 @@ base::Status FileStorage::write_new(const std::string& path, uint64_t size,
   ::unlink(path.c_str());
   Descriptor descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | kFlags, 0600));
   if (!descriptor.valid()) return failed(base::Refusal::kFileUnwritable, path, errno);
-  file = {std::move(descriptor), 0, true, true};
+  file = {.descriptor = std::move(descriptor), .writable = true, .known = true};
   base::Status made = allocate(file, path, size);
   if (!made.ok()) return made;
   int code = 0;

@@ -31,6 +31,7 @@ class FileStorage : public Storage {
     Descriptor descriptor;
     uint64_t size = 0;
     bool writable = false;
+    int refused = 0;     // the error by which it is not
     bool known = false;  // what reads see is what the disk holds, as far as this process can tell
   };
 

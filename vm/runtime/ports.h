@@ -108,7 +108,8 @@ class Storage {
   // failed, and it may be gone.
   virtual base::Status replace(std::string_view name, uint64_t size,
                                std::span<const Piece> pieces) = 0;
-  // Does the name still lead to the file that was opened? Somebody may have removed it.
+  // Does the name still lead to the file that was opened? kFileNotFound: no, somebody has removed
+  // it or put another one there. Any other error: nobody can tell now.
   virtual base::Status check(std::string_view name) = 0;
 };
 

@@ -161,6 +161,17 @@ TEST_F(FileStorageTest, WhatAKilledProcessLeftOfANewFileIsRemoved) {
   EXPECT_EQ(*storage.read("a", 0, 10), base::Bytes(3, 0));
 }
 
+TEST_F(FileStorageTest, case56_AFolderThatCannotBeReachedIsNotOneWithoutFiles) {
+  FileStorage storage(directory_);
+  ASSERT_TRUE(storage.open("a", 10).ok());
+  std::filesystem::rename(directory_, directory_ + "_moved");
+  std::ofstream(directory_) << "a file";
+  EXPECT_EQ(storage.check("a").error().refusal, base::Refusal::kFileUnreadable);
+  std::filesystem::remove(directory_);
+  std::filesystem::rename(directory_ + "_moved", directory_);
+  EXPECT_TRUE(storage.check("a").ok());
+}
+
 // A folder that is gone, a file that is removed or exchanged: nothing is durable there.
 TEST_F(FileStorageTest, WhatNobodyCanFindIsNotDurable) {
   FileStorage storage(directory_);
@@ -176,6 +187,8 @@ TEST_F(FileStorageTest, WhatNobodyCanFindIsNotDurable) {
   std::filesystem::copy(directory_ + "/b", directory_ + "/d");
   std::filesystem::rename(directory_ + "/d", directory_ + "/b");
   EXPECT_NE(storage.sync("b").error().text.find("another file"), std::string::npos);
+  EXPECT_EQ(storage.check("a").error().refusal, base::Refusal::kFileNotFound);
+  EXPECT_EQ(storage.check("b").error().refusal, base::Refusal::kFileNotFound);
   EXPECT_FALSE(storage.check("b").ok());
   EXPECT_TRUE(storage.sync("c").ok());
   ASSERT_TRUE(storage.replace("a", 10, {}).ok());

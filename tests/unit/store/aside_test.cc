@@ -75,6 +75,15 @@ TEST_F(Aside, WhatIsForgottenIsNotTheTrial) {
   EXPECT_EQ(accepted(), next.bytes);
 }
 
+TEST_F(Aside, AFileThatIsGoneMeanwhileIsWrittenAgain) {
+  const StoredImage next = program(2);
+  const auto bytes = shared(next.bytes);
+  store_.lay_aside(bytes);
+  disk_.remove("slot_b");
+  EXPECT_TRUE(store_.begin_trial({next.digest, *bytes}, 100).ok());
+  EXPECT_EQ(accepted(), next.bytes);
+}
+
 TEST_F(Aside, NothingIsWrittenDuringATrial) {
   ASSERT_TRUE(store_.begin_trial(program(2), 100).ok());
   EXPECT_EQ(writes_of([&] { store_.lay_aside(shared(program(3).bytes)); }), 0u);

@@ -56,7 +56,7 @@ void fail_once(std::string_view call, uint64_t number, Failure how, bool& reache
 
 TEST(Faults, case56_OneFailureAnywhereLosesNothingThatWasDurable) {
   uint64_t tried = 0;
-  for (const char* call : {"open", "read", "write", "sync"}) {
+  for (const char* call : {"open", "read", "write", "sync", "check"}) {
     for (Failure how : {Failure::kError, Failure::kShort}) {
       for (uint64_t seed = 1; seed <= 20; ++seed) {
         bool reached = true;
@@ -68,6 +68,24 @@ TEST(Faults, case56_OneFailureAnywhereLosesNothingThatWasDurable) {
   }
   std::printf("%llu tried\n", static_cast<unsigned long long>(tried));
   EXPECT_GT(tried, 3000u);
+}
+
+// A read fails while the controller starts, and the disk is well again.
+TEST(Faults, case56_RenewalKeepsWhatCouldOnlyNotBeRead) {
+  for (int number = 1;; ++number) {
+    sim::SimStorage disk = lived_on();
+    int reads = 0;
+    disk.fails = [&](std::string_view call) {
+      return call == "read" && ++reads == number ? Failure::kError : Failure::kNone;
+    };
+    online_change::Store store(disk, small());
+    disk.fails = nullptr;
+    if (reads < number) break;
+    store.look();
+    (void)store.renew().ok();
+    History again(disk, promised());
+    EXPECT_EQ(again.open(), "") << "read " << number;
+  }
 }
 
 TEST(Faults, case56_AFullDiskRefusesTheChangeAndKeepsTheRest) {

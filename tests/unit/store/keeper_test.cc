@@ -49,7 +49,7 @@ class KeeperTest : public ::testing::Test {
   }
   void break_disk() {
     disk_.fails = [this](std::string_view call) {
-      if (call == "read") return sim::Failure::kNone;
+      if (call == "read" || call == "check") return sim::Failure::kNone;
       ++failed_calls_;
       return sim::Failure::kError;
     };

@@ -206,6 +206,47 @@ TEST(Copies, ACopyWhoseFileIsGoneIsDeadAndComesBack) {
   EXPECT_FALSE(copies.write(0, base::Bytes{2}).ok()) << "durable, where nobody finds it";
 }
 
+// It may be the newest; only new content takes its place, or an empty file when it is gone.
+TEST(Copies, case56_WhatCouldNotBeReadIsNotRenewed) {
+  sim::SimStorage disk;
+  Copies written(disk, kKind, {"a"});
+  written.recover(10);
+  ASSERT_TRUE(written.write(0, base::Bytes{1}).ok());
+  disk.fails = [&](std::string_view call) {
+    return call == "read" ? sim::Failure::kError : sim::Failure::kNone;
+  };
+  Copies copies(disk, kKind, {"a"});
+  copies.recover(10);
+  disk.fails = nullptr;
+  ASSERT_TRUE(copies.unread(0));
+  copies.check();
+  EXPECT_TRUE(copies.renew(0).ok());
+  EXPECT_NE(copies.complaint(), "") << "until it is read or written";
+  EXPECT_EQ(read_record(disk, "a", kKind).payload, base::Bytes{1});
+  disk.remove("a");
+  copies.check();
+  ASSERT_TRUE(copies.renew(0).ok());
+  EXPECT_EQ(copies.complaint(), "");
+}
+
+TEST(Copies, case56_WhenNobodyCanTellItIsSaidAndNothingIsLost) {
+  sim::SimStorage disk;
+  Copies copies(disk, kKind, {"a", "b"});
+  copies.recover(10);
+  ASSERT_TRUE(copies.write(0, base::Bytes{1}).ok());
+  disk.fails = [&](std::string_view call) {
+    return call == "check" ? sim::Failure::kError : sim::Failure::kNone;
+  };
+  copies.check();
+  EXPECT_TRUE(copies.whole(0));
+  EXPECT_NE(copies.complaint(), "");
+  disk.fails = nullptr;
+  copies.check();
+  EXPECT_EQ(copies.complaint(), "");
+  ASSERT_TRUE(copies.renew(0).ok());
+  EXPECT_EQ(read_record(disk, "a", kKind).payload, base::Bytes{1});
+}
+
 TEST(Journal, EntriesComeBackOldestFirstAndTheRingGoesRound) {
   sim::SimStorage disk;
   Journal journal(disk, "j", 4);

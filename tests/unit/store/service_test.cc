@@ -365,7 +365,7 @@ TEST(Service, case56_AnAcceptThatCannotBeStoredLeavesTheTrial) {
     ASSERT_TRUE(plc.change(source(2)).ok());
     int calls = 0;
     disk.fails = [&](std::string_view call) {
-      if (call == "open" || call == "read") return sim::Failure::kNone;
+      if (call == "open" || call == "read" || call == "check") return sim::Failure::kNone;
       return ++calls == number ? sim::Failure::kError : sim::Failure::kNone;
     };
     const base::Status accepted = plc.accept();

@@ -153,8 +153,12 @@ base::Status SimStorage::sync(std::string_view name) {
 
 base::Status SimStorage::check(std::string_view name) {
   const File* file = find(name);
-  if (file != nullptr && file->presence == Presence::kThere) return base::Ok{};
-  return base::Error{base::Refusal::kFileUnwritable, std::string(name) + ": the file was removed"};
+  if (file == nullptr || file->presence != Presence::kThere) {
+    return base::Error{base::Refusal::kFileNotFound, std::string(name) + ": the file was removed"};
+  }
+  Failure how;
+  if (failing("check", how)) return error("check", name);
+  return base::Ok{};
 }
 
 // The new file is on disk before it has its name; the name when the folder is synced.
