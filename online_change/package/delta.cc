@@ -75,6 +75,7 @@ class Maker {
     for (size_t own = 0; own < kOwn && at_ + own + kKey <= to_.size(); own += kStep) {
       const base::ByteSpan key = to_.subspan(at_ + own, kKey);
       for (const base::ByteSpan near : {behind, before}) {
+        if (near.size() < kKey) continue;
         const void* found = ::memmem(near.data(), near.size(), key.data(), key.size());
         if (found == nullptr) continue;
         in_ = static_cast<size_t>(static_cast<const uint8_t*>(found) - from_.data());

@@ -33,14 +33,6 @@ outputs = "right.csv"
 map = ["byte 0 <- %QB1"]
 T
 sed 's/right.csv/no_such_folder\/right.csv/' v2/stc.toml >bad/stc.toml
-wait_for() {  # wait_for REGEX FILE
-  for _ in $(seq 100); do
-    grep -qE -- "$1" "$2" 2>/dev/null && return
-    sleep 0.05
-  done
-  cat "$2" || true
-  fail "never: $1 in $2"
-}
 wait_value() {
   for _ in $(seq 100); do
     stvm get Main.i --dir plc >out 2>&1 || true
@@ -50,7 +42,7 @@ wait_value() {
   fail "never $1"
 }
 serve plc v1
-wait_for ',5,6$' left.csv
+wait_for ',5,6$' cat left.csv
 wait_value '16#4D'
 expect 7 stvm change bad --dir plc --yes
 said 'R0412.*device .right.: no_such_folder/right.csv: No such file'
@@ -61,15 +53,15 @@ expect 0 stvm change v2 --dir plc --dry-run
 said '^device +left +.no longer byte 0..1 <- %QB0.'
 said '^device +right +.new, simulated.'
 expect 0 stvm change v2 --dir plc --yes
-wait_for ',5,9$' left.csv   # %QB1 is not written there any more: it is safe
-wait_for ',6$' right.csv    # but here
+wait_for ',5,9$' cat left.csv   # %QB1 is not written there any more: it is safe
+wait_for ',6$' cat right.csv    # but here
 wait_value '16#00'          # nobody provides %IB0 any more
 expect 0 stvm status --dir plc
 said '^right +simulated +online'
 expect 0 stvm undo --dir plc
-wait_for '^[0-9.]+,0$' right.csv
+wait_for '^[0-9.]+,0$' cat right.csv
 wait_value '16#4D'
-tail -1 left.csv | grep -qE ',5,6$' || wait_for ',5,6$' left.csv
+tail -1 left.csv | grep -qE ',5,6$' || wait_for ',5,6$' cat left.csv
 expect 0 stvm change v2 --dir plc --yes
 expect 0 stvm accept --dir plc
 expect 0 stvm status --dir plc
@@ -79,7 +71,7 @@ said '^left +simulated +online'
 expect 0 stvm change v1 --dir plc --yes --permanent
 expect 0 stvm status --dir plc
 grep -q '^right' out && fail 'a device that no program has is still there'
-wait_for '^[0-9.]+,0$' right.csv
+wait_for '^[0-9.]+,0$' cat right.csv
 # What is stored boots with its devices.
 expect 0 stvm stop --dir plc
 rm in.csv

@@ -31,6 +31,17 @@ expect() {
 }
 # said REGEX: the last command printed it, on either stream.
 said() { cat out err | grep -qE -- "$1" || fail "not said: $1"; }
+# wait_for REGEX COMMAND...: runs it, output in ./out, until it prints that.
+wait_for() {
+  wanted=$1
+  shift
+  for _ in $(seq 600); do
+    "$@" >out 2>&1 || true
+    grep -qE -- "$wanted" out && return
+    sleep 0.05
+  done
+  fail "never: $wanted from $*"
+}
 silent_on() { [ ! -s "$1" ] || fail "nothing expected on $1"; }
 
 stc() { "$bin/stc" "$@"; }

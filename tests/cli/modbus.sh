@@ -51,16 +51,6 @@ fi
 expect 7 stvm run client.img --scans 1 --device press.address=:
 said 'R0412: device `press`: `:` is no address'
 
-wait_for() {  # wait_for REGEX COMMAND...: until it prints that
-  wanted=$1
-  shift
-  for _ in $(seq 100); do
-    "$@" >out 2>&1 || true
-    grep -qE -- "$wanted" out && return
-    sleep 0.05
-  done
-  fail "never: $wanted from $*"
-}
 value() { stvm get "$1" --dir "$2"; }
 
 serve plc --device hmi.address=127.0.0.1:$port server.img

@@ -11,14 +11,7 @@ ST
 stc build plant.st -o plant.img 2>/dev/null
 serve plant plant.img
 expect 0 stvm set divisor=0 --dir plant
-wait_for() {
-  for _ in $(seq 100); do
-    stvm status --dir plant >out 2>&1 && grep -q "$1" out && return
-    sleep 0.05
-  done
-  fail "never: $1"
-}
-wait_for 'FAULT'
+wait_for 'FAULT' stvm status --dir plant
 grep -q 'stvm restart' out || fail "$(cat out)"
 expect 0 stvm get total divisor --dir plant
 said '^divisor=0'
@@ -26,19 +19,19 @@ expect 2 stvm restart --warm --cold --dir plant
 said 'one of --warm, --cold and --hot'
 expect 0 stvm restart --dir plant
 said 'restarted, warm'
-wait_for 'running'
+wait_for 'running' stvm status --dir plant
 expect 0 stvm get divisor --dir plant
 said '^divisor=1'
 before=$(stvm get total --format json --dir plant | tr -dc 0-9)
 [ "$before" -gt 1 ] || fail "total is $before"
 expect 0 stvm set divisor=0 --dir plant
-wait_for 'FAULT'
+wait_for 'FAULT' stvm status --dir plant
 expect 0 stvm restart --hot --format json --dir plant
 said '"restarted": *"hot"'
-wait_for 'FAULT'
+wait_for 'FAULT' stvm status --dir plant
 expect 0 stvm set total=30000 --dir plant
 expect 0 stvm restart --cold --dir plant
-wait_for 'running'
+wait_for 'running' stvm status --dir plant
 after=$(stvm get total --format json --dir plant | tr -dc 0-9)
 [ "$after" -lt 30000 ] || fail "total is $after"
 expect 0 stvm stop --dir plant

@@ -26,16 +26,6 @@ quality = "%IX8.0"
 map = ["byte 0..1 -> %IW0", "bit 0 <- %QX0.0"]
 T
 stc build plant -o plant.img 2>/dev/null
-wait_for() {  # wait_for REGEX COMMAND...
-  wanted=$1
-  shift
-  for _ in $(seq 200); do
-    "$@" >out 2>&1 || true
-    grep -qE -- "$wanted" out && return
-    sleep 0.05
-  done
-  fail "never: $wanted from $*"
-}
 serve plc --seccomp --record plc.rec plant.img
 program=$(stvm get --list --dir plc | sed -n 's/^\([A-Za-z]*\)\.level.*/\1/p')
 pid=$(cat plc.pid)

@@ -4,30 +4,22 @@
 name=/stc_test_$$
 trap 'rm -f /dev/shm$name; cleanup' EXIT INT TERM
 serve plc "$source_dir/examples/shared_memory/plc" --device tank.name=$name
-wait_for() {  # wait_for REGEX NAME
-  for _ in $(seq 100); do
-    stvm get "$2" --dir plc >out 2>&1 || true
-    grep -qE -- "$1" out && return
-    sleep 0.05
-  done
-  fail "never: $1"
-}
 "$bin/shared_memory_client" $name 400 &
 echo $! >client.pid
 program=$(stvm get --list --dir plc | sed -n 's/^\([A-Za-z]*\)\.fills.*/\1/p')
-wait_for '=TRUE' "$program.connected"
-wait_for '=TRUE' "$program.pump"
-wait_for '=(29[0-9]|30[0-9]|2[0-8][0-9])' "$program.level"
-wait_for '=[1-9]' "$program.fills"
+wait_for '=TRUE' stvm get "$program.connected" --dir plc
+wait_for '=TRUE' stvm get "$program.pump" --dir plc
+wait_for '=(29[0-9]|30[0-9]|2[0-8][0-9])' stvm get "$program.level" --dir plc
+wait_for '=[1-9]' stvm get "$program.fills" --dir plc
 wait "$(cat client.pid)" || true  # after two seconds
 rm client.pid
-wait_for '=FALSE' "$program.connected"  # it has ended
-wait_for '=0$' "$program.level"
+wait_for '=FALSE' stvm get "$program.connected" --dir plc  # it has ended
+wait_for '=0$' stvm get "$program.level" --dir plc
 expect 0 stvm status --dir plc
 said 'last error of tank: shared memory .*nobody writes the inputs'
 "$bin/shared_memory_client" $name 40 &
 echo $! >client.pid
-wait_for '=TRUE' "$program.connected"
+wait_for '=TRUE' stvm get "$program.connected" --dir plc
 wait "$(cat client.pid)" || true
 
 # A process that makes the memory smaller all the time ends nobody but itself: the device is lost, and comes back.
@@ -47,7 +39,7 @@ wait $vandal
 rm vandal.pid
 "$bin/shared_memory_client" $name 200 >/dev/null 2>&1 &
 echo $! >client.pid
-wait_for '=TRUE' "$program.connected"
+wait_for '=TRUE' stvm get "$program.connected" --dir plc
 expect 0 stvm stop --dir plc
 grep -q "^device tank: shared memory $name: was made smaller" plc.log || fail 'not said as it happened'
 

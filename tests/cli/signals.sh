@@ -47,6 +47,17 @@ coil() {
   done
   fail "the coil never became $1"
 }
+# ends_in_order NAME: $signal ends the process of NAME.pid, which leaves the coil at its safe value.
+ends_in_order() {
+  pid=$(cat "$1.pid")
+  coil TRUE
+  kill -s "$signal" "$pid"
+  code=0
+  wait "$pid" || code=$?
+  rm "$1.pid"
+  [ "$code" -eq 0 ] || fail "exit code $code of $1 by SIG$signal"
+  coil FALSE
+}
 scans() { stvm get Main.n --dir plc; }
 
 serve plc plc.img
@@ -64,30 +75,26 @@ done
 grep -q '^SIGHUP: there is no log file to open anew; the controller runs on' plc.log || fail 'SIGHUP is not said'
 coil TRUE
 
-# In order: exit code 0, the journal has it, and the coil is at its safe value.
+# In order: exit code 0, and the coil is at its safe value.
 for signal in TERM INT QUIT USR1 USR2 ALRM XCPU PROF VTALRM IO PWR; do
   [ "$signal" = TERM ] || serve plc
-  pid=$(cat plc.pid)
-  coil TRUE
-  kill -s "$signal" "$pid"
-  code=0
-  wait "$pid" || code=$?
-  rm plc.pid
-  [ "$code" -eq 0 ] || fail "exit code $code by SIG$signal"
-  coil FALSE
+  ends_in_order plc
 done
 
 # `stvm run` has outputs too, and is no service: whatever would end it stops it in order.
 for signal in HUP PIPE QUIT; do
   "$bin/stvm" run plc.img >run.out 2>&1 &
-  pid=$!
-  echo "$pid" >run.pid
-  coil TRUE
-  kill -s "$signal" "$pid"
-  code=0
-  wait "$pid" || code=$?
-  rm run.pid
-  [ "$code" -eq 0 ] || fail "exit code $code of stvm run by SIG$signal: $(cat run.out)"
-  coil FALSE
+  echo $! >run.pid
+  ends_in_order run
 done
+# With nohup, which ignores SIGHUP from the start, it lives on.
+(
+  trap '' HUP
+  exec "$bin/stvm" run plc.img >run.out 2>&1
+) &
+echo $! >run.pid
+coil TRUE
+kill -s HUP "$(cat run.pid)"
+signal=TERM
+ends_in_order run
 expect 0 stvm stop --dir plant

@@ -48,4 +48,9 @@ if [ "$(id -u)" = 0 ]; then
   chown 65534 foreign
   expect 7 stvm serve --dir foreign p.img
   said 'R0503: .*foreign: it belongs to another user'
+  # Whoever owns a parent can put another folder in its place, too.
+  mkdir -m 755 host host/state
+  chown 65534 host
+  expect 7 stvm serve --dir host/state p.img
+  said 'R0503: .*host: it belongs to another user'
 fi

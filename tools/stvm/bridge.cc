@@ -4,7 +4,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <utility>
 
 #include "tools/common/exit.h"
 #include "tools/stvm/commands.h"
@@ -30,12 +32,40 @@ bool write_all(int fd, const char* bytes, size_t size) {
   return true;
 }
 
+// Follows the frames of a byte stream (vm/runtime/frames.h) without keeping them.
+class FrameCounter {
+ public:
+  void add(const char* bytes, size_t size) {
+    for (; size != 0; ++bytes, --size) {
+      if (left_ != 0) {
+        const size_t skipped = std::min<size_t>(left_, size);
+        left_ -= static_cast<uint32_t>(skipped);
+        bytes += skipped - 1;
+        size -= skipped - 1;
+      } else {
+        length_ |= uint32_t{static_cast<uint8_t>(*bytes)} << (8 * header_);
+        if (++header_ < sizeof length_) continue;
+        left_ = std::exchange(length_, 0);
+        header_ = 0;
+      }
+    }
+  }
+  bool between_frames() const { return left_ == 0 && header_ == 0; }
+
+ private:
+  uint32_t length_ = 0;
+  uint32_t header_ = 0;  // bytes of the length that have come
+  uint32_t left_ = 0;    // bytes of the message that are still to come
+};
+
 // False: nothing more will come.
-bool pass_on(int from, int to) {
+bool pass_on(int from, int to, FrameCounter& frames) {
   char buffer[65536];
   const ssize_t n = ::read(from, buffer, sizeof buffer);
   if (n < 0 && errno == EINTR) return true;
-  return n > 0 && write_all(to, buffer, static_cast<size_t>(n));
+  if (n <= 0 || !write_all(to, buffer, static_cast<size_t>(n))) return false;
+  frames.add(buffer, static_cast<size_t>(n));
+  return true;
 }
 
 base::Result<vm::Descriptor> connect(const std::string& directory) {
@@ -43,17 +73,19 @@ base::Result<vm::Descriptor> connect(const std::string& directory) {
 }
 
 // A controller ends connections that have asked nothing for long; the next request looks for it
-// again. One that ends before it has answered is gone.
+// again. One that ends before it has answered, or in the middle of an answer, is gone.
 base::Status relay(const std::string& directory, vm::Descriptor controller) {
   bool asked = false;
+  FrameCounter requests;
+  FrameCounter answers;
   for (;;) {
     pollfd ends[] = {{STDIN_FILENO, POLLIN, 0}, {controller.get(), POLLIN, 0}};
     if (::poll(ends, 2, -1) < 0 && errno != EINTR) return base::Ok{};
     if (ends[1].revents != 0) {
-      const bool more = pass_on(controller.get(), STDOUT_FILENO);
+      const bool more = pass_on(controller.get(), STDOUT_FILENO, answers);
       if (!more && asked) return base::Ok{};
       if (!more) controller = {};
-      asked = false;
+      asked = asked && !answers.between_frames();
     }
     if (ends[0].revents == 0) continue;
     if (!controller.valid()) {
@@ -61,7 +93,7 @@ base::Status relay(const std::string& directory, vm::Descriptor controller) {
       if (!again.ok()) return again.error();
       controller = std::move(*again);
     }
-    if (!pass_on(STDIN_FILENO, controller.get())) return base::Ok{};
+    if (!pass_on(STDIN_FILENO, controller.get(), requests)) return base::Ok{};
     asked = true;
   }
 }

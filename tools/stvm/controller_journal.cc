@@ -131,9 +131,9 @@ void ControllerService::keep_programs_now_and_then() {
 }
 
 // Entries from number `offset` on, as they lie on the disk; none behind the last. The first page
-// reads it, the others are of the same reading.
+// reads it, and the others of the same connection are of that reading.
 base::Result<base::Bytes> ControllerService::journal(const vm::Request& request) {
-  if (request.offset == 0) {
+  if (request.offset == 0 || history_of_ != session_) {
     history_ = store_.history();
     history_of_ = session_;
   }

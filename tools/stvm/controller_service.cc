@@ -179,7 +179,7 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
     code = &controller_.code();
     report.faulted = controller_.faulted();
     report.uptime_ns = clock_.now_ns();
-    traps = controller_.traps();
+    if (traps.empty()) traps = controller_.traps();  // later it could free one there
     return tasks.take(controller_, free_ns);
   });
   if (!taken.ok()) return taken.error();

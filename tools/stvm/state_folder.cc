@@ -34,7 +34,7 @@ base::Status check_folder(const std::string& path, bool parent) {
   struct stat info {};
   if (::stat(path.c_str(), &info) != 0) return unwritable(path, std::strerror(errno));
   const bool ours = info.st_uid == ::geteuid() || info.st_uid == 0;
-  if (!parent && !ours) {
+  if (!ours) {
     return unwritable(path, "it belongs to another user, who could exchange what runs; use another "
                             "directory, or `chown` it");
   }

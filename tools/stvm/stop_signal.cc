@@ -20,6 +20,12 @@ void handle(int number, void (*handler)(int)) {
   sigaction(number, &action, nullptr);
 }
 
+// `nohup` starts a process so.
+bool is_ignored(int number) {
+  struct sigaction action {};
+  return sigaction(number, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
 }  // namespace
 
 void StopSignal::install() {
@@ -31,7 +37,8 @@ void StopSignal::install() {
 
 void StopSignal::install_for_outputs() {
   install();
-  for (const int number : {SIGHUP, SIGPIPE, SIGQUIT, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF,
+  if (!is_ignored(SIGHUP)) handle(SIGHUP, on_stop);
+  for (const int number : {SIGPIPE, SIGQUIT, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF,
                            SIGXCPU, SIGPOLL, SIGPWR, SIGSTKFLT}) {
     handle(number, on_stop);
   }

@@ -51,7 +51,8 @@ struct ExchangePort::Core final : OutsideEvents {
   void note_error(const std::string& text);
   void written(const std::string& who, const std::string& what) override;
   void refused(const std::string& who, const std::string& what) override;
-  void say(EventLimit& limit, const std::string& text) const;
+  // False: it is left out, since there have been too many.
+  bool say(EventLimit& limit, const std::string& text) const;
   int64_t pause_ns() const;
 
   const ir::Device device;
@@ -169,8 +170,7 @@ void ExchangePort::Core::note(const base::Status& status, int64_t now) {
     received_ns.store(own_thread ? ExchangePort::now_ns() : now, std::memory_order_release);
     failed.store(false, std::memory_order_release);
     failures = 0;
-    if (!said.empty()) say(states, "online");
-    said.clear();
+    if (!said.empty() && say(states, "online")) said.clear();
     return;
   }
   note_error(status.error().text);
@@ -184,10 +184,7 @@ void ExchangePort::Core::note_error(const std::string& text) {
     errors.fetch_add(1, std::memory_order_relaxed);
     failures = std::min<uint32_t>(failures + 1, 30);
   }
-  if ((was_good || !idle) && text != said) {
-    said = text;
-    say(states, text);
-  }
+  if ((was_good || !idle) && text != said && say(states, text)) said = text;
   std::lock_guard lock(mutex);
   error = text;
 }
@@ -204,12 +201,13 @@ void ExchangePort::Core::refused(const std::string& who, const std::string& what
 }
 
 // In virtual time the control thread exchanges, and has nothing to do with who listens.
-void ExchangePort::Core::say(EventLimit& limit, const std::string& text) const {
-  if (!log || !own_thread) return;
+bool ExchangePort::Core::say(EventLimit& limit, const std::string& text) const {
+  if (!log || !own_thread) return true;
   const std::optional<uint64_t> omitted = limit.pass(ExchangePort::now_ns());
-  if (!omitted) return;
+  if (!omitted) return false;
   const std::string more = std::to_string(*omitted) + " more such lines were left out";
   log("device " + device.name + ": " + text + (*omitted == 0 ? "" : "; " + more));
+  return true;
 }
 
 // Longer and longer while nobody answers.

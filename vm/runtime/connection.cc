@@ -89,6 +89,16 @@ bool Connections::make_room(bool bridged, Instant now) {
   return true;
 }
 
+bool Connections::attend(std::span<const pollfd> said, const std::atomic<bool>& ending,
+                         Instant now) {
+  for (size_t i = rows_.size(); i-- > 0;) {
+    if (ending.load()) return false;
+    if (!rows_[i]->attend(said[i].revents, service_, now)) end(i);
+  }
+  end_overdue(now);
+  return true;
+}
+
 void Connections::end_overdue(Instant now) {
   for (size_t i = rows_.size(); i-- > 0;) {
     const Connection& row = *rows_[i];

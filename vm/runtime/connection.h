@@ -2,8 +2,12 @@
 // sent. Holds one message each way at most, and nothing while it is idle.
 #pragma once
 
+#include <poll.h>
+
+#include <atomic>
 #include <chrono>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,7 +68,10 @@ class Connections {
   const Connection& operator[](size_t i) const { return *rows_[i]; }
   // False, and it is left where it is: there is no place for it.
   bool add(Connection& connection, Instant now);
-  // Those that have not kept to these times.
+  // Serves each by what poll() said of it, in this order, and ends those that have not kept to
+  // these times. `now` is when poll() returned, for all: no peer pays for the time that an answer
+  // takes. False as soon as `ending` is set.
+  bool attend(std::span<const pollfd> said, const std::atomic<bool>& ending, Instant now);
   void end_overdue(Instant now);
   void end(size_t i);
   void clear();

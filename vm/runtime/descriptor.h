@@ -21,6 +21,7 @@ class Descriptor {
   }
   int get() const { return fd_; }
   bool valid() const { return fd_ >= 0; }
+  int release() { return std::exchange(fd_, -1); }  // closing it is the caller's from then on
 
  private:
   int fd_ = -1;

@@ -89,13 +89,16 @@ Copied LiveCopy::take(Controller& controller, int64_t free_ns) {
   return range_ == ranges_.size() ? Copied::kAll : Copied::kPart;
 }
 
-// Ends within `room` bytes, each range counted as one line more than it has at most.
+// Copies at most `room` bytes. Each range is charged one line more than its size, for the line
+// that an unaligned range touches. A portion ends at a line, so that no elementary value is of two
+// boundaries.
 uint64_t LiveCopy::copy(const uint8_t* from, uint64_t room) {
   uint64_t done = 0;
   while (range_ < ranges_.size() && done + 2 * kLine <= room) {
     const ir::DataRange& range = ranges_[range_];
-    const auto size =
-        static_cast<uint32_t>(std::min<uint64_t>(range.size - offset_, room - done - kLine));
+    const uint32_t left = range.size - offset_;
+    auto size = static_cast<uint32_t>(std::min<uint64_t>(left, room - done - kLine));
+    if (size < left) size -= (range.data + offset_ + size) % kLine;
     std::memcpy(memory_.data() + range.data + offset_, from + range.data + offset_, size);
     done += size + kLine;
     offset_ += size;

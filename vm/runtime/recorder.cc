@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/limits.h"
+#include "vm/runtime/descriptor.h"
 #include "vm/runtime/process_image.h"
 #include "vm/runtime/shared_globals.h"
 
@@ -23,14 +24,18 @@ constexpr size_t kMaxWaiting = size_t{64} << 20;  // bytes that the disk is behi
 base::Result<std::unique_ptr<Recorder>> Recorder::create(const std::string& path, Clock& clock,
                                                          IoPort& io, const RecordedStart& start) {
   // For its owner only: it has all that the program knows of the plant.
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  Descriptor opened(::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600));
+  const int fd = opened.get();
   struct stat info {};
-  const bool plain = descriptor >= 0 && ::fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode);
-  const bool kept = descriptor >= 0 && (!plain || ::fchmod(descriptor, 0600) == 0);
-  std::FILE* file = kept ? ::fdopen(descriptor, "wb") : nullptr;
+  const bool plain = opened.valid() && ::fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
+  // What is there is lost only when nothing is left that can be refused.
+  const bool kept = opened.valid() &&
+                    (!plain || (::fchmod(fd, 0600) == 0 && ::ftruncate(fd, 0) == 0));
+  std::FILE* file = kept ? ::fdopen(fd, "wb") : nullptr;
   if (file == nullptr) {
     return base::Error{base::Refusal::kFileUnwritable, path + ": " + std::strerror(errno)};
   }
+  (void)opened.release();
   auto recorder = std::make_unique<Recorder>(file, clock, io);
   recorder->hand_over(encode_record(start));
   return recorder;

@@ -8,10 +8,6 @@
 #include "vm/runtime/scheduler.h"
 
 namespace vm {
-namespace {
-
-
-}  // namespace
 
 TaskSlot* Scheduler::next_released() {
   for (uint32_t index : tables_->by_priority) {

@@ -127,12 +127,8 @@ bool SocketServer::round(Connections& connections) {
     std::this_thread::sleep_for(kAfterFailure);  // no memory; there will be some again
     return true;
   }
-  for (size_t i = connections.size(); i-- > 0;) {
-    if (ending_.load()) return false;
-    const Instant now = std::chrono::steady_clock::now();
-    if (!connections[i].attend(set[i + 2].revents, service_, now)) connections.end(i);
-  }
-  connections.end_overdue(std::chrono::steady_clock::now());
+  const Instant now = std::chrono::steady_clock::now();
+  if (!connections.attend(std::span(set).subspan(2), ending_, now)) return false;
   if (!reserve_.valid()) reserve_ = spare();
   if ((set[1].revents & POLLIN) != 0) take_connection(connections);
   service_.keep_up();

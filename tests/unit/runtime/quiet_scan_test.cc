@@ -12,11 +12,12 @@
 
 #include <cstddef>
 
-#include "tests/unit/counted_allocations.h"
+#include "tests/unit/allocations.h"
 #include "tests/unit/runtime/plant.h"
 
 namespace {
 
+thread_local bool watched = false;
 thread_local uint64_t locks = 0;
 
 }  // namespace
@@ -79,29 +80,32 @@ TEST(QuietScan, NoAllocationAndNoLock) {
   Plant plant(kBusy, small_slices(), 1000);
   ASSERT_TRUE(plant.ok());
   plant.cycles(50);
-  allocations = locks = 0;
+  locks = 0;
+  uint64_t allocated = 0;
   uint64_t quiet = 0;
   for (int i = 0; i < 500; ++i) {
     const uint64_t traps = plant->trap_count();
-    const uint64_t before = allocations;
+    const uint64_t before = tests::allocations();
     watched = true;
     plant.cycles(1);
     watched = false;
-    if (plant->trap_count() != traps) allocations = before;
-    if (plant->trap_count() == traps) ++quiet;
+    if (plant->trap_count() != traps) continue;
+    allocated += tests::allocations() - before;
+    ++quiet;
   }
-  EXPECT_EQ(allocations, 0u);
+  EXPECT_EQ(allocated, 0u);
   EXPECT_EQ(locks, 0u);
   EXPECT_GT(quiet, 300u);
   EXPECT_GT(plant->trap_count(), 20u);
   // The counters do count.
+  const uint64_t before = tests::allocations();
   watched = true;
   ::operator delete(::operator new(8));
   pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
   pthread_mutex_lock(&mutex);
   watched = false;
   pthread_mutex_unlock(&mutex);
-  EXPECT_EQ(allocations, 1u);
+  EXPECT_EQ(tests::allocations(), before + 1);
   EXPECT_EQ(locks, 1u);
 }
 

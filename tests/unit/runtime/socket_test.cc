@@ -334,6 +334,27 @@ TEST_F(Places, ABridgeTakesNoneFromThisMachine) {
   EXPECT_EQ(connections_.size(), kMaxConnections);
 }
 
+// Its answer took longer than its patience, and does not fit into what the system buffers.
+TEST_F(Places, NobodyPaysForTheTimeOfAnAnswer) {
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0);
+  const Descriptor peer(ends[1]);
+  Connection asker;
+  asker.socket = Descriptor(ends[0]);
+  asker.out = base::Bytes(1u << 20);
+  ASSERT_TRUE(connections_.add(asker, Instant()));
+  const Instant later = Instant() + 5 * Connections::kPatience;
+  const pollfd said[] = {{ends[0], POLLOUT, POLLOUT}};
+  EXPECT_TRUE(connections_.attend(said, std::atomic<bool>(false), later));
+  ASSERT_EQ(connections_.size(), 1u);
+  EXPECT_TRUE(connections_[0].sending());
+  EXPECT_FALSE(connections_.attend(said, std::atomic<bool>(true), later));
+  const pollfd nothing[] = {{ends[0], POLLOUT, 0}};
+  EXPECT_TRUE(connections_.attend(nothing, std::atomic<bool>(false),
+                                  later + Connections::kPatience + seconds(1)));
+  EXPECT_EQ(connections_.size(), 0u) << "it does not read";
+}
+
 TEST_F(Places, IdleOnesEnd) {
   EXPECT_TRUE(add(false, seconds(0)));
   EXPECT_TRUE(add(false, seconds(0)));

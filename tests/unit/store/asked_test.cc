@@ -3,7 +3,7 @@
 // beside the running program. What is counted is the work at boundaries, in virtual time.
 #include <gtest/gtest.h>
 
-#include "tests/unit/counted_allocations.h"
+#include "tests/unit/allocations.h"
 #include "tests/unit/store/plc.h"
 #include "tests/unit/store/sim_storage.h"
 #include "vm/runtime/live_copy.h"
@@ -54,11 +54,11 @@ class Asked : public ::testing::Test {
     plc_.at_boundary = [this] {
       ++jobs_;
       before_ns_ = plc_.clock().now_ns();
-      watched = true;
+      before_ = tests::allocations();
       return Outcome::kDone;
     };
     plc_.behind_job = [this] {
-      watched = false;
+      allocated_ += tests::allocations() - before_;
       most_ns_ = std::max(most_ns_, plc_.clock().now_ns() - before_ns_);
     };
   }
@@ -66,16 +66,15 @@ class Asked : public ::testing::Test {
   base::Result<base::Bytes> ask(const vm::Request& request) {
     jobs_ = 0;
     most_ns_ = 0;
-    allocations = 0;
+    allocated_ = 0;
     bool keep_open = true;
     auto answer = vm::decode_answer(plc_.service().answer(vm::encode(request), keep_open));
-    watched = false;
     return answer;
   }
 
   // What holds of every request that only reads, and of `set`.
   void expect_bounded(const std::string& what) {
-    EXPECT_EQ(allocations, 0u) << what << " allocates at a boundary";
+    EXPECT_EQ(allocated_, 0u) << what << " allocates at a boundary";
     EXPECT_LE(most_ns_, kMostNs) << what;
     plc_.run(3);
     EXPECT_EQ(plc_.controller().missed_releases(), 0u) << what;
@@ -105,6 +104,8 @@ class Asked : public ::testing::Test {
   int jobs_ = 0;
   int64_t before_ns_ = 0;
   int64_t most_ns_ = 0;
+  uint64_t before_ = 0;     // allocations of this thread when a boundary began
+  uint64_t allocated_ = 0;  // at boundaries
 };
 
 TEST_F(Asked, StatusAndTimesCopyAFewTasksAtABoundary) {
@@ -155,6 +156,30 @@ TEST_F(Asked, ValuesAreCopiedInPortions) {
   ASSERT_FALSE(body.ok());
   EXPECT_EQ(body.error().refusal, Refusal::kTooMany);
   expect_bounded("big");
+}
+
+// However the portions fall, a value is of one boundary.
+TEST_F(Asked, NoElementaryValueIsOfTwoBoundaries) {
+  vm::Controller& controller = plc_.controller();
+  const auto wide = ir::find_symbol(controller.image(), "wide");
+  ASSERT_TRUE(wide.ok());
+  const ir::DataRange range{wide->data, 400'000};
+  uint8_t* const data = controller.memory().data() + range.data;
+  for (int64_t free_ns = 10'000; free_ns < 10'032; ++free_ns) {
+    auto copy = vm::LiveCopy::prepare(controller, {range});
+    ASSERT_TRUE(copy.ok());
+    int portions = 0;
+    for (uint8_t byte = 0; copy->take(controller, free_ns) == vm::Copied::kPart; ++portions) {
+      std::memset(data, byte = static_cast<uint8_t>(~byte), range.size);
+      plc_.run(1);
+    }
+    EXPECT_GT(portions, 10);
+    for (uint32_t i = 0; i < range.size; i += 4) {
+      uint32_t value = 0;
+      std::memcpy(&value, copy->memory().data() + range.data + i, sizeof value);
+      ASSERT_TRUE(value == 0 || value == UINT32_MAX) << "wide[" << i / 4 << "] = " << value;
+    }
+  }
 }
 
 TEST_F(Asked, AReadBeyondTheLimitIsRefusedBeforeAnyBoundary) {
@@ -283,18 +308,19 @@ TEST(AskedOfAChange, ItsReportCopiesDataInPortions) {
   ASSERT_TRUE(plc.ask(std::move(stage)).ok());
   int64_t before = 0;
   int64_t most = 0;
+  uint64_t allocated_before = 0;
+  uint64_t allocated = 0;
   int jobs = 0;
   plc.at_boundary = [&] {
     ++jobs;
     before = plc.clock().now_ns();
-    watched = true;
+    allocated_before = tests::allocations();
     return Outcome::kDone;
   };
   plc.behind_job = [&] {
-    watched = false;
+    allocated += tests::allocations() - allocated_before;
     most = std::max(most, plc.clock().now_ns() - before);
   };
-  allocations = 0;
   bool keep_open = true;
   auto body = vm::decode_answer(
       plc.service().answer(vm::encode(vm::Request{.command = Command::kFates}), keep_open));
@@ -302,7 +328,7 @@ TEST(AskedOfAChange, ItsReportCopiesDataInPortions) {
   EXPECT_GE(jobs, 3);
   EXPECT_GT(most, 0);
   EXPECT_LE(most, kMostNs);
-  EXPECT_EQ(allocations, 0u);
+  EXPECT_EQ(allocated, 0u);
 }
 
 // --- the share of a boundary ---------------------------------------------------------

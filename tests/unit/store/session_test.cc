@@ -62,5 +62,23 @@ TEST_F(Session, OneUploadAtATime) {
   EXPECT_TRUE(upload(2, 100, 100).ok());
 }
 
+// Two that read the journal page by page: each gets all of it.
+TEST_F(Session, PagesOfTheJournalAreOfOneReading) {
+  const auto bytes = [&](uint64_t session, uint64_t offset) {
+    plc_.service().asked_by("tester", session);
+    bool keep_open = true;
+    auto page = vm::decode_answer(plc_.service().answer(
+        vm::encode({.command = Command::kJournal, .offset = offset}), keep_open));
+    return page.ok() ? page->size() : 0;
+  };
+  EXPECT_FALSE(plc_.undo().ok());  // there is a second entry
+  const size_t first = bytes(1, 0);
+  const size_t rest = bytes(1, 1);
+  ASSERT_GT(rest, 0u);
+  EXPECT_EQ(bytes(2, 0), first);
+  EXPECT_EQ(bytes(2, 1'000'000), 0u) << "it has read all of it";
+  EXPECT_EQ(bytes(1, 1), rest);
+}
+
 }  // namespace
 }  // namespace plc
