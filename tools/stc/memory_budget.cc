@@ -19,14 +19,15 @@ namespace {
 constinit std::atomic<size_t> taken{0};
 constinit std::atomic<size_t> budget{SIZE_MAX};  // until limit_memory()
 constinit std::atomic<uint64_t> input{0};
-constinit std::atomic<bool> refused{false};  // by the budget, not by the machine
+// The last request of this thread: by the budget, not by the machine.
+constinit thread_local bool refused = false;
 
 // Nothing here may need memory, so the message is not made by tools::refuse.
 [[noreturn]] void out_of_memory() {
   constexpr size_t kMega = 1 << 20;
   char text[600];
   const int length =
-      refused.load()
+      refused
           ? std::snprintf(
                 text, sizeof text,
                 "stc: R0118: memory needed exceeds the limit: more than %zu MiB for %llu bytes of "
@@ -38,7 +39,7 @@ constinit std::atomic<bool> refused{false};  // by the budget, not by the machin
                 text, sizeof text,
                 "stc: R0118: memory needed exceeds the limit: the machine gives no more than %zu "
                 "MiB to this process\n"
-                "  help: Raise the limit of the shell or container (ulimit -v), free memory, or "
+                "  help: Raise the limit of the shell (ulimit -v), free memory, or "
                 "build on a larger machine.\n",
                 taken.load() / kMega);
   const ssize_t written = ::write(STDERR_FILENO, text, static_cast<size_t>(length));
@@ -61,10 +62,9 @@ void expect_input(uint64_t bytes) {
 
 bool take_memory(size_t bytes) noexcept {
   const size_t now = taken.fetch_add(bytes, std::memory_order_relaxed) + bytes;
-  if (now >= bytes && now <= budget.load(std::memory_order_relaxed)) return true;
-  taken.fetch_sub(bytes, std::memory_order_relaxed);
-  refused.store(true, std::memory_order_relaxed);
-  return false;
+  refused = now < bytes || now > budget.load(std::memory_order_relaxed);
+  if (refused) taken.fetch_sub(bytes, std::memory_order_relaxed);
+  return !refused;
 }
 
 void count_memory(size_t bytes) noexcept { taken.fetch_add(bytes, std::memory_order_relaxed); }

@@ -1,9 +1,10 @@
 // How much memory stc may take: kMaxBuildBytes, or kMaxBuildBytesPerByte for each byte that it has
 // read, whichever is more (base/tool_limits.def). A short source can describe what no machine has
 // room for: one that needs more is refused by name before the machine runs out of memory. Where the
-// machine gives less than that (`ulimit -v`, a container), the message says so. Either way the
-// process ends at once, with exit code 7 and whatever it has on disk as it was: memory runs out in
-// the middle of any step and on any thread, and nothing that is half done is worth keeping.
+// machine gives less than that (`ulimit -v`), the message says so. A container that has less does
+// not refuse memory, it kills the process. In the first two cases the process ends at once, with
+// exit code 7 and whatever it has on disk as it was: memory runs out in the middle of any step and
+// on any thread, and nothing that is half done is worth keeping.
 #pragma once
 
 #include <cstddef>
