@@ -18,10 +18,10 @@ using testing::ExitedWithCode;
 
 constexpr size_t kBlock = size_t{256} << 20;  // of addresses: nobody writes there
 
-[[noreturn]] void take_blocks(int count, bool keep) {
+[[noreturn]] void take_blocks(int count, int to_keep) {
   for (int i = 0; i < count; ++i) {
     void* block = ::operator new(kBlock);
-    if (!keep) ::operator delete(block);
+    if (i >= to_keep) ::operator delete(block);
   }
   ::_exit(0);
 }
@@ -29,7 +29,7 @@ constexpr size_t kBlock = size_t{256} << 20;  // of addresses: nobody writes the
 TEST(MemoryBudget, MoreThanItIsRefusedByName) {
   const auto nine = [] {
     limit_memory();
-    take_blocks(9, true);
+    take_blocks(9, 9);
   };
   EXPECT_EXIT(nine(), ExitedWithCode(7), "R0118: .*more than 2048 MiB for 0 bytes of input");
 }
@@ -37,7 +37,7 @@ TEST(MemoryBudget, MoreThanItIsRefusedByName) {
 TEST(MemoryBudget, WhatIsGivenBackCountsNoMore) {
   const auto one_by_one = [] {
     limit_memory();
-    take_blocks(40, false);
+    take_blocks(40, 5);  // what comes when half of the budget is taken goes back to the system
   };
   EXPECT_EXIT(one_by_one(), ExitedWithCode(0), "");
 }
@@ -47,7 +47,7 @@ TEST(MemoryBudget, ItGrowsWithTheInput) {
     limit_memory();
     expect_input(uint64_t{64} << 20);
     expect_input(1);  // the largest one counts
-    take_blocks(blocks, true);
+    take_blocks(blocks, blocks);
   };
   EXPECT_EXIT(of_64_mib(9), ExitedWithCode(0), "");
   EXPECT_EXIT(of_64_mib(11), ExitedWithCode(7), "more than 2560 MiB for 67108864 bytes of input");
@@ -58,7 +58,7 @@ TEST(MemoryBudget, WhatTheMachineRefusesIsSaidToBeThat) {
     limit_memory();
     const rlimit least{1 << 20, 1 << 20};
     ::setrlimit(RLIMIT_AS, &least);
-    take_blocks(9, true);
+    take_blocks(9, 9);
   };
   EXPECT_EXIT(on_a_small_machine(), ExitedWithCode(7), "the machine gives no more than");
 }
