@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <utility>
 
+#include "base/check.h"
 #include "base/memory_limit.h"
 #include "online_change/apply/losses.h"
 #include "online_change/apply/pending.h"
@@ -279,12 +281,24 @@ base::Result<SwitchReport> Change::switch_steps() {
   if (pending_->migrate_back) pending_->migrate_back->note(data.data());
   vm::Memory* const area = pending_->area ? &pending_->area->data() : nullptr;
   pending_->waiting = controller_.publish(std::move(pending_->waiting), area);
-  if (does_anything(plan())) controller_.construct();
-  report.pause_ns = monotonic_ns() - begin_ns;
   state_ = State::kTrial;
+  if (base::Status entered = enter(); !entered.ok()) return entered.error();
+  report.pause_ns = monotonic_ns() - begin_ns;
   report.missed = controller_.missed_releases() - report.missed;
   report.counts = plan().counts;
   return report;
+}
+
+// Nothing of version 2 has run but its FB_Init, so nothing can keep version 1 from coming back.
+base::Status Change::enter() {
+  if (!does_anything(plan())) return base::Ok{};
+  base::Status entered = controller_.enter();
+  if (entered.ok()) return entered;
+  const auto interrupted = std::exchange(interrupted_, nullptr);
+  const bool undone = undo_steps(true).ok();
+  interrupted_ = interrupted;
+  base::check(undone, "a switch whose FB_Init trapped cannot be undone");
+  return entered;
 }
 
 base::Status Change::accept() {
@@ -302,7 +316,7 @@ base::Result<SwitchReport> Change::undo() {
   return guarded([&] { return undo_steps(); });
 }
 
-base::Result<SwitchReport> Change::undo_steps() {
+base::Result<SwitchReport> Change::undo_steps(bool whatever_happens) {
   if (state_ != State::kTrial) {
     return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"};
   }
@@ -310,12 +324,14 @@ base::Result<SwitchReport> Change::undo_steps() {
   SwitchReport report = report_begin();
   uint8_t* memory = controller_.memory().data();
   const std::string lost = pending_->charts.lost_on_the_way_back(memory);
-  if (!lost.empty()) return base::Error{base::Refusal::kActiveStepGone, lost};
+  if (!lost.empty() && !whatever_happens) {
+    return base::Error{base::Refusal::kActiveStepGone, lost};
+  }
   int64_t begin_ns = monotonic_ns();
   Transfer& back = pending_->backward;
   base::Status left = leave(pending_->leaving.at_undo);
   if (left.ok() && pending_->migrate_back) left = pending_->migrate_back->run(memory);
-  if (!left.ok()) {
+  if (!left.ok() && !whatever_happens) {
     if (!pending_->leaving.at_undo.empty()) controller_.construct();
     return left.error();
   }

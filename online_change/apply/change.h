@@ -83,7 +83,8 @@ class Change {
   // Prepared -> Armed. Losses are refused unless allowed (kWouldLose), and so is a predicted pause
   // longer than the free time of the tightest task (kPauseTooLong). What configure() left is done.
   base::Status arm(bool allow_loss, bool allow_overrun = false);
-  // At a boundary: Armed -> Trial. Re-checks losses; on failure -> Idle, version 1 untouched.
+  // At a boundary: Armed -> Trial. Re-checks losses; on failure -> Idle, version 1 untouched. When
+  // FB_Init of what is new traps (kInitFailed), the switch is undone before any task has run.
   base::Result<SwitchReport> switch_now();
   // Trial -> Idle with version 2 for good.
   base::Status accept();
@@ -117,7 +118,8 @@ class Change {
                            const AtBoundary& at_boundary);
   base::Status arm_steps(bool allow_loss, bool allow_overrun);
   base::Result<SwitchReport> switch_steps();
-  base::Result<SwitchReport> undo_steps();
+  base::Result<SwitchReport> undo_steps(bool whatever_happens = false);
+  base::Status enter();
   base::Status try_migrations(const AtBoundary& at_boundary);
   base::Status migrate();
   base::Status check_charts() const;

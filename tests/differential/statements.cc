@@ -225,7 +225,7 @@ Stmt Builder::case_integer(int depth) {
     if (labels.empty()) break;
     out.clauses.push_back({labels + ":", {}, statements(1, depth - 1), true});
   }
-  if (one_in(6) && all.high - next > 0) {
+  if (one_in(6) && all.high > next) {
     out.clauses.push_back({std::to_string(all.high) + ":", {}, statements(1, depth - 1), true});
   }
   if (one_in(2)) out.clauses.push_back({"ELSE", {}, statements(1, depth - 1), true});

@@ -192,8 +192,7 @@ base::Result<int> run_program(const tools::Options& options) {
   auto images = load_programs(sources_of(options));
   if (!images.ok()) return images.error();
   // They end with the process: taking their tables apart would cost a part of a short run.
-  static const auto* const kept = new std::vector<ir::VerifiedImage>(*images);
-  static_cast<void>(kept);
+  [[gnu::used]] static const auto* const kept = new std::vector<ir::VerifiedImage>(*images);
   auto resources = name_resources(std::move(*images));
   if (!resources.ok()) return resources.error();
   if (resources->size() > 1) {

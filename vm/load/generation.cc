@@ -5,6 +5,7 @@
 #include <cstring>
 #include <unordered_map>
 
+#include "base/check.h"
 #include "base/limits.h"
 #include "ir/bytecode/image_sections.h"
 #include "ir/types/handle.h"
@@ -127,6 +128,14 @@ bool have_one_data(const ir::Image& a, const ir::Image& b) {
 void write_initial_data(const ir::Image& image, uint8_t* memory) {
   for (const ir::DataRun& run : image.data) {
     std::memcpy(memory + run.offset, run.bytes.data(), run.bytes.size());
+  }
+}
+
+void write_retained(const ir::Image& image, base::ByteSpan values, uint8_t* memory) {
+  for (const ir::RetainRange& range : image.retain) {
+    base::check(range.size <= values.size(), "retained values have the layout of their image");
+    std::memcpy(memory + range.data, values.data(), range.size);
+    values = values.subspan(range.size);
   }
 }
 

@@ -17,14 +17,6 @@ namespace {
 
 using TablesByGeneration = std::map<const Generation*, std::unique_ptr<TaskTables>>;
 
-void write_retained(const ir::Image& image, base::ByteSpan values, uint8_t* memory) {
-  for (const ir::RetainRange& range : image.retain) {
-    base::check(range.size <= values.size(), "retained values have the layout of their image");
-    std::memcpy(memory + range.data, values.data(), range.size);
-    values = values.subspan(range.size);
-  }
-}
-
 }  // namespace
 
 struct Controller::Impl {
@@ -41,6 +33,7 @@ struct Controller::Impl {
   void set_change_flag(bool changed);
   void reset_data(bool retain);
   base::Status leave(const std::vector<uint32_t>& ids, bool changed, int64_t limit_ns);
+  base::Error last_trap(base::Refusal refusal) const;
 
   Memory memory;
   IoPort& io_port;
@@ -310,6 +303,13 @@ void Controller::construct() {
   impl_->scheduler.start_in_next_cycle();
 }
 
+base::Status Controller::enter() {
+  if (faulted()) return base::Ok{};
+  impl_->set_change_flag(true);
+  if (impl_->scheduler.run_inits()) return base::Ok{};
+  return impl_->last_trap(base::Refusal::kInitFailed);
+}
+
 base::Status Controller::leave(const std::vector<uint32_t>& ids, int64_t limit_ns) {
   return impl_->leave(ids, true, limit_ns);
 }
@@ -371,10 +371,12 @@ base::Status Controller::Impl::leave(const std::vector<uint32_t>& ids, bool chan
     stamp.set(stamp.get() == ir::kLeavingStamp ? before : ir::kNewStamp);
   }
   if (done) return base::Ok{};
-  const TrapRecord& last = *scheduler.traps().back();
-  return base::Error{
-      base::Refusal::kExitFailed,
-      last.text.pou + " in line " + std::to_string(last.text.line) + ": " + last.text.text};
+  return last_trap(base::Refusal::kExitFailed);
+}
+
+base::Error Controller::Impl::last_trap(base::Refusal refusal) const {
+  const TrapText& last = scheduler.traps().back()->text;
+  return {refusal, last.pou + " in line " + std::to_string(last.line) + ": " + last.text};
 }
 
 void Controller::Impl::set_change_flag(bool changed) {

@@ -181,8 +181,13 @@ class Controller {
   // begins to make that of the version that runs now.
   void make_native();
   std::vector<DeviceStatus> devices() const;
-  // Behind a change: the next cycle begins with the start code, which constructs what is new.
+  // Behind a change that is not made: the next cycle begins with the start code, which constructs
+  // what has left again.
   void construct();
+  // At a boundary, behind publish(): the start code, which constructs what is new, at the time of
+  // the next cycle. kInitFailed when it traps; what was published cannot run then. After a fault
+  // nothing is done.
+  base::Status enter();
   // At a boundary: FB_Exit of these instances, those around others first. When one traps or takes
   // longer than `limit_ns`, the rest is left out and the old program can run on behind construct().
   base::Status leave(const std::vector<uint32_t>& ids, int64_t limit_ns);

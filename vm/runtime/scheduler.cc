@@ -48,15 +48,28 @@ void Scheduler::finish_start_tasks() {
   starting_ = false;
 }
 
-bool Scheduler::run_exits(int64_t limit_ns) {
-  base::check(at_boundary(), "instances leave while a task is inside a scan");
-  exit_limit_ns_ = limit_ns;
-  exit_failed_ = false;
-  leaving_ = true;
+bool Scheduler::try_start_tasks(int64_t limit_ns) {
+  try_limit_ns_ = limit_ns;
+  try_failed_ = false;
+  trying_ = true;
   looked_ns_ = clock_.now_ns();
   finish_start_tasks();
-  leaving_ = false;
-  return !exit_failed_;
+  trying_ = false;
+  return !try_failed_;
+}
+
+bool Scheduler::run_exits(int64_t limit_ns) {
+  base::check(at_boundary(), "instances leave while a task is inside a scan");
+  return try_start_tasks(limit_ns);
+}
+
+bool Scheduler::run_inits() {
+  base::check(at_boundary(), "instances are made while a task is inside a scan");
+  pack_stale_outputs();
+  const int64_t before = std::exchange(cycle_start_ns_, next_cycle_ns_);
+  const bool done = try_start_tasks(0);
+  cycle_start_ns_ = before;
+  return done;
 }
 
 void Scheduler::restart() {
@@ -103,11 +116,7 @@ void Scheduler::begin_cycle() {
   // Cycles that nobody could start are gone, not made up for; releases in them count as missed.
   cycle_start_ns_ = next_cycle_ns_ + (looked_ns_ - next_cycle_ns_) / base * base;
   next_cycle_ns_ = cycle_start_ns_ + base;
-  if (outputs_stale_) {
-    impose(false);
-    pack_outputs();
-    outputs_stale_ = false;
-  }
+  pack_stale_outputs();
   send_waiting_outputs();
   end_holds(cycle_start_ns_);
   impose_on_outputs();
@@ -118,6 +127,13 @@ void Scheduler::begin_cycle() {
   offer_inputs();
   look_at_events();
   release_due_tasks();
+}
+
+void Scheduler::pack_stale_outputs() {
+  if (!outputs_stale_) return;
+  impose(false);
+  pack_outputs();
+  outputs_stale_ = false;
 }
 
 // Forced, else as it came in just now, else as the programs left it.

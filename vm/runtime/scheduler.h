@@ -21,6 +21,8 @@ class Scheduler {
   // At a boundary: them, for instances that leave. A trap, or more than `limit_ns`, ends them, and
   // nothing else: false.
   bool run_exits(int64_t limit_ns);
+  // The same for instances that are new, at the time of the next cycle. Only a trap ends them.
+  bool run_inits();
   // At a boundary, also behind a fault: every task runs again, in its phase; none has missed a
   // release until then.
   void restart();
@@ -55,7 +57,9 @@ class Scheduler {
 
   void begin_cycle();
   void finish_start_tasks();
+  bool try_start_tasks(int64_t limit_ns);
   void pack_outputs();
+  void pack_stale_outputs();
   void take_packed();
   void send_waiting_outputs();
   void offer_inputs();
@@ -106,9 +110,9 @@ class Scheduler {
   bool outputs_stale_ = false;  // new tables: pack before the next refresh
   bool starting_ = false;
   bool start_pending_ = false;
-  bool leaving_ = false;  // inside run_exits()
-  int64_t exit_limit_ns_ = 0;
-  bool exit_failed_ = false;
+  bool trying_ = false;  // inside try_start_tasks()
+  int64_t try_limit_ns_ = 0;
+  bool try_failed_ = false;
   bool faulted_ = false;
 };
 

@@ -74,7 +74,7 @@ void Scheduler::run_slice(TaskSlot& task) {
   task.run_ns += now - looked_ns_;
   looked_ns_ = now;
 
-  const int64_t limit_ns = leaving_ ? exit_limit_ns_ : task.watchdog_ns;
+  const int64_t limit_ns = trying_ ? try_limit_ns_ : task.watchdog_ns;
   bool too_long = limit_ns > 0 && task.run_ns > limit_ns;
   if (exit == Exit::kTrap) {
     trap_in(task, task.execution->trap());
@@ -133,8 +133,8 @@ void Scheduler::trap_in(TaskSlot& task, const Trap& trap) {
   if (traps_.size() == kKeptTraps) traps_.erase(traps_.begin());
   traps_.push_back(std::make_shared<TrapRecord>(TrapRecord{
       cycles_, task.status.name, trap, describe(tables_->generation->image(), trap)}));
-  if (leaving_) {
-    exit_failed_ = true;
+  if (trying_) {
+    try_failed_ = true;
     roll_back_outputs(task);
     leave(task);
     return;
