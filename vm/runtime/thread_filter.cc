@@ -36,8 +36,9 @@ constexpr Permit kPermits[] = {
 #include "vm/runtime/system_calls.def"
 #undef PERMIT
 };
-// What is newer was not known to whoever made the table.
-constexpr uint32_t kNewest = 449;  // futex_waitv, Linux 5.16
+// From Linux 5.1 on a call has the same number on every processor. Libraries know what to do
+// without those: they use older calls, but only when the kernel says that it has no such call.
+constexpr uint32_t kLastOld = 423;
 
 constexpr uint32_t kNamespaces = CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC |
                                  CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET;
@@ -59,8 +60,8 @@ class Filter {
     load(offsetof(seccomp_data, args) + 8 * static_cast<size_t>(number));
   }
   void answer(uint32_t with) { add(BPF_RET | BPF_K, with); }
-  // `count` instructions are skipped when the word is `value`, or unless it is, has a bit of it, or
-  // is larger.
+  // `count` instructions are skipped when the word is `value`, or unless it is, has a bit of it,
+  // or is larger.
   void if_equal_skip(uint32_t value, uint8_t count) {
     add(BPF_JMP | BPF_JEQ | BPF_K, value, count, 0);
   }
@@ -85,7 +86,7 @@ class Filter {
   std::vector<sock_filter> code_;
 };
 
-// Executable memory that does not come from a file: libraries can still be loaded for names.
+// Executable memory that does not come from a file: libraries can still be loaded to look up names.
 void refuse_new_code(Filter& filter) {
   filter.unless_equal_skip(__NR_mprotect, 4);
   filter.load_argument(2);
@@ -113,6 +114,17 @@ void refuse_namespaces(Filter& filter) {
   filter.load(offsetof(seccomp_data, nr));
 }
 
+// Calls whose first argument is a process: the own one, which may also be called 0 where
+// `zero_is_own`.
+void refuse_others(Filter& filter, uint32_t call, bool zero_is_own) {
+  filter.unless_equal_skip(call, zero_is_own ? 5 : 4);
+  filter.load_argument(0);
+  if (zero_is_own) filter.if_equal_skip(0, 2);
+  filter.if_equal_skip(static_cast<uint32_t>(::getpid()), 1);
+  filter.answer(refuse_with(EPERM));
+  filter.load(offsetof(seccomp_data, nr));
+}
+
 Filter filter_of(ThreadKind kind) {
   Filter filter;
   filter.load(offsetof(seccomp_data, arch));
@@ -120,13 +132,15 @@ Filter filter_of(ThreadKind kind) {
   filter.answer(refuse_with(EPERM));
   filter.load(offsetof(seccomp_data, nr));
   refuse_namespaces(filter);
+  refuse_others(filter, __NR_tgkill, false);
+  refuse_others(filter, __NR_prlimit64, true);
   if (kind == ThreadKind::kDevice) refuse_new_code(filter);
   for (const Permit& permit : kPermits) {
     if (!permits(permit, kind)) continue;
     filter.unless_equal_skip(permit.call, 1);
     filter.answer(SECCOMP_RET_ALLOW);
   }
-  filter.unless_larger_skip(kNewest, 1);
+  filter.unless_larger_skip(kLastOld, 1);
   filter.answer(refuse_with(ENOSYS));
   filter.answer(refuse_with(EPERM));
   return filter;

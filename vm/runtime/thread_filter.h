@@ -1,11 +1,12 @@
 // What a served controller's threads may ask of Linux at all (seccomp), so that a defect that lets
-// a message or a device run code of its own leads no further: no program is started, no process is
-// looked into, the control thread opens no connection, a device's thread makes no memory
-// executable. The table is system_calls.def.
+// a message or a device run code of its own leads less far: no program is started, no other process
+// is looked into or stopped, the control thread opens no connection, a device's thread makes no
+// memory executable but that of a file. It cannot tell files apart, and threads share one memory:
+// it is no wall between them. The table is system_calls.def.
 //
 // A call that is not permitted fails with EPERM, and the thread goes on: in a plant, outputs that
 // stay under control are worth more than the end of a process that may only have met a newer
-// library. Calls that are newer than the table fail with ENOSYS, so that libraries use older ones.
+// library. Calls of Linux 5.1 and later fail with ENOSYS, so that libraries use older ones.
 #pragma once
 
 #include <cstdint>
