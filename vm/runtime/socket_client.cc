@@ -10,6 +10,7 @@
 
 #include "vm/runtime/frames.h"
 #include "vm/runtime/socket_peer.h"
+#include "vm/runtime/socket_place.h"
 #include "vm/runtime/socket_server.h"
 
 namespace vm {
@@ -21,6 +22,17 @@ void be_patient(const Descriptor& socket) {
   timeval patience{kPatienceSeconds, 0};
   ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+}
+
+// The error is that of the file, which is what people can see.
+bool connect_to(const Descriptor& socket, const SocketPlace& place) {
+  const SocketAddress file = place.file();
+  if (::connect(socket.get(), file.get(), file.size) == 0) return true;
+  const int error = errno;
+  const SocketAddress other = place.without_file();
+  if (place.read_only() && ::connect(socket.get(), other.get(), other.size) == 0) return true;
+  errno = error;
+  return false;
 }
 
 }  // namespace
@@ -38,21 +50,18 @@ base::Result<std::unique_ptr<SocketClient>> SocketClient::connect(const std::str
 }
 
 base::Result<Descriptor> SocketClient::open(const std::string& directory, For whom) {
-  Descriptor holder;
-  base::Result<std::string> path = socket_path(directory, holder);
-  if (!path.ok()) {
+  base::Result<SocketPlace> place = SocketPlace::in(directory);
+  if (!place.ok()) {
     return base::Error{base::Refusal::kNotRunning,
-                       "no controller runs there: " + path.error().text};
+                       "no controller runs there: " + place.error().text};
   }
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
   // The server knows a bridge by its end having a name; the system finds one.
   if (whom == For::kAnother) {
-    (void)::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address.sun_family);
+    const SocketAddress any{{AF_UNIX, {}}, sizeof(sa_family_t)};
+    (void)::bind(socket.get(), any.get(), any.size);
   }
-  std::memcpy(address.sun_path, path->data(), path->size());
-  if (::connect(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
+  if (!connect_to(socket, *place)) {
     return base::Error{base::Refusal::kNotRunning,
                        "no controller runs in " + directory + ": " + std::strerror(errno)};
   }

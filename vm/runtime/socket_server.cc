@@ -13,6 +13,7 @@
 #include "base/memory_limit.h"
 #include "vm/runtime/connection.h"
 #include "vm/runtime/socket_peer.h"
+#include "vm/runtime/socket_place.h"
 
 namespace vm {
 namespace {
@@ -38,6 +39,10 @@ std::vector<pollfd> poll_set(int wake, int listener, const Connections& connecti
   return set;
 }
 
+bool bind_to(const Descriptor& socket, const SocketAddress& address) {
+  return ::bind(socket.get(), address.get(), address.size) == 0;
+}
+
 base::Error socket_error(const std::string& path, const char* what) {
   return {base::Refusal::kFileUnwritable, path + ": " + what + ": " + std::strerror(errno)};
 }
@@ -46,22 +51,18 @@ base::Error socket_error(const std::string& path, const char* what) {
 
 base::Result<std::unique_ptr<SocketServer>> SocketServer::open(const std::string& directory,
                                                                Service& service) {
-  Descriptor holder;
-  base::Result<std::string> address_path = socket_path(directory, holder);
-  if (!address_path.ok()) return address_path.error();
+  base::Result<SocketPlace> place = SocketPlace::in(directory);
+  if (!place.ok()) return place.error();
   std::string path = directory + "/" + kSocketName;
   Descriptor listener(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   Descriptor wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   if (!listener.valid() || !wake.valid()) return socket_error(path, "socket");
   // Before bind(), so that the socket is at no instant open to others.
   if (::fchmod(listener.get(), 0600) != 0) return socket_error(path, "chmod");
-  ::unlink(address_path->c_str());
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  std::memcpy(address.sun_path, address_path->data(), address_path->size());
-  if (::bind(listener.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
-    return socket_error(path, "bind");
-  }
+  place->remove_file();
+  bool bound = bind_to(listener, place->file());
+  if (!bound && place->read_only()) bound = bind_to(listener, place->without_file());
+  if (!bound) return socket_error(path, "bind");
   if (::listen(listener.get(), kMaxConnections) != 0) return socket_error(path, "listen");
   return std::unique_ptr<SocketServer>(
       new SocketServer(path, std::move(listener), std::move(wake), service));

@@ -61,8 +61,5 @@ class SocketServer {
 };
 
 inline constexpr const char* kSocketName = "control";
-// Absolute path of the socket as it fits into a socket address, however long `directory` is.
-// `holder` keeps it valid.
-base::Result<std::string> socket_path(const std::string& directory, Descriptor& holder);
 
 }  // namespace vm
