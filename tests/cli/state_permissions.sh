@@ -54,3 +54,12 @@ if [ "$(id -u)" = 0 ]; then
   expect 7 stvm serve --dir host/state p.img
   said 'R0503: .*host: it belongs to another user'
 fi
+
+# A link that leads elsewhere later leads nobody there.
+mkdir -m 700 real other
+ln -s real link
+serve link p.img
+ln -sfn other link
+rm real/slot_a
+wait_for slot_a ls real
+[ -z "$(ls other)" ] || fail "written into another folder: $(ls other)"

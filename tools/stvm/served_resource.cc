@@ -28,7 +28,7 @@ ServedResource::ServedResource(const std::string& directory, const std::string& 
     : directory_(directory),
       name_(name),
       folder_(std::move(folder)),
-      storage_(directory),
+      storage_(folder_.path()),
       store_(storage_) {}
 ServedResource::~ServedResource() = default;
 
@@ -63,7 +63,7 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
       StartReport{boot_->trial_lost, boot_->alarms, boot_->fault});
   service_->store_beside();
   if (running_->recorder() != nullptr) service_->record(*running_->recorder());
-  auto server = vm::SocketServer::open(directory_, *service_);
+  auto server = vm::SocketServer::open(folder_.path(), *service_);
   if (!server.ok()) return server.error();
   server_ = std::move(*server);
   service_->keeper().tell([](const std::string& line) {

@@ -45,10 +45,7 @@ base::Status check_folder(const std::string& path, bool parent) {
   return unwritable(path, why.c_str());
 }
 
-base::Status check_folders(const std::string& path) {
-  std::error_code error;
-  std::filesystem::path at = std::filesystem::canonical(path, error);
-  if (error) return unwritable(path, error.message().c_str());
+base::Status check_folders(std::filesystem::path at) {
   base::Status safe = check_folder(at, false);
   while (safe.ok() && at != at.root_path()) {
     at = at.parent_path();
@@ -62,20 +59,23 @@ base::Status check_folders(const std::string& path) {
 base::Result<StateFolder> StateFolder::open(const std::string& path) {
   base::Status made = make_folder(path);
   if (!made.ok()) return made.error();
-  base::Status safe = check_folders(path);
+  std::error_code error;
+  const std::string real = std::filesystem::canonical(path, error);
+  if (error) return unwritable(path, error.message().c_str());
+  base::Status safe = check_folders(real);
   if (!safe.ok()) return safe.error();
-  std::string file = path + "/lock";
+  const std::string file = real + "/lock";
   vm::Descriptor lock(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
   // Of a file system that is read-only, which the program can run from all the same.
   if (!lock.valid() && errno == EROFS) {
-    lock = vm::Descriptor(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    lock = vm::Descriptor(::open(real.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   }
   if (!lock.valid()) return unwritable(file, std::strerror(errno));
   if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK) return unwritable(file, std::strerror(errno));
     return base::Error{base::Refusal::kAlreadyRunning, "a controller already runs in " + path};
   }
-  return StateFolder(std::move(lock));
+  return StateFolder(real, std::move(lock));
 }
 
 bool holds_program(const std::string& directory) {

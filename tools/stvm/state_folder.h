@@ -16,8 +16,13 @@ class StateFolder {
   // kFileUnwritable.
   static base::Result<StateFolder> open(const std::string& path);
 
+  // Without links: those could be made to lead elsewhere after they were looked at.
+  const std::string& path() const { return path_; }
+
  private:
-  explicit StateFolder(vm::Descriptor lock) : lock_(std::move(lock)) {}
+  StateFolder(std::string path, vm::Descriptor lock)
+      : path_(std::move(path)), lock_(std::move(lock)) {}
+  std::string path_;
   vm::Descriptor lock_;
 };
 
