@@ -116,8 +116,10 @@ differential: build
 	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --shrink --jobs $(JOBS)
 	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --changes --shrink --jobs $(JOBS)
 
-# Hours, not minutes: 100,000 random programs on every tier; identity changes at 100,000 scans of the line.
+# Hours, not minutes: eight hours of each of four simulated plants with changes, clients and faults;
+# 100,000 random programs on every tier; identity changes at 100,000 scans of the line.
 soak: build
+	@$(BUILD)/tests/sim 1 4 --hours 8 --jobs $(JOBS)
 	@$(BUILD)/tests/differential 1 100000 --shrink --jobs $(JOBS)
 	@tests/cli/determinism.sh $(CURDIR) $(CURDIR)/$(BUILD) 100000
 

@@ -1,8 +1,8 @@
 // What a connection has uploaded or is reading page by page is kept for it alone, and given back
 // when it ends, however it ends.
 #include <gtest/gtest.h>
-#include <malloc.h>
 
+#include "tests/sim/heap_use.h"
 #include "tests/unit/store/plc.h"
 #include "tests/unit/store/sim_storage.h"
 
@@ -11,18 +11,6 @@ namespace {
 
 using base::Refusal;
 using vm::Command;
-
-uint64_t bytes_in_use() {
-  const auto info = mallinfo2();
-  return info.uordblks + info.hblkhd;
-}
-
-// A sanitizer's memory is not counted.
-bool is_counted() {
-  const uint64_t before = bytes_in_use();
-  const base::Bytes probe(32u << 20);
-  return bytes_in_use() >= before + probe.size();
-}
 
 class Session : public ::testing::Test {
  protected:
@@ -40,15 +28,15 @@ class Session : public ::testing::Test {
 };
 
 TEST_F(Session, AnUploadEndsWithItsConnection) {
-  const uint64_t before = bytes_in_use();
+  const uint64_t before = sim::heap_use();
   constexpr size_t kPart = vm::kChunkBytes;
   constexpr uint64_t kAll = 64u << 20;
   for (uint64_t at = 0; at < kAll; at += kPart) ASSERT_TRUE(upload(1, at, kPart).ok());
-  EXPECT_GE(bytes_in_use(), before + (is_counted() ? kAll : 0));
+  EXPECT_GE(sim::heap_use(), before + kAll);
   plc_.service().ended(2);
   EXPECT_TRUE(upload(1, kAll, 1).ok()) << "another one ended";
   plc_.service().ended(1);
-  EXPECT_LE(bytes_in_use(), before + (1u << 20));
+  EXPECT_LE(sim::heap_use(), before + (1u << 20));
   const base::Status rest = upload(3, kAll + 1, 1);
   ASSERT_FALSE(rest.ok());
   EXPECT_EQ(rest.error().refusal, Refusal::kProtocol);
