@@ -1,5 +1,5 @@
-// No type may contain itself by value, neither structures nor instances of blocks, nor be nested
-// deeper than images may be (verify_types.cc, linker/instances.cc).
+// No type may contain itself by value, be it a structure or a function block. No type may be nested
+// deeper than an image permits (verify_types.cc, linker/instances.cc).
 #include <algorithm>
 #include <utility>
 

@@ -1,6 +1,6 @@
 // When something that has failed is tried again: soon at first, then after twice as long each time,
-// up to a longest time. What fails again soon after it was well goes on where it was, so that a
-// disk that comes and goes does not fill the journal.
+// up to a longest time. When it fails again soon after it was well, the waiting time goes on from
+// where it was, so that a disk that comes and goes does not fill the journal.
 #pragma once
 
 #include <algorithm>

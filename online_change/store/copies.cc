@@ -5,7 +5,8 @@
 namespace online_change {
 namespace {
 
-// What could not be read may have been written so many times more often than what could.
+// A copy that could not be read may have a higher sequence number than those that could. The next
+// write skips so many numbers, so that it is the newest all the same.
 constexpr uint64_t kUnreadSequences = uint64_t{1} << 32;
 
 }  // namespace

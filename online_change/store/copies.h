@@ -31,7 +31,8 @@ class Copies {
   // Room for a longer payload in one copy; where it must become longer, for so many bytes more, if
   // the storage has them: a longer file costs a flush of the disk.
   base::Status reserve(size_t number, uint64_t payload_bytes, uint64_t spare = 0);
-  // Over whatever the copy holds, with the next sequence number; of a dead one in a new file.
+  // Writes over whatever the copy holds, with the next sequence number; a dead copy gets a new
+  // file.
   base::Status write(size_t number, const Payload& payload);
   // A dead copy that holds nothing gets a new file that is empty.
   base::Status renew(size_t number);
@@ -75,7 +76,7 @@ class Copies {
   }
   // What recover() read; kept until then.
   base::Bytes take_payload(size_t number) { return std::move(copies_[number].record.payload); }
-  // It is not what it should be.
+  // The owner has found that the payload is not what it should be.
   void reject(size_t number) { copies_[number].record = {RecordState::kDamaged, 0, {}}; }
   // Why the first of the dead ones is dead, or what check() could not tell; else empty.
   std::string complaint() const;

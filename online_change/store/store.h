@@ -108,13 +108,13 @@ class Store {
   // Of both rings, by time.
   std::vector<JournalEntry> history() const;
 
-  // To be called now and then; what is busy is left for the next time. Are all files still there?
-  // complaints() has those that are not.
+  // Looks whether all files are still there; complaints() names those that are not. To be called
+  // now and then: what another thread is using is left for the next call.
   void look();
-  // What has failed or is gone gets a new file.
+  // Copies that have failed, or whose file is gone, get a new file.
   base::Status renew();
 
-  // These two wait for no disk.
+  // boots() and complaints() do not wait for the disk.
   base::Digest boots() const;
   // What has failed and is not renewed, or is not stored any more.
   std::vector<std::string> complaints() const;

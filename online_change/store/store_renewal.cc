@@ -33,7 +33,7 @@ bool Store::needs_slot(size_t slot) const {
   return image && (names_locked(*image) || (newest && in_copy_[*newest]->image == image));
 }
 
-// Dead ones that hold nothing that is needed; for others there is restore().
+// Renews dead slots that hold no program that is needed; restore() writes the others.
 base::Status Store::renew_slots_locked() {
   base::Status renewed = base::Ok{};
   for (size_t i = 0; i < slots_.count() && renewed.ok(); ++i) {

@@ -17,8 +17,6 @@ namespace {
 constexpr int64_t kKeepUpPatienceNs = 200'000'000;
 constexpr int64_t kBoundaryPatienceNs = 5'000'000'000;
 
-base::Bytes nothing() { return {}; }
-
 }  // namespace
 
 ControllerService::ControllerService(vm::Controller& controller, vm::Clock& clock,
@@ -251,7 +249,7 @@ base::Result<base::Bytes> ControllerService::image(const vm::Request& request) {
 
 base::Result<base::Bytes> ControllerService::stop(const vm::Request&) {
   stop_wanted_.store(true, std::memory_order_relaxed);
-  return nothing();
+  return base::Bytes();
 }
 
 // The answer is what FB_Exit had to say, mostly nothing.

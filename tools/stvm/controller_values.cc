@@ -6,8 +6,6 @@
 namespace stvm {
 namespace {
 
-base::Bytes nothing() { return {}; }
-
 base::Error too_much(const std::string& name) {
   return {base::Refusal::kTooMany, "one request reads " + std::to_string(vm::kMaxReadBytes) +
                                        " bytes of variables; with `" + name +
@@ -88,7 +86,7 @@ base::Result<base::Bytes> ControllerService::get(const vm::Request& request) {
 base::Result<base::Bytes> ControllerService::set(const vm::Request& request) {
   base::Result<vm::WriteSet> set = controller_.prepare_set(named_values(request));
   if (!set.ok()) return set.error();
-  if (set->values.empty()) return nothing();
+  if (set->values.empty()) return base::Bytes();
   vm::BoundaryShare share;
   base::Status taken = base::Ok{};
   vm::Copied written = vm::Copied::kLater;
@@ -102,7 +100,7 @@ base::Result<base::Bytes> ControllerService::set(const vm::Request& request) {
   }
   if (!taken.ok()) return taken.error();
   if (written == vm::Copied::kOtherProgram) return other_version();
-  return nothing();
+  return base::Bytes();
 }
 
 // The code for it is made here, beside the running program; the boundary only exchanges it.
@@ -123,7 +121,7 @@ base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request)
   if (!change.ok()) return change.error();
   base::Status taken = at_boundary([&] { controller_.use(**change); });
   if (!taken.ok()) return taken.error();
-  return nothing();
+  return base::Bytes();
 }
 
 base::Result<base::Bytes> ControllerService::forces(const vm::Request&) { return force_rows({}); }

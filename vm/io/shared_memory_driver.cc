@@ -29,7 +29,7 @@ uint64_t now_ns() {
                                std::chrono::nanoseconds(1));
 }
 
-// What calls copy has the order of the calls, for whoever has the object mapped.
+// Keeps the writes of two calls in order for a process that has the object mapped.
 void in_order() { std::atomic_thread_fence(std::memory_order_seq_cst); }
 
 template <class T>

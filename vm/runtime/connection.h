@@ -47,14 +47,15 @@ struct Connection {
   void put_answer(base::ByteSpan answer, bool keep_open);
 };
 
-// Who may stay, and who gets a place. The last place is for somebody on this machine; when there is
-// none, whoever has been idle longest makes room.
+// All connections: decides who may stay and who gets a place. Bridges cannot take the last place,
+// so that somebody on this machine always gets one. When no place is free, the connection that has
+// been idle longest is ended.
 class Connections {
  public:
-  // A peer that stops in the middle of a message or does not read its answer is sent away.
+  // A peer that stops in the middle of a message, or does not read its answer, is ended after this.
   static constexpr auto kPatience = std::chrono::seconds(10);
-  // One that has asked nothing for so long is, too. Where its place is wanted it is sooner, and at
-  // once when it never has.
+  // A connection that has asked nothing for so long is ended. When its place is wanted, that is
+  // sooner: after kSettled, and at once when it has never asked.
   static constexpr auto kIdle = std::chrono::minutes(15);
   static constexpr auto kSettled = std::chrono::seconds(1);
 

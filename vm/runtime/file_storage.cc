@@ -176,9 +176,9 @@ base::Status FileStorage::write(std::string_view name, uint64_t offset, base::By
   return base::Ok{};
 }
 
-// A failed one is not tried again: the system drops what it could not write, keeps it where reads
-// see it, and says "done" the next time. So before a file of an earlier process is read, whatever
-// the system remembers of it is forgotten, and reads ask the disk.
+// A sync that has failed is not tried again. Linux drops the pages that it could not write, still
+// shows them to reads, and reports success the next time. So before a file of an earlier process is
+// read, its cached pages are dropped, and reads ask the disk.
 base::Status FileStorage::sync(std::string_view name) {
   File* const file = find(name);
   if (file == nullptr) return failed(base::Refusal::kFileUnwritable, std::string(name), EBADF);

@@ -16,13 +16,13 @@
 
 namespace vm {
 
-// At one boundary, and of one request, in lines.
-inline constexpr uint64_t kMaxBoundaryBytes = base::kMaxBoundaryBytes;
-inline constexpr uint64_t kMaxReadBytes = base::kMaxReadBytes;
-// Copied, read and written together; as in the model of the pause.
+// Bytes are counted in whole lines of the cache.
+inline constexpr uint64_t kMaxBoundaryBytes = base::kMaxBoundaryBytes;  // copied at one boundary
+inline constexpr uint64_t kMaxReadBytes = base::kMaxReadBytes;          // copied for one request
+// A copied byte is read and written; the model of the pause uses the same number.
 inline constexpr int64_t kCopyBytesPerNs = 2;
-inline constexpr uint64_t kLeastBytes = 1u << 14;
-inline constexpr int kPatience = 200;
+inline constexpr uint64_t kLeastBytes = 1u << 14;  // in the second cycle, also without free time
+inline constexpr int kPatience = 200;              // boundaries without a share, before it hurries
 
 // How much one request may do at the boundaries that it gets.
 class BoundaryShare {
@@ -32,11 +32,11 @@ class BoundaryShare {
   uint64_t bytes(const Controller& controller, int64_t free_ns, uint64_t left, bool whole);
 
  private:
-  uint64_t cycle_ = 0;  // that had its share, or the first that had no time for one
-  int waited_ = 0;
+  uint64_t cycle_ = 0;  // the last cycle with a share, or the first one without time for it
+  int waited_ = 0;      // boundaries without a share since then
 };
 
-// kLater: nothing, for want of time.
+// kLater: this boundary had no time for it.
 enum class Copied : uint8_t { kPart, kLater, kAll, kOtherProgram };
 
 class LiveCopy {

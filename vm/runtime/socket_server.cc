@@ -18,14 +18,14 @@
 namespace vm {
 namespace {
 
-// Where the system has no descriptor for a connection, it is not asked again at once: poll() says
-// all the time that somebody waits.
+// When the system has no descriptor for a connection, the server waits before it accepts again:
+// poll() would return at once, as somebody still waits.
 constexpr auto kAfterFailure = std::chrono::milliseconds(100);
 constexpr int kPollMs = 1000;
 
 Descriptor spare() { return Descriptor(::open("/dev/null", O_RDONLY | O_CLOEXEC)); }
 
-// What it says is sent if there is room for it, as there is in a new socket.
+// The answer is sent only if the socket has room for it at once; a new socket has.
 void send_away(const Descriptor& socket, const base::Error& why) {
   const base::Bytes answer = frame(encode_answer(why));
   (void)!::send(socket.get(), answer.data(), answer.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
