@@ -264,7 +264,7 @@ TEST(Server, WritesToTheProgramsPointsArePassedOnWhole) {
                                                     "wrote holding 0..3"}));
 }
 
-TEST(Server, WhoListensWithoutAnAddressIsAskedByThisMachineOnly) {
+TEST(Server, TheDefaultAddressIsThisMachine) {
   EXPECT_EQ(ir::setting(device("modbus-tcp-server", {}, {}), "address"), "127.0.0.1:502");
 }
 
