@@ -59,6 +59,7 @@ class Planner {
   std::string rename_note(const Carried& instance, const DiffOp& op) const;
   uint32_t note_row(const Carried& instance, const DiffOp& op);
   std::string rename_hint(uint32_t new_id);
+  std::string type_rename_hint(ir::TypeId before, ir::TypeId after) const;
   uint32_t moved_row(const Carried& instance, const DiffOp& op);
   uint32_t added_row(uint32_t new_id, uint64_t leaves);
   uint32_t dropped_row(uint32_t old_id, uint64_t leaves);

@@ -1,4 +1,6 @@
 // The fate rows of a plan: what people read, as few rows as say everything.
+#include <algorithm>
+
 #include "online_change/plan/planner.h"
 
 namespace online_change {
@@ -8,6 +10,15 @@ std::string base_name(const std::string& name) { return name.substr(0, name.find
 
 std::string join_path(const std::string& instance, const std::string& relative) {
   return instance.empty() && !relative.empty() ? relative.substr(1) : instance + relative;
+}
+
+// Of the name and kind of `like`.
+bool has_type(const ir::Image& image, const ir::Type& like) {
+  for (uint32_t i = 0; i < image.types.size(); ++i) {
+    const ir::Type& type = image.types[ir::TypeId{i}];
+    if (type.kind == like.kind && ir::same_name(type.name, like.name)) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -133,6 +144,20 @@ std::string Planner::rename_hint(uint32_t new_id) {
   return hint == diff.hints.end() ? std::string() : hint->second;
 }
 
+// A type that is gone may be the new one under another name: that has what it had.
+std::string Planner::type_rename_hint(ir::TypeId before, ir::TypeId after) const {
+  const ir::Type& gone = old_.types[before];
+  const ir::Type& came = new_.types[after];
+  if (gone.kind != came.kind || has_type(new_, gone) || has_type(old_, came)) return {};
+  const bool same = std::equal(gone.members.begin(), gone.members.end(), came.members.begin(),
+                               came.members.end(), [](const ir::Member& a, const ir::Member& b) {
+                                 return ir::same_name(a.name, b.name);
+                               });
+  return same ? "; if `" + gone.name + "` is called `" + came.name +
+                    "` now, write {renamed from := '" + gone.name + "'} before it"
+              : std::string();
+}
+
 // Instances inside a new instance are counted with it; equal ones share a row.
 uint32_t Planner::added_row(uint32_t new_id, uint64_t leaves) {
   const ir::Instance& instance = new_.instances[new_id];
@@ -152,8 +177,10 @@ uint32_t Planner::added_row(uint32_t new_id, uint64_t leaves) {
     row.new_type = new_.types.text(instance.type);
     row.reason = "new" + rename_hint(new_id);
     if (replaced != kNoInstance) {
-      row.old_type = old_.types.text(old_.instances[replaced].type);
-      row.reason = "another function block type";
+      const ir::TypeId before = old_.instances[replaced].type;
+      row.old_type = old_.types.text(before);
+      row.may_lose = true;
+      row.reason = "another type" + type_rename_hint(before, instance.type);
     }
     return row;
   });

@@ -78,7 +78,8 @@ TEST(Instances, case26_ton_becomes_tof) {
   plant.run(100);
   EXPECT_NE(plant.get("Main.t.ET"), "T#0s");
   base::Digest before = plant.hash();
-  plant.change(source("TOF"));
+  EXPECT_EQ(plant.refused(source("TOF")), base::Refusal::kWouldLose);
+  plant.change(source("TOF"), true);
   EXPECT_EQ(plant.get("Main.t.ET"), "T#0s");
   EXPECT_EQ(plant.get("Main.n"), "100");
   EXPECT_EQ(plant.row("Main.t")->fate, Fate::kInitialised);
