@@ -133,18 +133,19 @@ base::Status Change::check_losses(bool allow_loss) const {
   return would_lose(first.front(), count - 1);
 }
 
-// Free time of a task: its period without its longest scan.
+// Free time of a task: its period without the longest of its last scans.
 base::Status Change::admit(bool allow_overrun) const {
   if (allow_overrun) return base::Ok{};
   const int64_t pause_ns = predicted_pause_ns();
   for (const vm::TaskStatus& task : controller_.tasks()) {
     if (task.stopped || task.period_ns == 0) continue;  // events leave as much time as there is
-    int64_t free_ns = task.period_ns - task.run.max;
+    const int64_t free_ns = std::max<int64_t>(task.period_ns - task.recent_ns, 0);
     if (pause_ns <= free_ns) continue;
     return base::Error{base::Refusal::kPauseTooLong,
                        "the switch is expected to take " + std::to_string(pause_ns) +
                            " ns; task `" + task.name + "` leaves " + std::to_string(free_ns) +
-                           " ns; split the change, or allow it with --allow-overrun"};
+                           " of " + std::to_string(task.period_ns) + " ns, by the longest of its " +
+                           "last scans; split the change, or allow it with --allow-overrun"};
   }
   return base::Ok{};
 }

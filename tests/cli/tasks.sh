@@ -30,6 +30,18 @@ said '^task Quick'
 said 'below +[0-9.]+ .s +[0-9]+  #+'
 expect 0 stvm status --dir state --task Quick --format json
 said '"below_ns"'
+expect 0 stvm status --dir state --format json
+said '"recent_longest_ns"'
+# case68: what a task took once is forgotten when it is asked for; counters go on.
+number_of() { tr -d ' \n' <out | sed "s/.*\"Quick\"[^}]*\"$1\":\([0-9]*\).*/\1/"; }
+before=$(number_of scans)
+expect 0 stvm status --dir state --task Quick --format json
+counted() { tr -d ' \n' <out | grep -o '"count":[0-9]*' | awk -F: '{ n += $2 } END { print n + 0 }'; }
+all=$(counted)
+expect 0 stvm status --dir state --task Quick --format json --reset-times
+[ "$(counted)" -lt "$all" ] || fail "nothing is forgotten"
+expect 0 stvm status --dir state --format json
+[ "$(number_of scans)" -gt "$before" ] || fail "scans do not go on"
 expect 7 stvm status --dir state --task nobody
 said 'R0415'
 

@@ -112,6 +112,8 @@ base::Result<base::Bytes> ControllerService::dispatch(const vm::Request& request
       return restart(request);
     case vm::Command::kJournal:
       return journal(request);
+    case vm::Command::kResetTimes:
+      return reset_times(request);
   }
   return base::Error{base::Refusal::kProtocol, "unknown command"};
 }
@@ -218,6 +220,12 @@ base::Result<base::Bytes> ControllerService::times(const vm::Request& request) {
       copy_at_boundaries([&](int64_t free_ns) { return task.take(controller_, free_ns); });
   if (!taken.ok()) return taken.error();
   return vm::encode(vm::times_of(task.samples().front()));
+}
+
+base::Result<base::Bytes> ControllerService::reset_times(const vm::Request&) {
+  base::Status taken = look_at_boundary([&] { controller_.reset_times(); });
+  if (!taken.ok()) return taken.error();
+  return base::Bytes();
 }
 
 // Nothing of it is to be seen, so a recording need not have it; and what fails is tried again.

@@ -65,6 +65,7 @@ class ControllerService : public vm::Service {
   Answer dispatch(const vm::Request& request);
   Answer status(const vm::Request& request);
   Answer times(const vm::Request& request);
+  Answer reset_times(const vm::Request& request);
   Answer get(const vm::Request& request);
   Answer set(const vm::Request& request);
   Answer force(const vm::Request& request);

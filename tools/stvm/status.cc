@@ -17,7 +17,8 @@ namespace {
 constexpr tools::OptionRow kOptions[] = {
     STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION,
-    {"--task", "NAME", "histograms of a task: run times, and delays of its start"}};
+    {"--task", "NAME", "histograms of a task: run times, and delays of its start"},
+    {"--reset-times", nullptr, "the controller forgets how long scans took and began late"}};
 constexpr tools::Command kCommand{"status", "", "Shows what a controller runs and how it is.",
                                   kOptions, 0,  0};
 
@@ -165,6 +166,7 @@ void task_json(tools::JsonWriter& json, const vm::TaskStatus& task) {
   json.begin_object().field("name", task.name).field("period_ns", task.period_ns);
   json.field("priority", task.priority).field("scans", task.scans).field("missed", task.missed);
   json.field("overruns", task.overruns).field("last_ns", task.last_ns);
+  json.field("recent_longest_ns", task.recent_ns);
   summary_json(json, "run_ns", task.run);
   summary_json(json, "start_delay_ns", task.delay);
   json.field("stopped", task.stopped).end_object();
@@ -211,6 +213,10 @@ base::Status show(const tools::Options& options) {
   if (!json.ok()) return json.error();
   base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
+  if (options.has("--reset-times")) {
+    base::Result<base::Bytes> reset = client->call({.command = vm::Command::kResetTimes});
+    if (!reset.ok()) return reset.error();
+  }
   if (options.has("--task")) {
     base::Result<vm::TaskTimes> times = client->task_times(options.text("--task"));
     if (!times.ok()) return times.error();

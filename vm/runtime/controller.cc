@@ -78,8 +78,7 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
 }
 
 void Controller::cycle() {
-  Impl& impl = *impl_;
-  impl.native_maker.take(impl.scheduler.tables(), impl.tier.take_at, impl.scheduler.cycles());
+  impl_->native_maker.take(impl_->scheduler.tables(), impl_->tier.take_at, cycles());
   impl_->scheduler.run_cycle();
   if (!at_boundary() || faulted()) return;
   const TaskTables& tables = impl_->scheduler.tables();
@@ -89,6 +88,7 @@ void Controller::cycle() {
 void Controller::run_idle(const std::function<bool()>& unit) { impl_->scheduler.run_idle(unit); }
 void Controller::worked(int64_t expected_ns) { impl_->scheduler.worked(expected_ns); }
 uint64_t Controller::cycles() const { return impl_->scheduler.cycles(); }
+void Controller::reset_times() { impl_->scheduler.tables().forget_times(); }
 bool Controller::at_boundary() const { return impl_->scheduler.at_boundary(); }
 bool Controller::faulted() const { return impl_->scheduler.faulted(); }
 
@@ -102,6 +102,7 @@ const Generation& Controller::generation() const { return *impl_->running; }
 const CodeTable& Controller::code() const { return *impl_->scheduler.tables().code; }
 Memory& Controller::memory() { return impl_->memory; }
 uint64_t Controller::data_limit() const { return impl_->data_limit; }
+const CodeSlots& Controller::code_slots() const { return *impl_->code_slots; }
 
 std::vector<TaskStatus> Controller::tasks() const {
   std::vector<TaskStatus> rows;
@@ -109,6 +110,7 @@ std::vector<TaskStatus> Controller::tasks() const {
     rows.push_back(task.status);
     rows.back().run = summary_of(task.times->run);
     rows.back().delay = summary_of(task.times->delay);
+    rows.back().recent_ns = task.times->recent_run.longest();
   }
   return rows;
 }
@@ -130,6 +132,7 @@ uint64_t Controller::missed_releases() const {
 void Controller::copy_task(size_t number, TaskSample& out) const {
   const TaskSlot& task = impl_->scheduler.tables().tasks[number];
   out.status = task.status;
+  out.status.recent_ns = task.times->recent_run.longest();
   out.run = task.times->run;
   out.delay = task.times->delay;
 }
@@ -257,8 +260,6 @@ base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage 
   impl_->tables[next->get()] = std::move(tables);
   return next;
 }
-
-const CodeSlots& Controller::code_slots() const { return *impl_->code_slots; }
 
 std::unique_ptr<Generation> Controller::publish(std::unique_ptr<Generation> next, Memory* data) {
   base::check(at_boundary(), "a program is replaced while a task is inside a scan");

@@ -77,6 +77,7 @@ struct TaskStatus {
   bool stopped = false;   // by a trap
   bool freewheeling = false;
   bool once = false;  // start code: at cold start and behind changes
+  int64_t recent_ns = 0;  // the longest run of the last scans (recent_longest.h)
 };
 
 struct TrapRecord {
@@ -130,6 +131,8 @@ class Controller {
   std::vector<TaskStatus> tasks() const;
   // Histograms of a task; nullopt: there is none of this name.
   std::optional<TaskTimes> task_times(std::string_view name) const;
+  // At a boundary: forgets how long scans took and how late they began; counters go on.
+  void reset_times();
   uint64_t missed_releases() const;              // of all tasks
   // At a boundary; nothing is allocated where `out` has the task's name already.
   void copy_task(size_t number, TaskSample& out) const;

@@ -101,6 +101,7 @@ void task_fields(A& a, T& task) {
   a(task.stopped);
   a(task.freewheeling);
   a(task.once);
+  a(task.recent_ns);
 }
 
 template <class A, class T>

@@ -111,6 +111,7 @@ void Scheduler::end_task(TaskSlot& task) {
   ++task.status.scans;
   task.status.last_ns = task.run_ns;
   task.times->run.add(task.run_ns);
+  task.times->recent_run.add(task.run_ns);
   leave(task);
 }
 

@@ -11,6 +11,7 @@
 #include "vm/runtime/histogram.h"
 #include "vm/runtime/input_sync.h"
 #include "vm/runtime/process_image.h"
+#include "vm/runtime/recent_longest.h"
 #include "vm/runtime/safe_outputs.h"
 #include "vm/runtime/shared_globals.h"
 
@@ -20,6 +21,7 @@ namespace vm {
 struct TaskHistory {
   Histogram run;
   Histogram delay;
+  RecentLongest recent_run;
 };
 
 // A task, and its activation while it has one. At most one activation exists for each task.
@@ -63,6 +65,9 @@ struct TaskTables {
 
   // Scans, statistics and phase of tasks of the same name go on (change case 42).
   void adopt(TaskTables& previous, int64_t cycle_start_ns);
+  void forget_times() {
+    for (TaskSlot& task : tasks) *task.times = TaskHistory();
+  }
   // Greatest common divisor of periods and phases: every release falls on a cycle (B1).
   void set_base_period();
   // The first cycle after `cycle_start_ns`.

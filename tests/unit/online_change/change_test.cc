@@ -232,5 +232,32 @@ TEST(Change, case45_too_long_a_pause_is_refused_before) {
   EXPECT_TRUE(plant.driver().switch_now().ok());
 }
 
+// One scan was longer than its period once. Admission looks at the last 500 to 1,000 scans, and
+// forgets it when it is told to.
+TEST(Admission, case68_OneLongScanIsForgotten) {
+  const auto source = [](const char* amount) {
+    return std::string("PROGRAM Main VAR rounds, i, n : DINT; END_VAR FOR i := 1 TO rounds DO ; "
+                       "END_FOR rounds := 0; n := n + ") +
+           amount + "; END_PROGRAM";
+  };
+  const auto overrun = [&](Plant& plant) {
+    plant.set("Main.rounds", "20000");
+    plant.run(3);
+    ASSERT_GT(plant.controller().tasks().front().run.max, int64_t{10'000'000});
+  };
+  Plant plant(source("1"), {}, 1000);
+  plant.run(2);
+  overrun(plant);
+  EXPECT_EQ(plant.refused(source("2")), Refusal::kPauseTooLong);
+  plant.run(1400);
+  plant.change(source("2"));
+  plant.accept();
+  overrun(plant);
+  EXPECT_EQ(plant.refused(source("3")), Refusal::kPauseTooLong);
+  plant.controller().reset_times();
+  plant.run(1);
+  plant.change(source("3"));
+}
+
 }  // namespace
 }  // namespace online_change

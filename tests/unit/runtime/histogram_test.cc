@@ -2,6 +2,7 @@
 #include "vm/runtime/histogram.h"
 
 #include "tests/unit/runtime/plant.h"
+#include "vm/runtime/recent_longest.h"
 
 namespace runtime_test {
 namespace {
@@ -95,6 +96,20 @@ TEST(Statistics, GoOnThroughAChange) {
   plant->publish(std::move(old));
   plant.cycles(5);
   EXPECT_EQ(count(), 15u);
+}
+
+TEST(RecentLongest, LooksBackOnOneWindowToTwo) {
+  vm::RecentLongest times;
+  EXPECT_EQ(times.longest(), 0);
+  times.add(9);
+  for (uint32_t i = 1; i < 2 * vm::RecentLongest::kWindow - 1; ++i) {
+    times.add(1);
+    EXPECT_EQ(times.longest(), 9) << i;
+  }
+  times.add(2);
+  EXPECT_EQ(times.longest(), 2);
+  for (uint32_t i = 0; i < vm::RecentLongest::kWindow; ++i) times.add(1);
+  EXPECT_EQ(times.longest(), 1);
 }
 
 }  // namespace

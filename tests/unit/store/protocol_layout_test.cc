@@ -44,7 +44,7 @@ vm::StatusReport status() {
   out.native_bytes = 25;
   out.pous_to_make = 26;
   out.interpreted = {"Main: why"};
-  out.tasks = {{"Fast", 27, 28, 29, 30, 31, 32, summary(33), summary(38), true, false, true}};
+  out.tasks = {{"Fast", 27, 28, 29, 30, 31, 32, summary(33), summary(38), true, false, true, 49}};
   out.traps = {{43, "Slow", {"Pou", "file.st", 44, "text"}}};
   out.devices = {{"rack", "modbus", "online", 45, 46, 47, "none", 48, "writer"}};
   return out;
@@ -120,6 +120,7 @@ constexpr Version kVersions[] = {
     {5, "7f04c328f272"},
     {6, "63e0412d28b5"},
     {7, "538391035e10"},
+    {8, "3886f7aa6416"},
 };
 
 TEST(ProtocolLayout, BelongsToTheVersion) {
