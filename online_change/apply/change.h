@@ -25,6 +25,8 @@ enum class Strategy : uint8_t {
 enum class State : uint8_t { kIdle, kStaged, kVerified, kPlanned, kPrepared, kArmed, kTrial };
 const char* state_name(State state);
 
+inline constexpr size_t kMostLosses = 100'000;  // that are described
+
 struct LiveLoss {  // a value that the change would not carry over exactly
   std::string path;
   std::string old_value;
@@ -60,9 +62,10 @@ class Change {
                      const AtBoundary& at_boundary = {});
   // Values that would be lost if the switch came now; by kPrepared, at a boundary.
   std::vector<LiveLoss> live_losses() const;
-  // The same of a copy of data memory, at any time: what a report shows. Leave to lose is for these
-  // only (arm()).
+  // The same of a copy of data memory, at any time: what a report shows, kMostLosses of them.
+  // `allow_loss` permits exactly those that were there then (arm()).
   std::vector<LiveLoss> live_losses(std::span<const uint8_t> memory) const;
+  uint64_t count_losses(std::span<const uint8_t> memory) const;
   const Plan& plan() const;
   // The version that is staged; null: none is.
   const ir::VerifiedImage* next() const;

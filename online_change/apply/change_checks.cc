@@ -72,6 +72,11 @@ void Change::count_undo() {
   controller_.worked(pause_ns(work));
 }
 
+uint64_t Change::count_losses(std::span<const uint8_t> memory) const {
+  std::vector<LiveLoss> none;
+  return pending_ && state_ != State::kTrial ? find_losses(memory, 0, none) : 0;
+}
+
 std::vector<LiveLoss> Change::live_losses() const {
   return live_losses(controller_.memory().view());
 }
@@ -86,7 +91,8 @@ std::vector<LiveLoss> Change::live_losses(std::span<const uint8_t> memory) const
     return true;
   });
   std::sort(pending_->shown.begin(), pending_->shown.end());
-  find_losses(memory, SIZE_MAX, rows);
+  find_losses(memory, kMostLosses, rows);
+  put_initial_last(rows, pending_->old());
   return rows;
 }
 
@@ -103,7 +109,7 @@ uint64_t Change::find_losses(std::span<const uint8_t> memory, size_t most,
     }
     return true;
   });
-  count += values_without_place(plan(), pending_->old(), memory, most, rows);
+  count += values_without_place(plan(), pending_->lost, pending_->old(), memory, most, rows);
   pending_->handles.for_each_broken(memory.data(), [&](uint32_t at, ir::TypeId type) {
     if (count++ >= most) return;
     if (!old_areas) old_areas.emplace(pending_->old());

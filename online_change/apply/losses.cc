@@ -1,12 +1,30 @@
 #include "online_change/apply/losses.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "ir/bytecode/symbols.h"
+#include "vm/exec/memory.h"
+#include "vm/load/generation.h"
 
 namespace online_change {
 namespace {
 
 constexpr const char* kBroken = "leads to what is dropped or retyped";
 constexpr size_t kShownBytes = 120;
+
+std::string value_text(const ir::Image& image, const ir::Symbol& symbol,
+                       std::span<const uint8_t> memory) {
+  return shortened(ir::format_value(image, symbol, memory));
+}
+
+LiveLoss describe_lost(const FateRow& row, std::string path, const ir::Image& old_image,
+                       std::span<const uint8_t> memory) {
+  base::Result<ir::Symbol> symbol = ir::find_symbol(old_image, path);
+  std::string value = symbol.ok() ? value_text(old_image, *symbol, memory) : row.old_type;
+  if (row.fate == Fate::kDropped) return {std::move(path), std::move(value), "", "is dropped"};
+  return {std::move(path), std::move(value), "its initial value", "has no conversion"};
+}
 
 }  // namespace
 
@@ -44,25 +62,28 @@ LiveLoss broken_at(const Areas& new_areas, uint32_t at) {
   return {new_areas.path_at(at), "a reference", "NULL", kBroken};
 }
 
-uint64_t values_without_place(const Plan& plan, const ir::Image& old_image,
-                              std::span<const uint8_t> memory, size_t most,
-                              std::vector<LiveLoss>& rows) {
+uint64_t values_without_place(const Plan& plan, std::span<const LostPlace> places,
+                              const ir::Image& old_image, std::span<const uint8_t> memory,
+                              size_t most, std::vector<LiveLoss>& rows) {
   uint64_t count = 0;
-  for (const FateRow& row : plan.fates) {
-    const bool dropped = row.fate == Fate::kDropped;
-    if (!row.may_lose || (!dropped && row.fate != Fate::kInitialised)) continue;
-    ++count;
-    if (rows.size() >= most) continue;
-    base::Result<ir::Symbol> symbol = ir::find_symbol(old_image, row.path);
-    std::string value = row.old_type;
-    if (symbol.ok()) value = shortened(ir::format_value(old_image, *symbol, memory));
-    if (dropped) {
-      rows.push_back({row.path, value, "", "is dropped"});
-    } else {
-      rows.push_back({row.path, value, "its initial value", "has no conversion"});
+  for (const LostPlace& place : places) {
+    const FateRow& row = plan.fates[place.row];
+    count += place.instances.size();
+    for (size_t i = 0; i < place.instances.size() && rows.size() < most; ++i) {
+      rows.push_back(describe_lost(row, place.path(old_image, i), old_image, memory));
     }
   }
   return count;
+}
+
+void put_initial_last(std::span<LiveLoss> rows, const ir::Image& old_image) {
+  base::Result<vm::Memory> initial = vm::Memory::reserve();
+  if (!initial.ok()) return;
+  vm::write_initial_data(old_image, initial->data());
+  std::stable_partition(rows.begin(), rows.end(), [&](const LiveLoss& row) {
+    base::Result<ir::Symbol> symbol = ir::find_symbol(old_image, row.path);
+    return !symbol.ok() || value_text(old_image, *symbol, initial->view()) != row.old_value;
+  });
 }
 
 base::Error would_lose(const LiveLoss& first, uint64_t more) {

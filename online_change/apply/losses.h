@@ -1,9 +1,11 @@
 // Live values that a change would not carry over exactly.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "online_change/apply/change.h"
+#include "online_change/apply/lost_places.h"
 #include "online_change/apply/transfer.h"
 #include "online_change/diff/areas.h"
 
@@ -18,12 +20,13 @@ LiveLoss describe_broken(const Areas& old_areas, uint32_t at, ir::TypeId type,
                          std::span<const uint8_t> memory);
 // The same at the boundary, where only its place in the new version is known.
 LiveLoss broken_at(const Areas& new_areas, uint32_t at);
-// Values that go (dropped), and values of variables that keep their name but get a type
-// without a rule from the old one.
-// Describes them as long as `rows` has fewer than `most`; returns how many there are.
-uint64_t values_without_place(const Plan& plan, const ir::Image& old_image,
-                              std::span<const uint8_t> memory, size_t most,
-                              std::vector<LiveLoss>& rows);
+// Describes the values at these places as long as `rows` has fewer than `most`; returns how many
+// there are.
+uint64_t values_without_place(const Plan& plan, std::span<const LostPlace> places,
+                              const ir::Image& old_image, std::span<const uint8_t> memory,
+                              size_t most, std::vector<LiveLoss>& rows);
+// People look at the first ones: values that are still as they were at the start come last.
+void put_initial_last(std::span<LiveLoss> rows, const ir::Image& old_image);
 // "`Main.x` is 300; as the new type it saturates to 127", and how many more.
 base::Error would_lose(const LiveLoss& first, uint64_t more);
 

@@ -12,6 +12,7 @@
 #include "online_change/apply/charts.h"
 #include "online_change/apply/handle_transfer.h"
 #include "online_change/apply/leaving.h"
+#include "online_change/apply/lost_places.h"
 #include "online_change/apply/migrator.h"
 #include "online_change/apply/standby.h"
 #include "online_change/apply/transfer.h"
@@ -35,7 +36,8 @@ struct Change::Pending {
         backward(package.inverse, new_image.image(), old(), Transfer::Steps::kAll),
         handles(same ? HandleTransfer(old()) : HandleTransfer(old(), new_image.image())),
         leaving(find_leaving(old(), new_image.image())),
-        charts(same ? Charts() : Charts(old(), new_image.image())) {}
+        charts(same ? Charts() : Charts(old(), new_image.image())),
+        lost(lost_places(package.forward, old(), new_image.image())) {}
   // Behind stage(): both are known.
   void count_work(const ir::Bools& bools) {
     if (keeps_all) {
@@ -79,6 +81,7 @@ struct Change::Pending {
   BoundaryWork undo_work;
   Leaving leaving;
   Charts charts;
+  std::vector<LostPlace> lost;
   bool allow_loss = false;
   // What the last report said would be lost: with leave for that, nothing else may be (X1).
   bool reported = false;

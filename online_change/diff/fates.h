@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace online_change {
@@ -27,6 +28,12 @@ struct FateRow {
   uint64_t count = 1;  // leaf variables that this row stands for (arrays, identical instances)
   std::string old_path = {};  // of what was moved between variables: its path in the old version
 };
+
+// Ends the reason of a row that stands for several variables or instances.
+inline constexpr std::string_view kMoreLikeIt = " more like it";
+inline bool stands_for_several(const FateRow& row) {
+  return std::string_view(row.reason).ends_with(kMoreLikeIt);
+}
 
 struct FateCounts {
   uint64_t kept = 0, moved = 0, converted = 0, initialised = 0, dropped = 0;

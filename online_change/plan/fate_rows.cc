@@ -18,7 +18,7 @@ uint32_t FateRows::add(const std::string& key, const FateRow& row) {
 std::vector<FateRow> FateRows::take() {
   for (size_t i = 0; i < rows_.size(); ++i) {
     if (places_[i] > 1) {
-      rows_[i].reason += "; and " + std::to_string(places_[i] - 1) + " more like it";
+      rows_[i].reason += "; and " + std::to_string(places_[i] - 1) + std::string(kMoreLikeIt);
     }
   }
   return std::move(rows_);

@@ -135,7 +135,7 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
                 plan.boundary_bytes,
                 0,
                 {},
-                live_->losses().size(),
+                live_->loss_count(),
                 {},
                 {},
                 {}};
@@ -173,7 +173,10 @@ FateLine ControllerService::live_line(const FateRow& row, const ir::Image& next,
   } else if (row.fate == Fate::kConverted && !line.live.now.empty()) {
     line.live.after = converted_text(next, row.path, line.live.now);
   }
-  if (const online_change::LiveLoss* loss = live_->loss(row.path)) {
+  // The value of one of several says nothing of the others: they are told one by one.
+  if (online_change::stands_for_several(row)) {
+    line.live = {};
+  } else if (const online_change::LiveLoss* loss = live_->loss(row.path)) {
     line.live = {loss->old_value, loss->new_value, loss->what};
   }
   return line;

@@ -14,6 +14,7 @@ base::Result<LiveReport> LiveReport::take(vm::Controller& controller,
   LiveReport report(std::move(*copy), controller.verified());
   if (next != nullptr) report.renamed_ = ir::under_new_names(report.image_.image(), *next);
   report.losses_ = change.live_losses(report.copy_.memory());
+  report.loss_count_ = change.count_losses(report.copy_.memory());
   for (size_t i = 0; i < report.losses_.size(); ++i) {
     report.by_path_.emplace(ir::fold_name(report.losses_[i].path), i);
   }

@@ -25,7 +25,9 @@ class LiveReport {
 
   // Of the variable that the row is about, in the program that runs; "" when there is none.
   std::string value(const online_change::FateRow& row) const;
+  // The first of them, and how many there are.
   const std::vector<online_change::LiveLoss>& losses() const { return losses_; }
+  uint64_t loss_count() const { return loss_count_; }
   const online_change::LiveLoss* loss(const std::string& path) const;
 
  private:
@@ -38,6 +40,7 @@ class LiveReport {
   ir::VerifiedImage image_;
   std::optional<ir::Image> renamed_;  // the same under the names of the next version
   std::vector<online_change::LiveLoss> losses_;
+  uint64_t loss_count_ = 0;
   std::unordered_map<std::string, size_t> by_path_;  // folded
 };
 

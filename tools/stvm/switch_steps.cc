@@ -3,6 +3,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
@@ -24,7 +25,9 @@ std::string losses_text(const FatePage& page) {
   for (const LossLine& line : page.losses) {
     table.row({line.loss.path, line.loss.old_value, line.loss.new_value, line.loss.what});
   }
-  return out + table.text();
+  out += table.text();
+  const uint64_t more = page.loss_count - std::min<uint64_t>(page.loss_count, page.losses.size());
+  return more == 0 ? out : out + "and " + std::to_string(more) + " more\n";
 }
 
 void losses_json(const FatePage& page, tools::JsonWriter& json) {
