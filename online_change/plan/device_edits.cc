@@ -1,4 +1,4 @@
-#include "online_change/plan/device_edits.h"
+#include "online_change/plan/system_edits.h"
 
 #include <algorithm>
 
@@ -33,11 +33,11 @@ class Edits {
     entries(after, after.map, before.map, "now ");
   }
 
-  std::vector<DeviceEdit> take() { return std::move(rows_); }
+  std::vector<SystemEdit> take() { return std::move(rows_); }
 
  private:
   void add(const ir::Device& device, std::string what) {
-    rows_.push_back({device.name, std::move(what)});
+    rows_.push_back({"device", device.name, std::move(what)});
   }
   static std::string quality(const ir::Device& device) {
     const bool none = device.quality.area == ir::DirectArea::kNone;
@@ -52,7 +52,7 @@ class Edits {
     }
   }
 
-  std::vector<DeviceEdit> rows_;
+  std::vector<SystemEdit> rows_;
 };
 
 const ir::Device* find(const std::vector<ir::Device>& devices, const std::string& name) {
@@ -64,7 +64,7 @@ const ir::Device* find(const std::vector<ir::Device>& devices, const std::string
 
 }  // namespace
 
-std::vector<DeviceEdit> device_edits(const ir::Image& old_image, const ir::Image& new_image) {
+std::vector<SystemEdit> device_edits(const ir::Image& old_image, const ir::Image& new_image) {
   Edits edits;
   for (const ir::Device& device : new_image.devices) {
     const ir::Device* before = find(old_image.devices, device.name);

@@ -8,7 +8,7 @@
 #include "ir/bytecode/renames.h"
 #include "ir/bytecode/symbols.h"
 #include "online_change/apply/change.h"
-#include "online_change/plan/device_edits.h"
+#include "online_change/plan/system_edits.h"
 #include "online_change/plan/pou_edits.h"
 #include "online_change/store/retained_values.h"
 #include "tools/common/fate_report.h"
@@ -121,8 +121,8 @@ void compare_texts(const ir::VerifiedImage& from, const ir::VerifiedImage& to, c
   const EncodedImage after{to.image(), to.encoded()};
   pou_edits(before, after);
   check_restricted(edits).ok();
-  const auto devices = device_edits(from.image(), to.image());
-  base::check(!tools::fate_report(plan, {}, edits, devices).empty(), "a report");
+  const auto system = system_edits(from.image(), to.image());
+  base::check(!tools::fate_report(plan, {}, edits, system).empty(), "a report");
 }
 
 void carry_values(const ir::VerifiedImage& from, const ir::VerifiedImage& to) {

@@ -104,7 +104,7 @@ std::string duration(int64_t ns) {
 }
 
 std::string fate_report(const online_change::Plan& plan, const LiveValues& live,
-                        const PouEdits& edits, const DeviceEdits& devices) {
+                        const PouEdits& edits, const SystemEdits& system) {
   std::string out;
   Table counts({"fate", "> variables"});
   for (auto [name, field] : kCounts) counts.row({name, std::to_string(plan.counts.*field)});
@@ -113,8 +113,9 @@ std::string fate_report(const online_change::Plan& plan, const LiveValues& live,
     if (row.fate != Fate::kKept || !row.reason.empty()) out += row_text(row, live);
   }
   for (const PouEdit& edit : edits) out += edit_text(edit);
-  for (const online_change::DeviceEdit& edit : devices) {
-    out += "device             " + edit.device + "  (" + edit.what + ")\n";
+  for (const online_change::SystemEdit& edit : system) {
+    out += edit.kind + std::string(19 - std::min<size_t>(edit.kind.size(), 18), ' ') + edit.name +
+           "  (" + edit.what + ")\n";
   }
   out += "\npredicted pause " + duration(plan.predicted_pause_ns) + " (" +
          std::to_string(plan.boundary_bytes) + " bytes written at the boundary)\n";
@@ -122,7 +123,7 @@ std::string fate_report(const online_change::Plan& plan, const LiveValues& live,
 }
 
 void fate_report(const online_change::Plan& plan, const LiveValues& live, const PouEdits& edits,
-                 const DeviceEdits& devices, JsonWriter& json) {
+                 const SystemEdits& system, JsonWriter& json) {
   json.key("counts").begin_object();
   for (auto [name, field] : kCounts) json.field(name, plan.counts.*field);
   json.end_object();
@@ -146,9 +147,10 @@ void fate_report(const online_change::Plan& plan, const LiveValues& live, const 
     json.field("change", online_change::pou_change_name(edit.change));
     json.field("instances", edit.instances).field("what", edit.what).end_object();
   }
-  json.end_array().key("devices").begin_array();
-  for (const online_change::DeviceEdit& edit : devices) {
-    json.begin_object().field("device", edit.device).field("what", edit.what).end_object();
+  json.end_array().key("system").begin_array();
+  for (const online_change::SystemEdit& edit : system) {
+    json.begin_object().field("kind", edit.kind).field("name", edit.name);
+    json.field("what", edit.what).end_object();
   }
   json.end_array();
 }

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "online_change/plan/device_edits.h"
+#include "online_change/plan/system_edits.h"
 #include "online_change/plan/plan.h"
 #include "online_change/plan/pou_edits.h"
 #include "tools/common/json.h"
@@ -20,15 +20,15 @@ struct LiveValue {
 using LiveValues = std::map<std::string, LiveValue>;  // by path
 
 using PouEdits = std::vector<online_change::PouEdit>;
-using DeviceEdits = std::vector<online_change::DeviceEdit>;
+using SystemEdits = std::vector<online_change::SystemEdit>;
 
-// Counts, then one row for each group of variables that is not kept, and for each POU with other
-// code, and each device that is exchanged otherwise.
+// Counts, then one row for each group of variables that is not kept, for each POU with other code,
+// and for whatever else changes (system_edits.h).
 std::string fate_report(const online_change::Plan& plan, const LiveValues& live,
-                        const PouEdits& edits, const DeviceEdits& devices);
-// "fates", "code", "devices", "counts", "predicted_pause_ns" into an open object.
+                        const PouEdits& edits, const SystemEdits& system);
+// "fates", "code", "system", "counts", "predicted_pause_ns" into an open object.
 void fate_report(const online_change::Plan& plan, const LiveValues& live, const PouEdits& edits,
-                 const DeviceEdits& devices, JsonWriter& json);
+                 const SystemEdits& system, JsonWriter& json);
 
 // "12.5 us", "3 ms": three digits at most.
 std::string duration(int64_t ns);

@@ -34,7 +34,7 @@ base::Result<Version> running_version(const std::string& place) {
 struct Difference {
   online_change::Plan plan;
   tools::PouEdits edits;
-  tools::DeviceEdits devices;
+  tools::SystemEdits system;
 };
 
 base::Result<Difference> difference(const tools::Options& options) {
@@ -52,7 +52,7 @@ base::Result<Difference> difference(const tools::Options& options) {
   if (!after.ok()) return after.error();
   Difference out;
   out.edits = online_change::pou_edits(before->image, after->image);
-  out.devices = online_change::device_edits(before->image, after->image);
+  out.system = online_change::system_edits(before->image, after->image);
   if (options.has("--restricted")) {
     base::Status kept = online_change::check_restricted(out.edits);
     if (!kept.ok()) return kept.error();
@@ -69,11 +69,11 @@ int run(const tools::Options& options) {
   if (options.text("--format") == "json") {
     tools::JsonWriter json;
     json.begin_object();
-    tools::fate_report(found->plan, {}, found->edits, found->devices, json);
+    tools::fate_report(found->plan, {}, found->edits, found->system, json);
     json.end_object();
     std::fputs(json.finish().c_str(), stdout);
   } else {
-    std::fputs(tools::fate_report(found->plan, {}, found->edits, found->devices).c_str(), stdout);
+    std::fputs(tools::fate_report(found->plan, {}, found->edits, found->system).c_str(), stdout);
   }
   return tools::kOk;
 }

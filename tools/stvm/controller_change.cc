@@ -152,8 +152,8 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
       page.losses.push_back({live_->losses()[i]});
     }
     page.edits = shown_edits(controller_.verified(), next_version);
-    page.devices = online_change::device_edits(controller_.image(), next_image);
-    page.devices.resize(std::min<size_t>(page.devices.size(), kShownEdits));
+    page.system = online_change::system_edits(controller_.image(), next_image);
+    page.system.resize(std::min<size_t>(page.system.size(), kShownEdits));
   }
   return encode(page);
 }

@@ -56,7 +56,7 @@ void page_fields(A& a, T& page) {
   a(page.loss_count);
   a.list(page.losses, 16);
   a.list(page.edits, 17);
-  a.list(page.devices, 8);
+  a.list(page.system, 8);
 }
 
 template <class A, class T>
@@ -108,12 +108,14 @@ static void fields(vm::FieldReader& a, PouEdit& edit) {
   stvm::edit_fields(a, edit);
 }
 
-static void fields(vm::FieldWriter& a, const DeviceEdit& edit) {
-  a(edit.device);
+static void fields(vm::FieldWriter& a, const SystemEdit& edit) {
+  a(edit.kind);
+  a(edit.name);
   a(edit.what);
 }
-static void fields(vm::FieldReader& a, DeviceEdit& edit) {
-  a(edit.device);
+static void fields(vm::FieldReader& a, SystemEdit& edit) {
+  a(edit.kind);
+  a(edit.name);
   a(edit.what);
 }
 

@@ -28,7 +28,7 @@ struct FatePage {
   uint64_t loss_count = 0;       // live values that would be lost now
   std::vector<LossLine> losses;  // the first of them; first page only
   tools::PouEdits edits;         // first page only
-  tools::DeviceEdits devices;    // first page only
+  tools::SystemEdits system;     // first page only
 };
 
 base::Bytes encode(const FatePage& page);

@@ -26,11 +26,11 @@ tools::LiveValues live_of(const FatePage& page) {
 }  // namespace
 
 std::string fates_text(const FatePage& page) {
-  return tools::fate_report(plan_of(page), live_of(page), page.edits, page.devices);
+  return tools::fate_report(plan_of(page), live_of(page), page.edits, page.system);
 }
 
 void fates_json(const FatePage& page, tools::JsonWriter& json) {
-  tools::fate_report(plan_of(page), live_of(page), page.edits, page.devices, json);
+  tools::fate_report(plan_of(page), live_of(page), page.edits, page.system, json);
 }
 
 }  // namespace stvm

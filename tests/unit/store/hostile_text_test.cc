@@ -15,7 +15,7 @@ TEST(HostileText, AFateReportShowsControlCharacters) {
   plan.fates = {row};
   online_change::PouEdit edit;
   edit.pou = "Q\x1b]0;";
-  const std::string report = fate_report(plan, {}, {edit}, {{"rack\x07", "new"}});
+  const std::string report = fate_report(plan, {}, {edit}, {{"device", "rack\x07", "new"}});
   EXPECT_EQ(report.find_first_of("\x1b\x07\x9b"), std::string::npos) << report;
   for (const char* shown : {"P.x\\x1b[2J", "T\\x9b", "Q\\x1b]0;", "rack\\x07"}) {
     EXPECT_NE(report.find(shown), std::string::npos) << shown << " in " << report;

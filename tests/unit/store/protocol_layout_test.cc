@@ -69,7 +69,7 @@ FatePage fates() {
   out.loss_count = 12;
   out.losses = {{{"Main.y", "13", "14", "inexact"}}};
   out.edits = {{online_change::PouChange::kInterface, "Pump", 15, "input"}};
-  out.devices = {{"rack", "new"}};
+  out.system = {{"device", "rack", "new"}};
   return out;
 }
 
@@ -120,7 +120,7 @@ constexpr Version kVersions[] = {
     {5, "7f04c328f272"},
     {6, "63e0412d28b5"},
     {7, "538391035e10"},
-    {8, "3886f7aa6416"},
+    {8, "d6cd7073b212"},
 };
 
 TEST(ProtocolLayout, BelongsToTheVersion) {

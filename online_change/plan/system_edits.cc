@@ -1,0 +1,229 @@
+#include "online_change/plan/system_edits.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "ir/bytecode/renames.h"
+#include "ir/program/task_policy.h"
+#include "ir/types/address_text.h"
+#include "ir/types/value_text.h"
+#include "online_change/diff/areas.h"
+#include "online_change/diff/instance_match.h"
+
+namespace online_change {
+namespace {
+
+std::string from_to(const std::string& before, const std::string& after) {
+  return before + " -> " + after;
+}
+
+class Edits {
+ public:
+  Edits(const ir::Image& old_image, const ir::Image& new_image)
+      : old_(old_image), new_(new_image), match_(match_instances(old_image, new_image)) {}
+
+  std::vector<SystemEdit> run() {
+    attributes();
+    addresses();
+    tasks();
+    programs();
+    safe_outputs();
+    for (SystemEdit& edit : device_edits(old_, new_)) rows_.push_back(std::move(edit));
+    return std::move(rows_);
+  }
+
+ private:
+  void add(const char* kind, std::string name, std::string what) {
+    rows_.push_back({kind, std::move(name), std::move(what)});
+  }
+
+  // RETAIN and CONSTANT belong to types, so the first instance of each stands for all.
+  void attributes() {
+    std::set<std::pair<uint32_t, uint32_t>> seen;
+    for (const uint32_t id : match_.new_order) {
+      const uint32_t twin = match_.old_of_new[id];
+      if (twin == kNoInstance) continue;
+      const ir::TypeId before = old_.instances[twin].type;
+      const ir::TypeId after = new_.instances[id].type;
+      if (!seen.insert({before.index, after.index}).second) continue;
+      std::map<std::string, const ir::Member*> old_members;
+      for (const ir::Member& member : old_.types[before].members) {
+        old_members[ir::fold_name(member.name)] = &member;
+      }
+      for (const ir::Member& member : new_.types[after].members) {
+        const auto found = old_members.find(ir::fold_name(member.name));
+        if (found != old_members.end()) attributes_of(id, *found->second, member);
+      }
+    }
+  }
+  void attributes_of(uint32_t id, const ir::Member& before, const ir::Member& after) {
+    const std::string owner = new_.instance_path(id);
+    const auto told = [&](bool was, bool is, const char* attribute) {
+      if (was == is) return;
+      add("variable", owner.empty() ? after.name : owner + "." + after.name,
+          (is ? "now " : "no longer ") + std::string(attribute));
+    };
+    told(before.retain, after.retain, "RETAIN");
+    told(before.constant, after.constant, "CONSTANT");
+  }
+
+  // By path: what is at an address in only one version may be elsewhere in the other, or nowhere.
+  void addresses() {
+    const std::map<std::string, const ir::IoBinding*> before = bindings(old_);
+    const std::map<std::string, const ir::IoBinding*> after = bindings(new_);
+    for (const auto& [path, binding] : before) {
+      const auto found = after.find(path);
+      const ir::IoBinding* now = found == after.end() ? nullptr : found->second;
+      if (now != nullptr && now->address == binding->address) continue;
+      std::string what = from_to(ir::address_text(binding->address),
+                                 now == nullptr ? "no address" : ir::address_text(now->address));
+      if (is_left(binding->address)) {
+        what += "; nobody writes " + ir::address_text(binding->address) + " any more";
+      }
+      add("variable", path, std::move(what));
+    }
+    for (const auto& [path, binding] : after) {
+      if (before.contains(path)) continue;
+      add("variable", path, from_to("no address", ir::address_text(binding->address)));
+    }
+  }
+  static std::map<std::string, const ir::IoBinding*> bindings(const ir::Image& image) {
+    const Areas areas(image);
+    std::map<std::string, const ir::IoBinding*> out;
+    for (const ir::IoBinding& row : image.io) out[areas.path_at(row.data)] = &row;
+    return out;
+  }
+  bool is_left(const ir::DirectAddress& address) const {
+    if (address.area != ir::DirectArea::kOutput) return false;
+    return std::none_of(new_.io.begin(), new_.io.end(), [&](const ir::IoBinding& row) {
+      return row.address.area == address.area &&
+             row.address.bit_offset < address.bit_offset + address.bit_size &&
+             address.bit_offset < row.address.bit_offset + row.address.bit_size;
+    });
+  }
+
+  void tasks() {
+    for (const ir::ImageTask& task : new_.tasks) {
+      if (task.once) continue;
+      if (const ir::ImageTask* before = task_of(old_, task.name)) {
+        compare(*before, task);
+      } else {
+        add("task", task.name, "new, " + interval(task) + ", priority " + number(task.priority));
+      }
+    }
+    for (const ir::ImageTask& task : old_.tasks) {
+      if (!task.once && task_of(new_, task.name) == nullptr) add("task", task.name, "removed");
+    }
+  }
+  void compare(const ir::ImageTask& before, const ir::ImageTask& after) {
+    const auto told = [&](const char* what, const std::string& was, const std::string& is) {
+      if (was != is) add("task", after.name, what + from_to(was, is));
+    };
+    told("interval ", interval(before), interval(after));
+    told("priority ", number(before.priority), number(after.priority));
+    told("watchdog ", watchdog(before), watchdog(after));
+    told("policy ", policy(before), policy(after));
+  }
+  static std::string number(uint32_t value) { return std::to_string(value); }
+  static std::string interval(const ir::ImageTask& task) {
+    if (task.period_ns != 0) return ir::duration_text(task.period_ns);
+    return task.event != 0 ? "by event" : "none";
+  }
+  static std::string watchdog(const ir::ImageTask& task) {
+    return task.watchdog_ns == 0 ? "none" : ir::duration_text(task.watchdog_ns);
+  }
+  static std::string policy(const ir::ImageTask& task) {
+    const std::string text = ir::policy_text(task.policy);
+    return text.empty() ? "none" : text.substr(1);
+  }
+  static const ir::ImageTask* task_of(const ir::Image& image, const std::string& name) {
+    for (const ir::ImageTask& task : image.tasks) {
+      if (!task.once && ir::same_name(task.name, name)) return &task;
+    }
+    return nullptr;
+  }
+
+  // Programs in both versions that another task runs, or in another order.
+  void programs() {
+    const std::map<std::string, std::string> before = tasks_by_program(old_);
+    const std::map<std::string, std::string> after = tasks_by_program(new_);
+    for (const auto& [path, task] : after) {
+      const auto found = before.find(path);
+      if (found == before.end() || ir::same_name(found->second, task)) continue;
+      add("program", path, "task " + from_to(found->second, task));
+    }
+    for (const ir::ImageTask& task : new_.tasks) {
+      const ir::ImageTask* twin = task_of(old_, task.name);
+      if (twin == nullptr || task.once) continue;
+      const std::string was = order(old_, *twin, after, task.name);
+      const std::string is = order(new_, task, before, task.name);
+      if (was != is) add("task", task.name, "order " + from_to(was, is));
+    }
+  }
+  static std::map<std::string, std::string> tasks_by_program(const ir::Image& image) {
+    std::map<std::string, std::string> out;
+    for (const ir::ImageTask& task : image.tasks) {
+      if (task.once) continue;
+      for (const uint32_t id : task.programs) {
+        out[ir::fold_name(image.instance_path(id))] = task.name;
+      }
+    }
+    return out;
+  }
+  // Of those programs that the task runs in the other version, too.
+  static std::string order(const ir::Image& image, const ir::ImageTask& task,
+                           const std::map<std::string, std::string>& other,
+                           const std::string& name) {
+    std::string out;
+    for (const uint32_t id : task.programs) {
+      const std::string path = image.instance_path(id);
+      const auto found = other.find(ir::fold_name(path));
+      if (found == other.end() || !ir::same_name(found->second, name)) continue;
+      out += (out.empty() ? "" : ", ") + path;
+    }
+    return out;
+  }
+
+  void safe_outputs() {
+    const std::map<std::string, std::string> before = safe_of(old_);
+    const std::map<std::string, std::string> after = safe_of(new_);
+    for (const auto& [output, value] : before) {
+      const auto found = after.find(output);
+      const std::string now = found == after.end() ? "0" : found->second;
+      if (now != value) add("output", output, "safe value " + from_to(value, now));
+    }
+    for (const auto& [output, value] : after) {
+      if (!before.contains(output) && value != "0") {
+        add("output", output, "safe value " + from_to("0", value));
+      }
+    }
+  }
+  static std::map<std::string, std::string> safe_of(const ir::Image& image) {
+    std::map<std::string, std::string> out;
+    for (const ir::SafeOutput& row : image.safe) {
+      const ir::DirectAddress address{ir::DirectArea::kOutput, row.bit_offset, row.bits};
+      std::string value = std::to_string(row.value);
+      if (row.kind == ir::SafeKind::kHold) value = "held";
+      if (row.kind == ir::SafeKind::kHoldThenValue) {
+        value = "held for " + ir::duration_text(row.hold_ns) + ", then " + value;
+      }
+      out[ir::address_text(address)] = value;
+    }
+    return out;
+  }
+
+  const ir::Image& old_;
+  const ir::Image& new_;
+  InstanceMatch match_;
+  std::vector<SystemEdit> rows_;
+};
+
+}  // namespace
+
+std::vector<SystemEdit> system_edits(const ir::Image& old_image, const ir::Image& new_image) {
+  const ir::OldUnderNewNames old(old_image, new_image);
+  return Edits(old.image(), new_image).run();
+}
+
+}  // namespace online_change

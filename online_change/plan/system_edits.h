@@ -1,0 +1,25 @@
+// What a change does beside values and code: to devices, tasks, programs, addresses, attributes of
+// variables and safe outputs. In the report beside fates and code (X1, change cases 64 to 66). Map
+// entries of devices that go leave their outputs at zero (docs/IO.md).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ir/bytecode/image.h"
+
+namespace online_change {
+
+struct SystemEdit {
+  std::string kind;  // "variable", "task", "program", "output", "device"
+  std::string name;
+  std::string what;  // "T#10ms -> T#20ms", "new", "removed", "%QX0.0 -> %QX7.7"
+};
+// Variables and programs that both versions have, under the names of the new one; addresses, tasks
+// and devices also when only one has them.
+std::vector<SystemEdit> system_edits(const ir::Image& old_image, const ir::Image& new_image);
+
+// By name, in order of what is said of each.
+std::vector<SystemEdit> device_edits(const ir::Image& old_image, const ir::Image& new_image);
+
+}  // namespace online_change

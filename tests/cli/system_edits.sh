@@ -1,0 +1,58 @@
+#!/bin/sh
+# case64, case65, case66: what a change does beside values and code is in its report: addresses,
+# RETAIN and CONSTANT, tasks and their programs, safe outputs; in `stc diff` and `stvm change`.
+. "$(dirname "$0")/lib.sh"
+mkdir v1 v2
+cat >v1/a.st <<'ST'
+VAR_GLOBAL out1 AT %QX0.0 : BOOL; out2 AT %QX0.1 : BOOL; in1 AT %IX0.0 : BOOL; plain : INT; r : INT; END_VAR
+VAR_GLOBAL CONSTANT k : INT := 3; END_VAR
+PROGRAM P out1 := in1; out2 := TRUE; plain := plain + k; END_PROGRAM
+PROGRAM Q r := r + 1; END_PROGRAM
+CONFIGURATION C RESOURCE R ON PLC TASK A(INTERVAL := T#10ms, PRIORITY := 1); TASK B(INTERVAL := T#20ms, PRIORITY := 2); TASK G(INTERVAL := T#40ms, PRIORITY := 3);
+PROGRAM p1 WITH A : P; PROGRAM q1 WITH A : Q; PROGRAM q2 WITH B : Q; PROGRAM q3 WITH G : Q;
+END_RESOURCE END_CONFIGURATION
+ST
+cat >v2/a.st <<'ST'
+VAR_GLOBAL out1 AT %QX7.7 : BOOL; out2 : BOOL; in1 AT %IX3.3 : BOOL; plain AT %QW10 : INT; END_VAR
+VAR_GLOBAL RETAIN r : INT; END_VAR
+VAR_GLOBAL k : INT := 3; END_VAR
+PROGRAM P out1 := in1; out2 := TRUE; plain := plain + k; END_PROGRAM
+PROGRAM Q r := r + 1; END_PROGRAM
+CONFIGURATION C RESOURCE R ON PLC {attribute 'watchdog' := 'T#5ms'} {attribute 'overrun' := 'stretch'} TASK A(INTERVAL := T#5ms, PRIORITY := 3); TASK B(INTERVAL := T#20ms, PRIORITY := 2); TASK D(INTERVAL := T#80ms, PRIORITY := 5);
+PROGRAM q1 WITH A : Q; PROGRAM p1 WITH A : P; PROGRAM q2 WITH D : Q; PROGRAM q3 WITH B : Q;
+END_RESOURCE END_CONFIGURATION
+ST
+printf 'name = "plant"\n[outputs]\nsafe = ["%%QX0.0 = TRUE", "%%QX0.1 = HOLD"]\n' >v1/stc.toml
+printf 'name = "plant"\n[outputs]\nsafe = ["%%QX0.0 = TRUE", "%%QX7.7 = TRUE"]\n' >v2/stc.toml
+all_is_said() {
+  while read -r row; do
+    tr -s ' ' <out | grep -qxF "$row" || fail "not said: $row"
+  done <<'ROWS'
+variable r (now RETAIN)
+variable k (no longer CONSTANT)
+variable in1 (%IX0.0 -> %IX3.3)
+variable out1 (%QX0.0 -> %QX7.7; nobody writes %QX0.0 any more)
+variable out2 (%QX0.1 -> no address; nobody writes %QX0.1 any more)
+variable plain (no address -> %QW10)
+task A (interval T#10ms -> T#5ms)
+task A (priority 1 -> 3)
+task A (watchdog T#100ms -> T#5ms)
+task A (policy none -> overrun stretch)
+task D (new, T#80ms, priority 5)
+task G (removed)
+program q2 (task B -> D)
+program q3 (task G -> B)
+task A (order p1, q1 -> q1, p1)
+output %QX0.1 (safe value held -> 0)
+output %QX7.7 (safe value 0 -> 1)
+ROWS
+}
+expect 0 stc diff v1 v2
+all_is_said
+expect 0 stc diff v1 v2 --format json
+said '"kind": *"task"'
+expect 0 stc diff v1 v1
+grep -qE '^(variable|task|program|output) ' out && fail "nothing changes there"
+serve plc v1
+expect 0 stvm change v2 --dir plc --dry-run
+all_is_said
