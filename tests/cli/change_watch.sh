@@ -48,7 +48,7 @@ end_follow() {
 
 stc build plant -q -o first.img
 serve plc first.img
-# E8: nobody is there who could be asked.
+# Nobody is there who could be asked.
 expect 2 stvm change --watch plant --dir plc
 said 'R0504.*--yes'
 # What was typed before the question confirms nothing.
