@@ -18,8 +18,8 @@ std::string value_text(const ir::Image& image, const ir::Symbol& symbol,
   return shortened(ir::format_value(image, symbol, memory));
 }
 
-LiveLoss describe_lost(const FateRow& row, std::string path, const ir::Image& old_image,
-                       std::span<const uint8_t> memory) {
+LiveLoss lost_value(const FateRow& row, std::string path, const ir::Image& old_image,
+                    std::span<const uint8_t> memory) {
   base::Result<ir::Symbol> symbol = ir::find_symbol(old_image, path);
   std::string value = symbol.ok() ? value_text(old_image, *symbol, memory) : row.old_type;
   if (row.fate == Fate::kDropped) return {std::move(path), std::move(value), "", "is dropped"};
@@ -62,18 +62,15 @@ LiveLoss broken_at(const Areas& new_areas, uint32_t at) {
   return {new_areas.path_at(at), "a reference", "NULL", kBroken};
 }
 
-uint64_t values_without_place(const Plan& plan, std::span<const LostPlace> places,
-                              const ir::Image& old_image, std::span<const uint8_t> memory,
-                              size_t most, std::vector<LiveLoss>& rows) {
-  uint64_t count = 0;
-  for (const LostPlace& place : places) {
-    const FateRow& row = plan.fates[place.row];
-    count += place.instances.size();
-    for (size_t i = 0; i < place.instances.size() && rows.size() < most; ++i) {
-      rows.push_back(describe_lost(row, place.path(old_image, i), old_image, memory));
+void describe_lost(const Plan& plan, const LostPlaces& places, const ir::Image& old_image,
+                   std::span<const uint8_t> memory, size_t most, std::vector<LiveLoss>& rows) {
+  for (const LostPlaces::Row& place : places.rows) {
+    for (const uint32_t id : places.groups[place.group]) {
+      if (rows.size() >= most) return;
+      std::string path = id == 0 ? place.inside : old_image.instance_path(id) + place.inside;
+      rows.push_back(lost_value(plan.fates[place.fate], std::move(path), old_image, memory));
     }
   }
-  return count;
 }
 
 void put_initial_last(std::span<LiveLoss> rows, const ir::Image& old_image) {

@@ -20,11 +20,9 @@ LiveLoss describe_broken(const Areas& old_areas, uint32_t at, ir::TypeId type,
                          std::span<const uint8_t> memory);
 // The same at the boundary, where only its place in the new version is known.
 LiveLoss broken_at(const Areas& new_areas, uint32_t at);
-// Describes the values at these places as long as `rows` has fewer than `most`; returns how many
-// there are.
-uint64_t values_without_place(const Plan& plan, std::span<const LostPlace> places,
-                              const ir::Image& old_image, std::span<const uint8_t> memory,
-                              size_t most, std::vector<LiveLoss>& rows);
+// Describes the values at these places as long as `rows` has fewer than `most`.
+void describe_lost(const Plan& plan, const LostPlaces& places, const ir::Image& old_image,
+                   std::span<const uint8_t> memory, size_t most, std::vector<LiveLoss>& rows);
 // People look at the first ones: values that are still as they were at the start come last.
 void put_initial_last(std::span<LiveLoss> rows, const ir::Image& old_image);
 // "`Main.x` is 300; as the new type it saturates to 127", and how many more.

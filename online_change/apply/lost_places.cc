@@ -1,12 +1,18 @@
 #include "online_change/apply/lost_places.h"
 
+#include <algorithm>
+#include <map>
 #include <optional>
 #include <unordered_map>
 
+#include "base/limits.h"
 #include "online_change/diff/instance_match.h"
 
 namespace online_change {
 namespace {
+
+// Each level of instances may be an element of an array: two separators.
+constexpr int kMostParts = 2 * (base::kMaxNesting + 1);
 
 std::string_view base_name(std::string_view name) { return name.substr(0, name.find('[')); }
 
@@ -18,91 +24,95 @@ class Finder {
  public:
   Finder(const ir::Image& old_image, const ir::Image& new_image)
       : old_(old_image), new_(new_image), match_(match_instances(old_image, new_image)) {
-    by_type_.resize(old_.types.size());
-    for (const uint32_t id : match_.old_order) {
-      if (id == 0) continue;
-      by_path_.emplace(ir::fold_name(old_.instance_path(id)), id);
-      by_type_[old_.instances[id].type.index].push_back(id);
-    }
     retyped_to_.assign(old_.instances.size(), kNoInstance);
     for (uint32_t id = 0; id < match_.retyped_from.size(); ++id) {
       if (match_.retyped_from[id] != kNoInstance) retyped_to_[match_.retyped_from[id]] = id;
     }
+    group_of_.assign(old_.instances.size(), 0);
+    out_.groups.push_back({0});
+    for (const uint32_t id : match_.old_order) {
+      if (id != 0) take_in(id);
+    }
   }
 
-  LostPlace find(uint32_t number, const FateRow& row) const {
-    LostPlace out{number, {}, {}};
-    const uint32_t first = instance_of(row.path, out.inside);
-    if (first == 0) out.instances = {first};
-    for (const uint32_t id : by_type_[old_.instances[first].type.index]) {
-      if (id == first || is_like(id, first, out.inside.empty())) out.instances.push_back(id);
-    }
-    return out;
+  void add(uint32_t fate, const std::string& path) {
+    std::string inside;
+    const uint32_t id = instance_of(path, inside);
+    out_.rows.push_back({fate, group_of_[id], std::move(inside)});
   }
+  LostPlaces take() { return std::move(out_); }
 
  private:
+  void take_in(uint32_t id) {
+    const std::string path = ir::fold_name(old_.instance_path(id));
+    longest_ = std::max(longest_, path.size());
+    by_path_.emplace(path, id);
+    const auto [found, fresh] =
+        groups_.emplace(key_of(id), static_cast<uint32_t>(out_.groups.size()));
+    if (fresh) out_.groups.emplace_back();
+    group_of_[id] = found->second;
+    out_.groups[found->second].push_back(id);
+  }
+
+  // Instances that share the rows of the planner. Of those that live on: both types. Of those that
+  // go, as wholes: the same name in the same type of owner, and the same type there now.
+  std::string key_of(uint32_t id) const {
+    const ir::Instance& instance = old_.instances[id];
+    const std::string type = std::to_string(instance.type.index);
+    if (const uint32_t after = match_.new_of_old[id]; after != kNoInstance) {
+      return type + ">" + std::to_string(new_.instances[after].type.index);
+    }
+    const uint32_t now = retyped_to_[id];
+    const uint32_t next = now == kNoInstance ? UINT32_MAX : new_.instances[now].type.index;
+    const bool parent_goes = match_.new_of_old[instance.parent] == kNoInstance;
+    return type + (parent_goes ? "-" : ".") +
+           std::to_string(old_.instances[instance.parent].type.index) + "." +
+           ir::fold_name(base_name(instance.name)) + "." + std::to_string(next);
+  }
+
   // The innermost instance on the way to `path`; what is left of it is `inside`.
   uint32_t instance_of(const std::string& path, std::string& inside) const {
-    const std::string folded = ir::fold_name(path);
-    for (size_t end = path.size(); end != std::string::npos && end != 0;) {
+    const std::string folded = ir::fold_name(path.substr(0, longest_ + 1));
+    size_t end = path.size() <= longest_ ? path.size() : folded.find_last_of(".[");
+    for (int part = 0; part < kMostParts && end != std::string::npos && end != 0; ++part) {
       const auto found = by_path_.find(folded.substr(0, end));
       if (found != by_path_.end()) {
         inside = path.substr(end);
         return found->second;
       }
-      end = path.find_last_of(".[", end - 1);
+      end = folded.find_last_of(".[", end - 1);
     }
     inside = path;
     return 0;
-  }
-
-  // Do both, which have one type, share a row? Of whole instances those that go in the same way.
-  bool is_like(uint32_t id, uint32_t first, bool whole) const {
-    const uint32_t after = match_.new_of_old[id];
-    const uint32_t first_after = match_.new_of_old[first];
-    if (!whole) {
-      return after != kNoInstance && first_after != kNoInstance &&
-             new_.instances[after].type == new_.instances[first_after].type;
-    }
-    const ir::Instance& one = old_.instances[id];
-    const ir::Instance& other = old_.instances[first];
-    return after == kNoInstance && type_after(id) == type_after(first) &&
-           old_.instances[one.parent].type == old_.instances[other.parent].type &&
-           ir::same_name(base_name(one.name), base_name(other.name)) && parent_lives_on(one);
-  }
-  std::optional<ir::TypeId> type_after(uint32_t id) const {
-    if (retyped_to_[id] == kNoInstance) return std::nullopt;
-    return new_.instances[retyped_to_[id]].type;
-  }
-  bool parent_lives_on(const ir::Instance& instance) const {
-    return instance.parent == 0 || match_.new_of_old[instance.parent] != kNoInstance;
   }
 
   const ir::Image& old_;
   const ir::Image& new_;
   InstanceMatch match_;
   std::vector<uint32_t> retyped_to_;  // by old ID
+  std::vector<uint32_t> group_of_;    // by old ID
+  std::map<std::string, uint32_t> groups_;
   std::unordered_map<std::string, uint32_t> by_path_;
-  std::vector<std::vector<uint32_t>> by_type_;  // old IDs, parents first
+  size_t longest_ = 0;  // of the paths
+  LostPlaces out_;
 };
 
 }  // namespace
 
-std::string LostPlace::path(const ir::Image& old_image, size_t number) const {
-  const uint32_t id = instances[number];
-  return id == 0 ? inside : old_image.instance_path(id) + inside;
+uint64_t LostPlaces::count() const {
+  uint64_t all = 0;
+  for (const Row& row : rows) all += groups[row.group].size();
+  return all;
 }
 
-std::vector<LostPlace> lost_places(const Plan& plan, const ir::Image& old_image,
-                                   const ir::Image& new_image) {
-  std::vector<LostPlace> out;
+LostPlaces lost_places(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image) {
   std::optional<Finder> finder;
   for (uint32_t i = 0; i < plan.fates.size(); ++i) {
     if (!is_lost(plan.fates[i])) continue;
     if (!finder) finder.emplace(old_image, new_image);
-    out.push_back(finder->find(i, plan.fates[i]));
+    finder->add(i, plan.fates[i].path);
   }
-  return out;
+  return finder ? finder->take() : LostPlaces();
 }
 
 }  // namespace online_change

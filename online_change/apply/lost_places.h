@@ -10,18 +10,23 @@
 
 namespace online_change {
 
-struct LostPlace {
-  uint32_t row = 0;                 // of the plan's fates
-  std::vector<uint32_t> instances;  // of the old version, by ID; 0: the globals
-  std::string inside;               // "" for the whole instance, else ".member" and so on
+// Of the old version. However many rows there are, and whoever made them: an instance is in two
+// groups at most.
+struct LostPlaces {
+  struct Row {
+    uint32_t fate = 0;   // row of the plan's fates
+    uint32_t group = 0;  // the instances that share it
+    std::string inside;  // "" for the whole instance, else ".member" and so on
+  };
+  std::vector<Row> rows;
+  std::vector<std::vector<uint32_t>> groups;  // IDs; 0: the globals
 
-  // In the old version. `number` counts the instances.
-  std::string path(const ir::Image& old_image, size_t number) const;
+  uint64_t count() const;
 };
 
 // The rows of `plan` that drop a value, or give a variable another type to which no rule leads from
-// the old one. `old_image` has the names of the new one (ir/bytecode/renames.h).
-std::vector<LostPlace> lost_places(const Plan& plan, const ir::Image& old_image,
-                                   const ir::Image& new_image);
+// the old one. `old_image` has the names of the new one (ir/bytecode/renames.h). A row whose path
+// is of no instance is about the globals.
+LostPlaces lost_places(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image);
 
 }  // namespace online_change

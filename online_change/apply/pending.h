@@ -81,7 +81,7 @@ struct Change::Pending {
   BoundaryWork undo_work;
   Leaving leaving;
   Charts charts;
-  std::vector<LostPlace> lost;
+  LostPlaces lost;
   bool allow_loss = false;
   // What the last report said would be lost: with leave for that, nothing else may be (X1).
   bool reported = false;

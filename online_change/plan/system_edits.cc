@@ -1,12 +1,15 @@
 #include "online_change/plan/system_edits.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 
 #include "ir/bytecode/renames.h"
 #include "ir/program/task_policy.h"
 #include "ir/types/address_text.h"
+#include "ir/types/location.h"
+#include "ir/types/natural_layout.h"
 #include "ir/types/value_text.h"
 #include "online_change/diff/areas.h"
 #include "online_change/diff/instance_match.h"
@@ -21,7 +24,11 @@ std::string from_to(const std::string& before, const std::string& after) {
 class Edits {
  public:
   Edits(const ir::Image& old_image, const ir::Image& new_image)
-      : old_(old_image), new_(new_image), match_(match_instances(old_image, new_image)) {}
+      : old_(old_image),
+        new_(new_image),
+        old_natural_(ir::natural_layouts(old_image.types)),
+        new_natural_(ir::natural_layouts(new_image.types)),
+        match_(match_instances(old_image, new_image)) {}
 
   std::vector<SystemEdit> run() {
     attributes();
@@ -72,13 +79,14 @@ class Edits {
   void addresses() {
     const std::map<std::string, const ir::IoBinding*> before = bindings(old_);
     const std::map<std::string, const ir::IoBinding*> after = bindings(new_);
+    const Ranges outputs = outputs_after();
     for (const auto& [path, binding] : before) {
       const auto found = after.find(path);
       const ir::IoBinding* now = found == after.end() ? nullptr : found->second;
       if (now != nullptr && now->address == binding->address) continue;
       std::string what = from_to(ir::address_text(binding->address),
                                  now == nullptr ? "no address" : ir::address_text(now->address));
-      if (is_left(binding->address)) {
+      if (is_left(*binding, outputs)) {
         what += "; nobody writes " + ir::address_text(binding->address) + " any more";
       }
       add("variable", path, std::move(what));
@@ -94,13 +102,35 @@ class Edits {
     for (const ir::IoBinding& row : image.io) out[areas.path_at(row.data)] = &row;
     return out;
   }
-  bool is_left(const ir::DirectAddress& address) const {
-    if (address.area != ir::DirectArea::kOutput) return false;
-    return std::none_of(new_.io.begin(), new_.io.end(), [&](const ir::IoBinding& row) {
-      return row.address.area == address.area &&
-             row.address.bit_offset < address.bit_offset + address.bit_size &&
-             address.bit_offset < row.address.bit_offset + row.address.bit_size;
-    });
+  // Outputs of the new version, as sorted ranges of bits that do not touch.
+  using Ranges = std::map<uint64_t, uint64_t>;  // end by begin
+  Ranges outputs_after() const {
+    std::vector<std::pair<uint64_t, uint64_t>> all;
+    for (const ir::IoBinding& row : new_.io) {
+      if (row.address.area != ir::DirectArea::kOutput) continue;
+      all.push_back({row.address.bit_offset, end_of(new_, new_natural_, row)});
+    }
+    std::sort(all.begin(), all.end());
+    Ranges out;
+    for (const auto& [begin, end] : all) {
+      if (!out.empty() && begin <= out.rbegin()->second) {
+        out.rbegin()->second = std::max(out.rbegin()->second, end);
+      } else {
+        out.emplace_hint(out.end(), begin, end);
+      }
+    }
+    return out;
+  }
+  // Does nothing of the new version write there?
+  bool is_left(const ir::IoBinding& binding, const Ranges& outputs) const {
+    if (binding.address.area != ir::DirectArea::kOutput) return false;
+    const auto after = outputs.lower_bound(end_of(old_, old_natural_, binding));
+    return after == outputs.begin() || std::prev(after)->second <= binding.address.bit_offset;
+  }
+  // A located array or structure takes more bits than its address says.
+  static uint64_t end_of(const ir::Image& image, const ir::Layouts& natural,
+                         const ir::IoBinding& row) {
+    return row.address.bit_offset + ir::located_bits(image.types, natural, row.type, row.address);
   }
 
   void tasks() {
@@ -215,6 +245,8 @@ class Edits {
 
   const ir::Image& old_;
   const ir::Image& new_;
+  ir::Layouts old_natural_;
+  ir::Layouts new_natural_;
   InstanceMatch match_;
   std::vector<SystemEdit> rows_;
 };

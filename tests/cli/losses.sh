@@ -10,6 +10,7 @@ END_PROGRAM
 ST
 sed 's/ gone : INT;//; s/ gone := a;//' v1.st >v2.st
 serve plc v1.st
+wait_for '=1' stvm get 'Main.f[407].gone' --dir plc
 expect 7 stvm change v2.st --dir plc --yes
 said 'R0303: 700 live value'
 said '^dropped +x700 +Main.f\[1\].gone : INT  \(removed; and 699 more like it\)$'

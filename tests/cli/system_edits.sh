@@ -4,7 +4,7 @@
 . "$(dirname "$0")/lib.sh"
 mkdir v1 v2
 cat >v1/a.st <<'ST'
-VAR_GLOBAL out1 AT %QX0.0 : BOOL; out2 AT %QX0.1 : BOOL; in1 AT %IX0.0 : BOOL; plain : INT; r : INT; END_VAR
+VAR_GLOBAL out1 AT %QX0.0 : BOOL; out2 AT %QX0.1 : BOOL; in1 AT %IX0.0 : BOOL; plain : INT; r : INT; x AT %QB52 : BYTE; y AT %QB24 : BYTE; END_VAR
 VAR_GLOBAL CONSTANT k : INT := 3; END_VAR
 PROGRAM P out1 := in1; out2 := TRUE; plain := plain + k; END_PROGRAM
 PROGRAM Q r := r + 1; END_PROGRAM
@@ -13,7 +13,7 @@ PROGRAM p1 WITH A : P; PROGRAM q1 WITH A : Q; PROGRAM q2 WITH B : Q; PROGRAM q3 
 END_RESOURCE END_CONFIGURATION
 ST
 cat >v2/a.st <<'ST'
-VAR_GLOBAL out1 AT %QX7.7 : BOOL; out2 : BOOL; in1 AT %IX3.3 : BOOL; plain AT %QW10 : INT; END_VAR
+VAR_GLOBAL out1 AT %QX7.7 : BOOL; out2 : BOOL; in1 AT %IX3.3 : BOOL; plain AT %QW10 : INT; x AT %QB30 : BYTE; y AT %QB31 : BYTE; list AT %QB50 : ARRAY[0..3] OF BYTE; END_VAR
 VAR_GLOBAL RETAIN r : INT; END_VAR
 VAR_GLOBAL k : INT := 3; END_VAR
 PROGRAM P out1 := in1; out2 := TRUE; plain := plain + k; END_PROGRAM
@@ -33,6 +33,8 @@ variable k (no longer CONSTANT)
 variable in1 (%IX0.0 -> %IX3.3)
 variable out1 (%QX0.0 -> %QX7.7; nobody writes %QX0.0 any more)
 variable out2 (%QX0.1 -> no address; nobody writes %QX0.1 any more)
+variable x (%QB52 -> %QB30)
+variable y (%QB24 -> %QB31; nobody writes %QB24 any more)
 variable plain (no address -> %QW10)
 task A (interval T#10ms -> T#5ms)
 task A (priority 1 -> 3)

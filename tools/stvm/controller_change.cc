@@ -55,6 +55,15 @@ tools::PouEdits shown_edits(const ir::VerifiedImage& old_image,
   return edits;
 }
 
+tools::SystemEdits shown_system(const ir::Image& old_image, const ir::Image& new_image) {
+  tools::SystemEdits edits = online_change::system_edits(old_image, new_image);
+  if (edits.size() <= kShownEdits) return edits;
+  const std::string more = std::to_string(edits.size() - kShownEdits);
+  edits.resize(kShownEdits);
+  edits.push_back({"more", more + " rows", "`stc diff` shows all"});
+  return edits;
+}
+
 uint64_t line_bytes(const FateLine& line) {
   return line.row.path.size() + line.row.old_type.size() + line.row.new_type.size() +
          line.row.reason.size() + line.live.now.size() + line.live.after.size() +
@@ -152,8 +161,7 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
       page.losses.push_back({live_->losses()[i]});
     }
     page.edits = shown_edits(controller_.verified(), next_version);
-    page.system = online_change::system_edits(controller_.image(), next_image);
-    page.system.resize(std::min<size_t>(page.system.size(), kShownEdits));
+    page.system = shown_system(controller_.image(), next_image);
   }
   return encode(page);
 }

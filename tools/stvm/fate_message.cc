@@ -56,7 +56,7 @@ void page_fields(A& a, T& page) {
   a(page.loss_count);
   a.list(page.losses, 16);
   a.list(page.edits, 17);
-  a.list(page.system, 8);
+  a.list(page.system, 12);
 }
 
 template <class A, class T>

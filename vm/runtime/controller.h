@@ -184,12 +184,12 @@ class Controller {
   // begins to make that of the version that runs now.
   void make_native();
   std::vector<DeviceStatus> devices() const;
-  // Behind a change that is not made: the next cycle begins with the start code, which constructs
-  // what has left again.
+  // After a change that is not made: the next cycle begins with the start code, which makes what
+  // has left anew.
   void construct();
-  // At a boundary, behind publish(): the start code, which constructs what is new, at the time of
-  // the next cycle. kInitFailed when it traps; what was published cannot run then. After a fault
-  // nothing is done.
+  // At a boundary, after publish(): runs the start code, which makes what is new, at the time of
+  // the next cycle. kInitFailed when it traps: the published version must not run then. After a
+  // fault nothing is done.
   base::Status enter();
   // At a boundary: FB_Exit of these instances, those around others first. When one traps or takes
   // longer than `limit_ns`, the rest is left out and the old program can run on behind construct().

@@ -1,5 +1,5 @@
-// The longest of the last times: of one that was long once, nothing is left when enough others have
-// come since. Adding is two comparisons.
+// The longest of the last times. A time that was long once is forgotten when enough others have
+// followed. Adding costs two comparisons.
 #pragma once
 
 #include <algorithm>
