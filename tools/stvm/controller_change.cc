@@ -4,6 +4,7 @@
 #include "base/limits.h"
 #include "online_change/diff/initial_data.h"
 #include "tools/stvm/controller_service.h"
+#include "tools/stvm/shown_edits.h"
 
 namespace stvm {
 namespace {
@@ -13,7 +14,6 @@ using online_change::FateRow;
 
 constexpr uint64_t kLinesPerPage = 1000;
 constexpr size_t kShownLosses = 500;
-constexpr size_t kShownEdits = 1000;
 // A switch that finds too little time before the next cycle is tried again after it.
 constexpr int kSwitchAttempts = 200;
 // So many times in turn without any idle time, and a change that needs some is given up.
@@ -44,24 +44,6 @@ std::string converted_text(const ir::Image& image, const std::string& path,
   ir::Symbol alone = *symbol;
   alone.data = 0;
   return ir::format_value(image, alone, *value);
-}
-
-// What fits into a message; a change that edits more POUs is looked at by other means.
-tools::PouEdits shown_edits(const ir::VerifiedImage& old_image,
-                            const ir::VerifiedImage& new_image) {
-  tools::PouEdits edits = online_change::pou_edits({old_image.image(), old_image.encoded()},
-                                                   {new_image.image(), new_image.encoded()});
-  if (edits.size() > kShownEdits) edits.resize(kShownEdits);
-  return edits;
-}
-
-tools::SystemEdits shown_system(const ir::Image& old_image, const ir::Image& new_image) {
-  tools::SystemEdits edits = online_change::system_edits(old_image, new_image);
-  if (edits.size() <= kShownEdits) return edits;
-  const std::string more = std::to_string(edits.size() - kShownEdits);
-  edits.resize(kShownEdits);
-  edits.push_back({"more", more + " rows", "`stc diff` shows all"});
-  return edits;
 }
 
 uint64_t line_bytes(const FateLine& line) {

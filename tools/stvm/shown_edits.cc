@@ -1,0 +1,27 @@
+#include "tools/stvm/shown_edits.h"
+
+namespace stvm {
+namespace {
+
+constexpr size_t kShownEdits = 1000;
+
+}  // namespace
+
+tools::PouEdits shown_edits(const ir::VerifiedImage& old_image,
+                            const ir::VerifiedImage& new_image) {
+  tools::PouEdits edits = online_change::pou_edits({old_image.image(), old_image.encoded()},
+                                                   {new_image.image(), new_image.encoded()});
+  if (edits.size() > kShownEdits) edits.resize(kShownEdits);
+  return edits;
+}
+
+tools::SystemEdits shown_system(const ir::Image& old_image, const ir::Image& new_image) {
+  tools::SystemEdits edits = online_change::system_edits(old_image, new_image);
+  if (edits.size() <= kShownEdits) return edits;
+  const std::string more = std::to_string(edits.size() - kShownEdits);
+  edits.resize(kShownEdits);
+  edits.push_back({"more", more + " rows", "`stc diff` shows all"});
+  return edits;
+}
+
+}  // namespace stvm
