@@ -1,7 +1,8 @@
 // Places for the areas of globals and instances in data memory (A5). With a base,
 // an area stays where it is while its capacity is unchanged; others go first fit
-// into what was free in the running version, and only when nothing else is left
-// into what this change frees (A7, A19).
+// into what was free in the running version, when nothing else is left into what this
+// change frees, and then into data memory that grows by the free area of the
+// project (A7, A19, case 71).
 #pragma once
 
 #include <vector>

@@ -90,6 +90,49 @@ TEST(Areas, A7RefusesWithWhatDidNotFitAndByHowMuch) {
       << second.error().text;
 }
 
+// What the refusal asks for is enough, and nothing less.
+TEST(Areas, case71_DataMemoryGrowsByTheFreeAreaOfTheProject) {
+  Options options;
+  options.slack.free_bytes = 64;
+  options.slack.free_percent = 0;
+  const ir::Image first = linked(two_blocks(kSmall, kBoth), options);
+  options.base = &first;
+  const std::string bigger = two_blocks(longs(2000), kBoth);
+  const base::Result<ir::Image> refused = try_link(bigger, options);
+  ASSERT_FALSE(refused.ok());
+  const std::string& text = refused.error().text;
+  const size_t at = text.find("free_bytes = ");
+  ASSERT_NE(at, std::string::npos) << text;
+  const auto need = static_cast<uint32_t>(std::stoul(text.substr(at + 13)));
+  options.slack.free_bytes = need - 8;
+  EXPECT_FALSE(try_link(bigger, options).ok());
+  options.slack.free_bytes = need;
+  const ir::Image second = relinked(first, bigger, options);
+  EXPECT_GT(second.data_capacity, first.data_capacity);
+  EXPECT_EQ(area_of(second, "Main.b"), area_of(first, "Main.b"));
+  // The same again is the same.
+  options.base = &second;
+  const ir::Image third = relinked(second, bigger, options);
+  EXPECT_EQ(third.data_capacity, second.data_capacity);
+  EXPECT_EQ(area_of(third, "Main.a"), area_of(second, "Main.a"));
+}
+
+// Each version has the free area of the project behind it, so no line of changes ends at a wall.
+TEST(Areas, case71_ManyChangesGrowIt) {
+  Options options;
+  options.slack.free_bytes = 400;
+  options.slack.free_percent = 0;
+  std::string members(kBoth);
+  ir::Image version = linked(two_blocks(longs(20), members), options);
+  const uint32_t before = version.data_capacity;
+  for (int i = 1; i <= 10; ++i) {  // 216 bytes each
+    members += "  member local more" + std::to_string(i) + " : A\n";
+    ir::Image next = relinked(version, two_blocks(longs(20), members), options);
+    version = std::move(next);
+  }
+  EXPECT_GT(version.data_capacity, before + 1000);
+}
+
 TEST(Areas, A7UsesTheWholeFreeAreaBeforeRefusing) {
   Options options;
   options.slack.free_bytes = 216;
