@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "ir/bytecode/symbols.h"
+#include "ir/types/address_text.h"
 #include "vm/exec/memory.h"
 #include "vm/load/generation.h"
 
@@ -60,6 +61,19 @@ LiveLoss describe_broken(const Areas& old_areas, uint32_t at, ir::TypeId type,
 
 LiveLoss broken_at(const Areas& new_areas, uint32_t at) {
   return {new_areas.path_at(at), "a reference", "NULL", kBroken};
+}
+
+bool is_on(const ir::Image& old_image, const vm::LeftOutput& output,
+           std::span<const uint8_t> memory) {
+  const auto value = memory.subspan(output.symbol.data, old_image.layouts[output.symbol.type].size);
+  return std::any_of(value.begin(), value.end(), [](uint8_t byte) { return byte != 0; });
+}
+
+LiveLoss describe_left(const vm::LeftOutput& output, const ir::Image& old_image,
+                       std::span<const uint8_t> memory) {
+  return {output.path, value_text(old_image, output.symbol, memory), "",
+          "is written by nobody any more (" + ir::address_text(output.address) +
+              ") and stays so"};
 }
 
 void describe_lost(const Plan& plan, const LostPlaces& places, const ir::Image& old_image,

@@ -8,6 +8,7 @@
 #include "online_change/apply/lost_places.h"
 #include "online_change/apply/transfer.h"
 #include "online_change/diff/areas.h"
+#include "vm/load/left_outputs.h"
 
 namespace online_change {
 
@@ -20,6 +21,11 @@ LiveLoss describe_broken(const Areas& old_areas, uint32_t at, ir::TypeId type,
                          std::span<const uint8_t> memory);
 // The same at the boundary, where only its place in the new version is known.
 LiveLoss broken_at(const Areas& new_areas, uint32_t at);
+// An output that nobody writes any more, and that is not zero (case 67).
+bool is_on(const ir::Image& old_image, const vm::LeftOutput& output,
+           std::span<const uint8_t> memory);
+LiveLoss describe_left(const vm::LeftOutput& output, const ir::Image& old_image,
+                       std::span<const uint8_t> memory);
 // Describes the values at these places as long as `rows` has fewer than `most`.
 void describe_lost(const Plan& plan, const LostPlaces& places, const ir::Image& old_image,
                    std::span<const uint8_t> memory, size_t most, std::vector<LiveLoss>& rows);

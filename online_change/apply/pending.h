@@ -17,6 +17,7 @@
 #include "online_change/apply/standby.h"
 #include "online_change/apply/transfer.h"
 #include "online_change/plan/pause.h"
+#include "vm/load/left_outputs.h"
 
 namespace online_change {
 
@@ -37,7 +38,8 @@ struct Change::Pending {
         handles(same ? HandleTransfer(old()) : HandleTransfer(old(), new_image.image())),
         leaving(find_leaving(old(), new_image.image())),
         charts(same ? Charts() : Charts(old(), new_image.image())),
-        lost(lost_places(package.forward, old(), new_image.image())) {}
+        lost(lost_places(package.forward, old(), new_image.image())),
+        left(vm::left_outputs(old(), new_image.image())) {}
   // Behind stage(): both are known.
   void count_work(const ir::Bools& bools) {
     if (keeps_all) {
@@ -82,6 +84,7 @@ struct Change::Pending {
   Leaving leaving;
   Charts charts;
   LostPlaces lost;
+  std::vector<vm::LeftOutput> left;
   bool allow_loss = false;
   // What the last report said would be lost: with leave for that, nothing else may be (X1).
   bool reported = false;

@@ -1,0 +1,11 @@
+// Everything that a change does beside values and code (X1): what the two images say, and outputs
+// that code has left (vm/load/left_outputs.h).
+#pragma once
+
+#include "tools/common/fate_report.h"
+
+namespace tools {
+
+SystemEdits all_system_edits(const ir::Image& old_image, const ir::Image& new_image);
+
+}  // namespace tools

@@ -1,0 +1,101 @@
+#include "vm/load/left_outputs.h"
+
+#include <algorithm>
+#include <map>
+
+#include "ir/types/location.h"
+#include "ir/types/natural_layout.h"
+#include "vm/load/writers.h"
+
+namespace vm {
+namespace {
+
+struct Output {  // a scalar with an address
+  uint64_t begin = 0;  // bits
+  uint64_t end = 0;
+  Variable variable;
+  ir::DirectAddress address;
+  bool written = false;
+};
+
+// Located arrays element by element; other values of several parts as wholes, which nobody writes
+// as a scalar, so nothing is said of them.
+std::vector<Output> outputs_of(const ir::Image& image) {
+  const ir::Layouts natural = ir::natural_layouts(image.types);
+  std::vector<Output> out;
+  for (const ir::IoBinding& row : image.io) {
+    if (row.address.area != ir::DirectArea::kOutput) continue;
+    const ir::Type& type = image.types[row.type];
+    const ir::TypeId part = type.kind == ir::Kind::kArray ? type.base : row.type;
+    const uint32_t size = image.layouts[part].size;
+    if (size == 0 || !image.types.is_scalar(part)) continue;
+    const uint64_t count = image.layouts[row.type].size / size;
+    if (count == 0) continue;
+    const uint64_t bits =
+        ir::located_bits(image.types, natural, row.type, row.address) / count;
+    for (uint64_t i = 0; i < count; ++i) {
+      Output output;
+      output.begin = row.address.bit_offset + i * bits;
+      output.end = output.begin + bits;
+      output.variable = {row.data + static_cast<uint32_t>(i) * size, size, part};
+      output.address = {row.address.area, static_cast<uint32_t>(output.begin),
+                        static_cast<uint32_t>(bits)};
+      out.push_back(output);
+    }
+  }
+  std::vector<Variable> variables;
+  for (const Output& output : out) variables.push_back(output.variable);
+  for (const Writer& writer : find_writers(image, variables)) out[writer.variable].written = true;
+  return out;
+}
+
+// Sorted ranges of bits that do not touch.
+class Bits {
+ public:
+  void add(uint64_t begin, uint64_t end) {
+    auto next = ranges_.upper_bound(begin);
+    if (next != ranges_.begin() && std::prev(next)->second >= begin) --next;
+    while (next != ranges_.end() && next->first <= end) {
+      begin = std::min(begin, next->first);
+      end = std::max(end, next->second);
+      next = ranges_.erase(next);
+    }
+    ranges_[begin] = end;
+  }
+  bool touches(uint64_t begin, uint64_t end) const {
+    const auto after = ranges_.lower_bound(end);
+    return after != ranges_.begin() && std::prev(after)->second > begin;
+  }
+
+ private:
+  std::map<uint64_t, uint64_t> ranges_;  // end by begin
+};
+
+}  // namespace
+
+std::vector<LeftOutput> left_outputs(const ir::Image& old_image, const ir::Image& new_image) {
+  std::vector<LeftOutput> left;
+  const bool any = std::any_of(new_image.io.begin(), new_image.io.end(), [](const auto& row) {
+    return row.address.area == ir::DirectArea::kOutput;
+  });
+  if (!any) return left;
+  Bits bound;
+  Bits written;
+  for (const Output& output : outputs_of(new_image)) {
+    bound.add(output.begin, output.end);
+    if (output.written) written.add(output.begin, output.end);
+  }
+  for (const Output& output : outputs_of(old_image)) {
+    if (!output.written || !bound.touches(output.begin, output.end)) continue;
+    if (written.touches(output.begin, output.end)) continue;
+    LeftOutput row;
+    row.address = output.address;
+    row.symbol.data = output.variable.data;
+    row.symbol.type = output.variable.type;
+    row.path = ir::path_of(old_image, row.symbol);
+    left.push_back(std::move(row));
+  }
+  return left;
+}
+
+}  // namespace vm
