@@ -10,6 +10,9 @@ namespace vm {
 Scheduler::Scheduler(const ControllerOptions& options, Clock& clock, IoPort& io)
     : options_(options), clock_(clock), io_(io) {
   active_.reserve(base::kMaxTasks);
+  traps_.reserve(kKeptTraps);
+  without_text_ = std::make_shared<TrapRecord>(
+      TrapRecord{0, {}, {}, {{}, {}, 0, "a trap; memory ran out for its text"}});
   next_cycle_ns_ = clock_.now_ns();
 }
 
@@ -207,8 +210,9 @@ void Scheduler::release_due_task(TaskSlot& task) {
   }
   const int64_t passed_by = (cycle_start_ns_ - task.next_release_ns) / period;
   task.status.missed += static_cast<uint64_t>(passed_by);
-  const int64_t due_ns = task.next_release_ns + passed_by * period;
-  task.next_release_ns = due_ns + period;
+  // The delay counts from the first release that nobody could begin, so it can exceed a period.
+  const int64_t due_ns = std::exchange(task.next_release_ns,
+                                       task.next_release_ns + (passed_by + 1) * period);
   const bool begins = release(task, due_ns);
   if (begins && task.synchronous()) task.inputs.write(tables_->inputs);
 }

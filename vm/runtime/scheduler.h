@@ -79,6 +79,7 @@ class Scheduler {
   void run_slice(TaskSlot& task);
   void end_program(TaskSlot& task);
   void end_task(TaskSlot& task);
+  void note_trap(const TaskSlot& task, const Trap& trap);
   void trap_in(TaskSlot& task, const Trap& trap);
   void find_written(const TaskSlot& task);
   void hand_down(std::span<const uint8_t> mask);
@@ -102,6 +103,7 @@ class Scheduler {
   TaskTables* tables_ = nullptr;
   std::vector<TaskSlot*> active_;  // suspended ones, the running one last
   Traps traps_;
+  std::shared_ptr<const TrapRecord> without_text_;
   uint64_t trap_count_ = 0;
   uint64_t cycles_ = 0;
   int64_t cycle_start_ns_ = 0;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/memory_limit.h"
 #include "vm/runtime/byte_masks.h"
 #include "vm/runtime/scheduler.h"
 
@@ -129,11 +130,20 @@ void Scheduler::leave(TaskSlot& task) {
   look_at_events();
 }
 
-void Scheduler::trap_in(TaskSlot& task, const Trap& trap) {
+// Where memory has run out, the trap has a record without a text that was made before.
+void Scheduler::note_trap(const TaskSlot& task, const Trap& trap) {
   ++trap_count_;
+  const auto record = [&]() -> std::shared_ptr<const TrapRecord> {
+    return std::make_shared<TrapRecord>(TrapRecord{
+        cycles_, task.status.name, trap, describe(tables_->generation->image(), trap)});
+  };
+  auto made = base::within_memory(record, [this] { return without_text_; });
   if (traps_.size() == kKeptTraps) traps_.erase(traps_.begin());
-  traps_.push_back(std::make_shared<TrapRecord>(TrapRecord{
-      cycles_, task.status.name, trap, describe(tables_->generation->image(), trap)}));
+  traps_.push_back(std::move(made));  // there is room: the constructor
+}
+
+void Scheduler::trap_in(TaskSlot& task, const Trap& trap) {
+  note_trap(task, trap);
   if (trying_) {
     try_failed_ = true;
     roll_back_outputs(task);

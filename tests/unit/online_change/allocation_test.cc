@@ -96,8 +96,36 @@ base::Status whole_change(Change& driver, base::ByteSpan package, Strategy strat
   done = driver.arm(true, true);
   if (!done.ok()) return done;
   auto report = driver.switch_now();
+  counting = false;  // the copy of its text is the test's
   if (!report.ok()) return report.error();
   return base::Ok{};
+}
+
+// X5, case 51: memory that runs out while FB_Init of what is new traps.
+TEST(Allocation, case51_WhileFbInitTraps) {
+  constexpr const char* kTraps =
+      "FUNCTION_BLOCK Box VAR n, z : INT; END_VAR METHOD FB_Init : BOOL VAR_INPUT "
+      "bInitRetains, bInCopyCode : BOOL; END_VAR n := 1 / z; END_METHOD END_FUNCTION_BLOCK\n"
+      "PROGRAM Main VAR c : INT; b : Box; END_VAR c := c + 1; END_PROGRAM";
+  for (const Strategy strategy : {Strategy::kInPlace, Strategy::kStandby}) {
+    Plant plant("PROGRAM Main VAR c : INT; END_VAR c := c + 1; END_PROGRAM");
+    plant.run(3);
+    const base::Bytes package = plant.package(kTraps);
+    Change& driver = plant.driver();
+    const base::Digest before = plant.hash();
+    for (int64_t successes = 0;; ++successes) {
+      base::Status done =
+          with_allocations(successes, [&] { return whole_change(driver, package, strategy); });
+      ASSERT_FALSE(done.ok());
+      driver.cancel();
+      ASSERT_EQ(driver.state(), State::kIdle) << successes;
+      ASSERT_EQ(plant.hash(), before) << successes;
+      if (done.error().refusal == base::Refusal::kInitFailed) break;
+      ASSERT_EQ(done.error().refusal, base::Refusal::kNoMemory) << successes;
+    }
+    plant.controller().cycle();
+    EXPECT_EQ(plant.get("Main.c"), "4");
+  }
 }
 
 void try_every_allocation(Strategy strategy) {

@@ -76,6 +76,23 @@ END_RESOURCE END_CONFIGURATION
   EXPECT_FALSE(plant->task_times("nobody"));
 }
 
+// A control thread that did not run for 85 ms: the scan behind it was due 75 ms before, and seven
+// releases have no scan.
+TEST(Statistics, AStartDelayCanExceedAPeriod) {
+  Plant plant("PROGRAM A VAR n : DINT; END_VAR n := n + 1; END_PROGRAM CONFIGURATION c RESOURCE r "
+              "ON cpu TASK t (INTERVAL := T#10ms, PRIORITY := 1); PROGRAM a WITH t : A; "
+              "END_RESOURCE END_CONFIGURATION");
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(5);
+  EXPECT_EQ(plant.task("t").delay.max, 0);
+  plant.clock.advance(85 * kMs);
+  plant.cycles(1);
+  EXPECT_EQ(plant.task("t").delay.max, 75 * kMs);
+  EXPECT_EQ(plant.task("t").missed, 7u);
+  plant.cycles(1);
+  EXPECT_EQ(plant.task("t").scans, 7u);
+}
+
 // What was measured goes on behind a change, and behind its undo.
 TEST(Statistics, GoOnThroughAChange) {
   Plant plant("PROGRAM P VAR n : INT; END_VAR n := n + 1; END_PROGRAM");
