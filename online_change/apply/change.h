@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "ir/bytecode/value_ranges.h"
 #include "online_change/package/package.h"
 #include "vm/runtime/controller.h"
 
@@ -49,6 +50,9 @@ using AtBoundary = std::function<base::Status(const std::function<void()>& job)>
 struct Loss;
 class Standby;
 
+// kPauseTooLong when a task has less free time: its period without the longest of its last scans.
+base::Status fits_free_time(int64_t pause_ns, const std::vector<vm::TaskStatus>& tasks);
+
 class Change {
  public:
   explicit Change(vm::Controller& controller);
@@ -71,6 +75,8 @@ class Change {
   const ir::VerifiedImage* next() const;
   // Only code differs: no value is touched, there and back.
   bool keeps_all() const;
+  // What live_losses() reads of data memory.
+  std::vector<ir::DataRange> looked_at() const;
   // In trial: what undo() would do.
   const Plan& undo_plan() const;
   Strategy strategy() const;
@@ -83,6 +89,9 @@ class Change {
   uint64_t units_left() const;  // of that work
   // kPauseTooLong when the predicted pause is longer than the free time of the tightest task.
   base::Status admit(bool allow_overrun) const;
+  // By kPrepared, at a boundary: what arm() would refuse with these values, but for time. Changes
+  // nothing (case 78).
+  base::Status refused_by_values(bool allow_loss) const;
   // Prepared -> Armed. Losses are refused unless allowed (kWouldLose), and so is a predicted pause
   // longer than the free time of the tightest task (kPauseTooLong). What configure() left is done.
   base::Status arm(bool allow_loss, bool allow_overrun = false);
@@ -123,6 +132,7 @@ class Change {
   base::Result<SwitchReport> switch_steps();
   base::Result<SwitchReport> undo_steps(bool whatever_happens = false);
   base::Status enter();
+  void take_back();
   base::Status try_migrations(const AtBoundary& at_boundary);
   base::Status migrate();
   base::Status check_charts() const;

@@ -72,6 +72,17 @@ void Change::count_undo() {
   controller_.worked(pause_ns(work));
 }
 
+std::vector<ir::DataRange> Change::looked_at() const {
+  if (!pending_) return {};
+  if (!pending_->keeps_all) return {{0, controller_.image().data_capacity}};
+  std::vector<ir::DataRange> ranges;
+  for (const vm::LeftOutput& output : pending_->left) {
+    ranges.push_back(
+        {output.symbol.data, pending_->old().layouts[output.symbol.type].size});
+  }
+  return ranges;
+}
+
 uint64_t Change::count_losses(std::span<const uint8_t> memory) const {
   std::vector<LiveLoss> none;
   return pending_ && state_ != State::kTrial ? find_losses(memory, 0, none) : 0;
@@ -116,6 +127,10 @@ uint64_t Change::find_losses(std::span<const uint8_t> memory, size_t most,
     if (!old_areas) old_areas.emplace(pending_->old());
     rows.push_back(describe_broken(*old_areas, at, type, memory));
   });
+  for (const vm::LeftOutput& output : pending_->left) {
+    if (!is_on(pending_->old(), output, memory)) continue;
+    if (count++ < most) rows.push_back(describe_left(output, pending_->old(), memory));
+  }
   for (const std::string& path : controller_.ended_forces(*pending_->waiting)) {
     if (count++ < most) rows.push_back({path, "forced", "", "loses its force"});
   }
@@ -140,11 +155,21 @@ base::Status Change::check_losses(bool allow_loss) const {
   return would_lose(first.front(), count - 1);
 }
 
-// Free time of a task: its period without the longest of its last scans.
+base::Status Change::refused_by_values(bool allow_loss) const {
+  if (state_ != State::kPrepared) {
+    return base::Error{base::Refusal::kBusy, "no change is staged"};
+  }
+  base::Status going_on = check_charts();
+  return going_on.ok() ? check_losses(allow_loss) : going_on;
+}
+
 base::Status Change::admit(bool allow_overrun) const {
   if (allow_overrun) return base::Ok{};
-  const int64_t pause_ns = predicted_pause_ns();
-  for (const vm::TaskStatus& task : controller_.tasks()) {
+  return fits_free_time(predicted_pause_ns(), controller_.tasks());
+}
+
+base::Status fits_free_time(int64_t pause_ns, const std::vector<vm::TaskStatus>& tasks) {
+  for (const vm::TaskStatus& task : tasks) {
     if (task.stopped || task.period_ns == 0) continue;  // events leave as much time as there is
     const int64_t free_ns = std::max<int64_t>(task.period_ns - task.recent_ns, 0);
     if (pause_ns <= free_ns) continue;

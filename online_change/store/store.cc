@@ -27,7 +27,8 @@ uint64_t retain_payload_bytes(uint64_t values) { return encode(RetainRecord{}).s
 }  // namespace
 
 Store::Store(vm::Storage& storage, StoreSizes sizes)
-    : sizes_(sizes),
+    : storage_(storage),
+      sizes_(sizes),
       control_copies_(storage, RecordKind::kControl, {"control_0", "control_1"}),
       slots_(storage, RecordKind::kImage, {"slot_a", "slot_b"}),
       retained_(storage, RecordKind::kRetain, {"retain_0", "retain_1", "retain_2"}),
@@ -299,6 +300,29 @@ base::Status Store::settle_locked() {
     if (!whole) settled = write_control(control_);
   }
   return settled;
+}
+
+// --- the version before -----------------------------------------------------------
+
+base::Status Store::keep_before(const ImageToStore& image) {
+  base::Bytes payload(image.digest.begin(), image.digest.end());
+  payload.insert(payload.end(), image.bytes.begin(), image.bytes.end());
+  const uint64_t size = record_bytes(payload.size());
+  std::lock_guard lock(before_mutex_);
+  return replace_record(storage_, kBeforeFile, RecordKind::kImage, 1, payload, size);
+}
+
+base::Result<StoredImage> Store::before() const {
+  std::lock_guard lock(before_mutex_);
+  const base::Result<uint64_t> size = storage_.size(kBeforeFile);
+  if (!size.ok() && size.error().refusal == base::Refusal::kFileNotFound) {
+    return base::Error{base::Refusal::kNothingToUndo, "no version before is stored"};
+  }
+  Record record = read_record(storage_, kBeforeFile, RecordKind::kImage);
+  const bool valid = record.state == RecordState::kValid;
+  std::optional<StoredImage> image = valid ? image_of(std::move(record.payload)) : std::nullopt;
+  if (!image) return failed("the version before cannot be read, or is damaged");
+  return std::move(*image);
 }
 
 // --- retained values --------------------------------------------------------------

@@ -30,6 +30,7 @@ namespace online_change {
 
 inline constexpr const char* kJournalFile = "journal";
 inline constexpr const char* kTrapsFile = "traps";
+inline constexpr const char* kBeforeFile = "before";
 
 struct StoreSizes {
   uint64_t image_bytes = 1u << 20;  // to begin with: a longer image makes its slot longer
@@ -91,6 +92,11 @@ class Store {
   base::Status end_trial();
   // What is on trial boots from now on.
   base::Status accept();
+  // The program that `accept` replaces, in a file of its own: a cut leaves the one that was kept
+  // before, or this one (X8). Nothing boots from it.
+  base::Status keep_before(const ImageToStore& image);
+  // kNothingToUndo: there is none. kStorageFailed: it cannot be read, or is damaged.
+  base::Result<StoredImage> before() const;
   // The slot that shall hold this program, and does not any more, gets it again.
   base::Status restore(const ImageToStore& image);
 
@@ -165,7 +171,9 @@ class Store {
   // else but the journals; of those; of what is shown.
   std::mutex slots_mutex_;
   mutable std::mutex mutex_;
+  mutable std::mutex before_mutex_;
   mutable std::mutex journal_mutex_;
+  vm::Storage& storage_;
   StoreSizes sizes_;
   Copies control_copies_;
   Copies slots_;

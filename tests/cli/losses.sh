@@ -14,7 +14,7 @@ wait_for '=1' stvm get 'Main.f[407].gone' --dir plc
 expect 7 stvm change v2.st --dir plc --yes
 said 'R0303: 700 live value'
 said '^dropped +x700 +Main.f\[1\].gone : INT  \(removed; and 699 more like it\)$'
-said '^and 200 more$'
+said '^and 200 more \(--all shows each\)$'
 first=$(grep -n 'Main.f\[40[1-7]\].gone  1 ' out | cut -d: -f1 | tr '\n' ' ')
 header=$(grep -n '^variable ' out | cut -d: -f1)
 [ "$first" = "$(seq -s ' ' $((header + 1)) $((header + 7))) " ] || fail "not first: $first of $header"

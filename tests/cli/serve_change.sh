@@ -40,7 +40,7 @@ said 'instances +3 '
 said 'free [0-9]+ of [0-9]+ bytes'
 expect 0 stvm status --dir plc --format json
 said '"largest_free": *[1-9]'
-expect 0 stvm change v2.st --dir plc --dry-run
+expect 7 stvm change v2.st --dir plc --dry-run
 said 'converted'
 said 'Main.gone'
 # X2: the live values of what was renamed or moved.

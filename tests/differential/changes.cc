@@ -4,12 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <optional>
 #include <sstream>
 
 #include "ir/program/evaluate.h"
 #include "ir/types/handle.h"
 #include "ir/types/value_text.h"
+#include "online_change/plan/every_fate.h"
 #include "tests/differential/compiled.h"
 #include "tests/differential/random.h"
 #include "tests/differential/rig.h"
@@ -81,12 +83,14 @@ class Examination {
       if (!scan().empty()) return skipped();
     }
     old_types_ = rig_->image().types;
+    old_image_ = rig_->image();
     before_ = rig_->leaves();
     remember_targets();
     base::Status changed = rig_->make_switch();
     if (!changed.ok()) return change_refused(changed.error());
     after_ = rig_->leaves();
     check_switch();
+    if (!out_.failed) check_fates();
     // The oracle does not know what level an event had.
     auto event = [](const ir::Task& task) { return task.event != ir::kNoEvent; };
     const std::vector<ir::Task>& tasks = second_.program.tasks;
@@ -145,6 +149,52 @@ class Examination {
                      expected_whole(old_types_, old->second, types, leaf, old->second.bits)) {
         if (leaf.value != *expected) wrong("converted value", path, leaf.value, *expected);
       }
+    }
+  }
+
+  // X1: the report has one fate for each variable of either version, and that is what happened.
+  void check_fates() {
+    const online_change::EveryFate every(rig_->plan(), old_image_, rig_->image());
+    std::set<std::string> listed;
+    every.visit_from(0, [&](const online_change::VariableFate& variable) {
+      // Of a method and the one that it overrides: two variables have this path.
+      if (variable.path.find('#') != std::string::npos) return listed.insert(variable.path), true;
+      if (!listed.insert(variable.path).second) {
+        wrong("fate", variable.path, "listed twice", "listed once");
+      }
+      if (!variable.old_path.empty()) listed.insert(variable.old_path);
+      check_fate(variable);
+      return !out_.failed;
+    });
+    for (const Leaves* all : {&before_, &after_}) {
+      for (const auto& [path, leaf] : *all) {
+        if (!out_.failed && !listed.contains(path)) wrong("fate", path, "none", "one");
+      }
+    }
+  }
+  void check_fate(const online_change::VariableFate& variable) {
+    using online_change::Fate;
+    const std::string& path = variable.path;
+    const auto after = after_.find(path);
+    const auto before = before_.find(variable.old_path.empty() ? path : variable.old_path);
+    const std::string fate = online_change::fate_name(variable.fate);
+    if ((variable.fate == Fate::kDropped) != (after == after_.end())) {
+      return wrong("fate", path, fate, "of a variable that is there, or not");
+    }
+    if (after == after_.end()) return;
+    if (after->second.symbol.data != variable.new_address) {
+      return wrong("fate", path, std::to_string(variable.new_address), "the new address");
+    }
+    const bool stays = variable.fate == Fate::kKept || variable.fate == Fate::kMoved;
+    if (!stays || after->second.shared || after->second.symbol.constant) return;
+    if (before == before_.end() || before->second.symbol.data != variable.old_address) {
+      return wrong("fate", path, fate, "of a variable that was there");
+    }
+    const bool same_place = variable.new_address == variable.old_address;
+    if (variable.fate == Fate::kKept && !same_place) return wrong("fate", path, fate, "moved");
+    if (rig_->image().types.is_reference(after->second.symbol.type)) return;
+    if (!same_value(before->second, after->second)) {
+      wrong("fate", path, fate + " with another value", "with its value");
     }
   }
 
@@ -316,6 +366,7 @@ class Examination {
   const golden::Program& second_;
   online_change::Strategy strategy_;
   std::unique_ptr<Rig> rig_;
+  ir::Image old_image_;
   ir::TypeTable old_types_;
   Leaves before_;
   std::map<std::string, std::string> old_types_of_;  // by path

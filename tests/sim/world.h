@@ -65,6 +65,7 @@ class World {
   void forget_versions();
   uint32_t strategy();  // of a change, as a flag of the protocol
   void let_run();
+  bool given_back();
   void change();
   void bad_package();
   void two_tools();

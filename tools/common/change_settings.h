@@ -14,6 +14,7 @@ namespace tools {
 struct ChangeSettings {
   std::string strategy;     // "in-place", "standby", or "": not said
   bool restricted = false;  // no edits of interfaces (D7)
+  std::string health;       // a BOOL that must stay TRUE on trial, or the controller undoes it
   uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit
 };
 

@@ -4,6 +4,7 @@
 
 #include "base/visible_text.h"
 #include "base/wrapped.h"
+#include "ir/bytecode/renames.h"
 #include "tools/common/table.h"
 
 namespace tools {
@@ -34,10 +35,7 @@ std::string type_change(const FateRow& row) {
   return row.old_type + " -> " + row.new_type;
 }
 
-std::string value_change(const FateRow& row, const LiveValues& live) {
-  auto found = live.find(row.path);
-  if (found == live.end()) return row.may_lose && row.fate != Fate::kDropped ? "may lose" : "";
-  const LiveValue& value = found->second;
+std::string value_change(const FateRow& row, const LiveValue& value) {
   std::string text = value.now;
   if (text.empty()) {
     text = ":= " + value.after;
@@ -50,18 +48,36 @@ std::string value_change(const FateRow& row, const LiveValues& live) {
 
 // "converted      LineStops : INT -> DINT", and behind it or below, whatever fits in
 // 80 columns, live value and reason.
-std::string row_text(const FateRow& row, const LiveValues& live) {
+std::string row_text(const FateRow& row, std::string rest) {
   std::string text = online_change::fate_name(row.fate);
   text.resize(12, ' ');
   if (row.count > 1) text += "x" + std::to_string(row.count);
   text.resize(std::max<size_t>(text.size() + 1, 19), ' ');
   text += row.path;
   if (std::string type = type_change(row); !type.empty()) text += " : " + type;
-  std::string rest = value_change(row, live);
   if (!row.reason.empty()) rest += (rest.empty() ? "(" : "  (") + row.reason + ")";
   if (rest.empty()) return text + "\n";
   if (text.size() + 2 + rest.size() <= kWidth) return text + "  " + rest + "\n";
-  return text + "\n" + std::string(21, ' ') + rest + "\n";
+  text += "\n";
+  for (const std::string& line : base::wrapped(rest, kWidth - 21)) {
+    text += std::string(21, ' ') + line + "\n";
+  }
+  return text;
+}
+
+std::string row_text(const FateRow& row, const LiveValues& live) {
+  auto found = live.find(row.path);
+  if (found != live.end()) return row_text(row, value_change(row, found->second));
+  return row_text(row, std::string(row.may_lose && row.fate != Fate::kDropped ? "may lose" : ""));
+}
+
+// "at 1234", "1234 -> 1300".
+std::string address_text(const FateLine& line) {
+  if (line.old_address == 0 || line.new_address == line.old_address) {
+    return "at " + std::to_string(line.new_address);
+  }
+  if (line.new_address == 0) return "was at " + std::to_string(line.old_address);
+  return std::to_string(line.old_address) + " -> " + std::to_string(line.new_address);
 }
 
 // "code               Motor  (body; 3 instances keep their values: outputs may jump)"
@@ -153,6 +169,63 @@ void fate_report(const online_change::Plan& plan, const LiveValues& live, const 
     json.field("what", edit.what).end_object();
   }
   json.end_array();
+}
+
+std::string every_fate_text(std::span<const FateLine> lines) {
+  std::string out;
+  for (const FateLine& line : lines) {
+    FateRow row = line.row;
+    std::string why = address_text(line);
+    if (!row.old_path.empty()) why += "; was `" + row.old_path + "`";
+    if (!row.reason.empty()) why += "; " + row.reason;
+    row.reason = std::move(why);
+    const bool told = !line.live.now.empty() || !line.live.after.empty();
+    out += row_text(row, told ? value_change(row, line.live) : std::string());
+  }
+  return base::visible_lines(out);
+}
+
+void every_fate(std::span<const FateLine> lines, JsonWriter& json) {
+  json.key("variables").begin_array();
+  for (const FateLine& line : lines) {
+    json.begin_object().field("variable", line.row.path);
+    json.field("fate", online_change::fate_name(line.row.fate));
+    if (!line.row.old_path.empty()) json.field("old_variable", line.row.old_path);
+    if (line.old_address != 0) json.field("old_address", line.old_address);
+    if (line.new_address != 0) json.field("new_address", line.new_address);
+    json.field("old_type", line.row.old_type).field("new_type", line.row.new_type);
+    json.field("live", line.live.now).field("after", line.live.after);
+    json.field("loss", line.live.loss).field("reason", line.row.reason).end_object();
+  }
+  json.end_array();
+}
+
+std::vector<FateLine> every_line(const online_change::Plan& plan, const ir::Image& old_image,
+                                 const ir::Image& new_image) {
+  std::vector<FateLine> lines;
+  const ir::OldUnderNewNames renamed(old_image, new_image);
+  const ir::Image& before = renamed.image();
+  const online_change::EveryFate every(plan, before, new_image);
+  every.visit_from(0, [&](const online_change::VariableFate& variable) {
+    lines.push_back(every_line(variable, before, new_image));
+    return true;
+  });
+  return lines;
+}
+
+FateLine every_line(const online_change::VariableFate& variable, const ir::Image& old_image,
+                    const ir::Image& new_image) {
+  FateLine out;
+  out.row.fate = variable.fate;
+  out.row.path = variable.path;
+  out.row.old_path = variable.old_path;
+  out.row.reason = variable.reason;
+  out.row.may_lose = variable.loses;
+  out.old_address = variable.old_address;
+  out.new_address = variable.new_address;
+  if (variable.old_address != 0) out.row.old_type = old_image.types.text(variable.old_type);
+  if (variable.new_address != 0) out.row.new_type = new_image.types.text(variable.new_type);
+  return out;
 }
 
 }  // namespace tools

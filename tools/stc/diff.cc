@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "tools/common/all_system_edits.h"
 #include "tools/common/child.h"
 #include "tools/common/fate_report.h"
 #include "tools/stc/commands.h"
@@ -13,6 +14,7 @@ namespace {
 constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
     STC_RESTRICTED_OPTION,
+    {"--all", nullptr, "show the fate of each variable too, with its addresses"},
     {"--against", "HOST|DIR", "OLD is what runs there: a state directory, or a host to ssh to"},
 };
 constexpr tools::Command kCommand{"diff", "[OLD] NEW",
@@ -35,6 +37,7 @@ struct Difference {
   online_change::Plan plan;
   tools::PouEdits edits;
   tools::SystemEdits system;
+  std::vector<tools::FateLine> every;  // by --all
 };
 
 base::Result<Difference> difference(const tools::Options& options) {
@@ -52,7 +55,7 @@ base::Result<Difference> difference(const tools::Options& options) {
   if (!after.ok()) return after.error();
   Difference out;
   out.edits = online_change::pou_edits(before->image, after->image);
-  out.system = online_change::system_edits(before->image, after->image);
+  out.system = tools::all_system_edits(before->image, after->image);
   if (options.has("--restricted")) {
     base::Status kept = online_change::check_restricted(out.edits);
     if (!kept.ok()) return kept.error();
@@ -60,6 +63,9 @@ base::Result<Difference> difference(const tools::Options& options) {
   base::Result<online_change::Plan> plan = online_change::plan(before->image, after->image);
   if (!plan.ok()) return plan.error();
   out.plan = std::move(*plan);
+  if (options.has("--all")) {
+    out.every = tools::every_line(out.plan, before->image, after->image);
+  }
   return out;
 }
 
@@ -70,9 +76,11 @@ int run(const tools::Options& options) {
     tools::JsonWriter json;
     json.begin_object();
     tools::fate_report(found->plan, {}, found->edits, found->system, json);
+    if (options.has("--all")) tools::every_fate(found->every, json);
     json.end_object();
     std::fputs(json.finish().c_str(), stdout);
   } else {
+    if (options.has("--all")) std::printf("%s\n", tools::every_fate_text(found->every).c_str());
     std::fputs(tools::fate_report(found->plan, {}, found->edits, found->system).c_str(), stdout);
   }
   return tools::kOk;

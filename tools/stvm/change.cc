@@ -1,5 +1,9 @@
 // stvm change: a new program for a running controller. Fetch what runs, let stc make the package,
 // show every variable's fate, ask, switch.
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
 #include "tools/common/child.h"
 #include "tools/common/exit.h"
 #include "tools/common/files.h"
@@ -11,26 +15,41 @@
 namespace stvm {
 namespace {
 
+// What `change` and `revert` have in common.
+#define STVM_SWITCH_OPTIONS                                                                        \
+  STVM_CONTROLLER_OPTIONS, {"--yes", nullptr, "switch without asking"},                            \
+      {"--dry-run", nullptr,                                                                       \
+       "say what the change would do, or why it would be refused; nothing is changed"},            \
+      {"--all", nullptr, "show the fate of each variable too, with addresses and values"},         \
+      {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},        \
+      {"--strategy", "S",                                                                          \
+       "in-place (default, or what the project says), or standby: a second data area, made in "    \
+       "idle time"},                                                                               \
+      {"--allow-overrun", nullptr, "switch even if a task may be delayed"},                        \
+      {"--restricted", nullptr, "refuse when the interface of a POU is edited"},                   \
+      {"--unrestricted", nullptr, "do not, whatever the project says"},                            \
+      {"--health", "NAME",                                                                         \
+       "a BOOL that stays TRUE while all is well: FALSE in the first 1000 cycles undoes the "      \
+       "change"},                                                                                  \
+      {"--wait", nullptr, "wait while others change the controller, or have a change on trial"},  \
+      {"--no-auto-undo", nullptr, "do not undo it either when a trap stops a task in them"},       \
+      {"--permanent", nullptr, "accept at once: no undo, the new program boots next"}
+
 constexpr tools::OptionRow kOptions[] = {
-    STVM_CONTROLLER_OPTIONS,
-    {"--yes", nullptr, "switch without asking"},
-    {"--dry-run", nullptr, "stop after the fate report; nothing is changed"},
-    {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},
-    {"--strategy", "S",
-     "in-place (default, or what the project says), or standby: a second data area, made in idle "
-     "time"},
-    {"--allow-overrun", nullptr, "switch even if a task may be delayed"},
-    {"--restricted", nullptr, "refuse when the interface of a POU is edited"},
-    {"--unrestricted", nullptr, "do not, whatever the project says"},
+    STVM_SWITCH_OPTIONS,
     {"--watch", nullptr, "stay, and bring each save of the sources to the controller"},
-    {"--permanent", nullptr, "accept at once: no undo, the new program boots next"},
     STVM_DIALECT_OPTION,
     STVM_FORMAT_OPTION,
 };
+constexpr tools::OptionRow kRevertOptions[] = {STVM_SWITCH_OPTIONS, STVM_FORMAT_OPTION};
+constexpr tools::Command kRevertCommand{
+    "revert",       "", "Changes to the program that ran before the last accepted change.",
+    kRevertOptions, 0,  0};
 constexpr tools::Command kCommand{"change", "SOURCES...|IMAGE",
                                   "Changes the running program without stopping it.", kOptions, 1};
 
-base::Result<base::Bytes> make_package(const tools::Options& options, bool restricted,
+// From the program that runs to what the sources say.
+base::Result<base::Bytes> make_package(const Sources& sources, bool restricted,
                                        base::ByteSpan running) {
   base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
   if (!folder.ok()) return folder.error();
@@ -40,22 +59,93 @@ base::Result<base::Bytes> make_package(const tools::Options& options, bool restr
   if (!written.ok()) return written.error();
   std::vector<std::string> command = {"package", "--base", base_file, "-o", package_file};
   if (restricted) command.push_back("--restricted");
-  base::Status made = tools::run_beside("stc", stc_arguments(command, sources_of(options)));
+  base::Status made = tools::run_beside("stc", stc_arguments(command, sources));
   if (!made.ok()) return made.error();
   return tools::read_bytes(package_file);
 }
 
-base::Result<Outcome> change(const tools::Options& options, const SwitchOptions& how,
-                             ControllerClient& client) {
-  base::Result<vm::StatusReport> status = client.status();
-  if (!status.ok()) return status.error();
-  base::Status free = check_no_trial(*status);
-  if (!free.ok()) return free.error();
+base::Result<base::Bytes> package_of(const tools::Options& options, bool restricted,
+                                     ControllerClient& client) {
   base::Result<base::Bytes> running = client.image();
   if (!running.ok()) return running.error();
-  base::Result<base::Bytes> package = make_package(options, how.restricted, *running);
+  return make_package(sources_of(options), restricted, *running);
+}
+
+// The version before is changed to like any other: what it does not have is lost, what it alone
+// has begins anew.
+base::Result<base::Bytes> package_back(const tools::Options&, bool restricted,
+                                       ControllerClient& client) {
+  base::Result<base::Bytes> running = client.image();
+  if (!running.ok()) return running.error();
+  base::Result<base::Bytes> before = client.image_before();
+  if (!before.ok()) return before.error();
+  base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
+  if (!folder.ok()) return folder.error();
+  const std::string file = folder->file("before.img");
+  base::Status written = tools::write_file(file, *before);
+  if (!written.ok()) return written.error();
+  return make_package({{file}, {}}, restricted, *running);
+}
+
+using MakePackage = base::Result<base::Bytes> (*)(const tools::Options&, bool, ControllerClient&);
+
+base::Result<Outcome> change(const tools::Options& options, const SwitchOptions& how,
+                             ControllerClient& client, MakePackage make) {
+  base::Result<vm::StatusReport> status = client.status();
+  if (!status.ok()) return status.error();
+  base::Status free = how.dry_run ? base::Status(base::Ok{}) : check_no_trial(*status);
+  if (!free.ok()) return free.error();
+  base::Result<base::Bytes> package = make(options, how.restricted, client);
   if (!package.ok()) return package.error();
   return bring(how, client, *package);
+}
+
+// Others were faster, or are not done: what has to be made anew of what runs then.
+bool others_change(const base::Error& error) {
+  return error.refusal == base::Refusal::kStaleBase ||
+         error.refusal == base::Refusal::kChangePending;
+}
+
+// Until nothing is on trial. What is only staged may be left there by somebody who went away, so
+// that is waited for no longer than a person would think about a report.
+base::Status wait_for_others(ControllerClient& client) {
+  constexpr auto kLook = std::chrono::milliseconds(100);
+  constexpr int kStagedLooks = 50;
+  for (int staged = 0;; ++staged) {
+    base::Result<vm::StatusReport> status = client.status();
+    if (!status.ok()) return status.error();
+    if (status->change == "idle") return base::Ok{};
+    if (status->change == "trial") {
+      staged = 0;
+    } else if (staged >= kStagedLooks) {
+      return base::Ok{};
+    }
+    std::this_thread::sleep_for(kLook);
+  }
+}
+
+base::Result<Outcome> change_behind_others(const tools::Options& options, const SwitchOptions& how,
+                                           ControllerClient& client, MakePackage make) {
+  for (bool said = false;;) {
+    if (base::Status waited = wait_for_others(client); !waited.ok()) return waited.error();
+    base::Result<Outcome> outcome = change(options, how, client, make);
+    const base::Error* error = nullptr;
+    if (!outcome.ok()) error = &outcome.error();
+    if (outcome.ok() && outcome->refused) error = &*outcome->refused;
+    if (error == nullptr || !others_change(*error)) return outcome;
+    if (!said) std::fprintf(stderr, "waiting: %s\n", error->text.c_str());
+    said = true;
+  }
+}
+
+int finish(const tools::Options& options, const SwitchOptions& how, ControllerClient& client,
+           MakePackage make) {
+  base::Result<Outcome> outcome = how.wait && !how.dry_run
+                                      ? change_behind_others(options, how, client, make)
+                                      : change(options, how, client, make);
+  if (!outcome.ok()) return refuse(outcome.error());
+  print(how, *outcome);
+  return outcome->refused ? refuse(*outcome->refused) : tools::kOk;
 }
 
 int run(const tools::Options& options) {
@@ -64,14 +154,20 @@ int run(const tools::Options& options) {
   base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return refuse(client.error());
   if (options.has("--watch")) return follow(sources_of(options), *how, *client);
-  base::Result<Outcome> outcome = change(options, *how, *client);
-  if (!outcome.ok()) return refuse(outcome.error());
-  print(*how, *outcome);
-  return outcome->refused ? refuse(*outcome->refused) : tools::kOk;
+  return finish(options, *how, *client, package_of);
+}
+
+int revert(const tools::Options& options) {
+  base::Result<SwitchOptions> how = switch_options(options);
+  if (!how.ok()) return refuse(how.error());
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
+  if (!client.ok()) return refuse(client.error());
+  return finish(options, *how, *client, package_back);
 }
 
 }  // namespace
 
 const Entry kChange{&kCommand, run};
+const Entry kRevert{&kRevertCommand, revert};
 
 }  // namespace stvm

@@ -21,6 +21,7 @@ extern const Entry kUnforce;
 extern const Entry kWatch;
 extern const Entry kChange;
 extern const Entry kUndo;
+extern const Entry kRevert;
 extern const Entry kAccept;
 extern const Entry kStop;
 extern const Entry kRestart;

@@ -2,55 +2,15 @@
 #include <algorithm>
 
 #include "base/limits.h"
-#include "online_change/diff/initial_data.h"
 #include "tools/stvm/controller_service.h"
-#include "tools/stvm/shown_edits.h"
 
 namespace stvm {
 namespace {
 
-using online_change::Fate;
-using online_change::FateRow;
-
-constexpr uint64_t kLinesPerPage = 1000;
-constexpr size_t kShownLosses = 500;
 // A switch that finds too little time before the next cycle is tried again after it.
 constexpr int kSwitchAttempts = 200;
 // So many times in turn without any idle time, and a change that needs some is given up.
 constexpr int kIdleAttempts = 200;
-
-// Initial value of a scalar or string of the new version; "" for anything else.
-std::string initial_text(const ir::Image& image, const std::string& path) {
-  base::Result<ir::Symbol> symbol = ir::find_symbol(image, path);
-  if (!symbol.ok()) return {};
-  ir::Kind kind = image.types[symbol->type].kind;
-  bool leaf = image.types.is_scalar(symbol->type) || kind == ir::Kind::kString ||
-              kind == ir::Kind::kWstring;
-  if (!leaf) return {};
-  base::Bytes value(image.layouts[symbol->type].size);
-  online_change::InitialData(image).read(symbol->data, value);
-  ir::Symbol alone = *symbol;
-  alone.data = 0;
-  return ir::format_value(image, alone, value);
-}
-
-// The text of the old value as a value of the new type; "" where it is none.
-std::string converted_text(const ir::Image& image, const std::string& path,
-                           const std::string& now) {
-  base::Result<ir::Symbol> symbol = ir::find_symbol(image, path);
-  if (!symbol.ok()) return {};
-  base::Result<base::Bytes> value = ir::parse_value(image, symbol->type, now);
-  if (!value.ok()) return {};
-  ir::Symbol alone = *symbol;
-  alone.data = 0;
-  return ir::format_value(image, alone, *value);
-}
-
-uint64_t line_bytes(const FateLine& line) {
-  return line.row.path.size() + line.row.old_type.size() + line.row.new_type.size() +
-         line.row.reason.size() + line.live.now.size() + line.live.after.size() +
-         line.live.loss.size() + 64;
-}
 
 }  // namespace
 
@@ -59,8 +19,10 @@ base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) 
   if (request.offset == 0) {
     upload_ = base::Bytes();
     upload_of_ = session_;
+    upload_by_ = who_;
   }
-  if (request.offset != upload_.size() || upload_of_ != session_) {
+  if (upload_of_ != session_) return others_upload();
+  if (request.offset != upload_.size()) {
     return base::Error{base::Refusal::kProtocol, "parts of the package are missing"};
   }
   if (upload_.size() + request.data.size() > base::kMaxImageBytes) {
@@ -70,113 +32,96 @@ base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) 
   return base::Bytes{};
 }
 
+base::Error ControllerService::others_upload() const {
+  return {base::Refusal::kChangePending, upload_by_ + " brings another change just now"};
+}
+
+base::Status ControllerService::check_upload(const vm::Request& request,
+                                             base::ByteSpan package) const {
+  // What never ran has no values that a change could carry over.
+  if (!start_.fault.empty()) return base::Error{base::Refusal::kFault, start_.fault};
+  if (base::sha256(package) == request.digest) return base::Ok{};
+  return base::Error{base::Refusal::kBadHash, "the package arrived damaged"};
+}
+
 // Checks and builds beside the running program; touches nothing of it, so it needs no boundary. A
 // change that somebody staged and did not switch gives way, and the new edition, which is the
-// answer, makes sure that nobody switches what he did not stage.
+// answer, makes sure that nobody switches what he did not stage. A rehearsal never takes its place.
 base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
-  base::Bytes package = std::move(upload_);
-  upload_ = {};
-  bool faulted = false;
-  base::Status taken = at_boundary([&] { faulted = controller_.faulted(); });
-  if (!taken.ok()) return taken.error();
-  if (faulted) return base::Error{base::Refusal::kFault, "the controller is stopped by a fault"};
-  if (base::sha256(package) != request.digest) {
-    return base::Error{base::Refusal::kBadHash, "the package arrived damaged"};
-  }
+  if (upload_of_ != session_) return others_upload();
+  const base::Bytes package = std::exchange(upload_, {});
+  if (base::Status good = check_upload(request, package); !good.ok()) return good.error();
+  const bool standby = (request.flags & vm::kByStandby) != 0;
+  const auto strategy =
+      standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace;
+  const bool rehearsal = (request.flags & vm::kRehearsal) != 0;
+  const bool taken = change_.state() != online_change::State::kIdle && !only_looked_at_;
+  if (rehearsal && taken) return stage_rehearsal(package, strategy);
   change_.cancel();
   forget_staged();
-  const bool standby = (request.flags & vm::kByStandby) != 0;
-  base::Status staged = change_.stage(
-      package, standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace,
-      [this](const auto& job) { return at_boundary(job); });
+  only_looked_at_ = rehearsal;
+  base::Status staged =
+      change_.stage(package, strategy, [this](const auto& job) { return at_boundary(job); });
   if (!staged.ok()) {
     change_.collect();  // devices that it opened
+    const base::Error error = refused(staged.error());
     forget_staged();
-    return refused(staged.error());
+    return error;
   }
   staged_ = *change_.next();
-  online_change::JournalEntry done = entry(online_change::Event::kStaged);
-  done.counts = change_.plan().counts;
-  done.predicted_ns = change_.plan().predicted_pause_ns;
-  store_.note(std::move(done));
+  if (!rehearsal) {
+    online_change::JournalEntry done = entry(online_change::Event::kStaged);
+    done.counts = change_.plan().counts;
+    done.predicted_ns = change_.plan().predicted_pause_ns;
+    store_.note(std::move(done));
+  }
+  changed_by_ = who_;
   base::ByteWriter answer;
   answer.u64(++edition_);
   return answer.take();
 }
 
-// The first page takes the live values; the others show the same ones.
-base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
-  const bool back = change_.state() == online_change::State::kTrial && previous_;
-  if (!back && (change_.state() == online_change::State::kIdle || !staged_)) {
-    return base::Error{base::Refusal::kBusy, "no change is staged, and none is on trial"};
-  }
-  const ir::VerifiedImage& next_version = back ? *previous_ : *staged_;
-  const ir::Image& next_image = next_version.image();
-  if (request.offset == 0 || !live_) {
-    live_.reset();
-    auto taken = LiveReport::take(controller_, change_, back ? nullptr : &next_image,
-                                  [this](auto ranges) { return copy_of(std::move(ranges)); });
-    if (!taken.ok()) return taken.error();
-    live_.emplace(std::move(*taken));
-    live_of_ = session_;
-  }
-  const online_change::Plan& plan = back ? change_.undo_plan() : change_.plan();
-  FatePage page{plan.counts,
-                change_.predicted_pause_ns(),
-                plan.boundary_bytes,
-                0,
-                {},
-                live_->loss_count(),
-                {},
-                {},
-                {}};
-  uint64_t bytes = 0;
-  uint64_t next = request.offset;
-  const uint64_t end = std::min<uint64_t>(plan.fates.size(), request.offset + kLinesPerPage);
-  for (; next < end && bytes <= vm::kChunkBytes; ++next) {
-    page.lines.push_back(live_line(plan.fates[next], next_image, back));
-    bytes += line_bytes(page.lines.back());
-  }
-  page.next = next < plan.fates.size() ? next : 0;
-  if (request.offset == 0) {
-    for (size_t i = 0; i < std::min(live_->losses().size(), kShownLosses); ++i) {
-      page.losses.push_back({live_->losses()[i]});
-    }
-    page.edits = shown_edits(controller_.verified(), next_version);
-    page.system = shown_system(controller_.image(), next_image);
-  }
-  return encode(page);
+base::Result<base::Bytes> ControllerService::stage_rehearsal(base::ByteSpan package,
+                                                             online_change::Strategy strategy) {
+  rehearsal_.reset();
+  forget_report();
+  auto staged = Rehearsal::stage(controller_, package, strategy,
+                                 [this](auto ranges) { return copy_of(std::move(ranges)); });
+  if (!staged.ok()) return staged.error();
+  rehearsal_ = std::move(*staged);
+  rehearsal_of_ = session_;
+  base::ByteWriter answer;
+  answer.u64(edition_);
+  return answer.take();
 }
 
-// With the resulting value, and its loss when there is one.
-FateLine ControllerService::live_line(const FateRow& row, const ir::Image& next, bool back) const {
-  FateLine line{row, {}};
-  if (row.count == 1 && !row.old_type.empty()) line.live.now = live_->value(row);
-  if (row.fate == Fate::kMoved || row.fate == Fate::kKept) {
-    line.live.after = line.live.now;
-  } else if (back && row.fate == Fate::kInitialised) {
-    line.row.reason = "as it was before the change";
-  } else if (back && row.fate == Fate::kConverted) {
-    line.row.reason = "as it was before the change, unless written since";
-  } else if (row.fate == Fate::kInitialised && row.count == 1) {
-    line.live.after = initial_text(next, row.path);
-  } else if (row.fate == Fate::kConverted && !line.live.now.empty()) {
-    line.live.after = converted_text(next, row.path, line.live.now);
-  }
-  // The value of one of several says nothing of the others: they are told one by one.
-  if (online_change::stands_for_several(row)) {
-    line.live = {};
-  } else if (const online_change::LiveLoss* loss = live_->loss(row.path)) {
-    line.live = {loss->old_value, loss->new_value, loss->what};
-  }
-  return line;
+const online_change::Change& ControllerService::looked_at() const {
+  return rehearses() ? rehearsal_->change() : change_;
+}
+
+// What the switch looks at before it begins, in the same order. Values of a rehearsal are those of
+// its copy.
+base::Result<base::Bytes> ControllerService::rehearse(const vm::Request& request) {
+  const bool allow_overrun = (request.flags & vm::kAllowOverrun) != 0;
+  const bool allow_loss = (request.flags & vm::kAllowLoss) != 0;
+  base::Status refused_by = base::Ok{};
+  base::Status taken = look_at_boundary([&] {
+    const int64_t pause_ns = looked_at().predicted_pause_ns();
+    const bool on_time = !allow_overrun && !controller_.faulted();
+    if (on_time) refused_by = online_change::fits_free_time(pause_ns, controller_.tasks());
+    if (refused_by.ok()) refused_by = looked_at().refused_by_values(allow_loss);
+  });
+  if (!taken.ok()) return taken.error();
+  if (!refused_by.ok()) return refused_by.error();
+  return base::Bytes{};
 }
 
 void ControllerService::forget_staged() {
   aside_.wait();
   store_.forget_aside();
   staged_.reset();
-  live_.reset();
+  forget_report();
+  only_looked_at_ = false;
 }
 
 // Undo too takes its time from the next cycle.
@@ -285,11 +230,25 @@ base::Error ControllerService::not_switched(const base::Error& why) {
 }
 
 base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& request) {
-  bool allow_overrun = (request.flags & vm::kAllowOverrun) != 0;
-  ir::VerifiedImage running = controller_.verified();
-  base::Status armed = configure(allow_overrun);
+  if (only_looked_at_) {
+    return base::Error{base::Refusal::kBusy, "what is staged is a dry run; stage the change anew"};
+  }
+  const std::string health = request.names.empty() ? std::string() : request.names.front();
+  base::Status armed = check_health(health);
   if (!armed.ok()) return not_switched(armed.error());
-  base::Status taken = arm_in_time((request.flags & vm::kAllowLoss) != 0, allow_overrun, armed);
+  bool faulted = false;
+  uint64_t stopped = 0;
+  base::Status taken = look_at_boundary([&] {
+    faulted = controller_.faulted();
+    stopped = stopped_tasks();
+  });
+  if (!taken.ok()) return not_switched(taken.error());
+  // Nothing runs that could be delayed.
+  const bool allow_overrun = faulted || (request.flags & vm::kAllowOverrun) != 0;
+  ir::VerifiedImage running = controller_.verified();
+  if (!faulted) armed = configure(allow_overrun);
+  if (!armed.ok()) return not_switched(armed.error());
+  taken = arm_in_time((request.flags & vm::kAllowLoss) != 0, allow_overrun, armed);
   if (!taken.ok()) return not_switched(taken.error());
   if (!armed.ok()) return not_switched(armed.error());
   const int64_t predicted_ns = change_.predicted_pause_ns();
@@ -309,8 +268,12 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   }
   previous_ = std::move(running);
   ++edition_;
+  changed_by_ = who_;
   note_switch(online_change::Event::kSwitched, previous_->digest(), *report, predicted_ns);
   forget_staged();
+  stopped_before_ = faulted ? 0 : stopped;
+  if (faulted) go_on_hot();
+  begin_probation(request);
   if ((request.flags & vm::kPermanent) != 0) {
     base::Status permanent = make_permanent();
     if (!permanent.ok()) return permanent.error();
@@ -321,7 +284,10 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
 // Done first and then recorded: after a power cut in between it boots the same program. Where no
 // cycle leaves time enough it is done all the same: it is what people ask for when something is
 // wrong.
-base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
+base::Result<base::Bytes> ControllerService::undo(const vm::Request&) { return undo_now({}); }
+
+base::Result<base::Bytes> ControllerService::undo_now(const std::string& why) {
+  bool faulted = false;
   std::optional<base::Result<online_change::SwitchReport>> report;
   uint64_t missed_before = 0;
   int64_t done_ns = 0;
@@ -331,7 +297,8 @@ base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
   for (int attempt = 1; !report; ++attempt) {
     if (attempt != 1) boundary_.pause(kBetweenAttemptsNs);
     base::Status taken = at_boundary([&] {
-      if (!time_for_switch() && attempt != kSwitchAttempts) return;
+      faulted = controller_.faulted();
+      if (!faulted && !time_for_switch() && attempt != kSwitchAttempts) return;
       missed_before = controller_.missed_releases();
       report.emplace(change_.undo());
       done_ns = clock_.now_ns();
@@ -343,9 +310,12 @@ base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
   change_.collect();
   complain(store_.end_trial());
   complain(keeper_.save(after));
-  note_switch(online_change::Event::kUndone, undone, **report, predicted_ns);
+  note_switch(online_change::Event::kUndone, undone, **report, predicted_ns, why);
+  go_on_hot();
   previous_.reset();
+  probation_.reset();
   ++edition_;
+  changed_by_ = who_;
   return encode(finish_report(**report, missed_before, done_ns));
 }
 
@@ -353,6 +323,9 @@ base::Result<base::Bytes> ControllerService::undo(const vm::Request&) {
 base::Status ControllerService::make_permanent() {
   if (change_.state() != online_change::State::kTrial) return change_.accept();
   base::Status stored = keep_programs();
+  if (stored.ok() && previous_) {
+    complain(store_.keep_before({previous_->digest(), previous_->encoded()}));
+  }
   if (stored.ok()) stored = store_.accept();
   if (!stored.ok()) {
     return refused(
@@ -368,7 +341,9 @@ base::Status ControllerService::make_permanent() {
   done.to = controller_.verified().digest();
   store_.note(std::move(done));
   previous_.reset();
+  probation_.reset();
   ++edition_;
+  changed_by_ = who_;
   return accepted;
 }
 
@@ -379,7 +354,12 @@ base::Result<base::Bytes> ControllerService::accept(const vm::Request&) {
 }
 
 base::Result<base::Bytes> ControllerService::cancel(const vm::Request&) {
-  if (staged_ && change_.state() != online_change::State::kTrial) {
+  if (rehearses()) {
+    rehearsal_.reset();
+    forget_report();
+    return base::Bytes{};
+  }
+  if (staged_ && !only_looked_at_ && change_.state() != online_change::State::kTrial) {
     store_.note(entry(online_change::Event::kCancelled));
   }
   change_.cancel();

@@ -121,16 +121,28 @@ base::Status ControllerClient::assign(vm::Command command, const std::vector<std
 }
 
 base::Result<base::Bytes> ControllerClient::image() {
+  return image_parts(vm::Command::kImage, &expected_);
+}
+
+base::Result<base::Bytes> ControllerClient::image_before() {
+  return image_parts(vm::Command::kBefore, nullptr);
+}
+
+base::Result<base::Bytes> ControllerClient::image_parts(vm::Command command,
+                                                        const base::Digest* expected) {
   base::Bytes all;
-  vm::Request request{.command = vm::Command::kImage};
+  vm::Request request{.command = command};
   for (;;) {
     request.offset = all.size();
     base::Result<base::Bytes> body = call(request);
     if (!body.ok()) return body.error();
     base::Result<vm::ImagePart> part = vm::decode_image_part(*body);
     if (!part.ok()) return part.error();
-    if (part->digest != expected_) {
-      return base::Error{base::Refusal::kStaleBase, "the running program changed meanwhile"};
+    if (expected != nullptr && part->digest != *expected) {
+      const base::Result<vm::StatusReport> now = status();
+      std::string text = "another program runs than a moment ago";
+      if (now.ok() && !now->changed_by.empty()) text += ", made by " + now->changed_by;
+      return base::Error{base::Refusal::kStaleBase, std::move(text)};
     }
     all.insert(all.end(), part->bytes.begin(), part->bytes.end());
     if (part->total > base::kMaxImageBytes || all.size() > part->total) return endless();
@@ -182,9 +194,17 @@ base::Status ControllerClient::stage(base::ByteSpan package, uint32_t flags) {
   return base::Ok{};
 }
 
-base::Result<FatePage> ControllerClient::fates() {
+base::Result<FatePage> ControllerClient::fates() { return fate_pages({}); }
+
+base::Result<std::vector<FateLine>> ControllerClient::every_fate() {
+  base::Result<FatePage> all = fate_pages({vm::kEveryVariable});
+  if (!all.ok()) return all.error();
+  return std::move(all->lines);
+}
+
+base::Result<FatePage> ControllerClient::fate_pages(std::vector<std::string> names) {
   FatePage all;
-  vm::Request request{.command = vm::Command::kFates};
+  vm::Request request{.command = vm::Command::kFates, .names = std::move(names)};
   for (;;) {
     base::Result<base::Bytes> body = call(request);
     if (!body.ok()) return body.error();
@@ -208,9 +228,11 @@ base::Result<online_change::SwitchReport> ControllerClient::switch_report(vm::Re
   return decode_switch_report(*body);
 }
 
-base::Result<online_change::SwitchReport> ControllerClient::make_switch(uint32_t flags) {
+base::Result<online_change::SwitchReport> ControllerClient::make_switch(
+    uint32_t flags, const std::string& health) {
   vm::Request request{.command = vm::Command::kSwitch};
   request.flags = flags;
+  if (!health.empty()) request.names = {health};
   return switch_report(std::move(request));
 }
 

@@ -33,14 +33,22 @@ class ControllerClient {
   base::Status assign(vm::Command command, const std::vector<std::string>& names,
                       const std::vector<std::string>& values);
   base::Result<base::Bytes> image();
+  // That ran before the last accept.
+  base::Result<base::Bytes> image_before();
   base::Result<std::vector<online_change::JournalEntry>> journal();
 
   base::Status stage(base::ByteSpan package, uint32_t flags);
   base::Result<FatePage> fates();
-  base::Result<online_change::SwitchReport> make_switch(uint32_t flags);
+  // One line for each variable.
+  base::Result<std::vector<FateLine>> every_fate();
+  // `health`: a BOOL that must stay TRUE in the first cycles (X7); "": none.
+  base::Result<online_change::SwitchReport> make_switch(uint32_t flags,
+                                                         const std::string& health = {});
   base::Result<online_change::SwitchReport> undo();
 
  private:
+  base::Result<base::Bytes> image_parts(vm::Command command, const base::Digest* expected);
+  base::Result<FatePage> fate_pages(std::vector<std::string> names);
   base::Result<online_change::SwitchReport> switch_report(vm::Request request);
 
   std::unique_ptr<vm::Transport> transport_;

@@ -42,6 +42,7 @@ JournalEntry ControllerService::entry(Event event) const {
 }
 
 base::Error ControllerService::refused(const base::Error& error) {
+  if (only_looked_at_) return error;
   JournalEntry refusal = entry(Event::kRefused);
   refusal.text = base::to_string(error);
   store_.note(std::move(refusal));
@@ -50,8 +51,9 @@ base::Error ControllerService::refused(const base::Error& error) {
 
 void ControllerService::note_switch(Event event, const base::Digest& from,
                                     const online_change::SwitchReport& report,
-                                    int64_t predicted_ns) {
+                                    int64_t predicted_ns, const std::string& why) {
   JournalEntry done = entry(event);
+  done.text = why;
   done.from = from;
   done.to = controller_.verified().digest();
   done.counts = report.counts;
@@ -94,8 +96,9 @@ base::Status ControllerService::install_held() {
 }
 
 void ControllerService::store_beside() {
-  change_.set_received(
-      [this](const std::shared_ptr<const base::Bytes>& image) { aside_.start(image); });
+  change_.set_received([this](const std::shared_ptr<const base::Bytes>& image) {
+    if (!only_looked_at_) aside_.start(image);
+  });
 }
 
 base::Status ControllerService::store_trial() {

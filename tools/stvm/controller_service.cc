@@ -37,7 +37,9 @@ ControllerService::ControllerService(vm::Controller& controller, vm::Clock& cloc
 void ControllerService::ended(uint64_t session) {
   // Not `= {}`, which keeps the room.
   if (session == upload_of_) upload_ = base::Bytes();
-  if (session == live_of_) live_.reset();
+  if (session == live_of_) forget_report();
+  if (session == before_of_) before_ = {};
+  if (session == rehearsal_of_) rehearsal_.reset();
   if (session == history_of_) history_ = std::vector<online_change::JournalEntry>();
 }
 
@@ -92,12 +94,16 @@ base::Result<base::Bytes> ControllerService::dispatch(const vm::Request& request
       return list(request);
     case vm::Command::kImage:
       return image(request);
+    case vm::Command::kBefore:
+      return before(request);
     case vm::Command::kUpload:
       return upload(request);
     case vm::Command::kStage:
       return stage(request);
     case vm::Command::kFates:
       return fates(request);
+    case vm::Command::kRehearse:
+      return rehearse(request);
     case vm::Command::kSwitch:
       return make_switch(request);
     case vm::Command::kUndo:
@@ -126,7 +132,8 @@ base::Status ControllerService::check_expected(const vm::Request& request) const
                      "the request is for version " + base::short_hex(request.expected) +
                          " edition " + std::to_string(request.edition) + ", but " +
                          base::short_hex(running) + " edition " + std::to_string(edition_) +
-                         " is running"};
+                         " is running" +
+                         (changed_by_.empty() ? "" : ", made by " + changed_by_)};
 }
 
 base::Status ControllerService::at_boundary(const std::function<void()>& job) {
@@ -189,6 +196,7 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.running = controller_.verified().digest();
   report.edition = edition_;
   report.change = online_change::state_name(change_.state());
+  report.changed_by = changed_by_;
   if (previous_) report.previous = previous_->digest();
   report.boots_next = store_.boots();
   report.trial_lost = start_.trial_lost.value_or(base::Digest{});
@@ -240,17 +248,37 @@ void ControllerService::keep_up() {
     return true;
   };
   base::within_memory(renew, [] { return false; });
+  base::within_memory([&] { return watch_trial(), true; }, [] { return false; });
   base::within_memory([&] { return keep_programs_now_and_then(), true; }, [] { return false; });
 }
 
 base::Result<base::Bytes> ControllerService::image(const vm::Request& request) {
-  const base::Bytes& encoded = controller_.verified().encoded();
-  if (request.offset > encoded.size()) {
+  const ir::VerifiedImage& running = controller_.verified();
+  return image_part(running.digest(), running.encoded(), request.offset);
+}
+
+// The first page reads it from the disk, and the others of the same connection are of that reading.
+base::Result<base::Bytes> ControllerService::before(const vm::Request& request) {
+  if (request.offset == 0 || before_of_ != session_) {
+    base::Result<online_change::StoredImage> stored = store_.before();
+    if (!stored.ok()) return stored.error();
+    before_ = std::move(*stored);
+    before_of_ = session_;
+  }
+  Answer part = image_part(before_.digest, before_.bytes, request.offset);
+  if (request.offset + vm::kChunkBytes >= before_.bytes.size()) before_ = {};
+  return part;
+}
+
+base::Result<base::Bytes> ControllerService::image_part(const base::Digest& digest,
+                                                        const base::Bytes& encoded,
+                                                        uint64_t offset) {
+  if (offset > encoded.size()) {
     return base::Error{base::Refusal::kProtocol, "the image is not that long"};
   }
-  vm::ImagePart part{controller_.verified().digest(), encoded.size(), {}};
-  auto begin = encoded.begin() + static_cast<std::ptrdiff_t>(request.offset);
-  auto size = std::min<uint64_t>(vm::kChunkBytes, encoded.size() - request.offset);
+  vm::ImagePart part{digest, encoded.size(), {}};
+  auto begin = encoded.begin() + static_cast<std::ptrdiff_t>(offset);
+  auto size = std::min<uint64_t>(vm::kChunkBytes, encoded.size() - offset);
   part.bytes.assign(begin, begin + static_cast<std::ptrdiff_t>(size));
   return vm::encode(part);
 }

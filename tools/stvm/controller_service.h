@@ -9,11 +9,13 @@
 #include <optional>
 
 #include "online_change/apply/change.h"
+#include "online_change/plan/every_fate.h"
 #include "online_change/store/boot.h"
 #include "online_change/store/retain_keeper.h"
 #include "tools/stvm/aside_writer.h"
 #include "tools/stvm/fate_message.h"
 #include "tools/stvm/live_report.h"
+#include "tools/stvm/rehearsal.h"
 #include "vm/runtime/boundary.h"
 #include "vm/runtime/live_copy.h"
 #include "vm/runtime/protocol.h"
@@ -30,6 +32,9 @@ struct StartReport {
 };
 // What finds too little time before the next cycle is tried again so much later.
 inline constexpr int64_t kBetweenAttemptsNs = 1'000'000;
+// So many cycles behind a switch, a version on trial that traps is undone by the controller (X7).
+inline constexpr uint64_t kProbationCycles = 1000;
+inline constexpr int kProbationLookMs = 20;  // between two looks at it
 // ns since 1970.
 int64_t wall_time_ns();
 // "2026-03-01T08:00:00.123Z"
@@ -55,6 +60,7 @@ class ControllerService : public vm::Service {
   // Forces run in machine code as soon as there is some, and programs whose files are gone are
   // stored again.
   void keep_up() override;
+  int keep_up_ms() const override { return probation_ ? kProbationLookMs : 1000; }
   bool stop_wanted() const { return stop_wanted_.load(std::memory_order_relaxed); }
   online_change::RetainKeeper& keeper() { return keeper_; }
 
@@ -75,9 +81,13 @@ class ControllerService : public vm::Service {
   base::Bytes force_rows(const std::vector<std::string>& names) const;
   Answer list(const vm::Request& request);
   Answer image(const vm::Request& request);
+  Answer before(const vm::Request& request);
+  static Answer image_part(const base::Digest& digest, const base::Bytes& encoded,
+                           uint64_t offset);
   Answer upload(const vm::Request& request);
   Answer stage(const vm::Request& request);
   Answer fates(const vm::Request& request);
+  Answer rehearse(const vm::Request& request);
   Answer make_switch(const vm::Request& request);
   Answer undo(const vm::Request& request);
   Answer accept(const vm::Request& request);
@@ -94,9 +104,20 @@ class ControllerService : public vm::Service {
   // `take(free_ns)` at boundaries until it has everything.
   base::Status copy_at_boundaries(const std::function<vm::Copied(int64_t)>& take);
   base::Result<vm::LiveCopy> copy_of(std::vector<ir::DataRange> ranges);
+  // Of the change that is looked_at(). `next`, `whole`: as LiveReport::take().
+  base::Status look(const ir::Image* next, bool whole);
+  void add_every(uint64_t first, const ir::Image& next, FatePage& page) const;
   // In the version that the report is about; `back`: by undo.
   FateLine live_line(const online_change::FateRow& row, const ir::Image& next, bool back) const;
   void forget_staged();
+  void forget_report();
+  base::Error others_upload() const;
+  // kBadHash, kFault.
+  base::Status check_upload(const vm::Request& request, base::ByteSpan package) const;
+  Answer stage_rehearsal(base::ByteSpan package, online_change::Strategy strategy);
+  // The change that this connection stages, rehearses or, on trial, would undo.
+  const online_change::Change& looked_at() const;
+  bool rehearses() const { return rehearsal_ && rehearsal_of_ == session_; }
   // Arms at a boundary with time enough for a look at all values.
   base::Status arm_in_time(bool allow_loss, bool allow_overrun, base::Status& armed);
   base::Result<online_change::SwitchReport> switch_in_time(bool allow_overrun,
@@ -111,6 +132,22 @@ class ControllerService : public vm::Service {
   base::Error not_switched(const base::Error& why);
   // The running image boots next, and only then the change is final.
   base::Status make_permanent();
+
+  // controller_trial.cc
+  struct Probation {  // of the version on trial
+    uint64_t ends = 0;          // cycle
+    std::string health;         // a BOOL that must stay TRUE; "": none
+    uint64_t edition = 0;       // of the switch
+  };
+  base::Status check_health(const std::string& name) const;
+  uint64_t stopped_tasks() const;
+  void begin_probation(const vm::Request& request);
+  // Why the version on trial must go; "" while nothing speaks against it.
+  std::string look_at_trial();
+  void watch_trial();
+  void give_back(const std::string& why);
+  void go_on_hot();
+  base::Result<base::Bytes> undo_now(const std::string& why);
 
   // controller_journal.cc
   online_change::JournalEntry entry(online_change::Event event) const;
@@ -127,7 +164,8 @@ class ControllerService : public vm::Service {
   online_change::Snapshot empty_snapshot() const;
   void complain(const base::Status& status);
   void note_switch(online_change::Event event, const base::Digest& from,
-                   const online_change::SwitchReport& report, int64_t predicted_ns);
+                   const online_change::SwitchReport& report, int64_t predicted_ns,
+                   const std::string& why = {});
 
   vm::Controller& controller_;
   vm::Clock& clock_;
@@ -138,17 +176,27 @@ class ControllerService : public vm::Service {
   online_change::RetainKeeper::WallTime wall_time_;
   online_change::RetainKeeper keeper_;
   std::string who_;
+  std::string changed_by_;  // who made the newest edition
   uint64_t session_ = 0;
   online_change::Change change_;
   base::Bytes upload_;
   uint64_t upload_of_ = 0;   // session
+  std::string upload_by_;
   uint64_t live_of_ = 0;
   uint64_t history_of_ = 0;
   base::Bytes no_memory_;  // the answer that says so
   std::optional<ir::VerifiedImage> staged_;
-  std::optional<LiveReport> live_;                    // of the staged change
+  bool only_looked_at_ = false;  // what is staged, by vm::kRehearsal: nothing of it is kept
+  std::unique_ptr<Rehearsal> rehearsal_;
+  uint64_t rehearsal_of_ = 0;  // session
+  std::optional<LiveReport> live_;                    // of the change that is looked_at()
+  std::optional<online_change::EveryFate> every_;     // of the same
   std::vector<online_change::JournalEntry> history_;  // that pages of the journal are of
   std::optional<ir::VerifiedImage> previous_;         // during a trial
+  std::optional<Probation> probation_;                // in its first cycles
+  online_change::StoredImage before_;                 // that pages of kBefore are of
+  uint64_t before_of_ = 0;                            // session
+  uint64_t stopped_before_ = 0;                       // tasks, by traps, at the last switch
   uint64_t edition_ = 0;
   std::atomic<bool> stop_wanted_{false};
   AsideWriter aside_;  // by store_beside()

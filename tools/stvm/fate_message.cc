@@ -52,7 +52,7 @@ void page_fields(A& a, T& page) {
   a(page.predicted_pause_ns);
   a(page.boundary_bytes);
   a(page.next);
-  a.list(page.lines, 38);
+  a.list(page.lines, 50);
   a(page.loss_count);
   a.list(page.losses, 16);
   a.list(page.edits, 17);
@@ -71,11 +71,18 @@ void report_fields(A& a, T& report) {
 
 }  // namespace
 
-// Found by list() of fields.h through the row's namespace.
+}  // namespace stvm
+
+// list() finds functions in the namespace of its rows.
+namespace tools {
+
 static void fields(vm::FieldWriter& a, const FateLine& line) {
   a(static_cast<uint8_t>(line.row.fate));
-  row_fields(a, line.row);
-  live_fields(a, line.live);
+  stvm::row_fields(a, line.row);
+  stvm::live_fields(a, line.live);
+  a(line.row.old_path);
+  a(line.old_address);
+  a(line.new_address);
 }
 
 static void fields(vm::FieldReader& a, FateLine& line) {
@@ -86,13 +93,15 @@ static void fields(vm::FieldReader& a, FateLine& line) {
     return;
   }
   line.row.fate = static_cast<online_change::Fate>(fate);
-  row_fields(a, line.row);
-  live_fields(a, line.live);
+  stvm::row_fields(a, line.row);
+  stvm::live_fields(a, line.live);
+  a(line.row.old_path);
+  a(line.old_address);
+  a(line.new_address);
 }
 
-}  // namespace stvm
+}  // namespace tools
 
-// list() finds functions in the namespace of its rows.
 namespace online_change {
 
 static void fields(vm::FieldWriter& a, const PouEdit& edit) {

@@ -10,10 +10,7 @@
 
 namespace stvm {
 
-struct FateLine {
-  online_change::FateRow row;
-  tools::LiveValue live;  // empty: no single value stands for the row
-};
+using tools::FateLine;
 
 struct LossLine {
   online_change::LiveLoss loss;

@@ -1,17 +1,21 @@
 #include "tools/stvm/live_report.h"
 
 #include "ir/bytecode/renames.h"
+#include "online_change/apply/live_value.h"
 #include "online_change/apply/losses.h"
+#include "online_change/diff/initial_data.h"
 
 namespace stvm {
 base::Result<LiveReport> LiveReport::take(vm::Controller& controller,
                                           const online_change::Change& change,
-                                          const ir::Image* next, const CopyRanges& copy_of) {
-  std::vector<ir::DataRange> ranges;
-  if (!change.keeps_all()) ranges.push_back({0, controller.image().data_capacity});
+                                          const ir::Image* next, bool whole,
+                                          const CopyRanges& copy_of) {
+  std::vector<ir::DataRange> ranges = change.looked_at();
+  if (whole) ranges = {{0, controller.image().data_capacity}};
   base::Result<vm::LiveCopy> copy = copy_of(std::move(ranges));
   if (!copy.ok()) return copy.error();
   LiveReport report(std::move(*copy), controller.verified());
+  report.whole_ = whole || !change.keeps_all();
   if (next != nullptr) report.renamed_ = ir::under_new_names(report.image_.image(), *next);
   report.losses_ = change.live_losses(report.copy_.memory());
   report.loss_count_ = change.count_losses(report.copy_.memory());
@@ -31,6 +35,46 @@ std::string LiveReport::value(const online_change::FateRow& row) const {
 const online_change::LiveLoss* LiveReport::loss(const std::string& path) const {
   const auto found = by_path_.find(ir::fold_name(path));
   return found == by_path_.end() ? nullptr : &losses_[found->second];
+}
+
+// "" where only the switch knows it: what a migration gives.
+std::string LiveReport::result_of(const online_change::VariableFate& variable,
+                                  const std::string& now, const ir::Image& next) const {
+  using online_change::StepKind;
+  if (variable.new_address == 0) return {};
+  if (variable.step == nullptr || variable.step->kind == StepKind::kCopy) return now;
+  ir::Symbol alone;
+  alone.type = variable.new_type;
+  base::Bytes value(next.layouts[variable.new_type].size);
+  if (variable.step->kind == StepKind::kInitialise) {
+    online_change::InitialData(next).read(variable.new_address, value);
+  } else if (variable.step->kind == StepKind::kConvert) {
+    const uint8_t* source = copy_.memory().data() + variable.old_address;
+    const online_change::Conversions rules(image(), next);
+    rules.convert(*variable.step, variable.index, source, value);
+  } else {
+    return {};
+  }
+  return online_change::shortened(ir::format_value(next, alone, value));
+}
+
+tools::FateLine LiveReport::line(const online_change::VariableFate& variable,
+                                 const ir::Image& next) const {
+  tools::FateLine out = tools::every_line(variable, image(), next);
+  if (variable.old_address != 0) {
+    ir::Symbol before;
+    before.data = variable.old_address;
+    before.type = variable.old_type;
+    out.live.now = online_change::shortened(ir::format_value(image(), before, copy_.memory()));
+  }
+  out.live.after = result_of(variable, out.live.now, next);
+  if (const online_change::LiveLoss* lost = loss(variable.path)) {
+    out.live.loss = lost->what;
+    if (!lost->new_value.empty()) out.live.after = lost->new_value;
+  } else if (variable.loses) {
+    out.live.loss = variable.new_address == 0 ? "is dropped" : "has no conversion";
+  }
+  return out;
 }
 
 }  // namespace stvm

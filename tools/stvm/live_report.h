@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "online_change/apply/change.h"
+#include "online_change/plan/every_fate.h"
+#include "tools/common/fate_report.h"
 #include "vm/runtime/controller.h"
 #include "vm/runtime/live_copy.h"
 
@@ -18,29 +20,37 @@ namespace stvm {
 class LiveReport {
  public:
   using CopyRanges = std::function<base::Result<vm::LiveCopy>(std::vector<ir::DataRange>)>;
-  // `next`: the version whose names the fate rows have, when it is not the one that runs.
+  // `next`: the version whose names the fate rows have, when it is not the one that runs. `whole`:
+  // of all variables, not only of those that the change touches.
   static base::Result<LiveReport> take(vm::Controller& controller,
                                        const online_change::Change& change, const ir::Image* next,
-                                       const CopyRanges& copy_of);
+                                       bool whole, const CopyRanges& copy_of);
 
   // Of the variable that the row is about, in the program that runs; "" when there is none.
   std::string value(const online_change::FateRow& row) const;
   // The first of them, and how many there are.
   const std::vector<online_change::LiveLoss>& losses() const { return losses_; }
   uint64_t loss_count() const { return loss_count_; }
+  bool whole() const { return whole_; }
   const online_change::LiveLoss* loss(const std::string& path) const;
+  // Of one variable: its value, what it becomes and what is lost.
+  tools::FateLine line(const online_change::VariableFate& variable, const ir::Image& next) const;
+  // Of the program that runs, under the names of the next version.
+  const ir::Image& image() const { return renamed_ ? *renamed_ : image_.image(); }
 
  private:
   LiveReport(vm::LiveCopy copy, ir::VerifiedImage image)
       : copy_(std::move(copy)), image_(std::move(image)) {}
 
-  const ir::Image& image() const { return renamed_ ? *renamed_ : image_.image(); }
+  std::string result_of(const online_change::VariableFate& variable, const std::string& now,
+                        const ir::Image& next) const;
 
   vm::LiveCopy copy_;
   ir::VerifiedImage image_;
   std::optional<ir::Image> renamed_;  // the same under the names of the next version
   std::vector<online_change::LiveLoss> losses_;
   uint64_t loss_count_ = 0;
+  bool whole_ = false;
   std::unordered_map<std::string, size_t> by_path_;  // folded
 };
 

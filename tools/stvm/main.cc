@@ -5,7 +5,8 @@ int main(int argc, char** argv) {
   const tools::Entry* const entries[] = {
       &stvm::kRun,   &stvm::kBench,  &stvm::kServe,   &stvm::kStatus,  &stvm::kGet,
       &stvm::kSet,   &stvm::kForce,  &stvm::kUnforce, &stvm::kWatch,   &stvm::kChange,
-      &stvm::kUndo,  &stvm::kAccept, &stvm::kStop,    &stvm::kRestart, &stvm::kJournal,
+      &stvm::kUndo,  &stvm::kRevert, &stvm::kAccept, &stvm::kStop, &stvm::kRestart,
+      &stvm::kJournal,
       &stvm::kImage, &stvm::kBridge, &stvm::kReplay,  &stvm::kTop,     &stvm::kDoctor};
   return tools::dispatch("stvm", "Runs images of stc, and changes them while they run.", entries,
                          argc, argv);

@@ -1,5 +1,7 @@
 #include "tools/stvm/shown_edits.h"
 
+#include "tools/common/all_system_edits.h"
+
 namespace stvm {
 namespace {
 
@@ -16,7 +18,7 @@ tools::PouEdits shown_edits(const ir::VerifiedImage& old_image,
 }
 
 tools::SystemEdits shown_system(const ir::Image& old_image, const ir::Image& new_image) {
-  tools::SystemEdits edits = online_change::system_edits(old_image, new_image);
+  tools::SystemEdits edits = tools::all_system_edits(old_image, new_image);
   if (edits.size() <= kShownEdits) return edits;
   const std::string more = std::to_string(edits.size() - kShownEdits);
   edits.resize(kShownEdits);

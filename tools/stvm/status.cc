@@ -48,7 +48,12 @@ void print_tier(const vm::StatusReport& report) {
 void print_versions(const vm::StatusReport& report) {
   const char* state = report.faulted ? "FAULT" : on_trial(report) ? "running, on trial" : "running";
   std::printf("%s: %s\n", report.name.c_str(), state);
-  if (report.faulted) std::printf("  `stvm restart` runs it again\n");
+  if (report.faulted) {
+    std::printf("  `stvm restart` runs it again; %s\n",
+                on_trial(report)
+                    ? "`stvm undo` brings back the program before, and its values"
+                    : "`stvm change` or `stvm revert` goes on with another program and the values");
+  }
   std::printf("  running     %s\n", base::short_hex(report.running).c_str());
   if (on_trial(report)) {
     std::printf("  undo brings %s\n", base::short_hex(report.previous).c_str());
@@ -58,7 +63,9 @@ void print_versions(const vm::StatusReport& report) {
     std::printf("  trial lost  %s; the controller ended before it was accepted\n",
                 base::short_hex(report.trial_lost).c_str());
   }
-  std::printf("  change      %s\n", report.change.c_str());
+  const std::string by = report.changed_by.empty() ? "" : ", by " + report.changed_by;
+  std::printf("  change      %s%s\n", report.change.c_str(),
+              report.change == "idle" ? "" : by.c_str());
   std::printf("  cycles      %llu of %s\n", static_cast<unsigned long long>(report.cycles),
               tools::duration(report.base_period_ns).c_str());
   std::printf("  forces      %llu", static_cast<unsigned long long>(report.forces));
@@ -176,7 +183,8 @@ void print_json(const vm::StatusReport& report) {
   tools::JsonWriter json;
   json.begin_object().field("name", report.name);
   json.field("running", base::to_hex(report.running)).field("edition", report.edition);
-  json.field("change", report.change).field("trial", on_trial(report));
+  json.field("change", report.change).field("changed_by", report.changed_by);
+  json.field("trial", on_trial(report));
   if (on_trial(report)) json.field("undo_brings", base::to_hex(report.previous));
   json.field("boots_next", base::to_hex(report.boots_next)).field("cycles", report.cycles);
   if (report.trial_lost != base::Digest{}) {

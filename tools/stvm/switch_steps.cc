@@ -27,7 +27,7 @@ std::string losses_text(const FatePage& page) {
   }
   out += table.text();
   const uint64_t more = page.loss_count - std::min<uint64_t>(page.loss_count, page.losses.size());
-  return more == 0 ? out : out + "and " + std::to_string(more) + " more\n";
+  return more == 0 ? out : out + "and " + std::to_string(more) + " more (--all shows each)\n";
 }
 
 void losses_json(const FatePage& page, tools::JsonWriter& json) {
@@ -61,7 +61,15 @@ base::Status may_switch(const SwitchOptions& options, const FatePage& page) {
     return base::Error{base::Refusal::kWouldLose,
                        std::to_string(page.loss_count) + " live value(s) would be lost"};
   }
-  return options.ask ? ask() : base::Status(base::Ok{});
+  return options.ask && !options.dry_run ? ask() : base::Status(base::Ok{});
+}
+
+// What the switch itself would refuse now (case 78).
+base::Status rehearse(const SwitchOptions& options, ControllerClient& client) {
+  vm::Request request{.command = vm::Command::kRehearse};
+  request.flags = options.switch_flags;
+  base::Result<base::Bytes> answer = client.call(std::move(request));
+  return answer.ok() ? base::Status(base::Ok{}) : base::Status(answer.error());
 }
 
 // Variables that the staged version would no longer exchange with other resources.
@@ -83,11 +91,12 @@ void print_text(const Outcome& outcome, bool permanent) {
                           : "on trial: `stvm accept` makes it final, `stvm undo` takes it back");
 }
 
-void print_json(const Outcome& outcome) {
+void print_json(const Outcome& outcome, bool all) {
   tools::JsonWriter json;
   json.begin_object();
   fates_json(outcome.page, json);
   losses_json(outcome.page, json);
+  if (all) tools::every_fate(outcome.every, json);
   json.key("exchange").begin_array();
   for (const std::string& note : outcome.exchange) json.value(note);
   json.end_array();
@@ -121,6 +130,7 @@ base::Result<uint32_t> stage_flags(const std::string& strategy) {
 uint32_t switch_flags(const tools::Options& options) {
   return (options.has("--allow-loss") ? vm::kAllowLoss : 0u) |
          (options.has("--allow-overrun") ? vm::kAllowOverrun : 0u) |
+         (options.has("--no-auto-undo") ? vm::kNoWayBack : 0u) |
          (options.has("--permanent") ? vm::kPermanent : 0u);
 }
 
@@ -137,7 +147,11 @@ base::Result<SwitchOptions> switch_options(const tools::Options& options) {
   out.stage_flags = *strategy;
   out.switch_flags = switch_flags(options);
   out.restricted = settings->restricted;
+  out.health = options.text("--health", settings->health);
   out.dry_run = options.has("--dry-run");
+  if (out.dry_run) out.stage_flags |= vm::kRehearsal;
+  out.all = options.has("--all");
+  out.wait = options.has("--wait");
   out.ask = !options.has("--yes");
   out.json = *json;
   return out;
@@ -145,8 +159,11 @@ base::Result<SwitchOptions> switch_options(const tools::Options& options) {
 
 base::Status check_no_trial(const vm::StatusReport& status) {
   if (status.change != "trial") return base::Ok{};
+  const std::string who = status.changed_by.empty() ? "" : ", by " + status.changed_by + ",";
   return base::Error{base::Refusal::kChangePending,
-                     "the last change is still on trial; `stvm accept` or `stvm undo` ends that"};
+                     "the last change" + who +
+                         " is still on trial; `stvm accept` or `stvm undo` ends that, and "
+                         "--wait waits for it"};
 }
 
 base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& client,
@@ -158,23 +175,29 @@ base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& clie
   if (!page.ok()) return page.error();
   base::Result<std::vector<std::string>> notes = exchange_notes(client);
   if (!notes.ok()) return notes.error();
-  Outcome outcome{std::move(*page), std::move(*notes), {}, {}, prepared, {}};
+  Outcome outcome{std::move(*page), {}, std::move(*notes), {}, {}, prepared, {}};
+  if (options.all) {
+    base::Result<std::vector<FateLine>> every = client.every_fate();
+    if (!every.ok()) return every.error();
+    outcome.every = std::move(*every);
+  }
   if (!options.json) {
+    if (options.all) std::printf("%s\n", tools::every_fate_text(outcome.every).c_str());
     std::string report = fates_text(outcome.page);
     std::fputs((report + losses_text(outcome.page)).c_str(), stdout);
     for (const std::string& note : outcome.exchange) std::printf("exchange: %s\n", note.c_str());
     std::fflush(stdout);
   }
   outcome.shown = std::chrono::steady_clock::now();
-  base::Status go = base::Ok{};
-  if (!options.dry_run) go = may_switch(options, outcome.page);
+  base::Status go = may_switch(options, outcome.page);
+  if (options.dry_run && go.ok()) go = rehearse(options, client);
   if (options.dry_run || !go.ok()) {
     base::Result<base::Bytes> cancelled = client.call({.command = vm::Command::kCancel});
     if (!cancelled.ok()) return cancelled.error();
     if (!go.ok()) outcome.refused = go.error();
     return outcome;
   }
-  base::Result<online_change::SwitchReport> report = client.make_switch(options.switch_flags);
+  auto report = client.make_switch(options.switch_flags, options.health);
   if (report.ok()) {
     outcome.report = *report;
   } else {
@@ -186,7 +209,7 @@ base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& clie
 
 void print(const SwitchOptions& options, const Outcome& outcome) {
   if (options.json) {
-    print_json(outcome);
+    print_json(outcome, options.all);
   } else {
     print_text(outcome, (options.switch_flags & vm::kPermanent) != 0);
   }

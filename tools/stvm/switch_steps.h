@@ -16,7 +16,10 @@ struct SwitchOptions {
   uint32_t stage_flags = 0;   // vm::StageFlags
   uint32_t switch_flags = 0;  // vm::SwitchFlags
   bool restricted = false;    // for who makes the package
+  std::string health;         // a BOOL that must stay TRUE, or the controller undoes the change
   bool dry_run = false;
+  bool all = false;  // a line for each variable
+  bool wait = false;  // for the changes of others
   bool ask = true;
   bool json = false;
 };
@@ -26,6 +29,7 @@ base::Result<SwitchOptions> switch_options(const tools::Options& options);
 struct Outcome {
   using Time = std::chrono::steady_clock::time_point;
   FatePage page;
+  std::vector<FateLine> every;  // by --all
   std::vector<std::string> exchange;
   std::optional<online_change::SwitchReport> report;
   std::optional<base::Error> refused;  // after the report was made

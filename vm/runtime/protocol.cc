@@ -5,7 +5,7 @@
 namespace vm {
 namespace {
 
-enum class Body : uint8_t { kNone, kNames, kAssignments, kPage, kData, kStage, kFlags };
+enum class Body : uint8_t { kNone, kNames, kAssignments, kPage, kData, kStage, kFlags, kSwitch };
 
 struct CommandRow {
   const char* name;
@@ -61,6 +61,10 @@ void request_fields(A& a, R& request) {
       break;
     case Body::kFlags:
       a(request.flags);
+      break;
+    case Body::kSwitch:
+      a(request.flags);
+      a.list(request.names, kTextBytes);
       break;
   }
 }
@@ -157,6 +161,7 @@ void status_fields(A& a, T& report) {
   a(report.running);
   a(report.edition);
   a(report.change);
+  a(report.changed_by);
   a(report.previous);
   a(report.boots_next);
   a(report.trial_lost);

@@ -18,7 +18,7 @@
 namespace vm {
 
 // Another one with each other layout of a message (tests/unit/store/protocol_layout_test.cc).
-inline constexpr uint8_t kProtocolVersion = 8;
+inline constexpr uint8_t kProtocolVersion = 9;
 inline constexpr uint32_t kMaxMessageBytes = 1u << 20;
 inline constexpr uint32_t kMaxNames = 4096;          // in one request
 inline constexpr uint32_t kMaxNameBytes = 65536;     // of a path or a value
@@ -36,11 +36,16 @@ enum SwitchFlags : uint32_t {
   kAllowLoss = 1,
   kPermanent = 2,     // accept at once
   kAllowOverrun = 4,  // even if the predicted pause does not fit the tightest task
+  kNoWayBack = 8,     // the controller does not undo it by itself (X7)
 };
 
 enum StageFlags : uint32_t {
   kByStandby = 1,  // the change prepares a second data area (docs/adr/0011-two-strategies.md)
+  kRehearsal = 2,  // only to be looked at: not journalled or stored; also beside another change
 };
+
+// As the name of a request for fates: one line for each variable instead of groups of them.
+inline constexpr const char* kEveryVariable = "every";
 
 struct Request {
   Command command = Command::kStatus;
@@ -76,6 +81,7 @@ struct StatusReport {
   base::Digest running{};
   uint64_t edition = 0;     // counts switches, undos and accepts
   std::string change;       // state of the change; "idle"
+  std::string changed_by;   // who staged it
   base::Digest previous{};  // during a trial: what undo brings back
   base::Digest boots_next{};
   base::Digest trial_lost{};        // the program that was on trial when the last process ended

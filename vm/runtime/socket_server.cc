@@ -21,7 +21,6 @@ namespace {
 // When the system has no descriptor for a connection, the server waits before it accepts again:
 // poll() would return at once, as somebody still waits.
 constexpr auto kAfterFailure = std::chrono::milliseconds(100);
-constexpr int kPollMs = 1000;
 
 Descriptor spare() { return Descriptor(::open("/dev/null", O_RDONLY | O_CLOEXEC)); }
 
@@ -123,7 +122,7 @@ void SocketServer::take_connection(Connections& connections) {
 bool SocketServer::round(Connections& connections) {
   const bool listens = std::chrono::steady_clock::now() >= listen_again_;
   std::vector<pollfd> set = poll_set(wake_.get(), listens ? listener_.get() : -1, connections);
-  const int wait_ms = listens ? kPollMs : static_cast<int>(kAfterFailure.count());
+  const int wait_ms = listens ? service_.keep_up_ms() : static_cast<int>(kAfterFailure.count());
   if (::poll(set.data(), set.size(), wait_ms) < 0 && errno != EINTR) {
     std::this_thread::sleep_for(kAfterFailure);  // no memory; there will be some again
     return true;

@@ -1,10 +1,12 @@
 // Laws over pairs of programs: identity, totality, composition, round trip.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
 #include <set>
 
 #include "ir/bytecode/symbols.h"
+#include "online_change/plan/every_fate.h"
 #include "tests/unit/online_change/plant.h"
 
 namespace online_change {
@@ -107,6 +109,67 @@ TEST(Laws, totality_every_variable_has_one_fate) {
       EXPECT_TRUE(paths.insert(row.path + fate_name(row.fate)).second) << row.path;
     }
     EXPECT_EQ(listed, counts.total() - counts.kept) << seed;
+  }
+}
+
+// X1: one entry for each variable of either version, and they add up to the counts.
+TEST(Laws, X1_totality_variable_by_variable) {
+  for (uint32_t seed = 0; seed < 60; ++seed) {
+    Plant plant(random_program(seed));
+    const ir::VerifiedImage before = plant.controller().verified();
+    plant.change(random_program(seed + 1000), true);
+    const ir::Image& after = plant.controller().image();
+    const EveryFate every(plant.plan(), before.image(), after);
+    std::map<Fate, uint64_t> found;
+    std::set<std::string> paths;
+    std::set<std::string> new_paths;
+    every.visit_from(0, [&](const VariableFate& variable) {
+      ++found[variable.fate];
+      EXPECT_TRUE(paths.insert(variable.path).second) << variable.path;
+      if (variable.new_address != 0) new_paths.insert(variable.path);
+      if (variable.fate == Fate::kKept) {
+        EXPECT_EQ(variable.old_address, variable.new_address) << variable.path;
+      }
+      return true;
+    });
+    const FateCounts& counts = plant.plan().counts;
+    EXPECT_EQ(found[Fate::kKept], counts.kept) << seed;
+    EXPECT_EQ(found[Fate::kMoved], counts.moved) << seed;
+    EXPECT_EQ(found[Fate::kConverted], counts.converted) << seed;
+    EXPECT_EQ(found[Fate::kInitialised], counts.initialised) << seed;
+    uint64_t old_leaves = 0;
+    uint64_t gone = 0;
+    ir::for_each_leaf(before.image(), [&](const std::string& path, const ir::Symbol&) {
+      ++old_leaves;
+      gone += ir::find_symbol(after, path).ok() ? 0 : 1;
+    });
+    EXPECT_EQ(found[Fate::kDropped], gone) << seed;
+  }
+}
+
+// Pages are what one reading is, wherever they end.
+TEST(Laws, X1_pages_of_variables_are_the_whole) {
+  Plant plant(random_program(3));
+  const ir::VerifiedImage before = plant.controller().verified();
+  plant.change(random_program(1003), true);
+  const EveryFate every(plant.plan(), before.image(), plant.controller().image());
+  std::vector<std::string> whole;
+  every.visit_from(0, [&](const VariableFate& variable) {
+    whole.push_back(variable.path + fate_name(variable.fate));
+    return true;
+  });
+  ASSERT_GT(whole.size(), 10u);
+  for (size_t size = 1; size <= whole.size(); ++size) {
+    std::vector<std::string> pages;
+    uint64_t next = 0;
+    do {
+      size_t room = size;
+      next = every.visit_from(next, [&](const VariableFate& variable) {
+        pages.push_back(variable.path + fate_name(variable.fate));
+        return --room != 0;
+      });
+    } while (next != 0);
+    EXPECT_EQ(pages, whole) << size;
   }
 }
 

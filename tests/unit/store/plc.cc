@@ -111,7 +111,8 @@ base::Status Plc::change(const std::string& source, uint32_t flags) {
   return change(build(source, &controller_->image()), flags);
 }
 
-base::Status Plc::change(const ir::VerifiedImage& next, uint32_t flags) {
+base::Status Plc::change(const ir::VerifiedImage& next, uint32_t flags,
+                         const std::string& health) {
   auto package = online_change::make_package(controller_->verified().encoded(), next.encoded());
   base::check(package.ok(), "the package is made");
   vm::Request upload{.command = vm::Command::kUpload};
@@ -120,6 +121,7 @@ base::Status Plc::change(const ir::VerifiedImage& next, uint32_t flags) {
   stage.digest = base::sha256(upload.data);
   vm::Request change{.command = vm::Command::kSwitch};
   change.flags = flags | vm::kAllowOverrun;
+  if (!health.empty()) change.names = {health};
   base::Status done = ask(std::move(upload));
   if (done.ok()) done = ask(std::move(stage));
   if (done.ok()) done = ask(std::move(change));

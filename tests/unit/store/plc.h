@@ -31,7 +31,8 @@ class Plc : public vm::Boundary {
   base::Status save();
 
   base::Status change(const std::string& source, uint32_t flags = vm::kAllowLoss);
-  base::Status change(const ir::VerifiedImage& next, uint32_t flags = vm::kAllowLoss);
+  base::Status change(const ir::VerifiedImage& next, uint32_t flags = vm::kAllowLoss,
+                      const std::string& health = {});
   base::Status undo() { return ask(vm::Command::kUndo); }
   base::Status accept() { return ask(vm::Command::kAccept); }
   base::Status ask(vm::Command command) { return ask(vm::Request{.command = command}); }

@@ -28,6 +28,7 @@ vm::StatusReport status() {
   out.running = digest(1);
   out.edition = 2;
   out.change = "trial";
+  out.changed_by = "operator";
   out.previous = digest(3);
   out.boots_next = digest(4);
   out.trial_lost = digest(5);
@@ -64,7 +65,10 @@ FatePage fates() {
   line.row.may_lose = true;
   line.row.reason = "retyped";
   line.row.count = 9;
+  line.row.old_path = "Main.w";
   line.live = {"10", "11", "saturates"};
+  line.old_address = 51;
+  line.new_address = 52;
   out.lines = {line};
   out.loss_count = 12;
   out.losses = {{{"Main.y", "13", "14", "inexact"}}};
@@ -79,7 +83,7 @@ void add(base::Bytes& all, const base::Bytes& message, size_t from = 0) {
 
 base::Bytes requests() {
   base::Bytes all;
-  for (uint8_t i = 0; i <= static_cast<uint8_t>(vm::Command::kJournal); ++i) {
+  for (uint8_t i = 0; i <= static_cast<uint8_t>(vm::Command::kRehearse); ++i) {
     add(all,
         vm::encode(vm::Request{.command = static_cast<vm::Command>(i),
                                .expected = digest(1),
@@ -121,6 +125,7 @@ constexpr Version kVersions[] = {
     {6, "63e0412d28b5"},
     {7, "538391035e10"},
     {8, "d6cd7073b212"},
+    {9, "95c69adcc920"},
 };
 
 TEST(ProtocolLayout, BelongsToTheVersion) {

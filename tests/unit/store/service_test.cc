@@ -358,7 +358,9 @@ TEST(Service, AnAcceptWithoutAFolderIsRefused) {
 }
 
 TEST(Service, case56_AnAcceptThatCannotBeStoredLeavesTheTrial) {
-  for (int number = 1; number <= 3; ++number) {  // payload, header, sync
+  // Four calls keep the version before, without which the accept goes on (X8); then come payload,
+  // header and sync.
+  for (int number = 5; number <= 7; ++number) {
     sim::SimStorage disk;
     Plc plc(disk);
     ASSERT_TRUE(plc.boot(source(1)).ok());
@@ -376,6 +378,29 @@ TEST(Service, case56_AnAcceptThatCannotBeStoredLeavesTheTrial) {
     EXPECT_TRUE(plc.undo().ok());
     EXPECT_EQ(plc.get("only1"), "0");
   }
+}
+
+// X8: what cannot be kept of the version before stands in nobody's way, and what was kept stays.
+TEST(Service, X8_TheVersionBeforeIsKept) {
+  sim::SimStorage disk;
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot(source(1)).ok());
+  EXPECT_EQ(plc.store().before().error().refusal, base::Refusal::kNothingToUndo);
+  const base::Digest first = plc.status().running;
+  ASSERT_TRUE(plc.change(source(2)).ok());
+  EXPECT_EQ(plc.store().before().error().refusal, base::Refusal::kNothingToUndo);
+  ASSERT_TRUE(plc.accept().ok());
+  ASSERT_TRUE(plc.store().before().ok());
+  EXPECT_EQ(plc.store().before()->digest, first);
+
+  ASSERT_TRUE(plc.change(source(3)).ok());
+  disk.fails = [&](std::string_view call) {
+    return call == "rename" ? sim::Failure::kError : sim::Failure::kNone;
+  };
+  EXPECT_TRUE(plc.accept().ok());
+  disk.fails = nullptr;
+  ASSERT_TRUE(plc.store().before().ok());
+  EXPECT_EQ(plc.store().before()->digest, first);
 }
 
 // --- nobody knows what boots ----------------------------------------------------------

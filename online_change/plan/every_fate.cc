@@ -1,0 +1,158 @@
+#include "online_change/plan/every_fate.h"
+
+#include <algorithm>
+
+#include "ir/bytecode/leaf_walk.h"
+
+namespace online_change {
+namespace {
+
+// "retyped; and 699 more like it" -> "retyped".
+std::string alone(std::string reason) {
+  if (!std::string_view(reason).ends_with(kMoreLikeIt)) return reason;
+  reason.resize(reason.rfind("; and "));
+  return reason;
+}
+
+}  // namespace
+
+EveryFate::EveryFate(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image)
+    : plan_(plan),
+      old_(old_image),
+      new_(new_image),
+      old_areas_(old_image),
+      new_areas_(new_image) {
+  for (uint32_t number = 0; number < plan.steps.size(); ++number) {
+    const UpdateStep& step = plan.steps[number];
+    for (uint32_t i = 0; i < step.count; ++i) {
+      Written value{step.from + i * step.from_stride, step.to + i * step.to_stride, step.size,
+                    number, i};
+      if (step.kind == StepKind::kEnter) value.from = step.from;  // the stride is another place
+      by_target_.push_back(value);
+      if (has_source(step)) by_source_.push_back(value);
+    }
+  }
+  std::sort(by_target_.begin(), by_target_.end(),
+            [](const Written& a, const Written& b) { return a.to < b.to; });
+  std::sort(by_source_.begin(), by_source_.end(),
+            [](const Written& a, const Written& b) { return a.from < b.from; });
+  ir::for_each_leaf_from(new_, 0, [&](const std::string&, const ir::Symbol&) {
+    ++new_count_;
+    return true;
+  });
+}
+
+const EveryFate::Written* EveryFate::writes(uint32_t address) const {
+  auto next = std::upper_bound(by_target_.begin(), by_target_.end(), address,
+                               [](uint32_t at, const Written& value) { return at < value.to; });
+  if (next == by_target_.begin()) return nullptr;
+  const Written& value = *--next;
+  return address - value.to < value.size ? &value : nullptr;
+}
+
+const EveryFate::Written* EveryFate::reads(uint32_t address) const {
+  auto next = std::upper_bound(by_source_.begin(), by_source_.end(), address,
+                               [](uint32_t at, const Written& value) { return at < value.from; });
+  if (next == by_source_.begin()) return nullptr;
+  const Written& value = *--next;
+  const UpdateStep& step = plan_.steps[value.step];
+  const uint32_t size =
+      step.kind == StepKind::kConvert ? old_.layouts[step.old_type].size : value.size;
+  return address - value.from < size ? &value : nullptr;
+}
+
+std::string EveryFate::reason_of(uint32_t row) const {
+  return row == kNoFate ? std::string() : alone(plan_.fates[row].reason);
+}
+
+// The variable of the old version that lies there; of several (a union), that of the same name.
+void EveryFate::name_old(VariableFate& out, uint32_t address) const {
+  base::Result<ir::Symbol> same = ir::find_symbol(old_, out.path);
+  if (same.ok() && same->data == address) {
+    out.old_address = address;
+    out.old_type = same->type;
+    return;
+  }
+  const std::optional<Node> leaf = old_areas_.leaf_at(address);
+  if (!leaf || leaf->begin != address) return;
+  out.old_address = address;
+  out.old_type = leaf->type;
+  out.old_path = old_areas_.path_at(address);
+}
+
+VariableFate EveryFate::of_new(const std::string& path, const ir::Symbol& symbol) const {
+  VariableFate out;
+  out.path = path;
+  out.new_address = symbol.data;
+  out.new_type = symbol.type;
+  const Written* const value = writes(symbol.data);
+  if (value == nullptr) {
+    name_old(out, symbol.data);
+    return out;
+  }
+  out.step = &plan_.steps[value->step];
+  out.index = value->index;
+  out.fate = out.step->fate != kNoFate ? plan_.fates[out.step->fate].fate
+             : has_source(*out.step)   ? Fate::kMoved
+                                       : Fate::kInitialised;
+  out.reason = reason_of(out.step->fate);
+  if (has_source(*out.step)) {
+    name_old(out, value->from + (symbol.data - value->to));
+  } else if (base::Result<ir::Symbol> before = ir::find_symbol(old_, path); before.ok()) {
+    out.old_address = before->data;
+    out.old_type = before->type;
+    out.loses = out.fate == Fate::kInitialised && !before->constant && !symbol.constant;
+  }
+  return out;
+}
+
+// Does the value of an old variable that the new version does not know by its name live on under
+// another one? Other members of a union have their bytes too, and are not it.
+bool EveryFate::goes_on(const std::string& path, uint32_t address) const {
+  uint32_t to = address;
+  if (const Written* value = reads(address)) {
+    to = value->to + (address - value->from);
+  } else if (writes(address) != nullptr) {
+    return false;
+  }
+  const std::string there = new_areas_.path_at(to);
+  if (there.empty() || ir::same_name(there, path)) return !there.empty();
+  base::Result<ir::Symbol> before = ir::find_symbol(old_, there);
+  return !before.ok() || before->data != address;
+}
+
+uint64_t EveryFate::visit_from(uint64_t first, const Visit& visit) const {
+  uint64_t next = first;
+  bool go_on = true;
+  if (next < new_count_) {
+    ir::for_each_leaf_from(new_, next, [&](const std::string& path, const ir::Symbol& symbol) {
+      go_on = visit(of_new(path, symbol));
+      ++next;
+      return go_on;
+    });
+  }
+  if (!go_on) return next;
+  bool more = false;
+  ir::for_each_leaf_from(old_, next - new_count_,
+                         [&](const std::string& path, const ir::Symbol& symbol) {
+                           if (!go_on) {
+                             more = true;
+                             return false;
+                           }
+                           ++next;
+                           const bool known = ir::find_symbol(new_, path).ok();
+                           if (known || goes_on(path, symbol.data)) return true;
+                           VariableFate gone;
+                           gone.fate = Fate::kDropped;
+                           gone.path = path;
+                           gone.old_address = symbol.data;
+                           gone.old_type = symbol.type;
+                           gone.loses = !symbol.constant;
+                           gone.reason = "removed";
+                           go_on = visit(gone);
+                           return true;
+                         });
+  return more ? next : 0;
+}
+
+}  // namespace online_change

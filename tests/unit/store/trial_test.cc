@@ -1,0 +1,148 @@
+// What the controller does by itself with a version on trial (X7), and in FAULT (case 72).
+#include <gtest/gtest.h>
+
+#include "tests/unit/store/plc.h"
+#include "tests/unit/store/sim_storage.h"
+
+namespace stvm {
+namespace {
+
+using plc::Plc;
+
+// Traps in its `at`-th scan; `declare` and `policy` as in sources.
+std::string program(const std::string& declare, const std::string& body,
+                    const std::string& policy = {}) {
+  return "PROGRAM Main VAR n : DINT; level : INT := 3; z : INT; " + declare +
+         " END_VAR n := n + 1; " + body +
+         " END_PROGRAM\n"
+         "PROGRAM Other VAR m : DINT; END_VAR m := m + 1; END_PROGRAM\n"
+         "CONFIGURATION c RESOURCE r ON cpu " +
+         policy +
+         " TASK t (INTERVAL := T#1ms, PRIORITY := 1); TASK u (INTERVAL := T#1ms, PRIORITY := 2);"
+         " PROGRAM Main WITH t : Main; PROGRAM Other WITH u : Other; END_RESOURCE "
+         "END_CONFIGURATION";
+}
+std::string traps_in(int scan, const std::string& policy = {}) {
+  return program("k : DINT;",
+                 "k := k + 1; IF k >= " + std::to_string(scan) + " THEN z := 1 / z; END_IF",
+                 policy);
+}
+const std::string kStopTask = "{attribute 'on_trap' := 'stop_task'}";
+
+struct Rig {
+  explicit Rig(const std::string& policy = {}) : plc(disk) {
+    EXPECT_TRUE(plc.boot(program({}, {}, policy)).ok());
+    plc.run(5);
+    plc.set("Main.level", "77");
+  }
+  std::string journal() const {
+    std::string text;
+    for (const auto& entry : const_cast<Plc&>(plc).store().history()) text += entry.text + "\n";
+    return text;
+  }
+  sim::SimStorage disk;
+  Plc plc;
+};
+
+void expect_undone(Rig& rig, const std::string& why) {
+  EXPECT_EQ(rig.plc.status().change, "idle");
+  EXPECT_FALSE(rig.plc.status().faulted);
+  EXPECT_EQ(rig.plc.get("Main.level"), "77");
+  EXPECT_NE(rig.journal().find(why), std::string::npos) << rig.journal();
+  const int64_t before = std::stoll(rig.plc.get("Main.n"));
+  rig.plc.run(3);
+  EXPECT_EQ(std::stoll(rig.plc.get("Main.n")), before + 3);
+}
+
+TEST(Trial, X7_case72_ATrapInItsFirstScansUndoesIt) {
+  Rig rig;
+  ASSERT_TRUE(rig.plc.change(traps_in(8)).ok());
+  rig.plc.run(2);
+  rig.plc.service().keep_up();
+  EXPECT_EQ(rig.plc.status().change, "trial");
+  rig.plc.run(8);
+  EXPECT_TRUE(rig.plc.controller().faulted());
+  rig.plc.service().keep_up();
+  expect_undone(rig, "a trap on trial");
+}
+
+TEST(Trial, X7_ATaskThatStopsAloneUndoesItToo) {
+  Rig rig(kStopTask);
+  ASSERT_TRUE(rig.plc.change(traps_in(4, kStopTask)).ok());
+  rig.plc.run(6);
+  EXPECT_FALSE(rig.plc.controller().faulted());
+  rig.plc.service().keep_up();
+  expect_undone(rig, "a trap on trial");
+}
+
+// The last scan of the first ones, and the one behind it.
+TEST(Trial, X7_OnlyTheFirstScansCount) {
+  for (const bool late : {false, true}) {
+    Rig rig;
+    const int first = static_cast<int>(kProbationCycles);
+    ASSERT_TRUE(rig.plc.change(traps_in(late ? first + 100 : first - 100)).ok());
+    for (int i = 0; i < first + 200; ++i) {
+      rig.plc.run(1);
+      if (i % 20 == 0) rig.plc.service().keep_up();
+    }
+    rig.plc.service().keep_up();
+    EXPECT_EQ(rig.plc.controller().faulted(), late);
+    EXPECT_EQ(rig.plc.status().change, late ? "trial" : "idle");
+  }
+}
+
+TEST(Trial, X7_AHealthConditionThatFailsUndoesIt) {
+  Rig rig;
+  const std::string sick =
+      program("well : BOOL := TRUE; k : DINT;", "k := k + 1; IF k > 50 THEN well := FALSE; END_IF");
+  ASSERT_TRUE(rig.plc.change(plc::build(sick, &rig.plc.controller().image()), vm::kAllowLoss,
+                             "Main.well")
+                  .ok());
+  rig.plc.run(40);
+  rig.plc.service().keep_up();
+  EXPECT_EQ(rig.plc.status().change, "trial");
+  rig.plc.run(20);
+  rig.plc.service().keep_up();
+  expect_undone(rig, "the health condition `Main.well` is FALSE");
+}
+
+TEST(Trial, X7_WhoeverAsksForItLooksAtTheTrapHimself) {
+  Rig rig;
+  ASSERT_TRUE(rig.plc.change(traps_in(4), vm::kAllowLoss | vm::kNoWayBack).ok());
+  rig.plc.run(10);
+  rig.plc.service().keep_up();
+  EXPECT_TRUE(rig.plc.controller().faulted());
+  EXPECT_EQ(rig.plc.status().change, "trial");
+  ASSERT_TRUE(rig.plc.undo().ok());
+  EXPECT_FALSE(rig.plc.controller().faulted());
+}
+
+// What was stopped before the change stays so: the new version has nothing to do with it.
+TEST(Trial, X7_OldTrapsAreNotItsFault) {
+  Rig rig(kStopTask);
+  ASSERT_TRUE(rig.plc.change(traps_in(2, kStopTask), vm::kAllowLoss | vm::kPermanent).ok());
+  rig.plc.run(5);
+  ASSERT_TRUE(rig.plc.change(program("k : DINT; more : INT;", "", kStopTask)).ok());
+  rig.plc.run(5);
+  rig.plc.service().keep_up();
+  EXPECT_EQ(rig.plc.status().change, "trial");
+}
+
+TEST(Trial, case72_AControllerInFaultTakesAChangeAndGoesOn) {
+  for (const uint32_t flags : {uint32_t{vm::kAllowLoss}, vm::kAllowLoss | vm::kPermanent}) {
+    Rig rig;
+    ASSERT_TRUE(rig.plc.change(traps_in(4), vm::kAllowLoss | vm::kPermanent).ok());
+    rig.plc.run(10);
+    ASSERT_TRUE(rig.plc.controller().faulted());
+    const int64_t before = std::stoll(rig.plc.get("Main.n"));
+    ASSERT_TRUE(rig.plc.change(program("k : DINT; more : INT := 9;", ""), flags).ok());
+    EXPECT_FALSE(rig.plc.controller().faulted());
+    rig.plc.run(3);
+    EXPECT_GT(std::stoll(rig.plc.get("Main.n")), before);
+    EXPECT_EQ(rig.plc.get("Main.level"), "77");
+    EXPECT_EQ(rig.plc.get("Main.more"), "9");
+  }
+}
+
+}  // namespace
+}  // namespace stvm

@@ -1,0 +1,155 @@
+// The fate report of a change that is staged, rehearsed or on trial (its way back), page by page.
+#include <algorithm>
+
+#include "online_change/diff/initial_data.h"
+#include "tools/stvm/controller_service.h"
+#include "tools/stvm/shown_edits.h"
+
+namespace stvm {
+namespace {
+
+using online_change::Fate;
+using online_change::FateRow;
+
+constexpr uint64_t kLinesPerPage = 1000;
+constexpr size_t kShownLosses = 500;
+constexpr size_t kVariablesPerPage = 5000;
+
+// Initial value of a scalar or string of the new version; "" for anything else.
+std::string initial_text(const ir::Image& image, const std::string& path) {
+  base::Result<ir::Symbol> symbol = ir::find_symbol(image, path);
+  if (!symbol.ok()) return {};
+  ir::Kind kind = image.types[symbol->type].kind;
+  bool leaf = image.types.is_scalar(symbol->type) || kind == ir::Kind::kString ||
+              kind == ir::Kind::kWstring;
+  if (!leaf) return {};
+  base::Bytes value(image.layouts[symbol->type].size);
+  online_change::InitialData(image).read(symbol->data, value);
+  ir::Symbol alone = *symbol;
+  alone.data = 0;
+  return ir::format_value(image, alone, value);
+}
+
+// The text of the old value as a value of the new type; "" where it is none.
+std::string converted_text(const ir::Image& image, const std::string& path,
+                           const std::string& now) {
+  base::Result<ir::Symbol> symbol = ir::find_symbol(image, path);
+  if (!symbol.ok()) return {};
+  base::Result<base::Bytes> value = ir::parse_value(image, symbol->type, now);
+  if (!value.ok()) return {};
+  ir::Symbol alone = *symbol;
+  alone.data = 0;
+  return ir::format_value(image, alone, *value);
+}
+
+uint64_t line_bytes(const FateLine& line) {
+  return line.row.path.size() + line.row.old_type.size() + line.row.new_type.size() +
+         line.row.reason.size() + line.live.now.size() + line.live.after.size() +
+         line.live.loss.size() + 64;
+}
+
+}  // namespace
+
+// What it was of may go behind it.
+void ControllerService::forget_report() {
+  every_.reset();
+  live_.reset();
+}
+
+// Takes the live values; other pages show the same ones.
+base::Status ControllerService::look(const ir::Image* next, bool whole) {
+  forget_report();
+  vm::Controller& controller = rehearses() ? rehearsal_->controller() : controller_;
+  auto taken = LiveReport::take(controller, looked_at(), next, whole,
+                                [this](auto ranges) { return copy_of(std::move(ranges)); });
+  if (!taken.ok()) return taken.error();
+  live_.emplace(std::move(*taken));
+  live_of_ = session_;
+  return base::Ok{};
+}
+
+base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
+  const online_change::Change& change = looked_at();
+  const bool back = change.state() == online_change::State::kTrial && previous_;
+  if (!back && change.next() == nullptr) {
+    return base::Error{base::Refusal::kBusy, "no change is staged, and none is on trial"};
+  }
+  const ir::VerifiedImage& next_version = back ? *previous_ : *change.next();
+  const ir::Image& next_image = next_version.image();
+  const bool every = !request.names.empty() && request.names.front() == vm::kEveryVariable;
+  if (every && back) {
+    return base::Error{base::Refusal::kBusy, "the way back is shown by groups of variables only"};
+  }
+  const bool later = request.offset != 0 || every;
+  if (!later || !live_ || live_of_ != session_ || (every && !live_->whole())) {
+    base::Status looked = look(back ? nullptr : &next_image, every);
+    if (!looked.ok()) return looked.error();
+  }
+  const online_change::Plan& plan = back ? change.undo_plan() : change.plan();
+  FatePage page{plan.counts,
+                change.predicted_pause_ns(),
+                plan.boundary_bytes,
+                0,
+                {},
+                live_->loss_count(),
+                {},
+                {},
+                {}};
+  if (every) {
+    if (!every_) every_.emplace(plan, live_->image(), next_image);
+    add_every(request.offset, next_image, page);
+    return encode(page);
+  }
+  uint64_t bytes = 0;
+  uint64_t next = request.offset;
+  const uint64_t end = std::min<uint64_t>(plan.fates.size(), request.offset + kLinesPerPage);
+  for (; next < end && bytes <= vm::kChunkBytes; ++next) {
+    page.lines.push_back(live_line(plan.fates[next], next_image, back));
+    bytes += line_bytes(page.lines.back());
+  }
+  page.next = next < plan.fates.size() ? next : 0;
+  if (request.offset == 0) {
+    for (size_t i = 0; i < std::min(live_->losses().size(), kShownLosses); ++i) {
+      page.losses.push_back({live_->losses()[i]});
+    }
+    page.edits = shown_edits(controller_.verified(), next_version);
+    page.system = shown_system(controller_.image(), next_image);
+  }
+  return encode(page);
+}
+
+void ControllerService::add_every(uint64_t first, const ir::Image& next,
+                                  FatePage& page) const {
+  uint64_t bytes = 0;
+  page.next = every_->visit_from(first, [&](const online_change::VariableFate& variable) {
+    page.lines.push_back(live_->line(variable, next));
+    bytes += line_bytes(page.lines.back());
+    return bytes <= vm::kChunkBytes && page.lines.size() < kVariablesPerPage;
+  });
+}
+
+// With the resulting value, and its loss when there is one.
+FateLine ControllerService::live_line(const FateRow& row, const ir::Image& next, bool back) const {
+  FateLine line{row, {}};
+  if (row.count == 1 && !row.old_type.empty()) line.live.now = live_->value(row);
+  if (row.fate == Fate::kMoved || row.fate == Fate::kKept) {
+    line.live.after = line.live.now;
+  } else if (back && row.fate == Fate::kInitialised) {
+    line.row.reason = "as it was before the change";
+  } else if (back && row.fate == Fate::kConverted) {
+    line.row.reason = "as it was before the change, unless written since";
+  } else if (row.fate == Fate::kInitialised && row.count == 1) {
+    line.live.after = initial_text(next, row.path);
+  } else if (row.fate == Fate::kConverted && !line.live.now.empty()) {
+    line.live.after = converted_text(next, row.path, line.live.now);
+  }
+  // The value of one of several says nothing of the others: they are told one by one.
+  if (online_change::stands_for_several(row)) {
+    line.live = {};
+  } else if (const online_change::LiveLoss* loss = live_->loss(row.path)) {
+    line.live = {loss->old_value, loss->new_value, loss->what};
+  }
+  return line;
+}
+
+}  // namespace stvm
