@@ -5,9 +5,12 @@
 #include "frontend/lex/lexer.h"
 #include "frontend/parse/tree.h"
 #include "ir/bytecode/symbols.h"
+#include "ir/bytecode/verify.h"
 #include "ir/program/text.h"
 #include "tools/stc/commands.h"
+#include "tools/common/files.h"
 #include "tools/stc/image_text.h"
+#include "tools/stc/package_text.h"
 #include "tools/stc/session.h"
 #include "vm/native/make_function.h"
 
@@ -25,6 +28,8 @@ constexpr tools::OptionRow kOptions[] = {
     {"--code", nullptr, "linked code"},
     {"--native", nullptr, "what the native tier makes of linked code, before registers"},
     {"--image", nullptr, "tables of the image (default for images)"},
+    {"--package", "BASE",
+     "PATH is a change package that `stc package --base BASE` made: its update records"},
     {"--symbols", nullptr, "every variable with type and offset"},
 };
 constexpr tools::Command kCommand{"dump", "PATHS...", "Prints what a phase of the compiler made.",
@@ -87,7 +92,32 @@ base::Result<std::string> dump_image(const tools::Options& options) {
   return image_text(version->image, ir::digest(version->bytes));
 }
 
+base::Result<std::string> dump_package(const tools::Options& options) {
+  if (options.arguments().size() != 1) {
+    return base::Error{base::Refusal::kUsage, "dump --package BASE: one change package"};
+  }
+  base::Result<Version> before = read_image(options.text("--package"));
+  if (!before.ok()) return before.error();
+  base::Result<base::Bytes> bytes = tools::read_bytes(options.arguments()[0]);
+  if (!bytes.ok()) return bytes.error();
+  auto package = online_change::decode(*bytes, before->bytes);
+  if (!package.ok()) return package.error();
+  const base::Digest base = ir::digest(before->bytes);
+  if (package->base != base) return online_change::stale_base(package->base, base);
+  base::Result<ir::VerifiedImage> next = ir::verify(package->image);
+  if (!next.ok()) return next.error();
+  base::Status sound = online_change::check_package(*package, before->image, next->image());
+  if (!sound.ok()) return sound.error();
+  return package_text(*package, before->image, next->image());
+}
+
 int run(const tools::Options& options) {
+  if (options.has("--package")) {
+    base::Result<std::string> out = dump_package(options);
+    if (!out.ok()) return tools::refuse("stc", out.error());
+    std::fputs(out->c_str(), stdout);
+    return tools::kOk;
+  }
   bool image_given = options.arguments().size() == 1 && is_image(options.arguments()[0]);
   bool wants_source_phase = options.has("--tokens") || options.has("--tree") ||
                             options.has("--ir") || options.has("--object");

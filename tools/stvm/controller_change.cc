@@ -3,6 +3,7 @@
 
 #include "base/limits.h"
 #include "tools/stvm/controller_service.h"
+#include "tools/stvm/deadline.h"
 
 namespace stvm {
 namespace {
@@ -176,10 +177,7 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(bool
   auto job = [&] {
     if (!allow_overrun && !time_for_switch()) return;
     keeper_.take(before);
-    int64_t deadline_ns = controller_.next_cycle_ns();
-    if (!allow_overrun) {
-      change_.set_interruption([=, this] { return clock_.now_ns() > deadline_ns; });
-    }
+    if (!allow_overrun) change_.set_interruption(Deadline(clock_, controller_.next_cycle_ns()));
     missed_before = controller_.missed_releases();
     report.emplace(change_.switch_now());
     done_ns = clock_.now_ns();

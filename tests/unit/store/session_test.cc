@@ -39,7 +39,7 @@ TEST_F(Session, AnUploadEndsWithItsConnection) {
   EXPECT_LE(sim::heap_use(), before + (1u << 20));
   const base::Status rest = upload(3, kAll + 1, 1);
   ASSERT_FALSE(rest.ok());
-  EXPECT_EQ(rest.error().refusal, Refusal::kProtocol);
+  EXPECT_EQ(rest.error().refusal, Refusal::kChangePending);
 }
 
 TEST_F(Session, OneUploadAtATime) {
