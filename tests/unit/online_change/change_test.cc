@@ -2,6 +2,8 @@
 // that any failure before the switch leaves version 1 as it was.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/unit/online_change/plant.h"
 
 namespace online_change {
@@ -82,18 +84,19 @@ TEST(Change, D3_case59_undo_after_1000_scans) {
   EXPECT_EQ(plant.get("Main.x"), "10024");
 }
 
-TEST(Change, C1_every_step_can_fail) {
-  Plant steady(kFirst);  // what the plant would be without any change
-  steady.run(3);
+// Whatever step of the change fails, version 1 is as it was and goes on as if nothing had been;
+// then the next attempt succeeds. Returns how many steps there are.
+int fail_at_every_step(const std::string& first, const std::string& second,
+                       const linker::Slack& slack, const char* x_behind) {
   int points = 0;
   for (int fail_at = 0; fail_at < 10000; ++fail_at) {
-    Plant plant(kFirst);
+    Plant plant(first, slack);
     plant.run(3);
     base::Digest before = plant.hash();
     int passed = 0;
     plant.driver().set_interruption([&] { return passed++ == fail_at; });
     Change& change = plant.driver();
-    base::Bytes package = plant.package(kSecond);
+    base::Bytes package = plant.package(second);
     bool done = plant.stage(package).ok() && change.configure().ok() && change.arm(true).ok() &&
                 change.switch_now().ok();
     if (done) break;
@@ -101,33 +104,93 @@ TEST(Change, C1_every_step_can_fail) {
     EXPECT_EQ(change.state(), State::kIdle) << fail_at;
     EXPECT_EQ(plant.hash(), before) << fail_at;
     plant.run(2);
-    Plant reference(kFirst);
+    Plant reference(first, slack);
     reference.run(5);
     EXPECT_EQ(plant.hash(), reference.hash()) << fail_at;
     EXPECT_EQ(plant.clock().now_ns(), reference.clock().now_ns()) << fail_at;
     EXPECT_EQ(plant.controller().next_release_ns(), reference.controller().next_release_ns());
     plant.driver().set_interruption(nullptr);
-    plant.change(kSecond, true);  // and the next attempt succeeds
+    plant.change(second, true);
     plant.run(1);
-    EXPECT_EQ(plant.get("Main.x"), "35") << fail_at;
+    EXPECT_EQ(plant.get("Main.x"), x_behind) << fail_at;
   }
-  EXPECT_GT(points, 15);
+  return points;
 }
 
-TEST(Change, C1_interrupted_undo_leaves_the_trial) {
-  Plant plant(kFirst);
+TEST(Change, C1_every_step_can_fail) {
+  EXPECT_GT(fail_at_every_step(kFirst, kSecond, {}, "35"), 15);
+}
+
+// Without slack there is no room but what version 1 uses: in place its bytes are written over, and
+// a failure behind that must bring them back.
+const char* const kFull = R"(
+PROGRAM Main VAR x : DINT := 20; r : REAL := 2; a : ARRAY[0..3] OF INT := [1, 2, 3, 4]; END_VAR
+  x := x + 1; a[1] := a[1] + 1;
+END_PROGRAM)";
+const char* const kFullToo = R"(
+PROGRAM Main VAR x : REAL; r : DINT; a : ARRAY[0..1] OF DINT; END_VAR
+  x := x + 10; a[1] := a[1] + 1;
+END_PROGRAM)";
+
+linker::Slack no_slack() { return {0, 0, 0, 0, 0, 0, 64 * 1024, 0}; }
+
+TEST(Change, C1_A19_every_step_can_fail_where_version_1_is_written_over) {
+  Plant plant(kFull, no_slack());
+  plant.run(3);
+  const ir::Image before = plant.controller().image();
+  plant.change(kFullToo, true);
+  EXPECT_EQ(plant.controller().image().instances[1].data, before.instances[1].data);
+  EXPECT_TRUE(std::none_of(plant.plan().steps.begin(), plant.plan().steps.end(),
+                           [](const UpdateStep& step) { return step.early; }));
+  EXPECT_EQ(plant.get("Main.x"), "23.0");
+  EXPECT_EQ(plant.get("Main.a[1]"), "5");
+  EXPECT_GT(fail_at_every_step(kFull, kFullToo, no_slack(), "35.0"), 10);
+}
+
+void fail_at_every_step_of_undo(const std::string& first, const std::string& second,
+                                const linker::Slack& slack) {
+  Plant plant(first, slack);
   plant.run(3);
   base::Digest before = plant.hash();
-  plant.change(kSecond, true);
+  plant.change(second, true);
   base::Digest trial = plant.hash();
-  for (int fail_at = 0; fail_at < 10000; ++fail_at) {
+  int points = 0;
+  for (int fail_at = 0; fail_at < 10000; ++fail_at, ++points) {
     int passed = 0;
     plant.driver().set_interruption([&] { return passed++ == fail_at; });
     if (plant.driver().undo().ok()) break;
     EXPECT_EQ(plant.driver().state(), State::kTrial);
     EXPECT_EQ(plant.hash(), trial) << fail_at;
   }
+  EXPECT_GT(points, 5);
   EXPECT_EQ(plant.hash(), before);
+}
+
+TEST(Change, C1_interrupted_undo_leaves_the_trial) {
+  fail_at_every_step_of_undo(kFirst, kSecond, {});
+  fail_at_every_step_of_undo(kFull, kFullToo, no_slack());
+}
+
+// Nobody but stc makes packages, but anybody can send one: the controller looks for itself.
+TEST(Change, V17_the_controller_takes_no_plan_that_does_not_fit) {
+  Plant plant(kFirst);
+  plant.run(2);
+  const base::Digest before = plant.hash();
+  const base::Bytes sound = plant.package(kSecond);
+  for (const bool back : {false, true}) {
+    Package package = *decode(sound);
+    Plan& plan = back ? package.inverse : package.forward;
+    for (UpdateStep& step : plan.steps) {
+      if (step.kind == StepKind::kCopy) step.from += 2;
+    }
+    EXPECT_EQ(plant.stage(encode(package)).error().refusal, Refusal::kBadPackage);
+    package = *decode(sound);
+    (back ? package.inverse : package.forward) = {};
+    EXPECT_EQ(plant.stage(encode(package)).error().refusal, Refusal::kBadPackage) << "no plan";
+    EXPECT_EQ(plant.driver().state(), State::kIdle);
+  }
+  EXPECT_EQ(plant.hash(), before);
+  EXPECT_TRUE(plant.stage(sound).ok());
 }
 
 TEST(Change, case58_wrong_base_same_change_two_tools) {
@@ -197,7 +260,7 @@ TEST(Change, case1_exact_and_loss) {
   EXPECT_EQ(plant.get("Main.x"), "127");
 }
 
-TEST(Change, case2_loss_appears_between_preview_and_switch) {
+TEST(Change, A13_case2_loss_appears_between_preview_and_switch) {
   Plant plant(kInt);
   Change& change = plant.driver();
   ASSERT_TRUE(plant.stage(plant.package(kSint)).ok());

@@ -163,7 +163,7 @@ TEST(Instances, case35_many_instances_one_caller_edited) {
   EXPECT_EQ(plant.get("Other.k"), "7");
 }
 
-TEST(Instances, case35_all_instances_gain_a_variable_in_their_slack) {
+TEST(Instances, A19_case35_all_instances_gain_a_variable_in_their_slack) {
   auto source = [](const char* added) {
     return "FUNCTION_BLOCK Cell VAR n : INT; " + std::string(added) +
            " END_VAR n := n + 1; END_FUNCTION_BLOCK "

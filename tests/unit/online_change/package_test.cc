@@ -345,8 +345,37 @@ TEST(Package, V17_absurd_counts) {
 
 TEST(Package, V17_fate_without_row) {
   auto pair = make_pair();
-  pair->package.forward.steps[0].fate = 12345;
-  expect_refused(*pair, "has no row in the fate report");
+  const auto rows = static_cast<uint32_t>(pair->package.forward.fates.size());
+  for (const uint32_t fate : {rows, 12345u}) {
+    pair->package.forward.steps[0].fate = fate;
+    expect_refused(*pair, "has no row in the fate report");
+  }
+}
+
+// Two instances have exchanged their IDs, and no step writes their slots.
+TEST(Package, V17_a_slot_that_would_keep_the_ID_of_another_instance) {
+  const auto make = [](Version& v) {
+    const ir::TypeId inner = v.block("Inner", {{"n", v.elementary(Kind::kInt)}});
+    v.program("Main", {{"x", inner}, {"y", inner}});
+  };
+  Pair pair;
+  make(pair.a);
+  pair.a.link();
+  make(pair.b);
+  pair.b.link(&pair.a);
+  EXPECT_TRUE(check(pair).ok());
+  ir::Image& image = pair.b.image;
+  const ir::Instance& main = image.instances[image.program_ids().front()];
+  const std::vector<uint32_t>& offsets = image.layouts[main.type].member_offsets;
+  const auto byte_at = [&](uint32_t at) -> uint8_t& {
+    for (ir::DataRun& run : image.data) {
+      if (at >= run.offset && at - run.offset < run.bytes.size()) return run.bytes[at - run.offset];
+    }
+    ADD_FAILURE() << "no initial value at " << at;
+    return image.data[0].bytes[0];
+  };
+  std::swap(byte_at(main.data + offsets[0]), byte_at(main.data + offsets[1]));
+  expect_refused(pair, "would keep the ID of another instance");
 }
 
 }  // namespace

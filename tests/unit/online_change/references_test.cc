@@ -102,11 +102,13 @@ TEST(References, case31_id_used_again) {
 
 // The value is carried over exactly, so nothing is lost when the change is armed; then a reference
 // is set to it.
-TEST(References, A13_broken_at_the_boundary_only) {
-  const std::string rest = "p : POINTER TO INT; go : BOOL; END_VAR ";
-  Plant plant("PROGRAM Main VAR x : INT := 7; " + rest +
-              "IF go THEN p := ADR(x); END_IF END_PROGRAM");
-  const std::string second = "PROGRAM Main VAR x : DINT := 7; " + rest + "END_PROGRAM";
+void break_at_the_boundary(const linker::Slack& slack) {
+  const std::string rest = "p : POINTER TO DINT; go : BOOL; END_VAR ";
+  Plant plant("PROGRAM Main VAR x : DINT := 7; y : REAL := 2; " + rest +
+                  "IF go THEN p := ADR(x); END_IF END_PROGRAM",
+              slack);
+  const std::string second =
+      "PROGRAM Main VAR x : REAL := 7; y : DINT := 2; " + rest + "END_PROGRAM";
   plant.run(1);
   ASSERT_TRUE(plant.stage(plant.package(second)).ok());
   ASSERT_TRUE(plant.driver().arm(false).ok());
@@ -121,8 +123,16 @@ TEST(References, A13_broken_at_the_boundary_only) {
   EXPECT_EQ(plant.refused(second), Refusal::kWouldLose);  // now it is seen beforehand
   plant.change(second, true);
   EXPECT_EQ(plant.get("Main.p"), "NULL");
+  EXPECT_EQ(plant.get("Main.y"), "2");
   plant.undo();
   EXPECT_EQ(plant.get("Main.p"), "Main.x");
+}
+
+TEST(References, A13_broken_at_the_boundary_only) { break_at_the_boundary({}); }
+
+// Without slack the values have been written over version 1's own when the reference is looked at.
+TEST(References, A13_broken_at_the_boundary_where_version_1_is_written_over) {
+  break_at_the_boundary({0, 0, 0, 0, 0, 0, 64 * 1024, 0});
 }
 
 // What is added in the slack moves nothing: references cost nothing there, nor on the way to it.

@@ -75,13 +75,24 @@ TEST(Values, case4_nan_is_initialised_as_loss) {
   EXPECT_EQ(plant.get("Main.v"), "9");
 }
 
-TEST(Values, case6_undo_brings_the_original_bits_back) {
+TEST(Values, X4_case6_undo_brings_the_original_bits_back) {
   Plant plant(main_with("v, w : LREAL := 0.1;"));
   plant.change(main_with("v, w : REAL;"), true);
   plant.set("Main.w", "0.75");
   plant.undo();
   EXPECT_EQ(plant.get("Main.v"), "0.1");
   EXPECT_EQ(plant.get("Main.w"), "0.75");
+}
+
+// Back every value fits, so nothing need be converted: it comes back all the same.
+TEST(Values, X4_case6_undo_brings_back_what_a_subrange_cut) {
+  Plant plant(main_with("v, w : INT := 500;"));
+  plant.change(main_with("v, w : INT(0..100);"), true);
+  EXPECT_EQ(plant.get("Main.v"), "100");
+  plant.set("Main.w", "7");
+  plant.undo();
+  EXPECT_EQ(plant.get("Main.v"), "500");
+  EXPECT_EQ(plant.get("Main.w"), "7");
 }
 
 TEST(Values, case10_enumeration_by_name_and_as_integer) {
