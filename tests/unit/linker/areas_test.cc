@@ -142,6 +142,38 @@ TEST(Areas, A7UsesTheWholeFreeAreaBeforeRefusing) {
   EXPECT_EQ(area_of(second, "Main.a") + 216, second.data_capacity);
 }
 
+// No free area at all: what goes in this very change makes the room for what comes.
+TEST(Areas, A7UsesWhatTheChangeItselfFreesBeforeRefusing) {
+  Options options;
+  options.slack.free_bytes = 0;
+  options.slack.free_percent = 0;
+  const ir::Image first = linked(two_blocks(longs(20), kBoth), options);
+  const std::string_view other = "  member local c : A\n  member local b : B\n";
+  const ir::Image second = relinked(first, two_blocks(longs(20), other), options);
+  EXPECT_EQ(area_of(second, "Main.c"), area_of(first, "Main.a"));
+  EXPECT_EQ(area_of(second, "Main.b"), area_of(first, "Main.b"));
+  options.base = &first;
+  const base::Result<ir::Image> third = try_link(two_blocks(longs(27), other), options);
+  ASSERT_FALSE(third.ok());
+  EXPECT_EQ(third.error().refusal, base::Refusal::kOutOfMemory);
+  // 28 LREALs and a quarter more; `a` leaves what 21 and a quarter more took.
+  EXPECT_NE(third.error().text.find("has 216 bytes, 64 too few"), std::string::npos)
+      << third.error().text;
+}
+
+// What is free before the switch can be written before it.
+TEST(Areas, A19UsesWhatWasFreeBeforeWhatTheChangeFrees) {
+  const ir::Image first = linked(two_blocks(kSmall, kBoth));
+  const uint32_t freed = area_of(first, "Main.a");
+  const ir::Image second =
+      relinked(first, two_blocks(kSmall, "  member local c : A\n  member local b : B\n"));
+  EXPECT_GT(area_of(second, "Main.c"), freed) << "version 1 uses those bytes until the switch";
+  const ir::Image third = relinked(
+      second,
+      two_blocks(kSmall, "  member local c : A\n  member local b : B\n  member local d : A\n"));
+  EXPECT_EQ(area_of(third, "Main.d"), freed);
+}
+
 TEST(Areas, MoveAllGivesEveryInstanceANewPlace) {
   const ir::Image first = linked(two_blocks(kSmall, kBoth));
   Options options;
