@@ -66,32 +66,60 @@ TEST(Cases, case43_every_scan_of_every_task_runs_one_version) {
   for (const vm::TaskStatus& task : plant.controller().tasks()) EXPECT_EQ(task.missed, 0u);
 }
 
+// With `again` the event's own task ends it, and the other two bring it anew in every cycle, when
+// that task has run already: at each boundary it waits for the next cycle. Version 2 has an
+// instance whose FB_Init runs during the switch.
 std::string with_event(const char* extra) {
-  return std::string("VAR_GLOBAL start : BOOL; END_VAR PROGRAM Ticks VAR n : INT; ") + extra +
-         " END_VAR n := n + 1; END_PROGRAM\n"
-         "PROGRAM OnEdge VAR n : INT; END_VAR n := n + 1; END_PROGRAM\n"
+  return std::string(
+             "FUNCTION_BLOCK Pump VAR n : INT; END_VAR METHOD FB_Init : BOOL VAR_INPUT "
+             "bInitRetains, bInCopyCode : BOOL; END_VAR n := 7; END_METHOD END_FUNCTION_BLOCK\n"
+             "VAR_GLOBAL start, again : BOOL; END_VAR\n"
+             "PROGRAM Ticks VAR n : INT; ") +
+         extra +
+         " END_VAR n := n + 1; IF again THEN start := TRUE; END_IF END_PROGRAM\n"
+         "PROGRAM OnEdge VAR n : INT; END_VAR n := n + 1; IF again THEN start := FALSE; END_IF "
+         "END_PROGRAM\n"
          "CONFIGURATION c\n"
-         "  TASK ticks (INTERVAL := T#10ms, PRIORITY := 5);\n"
+         "  TASK one (INTERVAL := T#10ms, PRIORITY := 5);\n"
+         "  TASK two (INTERVAL := T#10ms, PRIORITY := 6);\n"
          "  TASK edge (SINGLE := start, PRIORITY := 1);\n"
-         "  PROGRAM t WITH ticks : Ticks;  PROGRAM e WITH edge : OnEdge;\n"
+         "  PROGRAM t WITH one : Ticks;  PROGRAM u WITH two : Ticks;\n"
+         "  PROGRAM e WITH edge : OnEdge;\n"
          "END_CONFIGURATION\n";
 }
 
 TEST(Cases, A11_case44_an_event_during_the_switch_runs_once_afterwards) {
   Plant plant(with_event(""));
   plant.run(3);
-  ASSERT_TRUE(plant.driver().stage(plant.package(with_event("more : LINT;"))).ok());
+  ASSERT_TRUE(plant.driver().stage(plant.package(with_event("more : Pump;"))).ok());
   ASSERT_TRUE(plant.driver().arm(false).ok());
   plant.set("start", "TRUE");
   ASSERT_TRUE(plant.driver().switch_now().ok());
+  EXPECT_EQ(plant.get("t.more.n"), "7") << "its FB_Init has run";
   EXPECT_EQ(plant.get("e.n"), "0") << "no event task begins during the switch";
   plant.run(5);
   EXPECT_EQ(plant.get("e.n"), "1");
+  EXPECT_EQ(plant.controller().tasks()[2].delay.max, 0) << "it is noticed with the next cycle";
   // And one that ran before does not run again because of the switch.
   plant.accept();
   plant.change(with_event(""), true);
   plant.run(5);
   EXPECT_EQ(plant.get("e.n"), "1");
+}
+
+TEST(Cases, A11_a_task_that_waits_does_not_begin_during_the_switch) {
+  Plant plant(with_event(""));
+  plant.set("again", "TRUE");
+  plant.run(3);
+  const int before = std::stoi(plant.get("e.n"));
+  EXPECT_GE(before, 2);
+  ASSERT_TRUE(plant.driver().stage(plant.package(with_event("more : Pump;"))).ok());
+  ASSERT_TRUE(plant.driver().arm(false).ok());
+  ASSERT_TRUE(plant.driver().switch_now().ok());
+  EXPECT_EQ(plant.get("t.more.n"), "7");
+  EXPECT_EQ(plant.get("e.n"), std::to_string(before)) << "it has waited since the last cycle";
+  plant.run(1);
+  EXPECT_EQ(plant.get("e.n"), std::to_string(before + 1)) << "and begins with the next one";
 }
 
 TEST(Cases, case46_an_output_moves_and_goes_without_a_glitch) {
@@ -262,6 +290,36 @@ TEST(Cases, X1_case2_leave_is_for_what_the_report_showed) {
     EXPECT_TRUE(plant.driver().switch_now().ok());
     EXPECT_EQ(plant.get("Main.b"), "127");
   }
+}
+
+TEST(Cases, X1_what_is_dropped_is_a_loss) {
+  Plant plant("PROGRAM Main VAR a : INT := 300; b : INT; END_VAR END_PROGRAM");
+  plant.run(1);
+  const std::string without = "PROGRAM Main VAR b : INT; END_VAR END_PROGRAM";
+  ASSERT_TRUE(plant.stage(plant.package(without)).ok());
+  EXPECT_EQ(plant.driver().count_losses(plant.controller().memory().view()), 1u);
+  const base::Status armed = plant.driver().arm(false);
+  ASSERT_FALSE(armed.ok());
+  EXPECT_EQ(armed.error().refusal, base::Refusal::kWouldLose);
+  EXPECT_NE(armed.error().text.find("`Main.a` is 300"), std::string::npos) << armed.error().text;
+  EXPECT_TRUE(plant.driver().arm(true).ok());
+}
+
+// A force ends where its variable goes: whoever permits no loss is told so.
+TEST(Cases, X1_case47_a_force_that_ends_is_a_loss) {
+  const std::string head = "PROGRAM Main VAR a : INT; ";
+  Plant plant(head + "END_VAR a := 1; END_PROGRAM");
+  plant.run(1);
+  ASSERT_TRUE(plant.controller().force("Main.a", "300").ok());
+  plant.run(1);
+  const std::string narrow = "PROGRAM Main VAR a : SINT; END_VAR a := 1; END_PROGRAM";
+  plant.set("Main.a", "5");  // the value itself would fit
+  ASSERT_TRUE(plant.stage(plant.package(narrow)).ok());
+  const std::vector<LiveLoss> losses = plant.driver().live_losses();
+  ASSERT_EQ(losses.size(), 1u);
+  EXPECT_EQ(losses[0].path, "Main.a");
+  EXPECT_EQ(losses[0].what, "loses its force");
+  EXPECT_EQ(plant.driver().arm(false).error().refusal, base::Refusal::kWouldLose);
 }
 
 }  // namespace

@@ -44,24 +44,41 @@ TEST(Publish, IdentityKeepsCountsPhaseAndForces) {
   EXPECT_EQ(plant.task("Slow").scans, 4u);
 }
 
-// A11: version 2 is built in the other area while version 1 runs; the switch only changes
-// which one the record names.
+// Says in every scan which version it is, by constants that lie beside the code.
+std::string version(const char* text, const char* step) {
+  return std::string("PROGRAM P VAR said : STRING[20]; sum : LREAL; n : DINT; END_VAR said := '") +
+         text + "'; sum := sum + " + step + "; n := n + 1; END_PROGRAM";
+}
+
+// A11: version 2 is built in the other area while version 1 runs; the switch only changes which one
+// the record names, and can change it back.
 TEST(Publish, A11TwoAreasAndOneRecordThatSaysWhichRuns) {
-  Plant plant(tasks("T#10ms", ""));
+  Plant plant(version("one", "1.25"));
   ASSERT_TRUE(plant.ok());
   plant.cycles(1);
   const vm::Generation* first = &plant->generation();
-  auto next = *plant->prepare(plant->verified());
+  const auto image = build(version("two", "1000.5"), &plant->image());
+  ASSERT_TRUE(image.has_value());
+  auto next = *plant->prepare(*image);
   const vm::Generation* second = next.get();
   EXPECT_NE(first->pous().data(), second->pous().data());
   EXPECT_NE(first->pool_offset(), second->pool_offset());
-  plant.cycles(1);
+  plant.cycles(2);
   EXPECT_EQ(&plant->generation(), first) << "prepared, not yet running";
+  EXPECT_EQ(plant.get("P.said"), "'one'");
+  EXPECT_EQ(plant.get("P.sum"), "3.75");
   auto old = plant->publish(std::move(next));
   EXPECT_EQ(old.get(), first);
   EXPECT_EQ(&plant->generation(), second);
+  EXPECT_EQ(plant.get("P.said"), "'one'") << "the switch runs nothing";
+  plant.cycles(2);
+  EXPECT_EQ(plant.get("P.said"), "'two'");
+  EXPECT_EQ(plant.get("P.sum"), "2004.75");
+  plant->publish(std::move(old));
   plant.cycles(1);
-  EXPECT_EQ(plant.get("A.n"), "3");
+  EXPECT_EQ(plant.get("P.said"), "'one'");
+  EXPECT_EQ(plant.get("P.sum"), "2006.0");
+  EXPECT_EQ(plant.get("P.n"), "6") << "no scan is left out, and none runs twice";
 }
 
 // Change case 42: period changed, task added.
