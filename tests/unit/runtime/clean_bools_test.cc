@@ -105,6 +105,21 @@ TEST(CleanBools, RetainedValuesFromStorage) {
   EXPECT_EQ((*started)->memory().data()[symbol->data], 1);
 }
 
+// Version 1 may write anything into a BOOL, and version 2 takes each for 0 or 1.
+TEST(CleanBools, AVersionThatTrustsThemFindsThemSo) {
+  Plant plant("PROGRAM P VAR x, y : BOOL; p : POINTER TO BYTE; END_VAR p := ADR(x); p^ := 16#AA; "
+              "END_PROGRAM");
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(1);
+  EXPECT_EQ(byte_at(plant, "P.x"), 0xaa);
+  const auto next = build("PROGRAM P VAR x, y : BOOL; END_VAR y := x; END_PROGRAM", &plant->image());
+  ASSERT_TRUE(next);
+  auto old = plant->publish(*plant->prepare(*next));
+  EXPECT_EQ(byte_at(plant, "P.x"), 1);
+  plant.cycles(1);
+  EXPECT_EQ(byte_at(plant, "P.y"), 1);
+}
+
 TEST(CleanBools, ValuesOfOtherResources) {
   const auto image = build(kParts);
   ASSERT_TRUE(image);

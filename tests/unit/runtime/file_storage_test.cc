@@ -5,10 +5,36 @@
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <vector>
+
+namespace {
+
+// What the storage has asked the disk to make durable, by inode; in this program these functions
+// take the place of the C library's.
+std::vector<ino_t> synced;
+bool disk_fails = false;
+
+int count_sync(long number, int fd) {
+  struct stat info {};
+  if (::fstat(fd, &info) == 0) synced.push_back(info.st_ino);
+  if (disk_fails) {
+    errno = EIO;
+    return -1;
+  }
+  return static_cast<int>(::syscall(number, fd));
+}
+
+}  // namespace
+
+extern "C" int fsync(int fd) { return count_sync(SYS_fsync, fd); }
+extern "C" int fdatasync(int fd) { return count_sync(SYS_fdatasync, fd); }
 
 namespace vm {
 namespace {
@@ -196,6 +222,58 @@ TEST_F(FileStorageTest, WhatNobodyCanFindIsNotDurable) {
   std::filesystem::remove_all(directory_);
   EXPECT_FALSE(storage.sync("c").ok());
   EXPECT_EQ(storage.replace("c", 10, {}).error().refusal, base::Refusal::kFileUnwritable);
+}
+
+// --- what is durable, the disk has been told ----------------------------------------
+
+// The inodes that `job` has synced, in order.
+template <class Job>
+std::vector<ino_t> syncs_of(Job job) {
+  synced.clear();
+  job();
+  return synced;
+}
+
+ino_t inode(const std::string& path) {
+  struct stat info {};
+  EXPECT_EQ(::stat(path.c_str(), &info), 0) << path;
+  return info.st_ino;
+}
+
+TEST_F(FileStorageTest, X5_WhatIsSyncedIsAskedOfTheDisk) {
+  FileStorage storage(directory_);
+  const auto opened = syncs_of([&] { EXPECT_TRUE(storage.open("a", 100).ok()); });
+  const ino_t file = inode(directory_ + "/a");
+  const ino_t folder = inode(directory_);
+  ASSERT_GE(opened.size(), 2u);
+  EXPECT_EQ(opened[0], file) << "its room";
+  EXPECT_EQ(opened[1], folder) << "its name";
+  EXPECT_EQ(syncs_of([&] { EXPECT_TRUE(storage.write("a", 0, base::Bytes{1}).ok()); }),
+            std::vector<ino_t>());
+  EXPECT_EQ(syncs_of([&] { EXPECT_TRUE(storage.sync("a").ok()); }), std::vector<ino_t>{file});
+  disk_fails = true;
+  EXPECT_EQ(storage.sync("a").error().refusal, base::Refusal::kFileUnwritable);
+  disk_fails = false;
+}
+
+// First the new file, then its name.
+TEST_F(FileStorageTest, X5_ANewFileIsDurableBeforeItTakesThePlaceOfTheOldOne) {
+  FileStorage storage(directory_);
+  ASSERT_TRUE(storage.open("a", 10).ok());
+  const base::Bytes bytes{7, 8};
+  const Storage::Piece piece{1, bytes};
+  const auto calls = syncs_of([&] { ASSERT_TRUE(storage.replace("a", 10, {&piece, 1}).ok()); });
+  const ino_t file = inode(directory_ + "/a");
+  ASSERT_GE(calls.size(), 3u);
+  EXPECT_EQ(calls[0], file) << "its room";
+  EXPECT_EQ(calls[calls.size() - 2], file) << "its content";
+  EXPECT_EQ(calls.back(), inode(directory_)) << "its name";
+  disk_fails = true;
+  const base::Bytes others{1, 1};
+  const Storage::Piece other{1, others};
+  EXPECT_FALSE(storage.replace("a", 10, {&other, 1}).ok());
+  disk_fails = false;
+  EXPECT_EQ(*storage.read("a", 1, 2), bytes) << "the old one stays";
 }
 
 }  // namespace
