@@ -205,7 +205,6 @@ SwitchReport Change::report_begin() const {
   SwitchReport report;
   report.cycle_before = controller_.cycles();
   report.cycle_after = report.cycle_before + 1;
-  report.missed = controller_.missed_releases();
   return report;
 }
 
@@ -294,7 +293,6 @@ base::Result<SwitchReport> Change::switch_steps() {
   state_ = State::kTrial;
   if (base::Status entered = enter(); !entered.ok()) return entered.error();
   report.pause_ns = monotonic_ns() - begin_ns;
-  report.missed = controller_.missed_releases() - report.missed;
   report.counts = plan().counts;
   return report;
 }
@@ -363,7 +361,6 @@ base::Result<SwitchReport> Change::undo_steps(bool whatever_happens) {
   retired_ = controller_.publish(std::move(pending_->waiting));
   if (does_anything(pending_->package.inverse)) controller_.construct();
   report.pause_ns = monotonic_ns() - begin_ns;
-  report.missed = controller_.missed_releases() - report.missed;
   report.counts = pending_->package.inverse.counts;
   retired_area_ = std::move(pending_->area);
   retired_pending_ = std::move(pending_);

@@ -39,7 +39,7 @@ struct SwitchReport {
   uint64_t cycle_before = 0;  // last cycle of the old version
   uint64_t cycle_after = 0;   // first cycle of the new version
   int64_t pause_ns = 0;       // measured, boundary work only
-  uint64_t missed = 0;        // task releases missed because of it
+  uint64_t missed = 0;        // releases, because of it; counted by who runs the next cycles
   FateCounts counts;          // what was done
   int64_t ago_ns = 0;         // that it was, when a controller said so
 };

@@ -95,7 +95,7 @@ class Cuts {
 
 void cut_lives(bool faults) {
   Cuts cuts;
-  for (uint64_t seed = 1; cuts.tried() < kStates; ++seed) {
+  for (uint64_t seed = 1; cuts.tried() < kStates && cuts.failed() == 0; ++seed) {
     sim::SimStorage disk;
     History history(disk);
     ASSERT_EQ(history.open(), "");

@@ -96,13 +96,16 @@ vm::StatusReport Plc::status() {
   return *vm::decode_status(*body);
 }
 
-base::Status Plc::ask(vm::Request request) {
+base::Result<base::Bytes> Plc::answer_to(vm::Request request) {
   const vm::StatusReport now = status();
   request.expected = now.running;
   request.edition = now.edition;
   bool keep_open = true;
-  base::Result<base::Bytes> body =
-      vm::decode_answer(service_->answer(vm::encode(request), keep_open));
+  return vm::decode_answer(service_->answer(vm::encode(request), keep_open));
+}
+
+base::Status Plc::ask(vm::Request request) {
+  base::Result<base::Bytes> body = answer_to(std::move(request));
   if (!body.ok()) return body.error();
   return base::Ok{};
 }
@@ -111,21 +114,24 @@ base::Status Plc::change(const std::string& source, uint32_t flags) {
   return change(build(source, &controller_->image()), flags);
 }
 
-base::Status Plc::change(const ir::VerifiedImage& next, uint32_t flags,
-                         const std::string& health) {
+base::Status Plc::stage(const ir::VerifiedImage& next) {
   auto package = online_change::make_package(controller_->verified().encoded(), next.encoded());
   base::check(package.ok(), "the package is made");
   vm::Request upload{.command = vm::Command::kUpload};
   upload.data = online_change::encode(*package);
   vm::Request stage{.command = vm::Command::kStage};
   stage.digest = base::sha256(upload.data);
+  base::Status done = ask(std::move(upload));
+  return done.ok() ? ask(std::move(stage)) : done;
+}
+
+base::Status Plc::change(const ir::VerifiedImage& next, uint32_t flags,
+                         const std::string& health) {
   vm::Request change{.command = vm::Command::kSwitch};
   change.flags = flags | vm::kAllowOverrun;
   if (!health.empty()) change.names = {health};
-  base::Status done = ask(std::move(upload));
-  if (done.ok()) done = ask(std::move(stage));
-  if (done.ok()) done = ask(std::move(change));
-  return done;
+  base::Status done = stage(next);
+  return done.ok() ? ask(std::move(change)) : done;
 }
 
 }  // namespace plc

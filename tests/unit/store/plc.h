@@ -37,6 +37,8 @@ class Plc : public vm::Boundary {
   base::Status accept() { return ask(vm::Command::kAccept); }
   base::Status ask(vm::Command command) { return ask(vm::Request{.command = command}); }
   base::Status ask(vm::Request request);
+  base::Result<base::Bytes> answer_to(vm::Request request);
+  base::Status stage(const ir::VerifiedImage& next);
   vm::StatusReport status();
 
   // Asked at each boundary that a command needs; what is not kDone comes instead of its job.

@@ -276,6 +276,17 @@ TEST(Journal, EntriesComeBackOldestFirstAndTheRingGoesRound) {
   EXPECT_EQ(read_journal(disk, "j")->back().sequence, 11u);
 }
 
+TEST(Journal, X5_AnEntryIsDurableWhenItIsNoted) {
+  sim::SimStorage disk;
+  Journal journal(disk, "j", 4);
+  journal.recover();
+  for (uint64_t count = 1; count <= 3; ++count) {
+    ASSERT_TRUE(journal.add({}).ok());
+    sim::SimStorage left = disk.after_cut(sim::SimStorage::Choice(disk.dirty().size(), 0));
+    EXPECT_EQ(read_journal(left, "j")->size(), count);
+  }
+}
+
 TEST(Journal, ADamagedEntryCostsNoOther) {
   sim::SimStorage disk;
   Journal journal(disk, "j", 4);

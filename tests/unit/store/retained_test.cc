@@ -282,6 +282,49 @@ TEST_F(Carried, case57_AnAcceptedChangeThenTheOldProgramOnTheCommandLine) {
   ASSERT_TRUE(plc_->change(program("v : LINT; only_new : INT;")).ok());
 }
 
+// The newest values are those of the trial, in its layout, when another program takes the place of
+// both.
+TEST_F(Carried, case57_ALostTrialThenAnotherProgramOnTheCommandLine) {
+  begin(program("v : DINT; gone : INT := 4;"));
+  plc_->set("v", "1234");
+  plc_->set("gone", "5");
+  ASSERT_TRUE(plc_->change(program("v : LINT; added : INT;")).ok());
+  plc_->set("v", "1235");
+  ASSERT_TRUE(plc_->save().ok());
+  cut();
+  const base::Status booted = plc_->boot(program("v : INT; gone : DINT; other : INT;"));
+  ASSERT_TRUE(booted.ok()) << base::to_string(booted.error());
+  EXPECT_EQ(plc_->get("v"), "1235");
+  EXPECT_EQ(plc_->get("gone"), "5");
+  cut();  // before a save
+  ASSERT_TRUE(plc_->boot().ok());
+  EXPECT_EQ(plc_->get("v"), "1235");
+  EXPECT_EQ(plc_->get("gone"), "5");
+}
+
+// What only the new version retains is durable with the switch: an accept that is cut off before
+// anything else is saved finds it.
+TEST_F(Carried, X5_WhatBecomesRetainedIsDurableWithTheSwitch) {
+  begin("VAR_GLOBAL v : INT := 1; END_VAR PROGRAM P VAR n : DINT; END_VAR n := n + 1; END_PROGRAM");
+  plc_->set("v", "40");
+  ASSERT_TRUE(plc_->change(program("v : INT := 2;")).ok());
+  ASSERT_TRUE(plc_->store().accept().ok());
+  cut();
+  ASSERT_TRUE(plc_->boot().ok());
+  EXPECT_EQ(plc_->get("v"), "40");
+}
+
+TEST_F(Carried, X5_WhatWasWrittenOnTrialIsDurableWithTheUndo) {
+  begin(program("v : INT := 1;"));
+  ASSERT_TRUE(plc_->change(program("v : DINT := 1;")).ok());
+  plc_->set("v", "50");
+  ASSERT_TRUE(plc_->undo().ok());
+  cut();
+  ASSERT_TRUE(plc_->boot().ok());
+  EXPECT_FALSE(plc_->found().trial_lost);
+  EXPECT_EQ(plc_->get("v"), "50");
+}
+
 TEST_F(Carried, A17_BothVersionsAreStoredUntilOneIsFinal) {
   begin(program("v : INT;"));
   const base::Digest old_version = plc_->status().running;

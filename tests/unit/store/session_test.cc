@@ -2,6 +2,8 @@
 // when it ends, however it ends.
 #include <gtest/gtest.h>
 
+#include "base/sha256.h"
+#include "online_change/package/package.h"
 #include "tests/sim/heap_use.h"
 #include "tests/unit/store/plc.h"
 #include "tests/unit/store/sim_storage.h"
@@ -40,6 +42,30 @@ TEST_F(Session, AnUploadEndsWithItsConnection) {
   const base::Status rest = upload(3, kAll + 1, 1);
   ASSERT_FALSE(rest.ok());
   EXPECT_EQ(rest.error().refusal, Refusal::kChangePending);
+}
+
+// The tool says what it has sent; other bytes are not even looked at.
+TEST_F(Session, C4_APackageThatArrivedDamagedIsNotStaged) {
+  const ir::VerifiedImage& running = plc_.controller().verified();
+  const ir::VerifiedImage next =
+      build("PROGRAM P VAR n : INT; END_VAR n := n + 2; END_PROGRAM", &running.image());
+  auto package = online_change::make_package(running.encoded(), next.encoded());
+  ASSERT_TRUE(package.ok());
+  const base::Bytes bytes = online_change::encode(*package);
+  for (const bool damaged : {true, false}) {
+    vm::Request upload{.command = Command::kUpload};
+    upload.data = bytes;
+    if (damaged) upload.data.push_back(0);
+    ASSERT_TRUE(plc_.ask(std::move(upload)).ok());
+    vm::Request stage{.command = Command::kStage};
+    stage.digest = base::sha256(bytes);
+    const base::Status staged = plc_.ask(std::move(stage));
+    ASSERT_EQ(staged.ok(), !damaged);
+    if (damaged) {
+      EXPECT_EQ(staged.error().refusal, Refusal::kBadHash);
+      EXPECT_NE(staged.error().text.find("arrived damaged"), std::string::npos);
+    }
+  }
 }
 
 TEST_F(Session, OneUploadAtATime) {
