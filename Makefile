@@ -13,6 +13,7 @@
 #   make fuzz     a million executions of each fuzz target under sanitizers
 #   make differential  5,000 random programs and changes on every tier; SEED=n begins elsewhere
 #   make soak     long differential and hard mode runs
+#   make mutate   mistakes that the tests must see, one at a time; ONLY='C7 store' for some of them
 #   make test-arm64  golden files and random programs on AArch64, under qemu
 #   make minimal  build and test with every adapter off
 #   make clang    build and test by clang 16, without a warning as by g++
@@ -21,7 +22,7 @@
 BUILD := build/release
 JOBS := $(shell nproc)
 
-.PHONY: all build setup demo test test-arm64 test-minimal minimal clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak coverage docs clean
+.PHONY: all build setup demo test test-arm64 test-minimal minimal clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak mutate coverage docs clean
 
 all: build
 
@@ -122,6 +123,12 @@ soak: build
 	@$(BUILD)/tests/sim 1 4 --hours 8 --jobs $(JOBS)
 	@$(BUILD)/tests/differential 1 100000 --shrink --jobs $(JOBS)
 	@tests/cli/determinism.sh $(CURDIR) $(CURDIR)/$(BUILD) 100000
+
+# In a copy of the sources with a build of its own. ONLY: parts of names or of files.
+mutate: setup
+	@cmake --preset release >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS) --target mutate
+	@$(BUILD)/tests/mutate tests/mutate/mutations.txt . build/mutate $(ONLY)
 
 # Rewrites what is generated from the tables (docs/*.md) and the golden files.
 docs: build
