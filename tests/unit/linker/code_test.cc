@@ -144,6 +144,39 @@ TEST(Linking, ReachesFarMembersBehindAnAddress) {
   EXPECT_EQ(text, "INST LEA_AT LD_64 ST_64 LEA_AT ST_64 RET ");
 }
 
+// The last offset that 16 bits hold, and the next one that a LINT can have.
+std::string code_with_far_at(bool own, int filling) {
+  std::string members = "  member local near : LINT\n";
+  for (int i = 0; i < 255; ++i) members += "  member local b" + std::to_string(i) + " : %25\n";
+  members += "  member local filling : %26\n  member local far : LINT\n";
+  const std::string types = "type %25 = array LREAL [0..31]\ntype %26 = array LREAL [1.." +
+                            std::to_string(filling) + "]\n";
+  const std::string place = own ? "self." : "self.f!.";
+  const std::string body = "  b0:\n    v0 = load i64 " + place + "far\n    store i64 " + place +
+                           "near, v0\n    return\n";
+  const ir::Image image =
+      own ? linked(simple("", members, types, "", body))
+          : linked(simple("", "  member local f : F\n",
+                          types + "type F = function_block\n" + members,
+                          empty_pou("function_block", "F"), body));
+  EXPECT_EQ(offset_of(image, own ? "Main" : "F", "far"), 8u + 255 * 256 + 8 * filling);
+  std::string text;
+  const std::vector<ir::Unit> code = code_of(image, "Main");
+  for (size_t i = 0; i < code.size(); ++i) {
+    const ir::OpcodeRow& row = ir::opcode_row(code[i].opcode());
+    text += std::string(row.name) + " ";
+    i += row.extended ? 1 : 0;
+  }
+  return text;
+}
+
+TEST(Linking, ReachesFarWhereSixteenBitsEnd) {
+  EXPECT_EQ(code_with_far_at(true, 30).find("LDFAR"), std::string::npos);
+  EXPECT_NE(code_with_far_at(true, 31).find("LDFAR"), std::string::npos);
+  EXPECT_EQ(code_with_far_at(false, 30).find("LEA_AT"), std::string::npos);
+  EXPECT_NE(code_with_far_at(false, 31).find("LEA_AT"), std::string::npos);
+}
+
 std::string caller_with_local(uint32_t bytes, std::string_view arguments) {
   return simple("  member global g : DINT\n  member global h : LREAL\n", "",
                 "type %25 = array BYTE [1.." + std::to_string(bytes) + "]\n",

@@ -69,6 +69,18 @@ TEST_P(Forces, HoldAtEverySafePoint) {
 }
 INSTANTIATE_TEST_SUITE_P(Tiers, Forces, testing::Values(vm::Tier::kInterpreter, vm::Tier::kNative));
 
+// Side by side in memory.
+TEST(Force, NeighboursAreForcedEach) {
+  Plant plant("PROGRAM P VAR a, b, c : INT; END_VAR a := 1; b := 1; c := 1; END_PROGRAM");
+  ASSERT_TRUE(plant.ok());
+  for (const char* name : {"P.b", "P.c", "P.a"}) ASSERT_TRUE(plant->force(name, "9").ok());
+  EXPECT_EQ(plant->forces().size(), 3u);
+  ASSERT_TRUE(plant->force("P.b", "8").ok());
+  EXPECT_EQ(plant->forces().size(), 3u) << "the same one anew";
+  plant.cycles(1);
+  EXPECT_EQ(plant.get("P.a") + plant.get("P.b") + plant.get("P.c"), "989");
+}
+
 // Also where a task that is stopped by a trap leaves its outputs, in the middle of the scan of
 // another one, and for the devices.
 TEST(Force, HoldsWhenATaskIsStopped) {

@@ -12,6 +12,26 @@ vm::ControllerOptions small_slices() {
   return options;
 }
 
+// The slow task is interrupted twice and then stopped by a trap: what becomes safe is its own.
+TEST(ProcessImage, B5_WhatAnInterruptingTaskWroteIsNotOfTheTaskBelow) {
+  Plant plant(R"(
+PROGRAM Fast VAR n AT %QB0 : BYTE; END_VAR n := n + 1; END_PROGRAM
+PROGRAM Slow VAR q AT %QB1 : BYTE; i, zero : DINT; END_VAR
+  q := 7; FOR i := 1 TO 25000 DO ; END_FOR i := i / zero;
+END_PROGRAM
+CONFIGURATION c RESOURCE r ON cpu
+  TASK High (INTERVAL := T#10ms, PRIORITY := 0);
+  {attribute 'on_trap' := 'stop_task'} TASK Low (INTERVAL := T#100ms, PRIORITY := 1);
+  PROGRAM F WITH High : Fast; PROGRAM S WITH Low : Slow;
+END_RESOURCE END_CONFIGURATION)",
+              small_slices(), 1000);
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(3);
+  ASSERT_TRUE(plant.task("Low").stopped);
+  EXPECT_EQ(plant.io.output(0), 3);
+  EXPECT_EQ(plant.io.output(1), 0);
+}
+
 TEST(ProcessImage, PacksBitsBytesAndWords) {
   Plant plant(R"(
 PROGRAM P

@@ -81,6 +81,76 @@ TEST(Publish, A11TwoAreasAndOneRecordThatSaysWhichRuns) {
   EXPECT_EQ(plant.get("P.n"), "6") << "no scan is left out, and none runs twice";
 }
 
+// A task that a trap has stopped stays so, what it has missed stays counted, and an output that is
+// held gets its value when it would have got it without the change.
+TEST(Publish, WhatATaskHasMissedItsEndAndHeldOutputsGoOn) {
+  const auto source = [](const char* step) {
+    return std::string(R"(
+PROGRAM Bad VAR n, zero : DINT; q AT %QB0 : BYTE; END_VAR
+  n := n + 1; q := 16#11; IF n = 3 THEN n := n / zero; END_IF
+END_PROGRAM
+PROGRAM Good VAR n : DINT; END_VAR n := n + )") +
+           step + R"(; END_PROGRAM
+CONFIGURATION c RESOURCE r ON cpu
+  {attribute 'on_trap' := 'stop_task'} TASK One (INTERVAL := T#10ms, PRIORITY := 1);
+  TASK Two (INTERVAL := T#10ms, PRIORITY := 2);
+  PROGRAM B WITH One : Bad; PROGRAM G WITH Two : Good;
+END_RESOURCE END_CONFIGURATION)";
+  };
+  const std::vector<ir::SafeOutput> safe = {{0, 8, ir::SafeKind::kHoldThenValue, 9, 30 * kMs}};
+  Plant plant(source("1"), {}, 0, safe);
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(1);
+  plant.clock.advance(35 * kMs);
+  plant.cycles(2);
+  const uint64_t missed = plant.task("Two").missed;
+  EXPECT_GE(missed, 2u);
+  ASSERT_TRUE(plant.task("One").stopped);
+  const auto next = build(source("2"), &plant->image(), safe);
+  ASSERT_TRUE(next);
+  auto old = plant->publish(*plant->prepare(*next));
+  for (const int expected : {0x11, 0x11, 9, 9}) {
+    plant.cycles(1);
+    EXPECT_EQ(plant.io.output(0), expected);
+  }
+  EXPECT_TRUE(plant.task("One").stopped);
+  EXPECT_EQ(plant.task("One").scans, 2u);
+  EXPECT_EQ(plant.task("Two").missed, missed);
+}
+
+// `S` takes the inputs of the first cycle of its period. That cycle leaves no time for it: the
+// switch comes before its scan, and its inputs stay those.
+TEST(Publish, B6_InputsOfAScanThatIsStillToComeStay) {
+  const auto source = [](const char* step) {
+    return std::string(R"(
+PROGRAM Long VAR i : DINT; END_VAR FOR i := 1 TO 12000 DO ; END_FOR END_PROGRAM
+PROGRAM Beat VAR n : DINT; END_VAR n := n + )") +
+           step + R"(; END_PROGRAM
+PROGRAM Reads VAR i AT %IB0 : BYTE; seen : BYTE; END_VAR seen := i; END_PROGRAM
+CONFIGURATION c RESOURCE r ON cpu
+  TASK One (INTERVAL := T#100ms, PRIORITY := 1);
+  {attribute 'io' := 'synchronous'} TASK Two (INTERVAL := T#100ms, PRIORITY := 2);
+  TASK Three (INTERVAL := T#10ms, PRIORITY := 0);
+  PROGRAM L WITH One : Long; PROGRAM S WITH Two : Reads; PROGRAM B WITH Three : Beat;
+END_RESOURCE END_CONFIGURATION)";
+  };
+  vm::ControllerOptions options;
+  options.fuel_slice = 1'000'000;
+  Plant plant(source("1"), options, 1000);
+  ASSERT_TRUE(plant.ok());
+  plant.io.set_input(0, 7);
+  plant.cycles(1);
+  ASSERT_TRUE(plant->at_boundary());
+  ASSERT_EQ(plant.task("Two").scans, 0u);
+  plant.io.set_input(0, 9);
+  const auto next = build(source("2"), &plant->image());
+  ASSERT_TRUE(next);
+  auto old = plant->publish(*plant->prepare(*next));
+  plant.cycles(1);
+  EXPECT_EQ(plant.task("Two").scans, 1u);
+  EXPECT_EQ(plant.get("S.seen"), "16#07");
+}
+
 // Change case 42: period changed, task added.
 TEST(Publish, PeriodChangeAndNewTaskKeepTheOthersOnTime) {
   Plant plant(tasks("T#10ms", ""));

@@ -68,6 +68,24 @@ TEST(Scheduling, B1_SlowTaskIsSuspendedWhenTheFastOneIsDue) {
   EXPECT_EQ(plant.get("S.n"), "90000");
 }
 
+TEST(Scheduling, B1_TasksOfOnePriorityDoNotInterruptEachOther) {
+  Plant plant(R"(
+PROGRAM Long VAR i : DINT; END_VAR FOR i := 1 TO 25000 DO ; END_FOR END_PROGRAM
+PROGRAM Short VAR n : DINT; END_VAR n := n + 1; END_PROGRAM
+CONFIGURATION c RESOURCE r ON cpu
+  TASK One (INTERVAL := T#100ms, PRIORITY := 1); TASK Two (INTERVAL := T#10ms, PRIORITY := 1);
+  PROGRAM L WITH One : Long; PROGRAM S WITH Two : Short;
+END_RESOURCE END_CONFIGURATION)",
+              small_slices(), 1000);
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(2);
+  EXPECT_FALSE(plant->at_boundary());
+  EXPECT_EQ(plant.task("Two").scans, 0u) << "it waits for the end of the other one";
+  plant.cycles(1);
+  EXPECT_EQ(plant.task("One").scans, 1u);
+  EXPECT_EQ(plant.task("Two").scans, 1u);
+}
+
 TEST(Scheduling, ReleasesThatFindTheTaskRunningAreMissed) {
   // 25 ms of work every 10 ms.
   Plant plant(timed("T#10ms", "T#100ms", 25'000, 1), small_slices(), 1000);

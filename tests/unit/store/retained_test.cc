@@ -4,46 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "base/limits.h"
-#include "tests/unit/store/plc.h"
-#include "tests/unit/store/sim_storage.h"
+#include "tests/unit/store/carried.h"
 
 namespace plc {
 namespace {
-
-std::string program(const std::string& variables, const std::string& body = ";",
-                    const std::string& types = "") {
-  return types + "\nVAR_GLOBAL RETAIN " + variables + " END_VAR\nPROGRAM P VAR n : DINT; END_VAR " +
-         body + " n := n + 1; END_PROGRAM\n";
-}
-
-// Values of `before` set, saved, then the power fails and the program on the command line is
-// `after`: what stored values become.
-class Carried : public ::testing::Test {
- protected:
-  void begin(const std::string& before) {
-    plc_ = std::make_unique<Plc>(disk_);
-    const base::Status booted = plc_->boot(before);
-    ASSERT_TRUE(booted.ok()) << base::to_string(booted.error());
-    plc_->run(1);
-  }
-  void cut() {
-    disk_ = disk_.after_cut(sim::SimStorage::Choice(disk_.dirty().size(), 0));
-    plc_ = std::make_unique<Plc>(disk_);
-  }
-  // Linked against what ran, as a change would be.
-  void boot_with(const std::string& after) {
-    ASSERT_TRUE(plc_->save().ok());
-    const ir::VerifiedImage next = build(after, &plc_->controller().image());
-    cut();
-    const base::Status booted = plc_->boot(std::optional(next));
-    ASSERT_TRUE(booted.ok()) << base::to_string(booted.error());
-    EXPECT_TRUE(plc_->found().alarms.empty()) << plc_->found().alarms.front();
-  }
-
-  sim::SimStorage disk_;
-  std::unique_ptr<Plc> plc_;
-};
 
 TEST_F(Carried, D4_RetainedValuesComeBackAndOthersAreInitialised) {
   begin(program("r : INT := 3;"));
@@ -254,6 +221,10 @@ TEST_F(Carried, X5_case55_ALostTrialGoesBackAsUndoDoes) {
   ASSERT_TRUE(plc_->boot().ok());
   EXPECT_EQ(plc_->found().trial_lost, trial);
   EXPECT_EQ(plc_->status().trial_lost, trial);
+  const auto events = *online_change::read_journal(disk_, online_change::kJournalFile);
+  EXPECT_TRUE(std::any_of(events.begin(), events.end(), [&](const auto& entry) {
+    return entry.event == online_change::Event::kTrialLost && entry.from == trial;
+  }));
   EXPECT_EQ(plc_->get("gone"), "11") << "what the change dropped";
   EXPECT_EQ(plc_->get("narrow"), "100000") << "what it converted, and nobody wrote since";
   EXPECT_EQ(plc_->get("written"), "7") << "what was written since";
@@ -280,49 +251,6 @@ TEST_F(Carried, case57_AnAcceptedChangeThenTheOldProgramOnTheCommandLine) {
   ASSERT_TRUE(plc_->boot().ok());
   EXPECT_EQ(plc_->get("v"), "1235");
   ASSERT_TRUE(plc_->change(program("v : LINT; only_new : INT;")).ok());
-}
-
-// The newest values are those of the trial, in its layout, when another program takes the place of
-// both.
-TEST_F(Carried, case57_ALostTrialThenAnotherProgramOnTheCommandLine) {
-  begin(program("v : DINT; gone : INT := 4;"));
-  plc_->set("v", "1234");
-  plc_->set("gone", "5");
-  ASSERT_TRUE(plc_->change(program("v : LINT; added : INT;")).ok());
-  plc_->set("v", "1235");
-  ASSERT_TRUE(plc_->save().ok());
-  cut();
-  const base::Status booted = plc_->boot(program("v : INT; gone : DINT; other : INT;"));
-  ASSERT_TRUE(booted.ok()) << base::to_string(booted.error());
-  EXPECT_EQ(plc_->get("v"), "1235");
-  EXPECT_EQ(plc_->get("gone"), "5");
-  cut();  // before a save
-  ASSERT_TRUE(plc_->boot().ok());
-  EXPECT_EQ(plc_->get("v"), "1235");
-  EXPECT_EQ(plc_->get("gone"), "5");
-}
-
-// What only the new version retains is durable with the switch: an accept that is cut off before
-// anything else is saved finds it.
-TEST_F(Carried, X5_WhatBecomesRetainedIsDurableWithTheSwitch) {
-  begin("VAR_GLOBAL v : INT := 1; END_VAR PROGRAM P VAR n : DINT; END_VAR n := n + 1; END_PROGRAM");
-  plc_->set("v", "40");
-  ASSERT_TRUE(plc_->change(program("v : INT := 2;")).ok());
-  ASSERT_TRUE(plc_->store().accept().ok());
-  cut();
-  ASSERT_TRUE(plc_->boot().ok());
-  EXPECT_EQ(plc_->get("v"), "40");
-}
-
-TEST_F(Carried, X5_WhatWasWrittenOnTrialIsDurableWithTheUndo) {
-  begin(program("v : INT := 1;"));
-  ASSERT_TRUE(plc_->change(program("v : DINT := 1;")).ok());
-  plc_->set("v", "50");
-  ASSERT_TRUE(plc_->undo().ok());
-  cut();
-  ASSERT_TRUE(plc_->boot().ok());
-  EXPECT_FALSE(plc_->found().trial_lost);
-  EXPECT_EQ(plc_->get("v"), "50");
 }
 
 TEST_F(Carried, A17_BothVersionsAreStoredUntilOneIsFinal) {

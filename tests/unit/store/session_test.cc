@@ -73,6 +73,7 @@ TEST_F(Session, OneUploadAtATime) {
   EXPECT_FALSE(upload(2, 100, 100).ok()) << "the other one's";
   EXPECT_TRUE(upload(2, 0, 100).ok());
   EXPECT_FALSE(upload(1, 100, 100).ok()) << "the newer one has ended it";
+  EXPECT_FALSE(upload(2, 300, 100).ok()) << "a part is missing";
   EXPECT_TRUE(upload(2, 100, 100).ok());
 }
 
