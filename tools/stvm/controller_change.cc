@@ -22,8 +22,8 @@ base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) 
     upload_of_ = session_;
     upload_by_ = who_;
   }
-  if (upload_of_ != session_) return others_upload();
-  if (request.offset != upload_.size()) {
+  if (upload_of_ != session_ && !upload_.empty()) return others_upload();
+  if (upload_of_ != session_ || request.offset != upload_.size()) {
     return base::Error{base::Refusal::kProtocol, "parts of the package are missing"};
   }
   if (upload_.size() + request.data.size() > base::kMaxImageBytes) {
