@@ -145,7 +145,7 @@ void task_fields(Archive& a, T& v) {
   a.plain_list(v.programs);
   a(v.once);
   a.enumerator(v.policy.io, 2);
-  a.enumerator(v.policy.input_buffer, 5);
+  a.enumerator(v.policy.input_buffer, 6);
   a.enumerator(v.policy.overrun, 3);
   a.enumerator(v.policy.on_trap, 4);
   a(v.policy.freewheeling);

@@ -10,8 +10,17 @@ namespace ir {
 
 // Which inputs a scan works with, and when its outputs are sent (B6).
 enum class TaskIo : uint8_t { kNewest, kSynchronous };
-// How the inputs of a task are kept apart from what is received meanwhile (B4).
-enum class InputBuffer : uint8_t { kCopied, kLocked, kSwapped, kSwappedWithFlag, kThree };
+// How the inputs of a task are kept apart from what is received meanwhile (B4). All kinds but
+// kFirstUnseen show the newest that had arrived when the scan starts. Images store the numbers, so
+// more are appended only.
+enum class InputBuffer : uint8_t {
+  kCopied,
+  kLocked,
+  kSwapped,
+  kSwappedWithFlag,
+  kThree,
+  kFirstUnseen,
+};
 // What a release does that finds the scan of the last one still running (B7).
 enum class Overrun : uint8_t { kSkip, kStretch, kFault };
 // What a trap in a scan of the task does; unstated: what the controller's options say.

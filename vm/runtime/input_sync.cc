@@ -14,13 +14,18 @@ InputSync::InputSync(InputBuffer strategy, size_t bytes) : strategy_(strategy) {
 }
 
 void InputSync::write(std::span<const uint8_t> received) {
-  if (strategy_ == InputBuffer::kLocked && locked_) return;
-  if (strategy_ == InputBuffer::kSwappedWithFlag && fresh_) return;
+  if (strategy_ == InputBuffer::kLocked && locked_) {
+    behind_ = true;
+    return;
+  }
+  if (strategy_ == InputBuffer::kFirstUnseen && fresh_) return;
   std::copy(received.begin(), received.end(), buffers_[write_].begin());
   fresh_ = true;
+  behind_ = false;
   if (strategy_ == InputBuffer::kThree) std::swap(write_, wait_);
 }
 
+// Where nothing new has come, the buffer that could be swapped in holds what is older.
 void InputSync::begin() {
   locked_ = true;
   if (!fresh_) return;
@@ -33,6 +38,7 @@ void InputSync::begin() {
       break;
     case InputBuffer::kSwapped:
     case InputBuffer::kSwappedWithFlag:
+    case InputBuffer::kFirstUnseen:
       std::swap(read_, write_);
       break;
     case InputBuffer::kThree:

@@ -19,7 +19,7 @@ class InputSync {
   void write(std::span<const uint8_t> received);
   void begin();
   // No scan is going on, and what no scan has seen is old.
-  void restart() { fresh_ = locked_ = false; }
+  void restart() { fresh_ = locked_ = behind_ = false; }
   bool like(const InputSync& other) const {
     return strategy_ == other.strategy_ && buffers_[0].size() == other.buffers_[0].size();
   }
@@ -28,6 +28,9 @@ class InputSync {
   // Does a scan see what was received last when nobody writes until just before it begins? Then
   // there is no need to write in every cycle.
   bool reads_last_written() const { return strategy_ == ir::InputBuffer::kCopied; }
+  // Must what was received last be written before begin(), so that it is seen? The one buffer of
+  // kLocked took nothing while the scan before lasted.
+  bool wants_last() const { return reads_last_written() || behind_; }
 
  private:
   ir::InputBuffer strategy_ = ir::InputBuffer::kCopied;
@@ -35,8 +38,9 @@ class InputSync {
   uint8_t write_ = 0;
   uint8_t wait_ = 2;
   uint8_t read_ = 1;
-  bool fresh_ = false;  // written, not yet seen by a scan
+  bool fresh_ = false;   // written, not yet seen by a scan
   bool locked_ = false;
+  bool behind_ = false;  // something was not taken because of the lock
 };
 
 }  // namespace vm

@@ -41,7 +41,7 @@ void Scheduler::begin_task(TaskSlot& task) {
   task.run_ns = 0;
   task.fuel_used = 0;
   task.program = 0;
-  if (!task.synchronous() && task.inputs.reads_last_written()) task.inputs.write(tables_->inputs);
+  if (!task.synchronous() && task.inputs.wants_last()) task.inputs.write(tables_->inputs);
   task.inputs.begin();
   active_.push_back(&task);
   copy_inputs(task);

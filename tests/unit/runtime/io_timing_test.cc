@@ -50,6 +50,9 @@ END_RESOURCE END_CONFIGURATION
 )";
 }
 
+constexpr const char* kEveryBuffer[] = {
+    "copied", "locked", "swapped", "swapped_with_flag", "three", "first_unseen"};
+
 struct Seen {
   std::vector<std::pair<int, int>> sent;
   std::string torn;
@@ -108,7 +111,7 @@ TEST(IoTiming, B6_CycleSynchronousModeHasOneLatency) {
 }
 
 TEST(IoTiming, B6_SynchronousWithEveryBuffer) {
-  for (const char* buffer : {"copied", "locked", "swapped", "swapped_with_flag", "three"}) {
+  for (const char* buffer : kEveryBuffer) {
     SCOPED_TRACE(buffer);
     const Seen seen = run("{attribute 'io' := 'synchronous'} {attribute 'input_buffer' := '" +
                           std::string(buffer) + "'}");
@@ -118,10 +121,10 @@ TEST(IoTiming, B6_SynchronousWithEveryBuffer) {
   }
 }
 
-// All but the flag give the inputs of the cycle in which the scan starts.
+// All but first_unseen give the inputs of the cycle in which the scan starts.
 TEST(IoTiming, B3_B4_EveryStrategyKeepsAScanApart) {
   const Seen copied = run("");
-  for (const char* buffer : {"locked", "swapped", "three"}) {
+  for (const char* buffer : {"locked", "swapped", "swapped_with_flag", "three"}) {
     SCOPED_TRACE(buffer);
     const Seen seen = run("{attribute 'input_buffer' := '" + std::string(buffer) + "'}");
     EXPECT_EQ(seen.torn, "0");
@@ -129,18 +132,18 @@ TEST(IoTiming, B3_B4_EveryStrategyKeepsAScanApart) {
   }
 }
 
-// With the update flag a scan sees the first inputs that came behind the start of the one before:
-// a pulse of one cycle is not lost because others follow it.
-TEST(IoTiming, B4_UpdateFlagKeepsTheFirst) {
+// A scan sees the first inputs that came behind the start of the one before: a pulse of one cycle
+// is not lost because others follow it.
+TEST(IoTiming, B4_FirstUnseenKeepsTheFirst) {
   const Seen newest = run("");
-  const Seen flag = run("{attribute 'input_buffer' := 'swapped_with_flag'}");
-  EXPECT_EQ(flag.torn, "0");
-  ASSERT_GT(flag.sent.size(), 5u);
-  ASSERT_EQ(flag.sent.size(), newest.sent.size());
-  EXPECT_EQ(flag.sent[0], newest.sent[0]);
-  for (size_t i = 1; i < flag.sent.size(); ++i) {
-    EXPECT_EQ(flag.sent[i].first, newest.sent[i].first);
-    EXPECT_EQ(flag.sent[i].second, newest.sent[i - 1].second + 1);
+  const Seen first = run("{attribute 'input_buffer' := 'first_unseen'}");
+  EXPECT_EQ(first.torn, "0");
+  ASSERT_GT(first.sent.size(), 5u);
+  ASSERT_EQ(first.sent.size(), newest.sent.size());
+  EXPECT_EQ(first.sent[0], newest.sent[0]);
+  for (size_t i = 1; i < first.sent.size(); ++i) {
+    EXPECT_EQ(first.sent[i].first, newest.sent[i].first);
+    EXPECT_EQ(first.sent[i].second, newest.sent[i - 1].second + 1);
   }
 }
 
@@ -220,7 +223,7 @@ TEST(IoTiming, ForcedOutputsDoNotWait) {
 
 // Tables that rested during a trial have seen old inputs; behind undo and restart no scan does.
 TEST(IoTiming, UndoAndRestartForgetOldInputs) {
-  for (const char* buffer : {"copied", "locked", "swapped", "swapped_with_flag", "three"}) {
+  for (const char* buffer : kEveryBuffer) {
     SCOPED_TRACE(buffer);
     Plant plant(slow_copy("{attribute 'input_buffer' := '" + std::string(buffer) + "'}"));
     ASSERT_TRUE(plant.ok());
