@@ -318,6 +318,7 @@ class Linker {
     image_.safe = options_.safe;
     image_.access = program_.access;
     image_.shared = program_.shared;
+    image_.schedule = program_.schedule;
     return base::Ok{};
   }
 

@@ -60,8 +60,9 @@ ResourceDecl& Parser::unnamed_resource(ConfigDecl& config) {
 
 // RESOURCE name [ON type] ... END_RESOURCE
 void Parser::parse_resource(ConfigDecl& config) {
-  const Token opening = take();
   ResourceDecl resource;
+  resource.attributes = take_attributes();
+  const Token opening = take();
   resource.name = parse_name("resource");
   if (!panic_ && accept(TokenKind::kOn)) resource.type = parse_name("resource type");
   panic_ = false;

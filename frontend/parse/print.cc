@@ -207,6 +207,7 @@ void Printer::config(const ConfigDecl& decl) {
 }
 
 void Printer::resource(const ResourceDecl& decl) {
+  attributes(decl.attributes);
   std::string head = "RESOURCE";
   if (!decl.name.empty()) head += ' ' + std::string(decl.name.text);
   if (!decl.type.empty()) head += " ON " + std::string(decl.type.text);

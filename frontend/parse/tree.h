@@ -216,6 +216,7 @@ struct ResourceDecl {
   std::vector<VarBlock> globals;  // also VAR_ACCESS and VAR_CONFIG, as in ConfigDecl
   std::vector<TaskDecl> tasks;
   std::vector<ProgramDecl> programs;
+  Range32 attributes;
 };
 
 struct ConfigDecl {

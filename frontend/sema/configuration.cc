@@ -88,7 +88,11 @@ void Sema::configure() {
   if (config.resources.size() > 1 && resource_ != nullptr) {
     program.name += "." + std::string(resource_->name.text);
   }
-  if (resource_ != nullptr) configure_resource(*resource_);
+  if (resource_ != nullptr) {
+    apply_schedule(*this, config.name, config.attributes);
+    apply_schedule(*this, resource_->name, resource_->attributes);
+    configure_resource(*resource_);
+  }
   if (resource_ == nullptr || resource_->programs.empty()) {
     error(DiagnosticCode::kNoPrograms, config.span, "the CONFIGURATION names no program to run",
           "add PROGRAM name WITH task : Type;");

@@ -1,6 +1,7 @@
 #include "frontend/sema/task_attributes.h"
 
 #include <numeric>
+#include <optional>
 
 #include "base/limits.h"
 #include "frontend/lex/literals.h"
@@ -51,12 +52,12 @@ void apply_task_attributes(Sema& sema, const TaskDecl& decl, ir::Task& task) {
     }
   }
   const bool periodic = !decl.single.valid() && !task.policy.freewheeling;
-  if (task.policy.io == ir::TaskIo::kSynchronous && !periodic) {
+  if (const ir::PolicyConflict* conflict = ir::policy_conflict(task.policy, periodic)) {
     sema.error(Code::kBadTaskPolicy, decl.span,
-               "task " + quoted(decl.name.text) +
-                   " has no period that its inputs and outputs could be synchronous with",
-               "give it an INTERVAL alone, or leave the attribute `io` out");
+               "task " + quoted(decl.name.text) + " has " + std::string(conflict->text),
+               std::string(conflict->way_out));
     task.policy.io = ir::TaskIo::kNewest;
+    task.policy.overrun = ir::Overrun::kSkip;
   }
   if (!task.policy.freewheeling) return;
   if (decl.interval.valid() || decl.single.valid()) {
@@ -66,6 +67,22 @@ void apply_task_attributes(Sema& sema, const TaskDecl& decl, ir::Task& task) {
   }
   task.period_ns = 0;
   task.event = ir::kNoEvent;
+}
+
+void apply_schedule(Sema& sema, const Name& owner, Range32 attributes) {
+  for (uint32_t i = 0; i < attributes.count; ++i) {
+    const Attribute& attribute = sema.tree.attributes[attributes.first + i];
+    if (!ir::same_name(attribute.name.text, ir::kScheduleAttribute)) continue;
+    const std::optional<ir::Schedule> schedule = ir::schedule_of(attribute.value);
+    if (schedule) {
+      sema.program.schedule = *schedule;
+      continue;
+    }
+    sema.error(Code::kBadTaskPolicy, attribute.name.span,
+               "the attribute `schedule` of " + quoted(owner.text) + " cannot be " +
+                   quoted(attribute.value),
+               "write one of send_first, run_first");
+  }
 }
 
 void check_base_cycle(Sema& sema, const std::vector<TaskDecl>& decls) {

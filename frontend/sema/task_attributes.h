@@ -1,4 +1,5 @@
-// Attributes in front of TASK: its policies (ir/program/task_policy.h) and its watchdog time.
+// Attributes in front of TASK: its policies (ir/program/task_policy.h) and its watchdog time. In
+// front of RESOURCE, or of its CONFIGURATION: its schedule.
 #pragma once
 
 #include "frontend/sema/sema.h"
@@ -7,6 +8,8 @@ namespace frontend {
 
 // Reports values that are none (E5009); attributes with other names are somebody else's.
 void apply_task_attributes(Sema& sema, const TaskDecl& decl, ir::Task& task);
+
+void apply_schedule(Sema& sema, const Name& owner, Range32 attributes);
 
 // What all periods are multiples of is the control cycle; a period that fits no other would make it
 // so short that nothing could keep up with it (E5002). `decls` are the newest of Program::tasks.

@@ -17,7 +17,9 @@
 namespace ir {
 namespace {
 
+// Controllers that know no schedules take the images that have none of their own.
 constexpr uint32_t kVersion = 7;
+constexpr uint32_t kVersionOfSchedules = 8;
 constexpr size_t kDigestAt = 16;
 constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 
@@ -29,6 +31,15 @@ base::Error bad_format(std::string text) {
   return {base::Refusal::kBadFormat, "image: " + std::move(text)};
 }
 
+uint32_t version_of(const Image& image) {
+  return image.schedule == Schedule::kSendFirst ? kVersion : kVersionOfSchedules;
+}
+
+// Of a header that is there.
+uint32_t stored_version(base::ByteSpan bytes) {
+  return base::ByteReader(bytes.subspan(kImageMagic.size())).u32();
+}
+
 base::Status check_header(base::ByteSpan bytes) {
   base::ByteReader in(bytes);
   const base::ByteSpan magic = in.raw(kImageMagic.size());
@@ -38,9 +49,9 @@ base::Status check_header(base::ByteSpan bytes) {
   if (in.failed()) return bad_format("only " + std::to_string(bytes.size()) + " bytes");
   if (!std::equal(magic.begin(), magic.end(), kImageMagic.begin()))
     return bad_format("no magic number");
-  if (version != kVersion) {
+  if (version != kVersion && version != kVersionOfSchedules) {
     return bad_format("version " + std::to_string(version) + ", this program reads " +
-                      std::to_string(kVersion));
+                      std::to_string(kVersion) + " and " + std::to_string(kVersionOfSchedules));
   }
   if (length > base::kMaxImageBytes) {
     return base::Error{base::Refusal::kTooLarge, "image of " + std::to_string(length) +
@@ -150,7 +161,7 @@ WrittenImage encode(const Image& image, const KnownImage* known) {
   ImageWriter out(known == nullptr ? rough_bytes(image) : known->bytes.size() + kBytesForThreads);
   const Contents known_contents = contents_of(known);
   out.raw(base::as_bytes(kImageMagic));
-  out(kVersion);
+  out(version_of(image));
   out(0u);
   out.raw(base::Digest{});
   for (uint32_t number = 0; number < kImageSectionCount; ++number) {
@@ -210,6 +221,11 @@ base::Result<DecodedImage> decode(base::ByteSpan bytes, const KnownImage* known)
     if (!part.done.ok()) return part.done.error();
   }
   if (!whole.ok()) return whole.error();
+  const uint32_t stored = stored_version(bytes);
+  if (stored != version_of(out.image)) {  // the checksum does not cover it
+    return bad_format("version " + std::to_string(stored) + ", its sections are of version " +
+                      std::to_string(version_of(out.image)));
+  }
   return out;
 }
 

@@ -198,6 +198,7 @@ struct Image {
   uint32_t input_bytes = 0;  // process image sizes
   uint32_t output_bytes = 0;
   std::vector<Device> devices;
+  Schedule schedule = Schedule::kSendFirst;
 
   // Live program instances in declaration order.
   std::vector<uint32_t> program_ids() const;

@@ -43,6 +43,12 @@ class ImageWriter {
   void enumerator(const E& v, uint32_t) {
     number(static_cast<uint8_t>(v));
   }
+  // At the end of a section: the first enumerator takes no byte, so a section that has it is what
+  // it was before the format had this field.
+  template <class E>
+  void last_enumerator(const E& v, uint32_t) {
+    if (v != E{}) number(static_cast<uint8_t>(v));
+  }
   // `min_size`: bytes of the smallest record.
   template <class T, class Each>
   void list(const std::vector<T>& v, size_t, Each&& each) {
@@ -153,6 +159,12 @@ class ImageReader {
   template <class E>
   void enumerator(E& v, uint32_t limit) {
     v = in_.enumerator<E>(limit);
+  }
+  template <class E>
+  void last_enumerator(E& v, uint32_t limit) {
+    if (in_.left() == 0) return;
+    v = in_.enumerator<E>(limit);
+    if (v == E{}) in_.fail();  // one image has one stored form
   }
   template <class T, class Each>
   void list(std::vector<T>& v, size_t min_size, Each each) {

@@ -146,7 +146,7 @@ void task_fields(Archive& a, T& v) {
   a(v.once);
   a.enumerator(v.policy.io, 2);
   a.enumerator(v.policy.input_buffer, 6);
-  a.enumerator(v.policy.overrun, 3);
+  a.enumerator(v.policy.overrun, 5);
   a.enumerator(v.policy.on_trap, 4);
   a(v.policy.freewheeling);
 }

@@ -116,6 +116,7 @@ void program_section(Archive& a, I& image) {
   a(image.call_depth);
   a(image.input_bytes);
   a(image.output_bytes);
+  a.last_enumerator(image.schedule, kScheduleCount);
 }
 
 // With the places that its tables have here.

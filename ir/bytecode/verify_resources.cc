@@ -56,9 +56,9 @@ class ResourcesVerifier {
       const bool period = task.once || free
                               ? task.period_ns == 0 && task.event == 0 && !(task.once && free)
                               : task.period_ns > 0 || (task.period_ns == 0 && task.event != 0);
-      if (task.policy.io == TaskIo::kSynchronous && (task.period_ns == 0 || task.event != 0)) {
-        return bad("no period that its inputs and outputs could be synchronous with");
-      }
+      const bool periodic = task.period_ns != 0 && task.event == 0;
+      const PolicyConflict* conflict = policy_conflict(task.policy, periodic);
+      if (conflict != nullptr) return bad(std::string(conflict->text));
       if (!period) return bad("period of " + std::to_string(task.period_ns) + " ns");
       if (task.event != 0 && !is_event(task.event)) return bad("its event is no BOOL global");
       if (task.period_ns > kLongestTimeNs) return bad("a period of more than a year");

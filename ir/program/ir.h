@@ -331,6 +331,7 @@ struct Program {
   std::vector<Override> overrides;  // sorted by type, then prototype; no pair twice
   std::vector<Migration> migrations;
   std::vector<SharedGlobal> shared;  // by member; none where there is one resource
+  Schedule schedule = Schedule::kSendFirst;
 
   PouId find_pou(std::string_view name) const;    // without case
   PouId pou_of_instance_type(TypeId type) const;  // its body

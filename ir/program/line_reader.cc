@@ -240,4 +240,10 @@ void LineReader::policy(TaskPolicy& policy) {
   if (!apply_policy(policy, attribute, value)) fail("unknown task policy");
 }
 
+Schedule LineReader::schedule() {
+  const std::optional<Schedule> found = schedule_of(word());
+  if (!found) fail("unknown schedule");
+  return found.value_or(Schedule::kSendFirst);
+}
+
 }  // namespace ir

@@ -44,6 +44,7 @@ class LineReader {
   uint32_t choice(std::span<const std::string_view> words);
   Scalar scalar();
   void policy(TaskPolicy& policy);  // an attribute, with its value if it has one
+  Schedule schedule();
 
  private:
   enum class Kind : uint8_t { kWord, kNumber, kString, kPunctuation };

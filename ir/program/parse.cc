@@ -67,8 +67,9 @@ class ProgramParser {
       std::string_view word;
       void (ProgramParser::*parse)(LineReader&);
     };
-    constexpr std::array<Declaration, 10> kDeclarations = {{
+    constexpr std::array<Declaration, 11> kDeclarations = {{
         {"program", &ProgramParser::parse_name},
+        {"schedule", &ProgramParser::parse_schedule},
         {"type", &ProgramParser::parse_type},
         {"member", &ProgramParser::parse_member},
         {"const", &ProgramParser::parse_constant},
@@ -100,6 +101,7 @@ class ProgramParser {
   }
 
   void parse_name(LineReader& line) { program_.name = line.name(); }
+  void parse_schedule(LineReader& line) { program_.schedule = line.schedule(); }
   void parse_globals(LineReader& line) { program_.globals = scope_.type(line); }
 
   void parse_type(LineReader& line) {

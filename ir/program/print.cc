@@ -36,6 +36,9 @@ class ProgramPrinter {
 
   std::string print() {
     text_ = "program " + name_text(program_.name) + "\n";
+    if (program_.schedule != Schedule::kSendFirst) {
+      text_ += "schedule " + std::string(schedule_text(program_.schedule)) + "\n";
+    }
     for (uint32_t i = kElementaryCount; i < program_.types.size(); ++i) {
       print_type(TypeId(i));
     }

@@ -35,6 +35,10 @@ constexpr TaskChoice kChoices[] = {
     CHOICE("overrun", overrun, Overrun::kStretch, "stretch",
            "it waits for the end of the scan, and the period counts from there"),
     CHOICE("overrun", overrun, Overrun::kFault, "fault", "it ends the scan as a trap does"),
+    CHOICE("overrun", overrun, Overrun::kAtOnce, "at_once",
+           "it begins as soon as the scan has ended, with the newest inputs"),
+    CHOICE("overrun", overrun, Overrun::kLengthen, "lengthen",
+           "the control cycle lasts until the scan has ended: inputs and outputs wait"),
     CHOICE("on_trap", on_trap, OnTrap::kStopAll, "stop_all",
            "all tasks stop; all outputs take their safe values"),
     CHOICE("on_trap", on_trap, OnTrap::kStopTask, "stop_task",
@@ -47,7 +51,29 @@ constexpr TaskChoice kChoices[] = {
 
 #undef CHOICE
 
+constexpr PolicyConflict kNotSynchronous = {
+    "no period that its inputs and outputs could be synchronous with",
+    "give it an INTERVAL alone, or leave the attribute `io` out"};
+constexpr PolicyConflict kNothingToLengthenFor = {
+    "no period at whose end the control cycle could be lengthened",
+    "give it an INTERVAL alone, or another `overrun`"};
+constexpr PolicyConflict kNeverLate = {
+    "no releases that could find its scan running",
+    "leave the attribute `overrun` out: a freewheeling task is released when its scan has ended"};
+constexpr PolicyConflict kOldInputs = {
+    "inputs that are synchronous with its period, so it cannot start at once with the newest",
+    "leave the attribute `io` out, or give it another `overrun`"};
+
 }  // namespace
+
+const PolicyConflict* policy_conflict(const TaskPolicy& policy, bool periodic) {
+  const bool synchronous = policy.io == TaskIo::kSynchronous;
+  if (synchronous && !periodic) return &kNotSynchronous;
+  if (policy.overrun == Overrun::kLengthen && !periodic) return &kNothingToLengthenFor;
+  if (policy.overrun != Overrun::kAtOnce) return nullptr;
+  if (policy.freewheeling) return &kNeverLate;
+  return synchronous ? &kOldInputs : nullptr;
+}
 
 TaskChoices task_choices() { return {std::begin(kChoices), std::end(kChoices)}; }
 
@@ -57,6 +83,21 @@ const TaskChoice* find_task_choice(std::string_view attribute, std::string_view 
       return &choice;
   }
   return nullptr;
+}
+
+namespace {
+constexpr std::string_view kSchedules[kScheduleCount] = {"send_first", "run_first"};
+}  // namespace
+
+std::string_view schedule_text(Schedule schedule) {
+  return kSchedules[static_cast<size_t>(schedule)];
+}
+
+std::optional<Schedule> schedule_of(std::string_view text) {
+  for (uint32_t i = 0; i < kScheduleCount; ++i) {
+    if (base::same_name(kSchedules[i], text)) return static_cast<Schedule>(i);
+  }
+  return std::nullopt;
 }
 
 bool apply_policy(TaskPolicy& policy, std::string_view attribute, std::string_view value) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -21,8 +22,8 @@ enum class InputBuffer : uint8_t {
   kThree,
   kFirstUnseen,
 };
-// What a release does that finds the scan of the last one still running (B7).
-enum class Overrun : uint8_t { kSkip, kStretch, kFault };
+// What a release does that finds the scan of the last one still running (B7). Append only.
+enum class Overrun : uint8_t { kSkip, kStretch, kFault, kAtOnce, kLengthen };
 // What a trap in a scan of the task does; unstated: what the controller's options say.
 enum class OnTrap : uint8_t { kUnstated, kStopAll, kStopTask, kGoOn };
 
@@ -56,6 +57,24 @@ TaskChoices task_choices();
 // nullptr: there is no such attribute, or it does not have this value. Case does not matter.
 const TaskChoice* find_task_choice(std::string_view attribute, std::string_view value);
 bool apply_policy(TaskPolicy& policy, std::string_view attribute, std::string_view value);
+
+// What a policy asks for that the task cannot have: "task t has TEXT", and the way out. `periodic`:
+// it is released by its period alone. nullptr: nothing.
+struct PolicyConflict {
+  std::string_view text;
+  std::string_view way_out;
+};
+const PolicyConflict* policy_conflict(const TaskPolicy& policy, bool periodic);
+
+// What a control cycle of a resource begins with (B2): {attribute 'schedule' := 'run_first'} in
+// front of RESOURCE. With kRunFirst the tasks work with the inputs that were received at the end of
+// the cycle before, and what they have written is sent in their own cycle. Append only.
+enum class Schedule : uint8_t { kSendFirst, kRunFirst };
+inline constexpr uint32_t kScheduleCount = 2;
+inline constexpr std::string_view kScheduleAttribute = "schedule";
+std::string_view schedule_text(Schedule schedule);
+// nullopt: there is none of this name. Case does not matter.
+std::optional<Schedule> schedule_of(std::string_view text);
 
 // What differs from the default, as " attribute value" each.
 std::string policy_text(const TaskPolicy& policy);

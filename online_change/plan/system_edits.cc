@@ -33,6 +33,7 @@ class Edits {
   std::vector<SystemEdit> run() {
     attributes();
     addresses();
+    schedule();
     tasks();
     programs();
     safe_outputs();
@@ -131,6 +132,13 @@ class Edits {
   static uint64_t end_of(const ir::Image& image, const ir::Layouts& natural,
                          const ir::IoBinding& row) {
     return row.address.bit_offset + ir::located_bits(image.types, natural, row.type, row.address);
+  }
+
+  void schedule() {
+    if (old_.schedule == new_.schedule) return;
+    add("resource", new_.name,
+        "schedule " + from_to(std::string(ir::schedule_text(old_.schedule)),
+                              std::string(ir::schedule_text(new_.schedule))));
   }
 
   void tasks() {

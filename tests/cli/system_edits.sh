@@ -18,7 +18,7 @@ VAR_GLOBAL RETAIN r : INT; END_VAR
 VAR_GLOBAL k : INT := 3; END_VAR
 PROGRAM P out1 := in1; out2 := TRUE; plain := plain + k; END_PROGRAM
 PROGRAM Q r := r + 1; END_PROGRAM
-CONFIGURATION C RESOURCE R ON PLC {attribute 'watchdog' := 'T#5ms'} {attribute 'overrun' := 'stretch'} TASK A(INTERVAL := T#5ms, PRIORITY := 3); TASK B(INTERVAL := T#20ms, PRIORITY := 2); TASK D(INTERVAL := T#80ms, PRIORITY := 5);
+CONFIGURATION C {attribute 'schedule' := 'run_first'} RESOURCE R ON PLC {attribute 'watchdog' := 'T#5ms'} {attribute 'overrun' := 'stretch'} TASK A(INTERVAL := T#5ms, PRIORITY := 3); TASK B(INTERVAL := T#20ms, PRIORITY := 2); TASK D(INTERVAL := T#80ms, PRIORITY := 5);
 PROGRAM q1 WITH A : Q; PROGRAM p1 WITH A : P; PROGRAM q2 WITH D : Q; PROGRAM q3 WITH B : Q;
 END_RESOURCE END_CONFIGURATION
 ST
@@ -36,6 +36,7 @@ variable out2 (%QX0.1 -> no address; nobody writes %QX0.1 any more)
 variable x (%QB52 -> %QB30)
 variable y (%QB24 -> %QB31; nobody writes %QB24 any more)
 variable plain (no address -> %QW10)
+resource C (schedule send_first -> run_first)
 task A (interval T#10ms -> T#5ms)
 task A (priority 1 -> 3)
 task A (watchdog T#100ms -> T#5ms)
@@ -54,7 +55,7 @@ all_is_said
 expect 0 stc diff v1 v2 --format json
 said '"kind": *"task"'
 expect 0 stc diff v1 v1
-grep -qE '^(variable|task|program|output) ' out && fail "nothing changes there"
+grep -qE '^(variable|resource|task|program|output) ' out && fail "nothing changes there"
 serve plc v1
 expect 0 stvm change v2 --dir plc --dry-run
 all_is_said

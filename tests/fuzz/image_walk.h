@@ -45,6 +45,10 @@ class ImageWalk {
   void enumerator(E& v, uint32_t limit) {
     visitor_.enumerator(place_of(v), v, limit);
   }
+  template <class E>
+  void last_enumerator(E& v, uint32_t limit) {
+    enumerator(v, limit);
+  }
   template <class T, class Each>
   void list(std::vector<T>& v, size_t, Each&& each) {
     const ImageWalk outside = *this;

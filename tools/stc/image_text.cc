@@ -61,7 +61,9 @@ std::string tasks_text(const ir::Image& image) {
     if (task.policy.freewheeling) period = "free";
     table.row({task.name, period, number(task.priority), programs});
   }
-  return table.text() + policies_text(image);
+  const bool usual = image.schedule == ir::Schedule::kSendFirst;
+  const std::string schedule = "schedule " + std::string(ir::schedule_text(image.schedule)) + "\n";
+  return (usual ? "" : schedule) + table.text() + policies_text(image);
 }
 
 std::string overrides_text(const ir::Image& image) {

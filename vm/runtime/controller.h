@@ -4,8 +4,9 @@
 // A control cycle (base period = greatest common divisor of all task periods):
 // outputs sent, inputs received, due tasks run by priority with safe-point
 // suspension of lower ones, then service at the boundary (D6): commands, watches,
-// and whatever online change has armed. A boundary is an instant at which no
-// execution exists; a long low-priority task postpones it.
+// and whatever online change has armed. With ir::Schedule::kRunFirst the tasks run before the
+// exchange. A boundary is an instant at which no execution exists; a long low-priority task
+// postpones it.
 #pragma once
 
 #include <cstdint>
@@ -101,7 +102,9 @@ class Controller {
                                                          IoPort& io, base::ByteSpan retained = {});
   ~Controller();
 
-  // Runs one control cycle, waiting for its start first; nothing when faulted.
+  // Runs one control cycle, waiting for its start first; nothing when faulted. It returns before
+  // the cycle is over where a task that was late starts `at_once` and a boundary can come first;
+  // the next call goes on, without waiting. Both count as cycles.
   void cycle();
   // At a boundary, in the idle time before the next cycle (B10, C5): calls `unit` until it says
   // that it had nothing to do, or another one might not be over when the cycle begins. A unit takes
@@ -114,7 +117,8 @@ class Controller {
   bool faulted() const;
   // Next instant at which a task is released.
   int64_t next_release_ns() const;
-  // Start of the next control cycle, with or without a release: idle time ends here.
+  // Start of the next control cycle, with or without a release: idle time ends here. An instant
+  // that has passed when cycle() has returned before the cycle was over.
   int64_t next_cycle_ns() const;
   int64_t base_period_ns() const;
 

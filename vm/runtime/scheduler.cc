@@ -27,6 +27,7 @@ void Scheduler::use(TaskTables& tables, uint8_t* memory) {
     next_cycle_ns_ = tables.next_cycle_ns(cycle_start_ns_);
   }
   outputs_stale_ = true;
+  received_ahead_ = false;  // not all that this version reads
 }
 
 // Events are looked at from the first cycle on.
@@ -83,7 +84,7 @@ void Scheduler::restart() {
   next_cycle_ns_ = next(next_cycle_ns_, tables_->base_period_ns, clock_.now_ns());
   for (TaskSlot& task : tables_->tasks) {
     task.status.stopped = task.released = task.event_level = false;
-    task.stretched = task.overran = task.io_lost = false;
+    task.due_again = task.overran = task.io_lost = false;
     task.inputs.restart();
     std::fill(task.waiting_mask.begin(), task.waiting_mask.end(), uint8_t{0});
     const int64_t period = task.status.period_ns;
@@ -92,24 +93,67 @@ void Scheduler::restart() {
   std::fill(tables_->waiting_mask.begin(), tables_->waiting_mask.end(), uint8_t{0});
   tables_->safe.forget_holds();
   outputs_stale_ = true;
-  faulted_ = start_pending_ = false;
+  faulted_ = start_pending_ = paused_ = lengthened_ = false;
+  received_ahead_ = send_pending_ = false;
 }
 
 void Scheduler::run_cycle() {
   if (faulted_) return refresh_safe_outputs();
-  begin_cycle();
+  if (!std::exchange(paused_, false)) begin_cycle();
   if (start_pending_) finish_start_tasks();
   start_pending_ = false;
-  while (TaskSlot* task = choose()) {
+  for (;;) {
+    if (send_pending_ && !due_is_running()) exchange();
+    TaskSlot* task = choose();
+    if (task == nullptr) break;
     run_slice(*task);
-    if (looked_ns_ >= next_cycle_ns_) break;
+    const bool again = std::exchange(again_, false);
+    if (looked_ns_ >= next_cycle_ns_ && !lengthens_cycle()) break;
+    if (again && at_boundary()) return pause();
   }
+  if (send_pending_) exchange();
+  end_cycle();
+}
+
+// B7, when the next cycle could begin: would a task be due in it whose scan is not done? Then
+// inputs, outputs and all other releases wait until the scan is done.
+bool Scheduler::lengthens_cycle() {
+  const int64_t passed_by = (looked_ns_ - next_cycle_ns_) / tables_->base_period_ns;
+  const int64_t begins_ns = next_cycle_ns_ + passed_by * tables_->base_period_ns;
+  bool late = false;
+  for (TaskSlot& task : tables_->tasks) {
+    if (task.policy.overrun != ir::Overrun::kLengthen) continue;
+    if (!task.released && !is_active(task)) continue;
+    // A slice can last over the begin of several cycles: if it is due in any of them, all move.
+    lengthened_ = lengthened_ || task.next_release_ns <= begins_ns;
+    if (task.next_release_ns > next_cycle_ns_) continue;
+    late = true;
+    if (!std::exchange(task.due_again, true)) ++task.status.overruns;
+  }
+  return late;
+}
+
+// It counts as a cycle: what is seen at this boundary is not what is seen at the end.
+void Scheduler::pause() {
+  paused_ = true;
   ++cycles_;
+}
+
+// A cycle that was lengthened moves all that come behind it: nobody has missed a release.
+void Scheduler::end_cycle() {
+  ++cycles_;
+  if (!std::exchange(lengthened_, false) || looked_ns_ <= next_cycle_ns_) return;
+  const int64_t longer_ns = looked_ns_ - next_cycle_ns_;
+  cycle_start_ns_ += longer_ns;
+  next_cycle_ns_ += longer_ns;
+  for (TaskSlot& task : tables_->tasks) {
+    if (task.status.period_ns != 0) task.next_release_ns += longer_ns;
+  }
 }
 
 void Scheduler::run_idle(const std::function<bool()>& unit) {
   base::check(at_boundary(), "idle work while a task is inside a scan");
-  while (clock_.now_ns() + kIdleUnitNs <= next_cycle_ns_ && unit()) clock_.consumed(1);
+  while (clock_.now_ns() + kIdleUnitNs <= next_cycle_ns() && unit()) clock_.consumed(1);
 }
 
 void Scheduler::begin_cycle() {
@@ -120,16 +164,48 @@ void Scheduler::begin_cycle() {
   cycle_start_ns_ = next_cycle_ns_ + (looked_ns_ - next_cycle_ns_) / base * base;
   next_cycle_ns_ = cycle_start_ns_ + base;
   pack_stale_outputs();
-  send_waiting_outputs();
+  take_waiting_outputs();
+  // The first cycle behind a start or a change has no inputs of the cycle before.
+  send_pending_ = tables_->schedule == ir::Schedule::kRunFirst;
+  receive_pending_ = send_pending_ && std::exchange(received_ahead_, false);
+  if (!receive_pending_) {
+    send();
+    receive();
+  }
+  if (at_boundary()) io_.take_globals(tables_->shared, memory_);
+  look_at_events();
+  release_due_tasks();
+}
+
+void Scheduler::send() {
   end_holds(cycle_start_ns_);
   impose_on_outputs();
   io_.send(tables_->outputs);
+}
+
+void Scheduler::receive() {
   io_.receive(tables_->inputs);
   look_at_losses();
-  if (at_boundary()) io_.take_globals(tables_->shared, memory_);
   offer_inputs();
-  look_at_events();
-  release_due_tasks();
+}
+
+// B2, when tasks run first. At most one receive() in each call of run_cycle(): a recording has room
+// for no more.
+void Scheduler::exchange() {
+  send();
+  if (receive_pending_) receive();
+  send_pending_ = receive_pending_ = false;
+  received_ahead_ = true;
+}
+
+// What goes on from a cycle before is not waited for, nor what is released whenever it is idle.
+bool Scheduler::due_is_running() const {
+  for (const TaskSlot& task : tables_->tasks) {
+    if (task.policy.freewheeling) continue;
+    const bool begun = task.begun_in_cycle == cycles_ + 1;
+    if (begun ? is_active(task) : task.released) return true;
+  }
+  return false;
 }
 
 void Scheduler::pack_stale_outputs() {
@@ -181,10 +257,15 @@ bool Scheduler::release(TaskSlot& task, int64_t due_ns) {
   ++task.status.overruns;
   switch (task.policy.overrun) {
     case ir::Overrun::kSkip:
+    case ir::Overrun::kLengthen:  // a cycle has passed since the clock was looked at last
       ++task.status.missed;
       break;
     case ir::Overrun::kStretch:
-      task.stretched = true;
+      task.due_again = true;
+      break;
+    case ir::Overrun::kAtOnce:  // one start for all releases that the scan is late for
+      if (task.due_again) ++task.status.missed;
+      if (!std::exchange(task.due_again, true)) task.due_again_ns = due_ns;
       break;
     case ir::Overrun::kFault:
       task.overran = true;
@@ -240,7 +321,7 @@ void Scheduler::take_packed() {
 }
 
 // B6: results of a period are sent in the first cycle of the next one.
-void Scheduler::send_waiting_outputs() {
+void Scheduler::take_waiting_outputs() {
   for (TaskSlot& task : tables_->tasks) {
     if (task.next_release_ns > cycle_start_ns_) continue;
     for (size_t i = 0; i < task.waiting_mask.size(); ++i) {

@@ -31,7 +31,9 @@ class Scheduler {
   // Variables that are sent as these were written from outside.
   void outputs_set(std::span<const WriteSet::OutputBits> outputs);
   void send_outputs() { io_.send(tables_->outputs); }
-  // Behind a fault: only outputs that are held for a time are looked after.
+  // Behind a fault: only outputs that are held for a time are looked after. Where a task starts
+  // again at once and nothing else is inside a scan, it returns at this boundary in the middle of
+  // the cycle, and the next call goes on: a task that is always late would leave no other one.
   void run_cycle();
   bool at_boundary() const { return active_.empty(); }
   bool faulted() const { return faulted_; }
@@ -39,7 +41,8 @@ class Scheduler {
   void fault();
   uint64_t cycles() const { return cycles_; }
   int64_t cycle_start_ns() const { return cycle_start_ns_; }
-  int64_t next_cycle_ns() const { return next_cycle_ns_; }
+  // When run_cycle() has something to do again: idle time ends there.
+  int64_t next_cycle_ns() const { return paused_ ? looked_ns_ : next_cycle_ns_; }
   const Traps& traps() const { return traps_; }
   uint64_t trap_count() const { return trap_count_; }
 
@@ -56,16 +59,24 @@ class Scheduler {
   enum class Look : uint8_t { kGoOn, kCycleOver };
 
   void begin_cycle();
+  void send();
+  void receive();
+  void exchange();
+  bool due_is_running() const;
   void finish_start_tasks();
   bool try_start_tasks(int64_t limit_ns);
   void pack_outputs();
   void pack_stale_outputs();
   void take_packed();
-  void send_waiting_outputs();
+  void take_waiting_outputs();
   void offer_inputs();
   void release_due_tasks();
   void release_due_task(TaskSlot& task);
   bool release(TaskSlot& task, int64_t due_ns);
+  void start_again(TaskSlot& task);
+  bool lengthens_cycle();
+  void pause();
+  void end_cycle();
   bool is_active(const TaskSlot& task) const;
   // Edges of events (ir::Task) release their tasks.
   void look_at_events();
@@ -111,7 +122,13 @@ class Scheduler {
   int64_t looked_ns_ = 0;       // when the clock was read last
   bool outputs_stale_ = false;  // new tables: pack before the next refresh
   bool starting_ = false;
+  bool send_pending_ = false;     // in this cycle, behind what is due (ir::Schedule)
+  bool receive_pending_ = false;  // then
+  bool received_ahead_ = false;   // by the cycle before, for what is due in the next one
   bool start_pending_ = false;
+  bool again_ = false;       // the task that has just ended starts at once again
+  bool paused_ = false;      // at a boundary in the middle of a cycle
+  bool lengthened_ = false;  // this cycle, for a task that was late
   bool trying_ = false;  // inside try_start_tasks()
   int64_t try_limit_ns_ = 0;
   bool try_failed_ = false;

@@ -120,14 +120,24 @@ void Scheduler::leave(TaskSlot& task) {
   base::check(active_.back() == &task, "only the topmost activation can end");
   active_.pop_back();
   task.inputs.end();
-  const bool again = std::exchange(task.stretched, false) && !task.status.stopped;
-  if (again && task.status.period_ns != 0) {
-    task.next_release_ns = next_cycle_ns_;
-  } else if (again) {
-    release(task, looked_ns_);
-  }
+  if (std::exchange(task.due_again, false) && !task.status.stopped) start_again(task);
   if (!active_.empty()) copy_inputs(*active_.back());
   look_at_events();
+}
+
+// B7: its scan has ended, and it was due before.
+void Scheduler::start_again(TaskSlot& task) {
+  if (task.policy.overrun == ir::Overrun::kAtOnce) {
+    task.released = again_ = true;
+    task.released_ns = task.due_again_ns;
+    task.begun_in_cycle = 0;  // a second time in this cycle, perhaps
+  } else if (task.policy.overrun == ir::Overrun::kStretch) {
+    if (task.status.period_ns == 0) {
+      release(task, looked_ns_);
+    } else {
+      task.next_release_ns = next_cycle_ns_;
+    }
+  }
 }
 
 // Where memory has run out, the trap has a record without a text that was made before.
@@ -171,6 +181,7 @@ void Scheduler::fault() {
   faulted_ = true;
   active_.clear();
   for (TaskSlot& task : tables_->tasks) task.released = false;
+  send_pending_ = false;
   make_outputs_safe(false);
   outputs_to_variables(tables_->written);
 }

@@ -56,6 +56,16 @@ void keep_phase(TaskSlot& slot, const TaskSlot& old, int64_t cycle_start_ns) {
   }
 }
 
+// The task was late before its scan could even begin, and the scan will have the policy of the new
+// version. A start that was to come at once has no scan then.
+void keep_overrun(TaskSlot& slot, const TaskSlot& old) {
+  const bool same = slot.policy.overrun == old.policy.overrun;
+  slot.due_again = same && old.due_again;
+  slot.due_again_ns = old.due_again_ns;
+  const bool left_out = !same && old.due_again && old.policy.overrun == ir::Overrun::kAtOnce;
+  slot.status.missed += left_out ? 1 : 0;
+}
+
 }  // namespace
 
 TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
@@ -63,6 +73,7 @@ TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
       own_code(made_for.code()),
       code(own_code.get()),
       version(made_for.verified()),
+      schedule(made_for.image().schedule),
       process_image(made_for.image()),
       shared(made_for.image()),
       safe(made_for.image()),
@@ -107,7 +118,7 @@ void TaskTables::adopt(TaskTables& previous, int64_t cycle_start_ns) {
   safe.apply(written, cycle_start_ns, outputs);
   for (TaskSlot& slot : tasks) {
     std::fill(slot.waiting_mask.begin(), slot.waiting_mask.end(), uint8_t{0});
-    slot.released = slot.io_lost = false;
+    slot.released = slot.due_again = slot.overran = slot.io_lost = false;
     slot.next_release_ns = previous.next_cycle_ns(cycle_start_ns);
     for (TaskSlot& old : previous.tasks) {
       slot.execution->count_on(*old.execution);
@@ -122,7 +133,7 @@ void TaskTables::adopt(TaskTables& previous, int64_t cycle_start_ns) {
       slot.released = old.released;
       slot.event_level = old.event_level;
       slot.released_ns = old.released_ns;
-      slot.stretched = slot.overran = false;
+      keep_overrun(slot, old);
       slot.io_lost = old.io_lost;
       keep_phase(slot, old, cycle_start_ns);
       if (same_outputs) keep_outputs(slot, old);

@@ -41,7 +41,8 @@ struct TaskSlot {
   int64_t released_ns = 0;      // when the release was due that it begins with
   bool once = false;            // start code
   bool released = false;        // due, not yet begun
-  bool stretched = false;       // due again, to be released when its scan is done
+  bool due_again = false;       // its scan was not done; what its end does: ir::Overrun
+  int64_t due_again_ns = 0;     // since when
   bool overran = false;         // due again, to be ended by a trap
   bool io_lost = false;         // its next scan begins with a trap
   uint64_t begun_in_cycle = 0;  // number of the cycle, from 1: once in each at most
@@ -85,6 +86,7 @@ struct TaskTables {
   std::vector<TaskSlot> tasks;  // as in the image
   std::vector<uint32_t> by_priority;  // highest first, then as declared
   int64_t base_period_ns = 0;
+  ir::Schedule schedule = ir::Schedule::kSendFirst;
   ProcessImage process_image;
   SharedGlobals shared;
   SafeOutputs safe;

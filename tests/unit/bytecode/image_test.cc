@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/limits.h"
+#include "ir/bytecode/image_sections.h"
 #include "ir/bytecode/verify.h"
 #include "tests/unit/bytecode/sample_image.h"
 
@@ -64,6 +65,39 @@ TEST(Image, RefusalsOfTheForm) {
   bytes.back() ^= 1;
   EXPECT_EQ(ir::decode(bytes).error().refusal, Refusal::kBadHash);
   EXPECT_EQ(ir::decode({}).error().refusal, Refusal::kBadFormat);
+}
+
+// An image whose resource sends first is what it was before there were schedules; the other one
+// says that older controllers cannot run it. One image has one stored form.
+TEST(Image, ScheduleIsStoredWhereItIsNotTheFirst) {
+  constexpr size_t kVersionAt = 8;
+  ir::Image image = sample::busy_image();
+  const base::Bytes usual = ir::encode(image);
+  EXPECT_EQ(usual[kVersionAt], 7);
+  image.schedule = ir::Schedule::kRunFirst;
+  base::Bytes other = ir::encode(image);
+  EXPECT_EQ(other[kVersionAt], 8);
+  EXPECT_EQ(other.size(), usual.size() + 1);
+  EXPECT_NE(ir::digest(other), ir::digest(usual));
+  const auto decoded = ir::decode(other);
+  ASSERT_TRUE(decoded.ok()) << decoded.error().text;
+  EXPECT_EQ(decoded->schedule, ir::Schedule::kRunFirst);
+  EXPECT_EQ(ir::encode(*decoded), other);
+  EXPECT_EQ(ir::decode(usual)->schedule, ir::Schedule::kSendFirst);
+  for (const uint8_t version : {6, 7, 9}) {
+    other[kVersionAt] = version;
+    EXPECT_EQ(ir::decode(other).error().refusal, Refusal::kBadFormat);
+  }
+  // The first one, said in a byte of its own.
+  other[kVersionAt] = 8;
+  const size_t at = 48 + 8 + ir::section_of(other, ir::ImageSection::kProgram).size() - 1;
+  ASSERT_EQ(other[at], 1);
+  for (const uint8_t schedule : {0, 2}) {
+    other[at] = schedule;
+    const base::Digest sum = base::sha256(base::ByteSpan(other).subspan(48));
+    std::copy(sum.begin(), sum.end(), other.begin() + 16);
+    EXPECT_EQ(ir::decode(other).error().refusal, Refusal::kBadFormat) << int{schedule};
+  }
 }
 
 // The header says a length that the limit allows, and one byte more.

@@ -520,6 +520,25 @@ TEST(Verify, V15_Tasks) {
     i.tasks[0].policy.freewheeling = true;
     i.tasks[0].policy.io = ir::TaskIo::kSynchronous;
   });
+  expect_refused(Refusal::kBadTask, "a freewheeling task that is late", [](Image& i) {
+    i.tasks[0].period_ns = 0;
+    i.tasks[0].policy.freewheeling = true;
+    i.tasks[0].policy.overrun = ir::Overrun::kAtOnce;
+  });
+  expect_refused(Refusal::kBadTask, "a freewheeling task that lengthens cycles", [](Image& i) {
+    i.tasks[0].period_ns = 0;
+    i.tasks[0].policy.freewheeling = true;
+    i.tasks[0].policy.overrun = ir::Overrun::kLengthen;
+  });
+  expect_refused(Refusal::kBadTask, "at once with inputs of its period", [](Image& i) {
+    i.tasks[0].policy.io = ir::TaskIo::kSynchronous;
+    i.tasks[0].policy.overrun = ir::Overrun::kAtOnce;
+  });
+  Image fine = sample::busy_image();
+  fine.tasks[0].policy.overrun = ir::Overrun::kAtOnce;
+  EXPECT_TRUE(ir::verify(ir::encode(fine)).ok());
+  fine.tasks[0].policy = {.io = ir::TaskIo::kSynchronous, .overrun = ir::Overrun::kLengthen};
+  EXPECT_TRUE(ir::verify(ir::encode(fine)).ok());
 }
 
 TEST(Verify, V14_SafeOutputs) {

@@ -12,6 +12,7 @@
 namespace ir {
 
 inline constexpr std::string_view kSample = R"(program Line
+schedule run_first
 type %25 = string 10
 type %26 = wstring 5
 type Color = enum INT (Red = 0, Green = 5) init #0
@@ -46,7 +47,7 @@ const #5 = {0 = #4}
 const #6 = 'a$00$E4$00'
 globals Globals
 task Fast period 1000000 watchdog 5000000 priority 0
-task Slow period 3000000 priority 1
+task Slow period 3000000 priority 1 input_buffer first_unseen overrun lengthen
 instance Main : Main task 0 init #5
 pou function Limit file 'a b.st' line 7 hash 0101010101010101010101010101010101010101010101010101010101010101
   local input low : INT

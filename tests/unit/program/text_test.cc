@@ -22,6 +22,8 @@ TEST(IrText, SampleIsAVerifiedProgram) { verified(kSample); }
 TEST(IrText, KeepsEveryFieldOfTheSample) {
   const Program program = parse_ok(kSample);
   EXPECT_EQ(program.name, "Line");
+  EXPECT_EQ(program.schedule, Schedule::kRunFirst);
+  EXPECT_EQ(program.tasks[1].policy.overrun, Overrun::kLengthen);
   const Pou& limit = program.pous[program.find_pou("LIMIT").index];
   EXPECT_EQ(limit.file, "a b.st");
   EXPECT_EQ(limit.line, 7u);
@@ -82,6 +84,7 @@ TEST(IrText, SaysLineAndReason) {
   EXPECT_EQ(reason("type A = string 40000"),
             "IR text, line 1: expected a number up to 32767, found '40000'");
   EXPECT_EQ(reason("const #1 = 5"), "IR text, line 1: constants are numbered in order; this is #0");
+  EXPECT_EQ(reason("schedule never"), "IR text, line 1: unknown schedule");
   EXPECT_EQ(reason("globals INT\npou function F\nb0:\nv0 = foo i16"),
             "IR text, line 4: unknown word 'foo'");
   EXPECT_EQ(reason("globals INT\npou function F\nb0:\nv0 = load i16 local.x"),

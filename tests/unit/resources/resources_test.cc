@@ -25,8 +25,8 @@ constexpr const char* kReadsBlock =
     "VAR i : INT; torn, seen : DINT; END_VAR seen := n; "
     "FOR i := 0 TO 99 DO IF a[i] <> seen THEN torn := torn + 1; END_IF END_FOR";
 
-TEST(Resources, ExchangeWholeBlocksAtTheirBoundaries) {
-  Rig rig(plant(kBlock, kWritesBlock, kReadsBlock));
+void expect_whole_blocks(const std::string& source) {
+  Rig rig(source);
   ASSERT_TRUE(rig.ok()) << rig.error;
   // Line runs at 0, 10, 20, ...; at equal instants before Pack, which runs at 0, 15, 30, ...
   std::vector<std::string> seen;
@@ -39,6 +39,19 @@ TEST(Resources, ExchangeWholeBlocksAtTheirBoundaries) {
   EXPECT_EQ(rig.get(kPack, "p.seen"), "301");
   EXPECT_EQ(rig.status(kPack)[0].name, "Line");
   EXPECT_EQ(rig.status(kPack)[0].exchanges, 201u);
+}
+
+TEST(Resources, ExchangeWholeBlocksAtTheirBoundaries) {
+  expect_whole_blocks(plant(kBlock, kWritesBlock, kReadsBlock));
+}
+
+// Blocks are taken when a cycle begins, whatever it begins with (B2).
+TEST(Resources, B2_TheOtherScheduleExchangesTheSameBlocks) {
+  std::string source = plant(kBlock, kWritesBlock, kReadsBlock);
+  for (const char* resource : {" RESOURCE Line", " RESOURCE Pack"}) {
+    source.insert(source.find(resource), " {attribute 'schedule' := 'run_first'}");
+  }
+  expect_whole_blocks(source);
 }
 
 // Both ways, structures with holes, texts, and what only one of them knows.
