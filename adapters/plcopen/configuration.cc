@@ -98,7 +98,7 @@ void add_named_lists(Node parent, Reporter& report) {
   }
 }
 
-void import_parts(Node owner, Reporter& report);
+std::string import_attributes_and_parts(Node owner, Reporter& report);
 
 std::string resource_text(Node resource, Reporter& report) {
   const std::string name(report.required_name(resource));
@@ -115,10 +115,11 @@ std::string resource_text(Node resource, Reporter& report) {
       programs += instance_text(node, {}, report);
     }
   }
-  import_parts(resource, report);
+  const std::string attributes = import_attributes_and_parts(resource, report);
   std::string text = xml::indented(variable_lists(resource, report) + tasks + programs, kIndent);
   if (text.empty() || name.empty()) return {};
-  return documentation(resource, "") + "RESOURCE " + name + " ON PLC\n" + text + "END_RESOURCE\n";
+  return documentation(resource, "") + attributes + "RESOURCE " + name + " ON PLC\n" + text +
+         "END_RESOURCE\n";
 }
 
 // What CODESYS keeps in addData: POUs, types, lists and whole applications.
@@ -147,6 +148,19 @@ void import_parts(Node owner, Reporter& report) {
   for (Node data : vendor_parts(owner)) import_part(data, report);
 }
 
+// The lines of the owner's attributes; its parts become declarations of their own.
+std::string import_attributes_and_parts(Node owner, Reporter& report) {
+  std::string attributes;
+  for (Node data : vendor_parts(owner)) {
+    if (is_vendor(data, "attributes")) {
+      attributes += attribute_lines(data);
+    } else {
+      import_part(data, report);
+    }
+  }
+  return attributes;
+}
+
 }  // namespace
 
 void import_configuration(Node configuration, Reporter& report) {
@@ -156,14 +170,7 @@ void import_configuration(Node configuration, Reporter& report) {
   for (Node resource : xml::children(configuration, "resource")) {
     text += resource_text(resource, report);
   }
-  std::string attributes;
-  for (Node data : vendor_parts(configuration)) {
-    if (is_vendor(data, "attributes")) {
-      attributes += attribute_lines(data);
-    } else {
-      import_part(data, report);
-    }
-  }
+  const std::string attributes = import_attributes_and_parts(configuration, report);
   if (name.empty() || text.empty()) return;
   add_declaration(configuration, name,
                   documentation(configuration, "") + attributes + "CONFIGURATION " + name + "\n" +

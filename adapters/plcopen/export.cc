@@ -94,6 +94,7 @@ void Writer::resource(Node parent, const ResourceDecl& resource,
     each.append_attribute("typeName") = std::string(program.type.text).c_str();
     put_attributes(each, program.attributes);
   }
+  put_attributes(node, resource.attributes);
 }
 
 void Writer::configuration(Node parent, const ConfigDecl& config,

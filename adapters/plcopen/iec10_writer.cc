@@ -226,6 +226,7 @@ void Iec10Writer::resource(Node to, Node from) {
       copy(made, name, task, name);
     if (task.child("addData")) problem(task, "attributes of tasks have no element");
   }
+  if (from.child("addData")) problem(from, "attributes of resources have no element");
   auto instance = [&](Node each, std::string_view task) {
     Node made = out.append_child("ProgramInstance");
     copy(made, "name", each, "name");

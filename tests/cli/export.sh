@@ -52,15 +52,20 @@ INTERFACE Moves METHOD Go END_METHOD END_INTERFACE
 FUNCTION_BLOCK Base METHOD PUBLIC Go END_METHOD END_FUNCTION_BLOCK
 FUNCTION_BLOCK Part EXTENDS Base IMPLEMENTS Moves METHOD PUBLIC OVERRIDE Go END_METHOD END_FUNCTION_BLOCK
 PROGRAM P VAR m : Mode; b : Box; p : Part; END_VAR p.Go(); END_PROGRAM
+CONFIGURATION C
+  {attribute 'schedule' := 'run_first'}
+  RESOURCE R ON PLC {attribute 'overrun' := 'lengthen'} TASK T(INTERVAL := T#10ms, PRIORITY := 1); PROGRAM p1 WITH T : P; END_RESOURCE
+END_CONFIGURATION
 TEST 'nothing' ASSERT_TRUE(TRUE); END_TEST
 S
 expect 0 stc export words.st -o words.xml --without-sources
-said 'words\.st:7:[0-9]+: note\[W0071\]: tests are left out'
+said 'words\.st:11:[0-9]+: note\[W0071\]: tests are left out'
 rm -rf first
 expect 0 stc import words.xml -o first
 grep -q "{attribute 'shown' := 'off'} Off" first/Mode.st || fail "attributes of enumerators"
 grep -q "^  {attribute 'unit' := 'mm'}$" first/Box.st || fail "attributes of members"
 grep -q 'METHOD PUBLIC OVERRIDE Go' first/Part.st || fail OVERRIDE
+grep -A1 "^  {attribute 'schedule' := 'run_first'}$" first/C.st | grep -q 'RESOURCE R' || fail "attributes of resources"
 expect 0 stc check first
 
 # Documents again: the same sources, with places, ids and addData of the first.
