@@ -110,7 +110,7 @@ until_said 1 'what was saved is what runs'
 sed 's/Cycles + 3/Cycles + 4/' plant/main.st | save plant/main.st
 until_said 1 'on trial'
 sed 's/Cycles + 4/Cycles + 5/' plant/main.st | save plant/main.st
-until_said 1 'waiting: the last change is still on trial'
+until_said 1 'waiting: the last change, by .*, is still on trial'
 expect 0 stvm accept --dir plc
 until_said 2 'switched between'
 expect 0 stvm undo --dir plc
@@ -120,7 +120,7 @@ until_said 3 'switched between'
 running undone.img
 # Undone while another save waits, which was made on top of it: that one waits for a next save.
 sed 's/Cycles + 5/Cycles + 50/' plant/main.st | save plant/main.st
-until_said 2 'waiting: the last change is still on trial'
+until_said 2 'waiting: the last change, by .*, is still on trial'
 expect 0 stvm undo --dir plc
 until_said 1 'undone: what was saved meanwhile is left'
 sleep 0.5
