@@ -15,116 +15,6 @@ constexpr int kIdleAttempts = 200;
 
 }  // namespace
 
-// One at a time: whoever begins one ends that of another connection, which is told so.
-base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) {
-  if (request.offset == 0) {
-    upload_ = base::Bytes();
-    upload_of_ = session_;
-    upload_by_ = who_;
-  }
-  if (upload_of_ != session_ && !upload_.empty()) return others_upload();
-  if (upload_of_ != session_ || request.offset != upload_.size()) {
-    return base::Error{base::Refusal::kProtocol, "parts of the package are missing"};
-  }
-  if (upload_.size() + request.data.size() > base::kMaxImageBytes) {
-    return base::Error{base::Refusal::kTooLarge, "the package is longer than the limit"};
-  }
-  upload_.insert(upload_.end(), request.data.begin(), request.data.end());
-  return base::Bytes{};
-}
-
-base::Error ControllerService::others_upload() const {
-  return {base::Refusal::kChangePending, upload_by_ + " brings another change just now"};
-}
-
-base::Status ControllerService::check_upload(const vm::Request& request,
-                                             base::ByteSpan package) const {
-  // What never ran has no values that a change could carry over.
-  if (!start_.fault.empty()) return base::Error{base::Refusal::kFault, start_.fault};
-  if (base::sha256(package) == request.digest) return base::Ok{};
-  return base::Error{base::Refusal::kBadHash, "the package arrived damaged"};
-}
-
-// Checks and builds beside the running program; touches nothing of it, so it needs no boundary. A
-// change that somebody staged and did not switch gives way, and the new edition, which is the
-// answer, makes sure that nobody switches what he did not stage. A rehearsal never takes its place.
-base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
-  if (upload_of_ != session_) return others_upload();
-  const base::Bytes package = std::exchange(upload_, {});
-  if (base::Status good = check_upload(request, package); !good.ok()) return good.error();
-  const bool standby = (request.flags & vm::kByStandby) != 0;
-  const auto strategy =
-      standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace;
-  const bool rehearsal = (request.flags & vm::kRehearsal) != 0;
-  const bool taken = change_.state() != online_change::State::kIdle && !only_looked_at_;
-  if (rehearsal && taken) return stage_rehearsal(package, strategy);
-  change_.cancel();
-  forget_staged();
-  only_looked_at_ = rehearsal;
-  base::Status staged =
-      change_.stage(package, strategy, [this](const auto& job) { return at_boundary(job); });
-  if (!staged.ok()) {
-    change_.collect();  // devices that it opened
-    const base::Error error = refused(staged.error());
-    forget_staged();
-    return error;
-  }
-  staged_ = *change_.next();
-  if (!rehearsal) {
-    online_change::JournalEntry done = entry(online_change::Event::kStaged);
-    done.counts = change_.plan().counts;
-    done.predicted_ns = change_.plan().predicted_pause_ns;
-    store_.note(std::move(done));
-  }
-  changed_by_ = who_;
-  base::ByteWriter answer;
-  answer.u64(++edition_);
-  return answer.take();
-}
-
-base::Result<base::Bytes> ControllerService::stage_rehearsal(base::ByteSpan package,
-                                                             online_change::Strategy strategy) {
-  rehearsal_.reset();
-  forget_report();
-  auto staged = Rehearsal::stage(controller_, package, strategy,
-                                 [this](auto ranges) { return copy_of(std::move(ranges)); });
-  if (!staged.ok()) return staged.error();
-  rehearsal_ = std::move(*staged);
-  rehearsal_of_ = session_;
-  base::ByteWriter answer;
-  answer.u64(edition_);
-  return answer.take();
-}
-
-const online_change::Change& ControllerService::looked_at() const {
-  return rehearses() ? rehearsal_->change() : change_;
-}
-
-// What the switch looks at before it begins, in the same order. Values of a rehearsal are those of
-// its copy.
-base::Result<base::Bytes> ControllerService::rehearse(const vm::Request& request) {
-  const bool allow_overrun = (request.flags & vm::kAllowOverrun) != 0;
-  const bool allow_loss = (request.flags & vm::kAllowLoss) != 0;
-  base::Status refused_by = base::Ok{};
-  base::Status taken = look_at_boundary([&] {
-    const int64_t pause_ns = looked_at().predicted_pause_ns();
-    const bool on_time = !allow_overrun && !controller_.faulted();
-    if (on_time) refused_by = online_change::fits_free_time(pause_ns, controller_.tasks());
-    if (refused_by.ok()) refused_by = looked_at().refused_by_values(allow_loss);
-  });
-  if (!taken.ok()) return taken.error();
-  if (!refused_by.ok()) return refused_by.error();
-  return base::Bytes{};
-}
-
-void ControllerService::forget_staged() {
-  aside_.wait();
-  store_.forget_aside();
-  staged_.reset();
-  forget_report();
-  only_looked_at_ = false;
-}
-
 // Undo too takes its time from the next cycle.
 bool ControllerService::time_for_switch() const {
   int64_t left = controller_.next_cycle_ns() - clock_.now_ns();
@@ -174,12 +64,17 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(bool
   online_change::Snapshot before = empty_snapshot();
   online_change::Snapshot after = empty_snapshot();
   const auto nobody_else_saves = keeper_.hold();
+  std::optional<Deadline> deadline;
   auto job = [&] {
     if (!allow_overrun && !time_for_switch()) return;
     keeper_.take(before);
-    if (!allow_overrun) change_.set_interruption(Deadline(clock_, controller_.next_cycle_ns()));
+    if (!allow_overrun) {
+      deadline.emplace(clock_, controller_.next_cycle_ns());
+      change_.set_interruption(std::ref(*deadline));  // as a copy it would be allocated here
+    }
     missed_before = controller_.missed_releases();
     report.emplace(change_.switch_now());
+    if (report->ok() && controller_.faulted()) go_on_hot();
     done_ns = clock_.now_ns();
     change_.set_interruption(nullptr);
     if (report->ok()) keeper_.take(after);
@@ -232,13 +127,16 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
     return base::Error{base::Refusal::kBusy, "what is staged is a dry run; stage the change anew"};
   }
   const std::string health = request.names.empty() ? std::string() : request.names.front();
-  base::Status armed = check_health(health);
+  if (!staged_) return base::Error{base::Refusal::kBusy, "no change is staged"};
+  base::Status armed = check_health(health, staged_->image());
   if (!armed.ok()) return not_switched(armed.error());
   bool faulted = false;
   uint64_t stopped = 0;
+  uint64_t traps = 0;
   base::Status taken = look_at_boundary([&] {
     faulted = controller_.faulted();
-    stopped = stopped_tasks();
+    traps = controller_.trap_count();
+    if (traps != 0) stopped = stopped_tasks();
   });
   if (!taken.ok()) return not_switched(taken.error());
   // Nothing runs that could be delayed.
@@ -269,8 +167,9 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   changed_by_ = who_;
   note_switch(online_change::Event::kSwitched, previous_->digest(), *report, predicted_ns);
   forget_staged();
+  traps_before_ = traps;
   stopped_before_ = faulted ? 0 : stopped;
-  if (faulted) go_on_hot();
+  forget_rehearsal();
   begin_probation(request);
   if ((request.flags & vm::kPermanent) != 0) {
     base::Status permanent = make_permanent();
@@ -285,7 +184,6 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
 base::Result<base::Bytes> ControllerService::undo(const vm::Request&) { return undo_now({}); }
 
 base::Result<base::Bytes> ControllerService::undo_now(const std::string& why) {
-  bool faulted = false;
   std::optional<base::Result<online_change::SwitchReport>> report;
   uint64_t missed_before = 0;
   int64_t done_ns = 0;
@@ -295,10 +193,11 @@ base::Result<base::Bytes> ControllerService::undo_now(const std::string& why) {
   for (int attempt = 1; !report; ++attempt) {
     if (attempt != 1) boundary_.pause(kBetweenAttemptsNs);
     base::Status taken = at_boundary([&] {
-      faulted = controller_.faulted();
-      if (!faulted && !time_for_switch() && attempt != kSwitchAttempts) return;
+      const bool stopped = controller_.faulted() || trapped_on_trial();
+      if (!stopped && !time_for_switch() && attempt != kSwitchAttempts) return;
       missed_before = controller_.missed_releases();
       report.emplace(change_.undo());
+      if (report->ok() && stopped) go_on_hot();
       done_ns = clock_.now_ns();
       if (report->ok()) keeper_.take(after);
     });
@@ -309,7 +208,8 @@ base::Result<base::Bytes> ControllerService::undo_now(const std::string& why) {
   complain(store_.end_trial());
   complain(keeper_.save(after));
   note_switch(online_change::Event::kUndone, undone, **report, predicted_ns, why);
-  go_on_hot();
+  not_undone_.clear();
+  forget_rehearsal();
   previous_.reset();
   probation_.reset();
   ++edition_;
@@ -338,6 +238,7 @@ base::Status ControllerService::make_permanent() {
   if (previous_) done.from = previous_->digest();
   done.to = controller_.verified().digest();
   store_.note(std::move(done));
+  not_undone_.clear();
   previous_.reset();
   probation_.reset();
   ++edition_;
@@ -348,20 +249,6 @@ base::Status ControllerService::make_permanent() {
 base::Result<base::Bytes> ControllerService::accept(const vm::Request&) {
   base::Status permanent = make_permanent();
   if (!permanent.ok()) return permanent.error();
-  return base::Bytes{};
-}
-
-base::Result<base::Bytes> ControllerService::cancel(const vm::Request&) {
-  if (rehearses()) {
-    rehearsal_.reset();
-    forget_report();
-    return base::Bytes{};
-  }
-  if (staged_ && !only_looked_at_ && change_.state() != online_change::State::kTrial) {
-    store_.note(entry(online_change::Event::kCancelled));
-  }
-  change_.cancel();
-  forget_staged();
   return base::Bytes{};
 }
 

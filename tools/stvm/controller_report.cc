@@ -14,6 +14,7 @@ using online_change::FateRow;
 constexpr uint64_t kLinesPerPage = 1000;
 constexpr size_t kShownLosses = 500;
 constexpr size_t kVariablesPerPage = 5000;
+constexpr uint64_t kMostEvery = 2'000'000;  // values of a plan, of which each is looked up
 
 // Initial value of a scalar or string of the new version; "" for anything else.
 std::string initial_text(const ir::Image& image, const std::string& path) {
@@ -69,6 +70,7 @@ base::Status ControllerService::look(const ir::Image* next, bool whole) {
 }
 
 base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
+  if (base::Status there = check_not_gone(); !there.ok()) return there.error();
   const online_change::Change& change = looked_at();
   const bool back = change.state() == online_change::State::kTrial && previous_;
   if (!back && change.next() == nullptr) {
@@ -96,6 +98,13 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
                 {},
                 {}};
   if (every) {
+    uint64_t values = 0;
+    for (const online_change::UpdateStep& step : plan.steps) values += step.count;
+    if (values > kMostEvery) {
+      return base::Error{base::Refusal::kTooLarge,
+                         "the change touches " + std::to_string(values) + " values; --all shows " +
+                             std::to_string(kMostEvery) + " at most"};
+    }
     if (!every_) every_.emplace(plan, live_->image(), next_image);
     add_every(request.offset, next_image, page);
     return encode(page);

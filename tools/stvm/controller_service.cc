@@ -40,6 +40,11 @@ void ControllerService::ended(uint64_t session) {
   if (session == live_of_) forget_report();
   if (session == before_of_) before_ = {};
   if (session == rehearsal_of_) rehearsal_.reset();
+  if (only_looked_at_ && session == looks_) {
+    change_.cancel();
+    forget_staged();
+  }
+  if (gone_of_ == session) gone_of_.reset();
   if (session == history_of_) history_ = std::vector<online_change::JournalEntry>();
 }
 
@@ -202,6 +207,7 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.trial_lost = start_.trial_lost.value_or(base::Digest{});
   report.alarms = start_.alarms;
   if (!start_.fault.empty()) report.alarms.push_back(start_.fault);
+  if (!not_undone_.empty()) report.alarms.push_back(not_undone_);
   if (const auto unsaved = keeper_.unsaved()) {
     report.alarms.push_back("retained values are not being saved since " +
                             time_text(unsaved->since_ns) + ": " + unsaved->why);
@@ -248,7 +254,11 @@ void ControllerService::keep_up() {
     return true;
   };
   base::within_memory(renew, [] { return false; });
-  base::within_memory([&] { return watch_trial(), true; }, [] { return false; });
+  base::within_memory([&] { return watch_trial(), true; },
+                      [&] {
+                        if (recorder_ != nullptr) recorder_->forget_jobs();
+                        return false;
+                      });
   base::within_memory([&] { return keep_programs_now_and_then(), true; }, [] { return false; });
 }
 

@@ -137,9 +137,14 @@ class ControllerService : public vm::Service {
   struct Probation {  // of the version on trial
     uint64_t ends = 0;          // cycle
     std::string health;         // a BOOL that must stay TRUE; "": none
+    uint32_t health_data = 0;   // where it is in data memory
     uint64_t edition = 0;       // of the switch
   };
-  base::Status check_health(const std::string& name) const;
+  static base::Status check_health(const std::string& name, const ir::Image& next);
+  base::Status check_not_gone() const;
+  void forget_rehearsal();
+  // At a boundary; costs nothing as long as nothing has trapped since the last switch.
+  bool trapped_on_trial() const;
   uint64_t stopped_tasks() const;
   void begin_probation(const vm::Request& request);
   // Why the version on trial must go; "" while nothing speaks against it.
@@ -187,16 +192,21 @@ class ControllerService : public vm::Service {
   base::Bytes no_memory_;  // the answer that says so
   std::optional<ir::VerifiedImage> staged_;
   bool only_looked_at_ = false;  // what is staged, by vm::kRehearsal: nothing of it is kept
+  uint64_t looks_ = 0;           // session of that
+  std::optional<uint64_t> gone_of_;  // session whose dry run has been replaced
   std::unique_ptr<Rehearsal> rehearsal_;
   uint64_t rehearsal_of_ = 0;  // session
   std::optional<LiveReport> live_;                    // of the change that is looked_at()
   std::optional<online_change::EveryFate> every_;     // of the same
   std::vector<online_change::JournalEntry> history_;  // that pages of the journal are of
   std::optional<ir::VerifiedImage> previous_;         // during a trial
+  std::string not_undone_;                            // why the automatic undo failed: an alarm
   std::optional<Probation> probation_;                // in its first cycles
   online_change::StoredImage before_;                 // that pages of kBefore are of
   uint64_t before_of_ = 0;                            // session
-  uint64_t stopped_before_ = 0;                       // tasks, by traps, at the last switch
+  // At the last switch: traps that there had been, and tasks that were stopped by them.
+  uint64_t traps_before_ = 0;
+  uint64_t stopped_before_ = 0;
   uint64_t edition_ = 0;
   std::atomic<bool> stop_wanted_{false};
   AsideWriter aside_;  // by store_beside()

@@ -7,10 +7,9 @@
 
 namespace stvm {
 
-// A BOOL of the staged version.
-base::Status ControllerService::check_health(const std::string& name) const {
-  if (name.empty() || !staged_) return base::Ok{};
-  const ir::Image& next = staged_->image();
+// A BOOL of the next version.
+base::Status ControllerService::check_health(const std::string& name, const ir::Image& next) {
+  if (name.empty()) return base::Ok{};
   base::Result<ir::Symbol> symbol = ir::find_symbol(next, name);
   if (!symbol.ok()) return symbol.error();
   if (next.types[symbol->type].kind == ir::Kind::kBool) return base::Ok{};
@@ -28,29 +27,38 @@ uint64_t ControllerService::stopped_tasks() const {
 void ControllerService::begin_probation(const vm::Request& request) {
   probation_.reset();
   if ((request.flags & (vm::kNoWayBack | vm::kPermanent)) != 0) return;
-  Probation next{0, request.names.empty() ? std::string() : request.names.front(), edition_};
+  Probation next;
+  next.edition = edition_;
+  if (!request.names.empty()) next.health = request.names.front();
+  if (!next.health.empty()) {
+    base::Result<ir::Symbol> symbol = ir::find_symbol(controller_.image(), next.health);
+    if (symbol.ok()) next.health_data = symbol->data;
+  }
   base::Status taken =
       look_at_boundary([&] { next.ends = controller_.cycles() + kProbationCycles; });
   if (taken.ok()) probation_ = std::move(next);
 }
 
+bool ControllerService::trapped_on_trial() const {
+  if (controller_.trap_count() == traps_before_) return false;
+  return controller_.faulted() || stopped_tasks() > stopped_before_;
+}
+
 std::string ControllerService::look_at_trial() {
-  std::string why;
+  std::string trap;
+  bool sick = false;
   bool over = false;
   base::Status taken = look_at_boundary([&] {
-    const bool trapped = controller_.faulted() || stopped_tasks() > stopped_before_;
     over = controller_.cycles() >= probation_->ends;
-    if (trapped && !controller_.traps().empty()) {
-      why = "a trap on trial: " + trap_text(*controller_.traps().back());
-    } else if (!probation_->health.empty()) {
-      const base::Result<std::string> healthy = controller_.get(probation_->health);
-      if (healthy.ok() && *healthy == "FALSE") {
-        why = "the health condition `" + probation_->health + "` is FALSE on trial";
-      }
-    }
+    if (trapped_on_trial()) trap = trap_text(*controller_.traps().back());
+    const uint32_t health = probation_->health_data;
+    sick = health != 0 && controller_.memory().data()[health] == 0;
   });
-  if (taken.ok() && over && why.empty()) probation_.reset();
-  return why;
+  if (!taken.ok()) return {};
+  if (!trap.empty()) return "a trap on trial: " + trap;
+  if (sick) return "the health condition `" + probation_->health + "` is FALSE on trial";
+  if (over) probation_.reset();
+  return {};
 }
 
 void ControllerService::watch_trial() {
@@ -75,18 +83,15 @@ void ControllerService::give_back(const std::string& why) {
     undone.ok() ? recorder_->note(vm::encode(request)) : recorder_->forget_jobs();
   }
   if (undone.ok()) return;
-  start_.alarms.push_back("the version on trial was not undone after " + why + ": " +
-                          base::to_string(undone.error()));
+  not_undone_ = "the version on trial was not undone after " + why + ": " +
+                base::to_string(undone.error()) + "; `stvm undo` tries again";
 }
 
-// After a fault, or when the version on trial has stopped a task: tasks run again with the values
-// that they have, and what is new begins.
+// At a boundary, behind a switch or an undo, when a trap had stopped something: tasks run again
+// with the values that they have, and what is new begins.
 void ControllerService::go_on_hot() {
-  complain(at_boundary([&] {
-    if (!controller_.faulted() && stopped_tasks() <= stopped_before_) return;
-    (void)controller_.restart(vm::Restart::kHot, kExitLimitNs).ok();  // nothing leaves
-    controller_.construct();
-  }));
+  (void)controller_.restart(vm::Restart::kHot, kExitLimitNs).ok();  // nothing leaves
+  controller_.construct();
 }
 
 }  // namespace stvm

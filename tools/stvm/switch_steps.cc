@@ -68,6 +68,7 @@ base::Status may_switch(const SwitchOptions& options, const FatePage& page) {
 base::Status rehearse(const SwitchOptions& options, ControllerClient& client) {
   vm::Request request{.command = vm::Command::kRehearse};
   request.flags = options.switch_flags;
+  if (!options.health.empty()) request.names = {options.health};
   base::Result<base::Bytes> answer = client.call(std::move(request));
   return answer.ok() ? base::Status(base::Ok{}) : base::Status(answer.error());
 }

@@ -146,9 +146,8 @@ void Scheduler::end_cycle() {
   const int64_t longer_ns = looked_ns_ - next_cycle_ns_;
   cycle_start_ns_ += longer_ns;
   next_cycle_ns_ += longer_ns;
-  for (TaskSlot& task : tables_->tasks) {
-    if (task.status.period_ns != 0) task.next_release_ns += longer_ns;
-  }
+  // Of all tasks: where cycles begin is measured by any of them.
+  for (TaskSlot& task : tables_->tasks) task.next_release_ns += longer_ns;
 }
 
 void Scheduler::run_idle(const std::function<bool()>& unit) {

@@ -475,5 +475,29 @@ TEST(Overrun, B7_ChangesBehindLengthenedCycles) {
   EXPECT_EQ(timed.task("Long").missed, 2u);
 }
 
+// A task without a period that is declared first measures the cycles too: it moves with the others,
+// or the first change would find another base period.
+TEST(Overrun, B7_LengthenedCyclesMoveTasksWithoutAPeriod) {
+  for (const char* first : {"{attribute 'freewheeling'} TASK First (PRIORITY := 9);",
+                            "TASK First (SINGLE := go, PRIORITY := 9);"}) {
+    const std::string source =
+        "VAR_GLOBAL go : BOOL; END_VAR PROGRAM P VAR n : DINT; END_VAR n := n + 1; END_PROGRAM "
+        "PROGRAM L VAR i : DINT; END_VAR FOR i := 1 TO 24900 DO ; END_FOR END_PROGRAM "
+        "CONFIGURATION c RESOURCE r ON cpu " +
+        std::string(first) +
+        " {attribute 'overrun' := 'lengthen'} TASK Long (INTERVAL := T#10ms, PRIORITY := 1); "
+        "PROGRAM p WITH First : P; PROGRAM l WITH Long : L; END_RESOURCE END_CONFIGURATION";
+    Timed timed(source);
+    ASSERT_TRUE(timed.controller);
+    for (int i = 0; i < 3; ++i) {
+      do {
+        timed->cycle();
+      } while (!timed->at_boundary());
+      ASSERT_TRUE(timed.change(source));
+      EXPECT_EQ(timed->base_period_ns(), 10 * kMs) << first;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace runtime_test

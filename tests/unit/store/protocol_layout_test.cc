@@ -125,7 +125,7 @@ constexpr Version kVersions[] = {
     {6, "63e0412d28b5"},
     {7, "538391035e10"},
     {8, "d6cd7073b212"},
-    {9, "95c69adcc920"},
+    {9, "bd7d362cff72"},
 };
 
 TEST(ProtocolLayout, BelongsToTheVersion) {

@@ -144,5 +144,82 @@ TEST(Trial, case72_AControllerInFaultTakesAChangeAndGoesOn) {
   }
 }
 
+// case78: dry runs of several connections, beside what others have staged.
+class DryRun : public ::testing::Test {
+ protected:
+  base::Status as(uint64_t session, vm::Request request) {
+    rig_.plc.service().asked_by("user" + std::to_string(session), session);
+    return rig_.plc.ask(std::move(request));
+  }
+  base::Status stage(uint64_t session, const std::string& source, uint32_t flags) {
+    const ir::VerifiedImage& running = rig_.plc.controller().verified();
+    const ir::VerifiedImage next = plc::build(source, &running.image());
+    auto package = online_change::make_package(running.encoded(), next.encoded());
+    EXPECT_TRUE(package.ok());
+    vm::Request upload{.command = vm::Command::kUpload};
+    upload.data = online_change::encode(*package);
+    vm::Request stage{.command = vm::Command::kStage};
+    stage.digest = base::sha256(upload.data);
+    stage.flags = flags;
+    base::Status done = as(session, std::move(upload));
+    return done.ok() ? as(session, std::move(stage)) : done;
+  }
+  base::Status ask(uint64_t session, vm::Command command) {
+    return as(session, vm::Request{.command = command});
+  }
+  base::Status make_switch(uint64_t session) {
+    vm::Request request{.command = vm::Command::kSwitch};
+    request.flags = vm::kAllowLoss | vm::kAllowOverrun;
+    return as(session, std::move(request));
+  }
+  Rig rig_;
+  const std::string a_ = program("a : DINT;", "");
+  const std::string b_ = program("b : DINT;", "");
+};
+
+TEST_F(DryRun, case78_NeitherTakesNorEndsWhatAnotherOneHasStaged) {
+  ASSERT_TRUE(stage(1, a_, 0).ok());
+  const uint64_t edition = rig_.plc.status().edition;
+  ASSERT_TRUE(stage(2, b_, vm::kRehearsal).ok());
+  EXPECT_EQ(stage(3, b_, vm::kRehearsal).error().refusal, base::Refusal::kChangePending);
+  EXPECT_TRUE(ask(2, vm::Command::kFates).ok());
+  EXPECT_TRUE(ask(2, vm::Command::kCancel).ok());
+  EXPECT_EQ(rig_.plc.status().edition, edition);
+  EXPECT_TRUE(make_switch(1).ok());
+  EXPECT_EQ(rig_.plc.get("Main.a"), "0");
+}
+
+TEST_F(DryRun, case78_OneThatWasReplacedIsToldSo) {
+  ASSERT_TRUE(stage(2, b_, vm::kRehearsal).ok());
+  const uint64_t edition = rig_.plc.status().edition;
+  ASSERT_TRUE(stage(1, a_, 0).ok());
+  EXPECT_GT(rig_.plc.status().edition, edition);
+  EXPECT_EQ(ask(2, vm::Command::kFates).error().refusal, base::Refusal::kChangePending);
+  EXPECT_EQ(ask(2, vm::Command::kRehearse).error().refusal, base::Refusal::kChangePending);
+  EXPECT_TRUE(ask(2, vm::Command::kCancel).ok());
+  EXPECT_TRUE(make_switch(1).ok());
+}
+
+TEST_F(DryRun, case78_EndsWithItsConnectionAndIsNeverSwitched) {
+  const uint64_t edition = rig_.plc.status().edition;
+  ASSERT_TRUE(stage(2, b_, vm::kRehearsal).ok());
+  EXPECT_EQ(rig_.plc.status().edition, edition) << "others go on with what they have seen";
+  EXPECT_FALSE(make_switch(2).ok());
+  rig_.plc.service().ended(2);
+  EXPECT_EQ(rig_.plc.status().change, "idle");
+}
+
+// On trial it is of the version that runs then; the trial and its way back stay.
+TEST_F(DryRun, case78_OnTrial) {
+  ASSERT_TRUE(stage(1, a_, 0).ok());
+  ASSERT_TRUE(make_switch(1).ok());
+  ASSERT_TRUE(stage(2, b_, vm::kRehearsal).ok());
+  EXPECT_TRUE(ask(2, vm::Command::kFates).ok());
+  EXPECT_EQ(rig_.plc.status().change, "trial");
+  EXPECT_TRUE(ask(1, vm::Command::kUndo).ok());
+  EXPECT_EQ(ask(2, vm::Command::kFates).error().refusal, base::Refusal::kChangePending);
+  EXPECT_EQ(rig_.plc.get("Main.level"), "77");
+}
+
 }  // namespace
 }  // namespace stvm

@@ -1,0 +1,165 @@
+// From an uploaded package to a change that is staged, or only looked at (case 78).
+#include <utility>
+
+#include "base/limits.h"
+#include "tools/stvm/controller_service.h"
+
+namespace stvm {
+
+// One at a time: whoever begins one ends that of another connection, which is told so.
+base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) {
+  if (request.offset == 0) {
+    upload_ = base::Bytes();
+    upload_of_ = session_;
+    upload_by_ = who_;
+  }
+  if (upload_of_ != session_ && !upload_.empty()) return others_upload();
+  if (upload_of_ != session_ || request.offset != upload_.size()) {
+    return base::Error{base::Refusal::kProtocol, "parts of the package are missing"};
+  }
+  if (upload_.size() + request.data.size() > base::kMaxImageBytes) {
+    return base::Error{base::Refusal::kTooLarge, "the package is longer than the limit"};
+  }
+  upload_.insert(upload_.end(), request.data.begin(), request.data.end());
+  return base::Bytes{};
+}
+
+base::Error ControllerService::others_upload() const {
+  return {base::Refusal::kChangePending, upload_by_ + " brings another change just now"};
+}
+
+base::Status ControllerService::check_upload(const vm::Request& request,
+                                             base::ByteSpan package) const {
+  // What never ran has no values that a change could carry over.
+  if (!start_.fault.empty()) return base::Error{base::Refusal::kFault, start_.fault};
+  if (base::sha256(package) == request.digest) return base::Ok{};
+  return base::Error{base::Refusal::kBadHash, "the package arrived damaged"};
+}
+
+// Checks and builds beside the running program; touches nothing of it, so it needs no boundary. A
+// change that somebody staged and did not switch gives way, and the new edition, which is the
+// answer, makes sure that nobody switches what he did not stage. A rehearsal never takes its place.
+base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
+  if (upload_of_ != session_) return others_upload();
+  const base::Bytes package = std::exchange(upload_, {});
+  if (base::Status good = check_upload(request, package); !good.ok()) return good.error();
+  const bool standby = (request.flags & vm::kByStandby) != 0;
+  const auto strategy =
+      standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace;
+  const bool rehearsal = (request.flags & vm::kRehearsal) != 0;
+  const bool own = only_looked_at_ && looks_ == session_;
+  const bool taken = change_.state() != online_change::State::kIdle && !own;
+  if (rehearsal && taken) return stage_rehearsal(package, strategy);
+  change_.cancel();
+  forget_staged();
+  if (gone_of_ == session_) gone_of_.reset();
+  only_looked_at_ = rehearsal;
+  looks_ = session_;
+  base::Status staged =
+      change_.stage(package, strategy, [this](const auto& job) { return at_boundary(job); });
+  if (!staged.ok()) {
+    change_.collect();  // devices that it opened
+    const base::Error error = refused(staged.error());
+    forget_staged();
+    return error;
+  }
+  staged_ = *change_.next();
+  if (!rehearsal) {
+    online_change::JournalEntry done = entry(online_change::Event::kStaged);
+    done.counts = change_.plan().counts;
+    done.predicted_ns = change_.plan().predicted_pause_ns;
+    store_.note(std::move(done));
+    changed_by_ = who_;
+    ++edition_;
+  }
+  base::ByteWriter answer;
+  answer.u64(edition_);
+  return answer.take();
+}
+
+base::Result<base::Bytes> ControllerService::stage_rehearsal(base::ByteSpan package,
+                                                             online_change::Strategy strategy) {
+  if (rehearsal_ && rehearsal_of_ != session_) {
+    return base::Error{base::Refusal::kChangePending, "somebody else looks at a change just now"};
+  }
+  if (gone_of_ == session_) gone_of_.reset();
+  rehearsal_.reset();
+  forget_report();
+  auto staged = Rehearsal::stage(controller_, package, strategy,
+                                 [this](auto ranges) { return copy_of(std::move(ranges)); });
+  if (!staged.ok()) return staged.error();
+  rehearsal_ = std::move(*staged);
+  rehearsal_of_ = session_;
+  base::ByteWriter answer;
+  answer.u64(edition_);
+  return answer.take();
+}
+
+const online_change::Change& ControllerService::looked_at() const {
+  return rehearses() ? rehearsal_->change() : change_;
+}
+
+// A dry run whose change another one has replaced, or that was of another version.
+base::Status ControllerService::check_not_gone() const {
+  if (gone_of_ != session_) return base::Ok{};
+  return base::Error{base::Refusal::kChangePending,
+                     "another change took the place of the one that was looked at; try again"};
+}
+
+void ControllerService::forget_rehearsal() {
+  if (rehearsal_) gone_of_ = rehearsal_of_;
+  rehearsal_.reset();
+}
+
+// What the switch looks at before it begins. At the boundary only active steps and the time of
+// tasks are looked at; the values are those of the report, which is of a copy.
+base::Result<base::Bytes> ControllerService::rehearse(const vm::Request& request) {
+  if (base::Status there = check_not_gone(); !there.ok()) return there.error();
+  const online_change::Change& change = looked_at();
+  if (change.next() == nullptr) return base::Error{base::Refusal::kBusy, "no change is staged"};
+  const std::string health = request.names.empty() ? std::string() : request.names.front();
+  base::Status refused_by = check_health(health, change.next()->image());
+  if (!refused_by.ok()) return refused_by.error();
+  const bool allow_overrun = (request.flags & vm::kAllowOverrun) != 0;
+  const int64_t pause_ns = change.predicted_pause_ns();
+  base::Status taken = look_at_boundary([&] {
+    const bool on_time = !allow_overrun && !controller_.faulted();
+    if (on_time) refused_by = online_change::fits_free_time(pause_ns, controller_.tasks());
+    if (refused_by.ok()) refused_by = change.refused_by_values(true);
+  });
+  if (!taken.ok()) return taken.error();
+  if (!refused_by.ok()) return refused_by.error();
+  const bool allow_loss = (request.flags & vm::kAllowLoss) != 0;
+  if (allow_loss || !live_ || live_->loss_count() == 0) return base::Bytes{};
+  return base::Error{base::Refusal::kWouldLose,
+                     std::to_string(live_->loss_count()) + " live value(s) would be lost"};
+}
+
+void ControllerService::forget_staged() {
+  aside_.wait();
+  store_.forget_aside();
+  staged_.reset();
+  forget_report();
+  if (std::exchange(only_looked_at_, false)) gone_of_ = looks_;
+}
+
+base::Result<base::Bytes> ControllerService::cancel(const vm::Request&) {
+  if (gone_of_ == session_) {
+    gone_of_.reset();
+    return base::Bytes{};
+  }
+  if (rehearses()) {
+    rehearsal_.reset();
+    forget_report();
+    return base::Bytes{};
+  }
+  if (staged_ && !only_looked_at_ && change_.state() != online_change::State::kTrial) {
+    store_.note(entry(online_change::Event::kCancelled));
+  }
+  change_.cancel();
+  forget_staged();
+  if (gone_of_ == session_) gone_of_.reset();
+  return base::Bytes{};
+}
+
+}  // namespace stvm
