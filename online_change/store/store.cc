@@ -302,29 +302,6 @@ base::Status Store::settle_locked() {
   return settled;
 }
 
-// --- the version before -----------------------------------------------------------
-
-base::Status Store::keep_before(const ImageToStore& image) {
-  base::Bytes payload(image.digest.begin(), image.digest.end());
-  payload.insert(payload.end(), image.bytes.begin(), image.bytes.end());
-  const uint64_t size = record_bytes(payload.size());
-  std::lock_guard lock(before_mutex_);
-  return replace_record(storage_, kBeforeFile, RecordKind::kImage, 1, payload, size);
-}
-
-base::Result<StoredImage> Store::before() const {
-  std::lock_guard lock(before_mutex_);
-  const base::Result<uint64_t> size = storage_.size(kBeforeFile);
-  if (!size.ok() && size.error().refusal == base::Refusal::kFileNotFound) {
-    return base::Error{base::Refusal::kNothingToUndo, "no version before is stored"};
-  }
-  Record record = read_record(storage_, kBeforeFile, RecordKind::kImage);
-  const bool valid = record.state == RecordState::kValid;
-  std::optional<StoredImage> image = valid ? image_of(std::move(record.payload)) : std::nullopt;
-  if (!image) return failed("the version before cannot be read, or is damaged");
-  return std::move(*image);
-}
-
 // --- retained values --------------------------------------------------------------
 
 bool Store::retained_fits_locked() const {

@@ -92,10 +92,11 @@ class Store {
   base::Status end_trial();
   // What is on trial boots from now on.
   base::Status accept();
-  // The program that `accept` replaces, in a file of its own: a cut leaves the one that was kept
-  // before, or this one (X8). Nothing boots from it.
-  base::Status keep_before(const ImageToStore& image);
-  // kNothingToUndo: there is none. kStorageFailed: it cannot be read, or is damaged.
+  // The program that accept() is about to replace by `next`, in a file of its own: a cut leaves the
+  // one that was kept before, or this one (X8). Nothing boots from it.
+  base::Status keep_before(const ImageToStore& image, const base::Digest& next);
+  // kNothingToUndo: there is none of the program that boots. kStorageFailed: it cannot be read, or
+  // is damaged.
   base::Result<StoredImage> before() const;
   // The slot that shall hold this program, and does not any more, gets it again.
   base::Status restore(const ImageToStore& image);

@@ -222,7 +222,8 @@ base::Status ControllerService::make_permanent() {
   if (change_.state() != online_change::State::kTrial) return change_.accept();
   base::Status stored = keep_programs();
   if (stored.ok() && previous_) {
-    complain(store_.keep_before({previous_->digest(), previous_->encoded()}));
+    complain(store_.keep_before({previous_->digest(), previous_->encoded()},
+                                controller_.verified().digest()));
   }
   if (stored.ok()) stored = store_.accept();
   if (!stored.ok()) {
