@@ -1,5 +1,5 @@
-// The version that ran before the last accept (X8), in a file of its own that nothing boots from: the
-// digest of the program that followed it, its own digest, its bytes.
+// The version that ran before the last accept (X8), in a file of its own that nothing boots from:
+// the digest of the program that followed it, its own digest, its bytes.
 #include <algorithm>
 
 #include "online_change/store/store.h"
