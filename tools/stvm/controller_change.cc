@@ -122,37 +122,37 @@ base::Error ControllerService::not_switched(const base::Error& why) {
   return error;
 }
 
+base::Status ControllerService::prepare_switch(const vm::Request& request, bool faulted,
+                                               bool allow_overrun) {
+  const std::string health = request.names.empty() ? std::string() : request.names.front();
+  base::Status ready = check_health(health, staged_->image());
+  if (ready.ok() && !faulted) ready = configure(allow_overrun);
+  if (!ready.ok()) return not_switched(ready.error());
+  const bool allow_loss = (request.flags & vm::kAllowLoss) != 0;
+  base::Status taken = arm_in_time(allow_loss, allow_overrun, ready);
+  if (!taken.ok()) return not_switched(taken.error());
+  if (!ready.ok()) return not_switched(ready.error());
+  if (base::Status stored = store_trial(); !stored.ok()) {
+    change_.cancel();
+    return not_switched(stored.error());
+  }
+  return base::Ok{};
+}
+
 base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& request) {
   if (only_looked_at_) {
     return base::Error{base::Refusal::kBusy, "what is staged is a dry run; stage the change anew"};
   }
-  const std::string health = request.names.empty() ? std::string() : request.names.front();
   if (!staged_) return base::Error{base::Refusal::kBusy, "no change is staged"};
-  base::Status armed = check_health(health, staged_->image());
-  if (!armed.ok()) return not_switched(armed.error());
   bool faulted = false;
-  uint64_t stopped = 0;
-  uint64_t traps = 0;
-  base::Status taken = look_at_boundary([&] {
-    faulted = controller_.faulted();
-    traps = controller_.trap_count();
-    if (traps != 0) stopped = stopped_tasks();
-  });
+  base::Status taken = look_at_boundary([&] { faulted = controller_.faulted(); });
   if (!taken.ok()) return not_switched(taken.error());
   // Nothing runs that could be delayed.
   const bool allow_overrun = faulted || (request.flags & vm::kAllowOverrun) != 0;
   ir::VerifiedImage running = controller_.verified();
-  if (!faulted) armed = configure(allow_overrun);
-  if (!armed.ok()) return not_switched(armed.error());
-  taken = arm_in_time((request.flags & vm::kAllowLoss) != 0, allow_overrun, armed);
-  if (!taken.ok()) return not_switched(taken.error());
-  if (!armed.ok()) return not_switched(armed.error());
+  base::Status ready = prepare_switch(request, faulted, allow_overrun);
+  if (!ready.ok()) return ready.error();
   const int64_t predicted_ns = change_.predicted_pause_ns();
-  base::Status stored = store_trial();
-  if (!stored.ok()) {
-    change_.cancel();
-    return not_switched(stored.error());
-  }
   uint64_t missed_before = 0;
   int64_t done_ns = 0;
   auto report = switch_in_time(allow_overrun, missed_before, done_ns);
@@ -165,10 +165,9 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   previous_ = std::move(running);
   ++edition_;
   changed_by_ = who_;
+  switched_cycle_ = report->cycle_before;
   note_switch(online_change::Event::kSwitched, previous_->digest(), *report, predicted_ns);
   forget_staged();
-  traps_before_ = traps;
-  stopped_before_ = faulted ? 0 : stopped;
   forget_rehearsal();
   begin_probation(request);
   if ((request.flags & vm::kPermanent) != 0) {
@@ -193,7 +192,7 @@ base::Result<base::Bytes> ControllerService::undo_now(const std::string& why) {
   for (int attempt = 1; !report; ++attempt) {
     if (attempt != 1) boundary_.pause(kBetweenAttemptsNs);
     base::Status taken = at_boundary([&] {
-      const bool stopped = controller_.faulted() || trapped_on_trial();
+      const bool stopped = controller_.faulted() || stopping_trap(UINT64_MAX) != nullptr;
       if (!stopped && !time_for_switch() && attempt != kSwitchAttempts) return;
       missed_before = controller_.missed_releases();
       report.emplace(change_.undo());

@@ -51,7 +51,7 @@ uint64_t line_bytes(const FateLine& line) {
 
 }  // namespace
 
-// What it was of may go behind it.
+// The report borrows the plan and the images of its change, so it ends before they do.
 void ControllerService::forget_report() {
   every_.reset();
   live_.reset();
@@ -88,53 +88,54 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
     if (!looked.ok()) return looked.error();
   }
   const online_change::Plan& plan = back ? change.undo_plan() : change.plan();
-  FatePage page{plan.counts,
-                change.predicted_pause_ns(),
-                plan.boundary_bytes,
-                0,
-                {},
-                live_->loss_count(),
-                {},
-                {},
-                {}};
-  if (every) {
-    uint64_t values = 0;
-    for (const online_change::UpdateStep& step : plan.steps) values += step.count;
-    if (values > kMostEvery) {
-      return base::Error{base::Refusal::kTooLarge,
-                         "the change touches " + std::to_string(values) + " values; --all shows " +
-                             std::to_string(kMostEvery) + " at most"};
-    }
-    if (!every_) every_.emplace(plan, live_->image(), next_image);
-    add_every(request.offset, next_image, page);
-    return encode(page);
-  }
-  uint64_t bytes = 0;
-  uint64_t next = request.offset;
-  const uint64_t end = std::min<uint64_t>(plan.fates.size(), request.offset + kLinesPerPage);
-  for (; next < end && bytes <= vm::kChunkBytes; ++next) {
-    page.lines.push_back(live_line(plan.fates[next], next_image, back));
-    bytes += line_bytes(page.lines.back());
-  }
-  page.next = next < plan.fates.size() ? next : 0;
-  if (request.offset == 0) {
-    for (size_t i = 0; i < std::min(live_->losses().size(), kShownLosses); ++i) {
-      page.losses.push_back({live_->losses()[i]});
-    }
-    page.edits = shown_edits(controller_.verified(), next_version);
-    page.system = shown_system(controller_.image(), next_image);
-  }
-  return encode(page);
+  FatePage page;
+  page.counts = plan.counts;
+  page.predicted_pause_ns = change.predicted_pause_ns();
+  page.boundary_bytes = plan.boundary_bytes;
+  page.loss_count = live_->loss_count();
+  return every ? every_page(request.offset, plan, next_image, std::move(page))
+               : group_page(request.offset, plan, next_version, back, std::move(page));
 }
 
-void ControllerService::add_every(uint64_t first, const ir::Image& next,
-                                  FatePage& page) const {
+base::Result<base::Bytes> ControllerService::every_page(uint64_t first,
+                                                        const online_change::Plan& plan,
+                                                        const ir::Image& next, FatePage page) {
+  uint64_t values = 0;
+  for (const online_change::UpdateStep& step : plan.steps) values += step.count;
+  if (values > kMostEvery) {
+    return base::Error{base::Refusal::kTooLarge,
+                       "the change touches " + std::to_string(values) + " values; --all shows " +
+                           std::to_string(kMostEvery) + " at most"};
+  }
+  if (!every_) every_.emplace(plan, live_->image(), next);
   uint64_t bytes = 0;
   page.next = every_->visit_from(first, [&](const online_change::VariableFate& variable) {
     page.lines.push_back(live_->line(variable, next));
     bytes += line_bytes(page.lines.back());
     return bytes <= vm::kChunkBytes && page.lines.size() < kVariablesPerPage;
   });
+  return encode(page);
+}
+
+base::Result<base::Bytes> ControllerService::group_page(uint64_t first,
+                                                        const online_change::Plan& plan,
+                                                        const ir::VerifiedImage& next, bool back,
+                                                        FatePage page) const {
+  uint64_t bytes = 0;
+  uint64_t row = first;
+  const uint64_t end = std::min<uint64_t>(plan.fates.size(), first + kLinesPerPage);
+  for (; row < end && bytes <= vm::kChunkBytes; ++row) {
+    page.lines.push_back(live_line(plan.fates[row], next.image(), back));
+    bytes += line_bytes(page.lines.back());
+  }
+  page.next = row < plan.fates.size() ? row : 0;
+  if (first != 0) return encode(page);
+  for (size_t i = 0; i < std::min(live_->losses().size(), kShownLosses); ++i) {
+    page.losses.push_back({live_->losses()[i]});
+  }
+  page.edits = shown_edits(controller_.verified(), next);
+  page.system = shown_system(controller_.image(), next.image());
+  return encode(page);
 }
 
 // With the resulting value, and its loss when there is one.

@@ -40,11 +40,11 @@ void ControllerService::ended(uint64_t session) {
   if (session == live_of_) forget_report();
   if (session == before_of_) before_ = {};
   if (session == rehearsal_of_) rehearsal_.reset();
-  if (only_looked_at_ && session == looks_) {
+  if (only_looked_at_ && session == looked_at_by_) {
     change_.cancel();
     forget_staged();
   }
-  if (gone_of_ == session) gone_of_.reset();
+  gone_.erase(session);
   if (session == history_of_) history_ = std::vector<online_change::JournalEntry>();
 }
 

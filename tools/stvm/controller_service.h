@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <optional>
+#include <set>
 
 #include "online_change/apply/change.h"
 #include "online_change/plan/every_fate.h"
@@ -106,7 +107,10 @@ class ControllerService : public vm::Service {
   base::Result<vm::LiveCopy> copy_of(std::vector<ir::DataRange> ranges);
   // Of the change that is looked_at(). `next`, `whole`: as LiveReport::take().
   base::Status look(const ir::Image* next, bool whole);
-  void add_every(uint64_t first, const ir::Image& next, FatePage& page) const;
+  Answer every_page(uint64_t first, const online_change::Plan& plan, const ir::Image& next,
+                    FatePage page);
+  Answer group_page(uint64_t first, const online_change::Plan& plan,
+                    const ir::VerifiedImage& next, bool back, FatePage page) const;
   // In the version that the report is about; `back`: by undo.
   FateLine live_line(const online_change::FateRow& row, const ir::Image& next, bool back) const;
   void forget_staged();
@@ -124,6 +128,8 @@ class ControllerService : public vm::Service {
                                                            uint64_t& missed_before,
                                                            int64_t& done_ns);
   bool time_for_switch() const;
+  // All that comes before the switch itself. What has failed is noted.
+  base::Status prepare_switch(const vm::Request& request, bool faulted, bool allow_overrun);
   // What the change must have done before the switch, cycle by cycle in idle time (C5).
   base::Status configure(bool allow_overrun);
   online_change::SwitchReport finish_report(online_change::SwitchReport report,
@@ -135,17 +141,17 @@ class ControllerService : public vm::Service {
 
   // controller_trial.cc
   struct Probation {  // of the version on trial
-    uint64_t ends = 0;          // cycle
-    std::string health;         // a BOOL that must stay TRUE; "": none
-    uint32_t health_data = 0;   // where it is in data memory
-    uint64_t edition = 0;       // of the switch
+    uint64_t ends = 0;         // cycle
+    std::string health;        // a BOOL that must stay TRUE; "": none
+    uint32_t health_data = 0;  // where it is in data memory
+    uint64_t edition = 0;      // of the switch
   };
   static base::Status check_health(const std::string& name, const ir::Image& next);
   base::Status check_not_gone() const;
   void forget_rehearsal();
-  // At a boundary; costs nothing as long as nothing has trapped since the last switch.
-  bool trapped_on_trial() const;
-  uint64_t stopped_tasks() const;
+  // At a boundary: the newest trap since the last switch, and before cycle `end`, that has stopped
+  // its task or all of them; null: none. Allocates nothing.
+  const vm::TrapRecord* stopping_trap(uint64_t end) const;
   void begin_probation(const vm::Request& request);
   // Why the version on trial must go; "" while nothing speaks against it.
   std::string look_at_trial();
@@ -192,8 +198,8 @@ class ControllerService : public vm::Service {
   base::Bytes no_memory_;  // the answer that says so
   std::optional<ir::VerifiedImage> staged_;
   bool only_looked_at_ = false;  // what is staged, by vm::kRehearsal: nothing of it is kept
-  uint64_t looks_ = 0;           // session of that
-  std::optional<uint64_t> gone_of_;  // session whose dry run has been replaced
+  uint64_t looked_at_by_ = 0;    // session of that
+  std::set<uint64_t> gone_;      // sessions whose dry run has been replaced
   std::unique_ptr<Rehearsal> rehearsal_;
   uint64_t rehearsal_of_ = 0;  // session
   std::optional<LiveReport> live_;                    // of the change that is looked_at()
@@ -204,9 +210,7 @@ class ControllerService : public vm::Service {
   std::optional<Probation> probation_;                // in its first cycles
   online_change::StoredImage before_;                 // that pages of kBefore are of
   uint64_t before_of_ = 0;                            // session
-  // At the last switch: traps that there had been, and tasks that were stopped by them.
-  uint64_t traps_before_ = 0;
-  uint64_t stopped_before_ = 0;
+  uint64_t switched_cycle_ = 0;                       // cycles before the last switch
   uint64_t edition_ = 0;
   std::atomic<bool> stop_wanted_{false};
   AsideWriter aside_;  // by store_beside()

@@ -25,6 +25,7 @@ base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) 
 }
 
 base::Error ControllerService::others_upload() const {
+  if (upload_by_.empty()) return {base::Refusal::kProtocol, "no package has been uploaded"};
   return {base::Refusal::kChangePending, upload_by_ + " brings another change just now"};
 }
 
@@ -47,14 +48,14 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   const auto strategy =
       standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace;
   const bool rehearsal = (request.flags & vm::kRehearsal) != 0;
-  const bool own = only_looked_at_ && looks_ == session_;
+  const bool own = only_looked_at_ && looked_at_by_ == session_;
   const bool taken = change_.state() != online_change::State::kIdle && !own;
   if (rehearsal && taken) return stage_rehearsal(package, strategy);
   change_.cancel();
   forget_staged();
-  if (gone_of_ == session_) gone_of_.reset();
+  gone_.erase(session_);
   only_looked_at_ = rehearsal;
-  looks_ = session_;
+  looked_at_by_ = session_;
   base::Status staged =
       change_.stage(package, strategy, [this](const auto& job) { return at_boundary(job); });
   if (!staged.ok()) {
@@ -82,9 +83,9 @@ base::Result<base::Bytes> ControllerService::stage_rehearsal(base::ByteSpan pack
   if (rehearsal_ && rehearsal_of_ != session_) {
     return base::Error{base::Refusal::kChangePending, "somebody else looks at a change just now"};
   }
-  if (gone_of_ == session_) gone_of_.reset();
-  rehearsal_.reset();
+  gone_.erase(session_);
   forget_report();
+  rehearsal_.reset();
   auto staged = Rehearsal::stage(controller_, package, strategy,
                                  [this](auto ranges) { return copy_of(std::move(ranges)); });
   if (!staged.ok()) return staged.error();
@@ -101,13 +102,15 @@ const online_change::Change& ControllerService::looked_at() const {
 
 // A dry run whose change another one has replaced, or that was of another version.
 base::Status ControllerService::check_not_gone() const {
-  if (gone_of_ != session_) return base::Ok{};
+  if (!gone_.contains(session_)) return base::Ok{};
   return base::Error{base::Refusal::kChangePending,
                      "another change took the place of the one that was looked at; try again"};
 }
 
 void ControllerService::forget_rehearsal() {
-  if (rehearsal_) gone_of_ = rehearsal_of_;
+  if (!rehearsal_) return;
+  gone_.insert(rehearsal_of_);
+  forget_report();
   rehearsal_.reset();
 }
 
@@ -120,6 +123,10 @@ base::Result<base::Bytes> ControllerService::rehearse(const vm::Request& request
   const std::string health = request.names.empty() ? std::string() : request.names.front();
   base::Status refused_by = check_health(health, change.next()->image());
   if (!refused_by.ok()) return refused_by.error();
+  if (!live_ || live_of_ != session_) {
+    base::Status looked = look(&change.next()->image(), false);
+    if (!looked.ok()) return looked.error();
+  }
   const bool allow_overrun = (request.flags & vm::kAllowOverrun) != 0;
   const int64_t pause_ns = change.predicted_pause_ns();
   base::Status taken = look_at_boundary([&] {
@@ -130,7 +137,7 @@ base::Result<base::Bytes> ControllerService::rehearse(const vm::Request& request
   if (!taken.ok()) return taken.error();
   if (!refused_by.ok()) return refused_by.error();
   const bool allow_loss = (request.flags & vm::kAllowLoss) != 0;
-  if (allow_loss || !live_ || live_->loss_count() == 0) return base::Bytes{};
+  if (allow_loss || live_->loss_count() == 0) return base::Bytes{};
   return base::Error{base::Refusal::kWouldLose,
                      std::to_string(live_->loss_count()) + " live value(s) would be lost"};
 }
@@ -140,14 +147,11 @@ void ControllerService::forget_staged() {
   store_.forget_aside();
   staged_.reset();
   forget_report();
-  if (std::exchange(only_looked_at_, false)) gone_of_ = looks_;
+  if (std::exchange(only_looked_at_, false)) gone_.insert(looked_at_by_);
 }
 
 base::Result<base::Bytes> ControllerService::cancel(const vm::Request&) {
-  if (gone_of_ == session_) {
-    gone_of_.reset();
-    return base::Bytes{};
-  }
+  if (gone_.erase(session_) != 0) return base::Bytes{};
   if (rehearses()) {
     rehearsal_.reset();
     forget_report();
@@ -158,7 +162,7 @@ base::Result<base::Bytes> ControllerService::cancel(const vm::Request&) {
   }
   change_.cancel();
   forget_staged();
-  if (gone_of_ == session_) gone_of_.reset();
+  gone_.erase(session_);
   return base::Bytes{};
 }
 

@@ -18,10 +18,18 @@ base::Status ControllerService::check_health(const std::string& name, const ir::
                          "; name a BOOL that stays TRUE while all is well"};
 }
 
-uint64_t ControllerService::stopped_tasks() const {
-  uint64_t stopped = 0;
-  for (const vm::TaskStatus& task : controller_.tasks()) stopped += task.stopped ? 1 : 0;
-  return stopped;
+const vm::TrapRecord* ControllerService::stopping_trap(uint64_t end) const {
+  const vm::Traps& traps = controller_.traps();
+  for (auto trap = traps.rbegin(); trap != traps.rend(); ++trap) {
+    if ((*trap)->cycle < switched_cycle_) break;
+    if ((*trap)->cycle >= end) continue;
+    if (controller_.faulted()) return trap->get();
+    for (const ir::ImageTask& task : controller_.image().tasks) {
+      const bool stops = task.policy.on_trap == ir::OnTrap::kStopTask;
+      if (stops && ir::same_name(task.name, (*trap)->task)) return trap->get();
+    }
+  }
+  return nullptr;
 }
 
 void ControllerService::begin_probation(const vm::Request& request) {
@@ -34,14 +42,8 @@ void ControllerService::begin_probation(const vm::Request& request) {
     base::Result<ir::Symbol> symbol = ir::find_symbol(controller_.image(), next.health);
     if (symbol.ok()) next.health_data = symbol->data;
   }
-  base::Status taken =
-      look_at_boundary([&] { next.ends = controller_.cycles() + kProbationCycles; });
-  if (taken.ok()) probation_ = std::move(next);
-}
-
-bool ControllerService::trapped_on_trial() const {
-  if (controller_.trap_count() == traps_before_) return false;
-  return controller_.faulted() || stopped_tasks() > stopped_before_;
+  next.ends = switched_cycle_ + kProbationCycles;
+  probation_ = std::move(next);
 }
 
 std::string ControllerService::look_at_trial() {
@@ -50,7 +52,8 @@ std::string ControllerService::look_at_trial() {
   bool over = false;
   base::Status taken = look_at_boundary([&] {
     over = controller_.cycles() >= probation_->ends;
-    if (trapped_on_trial()) trap = trap_text(*controller_.traps().back());
+    const vm::TrapRecord* const stopping = stopping_trap(probation_->ends);
+    if (stopping != nullptr) trap = trap_text(*stopping);
     const uint32_t health = probation_->health_data;
     sick = health != 0 && controller_.memory().data()[health] == 0;
   });

@@ -80,11 +80,12 @@ TEST(Trial, X7_OnlyTheFirstScansCount) {
   for (const bool late : {false, true}) {
     Rig rig;
     const int first = static_cast<int>(kProbationCycles);
-    ASSERT_TRUE(rig.plc.change(traps_in(late ? first + 100 : first - 100)).ok());
-    for (int i = 0; i < first + 200; ++i) {
-      rig.plc.run(1);
-      if (i % 20 == 0) rig.plc.service().keep_up();
-    }
+    const uint64_t before = rig.plc.controller().cycles();
+    ASSERT_TRUE(rig.plc.change(traps_in(late ? first + 1 : first)).ok());
+    while (!rig.plc.controller().faulted()) rig.plc.run(1);
+    const uint64_t trapped = rig.plc.controller().traps().back()->cycle;
+    EXPECT_EQ(trapped, before + kProbationCycles - (late ? 0 : 1));
+    // However late it is looked at.
     rig.plc.service().keep_up();
     EXPECT_EQ(rig.plc.controller().faulted(), late);
     EXPECT_EQ(rig.plc.status().change, late ? "trial" : "idle");
@@ -126,6 +127,23 @@ TEST(Trial, X7_OldTrapsAreNotItsFault) {
   rig.plc.run(5);
   rig.plc.service().keep_up();
   EXPECT_EQ(rig.plc.status().change, "trial");
+}
+
+// A task that was stopped before is left out, and another one is stopped by the new version.
+TEST(Trial, X7_AnotherTaskMayBeStoppedThanBefore) {
+  Rig rig(kStopTask);
+  ASSERT_TRUE(rig.plc.change(traps_in(2, kStopTask), vm::kAllowLoss | vm::kPermanent).ok());
+  rig.plc.run(5);
+  const std::string other =
+      "PROGRAM Other VAR m : DINT; z : INT; END_VAR m := m + 1; z := 1 / z; END_PROGRAM "
+      "CONFIGURATION c RESOURCE r ON cpu " +
+      kStopTask +
+      " TASK u (INTERVAL := T#1ms, PRIORITY := 2); PROGRAM Other WITH u : Other; END_RESOURCE "
+      "END_CONFIGURATION";
+  ASSERT_TRUE(rig.plc.change(other).ok());
+  rig.plc.run(3);
+  rig.plc.service().keep_up();
+  EXPECT_EQ(rig.plc.status().change, "idle");
 }
 
 TEST(Trial, case72_AControllerInFaultTakesAChangeAndGoesOn) {
