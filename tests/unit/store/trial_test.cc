@@ -162,6 +162,21 @@ TEST(Trial, case72_AControllerInFaultTakesAChangeAndGoesOn) {
   }
 }
 
+// What is new is made, though no task could run when the switch was.
+TEST(Trial, case72_FbInitOfWhatIsNewRunsBehindAFault) {
+  Rig rig;
+  ASSERT_TRUE(rig.plc.change(traps_in(4), vm::kAllowLoss | vm::kPermanent).ok());
+  rig.plc.run(10);
+  ASSERT_TRUE(rig.plc.controller().faulted());
+  const std::string box =
+      "FUNCTION_BLOCK Box VAR made : INT; END_VAR METHOD FB_Init : BOOL VAR_INPUT "
+      "bInitRetains, bInCopyCode : BOOL; END_VAR made := 5; END_METHOD END_FUNCTION_BLOCK\n";
+  ASSERT_TRUE(rig.plc.change(box + program("k : DINT; b : Box;", "")).ok());
+  rig.plc.run(2);
+  EXPECT_FALSE(rig.plc.controller().faulted());
+  EXPECT_EQ(rig.plc.get("Main.b.made"), "5");
+}
+
 // case78: dry runs of several connections, beside what others have staged.
 class DryRun : public ::testing::Test {
  protected:
