@@ -10,6 +10,7 @@
 #include "base/limits.h"
 #include "base/memory_limit.h"
 #include "base/parallel.h"
+#include "ir/bytecode/embedded_sources.h"
 #include "ir/bytecode/image_beside.h"
 #include "ir/bytecode/image_sections.h"
 #include "ir/bytecode/section_fields.h"
@@ -20,19 +21,26 @@ namespace {
 // Controllers that know no schedules take the images that have none of their own.
 constexpr uint32_t kVersion = 7;
 constexpr uint32_t kVersionOfSchedules = 8;
+constexpr uint32_t kVersionOfSources = 9;
 constexpr size_t kDigestAt = 16;
 constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 
 constexpr const char* kSectionNames[] = {"program", "types",  "constants", "layouts", "pous",
-                                         "code",    "tables", "data",      "devices"};
+                                         "code",    "tables", "data",      "devices",
+                                         "sources"};
 constexpr size_t kBytesForThreads = 1 << 20;  // below, threads cost more than they save
 
 base::Error bad_format(std::string text) {
   return {base::Refusal::kBadFormat, "image: " + std::move(text)};
 }
 
-uint32_t version_of(const Image& image) {
+uint32_t version_of(const Image& image, bool has_sources) {
+  if (has_sources) return kVersionOfSources;
   return image.schedule == Schedule::kSendFirst ? kVersion : kVersionOfSchedules;
+}
+
+uint32_t sections_of(uint32_t version) {
+  return version < kVersionOfSources ? kImageSectionCount : kImageSectionCount + 1;
 }
 
 // Of a header that is there.
@@ -49,9 +57,9 @@ base::Status check_header(base::ByteSpan bytes) {
   if (in.failed()) return bad_format("only " + std::to_string(bytes.size()) + " bytes");
   if (!std::equal(magic.begin(), magic.end(), kImageMagic.begin()))
     return bad_format("no magic number");
-  if (version != kVersion && version != kVersionOfSchedules) {
+  if (version < kVersion || version > kVersionOfSources) {
     return bad_format("version " + std::to_string(version) + ", this program reads " +
-                      std::to_string(kVersion) + " and " + std::to_string(kVersionOfSchedules));
+                      std::to_string(kVersion) + " to " + std::to_string(kVersionOfSources));
   }
   if (length > base::kMaxImageBytes) {
     return base::Error{base::Refusal::kTooLarge, "image of " + std::to_string(length) +
@@ -104,12 +112,13 @@ std::string name_of(uint32_t section) {
   return std::string("section `") + kSectionNames[section] + "`";
 }
 
-using Contents = std::array<base::ByteSpan, kImageSectionCount>;
+using Contents = std::array<base::ByteSpan, kImageSectionCount + 1>;
 
 // What they are, and the error of the first that is not there.
 base::Status split(base::ByteSpan bytes, Contents& contents, uint32_t& count) {
   base::ByteReader in(bytes.subspan(kHeaderBytes));
-  for (count = 0; count < kImageSectionCount; ++count) {
+  const uint32_t sections = sections_of(stored_version(bytes));
+  for (count = 0; count < sections; ++count) {
     if (in.u32() != count) return bad_format(name_of(count) + " is missing");
     contents[count] = in.blob();
     if (in.failed()) return bad_format(name_of(count) + " is cut off");
@@ -156,12 +165,13 @@ size_t rough_bytes(const Image& image) {
 
 base::Bytes encode(const Image& image) { return encode(image, nullptr).bytes; }
 
-WrittenImage encode(const Image& image, const KnownImage* known) {
+WrittenImage encode(const Image& image, const KnownImage* known, base::ByteSpan sources) {
   WrittenImage made;
-  ImageWriter out(known == nullptr ? rough_bytes(image) : known->bytes.size() + kBytesForThreads);
+  ImageWriter out(sources.size() + (known == nullptr ? rough_bytes(image)
+                                                     : known->bytes.size() + kBytesForThreads));
   const Contents known_contents = contents_of(known);
   out.raw(base::as_bytes(kImageMagic));
-  out(version_of(image));
+  out(version_of(image, !sources.empty()));
   out(0u);
   out.raw(base::Digest{});
   for (uint32_t number = 0; number < kImageSectionCount; ++number) {
@@ -171,6 +181,11 @@ WrittenImage encode(const Image& image, const KnownImage* known) {
     out.begin_section();
     section(out, image, number, Beside{known, made.places, known_contents[number]});
     out.patch_u32(length_at, static_cast<uint32_t>(out.size() - length_at - 4));
+  }
+  if (!sources.empty()) {
+    out(static_cast<uint32_t>(ImageSection::kSources));
+    out(static_cast<uint32_t>(sources.size()));
+    out.raw(sources);
   }
   out.patch_u32(kImageMagic.size() + 4, static_cast<uint32_t>(out.size()));
   made.bytes = out.take();
@@ -194,6 +209,8 @@ base::Result<DecodedImage> decode(base::ByteSpan bytes, const KnownImage* known)
   Contents contents;
   uint32_t count = 0;
   const base::Status whole = split(bytes, contents, count);
+  const bool has_sources = count > kImageSectionCount;
+  count = std::min(count, kImageSectionCount);
   const Contents known_contents = contents_of(known);
   const uint32_t jobs = bytes.size() < kBytesForThreads ? 1 : base::usable_cores();
   const uint32_t pous =
@@ -221,10 +238,14 @@ base::Result<DecodedImage> decode(base::ByteSpan bytes, const KnownImage* known)
     if (!part.done.ok()) return part.done.error();
   }
   if (!whole.ok()) return whole.error();
+  if (has_sources) {
+    if (auto sources = decode_sources(contents.back()); !sources.ok()) return sources.error();
+  }
   const uint32_t stored = stored_version(bytes);
-  if (stored != version_of(out.image)) {  // the checksum does not cover it
+  const uint32_t actual = version_of(out.image, has_sources);
+  if (stored != actual) {  // the checksum does not cover it
     return bad_format("version " + std::to_string(stored) + ", its sections are of version " +
-                      std::to_string(version_of(out.image)));
+                      std::to_string(actual));
   }
   return out;
 }

@@ -50,8 +50,8 @@ struct WrittenImage {
   ImagePlaces places;
 };
 
-// `known`: null where there is none.
+// `known`: null where there is none. `sources`: encode_sources(); empty where none travel along.
 base::Result<DecodedImage> decode(base::ByteSpan bytes, const KnownImage* known);
-WrittenImage encode(const Image& image, const KnownImage* known);
+WrittenImage encode(const Image& image, const KnownImage* known, base::ByteSpan sources = {});
 
 }  // namespace ir

@@ -17,8 +17,10 @@ enum class ImageSection : uint8_t {
   kCode,
   kTables,
   kData,
-  kDevices
+  kDevices,
+  kSources  // only where sources travel along (embedded_sources.h); no part of ir::Image
 };
+// Of those that are.
 inline constexpr uint32_t kImageSectionCount = 9;
 // Its content; empty when the image is cut off before its end.
 base::ByteSpan section_of(base::ByteSpan encoded, ImageSection section);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/check.h"
+#include "ir/bytecode/embedded_sources.h"
 #include "ir/bytecode/renames.h"
 #include "ir/bytecode/symbols.h"
 #include "online_change/apply/change.h"
@@ -12,6 +13,7 @@
 #include "online_change/plan/pou_edits.h"
 #include "online_change/store/retained_values.h"
 #include "tools/common/fate_report.h"
+#include "tools/common/source_edits.h"
 #include "tools/stc/image_text.h"
 #include "vm/io/device_io.h"
 #include "vm/io/global_exchange.h"
@@ -121,7 +123,10 @@ void compare_texts(const ir::VerifiedImage& from, const ir::VerifiedImage& to, c
   const EncodedImage after{to.image(), to.encoded()};
   pou_edits(before, after);
   check_restricted(edits).ok();
-  const auto system = system_edits(from.image(), to.image());
+  auto system = system_edits(from.image(), to.image());
+  for (auto& edit : tools::source_edits(from.encoded(), to.encoded())) {
+    system.push_back(std::move(edit));
+  }
   base::check(!tools::fate_report(plan, {}, edits, system).empty(), "a report");
 }
 
@@ -146,6 +151,10 @@ void read_image(const ir::VerifiedImage& verified) {
   vm::memory_report(image);
   const vm::SharedGlobals shared(image);
   for (uint32_t id = 0; id < image.instances.size(); ++id) image.instance_path(id);
+  if (const auto sources = ir::sources_of(verified.encoded()); answered(sources)) {
+    const auto texts = ir::unpack_sources(*sources);
+    base::check(!answered(texts) || texts->size() == sources->files.size(), "a text of each");
+  }
   if (can_run(verified)) read_values(image);
 }
 

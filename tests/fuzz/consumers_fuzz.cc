@@ -3,11 +3,13 @@
 // them (consumers.h).
 //
 // An input is a script: a byte that names the version (tests/fuzz/versions.h), one that says which
-// consumers, then 8 bytes for each change of a field (field_changes.h).
+// consumers, then 8 bytes for each change of a field (field_changes.h), or of the sources that
+// travel along, which are no part of ir::Image.
 #include <memory>
 #include <optional>
 
 #include "base/check.h"
+#include "ir/bytecode/embedded_sources.h"
 #include "ir/bytecode/proof.h"
 #include "tests/fuzz/consumers.h"
 #include "tests/fuzz/field_changes.h"
@@ -33,6 +35,19 @@ const Good& good_version(uint8_t number) {
   auto proof = ir::verification::prove(std::make_shared<base::Bytes>(version.encoded()), nullptr);
   good = Good{version, fuzz::fields_of(version.image()), *proof};
   return *good;
+}
+
+// Sources that travel along, with some bytes that are others.
+base::Bytes changed_sources(const uint8_t* data, size_t size) {
+  static const base::Bytes good = ir::encode_sources(*ir::pack_sources(
+      {{"lib/pid.st", "(* pid *) (* pid *) (* pid *)"}, {"main.st", "PROGRAM p END_PROGRAM"}},
+      {"--name=plant", "--define=SIM", "main.st", "lib"}));
+  base::Bytes section = good;
+  for (size_t at = 0; at + 8 <= size && at < 8 * kMostChanges; at += 8) {
+    section[(data[at] | data[at + 1] << 8) % section.size()] = data[at + 2];
+    if (data[at + 3] % 8 == 0) section.resize(section.size() - 1);
+  }
+  return section;
 }
 
 base::Bytes changed(const Good& good, const uint8_t* data, size_t size) {
@@ -66,7 +81,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using online_change::Strategy;
   if (size < 2) return 0;
   const Good& good = good_version(data[0]);
-  const auto image = verified(good, changed(good, data + 2, size - 2));
+  const bool sources = data[1] % 64 >= 48;
+  const auto image =
+      verified(good, sources ? ir::encode(good.version.image(), nullptr,
+                                          changed_sources(data + 2, size - 2)).bytes
+                             : changed(good, data + 2, size - 2));
   if (!image) return 0;
   const Strategy strategy = (data[1] & 8) != 0 ? Strategy::kStandby : Strategy::kInPlace;
   fuzz::read_image(*image);

@@ -9,7 +9,8 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <utility>
+
+#include "tools/common/descriptor.h"
 
 namespace tools {
 namespace {
@@ -19,16 +20,6 @@ base::Error file_error(base::Refusal refusal, const std::string& path, int code)
 }
 
 constexpr size_t kReadStep = 64 << 10;
-
-// Closes a descriptor on every way out.
-struct Descriptor {
-  explicit Descriptor(int opened) : fd(opened) {}
-  Descriptor(Descriptor&& other) noexcept : fd(std::exchange(other.fd, -1)) {}
-  ~Descriptor() {
-    if (fd >= 0) ::close(fd);
-  }
-  int fd;
-};
 
 base::Result<Descriptor> open_to_read(const std::string& path) {
   Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
@@ -50,17 +41,6 @@ void take_pages(base::Bytes& bytes) {
 #endif
 }
 
-base::Status write_all(int fd, const std::string& path, base::ByteSpan bytes) {
-  size_t done = 0;
-  while (done < bytes.size()) {
-    ssize_t n = ::write(fd, bytes.data() + done, bytes.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return file_error(base::Refusal::kFileUnwritable, path, errno);
-    done += static_cast<size_t>(n);
-  }
-  return base::Ok{};
-}
-
 bool replaceable(const std::string& path) {
   struct stat info;
   return ::lstat(path.c_str(), &info) != 0 || S_ISREG(info.st_mode);
@@ -73,6 +53,17 @@ base::Status write_through(const std::string& path, base::ByteSpan bytes) {
 }
 
 }  // namespace
+
+base::Status write_all(int fd, const std::string& path, base::ByteSpan bytes) {
+  size_t done = 0;
+  while (done < bytes.size()) {
+    ssize_t n = ::write(fd, bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return file_error(base::Refusal::kFileUnwritable, path, errno);
+    done += static_cast<size_t>(n);
+  }
+  return base::Ok{};
+}
 
 base::Result<base::Bytes> read_bytes(const std::string& path, uint64_t limit) {
   base::Result<Descriptor> file = open_to_read(path);

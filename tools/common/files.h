@@ -16,6 +16,8 @@ base::Result<base::Bytes> read_first(const std::string& path, size_t count);
 base::Result<std::string> read_text(const std::string& path, uint64_t limit = 1u << 30);
 // Errors: kFileUnwritable. Symbolic links and devices such as /dev/stdout are written through.
 base::Status write_file(const std::string& path, base::ByteSpan bytes);
+// To a file that is open; `path` is for the message. Errors: kFileUnwritable.
+base::Status write_all(int fd, const std::string& path, base::ByteSpan bytes);
 
 // What cannot be asked, such as a link that leads to itself, is none of these.
 bool is_folder(const std::string& path);

@@ -9,6 +9,7 @@
 #include "ir/program/verify.h"
 #include "linker/link.h"
 #include "tools/common/files.h"
+#include "tools/stc/embed.h"
 #include "tools/stc/importer.h"
 #include "tools/stc/memory_budget.h"
 
@@ -50,7 +51,7 @@ std::vector<ir::Device> without_lost_tasks(std::vector<ir::Device> devices) {
 // Safe values of outputs that another resource has are left out when `several` are built.
 base::Result<Version> link(const Compiled& compiled, const Project& project,
                            std::vector<ir::Device> devices, bool several,
-                           const BuildOptions& options) {
+                           const BuildOptions& options, const Embedding& embedding) {
   linker::Options link_options{project.slack,      options.base,      options.move_all,
                                std::move(devices), project.safe.rows, project.jobs};
   base::Result<ir::Image> image = linker::link(compiled.program, compiled.objects, link_options);
@@ -62,7 +63,8 @@ base::Result<Version> link(const Compiled& compiled, const Project& project,
     return safe.error();
   }
   Version out{std::move(*image), {}};
-  out.bytes = ir::encode(out.image);
+  embedding.name_files(out.image);
+  out.bytes = embedding.encode(out.image, nullptr).bytes;
   return out;
 }
 
@@ -103,6 +105,8 @@ base::Result<std::vector<ResourceVersion>> build_resources(const Project& projec
   std::optional<frontend::Resources> resources =
       frontend::compile_resources(project.sources, compile_options, diagnostics);
   if (!resources) return source_errors(diagnostics);
+  base::Result<Embedding> embedding = Embedding::of(project);
+  if (!embedding.ok()) return embedding.error();
   const bool several = !resources->names.empty();
   std::vector<ResourceVersion> versions;
   uint32_t output_bytes = 0;
@@ -111,7 +115,8 @@ base::Result<std::vector<ResourceVersion>> build_resources(const Project& projec
     if (!compiled.ok()) return compiled.error();
     auto devices = devices_of(project.devices, made.resource, resources->names);
     if (!devices.ok()) return devices.error();
-    base::Result<Version> version = link(*compiled, project, std::move(*devices), several, options);
+    base::Result<Version> version =
+        link(*compiled, project, std::move(*devices), several, options, *embedding);
     if (!version.ok()) return version.error();
     output_bytes = std::max(output_bytes, version->image.output_bytes);
     versions.push_back({std::move(made.resource), made.declared, std::move(*version)});
@@ -148,7 +153,7 @@ base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics&
   auto devices = devices_of(project.devices, {}, {});
   if (!devices.ok()) return devices.error();
   base::Result<Version> version =
-      link(*compiled, project, without_lost_tasks(std::move(*devices)), false, {});
+      link(*compiled, project, without_lost_tasks(std::move(*devices)), false, {}, {});
   if (!version.ok()) return version.error();
   return TestVersion{std::move(*version), std::move(tests->cases)};
 }

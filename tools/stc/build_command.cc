@@ -10,6 +10,7 @@ namespace {
 constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
     STC_CODE_OPTIONS,
+    STC_EMBED_OPTION,
     {"--output|-o", "FILE",
      "image to write (default: NAME.img in this folder); of several RESOURCEs "
      "FILE.RESOURCE.img each, or RESOURCE.img in the folder FILE"},

@@ -17,6 +17,7 @@ extern const Entry kImport;
 extern const Entry kExport;
 extern const Entry kDraw;
 extern const Entry kDump;
+extern const Entry kSource;
 extern const Entry kExplain;
 
 }  // namespace stc

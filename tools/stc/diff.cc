@@ -5,6 +5,7 @@
 #include "tools/common/all_system_edits.h"
 #include "tools/common/child.h"
 #include "tools/common/fate_report.h"
+#include "tools/common/source_edits.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/session.h"
 
@@ -47,8 +48,9 @@ base::Result<Difference> difference(const tools::Options& options) {
     return base::Error{base::Refusal::kUsage,
                        "diff: OLD and NEW, or --against HOST|DIR and NEW..."};
   }
+  std::vector<std::string> old(next.begin(), next.begin() + (running ? 0 : 1));
   base::Result<Version> before = running ? running_version(options.text("--against"))
-                                         : open_version(options, {next.front()}, {});
+                                         : open_version(options, old, {});
   if (!before.ok()) return before.error();
   if (!running) next.erase(next.begin());
   base::Result<Version> after = open_version(options, next, {&before->image, false});
@@ -56,6 +58,9 @@ base::Result<Difference> difference(const tools::Options& options) {
   Difference out;
   out.edits = online_change::pou_edits(before->image, after->image);
   out.system = tools::all_system_edits(before->image, after->image);
+  for (auto& edit : tools::source_edits(before->bytes, after->bytes)) {
+    out.system.push_back(std::move(edit));
+  }
   if (options.has("--restricted")) {
     base::Status kept = online_change::check_restricted(out.edits);
     if (!kept.ok()) return kept.error();

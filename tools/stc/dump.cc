@@ -8,7 +8,9 @@
 #include "ir/bytecode/verify.h"
 #include "ir/program/text.h"
 #include "tools/stc/commands.h"
+#include "base/visible_text.h"
 #include "tools/common/files.h"
+#include "tools/common/source_command.h"
 #include "tools/stc/image_text.h"
 #include "tools/stc/package_text.h"
 #include "tools/stc/session.h"
@@ -31,6 +33,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--package", "BASE",
      "PATH is a change package that `stc package --base BASE` made: its update records"},
     {"--symbols", nullptr, "every variable with type and offset"},
+    {"--sources", nullptr, "sources that travel with the image; `stc source` writes them"},
 };
 constexpr tools::Command kCommand{"dump", "PATHS...", "Prints what a phase of the compiler made.",
                                   kOptions, 1};
@@ -77,6 +80,27 @@ base::Result<std::string> dump_sources(const tools::Options& options) {
   return out;
 }
 
+base::Result<std::string> sources_text(const Version& version) {
+  base::Result<ir::EmbeddedSources> sources = ir::sources_of(version.bytes);
+  if (!sources.ok()) return sources.error();
+  if (sources->none()) return tools::no_sources(version.image.name);
+  base::Result<std::vector<ir::SourceText>> texts = ir::unpack_sources(*sources);
+  if (!texts.ok()) return texts.error();
+  std::string out;
+  for (const ir::SourceText& source : *texts) {
+    out += (out.empty() ? "==> " : "\n==> ") + source.path + " <==\n" + source.text;
+    if (!out.ends_with('\n')) out += '\n';
+  }
+  return base::visible_lines(out);
+}
+
+std::string sources_line(const base::Bytes& image) {
+  const base::Result<ir::EmbeddedSources> sources = ir::sources_of(image);
+  if (!sources.ok() || sources->none()) return {};
+  return "\nsources: " + std::to_string(sources->files.size()) + " files, packed in " +
+         std::to_string(sources->packed.size()) + " bytes\n";
+}
+
 base::Result<std::string> dump_image(const tools::Options& options) {
   base::Result<Version> version = open_version(options, options.arguments(), {});
   if (!version.ok()) return version.error();
@@ -89,7 +113,8 @@ base::Result<std::string> dump_image(const tools::Options& options) {
   }
   if (options.has("--native")) return vm::native::functions_text(version->image);
   if (options.has("--symbols")) return symbols_text(version->image);
-  return image_text(version->image, ir::digest(version->bytes));
+  if (options.has("--sources")) return sources_text(*version);
+  return image_text(version->image, ir::digest(version->bytes)) + sources_line(version->bytes);
 }
 
 base::Result<std::string> dump_package(const tools::Options& options) {
@@ -126,7 +151,8 @@ int run(const tools::Options& options) {
                                  "dump: an image has no tokens, tree, ir or objects any more"});
   }
   bool wants_image = image_given || options.has("--code") || options.has("--native") ||
-                     options.has("--image") || options.has("--symbols");
+                     options.has("--image") || options.has("--symbols") ||
+                     options.has("--sources");
   base::Result<std::string> out = wants_image ? dump_image(options) : dump_sources(options);
   if (!out.ok()) return tools::refuse("stc", out.error());
   std::fputs(out->c_str(), stdout);

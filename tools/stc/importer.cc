@@ -117,6 +117,7 @@ base::Status Importer::add(const std::string& path) {
   base::Result<std::string> bytes = tools::read_text(path, 2ull * base::kMaxXmlBytes);
   if (!bytes.ok()) return bytes.error();
   read(path, *bytes);
+  read_files.push_back({path, std::move(*bytes)});
   return base::Ok{};
 #else
   return base::Error{base::Refusal::kFileUnreadable,

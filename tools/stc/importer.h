@@ -10,6 +10,7 @@
 #include "adapters/xml/imported.h"
 #include "base/result.h"
 #include "base/source.h"
+#include "tools/stc/read_file.h"
 
 namespace stc {
 
@@ -35,6 +36,7 @@ class Importer {
     xml::MadeSource source;
   };
   std::vector<Made> made;
+  std::vector<ReadFile> read_files;
   std::vector<xml::Finding> findings;
   xml::Kept kept;
 

@@ -26,7 +26,8 @@ int main(int argc, char** argv) {
   stc::limit_memory();
   const tools::Entry* const entries[] = {&stc::kCheck, &stc::kBuild,   &stc::kTest,   &stc::kFormat,
                                          &stc::kDiff,  &stc::kPackage, &stc::kImport, &stc::kExport,
-                                         &stc::kDraw,  &stc::kDump,    &stc::kExplain};
+                                         &stc::kDraw,  &stc::kDump,    &stc::kSource,
+                                         &stc::kExplain};
   return tools::dispatch("stc", "Compiles IEC 61131-3 programs to images for stvm.", entries, argc,
                          argv, dialects());
 }

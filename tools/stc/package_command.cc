@@ -14,6 +14,7 @@ namespace {
 constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
     STC_CODE_OPTIONS,
+    STC_EMBED_OPTION,
     {"--base", "IMAGE", "the running version (required)"},
     {"--output|-o", "FILE", "package to write (required without --watch)"},
     STC_RESTRICTED_OPTION,

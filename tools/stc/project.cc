@@ -74,8 +74,8 @@ base::Status apply_slack(const std::string& file, const std::string& key,
   return tools::toml_error(
       file, value.line, value.column,
       "unknown key `" + key +
-          "`; known are name, dialect, resource, sources, defines, strict_strings and the tables "
-          "[slack], [change], [outputs], [format] and [devices.NAME]");
+          "`; known are name, dialect, resource, sources, defines, strict_strings, embed_sources "
+          "and the tables [slack], [change], [outputs], [format] and [devices.NAME]");
 }
 
 // Applies stc.toml of `folder`; `sources` is replaced when the file lists its own.
@@ -87,6 +87,7 @@ base::Status apply_project_file(const std::string& folder, Project& project,
   if (!text.ok()) return text.error();
   base::Result<tools::TomlTable> table = tools::parse_toml(file, *text);
   if (!table.ok()) return table.error();
+  project.other_files.push_back({file, std::move(*text)});
   base::Result<std::vector<ProjectDevice>> devices = read_devices(file, *table);
   if (!devices.ok()) return devices.error();
   project.devices = std::move(*devices);
@@ -96,6 +97,11 @@ base::Status apply_project_file(const std::string& folder, Project& project,
       base::Result<std::string> name = typed<std::string>(file, key, value, "a text");
       if (!name.ok()) return name.error();
       project.name = *name;
+      project.named = true;
+    } else if (key == "embed_sources") {
+      auto embed = typed<bool>(file, key, value, "true or false");
+      if (!embed.ok()) return embed.error();
+      project.embed_sources = *embed;
     } else if (key == "dialect") {
       base::Result<std::string> name = typed<std::string>(file, key, value, "a text");
       if (!name.ok()) return name.error();
@@ -199,6 +205,7 @@ base::Result<Project> load_project(const std::vector<std::string>& paths,
                                    std::optional<frontend::Dialect> dialect) {
   Project project;
   project.name = project_name(paths.front());
+  project.paths = paths;
   Importer importer(project.sources);
   uint64_t bytes = 0;
   for (const std::string& path : paths) {
@@ -222,6 +229,8 @@ base::Result<Project> load_project(const std::vector<std::string>& paths,
     }
   }
   importer.finish();
+  project.read_sources = project.sources.file_count();
+  for (ReadFile& file : importer.read_files) project.other_files.push_back(std::move(file));
   for (Importer::Made& made : importer.made) {
     const std::string name = made.origin + "/" + made.source.name;
     base::Status fits = count_bytes(bytes, name, made.source.text);

@@ -13,6 +13,7 @@
 #include "ir/opt/optimise.h"
 #include "linker/layout.h"
 #include "tools/stc/device_tables.h"
+#include "tools/stc/read_file.h"
 #include "tools/stc/safe_settings.h"
 
 namespace stc {
@@ -28,6 +29,14 @@ struct Project {
   linker::Slack slack;
   std::vector<ProjectDevice> devices;
   SafeSettings safe;
+
+  // For sources that travel with the image (embed.h).
+  bool embed_sources = false;
+  bool named = false;                      // by its settings
+  std::vector<std::string> paths;          // as typed
+  std::vector<std::string> build_options;  // as typed: what is not in the settings
+  std::vector<ReadFile> other_files;
+  uint32_t read_sources = 0;  // so many of `sources` were read; the rest was made of documents
 };
 
 // Is it a source by its name?

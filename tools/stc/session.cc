@@ -32,6 +32,20 @@ base::Result<uint32_t> jobs_option(const tools::Options& options) {
                                                 std::to_string(base::kMaxJobs)};
 }
 
+// What else the image depends on, beside files; a folder's name, too.
+std::vector<std::string> build_options_of(const tools::Options& options, const Project& project) {
+  std::vector<std::string> out;
+  for (const char* name : {"--dialect", "--resource", "--passes"}) {
+    if (options.has(name)) out.push_back(std::string(name) + "=" + options.text(name));
+  }
+  for (const char* flag : {"--no-opt", "--embed-sources"}) {
+    if (options.has(flag)) out.emplace_back(flag);
+  }
+  for (const std::string& define : options.all("--define")) out.push_back("--define=" + define);
+  if (options.has("--name") || !project.named) out.push_back("--name=" + project.name);
+  return out;
+}
+
 }  // namespace
 
 base::Result<Project> open_project(const tools::Options& options,
@@ -51,6 +65,8 @@ base::Result<Project> open_project(const tools::Options& options,
   auto passes = passes_option(options);
   if (!passes.ok()) return passes.error();
   project->passes = *passes;
+  if (options.has("--embed-sources")) project->embed_sources = true;
+  project->build_options = build_options_of(options, *project);
   auto jobs = jobs_option(options);
   if (!jobs.ok()) return jobs.error();
   project->jobs = *jobs;

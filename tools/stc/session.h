@@ -22,6 +22,11 @@ namespace stc {
     "--jobs|-j", "N", "threads at most (default: one per core); the result is the same" \
   }
 
+#define STC_EMBED_OPTION                                                                     \
+  {                                                                                          \
+    "--embed-sources", nullptr, "the sources travel with the image (`embed_sources = true`)" \
+  }
+
 #define STC_RESTRICTED_OPTION \
   { "--restricted", nullptr, "refuse when the interface of a POU is edited" }
 

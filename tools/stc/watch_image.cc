@@ -2,6 +2,7 @@
 
 #include <poll.h>
 
+#include "tools/stc/embed.h"
 #include "tools/stc/image_output.h"
 #include "tools/stc/safe_settings.h"
 
@@ -30,7 +31,11 @@ WatchTarget::Rest WatchedImage::rest(std::chrono::nanoseconds time, int descript
 }
 
 base::Status WatchedImage::write(const ir::Image& image, const Project& project) {
-  base::Bytes bytes = ir::encode(image);
+  base::Result<Embedding> embedding = Embedding::of(project);
+  if (!embedding.ok()) return embedding.error();
+  ir::Image copy;
+  const ir::Image& named = embedding->named(image, copy);
+  base::Bytes bytes = embedding->encode(named, nullptr).bytes;
   base::Result<std::string> path = image_path(output_of(project), {}, project.name);
   if (!path.ok()) return path.error();
   const bool stands = stamp_.seconds != -1 && stamp_of(*path) == stamp_;

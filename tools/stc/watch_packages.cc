@@ -9,6 +9,7 @@
 #include "online_change/plan/pou_edits.h"
 #include "tools/common/child.h"
 #include "tools/common/exit.h"
+#include "tools/stc/embed.h"
 
 namespace stc {
 namespace {
@@ -30,20 +31,26 @@ base::Status WatchedPackages::begin(base::Bytes running) {
   return base::Ok{};
 }
 
-base::Result<WatchTarget::Next> WatchedPackages::take(const ir::Image& image, const Project&,
-                                                      const Built& built) {
+base::Result<WatchTarget::Next> WatchedPackages::take(const ir::Image& image,
+                                                      const Project& project, const Built& built) {
+  base::Result<Embedding> embedding = Embedding::of(project);
+  if (!embedding.ok()) return embedding.error();
+  ir::Image copy;
+  const ir::Image& named = embedding->named(image, copy);
   const ir::KnownImage known{*running_, written_.bytes, written_.places};
-  return bring(image, ir::encode(image, &known), built);
+  return bring(named, embedding->encode(named, &known), built);
 }
 
 base::Result<WatchTarget::Next> WatchedPackages::take(std::vector<ResourceVersion>& versions,
-                                                      const Project&, const Built& built) {
+                                                      const Project& project, const Built& built) {
   if (versions.size() > 1) {
     return base::Error{base::Refusal::kUsage,
                        "there are several RESOURCEs, but what runs is of none of them"};
   }
   const ir::Image& image = versions.front().version.image;
-  return bring(image, ir::encode(image, nullptr), built);
+  base::Result<Embedding> embedding = Embedding::of(project);
+  if (!embedding.ok()) return embedding.error();
+  return bring(image, embedding->encode(image, nullptr), built);
 }
 
 base::Result<WatchTarget::Next> WatchedPackages::bring(const ir::Image& image,

@@ -27,6 +27,7 @@ extern const Entry kStop;
 extern const Entry kRestart;
 extern const Entry kJournal;
 extern const Entry kImage;
+extern const Entry kSource;
 extern const Entry kBridge;
 extern const Entry kReplay;
 extern const Entry kTop;

@@ -5,6 +5,7 @@
 #include "base/limits.h"
 #include "base/visible_text.h"
 #include "online_change/store/record.h"
+#include "tools/common/files.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/remote_client.h"
 #include "tools/stvm/state_folder.h"
@@ -23,12 +24,22 @@ base::Error endless() {
 }  // namespace
 
 base::Result<ControllerClient> ControllerClient::connect(const tools::Options& options) {
-  if (options.has("--host")) {
-    auto transport = RemoteClient::connect(options.text("--host"), options.text("--dir"));
-    if (!transport.ok()) return transport.error();
-    return ControllerClient(std::move(*transport));
-  }
-  const std::string directory = state_directory(options);
+  if (options.has("--host")) return connect_there(options.text("--host"), options.text("--dir"));
+  return connect_here(state_directory(options));
+}
+
+base::Result<ControllerClient> ControllerClient::connect_to(const std::string& place) {
+  return tools::is_folder(place) ? connect_here(place) : connect_there(place, {});
+}
+
+base::Result<ControllerClient> ControllerClient::connect_there(const std::string& host,
+                                                               const std::string& directory) {
+  auto transport = RemoteClient::connect(host, directory);
+  if (!transport.ok()) return transport.error();
+  return ControllerClient(std::move(*transport));
+}
+
+base::Result<ControllerClient> ControllerClient::connect_here(const std::string& directory) {
   auto transport = vm::SocketClient::connect(directory);
   const std::vector<std::string> resources =
       transport.ok() ? std::vector<std::string>() : stored_resources(directory);

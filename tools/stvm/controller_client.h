@@ -18,6 +18,8 @@ class ControllerClient {
  public:
   // The one that --dir or --host names.
   static base::Result<ControllerClient> connect(const tools::Options& options);
+  // A state directory, or a host.
+  static base::Result<ControllerClient> connect_to(const std::string& place);
   explicit ControllerClient(std::unique_ptr<vm::Transport> transport)
       : transport_(std::move(transport)) {}
 
@@ -47,6 +49,9 @@ class ControllerClient {
   base::Result<online_change::SwitchReport> undo();
 
  private:
+  static base::Result<ControllerClient> connect_here(const std::string& directory);
+  static base::Result<ControllerClient> connect_there(const std::string& host,
+                                                      const std::string& directory);
   base::Result<base::Bytes> image_parts(vm::Command command, const base::Digest* expected);
   base::Result<FatePage> fate_pages(std::vector<std::string> names);
   base::Result<online_change::SwitchReport> switch_report(vm::Request request);

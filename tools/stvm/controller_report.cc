@@ -134,7 +134,7 @@ base::Result<base::Bytes> ControllerService::group_page(uint64_t first,
     page.losses.push_back({live_->losses()[i]});
   }
   page.edits = shown_edits(controller_.verified(), next);
-  page.system = shown_system(controller_.image(), next.image());
+  page.system = shown_system(controller_.verified(), next);
   return encode(page);
 }
 

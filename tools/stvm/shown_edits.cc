@@ -1,6 +1,7 @@
 #include "tools/stvm/shown_edits.h"
 
 #include "tools/common/all_system_edits.h"
+#include "tools/common/source_edits.h"
 
 namespace stvm {
 namespace {
@@ -17,8 +18,12 @@ tools::PouEdits shown_edits(const ir::VerifiedImage& old_image,
   return edits;
 }
 
-tools::SystemEdits shown_system(const ir::Image& old_image, const ir::Image& new_image) {
-  tools::SystemEdits edits = tools::all_system_edits(old_image, new_image);
+tools::SystemEdits shown_system(const ir::VerifiedImage& old_image,
+                                const ir::VerifiedImage& new_image) {
+  tools::SystemEdits edits = tools::all_system_edits(old_image.image(), new_image.image());
+  for (auto& edit : tools::source_edits(old_image.encoded(), new_image.encoded())) {
+    edits.push_back(std::move(edit));
+  }
   if (edits.size() <= kShownEdits) return edits;
   const std::string more = std::to_string(edits.size() - kShownEdits);
   edits.resize(kShownEdits);

@@ -8,6 +8,7 @@ namespace stvm {
 
 tools::PouEdits shown_edits(const ir::VerifiedImage& old_image, const ir::VerifiedImage& new_image);
 // The last row says how many are left out.
-tools::SystemEdits shown_system(const ir::Image& old_image, const ir::Image& new_image);
+tools::SystemEdits shown_system(const ir::VerifiedImage& old_image,
+                                const ir::VerifiedImage& new_image);
 
 }  // namespace stvm
