@@ -8,6 +8,8 @@
 #include "tools/common/source_edits.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/session.h"
+#include "tools/stc/source_units.h"
+#include "tools/stc/unit_report.h"
 
 namespace stc {
 namespace {
@@ -17,6 +19,8 @@ constexpr tools::OptionRow kOptions[] = {
     STC_RESTRICTED_OPTION,
     {"--all", nullptr, "show the fate of each variable too, with its addresses"},
     {"--against", "HOST|DIR", "OLD is what runs there: a state directory, or a host to ssh to"},
+    {"--text", nullptr,
+     "say in words what differs in the sources; images need theirs (`embed_sources`)"},
 };
 constexpr tools::Command kCommand{"diff", "[OLD] NEW",
                                   "Shows the fate of every variable when OLD is changed to NEW.",
@@ -39,6 +43,7 @@ struct Difference {
   tools::PouEdits edits;
   tools::SystemEdits system;
   std::vector<tools::FateLine> every;  // by --all
+  std::vector<UnitDifference> words;   // by --text
 };
 
 base::Result<Difference> difference(const tools::Options& options) {
@@ -56,6 +61,13 @@ base::Result<Difference> difference(const tools::Options& options) {
   base::Result<Version> after = open_version(options, next, {&before->image, false});
   if (!after.ok()) return after.error();
   Difference out;
+  if (options.has("--text")) {
+    auto was = running ? source_units(*before) : source_units(options, old, *before);
+    if (!was.ok()) return was.error();
+    auto is = source_units(options, next, *after);
+    if (!is.ok()) return is.error();
+    out.words = differences(*was, *is);
+  }
   out.edits = online_change::pou_edits(before->image, after->image);
   out.system = tools::all_system_edits(before->image, after->image);
   for (auto& edit : tools::source_edits(before->bytes, after->bytes)) {
@@ -82,9 +94,11 @@ int run(const tools::Options& options) {
     json.begin_object();
     tools::fate_report(found->plan, {}, found->edits, found->system, json);
     if (options.has("--all")) tools::every_fate(found->every, json);
+    if (options.has("--text")) difference_json(found->words, json);
     json.end_object();
     std::fputs(json.finish().c_str(), stdout);
   } else {
+    if (options.has("--text")) std::printf("%s\n", difference_text(found->words).c_str());
     if (options.has("--all")) std::printf("%s\n", tools::every_fate_text(found->every).c_str());
     std::fputs(tools::fate_report(found->plan, {}, found->edits, found->system).c_str(), stdout);
   }

@@ -23,13 +23,8 @@ Lines lines_of(std::string_view text) {
   return out;
 }
 
-// Lines [a, a_end) become [b, b_end).
-struct Change {
-  size_t a, a_end, b, b_end;
-};
-
 // The nearest place behind (a, b) where both go on with the same two lines (or end).
-Change next_change(const Lines& from, const Lines& to, size_t a, size_t b) {
+LineChange next_change(const Lines& from, const Lines& to, size_t a, size_t b) {
   auto same = [&](size_t i, size_t j) {
     if (i == from.size() || j == to.size()) return i == from.size() && j == to.size();
     if (from[i] != to[j]) return false;
@@ -46,23 +41,6 @@ Change next_change(const Lines& from, const Lines& to, size_t a, size_t b) {
   return {a, from.size(), b, to.size()};
 }
 
-std::vector<Change> changes_between(const Lines& from, const Lines& to) {
-  std::vector<Change> out;
-  size_t a = 0;
-  size_t b = 0;
-  while (a < from.size() || b < to.size()) {
-    if (a < from.size() && b < to.size() && from[a] == to[b]) {
-      ++a;
-      ++b;
-      continue;
-    }
-    out.push_back(next_change(from, to, a, b));
-    a = out.back().a_end;
-    b = out.back().b_end;
-  }
-  return out;
-}
-
 void append(std::string& out, char sign, std::string_view line) {
   out += sign;
   out += line;
@@ -75,7 +53,7 @@ std::string extent(size_t first, size_t count) {
 
 // Changes [first, last) with the lines around them.
 void append_hunk(std::string& out, const Lines& from, const Lines& to,
-                 const std::vector<Change>& changes, size_t first, size_t last) {
+                 const std::vector<LineChange>& changes, size_t first, size_t last) {
   size_t before = std::min(kContext, changes[first].a);
   size_t after = std::min(kContext, from.size() - changes[last - 1].a_end);
   size_t a = changes[first].a - before;
@@ -92,10 +70,27 @@ void append_hunk(std::string& out, const Lines& from, const Lines& to,
 
 }  // namespace
 
+std::vector<LineChange> changes_between(const Lines& from, const Lines& to) {
+  std::vector<LineChange> out;
+  size_t a = 0;
+  size_t b = 0;
+  while (a < from.size() || b < to.size()) {
+    if (a < from.size() && b < to.size() && from[a] == to[b]) {
+      ++a;
+      ++b;
+      continue;
+    }
+    out.push_back(next_change(from, to, a, b));
+    a = out.back().a_end;
+    b = out.back().b_end;
+  }
+  return out;
+}
+
 std::string difference(std::string_view name, std::string_view before, std::string_view after) {
   Lines from = lines_of(before);
   Lines to = lines_of(after);
-  std::vector<Change> changes = changes_between(from, to);
+  std::vector<LineChange> changes = changes_between(from, to);
   if (changes.empty()) return {};
   std::string out = "--- " + std::string(name) + "\n+++ " + std::string(name) + "\n";
   for (size_t first = 0; first < changes.size();) {
