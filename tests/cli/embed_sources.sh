@@ -72,8 +72,10 @@ mv back other
 expect 0 stc build other -o none.img
 expect 7 stc source none.img
 said 'no sources travel with other'
+sed -i 's/^  IF on/{IF defined(SIM)} runs := runs + 10; {END_IF}\n  IF on/' other/lib/pump.st
 expect 0 stc build other --embed-sources --define 'SIM' --no-opt --name 'my plant' -o other.img
 expect 0 stc source other.img -o back
+said '^build: stc build --no-opt --embed-sources --define=SIM .--name=my plant. back$'
 build_again
 cmp other.img again.img || fail "options are lost"
 cp other/src/main.st other/lib/pump.st .
