@@ -78,6 +78,7 @@ PauseRig::PauseRig(const PauseCase& one)
 void PauseRig::prepare(online_change::Strategy strategy) {
   done(change_.stage(case_.package, strategy));
   while (!taken(change_.configure())) controller_->cycle();
+  while (!taken(change_.catch_up())) controller_->cycle();
   done(change_.arm(true, true));
   controller_->cycle();
 }

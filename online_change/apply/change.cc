@@ -21,15 +21,6 @@ int64_t monotonic_ns() {
       .count();
 }
 
-base::Error not_in(State state, const char* wanted) {
-  return {base::Refusal::kBusy,
-          std::string("the change is ") + state_name(state) + ", not " + wanted};
-}
-
-base::Error no_boundary() {
-  return {base::Refusal::kBusy, "a task is inside a scan; the switch waits for a boundary"};
-}
-
 const Plan kNothing;
 
 // Without it, start code would find nothing to do.
@@ -54,6 +45,15 @@ auto Change::guarded(Step step) -> decltype(step()) {
     abandon();
     return base::Error{base::Refusal::kNoMemory, {}};
   });
+}
+
+base::Error Change::not_in(const char* wanted) const {
+  return {base::Refusal::kBusy,
+          std::string("the change is ") + state_name(state_) + ", not " + wanted};
+}
+
+base::Error Change::no_boundary() {
+  return {base::Refusal::kBusy, "a task is inside a scan; the switch waits for a boundary"};
 }
 
 base::Error Change::abandoned(const char* where) const {
@@ -150,7 +150,7 @@ base::Status Change::arm(bool allow_loss, bool allow_overrun) {
 }
 
 base::Status Change::arm_steps(bool allow_loss, bool allow_overrun) {
-  if (state_ != State::kPrepared) return not_in(state_, "prepared");
+  if (state_ != State::kPrepared) return not_in("prepared");
   base::Status fits = admit(allow_overrun);
   if (!fits.ok()) return fits;
   base::Status lossless = refused_by_values(allow_loss);
@@ -164,41 +164,6 @@ base::Status Change::arm_steps(bool allow_loss, bool allow_overrun) {
   pending_->allow_loss = allow_loss;
   state_ = State::kArmed;
   return base::Ok{};
-}
-
-base::Result<bool> Change::configure() {
-  if (state_ != State::kPrepared) return not_in(state_, "prepared");
-  if (!controller_.at_boundary()) return no_boundary();
-  bool stop = false;
-  controller_.run_idle([&] {
-    stop = interrupted();
-    return !stop && unit();
-  });
-  if (!stop) return units_left() == 0;
-  abandon();
-  return abandoned("while it was configured");
-}
-
-// In place version 1 owns none of the bytes that are written here, and a second area is not its own
-// either, so there is nothing to take back. False: nothing was left.
-bool Change::unit() {
-  uint8_t* memory = controller_.memory().data();
-  if (pending_->area) return pending_->area->unit(memory);
-  const std::vector<Piece>& pieces = pending_->early.pieces();
-  if (pending_->early_done == pieces.size()) return false;
-  return pending_->early.move(pieces[pending_->early_done++], memory, memory, nullptr);
-}
-
-bool Change::late_unit() {
-  const bool done = unit();
-  if (done) controller_.worked(vm::kIdleUnitNs);
-  return done;
-}
-
-uint64_t Change::units_left() const {
-  if (!pending_) return 0;
-  if (pending_->area) return pending_->area->units_left();
-  return pending_->early.pieces().size() - pending_->early_done;
 }
 
 SwitchReport Change::report_begin() const {
@@ -260,14 +225,14 @@ base::Status Change::leave(const std::vector<uint32_t>& ids) {
 
 // Memory can run out when the text of a trap in FB_Init is made: version 2 is published then, and
 // goes without needing any.
-base::Result<SwitchReport> Change::switch_now() {
-  base::Result<SwitchReport> report = guarded([&] { return switch_steps(); });
+base::Result<SwitchReport> Change::switch_now(bool again) {
+  base::Result<SwitchReport> report = guarded([&] { return switch_steps(again); });
   if (!report.ok() && state_ == State::kTrial) take_back();
   return report;
 }
 
-base::Result<SwitchReport> Change::switch_steps() {
-  if (state_ != State::kArmed) return not_in(state_, "armed");
+base::Result<SwitchReport> Change::switch_steps(bool again) {
+  if (state_ != State::kArmed) return not_in("armed");
   if (!controller_.at_boundary()) return no_boundary();
   SwitchReport report = report_begin();
   int64_t begin_ns = monotonic_ns();
@@ -283,7 +248,8 @@ base::Result<SwitchReport> Change::switch_steps() {
     count_switch();
   }
   if (!carried.ok()) {
-    abandon();
+    const bool late = pending_->area && pending_->area->behind();
+    if (!again || leaves || !late) abandon();
     return carried.error();
   }
   vm::Memory& data = pending_->area ? pending_->area->data() : controller_.memory();

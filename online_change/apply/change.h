@@ -87,6 +87,11 @@ class Change {
   // (A19); standby: the second data area. True: all is done.
   base::Result<bool> configure();
   uint64_t units_left() const;  // of that work
+  // Standby, by kPrepared and kArmed, at a boundary and behind configure(): copies again, in idle
+  // time, what the program has written meanwhile, pass by pass, each begun in another cycle (C7).
+  // True: what is left fits the free time of the tightest task, or more passes would not make it
+  // less. In place: true.
+  base::Result<bool> catch_up();
   // kPauseTooLong when the predicted pause is longer than the free time of the tightest task.
   base::Status admit(bool allow_overrun) const;
   // By kPrepared, at a boundary: what arm() would refuse with these values, but for time. Changes
@@ -97,7 +102,9 @@ class Change {
   base::Status arm(bool allow_loss, bool allow_overrun = false);
   // At a boundary: Armed -> Trial. Re-checks losses; on failure -> Idle, version 1 untouched. When
   // FB_Init of what is new traps (kInitFailed), the switch is undone before any task has run.
-  base::Result<SwitchReport> switch_now();
+  // `again`: standby, a deadline that comes while what was written is brought up to date leaves it
+  // kArmed, for a later boundary.
+  base::Result<SwitchReport> switch_now(bool again = false);
   // Trial -> Idle with version 2 for good.
   base::Status accept();
   // Trial -> Idle with version 1 again; at a boundary. Inverse plan on the current state; values
@@ -129,7 +136,7 @@ class Change {
   base::Status stage_steps(base::ByteSpan package, Strategy strategy,
                            const AtBoundary& at_boundary);
   base::Status arm_steps(bool allow_loss, bool allow_overrun);
-  base::Result<SwitchReport> switch_steps();
+  base::Result<SwitchReport> switch_steps(bool again);
   base::Result<SwitchReport> undo_steps(bool whatever_happens = false);
   base::Status enter();
   void take_back();
@@ -140,10 +147,15 @@ class Change {
   uint64_t find_losses(std::span<const uint8_t> memory, size_t most,
                        std::vector<LiveLoss>& rows) const;
   base::Status check_losses(bool allow_loss) const;
+  base::Error not_in(const char* wanted) const;
+  static base::Error no_boundary();
+  // False: interrupted, and abandoned.
+  bool idle_units();
   bool unit();
   bool late_unit();  // not in idle time
   bool carry_in_place(const std::function<bool(const Loss&)>& on_loss);
   base::Status carry_over();
+  std::string way_out() const;
   void abandon();
   base::Status leave(const std::vector<uint32_t>& ids);
   void count_switch();

@@ -48,6 +48,8 @@ int64_t Change::predicted_pause_ns() const {
   if (!pending_) return 0;
   const bool back = state_ == State::kTrial;
   BoundaryWork work = back ? pending_->undo_work : pending_->switch_work;
+  const bool known = !back && pending_->area && pending_->area->passes() != 0;
+  if (known) work = pending_->of_switch(pending_->area->found());
   const Migrator* migrate = back ? pending_->migrate_back.get() : pending_->migrate.get();
   if (migrate != nullptr) work.loops = migrate->fuel_used();
   return pause_ns(work);
@@ -57,11 +59,7 @@ int64_t Change::predicted_pause_ns() const {
 // what has drifted since the copy.
 void Change::count_switch() {
   BoundaryWork work = pending_->switch_work;
-  if (pending_->area) {
-    work = pending_->area->work();
-    work.references = pending_->switch_work.references;
-    work.calls = pending_->switch_work.calls;
-  }
+  if (pending_->area) work = pending_->of_switch(pending_->area->work());
   if (pending_->migrate) work.loops = pending_->migrate->last_fuel();
   controller_.worked(pause_ns(work));
 }
@@ -163,9 +161,28 @@ base::Status Change::refused_by_values(bool allow_loss) const {
   return going_on.ok() ? check_losses(allow_loss) : going_on;
 }
 
+// By standby the other strategy may help: it need not bring up to date what the program rewrites.
+std::string Change::way_out() const {
+  if (!pending_->area) return {};
+  const BoundaryWork in_place =
+      boundary_work(pending_->package.forward, pending_->old(), pending_->new_image.image(), false);
+  const Standby& area = *pending_->area;
+  std::string text = "; by standby ";
+  if (area.passes() == 0) {
+    text += "all of its " + std::to_string(area.compared_bytes()) + " bytes of data are expected ";
+  } else {
+    text += std::to_string(area.found().copied) + " of its " +
+            std::to_string(area.compared_bytes()) + " bytes of data are found ";
+  }
+  return text + "to have been written since they were copied; in place (--strategy in-place) the " +
+         "switch is expected to take " + std::to_string(pause_ns(in_place)) + " ns";
+}
+
 base::Status Change::admit(bool allow_overrun) const {
   if (allow_overrun) return base::Ok{};
-  return fits_free_time(predicted_pause_ns(), controller_.tasks());
+  base::Status fits = fits_free_time(predicted_pause_ns(), controller_.tasks());
+  if (fits.ok()) return fits;
+  return base::Error{fits.error().refusal, fits.error().text + way_out()};
 }
 
 base::Status fits_free_time(int64_t pause_ns, const std::vector<vm::TaskStatus>& tasks) {

@@ -21,6 +21,22 @@
 
 namespace online_change {
 
+// Standby: passes behind the first copy, until what they leave for the boundary fits.
+struct CatchingUp {
+  // So many in turn that bring nothing, and more would not either.
+  static constexpr int kMostInVain = 4;
+  uint64_t cycle = 0;         // in which the last one began
+  int64_t least_ns = INT64_MAX;  // pause, of the best one
+  int in_vain = 0;
+  // Behind a pass: true when more are of no use.
+  bool over(int64_t pause_ns, bool fits) {
+    // A gain of less than an eighth is none: each program writes now more, now less.
+    in_vain = pause_ns < least_ns - least_ns / 8 ? 0 : in_vain + 1;
+    least_ns = std::min(least_ns, pause_ns);
+    return fits || in_vain >= kMostInVain;
+  }
+};
+
 struct Change::Pending {
   // `same`: they have the same_data().
   Pending(Package received, ir::VerifiedImage running, ir::VerifiedImage next, Strategy chosen,
@@ -45,12 +61,18 @@ struct Change::Pending {
     if (keeps_all) {
       switch_work.values = bools_to_normalise(bools, waiting->bools());
       undo_work.values = bools_to_normalise(waiting->bools(), bools);
-      if (area) switch_work.compared = area->compared_bytes();
+      if (area) switch_work.compared = switch_work.copied = area->compared_bytes();
       return;
     }
     switch_work = boundary_work(package.forward, old(), new_image.image(), !in_place());
-    if (area) switch_work.compared = area->compared_bytes();
+    if (area) switch_work.compared = switch_work.copied = area->compared_bytes();
     undo_work = boundary_work(package.inverse, new_image.image(), old(), true);
+  }
+  // Standby: `done` or found in the area, with what is done outside of it.
+  BoundaryWork of_switch(BoundaryWork done) const {
+    done.references = switch_work.references;
+    done.calls = switch_work.calls;
+    return done;
   }
   // Does the step out of this state run FB_Exit?
   bool leaves_at(State state) const {
@@ -78,6 +100,7 @@ struct Change::Pending {
   std::unique_ptr<vm::Generation> waiting;
   // Standby: its data. In trial that is version 1's, as the switch found it.
   std::unique_ptr<Standby> area;
+  CatchingUp catching_up;
   // Most of what the switch and undo have to do, without the loops of migrations.
   BoundaryWork switch_work;
   BoundaryWork undo_work;

@@ -6,11 +6,17 @@
 namespace online_change {
 namespace {
 
-constexpr uint32_t kPageBytes = 4096;
+constexpr uint32_t kPageBytes = PagePieces::kPageBytes;
 // Areas that are no further apart are copied as one; what lies between them is nobody's.
 constexpr uint32_t kGap = 64;
 // Between two looks at the deadline.
 constexpr size_t kBlocksPerLook = 16;
+// A unit of a pass: bytes that are compared, a copied one for kCopyWeight; and values, one that is
+// converted slowly for kSlowWeight. Both are some 10 us.
+constexpr uint64_t kUnitBytes = 64u << 10;
+constexpr uint64_t kCopyWeight = 4;
+constexpr uint64_t kUnitValues = 512;
+constexpr uint64_t kSlowWeight = 8;
 
 // Areas of live instances, slack included, in order and joined.
 std::vector<ir::Extent> used_extents(const ir::Image& image) {
@@ -71,7 +77,6 @@ base::Result<std::unique_ptr<Standby>> Standby::make(const vm::Generation& runni
   const uint32_t stack = std::max(image.stack_bytes, next.image().stack_bytes);
   std::memset(memory + ir::kStackBegin, 0, stack);
   made->add_blocks(image);
-  made->lossy_.resize(transfer.pieces().size());
   return made;
 }
 
@@ -87,28 +92,101 @@ void Standby::add_blocks(const ir::Image& running) {
     }
   }
   compared_bytes_ = total(extents);
-  if (!blocks_.empty()) drifted_.resize(blocks_.back().offset / kPageBytes + 1);
+  ahead_.resize(blocks_.size());
+  const size_t pages = blocks_.empty() ? 0 : blocks_.back().offset / kPageBytes + 1;
+  of_page_ = PagePieces(transfer_, pages);
+  const std::vector<Piece>& pieces = transfer_.pieces();
+  again_ = PieceSet(pieces.size());
+  always_ = PieceSet(pieces.size());
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    if (transfer_.is_late(pieces[i])) always_.add(i);
+  }
 }
 
 uint64_t Standby::units_left() const {
-  return blocks_.size() - blocks_done_ + transfer_.pieces().size() - pieces_done_;
+  const size_t pieces = transfer_.pieces().size();
+  if (passing_) return 1 + blocks_.size() - looked_ + pieces - again_at_;
+  return blocks_.size() - copied_ + pieces - moved_;
 }
 
 bool Standby::unit(const uint8_t* active) {
-  if (blocks_done_ < blocks_.size()) {
-    const ir::Extent& block = blocks_[blocks_done_++];
-    std::memcpy(snapshot_.data() + block.offset, active + block.offset, block.size);
-    std::memcpy(data_.data() + block.offset, active + block.offset, block.size);
-    return true;
+  if (copied_ < blocks_.size()) {
+    copy_block(copied_++, active);
+  } else if (moved_ < transfer_.pieces().size()) {
+    move_from_snapshot(moved_++);
+  } else if (!passing_) {
+    return false;
+  } else if (looked_ < blocks_.size()) {
+    look(active);
+  } else {
+    move_again();
   }
-  if (pieces_done_ == transfer_.pieces().size()) return false;
-  auto on_loss = [&](const Loss&) {
-    lossy_[pieces_done_] = true;
-    return true;
-  };
-  transfer_.move(transfer_.pieces()[pieces_done_], snapshot_.data(), data_.data(), on_loss);
-  ++pieces_done_;
   return true;
+}
+
+bool Standby::has_changed(size_t block, const uint8_t* active) const {
+  const ir::Extent& at = blocks_[block];
+  return ahead_[block] ||
+         std::memcmp(active + at.offset, snapshot_.data() + at.offset, at.size) != 0;
+}
+
+void Standby::copy_block(size_t block, const uint8_t* active) {
+  const ir::Extent& at = blocks_[block];
+  std::memcpy(snapshot_.data() + at.offset, active + at.offset, at.size);
+  std::memcpy(data_.data() + at.offset, active + at.offset, at.size);
+  ahead_[block] = false;
+}
+
+void Standby::add_pieces_of(const ir::Extent& block) {
+  for (const uint32_t piece : of_page_.of(block.offset / kPageBytes)) again_.add(piece);
+}
+
+void Standby::move_from_snapshot(size_t piece) {
+  const Piece& one = transfer_.pieces()[piece];
+  bool lossy = transfer_.is_late(one);
+  auto on_loss = [&](const Loss&) { return lossy = true; };
+  transfer_.move(one, snapshot_.data(), data_.data(), on_loss);
+  lossy ? always_.add(piece) : always_.remove(piece);
+}
+
+void Standby::begin_pass() {
+  passing_ = true;
+  looked_ = 0;
+  again_at_ = 0;
+  passed_ = {};
+}
+
+void Standby::look(const uint8_t* active) {
+  for (uint64_t done = 0; looked_ < blocks_.size() && done < kUnitBytes; ++looked_) {
+    const ir::Extent& block = blocks_[looked_];
+    done += block.size;
+    if (!has_changed(looked_, active)) continue;
+    copy_block(looked_, active);
+    add_pieces_of(block);
+    done += kCopyWeight * block.size;
+    passed_.copied += block.size;
+  }
+}
+
+// What close() would have done is counted with it.
+void Standby::move_again() {
+  for (uint64_t done = 0; done < kUnitValues; ++again_at_) {
+    again_at_ = PieceSet::next_of(again_, always_, again_at_);
+    if (again_at_ == PieceSet::kNone) return end_pass();
+    const Piece& piece = transfer_.pieces()[again_at_];
+    transfer_.count(piece, passed_);
+    const bool slow = piece.kind == StepKind::kConvert && piece.fast == nullptr;
+    done += piece.count * (slow ? kSlowWeight : 1);
+    if (again_.has(again_at_)) move_from_snapshot(again_at_);
+  }
+}
+
+void Standby::end_pass() {
+  passing_ = false;
+  ++passes_;
+  again_.clear();
+  passed_.compared = compared_bytes_;
+  found_ = passed_;
 }
 
 bool Standby::copy_drift(const uint8_t* active, const Interrupted& interrupted) {
@@ -116,38 +194,28 @@ bool Standby::copy_drift(const uint8_t* active, const Interrupted& interrupted) 
     if (i % kBlocksPerLook == 0 && interrupted && interrupted()) return false;
     const ir::Extent& block = blocks_[i];
     work_.compared += block.size;
-    const uint8_t* now = active + block.offset;
-    if (std::memcmp(now, snapshot_.data() + block.offset, block.size) == 0) continue;
-    std::memcpy(data_.data() + block.offset, now, block.size);
-    drifted_[block.offset / kPageBytes] = any_drift_ = true;
+    if (!has_changed(i, active)) continue;
+    std::memcpy(data_.data() + block.offset, active + block.offset, block.size);
+    add_pieces_of(block);
+    ahead_[i] = true;
+    work_.copied += block.size;
   }
   return true;
 }
 
-bool Standby::drifted_in(uint64_t begin, uint64_t size) const {
-  if (size == 0) return false;
-  const uint64_t last = std::min<uint64_t>((begin + size - 1) / kPageBytes, drifted_.size() - 1);
-  for (uint64_t page = begin / kPageBytes; page <= last; ++page) {
-    if (drifted_[page]) return true;
-  }
-  return false;
-}
-
-bool Standby::touches_drift(const Piece& piece) const {
-  return any_drift_ && (drifted_in(piece.from, transfer_.source_extent(piece)) ||
-                        drifted_in(piece.to, transfer_.target_extent(piece)));
-}
-
+// What a pass has begun is done here too: the pieces of its blocks are in again_ until it ends.
 bool Standby::close(const uint8_t* active, const OnLoss& on_loss, const Interrupted& interrupted) {
   work_ = {};
+  behind_ = true;
   if (!copy_drift(active, interrupted)) return false;
-  const std::vector<Piece>& pieces = transfer_.pieces();
-  for (size_t i = 0; i < pieces.size(); ++i) {
-    if (!lossy_[i] && !transfer_.is_late(pieces[i]) && !touches_drift(pieces[i])) continue;
+  for (size_t i = PieceSet::next_of(again_, always_, 0); i != PieceSet::kNone;
+       i = PieceSet::next_of(again_, always_, i + 1)) {
+    const Piece& piece = transfer_.pieces()[i];
     if (interrupted && interrupted()) return false;
-    transfer_.count(pieces[i], work_);
-    if (!transfer_.move(pieces[i], active, data_.data(), on_loss)) return false;
+    transfer_.count(piece, work_);
+    if (!transfer_.move(piece, active, data_.data(), on_loss)) return behind_ = false;
   }
+  behind_ = false;
   return true;
 }
 

@@ -13,7 +13,8 @@ int64_t pause_ns(const BoundaryWork& work) {
          static_cast<int64_t>(work.bytes) / kPauseBytesPerNs +
          times(work.calls, kPauseMigrationNs) + times(work.loops, kPauseLoopNs) +
          times(work.references, kPauseReferenceNs) +
-         static_cast<int64_t>(work.compared) / kPauseComparedBytesPerNs;
+         static_cast<int64_t>(work.compared) / kPauseComparedBytesPerNs +
+         static_cast<int64_t>(work.copied) / kPauseCopiedBytesPerNs;
 }
 
 bool converts_slowly(const UpdateStep& step, const ir::Image& old_image,

@@ -20,8 +20,9 @@ inline constexpr int64_t kPauseLoopNs = 50;            // one loop or call in a 
 inline constexpr int64_t kPauseReferenceNs = 40;       // one reference, when targets move or go
 inline constexpr int64_t kPauseBytesPerNs = 2;         // read, save and write together
 
-// Standby: `compared` bytes are looked at, and in the worst case all of them have changed.
-inline constexpr int64_t kPauseComparedBytesPerNs = 2;
+// Standby: bytes that are looked at, and those of them that have changed and are copied.
+inline constexpr int64_t kPauseComparedBytesPerNs = 4;
+inline constexpr int64_t kPauseCopiedBytesPerNs = 4;
 
 // Work at one boundary, counted.
 struct BoundaryWork {
@@ -33,6 +34,7 @@ struct BoundaryWork {
   uint64_t loops = 0;  // in them
   uint64_t references = 0;
   uint64_t compared = 0;  // bytes
+  uint64_t copied = 0;    // of those
 };
 int64_t pause_ns(const BoundaryWork& work);
 

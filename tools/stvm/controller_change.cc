@@ -6,12 +6,17 @@
 #include "tools/stvm/deadline.h"
 
 namespace stvm {
+
+using online_change::Change;
+
 namespace {
 
 // A switch that finds too little time before the next cycle is tried again after it.
 constexpr int kSwitchAttempts = 200;
 // So many times in turn without any idle time, and a change that needs some is given up.
 constexpr int kIdleAttempts = 200;
+// By standby, so often in all, when the program writes more than it did before.
+constexpr int kMostTries = 8;
 
 }  // namespace
 
@@ -21,22 +26,47 @@ bool ControllerService::time_for_switch() const {
   return left > change_.predicted_pause_ns() + 2 * keeper_.copy_ns();  // before and behind
 }
 
-base::Status ControllerService::configure(bool allow_overrun) {
+// A pass begins in another cycle than the one before it, however long that takes; what counts are
+// cycles without any idle time.
+base::Result<bool> ControllerService::work_in_idle_time(base::Result<bool> (Change::*work)()) {
   base::Result<bool> done = false;
-  uint64_t left = change_.units_left();
-  for (int idle_less = 0; done.ok() && !*done;) {
-    base::Status taken = at_boundary([&] { done = change_.configure(); });
-    if (!taken.ok()) return taken;
-    const bool progress = change_.units_left() != left;
-    left = change_.units_left();
-    idle_less = progress ? 0 : idle_less + 1;
-    if (idle_less < kIdleAttempts) continue;
-    if (allow_overrun) return base::Ok{};  // arm() does the rest
-    change_.cancel();
-    return base::Error{base::Refusal::kDeadline,
-                       "the tasks leave no idle time to prepare the change in; the old program "
-                       "runs on"};
+  uint64_t cycle = UINT64_MAX;
+  bool stands = false;
+  for (int idle_less = 0; idle_less < kIdleAttempts;) {
+    const uint64_t left = change_.units_left();
+    bool other_cycle = false;
+    base::Status taken = at_boundary([&] {
+      done = (change_.*work)();
+      other_cycle = std::exchange(cycle, controller_.cycles()) != cycle;
+      stands = controller_.faulted();
+    });
+    if (!taken.ok()) return taken.error();
+    if (!done.ok() || *done || stands) return done;
+    if (change_.units_left() != left) {
+      idle_less = 0;
+    } else if (other_cycle) {
+      ++idle_less;
+    } else {
+      boundary_.pause(kBetweenAttemptsNs);
+    }
   }
+  return false;
+}
+
+base::Status ControllerService::configure(bool allow_overrun) {
+  base::Result<bool> done = work_in_idle_time(&Change::configure);
+  if (!done.ok()) return done.error();
+  if (allow_overrun) return base::Ok{};  // arm() does the rest
+  if (*done) return catch_up();
+  change_.cancel();
+  return base::Error{base::Refusal::kDeadline,
+                     "the tasks leave no idle time to prepare the change in; the old program "
+                     "runs on"};
+}
+
+// Whether what it leaves fits is said by admit().
+base::Status ControllerService::catch_up() {
+  base::Result<bool> done = work_in_idle_time(&Change::catch_up);
   return done.ok() ? base::Status(base::Ok{}) : done.error();
 }
 
@@ -65,6 +95,7 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(bool
   online_change::Snapshot after = empty_snapshot();
   const auto nobody_else_saves = keeper_.hold();
   std::optional<Deadline> deadline;
+  int tries = 0;
   auto job = [&] {
     if (!allow_overrun && !time_for_switch()) return;
     keeper_.take(before);
@@ -73,16 +104,20 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(bool
       change_.set_interruption(std::ref(*deadline));  // as a copy it would be allocated here
     }
     missed_before = controller_.missed_releases();
-    report.emplace(change_.switch_now());
+    report.emplace(change_.switch_now(++tries < kMostTries));
     if (report->ok() && controller_.faulted()) go_on_hot();
     done_ns = clock_.now_ns();
     change_.set_interruption(nullptr);
     if (report->ok()) keeper_.take(after);
   };
+  const auto is_armed = [&] { return change_.state() == online_change::State::kArmed; };
   for (int attempt = 0; attempt < kSwitchAttempts && !report; ++attempt) {
     if (attempt != 0) boundary_.pause(kBetweenAttemptsNs);
     base::Status taken = at_boundary(job);
     if (!taken.ok()) return taken.error();
+    if (!report || report->ok() || !is_armed()) continue;
+    report.reset();  // more had been written than the last pass found
+    if (base::Status caught_up = catch_up(); !caught_up.ok()) return caught_up.error();
   }
   if (report) {
     if (report->ok()) {
@@ -91,9 +126,11 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(bool
     }
     return std::move(*report);
   }
+  const std::string expected = std::to_string(change_.predicted_pause_ns());
   change_.cancel();
   return base::Error{base::Refusal::kDeadline,
-                     "no cycle left time enough for the switch; the old program runs on"};
+                     "no cycle left time enough for the switch, which is expected to take " +
+                         expected + " ns; the old program runs on"};
 }
 
 // Releases that the switch made late are known only when the next cycles have been. The switch has
@@ -136,7 +173,12 @@ base::Status ControllerService::prepare_switch(const vm::Request& request, bool 
     change_.cancel();
     return not_switched(stored.error());
   }
-  return base::Ok{};
+  // Storing takes its time, and the program writes on.
+  if (!allow_overrun) ready = catch_up();
+  if (ready.ok()) return ready;
+  change_.cancel();
+  complain(store_.end_trial());
+  return not_switched(ready.error());
 }
 
 base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& request) {

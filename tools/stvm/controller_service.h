@@ -132,6 +132,10 @@ class ControllerService : public vm::Service {
   base::Status prepare_switch(const vm::Request& request, bool faulted, bool allow_overrun);
   // What the change must have done before the switch, cycle by cycle in idle time (C5).
   base::Status configure(bool allow_overrun);
+  // By standby, brings up to date what the program has written meanwhile (C7).
+  base::Status catch_up();
+  // False: no idle time is left to go on in, or the controller stands.
+  base::Result<bool> work_in_idle_time(base::Result<bool> (online_change::Change::*work)());
   online_change::SwitchReport finish_report(online_change::SwitchReport report,
                                             uint64_t missed_before, int64_t done_ns);
   // Notes the refusal of a switch.

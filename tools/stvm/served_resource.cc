@@ -53,6 +53,7 @@ base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
 
 base::Status ServedResource::start(const ResourceController::Settings& settings, vm::Clock& clock) {
   clock_ = &clock;
+  virtual_time_ = settings.virtual_time;
   ResourceController::Settings own = settings;
   own.limits.halted = !boot_->fault.empty();
   auto running = ResourceController::start(own, clock, boot_->retained);
@@ -101,7 +102,7 @@ void ServedResource::run(const std::function<bool()>& stop, const std::function<
     service_->keeper().serve(controller().next_cycle_ns() - clock_->now_ns());
     if (controller().faulted()) {
       mailbox_.wait(kFaultLookNs);
-    } else {
+    } else if (!virtual_time_) {  // which only goes on when cycles do
       idle(stop, alive);
     }
   }

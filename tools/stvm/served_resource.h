@@ -53,6 +53,7 @@ class ServedResource {
   online_change::Store store_;
   std::optional<online_change::Boot> boot_;
   vm::Clock* clock_ = nullptr;
+  bool virtual_time_ = false;
   std::unique_ptr<ResourceController> running_;
   vm::Mailbox mailbox_;
   std::unique_ptr<ControllerService> service_;
