@@ -41,12 +41,12 @@ base::Status apply_change_key(const std::string& file, const std::string& key,
     const bool* on = std::get_if<bool>(&value.data);
     if (on == nullptr) return wrong(file, key, value, "true or false");
     settings.restricted = *on;
-  } else if (key == "change.health") {
+  } else if (key == "change.health" || key == "change.unless") {
     const std::string* name = std::get_if<std::string>(&value.data);
     if (name == nullptr || name->empty()) {
       return wrong(file, key, value, "the name of a BOOL, as in \"Main.healthy\"");
     }
-    settings.health = *name;
+    (key == "change.health" ? settings.health : settings.unless) = *name;
   } else if (key == "change.data_limit") {
     const int64_t* bytes = std::get_if<int64_t>(&value.data);
     if (bytes == nullptr || *bytes < 0) {
@@ -57,7 +57,7 @@ base::Status apply_change_key(const std::string& file, const std::string& key,
     return toml_error(
         file, value.line, value.column,
         "unknown key `" + key +
-            "`; known in [change] are strategy, restricted, health, data_limit");
+            "`; known in [change] are strategy, restricted, health, unless, data_limit");
   }
   return base::Ok{};
 }

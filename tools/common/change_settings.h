@@ -15,6 +15,7 @@ struct ChangeSettings {
   std::string strategy;     // "in-place", "standby", or "": not said
   bool restricted = false;  // no edits of interfaces (D7)
   std::string health;       // a BOOL that must stay TRUE on trial, or the controller undoes it
+  std::string unless;       // a BOOL; while it is TRUE nothing is switched
   uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit
 };
 

@@ -31,6 +31,9 @@ namespace {
       {"--health", "NAME",                                                                         \
        "a BOOL that stays TRUE while all is well: FALSE in the first 1000 cycles undoes the "      \
        "change"},                                                                                  \
+      {"--unless", "NAME",                                                                         \
+       "a BOOL of the running program: while it is TRUE nothing is switched, and a change that "   \
+       "is being prepared is aborted"},                                                            \
       {"--wait", nullptr, "wait while others change the controller, or have a change on trial"},  \
       {"--no-auto-undo", nullptr, "do not undo it either when a trap stops a task in them"},       \
       {"--permanent", nullptr, "accept at once: no undo, the new program boots next"}
@@ -106,8 +109,8 @@ bool others_change(const base::Error& error) {
          error.refusal == base::Refusal::kChangePending;
 }
 
-// Until nothing is on trial. What is only staged may be left there by somebody who went away, so
-// that is waited for no longer than a person would think about a report.
+// Until nothing is on trial. What is only staged is waited for no longer than a person would think
+// about a report.
 base::Status wait_for_others(ControllerClient& client) {
   constexpr auto kLook = std::chrono::milliseconds(100);
   constexpr int kStagedLooks = 50;

@@ -23,6 +23,7 @@ extern const Entry kChange;
 extern const Entry kUndo;
 extern const Entry kRevert;
 extern const Entry kAccept;
+extern const Entry kAbort;
 extern const Entry kStop;
 extern const Entry kRestart;
 extern const Entry kJournal;

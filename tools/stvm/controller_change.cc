@@ -33,9 +33,11 @@ base::Result<bool> ControllerService::work_in_idle_time(base::Result<bool> (Chan
   uint64_t cycle = UINT64_MAX;
   bool stands = false;
   for (int idle_less = 0; idle_less < kIdleAttempts;) {
+    if (aborted()) return abort_error();
     const uint64_t left = change_.units_left();
     bool other_cycle = false;
     base::Status taken = at_boundary([&] {
+      if (unless_holds()) return;
       done = (change_.*work)();
       other_cycle = std::exchange(cycle, controller_.cycles()) != cycle;
       stands = controller_.faulted();
@@ -75,7 +77,9 @@ base::Status ControllerService::arm_in_time(bool allow_loss, bool allow_overrun,
   bool tried = false;
   for (int attempt = 1; !tried; ++attempt) {
     if (attempt != 1) boundary_.pause(kBetweenAttemptsNs);
+    if (aborted()) return abort_error();
     base::Status taken = at_boundary([&] {
+      if (unless_holds()) return;
       armed = change_.admit(allow_overrun);
       const bool now = allow_overrun || time_for_switch() || attempt == kSwitchAttempts;
       if (armed.ok() && !now) return;
@@ -97,6 +101,7 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(bool
   std::optional<Deadline> deadline;
   int tries = 0;
   auto job = [&] {
+    if (unless_holds()) return;
     if (!allow_overrun && !time_for_switch()) return;
     keeper_.take(before);
     if (!allow_overrun) {
@@ -113,6 +118,7 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(bool
   const auto is_armed = [&] { return change_.state() == online_change::State::kArmed; };
   for (int attempt = 0; attempt < kSwitchAttempts && !report; ++attempt) {
     if (attempt != 0) boundary_.pause(kBetweenAttemptsNs);
+    if (aborted()) return abort_error();
     base::Status taken = at_boundary(job);
     if (!taken.ok()) return taken.error();
     if (!report || report->ok() || !is_armed()) continue;
@@ -154,6 +160,8 @@ online_change::SwitchReport ControllerService::finish_report(online_change::Swit
 
 // What is staged stays so where only this attempt has failed.
 base::Error ControllerService::not_switched(const base::Error& why) {
+  preparing_ = false;
+  if (!abort_why_.empty()) return give_up();
   base::Error error = refused(why);
   if (change_.state() == online_change::State::kIdle) forget_staged();
   return error;
@@ -185,7 +193,9 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   if (only_looked_at_) {
     return base::Error{base::Refusal::kBusy, "what is staged is a dry run; stage the change anew"};
   }
+  if (base::Status kept = check_not_aborted(); !kept.ok()) return kept.error();
   if (!staged_) return base::Error{base::Refusal::kBusy, "no change is staged"};
+  preparing_ = true;
   bool faulted = false;
   base::Status taken = look_at_boundary([&] { faulted = controller_.faulted(); });
   if (!taken.ok()) return not_switched(taken.error());
@@ -204,6 +214,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
     complain(store_.end_trial());
     return not_switched(report.error());
   }
+  preparing_ = false;
   previous_ = std::move(running);
   ++edition_;
   changed_by_ = who_;

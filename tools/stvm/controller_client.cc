@@ -183,7 +183,8 @@ base::Result<std::vector<online_change::JournalEntry>> ControllerClient::journal
   }
 }
 
-base::Status ControllerClient::stage(base::ByteSpan package, uint32_t flags) {
+base::Status ControllerClient::stage(base::ByteSpan package, uint32_t flags,
+                                     const std::string& unless) {
   vm::Request part{.command = vm::Command::kUpload};
   do {
     size_t size = std::min<size_t>(vm::kChunkBytes, package.size() - part.offset);
@@ -196,6 +197,7 @@ base::Status ControllerClient::stage(base::ByteSpan package, uint32_t flags) {
   vm::Request stage{.command = vm::Command::kStage};
   stage.digest = base::sha256(package);
   stage.flags = flags;
+  if (!unless.empty()) stage.names = {unless};
   base::Result<base::Bytes> staged = call(std::move(stage));
   if (!staged.ok()) return staged.error();
   base::ByteReader answer(*staged);

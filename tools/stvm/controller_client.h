@@ -39,7 +39,9 @@ class ControllerClient {
   base::Result<base::Bytes> image_before();
   base::Result<std::vector<online_change::JournalEntry>> journal();
 
-  base::Status stage(base::ByteSpan package, uint32_t flags);
+  // `unless`: a BOOL; while it is TRUE nothing is switched (C9).
+  base::Status stage(base::ByteSpan package, uint32_t flags,
+                     const std::string& unless = {});
   base::Result<FatePage> fates();
   // One line for each variable.
   base::Result<std::vector<FateLine>> every_fate();

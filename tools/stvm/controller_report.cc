@@ -71,6 +71,7 @@ base::Status ControllerService::look(const ir::Image* next, bool whole) {
 
 base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
   if (base::Status there = check_not_gone(); !there.ok()) return there.error();
+  if (base::Status kept = check_not_aborted(); !kept.ok()) return kept.error();
   const online_change::Change& change = looked_at();
   const bool back = change.state() == online_change::State::kTrial && previous_;
   if (!back && change.next() == nullptr) {

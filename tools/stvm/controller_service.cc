@@ -32,7 +32,9 @@ ControllerService::ControllerService(vm::Controller& controller, vm::Clock& cloc
       keeper_(controller, store, wall_time_),
       change_(controller),
       aside_(store),
-      keep_again_(1'000'000'000, 8'000'000'000) {}
+      keep_again_(1'000'000'000, 8'000'000'000) {
+  boundary_.give_up = [this] { return preparing_ && aborted(); };
+}
 
 void ControllerService::ended(uint64_t session) {
   // Not `= {}`, which keeps the room.
@@ -43,6 +45,11 @@ void ControllerService::ended(uint64_t session) {
   if (only_looked_at_ && session == looked_at_by_) {
     change_.cancel();
     forget_staged();
+  }
+  if (staged_ && !only_looked_at_ && session == staged_of_) {
+    who_ = changed_by_;
+    abort_why_ = "because the connection of " + who_ + " has ended";
+    (void)give_up();
   }
   gone_.erase(session);
   if (session == history_of_) history_ = std::vector<online_change::JournalEntry>();
@@ -80,6 +87,8 @@ base::Bytes ControllerService::answer_within_memory(base::ByteSpan bytes, bool& 
 }
 
 base::Result<base::Bytes> ControllerService::dispatch(const vm::Request& request) {
+  preparing_ = false;
+  abort_why_.clear();
   switch (request.command) {
     case vm::Command::kStatus:
       return status(request);
@@ -117,6 +126,8 @@ base::Result<base::Bytes> ControllerService::dispatch(const vm::Request& request
       return accept(request);
     case vm::Command::kCancel:
       return cancel(request);
+    case vm::Command::kAbort:
+      return abort(request);
     case vm::Command::kStop:
       return stop(request);
     case vm::Command::kRestart:
@@ -202,6 +213,7 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.edition = edition_;
   report.change = online_change::state_name(change_.state());
   report.changed_by = changed_by_;
+  report.aborted = aborted_;
   if (previous_) report.previous = previous_->digest();
   report.boots_next = store_.boots();
   report.trial_lost = start_.trial_lost.value_or(base::Digest{});
@@ -254,6 +266,7 @@ void ControllerService::keep_up() {
     return true;
   };
   base::within_memory(renew, [] { return false; });
+  base::within_memory([&] { return watch_unless(), true; }, [] { return false; });
   base::within_memory([&] { return watch_trial(), true; },
                       [&] {
                         if (recorder_ != nullptr) recorder_->forget_jobs();

@@ -57,11 +57,17 @@ class ControllerService : public vm::Service {
   }
   // What was uploaded over it, and what the pages of its reports are of, is given back.
   void ended(uint64_t session) override;
+  // C9: the change that is being prepared is given up.
+  void asker_left() override;
+  std::optional<base::Bytes> answer_urgent(const std::string& user,
+                                           base::ByteSpan request) override;
   base::Bytes answer(base::ByteSpan request, bool& keep_open) override;
   // Forces run in machine code as soon as there is some, and programs whose files are gone are
   // stored again.
   void keep_up() override;
-  int keep_up_ms() const override { return probation_ ? kProbationLookMs : 1000; }
+  int keep_up_ms() const override {
+    return probation_ || watches_unless() ? kProbationLookMs : 1000;
+  }
   bool stop_wanted() const { return stop_wanted_.load(std::memory_order_relaxed); }
   online_change::RetainKeeper& keeper() { return keeper_; }
 
@@ -93,6 +99,7 @@ class ControllerService : public vm::Service {
   Answer undo(const vm::Request& request);
   Answer accept(const vm::Request& request);
   Answer cancel(const vm::Request& request);
+  Answer abort(const vm::Request& request);
   Answer stop(const vm::Request& request);
   Answer restart(const vm::Request& request);
   Answer journal(const vm::Request& request);
@@ -119,6 +126,7 @@ class ControllerService : public vm::Service {
   // kBadHash, kFault.
   base::Status check_upload(const vm::Request& request, base::ByteSpan package) const;
   Answer stage_rehearsal(base::ByteSpan package, online_change::Strategy strategy);
+  base::Status stage_unless_aborted(base::ByteSpan package, online_change::Strategy strategy);
   // The change that this connection stages, rehearses or, on trial, would undo.
   const online_change::Change& looked_at() const;
   bool rehearses() const { return rehearsal_ && rehearsal_of_ == session_; }
@@ -142,6 +150,28 @@ class ControllerService : public vm::Service {
   base::Error not_switched(const base::Error& why);
   // The running image boots next, and only then the change is final.
   base::Status make_permanent();
+
+  // controller_abort.cc
+  struct Unless {  // a BOOL of the running program; while it is TRUE nothing is switched
+    std::string name;
+    uint32_t data = 0;  // where it is in data memory; 0: there is none
+    bool seen = false;  // TRUE at a boundary, since it was named
+  };
+  // Where it is; 0: none is named.
+  base::Result<uint32_t> find_unless(const std::string& name) const;
+  // Of a dry run beside another change.
+  base::Status check_unless(const std::string& name);
+  // At a boundary: it is TRUE, now or since it was named.
+  bool unless_holds();
+  bool watches_unless() const;
+  void watch_unless();
+  // Beside boundaries: did anybody, or the condition, end what is being prepared?
+  bool aborted();
+  base::Error abort_error() const;
+  // It is: the standby side is cleared, and it is noted why. The error to say so with.
+  base::Error give_up();
+  // What was staged over this connection has been given up.
+  base::Status check_not_aborted() const;
 
   // controller_trial.cc
   struct Probation {  // of the version on trial
@@ -201,6 +231,12 @@ class ControllerService : public vm::Service {
   uint64_t history_of_ = 0;
   base::Bytes no_memory_;  // the answer that says so
   std::optional<ir::VerifiedImage> staged_;
+  uint64_t staged_of_ = 0;       // session
+  bool preparing_ = false;       // a request is about it just now
+  std::string abort_why_;        // by whom or what it ends; "": it goes on
+  std::string aborted_;          // the same of the last one that ended so, with its time
+  uint64_t aborted_of_ = 0;      // session
+  Unless unless_;                // of what is staged
   bool only_looked_at_ = false;  // what is staged, by vm::kRehearsal: nothing of it is kept
   uint64_t looked_at_by_ = 0;    // session of that
   std::set<uint64_t> gone_;      // sessions whose dry run has been replaced

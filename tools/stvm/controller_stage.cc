@@ -50,20 +50,31 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   const bool rehearsal = (request.flags & vm::kRehearsal) != 0;
   const bool own = only_looked_at_ && looked_at_by_ == session_;
   const bool taken = change_.state() != online_change::State::kIdle && !own;
-  if (rehearsal && taken) return stage_rehearsal(package, strategy);
+  const std::string unless = request.names.empty() ? std::string() : request.names.front();
+  if (rehearsal && taken) {
+    base::Status may_begin = check_unless(unless);
+    return may_begin.ok() ? stage_rehearsal(package, strategy) : may_begin.error();
+  }
   change_.cancel();
   forget_staged();
   gone_.erase(session_);
   only_looked_at_ = rehearsal;
   looked_at_by_ = session_;
-  base::Status staged =
-      change_.stage(package, strategy, [this](const auto& job) { return at_boundary(job); });
+  staged_of_ = session_;
+  base::Result<uint32_t> condition = find_unless(unless);
+  if (!condition.ok()) return refused(condition.error());
+  unless_ = {unless, *condition, false};
+  preparing_ = true;
+  base::Status staged = stage_unless_aborted(package, strategy);
+  preparing_ = false;
   if (!staged.ok()) {
     change_.collect();  // devices that it opened
+    if (!abort_why_.empty()) return give_up();
     const base::Error error = refused(staged.error());
     forget_staged();
     return error;
   }
+  aborted_.clear();
   staged_ = *change_.next();
   if (!rehearsal) {
     online_change::JournalEntry done = entry(online_change::Event::kStaged);
@@ -76,6 +87,22 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   base::ByteWriter answer;
   answer.u64(edition_);
   return answer.take();
+}
+
+// Verifying and planning take their time; between their steps somebody may end it.
+base::Status ControllerService::stage_unless_aborted(base::ByteSpan package,
+                                                     online_change::Strategy strategy) {
+  const auto job_at_boundary = [this](const std::function<void()>& job) {
+    return aborted() ? base::Status(abort_error()) : at_boundary(job);
+  };
+  change_.set_interruption([this] {
+    if (unless_.data == 0) return aborted();
+    base::Status looked = look_at_boundary([&] { unless_holds(); });
+    return aborted() || !looked.ok();
+  });
+  base::Status staged = change_.stage(package, strategy, job_at_boundary);
+  change_.set_interruption(nullptr);
+  return staged;
 }
 
 base::Result<base::Bytes> ControllerService::stage_rehearsal(base::ByteSpan package,
@@ -120,6 +147,7 @@ base::Result<base::Bytes> ControllerService::rehearse(const vm::Request& request
   if (base::Status there = check_not_gone(); !there.ok()) return there.error();
   const online_change::Change& change = looked_at();
   if (change.next() == nullptr) return base::Error{base::Refusal::kBusy, "no change is staged"};
+  if (base::Status kept = check_not_aborted(); !kept.ok()) return kept.error();
   const std::string health = request.names.empty() ? std::string() : request.names.front();
   base::Status refused_by = check_health(health, change.next()->image());
   if (!refused_by.ok()) return refused_by.error();
@@ -130,11 +158,13 @@ base::Result<base::Bytes> ControllerService::rehearse(const vm::Request& request
   const bool allow_overrun = (request.flags & vm::kAllowOverrun) != 0;
   const int64_t pause_ns = change.predicted_pause_ns();
   base::Status taken = look_at_boundary([&] {
+    if (!rehearses()) unless_holds();
     const bool on_time = !allow_overrun && !controller_.faulted();
     if (on_time) refused_by = online_change::fits_free_time(pause_ns, controller_.tasks());
     if (refused_by.ok()) refused_by = change.refused_by_values(true);
   });
   if (!taken.ok()) return taken.error();
+  if (!rehearses() && aborted()) return give_up();
   if (!refused_by.ok()) return refused_by.error();
   const bool allow_loss = (request.flags & vm::kAllowLoss) != 0;
   if (allow_loss || live_->loss_count() == 0) return base::Bytes{};
@@ -146,6 +176,7 @@ void ControllerService::forget_staged() {
   aside_.wait();
   store_.forget_aside();
   staged_.reset();
+  unless_ = {};
   forget_report();
   if (std::exchange(only_looked_at_, false)) gone_.insert(looked_at_by_);
 }

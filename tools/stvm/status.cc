@@ -66,6 +66,7 @@ void print_versions(const vm::StatusReport& report) {
   const std::string by = report.changed_by.empty() ? "" : ", by " + report.changed_by;
   std::printf("  change      %s%s\n", report.change.c_str(),
               report.change == "idle" ? "" : by.c_str());
+  if (!report.aborted.empty()) std::printf("  aborted     %s\n", report.aborted.c_str());
   std::printf("  cycles      %llu of %s\n", static_cast<unsigned long long>(report.cycles),
               tools::duration(report.base_period_ns).c_str());
   std::printf("  forces      %llu", static_cast<unsigned long long>(report.forces));
@@ -184,7 +185,7 @@ void print_json(const vm::StatusReport& report) {
   json.begin_object().field("name", report.name);
   json.field("running", base::to_hex(report.running)).field("edition", report.edition);
   json.field("change", report.change).field("changed_by", report.changed_by);
-  json.field("trial", on_trial(report));
+  json.field("aborted", report.aborted).field("trial", on_trial(report));
   if (on_trial(report)) json.field("undo_brings", base::to_hex(report.previous));
   json.field("boots_next", base::to_hex(report.boots_next)).field("cycles", report.cycles);
   if (report.trial_lost != base::Digest{}) {

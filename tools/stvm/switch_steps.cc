@@ -149,6 +149,7 @@ base::Result<SwitchOptions> switch_options(const tools::Options& options) {
   out.switch_flags = switch_flags(options);
   out.restricted = settings->restricted;
   out.health = options.text("--health", settings->health);
+  out.unless = options.text("--unless", settings->unless);
   out.dry_run = options.has("--dry-run");
   if (out.dry_run) out.stage_flags |= vm::kRehearsal;
   out.all = options.has("--all");
@@ -169,7 +170,7 @@ base::Status check_no_trial(const vm::StatusReport& status) {
 
 base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& client,
                             base::ByteSpan package) {
-  base::Status staged = client.stage(package, options.stage_flags);
+  base::Status staged = client.stage(package, options.stage_flags, options.unless);
   if (!staged.ok()) return staged.error();
   const Outcome::Time prepared = std::chrono::steady_clock::now();
   base::Result<FatePage> page = client.fates();

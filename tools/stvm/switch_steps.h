@@ -17,6 +17,7 @@ struct SwitchOptions {
   uint32_t switch_flags = 0;  // vm::SwitchFlags
   bool restricted = false;    // for who makes the package
   std::string health;         // a BOOL that must stay TRUE, or the controller undoes the change
+  std::string unless;         // a BOOL; while it is TRUE nothing is switched
   bool dry_run = false;
   bool all = false;  // a line for each variable
   bool wait = false;  // for the changes of others

@@ -17,6 +17,10 @@ class Boundary {
   virtual Outcome run(const std::function<void()>& job, int64_t timeout_ns) = 0;
   // Lets about so much time pass while the program goes on.
   virtual void pause(int64_t ns) = 0;
+
+  // Asked now and then while run() waits for a boundary, by the thread that waits; the job cannot
+  // begin meanwhile. True: it waits no longer, which is a kTimeout.
+  std::function<bool()> give_up;
 };
 
 }  // namespace vm

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <optional>
+#include <utility>
 
 namespace vm {
 
@@ -45,7 +45,9 @@ void Connection::put_answer(base::ByteSpan answer, bool keep_open) {
 // Answers the next complete message; false when there is none.
 bool Connection::answer_next(Service& service) {
   if (sending() || closing) return false;
-  if (std::optional<base::Bytes> request = in.next()) {
+  std::optional<base::Bytes> request = std::exchange(held, std::nullopt);
+  if (!request) request = in.next();
+  if (request) {
     bool keep_open = true;
     service.asked_by(user, session);
     const base::Bytes answer = service.answer(*request, keep_open);
@@ -66,6 +68,17 @@ bool Connection::attend(short events, Service& service, Instant now) {
   return sending() || !closing;
 }
 
+void Connection::attend_urgent(Service& service, Instant now) {
+  if (sending() || closing || held || !receive(now)) return;  // who has gone is seen later
+  held = in.next();
+  if (!held) return;
+  const std::optional<base::Bytes> answer = service.answer_urgent(user, *held);
+  if (!answer) return;
+  held.reset();
+  put_answer(*answer, true);
+  (void)send_rest(now);  // and what is left is sent later
+}
+
 bool Connections::add(Connection& connection, Instant now) {
   const size_t places = connection.bridged ? kMaxConnections - 1 : kMaxConnections;
   if (rows_.size() >= places && !make_room(connection.bridged, now)) return false;
@@ -77,6 +90,7 @@ bool Connections::add(Connection& connection, Instant now) {
 
 // A bridge takes the place of another one only.
 bool Connections::make_room(bool bridged, Instant now) {
+  if (asking_ != nullptr) return false;
   size_t oldest = rows_.size();
   for (size_t i = 0; i < rows_.size(); ++i) {
     const Connection& row = *rows_[i];
@@ -93,10 +107,29 @@ bool Connections::attend(std::span<const pollfd> said, const std::atomic<bool>& 
                          Instant now) {
   for (size_t i = rows_.size(); i-- > 0;) {
     if (ending.load()) return false;
-    if (!rows_[i]->attend(said[i].revents, service_, now)) end(i);
+    asking_ = rows_[i].get();
+    const bool stays = rows_[i]->attend(said[i].revents, service_, now);
+    asking_ = nullptr;
+    if (!stays) end(i);
   }
   end_overdue(now);
   return true;
+}
+
+void Connections::attend_meanwhile(std::span<const pollfd> said, Instant now) {
+  for (size_t i = 0; i < said.size(); ++i) {
+    if (said[i].revents == 0) continue;
+    if (rows_[i].get() != asking_) {
+      rows_[i]->attend_urgent(service_, now);
+    } else if ((said[i].revents & (POLLHUP | POLLERR | POLLRDHUP)) != 0) {
+      service_.asker_left();
+    }
+  }
+}
+
+bool Connections::holds_any() const {
+  return std::any_of(rows_.begin(), rows_.end(),
+                     [](const auto& row) { return row->held.has_value(); });
 }
 
 void Connections::end_overdue(Instant now) {

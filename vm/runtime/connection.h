@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,16 +30,19 @@ struct Connection {
   bool bridged = false;  // of another machine, by `stvm bridge`
   Instant active = {};   // when bytes came or went last
   FrameReader in = {};
+  std::optional<base::Bytes> held = {};  // a message that waits for another one's answer
   base::Bytes out = {};
   size_t sent = 0;
   bool closing = false;
   bool silent = true;  // nothing has ever come
 
   bool sending() const { return sent < out.size(); }
-  bool waiting_for_peer() const { return sending() || !in.empty(); }
+  bool waiting_for_peer() const { return sending() || !in.empty() || held; }
   short wanted_events() const;
   // One round, with what poll() said; false ends it.
   bool attend(short events, Service& service, Instant now);
+  // The same in the middle of another one's answer: what is not urgent is held.
+  void attend_urgent(Service& service, Instant now);
 
  private:
   bool receive(Instant now);
@@ -65,6 +69,7 @@ class Connections {
   Connections& operator=(const Connections&) = delete;
 
   size_t size() const { return rows_.size(); }
+  bool holds_any() const;  // a message that came in the middle of another one's answer
   Connection& operator[](size_t i) { return *rows_[i]; }
   const Connection& operator[](size_t i) const { return *rows_[i]; }
   // False, and it is left where it is: there is no place for it.
@@ -73,6 +78,8 @@ class Connections {
   // these times. `now` is when poll() returned, for all: no peer pays for the time that an answer
   // takes. False as soon as `ending` is set.
   bool attend(std::span<const pollfd> said, const std::atomic<bool>& ending, Instant now);
+  // In the middle of an answer, with what poll() says of each now. Ends none.
+  void attend_meanwhile(std::span<const pollfd> said, Instant now);
   void end_overdue(Instant now);
   void end(size_t i);
   void clear();
@@ -81,6 +88,7 @@ class Connections {
   bool make_room(bool bridged, Instant now);
 
   Service& service_;
+  const Connection* asking_ = nullptr;  // whose request is being answered
   uint64_t sessions_ = 0;
   std::vector<std::unique_ptr<Connection>> rows_;
 };

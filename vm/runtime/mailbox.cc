@@ -13,6 +13,8 @@ namespace {
 
 // Short enough that a command feels immediate, long enough to cost nothing.
 constexpr auto kPoll = std::chrono::microseconds(100);
+// Between two looks at whether anybody still wants it.
+constexpr int kPollsPerLook = 200;
 constexpr int64_t kNsPerSecond = 1'000'000'000;
 
 }  // namespace
@@ -20,28 +22,35 @@ constexpr int64_t kNsPerSecond = 1'000'000'000;
 Mailbox::Outcome Mailbox::run(const std::function<void()>& job, int64_t timeout_ns) {
   auto deadline = std::chrono::steady_clock::now() + std::chrono::nanoseconds(timeout_ns);
   job_ = &job;
-  uint32_t expected = kEmpty;
-  if (!state_.compare_exchange_strong(expected, kPosted, std::memory_order_acq_rel)) {
-    return Outcome::kClosed;
-  }
-  ::syscall(SYS_futex, &state_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
-  for (;;) {
+  if (!post()) return Outcome::kClosed;
+  for (int polls = 1;; ++polls) {
     uint32_t state = state_.load(std::memory_order_acquire);
     if (state == kDone) {
-      expected = kDone;
+      uint32_t expected = kDone;
       state_.compare_exchange_strong(expected, kEmpty, std::memory_order_acq_rel);
       return Outcome::kDone;
     }
     if (state == kClosed) return Outcome::kClosed;
-    if (state == kPosted && std::chrono::steady_clock::now() >= deadline) {
-      expected = kPosted;
-      if (state_.compare_exchange_strong(expected, kEmpty, std::memory_order_acq_rel)) {
-        return Outcome::kTimeout;
-      }
-      continue;  // it was taken just now
+    const bool late = std::chrono::steady_clock::now() >= deadline;
+    if (state == kPosted && (late || (give_up && polls % kPollsPerLook == 0))) {
+      if (!take_back()) continue;  // it was taken just now
+      if (late || give_up()) return Outcome::kTimeout;
+      if (!post()) return Outcome::kClosed;
     }
     std::this_thread::sleep_for(kPoll);
   }
+}
+
+bool Mailbox::post() {
+  uint32_t expected = kEmpty;
+  if (!state_.compare_exchange_strong(expected, kPosted, std::memory_order_acq_rel)) return false;
+  ::syscall(SYS_futex, &state_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
+  return true;
+}
+
+bool Mailbox::take_back() {
+  uint32_t expected = kPosted;
+  return state_.compare_exchange_strong(expected, kEmpty, std::memory_order_acq_rel);
 }
 
 void Mailbox::pause(int64_t ns) { std::this_thread::sleep_for(std::chrono::nanoseconds(ns)); }

@@ -25,6 +25,8 @@ class Mailbox : public Boundary {
   void close();
 
  private:
+  bool post();       // false: closed
+  bool take_back();  // false: it runs, or has run
   enum State : uint32_t { kEmpty, kPosted, kRunning, kDone, kClosed };
 
   std::atomic<uint32_t> state_{kEmpty};

@@ -58,6 +58,7 @@ void request_fields(A& a, R& request) {
     case Body::kStage:
       a(request.digest);
       a(request.flags);
+      a.list(request.names, kTextBytes);
       break;
     case Body::kFlags:
       a(request.flags);
@@ -162,6 +163,7 @@ void status_fields(A& a, T& report) {
   a(report.edition);
   a(report.change);
   a(report.changed_by);
+  a(report.aborted);
   a(report.previous);
   a(report.boots_next);
   a(report.trial_lost);

@@ -18,7 +18,7 @@
 namespace vm {
 
 // Another one with each other layout of a message (tests/unit/store/protocol_layout_test.cc).
-inline constexpr uint8_t kProtocolVersion = 9;
+inline constexpr uint8_t kProtocolVersion = 10;
 inline constexpr uint32_t kMaxMessageBytes = 1u << 20;
 inline constexpr uint32_t kMaxNames = 4096;          // in one request
 inline constexpr uint32_t kMaxNameBytes = 65536;     // of a path or a value
@@ -82,6 +82,7 @@ struct StatusReport {
   uint64_t edition = 0;     // counts switches, undos and accepts
   std::string change;       // state of the change; "idle"
   std::string changed_by;   // who staged it
+  std::string aborted;      // when, and by whom or what, if the last one was, while prepared
   base::Digest previous{};  // during a trial: what undo brings back
   base::Digest boots_next{};
   base::Digest trial_lost{};        // the program that was on trial when the last process ended

@@ -118,11 +118,24 @@ void SocketServer::take_connection(Connections& connections) {
                                              " connections are in use; end one, or try again"});
 }
 
+// Newcomers too: one of them may have something urgent.
+void SocketServer::look_meanwhile(Connections& connections) {
+  pollfd listener{listener_.get(), POLLIN, 0};
+  if (::poll(&listener, 1, 0) > 0) take_connection(connections);
+  std::vector<pollfd> set;
+  for (size_t i = 0; i < connections.size(); ++i) {
+    set.push_back({connections[i].socket.get(), POLLIN | POLLRDHUP, 0});
+  }
+  if (::poll(set.data(), set.size(), 0) <= 0) return;
+  connections.attend_meanwhile(set, std::chrono::steady_clock::now());
+}
+
 // False: the thread ends.
 bool SocketServer::round(Connections& connections) {
   const bool listens = std::chrono::steady_clock::now() >= listen_again_;
   std::vector<pollfd> set = poll_set(wake_.get(), listens ? listener_.get() : -1, connections);
-  const int wait_ms = listens ? service_.keep_up_ms() : static_cast<int>(kAfterFailure.count());
+  int wait_ms = listens ? service_.keep_up_ms() : static_cast<int>(kAfterFailure.count());
+  if (connections.holds_any()) wait_ms = 0;
   if (::poll(set.data(), set.size(), wait_ms) < 0 && errno != EINTR) {
     std::this_thread::sleep_for(kAfterFailure);  // no memory; there will be some again
     return true;
@@ -137,10 +150,12 @@ bool SocketServer::round(Connections& connections) {
 
 void SocketServer::serve() {
   Connections connections(service_);
+  service_.meanwhile = [&] { look_meanwhile(connections); };
   // When memory runs out, all connections end: the program runs on, and there is memory again.
   const auto drop_all = [&] { return connections.clear(), true; };
   const auto one_round = [&] { return round(connections); };
   while (!ending_.load() && base::within_memory(one_round, drop_all)) continue;
+  service_.meanwhile = nullptr;
 }
 
 }  // namespace vm

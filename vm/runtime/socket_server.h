@@ -5,7 +5,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -28,6 +30,17 @@ class Service {
   // On the server's thread, behind answers and at least as often as keep_up_ms() says.
   virtual void keep_up() {}
   virtual int keep_up_ms() const { return 1000; }
+
+  // Set by the server, for an answer that takes long: looks, without waiting, at who has gone and
+  // at what others ask. It calls both of these, and nothing else.
+  std::function<void()> meanwhile;
+  // Nobody waits for the answer at hand any more.
+  virtual void asker_left() {}
+  // What cannot wait for the answer at hand is answered here; nullopt: it waits.
+  virtual std::optional<base::Bytes> answer_urgent(const std::string& /*user*/,
+                                                   base::ByteSpan /*request*/) {
+    return std::nullopt;
+  }
 };
 
 class Connections;
@@ -48,6 +61,7 @@ class SocketServer {
   void serve();
   bool round(Connections& connections);
   void take_connection(Connections& connections);
+  void look_meanwhile(Connections& connections);
   Descriptor accept_peer(bool& bridged);
 
   std::string path_;

@@ -29,6 +29,7 @@ vm::StatusReport status() {
   out.edition = 2;
   out.change = "trial";
   out.changed_by = "operator";
+  out.aborted = "by nobody";
   out.previous = digest(3);
   out.boots_next = digest(4);
   out.trial_lost = digest(5);
@@ -83,7 +84,7 @@ void add(base::Bytes& all, const base::Bytes& message, size_t from = 0) {
 
 base::Bytes requests() {
   base::Bytes all;
-  for (uint8_t i = 0; i <= static_cast<uint8_t>(vm::Command::kRehearse); ++i) {
+  for (uint8_t i = 0; i <= static_cast<uint8_t>(vm::Command::kAbort); ++i) {
     add(all,
         vm::encode(vm::Request{.command = static_cast<vm::Command>(i),
                                .expected = digest(1),
@@ -126,6 +127,7 @@ constexpr Version kVersions[] = {
     {7, "538391035e10"},
     {8, "d6cd7073b212"},
     {9, "bd7d362cff72"},
+    {10, "01a584414f82"},
 };
 
 TEST(ProtocolLayout, BelongsToTheVersion) {

@@ -1,0 +1,49 @@
+// stvm abort: ends a change that is being prepared, whoever brings it.
+#include <cstdio>
+
+#include "base/visible_text.h"
+#include "tools/common/exit.h"
+#include "tools/common/json.h"
+#include "tools/stvm/commands.h"
+#include "tools/stvm/controller_client.h"
+
+namespace stvm {
+namespace {
+
+constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
+constexpr tools::Command kCommand{
+    "abort",  "", "Ends a change that is being prepared, at once; the program runs on.",
+    kOptions, 0,  0};
+
+// One question and nothing before it: the controller answers it in the middle of what it does.
+base::Status abort(const tools::Options& options) {
+  base::Result<bool> json = wants_json(options);
+  if (!json.ok()) return json.error();
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
+  if (!client.ok()) return client.error();
+  base::Result<base::Bytes> body = client->call({.command = vm::Command::kAbort});
+  if (!body.ok()) return body.error();
+  base::ByteReader answer(*body);
+  const bool done = answer.boolean();
+  const std::string text = base::visible(answer.text());
+  if (!answer.done()) return base::Error{base::Refusal::kProtocol, "answer not understood"};
+  if (*json) {
+    tools::JsonWriter out;
+    out.begin_object().field("aborted", done).field("text", text).end_object();
+    std::fputs(out.finish().c_str(), stdout);
+  } else {
+    std::printf("%s\n", text.c_str());
+  }
+  return base::Ok{};
+}
+
+int run(const tools::Options& options) {
+  base::Status done = abort(options);
+  return done.ok() ? tools::kOk : refuse(done.error());
+}
+
+}  // namespace
+
+const Entry kAbort{&kCommand, run};
+
+}  // namespace stvm
