@@ -1,5 +1,5 @@
 // Little-endian byte writer, and the one bounded reader through which every
-// file, image, package and message is decoded (architecture.md invariant 8).
+// file, image, package and message is decoded (docs/REQUIREMENTS.md, I8).
 // A reader never reads past its end: the first bad read latches `failed()`,
 // later reads return zero, and the caller checks once per record.
 #pragma once

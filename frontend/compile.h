@@ -54,7 +54,7 @@ std::optional<Resources> compile_resources(const base::SourceMap& sources,
                                            const CompileOptions& options,
                                            base::Diagnostics& diagnostics);
 
-// TEST blocks (language.md, "Unit tests in the language"), made into one program each; the
+// TEST blocks (docs/TESTING.md), made into one program each; the
 // project's own tasks and programs do not run.
 struct TestCase {
   std::string name;  // as written, without quotes

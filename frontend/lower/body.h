@@ -1,7 +1,7 @@
 // Lowers the body of one POU: checks every statement against the types that sema
 // knows, and writes IR by the contract of ir/program/ir.h. Order of evaluation is
 // source order: a target's indices, then the value; operands and arguments from left
-// to right (language.md, section 2). After an error it goes on with harmless values,
+// to right (docs/LANGUAGE.md). After an error it goes on with harmless values,
 // so that one run reports all errors; the result is then thrown away.
 #pragma once
 
@@ -39,7 +39,7 @@ class Body {
   }
   std::optional<Constant> run_alone(uint32_t local, base::SourceSpan span);
 
-  // --- statements (statement.cc, loop.cc, case.cc, assignment.cc)
+  // --- statements (statement.cc, for.cc, case.cc, assignment.cc)
   void statements(Range32 list);
   void statement(const Stmt& stmt);
   void if_statement(const Stmt& stmt);

@@ -1,5 +1,5 @@
 // Conversions. Implicit ones are lossless or reported; explicit ones follow
-// language.md, section 2: reals round half to even and trap when out of range,
+// docs/LANGUAGE.md: reals round half to even and trap when out of range,
 // integers keep their low bits, times count in the unit of their type.
 #include "frontend/lower/body.h"
 #include "ir/types/time_units.h"

@@ -1,4 +1,4 @@
-// FOR (language.md, section 2): bounds and step are evaluated once; the loop ends
+// FOR (docs/LANGUAGE.md): bounds and step are evaluated once; the loop ends
 // correctly at the limits of its variable's type; step 0 traps; afterwards the
 // variable is last + step, except at the type's limit, where it stays.
 #include "frontend/lower/body.h"

@@ -1,5 +1,5 @@
 // Which elementary types exist under which names, how they convert, and what two
-// operands have in common (language.md, section 2: implicit conversion is lossless).
+// operands have in common (docs/LANGUAGE.md: implicit conversion is lossless).
 #pragma once
 
 #include <optional>

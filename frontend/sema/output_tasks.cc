@@ -1,5 +1,5 @@
 // Exactly one task writes each byte of the output image: otherwise the order of two
-// tasks would decide what the plant sees (reliability.md, verifier rule on I/O).
+// tasks would decide what the plant sees (V14).
 #include "frontend/sema/common_uses.h"
 #include "frontend/sema/sema.h"
 #include "ir/types/location.h"

@@ -53,7 +53,7 @@ class Sema {
   bool mock_applies(uint32_t pou, const PouDecl& test) const;
   void check_direct_addresses();  // located.cc; after all bodies
 
-  // --- types (types.cc, enumeration.cc, containment.cc)
+  // --- types (types.cc, structures.cc, containment.cc)
   TypeUse resolve(SpecId spec);
   std::optional<TypeUse> find_type(std::string_view qualified);
   // Of an interface variable?

@@ -1,5 +1,5 @@
 // The gate: only a VerifiedImage can be loaded, and only verify() makes one.
-// Rules V1 to V20 of reliability.md in one linear pass over code and tables.
+// Rules V1 to V20 of docs/REQUIREMENTS.md in one linear pass over code and tables.
 // Invariant: interpreting a VerifiedImage cannot read or write outside the areas,
 // frames and pools that it declares, whatever the data says. One thing is left to the
 // compiler: that in-outs of a function block are bound anew before each call. An image

@@ -63,7 +63,7 @@ base::Status verify_initial_data(const Image& image);
 std::vector<uint32_t> areas_in_order(const Image& image);
 base::Status verify_resources(const Context& context, const std::vector<uint32_t>& areas);
 
-// --- verify_code.cc: one POU in one pass (V3 to V10, V12, V19, V20) -------------
+// --- verify_code.h: one POU in one pass (V3 to V10, V12, V19, V20) -------------
 struct CodeFacts {
   std::vector<uint32_t> callees;        // nodes of the call graph, each once per call
   std::vector<Extent> written_outputs;  // %Q globals in data memory

@@ -53,7 +53,7 @@ ConstId Variables::listed(ConstId list, uint32_t index) const {
 }
 
 // An initial value replaces what the declarations below it say: the instance's or
-// variable's first, then the type's, then the member's (language.md, "Initial values").
+// variable's first, then the type's, then the member's (docs/LANGUAGE.md).
 Variable Variables::make_member(const Type& owner, uint32_t index, ConstId init) const {
   const Member& member = owner.members[index];
   if (member.section == Section::kInOut || program_.types[member.type].kind == Kind::kProgram) {

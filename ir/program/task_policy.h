@@ -1,5 +1,5 @@
 // How the controller treats a task beyond its period and priority: attributes in front of TASK
-// (systems.md B4, B6, B7; reliability.md, traps). The first value of each holds without one.
+// (B4, B6, B7; docs/TASKS.md). The first value of each holds without one.
 #pragma once
 
 #include <cstdint>

@@ -4,7 +4,7 @@
 // its lifetime. Function blocks and programs are types too: their members are
 // their variables. The global variables of a program are the members of one
 // pseudo type (Kind::kGlobals). So layout, diff and planning treat globals,
-// program areas and instance areas alike (systems.md A3, A4).
+// program areas and instance areas alike (A3, A4).
 //
 // Storage (all layouts, little endian): BOOL one byte; STRING[n] n+1 bytes, NUL-
 // terminated; WSTRING[n] 2*(n+1) bytes; structures and arrays embedded; a

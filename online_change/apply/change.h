@@ -1,5 +1,5 @@
-// One change on a running controller, as a state machine (architecture.md section
-// 10). Everything up to kArmed happens while version 1 runs; the switch is one
+// One change on a running controller, as a state machine (docs/ARCHITECTURE.md,
+// "How a change goes"). Everything up to kArmed happens while version 1 runs; the switch is one
 // call at a boundary; any failure before it leaves version 1 as it was.
 #pragma once
 

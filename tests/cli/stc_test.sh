@@ -1,5 +1,5 @@
 #!/bin/sh
-# stc test: tests in the language on virtual time (language.md, "Unit tests in the language").
+# stc test: tests in the language on virtual time.
 . "$(dirname "$0")/lib.sh"
 
 cat >pump.st <<'ST'

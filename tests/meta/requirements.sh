@@ -17,6 +17,7 @@ grep -rahE "^ *# " tests/cli --include='*.sh' >>"$words"
 status=0
 tested=0
 for id in $all; do
+  grep -qF "**$id**" docs/REQUIREMENTS.md || { echo "$id is not in docs/REQUIREMENTS.md"; status=1; }
   if grep -aqE "(^|[^A-Za-z0-9\$%])${id}([^0-9A-Za-z]|$)" "$words"; then
     tested=$((tested + 1))
     if grep -qw "$id" tests/meta/not_yet_tested.txt; then

@@ -1,5 +1,5 @@
 // What must hold at every boundary of every run, whatever happens (the laws at the end of
-// change-cases.md), checked from outside: from values by path before and after.
+// docs/REQUIREMENTS.md), checked from outside: from values by path before and after.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// Exit codes of both tools (architecture.md, section 13), and the one way to say
+// Exit codes of both tools, and the one way to say
 // that something was refused.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The `stc` beside this program: stvm contains no compiler (architecture.md section 13).
+// The `stc` beside this program: stvm contains no compiler.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // A controller on another machine: the same bytes as on its socket, over `ssh HOST stvm bridge`, so
-// that keys, users and encryption are those of OpenSSH (architecture.md section 12). $STVM_SSH
+// that keys, users and encryption are those of OpenSSH. $STVM_SSH
 // names another program than ssh.
 #pragma once
 

@@ -1,5 +1,5 @@
 // The inputs of one task apart from what is received meanwhile, by the strategy of its policy
-// (systems.md B3, B4). What a scan reads does not change from begin() to end().
+// (B3, B4). What a scan reads does not change from begin() to end().
 #pragma once
 
 #include <cstdint>

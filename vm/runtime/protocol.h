@@ -1,4 +1,4 @@
-// The control channel's messages (architecture.md section 12): binary, little endian, each of one
+// The control channel's messages: binary, little endian, each of one
 // version byte, one command or result byte, and a body. Framing: frames.h. Both directions are
 // decoded by the bounded reader, and neither side believes the other. Only sides of one version
 // understand each other; the layout of an error is the same in all of them, so that a client of

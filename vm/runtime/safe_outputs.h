@@ -1,5 +1,5 @@
 // Safe values of outputs (Image::safe): what they become when their task stops, or everything does
-// (reliability.md, traps). Allocates nothing after construction.
+// (docs/TASKS.md). Allocates nothing after construction.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // What runs a program under test. Every tier and every hard mode must give the
-// same states and traps (style.md, "Hard modes").
+// same states and traps (docs/TESTING.md).
 #pragma once
 
 #include <map>

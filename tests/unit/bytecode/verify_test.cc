@@ -1,4 +1,4 @@
-// Every rule of the verifier (V1 to V20, reliability.md) has images that only it rejects:
+// Every rule of the verifier (V1 to V20) has images that only it rejects:
 // each is the accepted sample with one thing changed. Here the tables of an image; its code is in
 // verify_code_test.cc.
 #include "base/limits.h"

@@ -1,4 +1,4 @@
-// Cases of change-cases.md that take tasks, devices, time, or more than one controller.
+// Change cases (docs/REQUIREMENTS.md) that take tasks, devices, time, or more than one controller.
 #include <gtest/gtest.h>
 
 #include "tests/unit/online_change/plant.h"

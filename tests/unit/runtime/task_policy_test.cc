@@ -161,7 +161,7 @@ END_RESOURCE END_CONFIGURATION
   EXPECT_EQ(plant.task("Fast").missed, 0u);
 }
 
-// --- fault class x policy -> safe outputs in the same cycle (reliability.md) ---------------------
+// --- fault class x policy -> safe outputs in the same cycle --------------------------------------
 
 struct Fault {
   const char* name;
