@@ -41,10 +41,12 @@ demo: setup
 test: build
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
 
+# TESTS: which of them, as a regular expression.
+TESTS :=
 minimal: setup
 	@cmake --preset minimal >/dev/null
 	@cmake --build build/minimal -j $(JOBS)
-	@ctest --test-dir build/minimal --output-on-failure -j $(JOBS)
+	@ctest --test-dir build/minimal --output-on-failure -j $(JOBS) $(if $(TESTS),-R '$(TESTS)')
 
 clang: setup
 	@scripts/setup.sh clang-16

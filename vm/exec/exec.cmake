@@ -1,11 +1,15 @@
 # g++ has no macro that tells of -fsanitize=undefined, so the form without tail calls
-# (vm/exec/context.h) is chosen here whenever code is instrumented.
-if(TARGET vm_exec AND (STC_SANITIZE OR STC_COVERAGE))
+# (vm/exec/context.h) is chosen here whenever code is instrumented; or not optimised, where tail
+# calls are calls.
+if(STC_SANITIZE OR STC_COVERAGE OR CMAKE_BUILD_TYPE STREQUAL "Quick")
+  set(STC_AS_WRITTEN ON)
+endif()
+if(TARGET vm_exec AND STC_AS_WRITTEN)
   target_compile_definitions(vm_exec PRIVATE STC_TAIL_CALLS=0)
 endif()
 
 # Handlers neither throw nor are they thrown through: what would unwind them is a tenth of stvm.
-if(NOT STC_SANITIZE AND NOT STC_COVERAGE)
+if(NOT STC_AS_WRITTEN)
   file(GLOB handlers ${CMAKE_SOURCE_DIR}/vm/exec/handle_*.cc ${CMAKE_SOURCE_DIR}/vm/exec/fused_*.cc)
   set_property(SOURCE ${handlers} APPEND PROPERTY COMPILE_OPTIONS
     -fno-exceptions -fno-unwind-tables -fno-asynchronous-unwind-tables)
