@@ -73,6 +73,8 @@ class Change {
   const Plan& plan() const;
   // The version that is staged; null: none is.
   const ir::VerifiedImage* next() const;
+  // What becomes of the forces by the switch; in trial, by undo.
+  const vm::ForcedSet& next_forces() const;
   // Only code differs: no value is touched, there and back.
   bool keeps_all() const;
   // What live_losses() reads of data memory.

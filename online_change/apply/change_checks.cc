@@ -70,6 +70,10 @@ void Change::count_undo() {
   controller_.worked(pause_ns(work));
 }
 
+const vm::ForcedSet& Change::next_forces() const {
+  return controller_.next_forces(*pending_->waiting);
+}
+
 std::vector<ir::DataRange> Change::looked_at() const {
   if (!pending_) return {};
   if (!pending_->keeps_all) return {{0, controller_.image().data_capacity}};
@@ -129,7 +133,7 @@ uint64_t Change::find_losses(std::span<const uint8_t> memory, size_t most,
     if (!is_on(pending_->old(), output, memory)) continue;
     if (count++ < most) rows.push_back(describe_left(output, pending_->old(), memory));
   }
-  for (const std::string& path : controller_.ended_forces(*pending_->waiting)) {
+  for (const std::string& path : next_forces().ended) {
     if (count++ < most) rows.push_back({path, "forced", "", "loses its force"});
   }
   return count;
@@ -137,12 +141,9 @@ uint64_t Change::find_losses(std::span<const uint8_t> memory, size_t most,
 
 // Not a matter of losses: the chart would begin again, whatever it was in the middle of.
 base::Status Change::check_charts() const {
-  const std::string step = pending_->charts.deserted(controller_.memory().data());
-  if (step.empty()) return base::Ok{};
-  const std::string name = step.substr(step.rfind('.') + 1);
-  return base::Error{base::Refusal::kActiveStepGone,
-                     "`" + step + "` is active; wait until it is left, or write " +
-                         "{renamed from := '" + name + "'} before the step that goes on for it"};
+  std::string why = pending_->charts.stuck(controller_.memory().data());
+  if (why.empty()) return base::Ok{};
+  return base::Error{base::Refusal::kActiveStepGone, std::move(why)};
 }
 
 base::Status Change::check_losses(bool allow_loss) const {

@@ -59,3 +59,27 @@ grep -qE '^(variable|resource|task|program|output) ' out && fail "nothing change
 serve plc v1
 expect 0 stvm change v2 --dir plc --dry-run
 all_is_said
+
+# case64: a force that moves, gets another type or ends is named, there and back.
+force_is_said() {
+  tr -s ' ' <out | grep -qxF "force $1" || fail "not said: $1"
+}
+expect 0 stvm force --dir plc out1=TRUE out2=TRUE in1=TRUE plain=5
+expect 0 stvm change v2 --dir plc --dry-run
+force_is_said 'out1 (%QX0.0 -> %QX7.7)'
+force_is_said 'out2 (%QX0.1 -> no address)'
+force_is_said 'in1 (%IX0.0 -> %IX3.3)'
+force_is_said 'plain (no address -> %QW10)'
+mkdir v3
+sed 's/out1 AT %QX0.0 : BOOL;/{renamed from := '"'out1'"'} lamp AT %QX0.0 : BOOL;/; s/plain : INT;/plain : DINT;/
+  s/out2 AT %QX0.1 : BOOL; //; s/out2 := TRUE;//; s/out1 := in1/lamp := in1/' v1/a.st >v3/a.st
+cp v1/stc.toml v3
+expect 0 stvm change v3 --dir plc --allow-loss --yes
+force_is_said 'out1 (out1 -> lamp)'
+force_is_said 'out2 (ends)'
+force_is_said 'plain (INT -> DINT)'
+grep -q '^force *in1' out && fail "in1 stays as it is"
+expect 0 stvm undo --dir plc
+force_is_said 'lamp (lamp -> out1)'
+force_is_said 'out2 (comes back: TRUE)'
+force_is_said 'plain (DINT -> INT)'

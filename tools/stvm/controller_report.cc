@@ -135,7 +135,8 @@ base::Result<base::Bytes> ControllerService::group_page(uint64_t first,
     page.losses.push_back({live_->losses()[i]});
   }
   page.edits = shown_edits(controller_.verified(), next);
-  page.system = shown_system(controller_.verified(), next);
+  const vm::Controller& controller = rehearses() ? rehearsal_->controller() : controller_;
+  page.system = shown_system(controller, next, looked_at().next_forces());
   return encode(page);
 }
 

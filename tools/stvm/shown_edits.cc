@@ -2,6 +2,7 @@
 
 #include "tools/common/all_system_edits.h"
 #include "tools/common/source_edits.h"
+#include "tools/stvm/force_edits.h"
 
 namespace stvm {
 namespace {
@@ -18,9 +19,15 @@ tools::PouEdits shown_edits(const ir::VerifiedImage& old_image,
   return edits;
 }
 
-tools::SystemEdits shown_system(const ir::VerifiedImage& old_image,
-                                const ir::VerifiedImage& new_image) {
-  tools::SystemEdits edits = tools::all_system_edits(old_image.image(), new_image.image());
+tools::SystemEdits shown_system(const vm::Controller& controller,
+                                const ir::VerifiedImage& new_image,
+                                const vm::ForcedSet& next_forces) {
+  const ir::VerifiedImage& old_image = controller.verified();
+  tools::SystemEdits edits =
+      force_edits(old_image.image(), controller.forces(), new_image.image(), next_forces);
+  for (auto& edit : tools::all_system_edits(old_image.image(), new_image.image())) {
+    edits.push_back(std::move(edit));
+  }
   for (auto& edit : tools::source_edits(old_image.encoded(), new_image.encoded())) {
     edits.push_back(std::move(edit));
   }

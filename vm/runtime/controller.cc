@@ -233,8 +233,8 @@ const std::vector<Force>& Controller::forces() const {
   return impl_->scheduler.tables().forced.forces;
 }
 
-const std::vector<std::string>& Controller::ended_forces(const Generation& prepared) const {
-  return impl_->tables.at(&prepared)->forced.ended;
+const ForcedSet& Controller::next_forces(const Generation& prepared) const {
+  return impl_->tables.at(&prepared)->forced;
 }
 
 uint32_t Controller::pous_to_make() const { return impl_->native_maker.to_make(); }

@@ -169,8 +169,8 @@ class Controller {
   base::Status force(std::string_view path, std::string_view value);
   base::Status unforce(std::string_view path);
   const std::vector<Force>& forces() const;
-  // Paths of the forced variables whose force would end with this generation, which was prepared.
-  const std::vector<std::string>& ended_forces(const Generation& prepared) const;
+  // What becomes of the forces with this generation, which was prepared.
+  const ForcedSet& next_forces(const Generation& prepared) const;
 
   // --- for online change (online_change/apply) --------------------------------
   // Builds a second generation beside the running one. Touches nothing that runs; whatever was

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ir/bytecode/renames.h"
+#include "vm/runtime/renamed_paths.h"
 
 namespace vm {
 namespace {
@@ -18,32 +18,6 @@ base::Bytes carry_over(const ir::Image& from, const Force& force, const ir::Imag
   base::Result<base::Bytes> value = ir::parse_value(to, symbol.type, text);
   return value.ok() ? *value : base::Bytes{};
 }
-
-// Paths of one version's variables in the other one, whichever of them renames (case 47).
-class RenamedPaths {
- public:
-  RenamedPaths(const ir::Image& from, const ir::Image& to)
-      : from_(from), to_(to), there_(from, to), back_(to, from) {}
-
-  std::string find(const Force& force) const {
-    if (!there_.renamed() && !back_.renamed()) return force.path;
-    const std::string before = ir::path_of(from_, force.symbol);
-    std::string after;
-    if (there_.renamed()) {
-      after = ir::path_of(there_.image(), force.symbol);
-    } else {
-      base::Result<ir::Symbol> symbol = ir::find_symbol(back_.image(), before);
-      if (symbol.ok()) after = ir::path_of(to_, *symbol);
-    }
-    return before == after ? force.path : after;
-  }
-
- private:
-  const ir::Image& from_;
-  const ir::Image& to_;
-  ir::OldUnderNewNames there_;
-  ir::OldUnderNewNames back_;
-};
 
 }  // namespace
 
