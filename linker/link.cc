@@ -40,7 +40,8 @@ class Linker {
     base::Status (Linker::*const steps[])() = {
         &Linker::lay_out_types,  &Linker::number_pous,     &Linker::place_instances,
         &Linker::fill_pool,      &Linker::link_code,       &Linker::link_tasks,
-        &Linker::link_overrides, &Linker::link_migrations, &Linker::measure_stack,
+        &Linker::link_overrides, &Linker::link_migrations, &Linker::link_charts,
+        &Linker::measure_stack,
     };
     copy_declarations();
     for (const auto step : steps) {
@@ -288,6 +289,17 @@ class Linker {
       }
       image_.migrations.push_back({row.type, pou->second, row.inverse, row.values});
     }
+    return base::Ok{};
+  }
+
+  base::Status link_charts() {
+    for (const ir::Pou& pou : program_.pous) {
+      const auto number = context_.pou_numbers.find(ir::fold_name(pou.name));
+      if (pou.chart.empty() || number == context_.pou_numbers.end()) continue;
+      image_.charts.push_back({number->second, pou.chart});
+    }
+    std::sort(image_.charts.begin(), image_.charts.end(),
+              [](const auto& a, const auto& b) { return a.pou < b.pou; });
     return base::Ok{};
   }
 

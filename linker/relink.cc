@@ -68,6 +68,8 @@ class Relinker {
     if (object.name != linked.name || object.kind != linked.kind || object.self != linked.self) {
       return false;
     }
+    const ir::PouId pou = state_.names.at(ir::fold_name(object.name));
+    if (!has_chart(number, program_.pous[pou.index].chart)) return false;
     for (const std::string& callee : object.callees) {
       if (!context_.pou_numbers.contains(ir::fold_name(callee))) return false;
     }
@@ -79,6 +81,15 @@ class Relinker {
       if (slot >= known.size() || known[slot] != frame->offsets[slot]) return false;
     }
     return true;
+  }
+
+  bool has_chart(uint32_t number, const std::vector<ir::ChartMove>& moves) const {
+    const std::vector<ir::LinkedChart>& charts = state_.image.charts;
+    const auto chart =
+        std::lower_bound(charts.begin(), charts.end(), number,
+                         [](const ir::LinkedChart& row, uint32_t pou) { return row.pou < pou; });
+    if (chart == charts.end() || chart->pou != number) return moves.empty();
+    return chart->moves == moves;
   }
 
   static bool same_tables_of(const ir::Object& a, const ir::Object& b) {

@@ -18,6 +18,7 @@ void ChartBody::run() {
   body_.set_line(chart_.span);
   unused_actions();
   if (!find_places()) return report_all();
+  describe_net();
   read_clock();
   active_steps();
   stored_times();
@@ -44,6 +45,22 @@ void ChartBody::report_all() {
     }
   }
   for (const ChartAction& action : chart_.actions) body_.statements(action.body);
+}
+
+void ChartBody::describe_net() {
+  const auto members = [&](const std::vector<uint32_t>& steps) {
+    std::vector<uint32_t> numbers;
+    for (const uint32_t step : steps) numbers.push_back(sema_.resolve(steps_[step]).index);
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
+  };
+  std::vector<ir::ChartMove>& chart = body_.out_.chart;
+  for (const uint32_t initial : net_.initial) {
+    if (initial != sfc::kNone) chart.push_back({{}, members({initial})});
+  }
+  for (const sfc::Transition& transition : net_.transitions) {
+    chart.push_back({members(transition.from), members(transition.to)});
+  }
 }
 
 bool ChartBody::find_places() {

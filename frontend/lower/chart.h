@@ -22,6 +22,7 @@ class ChartBody {
  private:
   // --- state and flags (chart.cc)
   bool find_places();
+  void describe_net();
   void number_flags();
   void report_all();
   ir::Place flag(uint32_t number) const;

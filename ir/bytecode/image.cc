@@ -18,10 +18,11 @@
 namespace ir {
 namespace {
 
-// Controllers that know no schedules take the images that have none of their own.
+// An image has the lowest version that says all of it, so older controllers take what they know.
 constexpr uint32_t kVersion = 7;
 constexpr uint32_t kVersionOfSchedules = 8;
-constexpr uint32_t kVersionOfSources = 9;
+constexpr uint32_t kVersionOfCharts = 9;
+constexpr uint32_t kVersionOfSources = 10;
 constexpr size_t kDigestAt = 16;
 constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 
@@ -36,6 +37,7 @@ base::Error bad_format(std::string text) {
 
 uint32_t version_of(const Image& image, bool has_sources) {
   if (has_sources) return kVersionOfSources;
+  if (!image.charts.empty()) return kVersionOfCharts;
   return image.schedule == Schedule::kSendFirst ? kVersion : kVersionOfSchedules;
 }
 

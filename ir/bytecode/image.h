@@ -147,6 +147,14 @@ struct LinkedMigration {
   std::vector<MigratedName> values;
 };
 
+// The net of the chart that is the body of a POU; for what later versions may do with its steps
+// (online_change/apply/chart_net.h). Numbers count members of the POU's instance type.
+struct LinkedChart {
+  uint32_t pou = 0;
+  std::vector<ChartMove> moves;
+  friend bool operator==(const LinkedChart&, const LinkedChart&) = default;
+};
+
 // A TypeTable that versions have in common.
 class ImageTypes : public base::Shared<TypeTable> {
  public:
@@ -191,6 +199,7 @@ struct Image {
   std::vector<SafeOutput> safe;  // sorted by bit_offset, disjoint
   std::vector<RetainRange> retain;
   std::vector<SharedGlobal> shared;  // by member
+  std::vector<LinkedChart> charts;   // sorted by POU; none in images before version 9
   base::SharedVector<DataRun> data;  // sorted by offset
   uint32_t data_capacity = 0;
   uint32_t stack_bytes = 0;  // for the deepest chain, over all priorities

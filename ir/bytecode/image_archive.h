@@ -49,6 +49,11 @@ class ImageWriter {
   void last_enumerator(const E& v, uint32_t) {
     if (v != E{}) number(static_cast<uint8_t>(v));
   }
+  // Likewise: no bytes for no records.
+  template <class T, class Each>
+  void last_list(const std::vector<T>& v, size_t min_size, Each&& each) {
+    if (!v.empty()) list(v, min_size, each);
+  }
   // `min_size`: bytes of the smallest record.
   template <class T, class Each>
   void list(const std::vector<T>& v, size_t, Each&& each) {
@@ -165,6 +170,12 @@ class ImageReader {
     if (in_.left() == 0) return;
     v = in_.enumerator<E>(limit);
     if (v == E{}) in_.fail();  // one image has one stored form
+  }
+  template <class T, class Each>
+  void last_list(std::vector<T>& v, size_t min_size, Each each) {
+    if (in_.left() == 0) return;
+    list(v, min_size, each);
+    if (v.empty()) in_.fail();  // one image has one stored form
   }
   template <class T, class Each>
   void list(std::vector<T>& v, size_t min_size, Each each) {

@@ -180,6 +180,15 @@ void migration_fields(Archive& a, T& v) {
 }
 
 template <class Archive, class T>
+void chart_fields(Archive& a, T& v) {
+  a(v.pou);
+  a.list(v.moves, 8, [&](auto& move) {
+    a.plain_list(move.from);
+    a.plain_list(move.to);
+  });
+}
+
+template <class Archive, class T>
 void device_fields(Archive& a, T& v) {
   a(v.name);
   a(v.driver);

@@ -196,6 +196,7 @@ void tables_section(Archive& a, I& image, const Beside& beside) {
     a(global.member);
     a(global.written);
   });
+  a.last_list(image.charts, 8, [&](auto& chart) { chart_fields(a, chart); });
 }
 
 // To be filled, or to be written.

@@ -54,6 +54,9 @@ base::Status verify_overrides(const Image& image);
 // --- verify_migrations.cc: functions that migrate values, behind all tables ------
 base::Status verify_migrations(const Image& image);
 
+// --- verify_charts.cc: nets of charts, behind all POUs and types -----------------
+base::Status verify_charts(const Image& image);
+
 // --- verify_instances.cc: areas and the instance tree (V13) ---------------------
 base::Status verify_instances(const Context& context);
 // --- verify_resources.cc: tasks, I/O, retain, initial data (V14 to V16) ---------

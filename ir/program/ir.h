@@ -224,6 +224,14 @@ constexpr bool is_body(PouKind kind) {
 // Does it take arguments in its frame?
 constexpr bool has_parameters(PouKind kind) { return !is_body(kind); }
 
+// A transition of a chart, or, without `from`, the start of a network at its initial step. Members
+// of the POU's instance type that are steps, sorted.
+struct ChartMove {
+  std::vector<uint32_t> from;
+  std::vector<uint32_t> to;
+  friend bool operator==(const ChartMove&, const ChartMove&) = default;
+};
+
 struct Pou {
   std::string name;
   PouKind kind = PouKind::kFunction;
@@ -237,6 +245,7 @@ struct Pou {
   std::vector<Value> values;
   std::vector<Place> places;
   std::vector<Block> blocks;   // blocks[0] is the entry and has no parameters
+  std::vector<ChartMove> chart;  // of a body that is a chart, for later versions: no code uses it
   base::Digest source_hash{};  // of the POU's own source text
 };
 

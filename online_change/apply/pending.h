@@ -53,7 +53,8 @@ struct Change::Pending {
         backward(package.inverse, new_image.image(), old(), Transfer::Steps::kAll),
         handles(same ? HandleTransfer(old()) : HandleTransfer(old(), new_image.image())),
         leaving(find_leaving(old(), new_image.image())),
-        charts(same ? Charts() : Charts(old(), new_image.image())),
+        charts(same && same_nets(old(), new_image.image()) ? Charts()
+                                                          : Charts(old(), new_image.image())),
         lost(lost_places(package.forward, old(), new_image.image())),
         left(vm::left_outputs(old(), new_image.image())) {}
   // Behind stage(): both are known.

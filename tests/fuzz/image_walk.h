@@ -50,6 +50,10 @@ class ImageWalk {
     enumerator(v, limit);
   }
   template <class T, class Each>
+  void last_list(std::vector<T>& v, size_t min_size, Each&& each) {
+    list(v, min_size, each);
+  }
+  template <class T, class Each>
   void list(std::vector<T>& v, size_t, Each&& each) {
     const ImageWalk outside = *this;
     const FieldPlace whole = kIsRecord<T> ? FieldPlace{typeid(T), FieldPlace::kList} : place_of(v);

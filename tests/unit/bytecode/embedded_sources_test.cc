@@ -71,10 +71,10 @@ TEST(EmbeddedSources, X9_OneStoredForm) {
   const base::Bytes usual = ir::encode(sample::busy_image());
   base::Bytes bytes = with_sources();
   EXPECT_EQ(usual[kVersionAt], 7);
-  EXPECT_EQ(bytes[kVersionAt], 9);
+  EXPECT_EQ(bytes[kVersionAt], 10);
   EXPECT_EQ(ir::section_of(usual, ir::ImageSection::kSources).data(), nullptr);
   EXPECT_FALSE(ir::section_of(bytes, ir::ImageSection::kSources).empty());
-  for (const uint8_t version : {7, 8, 10}) {
+  for (const uint8_t version : {7, 8, 9, 11}) {
     bytes[kVersionAt] = version;
     EXPECT_EQ(ir::decode(bytes).error().refusal, Refusal::kBadFormat) << int{version};
   }
@@ -87,7 +87,7 @@ TEST(EmbeddedSources, X9_OneStoredForm) {
   EXPECT_EQ(ir::decode(ir::encode(sample::busy_image(), nullptr, longer).bytes).error().refusal,
             Refusal::kBadFormat);
   base::Bytes old = usual;  // of a version that has the section, without it
-  old[kVersionAt] = 9;
+  old[kVersionAt] = 10;
   EXPECT_EQ(ir::decode(old).error().refusal, Refusal::kBadFormat);
 }
 
