@@ -79,4 +79,20 @@ base::Result<std::vector<ir::VerifiedImage>> load_programs(const Sources& source
   return images;
 }
 
+base::Result<base::Bytes> relink(const Sources& sources, base::ByteSpan running, bool move_all) {
+  base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
+  if (!folder.ok()) return folder.error();
+  const std::string base_file = folder->file("base.img");
+  const std::string next_file = folder->file("next.img");
+  base::Status written = tools::write_file(base_file, running);
+  if (!written.ok()) return written.error();
+  std::vector<std::string> command = {"build", "--quiet", "--base", base_file};
+  if (move_all) command.push_back("--move-all");
+  command.insert(command.end(), {"-o", next_file});
+  base::Status built = tools::run_beside("stc", stc_arguments(std::move(command), sources),
+                                         tools::Messages::kOnlyOfFailure);
+  if (!built.ok()) return built.error();
+  return tools::read_bytes(next_file);
+}
+
 }  // namespace stvm

@@ -29,6 +29,10 @@ base::Result<ir::VerifiedImage> load_program(const Sources& sources);
 // Image files, or sources that are compiled first: an image for each RESOURCE, by name.
 base::Result<std::vector<ir::VerifiedImage>> load_programs(const Sources& sources);
 
+// Linked against the program that runs, for a change of it; `move_all`: with every instance at
+// another place.
+base::Result<base::Bytes> relink(const Sources& sources, base::ByteSpan running, bool move_all);
+
 // The file begins as an image does.
 bool is_image(const std::string& path);
 

@@ -189,8 +189,19 @@ void report_tier(const ir::Image& image, const vm::CodeTable& code, vm::StatusRe
   }
 }
 
+// Before waiting for a boundary, at which no task is inside a scan.
+std::vector<vm::TaskActivity> ControllerService::activities() const {
+  std::vector<vm::TaskActivity> rows(controller_.image().tasks.size());
+  const uint32_t generation = controller_.generation().number();
+  for (size_t task = 0; task < rows.size(); ++task) {
+    rows[task] = controller_.activity(task, generation).value_or(vm::TaskActivity{});
+  }
+  return rows;
+}
+
 base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   vm::StatusReport report;
+  const std::vector<vm::TaskActivity> doing = activities();
   report.pous_to_make = controller_.pous_to_make();
   if (report.pous_to_make == 0) keep_up();
   const vm::CodeTable* code = nullptr;
@@ -206,7 +217,12 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
     return tasks.take(controller_, free_ns);
   });
   if (!taken.ok()) return taken.error();
-  for (const vm::TaskSample& task : tasks.samples()) report.tasks.push_back(vm::status_of(task));
+  for (const vm::TaskSample& task : tasks.samples()) {
+    report.tasks.push_back(vm::status_of(task));
+    if (report.tasks.size() <= doing.size()) {
+      report.tasks.back().activity = doing[report.tasks.size() - 1];
+    }
+  }
   for (const auto& trap : traps) report.traps.push_back({trap->cycle, trap->task, trap->text});
   report.name = controller_.image().name;
   report.running = controller_.verified().digest();

@@ -77,6 +77,7 @@ class ControllerService : public vm::Service {
 
   Answer dispatch(const vm::Request& request);
   Answer status(const vm::Request& request);
+  std::vector<vm::TaskActivity> activities() const;
   Answer times(const vm::Request& request);
   Answer reset_times(const vm::Request& request);
   Answer get(const vm::Request& request);

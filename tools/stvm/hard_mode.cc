@@ -1,27 +1,9 @@
 #include "tools/stvm/hard_mode.h"
 
-#include "tools/common/child.h"
-#include "tools/common/files.h"
 #include "tools/stvm/compiler.h"
 
 namespace stvm {
 namespace {
-
-base::Result<base::Bytes> relinked(const Sources& sources, base::ByteSpan running) {
-  base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
-  if (!folder.ok()) return folder.error();
-  std::string base_file = folder->file("base.img");
-  std::string next_file = folder->file("next.img");
-  base::Status written = tools::write_file(base_file, running);
-  if (!written.ok()) return written.error();
-  base::Status built = tools::run_beside(
-      "stc",
-      stc_arguments({"build", "--quiet", "--base", base_file, "--move-all", "-o", next_file},
-                    sources),
-      tools::Messages::kOnlyOfFailure);
-  if (!built.ok()) return built.error();
-  return tools::read_bytes(next_file);
-}
 
 // The same program, but another version: without that, a change to itself does nothing at all.
 base::Bytes renamed(const ir::Image& running) {
@@ -68,7 +50,7 @@ base::Status check_hard_mode(HardMode mode, const Sources& sources) {
 base::Status apply_hard_mode(HardMode mode, const Sources& sources, vm::Controller& controller) {
   if (mode == HardMode::kIdentity) return switch_to(renamed(controller.image()), controller);
   if (mode != HardMode::kMove) return base::Ok{};
-  base::Result<base::Bytes> next = relinked(sources, controller.verified().encoded());
+  base::Result<base::Bytes> next = relink(sources, controller.verified().encoded(), true);
   if (!next.ok()) return next.error();
   base::Status changed = switch_to(*next, controller);
   // Where nothing can move, the relinked program is the running one.

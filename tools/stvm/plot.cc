@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "tools/common/fate_report.h"
+#include "tools/stvm/svg_text.h"
 
 namespace stvm {
 namespace {
@@ -18,31 +19,6 @@ constexpr double kRight = 16;
 constexpr double kLaneHeight = 88;
 constexpr double kPlotHeight = 56;
 constexpr double kTop = 48;
-// Told apart by people who see colours differently.
-constexpr const char* kColors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                   "#e69f00", "#56b4e9", "#555555"};
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else
-      out += c;
-  }
-  return out;
-}
-
-template <class... Values>
-std::string format(const char* form, Values... values) {
-  char text[512];
-  std::snprintf(text, sizeof text, form, values...);
-  return text;
-}
 
 bool is_plottable(const ir::Image& image, ir::TypeId type) {
   if (!image.types.is_scalar(type) || image.types.is_reference(type)) return false;

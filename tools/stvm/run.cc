@@ -12,6 +12,7 @@
 #include "tools/stvm/hard_mode.h"
 #include "tools/stvm/plot.h"
 #include "tools/stvm/run_resources.h"
+#include "tools/stvm/run_timing.h"
 #include "tools/stvm/stop_signal.h"
 #include "tools/stvm/tier.h"
 #include "tools/stvm/trace.h"
@@ -34,6 +35,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--hash", nullptr, "print the hash of the state at the end"},
     {"--hard-mode", "MODE", "fuel1, identity or move: nothing may come out differently"},
     {"--every", "K", "identity, move: change after every K-th scan (default 1)"},
+    STVM_TIMING_OPTIONS,
     STVM_TIER_OPTION,
     STVM_DEVICE_OPTION,
     STVM_DIALECT_OPTION,
@@ -49,6 +51,7 @@ struct Settings {
   vm::Tier tier = vm::Tier::kAuto;
   uint64_t every = 1;
   std::vector<std::string> print;
+  RunTiming timing;
 };
 
 base::Result<Settings> read_settings(const tools::Options& options) {
@@ -63,6 +66,9 @@ base::Result<Settings> read_settings(const tools::Options& options) {
   if (!every.ok()) return every.error();
   base::Result<vm::Tier> tier = tier_of(options);
   if (!tier.ok()) return tier.error();
+  base::Result<RunTiming> timing = RunTiming::read(options);
+  if (!timing.ok()) return timing.error();
+  out.timing = std::move(*timing);
   out.tier = *tier;
   out.json = *json;
   out.hard_mode = *hard_mode;
@@ -82,7 +88,7 @@ base::Status check_names(const std::vector<std::string>& names, const vm::Contro
 }
 
 base::Status run_scans(const Settings& settings, const tools::Options& options,
-                       ResourceController& running) {
+                       ResourceController& running, vm::VirtualClock& clock, TimingChart* chart) {
   vm::Controller& controller = running.controller();
   std::optional<Trace> trace;
   if (options.has("--trace")) {
@@ -97,6 +103,8 @@ base::Status run_scans(const Settings& settings, const tools::Options& options,
     if (!begun.ok()) return begun.error();
     plot.emplace(std::move(*begun));
   }
+  std::optional<RunChange> change;
+  if (settings.timing.change) change.emplace(*settings.timing.change, controller, clock);
   while (!controller.faulted() && !StopSignal::received()) {
     if (settings.scans && controller.cycles() >= *settings.scans) break;
     running.cycle();
@@ -106,10 +114,16 @@ base::Status run_scans(const Settings& settings, const tools::Options& options,
       base::Status written = trace->write(controller);
       if (!written.ok()) return written;
     }
-    if (controller.faulted() || controller.cycles() % settings.every != 0) continue;
+    if (controller.faulted()) continue;
+    if (change) {
+      base::Status stepped = change->step(chart);
+      if (!stepped.ok()) return stepped;
+    }
+    if (controller.cycles() % settings.every != 0) continue;
     base::Status changed = apply_hard_mode(settings.hard_mode, sources_of(options), controller);
     if (!changed.ok()) return changed;
   }
+  if (change && !change->end().ok()) return change->end();
   if (plot) {
     const std::string picture = plot->svg(controller.image().name);
     base::Status drawn = tools::write_file(options.text("--plot"), base::as_bytes(picture));
@@ -132,8 +146,17 @@ void print_text(const Settings& settings, const tools::Options& options,
   }
 }
 
+// To its file, or to standard output where that has no JSON.
+base::Status show_chart(const Settings& settings, const TimingChart& chart,
+                        const std::string& title) {
+  const std::string& path = settings.timing.chart;
+  if (path != "-") return tools::write_file(path, base::as_bytes(chart.svg(title)));
+  if (!settings.json) std::fputs(chart.text().c_str(), stdout);
+  return base::Ok{};
+}
+
 void print_json(const Settings& settings, const tools::Options& options,
-                vm::Controller& controller) {
+                vm::Controller& controller, const TimingChart* chart) {
   tools::JsonWriter json;
   json.begin_object().field("scans", controller.cycles()).field("faulted", controller.faulted());
   json.key("values").begin_object();
@@ -150,20 +173,30 @@ void print_json(const Settings& settings, const tools::Options& options,
   }
   json.key("traps").begin_array();
   for (const auto& trap : controller.traps()) json.value(trap_text(*trap));
-  json.end_array().end_object();
+  json.end_array();
+  if (chart != nullptr) chart->json(json);
+  json.end_object();
   std::fputs(json.finish().c_str(), stdout);
 }
 
 base::Result<int> run_alone(const Settings& settings,
                             const std::vector<vm::GlobalExchange::Resource>& program,
                             const tools::Options& options) {
-  vm::VirtualClock virtual_clock;
+  const RunTiming& timing = settings.timing;
+  const ir::Image& image = program.front().image.image();
+  if (base::Status known = timing.check_tasks(image); !known.ok()) return known.error();
+  vm::VirtualClock virtual_clock(timing.safe_point_ns);
+  for (const auto& [task, ns] : timing.durations) virtual_clock.let_scans_last(task, ns);
+  std::optional<TimingChart> chart;
+  if (!timing.chart.empty()) chart.emplace(image);
   vm::RealClock real_clock;
   const bool virtual_time = options.has("--virtual-time");
   vm::Clock& clock = virtual_time ? static_cast<vm::Clock&>(virtual_clock) : real_clock;
   ResourceController::Settings start{options, {}, virtual_time, nullptr, program, 0};
   start.limits.tier = tier_options(settings.tier, virtual_time);
+  start.limits.fuel_slice = timing.fuel_slice(start.limits.fuel_slice);
   if (settings.hard_mode == HardMode::kFuel1) start.limits.fuel_slice = 1;
+  if (chart) start.limits.timeline = &*chart;
   auto running = ResourceController::start(start, clock, {});
   if (!running.ok()) return running.error();
   vm::Controller& controller = (*running)->controller();
@@ -172,11 +205,23 @@ base::Result<int> run_alone(const Settings& settings,
   base::Status known = check_names(settings.print, controller);
   if (!known.ok()) return known.error();
   StopSignal::install_for_outputs();
-  base::Status done = run_scans(settings, options, **running);
+  TimingChart* const seen = chart ? &*chart : nullptr;
+  base::Status done = run_scans(settings, options, **running, virtual_clock, seen);
   if (!done.ok()) return done.error();
+  if (chart) {
+    const int64_t now_ns = clock.now_ns();
+    const bool virtual_end = virtual_time && !controller.faulted();
+    chart->end(virtual_end ? std::max(now_ns, controller.next_cycle_ns()) : now_ns);
+    base::Status drawn = show_chart(settings, *chart, image.name);
+    if (!drawn.ok()) return drawn.error();
+  }
   finish_scan(**running);
   if (base::Status recorded = (*running)->close(); !recorded.ok()) return recorded.error();
-  (settings.json ? print_json : print_text)(settings, options, controller);
+  if (settings.json) {
+    print_json(settings, options, controller, seen);
+  } else {
+    print_text(settings, options, controller);
+  }
   return end_run(**running) ? tools::kOk : tools::kFindings;
 }
 
@@ -196,6 +241,10 @@ base::Result<int> run_program(const tools::Options& options) {
   auto resources = name_resources(std::move(*images));
   if (!resources.ok()) return resources.error();
   if (resources->size() > 1) {
+    if (settings->timing.any() || !settings->timing.chart.empty()) {
+      return base::Error{base::Refusal::kUsage,
+                         "--duration, --safe-point, --change and --chart are for one resource"};
+    }
     return run_resources(*resources, {settings->json, settings->scans, settings->print}, options);
   }
   return run_alone(*settings, *resources, options);

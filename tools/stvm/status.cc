@@ -6,6 +6,7 @@
 #include "tools/common/fate_report.h"
 #include "tools/common/json.h"
 #include "tools/common/table.h"
+#include "tools/stvm/activity_text.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
 #include "tools/stvm/times_text.h"
@@ -17,6 +18,7 @@ namespace {
 constexpr tools::OptionRow kOptions[] = {
     STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION,
+    {"--activity", nullptr, "what tasks are doing at this instant, and how their buffers stand"},
     {"--task", "NAME", "histograms of a task: run times, and delays of its start"},
     {"--reset-times", nullptr, "the controller forgets how long scans took and began late"}};
 constexpr tools::Command kCommand{"status", "", "Shows what a controller runs and how it is.",
@@ -177,7 +179,9 @@ void task_json(tools::JsonWriter& json, const vm::TaskStatus& task) {
   json.field("recent_longest_ns", task.recent_ns);
   summary_json(json, "run_ns", task.run);
   summary_json(json, "start_delay_ns", task.delay);
-  json.field("stopped", task.stopped).end_object();
+  json.field("stopped", task.stopped);
+  activity_json(json, task.activity);
+  json.end_object();
 }
 
 void print_json(const vm::StatusReport& report) {
@@ -234,6 +238,10 @@ base::Status show(const tools::Options& options) {
   }
   base::Result<vm::StatusReport> report = client->status();
   if (!report.ok()) return report.error();
+  if (options.has("--activity") && !*json) {
+    std::fputs(activity_text(report->tasks).c_str(), stdout);
+    return base::Ok{};
+  }
   (*json ? print_json : print_text)(*report);
   return base::Ok{};
 }

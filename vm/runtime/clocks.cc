@@ -3,6 +3,8 @@
 #include <cerrno>
 #include <ctime>
 
+#include "base/name_case.h"
+
 namespace vm {
 namespace {
 
@@ -25,6 +27,14 @@ void RealClock::wait_until(int64_t deadline_ns) {
   timespec until{absolute / kNsPerSecond, absolute % kNsPerSecond};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
   }
+}
+
+int64_t VirtualClock::scan_ns(std::string_view task) const {
+  int64_t ns = 0;
+  for (const auto& [name, duration] : scans_) {
+    if (base::same_name(name, task)) ns = duration;
+  }
+  return ns;
 }
 
 }  // namespace vm

@@ -2,6 +2,10 @@
 // always the same way.
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "vm/runtime/ports.h"
 
 namespace vm {
@@ -20,7 +24,8 @@ class RealClock : public Clock {
 };
 
 // Waiting jumps to the deadline. Execution takes `ns_per_safe_point` for each safe point, so a
-// test decides how long a scan lasts by its loops.
+// test decides how long a scan lasts by its loops; or the scans of a task last as long as is said
+// here.
 class VirtualClock : public Clock {
  public:
   explicit VirtualClock(int64_t ns_per_safe_point = 0) : ns_per_safe_point_(ns_per_safe_point) {}
@@ -33,10 +38,14 @@ class VirtualClock : public Clock {
   }
   void worked(int64_t expected_ns) override { now_ns_ += expected_ns; }
   void advance(int64_t ns) { now_ns_ += ns; }
+  // From the start of a controller or its next change on.
+  void let_scans_last(std::string task, int64_t ns) { scans_.emplace_back(std::move(task), ns); }
+  int64_t scan_ns(std::string_view task) const override;
 
  private:
   int64_t now_ns_ = 0;
   int64_t ns_per_safe_point_;
+  std::vector<std::pair<std::string, int64_t>> scans_;
 };
 
 }  // namespace vm

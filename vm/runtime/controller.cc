@@ -13,11 +13,6 @@
 #include "vm/runtime/task_tables.h"
 
 namespace vm {
-namespace {
-
-using TablesByGeneration = std::map<const Generation*, std::unique_ptr<TaskTables>>;
-
-}  // namespace
 
 struct Controller::Impl {
   Impl(const ControllerOptions& options, Clock& clock, IoPort& io, Memory reserved)
@@ -43,7 +38,7 @@ struct Controller::Impl {
   std::shared_ptr<CodeSlots> code_slots;
   std::unique_ptr<Generation> running;
   // Of the running generation, and of one that is prepared or can come back by undo.
-  TablesByGeneration tables;
+  std::map<const Generation*, std::unique_ptr<TaskTables>> tables;
   NativeMaker native_maker;  // ends before the generation that it works on
 };
 
@@ -113,6 +108,10 @@ std::vector<TaskStatus> Controller::tasks() const {
     rows.back().recent_ns = task.times->recent_run.longest();
   }
   return rows;
+}
+
+std::optional<TaskActivity> Controller::activity(size_t task, uint32_t generation) const {
+  return impl_->scheduler.board().look(task, generation);
 }
 
 std::optional<TaskTimes> Controller::task_times(std::string_view name) const {

@@ -26,6 +26,8 @@
 #include "vm/load/generation.h"
 #include "vm/runtime/forces.h"
 #include "vm/runtime/ports.h"
+#include "vm/runtime/task_activity.h"
+#include "vm/runtime/timeline.h"
 #include "vm/runtime/write_set.h"
 
 namespace vm {
@@ -44,6 +46,7 @@ struct ControllerOptions {
   TierOptions tier = {};
   bool halted = false;  // begins as behind a fault: nothing runs before restart()
   uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit
+  Timeline* timeline = nullptr;  // is told of all cycles; outlives the controller
 };
 
 // Times of all scans of a task so far, in ns; p99: 99 % took no longer (histogram.h).
@@ -79,6 +82,7 @@ struct TaskStatus {
   bool freewheeling = false;
   bool once = false;  // start code: at cold start and behind changes
   int64_t recent_ns = 0;  // the longest run of the last scans (recent_longest.h)
+  TaskActivity activity = {};  // at another instant than the rest (Controller::activity)
 };
 
 struct TrapRecord {
@@ -133,6 +137,9 @@ class Controller {
   Memory& memory();
   uint64_t data_limit() const;
   std::vector<TaskStatus> tasks() const;
+  // Any thread, at any time: what the task of that number does now. nullopt: a version of another
+  // number runs (Generation::number).
+  std::optional<TaskActivity> activity(size_t task, uint32_t generation) const;
   // Histograms of a task; nullopt: there is none of this name.
   std::optional<TaskTimes> task_times(std::string_view name) const;
   // At a boundary: forgets how long scans took and how late they began; counters go on.

@@ -13,13 +13,19 @@ InputSync::InputSync(InputBuffer strategy, size_t bytes) : strategy_(strategy) {
   if (strategy == InputBuffer::kLocked) read_ = write_;
 }
 
-void InputSync::write(std::span<const uint8_t> received) {
+BufferState InputSync::state() const {
+  const bool waits = strategy_ == InputBuffer::kThree;
+  return {strategy_, write_, waits ? wait_ : BufferState::kNone, read_, fresh_, locked_};
+}
+
+void InputSync::write(std::span<const uint8_t> received, int64_t at_ns) {
   if (strategy_ == InputBuffer::kLocked && locked_) {
     behind_ = true;
     return;
   }
   if (strategy_ == InputBuffer::kFirstUnseen && fresh_) return;
   std::copy(received.begin(), received.end(), buffers_[write_].begin());
+  at_ns_[write_] = at_ns;
   fresh_ = true;
   behind_ = false;
   if (strategy_ == InputBuffer::kThree) std::swap(write_, wait_);
@@ -35,6 +41,7 @@ void InputSync::begin() {
       break;
     case InputBuffer::kCopied:
       buffers_[read_] = buffers_[write_];  // equal sizes: allocates nothing
+      at_ns_[read_] = at_ns_[write_];
       break;
     case InputBuffer::kSwapped:
     case InputBuffer::kSwappedWithFlag:

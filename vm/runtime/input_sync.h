@@ -7,6 +7,7 @@
 
 #include "base/bytes.h"
 #include "ir/bytecode/image.h"
+#include "vm/runtime/task_activity.h"
 
 namespace vm {
 
@@ -15,8 +16,8 @@ class InputSync {
   InputSync() = default;
   InputSync(ir::InputBuffer strategy, size_t bytes);
 
-  // Offers what was received; `received` has the bytes of the constructor.
-  void write(std::span<const uint8_t> received);
+  // Offers what was received then; `received` has the bytes of the constructor.
+  void write(std::span<const uint8_t> received, int64_t at_ns = 0);
   void begin();
   // No scan is going on, and what no scan has seen is old.
   void restart() { fresh_ = locked_ = behind_ = false; }
@@ -25,6 +26,8 @@ class InputSync {
   }
   void end() { locked_ = false; }
   std::span<const uint8_t> inputs() const { return buffers_[read_]; }
+  int64_t received_ns() const { return at_ns_[read_]; }  // when inputs() were
+  BufferState state() const;
   // Does a scan see what was received last when nobody writes until just before it begins? Then
   // there is no need to write in every cycle.
   bool reads_last_written() const { return strategy_ == ir::InputBuffer::kCopied; }
@@ -35,6 +38,7 @@ class InputSync {
  private:
   ir::InputBuffer strategy_ = ir::InputBuffer::kCopied;
   base::Bytes buffers_[3];
+  int64_t at_ns_[3] = {};
   uint8_t write_ = 0;
   uint8_t wait_ = 2;
   uint8_t read_ = 1;

@@ -30,9 +30,12 @@ class Clock {
   virtual void wait_until(int64_t deadline_ns) = 0;
   // The executions just done took `safe_points`; a virtual clock may let time pass for it.
   virtual void consumed(uint64_t safe_points) = 0;
-  // Work at a boundary has just been done that is expected to take so long (the model of the pause,
-  // online_change/plan/pause.h); a virtual clock lets that time pass.
+  // Work has just been done that is expected to take so long (at a boundary, by the model of the
+  // pause, online_change/plan/pause.h); a virtual clock lets that time pass.
   virtual void worked(int64_t expected_ns) = 0;
+  // How long a scan of that task lasts at least, without what runs above it: only a virtual clock
+  // says more than 0 (B11).
+  virtual int64_t scan_ns(std::string_view /*task*/) const { return 0; }
 };
 
 struct DeviceStatus {

@@ -92,6 +92,15 @@ void times_fields(A& a, T& task) {
   a.list(task.delay, 16);
 }
 
+void activity_fields(FieldWriter& a, const TaskActivity& activity) { a(packed(activity)); }
+
+void activity_fields(FieldReader& a, TaskActivity& activity) {
+  uint32_t bits = 0;
+  a(bits);
+  activity = unpacked(bits);
+  if (packed(activity) != bits) a.fail();  // a state or kind that there is not
+}
+
 template <class A, class T>
 void task_fields(A& a, T& task) {
   a(task.name);
@@ -107,6 +116,7 @@ void task_fields(A& a, T& task) {
   a(task.freewheeling);
   a(task.once);
   a(task.recent_ns);
+  activity_fields(a, task.activity);
 }
 
 template <class A, class T>
@@ -180,7 +190,7 @@ void status_fields(A& a, T& report) {
   a(report.native_bytes);
   a(report.pous_to_make);
   a.list(report.interpreted, kTextBytes);
-  a.list(report.tasks, 130);
+  a.list(report.tasks, 134);
   a.list(report.traps, 28);
   a.list(report.devices, 40);
 }

@@ -28,6 +28,8 @@ void Scheduler::use(TaskTables& tables, uint8_t* memory) {
   }
   outputs_stale_ = true;
   received_ahead_ = false;  // not all that this version reads
+  for (TaskSlot& task : tables.tasks) task.scan_ns = clock_.scan_ns(task.status.name);
+  rest_all();
 }
 
 // Events are looked at from the first cycle on.
@@ -46,6 +48,7 @@ void Scheduler::finish_start_tasks() {
     task.released_ns = looked_ns_;
     task.begun_in_cycle = 0;
     task.status.stopped = false;
+    rest(task);
   }
   starting_ = true;
   while (TaskSlot* task = choose()) run_slice(*task);
@@ -84,7 +87,7 @@ void Scheduler::restart() {
   next_cycle_ns_ = next(next_cycle_ns_, tables_->base_period_ns, clock_.now_ns());
   for (TaskSlot& task : tables_->tasks) {
     task.status.stopped = task.released = task.event_level = false;
-    task.due_again = task.overran = task.io_lost = false;
+    task.due_again = task.overran = task.io_lost = task.late = task.held = false;
     task.inputs.restart();
     std::fill(task.waiting_mask.begin(), task.waiting_mask.end(), uint8_t{0});
     const int64_t period = task.status.period_ns;
@@ -95,6 +98,7 @@ void Scheduler::restart() {
   outputs_stale_ = true;
   faulted_ = start_pending_ = paused_ = lengthened_ = false;
   received_ahead_ = send_pending_ = false;
+  rest_all();
 }
 
 void Scheduler::run_cycle() {
@@ -128,7 +132,10 @@ bool Scheduler::lengthens_cycle() {
     lengthened_ = lengthened_ || task.next_release_ns <= begins_ns;
     if (task.next_release_ns > next_cycle_ns_) continue;
     late = true;
-    if (!std::exchange(task.due_again, true)) ++task.status.overruns;
+    if (std::exchange(task.due_again, true)) continue;
+    ++task.status.overruns;
+    task.late = true;
+    show(task);
   }
   return late;
 }
@@ -162,6 +169,7 @@ void Scheduler::begin_cycle() {
   // Cycles that nobody could start are gone, not made up for; releases in them count as missed.
   cycle_start_ns_ = next_cycle_ns_ + (looked_ns_ - next_cycle_ns_) / base * base;
   next_cycle_ns_ = cycle_start_ns_ + base;
+  note(Moment::kCycle, cycle_start_ns_);
   pack_stale_outputs();
   take_waiting_outputs();
   // The first cycle behind a start or a change has no inputs of the cycle before.
@@ -180,10 +188,13 @@ void Scheduler::send() {
   end_holds(cycle_start_ns_);
   impose_on_outputs();
   io_.send(tables_->outputs);
+  note_sent();
 }
 
 void Scheduler::receive() {
   io_.receive(tables_->inputs);
+  received_ns_ = looked_ns_;
+  note(Moment::kReceived, received_ns_);
   look_at_losses();
   offer_inputs();
 }
@@ -251,9 +262,16 @@ bool Scheduler::release(TaskSlot& task, int64_t due_ns) {
   if (!task.released && !is_active(task)) {
     task.released = true;
     task.released_ns = due_ns;
+    if (task.state != TaskState::kRunning) rest(task);
+    note(Moment::kReleased, task, due_ns);
     return true;
   }
   ++task.status.overruns;
+  task.late = true;
+  show(task);
+  const bool comes_later = task.policy.overrun == ir::Overrun::kAtOnce ||
+                           task.policy.overrun == ir::Overrun::kStretch;
+  note(comes_later && !task.due_again ? Moment::kReleased : Moment::kMissed, task, due_ns);
   switch (task.policy.overrun) {
     case ir::Overrun::kSkip:
     case ir::Overrun::kLengthen:  // a cycle has passed since the clock was looked at last
@@ -294,14 +312,16 @@ void Scheduler::release_due_task(TaskSlot& task) {
   const int64_t due_ns = std::exchange(task.next_release_ns,
                                        task.next_release_ns + (passed_by + 1) * period);
   const bool begins = release(task, due_ns);
-  if (begins && task.synchronous()) task.inputs.write(tables_->inputs);
+  if (begins && task.synchronous()) task.inputs.write(tables_->inputs, received_ns_);
 }
 
 // To all that take the newest. Where that is the same, it is done when the scan begins (B2, B4).
 void Scheduler::offer_inputs() {
   for (TaskSlot& task : tables_->tasks) {
     const bool each_cycle = !task.synchronous() && !task.inputs.reads_last_written();
-    if (each_cycle) task.inputs.write(tables_->inputs);
+    if (!each_cycle) continue;
+    task.inputs.write(tables_->inputs, received_ns_);
+    show(task);
   }
 }
 
@@ -323,6 +343,7 @@ void Scheduler::take_packed() {
 void Scheduler::take_waiting_outputs() {
   for (TaskSlot& task : tables_->tasks) {
     if (task.next_release_ns > cycle_start_ns_) continue;
+    if (std::exchange(task.held, false)) task.unsent = true;
     for (size_t i = 0; i < task.waiting_mask.size(); ++i) {
       const uint8_t mask = std::exchange(task.waiting_mask[i], uint8_t{0});
       tables_->waiting_mask[i] &= static_cast<uint8_t>(~mask);

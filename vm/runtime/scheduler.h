@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "vm/runtime/task_board.h"
 #include "vm/runtime/task_tables.h"
 
 namespace vm {
@@ -45,6 +46,7 @@ class Scheduler {
   int64_t next_cycle_ns() const { return paused_ ? looked_ns_ : next_cycle_ns_; }
   const Traps& traps() const { return traps_; }
   uint64_t trap_count() const { return trap_count_; }
+  const TaskBoard& board() const { return board_; }  // for any thread
 
   // At a boundary: these tables and that data from now on. They must live as long as they are used.
   void use(TaskTables& tables, uint8_t* memory);
@@ -88,6 +90,8 @@ class Scheduler {
   void begin_task(TaskSlot& task);
   void begin_program(TaskSlot& task);
   void run_slice(TaskSlot& task);
+  void let_last(TaskSlot& task);
+  bool is_too_long(const TaskSlot& task) const;
   void end_program(TaskSlot& task);
   void end_task(TaskSlot& task);
   void note_trap(const TaskSlot& task, const Trap& trap);
@@ -97,6 +101,16 @@ class Scheduler {
   void roll_back_outputs(const TaskSlot& task);
   void stop_outputs(TaskSlot& task);
   void leave(TaskSlot& task);
+  // States for people (scheduler_states.cc).
+  void show(const TaskSlot& task);
+  void become(TaskSlot& task, TaskState state);
+  void rest(TaskSlot& task);
+  void rest_all();
+  void note_begun(TaskSlot& task);
+  void resume(TaskSlot& task);
+  void note(Moment moment, int64_t at_ns) const;
+  void note(Moment moment, const TaskSlot& task, int64_t at_ns) const;
+  void note_sent();
   void refresh_safe_outputs();
   bool end_holds(int64_t now_ns);
   void outputs_to_variables(std::span<const uint8_t> mask);
@@ -120,6 +134,7 @@ class Scheduler {
   int64_t cycle_start_ns_ = 0;
   int64_t next_cycle_ns_ = 0;
   int64_t looked_ns_ = 0;       // when the clock was read last
+  int64_t received_ns_ = 0;     // when inputs were
   bool outputs_stale_ = false;  // new tables: pack before the next refresh
   bool starting_ = false;
   bool send_pending_ = false;     // in this cycle, behind what is due (ir::Schedule)
@@ -133,6 +148,7 @@ class Scheduler {
   int64_t try_limit_ns_ = 0;
   bool try_failed_ = false;
   bool faulted_ = false;
+  TaskBoard board_;
 };
 
 }  // namespace vm

@@ -22,8 +22,11 @@ TaskSlot* Scheduler::next_released() {
 TaskSlot* Scheduler::choose() {
   TaskSlot* running = active_.empty() ? nullptr : active_.back();
   TaskSlot* released = next_released();
-  if (released == nullptr) return running;
-  if (running != nullptr && running->status.priority <= released->status.priority) return running;
+  const bool goes_on = running != nullptr &&
+                       (released == nullptr ||
+                        running->status.priority <= released->status.priority);
+  if (goes_on && running->state == TaskState::kSuspended) resume(*running);
+  if (goes_on || released == nullptr) return running;
   begin_task(*released);
   return active_.empty() ? choose() : active_.back();
 }
@@ -33,7 +36,7 @@ void Scheduler::begin_task(TaskSlot& task) {
   task.begun_in_cycle = cycles_ + 1;
   if (task.programs.empty()) {
     ++task.status.scans;
-    return;
+    return rest(task);
   }
   task.stack = active_.empty() ? ir::kStackBegin : active_.back()->execution->stack_top();
   task.time_ns = cycle_start_ns_;
@@ -41,8 +44,12 @@ void Scheduler::begin_task(TaskSlot& task) {
   task.run_ns = 0;
   task.fuel_used = 0;
   task.program = 0;
-  if (!task.synchronous() && task.inputs.wants_last()) task.inputs.write(tables_->inputs);
+  task.late = task.lasting = false;
+  if (!task.synchronous() && task.inputs.wants_last()) {
+    task.inputs.write(tables_->inputs, received_ns_);
+  }
   task.inputs.begin();
+  note_begun(task);
   active_.push_back(&task);
   copy_inputs(task);
   impose(false);
@@ -67,6 +74,7 @@ void Scheduler::run_slice(TaskSlot& task) {
   if (std::exchange(task.overran, false)) {
     return trap_in(task, task.execution->interrupted(ir::TrapKind::kOverrun));
   }
+  if (task.lasting) return let_last(task);
   uint64_t slice = std::min(std::max<uint64_t>(options_.fuel_slice, 1), fuel_left(task));
   uint64_t used_before = task.execution->fuel_used();
   Exit exit = task.execution->run(slice);
@@ -75,11 +83,9 @@ void Scheduler::run_slice(TaskSlot& task) {
   task.run_ns += now - looked_ns_;
   looked_ns_ = now;
 
-  const int64_t limit_ns = trying_ ? try_limit_ns_ : task.watchdog_ns;
-  bool too_long = limit_ns > 0 && task.run_ns > limit_ns;
   if (exit == Exit::kTrap) {
     trap_in(task, task.execution->trap());
-  } else if (too_long) {
+  } else if (is_too_long(task)) {
     trap_in(task, task.execution->interrupted(ir::TrapKind::kWatchdog));
   } else if (exit == Exit::kDone) {
     end_program(task);
@@ -88,10 +94,33 @@ void Scheduler::run_slice(TaskSlot& task) {
   }
 }
 
+bool Scheduler::is_too_long(const TaskSlot& task) const {
+  const int64_t limit_ns = trying_ ? try_limit_ns_ : task.watchdog_ns;
+  return limit_ns > 0 && task.run_ns > limit_ns;
+}
+
+// B11: its code is done; time passes until it has lasted long enough, its watchdog ends it or
+// something else can be due.
+void Scheduler::let_last(TaskSlot& task) {
+  int64_t step = task.scan_ns - task.run_ns;
+  if (task.watchdog_ns > 0) step = std::min(step, task.watchdog_ns + 1 - task.run_ns);
+  if (looked_ns_ < next_cycle_ns_) step = std::min(step, next_cycle_ns_ - looked_ns_);
+  clock_.worked(step);
+  looked_ns_ += step;
+  task.run_ns += step;
+  if (is_too_long(task)) {
+    trap_in(task, task.execution->interrupted(ir::TrapKind::kWatchdog));
+  } else if (task.run_ns >= task.scan_ns) {
+    end_task(task);
+  }
+}
+
 void Scheduler::end_program(TaskSlot& task) {
   task.fuel_used += task.execution->fuel_used();
   if (++task.program < task.programs.size()) {
     begin_program(task);
+  } else if (task.run_ns < task.scan_ns && !trying_) {
+    task.lasting = true;
   } else {
     end_task(task);
   }
@@ -109,6 +138,8 @@ void Scheduler::end_task(TaskSlot& task) {
     }
     copy_outputs(task);
   }
+  (task.synchronous() ? task.held : task.unsent) = !tables_->outputs.empty();
+  note(Moment::kEnded, task, looked_ns_);
   ++task.status.scans;
   task.status.last_ns = task.run_ns;
   task.times->run.add(task.run_ns);
@@ -121,6 +152,7 @@ void Scheduler::leave(TaskSlot& task) {
   active_.pop_back();
   task.inputs.end();
   if (std::exchange(task.due_again, false) && !task.status.stopped) start_again(task);
+  rest(task);
   if (!active_.empty()) copy_inputs(*active_.back());
   look_at_events();
 }
@@ -154,6 +186,7 @@ void Scheduler::note_trap(const TaskSlot& task, const Trap& trap) {
 
 void Scheduler::trap_in(TaskSlot& task, const Trap& trap) {
   note_trap(task, trap);
+  note(Moment::kTrapped, task, looked_ns_);
   if (trying_) {
     try_failed_ = true;
     roll_back_outputs(task);
@@ -184,6 +217,7 @@ void Scheduler::fault() {
   send_pending_ = false;
   make_outputs_safe(false);
   outputs_to_variables(tables_->written);
+  rest_all();
 }
 
 void Scheduler::make_outputs_safe(bool for_good) {
@@ -192,6 +226,7 @@ void Scheduler::make_outputs_safe(bool for_good) {
   tables_->safe.apply(all, looked_ns_, tables_->outputs);
   if (for_good) tables_->safe.expire(INT64_MAX, tables_->outputs, all);
   io_.send(tables_->outputs);
+  note(Moment::kSent, looked_ns_);
 }
 
 void Scheduler::refresh_safe_outputs() {
@@ -262,6 +297,8 @@ void Scheduler::stop_outputs(TaskSlot& task) {
   impose_on_outputs();
   outputs_to_variables(mask);
   io_.send(tables_->outputs);
+  task.held = false;
+  note_sent();
 }
 
 void Scheduler::copy_inputs(const TaskSlot& task) {

@@ -68,6 +68,11 @@ void keep_overrun(TaskSlot& slot, const TaskSlot& old) {
 
 }  // namespace
 
+BufferState TaskSlot::output_state() const {
+  const bool scan = state == TaskState::kRunning || state == TaskState::kSuspended;
+  return {ir::InputBuffer::kCopied, 0, BufferState::kNone, 1, unsent || held, scan};
+}
+
 TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
     : generation(&made_for),
       own_code(made_for.code()),
@@ -135,6 +140,7 @@ void TaskTables::adopt(TaskTables& previous, int64_t cycle_start_ns) {
       slot.released_ns = old.released_ns;
       keep_overrun(slot, old);
       slot.io_lost = old.io_lost;
+      slot.late = old.late;
       keep_phase(slot, old, cycle_start_ns);
       if (same_outputs) keep_outputs(slot, old);
       keep_inputs(slot, old);
@@ -158,7 +164,7 @@ void TaskTables::keep_inputs(TaskSlot& slot, TaskSlot& old) {
     std::swap(slot.inputs, old.inputs);
   } else {
     slot.inputs.restart();
-    slot.inputs.write(inputs);
+    slot.inputs.write(inputs, old.inputs.received_ns());
   }
 }
 

@@ -46,6 +46,12 @@ struct TaskSlot {
   bool overran = false;         // due again, to be ended by a trap
   bool io_lost = false;         // its next scan begins with a trap
   uint64_t begun_in_cycle = 0;  // number of the cycle, from 1: once in each at most
+  TaskState state = TaskState::kWaiting;
+  bool late = false;    // a release has found it not done
+  bool unsent = false;  // complete outputs of it are in TaskTables::outputs, not sent yet
+  bool held = false;    // complete outputs of it are in `waiting`
+  bool lasting = false;     // its code is done, and it lasts until run_ns is scan_ns
+  int64_t scan_ns = 0;      // Clock::scan_ns
 
   uint32_t event = 0;        // data offset of the BOOL whose edges release it; 0: none
   bool event_level = false;  // when it was looked at last
@@ -59,6 +65,7 @@ struct TaskSlot {
   uint64_t fuel_used = 0;  // by the programs that are done
 
   bool synchronous() const { return policy.io == ir::TaskIo::kSynchronous; }
+  BufferState output_state() const;
 };
 
 struct TaskTables {
