@@ -28,6 +28,7 @@ void Scheduler::use(TaskTables& tables, uint8_t* memory) {
   }
   outputs_stale_ = true;
   received_ahead_ = false;  // not all that this version reads
+  receive_now_ = paused_;   // nor has the cycle that goes on
   for (TaskSlot& task : tables.tasks) task.scan_ns = clock_.scan_ns(task.status.name);
   rest_all();
 }
@@ -96,7 +97,7 @@ void Scheduler::restart() {
   std::fill(tables_->waiting_mask.begin(), tables_->waiting_mask.end(), uint8_t{0});
   tables_->safe.forget_holds();
   outputs_stale_ = true;
-  faulted_ = start_pending_ = paused_ = lengthened_ = false;
+  faulted_ = start_pending_ = paused_ = lengthened_ = receive_now_ = false;
   received_ahead_ = send_pending_ = false;
   rest_all();
 }
@@ -104,6 +105,10 @@ void Scheduler::restart() {
 void Scheduler::run_cycle() {
   if (faulted_) return refresh_safe_outputs();
   if (!std::exchange(paused_, false)) begin_cycle();
+  if (std::exchange(receive_now_, false)) {
+    receive();
+    receive_pending_ = false;
+  }
   if (start_pending_) finish_start_tasks();
   start_pending_ = false;
   for (;;) {

@@ -140,6 +140,7 @@ class Scheduler {
   bool send_pending_ = false;     // in this cycle, behind what is due (ir::Schedule)
   bool receive_pending_ = false;  // then
   bool received_ahead_ = false;   // by the cycle before, for what is due in the next one
+  bool receive_now_ = false;      // a version that came in a pause has no inputs yet
   bool start_pending_ = false;
   bool again_ = false;       // the task that has just ended starts at once again
   bool paused_ = false;      // at a boundary in the middle of a cycle

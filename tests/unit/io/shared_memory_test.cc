@@ -87,7 +87,7 @@ struct Sides {
 };
 
 TEST(SharedMemory, ImagesGoBothWaysWhole) {
-  Sides sides;
+  Sides sides("10000");
   sides.outputs = {7, 8, 1};
   EXPECT_FALSE(sides.exchange().ok());  // nobody has written inputs yet
   sides.open();
@@ -102,7 +102,8 @@ TEST(SharedMemory, ImagesGoBothWaysWhole) {
   shared_write(sides.theirs_in, image.data(), image.size(), now_ns());
   ASSERT_TRUE(sides.exchange().ok());
   EXPECT_EQ(sides.inputs, (base::Bytes{21, 22}));
-  std::this_thread::sleep_for(std::chrono::milliseconds(80));
+  const uint64_t long_ago = now_ns() - 11'000'000'000;
+  shared_write(sides.theirs_in, image.data(), image.size(), long_ago);
   const base::Status old = sides.exchange();
   ASSERT_FALSE(old.ok());
   EXPECT_NE(old.error().text.find("nobody writes the inputs"), std::string::npos);

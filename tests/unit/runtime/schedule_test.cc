@@ -10,6 +10,7 @@ class Log : public vm::IoPort {
   explicit Log(vm::Clock& clock) : clock_(clock) {}
   void receive(std::span<uint8_t> inputs) override {
     if (!inputs.empty()) inputs[0] = ++given;
+    if (inputs.size() > 1) inputs[1] = second;
     text += "in" + std::to_string(given) + " ";
   }
   void send(std::span<const uint8_t> outputs) override {
@@ -23,6 +24,7 @@ class Log : public vm::IoPort {
   }
   std::string text;
   uint8_t given = 0;
+  uint8_t second = 0;
   int sent = 0;
   int64_t sent_ns = 0;
   bool lose = false;
@@ -248,6 +250,40 @@ TEST(Schedule, B2_AChangeOfTheScheduleTakesEffectWithTheNextCycle) {
   logged.change(copies(""));
   EXPECT_EQ(logged.cycles(2), "out6 in8 | out8 in9 | ");
   EXPECT_EQ(logged->missed_releases(), 0u);
+}
+
+// A change in the middle of a cycle, where a late task starts again at once: what the new version
+// reads is received before any scan of it, by whichever schedule.
+TEST(Schedule, B2_B7_AChangeInAPauseReceivesForTheNewVersion) {
+  const auto source = [](const std::string& schedule, const std::string& input) {
+    return R"(
+PROGRAM Slow VAR inp AT %)" + input +
+           R"( : BYTE; outp AT %QB0 : BYTE; i, n, rounds : DINT; END_VAR
+  outp := inp; n := n + 1; IF n = 1 THEN rounds := 12000; ELSE rounds := 3000; END_IF
+  FOR i := 1 TO rounds DO ; END_FOR END_PROGRAM
+CONFIGURATION c )" +
+           schedule + R"( RESOURCE r ON cpu
+  {attribute 'overrun' := 'at_once'} TASK s (INTERVAL := T#10ms, PRIORITY := 2);
+  PROGRAM p WITH s : Slow;
+END_RESOURCE END_CONFIGURATION
+)";
+  };
+  for (const char* schedule : {"", kRunFirst}) {
+    SCOPED_TRACE(schedule);
+    Logged logged(source(schedule, "IB0"));
+    ASSERT_TRUE(logged.controller);
+    (void)logged.cycles(2);
+    ASSERT_TRUE(logged->at_boundary());
+    ASSERT_LT(logged.clock.now_ns(), 20 * kMs);
+    const int before = logged.devices.given;
+    logged.change(source(schedule, "IB1"));  // nothing was received there
+    logged.devices.second = 77;
+    EXPECT_EQ(logged.cycles(1).substr(0, 4), "in" + std::to_string(before + 1) + " ");
+    EXPECT_EQ(logged.get("p.n"), "2");
+    EXPECT_EQ(logged.get("p.outp"), "16#4D");
+    (void)logged.cycles(1);
+    EXPECT_EQ(logged.devices.sent, 77);
+  }
 }
 
 // A start at once in the middle of a cycle is due like any other; a lengthened cycle exchanges when
