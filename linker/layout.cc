@@ -192,13 +192,17 @@ class Builder {
       layout.area_capacity = old_capacity;
       return;
     }
-    const uint64_t capacity = align_up(std::max<uint64_t>(layout.used + slack_of(id), 8), 8);
+    const uint64_t end = std::max<uint64_t>(layout.used, inherited_capacity(id));
+    const uint64_t capacity = align_up(std::max<uint64_t>(end + slack_of(id), 8), 8);
     if (capacity > base::kMaxDataBytes) return too_large(id, capacity, base::kMaxDataBytes);
     layout.area_capacity = static_cast<uint32_t>(capacity);
   }
 
+  // What is inherited has its slack already: with a share of the whole at every level, a hundred
+  // levels of EXTENDS would take more memory than there is (case 81).
   uint64_t slack_of(TypeId id) const {
-    const uint64_t used = layouts_[id].used;
+    const uint64_t floor = inherited_capacity(id);
+    const uint64_t used = layouts_[id].used > floor ? layouts_[id].used - floor : 0;
     const auto slack = [used](uint64_t percent, uint64_t bytes) {
       return std::max(used * percent / 100, bytes);
     };

@@ -122,8 +122,8 @@ uint64_t Change::find_losses(std::span<const uint8_t> memory, size_t most,
     }
     return true;
   });
-  count += pending_->lost.count();
-  describe_lost(plan(), pending_->lost, pending_->old(), memory, most, rows);
+  count += describe_lost(pending_->lost, pending_->old(), pending_->new_image.image(), memory, most,
+                         rows);
   pending_->handles.for_each_broken(memory.data(), [&](uint32_t at, ir::TypeId type) {
     if (count++ >= most) return;
     if (!old_areas) old_areas.emplace(pending_->old());

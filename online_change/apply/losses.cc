@@ -5,6 +5,9 @@
 
 #include "ir/bytecode/symbols.h"
 #include "ir/types/address_text.h"
+#include "online_change/apply/live_value.h"
+#include "online_change/diff/initial_data.h"
+#include "online_change/diff/value_conversion.h"
 #include "vm/exec/memory.h"
 #include "vm/load/generation.h"
 
@@ -19,15 +22,56 @@ std::string value_text(const ir::Image& image, const ir::Symbol& symbol,
   return shortened(ir::format_value(image, symbol, memory));
 }
 
-LiveLoss lost_value(const FateRow& row, std::string path, const ir::Image& old_image,
+constexpr const char* kConstantNow = "makes way for a constant";
+constexpr const char* kInputNow = "makes way for an input";
+
+// `next`: what the new version has at the path; null: nothing.
+LiveLoss lost_value(std::string path, const ir::Image& old_image, const ir::Symbol& before,
+                    const ir::Image& new_image, const ir::Symbol* next,
                     std::span<const uint8_t> memory) {
-  base::Result<ir::Symbol> symbol = ir::find_symbol(old_image, path);
-  std::string value = symbol.ok() ? value_text(old_image, *symbol, memory) : row.old_type;
-  if (row.fate == Fate::kDropped) return {std::move(path), std::move(value), "", "is dropped"};
-  return {std::move(path), std::move(value), "its initial value", "has no conversion"};
+  LiveLoss out{std::move(path), value_text(old_image, before, memory), "", why_lost(next)};
+  if (next != nullptr && next->constant) {
+    base::Bytes initial(new_image.layouts[next->type].size);
+    InitialData(new_image).read(next->data, initial);
+    ir::Symbol alone = *next;
+    alone.data = 0;
+    out.new_value = value_text(new_image, alone, initial);
+  } else if (next != nullptr && !next->input) {
+    out.new_value = "its initial value";
+  }
+  return out;
 }
 
 }  // namespace
+
+const char* why_lost(const ir::Symbol* next) {
+  if (next == nullptr) return "is dropped";
+  if (next->constant) return kConstantNow;
+  return next->input ? kInputNow : "has no conversion";
+}
+
+bool is_constant_already(const ir::Image& old_image, const ir::Symbol& before,
+                         std::span<const uint8_t> memory, const ir::Image& new_image,
+                         const ir::Symbol& next) {
+  base::Bytes initial(new_image.layouts[next.type].size);
+  InitialData(new_image).read(next.data, initial);
+  if (ir::same_value_type(old_image.types, old_image.layouts, before.type, new_image.types,
+                          new_image.layouts, next.type)) {
+    return std::equal(initial.begin(), initial.end(), memory.begin() + before.data);
+  }
+  if (classify(old_image.types, before.type, new_image.types, next.type) == Conversion::kNone) {
+    return false;
+  }
+  UpdateStep step;
+  step.kind = StepKind::kConvert;
+  step.old_type = before.type;
+  step.new_type = next.type;
+  step.to = next.data;
+  base::Bytes converted(initial.size());
+  const char* const loss = Conversions(old_image, new_image)
+                               .convert(step, 0, memory.data() + before.data, converted);
+  return loss == nullptr && converted == initial;
+}
 
 std::string shortened(std::string value) {
   if (value.size() <= kShownBytes) return value;
@@ -76,15 +120,33 @@ LiveLoss describe_left(const vm::LeftOutput& output, const ir::Image& old_image,
               ") and stays so"};
 }
 
-void describe_lost(const Plan& plan, const LostPlaces& places, const ir::Image& old_image,
-                   std::span<const uint8_t> memory, size_t most, std::vector<LiveLoss>& rows) {
+uint64_t describe_lost(const LostPlaces& places, const ir::Image& old_image,
+                       const ir::Image& new_image, std::span<const uint8_t> memory, size_t most,
+                       std::vector<LiveLoss>& rows) {
+  uint64_t count = 0;
   for (const LostPlaces::Row& place : places.rows) {
-    for (const uint32_t id : places.groups[place.group]) {
-      if (rows.size() >= most) return;
-      std::string path = id == 0 ? place.inside : old_image.instance_path(id) + place.inside;
-      rows.push_back(lost_value(plan.fates[place.fate], std::move(path), old_image, memory));
+    const std::vector<uint32_t>& group = places.groups[place.group];
+    const uint64_t all = group.size() * place.elements;
+    for (uint64_t i = 0; i < all; ++i) {
+      if (!place.constant && rows.size() >= most) {
+        count += all - i;
+        break;
+      }
+      const uint32_t id = group[i / place.elements];
+      std::string path = element_of(place.inside, i % place.elements);
+      if (id != 0) path = old_image.instance_path(id) + path;
+      const base::Result<ir::Symbol> before = ir::find_symbol(old_image, path);
+      const base::Result<ir::Symbol> next = ir::find_symbol(new_image, path);
+      const bool lost = !place.constant || !before.ok() || !next.ok() ||
+                        !is_constant_already(old_image, *before, memory, new_image, *next);
+      if (!lost) continue;
+      ++count;
+      if (rows.size() >= most || !before.ok()) continue;
+      rows.push_back(lost_value(std::move(path), old_image, *before, new_image,
+                                place.dropped || !next.ok() ? nullptr : &*next, memory));
     }
   }
+  return count;
 }
 
 void put_initial_last(std::span<LiveLoss> rows, const ir::Image& old_image) {

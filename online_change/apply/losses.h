@@ -26,9 +26,16 @@ bool is_on(const ir::Image& old_image, const vm::LeftOutput& output,
            std::span<const uint8_t> memory);
 LiveLoss describe_left(const vm::LeftOutput& output, const ir::Image& old_image,
                        std::span<const uint8_t> memory);
-// Describes the values at these places as long as `rows` has fewer than `most`.
-void describe_lost(const Plan& plan, const LostPlaces& places, const ir::Image& old_image,
-                   std::span<const uint8_t> memory, size_t most, std::vector<LiveLoss>& rows);
+// Why a value of the old version goes, from what the new one has at its path; null: nothing.
+const char* why_lost(const ir::Symbol* next);
+// Is a variable that becomes a constant what the constant is?
+bool is_constant_already(const ir::Image& old_image, const ir::Symbol& before,
+                         std::span<const uint8_t> memory, const ir::Image& new_image,
+                         const ir::Symbol& next);
+// Describes the values at these places as long as `rows` has fewer than `most`; how many there are.
+uint64_t describe_lost(const LostPlaces& places, const ir::Image& old_image,
+                       const ir::Image& new_image, std::span<const uint8_t> memory, size_t most,
+                       std::vector<LiveLoss>& rows);
 // People look at the first ones: values that are still as they were at the start come last.
 void put_initial_last(std::span<LiveLoss> rows, const ir::Image& old_image);
 // "`Main.x` is 300; as the new type it saturates to 127", and how many more.

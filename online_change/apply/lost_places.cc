@@ -1,11 +1,13 @@
 #include "online_change/apply/lost_places.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <unordered_map>
 
 #include "base/limits.h"
+#include "ir/bytecode/symbols.h"
 #include "online_change/diff/instance_match.h"
 
 namespace online_change {
@@ -18,6 +20,44 @@ std::string_view base_name(std::string_view name) { return name.substr(0, name.f
 
 bool is_lost(const FateRow& row) {
   return row.may_lose && (row.fate == Fate::kDropped || row.fate == Fate::kInitialised);
+}
+
+struct Range {
+  int64_t low = 0;
+  uint64_t count = 1;
+};
+
+// Reads "0..9" or "7" at `at`.
+Range read_range(const std::string& path, size_t& at) {
+  const auto number = [&] {
+    const size_t begin = at;
+    while (at < path.size() && path[at] != '.' && path[at] != ',' && path[at] != ']') ++at;
+    return std::strtoll(path.substr(begin, at - begin).c_str(), nullptr, 10);
+  };
+  Range out{number(), 1};
+  if (path.compare(at, 2, "..") == 0) {
+    at += 2;
+    out.count = static_cast<uint64_t>(number() - out.low) + 1;
+  }
+  return out;
+}
+
+std::vector<Range> ranges_of(const std::string& path) {
+  std::vector<Range> out;
+  for (size_t at = 0; at < path.size();) {
+    if (path[at++] != '[') continue;
+    for (bool more = true; more; ++at) {
+      out.push_back(read_range(path, at));
+      more = at < path.size() && path[at] == ',';
+    }
+  }
+  return out;
+}
+
+uint64_t elements_in(const std::string& path) {
+  uint64_t all = 1;
+  for (const Range& range : ranges_of(path)) all *= range.count;
+  return all;
 }
 
 class Finder {
@@ -35,10 +75,14 @@ class Finder {
     }
   }
 
-  void add(uint32_t fate, const std::string& path) {
+  void add(const FateRow& row) {
     std::string inside;
-    const uint32_t id = instance_of(path, inside);
-    out_.rows.push_back({fate, group_of_[id], std::move(inside)});
+    const uint32_t id = instance_of(row.path, inside);
+    LostPlaces::Row place{row.fate == Fate::kDropped, group_of_[id], std::move(inside)};
+    place.elements = elements_in(place.inside);
+    const base::Result<ir::Symbol> next = ir::find_symbol(new_, row.path);
+    place.constant = row.fate == Fate::kInitialised && next.ok() && next->constant;
+    out_.rows.push_back(std::move(place));
   }
   LostPlaces take() { return std::move(out_); }
 
@@ -99,18 +143,34 @@ class Finder {
 
 }  // namespace
 
-uint64_t LostPlaces::count() const {
-  uint64_t all = 0;
-  for (const Row& row : rows) all += groups[row.group].size();
-  return all;
+std::string element_of(const std::string& inside, uint64_t number) {
+  const std::vector<Range> ranges = ranges_of(inside);
+  std::vector<std::string> indices(ranges.size());
+  for (size_t i = ranges.size(); i-- > 0;) {
+    indices[i] = std::to_string(ranges[i].low + static_cast<int64_t>(number % ranges[i].count));
+    number /= ranges[i].count;
+  }
+  std::string out;
+  size_t next = 0;
+  for (size_t at = 0; at < inside.size();) {
+    out += inside[at];
+    if (inside[at++] != '[') continue;
+    for (bool more = true; more;) {
+      (void)read_range(inside, at);
+      out += indices[next++];
+      more = at < inside.size() && inside[at] == ',';
+      if (more) out += inside[at++];
+    }
+  }
+  return out;
 }
 
 LostPlaces lost_places(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image) {
   std::optional<Finder> finder;
-  for (uint32_t i = 0; i < plan.fates.size(); ++i) {
-    if (!is_lost(plan.fates[i])) continue;
+  for (const FateRow& row : plan.fates) {
+    if (!is_lost(row)) continue;
     if (!finder) finder.emplace(old_image, new_image);
-    finder->add(i, plan.fates[i].path);
+    finder->add(row);
   }
   return finder ? finder->take() : LostPlaces();
 }

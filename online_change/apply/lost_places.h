@@ -14,15 +14,19 @@ namespace online_change {
 // groups at most.
 struct LostPlaces {
   struct Row {
-    uint32_t fate = 0;   // row of the plan's fates
+    bool dropped = false;
     uint32_t group = 0;  // the instances that share it
-    std::string inside;  // "" for the whole instance, else ".member" and so on
+    std::string inside;  // "" for the whole instance, else ".member" and so on; "[0..9].x": several
+    uint64_t elements = 1;  // that `inside` stands for
+    bool constant = false;  // what the new version has there: only another value is a loss
   };
   std::vector<Row> rows;
   std::vector<std::vector<uint32_t>> groups;  // IDs; 0: the globals
-
-  uint64_t count() const;
 };
+
+// Number `number` of the elements that a path with ranges stands for, the last index fastest:
+// "[0..1,2..3].x", 1 -> "[0,3].x".
+std::string element_of(const std::string& inside, uint64_t number);
 
 // The rows of `plan` that drop a value, or give a variable another type to which no rule leads from
 // the old one. `old_image` has the names of the new one (ir/bytecode/renames.h). A row whose path

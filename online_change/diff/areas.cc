@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "base/limits.h"
+
 namespace online_change {
 namespace {
 
-constexpr uint32_t kMaxDepth = 64;  // of embedded types; deeper ones do not pass verify()
+constexpr uint32_t kMaxDepth = base::kMaxNesting + 1;  // no verified image has more
 
 std::string index_text(const std::vector<ir::Dimension>& dims, uint64_t flat) {
   std::string text;

@@ -27,7 +27,7 @@ void TypeDiffer::add_dropped_member(TypeDiff& diff, TypeId old_type, uint32_t nu
   diff.rows.push_back(make_row(Fate::kDropped, "." + member.name, old_.types.text(member.type), "",
                                reason.empty() ? "removed" : reason,
                                ir::is_listed(member) ? leaves(old_, member.type) : 0));
-  diff.rows.back().may_lose = reason.empty();
+  diff.rows.back().may_lose = reason.empty() && !member.constant && ir::is_listed(member);
 }
 
 // A step that takes over another one. On the way back it is itself again.

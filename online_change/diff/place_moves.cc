@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/limits.h"
 #include "ir/types/handle.h"
 #include "online_change/diff/areas.h"
 #include "online_change/diff/instance_match.h"
@@ -14,7 +15,7 @@ namespace {
 
 using ir::TypeId;
 
-constexpr uint32_t kMaxDepth = 64;
+constexpr uint32_t kMaxDepth = base::kMaxNesting + 1;  // no verified image has more
 
 std::unordered_map<std::string, uint32_t> members_by_name(const ir::Type& type) {
   std::unordered_map<std::string, uint32_t> out;

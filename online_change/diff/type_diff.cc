@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "base/limits.h"
 #include "online_change/diff/areas.h"
 #include "online_change/diff/diff_ops.h"
 
@@ -14,7 +15,12 @@ using ir::Member;
 using ir::Section;
 using ir::TypeId;
 
-constexpr uint32_t kMaxDepth = 64;
+// Where a variable gets another value although A14 has a rule: what the source says, and what the
+// plant says.
+constexpr const char* kBecomesConstant = "constant";
+constexpr const char* kBecomesInput = "an input now";
+
+constexpr uint32_t kMaxDepth = base::kMaxNesting + 1;  // no verified image has more
 
 // Members by name; a program may have very many.
 class MemberNames {
@@ -48,7 +54,30 @@ TypeDiff without_rule(std::string old_text, std::string new_text, uint32_t size,
   return diff;
 }
 
+bool is_input(const Member& member) { return member.address.area == ir::DirectArea::kInput; }
+
 }  // namespace
+
+bool keeps_union_bytes(const ir::Image& old_image, TypeId old_type, const ir::Image& new_image,
+                       TypeId new_type) {
+  if (!old_image.types.overlaps(old_type) || !new_image.types.overlaps(new_type)) return false;
+  const MemberNames names(old_image.types[old_type]);
+  const std::vector<Member>& members = new_image.types[new_type].members;
+  bool any = false;
+  for (size_t i = 0; i < members.size(); ++i) {
+    const uint32_t twin = names.find(members[i]);
+    if (twin == MemberNames::kNone) continue;
+    const bool same_place = old_image.layouts[old_type].member_offsets[twin] ==
+                            new_image.layouts[new_type].member_offsets[i];
+    if (!same_place || !ir::same_value_type(old_image.types, old_image.layouts,
+                                            old_image.types[old_type].members[twin].type,
+                                            new_image.types, new_image.layouts, members[i].type)) {
+      return false;
+    }
+    any = true;
+  }
+  return any;
+}
 
 bool same_instance_type(const ir::Image& old_image, TypeId old_type, const ir::Image& new_image,
                         TypeId new_type) {
@@ -129,19 +158,24 @@ TypeDiff TypeDiffer::compare_values(TypeId old_type, TypeId new_type) {
   return compare_leaves(old_type, new_type);
 }
 
-// What lies on top of each other has no members that could be carried over one by one.
+// What lies on top of each other has no members that could be carried over one by one, but its
+// bytes stay while members that live on say what they are (case 74): whatever comes or goes beside
+// them is another view. A member that lives on with another type would read the bytes as something
+// that they are not.
 TypeDiff TypeDiffer::compare_overlapping(TypeId old_type, TypeId new_type) {
   uint32_t size = new_.layouts[new_type].size;
-  bool alike =
+  const bool alike =
       ir::same_value_type(old_.types, old_.layouts, old_type, new_.types, new_.layouts, new_type);
-  if (!alike) {
-    return without_rule(old_.types.text(old_type), new_.types.text(new_type), size,
-                        leaves(new_, new_type));
+  if (!alike && !keeps_union_bytes(old_, old_type, new_, new_type)) {
+    const uint64_t count = new_.types.is_instance(new_type) ? 0 : leaves(new_, new_type);
+    return without_rule(old_.types.text(old_type), new_.types.text(new_type), size, count);
   }
   TypeDiff diff;
   diff.leaves = leaves(new_, new_type);
-  diff.same = true;
-  diff.ops.push_back(make_op(DiffKind::kSame, 0, 0, size, diff.leaves));
+  diff.same = alike;
+  const uint32_t kept = std::min(size, old_.layouts[old_type].size);
+  diff.ops.push_back(make_op(DiffKind::kSame, 0, 0, kept, diff.leaves));
+  if (kept < size) diff.ops.push_back(make_op(DiffKind::kInitialise, 0, kept, size - kept, 0));
   return diff;
 }
 
@@ -154,14 +188,28 @@ Conversion TypeDiffer::conversion_of(TypeId old_type, TypeId new_type) const {
   return there == Conversion::kSame ? Conversion::kSame : Conversion::kExact;
 }
 
+// Instances have rows of their own, so an array of them is neither initialised here nor lost; what
+// makes way for one is lost all the same (case 62).
+TypeDiff TypeDiffer::without_conversion(TypeId old_type, TypeId new_type) {
+  const std::string old_text = old_.types.text(old_type);
+  const uint64_t gone = old_.types.is_instance(old_type) ? 0 : leaves(old_, old_type);
+  const uint64_t count = new_.types.is_instance(new_type) ? 0 : leaves(new_, new_type);
+  TypeDiff diff =
+      without_rule(old_text, new_.types.text(new_type), new_.layouts[new_type].size, count);
+  diff.rows[0].may_lose = gone != 0;
+  if (count != 0 || gone == 0) return diff;
+  diff.rows.push_back(make_row(Fate::kDropped, "", old_text, "", "removed", gone));
+  diff.rows.back().may_lose = true;
+  return diff;
+}
+
 TypeDiff TypeDiffer::compare_leaves(TypeId old_type, TypeId new_type) {
   Conversion conversion = conversion_of(old_type, new_type);
   uint32_t size = new_.layouts[new_type].size;
   std::string old_text = old_.types.text(old_type);
   std::string new_text = new_.types.text(new_type);
   if (conversion == Conversion::kNone) {
-    uint64_t count = new_.types.is_instance(new_type) ? 0 : leaves(new_, new_type);
-    return without_rule(std::move(old_text), std::move(new_text), size, count);
+    return without_conversion(old_type, new_type);
   }
   TypeDiff diff;
   diff.leaves = 1;
@@ -267,9 +315,14 @@ void TypeDiffer::add_member(TypeDiff& diff, const Member& old_member, uint32_t f
   bool was_initialised = back_ && old_member.constant && !(new_member.constant && inner.same);
   // Of an instance it is the slot, and of a stamp nobody asks: these have no row.
   const bool has_row = !new_is_instance && new_member.section != Section::kStamp;
-  if (has_row && (becomes_constant || was_initialised)) {
-    add_new_member(diff, new_member, to, "constant");
+  const bool comes_or_goes = is_input(new_member) != is_input(old_member);
+  const bool input = comes_or_goes && (back_ || is_input(new_member));
+  if (has_row && (becomes_constant || was_initialised || input)) {
+    add_new_member(diff, new_member, to, input ? kBecomesInput : kBecomesConstant);
     diff.rows.back().old_type = old_.types.text(old_member.type);
+    diff.rows.back().may_lose = !back_ && !old_member.constant && !is_input(old_member);
+    const std::string note = rename_note(old_member);
+    if (!note.empty()) diff.rows.back().reason = note + ", " + diff.rows.back().reason;
     return;
   }
   append_value(diff, inner, old_member, from, new_member, to, is_area, rename_note(old_member));
@@ -289,6 +342,7 @@ void TypeDiffer::append_value(TypeDiff& diff, const TypeDiff& inner, const Membe
   for (const FateRow& row : inner.rows) {
     diff.rows.push_back(row);
     if (!note.empty() && row.path.empty()) diff.rows.back().reason = note + ", " + row.reason;
+    if (old_member.constant) diff.rows.back().may_lose = false;  // the source said its value
     diff.rows.back().path =
         "." + (row.fate == Fate::kDropped ? old_member : new_member).name + row.path;
   }

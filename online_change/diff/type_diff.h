@@ -98,6 +98,7 @@ class TypeDiffer {
   TypeDiff compare_arrays(ir::TypeId old_type, ir::TypeId new_type);
   TypeDiff compare_overlapping(ir::TypeId old_type, ir::TypeId new_type);
   TypeDiff compare_leaves(ir::TypeId old_type, ir::TypeId new_type);
+  TypeDiff without_conversion(ir::TypeId old_type, ir::TypeId new_type);
   void add_member(TypeDiff& diff, const ir::Member& old_member, uint32_t from,
                   const ir::Member& new_member, uint32_t to, bool is_area);
   void add_new_member(TypeDiff& diff, const ir::Member& member, uint32_t to, const char* reason);
@@ -129,6 +130,11 @@ class TypeDiffer {
   uint32_t depth_ = 0;
   bool failed_ = false;
 };
+
+// Two unions that have members in common, each of one type and at one place: these say what the
+// bytes of both are.
+bool keeps_union_bytes(const ir::Image& old_image, ir::TypeId old_type, const ir::Image& new_image,
+                       ir::TypeId new_type);
 
 // A function block or program of the same name: instances live on.
 bool same_instance_type(const ir::Image& old_image, ir::TypeId old_type, const ir::Image& new_image,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/limits.h"
+#include "online_change/diff/type_diff.h"
 #include "ir/bytecode/renames.h"
 #include "ir/types/stamps.h"
 #include "online_change/diff/value_conversion.h"
@@ -11,7 +13,7 @@
 namespace online_change {
 namespace {
 
-constexpr uint32_t kMaxDepth = 64;
+constexpr uint32_t kMaxDepth = base::kMaxNesting + 1;  // no verified image has more
 
 bool is_area(const ir::Image& image, Node node) {
   return image.types[node.type].kind == ir::Kind::kGlobals;
@@ -213,7 +215,7 @@ bool PlanCheck::check_node(Node node, uint32_t depth) {
   const std::optional<Target> first = first_behind(node.begin);
   if (!first || first->to >= end) return check_carried(node, node.begin, depth);
   if (first->to <= node.begin && first->end() >= end) return check_written(node, *first, depth);
-  if (!has_parts(node)) return fail(node.begin, "is written in part only");
+  if (!has_parts(node)) return check_grown_union(node);
   if (new_.types[node.type].kind == ir::Kind::kArray) return check_elements(node, depth);
   return for_each_part(node, [&](Node part) { return check_node(part, depth + 1); });
 }
@@ -261,22 +263,41 @@ bool PlanCheck::check_written(Node node, const Target& target, uint32_t depth) {
   return fail(node.begin, "has a step of unknown kind");
 }
 
-bool PlanCheck::check_initial(Node node, const Target& target) {
+bool PlanCheck::is_initialised(uint32_t begin, uint32_t size, const Target& target) const {
   const UpdateStep& step = step_of(target);
-  uint32_t size = size_of(node);
-  bool right = false;
-  if (step.bytes.empty()) {
-    right = new_data_.is_zero(node.begin, size);
-  } else {
-    base::Bytes wanted(size);
-    new_data_.read(node.begin, wanted);
-    size_t at = size_t{target.index} * step.size + (node.begin - target.to);
-    right = std::memcmp(wanted.data(), step.bytes.data() + at, size) == 0;
-    constexpr uint32_t kOld = ir::kOldStamp;
-    right = right || (node.begin == stamp_at_ && size == sizeof kOld &&
-                      std::memcmp(&kOld, step.bytes.data() + at, size) == 0);
-  }
-  return right || fail(node.begin, "is initialised with something else than its initial value");
+  if (step.bytes.empty()) return new_data_.is_zero(begin, size);
+  base::Bytes wanted(size);
+  new_data_.read(begin, wanted);
+  const size_t at = size_t{target.index} * step.size + (begin - target.to);
+  constexpr uint32_t kOld = ir::kOldStamp;
+  return std::memcmp(wanted.data(), step.bytes.data() + at, size) == 0 ||
+         (begin == stamp_at_ && size == sizeof kOld &&
+          std::memcmp(&kOld, step.bytes.data() + at, size) == 0);
+}
+
+bool PlanCheck::check_initial(Node node, const Target& target) {
+  return is_initialised(node.begin, size_of(node), target) ||
+         fail(node.begin, "is initialised with something else than its initial value");
+}
+
+bool PlanCheck::check_grown_union(Node node) {
+  const std::optional<Target> front = first_behind(node.begin);
+  const bool copied = front && front->to <= node.begin;
+  const uint64_t behind = copied ? front->end() : front->to;
+  const uint32_t from =
+      copied ? source_of(*front) + (node.begin - front->to) : node.begin;
+  const std::optional<Node> source = old_areas_.leaf_at(from);
+  const uint64_t end = uint64_t{node.begin} + size_of(node);
+  const std::optional<Target> rest = first_behind(static_cast<uint32_t>(behind));
+  const bool right =
+      !node.in_out && source && !source->in_out && source->begin == from &&
+      (!copied || step_of(*front).kind == StepKind::kCopy) &&
+      keeps_union_bytes(old_, source->type, new_, node.type) &&
+      behind == uint64_t{node.begin} + old_.layouts[source->type].size && rest &&
+      rest->to <= behind && rest->end() >= end &&
+      step_of(*rest).kind == StepKind::kInitialise &&
+      is_initialised(static_cast<uint32_t>(behind), static_cast<uint32_t>(end - behind), *rest);
+  return right || fail(node.begin, "is written in part only");
 }
 
 bool PlanCheck::check_conversion(Node node, const Target& target, uint32_t depth) {

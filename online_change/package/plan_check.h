@@ -45,6 +45,9 @@ class PlanCheck {
   bool check_migrated(Node node, const Target& target);
   bool check_written(Node node, const Target& target, uint32_t depth);
   bool check_initial(Node node, const Target& target);
+  bool is_initialised(uint32_t begin, uint32_t size, const Target& target) const;
+  // The old bytes of a union in front, initial ones behind them.
+  bool check_grown_union(Node node);
   bool check_conversion(Node node, const Target& target, uint32_t depth);
   // `node` keeps bytes that the old version has at `from`.
   bool check_carried(Node node, uint32_t from, uint32_t depth);

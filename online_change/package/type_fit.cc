@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/limits.h"
 #include "online_change/diff/areas.h"
 #include "online_change/diff/type_diff.h"
 #include "online_change/diff/value_conversion.h"
@@ -12,7 +13,7 @@ namespace {
 using ir::Kind;
 using ir::TypeId;
 
-constexpr uint32_t kMaxDepth = 64;
+constexpr uint32_t kMaxDepth = base::kMaxNesting + 1;  // no verified image has more
 
 uint64_t element_count(const ir::Type& array) {
   uint64_t count = 1;
@@ -87,6 +88,9 @@ Fit TypeFit::compare_values(TypeId old_type, TypeId new_type) {
   if (old_.types.overlaps(old_type) || new_.types.overlaps(new_type)) {
     bool alike =
         ir::same_value_type(old_.types, old_.layouts, old_type, new_.types, new_.layouts, new_type);
+    // What is behind the old bytes is another step's.
+    alike = alike || (keeps_union_bytes(old_, old_type, new_, new_type) &&
+                      old_.layouts[old_type].size >= new_.layouts[new_type].size);
     return alike ? Fit::kYes : Fit::kNo;
   }
   if (from.kind == Kind::kArray && to.kind == Kind::kArray) {

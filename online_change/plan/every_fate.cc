@@ -1,6 +1,7 @@
 #include "online_change/plan/every_fate.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "ir/bytecode/leaf_walk.h"
 
@@ -12,6 +13,13 @@ std::string alone(std::string reason) {
   if (!std::string_view(reason).ends_with(kMoreLikeIt)) return reason;
   reason.resize(reason.rfind("; and "));
   return reason;
+}
+
+// Is it a variable with a value of its own, not something that has such variables?
+bool is_leaf(const ir::Image& image, const std::string& path) {
+  const base::Result<ir::Symbol> symbol = ir::find_symbol(image, path);
+  return symbol.ok() && image.types[symbol->type].kind != ir::Kind::kArray &&
+         !image.types.has_members(symbol->type);
 }
 
 }  // namespace
@@ -74,7 +82,8 @@ void EveryFate::name_old(VariableFate& out, uint32_t address) const {
     return;
   }
   const std::optional<Node> leaf = old_areas_.leaf_at(address);
-  if (!leaf || leaf->begin != address) return;
+  // A new member of a union is a view of bytes that other members are, too.
+  if (!leaf || leaf->begin != address || old_.types.overlaps(leaf->type)) return;
   out.old_address = address;
   out.old_type = leaf->type;
   out.old_path = old_areas_.path_at(address);
@@ -98,10 +107,11 @@ VariableFate EveryFate::of_new(const std::string& path, const ir::Symbol& symbol
   out.reason = reason_of(out.step->fate);
   if (has_source(*out.step)) {
     name_old(out, value->from + (symbol.data - value->to));
-  } else if (base::Result<ir::Symbol> before = ir::find_symbol(old_, path); before.ok()) {
+  } else if (is_leaf(old_, path)) {
+    const base::Result<ir::Symbol> before = ir::find_symbol(old_, path);
     out.old_address = before->data;
     out.old_type = before->type;
-    out.loses = out.fate == Fate::kInitialised && !before->constant && !symbol.constant;
+    out.loses = out.fate == Fate::kInitialised && !before->constant && !before->input;
   }
   return out;
 }
@@ -117,6 +127,11 @@ bool EveryFate::goes_on(const std::string& path, uint32_t address) const {
   }
   const std::string there = new_areas_.path_at(to);
   if (there.empty() || ir::same_name(there, path)) return !there.empty();
+  const std::optional<Node> whole = old_areas_.leaf_at(address);
+  if (whole && old_.types.overlaps(whole->type)) {  // is the same member where the union is now?
+    const std::string around = old_areas_.path_at(address);
+    return path.size() > around.size() && is_leaf(new_, there + path.substr(around.size()));
+  }
   base::Result<ir::Symbol> before = ir::find_symbol(old_, there);
   return !before.ok() || before->data != address;
 }
@@ -132,6 +147,16 @@ uint64_t EveryFate::visit_from(uint64_t first, const Visit& visit) const {
     });
   }
   if (!go_on) return next;
+  // A member of a union that goes while the union lives on is a view of bytes that stay (case 74).
+  const auto is_view = [&](uint32_t address) {
+    const std::optional<Node> whole = old_areas_.leaf_at(address);
+    if (!whole || !old_.types.overlaps(whole->type)) return false;
+    const Written* value = reads(whole->begin);
+    if (value == nullptr && writes(whole->begin) != nullptr) return false;
+    const uint32_t to = value == nullptr ? whole->begin : value->to + (whole->begin - value->from);
+    const std::optional<Node> there = new_areas_.leaf_at(to);
+    return there && there->begin == to && new_.types.overlaps(there->type);
+  };
   bool more = false;
   ir::for_each_leaf_from(old_, next - new_count_,
                          [&](const std::string& path, const ir::Symbol& symbol) {
@@ -140,14 +165,13 @@ uint64_t EveryFate::visit_from(uint64_t first, const Visit& visit) const {
                              return false;
                            }
                            ++next;
-                           const bool known = ir::find_symbol(new_, path).ok();
-                           if (known || goes_on(path, symbol.data)) return true;
+                           if (is_leaf(new_, path) || goes_on(path, symbol.data)) return true;
                            VariableFate gone;
                            gone.fate = Fate::kDropped;
                            gone.path = path;
                            gone.old_address = symbol.data;
                            gone.old_type = symbol.type;
-                           gone.loses = !symbol.constant;
+                           gone.loses = !symbol.constant && !is_view(symbol.data);
                            gone.reason = "removed";
                            go_on = visit(gone);
                            return true;

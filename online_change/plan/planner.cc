@@ -39,6 +39,7 @@ Planner::Planner(const ir::Image& old_image, const ir::Image& new_image,
 
 base::Result<Plan> Planner::run() {
   if (migrations_.error()) return *migrations_.error();
+  find_live();
   for (uint32_t id : match_.new_order) {
     uint32_t twin = match_.old_of_new[id];
     if (twin == kNoInstance) {

@@ -63,6 +63,7 @@ class Planner {
   uint32_t moved_row(const Carried& instance, const DiffOp& op);
   uint32_t added_row(uint32_t new_id, uint64_t leaves);
   uint32_t dropped_row(uint32_t old_id, uint64_t leaves);
+  void find_live();
 
   bool initial_equal(const Carried& instance, const DiffOp& op) const;
   void put(UpdateStep step);
@@ -82,6 +83,9 @@ class Planner {
   FateRows fates_;
   std::vector<uint32_t> row_of_new_;        // of added instances, by ID
   std::vector<uint32_t> row_of_old_;        // of dropped ones
+  // By old ID: is there a variable in it, or in an instance in it, that the program could write?
+  // Empty when no instance goes.
+  std::vector<bool> live_inside_;
   std::unordered_set<uint32_t> used_here_;  // rows that the instance at hand already has a part in
   std::vector<UpdateStep> area_;            // steps of the area at hand
   bool too_many_ = false;                   // steps

@@ -1,5 +1,6 @@
 // The fate rows of a plan: what people read, as few rows as say everything.
 #include <algorithm>
+#include <map>
 
 #include "online_change/plan/planner.h"
 
@@ -179,11 +180,33 @@ uint32_t Planner::added_row(uint32_t new_id, uint64_t leaves) {
     if (replaced != kNoInstance) {
       const ir::TypeId before = old_.instances[replaced].type;
       row.old_type = old_.types.text(before);
-      row.may_lose = true;
+      row.may_lose = live_inside_[replaced];
       row.reason = "another type" + type_rename_hint(before, instance.type);
     }
     return row;
   });
+}
+
+// What has nothing but constants, or nothing at all, has no value to lose.
+void Planner::find_live() {
+  const bool any_goes =
+      std::any_of(match_.old_order.begin(), match_.old_order.end(),
+                  [&](uint32_t id) { return match_.new_of_old[id] == kNoInstance; });
+  if (!any_goes) return;
+  live_inside_.resize(old_.instances.size());
+  std::map<ir::TypeId, bool> by_type;
+  for (size_t i = match_.old_order.size(); i-- > 0;) {  // children before parents
+    const uint32_t id = match_.old_order[i];
+    const ir::TypeId type = old_.instances[id].type;
+    const auto [own, fresh] = by_type.try_emplace(type, false);
+    for (const ir::Member& member : old_.types[type].members) {
+      if (!fresh || own->second) break;
+      own->second = ir::is_listed(member) && !member.constant &&
+                    !old_.types.is_instance(member.type) && differ_.leaves(old_, member.type) != 0;
+    }
+    if (own->second) live_inside_[id] = true;
+    if (live_inside_[id]) live_inside_[old_.instances[id].parent] = true;
+  }
 }
 
 uint32_t Planner::dropped_row(uint32_t old_id, uint64_t leaves) {
@@ -195,7 +218,7 @@ uint32_t Planner::dropped_row(uint32_t old_id, uint64_t leaves) {
     row.fate = Fate::kDropped;
     row.path = old_.instance_path(old_id);
     row.old_type = old_.types.text(instance.type);
-    row.may_lose = true;
+    row.may_lose = live_inside_[old_id];
     row.reason = "removed";
     return row;
   });

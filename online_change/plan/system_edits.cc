@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <set>
 
 #include "ir/bytecode/renames.h"
 #include "ir/program/task_policy.h"
@@ -12,6 +11,7 @@
 #include "ir/types/natural_layout.h"
 #include "ir/types/value_text.h"
 #include "online_change/diff/areas.h"
+#include "online_change/diff/fates.h"
 #include "online_change/diff/instance_match.h"
 
 namespace online_change {
@@ -46,34 +46,41 @@ class Edits {
     rows_.push_back({kind, std::move(name), std::move(what)});
   }
 
-  // RETAIN and CONSTANT belong to types, so the first instance of each stands for all.
+  // RETAIN and CONSTANT belong to types, so the first instance of each stands for all, and says how
+  // many there are.
   void attributes() {
-    std::set<std::pair<uint32_t, uint32_t>> seen;
+    std::map<std::pair<uint32_t, uint32_t>, uint64_t> instances;  // by types
+    std::vector<uint32_t> first;
     for (const uint32_t id : match_.new_order) {
       const uint32_t twin = match_.old_of_new[id];
       if (twin == kNoInstance) continue;
-      const ir::TypeId before = old_.instances[twin].type;
-      const ir::TypeId after = new_.instances[id].type;
-      if (!seen.insert({before.index, after.index}).second) continue;
-      std::map<std::string, const ir::Member*> old_members;
-      for (const ir::Member& member : old_.types[before].members) {
-        old_members[ir::fold_name(member.name)] = &member;
-      }
-      for (const ir::Member& member : new_.types[after].members) {
-        const auto found = old_members.find(ir::fold_name(member.name));
-        if (found != old_members.end()) attributes_of(id, *found->second, member);
-      }
+      if (instances[types_of(id)]++ == 0) first.push_back(id);
+    }
+    for (const uint32_t id : first) attributes_of(id, instances[types_of(id)] - 1);
+  }
+  std::pair<uint32_t, uint32_t> types_of(uint32_t id) const {
+    return {old_.instances[match_.old_of_new[id]].type.index, new_.instances[id].type.index};
+  }
+  void attributes_of(uint32_t id, uint64_t more) {
+    const auto [before, after] = types_of(id);
+    std::map<std::string, const ir::Member*> old_members;
+    for (const ir::Member& member : old_.types[ir::TypeId(before)].members) {
+      old_members[ir::fold_name(member.name)] = &member;
+    }
+    const std::string owner = new_.instance_path(id);
+    for (const ir::Member& member : new_.types[ir::TypeId(after)].members) {
+      const auto found = old_members.find(ir::fold_name(member.name));
+      if (found == old_members.end()) continue;
+      const std::string path = owner.empty() ? member.name : owner + "." + member.name;
+      told(path, more, found->second->retain, member.retain, "RETAIN");
+      told(path, more, found->second->constant, member.constant, "CONSTANT");
     }
   }
-  void attributes_of(uint32_t id, const ir::Member& before, const ir::Member& after) {
-    const std::string owner = new_.instance_path(id);
-    const auto told = [&](bool was, bool is, const char* attribute) {
-      if (was == is) return;
-      add("variable", owner.empty() ? after.name : owner + "." + after.name,
-          (is ? "now " : "no longer ") + std::string(attribute));
-    };
-    told(before.retain, after.retain, "RETAIN");
-    told(before.constant, after.constant, "CONSTANT");
+  void told(const std::string& path, uint64_t more, bool was, bool is, const char* attribute) {
+    if (was == is) return;
+    std::string what = (is ? "now " : "no longer ") + std::string(attribute);
+    if (more != 0) what += "; and " + std::to_string(more) + std::string(kMoreLikeIt);
+    add("variable", path, std::move(what));
   }
 
   // By path: what is at an address in only one version may be elsewhere in the other, or nowhere.

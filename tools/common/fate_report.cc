@@ -5,6 +5,8 @@
 #include "base/visible_text.h"
 #include "base/wrapped.h"
 #include "ir/bytecode/renames.h"
+#include "tools/common/live_key.h"
+#include "tools/common/old_names.h"
 #include "tools/common/table.h"
 
 namespace tools {
@@ -66,7 +68,7 @@ std::string row_text(const FateRow& row, std::string rest) {
 }
 
 std::string row_text(const FateRow& row, const LiveValues& live) {
-  auto found = live.find(row.path);
+  auto found = live.find(live_key(row));
   if (found != live.end()) return row_text(row, value_change(row, found->second));
   return row_text(row, std::string(row.may_lose && row.fate != Fate::kDropped ? "may lose" : ""));
 }
@@ -151,7 +153,7 @@ void fate_report(const online_change::Plan& plan, const LiveValues& live, const 
     json.field("variable", row.path).field("fate", online_change::fate_name(row.fate));
     json.field("count", row.count).field("old_type", row.old_type).field("new_type", row.new_type);
     json.field("may_lose", row.may_lose).field("reason", row.reason);
-    if (auto found = live.find(row.path); found != live.end()) {
+    if (auto found = live.find(live_key(row)); found != live.end()) {
       json.field("live", found->second.now).field("after", found->second.after);
       json.field("loss", found->second.loss);
     }
@@ -206,8 +208,10 @@ std::vector<FateLine> every_line(const online_change::Plan& plan, const ir::Imag
   const ir::OldUnderNewNames renamed(old_image, new_image);
   const ir::Image& before = renamed.image();
   const online_change::EveryFate every(plan, before, new_image);
+  const OldNames old_names(old_image, before);
   every.visit_from(0, [&](const online_change::VariableFate& variable) {
     lines.push_back(every_line(variable, before, new_image));
+    old_names.tell(lines.back());
     return true;
   });
   return lines;

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "online_change/diff/initial_data.h"
+#include "tools/common/old_names.h"
 #include "tools/stvm/controller_service.h"
 #include "tools/stvm/shown_edits.h"
 
@@ -109,9 +110,11 @@ base::Result<base::Bytes> ControllerService::every_page(uint64_t first,
                            std::to_string(kMostEvery) + " at most"};
   }
   if (!every_) every_.emplace(plan, live_->image(), next);
+  const tools::OldNames old_names(controller_.image(), live_->image());
   uint64_t bytes = 0;
   page.next = every_->visit_from(first, [&](const online_change::VariableFate& variable) {
     page.lines.push_back(live_->line(variable, next));
+    old_names.tell(page.lines.back());
     bytes += line_bytes(page.lines.back());
     return bytes <= vm::kChunkBytes && page.lines.size() < kVariablesPerPage;
   });
@@ -158,6 +161,7 @@ FateLine ControllerService::live_line(const FateRow& row, const ir::Image& next,
   // The value of one of several says nothing of the others: they are told one by one.
   if (online_change::stands_for_several(row)) {
     line.live = {};
+  } else if (row.old_type.empty()) {  // what it takes the place of has a row of its own
   } else if (const online_change::LiveLoss* loss = live_->loss(row.path)) {
     line.live = {loss->old_value, loss->new_value, loss->what};
   }

@@ -1,6 +1,7 @@
 #include "tools/stvm/fate_view.h"
 
 #include "tools/common/fate_report.h"
+#include "tools/common/live_key.h"
 
 namespace stvm {
 namespace {
@@ -18,7 +19,7 @@ tools::LiveValues live_of(const FatePage& page) {
   tools::LiveValues live;
   for (const FateLine& line : page.lines) {
     bool any = !line.live.now.empty() || !line.live.after.empty();
-    if (any) live[line.row.path] = line.live;
+    if (any) live[tools::live_key(line.row)] = line.live;
   }
   return live;
 }

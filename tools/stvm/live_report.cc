@@ -6,6 +6,21 @@
 #include "online_change/diff/initial_data.h"
 
 namespace stvm {
+namespace {
+
+// "" for a variable that is already what the constant is that takes its place.
+std::string why_lost(const online_change::VariableFate& variable, const ir::Image& old_image,
+                     std::span<const uint8_t> memory, const ir::Image& next) {
+  const base::Result<ir::Symbol> there = ir::find_symbol(next, variable.path);
+  if (variable.new_address == 0 || !there.ok()) return online_change::why_lost(nullptr);
+  const base::Result<ir::Symbol> before = ir::find_symbol(old_image, variable.path);
+  const bool same = there->constant && before.ok() &&
+                    online_change::is_constant_already(old_image, *before, memory, next, *there);
+  return same ? "" : online_change::why_lost(&*there);
+}
+
+}  // namespace
+
 base::Result<LiveReport> LiveReport::take(vm::Controller& controller,
                                           const online_change::Change& change,
                                           const ir::Image* next, bool whole,
@@ -37,7 +52,7 @@ const online_change::LiveLoss* LiveReport::loss(const std::string& path) const {
   return found == by_path_.end() ? nullptr : &losses_[found->second];
 }
 
-// "" where only the switch knows it: what a migration gives.
+// "" where only the switch knows it: what a migration or an input gives.
 std::string LiveReport::result_of(const online_change::VariableFate& variable,
                                   const std::string& now, const ir::Image& next) const {
   using online_change::StepKind;
@@ -47,6 +62,8 @@ std::string LiveReport::result_of(const online_change::VariableFate& variable,
   alone.type = variable.new_type;
   base::Bytes value(next.layouts[variable.new_type].size);
   if (variable.step->kind == StepKind::kInitialise) {
+    const base::Result<ir::Symbol> there = ir::find_symbol(next, variable.path);
+    if (there.ok() && there->input) return {};  // the plant says it
     online_change::InitialData(next).read(variable.new_address, value);
   } else if (variable.step->kind == StepKind::kConvert) {
     const uint8_t* source = copy_.memory().data() + variable.old_address;
@@ -72,7 +89,7 @@ tools::FateLine LiveReport::line(const online_change::VariableFate& variable,
     out.live.loss = lost->what;
     if (!lost->new_value.empty()) out.live.after = lost->new_value;
   } else if (variable.loses) {
-    out.live.loss = variable.new_address == 0 ? "is dropped" : "has no conversion";
+    out.live.loss = why_lost(variable, image(), copy_.memory(), next);
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "base/memory_limit.h"
+#include "tests/unit/online_change/heap_use.h"
 #include "tests/unit/online_change/plant.h"
 
 namespace {
@@ -50,6 +51,20 @@ void operator delete(void* memory, size_t) noexcept { release(memory); }
 void operator delete[](void* memory, size_t) noexcept { release(memory); }
 void operator delete(void* memory, const std::nothrow_t&) noexcept { release(memory); }
 void operator delete[](void* memory, const std::nothrow_t&) noexcept { release(memory); }
+
+namespace tests {
+
+HeapUse heap_use_of(const std::function<void()>& job) {
+  until_failure = -1;
+  allocations = 0;
+  bytes = 0;
+  counting = true;
+  job();
+  counting = false;
+  return {allocations, bytes};
+}
+
+}  // namespace tests
 
 namespace online_change {
 namespace {
