@@ -11,7 +11,8 @@
 #   make asan-memory   those of them that touch memory most, as for every commit
 #   make tsan     what has threads under ThreadSanitizer
 #   make fuzz     a million executions of each fuzz target under sanitizers
-#   make differential  5,000 random programs and changes on every tier; SEED=n begins elsewhere
+#   make differential  5,000 random programs and changes on every tier, 5,000 changes of
+#                      declarations against the oracle of fates; SEED=n begins elsewhere
 #   make soak     long differential and hard mode runs
 #   make mutate   mistakes that the tests must see, one at a time; ONLY='C7 store' for some of them
 #   make test-arm64  golden files and random programs on AArch64, under qemu
@@ -118,6 +119,7 @@ PROGRAMS := 5000
 differential: build
 	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --shrink --jobs $(JOBS)
 	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --changes --shrink --jobs $(JOBS)
+	@python3 tests/fates/main.py $(BUILD)/tests/fates $(SEED) $(PROGRAMS) --jobs $(JOBS)
 
 # Hours, not minutes: eight hours of each of four simulated plants with changes, clients and faults;
 # 100,000 random programs on every tier; identity changes at 100,000 scans of the line.

@@ -1,4 +1,4 @@
-// What `stvm run` takes for the time of scans and of a change in virtual time (systems.md B11).
+// What `stvm run` takes for the time of scans and of a change in virtual time (B11).
 #pragma once
 
 #include <memory>

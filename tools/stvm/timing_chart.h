@@ -1,4 +1,4 @@
-// A timing chart of a run (systems.md B11): when each task was due, ran and was suspended, when
+// A timing chart of a run (B11): when each task was due, ran and was suspended, when
 // inputs were received and outputs sent, and when the configuration of a change had idle time. As
 // an SVG picture, as text for a terminal, as JSON; the same run gives the same bytes.
 #pragma once

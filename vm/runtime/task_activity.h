@@ -1,4 +1,4 @@
-// What a task is doing and how its buffers stand at one instant (systems.md B11), as plain values.
+// What a task is doing and how its buffers stand at one instant (B11), as plain values.
 #pragma once
 
 #include <cstdint>

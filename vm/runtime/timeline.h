@@ -1,4 +1,4 @@
-// What happens in control cycles, told while it happens: for timing charts (systems.md B11).
+// What happens in control cycles, told while it happens: for timing charts (B11).
 #pragma once
 
 #include <cstdint>
