@@ -24,7 +24,7 @@ fail() {
 file_of() {
   case $1 in
     '#'*) grep -rlE "^TEST(_F|_P)?\([A-Za-z0-9_]+, ${1#?}\)" "$root/tests/unit" "$root/tests/sim" 2>/dev/null | head -n 1 ;;
-    cli/* | sim/* | differential/* | meta/* | fuzz/*) ls "$root/tests/$1" 2>/dev/null ;;
+    cli/* | sim/* | differential/* | fates/* | meta/* | fuzz/*) ls "$root/tests/$1" 2>/dev/null ;;
     *) ls "$root/tests/golden/$1" 2>/dev/null ;;
   esac
 }

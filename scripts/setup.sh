@@ -11,6 +11,7 @@ need g++ g++
 need cmake cmake
 need ninja ninja-build
 need ccache ccache
+need python3 python3
 [ -e /usr/include/gtest/gtest.h ] || missing="$missing libgtest-dev"
 [ -e /usr/include/modbus/modbus.h ] || missing="$missing libmodbus-dev"
 need mbpoll mbpoll

@@ -1,5 +1,5 @@
 #!/bin/sh
-# case64, case65, case66: what a change does beside values and code is in its report: addresses,
+# X1, case64, case65, case66: what a change does beside values and code is in its report: addresses,
 # RETAIN and CONSTANT, tasks and their programs, safe outputs; in `stc diff` and `stvm change`.
 . "$(dirname "$0")/lib.sh"
 mkdir v1 v2
@@ -60,7 +60,7 @@ serve plc v1
 expect 0 stvm change v2 --dir plc --dry-run
 all_is_said
 
-# case64: a force that moves, gets another type or ends is named, there and back.
+# case64, X1: a force that moves, gets another type or ends is named, there and back.
 force_is_said() {
   tr -s ' ' <out | grep -qxF "force $1" || fail "not said: $1"
 }

@@ -228,37 +228,54 @@ TEST(Activity, B11_EveryStateGoesThroughItsNumber) {
   EXPECT_STREQ(vm::state_text(static_cast<TaskState>(7)), "unknown");
 }
 
-// By another thread, while the control thread goes on: each state that there is at some time.
-TEST(Activity, B11_AnotherThreadReadsWhileScansGoOn) {
-  auto image = build(R"(
-PROGRAM Short VAR i : DINT; END_VAR FOR i := 1 TO 20000 DO ; END_FOR END_PROGRAM
-PROGRAM Endless VAR i : DINT; END_VAR FOR i := 1 TO 200000 DO ; END_FOR END_PROGRAM
-CONFIGURATION c RESOURCE r ON cpu
-  TASK Fast (INTERVAL := T#1ms, PRIORITY := 1);
-  {attribute 'freewheeling'} TASK Free (PRIORITY := 9);
-  PROGRAM f WITH Fast : Short; PROGRAM e WITH Free : Endless;
-END_RESOURCE END_CONFIGURATION
-)");
-  ASSERT_TRUE(image);
-  vm::RealClock clock;
-  vm::SimulatedIo io;
-  auto controller = vm::Controller::start(*image, {}, clock, io);
-  ASSERT_TRUE(controller.ok());
-  const uint32_t generation = (*controller)->generation().number();
-  std::atomic<bool> enough{false};
-  std::thread control([&] {
-    while (!enough) (*controller)->cycle();
-  });
-  bool ran = false, suspended = false, fast_ran = false;
-  while (!ran || !suspended || !fast_ran) {
-    std::this_thread::yield();
-    const TaskState free = (*controller)->activity(1, generation)->state;
-    ran = ran || free == TaskState::kRunning;
-    suspended = suspended || free == TaskState::kSuspended;
-    fast_ran = fast_ran || (*controller)->activity(0, generation)->state == TaskState::kRunning;
+// By another thread while a scan goes on: the control thread stays inside of it until that has
+// looked.
+class Asking : public vm::Timeline {
+ public:
+  void note(Moment moment, std::string_view, int64_t) override {
+    const bool inside = moment == Moment::kBegun || moment == Moment::kResumed;
+    if (!inside || looker == nullptr) return;
+    asked = true;
+    while (asked) std::this_thread::yield();
   }
-  enough = true;
-  control.join();
+  // The other thread.
+  void look() {
+    while (!over) {
+      if (asked) {
+        for (size_t task : {0, 1}) {
+          text += vm::state_text(looker->activity(task, generation)->state);
+          text += task == 0 ? ", " : "\n";
+        }
+        asked = false;
+      }
+      std::this_thread::yield();
+    }
+  }
+  vm::Controller* looker = nullptr;
+  uint32_t generation = 0;
+  std::atomic<bool> asked{false}, over{false};
+  std::string text;
+};
+
+TEST(Activity, B11_AnotherThreadReadsWhileScansGoOn) {
+  auto image = build(two_tasks());
+  ASSERT_TRUE(image);
+  Asking asking;
+  vm::VirtualClock clock;
+  clock.let_scans_last("Slow", 12 * kMs);
+  vm::SimulatedIo io;
+  vm::ControllerOptions options;
+  options.timeline = &asking;
+  auto controller = vm::Controller::start(*image, options, clock, io);
+  ASSERT_TRUE(controller.ok());
+  asking.generation = (*controller)->generation().number();
+  asking.looker = controller->get();
+  std::thread other([&] { asking.look(); });
+  for (int i = 0; i < 2; ++i) (*controller)->cycle();
+  asking.over = true;
+  other.join();
+  EXPECT_EQ(asking.text,
+            "running, due\nwaiting, running\nrunning, suspended\nwaiting, running\n");
 }
 
 }  // namespace

@@ -129,7 +129,7 @@ constexpr Version kVersions[] = {
     {7, "538391035e10"},
     {8, "d6cd7073b212"},
     {9, "bd7d362cff72"},
-    {10, "01a584414f82"},
+    {10, "3177112f3b76"},
 };
 
 TEST(ProtocolLayout, BelongsToTheVersion) {
