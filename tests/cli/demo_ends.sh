@@ -6,13 +6,13 @@ mkdir tmp
 for signal in TERM HUP PIPE; do
   TMPDIR=$work/tmp setsid env --default-signal=PIPE sh "$source_dir/scripts/demo.sh" "$bin" >out 2>err &
   echo $! >demo.pid
-  for _ in $(seq 200); do
+  for _ in $(seq 1200); do
     grep -q 'stvm watch' out && break
     sleep 0.1
   done
   said 'stvm watch'
   kill -s $signal -- -"$(cat demo.pid)"  # as Ctrl+C: what it started, too
-  for _ in $(seq 100); do
+  for _ in $(seq 600); do
     [ -z "$(ls tmp)" ] && break
     sleep 0.1
   done
