@@ -176,7 +176,8 @@ class Editor(TypeEdits):
         self.forget_member(variables, one.name)
         old = one.name
         one.name = self.generator.name('n')
-        if self.random.random() < 0.7:
+        taken = any(other.renamed_from == old for other in variables)  # by another rule
+        if self.random.random() < 0.7 and not taken:
             one.renamed_from = old
             if self.random.random() < 0.2:  # and somebody else takes the name
                 new = Variable(old, self.generator.simple(self.usable(variables)))
@@ -184,7 +185,9 @@ class Editor(TypeEdits):
 
     def cross(self):
         variables, _ = self.scope()
-        free = [one for one in self.plain(variables) if not one.renamed_from]
+        taken = {one.renamed_from for one in variables}
+        free = [one for one in self.plain(variables)
+                if not one.renamed_from and one.name not in taken]
         if len(free) < 2:
             return
         one, two = self.random.sample(free, 2)
