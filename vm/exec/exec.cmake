@@ -13,4 +13,5 @@ if(NOT STC_AS_WRITTEN)
   file(GLOB handlers ${CMAKE_SOURCE_DIR}/vm/exec/handle_*.cc ${CMAKE_SOURCE_DIR}/vm/exec/fused_*.cc)
   set_property(SOURCE ${handlers} APPEND PROPERTY COMPILE_OPTIONS
     -fno-exceptions -fno-unwind-tables -fno-asynchronous-unwind-tables)
+  set_property(SOURCE ${handlers} PROPERTY SKIP_PRECOMPILE_HEADERS ON)  # parsed with other options
 endif()
