@@ -9,4 +9,7 @@ namespace base {
 #include "base/limits.def"
 #undef LIMIT
 
+// Types in types, the whole included: no verified image has more.
+inline constexpr uint32_t kMaxTypeDepth = kMaxNesting + 1;
+
 }  // namespace base

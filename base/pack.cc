@@ -12,7 +12,6 @@ constexpr uint32_t kLongest = 1 << 16;
 constexpr uint32_t kEnough = 256;  // bytes of a copy that nobody looks for a longer one of
 constexpr uint32_t kTries = 48;    // older places that are looked at
 constexpr uint32_t kHashBits = 16;
-constexpr uint32_t kInToken = 15;
 
 struct Copy {
   uint32_t length = 0;  // 0: none

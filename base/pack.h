@@ -15,6 +15,8 @@
 
 namespace base {
 
+inline constexpr uint32_t kInToken = 15;  // a number follows
+
 // The same bytes always become the same. At most a byte more for each 2^21 that repeat nothing, and
 // a few.
 Bytes pack(ByteSpan bytes);

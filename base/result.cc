@@ -11,7 +11,7 @@ struct Row {
   const char* help;
 };
 
-constexpr Row kRows[] = {
+constexpr Row kRefusals[] = {
 #define REFUSAL(id, code, title, help) {code, title, help},
 #include "base/refusals.def"
 #undef REFUSAL
@@ -19,13 +19,13 @@ constexpr Row kRows[] = {
 
 }  // namespace
 
-const char* refusal_code(Refusal refusal) { return kRows[static_cast<size_t>(refusal)].code; }
-const char* refusal_title(Refusal refusal) { return kRows[static_cast<size_t>(refusal)].title; }
-const char* refusal_help(Refusal refusal) { return kRows[static_cast<size_t>(refusal)].help; }
+const char* refusal_code(Refusal refusal) { return kRefusals[static_cast<size_t>(refusal)].code; }
+const char* refusal_title(Refusal refusal) { return kRefusals[static_cast<size_t>(refusal)].title; }
+const char* refusal_help(Refusal refusal) { return kRefusals[static_cast<size_t>(refusal)].help; }
 
 std::optional<Refusal> refusal_from_code(std::string_view code) {
-  for (size_t i = 0; i < std::size(kRows); ++i) {
-    if (code == kRows[i].code) return static_cast<Refusal>(i);
+  for (size_t i = 0; i < std::size(kRefusals); ++i) {
+    if (code == kRefusals[i].code) return static_cast<Refusal>(i);
   }
   return std::nullopt;
 }

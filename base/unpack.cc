@@ -3,7 +3,6 @@
 namespace base {
 namespace {
 
-constexpr uint32_t kInToken = 15;
 constexpr uint32_t kShorterThanAny = 3;
 
 uint64_t number_of(ByteReader& in) {

@@ -17,7 +17,7 @@ struct Action {
   std::string body;  // of one that stands in the step; empty: elsewhere
 };
 
-struct Element {
+struct ChartElement {
   Node node;
   std::string name;           // steps: as the text has it
   std::vector<size_t> above;  // elements
@@ -28,8 +28,8 @@ struct Element {
 // From an element to the next one; `joined`: behind a convergence or divergence of simultaneous
 // branches, so several are meant.
 struct Way {
-  const Element* from;
-  const Element* to;
+  const ChartElement* from;
+  const ChartElement* to;
   bool joined;
 };
 
@@ -48,20 +48,20 @@ class Chart {
   std::string step_name(Node node);
   void reserve_names();
   // Names of the steps that a transition leaves (`up`) or enters, through what lies between.
-  std::vector<std::string> steps_beside(const Element& transition, bool up);
-  void push_neighbours(const Element& element, bool up, bool joined, std::vector<Way>& todo);
-  std::string jump_target(const Element& jump);
-  std::string step_text(const Element& step);
-  std::string transition_text(const Element& transition);
-  std::string condition(const Element& transition);
-  std::string plain_condition(const Element& transition);
+  std::vector<std::string> steps_beside(const ChartElement& transition, bool up);
+  void push_neighbours(const ChartElement& element, bool up, bool joined, std::vector<Way>& todo);
+  std::string jump_target(const ChartElement& jump);
+  std::string step_text(const ChartElement& step);
+  std::string transition_text(const ChartElement& transition);
+  std::string condition(const ChartElement& transition);
+  std::string plain_condition(const ChartElement& transition);
   std::string priority(Node transition);
 
   Node sfc_;
   Node pou_;
   Reporter& report_;
   Drawing drawing_;                // conditions
-  std::vector<Element> elements_;  // in the order of the drawing
+  std::vector<ChartElement> elements_;  // in the order of the drawing
   std::map<uint64_t, size_t> by_id_;
   std::map<std::string, Node> transitions_;  // that have names, folded
   std::string comments_;
@@ -70,7 +70,7 @@ class Chart {
   xml::Names actions_;                          // and what else actions may not be called
   bool prioritised_ = false;
   size_t ways_ = 0;                    // that were followed
-  std::set<const Element*> followed_;  // for one transition: each once, so loops end
+  std::set<const ChartElement*> followed_;  // for one transition: each once, so loops end
 };
 
 constexpr size_t kMaxWays = 5'000'000;  // of all transitions together
@@ -111,7 +111,7 @@ void Chart::reserve_names() {
   for (Node list : xml::children(xml::child(pou_, "interface"))) {
     for (Node each : xml::children(list, "variable")) actions_.take(xml::attribute(each, "name"));
   }
-  for (const Element& element : elements_) {
+  for (const ChartElement& element : elements_) {
     if (!element.name.empty()) actions_.take(element.name);
   }
 }
@@ -133,17 +133,18 @@ void Chart::collect() {
       add_condition_element(node);
       continue;
     }
-    Element element{node, {}, {}, {}, {}};
+    ChartElement element{node, {}, {}, {}, {}};
     if (step) {
       element.name = step_name(node);
       if (element.name.empty()) continue;
     }
     elements_.push_back(std::move(element));
   }
-  std::stable_sort(elements_.begin(), elements_.end(), [](const Element& a, const Element& b) {
+  const auto above = [](const ChartElement& a, const ChartElement& b) {
     return std::pair(place(a.node, "y"), place(a.node, "x")) <
            std::pair(place(b.node, "y"), place(b.node, "x"));
-  });
+  };
+  std::stable_sort(elements_.begin(), elements_.end(), above);
   for (size_t i = 0; i < elements_.size(); ++i) {
     Node node = elements_[i].node;
     const uint64_t id = id_of(report_.required(node, "localId"));
@@ -179,7 +180,7 @@ void Chart::add_condition_element(Node node) {
 // Points at which an element hangs: several of divergences and convergences.
 void Chart::connect() {
   for (size_t i = 0; i < elements_.size(); ++i) {
-    Element& element = elements_[i];
+    ChartElement& element = elements_[i];
     for (Node point : xml::children(element.node, "connectionPointIn")) {
       for (Node connection : xml::children(point, "connection")) {
         const uint64_t id = id_of(xml::attribute(connection, "refLocalId"));
@@ -208,7 +209,7 @@ void Chart::add_actions(Node block) {
     report_.add(Code::kXmlBody, block, "an action block is negated",
                 "negate the variables in the actions");
   }
-  Element& step = elements_[found->second];
+  ChartElement& step = elements_[found->second];
   for (Node node : xml::children(block, "action")) {
     Action action{node, {}, {}};
     Node reference = xml::child(node, "reference");
@@ -235,7 +236,8 @@ void Chart::add_actions(Node block) {
 }
 
 // The first one on top; each element once, so loops end.
-void Chart::push_neighbours(const Element& element, bool up, bool joined, std::vector<Way>& todo) {
+void Chart::push_neighbours(const ChartElement& element, bool up, bool joined,
+                            std::vector<Way>& todo) {
   if (!followed_.insert(&element).second) return;
   const bool many =
       joined || xml::is(element.node, up ? "simultaneousConvergence" : "simultaneousDivergence");
@@ -249,7 +251,7 @@ void Chart::push_neighbours(const Element& element, bool up, bool joined, std::v
   for (size_t i = next.size(); i-- > 0;) todo.push_back({&element, &elements_[next[i]], many});
 }
 
-std::string Chart::jump_target(const Element& jump) {
+std::string Chart::jump_target(const ChartElement& jump) {
   const std::string target(report_.required(jump.node, "targetName"));
   auto known = renamed_.find(base::fold_name(target));
   if (known != renamed_.end()) return known->second;
@@ -260,7 +262,7 @@ std::string Chart::jump_target(const Element& jump) {
   return {};
 }
 
-std::vector<std::string> Chart::steps_beside(const Element& transition, bool up) {
+std::vector<std::string> Chart::steps_beside(const ChartElement& transition, bool up) {
   std::vector<std::string> out;
   std::vector<Way> todo;
   followed_.clear();
@@ -282,8 +284,8 @@ std::vector<std::string> Chart::steps_beside(const Element& transition, bool up)
     } else if (!up && xml::is(way.to->node, "jumpStep")) {
       if (std::string target = jump_target(*way.to); !target.empty()) out.push_back(target);
     } else {
-      const Element* first = up ? way.to : way.from;
-      const Element* second = up ? way.from : way.to;
+      const ChartElement* first = up ? way.to : way.from;
+      const ChartElement* second = up ? way.from : way.to;
       report_.add(Code::kBadXmlChart, second->node,
                   xml::shown(second->node) + " follows " + xml::shown(first->node) +
                       " without a step between them");
@@ -292,7 +294,7 @@ std::vector<std::string> Chart::steps_beside(const Element& transition, bool up)
   return out;
 }
 
-std::string Chart::step_text(const Element& step) {
+std::string Chart::step_text(const ChartElement& step) {
   const bool initial = xml::boolean(xml::attribute(step.node, "initialStep")).value_or(false);
   std::string out = documentation(step.node, "");
   out += (initial ? "INITIAL_STEP " : "STEP ") + step.name + ":\n";
@@ -313,7 +315,7 @@ std::string Chart::priority(Node transition) {
   return {};
 }
 
-std::string Chart::plain_condition(const Element& transition) {
+std::string Chart::plain_condition(const ChartElement& transition) {
   Node condition = xml::child(transition.node, "condition");
   if (Node inside = xml::child(condition, "inline")) {
     return condition_text(inside, std::string(xml::attribute(inside, "name")), report_);
@@ -340,7 +342,7 @@ std::string Chart::plain_condition(const Element& transition) {
   return error_text("a transition has no condition");
 }
 
-std::string Chart::condition(const Element& transition) {
+std::string Chart::condition(const ChartElement& transition) {
   const std::string out = plain_condition(transition);
   if (!is_negated(xml::child(transition.node, "condition"), report_)) return out;
   if (out.starts_with(" := ")) return " := NOT (" + out.substr(4, out.size() - 6) + ");\n";
@@ -350,7 +352,7 @@ std::string Chart::condition(const Element& transition) {
   return error_text("a negated condition was not imported");
 }
 
-std::string Chart::transition_text(const Element& transition) {
+std::string Chart::transition_text(const ChartElement& transition) {
   std::vector<std::string> from = steps_beside(transition, true);
   std::vector<std::string> to = steps_beside(transition, false);
   if (ways_ > kMaxWays) return {};
@@ -373,7 +375,7 @@ std::string Chart::transition_text(const Element& transition) {
 std::string Chart::text() {
   collect();
   std::string steps, transitions, actions;
-  for (const Element& element : elements_) {
+  for (const ChartElement& element : elements_) {
     if (xml::is(element.node, "step")) {
       steps += step_text(element);
       for (const Action& action : element.actions) actions += action.body;

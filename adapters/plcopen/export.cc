@@ -16,10 +16,10 @@ using frontend::ResourceDecl;
 using frontend::VarBlock;
 using frontend::VarSection;
 
-std::optional<Form> form_of_name(std::string_view name) {
-  if (name == "tc6-2.0") return Form::kTc6v200;
-  if (name == "tc6-2.01") return Form::kTc6v201;
-  if (name == "61131-10") return Form::kIec10;
+std::optional<Edition> form_of_name(std::string_view name) {
+  if (name == "tc6-2.0") return Edition::kTc6v200;
+  if (name == "tc6-2.01") return Edition::kTc6v201;
+  if (name == "61131-10") return Edition::kIec10;
   return std::nullopt;
 }
 
@@ -155,8 +155,8 @@ void Writer::project(Node project) {
 
 namespace {
 
-const char* name_space(Form form) {
-  return form == Form::kTc6v200 ? "http://www.plcopen.org/xml/tc6_0200"
+const char* name_space(Edition form) {
+  return form == Edition::kTc6v200 ? "http://www.plcopen.org/xml/tc6_0200"
                                 : "http://www.plcopen.org/xml/tc6_0201";
 }
 
@@ -217,20 +217,20 @@ std::optional<std::string> export_document(const ExportInput& input,
   Writer writer(input, diagnostics);
   writer.project(project);
   pugi::xml_document other;
-  if (input.form == Form::kIec10) {
+  if (input.form == Edition::kIec10) {
     for (const auto& [owner, texts] : to_iec10(project, other)) {
       report_unsaid(input, owner, texts, writer.parts(), diagnostics);
     }
   }
   if (diagnostics.error_count() != before) return std::nullopt;
-  const Node whole = input.form == Form::kIec10 ? other.document_element() : project;
+  const Node whole = input.form == Edition::kIec10 ? other.document_element() : project;
   if (writer.parts() != nullptr) {
     writer.parts()->seal(whole);
   } else {
     report_lost_comments(input, whole, diagnostics);
   }
   std::ostringstream out;
-  (input.form == Form::kIec10 ? other : document)
+  (input.form == Edition::kIec10 ? other : document)
       .save(out, "  ", pugi::format_default, pugi::encoding_utf8);
   return xml::as_utf8(out.str());
 }

@@ -15,14 +15,14 @@
 
 namespace plcopen {
 
-enum class Form : uint8_t { kTc6v200, kTc6v201, kIec10 };
-std::optional<Form> form_of_name(std::string_view name);  // tc6-2.0, tc6-2.01, 61131-10
+enum class Edition : uint8_t { kTc6v200, kTc6v201, kIec10 };
+std::optional<Edition> form_of_name(std::string_view name);  // tc6-2.0, tc6-2.01, 61131-10
 
 struct ExportInput {
   const base::SourceMap& sources;
   const frontend::Tree& tree;
   std::string name;  // of the project
-  Form form = Form::kTc6v201;
+  Edition form = Edition::kTc6v201;
   // Of what was imported and is written again: drawings with their places and ids, by POU or
   // POU.Action, and addData that nobody understood, by POU.
   const xml::Kept* kept = nullptr;

@@ -26,7 +26,7 @@ class DiagramWriter {
         body_(body),
         body_node_(parent),
         parent_(parent),
-        by_order_(writer.in_.form == Form::kIec10) {}
+        by_order_(writer.in_.form == Edition::kIec10) {}
 
   // False: its elements would do something else.
   bool run() {
@@ -382,7 +382,7 @@ void Writer::diagram(Node body, const network::Body& drawn, const std::string& p
                                            network::canonical(kept) == network::canonical(drawn)
                                      : drawn.language == network::Language::kFbd &&
                                            text == network::canonical(drawn);
-      if (same && !elements.empty() && in_.form != Form::kIec10) {
+      if (same && !elements.empty() && in_.form != Edition::kIec10) {
         body.append_buffer(elements.data(), elements.size(), xml::kAsRead);
         return;
       }

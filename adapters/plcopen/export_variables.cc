@@ -68,13 +68,13 @@ bool Writer::put_variable(Node list, const VarBlock& block, const VarDecl& decl)
     } else if (!address.empty()) {
       node.append_attribute("address") = address.c_str();
     }
-    if (in_.form == Form::kIec10 && decl.edge != frontend::Edge::kNone) {
+    if (in_.form == Edition::kIec10 && decl.edge != frontend::Edge::kNone) {
       node.append_attribute("edge") = decl.edge == frontend::Edge::kRising ? "rising" : "falling";
     }
     common(node);
   }
   const bool unnamed = !decl.names.empty() && decl.names[0].text.starts_with("%");
-  const bool edge = decl.edge != frontend::Edge::kNone && in_.form != Form::kIec10;
+  const bool edge = decl.edge != frontend::Edge::kNone && in_.form != Edition::kIec10;
   return !edge && !decl.binds && !unnamed;
 }
 

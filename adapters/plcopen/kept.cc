@@ -67,7 +67,7 @@ void keep_chart(Node sfc, Node pou, const std::string& text, std::set<std::strin
 }
 
 const xml::KeptChart* Writer::kept_chart(const Pou& pou) const {
-  if (in_.kept == nullptr || in_.form == Form::kIec10 || pou.chart == frontend::kNoChart) {
+  if (in_.kept == nullptr || in_.form == Edition::kIec10 || pou.chart == frontend::kNoChart) {
     return nullptr;
   }
   auto found = in_.kept->charts.find(base::fold_name(pou.name.text));

@@ -105,11 +105,11 @@ bool is_source_data(Node data) { return is_data(data, kSourcesData) || is_data(d
 
 namespace {
 
-struct Form {
+struct UnitForm {
   TokenKind begin;
   TokenKind end;
 };
-constexpr Form kForms[] = {{TokenKind::kProgram, TokenKind::kEndProgram},
+constexpr UnitForm kUnitForms[] = {{TokenKind::kProgram, TokenKind::kEndProgram},
                            {TokenKind::kFunction, TokenKind::kEndFunction},
                            {TokenKind::kFunctionBlock, TokenKind::kEndFunctionBlock},
                            {TokenKind::kType, TokenKind::kEndType},
@@ -124,15 +124,15 @@ constexpr Form kForms[] = {{TokenKind::kProgram, TokenKind::kEndProgram},
                            {TokenKind::kTeardown, TokenKind::kEndTeardown},
                            {TokenKind::kTest, TokenKind::kEndTest}};
 
-const Form* form_at(const Token& token) {
-  for (const Form& form : kForms) {
+const UnitForm* form_at(const Token& token) {
+  for (const UnitForm& form : kUnitForms) {
     if (form.begin == token.kind) return &form;
   }
   return nullptr;
 }
 
 // The last token of the declaration that begins at `i`, with its semicolon.
-size_t end_of_declaration(const std::vector<Token>& tokens, size_t i, const Form& form) {
+size_t end_of_declaration(const std::vector<Token>& tokens, size_t i, const UnitForm& form) {
   size_t depth = 0;
   for (; tokens[i].kind != TokenKind::kEnd; ++i) {
     if (form.begin == TokenKind::kNamespace && tokens[i].kind == form.begin) ++depth;
@@ -186,7 +186,7 @@ void SourceParts::cut(std::string_view text, uint32_t begin, Source& out) {
     from = to;
   };
   for (size_t i = 0; tokens[i].kind != TokenKind::kEnd; ++i) {
-    const Form* form = form_at(tokens[i]);
+    const UnitForm* form = form_at(tokens[i]);
     if (form == nullptr) continue;
     add(begin_with_head(text, from, tokens[i].begin), 0);
     i = end_of_declaration(tokens, i, *form);

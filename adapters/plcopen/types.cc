@@ -7,7 +7,7 @@
 namespace plcopen {
 namespace {
 
-constexpr const char* kElementary[] = {
+constexpr const char* kElementaryTags[] = {
     "BOOL",          "BYTE",        "WORD",          "DWORD",   "LWORD",       "SINT",
     "INT",           "DINT",        "LINT",          "USINT",   "UINT",        "UDINT",
     "ULINT",         "REAL",        "LREAL",         "TIME",    "LTIME",       "DATE",
@@ -107,7 +107,7 @@ std::string type_text(Node type, Reporter& report) {
     return {};
   }
   const std::string_view kind = xml::local_name(node);
-  for (const char* name : kElementary) {
+  for (const char* name : kElementaryTags) {
     if (base::same_name(kind, name)) return name;
   }
   if (base::same_name(kind, "string")) return string_text(node, "STRING", report);

@@ -40,7 +40,7 @@ const std::string* Live::find(std::string_view variable) const {
 
 namespace {
 
-constexpr uint32_t kMaxDepth = 64;
+constexpr uint32_t kMaxLiveDepth = 64;
 
 std::optional<double> as_number(std::string_view text) {
   double value = 0;
@@ -171,7 +171,7 @@ class Evaluator {
   }
 
   Known operand(uint32_t depth) {
-    if (depth > kMaxDepth) good_ = false;
+    if (depth > kMaxLiveDepth) good_ = false;
     if (!good_) return std::nullopt;
     if (accept(TokenKind::kNot)) return known(!truth(operand(depth + 1)));
     if (accept(TokenKind::kLeftParen)) {

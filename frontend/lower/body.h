@@ -18,6 +18,13 @@
 
 namespace frontend {
 
+inline ir::Step step_to(ir::StepKind kind, uint32_t index = 0) {
+  ir::Step step;
+  step.kind = kind;
+  step.index = index;
+  return step;
+}
+
 class Body {
  public:
   Body(Sema& sema, uint32_t pou);

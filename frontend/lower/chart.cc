@@ -9,7 +9,6 @@
 namespace frontend {
 namespace {
 
-constexpr ir::Scalar kBool = ir::Scalar::kBool;
 constexpr uint32_t kMostSingle = 16;  // flags that begin one by one
 
 }  // namespace
@@ -159,7 +158,7 @@ ir::Place ChartBody::part(VarId id, const char* member) {
 }
 
 void ChartBody::set_flag(const ir::Place& flag, bool value) {
-  build_.store(flag, kBool, build_.constant(kBool, value ? 1 : 0));
+  build_.store(flag, kFlag, build_.constant(kFlag, value ? 1 : 0));
 }
 
 void ChartBody::when(ir::ValueId condition, const std::function<void()>& then) {
@@ -173,7 +172,7 @@ void ChartBody::when(ir::ValueId condition, const std::function<void()>& then) {
 }
 
 void ChartBody::when(const ir::Place& flag, const std::function<void()>& then) {
-  when(build_.load(flag, kBool), then);
+  when(build_.load(flag, kFlag), then);
 }
 
 }  // namespace frontend

@@ -8,6 +8,10 @@
 
 namespace frontend {
 
+// Of steps and actions.
+inline constexpr ir::Scalar kFlag = ir::Scalar::kBool;
+inline constexpr ir::Scalar kElapsed = ir::Scalar::kI64;
+
 class ChartBody {
  public:
   ChartBody(Body& body, const Chart& chart)

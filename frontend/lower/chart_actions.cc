@@ -5,8 +5,6 @@
 namespace frontend {
 namespace {
 
-constexpr ir::Scalar kBool = ir::Scalar::kBool;
-constexpr ir::Scalar kTime = ir::Scalar::kI64;
 
 // A stored qualifier that counts time.
 struct Timer {
@@ -70,7 +68,7 @@ void ChartBody::step_uses() {
 
 ir::ValueId ChartBody::either(ir::ValueId a, ir::ValueId b) {
   if (!a.valid() || !b.valid()) return a.valid() ? a : b;
-  return build_.binary(ir::Op::kOr, kBool, a, b);
+  return build_.binary(ir::Op::kOr, kFlag, a, b);
 }
 
 ir::ValueId ChartBody::any_user(uint32_t action, ActionQualifier qualifier,
@@ -83,18 +81,18 @@ ir::ValueId ChartBody::any_user(uint32_t action, ActionQualifier qualifier,
 }
 
 void ChartBody::add_to(const ir::Place& flag, ir::ValueId value) {
-  ir::ValueId before = build_.load(flag, kBool);
-  build_.store(flag, kBool, build_.binary(ir::Op::kOr, kBool, before, value));
+  ir::ValueId before = build_.load(flag, kFlag);
+  build_.store(flag, kFlag, build_.binary(ir::Op::kOr, kFlag, before, value));
 }
 
 void ChartBody::request(uint32_t step, const sfc::Use& use) {
   VarId record = actions_[use.action];
   auto still_shorter = [&] {
     ir::ValueId limit = limit_of(*use.decl);
-    ir::ValueId time = build_.load(part(steps_[step], "T"), kTime);
-    return build_.compare(ir::Op::kLt, kTime, time, limit);
+    ir::ValueId time = build_.load(part(steps_[step], "T"), kElapsed);
+    return build_.compare(ir::Op::kLt, kElapsed, time, limit);
   };
-  auto elapsed = [&] { return build_.unary(ir::Op::kNot, kBool, still_shorter()); };
+  auto elapsed = [&] { return build_.unary(ir::Op::kNot, kFlag, still_shorter()); };
   body_.set_line(use.decl->span);
   switch (use.decl->qualifier) {
     case ActionQualifier::kS:
@@ -127,11 +125,11 @@ ir::ValueId ChartBody::limit_of(const ActionUse& use) {
 void ChartBody::begin(VarId record, const sfc::Use& use) {
   const Timer& timer = use.decl->qualifier == ActionQualifier::kSD ? kDelayed : kLimited;
   ir::ValueId limit = limit_of(*use.decl);
-  build_.store(part(record, timer.limit), kTime, limit);
+  build_.store(part(record, timer.limit), kElapsed, limit);
   ir::Place stored = part(record, timer.stored);
-  when(build_.unary(ir::Op::kNot, kBool, build_.load(stored, kBool)), [&] {
+  when(build_.unary(ir::Op::kNot, kFlag, build_.load(stored, kFlag)), [&] {
     set_flag(stored);
-    build_.store(part(record, timer.elapsed), kTime, build_.constant(kTime, 0));
+    build_.store(part(record, timer.elapsed), kElapsed, build_.constant(kElapsed, 0));
   });
 }
 
@@ -145,34 +143,34 @@ void ChartBody::controls() {
 ir::ValueId ChartBody::wants(uint32_t action, ir::ValueId keep) {
   VarId record = actions_[action];
   ir::ValueId wanted = any_user(action, ActionQualifier::kN, [&](uint32_t step) {
-    return build_.load(part(steps_[step], "X"), kBool);
+    return build_.load(part(steps_[step], "X"), kFlag);
   });
   auto add = [&](ir::ValueId value) { wanted = either(wanted, value); };
   if (wanted_[action] != sfc::kNone) add(is_raised(wanted_[action]));
   auto stored = [&](const char* member) {
     ir::Place place = part(record, member);
-    ir::ValueId value = build_.load(place, kBool);
+    ir::ValueId value = build_.load(place, kFlag);
     if (!keep.valid()) return value;
-    value = build_.binary(ir::Op::kAnd, kBool, value, keep);
-    build_.store(place, kBool, value);
+    value = build_.binary(ir::Op::kAnd, kFlag, value, keep);
+    build_.store(place, kFlag, value);
     return value;
   };
   auto running = [&](const Timer& timer) {
-    ir::ValueId elapsed = build_.load(part(record, timer.elapsed), kTime);
-    ir::ValueId limit = build_.load(part(record, timer.limit), kTime);
-    return build_.compare(ir::Op::kLt, kTime, elapsed, limit);
+    ir::ValueId elapsed = build_.load(part(record, timer.elapsed), kElapsed);
+    ir::ValueId limit = build_.load(part(record, timer.limit), kElapsed);
+    return build_.compare(ir::Op::kLt, kElapsed, elapsed, limit);
   };
   if (uses(action, ActionQualifier::kS)) add(stored("S"));
   if (uses(action, ActionQualifier::kDS)) add(stored("DS"));
   if (uses(action, kDelayed.qualifier)) {
-    ir::ValueId due = build_.unary(ir::Op::kNot, kBool, running(kDelayed));
-    add(build_.binary(ir::Op::kAnd, kBool, stored(kDelayed.stored), due));
+    ir::ValueId due = build_.unary(ir::Op::kNot, kFlag, running(kDelayed));
+    add(build_.binary(ir::Op::kAnd, kFlag, stored(kDelayed.stored), due));
   }
   if (uses(action, kLimited.qualifier)) {
-    add(build_.binary(ir::Op::kAnd, kBool, stored(kLimited.stored), running(kLimited)));
+    add(build_.binary(ir::Op::kAnd, kFlag, stored(kLimited.stored), running(kLimited)));
   }
-  if (!wanted.valid()) return build_.constant(kBool, 0);
-  return keep.valid() ? build_.binary(ir::Op::kAnd, kBool, wanted, keep) : wanted;
+  if (!wanted.valid()) return build_.constant(kFlag, 0);
+  return keep.valid() ? build_.binary(ir::Op::kAnd, kFlag, wanted, keep) : wanted;
 }
 
 // Q and A of one action, and when its statements run: `late` by a request or P1, `early` for the
@@ -182,11 +180,11 @@ void ChartBody::control(uint32_t number) {
   const sfc::Action& action = net_.actions[number];
   VarId record = actions_[number];
   auto both = [&](ir::ValueId a, ir::ValueId b) {
-    return build_.binary(ir::Op::kAnd, kBool, a, b);
+    return build_.binary(ir::Op::kAnd, kFlag, a, b);
   };
-  auto no = [&](ir::ValueId value) { return build_.unary(ir::Op::kNot, kBool, value); };
+  auto no = [&](ir::ValueId value) { return build_.unary(ir::Op::kNot, kFlag, value); };
   body_.set_line(action.decl != nullptr ? action.name.span : tree_[action.target].span);
-  auto is_active = [&](uint32_t step) { return build_.load(part(steps_[step], "X"), kBool); };
+  auto is_active = [&](uint32_t step) { return build_.load(part(steps_[step], "X"), kFlag); };
   ir::ValueId reset = any_user(number, ActionQualifier::kR, is_active);
   ir::ValueId keep = reset.valid() ? no(reset) : reset;
   auto pulse = [&](ActionQualifier qualifier, const Numbers& flags) {
@@ -198,13 +196,13 @@ void ChartBody::control(uint32_t number) {
   ir::ValueId late =
       either(q, pulse(ActionQualifier::kP1, entered_));  // what was entered is active
   ir::Place due = part(record, "FINAL_DUE");
-  ir::ValueId early = both(build_.load(due, kBool), no(q));
-  build_.store(due, kBool, q);
+  ir::ValueId early = both(build_.load(due, kFlag), no(q));
+  build_.store(due, kFlag, q);
   ir::ValueId released = pulse(ActionQualifier::kP0, left_);
   early = either(early, released);
   if (action.decl == nullptr) late = either(late, released);
-  build_.store(part(record, "A"), kBool, either(late, early));
-  build_.store(part(record, "Q"), kBool, action.decl != nullptr ? q : late);
+  build_.store(part(record, "A"), kFlag, either(late, early));
+  build_.store(part(record, "Q"), kFlag, action.decl != nullptr ? q : late);
   if (action.decl == nullptr) {
     auto variable = variable_of(action);
     if (variable) body_.store(*variable, late);
@@ -251,7 +249,7 @@ void ChartBody::bodies() {
   ir::BlockId head = build_.new_block();
   ir::BlockId again = build_.new_block();
   ir::BlockId done = build_.new_block();
-  ir::ValueId early = build_.add_param(head, kBool);
+  ir::ValueId early = build_.add_param(head, kFlag);
   build_.jump(head, {early_});
   build_.start(head);
   for (uint32_t number = 0; number < net_.actions.size(); ++number) {
@@ -260,16 +258,16 @@ void ChartBody::bodies() {
     body_.set_line(action.name.span);
     ir::BlockId run = build_.new_block();
     ir::BlockId next = build_.new_block();
-    ir::ValueId a = build_.load(part(actions_[number], "A"), kBool);
-    ir::ValueId turn = build_.binary(ir::Op::kXor, kBool, late_[number], early);
-    build_.branch(build_.binary(ir::Op::kAnd, kBool, a, turn), run, next);
+    ir::ValueId a = build_.load(part(actions_[number], "A"), kFlag);
+    ir::ValueId turn = build_.binary(ir::Op::kXor, kFlag, late_[number], early);
+    build_.branch(build_.binary(ir::Op::kAnd, kFlag, a, turn), run, next);
     build_.start(run);
     action_statements(*action.decl, next);
     build_.start(next);
   }
   build_.branch(early, again, done);
   build_.start(again);
-  build_.jump(head, {build_.constant(kBool, 0)});
+  build_.jump(head, {build_.constant(kFlag, 0)});
   build_.start(done);
 }
 

@@ -6,8 +6,6 @@
 namespace frontend {
 namespace {
 
-constexpr ir::Scalar kBool = ir::Scalar::kBool;
-constexpr ir::Scalar kTime = ir::Scalar::kI64;
 constexpr ir::Scalar kWord = ir::Scalar::kU64;
 constexpr uint32_t kWordBits = 64;
 
@@ -26,17 +24,17 @@ void ChartBody::read_clock() {
   ir::Place clock = body_.member_variable_place(sema_.resolve(clock_));
   clock.type = body_.elementary(ir::Kind::kTime);
   ir::ValueId now = build_.task_time();
-  ir::ValueId before = build_.load(clock, kTime);
-  ir::ValueId passed = build_.binary(ir::Op::kSub, kTime, now, before);
-  ir::ValueId backwards = build_.compare(ir::Op::kLt, kTime, now, before);
-  elapsed_ = build_.select(kTime, backwards, passed, build_.constant(kTime, 0));
-  build_.store(clock, kTime, now);
+  ir::ValueId before = build_.load(clock, kElapsed);
+  ir::ValueId passed = build_.binary(ir::Op::kSub, kElapsed, now, before);
+  ir::ValueId backwards = build_.compare(ir::Op::kLt, kElapsed, now, before);
+  elapsed_ = build_.select(kElapsed, backwards, passed, build_.constant(kElapsed, 0));
+  build_.store(clock, kElapsed, now);
 }
 
 void ChartBody::pass_time(VarId variable, const char* member) {
   ir::Place time = part(variable, member);
-  ir::ValueId before = build_.load(time, kTime);
-  build_.store(time, kTime, build_.binary(ir::Op::kAdd, kTime, before, elapsed_));
+  ir::ValueId before = build_.load(time, kElapsed);
+  build_.store(time, kElapsed, build_.binary(ir::Op::kAdd, kElapsed, before, elapsed_));
 }
 
 // Which steps' transitions need not wait until all times have grown.
@@ -126,7 +124,7 @@ void ChartBody::active_steps() {
     uint32_t first = end;
     ir::ValueId any;
     while (first > 0 && end - first < size && net_.steps[first - 1].network == network) {
-      any = either(any, build_.load(part(steps_[--first], "X"), kBool));
+      any = either(any, build_.load(part(steps_[--first], "X"), kFlag));
     }
     active_[network] = either(active_[network], any);
     when(any, [&] {
@@ -189,7 +187,7 @@ void ChartBody::transition(uint32_t number) {
   ir::BlockId next = build_.new_block();
   body_.set_line(transition.decl->span);
   for (uint32_t step : transition.from) {
-    go_on_if(build_.load(part(steps_[step], "X"), kBool), true, next);
+    go_on_if(build_.load(part(steps_[step], "X"), kFlag), true, next);
   }
   for (uint32_t step : transition.from) {
     if (spent_[step] != sfc::kNone) go_on_if(is_raised(spent_[step]), false, next);
@@ -256,7 +254,7 @@ void ChartBody::enter_all(uint32_t number) {
 
 void ChartBody::enter(uint32_t step) {
   set_flag(part(steps_[step], "X"));
-  build_.store(part(steps_[step], "T"), kTime, build_.constant(kTime, 0));
+  build_.store(part(steps_[step], "T"), kElapsed, build_.constant(kElapsed, 0));
   raise(entered_[step]);
 }
 
@@ -267,7 +265,7 @@ void ChartBody::starts() {
     uint32_t initial = net_.initial[network];
     if (initial == sfc::kNone) continue;
     body_.set_line(net_.steps[initial].decl->name.span);
-    when(build_.unary(ir::Op::kNot, kBool, active_[network]), [&] { enter(initial); });
+    when(build_.unary(ir::Op::kNot, kFlag, active_[network]), [&] { enter(initial); });
   }
 }
 

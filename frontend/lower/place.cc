@@ -5,16 +5,6 @@
 #include "frontend/sema/common_uses.h"
 
 namespace frontend {
-namespace {
-
-ir::Step step(ir::StepKind kind, uint32_t index = 0) {
-  ir::Step out;
-  out.kind = kind;
-  out.index = index;
-  return out;
-}
-
-}  // namespace
 
 ir::Place Body::local_place(uint32_t local) {
   ir::Place place;
@@ -30,7 +20,7 @@ ir::Place Body::global_place(uint32_t member) {
   ir::Place place;
   place.base = ir::PlaceBase::kGlobal;
   place.base_type = sema_.program.globals;
-  place.steps.push_back(step(ir::StepKind::kMember, member));
+  place.steps.push_back(step_to(ir::StepKind::kMember, member));
   place.type = types()[sema_.program.globals].members[member].type;
   return place;
 }
@@ -48,7 +38,7 @@ ir::Place Body::variable_place(VarId id) {
   ir::Place place = variable.storage == Storage::kLocal ? local_place(variable.index)
                                                         : member_variable_place(variable);
   if (variable.section == VarSection::kInOut && !variable.by_reference) {
-    place.steps.push_back(step(ir::StepKind::kDeref));
+    place.steps.push_back(step_to(ir::StepKind::kDeref));
   }
   place.type = variable.type;
   return place;
@@ -58,7 +48,7 @@ ir::Place Body::member_variable_place(const Variable& variable) {
   ir::Place place;
   place.base = ir::PlaceBase::kSelf;
   place.base_type = info_.self;
-  place.steps.push_back(step(ir::StepKind::kMember, variable.index));
+  place.steps.push_back(step_to(ir::StepKind::kMember, variable.index));
   place.type = variable.type;
   return place;
 }
@@ -111,13 +101,13 @@ ir::Place Body::member_place(const Expr& expr) {
   ir::Place place = this->place(expr.operand);
   if (const PouInfo* block = sema_.pou_of(outer)) {
     const Variable& variable = sema_.resolve(sema_.objects.find_parameter(*block, expr.name.text));
-    place.steps.push_back(step(ir::StepKind::kEnter));
-    place.steps.push_back(step(ir::StepKind::kMember, variable.index));
+    place.steps.push_back(step_to(ir::StepKind::kEnter));
+    place.steps.push_back(step_to(ir::StepKind::kMember, variable.index));
     place.type = variable.type;
     return place;
   }
   uint32_t member = static_cast<uint32_t>(sema_.find_member(outer, expr.name.text));
-  place.steps.push_back(step(ir::StepKind::kMember, member));
+  place.steps.push_back(step_to(ir::StepKind::kMember, member));
   place.type = types()[outer].members[member].type;
   return place;
 }
@@ -126,7 +116,7 @@ ir::Place Body::member_place(const Expr& expr) {
 ir::Place Body::bit_word_place(ExprId structure, const Note& part) {
   ir::Place out = place(structure);
   auto member = static_cast<uint32_t>(part.bit_member);
-  out.steps.push_back(step(ir::StepKind::kMember, member));
+  out.steps.push_back(step_to(ir::StepKind::kMember, member));
   out.type = types()[sema_.infer(structure).type].members[member].type;
   return out;
 }
@@ -136,7 +126,7 @@ ir::Place Body::index_place(const Expr& expr) {
   ir::Place place = this->place(expr.operand);
   for (uint32_t i = 0; i < expr.list.count; ++i) {
     ExprId index = tree_.expr_lists[expr.list.first + i];
-    ir::Step at = step(ir::StepKind::kIndex);
+    ir::Step at = step_to(ir::StepKind::kIndex);
     if (sema_.infer(index).constant) {
       at.constant_index = sema_.fold_integer(index).value_or(0);
     } else {

@@ -4,7 +4,7 @@ namespace frontend {
 namespace {
 
 constexpr ir::Scalar kU64 = ir::Scalar::kU64;
-constexpr ir::Scalar kI64 = ir::Scalar::kI64;
+constexpr ir::Scalar kNumber = ir::Scalar::kI64;
 constexpr ir::Scalar kState = ir::Scalar::kU8;
 
 ir::Place part(ir::Place place, ir::StepKind kind, uint32_t index, ir::TypeId type) {
@@ -40,17 +40,17 @@ void PoolCode::search(const Pool& pool, const PerElement& each) {
   const ir::BlockId inside = build_.new_block();
   const ir::BlockId done = build_.new_block();
   auto constant = [&](int64_t value) {
-    return build_.constant(kI64, static_cast<uint64_t>(value));
+    return build_.constant(kNumber, static_cast<uint64_t>(value));
   };
-  build_.store(counter, kI64, constant(1));
+  build_.store(counter, kNumber, constant(1));
   build_.jump(head);
   build_.start(head);
-  const ir::ValueId now = build_.load(counter, kI64);
-  build_.branch(build_.compare(ir::Op::kLe, kI64, now, constant(pool.count)), inside, done);
+  const ir::ValueId now = build_.load(counter, kNumber);
+  build_.branch(build_.compare(ir::Op::kLe, kNumber, now, constant(pool.count)), inside, done);
   build_.start(inside);
   each(element_at(body_.variable_place(pool.elements), now, sema_.pous[pool.block].self),
        element_at(body_.variable_place(pool.states), now, types().elementary(ir::Kind::kByte)));
-  build_.store(counter, kI64, build_.binary(ir::Op::kAdd, kI64, now, constant(1)));
+  build_.store(counter, kNumber, build_.binary(ir::Op::kAdd, kNumber, now, constant(1)));
   build_.jump(head);
   build_.start(done);
 }

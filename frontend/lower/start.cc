@@ -13,19 +13,12 @@ bool is_implicit(const Name& name) {
   return ir::same_name(name.text, kImplicit[0]) || ir::same_name(name.text, kImplicit[1]);
 }
 
-ir::Step step(ir::StepKind kind, uint32_t index = 0) {
-  ir::Step out;
-  out.kind = kind;
-  out.index = index;
-  return out;
-}
-
 // Element number `flat` of the array `at`.
 ir::Place element(const ir::Place& at, const std::vector<ir::Dimension>& dims, ir::TypeId type,
                   uint64_t flat) {
   ir::Place one = at;
   for (size_t d = dims.size(); d-- > 0; flat /= dims[d].count()) {
-    ir::Step index = step(ir::StepKind::kIndex);
+    ir::Step index = step_to(ir::StepKind::kIndex);
     index.constant_index = dims[d].low + static_cast<int64_t>(flat % dims[d].count());
     one.steps.insert(one.steps.begin() + static_cast<ptrdiff_t>(at.steps.size()), index);
   }
@@ -78,8 +71,8 @@ void StartCode::bind_references(const ir::Place& at, ir::TypeId id, ir::ConstId 
     const ir::ConstId given = sema_.listed(init, i);
     if (!ir::is_structure(type.kind) && !given.valid()) continue;  // a matter of the block
     ir::Place member = at;
-    if (!ir::is_structure(type.kind)) member.steps.push_back(step(ir::StepKind::kEnter));
-    member.steps.push_back(step(ir::StepKind::kMember, i));
+    if (!ir::is_structure(type.kind)) member.steps.push_back(step_to(ir::StepKind::kEnter));
+    member.steps.push_back(step_to(ir::StepKind::kMember, i));
     member.type = type.members[i].type;
     bind_references(member, member.type, given.valid() ? given : type.members[i].init);
   }
@@ -132,7 +125,7 @@ void StartCode::value(const ir::Place& at, ir::TypeId type, const Spec* spec) {
   }
   for (uint32_t i = 0; i < types()[type].members.size(); ++i) {
     ir::Place member = at;
-    member.steps.push_back(step(ir::StepKind::kMember, i));
+    member.steps.push_back(step_to(ir::StepKind::kMember, i));
     member.type = types()[type].members[i].type;
     const Sema::Field* field = sema_.find_field(type, types()[type].members[i].name);
     const bool whole = field != nullptr && field->bit < 0;
@@ -188,7 +181,7 @@ void StartCode::loop(const ir::Place& at, const std::vector<ir::Dimension>& dims
   build_.branch(build_.compare(ir::Op::kLe, kI64, now, constant(dims[number].high)), body, done);
   build_.start(body);
   ir::Place inner = at;
-  inner.steps.push_back(step(ir::StepKind::kIndex));
+  inner.steps.push_back(step_to(ir::StepKind::kIndex));
   inner.steps.back().value = now;
   loop(inner, dims, number + 1, element, each);
   build_.store(counter, kI64, build_.binary(ir::Op::kAdd, kI64, now, constant(1)));
@@ -229,8 +222,8 @@ void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args, boo
   const PouInfo* reinit = code_of(block, kFbReinit);
   ir::Place stamp = at;
   if (block.stamp.valid()) {
-    stamp.steps.push_back(step(ir::StepKind::kEnter));
-    stamp.steps.push_back(step(ir::StepKind::kMember, sema_.resolve(block.stamp).index));
+    stamp.steps.push_back(step_to(ir::StepKind::kEnter));
+    stamp.steps.push_back(step_to(ir::StepKind::kMember, sema_.resolve(block.stamp).index));
     stamp.type = sema_.resolve(block.stamp).type;
   }
   auto is = [&](uint32_t value) {

@@ -87,6 +87,10 @@ struct Element {
   base::SourceSpan span;
 };
 
+inline bool is_rail(const Element& element) {
+  return element.kind == Kind::kLeftRail || element.kind == Kind::kRightRail;
+}
+
 // A rung, or what is drawn together.
 struct Network {
   Text label;                         // a jump may name it; empty: none

@@ -8,7 +8,7 @@
 namespace frontend::network {
 namespace {
 
-constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+constexpr uint32_t kNoNode = std::numeric_limits<uint32_t>::max();
 
 // Element::order, y, x, number.
 using Key = std::tuple<uint32_t, int32_t, int32_t, uint32_t>;
@@ -65,30 +65,30 @@ std::vector<uint32_t> Graph::components() const {
     size_t next;
   };
   const size_t count = edges_.size();
-  std::vector<uint32_t> number(count, kNone), low(count), component(count, kNone), stack;
+  std::vector<uint32_t> number(count, kNoNode), low(count), component(count, kNoNode), stack;
   std::vector<Frame> frames;
   uint32_t numbers = 0, components = 0;
   for (uint32_t root = 0; root < count; ++root) {
-    if (number[root] != kNone) continue;
+    if (number[root] != kNoNode) continue;
     frames.push_back({root, 0});
     while (!frames.empty()) {
       Frame& frame = frames.back();
       const uint32_t at = frame.element;
-      if (frame.next == 0 && number[at] == kNone) {
+      if (frame.next == 0 && number[at] == kNoNode) {
         number[at] = low[at] = numbers++;
         stack.push_back(at);
       }
       if (frame.next < edges_[at].size()) {
         const uint32_t to = edges_[at][frame.next++].to;
-        if (number[to] == kNone) {
+        if (number[to] == kNoNode) {
           frames.push_back({to, 0});
-        } else if (component[to] == kNone) {
+        } else if (component[to] == kNoNode) {
           low[at] = std::min(low[at], number[to]);
         }
         continue;
       }
       if (low[at] == number[at]) {
-        for (uint32_t member = kNone; member != at;) {
+        for (uint32_t member = kNoNode; member != at;) {
           member = stack.back();
           stack.pop_back();
           component[member] = components;

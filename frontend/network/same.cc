@@ -197,10 +197,6 @@ std::string Printer::link(Link link, bool& negated) const {
 
 namespace {
 
-bool is_rail(const Element& element) {
-  return element.kind == Kind::kLeftRail || element.kind == Kind::kRightRail;
-}
-
 }  // namespace
 
 std::vector<Headed> with_heads(const Body& body) {

@@ -6,11 +6,7 @@
 namespace frontend::network {
 namespace {
 
-constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
-
-bool is_rail(const Element& element) {
-  return element.kind == Kind::kLeftRail || element.kind == Kind::kRightRail;
-}
+constexpr uint32_t kNoGroup = std::numeric_limits<uint32_t>::max();
 
 // Union-find.
 class Sets {
@@ -38,7 +34,7 @@ class Splitter {
       : all_(all),
         precedences_(precedences),
         sets_(all.elements.size()),
-        number_(all.elements.size(), kNone) {
+        number_(all.elements.size(), kNoGroup) {
     for (uint32_t i = 0; i < all.elements.size(); ++i) join(i);
     for (Precedence each : precedences) sets_.join(each.first, each.second);
   }
@@ -61,10 +57,10 @@ class Splitter {
   struct Group {
     std::vector<uint32_t> members;  // without rails
     int32_t top = 0;
-    uint32_t first_order = kNone;  // of those that have one
+    uint32_t first_order = kNoGroup;  // of those that have one
     uint32_t last_order = 0;
-    uint32_t left = kNone;  // rails of the drawing
-    uint32_t right = kNone;
+    uint32_t left = kNoGroup;  // rails of the drawing
+    uint32_t right = kNoGroup;
     std::vector<Link> ends;  // what is linked to the right rail
     std::vector<Precedence> precedences;
   };
@@ -79,12 +75,12 @@ class Splitter {
   }
 
   void find_parts() {
-    std::vector<uint32_t> part_of(all_.elements.size(), kNone);  // by set
+    std::vector<uint32_t> part_of(all_.elements.size(), kNoGroup);  // by set
     for (uint32_t i = 0; i < all_.elements.size(); ++i) {
       const Element& element = all_.elements[i];
       if (is_rail(element)) continue;
       uint32_t& index = part_of[sets_.find(i)];
-      if (index == kNone) {
+      if (index == kNoGroup) {
         index = static_cast<uint32_t>(parts_.size());
         parts_.emplace_back();
         parts_.back().top = element.position.y;
@@ -141,12 +137,12 @@ class Splitter {
 
   Part part(const Group& group) {
     Part out;
-    if (group.left != kNone) out.from.push_back(group.left);
+    if (group.left != kNoGroup) out.from.push_back(group.left);
     for (uint32_t member : group.members) {
       number_[member] = static_cast<uint32_t>(out.from.size());
       out.from.push_back(member);
     }
-    if (group.right != kNone) out.from.push_back(group.right);
+    if (group.right != kNoGroup) out.from.push_back(group.right);
     for (uint32_t from : out.from) out.network.elements.push_back(all_.elements[from]);
     for (Element& element : out.network.elements) {
       if (element.kind == Kind::kLeftRail) element.outputs.resize(1);

@@ -17,7 +17,7 @@ constexpr IlOperator conditional(std::string_view word, IlAction action, bool ne
   return {word, action, BinaryOp::kAnd, negated, true};
 }
 
-constexpr IlOperator kOperators[] = {
+constexpr IlOperator kIlOperators[] = {
     plain("LD", IlAction::kLoad),
     {"LDN", IlAction::kLoad, BinaryOp::kAnd, true},
     plain("ST", IlAction::kStore),
@@ -80,12 +80,12 @@ bool one_letter_apart(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::span<const IlOperator> il_operators() { return kOperators; }
+std::span<const IlOperator> il_operators() { return kIlOperators; }
 
 const IlOperator* find_il_operator(std::string_view word) {
   constexpr size_t kLongest = 5;
   if (word.size() > kLongest) return nullptr;
-  for (const IlOperator& op : kOperators) {
+  for (const IlOperator& op : kIlOperators) {
     if (ir::same_name(op.word, word)) return &op;
   }
   return nullptr;
@@ -93,7 +93,7 @@ const IlOperator* find_il_operator(std::string_view word) {
 
 const IlOperator* similar_il_operator(std::string_view word) {
   if (word.size() < 2) return nullptr;
-  for (const IlOperator& op : kOperators) {
+  for (const IlOperator& op : kIlOperators) {
     if (op.word.size() > 1 && one_letter_apart(op.word, word)) return &op;
   }
   return nullptr;

@@ -103,6 +103,12 @@ enum class VarSection : uint8_t {
   kConfig,    // VAR_CONFIG
 };
 
+// Does a call give it, or get it?
+constexpr bool is_parameter(VarSection section) {
+  return section == VarSection::kInput || section == VarSection::kOutput ||
+         section == VarSection::kInOut;
+}
+
 enum class Access : uint8_t { kDefault, kPublic, kPrivate, kProtected, kInternal };
 
 struct VarBlock {

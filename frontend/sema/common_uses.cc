@@ -1,6 +1,7 @@
 // Globals that several RESOURCEs have in common: each is written by one of them, and exchanged.
 #include "frontend/sema/common_uses.h"
 
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 #include "ir/types/location.h"
 #include "ir/types/natural_layout.h"
@@ -8,8 +9,6 @@
 
 namespace frontend {
 namespace {
-
-std::string quoted(const std::string& name) { return "`" + name + "`"; }
 
 void report_writers(const ResourceUses& first, const CommonGlobal& use, const ResourceUses& second,
                     base::SourceSpan also, base::Diagnostics& diagnostics) {

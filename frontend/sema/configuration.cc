@@ -4,6 +4,7 @@
 #include "base/limits.h"
 #include "frontend/sema/instance_paths.h"
 #include "frontend/sema/old_names.h"
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/task_attributes.h"
@@ -11,9 +12,6 @@
 namespace frontend {
 namespace {
 
-constexpr int64_t kDefaultPeriodNs = 10'000'000;
-
-std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
 ir::Task main_task() {
   ir::Task task;

@@ -89,7 +89,7 @@ ir::TypeId signed_holding(const ir::TypeTable& types, uint32_t magnitude_bits) {
   return types.elementary(kind);
 }
 
-constexpr Traits traits_of(Kind kind, Group group) {
+constexpr Traits traits_of_kind(Kind kind, Group group) {
   Traits traits;
   traits.boolean = kind == Kind::kBool;
   traits.bits = group == Group::kBit && kind != Kind::kBool;
@@ -102,7 +102,7 @@ constexpr Traits traits_of(Kind kind, Group group) {
 }
 
 constexpr Traits kTraits[ir::kElementaryCount] = {
-#define ELEMENTARY(id, name, scalar, group) traits_of(Kind::id, Group::group),
+#define ELEMENTARY(id, name, scalar, group) traits_of_kind(Kind::id, Group::group),
 #include "ir/types/elementary.def"
 #undef ELEMENTARY
 };

@@ -33,11 +33,6 @@ ir::Kind instance_kind(PouKind kind) {
   }
 }
 
-bool is_parameter(VarSection section) {
-  return section == VarSection::kInput || section == VarSection::kOutput ||
-         section == VarSection::kInOut;
-}
-
 }  // namespace
 
 void Sema::collect() {

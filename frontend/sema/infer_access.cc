@@ -1,13 +1,12 @@
 // Members and elements.
 #include <algorithm>
 
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 
 namespace {
-
-std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
 }  // namespace
 

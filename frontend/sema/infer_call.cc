@@ -1,12 +1,11 @@
 // Calls: what is called, and what it gives back.
 #include <algorithm>
 
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 namespace {
-
-std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
 // C of A.B.C
 std::string_view last_name(const Name& path) {

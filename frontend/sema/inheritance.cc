@@ -4,12 +4,11 @@
 #include "base/limits.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/query_interface.h"
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 namespace {
-
-std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
 bool is_block(PouKind kind) { return kind == PouKind::kFunctionBlock || kind == PouKind::kClass; }
 

@@ -1,11 +1,10 @@
 // What `x.name` and `name()` mean where blocks, interfaces and bases have members with code.
 #include "frontend/sema/objects.h"
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 namespace {
-
-std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 
 #include "base/limits.h"
 #include "frontend/lex/pragma.h"
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -16,8 +17,6 @@ bool names_pou(ir::Op op) {
 }
 
 constexpr std::string_view kGlobalsName = "VAR_GLOBAL";
-
-std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
 }  // namespace
 

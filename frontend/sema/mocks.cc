@@ -1,11 +1,10 @@
 // What a build for tests adds to POUs that tests replace: whether a mock is active, how often
 // the POU was called, and for functions the value to return.
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 namespace {
-
-std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
 uint32_t add_mock_global(ir::Type& globals, const std::string& name, ir::TypeId type) {
   ir::Member member;

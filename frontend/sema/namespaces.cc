@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 #include "stdlib/registry.h"
 
@@ -32,8 +33,6 @@ bool is_inside(std::string_view path, std::string_view of) {
   if (path.size() > of.size() && path[of.size()] == '.') path = path.substr(0, of.size());
   return ir::same_name(path, of);
 }
-
-std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
 }  // namespace
 

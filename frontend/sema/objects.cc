@@ -1,13 +1,12 @@
 // Members with code, and what names mean in a block with bases.
 #include "frontend/sema/objects.h"
 
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 namespace {
-
-std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
 std::string code_name(const std::string& block, const PouDecl& decl) {
   std::string name = block + "." + std::string(decl.name.text);

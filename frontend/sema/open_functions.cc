@@ -12,11 +12,6 @@ constexpr std::string_view kGenericNames[] = {
     "ANY_CHAR", "ANY_STRING",     "ANY_DATE",      "ANY_DURATION", "ANY_DERIVED",
 };
 
-bool is_parameter(const VarBlock& block) {
-  return block.section == VarSection::kInput || block.section == VarSection::kOutput ||
-         block.section == VarSection::kInOut;
-}
-
 // The hierarchy of generic types (edition 3, figure 5).
 bool belongs(const ir::TypeTable& types, std::string_view group, ir::TypeId type) {
   Traits t = traits_of(types, type);
@@ -50,7 +45,7 @@ bool Sema::is_generic_name(std::string_view name) const {
 bool Sema::is_open(const PouDecl& decl) const {
   if (decl.kind != PouKind::kFunction) return false;
   for (const VarBlock& block : decl.blocks) {
-    if (!is_parameter(block)) continue;
+    if (!is_parameter(block.section)) continue;
     for (const VarDecl& variable : block.vars) {
       if (!variable.spec.valid()) continue;
       const Spec& spec = tree[variable.spec];

@@ -12,11 +12,6 @@ constexpr uint32_t kLossless = 4;
 constexpr uint32_t kOtherClass = 16;
 constexpr uint32_t kNarrowing = 64;
 
-bool is_parameter(VarSection section) {
-  return section == VarSection::kInput || section == VarSection::kOutput ||
-         section == VarSection::kInOut;
-}
-
 bool literal_fits(const Traits& to, Flex flex) {
   switch (flex) {
     case Flex::kInteger:

@@ -1,19 +1,13 @@
 // What a block must have and may replace: abstract methods, methods of interfaces, OVERRIDE.
 #include "frontend/sema/objects.h"
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 namespace {
 
-std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
-
 std::string full_name(const PouInfo& owner, const Name& name) {
   return "`" + std::string(owner.decl->name.text) + "." + std::string(name.text) + "`";
-}
-
-bool is_parameter(VarSection section) {
-  return section == VarSection::kInput || section == VarSection::kOutput ||
-         section == VarSection::kInOut;
 }
 
 // Which of the three a member is.

@@ -8,7 +8,7 @@
 namespace frontend {
 namespace {
 
-constexpr std::string_view kAttribute = "pool";
+constexpr std::string_view kPoolAttribute = "pool";
 constexpr uint32_t kMostElements = 65'535;
 
 }  // namespace
@@ -18,7 +18,7 @@ void Pools::declare() {
   const size_t count = sema_.pous.size();
   for (size_t i = 0; i < count; ++i) {
     const PouInfo& info = sema_.pous[i];
-    const Attribute* attribute = sema_.tree.find_attribute(info.decl->attributes, kAttribute);
+    const Attribute* attribute = sema_.tree.find_attribute(info.decl->attributes, kPoolAttribute);
     if (attribute == nullptr || info.library || info.owner != kNoPou) continue;
     const bool block = info.self.valid() && info.id.valid() &&
                        sema_.program.types[info.self].kind == ir::Kind::kFunctionBlock;
@@ -33,7 +33,7 @@ void Pools::declare() {
     add(name, info.self, info.number, false, count_of(*attribute));
   }
   for (const TypeDecl& decl : sema_.tree.types) {
-    const Attribute* attribute = sema_.tree.find_attribute(decl.attributes, kAttribute);
+    const Attribute* attribute = sema_.tree.find_attribute(decl.attributes, kPoolAttribute);
     if (attribute != nullptr && !sema_.in_library(decl.name.span)) add_type(decl, *attribute);
   }
 }

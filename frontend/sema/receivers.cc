@@ -1,11 +1,10 @@
 // Whose member is meant: THIS, SUPER, instances, references, interface variables.
 #include "frontend/sema/objects.h"
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 namespace {
-
-std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
 }  // namespace
 

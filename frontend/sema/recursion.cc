@@ -8,7 +8,7 @@
 namespace frontend {
 namespace {
 
-constexpr std::string_view kAttribute = "recursion_depth";
+constexpr std::string_view kRecursionDepth = "recursion_depth";
 
 struct Frame {
   uint32_t pou;
@@ -18,7 +18,7 @@ struct Frame {
 }  // namespace
 
 uint32_t Objects::recursion_depth(const PouDecl& decl) {
-  const Attribute* attribute = sema_.tree.find_attribute(decl.attributes, kAttribute);
+  const Attribute* attribute = sema_.tree.find_attribute(decl.attributes, kRecursionDepth);
   if (attribute == nullptr) return 0;
   uint32_t depth = 0;
   const char* end = attribute->value.data() + attribute->value.size();

@@ -7,6 +7,7 @@
 #include "frontend/lex/characters.h"
 #include "frontend/lex/pragma.h"
 #include "frontend/sema/names.h"
+#include "frontend/sema/quoted.h"
 #include "ir/types/old_names.h"
 #include "ir/types/types.h"
 
@@ -14,8 +15,6 @@ namespace frontend {
 namespace {
 
 using Code = base::DiagnosticCode;
-
-std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
 bool is_number(std::string_view text) {
   if (!text.empty() && text[0] == '-') text.remove_prefix(1);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "frontend/sema/old_names.h"
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
 #include "ir/types/old_names.h"
@@ -14,8 +15,6 @@ constexpr uint32_t kBitsPerByte = 8;
 
 // Names that the byte of renamed BIT members may have had. The rest are not tried.
 constexpr size_t kMostBitNames = 64;
-
-std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
 std::string joined_bits(const std::vector<std::string>& names, size_t count) {
   std::string out;

@@ -5,13 +5,12 @@
 
 #include "base/limits.h"
 #include "frontend/lex/literals.h"
+#include "frontend/sema/quoted.h"
 
 namespace frontend {
 namespace {
 
 using Code = base::DiagnosticCode;
-
-std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
 void apply_watchdog(Sema& sema, const TaskDecl& decl, const Attribute& attribute, ir::Task& task) {
   const DecodedTime time = decode_duration(attribute.value);

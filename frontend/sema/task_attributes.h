@@ -6,6 +6,8 @@
 
 namespace frontend {
 
+inline constexpr int64_t kDefaultPeriodNs = 10'000'000;  // of a task that says none
+
 // Reports values that are none (E5009); attributes with other names are somebody else's.
 void apply_task_attributes(Sema& sema, const TaskDecl& decl, ir::Task& task);
 

@@ -1,4 +1,5 @@
 // TASK: when the programs run.
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/task_attributes.h"
 #include "ir/types/longest_time.h"
@@ -6,10 +7,7 @@
 namespace frontend {
 namespace {
 
-constexpr int64_t kDefaultPeriodNs = 10'000'000;
 constexpr int64_t kMaxPriority = 65535;
-
-std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
 }  // namespace
 

@@ -8,7 +8,7 @@ namespace frontend {
 namespace {
 
 // Chains of declarations that need each other; keeps hostile ones off the stack.
-constexpr uint32_t kMaxChain = 500;
+constexpr uint32_t kMaxTypeChain = 500;
 constexpr uint64_t kMaxElements = base::kMaxTypeBytes;
 
 }  // namespace
@@ -24,7 +24,7 @@ TypeUse Sema::resolve(SpecId id) {
           "break the circle; a type cannot contain itself");
     return {};
   }
-  if (depth_ >= kMaxChain) {
+  if (depth_ >= kMaxTypeChain) {
     error(DiagnosticCode::kTooDeep, spec.span, "types depend on each other too deeply");
     return {};
   }

@@ -2,14 +2,13 @@
 #include <utility>
 
 #include "frontend/parse/il_operators.h"
+#include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 namespace {
 
-constexpr uint32_t kMaxChain = 500;
-
-std::string quoted(const Name& name) { return "`" + std::string(name.text) + "`"; }
+constexpr uint32_t kMaxVariableChain = 500;
 
 }  // namespace
 
@@ -31,7 +30,7 @@ VarId Sema::find_variable(const Expr& name) {
 
 const Variable& Sema::resolve_now(VarId id) {
   Variable& variable = variables_[id.index];
-  if (variable.progress == Progress::kBusy || depth_ >= kMaxChain) {
+  if (variable.progress == Progress::kBusy || depth_ >= kMaxVariableChain) {
     if (!variable.type.valid() || variable.constant) {
       error(DiagnosticCode::kRecursiveConstant, variable.name.span,
             quoted(variable.name) + " is needed to know its own type or value");

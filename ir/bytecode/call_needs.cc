@@ -6,7 +6,7 @@
 namespace ir {
 namespace {
 
-constexpr uint32_t kNone = 0xffffffffu;
+constexpr uint32_t kNotYet = 0xffffffffu;
 
 // A node on the way down and its next callee.
 struct Visit {
@@ -50,15 +50,15 @@ class Measurer {
   explicit Measurer(const std::vector<CallNode>& nodes)
       : nodes_(nodes),
         needs_(nodes.size()),
-        group_(nodes.size(), kNone),
-        number_(nodes.size(), kNone),
+        group_(nodes.size(), kNotYet),
+        number_(nodes.size(), kNotYet),
         low_(nodes.size()),
         chains_(nodes.size()),
         has_chain_(nodes.size(), false) {}
 
   std::vector<CallNeeds> run() {
     for (uint32_t node = 0; node < nodes_.size(); ++node) {
-      if (number_[node] == kNone) visit(node);
+      if (number_[node] == kNotYet) visit(node);
     }
     return std::move(needs_);
   }
@@ -72,9 +72,9 @@ class Measurer {
       const uint32_t node = top.node;
       if (top.next < nodes_[node].callees.size()) {
         const uint32_t callee = nodes_[node].callees[top.next++];
-        if (number_[callee] == kNone) {
+        if (number_[callee] == kNotYet) {
           open(callee);
-        } else if (group_[callee] == kNone) {
+        } else if (group_[callee] == kNotYet) {
           low_[node] = std::min(low_[node], number_[callee]);
         }
         continue;
@@ -166,7 +166,7 @@ class Measurer {
 
   const std::vector<CallNode>& nodes_;
   std::vector<CallNeeds> needs_;
-  std::vector<uint32_t> group_;   // number of a member; kNone: not complete
+  std::vector<uint32_t> group_;   // number of a member; kNotYet: not complete
   std::vector<uint32_t> number_;  // in order of the first visit
   std::vector<uint32_t> low_;
   std::vector<uint32_t> stack_;

@@ -17,9 +17,9 @@ constexpr const char* kTrapNames[] = {
 #undef TRAP
 };
 
-class Disassembler {
+class ImageDisassembler {
  public:
-  Disassembler(const Image& image, const LinkedPou& pou) : image_(image), pou_(pou) {}
+  ImageDisassembler(const Image& image, const LinkedPou& pou) : image_(image), pou_(pou) {}
 
   std::string text() {
     std::string out = pou_.name + ": frame " + std::to_string(pou_.frame_size) + " bytes\n";
@@ -154,7 +154,7 @@ class Disassembler {
 }  // namespace
 
 std::string disassemble(const Image& image, const LinkedPou& pou) {
-  return Disassembler(image, pou).text();
+  return ImageDisassembler(image, pou).text();
 }
 
 }  // namespace ir

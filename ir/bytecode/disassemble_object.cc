@@ -5,9 +5,9 @@
 namespace ir {
 namespace {
 
-class Disassembler {
+class ObjectDisassembler {
  public:
-  Disassembler(const Object& object, const Program& program)
+  ObjectDisassembler(const Object& object, const Program& program)
       : object_(object), program_(program), types_(program.types) {}
 
   std::string text() {
@@ -187,7 +187,7 @@ class Disassembler {
 }  // namespace
 
 std::string disassemble(const Object& object, const Program& program) {
-  return Disassembler(object, program).text();
+  return ObjectDisassembler(object, program).text();
 }
 
 }  // namespace ir

@@ -56,7 +56,7 @@ class NameIndex {
 };
 
 // Made once from opcodes.def, then constant.
-struct Tables {
+struct OpcodeTables {
   NameIndex names;
   ClassRow move = names.by_class("MOV_");
   ClassRow conditional_move = names.by_class("CMOV_");
@@ -101,8 +101,8 @@ struct Tables {
   ScalarGrid bits = names.by_pair("BITS_", "_", kWidth);
 };
 
-const Tables& tables() {
-  static const Tables made;
+const OpcodeTables& tables() {
+  static const OpcodeTables made;
   return made;
 }
 
@@ -110,7 +110,7 @@ constexpr uint32_t at(Scalar scalar) { return static_cast<uint32_t>(scalar); }
 constexpr uint32_t at(Class cls) { return static_cast<uint32_t>(cls); }
 
 const ScalarRow* row_of(Op op) {
-  const Tables& t = tables();
+  const OpcodeTables& t = tables();
   switch (op) {
     case Op::kAdd:
       return &t.add;
@@ -179,7 +179,7 @@ Opcode check_range_opcode(Scalar scalar) { return tables().check[at(scalar)]; }
 Opcode switch_opcode(Scalar scalar) { return tables().switch_on[at(scalar)]; }
 Opcode check_step_opcode(Scalar scalar) { return tables().check_step[at(scalar)]; }
 Opcode extend_opcode(Scalar from, Scalar to) {
-  const Tables& t = tables();
+  const OpcodeTables& t = tables();
   return (is_signed(from) ? t.sign_extend : t.zero_extend)[at(from)][at(to)];
 }
 Opcode narrow_opcode(Scalar from, Scalar to) { return tables().narrow[at(from)][at(to)]; }

@@ -10,7 +10,7 @@
 namespace ir::opt {
 namespace {
 
-constexpr int kRounds = 3;
+constexpr int kBranchRounds = 3;
 constexpr int kMaxHops = 16;  // through jumps to jumps
 
 class Branches {
@@ -19,7 +19,7 @@ class Branches {
 
   bool run() {
     bool any = false;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kBranchRounds; ++round) {
       uses_.clear();
       find_handlers();
       find_positions();

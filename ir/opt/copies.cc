@@ -7,7 +7,7 @@
 namespace ir::opt {
 namespace {
 
-constexpr int kRounds = 3;  // one parameter may wait for another
+constexpr int kCopyRounds = 3;  // one parameter may wait for another
 
 class Copies {
  public:
@@ -15,7 +15,7 @@ class Copies {
 
   bool run() {
     bool changed = true;
-    for (int round = 0; round < kRounds && changed; ++round) {
+    for (int round = 0; round < kCopyRounds && changed; ++round) {
       changed = false;
       found_.assign(pou_.values.size(), {});
       for (const Block& block : pou_.blocks) {

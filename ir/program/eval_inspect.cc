@@ -34,13 +34,6 @@ std::optional<uint64_t> flat_index(const Type& array, std::string_view text) {
   return flat;
 }
 
-uint64_t element_count(const Type& array) {
-  uint64_t count = 1;
-  for (const Dimension& dim : array.dims) {
-    count *= dim.count();
-  }
-  return count;
-}
 
 }  // namespace
 
@@ -220,7 +213,7 @@ void EvalInspector::append_state(const std::string& path, const Address& at,
     return;
   }
   if (type.kind == Kind::kArray) {
-    for (uint64_t i = 0; i < element_count(type); ++i) {
+    for (uint64_t i = 0; i < type.element_count(); ++i) {
       append_state(path + index_text(type, i), part_of(at, i), out);
     }
   } else if (program_.types.has_members(at.type)) {

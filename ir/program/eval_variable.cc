@@ -13,14 +13,6 @@ bool is_string(Kind kind) { return kind == Kind::kString || kind == Kind::kWstri
 
 size_t unit_of(const Type& type) { return type.kind == Kind::kWstring ? 2 : 1; }
 
-uint64_t element_count(const Type& type) {
-  uint64_t count = 1;
-  for (const Dimension& dim : type.dims) {
-    count *= dim.count();
-  }
-  return count;
-}
-
 size_t find_nul(std::string_view text, size_t unit) {
   for (size_t at = 0; at + unit <= text.size(); at += unit) {
     if (text.substr(at, unit).find_first_not_of('\0') == std::string_view::npos) {
@@ -67,7 +59,7 @@ Variable Variables::make_member(const Type& owner, uint32_t index, ConstId init)
 }
 
 void Variables::make_elements(const Type& array, ConstId init, Variable& variable) const {
-  variable.parts.assign(element_count(array), make(array.base));
+  variable.parts.assign(array.element_count(), make(array.base));
   for (const ConstId list : {array.init, init}) {
     if (!list.valid()) {
       continue;

@@ -19,7 +19,7 @@ TypeId literal_type(Scalar scalar) {
   return TypeId(static_cast<uint32_t>(kKinds[static_cast<size_t>(scalar)]));
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_decimal(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
 
@@ -30,13 +30,13 @@ Scalar result_scalar(const Inst& inst) {
 }
 
 bool is_word_byte(char c) {
-  return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+  return is_decimal(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
          static_cast<uint8_t>(c) >= 0x80;
 }
 
 std::string name_text(std::string_view name) {
   const bool word =
-      !name.empty() && !is_digit(name[0]) && std::all_of(name.begin(), name.end(), is_word_byte);
+      !name.empty() && !is_decimal(name[0]) && std::all_of(name.begin(), name.end(), is_word_byte);
   return word ? std::string(name) : string_text(name);
 }
 

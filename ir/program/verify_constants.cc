@@ -3,15 +3,11 @@
 namespace ir {
 namespace {
 
-uint64_t element_count(const Type& type) {
+uint64_t value_count(const Type& type) {
   if (type.kind != Kind::kArray) {
     return type.members.size();
   }
-  uint64_t count = 1;
-  for (const Dimension& dim : type.dims) {
-    count *= dim.count();
-  }
-  return count;
+  return type.element_count();
 }
 
 std::string name(ConstId id) { return "constant #" + std::to_string(id.index); }
@@ -44,7 +40,7 @@ base::Status ConstantCheck::push_elements(const Pair& pair) {
                             : not_verified(name(pair.constant) + " has elements, but is for " +
                                            types_.text(pair.type));
   }
-  const uint64_t count = element_count(type);
+  const uint64_t count = value_count(type);
   for (const ConstElement& element : elements) {
     if (uint64_t{element.first} + element.count > count || element.count == 0 ||
         (type.kind != Kind::kArray && element.count != 1)) {

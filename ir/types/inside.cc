@@ -3,11 +3,10 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "ir/types/natural_layout.h"
 
 namespace ir {
 namespace {
-
-constexpr uint32_t kSlotBytes = 4;
 
 uint32_t member_size(const Layouts& layouts, const Member& member) {
   return member.section == Section::kInOut ? kSlotBytes : layouts[member.type].size;

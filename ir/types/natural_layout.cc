@@ -6,8 +6,6 @@
 namespace ir {
 namespace {
 
-constexpr uint32_t kSlotBytes = 4;
-
 // What is larger than any memory stays so: types of an image are as large as it says.
 uint32_t saturated(uint64_t bytes) {
   return static_cast<uint32_t>(std::min<uint64_t>(bytes, std::numeric_limits<uint32_t>::max()));

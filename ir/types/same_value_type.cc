@@ -6,7 +6,7 @@
 namespace ir {
 namespace {
 
-constexpr uint32_t kMaxDepth = 1000;
+constexpr uint32_t kMaxComparedDepth = 1000;
 
 struct Side {
   const TypeTable& types;
@@ -55,7 +55,7 @@ bool same(const Side& old_side, TypeId old_type, const Side& new_side, TypeId ne
           uint32_t depth) {
   const Type& a = old_side.types[old_type];
   const Type& b = new_side.types[new_type];
-  if (a.kind != b.kind || depth > kMaxDepth || !same_name(a.name, b.name)) return false;
+  if (a.kind != b.kind || depth > kMaxComparedDepth || !same_name(a.name, b.name)) return false;
   switch (a.kind) {
     case Kind::kString:
     case Kind::kWstring:

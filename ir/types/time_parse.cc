@@ -80,17 +80,17 @@ std::optional<std::string_view> behind_prefix(std::string_view text,
   return std::nullopt;
 }
 
-struct Part {
+struct DurationPart {
   uint64_t ns = 0;
   const TimeUnit* unit = nullptr;
   bool last = false;  // only the smallest unit may have a fraction
 };
 
 // The fraction stands before its unit, so the unit is found first on a copy.
-std::optional<Part> parse_part(Cursor& cursor) {
+std::optional<DurationPart> parse_part(Cursor& cursor) {
   const std::optional<uint64_t> whole = cursor.number();
   if (!whole) return std::nullopt;
-  Part part;
+  DurationPart part;
   Cursor digits = cursor;
   if (cursor.take('.')) {
     part.last = true;
@@ -111,7 +111,7 @@ std::optional<uint64_t> parse_parts(Cursor cursor) {
   uint64_t sum = 0;
   const TimeUnit* previous = nullptr;
   do {
-    const std::optional<Part> part = parse_part(cursor);
+    const std::optional<DurationPart> part = parse_part(cursor);
     if (!part || (previous != nullptr && part->unit <= previous)) return std::nullopt;
     sum += part->ns;
     if (sum > uint64_t{1} << 63) return std::nullopt;

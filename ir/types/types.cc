@@ -44,6 +44,12 @@ std::string dimensions_text(const std::vector<Dimension>& dims) {
 
 }  // namespace
 
+uint64_t Type::element_count() const {
+  uint64_t count = 1;
+  for (const Dimension& dim : dims) count *= dim.count();
+  return count;
+}
+
 std::string_view scalar_name(Scalar scalar) { return kScalarNames[static_cast<size_t>(scalar)]; }
 std::string_view elementary_name(Kind kind) {
   return is_elementary(kind) ? row(kind).name : std::string_view();

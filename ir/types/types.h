@@ -157,6 +157,9 @@ struct Type {
   std::vector<TypeId> interfaces;
   ConstId init;  // default initial value when it is not all zero
   OldNameId old_name;
+
+  // Of an array, over all dimensions.
+  uint64_t element_count() const;
 };
 
 class TypeTable {

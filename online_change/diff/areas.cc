@@ -7,7 +7,6 @@
 namespace online_change {
 namespace {
 
-constexpr uint32_t kMaxDepth = base::kMaxNesting + 1;  // no verified image has more
 
 std::string index_text(const std::vector<ir::Dimension>& dims, uint64_t flat) {
   std::string text;
@@ -118,7 +117,7 @@ std::optional<Node> Areas::descend(uint32_t offset, std::string* path) const {
   if (path != nullptr) *path = image_.instance_path(*id);
   std::optional<Node> node =
       child_at({image_.instances[*id].type, begin(*id), false}, offset, path);
-  for (uint32_t depth = 0; node && depth < kMaxDepth; ++depth) {
+  for (uint32_t depth = 0; node && depth < base::kMaxTypeDepth; ++depth) {
     ir::Kind kind = image_.types[node->type].kind;
     bool has_parts = kind == ir::Kind::kArray || has_own_parts(image_.types, node->type);
     if (!has_parts || node->in_out) return node;
@@ -131,7 +130,7 @@ bool Areas::is_array_of(uint32_t offset, ir::TypeId element, uint32_t count) con
   std::optional<uint32_t> id = instance_at(offset);
   if (!id) return false;
   std::optional<Node> node = Node{image_.instances[*id].type, begin(*id), false};
-  for (uint32_t depth = 0; node && !node->in_out && depth < kMaxDepth; ++depth) {
+  for (uint32_t depth = 0; node && !node->in_out && depth < base::kMaxTypeDepth; ++depth) {
     const ir::Type& type = image_.types[node->type];
     if (type.kind == ir::Kind::kArray && type.base == element) {
       uint32_t stride = image_.layouts[element].size;

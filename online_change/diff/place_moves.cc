@@ -15,7 +15,6 @@ namespace {
 
 using ir::TypeId;
 
-constexpr uint32_t kMaxDepth = base::kMaxNesting + 1;  // no verified image has more
 
 std::unordered_map<std::string, uint32_t> members_by_name(const ir::Type& type) {
   std::unordered_map<std::string, uint32_t> out;
@@ -97,9 +96,9 @@ class PlaceMoves::Maker {
     const bool structures = has_own_parts(old_.types, from) && has_own_parts(new_.types, to);
     const ir::Type& old_type = old_.types[from];
     const ir::Type& new_type = new_.types[to];
-    if (depth < kMaxDepth && structures) {
+    if (depth < base::kMaxTypeDepth && structures) {
       structure(pair, from, to, depth);
-    } else if (depth < kMaxDepth && old_type.kind == ir::Kind::kArray &&
+    } else if (depth < base::kMaxTypeDepth && old_type.kind == ir::Kind::kArray &&
                new_type.kind == ir::Kind::kArray && old_type.dims.size() == new_type.dims.size()) {
       array(pair, old_type, new_type, depth);
     } else {
@@ -241,7 +240,7 @@ Followed PlaceMoves::follow(uint64_t handle, Target target) const {
     number = moved->pair;
     depth = 1;
   }
-  for (; depth <= kMaxDepth + 1; ++depth) {
+  for (; depth <= base::kMaxTypeDepth + 1; ++depth) {
     const Pair& pair = pairs_[number];
     const bool whole = depth > 0 && rest == 0 && pair.old_name == target.name;
     if (whole && pair.new_name == target.name) {
@@ -283,7 +282,7 @@ class LeafFinder {
     const auto found = known.find(type.index);
     if (found != known.end()) return found->second;
     std::vector<ReferenceLeaf> out;
-    if (depth < kMaxDepth) find(type, area, depth, out);
+    if (depth < base::kMaxTypeDepth) find(type, area, depth, out);
     return known[type.index] = std::move(out);
   }
 

@@ -10,7 +10,7 @@ namespace {
 
 using ir::Member;
 
-struct Group {  // of one type
+struct Candidates {  // of one type
   std::vector<const Member*> gone;
   std::vector<const Member*> came;
 };
@@ -47,7 +47,7 @@ void TypeDiffer::propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId
   for (const FateRow& row : diff.rows) {
     if (row.fate == Fate::kDropped && !row.may_lose) goes_on.insert(row.path);
   }
-  std::map<std::string, Group> groups;
+  std::map<std::string, Candidates> groups;
   for (const Member* member : only_here(old_.types[old_type], new_.types[new_type])) {
     const std::string path = "." + member->name;
     if (goes_on.contains(path) || diff.moved.contains(path)) continue;

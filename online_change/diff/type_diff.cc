@@ -20,7 +20,6 @@ using ir::TypeId;
 constexpr const char* kBecomesConstant = "constant";
 constexpr const char* kBecomesInput = "an input now";
 
-constexpr uint32_t kMaxDepth = base::kMaxNesting + 1;  // no verified image has more
 
 // Members by name; a program may have very many.
 class MemberNames {
@@ -97,7 +96,7 @@ const TypeDiff& TypeDiffer::area(TypeId old_type, TypeId new_type) {
 const TypeDiff& TypeDiffer::value(TypeId old_type, TypeId new_type) {
   auto found = values_.find({old_type, new_type});
   if (found != values_.end()) return *found->second;
-  if (depth_ >= kMaxDepth) failed_ = true;
+  if (depth_ >= base::kMaxTypeDepth) failed_ = true;
   ++depth_;
   auto diff = std::make_unique<TypeDiff>(failed_ ? TypeDiff{} : compare_values(old_type, new_type));
   --depth_;
@@ -109,7 +108,7 @@ uint64_t TypeDiffer::leaves(const ir::Image& image, TypeId type) {
   if (!has_parts) return 1;
   auto found = leaves_.find({&image, type});
   if (found != leaves_.end()) return found->second;
-  if (depth_ >= kMaxDepth) {
+  if (depth_ >= base::kMaxTypeDepth) {
     failed_ = true;
     return 0;
   }

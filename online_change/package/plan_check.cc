@@ -13,7 +13,6 @@
 namespace online_change {
 namespace {
 
-constexpr uint32_t kMaxDepth = base::kMaxNesting + 1;  // no verified image has more
 
 bool is_area(const ir::Image& image, Node node) {
   return image.types[node.type].kind == ir::Kind::kGlobals;
@@ -210,7 +209,9 @@ bool PlanCheck::check_area(uint32_t id) {
 }
 
 bool PlanCheck::check_node(Node node, uint32_t depth) {
-  if (depth > kMaxDepth || is_area(new_, node)) return fail(node.begin, "is nested too deeply");
+  if (depth > base::kMaxTypeDepth || is_area(new_, node)) {
+    return fail(node.begin, "is nested too deeply");
+  }
   uint64_t end = uint64_t{node.begin} + size_of(node);
   const std::optional<Target> first = first_behind(node.begin);
   if (!first || first->to >= end) return check_carried(node, node.begin, depth);
@@ -316,7 +317,7 @@ bool PlanCheck::check_conversion(Node node, const Target& target, uint32_t depth
 }
 
 bool PlanCheck::check_carried(Node node, uint32_t from, uint32_t depth) {
-  if (depth > kMaxDepth) return fail(node.begin, "is nested too deeply");
+  if (depth > base::kMaxTypeDepth) return fail(node.begin, "is nested too deeply");
   Fit fit = fit_.value_at(from, node);
   if (fit == Fit::kYes) return true;
   if (fit == Fit::kYesButSlots && old_data_.equal(from, new_data_, node.begin, size_of(node))) {

@@ -13,7 +13,6 @@ namespace {
 using ir::Kind;
 using ir::TypeId;
 
-constexpr uint32_t kMaxDepth = base::kMaxNesting + 1;  // no verified image has more
 
 uint64_t element_count(const ir::Type& array) {
   uint64_t count = 1;
@@ -33,7 +32,7 @@ Fit TypeFit::value_at(uint32_t from, Node node) {
   if (!id) return Fit::kNo;
   std::optional<Node> at =
       areas_.child_at({old_.instances[*id].type, areas_.begin(*id), false}, from);
-  for (uint32_t depth = 0; at && depth < kMaxDepth; ++depth) {
+  for (uint32_t depth = 0; at && depth < base::kMaxTypeDepth; ++depth) {
     if (at->in_out || node.in_out) {
       bool alike = at->in_out && node.in_out && at->begin == from;
       if (alike && values(at->type, node.type) != Fit::kNo) return Fit::kYes;
@@ -66,7 +65,7 @@ Fit TypeFit::area_at(uint32_t from, TypeId type) {
 Fit TypeFit::values(TypeId old_type, TypeId new_type) {
   auto found = values_.find({old_type, new_type});
   if (found != values_.end()) return found->second;
-  if (depth_ >= kMaxDepth) return Fit::kNo;
+  if (depth_ >= base::kMaxTypeDepth) return Fit::kNo;
   ++depth_;
   Fit fit = compare_values(old_type, new_type);
   --depth_;

@@ -7,7 +7,7 @@
 namespace online_change {
 namespace {
 
-class Edits {
+class DeviceEdits {
  public:
   void removed(const ir::Device& device) { add(device, "removed"); }
   void added(const ir::Device& device) { add(device, "new, " + device.driver); }
@@ -65,7 +65,7 @@ const ir::Device* find(const std::vector<ir::Device>& devices, const std::string
 }  // namespace
 
 std::vector<SystemEdit> device_edits(const ir::Image& old_image, const ir::Image& new_image) {
-  Edits edits;
+  DeviceEdits edits;
   for (const ir::Device& device : new_image.devices) {
     const ir::Device* before = find(old_image.devices, device.name);
     if (before == nullptr) {

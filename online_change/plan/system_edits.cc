@@ -21,9 +21,9 @@ std::string from_to(const std::string& before, const std::string& after) {
   return before + " -> " + after;
 }
 
-class Edits {
+class SystemEdits {
  public:
-  Edits(const ir::Image& old_image, const ir::Image& new_image)
+  SystemEdits(const ir::Image& old_image, const ir::Image& new_image)
       : old_(old_image),
         new_(new_image),
         old_natural_(ir::natural_layouts(old_image.types)),
@@ -270,7 +270,7 @@ class Edits {
 
 std::vector<SystemEdit> system_edits(const ir::Image& old_image, const ir::Image& new_image) {
   const ir::OldUnderNewNames old(old_image, new_image);
-  return Edits(old.image(), new_image).run();
+  return SystemEdits(old.image(), new_image).run();
 }
 
 }  // namespace online_change

@@ -9,7 +9,7 @@
 namespace online_change {
 namespace {
 
-constexpr uint32_t kMagic = 0x314e524a;  // "JRN1"
+constexpr uint32_t kJournalMagic = 0x314e524a;  // "JRN1"
 constexpr size_t kChecksumAt = kSectorBytes - 4;
 
 constexpr const char* kEventNames[] = {
@@ -50,7 +50,7 @@ const char* event_name(Event event) { return kEventNames[static_cast<size_t>(eve
 
 base::Bytes encode(const JournalEntry& entry) {
   base::ByteWriter out;
-  out.u32(kMagic);
+  out.u32(kJournalMagic);
   out.u64(entry.sequence);
   out.i64(entry.time_ns);
   out.u8(static_cast<uint8_t>(entry.event));
@@ -74,7 +74,7 @@ std::optional<JournalEntry> decode_entry(base::ByteSpan sector) {
   base::ByteReader tail(sector.subspan(kChecksumAt));
   if (base::crc32c(sector.first(kChecksumAt)) != tail.u32()) return std::nullopt;
   base::ByteReader in(sector.first(kChecksumAt));
-  if (in.u32() != kMagic) return std::nullopt;
+  if (in.u32() != kJournalMagic) return std::nullopt;
   JournalEntry entry;
   entry.sequence = in.u64();
   entry.time_ns = in.i64();

@@ -8,11 +8,11 @@
 namespace online_change {
 namespace {
 
-constexpr uint64_t kMagic = 0x44524f4345524353;  // "SCRECORD"
+constexpr uint64_t kRecordMagic = 0x44524f4345524353;  // "SCRECORD"
 constexpr uint32_t kVersion = 1;
 // The payload is of two parts, and the hash one of their hashes: the second one's is often known.
 constexpr uint32_t kInParts = 2;
-constexpr size_t kChecksumAt = kSectorBytes - 4;  // of all bytes before it
+constexpr size_t kRecordChecksumAt = kSectorBytes - 4;  // of all bytes before it
 
 struct Header {
   RecordKind kind{};
@@ -36,10 +36,10 @@ bool is_intact(const Header& header, base::ByteSpan payload) {
 
 bool decode(base::ByteSpan sector, Header& out) {
   if (sector.size() != kSectorBytes) return false;
-  base::ByteReader tail(sector.subspan(kChecksumAt));
-  if (base::crc32c(sector.first(kChecksumAt)) != tail.u32()) return false;
+  base::ByteReader tail(sector.subspan(kRecordChecksumAt));
+  if (base::crc32c(sector.first(kRecordChecksumAt)) != tail.u32()) return false;
   base::ByteReader in(sector);
-  if (in.u64() != kMagic) return false;
+  if (in.u64() != kRecordMagic) return false;
   const uint32_t version = in.u32();
   if (version != kVersion && version != kInParts) return false;
   out.kind = static_cast<RecordKind>(in.u32());
@@ -59,7 +59,7 @@ bool all_zero(base::ByteSpan bytes) {
 
 base::Bytes record_header(RecordKind kind, uint64_t sequence, const Payload& payload) {
   base::ByteWriter out;
-  out.u64(kMagic);
+  out.u64(kRecordMagic);
   out.u32(payload.second_sum ? kInParts : kVersion);
   out.u32(static_cast<uint32_t>(kind));
   out.u64(sequence);
@@ -72,8 +72,8 @@ base::Bytes record_header(RecordKind kind, uint64_t sequence, const Payload& pay
   }
   base::Bytes sector = out.take();
   sector.resize(kSectorBytes);
-  const uint32_t checksum = base::crc32c(base::ByteSpan(sector).first(kChecksumAt));
-  std::memcpy(sector.data() + kChecksumAt, &checksum, sizeof checksum);
+  const uint32_t checksum = base::crc32c(base::ByteSpan(sector).first(kRecordChecksumAt));
+  std::memcpy(sector.data() + kRecordChecksumAt, &checksum, sizeof checksum);
   return sector;
 }
 

@@ -8,7 +8,6 @@
 namespace online_change {
 namespace {
 
-constexpr size_t kDigestBytes = sizeof(base::Digest);
 constexpr uint64_t kSpareParts = 16;  // of an image, for the edits that come: one more
 
 base::Error failed(std::string text) { return {base::Refusal::kStorageFailed, std::move(text)}; }

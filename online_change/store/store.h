@@ -28,6 +28,8 @@
 
 namespace online_change {
 
+inline constexpr size_t kDigestBytes = sizeof(base::Digest);
+
 inline constexpr const char* kJournalFile = "journal";
 inline constexpr const char* kTrapsFile = "traps";
 inline constexpr const char* kBeforeFile = "before";

@@ -7,7 +7,6 @@
 namespace online_change {
 namespace {
 
-constexpr size_t kDigestBytes = sizeof(base::Digest);
 
 }  // namespace
 

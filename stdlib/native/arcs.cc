@@ -11,8 +11,7 @@ namespace stdlib {
 namespace {
 
 constexpr Pair kPi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
-constexpr Pair kHalfPi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
-constexpr double kTiny = 0x1p-28;  // below it, arc functions of x are x within half a unit
+constexpr double kTinyArc = 0x1p-28;  // below it, arc functions of x are x within half a unit
 
 // arc tangent of k / 16
 constexpr std::array<Pair, 17> kArcs = {{
@@ -112,13 +111,13 @@ double arc_tangent2(double y, double x) {
 }
 
 double arc_tangent(double x) {
-  if (x != x || std::fabs(x) < kTiny) return x;
+  if (x != x || std::fabs(x) < kTinyArc) return x;
   return arc_tangent2(x, 1);
 }
 
 double arc_sine(double x) {
   if (!(std::fabs(x) <= 1)) return std::numeric_limits<double>::quiet_NaN();
-  if (std::fabs(x) < kTiny) return x;
+  if (std::fabs(x) < kTinyArc) return x;
   return std::copysign(value_of(angle({std::fabs(x), 0}, cathetus(x), false)), x);
 }
 

@@ -65,4 +65,6 @@ constexpr Pair divide(Pair a, Pair b) {
 
 constexpr double value_of(Pair a) { return a.high + a.low; }
 
+inline constexpr Pair kHalfPi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
+
 }  // namespace stdlib

@@ -9,10 +9,9 @@
 namespace stdlib {
 namespace {
 
-constexpr Pair kHalfPi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 constexpr Pair kMinusSixth = {-0x1.5555555555555p-3, -0x1.5555555555555p-57};
 constexpr double kQuarterPi = 0x1.921fb54442d18p-1;
-constexpr double kTiny = 0x1p-28;  // below it, sin x and tan x are x within half a unit
+constexpr double kTinyAngle = 0x1p-28;  // below it, sin x and tan x are x within half a unit
 
 // 64 zeros, then the bits of 2 / pi behind the point.
 constexpr std::array<uint64_t, 20> kTwoOverPi = {
@@ -89,7 +88,7 @@ Reduced reduce_angle(double x) {
 }
 
 double sine(double x) {
-  if (std::fabs(x) < kTiny) return x;
+  if (std::fabs(x) < kTinyAngle) return x;
   if (!std::isfinite(x)) return not_a_number();
   const Reduced at = reduce_angle(x);
   const double size = value_of(at.quadrant % 2 == 0 ? sine_of(at.angle) : cosine_of(at.angle));
@@ -104,7 +103,7 @@ double cosine(double x) {
 }
 
 double tangent(double x) {
-  if (std::fabs(x) < kTiny) return x;
+  if (std::fabs(x) < kTinyAngle) return x;
   if (!std::isfinite(x)) return not_a_number();
   const Reduced at = reduce_angle(x);
   const Pair sine = sine_of(at.angle);

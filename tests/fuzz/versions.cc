@@ -9,6 +9,7 @@
 #include "frontend/compile.h"
 #include "ir/lower/lower.h"
 #include "linker/link.h"
+#include "tests/source_path.h"
 
 namespace fuzz {
 namespace {
@@ -74,7 +75,7 @@ ir::VerifiedImage version(const std::string& text, const ir::Image* base, bool s
 }
 
 Versions make(size_t number) {
-  std::ifstream in(STC_SOURCE_DIR "/tests/" + std::string(kFiles[number]));
+  std::ifstream in(tests::source_path("tests/" + std::string(kFiles[number])));
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   const size_t second = text.find("// --- v2");
   base::check(second != std::string::npos, "a golden file of two versions");

@@ -51,7 +51,7 @@ base::Status refuse_to_overwrite(const tools::Options& options, const Project& p
                      output + ": is there and no XML; nothing was written. --force overwrites"};
 }
 
-base::Status write_document(const tools::Options& options, plcopen::Form form) {
+base::Status write_document(const tools::Options& options, plcopen::Edition form) {
   base::Result<base::DiagnosticFormat> format = diagnostic_format(options);
   if (!format.ok()) return format.error();
   base::Result<Project> project = open_project(options, options.arguments());
@@ -81,7 +81,7 @@ base::Status write_document(const tools::Options& options, plcopen::Form form) {
 
 base::Status export_sources(const tools::Options& options) {
   const std::string name = options.text("--as", "tc6-2.01");
-  std::optional<plcopen::Form> form = plcopen::form_of_name(name);
+  std::optional<plcopen::Edition> form = plcopen::form_of_name(name);
   if (!form) {
     return base::Error{base::Refusal::kUsage,
                        "unknown form `" + name + "`; known are tc6-2.01, tc6-2.0, 61131-10"};

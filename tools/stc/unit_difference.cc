@@ -43,7 +43,9 @@ std::string order_of(const std::vector<UnitPart>& parts, const std::vector<std::
 
 std::string cut(std::string text) {
   if (text.size() <= kLongestOrder) return text;
-  return text.substr(0, kLongestOrder) + " ...";
+  text.resize(kLongestOrder);
+  text += " ...";
+  return text;
 }
 
 UnitDifference begin(const Unit& unit, Differs how) {

@@ -3,12 +3,12 @@
 #include <charconv>
 
 #include "ir/types/address_text.h"
+#include "ir/types/time_units.h"
 
 namespace vm {
 namespace {
 
-constexpr int64_t kMs = 1'000'000;
-constexpr int64_t kMostMs = INT64_MAX / kMs;
+constexpr int64_t kMostMs = INT64_MAX / ir::kNsPerMillisecond;
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
@@ -30,7 +30,7 @@ bool parse_time(std::string_view text, int64_t& ns) {
   const size_t point = std::min(text.find('.'), text.size());
   int64_t ms = 0;
   if (!parse_whole(text.substr(0, point), ms) || ms < 0 || ms >= kMostMs) return false;
-  ns = ms * kMs;
+  ns = ms * ir::kNsPerMillisecond;
   if (point == text.size()) return true;
   std::string fraction(text.substr(point + 1));
   int64_t part = 0;

@@ -5,12 +5,12 @@
 #include <cstring>
 
 #include "ir/types/address_text.h"
+#include "ir/types/time_units.h"
 #include "vm/io/bit_copy.h"
 
 namespace vm {
 namespace {
 
-constexpr int64_t kMs = 1'000'000;
 
 uint64_t value_at(base::ByteSpan bytes, uint32_t bit, uint32_t bits) {
   uint8_t value[8] = {};
@@ -50,8 +50,8 @@ void CsvOutputs::header() {
 }
 
 void CsvOutputs::row(int64_t now_ns) {
-  std::string line = std::to_string(now_ns / kMs);
-  if (const int64_t part = now_ns % kMs; part != 0) {
+  std::string line = std::to_string(now_ns / ir::kNsPerMillisecond);
+  if (const int64_t part = now_ns % ir::kNsPerMillisecond; part != 0) {
     std::string digits = std::to_string(part);
     digits.insert(0, 6 - digits.size(), '0');
     while (digits.back() == '0') digits.pop_back();

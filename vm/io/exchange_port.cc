@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "base/check.h"
+#include "ir/types/time_units.h"
 #include "vm/io/bit_copy.h"
 #include "vm/runtime/thread_filter.h"
 
@@ -11,9 +12,8 @@ namespace vm {
 namespace {
 
 constexpr int64_t kNever = INT64_MIN;
-constexpr int64_t kMs = 1'000'000;
-constexpr int64_t kLongestRetryNs = 2000 * kMs;
-constexpr int64_t kCloseSlackNs = 1000 * kMs;
+constexpr int64_t kLongestRetryNs = 2000 * ir::kNsPerMillisecond;
+constexpr int64_t kCloseSlackNs = 1000 * ir::kNsPerMillisecond;
 constexpr size_t kMostWrites = 4096;  // from one boundary to the next
 
 }  // namespace
@@ -39,8 +39,8 @@ struct ExchangePort::Core final : OutsideEvents {
         own_thread(threaded),
         exclusive(ir::find_driver(device.driver)->exclusive),
         server(ir::find_driver(device.driver)->server),
-        period_ns(ir::number_setting(device, "period_ms") * kMs),
-        timeout_ns(ir::number_setting(device, "timeout_ms") * kMs),
+        period_ns(ir::number_setting(device, "period_ms") * ir::kNsPerMillisecond),
+        timeout_ns(ir::number_setting(device, "timeout_ms") * ir::kNsPerMillisecond),
         driver(std::move(made)) {}
 
   void run(bool confined);

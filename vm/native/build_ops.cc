@@ -2,6 +2,7 @@
 #include <bit>
 
 #include "vm/native/build.h"
+#include "vm/native/ranges.h"
 
 namespace vm::native {
 
@@ -9,9 +10,6 @@ using ir::Opcode;
 
 namespace {
 
-uint64_t mask(uint8_t width) {
-  return width == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * width)) - 1;
-}
 
 }  // namespace
 

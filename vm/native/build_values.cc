@@ -4,17 +4,10 @@
 #include <cstring>
 
 #include "vm/native/build.h"
+#include "vm/native/ranges.h"
 
 namespace vm::native {
 namespace {
-
-uint64_t mask(uint8_t width) {
-  return width == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * width)) - 1;
-}
-int64_t as_signed(uint64_t bits, uint8_t width) {
-  const unsigned shift = 64 - 8u * width;
-  return static_cast<int64_t>(bits << shift) >> shift;
-}
 
 uint64_t mix(uint64_t hash, uint64_t value) {
   hash ^= value + 0x9e3779b97f4a7c15u + (hash << 6) + (hash >> 2);

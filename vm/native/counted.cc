@@ -8,7 +8,7 @@ namespace vm::native {
 namespace {
 
 constexpr uint32_t kMostTurns = 8;
-constexpr size_t kMostNodes = 96;  // of all turns together
+constexpr size_t kMostCounted = 96;  // of all turns together
 
 bool is_copied(const Function& f, const Node& n) {
   switch (n.op) {
@@ -99,7 +99,7 @@ uint32_t turns_of(const Function& f, const Loop& loop, const Counted& c, size_t 
     if (all < UINT64_MAX) ++all;
   }
   for (uint32_t turns = kMostTurns; turns > 1; turns /= 2) {
-    if (turns * c.nodes.size() <= kMostNodes && 2 * turns <= all && has_limit(limit, c, turns)) {
+    if (turns * c.nodes.size() <= kMostCounted && 2 * turns <= all && has_limit(limit, c, turns)) {
       return turns;
     }
   }

@@ -8,7 +8,7 @@ namespace {
 
 using ir::Opcode;
 
-constexpr size_t kMostNodes = 200'000;  // of one POU with everything in it
+constexpr size_t kMostEffectNodes = 200'000;  // of one POU with everything in it
 // An execution that was interrupted in a body goes on in machine code behind a call or at a loop;
 // so one call in so many stays one.
 constexpr uint32_t kCallsBetween = 32;
@@ -67,7 +67,7 @@ void Facts::find_bodies(const BodyOf& body_of) {
     const Opcode op = code_[i].opcode();
     const bool of_instance = op == Opcode::CALL_INST || op == Opcode::CALL_INST_AT;
     if (of_instance && recursive_bodies()) continue;
-    const Body* const body = nodes > kMostNodes ? nullptr : body_of(number);
+    const Body* const body = nodes > kMostEffectNodes ? nullptr : body_of(number);
     if (body == nullptr) continue;
     if (loop_of_[block_at_[i]] == kNone && ++calls % kCallsBetween == 0) continue;
     nodes += body->function.nodes.size();

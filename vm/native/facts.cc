@@ -16,10 +16,6 @@ bool names_id(Opcode op) {
   return op == Opcode::INST || op == Opcode::CALL_INST || op == Opcode::CALL_METHOD ||
          op == Opcode::HANDLE_INST;
 }
-MemBase base_of(ir::Base base) {
-  if (base == ir::Base::kFrame) return MemBase::kFrame;
-  return base == ir::Base::kSelf ? MemBase::kSelf : MemBase::kData;
-}
 uint64_t key_of(const Access& access) {
   const bool floating = access.cls == ir::Class::kF32 || access.cls == ir::Class::kF64;
   const bool boolean = access.cls == ir::Class::kB;

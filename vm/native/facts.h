@@ -16,6 +16,11 @@
 
 namespace vm::native {
 
+constexpr MemBase base_of(ir::Base base) {
+  if (base == ir::Base::kFrame) return MemBase::kFrame;
+  return base == ir::Base::kSelf ? MemBase::kSelf : MemBase::kData;
+}
+
 // A scalar that a unit reads or writes where it lies.
 struct Access {
   ir::Base base = ir::Base::kFrame;

@@ -5,7 +5,7 @@
 namespace vm::native {
 namespace {
 
-constexpr uint32_t kMostHoisted = 10;  // values in front of one loop: registers are few
+constexpr uint32_t kMostHoistedValues = 10;  // values in front of one loop: registers are few
 
 bool is_movable(const Node& n) {
   // A check of the divisor stands before; an index may not have been checked where the loop is not
@@ -59,7 +59,7 @@ class Hoister {
         const bool checks = n.exit != kNone;
         if (checks && f_.exits[n.exit].inlined != kNone) return false;
         if (checks && !is_sure) return false;
-        if (n.result != kNone && ++values > kMostHoisted) return false;
+        if (n.result != kNone && ++values > kMostHoistedValues) return false;
         if (checks) n.exit = exit_at(front);
         if (n.result != kNone) f_.values[n.result].block = front;
         f_.blocks[front].nodes.push_back(number);

@@ -29,7 +29,7 @@ bool is_operation(const Node& n) {
 namespace {
 
 constexpr uint32_t kMostHops = 64;
-constexpr size_t kMostPlaces = 8;  // of one operation
+constexpr size_t kMostOperands = 8;  // of one operation
 
 struct Doing {
   uint64_t hash = 0;
@@ -116,7 +116,7 @@ class Numbers {
   uint32_t find(const Node& n, uint64_t hash, Block b) const {
     size_t places = 0;
     uint32_t at = newest_[(hash >> 32 ^ hash) & (newest_.size() - 1)];
-    for (; at != kNone && at >= first_ && places < kMostPlaces; at = done_[at].earlier) {
+    for (; at != kNone && at >= first_ && places < kMostOperands; at = done_[at].earlier) {
       if (done_[at].hash != hash) continue;
       ++places;
       if (same(f_.nodes[done_[at].node], n) && dominates(done_[at].block, b)) return done_[at].node;

@@ -32,7 +32,7 @@ struct PouNative {
 
 namespace {
 
-constexpr uint32_t kMostUnits = 1u << 20;
+constexpr uint32_t kMostProgramUnits = 1u << 20;
 constexpr uint32_t kMostSpills = 1024;
 constexpr size_t kCodeBytesPerUnit = 32;  // of addresses; pages that no code fills take no memory
 
@@ -121,7 +121,7 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
     work.pou->reason = "it writes where a variable is forced";
     return false;
   }
-  if (pou.unit_count > kMostUnits) {
+  if (pou.unit_count > kMostProgramUnits) {
     work.pou->reason = "it is too large";
     return false;
   }

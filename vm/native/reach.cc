@@ -19,10 +19,6 @@ bool stores_through(Opcode op) {
 }
 // A text that is the result is written through the first argument.
 bool native_writes(const ir::Unit& unit) { return stdlib::native_row(unit.c).result == 'v'; }
-MemBase base_of(ir::Base base) {
-  if (base == ir::Base::kFrame) return MemBase::kFrame;
-  return base == ir::Base::kSelf ? MemBase::kSelf : MemBase::kData;
-}
 // Does the unit put an address or a string into a frame slot?
 bool makes_address(const ir::Unit& unit) {
   const ir::Field& field = ir::opcode_row(unit.opcode()).a;

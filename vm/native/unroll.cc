@@ -6,7 +6,7 @@
 namespace vm::native {
 namespace {
 
-constexpr int64_t kMostDisplacement = int64_t{1} << 30;
+constexpr int64_t kMostUnrolledBytes = int64_t{1} << 30;
 constexpr uint32_t kNewBlocks = 3;  // of one loop: its head, what takes fuel, the turns
 
 // The turns of one loop, in the block `turns_`.
@@ -117,9 +117,9 @@ class Turns {
   }
 
   static bool fits(const Mem& mem, int64_t by) {
-    const int64_t low = mem.base == MemBase::kData ? 0 : -kMostDisplacement;
-    const int64_t high = mem.base == MemBase::kData ? INT64_C(0xffffffff) : kMostDisplacement;
-    return by >= -kMostDisplacement && by <= kMostDisplacement && mem.disp + by >= low &&
+    const int64_t low = mem.base == MemBase::kData ? 0 : -kMostUnrolledBytes;
+    const int64_t high = mem.base == MemBase::kData ? INT64_C(0xffffffff) : kMostUnrolledBytes;
+    return by >= -kMostUnrolledBytes && by <= kMostUnrolledBytes && mem.disp + by >= low &&
            mem.disp + by <= high;
   }
 
@@ -167,7 +167,7 @@ class Turns {
       default:
         break;
     }
-    if (by < -kMostDisplacement || by > kMostDisplacement) by = 0;
+    if (by < -kMostUnrolledBytes || by > kMostUnrolledBytes) by = 0;
   }
 
   // (x + 1) + 1: what is between may be wanted by nobody.
@@ -180,7 +180,7 @@ class Turns {
     const Value& first = f_.values[before.in[1]];
     if (!first.constant) return;
     const int64_t sum = as_signed(first.bits, made.width) + as_signed(right.bits, made.width);
-    if (sum < -kMostDisplacement || sum > kMostDisplacement) return;
+    if (sum < -kMostUnrolledBytes || sum > kMostUnrolledBytes) return;
     made.in[0] = before.in[0];
     made.in[1] = constant(sum, made.width);
   }

@@ -4,16 +4,16 @@
 #include <ctime>
 
 #include "base/name_case.h"
+#include "ir/types/time_units.h"
 
 namespace vm {
 namespace {
 
-constexpr int64_t kNsPerSecond = 1'000'000'000;
 
 int64_t monotonic_ns() {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<int64_t>(now.tv_sec) * kNsPerSecond + now.tv_nsec;
+  return static_cast<int64_t>(now.tv_sec) * ir::kNsPerSecond + now.tv_nsec;
 }
 
 }  // namespace
@@ -24,7 +24,7 @@ int64_t RealClock::now_ns() { return monotonic_ns() - origin_ns_; }
 
 void RealClock::wait_until(int64_t deadline_ns) {
   int64_t absolute = deadline_ns + origin_ns_;
-  timespec until{absolute / kNsPerSecond, absolute % kNsPerSecond};
+  timespec until{absolute / ir::kNsPerSecond, absolute % ir::kNsPerSecond};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
   }
 }

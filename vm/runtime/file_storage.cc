@@ -35,7 +35,7 @@ int sync_directory(const std::string& path) {
   return ::fsync(directory.get()) == 0 ? 0 : errno;
 }
 
-constexpr int kFlags = O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW;
+constexpr int kSafely = O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW;
 constexpr const char* kFresh = "_new";  // behind the name, until it has its place
 
 }  // namespace
@@ -53,16 +53,16 @@ base::Result<FileStorage::File> FileStorage::take(const std::string& path, bool 
   Descriptor descriptor;
   int code = ENOENT;
   if (create) {
-    descriptor = Descriptor(::open(path.c_str(), O_RDWR | kFlags));
+    descriptor = Descriptor(::open(path.c_str(), O_RDWR | kSafely));
     if (!descriptor.valid()) code = errno;
     if (code == ENOENT && !descriptor.valid()) {
-      descriptor = Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | kFlags, 0600));
+      descriptor = Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | kSafely, 0600));
       created = descriptor.valid();
       if (!created) return failed(base::Refusal::kFileUnwritable, path, errno);
     }
   }
   const bool writable = descriptor.valid();
-  if (!writable) descriptor = Descriptor(::open(path.c_str(), O_RDONLY | kFlags));
+  if (!writable) descriptor = Descriptor(::open(path.c_str(), O_RDONLY | kSafely));
   struct stat info {};
   if (!descriptor.valid() || ::fstat(descriptor.get(), &info) != 0) {
     auto refusal = errno == ENOENT ? base::Refusal::kFileNotFound : base::Refusal::kFileUnreadable;
@@ -209,7 +209,7 @@ base::Status FileStorage::check(std::string_view name) {
 base::Status FileStorage::write_new(const std::string& path, uint64_t size,
                                     std::span<const Piece> pieces, File& file) const {
   ::unlink(path.c_str());
-  Descriptor descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | kFlags, 0600));
+  Descriptor descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | kSafely, 0600));
   if (!descriptor.valid()) return failed(base::Refusal::kFileUnwritable, path, errno);
   file = {.descriptor = std::move(descriptor), .writable = true, .known = true};
   base::Status made = allocate(file, path, size);

@@ -8,6 +8,8 @@
 #include <ctime>
 #include <thread>
 
+#include "ir/types/time_units.h"
+
 namespace vm {
 namespace {
 
@@ -15,7 +17,6 @@ namespace {
 constexpr auto kPoll = std::chrono::microseconds(100);
 // Between two looks at whether anybody still wants it.
 constexpr int kPollsPerLook = 200;
-constexpr int64_t kNsPerSecond = 1'000'000'000;
 
 }  // namespace
 
@@ -59,7 +60,7 @@ void Mailbox::pause(int64_t ns) { std::this_thread::sleep_for(std::chrono::nanos
 void Mailbox::wait(int64_t ns) {
   const uint32_t seen = state_.load(std::memory_order_acquire);
   if (seen == kPosted || ns <= 0) return;
-  const timespec time{ns / kNsPerSecond, ns % kNsPerSecond};
+  const timespec time{ns / ir::kNsPerSecond, ns % ir::kNsPerSecond};
   ::syscall(SYS_futex, &state_, FUTEX_WAIT_PRIVATE, seen, &time, nullptr, 0);
 }
 

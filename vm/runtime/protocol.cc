@@ -5,15 +5,24 @@
 namespace vm {
 namespace {
 
-enum class Body : uint8_t { kNone, kNames, kAssignments, kPage, kData, kStage, kFlags, kSwitch };
+enum class RequestBody : uint8_t {
+  kNone,
+  kNames,
+  kAssignments,
+  kPage,
+  kData,
+  kStage,
+  kFlags,
+  kSwitch
+};
 
 struct CommandRow {
   const char* name;
-  Body body;
+  RequestBody body;
   bool changes_state;
 };
 constexpr CommandRow kCommands[] = {
-#define COMMAND(id, name, body, changes_state, meaning) {name, Body::body, changes_state},
+#define COMMAND(id, name, body, changes_state, meaning) {name, RequestBody::body, changes_state},
 #include "vm/runtime/commands.def"
 #undef COMMAND
 };
@@ -38,32 +47,32 @@ void request_fields(A& a, R& request) {
     a(request.edition);
   }
   switch (row(request.command).body) {
-    case Body::kNone:
+    case RequestBody::kNone:
       break;
-    case Body::kNames:
+    case RequestBody::kNames:
       a.list(request.names, kTextBytes);
       break;
-    case Body::kAssignments:
+    case RequestBody::kAssignments:
       a.list(request.names, kTextBytes);
       a.list(request.values, kTextBytes);
       break;
-    case Body::kPage:
+    case RequestBody::kPage:
       a(request.offset);
       a.list(request.names, kTextBytes);
       break;
-    case Body::kData:
+    case RequestBody::kData:
       a(request.offset);
       a(request.data);
       break;
-    case Body::kStage:
+    case RequestBody::kStage:
       a(request.digest);
       a(request.flags);
       a.list(request.names, kTextBytes);
       break;
-    case Body::kFlags:
+    case RequestBody::kFlags:
       a(request.flags);
       break;
-    case Body::kSwitch:
+    case RequestBody::kSwitch:
       a(request.flags);
       a.list(request.names, kTextBytes);
       break;
@@ -271,7 +280,7 @@ base::Result<Request> decode_request(base::ByteSpan bytes) {
   request_fields(reader, request);
   if (!reader.done()) return not_understood("damaged request");
   if (request.names.size() > kMaxNames) return not_understood("too many names");
-  if (row(request.command).body == Body::kAssignments &&
+  if (row(request.command).body == RequestBody::kAssignments &&
       request.names.size() != request.values.size()) {
     return not_understood("names without values");
   }

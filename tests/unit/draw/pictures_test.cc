@@ -10,6 +10,7 @@
 
 #include "frontend/draw/picture.h"
 #include "frontend/parse/parse.h"
+#include "tests/source_path.h"
 
 namespace frontend::draw {
 namespace {
@@ -86,7 +87,7 @@ Live values() {
 }
 
 TEST(Pictures, AreAsTheyWere) {
-  fs::path folder = fs::path(STC_SOURCE_DIR) / "tests/unit/draw/pictures";
+  fs::path folder = tests::source_path("tests/unit/draw/pictures");
   Live live = values();
   uint32_t seen = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -106,7 +107,7 @@ TEST(Pictures, AreAsTheyWere) {
 
 TEST(Pictures, NeedNothingFromElsewhere) {
   std::string svg =
-      picture(read_file(fs::path(STC_SOURCE_DIR) / "tests/unit/draw/pictures/boxes.st"), nullptr);
+      picture(read_file(tests::source_path("tests/unit/draw/pictures/boxes.st")), nullptr);
   EXPECT_EQ(svg.find("href"), std::string::npos);
   EXPECT_EQ(svg.find("url("), std::string::npos);
   EXPECT_EQ(svg.find("@import"), std::string::npos);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/source_path.h"
 #include "tests/unit/exec/machine.h"
 #include "tests/unit/exec/source_image.h"
 #include "vm/native/make_function.h"
@@ -168,7 +169,7 @@ TEST(Native, GoldenFilesOfTheNativeTierAreNotInterpreted) {
   if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
   uint32_t files = 0;
   for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(STC_SOURCE_DIR) + "/tests/golden/run")) {
+       std::filesystem::directory_iterator(tests::source_path("tests/golden/run"))) {
     if (!entry.path().filename().string().starts_with("native_")) continue;
     std::ifstream in(entry.path());
     const std::string source(std::istreambuf_iterator<char>(in), {});

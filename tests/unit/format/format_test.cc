@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "frontend/format/same_program.h"
+#include "tests/source_path.h"
 
 namespace frontend {
 namespace {
@@ -132,7 +133,7 @@ TEST(Format, EverySourceOfTheRepositoryTwiceIsOnce) {
   int refused = 0;
   for (const char* folder :
        {"tests/golden", "tests/corpus", "tests/fuzz/corpus/format", "examples", "stdlib"}) {
-    std::filesystem::path root = std::filesystem::path(STC_SOURCE_DIR) / folder;
+    std::filesystem::path root = tests::source_path(folder);
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
       if (entry.path().extension() != ".st") continue;
       check_source(entry.path(), {}, refused);
@@ -145,7 +146,7 @@ TEST(Format, EverySourceOfTheRepositoryTwiceIsOnce) {
 }
 
 TEST(Format, ExamplesAreFormatted) {
-  std::filesystem::path root = std::filesystem::path(STC_SOURCE_DIR) / "examples";
+  std::filesystem::path root = tests::source_path("examples");
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
     if (entry.path().extension() != ".st") continue;
     std::string text = read(entry.path());

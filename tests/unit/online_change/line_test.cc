@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "ir/bytecode/symbols.h"
+#include "tests/source_path.h"
 #include "tests/unit/online_change/plant.h"
 
 namespace plant {
@@ -15,7 +16,7 @@ namespace {
 std::string sources(const std::string& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry :
-       std::filesystem::directory_iterator(STC_SOURCE_DIR "/examples/" + folder)) {
+       std::filesystem::directory_iterator(tests::source_path("examples/" + folder))) {
     if (entry.path().extension() == ".st") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());

@@ -8,6 +8,7 @@
 
 #include "ir/bytecode/symbols.h"
 #include "online_change/apply/change.h"
+#include "tests/source_path.h"
 #include "vm/runtime/clocks.h"
 #include "vm/runtime/controller.h"
 #include "vm/runtime/io.h"
@@ -60,7 +61,7 @@ void expect_changes(const std::filesystem::path& version, Strategy strategy) {
 
 TEST(OldPackages, AreCarriedOut) {
   int versions = 0;
-  const std::filesystem::path folder = STC_SOURCE_DIR "/tests/old_images";
+  const std::filesystem::path folder = tests::source_path("tests/old_images");
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (!entry.is_directory()) continue;
     ++versions;

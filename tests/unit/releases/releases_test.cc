@@ -8,6 +8,7 @@
 
 #include "tests/golden/runner/machine_engine.h"
 #include "tests/golden/runner/script.h"
+#include "tests/source_path.h"
 
 namespace golden {
 namespace {
@@ -58,7 +59,7 @@ TEST(Releases, C5_A16_case45_NoneIsMissedInTheWholeCorpusAt1ms) {
   for (const Tier tier : {Tier::kInterpreter, Tier::kIdentity, Tier::kMoveAll, Tier::kStandby}) {
     Tally tally;
     for (const char* folder : {"change", "sfc"}) {
-      const std::string path = std::string(STC_SOURCE_DIR "/tests/golden/") + folder;
+      const std::string path = tests::source_path("tests/golden/") + folder;
       for (const auto& entry : std::filesystem::directory_iterator(path)) {
         if (entry.path().extension() == ".st") run_file(entry.path().string(), tier, tally);
       }

@@ -10,6 +10,7 @@
 #include "frontend/source_edits.h"
 #include "ir/lower/lower.h"
 #include "linker/link.h"
+#include "tests/source_path.h"
 
 namespace test {
 namespace {
@@ -164,7 +165,7 @@ std::string read_file(const std::string& path) {
 
 std::vector<std::string> sources_below(const std::string& folder) {
   std::vector<std::string> paths;
-  const std::string root = std::string(STC_SOURCE_DIR) + "/" + folder;
+  const std::string root = tests::source_path(folder);
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
     if (entry.path().extension() == ".st") paths.push_back(entry.path().string());
   }

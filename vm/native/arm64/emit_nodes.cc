@@ -13,10 +13,6 @@ namespace {
 
 uint8_t at_least_four(uint8_t width) { return width < 4 ? uint8_t{4} : width; }
 
-bool is_signed(Cond cond) {
-  return cond == Cond::kLtS || cond == Cond::kLeS || cond == Cond::kGtS || cond == Cond::kGeS;
-}
-
 Logical logical_of(Alu op) {
   if (op == Alu::kAnd) return Logical::kAnd;
   return op == Alu::kOr ? Logical::kOr : Logical::kXor;

@@ -11,6 +11,10 @@
 
 namespace vm::native::arm64 {
 
+constexpr bool is_signed(Cond cond) {
+  return cond == Cond::kLtS || cond == Cond::kLeS || cond == Cond::kGtS || cond == Cond::kGeS;
+}
+
 inline constexpr uint8_t kIntegers[] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9, 10,
                                         11, 12, 13, 14, 15, 24, 25, 26, 27, 28};
 inline constexpr uint32_t kIntegerCount = sizeof kIntegers;

@@ -6,9 +6,6 @@
 namespace vm::native::arm64 {
 namespace {
 
-bool is_signed(Cond cond) {
-  return cond == Cond::kLtS || cond == Cond::kLeS || cond == Cond::kGtS || cond == Cond::kGeS;
-}
 bool can_compare(const Value& value, uint8_t width, Cond cond) {
   if (cond == Cond::kNoBit || cond == Cond::kAnyBit) {
     const uint64_t mask = width == 8 ? value.bits : value.bits & ((uint64_t{1} << (8 * width)) - 1);

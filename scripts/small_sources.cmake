@@ -1,0 +1,47 @@
+# What talks to people and to files is seldom, and so are forces: small rather than fast.
+file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tools/common/*.cc
+     ${CMAKE_SOURCE_DIR}/online_change/store/*.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/rename*.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/embedded*.cc ${CMAKE_SOURCE_DIR}/base/unpack.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/device*.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/disassemble*.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/socket*.cc ${CMAKE_SOURCE_DIR}/vm/runtime/recording.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/replay.cc ${CMAKE_SOURCE_DIR}/vm/io/csv*.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/protocol.cc ${CMAKE_SOURCE_DIR}/vm/runtime/connection.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/file_storage.cc ${CMAKE_SOURCE_DIR}/vm/runtime/write_set.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/thread_filter.cc ${CMAKE_SOURCE_DIR}/vm/runtime/realtime.cc
+     ${CMAKE_SOURCE_DIR}/vm/io/shared_object.cc ${CMAKE_SOURCE_DIR}/vm/io/device_io.cc
+     ${CMAKE_SOURCE_DIR}/vm/io/simulated_driver.cc
+     ${CMAKE_SOURCE_DIR}/online_change/apply/losses.cc ${CMAKE_SOURCE_DIR}/online_change/apply/chart*.cc
+     ${CMAKE_SOURCE_DIR}/online_change/apply/migrator.cc
+     ${CMAKE_SOURCE_DIR}/online_change/apply/leaving.cc
+     ${CMAKE_SOURCE_DIR}/online_change/apply/change*.cc
+     ${CMAKE_SOURCE_DIR}/online_change/apply/lost_places.cc
+     ${CMAKE_SOURCE_DIR}/online_change/diff/rename_hints.cc
+     ${CMAKE_SOURCE_DIR}/online_change/diff/migrations.cc
+     ${CMAKE_SOURCE_DIR}/online_change/diff/moved_parts.cc
+     ${CMAKE_SOURCE_DIR}/online_change/diff/*_diff.cc ${CMAKE_SOURCE_DIR}/online_change/diff/areas.cc
+     ${CMAKE_SOURCE_DIR}/vm/io/global_exchange.cc ${CMAKE_SOURCE_DIR}/vm/io/exchange_port.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/task_tables.cc ${CMAKE_SOURCE_DIR}/vm/exec/fusion.cc
+     ${CMAKE_SOURCE_DIR}/vm/native/program.cc ${CMAKE_SOURCE_DIR}/vm/native/inline.cc
+     ${CMAKE_SOURCE_DIR}/vm/native/unroll.cc
+     ${CMAKE_SOURCE_DIR}/online_change/diff/place_moves.cc
+     ${CMAKE_SOURCE_DIR}/online_change/package/plan_check.cc
+     ${CMAKE_SOURCE_DIR}/ir/types/value_text.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_charts.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/task_activity.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/scheduler_states.cc
+     ${CMAKE_SOURCE_DIR}/vm/load/left_outputs.cc ${CMAKE_SOURCE_DIR}/vm/runtime/forces.cc
+     ${CMAKE_SOURCE_DIR}/vm/native/print.cc ${CMAKE_SOURCE_DIR}/vm/exec/describe.cc
+     ${CMAKE_SOURCE_DIR}/vm/load/forced_code.cc ${CMAKE_SOURCE_DIR}/vm/load/origins.cc
+     ${CMAKE_SOURCE_DIR}/vm/load/write*.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/symbols.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/values.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_versions.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_resources.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_migrations.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_overrides.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/verify.cc
+     ${CMAKE_SOURCE_DIR}/online_change/plan/*.cc
+     ${CMAKE_SOURCE_DIR}/online_change/package/package.cc
+     ${CMAKE_SOURCE_DIR}/vm/load/generation.cc ${CMAKE_SOURCE_DIR}/vm/runtime/controller.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/native_maker.cc)
+# The back end of the other machine makes no code here.
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+  file(GLOB other_machine ${CMAKE_SOURCE_DIR}/vm/native/arm64/*.cc)
+  list(APPEND STC_SMALL ${other_machine})
+endif()
