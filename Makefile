@@ -18,12 +18,14 @@
 #   make test-arm64  golden files and random programs on AArch64, under qemu
 #   make minimal  build and test with every adapter off
 #   make clang    build and test by clang 16, without a warning as by g++
+#   make install PREFIX=DIR   stc, stvm, their documents and the unit of the service
+#   make deb      the Debian packages, in build/release
 #   make format   clang-format over the whole tree
 
 BUILD := build/release
 JOBS := $(shell nproc)
 
-.PHONY: all build setup demo test test-arm64 test-minimal minimal clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak mutate coverage docs clean
+.PHONY: install deb all build setup demo test test-arm64 test-minimal minimal clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak mutate coverage docs clean
 
 all: build
 
@@ -141,6 +143,14 @@ docs: build
 format: setup
 	@scripts/setup.sh clang-format-16
 	@git ls-files '*.cc' '*.h' | xargs clang-format-16 -i
+
+PREFIX := /usr/local
+install: build
+	@cmake -S . -B $(BUILD) -DCMAKE_INSTALL_PREFIX=$(PREFIX) >/dev/null
+	@cmake --install $(BUILD) --strip
+
+deb: build
+	@cd $(BUILD) && cpack -G DEB
 
 clean:
 	@rm -rf build

@@ -24,6 +24,7 @@ constexpr std::chrono::milliseconds kAliveLook{20};
 
 constexpr tools::OptionRow kOptions[] = {
     STVM_DIR_OPTION,
+    {"--first", "IMAGE", "the program of a state folder that holds none yet; else it is not read"},
     {"--data-limit", "BYTES",
      "of all data areas of a change together (default: no limit, or what the project says)"},
     STVM_TIER_OPTION,
@@ -84,13 +85,29 @@ base::Status open_given(const std::string& directory, const std::vector<Resource
   return opened;
 }
 
-// What is named, or what is stored: by a single resource, or by several.
+// What is given for this start: by name, or with --first where nothing is stored.
+std::vector<std::string> given_programs(const tools::Options& options,
+                                        const std::string& directory) {
+  if (!options.has("--first")) return options.arguments();
+  const bool stored = holds_program(directory) || !stored_resources(directory).empty();
+  if (stored) return {};
+  return {options.text("--first")};
+}
+
+// What is given, or what is stored: by a single resource, or by several.
 base::Result<Served> open_all(const tools::Options& options) {
+  if (options.has("--first") && !options.arguments().empty()) {
+    return base::Error{base::Refusal::kUsage,
+                       "--first is for a start without other programs; leave one of them out"};
+  }
   const std::string directory = state_directory(options);
   Served served;
   base::Status opened = base::Ok{};
-  if (!options.arguments().empty()) {
-    auto images = load_programs(sources_of(options));
+  const std::vector<std::string> programs = given_programs(options, directory);
+  if (!programs.empty()) {
+    Sources sources = sources_of(options);
+    sources.paths = programs;
+    auto images = load_programs(sources);
     if (!images.ok()) return images.error();
     auto given = name_resources(std::move(*images));
     if (!given.ok()) return given.error();

@@ -1,0 +1,60 @@
+# `cmake --install`, `make install PREFIX=...` and the Debian packages `stc` and `stvm` (R-12). Two
+# components of the same names: a machine that only runs programs needs no compiler.
+include(GNUInstallDirs)
+set(CPACK_PACKAGE_CONTACT "The developers of stc <stc@users.noreply.github.com>")
+set(docs ${CMAKE_INSTALL_DATAROOTDIR}/doc)
+
+install(TARGETS stc RUNTIME COMPONENT stc)
+install(TARGETS stvm RUNTIME COMPONENT stvm)
+install(FILES packaging/debian/copyright DESTINATION ${docs}/stc COMPONENT stc)
+install(FILES packaging/debian/copyright DESTINATION ${docs}/stvm COMPONENT stvm)
+foreach(package stc stvm)
+  set(changelog ${CMAKE_BINARY_DIR}/generated/packages/${package}/changelog)
+  file(CONFIGURE OUTPUT ${changelog} CONTENT "${package} (${PROJECT_VERSION}) unstable; urgency=medium
+
+  * What is new: CHANGELOG.md of the sources.
+
+ -- ${CPACK_PACKAGE_CONTACT}  Thu, 01 Jan 2026 00:00:00 +0000
+" @ONLY)
+  execute_process(COMMAND gzip -9nkf ${changelog})
+  install(FILES ${changelog}.gz DESTINATION ${docs}/${package} COMPONENT ${package})
+endforeach()
+install(FILES README.md DESTINATION ${docs}/stc COMPONENT stc)
+install(DIRECTORY docs/ DESTINATION ${docs}/stc COMPONENT stc PATTERN adr EXCLUDE)
+install(DIRECTORY examples DESTINATION ${docs}/stc COMPONENT stc)
+install(FILES docs/RUNNING.md docs/SECURITY.md docs/IO.md DESTINATION ${docs}/stvm COMPONENT stvm)
+
+# The unit names the program where it is installed, which is known then only.
+install(CODE "
+  file(READ \"${CMAKE_SOURCE_DIR}/packaging/systemd/stvm@.service\" unit)
+  string(REPLACE /usr/bin/stvm \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/stvm\" unit \"\${unit}\")
+  set(place \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/systemd/system/stvm@.service\")
+  message(STATUS \"Installing: \${place}\")
+  file(WRITE \"\${place}\" \"\${unit}\")
+" COMPONENT stvm)
+install(FILES packaging/systemd/stvm.conf DESTINATION lib/sysusers.d COMPONENT stvm)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME stc)
+set(CPACK_PACKAGE_VENDOR stc)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL stc stvm)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SECTION devel)
+set(CPACK_DEBIAN_STC_PACKAGE_NAME stc)
+set(CPACK_DEBIAN_STVM_PACKAGE_NAME stvm)
+set(CPACK_DEBIAN_STVM_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/postinst)
+set(CPACK_DEBIAN_STVM_PACKAGE_DEPENDS systemd)
+set(CPACK_DEBIAN_STC_DESCRIPTION "compiler of IEC 61131-3 programs
+Structured Text, ladder, function block diagrams, charts and instruction
+lists become an image for stvm, a soft PLC whose running program can be
+changed without stopping.")
+set(CPACK_DEBIAN_STVM_DESCRIPTION "soft PLC whose running program can be changed
+Runs images of stc scan by scan. A changed program is brought to the
+running one between two scans: variables keep their values, and the change
+can be undone.")
+include(CPack)
