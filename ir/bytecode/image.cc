@@ -13,16 +13,12 @@
 #include "ir/bytecode/embedded_sources.h"
 #include "ir/bytecode/image_beside.h"
 #include "ir/bytecode/image_sections.h"
+#include "ir/bytecode/image_versions.h"
 #include "ir/bytecode/section_fields.h"
 
 namespace ir {
 namespace {
 
-// An image has the lowest version that says all of it, so older controllers take what they know.
-constexpr uint32_t kVersion = 7;
-constexpr uint32_t kVersionOfSchedules = 8;
-constexpr uint32_t kVersionOfCharts = 9;
-constexpr uint32_t kVersionOfSources = 10;
 constexpr size_t kDigestAt = 16;
 constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 
@@ -36,13 +32,13 @@ base::Error bad_format(std::string text) {
 }
 
 uint32_t version_of(const Image& image, bool has_sources) {
-  if (has_sources) return kVersionOfSources;
-  if (!image.charts.empty()) return kVersionOfCharts;
-  return image.schedule == Schedule::kSendFirst ? kVersion : kVersionOfSchedules;
+  if (has_sources) return kImageVersionOfSources;
+  if (!image.charts.empty()) return kImageVersionOfCharts;
+  return image.schedule == Schedule::kSendFirst ? kFirstImageVersion : kImageVersionOfSchedules;
 }
 
 uint32_t sections_of(uint32_t version) {
-  return version < kVersionOfSources ? kImageSectionCount : kImageSectionCount + 1;
+  return version < kImageVersionOfSources ? kImageSectionCount : kImageSectionCount + 1;
 }
 
 // Of a header that is there.
@@ -59,9 +55,10 @@ base::Status check_header(base::ByteSpan bytes) {
   if (in.failed()) return bad_format("only " + std::to_string(bytes.size()) + " bytes");
   if (!std::equal(magic.begin(), magic.end(), kImageMagic.begin()))
     return bad_format("no magic number");
-  if (version < kVersion || version > kVersionOfSources) {
+  if (version < kFirstImageVersion || version > kLastImageVersion) {
     return bad_format("version " + std::to_string(version) + ", this program reads " +
-                      std::to_string(kVersion) + " to " + std::to_string(kVersionOfSources));
+                      std::to_string(kFirstImageVersion) + " to " +
+                      std::to_string(kLastImageVersion));
   }
   if (length > base::kMaxImageBytes) {
     return base::Error{base::Refusal::kTooLarge, "image of " + std::to_string(length) +

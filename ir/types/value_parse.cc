@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/nearest_name.h"
 #include "ir/types/time_parse.h"
 #include "ir/types/value_text.h"
 
@@ -216,6 +217,22 @@ std::optional<uint64_t> parse_any(const TypeTable& types, TypeId id, std::string
   return parse_elementary(types.root_kind(id), types.scalar(id), bare);
 }
 
+// Which literal of an enumeration was meant, perhaps.
+std::string meant_literal(const TypeTable& types, TypeId id, std::string_view text) {
+  for (; types[id].kind == Kind::kSubrange; id = types[id].base) {
+  }
+  const Type& type = types[id];
+  if (type.kind != Kind::kEnum) {
+    return {};
+  }
+  text = text.substr(text.find_last_of("#.") + 1);
+  base::NearestName nearest(text);
+  for (const EnumLiteral& literal : type.literals) {
+    nearest.offer(literal.name);
+  }
+  return nearest.question();
+}
+
 }  // namespace
 
 base::Result<uint64_t> parse_scalar(const TypeTable& types, TypeId type, std::string_view text) {
@@ -223,7 +240,8 @@ base::Result<uint64_t> parse_scalar(const TypeTable& types, TypeId type, std::st
   const std::optional<uint64_t> bits = parse_any(types, type, trimmed(text), kMaxSubranges);
   if (!bits) {
     return base::Error{base::Refusal::kBadValue,
-                       "`" + std::string(text) + "` is no value of type " + types.text(type)};
+                       "`" + std::string(text) + "` is no value of type " + types.text(type) +
+                           meant_literal(types, type, trimmed(text))};
   }
   return *bits;
 }

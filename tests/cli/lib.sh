@@ -31,6 +31,12 @@ expect() {
 }
 # said REGEX: the last command printed it, on either stream.
 said() { cat out err | grep -qE -- "$1" || fail "not said: $1"; }
+# json EXPRESSION: it holds for `d`, what the last command printed on standard output as JSON.
+json() {
+  python3 -c 'import json, sys
+d = json.load(open("out"))
+sys.exit(not eval(sys.argv[1]))' "$1" || fail "not so: $1"
+}
 # wait_for REGEX COMMAND...: runs it, output in ./out, until it prints that.
 wait_for() {
   wanted=$1

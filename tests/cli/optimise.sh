@@ -39,7 +39,7 @@ grep -q Main diff.txt || fail "the caller of a changed function stays: $(cat dif
 expect 2 stc build "$line" -o x.img --passes fold,magic
 said 'unknown pass `magic`; known are all, none, .*fold'
 expect 2 stc build "$line" -o x.img --no-opt --passes fold
-said 'leave out --passes'
+said '--no-opt and --passes contradict each other'
 printf "TEST 'sum' ASSERT(1 + 1 = 2); END_TEST\n" >sum.st
 expect 0 stc test --no-opt sum.st
 expect 0 stc test sum.st

@@ -16,7 +16,7 @@ grep -q 'stvm restart' out || fail "$(cat out)"
 expect 0 stvm get total divisor --dir plant
 said '^divisor=0'
 expect 2 stvm restart --warm --cold --dir plant
-said 'one of --warm, --cold and --hot'
+said '--warm and --cold contradict each other; leave one out'
 expect 0 stvm restart --dir plant
 said 'restarted, warm'
 wait_for 'running' stvm status --dir plant

@@ -119,7 +119,7 @@ expect 1 stc test pump.st wrong_test.st --format junit --output report.xml
 said '0 passed, 2 failed'
 grep -q '</testsuites>' report.xml || fail "no report"
 expect 2 stc test pump.st pump_test.st --format xml
-said 'unknown format'
+said 'is text, tap, junit or json, not .xml.'
 
 # Outside of tests nothing may set the clock; a plain build takes no notice of tests.
 printf 'PROGRAM p ADVANCE_TIME(T#1s); END_PROGRAM\n' >outside.st

@@ -1,9 +1,13 @@
-// A tool's main: find the command, parse its options, run it; help and usage errors on the way.
+// A tool's main: find the command, parse its options, run it; help, version and usage errors on the
+// way. `help` and `version` are commands of every tool.
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
 #include "tools/common/options.h"
+#include "tools/common/version.h"
 
 namespace tools {
 
@@ -12,8 +16,14 @@ struct Entry {
   int (*run)(const Options& options);  // the exit code
 };
 
-// `notes` end the overview.
-int dispatch(const char* tool, const char* purpose, std::span<const Entry* const> entries, int argc,
-             char** argv, const std::string& notes = {});
+struct Tool {
+  const char* name;
+  const char* purpose;
+  std::span<const Entry* const> entries;
+  std::vector<VersionFact> facts;  // behind version and commit
+  std::string notes;               // at the end of the overview
+};
+
+int dispatch(const Tool& tool, int argc, char** argv);
 
 }  // namespace tools

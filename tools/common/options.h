@@ -1,6 +1,6 @@
 // Command lines: a command declares its options in a table, and gets values or
-// one clear line (kUsage). `--name value` and `--name=value` are the same; `--`
-// ends the options; the help text comes from the same table.
+// one clear line (kUsage). `--name value` and `--name=value` are the same, and so are `-j 2` and
+// `-j2`; `--` ends the options; help, completion and manual pages come from the same table.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,17 @@
 
 namespace tools {
 
+// How often an option with a value may be given. One that takes one value is refused with two: the
+// one that is not used would be lost without a word.
+enum class Times : uint8_t { kOnce, kMany };
+
 struct OptionRow {
   const char* name;   // "--scans"; a one-letter form may follow: "--output|-o"
   const char* value;  // name of its value in the help, nullptr for a flag
   const char* help;
+  const char* choices = "";   // "text|json": the only values that it takes; "": any
+  const char* excludes = "";  // "--cold|--hot": options that contradict it
+  Times times = Times::kOnce;
 };
 
 struct Command {
@@ -42,16 +49,15 @@ class Options {
   const std::vector<std::string>& arguments() const { return arguments_; }
 
  private:
+  friend class OptionParser;
   std::map<std::string, std::vector<std::string>> values_;
   std::vector<std::string> arguments_;
 };
 
-// Text of `TOOL COMMAND --help`.
-std::string help_text(std::string_view tool, const Command& command);
-// Text of `TOOL --help`.
-std::string overview(std::string_view tool, std::string_view purpose,
-                     std::span<const Command* const> commands);
-// Among `args`, is there a --help?
-bool wants_help(std::span<char* const> args);
+// "--output" and "-o" of "--output|-o"; "" when there is no short form.
+std::string_view long_name(const OptionRow& row);
+std::string_view short_name(const OptionRow& row);
+// The words of "text|json".
+std::vector<std::string_view> words_of(std::string_view list);
 
 }  // namespace tools

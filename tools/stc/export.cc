@@ -20,7 +20,7 @@ constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
     {"--output|-o", "FILE", "document to write (needed)"},
     {"--force", nullptr, "overwrite a file that is no XML"},
-    {"--as", "FORM", "tc6-2.01 (default), tc6-2.0 or 61131-10"},
+    {"--as", "FORM", "tc6-2.01 (default), tc6-2.0 or 61131-10", "tc6-2.01|tc6-2.0|61131-10"},
     {"--without-sources", nullptr, "only what XML has elements for, not the text of the sources"},
 };
 constexpr tools::Command kCommand{

@@ -21,7 +21,7 @@ constexpr tools::OptionRow kOptions[] = {
      "write nothing; list the files that would change, exit 1 when there are any"},
     {"--diff", nullptr, "write nothing; show what would change, exit 1 when there is anything"},
     {"--stdin", nullptr, "read one source from standard input, write it to standard output"},
-    {"--format", "FORM", "text (default) or json: how --check reports"},
+    {"--format", "FORM", "text (default) or json: how --check reports", "text|json"},
 };
 constexpr tools::Command kCommand{
     "fmt", "PATHS...", "Lays sources out, in place; [format] of stc.toml says how.", kOptions, 0};

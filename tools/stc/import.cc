@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr tools::OptionRow kOptions[] = {
     {"--output|-o", "DIR", "folder for the sources (needed)"},
-    {"--format", "FORM", "text (default) or json: the report on standard output"},
+    {"--format", "FORM", "text (default) or json: the report on standard output", "text|json"},
     {"--force", nullptr, "overwrite sources that are there and differ"},
 };
 constexpr tools::Command kCommand{

@@ -3,20 +3,28 @@
 #include "tools/common/heap.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/memory_budget.h"
+#include "vm/native/program.h"
 
 namespace {
 
 std::string dialects() {
   std::string text =
-      "\nDialects, for --dialect NAME or `dialect = \"NAME\"` in stc.toml; `stc explain dialects` "
-      "says\n"
-      "what each changes:\n\n";
+      "\nDialects, for --dialect NAME or `dialect = \"NAME\"` in stc.toml;\n"
+      "`stc explain dialects` says what each changes:\n\n";
   for (const frontend::DialectRow& row : frontend::dialect_rows()) {
     std::string name(row.name);
     name.resize(11, ' ');
     text += "  " + name + std::string(row.what) + "\n";
   }
   return text;
+}
+
+std::vector<std::string> adapters() {
+#ifdef STC_HAS_XML
+  return {"xml", "plcopen", "twincat"};
+#else
+  return {};
+#endif
 }
 
 }  // namespace
@@ -28,6 +36,12 @@ int main(int argc, char** argv) {
                                          &stc::kDiff,  &stc::kPackage, &stc::kImport, &stc::kExport,
                                          &stc::kDraw,  &stc::kDump,    &stc::kSource,
                                          &stc::kExplain};
-  return tools::dispatch("stc", "Compiles IEC 61131-3 programs to images for stvm.", entries, argc,
-                         argv, dialects());
+  const tools::Tool tool{"stc",
+                         "Compiles IEC 61131-3 programs to images for stvm.",
+                         entries,
+                         {tools::image_formats(),
+                          {"adapters", adapters()},
+                          tools::native_tier(vm::native::is_available())},
+                         dialects()};
+  return tools::dispatch(tool, argc, argv);
 }

@@ -18,9 +18,8 @@ base::Result<std::optional<frontend::Dialect>> dialect_option(const tools::Optio
 }
 
 base::Result<ir::PassSet> passes_option(const tools::Options& options) {
-  if (!options.has("--no-opt")) return ir::PassSet::parse(options.text("--passes", "all"));
-  if (!options.has("--passes")) return ir::PassSet::none();
-  return base::Error{base::Refusal::kUsage, "--no-opt is no pass at all; leave out --passes"};
+  if (options.has("--no-opt")) return ir::PassSet::none();
+  return ir::PassSet::parse(options.text("--passes", "all"));
 }
 
 base::Result<uint32_t> jobs_option(const tools::Options& options) {

@@ -11,13 +11,14 @@ namespace stc {
 #define STC_SOURCE_OPTIONS                                                       \
   {"--dialect", "NAME", "iec, codesys (default) or twincat"},                    \
       {"--resource", "NAME", "the RESOURCE to compile, when there are several"}, \
-      {"--define", "NAME", "for {IF defined(NAME)}; NAME=VALUE for hasvalue"},   \
-      {"--format", "FORM", "text (default), json, sarif or github"}, {           \
+      {"--define", "NAME", "for {IF defined(NAME)}; NAME=VALUE for hasvalue; repeatable", "", "", \
+       tools::Times::kMany},                                                     \
+      {"--format", "FORM", "text (default), json, sarif or github", "text|json|sarif|github"}, { \
     "--name", "NAME", "name of the program, instead of the folder's or file's"   \
   }
 
 #define STC_CODE_OPTIONS                                                                \
-  {"--no-opt", nullptr, "compile without optimising"},                                  \
+  {"--no-opt", nullptr, "compile without optimising", "", "--passes"},                  \
       {"--passes", "LIST", "optimise with these passes only; `stc explain passes`"}, {  \
     "--jobs|-j", "N", "threads at most (default: one per core); the result is the same" \
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr tools::OptionRow kOptions[] = {
     {"--filter|-f", "PATTERN", "only tests whose name matches; * and ? are wildcards"},
-    {"--format", "FORM", "text (default), tap, junit or json"},
+    {"--format", "FORM", "text (default), tap, junit or json", "text|tap|junit|json"},
     {"--output|-o", "FILE", "write that form to a file, and text to the terminal"},
     {"--list", nullptr, "names and places of the tests, nothing is run"},
     {"--dialect", "NAME", "iec, codesys (default) or twincat"},

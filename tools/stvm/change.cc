@@ -24,9 +24,11 @@ namespace {
       {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},        \
       {"--strategy", "S",                                                                          \
        "in-place (default, or what the project says), or standby: a second data area, made in "    \
-       "idle time"},                                                                               \
+       "idle time",                                                                                \
+       "in-place|standby"},                                                                        \
       {"--allow-overrun", nullptr, "switch even if a task may be delayed"},                        \
-      {"--restricted", nullptr, "refuse when the interface of a POU is edited"},                   \
+      {"--restricted", nullptr, "refuse when the interface of a POU is edited", "",                \
+       "--unrestricted"},                                                                          \
       {"--unrestricted", nullptr, "do not, whatever the project says"},                            \
       {"--health", "NAME",                                                                         \
        "a BOOL that stays TRUE while all is well: FALSE in the first 1000 cycles undoes the "      \

@@ -39,7 +39,7 @@ extern const Entry kDoctor;
 #define STVM_CONTROLLER_OPTIONS \
   STVM_DIR_OPTION, { "--host", "HOST", "the controller runs there; reached with ssh" }
 #define STVM_FORMAT_OPTION \
-  { "--format", "FORM", "text (default) or json" }
+  { "--format", "FORM", "text (default) or json", "text|json" }
 
 // kUsage for anything but text and json.
 base::Result<bool> wants_json(const tools::Options& options);

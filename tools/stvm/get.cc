@@ -11,7 +11,8 @@ namespace stvm {
 namespace {
 
 constexpr tools::OptionRow kOptions[] = {
-    {"--list", nullptr, "list variables and their types; NAMES are patterns with * and ?"},
+    {"--list", nullptr, "list variables and their types; NAMES are patterns with * and ?", "",
+     "--forces"},
     {"--forces", nullptr, "list forced variables, and whether they hold everywhere"},
     STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION,

@@ -1,13 +1,34 @@
 // stvm: the controller's command line.
 #include "tools/stvm/commands.h"
+#include "vm/native/program.h"
+#include "vm/runtime/protocol.h"
+
+namespace {
+
+std::vector<std::string> adapters() {
+#ifdef STC_HAS_MODBUS
+  return {"modbus"};
+#else
+  return {};
+#endif
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   const tools::Entry* const entries[] = {
-      &stvm::kRun,   &stvm::kBench,  &stvm::kServe,   &stvm::kStatus,  &stvm::kGet,
-      &stvm::kSet,   &stvm::kForce,  &stvm::kUnforce, &stvm::kWatch,   &stvm::kChange,
-      &stvm::kUndo,  &stvm::kRevert, &stvm::kAccept,  &stvm::kAbort,   &stvm::kStop,
-      &stvm::kRestart, &stvm::kJournal, &stvm::kSource,
-      &stvm::kImage, &stvm::kBridge, &stvm::kReplay,  &stvm::kTop,     &stvm::kDoctor};
-  return tools::dispatch("stvm", "Runs images of stc, and changes them while they run.", entries,
-                         argc, argv);
+      &stvm::kRun,     &stvm::kBench,   &stvm::kServe,  &stvm::kStatus, &stvm::kGet,
+      &stvm::kSet,     &stvm::kForce,   &stvm::kUnforce, &stvm::kWatch, &stvm::kChange,
+      &stvm::kUndo,    &stvm::kRevert,  &stvm::kAccept, &stvm::kAbort,  &stvm::kStop,
+      &stvm::kRestart, &stvm::kJournal, &stvm::kSource, &stvm::kImage,  &stvm::kBridge,
+      &stvm::kReplay,  &stvm::kTop,     &stvm::kDoctor};
+  const tools::Tool tool{"stvm",
+                         "Runs images of stc, and changes them while they run.",
+                         entries,
+                         {tools::image_formats(),
+                          {"protocol", uint32_t{vm::kProtocolVersion}},
+                          {"adapters", adapters()},
+                          tools::native_tier(vm::native::is_available())},
+                         {}};
+  return tools::dispatch(tool, argc, argv);
 }

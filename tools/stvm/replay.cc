@@ -21,7 +21,8 @@ namespace {
 
 constexpr tools::OptionRow kOptions[] = {
     {"--scans", "N", "stop behind this control cycle"},
-    {"--print", "NAMES", "print these variables at the end: A,B.c"},
+    {"--print", "NAMES", "print these variables at the end: A,B.c; repeatable", "", "",
+     tools::Times::kMany},
     {"--plot", "FILE", "SVG picture of the variables of --print over the run"},
     {"--trace", "FILE", "CSV: values after every scan, of --print or of all variables"},
     STVM_FORMAT_OPTION,

@@ -10,8 +10,10 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {{"--warm", nullptr, "keeps what is RETAIN (default)"},
-                                         {"--cold", nullptr, "keeps nothing: all initial values"},
+constexpr tools::OptionRow kOptions[] = {{"--warm", nullptr, "keeps what is RETAIN (default)",
+                                          "", "--cold|--hot"},
+                                         {"--cold", nullptr, "keeps nothing: all initial values",
+                                          "", "--hot"},
                                          {"--hot", nullptr, "keeps all values: only goes on"},
                                          STVM_CONTROLLER_OPTIONS,
                                          STVM_FORMAT_OPTION};
@@ -27,39 +29,33 @@ constexpr Kind kKinds[] = {{"--warm", "warm", vm::Restart::kWarm},
                            {"--cold", "cold", vm::Restart::kCold},
                            {"--hot", "hot", vm::Restart::kHot}};
 
-base::Result<Kind> chosen(const tools::Options& options) {
-  const Kind* found = nullptr;
+Kind chosen(const tools::Options& options) {
   for (const Kind& kind : kKinds) {
-    if (!options.has(kind.option)) continue;
-    if (found != nullptr) {
-      return base::Error{base::Refusal::kUsage, "restart: one of --warm, --cold and --hot"};
-    }
-    found = &kind;
+    if (options.has(kind.option)) return kind;
   }
-  return found == nullptr ? kKinds[0] : *found;
+  return kKinds[0];
 }
 
 base::Status restart(const tools::Options& options) {
   base::Result<bool> json = wants_json(options);
   if (!json.ok()) return json.error();
-  base::Result<Kind> kind = chosen(options);
-  if (!kind.ok()) return kind.error();
+  const Kind kind = chosen(options);
   base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
   base::Result<vm::StatusReport> status = client->status();  // which version runs
   if (!status.ok()) return status.error();
   vm::Request request{.command = vm::Command::kRestart};
-  request.flags = static_cast<uint32_t>(kind->restart);
+  request.flags = static_cast<uint32_t>(kind.restart);
   base::Result<base::Bytes> answer = client->call(request);
   if (!answer.ok()) return answer.error();
   const std::string left = base::visible(std::string(answer->begin(), answer->end()));
   if (!*json) {
-    std::printf("restarted, %s\n", kind->name);
+    std::printf("restarted, %s\n", kind.name);
     if (!left.empty()) std::printf("  not all instances left: %s\n", left.c_str());
     return base::Ok{};
   }
   tools::JsonWriter out;
-  out.begin_object().field("restarted", kind->name).field("exit_error", left).end_object();
+  out.begin_object().field("restarted", kind.name).field("exit_error", left).end_object();
   std::fputs(out.finish().c_str(), stdout);
   return base::Ok{};
 }

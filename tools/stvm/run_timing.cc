@@ -37,13 +37,8 @@ base::Result<RunChange::Settings> change_of(const tools::Options& options) {
   out.at_ns = *at;
   out.lasts_ns = *lasts;
   out.sources = {{parts->second}, options.text("--dialect")};
-  const std::string strategy = options.text("--strategy", "in-place");
-  if (strategy == "standby") {
-    out.strategy = online_change::Strategy::kStandby;
-  } else if (strategy != "in-place") {
-    return base::Error{base::Refusal::kUsage,
-                       "--strategy is in-place or standby, not `" + strategy + "`"};
-  }
+  const bool standby = options.text("--strategy") == "standby";
+  if (standby) out.strategy = online_change::Strategy::kStandby;
   return out;
 }
 

@@ -112,9 +112,6 @@ void print_json(const Outcome& outcome, bool all) {
 base::Result<tools::ChangeSettings> settings_of(const tools::Options& options) {
   base::Result<tools::ChangeSettings> settings = tools::change_settings(options.arguments());
   if (!settings.ok()) return settings;
-  if (options.has("--restricted") && options.has("--unrestricted")) {
-    return base::Error{base::Refusal::kUsage, "--restricted and --unrestricted: which?"};
-  }
   settings->strategy = options.text("--strategy", settings->strategy);
   if (options.has("--restricted")) settings->restricted = true;
   if (options.has("--unrestricted")) settings->restricted = false;

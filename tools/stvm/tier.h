@@ -7,7 +7,10 @@
 namespace stvm {
 
 #define STVM_TIER_OPTION \
-  { "--tier", "T", "auto (default), native or interp: the same results, other times" }
+  {                                                                                    \
+    "--tier", "T", "auto (default), native or interp: the same results, other times",  \
+        "auto|native|interp"                                                           \
+  }
 
 // kUsage for other names.
 base::Result<vm::Tier> tier_of(const tools::Options& options);

@@ -1,0 +1,104 @@
+#include "ir/bytecode/variable_names.h"
+
+#include "base/nearest_name.h"
+#include "ir/bytecode/leaf_walk.h"
+#include "ir/bytecode/symbols.h"
+#include "ir/types/address_text.h"
+#include "ir/types/location.h"
+
+namespace ir {
+namespace {
+
+base::Error no_such(std::string_view name, const std::string& why) {
+  return {base::Refusal::kNoSuchVariable, "`" + std::string(name) + "`: " + why};
+}
+
+// "Main", ".", "pumps[1]": up to the next dot outside of brackets.
+size_t end_of_part(std::string_view path, size_t at) {
+  int depth = 0;
+  for (; at < path.size() && (depth > 0 || path[at] != '.'); ++at) {
+    depth += path[at] == '[' ? 1 : path[at] == ']' ? -1 : 0;
+  }
+  return at;
+}
+
+// What the first part that is not there was meant to be. Globals of lists and namespaces have a dot
+// in their name, so they are compared with as much of the path.
+std::string meant(const Image& image, std::string_view path) {
+  TypeId owner = image.globals;
+  size_t at = 0;
+  for (size_t end = end_of_part(path, 0); end < path.size(); end = end_of_part(path, end + 1)) {
+    const base::Result<Symbol> symbol = find_symbol(image, path.substr(0, end));
+    if (!symbol.ok()) continue;
+    owner = symbol->type;
+    at = end + 1;
+  }
+  const std::string_view rest = path.substr(at);
+  const std::string_view name = rest.substr(0, rest.find_first_of(".["));
+  const size_t next = std::min(name.size() + 1, rest.size());
+  base::NearestName nearest(name);
+  base::NearestName listed(rest.substr(0, rest.find_first_of(".[", next)));
+  for (const Member& member : image.types[owner].members) {
+    if (same_name(member.name, name)) return {};  // it is there, and what is wrong stands behind it
+    if (!is_listed(member)) continue;
+    (member.name.find('.') == std::string::npos ? nearest : listed).offer(member.name);
+  }
+  if (at == 0) {
+    for (uint32_t id : image.program_ids()) nearest.offer(image.instances[id].name);
+  }
+  return nearest.best().empty() ? listed.question() : nearest.question();
+}
+
+// Which variable stands for `wanted`, or for the bit at that place of an array of BOOL.
+base::Result<std::string> located(const Image& image, std::string_view name,
+                                  const DirectAddress& wanted) {
+  std::string around;
+  for (const IoBinding& row : image.io) {
+    if (row.address.area != wanted.area || wanted.bit_offset < row.address.bit_offset) continue;
+    const uint32_t behind = wanted.bit_offset - row.address.bit_offset;
+    const uint64_t bools = located_bools(image.types, row.type, row.address);
+    const bool one_of_bools = wanted.bit_size == 1 && behind < bools;
+    if (one_of_bools && image.types[row.type].kind == Kind::kArray) {
+      return path_of(image, {.data = row.data + behind, .type = image.types[row.type].base});
+    }
+    if (row.address == wanted) return path_of(image, {.data = row.data, .type = row.type});
+    if (behind < row.address.bit_size) {
+      around = path_of(image, {.data = row.data, .type = row.type}) + " AT " +
+               address_text(row.address);
+    }
+  }
+  if (!around.empty()) return no_such(name, "is a part of " + around + "; name that variable");
+  return no_such(name, "no variable of the program stands for this address");
+}
+
+// The path with the instance's name in place of its PROGRAM's; "": it begins with none.
+base::Result<std::string> by_program(const Image& image, std::string_view path) {
+  const std::string_view declared = path.substr(0, path.find_first_of(".["));
+  std::string instances;
+  std::string found;
+  uint32_t count = 0;
+  for (uint32_t id : image.program_ids()) {
+    const Instance& row = image.instances[id];
+    if (!same_name(image.types[row.type].name, declared)) continue;
+    instances += (count++ == 0 ? "" : ", ") + row.name;
+    found = row.name + std::string(path.substr(declared.size()));
+  }
+  if (count < 2) return found;
+  return no_such(path, "`" + std::string(declared) + "` has " + std::to_string(count) +
+                           " instances; name one of them: " + instances);
+}
+
+}  // namespace
+
+base::Result<std::string> path_of_name(const Image& image, std::string_view name) {
+  if (const auto address = parse_address(name)) return located(image, name, *address);
+  const base::Result<Symbol> symbol = find_symbol(image, name);
+  if (symbol.ok()) return std::string(name);
+  base::Result<std::string> other = by_program(image, name);
+  if (!other.ok()) return other;
+  const bool better = !other->empty() && find_symbol(image, *other).ok();
+  if (better) return other;
+  return base::Error{symbol.error().refusal, symbol.error().text + meant(image, name)};
+}
+
+}  // namespace ir

@@ -1,0 +1,32 @@
+// `TOOL version`: what a bug report, a package and a script need to know of a program.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace tools {
+
+// Of the generated file tools/identity.cc (scripts/identity.cmake). Only the two programs have it, so
+// a commit compiles that file and links nothing else.
+extern const char kVersion[];
+extern const char kCommit[];  // "unknown" in what is built outside of a repository
+
+// What a tool says beside: "protocol" and 10; "adapters" and their names.
+struct VersionFact {
+  const char* name;
+  std::variant<std::string, uint32_t, std::vector<std::string>, std::vector<uint32_t>> value;
+};
+
+// Every version of images that this program reads.
+VersionFact image_formats();
+// The machine whose code it makes, or "none".
+VersionFact native_tier(bool available);
+
+std::string version_text(std::string_view tool, std::span<const VersionFact> facts);
+std::string version_json(std::string_view tool, std::span<const VersionFact> facts);
+
+}  // namespace tools
