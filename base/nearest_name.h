@@ -10,8 +10,8 @@ namespace base {
 // Names further away than a third of the letters of `written` are no help.
 uint32_t farthest_name(std::string_view written);
 // Keeps `candidate` as `best` when it is nearer to `written` than `distance`, or as near and first
-// by its letters. `compared` is the part of the candidate that counts; case does not. Only the first
-// 64 bytes of what was written do.
+// by its letters. `compared` is the part of the candidate that counts; case does not. Only the
+// first 64 bytes of what was written do.
 void keep_nearest(std::string_view written, std::string_view compared, std::string_view candidate,
                   std::string& best, uint32_t& distance);
 

@@ -1,11 +1,14 @@
 #!/bin/sh
-# docs/reference/*.md from the tables in the sources. usage: generate_docs.sh BIN [OUTPUT_DIR]
+# docs/reference/*.md from the tables in the sources, and of the tables of options what shells and
+# `man` read. usage: generate_docs.sh BIN [OUTPUT_DIR [SHARE_DIR]]
 set -eu
 bin=$1
 root=$(cd "$(dirname "$0")/.." && pwd)
 out=${2:-docs/reference}
-mkdir -p "$out"
-for table in opcodes diagnostics refusals traps limits functions dialects devices passes; do
+share=${3:-$root/share}
+mkdir -p "$out" "$share"
+for table in opcodes diagnostics refusals traps limits functions dialects devices passes exit_codes \
+  stc.toml; do
   {
     echo "# $table"
     echo
@@ -16,6 +19,9 @@ for table in opcodes diagnostics refusals traps limits functions dialects device
     echo '```'
   } >"$out/$table.md"
 done
+
+"$bin/stc" explain stc.toml.schema | python3 -m json.tool >"$out/stc.schema.json"
+"$root/scripts/shell_files.py" "$bin" "$share"
 
 # Timers and counters scan by scan: the expectations of the golden files, which every tier is tested against.
 {

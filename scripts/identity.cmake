@@ -16,6 +16,7 @@ set(text "#include \"tools/common/version.h\"
 namespace tools {
 const char kVersion[] = \"${VERSION}\";
 const char kCommit[] = \"${commit}\";
+const char kDocumentation[] = \"${DOCUMENTATION}\";
 }  // namespace tools
 ")
 set(old)

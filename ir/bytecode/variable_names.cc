@@ -1,16 +1,16 @@
 #include "ir/bytecode/variable_names.h"
 
+#include "base/joined.h"
 #include "base/nearest_name.h"
 #include "ir/bytecode/leaf_walk.h"
-#include "ir/bytecode/symbols.h"
 #include "ir/types/address_text.h"
 #include "ir/types/location.h"
 
 namespace ir {
 namespace {
 
-base::Error no_such(std::string_view name, const std::string& why) {
-  return {base::Refusal::kNoSuchVariable, "`" + std::string(name) + "`: " + why};
+base::Error not_there(std::string_view name, std::initializer_list<std::string_view> why) {
+  return {base::Refusal::kNoSuchVariable, base::joined({"`", name, "`: ", base::joined(why)})};
 }
 
 // "Main", ".", "pumps[1]": up to the next dot outside of brackets.
@@ -44,7 +44,10 @@ std::string meant(const Image& image, std::string_view path) {
     (member.name.find('.') == std::string::npos ? nearest : listed).offer(member.name);
   }
   if (at == 0) {
-    for (uint32_t id : image.program_ids()) nearest.offer(image.instances[id].name);
+    for (uint32_t id : image.program_ids()) {
+      nearest.offer(image.instances[id].name);
+      nearest.offer(image.types[image.instances[id].type].name);
+    }
   }
   return nearest.best().empty() ? listed.question() : nearest.question();
 }
@@ -63,12 +66,12 @@ base::Result<std::string> located(const Image& image, std::string_view name,
     }
     if (row.address == wanted) return path_of(image, {.data = row.data, .type = row.type});
     if (behind < row.address.bit_size) {
-      around = path_of(image, {.data = row.data, .type = row.type}) + " AT " +
-               address_text(row.address);
+      const std::string path = path_of(image, {.data = row.data, .type = row.type});
+      around = base::joined({path, " AT ", address_text(row.address)});
     }
   }
-  if (!around.empty()) return no_such(name, "is a part of " + around + "; name that variable");
-  return no_such(name, "no variable of the program stands for this address");
+  if (!around.empty()) return not_there(name, {"is a part of ", around, "; name that variable"});
+  return not_there(name, {"no variable of the program stands for this address"});
 }
 
 // The path with the instance's name in place of its PROGRAM's; "": it begins with none.
@@ -80,12 +83,13 @@ base::Result<std::string> by_program(const Image& image, std::string_view path) 
   for (uint32_t id : image.program_ids()) {
     const Instance& row = image.instances[id];
     if (!same_name(image.types[row.type].name, declared)) continue;
-    instances += (count++ == 0 ? "" : ", ") + row.name;
-    found = row.name + std::string(path.substr(declared.size()));
+    if (count++ != 0) instances += ", ";
+    instances += row.name;
+    found = base::joined({row.name, path.substr(declared.size())});
   }
   if (count < 2) return found;
-  return no_such(path, "`" + std::string(declared) + "` has " + std::to_string(count) +
-                           " instances; name one of them: " + instances);
+  return not_there(path, {"`", declared, "` has ", std::to_string(count),
+                        " instances; name one of them: ", instances});
 }
 
 }  // namespace
@@ -99,6 +103,11 @@ base::Result<std::string> path_of_name(const Image& image, std::string_view name
   const bool better = !other->empty() && find_symbol(image, *other).ok();
   if (better) return other;
   return base::Error{symbol.error().refusal, symbol.error().text + meant(image, name)};
+}
+
+base::Result<Symbol> named_symbol(const Image& image, std::string_view name) {
+  const base::Result<std::string> path = path_of_name(image, name);
+  return path.ok() ? find_symbol(image, *path) : path.error();
 }
 
 }  // namespace ir

@@ -66,7 +66,7 @@ said 'R0113'
 printf 'name = 5\n' >empty/stc.toml
 printf 'PROGRAM Main END_PROGRAM\n' >empty/a.st
 expect 7 stc check empty
-said 'stc.toml:1:1: `name` must be a text'
+said 'stc.toml:1:8: error.R0506.: `name` must be a text'
 printf 'colour = "red"\n' >empty/stc.toml
 expect 7 stc check empty
 said 'unknown key `colour`'

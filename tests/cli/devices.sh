@@ -173,10 +173,10 @@ expect 7 stc check p
 said 'stc.toml:1:'
 printf '[devices]\npress = 1\n' >p/stc.toml
 expect 7 stc check p
-said 'stc.toml:2:1: `devices.press`: a device is a table \[devices.NAME\]'
+said 'stc.toml:2:1: error.R0507.: `devices.press`: a device is a table \[devices.NAME\]'
 printf '[devices.]\n' >p/stc.toml
 expect 7 stc check p
-said 'stc.toml:1:10: expected a key'
+said 'stc.toml:1:10: error.R0506.: expected a key'
 
 # As it should be: in the image, with the process image large enough.
 cat >p/stc.toml <<'T'

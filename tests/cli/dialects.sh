@@ -29,15 +29,15 @@ said 'error\[E3001\]'
 expect 0 stc check --dialect codesys p
 printf 'dialect = "pascal"\n' >p/stc.toml
 expect 7 stc check p
-said 'stc.toml:1:1: unknown dialect .pascal.; known are iec, codesys, twincat'
+said 'stc.toml:1:11: error.R0506.: `dialect` must be "iec", "codesys" or "twincat", not "pascal"'
 printf 'strict_strings = 1\n' >p/stc.toml
 expect 7 stc check p
-said 'stc.toml:1:1: .*strict_strings'
+said 'stc.toml:1:18: .*strict_strings'
 printf 'strict_strings = true\n' >p/stc.toml
 expect 0 stc check --dialect codesys p
 rm p/stc.toml
 expect 2 stc check --dialect pascal p
-said 'unknown dialect .pascal.; known are iec, codesys, twincat'
+said 'is iec, codesys or twincat, not .pascal.'
 
 expect 0 stc --help
 for dialect in iec codesys twincat; do said "^  $dialect "; done

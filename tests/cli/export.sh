@@ -20,7 +20,7 @@ expect 0 stc export p.st -o again.xml
 cmp p.xml again.xml || fail "not the same twice"
 expect 2 stc export p.st
 expect 2 stc export p.st -o x.xml --as tc6-9
-said 'is tc6-2.01, tc6-2.0 or 61131-10, not .tc6-9.; did you mean .tc6-2.0.'
+said 'is tc6-2.01, tc6-2.0 or 61131-10, not .tc6-9.'
 expect 7 stc export nothing.st -o x.xml
 # What is there is only overwritten when it is a document, and never a source.
 cp p.st q.st

@@ -35,7 +35,7 @@ said() { cat out err | grep -qE -- "$1" || fail "not said: $1"; }
 json() {
   python3 -c 'import json, sys
 d = json.load(open("out"))
-sys.exit(not eval(sys.argv[1]))' "$1" || fail "not so: $1"
+sys.exit(not eval("(" + sys.argv[1] + ")"))' "$1" || fail "not so: $1"
 }
 # wait_for REGEX COMMAND...: runs it, output in ./out, until it prints that.
 wait_for() {

@@ -23,12 +23,14 @@ sed -i 's/on : BOOL;/on : BOOL; fast : BOOL;/' line/main.st
 expect 7 stvm change line --dir plc --yes --strategy in-place
 said 'R0307'
 expect 2 stvm change line --dir plc --yes --restricted --unrestricted
-said 'which'
+said 'contradict each other'
 expect 0 stvm change line --dir plc --yes --strategy in-place --unrestricted
 expect 0 stvm accept --dir plc
-# Sources by name are no project: nothing of it counts.
+# R-03 A source by its name is a part of the project above it, which says how it is changed.
 sed -i 's/fast : BOOL;/fast, slow : BOOL;/' line/main.st
-expect 0 stvm change line/main.st --dir plc --yes
+expect 7 stvm change line/main.st --dir plc --yes
+said 'R0307'
+expect 0 stvm change line/main.st --dir plc --yes --unrestricted --strategy in-place
 expect 0 stvm accept --dir plc
 
 # Options win at serve, too.

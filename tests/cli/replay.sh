@@ -18,7 +18,7 @@ said '^300 cycles replayed, the state is identical'
 head -2 out >again
 cmp -s was again || fail "other values: $(cat was again)"
 expect 0 stvm replay run.rec --scans 100 --print F.n --format json
-said '"F.n": *"100"'
+said '"F.n": *\{"type":"DINT","value":100\}'
 said '"whole": *false'
 expect 0 stvm replay run.rec --trace t.csv --print F.n
 [ "$(wc -l <t.csv)" -gt 250 ] || fail "the trace has too few lines"

@@ -67,8 +67,8 @@ run_both plant
 grep Line out | cmp -s - first || fail "two runs in virtual time differ"
 expect 0 stvm run plant --virtual-time --scans 30 --set Pack.p.seen=100 --force Line.speed=7 --print Pack.speed,Pack.p.seen --state --format json
 said '"resources": *\[\{"name": *"Line"'
-said '"speed": *"7"'
-said '"p.seen": *"1[0-9][0-9]"'
+said '"speed": *\{"type":"[A-Z]*","value":7\}'
+said '"p.seen": *\{"type":"[A-Z]*","value":1[0-9][0-9]\}'
 expect 0 stvm run plant --scans 200 --print Pack.p.torn --state
 said '^Pack.p.torn=0'
 said '^Line.block.a\[0\]=200'
@@ -123,7 +123,7 @@ mkdir wired && cp plant/plant.st wired/
 device() { printf '[devices.d]\ndriver = "simulated"\nmap = ["bit 0 <- %%QX0.0"]\n%s\n' "$1" >wired/stc.toml; }
 device ''
 expect 7 stc build wired -o wired.img
-said 'R0507: wired/stc.toml:2:[0-9]+: device `d`: there are several RESOURCEs; say which one has it: resource = "Line"'
+said 'wired/stc.toml:2:[0-9]+: error.R0507.: device `d`: there are several RESOURCEs; say which one has it: resource = "Line"'
 device 'resource = "Pick"'
 expect 7 stc build wired -o wired.img
 said 'there is no RESOURCE `Pick`'
@@ -139,7 +139,7 @@ expect 2 stvm run wired.Line.img wired.Pack.img --virtual-time --scans 5 --devic
 device 'resource = "pack"
 on_loss = "trap Slow"'
 expect 7 stc check wired
-said 'stc.toml:2:10: device `d`: `on_loss` names `Slow`, which is no task that runs a program; there is `'
+said 'stc.toml:2:10: error.R0507.: device `d`: `on_loss` names `Slow`, which is no task that runs a program; there is `'
 device 'resource = "pack"
 [outputs]
 safe = ["%QX0.0 = TRUE"]'

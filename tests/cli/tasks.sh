@@ -67,6 +67,7 @@ done
 printf '[outputs]\nsafe = 5\n' >plant/stc.toml
 expect 7 stc build plant -o x.img
 said 'list of texts'
+rm plant/stc.toml
 
 # A service manager hears that it runs, that it lives, and that it ends.
 if command -v python3 >/dev/null; then

@@ -1,75 +1,33 @@
 #include "tools/common/change_settings.h"
 
-#include <filesystem>
+#include <set>
 
+#include "ir/bytecode/image.h"
 #include "tools/common/files.h"
+#include "tools/common/project_file.h"
 
 namespace tools {
-namespace {
-
-namespace fs = std::filesystem;
-
-base::Error wrong(const std::string& file, const std::string& key, const TomlValue& value,
-                  const char* what) {
-  return toml_error(file, value.line, value.column, "`" + key + "` must be " + what);
-}
-
-base::Status apply_file(const std::string& file, ChangeSettings& settings) {
-  base::Result<std::string> text = read_text(file);
-  if (!text.ok()) return text.error();
-  base::Result<TomlTable> table = parse_toml(file, *text);
-  if (!table.ok()) return table.error();
-  for (const auto& [key, value] : *table) {
-    if (!key.starts_with(kChangeTable)) continue;
-    base::Status status = apply_change_key(file, key, value, settings);
-    if (!status.ok()) return status;
-  }
-  return base::Ok{};
-}
-
-}  // namespace
-
-base::Status apply_change_key(const std::string& file, const std::string& key,
-                              const TomlValue& value, ChangeSettings& settings) {
-  if (key == "change.strategy") {
-    const std::string* name = std::get_if<std::string>(&value.data);
-    if (name == nullptr || (*name != "in-place" && *name != "standby")) {
-      return wrong(file, key, value, "\"in-place\" or \"standby\"");
-    }
-    settings.strategy = *name;
-  } else if (key == "change.restricted") {
-    const bool* on = std::get_if<bool>(&value.data);
-    if (on == nullptr) return wrong(file, key, value, "true or false");
-    settings.restricted = *on;
-  } else if (key == "change.health" || key == "change.unless") {
-    const std::string* name = std::get_if<std::string>(&value.data);
-    if (name == nullptr || name->empty()) {
-      return wrong(file, key, value, "the name of a BOOL, as in \"Main.healthy\"");
-    }
-    (key == "change.health" ? settings.health : settings.unless) = *name;
-  } else if (key == "change.data_limit") {
-    const int64_t* bytes = std::get_if<int64_t>(&value.data);
-    if (bytes == nullptr || *bytes < 0) {
-      return wrong(file, key, value, "a whole number of bytes, 0 for no limit");
-    }
-    settings.data_limit = static_cast<uint64_t>(*bytes);
-  } else {
-    return toml_error(
-        file, value.line, value.column,
-        "unknown key `" + key +
-            "`; known in [change] are strategy, restricted, health, unless, data_limit");
-  }
-  return base::Ok{};
-}
 
 base::Result<ChangeSettings> change_settings(const std::vector<std::string>& paths) {
   ChangeSettings settings;
+  std::set<std::string> read;
   for (const std::string& path : paths) {
-    std::error_code error;
-    const fs::path file = fs::path(path) / "stc.toml";
-    if (!fs::is_directory(path, error) || !fs::exists(file, error)) continue;
-    base::Status applied = apply_file(file.string(), settings);
-    if (!applied.ok()) return applied.error();
+    // An image is a product that may lie anywhere, also below the project of somebody else.
+    if (base::Result<base::Bytes> first = read_first(path, ir::kImageMagic.size());
+        first.ok() && ir::has_image_magic(*first)) {
+      continue;
+    }
+    const std::string nearest = nearest_project_file(path);
+    if (nearest.empty() || !read.insert(nearest).second) continue;
+    base::Result<ProjectFile> file = read_project_file(nearest);
+    if (!file.ok()) return file.error();
+    std::string strategy;
+    file->take<std::string>("change.strategy", strategy);
+    if (strategy == "in-place" || strategy == "standby") settings.strategy = strategy;
+    file->take<bool>("change.restricted", settings.restricted);
+    file->take<std::string>("change.health", settings.health);
+    file->take<std::string>("change.unless", settings.unless);
+    file->take<int64_t>("change.data_limit", settings.data_limit);
   }
   return settings;
 }

@@ -3,11 +3,9 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/result.h"
-#include "tools/common/toml.h"
 
 namespace tools {
 
@@ -19,13 +17,8 @@ struct ChangeSettings {
   uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit
 };
 
-inline constexpr std::string_view kChangeTable = "change.";
-
-// Sets what `key` ("change.strategy") names. kBadProject for unknown keys and wrong values.
-base::Status apply_change_key(const std::string& file, const std::string& key,
-                              const TomlValue& value, ChangeSettings& settings);
-
-// From stc.toml in those of the paths that are folders; the defaults without one.
+// From the stc.toml that is nearest to each path but images; the defaults without one. Whether they
+// are right is said by stc, which compiles what the paths name.
 base::Result<ChangeSettings> change_settings(const std::vector<std::string>& paths);
 
 }  // namespace tools

@@ -83,20 +83,34 @@ struct Output {
   std::optional<base::Error> refusal;
 };
 
-// A refusal ("stc: R0202: text" and a line of help) is not a message but comes back as the error,
-// so that this tool says it once, with the same code.
-Output sort_out(const std::string& tool, const std::string& text) {
+// "stc: R0202: text", or "stc.toml:3:1: error[R0506]: text" as an error with its place in front.
+std::optional<base::Error> refusal_in(const std::string& tool, std::string_view line) {
   const std::string mark = tool + ": ";
+  if (line.starts_with(mark) && line.size() > mark.size() + 7) {
+    const auto code = base::refusal_from_code(line.substr(mark.size(), 5));
+    if (code) return base::Error{*code, std::string(line.substr(mark.size() + 7))};
+  }
+  constexpr std::string_view kPlaced = ": error[R";
+  const size_t at = line.find(kPlaced);
+  if (at == std::string_view::npos) return std::nullopt;
+  const size_t code_at = at + kPlaced.size() - 1;
+  const auto code = base::refusal_from_code(line.substr(code_at, 5));
+  if (!code || line.size() < code_at + 8) return std::nullopt;
+  return base::Error{
+      *code, std::string(line.substr(0, at)) + ": " + std::string(line.substr(code_at + 8))};
+}
+
+// A refusal, with the lines of source and help below it, is not a message but comes back as the
+// error, so that this tool says it once, with the same code.
+Output sort_out(const std::string& tool, const std::string& text) {
   Output out;
   for (size_t at = 0; at < text.size();) {
     size_t end = std::min(text.find('\n', at), text.size());
     std::string_view line = std::string_view(text).substr(at, end - at);
     at = end + 1;
-    bool marked = line.starts_with(mark) && line.size() > mark.size() + 7;
-    auto code = marked ? base::refusal_from_code(line.substr(mark.size(), 5)) : std::nullopt;
-    if (code) {
-      out.refusal = base::Error{*code, std::string(line.substr(mark.size() + 7))};
-    } else if (!(out.refusal && line.starts_with("  help: "))) {
+    if (auto refusal = refusal_in(tool, line)) {
+      out.refusal = std::move(refusal);
+    } else if (!out.refusal || !line.starts_with("  ")) {
       out.messages += std::string(line) + "\n";
     }
   }
@@ -109,6 +123,8 @@ base::Status run_beside(const std::string& tool, const std::vector<std::string>&
                         Messages messages) {
   std::vector<std::string> command = {own_folder() + "/" + tool};
   command.insert(command.end(), arguments.begin(), arguments.end());
+  // What it says is read here, whatever the environment says of colours.
+  command.insert(command.begin() + 2, "--color=never");
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return base::Error{base::Refusal::kInternal, "no pipe"};
   base::Result<pid_t> child = spawn(command, [&](FileActions& actions) {

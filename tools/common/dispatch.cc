@@ -1,19 +1,26 @@
 #include "tools/common/dispatch.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <string_view>
 
+#include "base/joined.h"
 #include "base/nearest_name.h"
 #include "tools/common/exit.h"
 #include "tools/common/help.h"
+#include "tools/common/option_rows.h"
+#include "tools/common/terminal.h"
 
 namespace tools {
 namespace {
 
-constexpr OptionRow kFormatOptions[] = {
-    {"--format", "FORM", "text (default) or json", "text|json"}};
-constexpr Command kHelp{"help", "[COMMAND]", "Lists the commands, or the options of one.",
-                        kFormatOptions, 0, 1};
+constexpr OptionRow kFormatOptions[] = {kFormatOption};
+constexpr Command kHelp{"help",         "[COMMAND]", "Lists the commands, or the options of one.",
+                        kFormatOptions, 0,           1};
 constexpr Command kVersionCommand{
     "version", "", "Says version and commit, and what was built in.", kFormatOptions, 0, 0};
 
@@ -32,8 +39,8 @@ std::string overview_of(const Tool& tool) {
 base::Error unknown_command(const Tool& tool, std::string_view given) {
   base::NearestName nearest(given);
   for (const Command* command : commands_of(tool)) nearest.offer(command->name);
-  return {base::Refusal::kUsage, "unknown command `" + std::string(given) + "`; see " + tool.name +
-                                     " --help" + nearest.question()};
+  return {base::Refusal::kUsage, base::joined({"unknown command `", given, "`; see ", tool.name,
+                                               " --help", nearest.question()})};
 }
 
 int say(const std::string& text) {
@@ -61,17 +68,70 @@ int run_version(const Tool& tool, const Options& options) {
                                                 : version_text(tool.name, tool.facts));
 }
 
+// What --format says, also on a command line with mistakes, which are said in that form.
+std::string_view wanted_format(std::span<char* const> args) {
+  constexpr std::string_view kFormat = "--format";
+  for (size_t i = 0; i < args.size(); ++i) {
+    const std::string_view arg = args[i];
+    if (arg == "--") break;
+    if (arg == kFormat && i + 1 < args.size()) return args[i + 1];
+    if (arg.starts_with(kFormat) && arg.substr(kFormat.size(), 1) == "=") {
+      return arg.substr(kFormat.size() + 1);
+    }
+  }
+  return {};
+}
+
+RefusalForm form_of(const Tool& tool, std::string_view format) {
+  for (const NamedForm& row : tool.forms) {
+    if (format == row.name) return row.form;
+  }
+  return nullptr;
+}
+
+// A file that is opened would take the number of a standard stream that is closed, and get what is
+// printed. What is printed to the stand-in fails, and that is said at the end.
+void stand_in_for_closed_streams() {
+  for (int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) >= 0) continue;
+    (void)::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
+// The exit code, when all that was printed has arrived.
+int check_output(const Tool& tool, int code) {
+  const bool before = std::ferror(stdout) != 0;
+  if (std::fflush(stdout) == 0 && !before) return code;
+  std::fprintf(stderr,
+               "%s: standard output could not be written%s%s\n"
+               "  help: what was done is done, and what it said is not complete; free space, or "
+               "write to another place\n",
+               tool.name, before ? "" : ": ", before ? "" : std::strerror(errno));
+  return code == kOk || code == kFindings ? kOutputLost : code;
+}
+
+// From here on what is printed goes nowhere. The descriptor stays as it is: `-o /dev/stdout` is a
+// file like any other.
+void be_quiet() {
+  std::FILE* const nowhere = std::fopen("/dev/null", "w");
+  if (nowhere != nullptr) stdout = nowhere;
+}
+
 // Parses what stands behind the command, and runs it.
 template <class Run>
 int with_options(const Tool& tool, const Command& command, std::span<char* const> args, Run run) {
   if (wants_help(args)) return say(help_text(tool.name, command));
+  set_refusal_form(form_of(tool, wanted_format(args)));
   base::Result<Options> options = Options::parse(command, args);
-  return options.ok() ? run(*options) : refuse(tool.name, options.error());
+  if (!options.ok()) return refuse(tool.name, options.error());
+  choose_colour(options->text("--color"));
+  if (options->has("--quiet") && options->text("--format", "text") == "text") be_quiet();
+  return run(*options);
 }
 
 }  // namespace
 
-int dispatch(const Tool& tool, int argc, char** argv) {
+static int run_tool(const Tool& tool, int argc, char** argv) {
   if (argc < 2) {
     std::fputs(overview_of(tool).c_str(), stderr);
     return kUsage;
@@ -79,19 +139,22 @@ int dispatch(const Tool& tool, int argc, char** argv) {
   const std::string_view verb = argv[1];
   const std::span<char* const> args(argv + 2, argv + argc);
   if (verb == kHelp.name || verb == "--help" || verb == "-h") {
-    return with_options(tool, kHelp, args, [&](const Options& given) {
-      return run_help(tool, given);
-    });
+    return with_options(tool, kHelp, args,
+                        [&](const Options& given) { return run_help(tool, given); });
   }
   if (verb == kVersionCommand.name || verb == "--version" || verb == "-V") {
-    return with_options(tool, kVersionCommand, args, [&](const Options& given) {
-      return run_version(tool, given);
-    });
+    return with_options(tool, kVersionCommand, args,
+                        [&](const Options& given) { return run_version(tool, given); });
   }
   for (const Entry* entry : tool.entries) {
     if (verb == entry->command->name) return with_options(tool, *entry->command, args, entry->run);
   }
   return refuse(tool.name, unknown_command(tool, verb));
+}
+
+int dispatch(const Tool& tool, int argc, char** argv) {
+  stand_in_for_closed_streams();
+  return check_output(tool, run_tool(tool, argc, argv));
 }
 
 }  // namespace tools

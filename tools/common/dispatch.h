@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/exit.h"
 #include "tools/common/options.h"
 #include "tools/common/version.h"
 
@@ -16,12 +17,19 @@ struct Entry {
   int (*run)(const Options& options);  // the exit code
 };
 
+// How the refusals of a command come in the form that --format names.
+struct NamedForm {
+  const char* name;  // "json"
+  RefusalForm form;
+};
+
 struct Tool {
   const char* name;
   const char* purpose;
   std::span<const Entry* const> entries;
   std::vector<VersionFact> facts;  // behind version and commit
   std::string notes;               // at the end of the overview
+  std::vector<NamedForm> forms;
 };
 
 int dispatch(const Tool& tool, int argc, char** argv);

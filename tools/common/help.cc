@@ -1,9 +1,12 @@
 #include "tools/common/help.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/wrapped.h"
+#include "tools/common/exit.h"
 #include "tools/common/json.h"
+#include "tools/common/option_rows.h"
 
 namespace tools {
 namespace {
@@ -34,14 +37,21 @@ std::string option_text(const OptionRow& row) {
   return row_text(std::move(head), 26, row.help);
 }
 
-void option_json(const OptionRow& row, JsonWriter& json) {
+bool has_option(const Command& command, std::string_view name) {
+  return std::any_of(command.options.begin(), command.options.end(),
+                     [&](const OptionRow& row) { return long_name(row) == name; });
+}
+
+void option_json(const OptionRow& row, const Command& command, JsonWriter& json) {
   json.begin_object().field("name", long_name(row));
   if (!short_name(row).empty()) json.field("short", short_name(row));
   if (row.value != nullptr) json.field("value", row.value);
   json.key("choices").begin_array();
   for (std::string_view word : words_of(row.choices)) json.value(word);
   json.end_array().key("excludes").begin_array();
-  for (std::string_view word : words_of(row.excludes)) json.value(word);
+  for (std::string_view word : words_of(row.excludes)) {
+    if (has_option(command, word)) json.value(word);
+  }
   json.end_array().field("repeatable", row.times == Times::kMany);
   json.field("help", row.help).end_object();
 }
@@ -49,12 +59,13 @@ void option_json(const OptionRow& row, JsonWriter& json) {
 }  // namespace
 
 std::string help_text(std::string_view tool, const Command& command) {
-  std::string out = "usage: " + std::string(tool) + " " + command.name;
-  if (!command.options.empty()) out += " [options]";
+  std::string out = "usage: " + std::string(tool) + " " + command.name + " [options]";
   if (*command.arguments != '\0') out += std::string(" ") + command.arguments;
   out += "\n\n" + paragraph(command.summary);
   if (!command.options.empty()) out += "\n";
   for (const OptionRow& row : command.options) out += option_text(row);
+  out += "\nof every command:\n";
+  for (const OptionRow& row : kEveryCommand) out += option_text(row);
   return out;
 }
 
@@ -64,6 +75,10 @@ std::string overview(std::string_view tool, std::string_view purpose,
   out += paragraph(purpose) + "\n";
   for (const Command* command : commands) {
     out += row_text("  " + std::string(command->name), 13, command->summary);
+  }
+  out += "\nexit codes:\n\n";
+  for (const ExitRow& row : exit_rows()) {
+    out += row_text("  " + std::to_string(row.code), 6, row.meaning);
   }
   const std::string name(tool);
   return out + "\n" +
@@ -79,8 +94,14 @@ std::string help_json(std::string_view tool, std::string_view purpose,
   for (const Command* command : commands) {
     json.begin_object().field("name", command->name).field("arguments", command->arguments);
     json.field("summary", command->summary).key("options").begin_array();
-    for (const OptionRow& row : command->options) option_json(row, json);
+    for (const OptionRow& row : command->options) option_json(row, *command, json);
+    for (const OptionRow& row : kEveryCommand) option_json(row, *command, json);
     json.end_array().end_object();
+  }
+  json.end_array().key("exit_codes").begin_array();
+  for (const ExitRow& row : exit_rows()) {
+    json.begin_object().field("code", row.code).field("name", row.name);
+    json.field("meaning", row.meaning).end_object();
   }
   json.end_array().end_object();
   return json.finish();

@@ -23,6 +23,8 @@ class JsonWriter {
   JsonWriter& value(uint32_t v) { return raw(std::to_string(v)); }
   JsonWriter& value(int v) { return raw(std::to_string(v)); }
   JsonWriter& value(double v);
+  JsonWriter& null() { return raw("null"); }
+  JsonWriter& number(std::string_view digits) { return raw(digits); }  // as JSON has it
   template <class T>
   JsonWriter& field(std::string_view name, const T& v) {
     return key(name).value(v);

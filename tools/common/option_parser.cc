@@ -1,21 +1,24 @@
 // Options::parse: every mistake is one line that says which option, what was given and the way out.
 #include <algorithm>
 
+#include "base/joined.h"
 #include "base/nearest_name.h"
-#include "tools/common/options.h"
+#include "tools/common/option_rows.h"
 
 namespace tools {
 namespace {
 
-const OptionRow* find_row(const Command& command, std::string_view given) {
-  for (const OptionRow& row : command.options) {
-    if (given == long_name(row)) return &row;
-    if (given == short_name(row)) return &row;
+const OptionRow* find_row(std::span<const OptionRow> rows, std::string_view given) {
+  for (const OptionRow& row : rows) {
+    if (given == long_name(row) || given == short_name(row)) return &row;
   }
   return nullptr;
 }
 
-std::string quoted(std::string_view text) { return "`" + std::string(text) + "`"; }
+const OptionRow* find_row(const Command& command, std::string_view given) {
+  const OptionRow* const own = find_row(command.options, given);
+  return own != nullptr ? own : find_row(kEveryCommand, given);
+}
 
 }  // namespace
 
@@ -33,17 +36,17 @@ class OptionParser {
     if (!together.ok()) return together.error();
     const std::vector<std::string>& arguments = out_.arguments_;
     if (arguments.size() < command_.min_arguments) {
-      return usage(std::string("needs ") + command_.arguments);
+      return usage({"needs ", command_.arguments});
     }
     if (arguments.size() > command_.max_arguments) {
-      return usage("too many arguments: " + arguments[command_.max_arguments]);
+      return usage({"too many arguments: ", arguments[command_.max_arguments]});
     }
     return std::move(out_);
   }
 
  private:
-  base::Error usage(std::string text) const {
-    return {base::Refusal::kUsage, std::string(command_.name) + ": " + std::move(text)};
+  base::Error usage(std::initializer_list<std::string_view> parts) const {
+    return {base::Refusal::kUsage, base::joined({command_.name, ": ", base::joined(parts)})};
   }
 
   base::Status take(std::string_view arg) {
@@ -64,7 +67,7 @@ class OptionParser {
     const OptionRow* row = find_row(command_, given);
     if (row == nullptr) return unknown(given);
     if (equals == std::string_view::npos) return row->value ? take_next(*row, given) : flag(*row);
-    if (row->value == nullptr) return usage(std::string(given) + " takes no value");
+    if (row->value == nullptr) return usage({given, " takes no value"});
     return keep(*row, arg.substr(equals + 1));
   }
 
@@ -80,8 +83,7 @@ class OptionParser {
       } else if (rest.empty()) {
         return take_next(*row, given);
       } else if (rest[0] == '=') {
-        return usage(std::string(arg) + ": write " + given + " " + std::string(rest.substr(1)) +
-                     ", or " + std::string(long_name(*row)) + std::string(rest));
+        return usage({arg, ": write ", given, " ", rest.substr(1), ", or ", long_name(*row), rest});
       } else {
         return keep(*row, rest);
       }
@@ -91,12 +93,11 @@ class OptionParser {
 
   // What looks like an option of this command is none of its values: that one was forgotten.
   base::Status take_next(const OptionRow& row, std::string_view given) {
-    const std::string needs = std::string(given) + " needs a value: " + row.value;
-    if (at_ + 1 == args_.size()) return usage(needs);
-    const std::string_view next = args_[at_ + 1];
+    const std::string_view next = at_ + 1 < args_.size() ? args_[at_ + 1] : "";
+    if (at_ + 1 == args_.size()) return usage({given, " needs a value: ", row.value});
     if (find_row(command_, next.substr(0, next.find('='))) != nullptr) {
-      return usage(needs + ", and " + std::string(next) + " is an option; if it is meant, write " +
-                   std::string(long_name(row)) + "=" + std::string(next));
+      return usage({given, " needs a value: ", row.value, ", and ", next,
+                    " is an option; if it is meant, write ", long_name(row), "=", next});
     }
     ++at_;
     return keep(row, next);
@@ -115,8 +116,8 @@ class OptionParser {
     }
     std::vector<std::string>& values = out_.values_[name];
     if (row.times == Times::kOnce && !values.empty()) {
-      return usage(name + " takes one value, and there are two: " + quoted(values[0]) + " and " +
-                   quoted(value));
+      return usage(
+          {name, " takes one value, and there are two: `", values[0], "` and `", value, "`"});
     }
     values.emplace_back(value);
     return base::Ok{};
@@ -128,15 +129,17 @@ class OptionParser {
     std::string all;
     for (size_t i = 0; i < choices.size(); ++i) {
       nearest.offer(choices[i]);
-      all += (i == 0 ? "" : i + 1 == choices.size() ? " or " : ", ") + std::string(choices[i]);
+      all += i == 0 ? "" : i + 1 == choices.size() ? " or " : ", ";
+      all += choices[i];
     }
-    return usage(name + " is " + all + ", not " + quoted(value) + nearest.question());
+    return usage({name, " is ", all, ", not `", value, "`", nearest.question()});
   }
 
   base::Error unknown(std::string_view given) const {
     base::NearestName nearest(given);
     for (const OptionRow& row : command_.options) nearest.offer(long_name(row));
-    return usage("unknown option " + std::string(given) + nearest.question());
+    for (const OptionRow& row : kEveryCommand) nearest.offer(long_name(row));
+    return usage({"unknown option ", given, nearest.question()});
   }
 
   base::Status check_together() const {
@@ -144,8 +147,7 @@ class OptionParser {
       if (!out_.has(long_name(row))) continue;
       for (std::string_view other : words_of(row.excludes)) {
         if (!out_.has(other)) continue;
-        return usage(std::string(long_name(row)) + " and " + std::string(other) +
-                     " contradict each other; leave one out");
+        return usage({long_name(row), " and ", other, " contradict each other; leave one out"});
       }
     }
     return base::Ok{};

@@ -6,7 +6,7 @@
 
 #include "base/result.h"
 #include "ir/bytecode/embedded_sources.h"
-#include "tools/common/options.h"
+#include "tools/common/option_rows.h"
 
 namespace tools {
 

@@ -2,6 +2,8 @@
 
 #include <charconv>
 
+#include "base/joined.h"
+
 namespace tools {
 namespace {
 
@@ -118,8 +120,10 @@ class Parser {
 
   std::string string() {
     std::string out;
+    const size_t begin = at_;
     for (++at_; peek() != '"'; ++at_) {
       if (peek() == '\n') {
+        at_ = begin;
         fail("text without closing quote");
         return out;
       }
@@ -198,8 +202,8 @@ class Parser {
 }  // namespace
 
 base::Error toml_error(std::string_view file, uint32_t line, uint32_t column, std::string what) {
-  return {base::Refusal::kBadProject, std::string(file) + ":" + std::to_string(line) + ":" +
-                                          std::to_string(column) + ": " + std::move(what)};
+  return {base::Refusal::kBadProject, base::joined({file, ":", std::to_string(line), ":",
+                                                    std::to_string(column), ": ", what})};
 }
 
 base::Result<TomlTable> parse_toml(std::string_view file, std::string_view text) {

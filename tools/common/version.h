@@ -5,20 +5,23 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 namespace tools {
 
-// Of the generated file tools/identity.cc (scripts/identity.cmake). Only the two programs have it, so
-// a commit compiles that file and links nothing else.
+// Of a generated file (scripts/identity.cmake). Only the two programs have it, so a commit compiles
+// that file and links nothing else.
 extern const char kVersion[];
 extern const char kCommit[];  // "unknown" in what is built outside of a repository
+// Where a page for each code is ("/E3001" behind it); "": nowhere that this build knows of.
+extern const char kDocumentation[];
 
 // What a tool says beside: "protocol" and 10; "adapters" and their names.
 struct VersionFact {
+  enum Kind : uint8_t { kText, kTexts, kNumber, kNumbers };
   const char* name;
-  std::variant<std::string, uint32_t, std::vector<std::string>, std::vector<uint32_t>> value;
+  Kind kind;
+  std::vector<std::string> values;
 };
 
 // Every version of images that this program reads.

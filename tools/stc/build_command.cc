@@ -15,12 +15,11 @@ constexpr tools::OptionRow kOptions[] = {
      "image to write (default: NAME.img in this folder); of several RESOURCEs "
      "FILE.RESOURCE.img each, or RESOURCE.img in the folder FILE"},
     {"--base", "IMAGE", "running version: what lives on keeps its place"},
-    {"--quiet|-q", nullptr, "no line about the image"},
     {"--watch", nullptr, "stay, and build again whenever a source is saved"},
     {"--move-all", nullptr, "with --base: give every instance a new place (a test of changes)"},
 };
-constexpr tools::Command kCommand{"build", "PATHS...", "Compiles and links sources to an image.",
-                                  kOptions, 1};
+constexpr tools::Command kCommand{"build", "[PATHS...]", "Compiles and links sources to an image.",
+                                  kOptions};
 
 int run(const tools::Options& options) {
   auto format = diagnostic_format(options);
@@ -34,6 +33,9 @@ int run(const tools::Options& options) {
   const bool with_line = *format == base::DiagnosticFormat::kText && !options.has("--quiet");
   BuildOptions build_options{base_image.get(), options.has("--move-all")};
   if (options.has("--watch")) {
+    if (options.arguments().empty()) {
+      return tools::refuse("stc", {base::Refusal::kUsage, "build: --watch needs PATHS..."});
+    }
     WatchedImage target(options.text("--output"), with_line, base_image);
     return watch(options, build_options.move_all, *format, target);
   }
@@ -41,15 +43,19 @@ int run(const tools::Options& options) {
   if (!project.ok()) return tools::refuse("stc", project.error());
   base::Diagnostics diagnostics;
   auto versions = build_resources(*project, build_options, diagnostics);
-  report(*project, diagnostics, *format);
-  if (!versions.ok()) return tools::refuse("stc", versions.error());
+  if (!versions.ok()) return finish(*project, diagnostics, *format, versions.error());
   if (versions->size() > 1 && base_image) {
-    return tools::refuse("stc", {base::Refusal::kUsage,
-                                 "--base is one program, but there are several RESOURCEs; say "
-                                 "which one is meant: --resource NAME"});
+    const base::Error several{base::Refusal::kUsage,
+                              "--base is one program, but there are several RESOURCEs; say which "
+                              "one is meant: --resource NAME"};
+    return finish(*project, diagnostics, *format, several);
   }
+  // People read what was found before the line about the image.
+  const bool text = *format == base::DiagnosticFormat::kText;
+  if (text) report(*project, diagnostics, *format);
   base::Status written = write_images(*versions, options.text("--output", project->name + ".img"),
                                       project->name, with_line);
+  if (!text) return finish(*project, diagnostics, *format, written);
   return written.ok() ? tools::kOk : tools::refuse("stc", written.error());
 }
 

@@ -8,7 +8,7 @@ namespace stc {
 namespace {
 
 constexpr tools::OptionRow kOptions[] = {STC_SOURCE_OPTIONS};
-constexpr tools::Command kCommand{"check", "PATHS...", "Reports errors and warnings.", kOptions, 1};
+constexpr tools::Command kCommand{"check", "[PATHS...]", "Reports errors and warnings.", kOptions};
 
 int run(const tools::Options& options) {
   auto format = diagnostic_format(options);
@@ -18,9 +18,8 @@ int run(const tools::Options& options) {
   base::Diagnostics diagnostics;
   // Linking too: recursion and memory limits are findings of a check.
   auto versions = build_resources(*project, {}, diagnostics);
-  report(*project, diagnostics, *format);
-  if (!versions.ok()) return tools::refuse("stc", versions.error());
-  return tools::kOk;
+  return finish(*project, diagnostics, *format,
+                versions.ok() ? base::Status(base::Ok{}) : versions.error());
 }
 
 }  // namespace

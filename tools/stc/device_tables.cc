@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "ir/types/address_text.h"
+#include "tools/common/project_file.h"
 #include "tools/stc/map_entry.h"
 
 namespace stc {
@@ -34,8 +35,8 @@ class Reader {
 
   base::Result<std::vector<ProjectDevice>> run() {
     for (const auto& [key, value] : table_) {
-      if (!key.starts_with(kDeviceTables)) continue;
-      const std::string_view rest = std::string_view(key).substr(kDeviceTables.size());
+      if (!key.starts_with(tools::kDeviceTables)) continue;
+      const std::string_view rest = std::string_view(key).substr(tools::kDeviceTables.size());
       const size_t dot = rest.find('.');
       if (dot == std::string_view::npos || rest.find('.', dot + 1) != std::string_view::npos) {
         return at(file_, {value.line, value.column},

@@ -12,8 +12,6 @@
 
 namespace stc {
 
-inline constexpr std::string_view kDeviceTables = "devices.";
-
 struct ProjectDevice {
   ir::Device device;
   std::string resource;  // which has it; "": not said

@@ -16,7 +16,7 @@ namespace {
 
 constexpr tools::OptionRow kOptions[] = {
     STC_SOURCE_OPTIONS,
-    STC_RESTRICTED_OPTION,
+    tools::kRestrictedOption,
     {"--all", nullptr, "show the fate of each variable too, with its addresses"},
     {"--against", "HOST|DIR", "OLD is what runs there: a state directory, or a host to ssh to"},
     {"--text", nullptr,

@@ -10,7 +10,7 @@ namespace stc {
 base::Result<Embedding> Embedding::of(const Project& project) {
   Embedding out;
   if (!project.embed_sources) return out;
-  const ProjectFolder folder(project.paths);
+  const ProjectFolder folder(project.held_paths());
   std::vector<ir::SourceText> files;
   const auto add = [&](const std::string& name, std::string text) -> base::Status {
     base::Result<std::string> path = folder.true_path_of(name);
@@ -28,7 +28,7 @@ base::Result<Embedding> Embedding::of(const Project& project) {
     if (base::Status added = add(file.path, file.text); !added.ok()) return added.error();
   }
   std::vector<std::string> build = project.build_options;
-  if (project.paths.size() > 1 || !tools::is_folder(project.paths[0])) {
+  if (project.held_paths().size() > 1 || !tools::is_folder(project.paths[0])) {
     for (const std::string& named : project.paths) {
       base::Result<std::string> path = folder.true_path_of(named);
       if (!path.ok()) return path.error();

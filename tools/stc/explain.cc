@@ -6,6 +6,7 @@
 
 #include "base/diagnostics.h"
 #include "base/limits.h"
+#include "base/nearest_name.h"
 #include "base/result.h"
 #include "frontend/dialect.h"
 #include "ir/bytecode/code.h"
@@ -13,8 +14,10 @@
 #include "ir/opt/optimise.h"
 #include "ir/program/ir.h"
 #include "stdlib/registry.h"
+#include "tools/common/project_file.h"
 #include "tools/common/table.h"
 #include "tools/stc/commands.h"
+#include "tools/stc/project_schema.h"
 #include "tools/stc/session.h"
 
 namespace stc {
@@ -90,7 +93,8 @@ std::string overview_page() {
   return "stc explain CODE     E.... and W.... of the compiler, R.... of everything else\n"
          "stc explain TRAP     a run-time trap by name\n"
          "stc explain TABLE    limits, opcodes, functions, refusals, diagnostics, traps, "
-         "dialects, devices\n";
+         "dialects, devices,\n"
+         "                     passes, exit_codes, stc.toml, stc.toml.schema\n";
 }
 
 std::string devices_page() {
@@ -157,14 +161,42 @@ std::string passes_page() {
   return fitted(table);
 }
 
+std::string exit_codes_page() {
+  tools::Table table({"> code", "name", "meaning"});
+  for (const tools::ExitRow& row : tools::exit_rows()) {
+    table.row({std::to_string(row.code), row.name, row.meaning});
+  }
+  return fitted(table);
+}
+
+std::string project_page() {
+  tools::Table table({"key", "default", "meaning"});
+  for (const tools::ProjectKey& key : tools::project_keys()) {
+    table.row({std::string(key.name), std::string(key.fallback), std::string(key.help)});
+  }
+  return fitted(table);
+}
+
 struct Page {
   const char* name;
   std::string (*text)();
 };
-constexpr Page kPages[] = {
-    {"limits", limits_page},     {"functions", functions_page}, {"opcodes", opcodes_page},
-    {"refusals", refusals_page}, {"traps", traps_page},         {"diagnostics", diagnostics_page},
-    {"dialects", dialects_page}, {"devices", devices_page},     {"passes", passes_page}};
+constexpr Page kPages[] = {{"limits", limits_page},     {"functions", functions_page},
+                           {"opcodes", opcodes_page},   {"refusals", refusals_page},
+                           {"traps", traps_page},       {"diagnostics", diagnostics_page},
+                           {"dialects", dialects_page}, {"devices", devices_page},
+                           {"passes", passes_page},     {"exit_codes", exit_codes_page},
+                           {"stc.toml", project_page},  {"stc.toml.schema", project_schema}};
+
+// Which page was meant, perhaps: codes and traps, too.
+std::string nearest_page(const std::string& what) {
+  base::NearestName nearest(what);
+  for (const Page& page : kPages) nearest.offer(page.name);
+  for (uint32_t i = 0; i < ir::kTrapCount; ++i) {
+    nearest.offer(ir::trap_name(static_cast<ir::TrapKind>(i)));
+  }
+  return nearest.question();
+}
 
 std::optional<std::string> page_of(const std::string& what) {
   for (const Page& page : kPages) {
@@ -197,8 +229,9 @@ int run(const tools::Options& options) {
   }
   std::optional<std::string> page = page_of(options.arguments()[0]);
   if (!page) {
-    return tools::refuse("stc", {base::Refusal::kUsage,
-                                 "explain: nothing is called `" + options.arguments()[0] + "`"});
+    return tools::refuse(
+        "stc", {base::Refusal::kUsage, "explain: nothing is called `" + options.arguments()[0] +
+                                           "`" + nearest_page(options.arguments()[0])});
   }
   std::fputs(page->c_str(), stdout);
   return tools::kOk;

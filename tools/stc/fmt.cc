@@ -8,6 +8,7 @@
 #include "frontend/format/format.h"
 #include "tools/common/files.h"
 #include "tools/common/json.h"
+#include "tools/common/terminal.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/difference.h"
 #include "tools/stc/format_settings.h"
@@ -60,7 +61,7 @@ void Formatter::note(const std::string& path, const char* status) {
 
 void Formatter::report(const base::SourceMap& sources, base::Diagnostics& diagnostics) {
   diagnostics.sort();
-  bool colour = ::isatty(2) != 0 && ::getenv("NO_COLOR") == nullptr;
+  bool colour = tools::has_colour(STDERR_FILENO);
   std::fputs(base::render(diagnostics, sources, base::DiagnosticFormat::kText, colour).c_str(),
              stderr);
 }

@@ -3,6 +3,7 @@
 #include "tools/common/heap.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/memory_budget.h"
+#include "tools/stc/run_report.h"
 #include "vm/native/program.h"
 
 namespace {
@@ -32,16 +33,18 @@ std::vector<std::string> adapters() {
 int main(int argc, char** argv) {
   tools::keep_freed_memory();
   stc::limit_memory();
-  const tools::Entry* const entries[] = {&stc::kCheck, &stc::kBuild,   &stc::kTest,   &stc::kFormat,
-                                         &stc::kDiff,  &stc::kPackage, &stc::kImport, &stc::kExport,
-                                         &stc::kDraw,  &stc::kDump,    &stc::kSource,
-                                         &stc::kExplain};
+  const tools::Entry* const entries[] = {
+      &stc::kCheck,  &stc::kBuild,  &stc::kTest, &stc::kFormat, &stc::kDiff,   &stc::kPackage,
+      &stc::kImport, &stc::kExport, &stc::kDraw, &stc::kDump,   &stc::kSource, &stc::kExplain};
   const tools::Tool tool{"stc",
                          "Compiles IEC 61131-3 programs to images for stvm.",
                          entries,
                          {tools::image_formats(),
-                          {"adapters", adapters()},
+                          {"adapters", tools::VersionFact::kTexts, adapters()},
                           tools::native_tier(vm::native::is_available())},
-                         dialects()};
+                         dialects(),
+                         {{"json", stc::refusal_json},
+                          {"sarif", stc::refusal_sarif},
+                          {"github", stc::refusal_github}}};
   return tools::dispatch(tool, argc, argv);
 }

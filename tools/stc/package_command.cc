@@ -17,7 +17,7 @@ constexpr tools::OptionRow kOptions[] = {
     STC_EMBED_OPTION,
     {"--base", "IMAGE", "the running version (required)"},
     {"--output|-o", "FILE", "package to write (required without --watch)"},
-    STC_RESTRICTED_OPTION,
+    tools::kRestrictedOption,
     {"--move-all", nullptr, "give every instance a new place (a test of changes)"},
     {"--watch", nullptr, "stay, and make one at each save, for `stvm change --watch`"},
 };

@@ -1,5 +1,5 @@
-// A project: a folder or a list of files, with an optional stc.toml at the
-// folder's root (docs/PROJECT.md). Everything works without it.
+// A project: a folder or a list of files, with an optional stc.toml in the folder
+// or above it (docs/PROJECT.md). Everything works without it.
 #pragma once
 
 #include <optional>
@@ -13,6 +13,7 @@
 #include "ir/opt/optimise.h"
 #include "linker/layout.h"
 #include "tools/stc/device_tables.h"
+#include "tools/stc/project_sources.h"
 #include "tools/stc/read_file.h"
 #include "tools/stc/safe_settings.h"
 
@@ -34,18 +35,14 @@ struct Project {
   bool embed_sources = false;
   bool named = false;                      // by its settings
   std::vector<std::string> paths;          // as typed
+  std::string settings_above;              // a stc.toml above them that concerns them; "": none
   std::vector<std::string> build_options;  // as typed: what is not in the settings
   std::vector<ReadFile> other_files;
   uint32_t read_sources = 0;  // so many of `sources` were read; the rest was made of documents
-};
 
-// Is it a source by its name?
-bool is_source_name(const std::string& path);
-// `path` itself, or the sources in that folder and below it, sorted. Errors: kFileNotFound,
-// kFileUnreadable.
-base::Result<std::vector<std::string>> source_files(const std::string& path);
-// The same for files of other tools (importer.h); of `.xml` only with `any_xml`.
-base::Result<std::vector<std::string>> importable_files(const std::string& path, bool any_xml);
+  // What the folder of the project has to hold.
+  std::vector<std::string> held_paths() const;
+};
 
 // Reads every source: files as given, folders recursively (*.st and objects of TwinCAT, sorted by
 // path); what other tools wrote is imported. File names in messages are the paths as typed. Errors:

@@ -3,8 +3,11 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <filesystem>
 
 #include "base/parallel.h"
+#include "tools/common/terminal.h"
+#include "tools/stc/run_report.h"
 
 namespace stc {
 namespace {
@@ -47,8 +50,23 @@ std::vector<std::string> build_options_of(const tools::Options& options, const P
 
 }  // namespace
 
+// Where nothing is named, the project that this folder is in is meant.
+static base::Result<std::string> project_here() {
+  const std::string nearest = tools::nearest_project_file(".");
+  if (nearest.empty()) {
+    return base::Error{base::Refusal::kUsage,
+                       "needs PATHS...: there is no stc.toml in this folder or above it"};
+  }
+  const std::string folder = std::filesystem::path(nearest).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
 base::Result<Project> open_project(const tools::Options& options,
                                    const std::vector<std::string>& paths) {
+  if (paths.empty()) {
+    base::Result<std::string> here = project_here();
+    return here.ok() ? open_project(options, std::vector<std::string>{*here}) : here.error();
+  }
   auto dialect = dialect_option(options);
   if (!dialect.ok()) return dialect.error();
   base::Result<Project> project = load_project(paths, *dialect);
@@ -82,12 +100,24 @@ base::Result<base::DiagnosticFormat> diagnostic_format(const tools::Options& opt
                      "unknown format `" + name + "`; known are text, json, sarif, github"};
 }
 
-void report(const Project& project, base::Diagnostics& diagnostics, base::DiagnosticFormat format) {
+static void print(const Project& project, base::Diagnostics& diagnostics,
+                  base::DiagnosticFormat format, const base::Error* refused) {
   diagnostics.sort();
-  bool text = format == base::DiagnosticFormat::kText;
-  bool colour = text && ::isatty(2) != 0 && ::getenv("NO_COLOR") == nullptr;
-  std::string out = base::render(diagnostics, project.sources, format, colour);
+  const bool text = format == base::DiagnosticFormat::kText;
+  const bool colour = text && tools::has_colour(STDERR_FILENO);
+  const std::string out = rendered(diagnostics, project.sources, format, colour, refused);
   std::fputs(out.c_str(), text ? stderr : stdout);
+}
+
+void report(const Project& project, base::Diagnostics& diagnostics, base::DiagnosticFormat format) {
+  print(project, diagnostics, format, nullptr);
+}
+
+int finish(const Project& project, base::Diagnostics& diagnostics, base::DiagnosticFormat format,
+           const base::Status& ended) {
+  const bool apart = !ended.ok() && ended.error().refusal != base::Refusal::kSourceErrors;
+  print(project, diagnostics, format, apart ? &ended.error() : nullptr);
+  return ended.ok() ? tools::kOk : tools::refuse_reported("stc", ended.error());
 }
 
 base::Result<Version> open_version(const tools::Options& options,
@@ -98,7 +128,10 @@ base::Result<Version> open_version(const tools::Options& options,
   if (!project.ok()) return project.error();
   base::Diagnostics diagnostics;
   base::Result<Version> version = build(*project, build_options, diagnostics);
-  report(*project, diagnostics, base::DiagnosticFormat::kText);
+  // What a command says in its own form, it says when there are no errors.
+  base::Result<base::DiagnosticFormat> format = diagnostic_format(options);
+  const bool text = !format.ok() || !diagnostics.has_errors();
+  report(*project, diagnostics, text ? base::DiagnosticFormat::kText : *format);
   return version;
 }
 

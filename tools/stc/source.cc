@@ -8,9 +8,7 @@
 namespace stc {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {TOOLS_SOURCE_OPTIONS,
-                                         {"--format", "FORM", "text (default) or json",
-                                          "text|json"}};
+constexpr tools::OptionRow kOptions[] = {TOOLS_SOURCE_OPTIONS, tools::kFormatOption};
 constexpr tools::Command kCommand{
     "source", "IMAGE", "Brings back the sources that travel with an image.", kOptions, 1, 1};
 

@@ -27,7 +27,7 @@ base::Result<Project> project_in(const std::string& root, const std::vector<std:
   base::Result<Project> project = load_project(paths, dialect);
   if (!project.ok()) return project;
   // Settings that somebody sent name files as they like.
-  const ProjectFolder folder(project->paths);
+  const ProjectFolder folder(project->held_paths());
   for (uint32_t file = 0; file < project->read_sources; ++file) {
     auto inside = folder.true_path_of(std::string(project->sources.file_name(file)));
     if (!inside.ok()) return inside.error();

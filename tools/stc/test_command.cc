@@ -6,6 +6,7 @@
 
 #include "tools/common/files.h"
 #include "tools/common/pattern.h"
+#include "tools/common/terminal.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/session.h"
 #include "tools/stc/test_report.h"
@@ -18,12 +19,11 @@ constexpr tools::OptionRow kOptions[] = {
     {"--format", "FORM", "text (default), tap, junit or json", "text|tap|junit|json"},
     {"--output|-o", "FILE", "write that form to a file, and text to the terminal"},
     {"--list", nullptr, "names and places of the tests, nothing is run"},
-    {"--dialect", "NAME", "iec, codesys (default) or twincat"},
-    {"--name", "NAME", "name of the program, instead of the folder's or file's"},
+    TOOLS_COMPILE_OPTIONS,
     STC_CODE_OPTIONS,
 };
-constexpr tools::Command kCommand{"test", "PATHS...", "Runs the TEST blocks on virtual time.",
-                                  kOptions, 1};
+constexpr tools::Command kCommand{"test", "[PATHS...]", "Runs the TEST blocks on virtual time.",
+                                  kOptions};
 
 bool selected(const tools::Options& options, const std::string& name) {
   if (!options.has("--filter")) return true;
@@ -36,7 +36,7 @@ base::Result<std::vector<TestResult>> run_all(const TestVersion& tests, const Pr
                                               const tools::Options& options, bool text) {
   base::Result<ir::VerifiedImage> image = ir::verify(tests.version.bytes);
   if (!image.ok()) return image.error();
-  const bool colour = ::isatty(1) != 0 && ::getenv("NO_COLOR") == nullptr;
+  const bool colour = tools::has_colour(STDOUT_FILENO);
   std::vector<TestResult> results;
   for (const frontend::TestCase& test : tests.cases) {
     if (!selected(options, test.name)) continue;
@@ -73,7 +73,9 @@ base::Result<int> run_tests(const tools::Options& options) {
   if (!known.ok()) return known.error();
   base::Diagnostics diagnostics;
   base::Result<TestVersion> tests = build_tests(*project, diagnostics);
-  report(*project, diagnostics, base::DiagnosticFormat::kText);
+  const bool json = format == "json" && diagnostics.has_errors() && !options.has("--output");
+  report(*project, diagnostics,
+         json ? base::DiagnosticFormat::kJson : base::DiagnosticFormat::kText);
   if (!tests.ok()) return tests.error();
   if (options.has("--list")) {
     for (const frontend::TestCase& test : tests->cases) {

@@ -297,7 +297,7 @@ Unit file_unit(const char* kind, std::string file, std::string text) {
 }  // namespace
 
 std::vector<Unit> units_of(const Project& project) {
-  const ProjectFolder folder(project.paths);
+  const ProjectFolder folder(project.held_paths());
   frontend::Tree tree;
   base::Diagnostics ignored;  // who builds it reports them
   frontend::parse_all(project.sources, project.compile, tree, ignored);

@@ -17,8 +17,7 @@ constexpr tools::Command kCommand{
 
 // One question and nothing before it: the controller answers it in the middle of what it does.
 base::Status abort(const tools::Options& options) {
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  const bool json = wants_json(options);
   base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
   base::Result<base::Bytes> body = client->call({.command = vm::Command::kAbort});
@@ -27,7 +26,7 @@ base::Status abort(const tools::Options& options) {
   const bool done = answer.boolean();
   const std::string text = base::visible(answer.text());
   if (!answer.done()) return base::Error{base::Refusal::kProtocol, "answer not understood"};
-  if (*json) {
+  if (json) {
     tools::JsonWriter out;
     out.begin_object().field("aborted", done).field("text", text).end_object();
     std::fputs(out.finish().c_str(), stdout);

@@ -22,7 +22,7 @@ constexpr tools::OptionRow kOptions[] = {
     {"--batch", "N", "scans between two looks at the clock (default 1); the quotient counts"},
     {"--period", "NS", "virtual time between two scans (default 10000000)"},
     STVM_TIER_OPTION,
-    STVM_DIALECT_OPTION,
+    TOOLS_COMPILE_OPTIONS,
     STVM_FORMAT_OPTION,
 };
 constexpr tools::Command kCommand{"bench", "IMAGE|SOURCES...",
@@ -85,8 +85,7 @@ struct Settings {
 };
 
 base::Result<Settings> read_settings(const tools::Options& options) {
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  const bool json = wants_json(options);
   base::Result<uint64_t> scans = options.number("--scans", 10'000);
   if (!scans.ok()) return scans.error();
   base::Result<uint64_t> batch = options.number("--batch", 1);
@@ -102,7 +101,7 @@ base::Result<Settings> read_settings(const tools::Options& options) {
   }
   base::Result<vm::Tier> tier = tier_of(options);
   if (!tier.ok()) return tier.error();
-  return Settings{*json, *scans, *batch, static_cast<int64_t>(*period), *tier};
+  return Settings{json, *scans, *batch, static_cast<int64_t>(*period), *tier};
 }
 
 base::Result<Timing> measure(const Settings& settings, vm::Controller& controller,

@@ -16,34 +16,28 @@ namespace stvm {
 namespace {
 
 // What `change` and `revert` have in common.
-#define STVM_SWITCH_OPTIONS                                                                        \
-  STVM_CONTROLLER_OPTIONS, {"--yes", nullptr, "switch without asking"},                            \
-      {"--dry-run", nullptr,                                                                       \
-       "say what the change would do, or why it would be refused; nothing is changed"},            \
-      {"--all", nullptr, "show the fate of each variable too, with addresses and values"},         \
-      {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},        \
-      {"--strategy", "S",                                                                          \
-       "in-place (default, or what the project says), or standby: a second data area, made in "    \
-       "idle time",                                                                                \
-       "in-place|standby"},                                                                        \
-      {"--allow-overrun", nullptr, "switch even if a task may be delayed"},                        \
-      {"--restricted", nullptr, "refuse when the interface of a POU is edited", "",                \
-       "--unrestricted"},                                                                          \
-      {"--unrestricted", nullptr, "do not, whatever the project says"},                            \
-      {"--health", "NAME",                                                                         \
-       "a BOOL that stays TRUE while all is well: FALSE in the first 1000 cycles undoes the "      \
-       "change"},                                                                                  \
-      {"--unless", "NAME",                                                                         \
-       "a BOOL of the running program: while it is TRUE nothing is switched, and a change that "   \
-       "is being prepared is aborted"},                                                            \
+#define STVM_SWITCH_OPTIONS                                                                       \
+  STVM_CONTROLLER_OPTIONS, tools::kYesOption, tools::kDryRunOption,                               \
+      {"--all", nullptr, "show the fate of each variable too, with addresses and values"},        \
+      {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},       \
+      tools::kStrategyOption,                                                                     \
+      {"--allow-overrun", nullptr, "switch even if a task may be delayed"},                       \
+      tools::kRestrictedOption, {"--unrestricted", nullptr, "do not, whatever the project says"}, \
+      {"--health", "NAME",                                                                        \
+       "a BOOL that stays TRUE while all is well: FALSE in the first 1000 cycles undoes the "     \
+       "change"},                                                                                 \
+      {"--unless", "NAME",                                                                        \
+       "a BOOL of the running program: while it is TRUE nothing is switched, and a change that "  \
+       "is being prepared is aborted"},                                                           \
       {"--wait", nullptr, "wait while others change the controller, or have a change on trial"},  \
-      {"--no-auto-undo", nullptr, "do not undo it either when a trap stops a task in them"},       \
-      {"--permanent", nullptr, "accept at once: no undo, the new program boots next"}
+      {"--no-auto-undo", nullptr, "do not undo it either when a trap stops a task in them"}, {    \
+    "--permanent", nullptr, "accept at once: no undo, the new program boots next"                 \
+  }
 
 constexpr tools::OptionRow kOptions[] = {
     STVM_SWITCH_OPTIONS,
     {"--watch", nullptr, "stay, and bring each save of the sources to the controller"},
-    STVM_DIALECT_OPTION,
+    TOOLS_COMPILE_OPTIONS,
     STVM_FORMAT_OPTION,
 };
 constexpr tools::OptionRow kRevertOptions[] = {STVM_SWITCH_OPTIONS, STVM_FORMAT_OPTION};
@@ -150,12 +144,14 @@ int finish(const tools::Options& options, const SwitchOptions& how, ControllerCl
                                       : change(options, how, client, make);
   if (!outcome.ok()) return refuse(outcome.error());
   print(how, *outcome);
-  return outcome->refused ? refuse(*outcome->refused) : tools::kOk;
+  return outcome->refused ? refuse_reported(*outcome->refused) : tools::kOk;
 }
 
 int run(const tools::Options& options) {
   base::Result<SwitchOptions> how = switch_options(options);
   if (!how.ok()) return refuse(how.error());
+  base::Status fit = check_compile_options(sources_of(options));
+  if (!fit.ok()) return refuse(fit.error());
   base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return refuse(client.error());
   if (options.has("--watch")) return follow(sources_of(options), *how, *client);

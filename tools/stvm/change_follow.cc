@@ -64,7 +64,7 @@ class Follower {
     if (!outcome.ok() && is_gone(outcome.error())) return outcome.error();
     if (outcome.ok()) print(options_, *outcome);
     if (!outcome.ok()) refuse(outcome.error());
-    if (outcome.ok() && outcome->refused) refuse(*outcome->refused);
+    if (outcome.ok() && outcome->refused) refuse_reported(*outcome->refused);
     if (!outcome.ok() || !outcome->report) return tools::FollowedAnswer{};
     const bool waited = std::exchange(waited_, false);  // the times are somebody's who decided
     if (!options_.ask && !options_.json && !waited) say_times(change, *outcome);

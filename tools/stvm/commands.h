@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/common/dispatch.h"
+#include "tools/common/option_rows.h"
 
 namespace stvm {
 
@@ -34,17 +35,14 @@ extern const Entry kReplay;
 extern const Entry kTop;
 extern const Entry kDoctor;
 
-#define STVM_DIR_OPTION \
-  { "--dir", "STATE", "state directory of the controller (default: $STVM_DIR, else .stvm)" }
-#define STVM_CONTROLLER_OPTIONS \
-  STVM_DIR_OPTION, { "--host", "HOST", "the controller runs there; reached with ssh" }
-#define STVM_FORMAT_OPTION \
-  { "--format", "FORM", "text (default) or json", "text|json" }
+#define STVM_DIR_OPTION tools::kDirOption
+#define STVM_CONTROLLER_OPTIONS tools::kDirOption, tools::kHostOption
+#define STVM_FORMAT_OPTION tools::kFormatOption
 
-// kUsage for anything but text and json.
-base::Result<bool> wants_json(const tools::Options& options);
+bool wants_json(const tools::Options& options);
 std::string state_directory(const tools::Options& options);
 // Prints the error as this tool does; the exit code.
 int refuse(const base::Error& error);
+int refuse_reported(const base::Error& error);  // where the report says so in its own form
 
 }  // namespace stvm

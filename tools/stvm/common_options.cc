@@ -5,12 +5,7 @@
 
 namespace stvm {
 
-base::Result<bool> wants_json(const tools::Options& options) {
-  std::string form = options.text("--format", "text");
-  if (form == "json") return true;
-  if (form == "text") return false;
-  return base::Error{base::Refusal::kUsage, "--format is text or json, not `" + form + "`"};
-}
+bool wants_json(const tools::Options& options) { return options.text("--format") == "json"; }
 
 std::string state_directory(const tools::Options& options) {
   const char* preset = std::getenv("STVM_DIR");
@@ -18,5 +13,6 @@ std::string state_directory(const tools::Options& options) {
 }
 
 int refuse(const base::Error& error) { return tools::refuse("stvm", error); }
+int refuse_reported(const base::Error& error) { return tools::refuse_reported("stvm", error); }
 
 }  // namespace stvm

@@ -7,18 +7,16 @@
 #include "tools/common/child.h"
 #include "tools/common/files.h"
 #include "tools/common/heap.h"
+#include "tools/common/option_rows.h"
 
 namespace stvm {
 
 Sources sources_of(const tools::Options& options) {
-  return {options.arguments(), options.text("--dialect")};
+  return {options.arguments(), tools::given_compile_options(options)};
 }
 
 std::vector<std::string> stc_arguments(std::vector<std::string> command, const Sources& sources) {
-  if (!sources.dialect.empty()) {
-    command.push_back("--dialect");
-    command.push_back(sources.dialect);
-  }
+  command.insert(command.end(), sources.options.begin(), sources.options.end());
   command.push_back("--");
   command.insert(command.end(), sources.paths.begin(), sources.paths.end());
   return command;
@@ -29,6 +27,15 @@ bool is_image(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, error)) return false;
   base::Result<base::Bytes> first = tools::read_first(path, ir::kImageMagic.size());
   return first.ok() && ir::has_image_magic(*first);
+}
+
+base::Status check_compile_options(const Sources& sources) {
+  const bool images = std::all_of(sources.paths.begin(), sources.paths.end(), is_image);
+  if (sources.options.empty() || !images) return base::Ok{};
+  const std::string option = sources.options[0].substr(0, sources.options[0].find('='));
+  const std::string path = sources.paths.empty() ? "what is stored" : sources.paths[0];
+  return base::Error{base::Refusal::kUsage,
+                     option + " is for sources, and " + path + " is an image: leave it out"};
 }
 
 void expect_programs(const Sources& sources) {

@@ -13,10 +13,8 @@ namespace stvm {
 // Sources as a command line names them.
 struct Sources {
   std::vector<std::string> paths;
-  std::string dialect;  // "": stc's own choice
+  std::vector<std::string> options;  // of the compiler, "--dialect=iec"
 };
-#define STVM_DIALECT_OPTION \
-  { "--dialect", "NAME", "of sources: iec, codesys (default) or twincat" }
 Sources sources_of(const tools::Options& options);
 // `stc COMMAND OPTIONS... SOURCES...`
 std::vector<std::string> stc_arguments(std::vector<std::string> command, const Sources& sources);
@@ -32,6 +30,9 @@ base::Result<std::vector<ir::VerifiedImage>> load_programs(const Sources& source
 // Linked against the program that runs, for a change of it; `move_all`: with every instance at
 // another place.
 base::Result<base::Bytes> relink(const Sources& sources, base::ByteSpan running, bool move_all);
+
+// kUsage when there are options for the compiler, and nothing is compiled.
+base::Status check_compile_options(const Sources& sources);
 
 // The file begins as an image does.
 bool is_image(const std::string& path);

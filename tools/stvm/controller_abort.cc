@@ -3,7 +3,7 @@
 // looks whether any of them has come; then the old program runs on as if nothing had been.
 #include <utility>
 
-#include "ir/bytecode/symbols.h"
+#include "ir/bytecode/variable_names.h"
 #include "tools/stvm/controller_service.h"
 
 namespace stvm {
@@ -28,7 +28,7 @@ std::string unless_text(const std::string& name) {
 base::Result<uint32_t> ControllerService::find_unless(const std::string& name) const {
   if (name.empty()) return 0u;
   const ir::Image& running = controller_.image();
-  base::Result<ir::Symbol> symbol = ir::find_symbol(running, name);
+  base::Result<ir::Symbol> symbol = ir::named_symbol(running, name);
   if (!symbol.ok()) return symbol.error();
   if (running.types[symbol->type].kind != ir::Kind::kBool) {
     return base::Error{base::Refusal::kBadValue,

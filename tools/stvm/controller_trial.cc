@@ -1,6 +1,6 @@
 // What the controller does by itself in the first cycles of a version on trial (X7): when a trap
 // stops it, or its health condition fails, the version before comes back.
-#include "ir/bytecode/symbols.h"
+#include "ir/bytecode/variable_names.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_service.h"
 #include "tools/stvm/trap_text.h"
@@ -10,7 +10,7 @@ namespace stvm {
 // A BOOL of the next version.
 base::Status ControllerService::check_health(const std::string& name, const ir::Image& next) {
   if (name.empty()) return base::Ok{};
-  base::Result<ir::Symbol> symbol = ir::find_symbol(next, name);
+  base::Result<ir::Symbol> symbol = ir::named_symbol(next, name);
   if (!symbol.ok()) return symbol.error();
   if (next.types[symbol->type].kind == ir::Kind::kBool) return base::Ok{};
   return base::Error{base::Refusal::kBadValue,
@@ -39,7 +39,7 @@ void ControllerService::begin_probation(const vm::Request& request) {
   next.edition = edition_;
   if (!request.names.empty()) next.health = request.names.front();
   if (!next.health.empty()) {
-    base::Result<ir::Symbol> symbol = ir::find_symbol(controller_.image(), next.health);
+    base::Result<ir::Symbol> symbol = ir::named_symbol(controller_.image(), next.health);
     if (symbol.ok()) next.health_data = symbol->data;
   }
   next.ends = switched_cycle_ + kProbationCycles;

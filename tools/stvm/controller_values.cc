@@ -1,6 +1,7 @@
 // What is read and written of the running program's variables.
 #include <algorithm>
 
+#include "ir/bytecode/variable_names.h"
 #include "tools/stvm/controller_service.h"
 
 namespace stvm {
@@ -14,10 +15,26 @@ base::Error too_much(const std::string& name) {
 
 base::Error other_version() { return {base::Refusal::kStaleBase, "another version runs now"}; }
 
-std::vector<vm::NamedValue> named_values(const vm::Request& request) {
-  std::vector<vm::NamedValue> values;
-  for (size_t i = 0; i < request.names.size(); ++i) {
-    values.push_back({request.names[i], request.values[i]});
+using NamedValues = std::vector<vm::NamedValue>;
+
+// Names become paths here: a force is kept by its path, which is the same after a change.
+base::Result<std::vector<std::string>> paths_of(const ir::Image& image,
+                                                const vm::Request& request) {
+  std::vector<std::string> paths;
+  for (const std::string& name : request.names) {
+    base::Result<std::string> path = ir::path_of_name(image, name);
+    if (!path.ok()) return path.error();
+    paths.push_back(std::move(*path));
+  }
+  return paths;
+}
+
+base::Result<NamedValues> named_values(const ir::Image& image, const vm::Request& request) {
+  base::Result<std::vector<std::string>> paths = paths_of(image, request);
+  if (!paths.ok()) return paths.error();
+  NamedValues values;
+  for (size_t i = 0; i < paths->size(); ++i) {
+    values.push_back({std::move((*paths)[i]), request.values[i]});
   }
   return values;
 }
@@ -33,12 +50,11 @@ base::Error ControllerService::too_long() {
 }
 
 // A portion that found no time is tried again a cycle later.
-base::Status ControllerService::copy_at_boundaries(
-    const std::function<vm::Copied(int64_t)>& take) {
+base::Status ControllerService::copy_at_boundaries(const std::function<vm::Copied(int64_t)>& take) {
   for (;;) {
     vm::Copied copied = vm::Copied::kPart;
-    base::Status taken = look_at_boundary(
-        [&] { copied = take(controller_.next_cycle_ns() - clock_.now_ns()); });
+    base::Status taken =
+        look_at_boundary([&] { copied = take(controller_.next_cycle_ns() - clock_.now_ns()); });
     if (!taken.ok()) return taken;
     if (copied == vm::Copied::kAll) return base::Ok{};
     if (copied == vm::Copied::kOtherProgram) return other_version();
@@ -61,7 +77,9 @@ base::Result<base::Bytes> ControllerService::get(const vm::Request& request) {
   vm::Values values;
   std::vector<ir::Symbol> symbols;
   ir::ValueRanges ranges(image, vm::kMaxReadBytes);
-  for (const std::string& name : request.names) {
+  base::Result<std::vector<std::string>> paths = paths_of(image, request);
+  if (!paths.ok()) return paths.error();
+  for (const std::string& name : *paths) {
     base::Result<ir::Symbol> symbol = ir::find_symbol(image, name);
     if (!symbol.ok()) return symbol.error();
     if (!ranges.add(*symbol)) return too_much(name);
@@ -84,7 +102,9 @@ base::Result<base::Bytes> ControllerService::get(const vm::Request& request) {
 
 // All or none: a mistake in the last of several is found before the first is written.
 base::Result<base::Bytes> ControllerService::set(const vm::Request& request) {
-  base::Result<vm::WriteSet> set = controller_.prepare_set(named_values(request));
+  base::Result<NamedValues> values = named_values(controller_.image(), request);
+  if (!values.ok()) return values.error();
+  base::Result<vm::WriteSet> set = controller_.prepare_set(*values);
   if (!set.ok()) return set.error();
   if (set->values.empty()) return base::Bytes();
   vm::BoundaryShare share;
@@ -105,19 +125,24 @@ base::Result<base::Bytes> ControllerService::set(const vm::Request& request) {
 
 // The code for it is made here, beside the running program; the boundary only exchanges it.
 base::Result<base::Bytes> ControllerService::force(const vm::Request& request) {
-  auto change = controller_.prepare_force(named_values(request));
+  base::Result<NamedValues> values = named_values(controller_.image(), request);
+  if (!values.ok()) return values.error();
+  auto change = controller_.prepare_force(*values);
   if (!change.ok()) return change.error();
   base::Status taken = at_boundary([&] { controller_.use(**change); });
   if (!taken.ok()) return taken.error();
-  return force_rows(request.names);
+  std::vector<std::string> paths;
+  for (vm::NamedValue& row : *values) paths.push_back(std::move(row.path));
+  return force_rows(paths);
 }
 
 base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request) {
-  std::vector<std::string> names = request.names;
-  if (names.empty()) {
-    for (const vm::Force& force : controller_.forces()) names.push_back(force.path);
+  base::Result<std::vector<std::string>> names = paths_of(controller_.image(), request);
+  if (!names.ok()) return names.error();
+  if (names->empty()) {
+    for (const vm::Force& force : controller_.forces()) names->push_back(force.path);
   }
-  auto change = controller_.prepare_unforce(names);
+  auto change = controller_.prepare_unforce(*names);
   if (!change.ok()) return change.error();
   base::Status taken = at_boundary([&] { controller_.use(**change); });
   if (!taken.ok()) return taken.error();

@@ -9,9 +9,11 @@ namespace stvm {
 // kNoDriver names the package that was missing; kDeviceFailed.
 base::Result<std::unique_ptr<vm::IoDriver>> make_driver(const ir::Device& device);
 
-#define STVM_DEVICE_OPTION \
-  { "--device", "NAME.KEY=VALUE", "another setting of a device here; repeatable", "", "", \
-        tools::Times::kMany }
+#define STVM_DEVICE_OPTION                                                                \
+  {                                                                                       \
+    "--device", "NAME.KEY=VALUE", "another setting of a device here; repeatable", "", "", \
+        tools::Times::kMany                                                               \
+  }
 // From that option; `virtual_clock` null: real time.
 base::Result<vm::DeviceIo::Options> device_options(const tools::Options& options,
                                                    vm::Clock* virtual_clock);

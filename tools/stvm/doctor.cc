@@ -173,8 +173,7 @@ void print_json(const std::vector<Finding>& findings) {
 }
 
 base::Result<int> examine(const tools::Options& options) {
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  const bool json = wants_json(options);
   base::Result<uint64_t> period_us = options.number("--period", 1000);
   if (!period_us.ok()) return period_us.error();
   base::Result<uint64_t> seconds = options.number("--seconds", 2);
@@ -186,7 +185,7 @@ base::Result<int> examine(const tools::Options& options) {
                                    frequency(), clock_source(), quota()};
   findings.push_back(sleeps(static_cast<int64_t>(*period_us) * 1000,
                             static_cast<int64_t>(*seconds) * 1'000'000'000));
-  (*json ? print_json : print_text)(findings);
+  (json ? print_json : print_text)(findings);
   const bool poor = std::any_of(findings.begin(), findings.end(), [](const Finding& row) {
     return row.kind == Finding::Kind::kPoor;
   });

@@ -5,6 +5,7 @@
 #include "tools/common/json.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
+#include "tools/stvm/names.h"
 #include "tools/stvm/values.h"
 
 namespace stvm {
@@ -49,25 +50,26 @@ base::Status list(const tools::Options& options, ControllerClient& client, bool 
 }
 
 base::Status show(const tools::Options& options) {
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  const bool json = wants_json(options);
   bool whole = options.has("--list") || options.has("--forces");
   if (options.arguments().empty() && !whole) {
     return base::Error{base::Refusal::kUsage, "get: needs NAMES, or --list"};
   }
   base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
-  if (options.has("--list")) return list(options, *client, *json);
+  if (options.has("--list")) return list(options, *client, json);
   if (options.has("--forces")) {
     base::Result<vm::ForceRows> forces = client->forces();
     if (!forces.ok()) return forces.error();
-    std::fputs((*json ? forces_json(*forces) : forces_text(*forces)).c_str(), stdout);
+    std::fputs((json ? forces_json(*forces) : forces_text(*forces)).c_str(), stdout);
     return base::Ok{};
   }
-  base::Result<vm::Values> values = client->get(options.arguments());
+  base::Result<Names> names = matching(*client, options.arguments());
+  if (!names.ok()) return names.error();
+  base::Result<vm::Values> values = client->get(std::move(*names));
   if (!values.ok()) return values.error();
-  std::fputs((*json ? values_json(*values) : values_text(*values)).c_str(), stdout);
-  if (!*json && values->last_cycle != values->cycle) {
+  std::fputs((json ? values_json(*values) : values_text(*values)).c_str(), stdout);
+  if (!json && values->last_cycle != values->cycle) {
     std::fprintf(stderr,
                  "note: too much for one boundary: these are values of cycles %llu to %llu\n",
                  static_cast<unsigned long long>(values->cycle),

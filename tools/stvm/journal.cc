@@ -100,11 +100,10 @@ void print_json(const std::vector<JournalEntry>& entries) {
 }
 
 base::Status show(const tools::Options& options) {
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  const bool json = wants_json(options);
   auto entries = entries_of(options);
   if (!entries.ok()) return entries.error();
-  (*json ? print_json : print_text)(*entries);
+  (json ? print_json : print_text)(*entries);
   return base::Ok{};
 }
 

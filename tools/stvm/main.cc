@@ -1,4 +1,5 @@
 // stvm: the controller's command line.
+#include "tools/common/refusal_text.h"
 #include "tools/stvm/commands.h"
 #include "vm/native/program.h"
 #include "vm/runtime/protocol.h"
@@ -17,18 +18,20 @@ std::vector<std::string> adapters() {
 
 int main(int argc, char** argv) {
   const tools::Entry* const entries[] = {
-      &stvm::kRun,     &stvm::kBench,   &stvm::kServe,  &stvm::kStatus, &stvm::kGet,
-      &stvm::kSet,     &stvm::kForce,   &stvm::kUnforce, &stvm::kWatch, &stvm::kChange,
-      &stvm::kUndo,    &stvm::kRevert,  &stvm::kAccept, &stvm::kAbort,  &stvm::kStop,
-      &stvm::kRestart, &stvm::kJournal, &stvm::kSource, &stvm::kImage,  &stvm::kBridge,
+      &stvm::kRun,     &stvm::kBench,   &stvm::kServe,   &stvm::kStatus, &stvm::kGet,
+      &stvm::kSet,     &stvm::kForce,   &stvm::kUnforce, &stvm::kWatch,  &stvm::kChange,
+      &stvm::kUndo,    &stvm::kRevert,  &stvm::kAccept,  &stvm::kAbort,  &stvm::kStop,
+      &stvm::kRestart, &stvm::kJournal, &stvm::kSource,  &stvm::kImage,  &stvm::kBridge,
       &stvm::kReplay,  &stvm::kTop,     &stvm::kDoctor};
-  const tools::Tool tool{"stvm",
-                         "Runs images of stc, and changes them while they run.",
-                         entries,
-                         {tools::image_formats(),
-                          {"protocol", uint32_t{vm::kProtocolVersion}},
-                          {"adapters", adapters()},
-                          tools::native_tier(vm::native::is_available())},
-                         {}};
+  const tools::Tool tool{
+      "stvm",
+      "Runs images of stc, and changes them while they run.",
+      entries,
+      {tools::image_formats(),
+       {"protocol", tools::VersionFact::kNumber, {std::to_string(vm::kProtocolVersion)}},
+       {"adapters", tools::VersionFact::kTexts, adapters()},
+       tools::native_tier(vm::native::is_available())},
+      {},
+      {{"json", tools::refusal_json}}};
   return tools::dispatch(tool, argc, argv);
 }

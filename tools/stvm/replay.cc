@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "ir/bytecode/variable_names.h"
 #include "online_change/store/boot.h"
 #include "tools/common/exit.h"
 #include "tools/common/files.h"
@@ -9,7 +10,9 @@
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_service.h"
 #include "tools/stvm/memory_storage.h"
+#include "tools/stvm/names.h"
 #include "tools/stvm/plot.h"
+#include "tools/stvm/run_resources.h"
 #include "tools/stvm/trace.h"
 #include "tools/stvm/trap_text.h"
 #include "vm/runtime/clocks.h"
@@ -20,11 +23,10 @@ namespace stvm {
 namespace {
 
 constexpr tools::OptionRow kOptions[] = {
-    {"--scans", "N", "stop behind this control cycle"},
-    {"--print", "NAMES", "print these variables at the end: A,B.c; repeatable", "", "",
-     tools::Times::kMany},
-    {"--plot", "FILE", "SVG picture of the variables of --print over the run"},
-    {"--trace", "FILE", "CSV: values after every scan, of --print or of all variables"},
+    tools::kScansOption,
+    tools::kPrintOption,
+    tools::kPlotOption,
+    tools::kTraceOption,
     STVM_FORMAT_OPTION,
 };
 constexpr tools::Command kCommand{
@@ -140,8 +142,8 @@ void print_result(const Player& player, vm::Controller& controller,
     out.field("requests", player.recording().requests.size()).field("whole", whole);
     out.key("values").begin_object();
     for (const std::string& name : names) {
-      base::Result<std::string> value = controller.get(name);
-      out.field(name, value.ok() ? *value : "?");
+      out.key(name);
+      typed_value_of(out, controller, name);
     }
     out.end_object().end_object();
     std::fputs(out.finish().c_str(), stdout);
@@ -157,8 +159,7 @@ void print_result(const Player& player, vm::Controller& controller,
 }
 
 base::Status replay(const tools::Options& options) {
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  const bool json = wants_json(options);
   base::Result<uint64_t> scans = options.number("--scans", UINT64_MAX);
   if (!scans.ok()) return scans.error();
   const std::string& file = options.arguments().front();
@@ -170,7 +171,13 @@ base::Status replay(const tools::Options& options) {
   }
   Player player(std::move(*recording));
   if (base::Status started = player.start(); !started.ok()) return started;
-  const std::vector<std::string> names = split_names(options.all("--print"));
+  Names names;
+  for (const std::string& name : split_names(options.all("--print"))) {
+    base::Result<Names> now = matching(player.controller().image(), {name});
+    if (!now.ok() && is_pattern(name)) return now.error();
+    if (!now.ok()) now = Names{name};  // a change can bring it
+    names.insert(names.end(), now->begin(), now->end());
+  }
   std::optional<Trace> trace;
   if (options.has("--trace")) {
     base::Result<Trace> opened =
@@ -196,7 +203,7 @@ base::Status replay(const tools::Options& options) {
   }
   // Only now: a change can have brought them.
   for (const std::string& name : names) {
-    base::Result<ir::Symbol> symbol = ir::find_symbol(player.controller().image(), name);
+    base::Result<ir::Symbol> symbol = ir::named_symbol(player.controller().image(), name);
     if (!symbol.ok()) return symbol.error();
   }
   if (plot) {
@@ -204,7 +211,7 @@ base::Status replay(const tools::Options& options) {
     base::Status drawn = tools::write_file(options.text("--plot"), base::as_bytes(picture));
     if (!drawn.ok()) return drawn;
   }
-  print_result(player, player.controller(), names, *json);
+  print_result(player, player.controller(), names, json);
   return base::Ok{};
 }
 

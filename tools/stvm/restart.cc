@@ -10,13 +10,12 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {{"--warm", nullptr, "keeps what is RETAIN (default)",
-                                          "", "--cold|--hot"},
-                                         {"--cold", nullptr, "keeps nothing: all initial values",
-                                          "", "--hot"},
-                                         {"--hot", nullptr, "keeps all values: only goes on"},
-                                         STVM_CONTROLLER_OPTIONS,
-                                         STVM_FORMAT_OPTION};
+constexpr tools::OptionRow kOptions[] = {
+    {"--warm", nullptr, "keeps what is RETAIN (default)", "", "--cold|--hot"},
+    {"--cold", nullptr, "keeps nothing: all initial values", "", "--hot"},
+    {"--hot", nullptr, "keeps all values: only goes on"},
+    STVM_CONTROLLER_OPTIONS,
+    STVM_FORMAT_OPTION};
 constexpr tools::Command kCommand{"restart", "", "Runs all tasks again, behind a fault too.",
                                   kOptions,  0,  0};
 
@@ -37,8 +36,7 @@ Kind chosen(const tools::Options& options) {
 }
 
 base::Status restart(const tools::Options& options) {
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  const bool json = wants_json(options);
   const Kind kind = chosen(options);
   base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
@@ -49,7 +47,7 @@ base::Status restart(const tools::Options& options) {
   base::Result<base::Bytes> answer = client->call(request);
   if (!answer.ok()) return answer.error();
   const std::string left = base::visible(std::string(answer->begin(), answer->end()));
-  if (!*json) {
+  if (!json) {
     std::printf("restarted, %s\n", kind.name);
     if (!left.empty()) std::printf("  not all instances left: %s\n", left.c_str());
     return base::Ok{};

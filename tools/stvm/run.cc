@@ -10,6 +10,8 @@
 #include "tools/stvm/compiler.h"
 #include "tools/stvm/device_drivers.h"
 #include "tools/stvm/hard_mode.h"
+#include "tools/stvm/json_value.h"
+#include "tools/stvm/names.h"
 #include "tools/stvm/plot.h"
 #include "tools/stvm/run_resources.h"
 #include "tools/stvm/run_timing.h"
@@ -23,17 +25,16 @@ namespace stvm {
 namespace {
 
 constexpr tools::OptionRow kOptions[] = {
-    {"--scans", "N", "control cycles to run (default: until interrupted)"},
+    tools::kScansOption,
     {"--virtual-time", nullptr, "as fast as it can, the same every time"},
     {"--set", "NAME=VALUE", "write a variable before the first scan; repeatable", "", "",
      tools::Times::kMany},
     {"--force", "NAME=VALUE", "impose a value in every scan; repeatable", "", "",
      tools::Times::kMany},
-    {"--print", "NAMES", "print these variables at the end: A,B.c; repeatable", "", "",
-     tools::Times::kMany},
-    {"--plot", "FILE", "SVG picture of the variables of --print over the run"},
-    {"--trace", "FILE", "CSV: values after every scan, of --print or of all variables"},
-    {"--record", "FILE", "record the run, for `stvm replay`"},
+    tools::kPrintOption,
+    tools::kPlotOption,
+    tools::kTraceOption,
+    tools::kRecordOption,
     {"--state", nullptr, "print every variable at the end"},
     {"--hash", nullptr, "print the hash of the state at the end"},
     {"--hard-mode", "MODE", "fuel1, identity or move: nothing may come out differently",
@@ -42,7 +43,7 @@ constexpr tools::OptionRow kOptions[] = {
     STVM_TIMING_OPTIONS,
     STVM_TIER_OPTION,
     STVM_DEVICE_OPTION,
-    STVM_DIALECT_OPTION,
+    TOOLS_COMPILE_OPTIONS,
     STVM_FORMAT_OPTION,
 };
 constexpr tools::Command kCommand{"run", "IMAGES|SOURCES...", "Runs a program scan by scan.",
@@ -60,8 +61,7 @@ struct Settings {
 
 base::Result<Settings> read_settings(const tools::Options& options) {
   Settings out;
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  const bool json = wants_json(options);
   base::Result<HardMode> hard_mode = parse_hard_mode(options.text("--hard-mode"));
   if (!hard_mode.ok()) return hard_mode.error();
   base::Result<uint64_t> scans = options.number("--scans", 0);
@@ -74,21 +74,12 @@ base::Result<Settings> read_settings(const tools::Options& options) {
   if (!timing.ok()) return timing.error();
   out.timing = std::move(*timing);
   out.tier = *tier;
-  out.json = *json;
+  out.json = json;
   out.hard_mode = *hard_mode;
   if (options.has("--scans")) out.scans = *scans;
   out.every = std::max<uint64_t>(*every, 1);
   out.print = split_names(options.all("--print"));
   return out;
-}
-
-// A name that is not there shall be said before the first scan, not after the last.
-base::Status check_names(const std::vector<std::string>& names, const vm::Controller& controller) {
-  for (const std::string& name : names) {
-    base::Result<ir::Symbol> symbol = ir::find_symbol(controller.image(), name);
-    if (!symbol.ok()) return symbol.error();
-  }
-  return base::Ok{};
 }
 
 base::Status run_scans(const Settings& settings, const tools::Options& options,
@@ -164,11 +155,16 @@ void print_json(const Settings& settings, const tools::Options& options,
   tools::JsonWriter json;
   json.begin_object().field("scans", controller.cycles()).field("faulted", controller.faulted());
   json.key("values").begin_object();
-  for (const std::string& name : settings.print) json.field(name, value_of(controller, name));
+  for (const std::string& name : settings.print) {
+    json.key(name);
+    typed_value_of(json, controller, name);
+  }
   auto memory = controller.memory().view();
   if (options.has("--state")) {
     ir::for_each_leaf(controller.image(), [&](const std::string& path, const ir::Symbol& symbol) {
-      json.field(path, ir::format_value(controller.image(), symbol, memory));
+      json.key(path);
+      typed_value(json, controller.image().types.text(symbol.type),
+                  ir::format_value(controller.image(), symbol, memory));
     });
   }
   json.end_object();
@@ -183,7 +179,7 @@ void print_json(const Settings& settings, const tools::Options& options,
   std::fputs(json.finish().c_str(), stdout);
 }
 
-base::Result<int> run_alone(const Settings& settings,
+base::Result<int> run_alone(Settings settings,
                             const std::vector<vm::GlobalExchange::Resource>& program,
                             const tools::Options& options) {
   const RunTiming& timing = settings.timing;
@@ -206,8 +202,10 @@ base::Result<int> run_alone(const Settings& settings,
   vm::Controller& controller = (*running)->controller();
   base::Status assigned = apply_assignments(options, "", controller, (*running)->recorder());
   if (!assigned.ok()) return assigned.error();
-  base::Status known = check_names(settings.print, controller);
-  if (!known.ok()) return known.error();
+  // A name that is not there shall be said before the first scan, not after the last.
+  base::Result<Names> names = matching(controller.image(), settings.print);
+  if (!names.ok()) return names.error();
+  settings.print = std::move(*names);
   StopSignal::install_for_outputs();
   TimingChart* const seen = chart ? &*chart : nullptr;
   base::Status done = run_scans(settings, options, **running, virtual_clock, seen);
@@ -235,6 +233,9 @@ base::Result<int> run_program(const tools::Options& options) {
   if (options.has("--record") && settings->hard_mode != HardMode::kNone) {
     return base::Error{base::Refusal::kUsage, "--record cannot be combined with --hard-mode"};
   }
+  base::Status fit = options.has("--change") ? base::Status(base::Ok{})
+                                             : check_compile_options(sources_of(options));
+  if (!fit.ok()) return fit.error();
   base::Status possible = check_hard_mode(settings->hard_mode, sources_of(options));
   if (!possible.ok()) return possible.error();
   expect_programs(sources_of(options));

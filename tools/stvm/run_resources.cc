@@ -8,6 +8,8 @@
 #include "tools/common/exit.h"
 #include "tools/common/json.h"
 #include "tools/stvm/commands.h"
+#include "tools/stvm/json_value.h"
+#include "tools/stvm/names.h"
 #include "tools/stvm/stop_signal.h"
 #include "tools/stvm/tier.h"
 #include "tools/stvm/trace.h"
@@ -57,15 +59,25 @@ base::Result<Name> find_name(const Running& running, const std::string& name) {
                      "`" + name + "`: with several resources, names begin with one: " + known};
 }
 
-base::Status check_names(const Running& running, const tools::Options& options,
-                         const RunSettings& settings) {
-  for (const std::string& name : settings.print) {
+// Those of --print, as paths behind the name of their resource.
+base::Result<Names> names_to_print(const Running& running, const Names& names) {
+  Names out;
+  for (const std::string& name : names) {
     base::Result<Name> found = find_name(running, name);
     if (!found.ok()) return found.error();
-    base::Result<ir::Symbol> symbol =
-        ir::find_symbol(found->resource->controller().image(), found->path);
-    if (!symbol.ok()) return symbol.error();
+    base::Result<Names> paths = matching(found->resource->controller().image(), {found->path});
+    if (!paths.ok()) return paths;
+    const bool path_itself = paths->size() == 1 && paths->front() == found->path;
+    if (path_itself) {
+      out.push_back(name);
+      continue;
+    }
+    for (const std::string& path : *paths) out.push_back(found->resource->name() + "." + path);
   }
+  return out;
+}
+
+base::Status check_assignments(const Running& running, const tools::Options& options) {
   for (const char* option : {"--set", "--force"}) {
     base::Result<std::vector<Assignment>> rows = parse_assignments(options.all(option));
     if (!rows.ok()) return rows.error();
@@ -149,12 +161,16 @@ void print_resource(tools::JsonWriter& json, ResourceController& resource,
   json.field("faulted", controller.faulted()).key("values").begin_object();
   for (const std::string& name : settings.print) {
     const auto path = name_in(resource.name(), name);
-    if (path) json.field(*path, value_of(controller, *path));
+    if (!path) continue;
+    json.key(*path);
+    typed_value_of(json, controller, *path);
   }
   auto memory = controller.memory().view();
   if (options.has("--state")) {
     ir::for_each_leaf(controller.image(), [&](const std::string& path, const ir::Symbol& symbol) {
-      json.field(path, ir::format_value(controller.image(), symbol, memory));
+      json.key(path);
+      typed_value(json, controller.image().types.text(symbol.type),
+                  ir::format_value(controller.image(), symbol, memory));
     });
   }
   json.end_object();
@@ -189,10 +205,14 @@ base::Status apply_assignments(const tools::Options& options, const std::string&
   for (const char* option : {"--set", "--force"}) {
     base::Result<std::vector<Assignment>> rows = parse_assignments(options.all(option));
     if (!rows.ok()) return rows.error();
-    for (Assignment& row : *rows) {
+    std::vector<Assignment> own;
+    for (const Assignment& row : *rows) {
       const auto path = name_in(resource, row.name);
-      if (!path) continue;
-      row.name = *path;
+      if (path) own.push_back({*path, row.value});
+    }
+    rows = matching(controller.image(), own);
+    if (!rows.ok()) return rows.error();
+    for (const Assignment& row : *rows) {
       const bool set = std::string_view(option) == "--set";
       base::Status status =
           set ? controller.set(row.name, row.value) : controller.force(row.name, row.value);
@@ -213,6 +233,13 @@ std::string value_of(const vm::Controller& controller, const std::string& name) 
   return value.ok() ? *value : "?";
 }
 
+void typed_value_of(tools::JsonWriter& json, const vm::Controller& controller,
+                    const std::string& name) {
+  const base::Result<ir::Symbol> symbol = ir::find_symbol(controller.image(), name);
+  typed_value(json, symbol.ok() ? controller.image().types.text(symbol->type) : std::string(),
+              value_of(controller, name));
+}
+
 bool end_run(ResourceController& resource) {
   vm::Controller& controller = resource.controller();
   base::Status left = controller.leave_all(kExitLimitNs);  // its trap is one of these
@@ -224,7 +251,7 @@ bool end_run(ResourceController& resource) {
   return left.ok() && controller.traps().empty();
 }
 
-base::Result<int> run_resources(const std::vector<Resource>& resources, const RunSettings& settings,
+base::Result<int> run_resources(const std::vector<Resource>& resources, RunSettings settings,
                                 const tools::Options& options) {
   for (const char* option : {"--trace", "--plot", "--hard-mode"}) {
     if (!options.has(option)) continue;
@@ -249,9 +276,11 @@ base::Result<int> run_resources(const std::vector<Resource>& resources, const Ru
     if (!started.ok()) return started.error();
     running.push_back(std::move(*started));
   }
-  if (base::Status known = check_names(running, options, settings); !known.ok()) {
-    return known.error();
-  }
+  base::Result<Names> names = names_to_print(running, settings.print);
+  if (!names.ok()) return names.error();
+  settings.print = std::move(*names);
+  base::Status known = check_assignments(running, options);
+  if (!known.ok()) return known.error();
   for (const auto& resource : running) {
     base::Status assigned =
         apply_assignments(options, resource->name(), resource->controller(), resource->recorder());

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "tools/common/json.h"
 #include "tools/stvm/resource_controller.h"
 
 namespace stvm {
@@ -18,7 +19,7 @@ struct RunSettings {
 // is next, of equals the one that stands first in `resources`. Otherwise each has a thread. `scans`
 // counts cycles of the first. Names begin with the resource's. The exit code.
 base::Result<int> run_resources(const std::vector<vm::GlobalExchange::Resource>& resources,
-                                const RunSettings& settings, const tools::Options& options);
+                                RunSettings settings, const tools::Options& options);
 
 // --set and --force, in this order; those of `resource` (all, when it is ""), without its name.
 // What is done is noted in the recording.
@@ -27,6 +28,9 @@ base::Status apply_assignments(const tools::Options& options, const std::string&
 // A task that is still inside its scan would show half of its results.
 void finish_scan(ResourceController& resource);
 std::string value_of(const vm::Controller& controller, const std::string& name);
+// As `stvm get --format json` has it (json_value.h).
+void typed_value_of(tools::JsonWriter& json, const vm::Controller& controller,
+                    const std::string& name);
 // Instances leave, outputs become safe, traps are printed. Was everything as it should be?
 bool end_run(ResourceController& resource);
 

@@ -1,5 +1,7 @@
 #include "tools/stvm/run_timing.h"
 
+#include "tools/common/option_rows.h"
+
 #include <algorithm>
 
 #include "ir/types/time_parse.h"
@@ -36,7 +38,7 @@ base::Result<RunChange::Settings> change_of(const tools::Options& options) {
   if (!lasts.ok()) return lasts.error();
   out.at_ns = *at;
   out.lasts_ns = *lasts;
-  out.sources = {{parts->second}, options.text("--dialect")};
+  out.sources = {{parts->second}, tools::given_compile_options(options)};
   const bool standby = options.text("--strategy") == "standby";
   if (standby) out.strategy = online_change::Strategy::kStandby;
   return out;

@@ -12,14 +12,14 @@
 #include "tools/stvm/timing_chart.h"
 #include "vm/runtime/clocks.h"
 
-#define STVM_TIMING_OPTIONS                                                                       \
-  {"--duration", "TASK=TIME", "virtual time: each scan of the task lasts so long; repeatable",    \
-   "",           "",          tools::Times::kMany},                                               \
-      {"--safe-point", "TIME", "virtual time: so much for each call and end of a loop"},          \
-      {"--change", "TIME=PATH", "virtual time: the program becomes that one, from then on"},      \
-      {"--configuration", "TIME", "idle time that this change takes before its switch"},          \
-      {"--strategy", "S", "of this change: in-place (default) or standby", "in-place|standby"}, { \
-    "--chart", "FILE|-", "SVG timing chart of tasks, exchange and change; -: as text"             \
+#define STVM_TIMING_OPTIONS                                                                    \
+  {"--duration", "TASK=TIME", "virtual time: each scan of the task lasts so long; repeatable", \
+   "",           "",          tools::Times::kMany},                                            \
+      {"--safe-point", "TIME", "virtual time: so much for each call and end of a loop"},       \
+      {"--change", "TIME=PATH", "virtual time: the program becomes that one, from then on"},   \
+      {"--configuration", "TIME", "idle time that this change takes before its switch"},       \
+      tools::kStrategyOption, {                                                                \
+    "--chart", "FILE|-", "SVG timing chart of tasks, exchange and change; -: as text"          \
   }
 
 namespace stvm {

@@ -33,10 +33,10 @@ constexpr tools::OptionRow kOptions[] = {
     {"--cpu", "N", "keep the control thread on this processor"},
     {"--lock-memory", nullptr, "keep all memory in RAM, and touch it before the first scan"},
     {"--seccomp", nullptr, "threads may only make the system calls that docs/RUNNING.md names"},
-    {"--record", "FILE", "record the run, for `stvm replay`"},
+    tools::kRecordOption,
     {"--virtual-time", nullptr, "cycles as fast as they can run, instead of real time"},
     STVM_DEVICE_OPTION,
-    STVM_DIALECT_OPTION,
+    TOOLS_COMPILE_OPTIONS,
 };
 constexpr tools::Command kCommand{
     "serve", "[IMAGES|SOURCES...]",
@@ -231,6 +231,8 @@ base::Status run_several(Served& served, const vm::RealTimeOptions& real_time,
 base::Status serve(const tools::Options& options) {
   base::Result<vm::ControllerOptions> limits = limits_of(options);
   if (!limits.ok()) return limits.error();
+  base::Status fit = check_compile_options(sources_of(options));
+  if (!fit.ok()) return fit;
   base::Result<vm::RealTimeOptions> real_time = real_time_options(options);
   if (!real_time.ok()) return real_time.error();
   StopSignal::install_service();
@@ -271,6 +273,7 @@ base::Status serve(const tools::Options& options) {
 
 int run(const tools::Options& options) {
   base::Status served = serve(options);
+  std::clearerr(stdout);  // whoever read what it says may have gone long ago
   return served.ok() ? tools::kOk : refuse(served.error());
 }
 

@@ -5,7 +5,7 @@
 #include "tools/common/json.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
-#include "tools/stvm/trace.h"
+#include "tools/stvm/names.h"
 #include "tools/stvm/values.h"
 
 namespace stvm {
@@ -21,53 +21,68 @@ constexpr tools::Command kForceCommand{
 constexpr tools::Command kUnforceCommand{"unforce", "NAMES...", "Releases forced variables.",
                                          kUnforceOptions};
 
-base::Status send(vm::Command command, const tools::Options& options,
-                  const std::vector<std::string>& names, const std::vector<std::string>& values) {
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+// Connects and learns which version runs.
+base::Result<ControllerClient> meet(const tools::Options& options) {
   base::Result<ControllerClient> client = ControllerClient::connect(options);
-  if (!client.ok()) return client.error();
+  if (!client.ok()) return client;
   base::Result<vm::StatusReport> status = client->status();
   if (!status.ok()) return status.error();
-  if (command == vm::Command::kForce) {
-    base::Result<vm::ForceRows> forces = client->force(names, values);
-    if (!forces.ok()) return forces.error();
-    std::fputs((*json ? forces_json(*forces) : forces_text(*forces)).c_str(), stdout);
-    return base::Ok{};
-  }
-  base::Status done = client->assign(command, names, values);
-  if (!done.ok()) return done;
-  if (*json) {
-    tools::JsonWriter out;
-    out.begin_object().field(vm::command_name(command), true).end_object();
-    std::fputs(out.finish().c_str(), stdout);
-  }
-  return base::Ok{};
+  return client;
 }
 
-int assign(vm::Command command, const tools::Options& options) {
+void print_done(vm::Command command, bool json) {
+  if (!json) return;
+  tools::JsonWriter out;
+  out.begin_object().field(vm::command_name(command), true).end_object();
+  std::fputs(out.finish().c_str(), stdout);
+}
+
+base::Status write(vm::Command command, const tools::Options& options) {
   base::Result<std::vector<Assignment>> rows = parse_assignments(options.arguments());
-  if (!rows.ok()) return refuse(rows.error());
-  std::vector<std::string> names;
+  if (!rows.ok()) return rows.error();
+  const bool json = wants_json(options);
+  base::Result<ControllerClient> client = meet(options);
+  if (!client.ok()) return client.error();
+  rows = matching(*client, *rows);
+  if (!rows.ok()) return rows.error();
+  Names names;
   std::vector<std::string> values;
   for (Assignment& row : *rows) {
     names.push_back(std::move(row.name));
     values.push_back(std::move(row.value));
   }
-  base::Status done = send(command, options, names, values);
-  return done.ok() ? tools::kOk : refuse(done.error());
-}
-
-int set(const tools::Options& options) { return assign(vm::Command::kSet, options); }
-int force(const tools::Options& options) { return assign(vm::Command::kForce, options); }
-
-int unforce(const tools::Options& options) {
-  if (options.arguments().empty() != options.has("--all")) {
-    return refuse({base::Refusal::kUsage, "unforce: needs NAMES, or --all"});
+  if (command == vm::Command::kForce) {
+    base::Result<vm::ForceRows> forces = client->force(names, values);
+    if (!forces.ok()) return forces.error();
+    std::fputs((json ? forces_json(*forces) : forces_text(*forces)).c_str(), stdout);
+    return base::Ok{};
   }
-  base::Status done = send(vm::Command::kUnforce, options, options.arguments(), {});
-  return done.ok() ? tools::kOk : refuse(done.error());
+  base::Status done = client->assign(command, names, values);
+  if (done.ok()) print_done(command, json);
+  return done;
 }
+
+base::Status release(const tools::Options& options) {
+  if (options.arguments().empty() != options.has("--all")) {
+    return base::Error{base::Refusal::kUsage, "unforce: needs NAMES, or --all"};
+  }
+  const bool json = wants_json(options);
+  base::Result<ControllerClient> client = meet(options);
+  if (!client.ok()) return client.error();
+  base::Result<Names> names = matching_forces(*client, options.arguments());
+  if (!names.ok()) return names.error();
+  base::Status done = client->assign(vm::Command::kUnforce, *names, {});
+  if (done.ok()) print_done(vm::Command::kUnforce, json);
+  return done;
+}
+
+int code_of(const base::Status& status) {
+  return status.ok() ? tools::kOk : refuse(status.error());
+}
+
+int set(const tools::Options& options) { return code_of(write(vm::Command::kSet, options)); }
+int force(const tools::Options& options) { return code_of(write(vm::Command::kForce, options)); }
+int unforce(const tools::Options& options) { return code_of(release(options)); }
 
 }  // namespace
 

@@ -28,8 +28,7 @@ base::Result<ControllerClient> connect(const tools::Options& options) {
 }
 
 base::Result<std::string> bring(const tools::Options& options) {
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  const bool json = wants_json(options);
   base::Result<ControllerClient> client = connect(options);
   if (!client.ok()) return client.error();
   if (auto status = client->status(); !status.ok()) return status.error();
@@ -38,7 +37,7 @@ base::Result<std::string> bring(const tools::Options& options) {
   base::Result<ir::VerifiedImage> image = ir::verify(std::move(*bytes));
   if (!image.ok()) return image.error();
   ::umask(077);  // for their owner only, as images
-  return tools::bring_sources(image->encoded(), image->image().name, options, *json);
+  return tools::bring_sources(image->encoded(), image->image().name, options, json);
 }
 
 int run(const tools::Options& options) {

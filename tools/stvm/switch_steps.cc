@@ -1,17 +1,14 @@
 #include "tools/stvm/switch_steps.h"
 
-#include <termios.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
-#include <iostream>
 
 #include "tools/common/change_settings.h"
 #include "tools/common/json.h"
 #include "tools/common/table.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/fate_view.h"
+#include "tools/stvm/question.h"
 #include "tools/stvm/switch_text.h"
 #include "vm/io/global_exchange.h"
 
@@ -39,29 +36,14 @@ void losses_json(const FatePage& page, tools::JsonWriter& json) {
   json.end_array();
 }
 
-base::Status ask() {
-  if (::isatty(STDIN_FILENO) == 0) {
-    return base::Error{base::Refusal::kUsage, "nobody to ask: not a terminal; give --yes"};
-  }
-  // What was typed before the question, for another one perhaps, is no answer to it (E8); nor is
-  // an end of input that answered the last one.
-  ::tcflush(STDIN_FILENO, TCIFLUSH);
-  std::clearerr(stdin);
-  std::cin.clear();
-  std::fputs("Switch now? [y/N] ", stderr);
-  std::string answer;
-  std::getline(std::cin, answer);
-  if (answer == "y" || answer == "Y" || answer == "yes") return base::Ok{};
-  return base::Error{base::Refusal::kBusy, "not switched; the old program runs on"};
-}
-
 // What stands between the report and the switch.
 base::Status may_switch(const SwitchOptions& options, const FatePage& page) {
   if (page.loss_count != 0 && (options.switch_flags & vm::kAllowLoss) == 0) {
     return base::Error{base::Refusal::kWouldLose,
                        std::to_string(page.loss_count) + " live value(s) would be lost"};
   }
-  return options.ask && !options.dry_run ? ask() : base::Status(base::Ok{});
+  if (!options.ask || options.dry_run) return base::Ok{};
+  return ask("Switch now?", "not switched; the old program runs on");
 }
 
 // What the switch itself would refuse now (case 78).
@@ -103,7 +85,10 @@ void print_json(const Outcome& outcome, bool all) {
   json.end_array();
   json.field("switched", outcome.report.has_value());
   if (outcome.report) switch_json(*outcome.report, json);
-  if (outcome.refused) json.field("refused", base::refusal_code(outcome.refused->refusal));
+  if (outcome.refused) {
+    json.field("refused", base::refusal_code(outcome.refused->refusal));
+    json.field("message", outcome.refused->text);
+  }
   json.end_object();
   std::fputs(json.finish().c_str(), stdout);
 }
@@ -136,8 +121,7 @@ uint32_t switch_flags(const tools::Options& options) {
 
 base::Result<SwitchOptions> switch_options(const tools::Options& options) {
   SwitchOptions out;
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  const bool json = wants_json(options);
   base::Result<tools::ChangeSettings> settings = settings_of(options);
   if (!settings.ok()) return settings.error();
   base::Result<uint32_t> strategy = stage_flags(settings->strategy);
@@ -152,7 +136,7 @@ base::Result<SwitchOptions> switch_options(const tools::Options& options) {
   out.all = options.has("--all");
   out.wait = options.has("--wait");
   out.ask = !options.has("--yes");
-  out.json = *json;
+  out.json = json;
   return out;
 }
 

@@ -6,10 +6,10 @@
 
 namespace stvm {
 
-#define STVM_TIER_OPTION \
-  {                                                                                    \
-    "--tier", "T", "auto (default), native or interp: the same results, other times",  \
-        "auto|native|interp"                                                           \
+#define STVM_TIER_OPTION                                                              \
+  {                                                                                   \
+    "--tier", "T", "auto (default), native or interp: the same results, other times", \
+        "auto|native|interp"                                                          \
   }
 
 // kUsage for other names.

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "tools/common/exit.h"
+#include "tools/common/terminal.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
 #include "tools/stvm/stop_signal.h"
@@ -17,8 +18,8 @@ namespace stvm {
 namespace {
 
 constexpr tools::OptionRow kOptions[] = {
-    {"--interval", "MS", "time between two pages (default 1000)"},
-    {"--count", "N", "pages to show (default: until q or Ctrl-C)"},
+    tools::kIntervalOption,
+    tools::kCountOption,
     STVM_CONTROLLER_OPTIONS,
 };
 constexpr tools::Command kCommand{
@@ -42,7 +43,7 @@ TopView view_of_terminal() {
     view.width = from_environment("COLUMNS", 80);
     view.height = from_environment("LINES", 24);
   }
-  view.color = terminal && std::getenv("NO_COLOR") == nullptr;
+  view.color = tools::has_colour(STDOUT_FILENO);
   return view;
 }
 

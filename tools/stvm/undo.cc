@@ -9,6 +9,7 @@
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
 #include "tools/stvm/fate_view.h"
+#include "tools/stvm/question.h"
 #include "tools/stvm/state_folder.h"
 #include "tools/stvm/switch_text.h"
 
@@ -16,10 +17,8 @@ namespace stvm {
 namespace {
 
 constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
-constexpr tools::OptionRow kUndoOptions[] = {
-    {"--dry-run", nullptr, "stop after the fate report; nothing is changed"},
-    STVM_CONTROLLER_OPTIONS,
-    STVM_FORMAT_OPTION};
+constexpr tools::OptionRow kUndoOptions[] = {tools::kYesOption, tools::kDryRunOption,
+                                             STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
 constexpr tools::Command kUndoCommand{
     "undo",       "", "Brings back the program, and the values, from before the last change.",
     kUndoOptions, 0,  0};
@@ -52,6 +51,12 @@ base::Status undo_change(const tools::Options& options) {
   if (!*json) std::fputs(fates_text(*page).c_str(), stdout);
   std::optional<online_change::SwitchReport> done;
   if (!dry_run) {
+    // A script that takes a change back is not held up for want of a person.
+    if (!options.has("--yes") && can_ask()) {
+      std::fflush(stdout);
+      base::Status go = ask("Take it back now?", "not undone; the program on trial runs on");
+      if (!go.ok()) return go;
+    }
     base::Result<online_change::SwitchReport> report = client->undo();
     if (!report.ok()) return report.error();
     done = *report;

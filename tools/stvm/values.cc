@@ -1,6 +1,7 @@
 #include "tools/stvm/values.h"
 
 #include "tools/common/json.h"
+#include "tools/stvm/json_value.h"
 #include "vm/runtime/forces.h"
 
 namespace stvm {
@@ -15,7 +16,10 @@ std::string values_json(const vm::Values& values) {
   tools::JsonWriter json;
   json.begin_object().field("cycle", values.cycle).field("last_cycle", values.last_cycle);
   json.key("values").begin_object();
-  for (const vm::ValueRow& row : values.rows) json.field(row.path, row.value);
+  for (const vm::ValueRow& row : values.rows) {
+    json.key(row.path);
+    typed_value(json, row.type, row.value);
+  }
   json.end_object().end_object();
   return json.finish();
 }
@@ -32,7 +36,8 @@ std::string forces_json(const vm::ForceRows& forces) {
   tools::JsonWriter json;
   json.begin_object().key("forces").begin_array();
   for (const vm::ForceRow& row : forces.rows) {
-    json.begin_object().field("path", row.path).field("type", row.type).field("value", row.value);
+    json.begin_object().field("path", row.path);
+    typed_fields(json, row.type, row.value);
     json.field("everywhere", row.reason.empty());
     if (!row.reason.empty()) json.field("reason", row.reason);
     json.end_object();

@@ -6,6 +6,7 @@
 #include "tools/common/exit.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
+#include "tools/stvm/names.h"
 #include "tools/stvm/stop_signal.h"
 #include "tools/stvm/values.h"
 
@@ -13,8 +14,8 @@ namespace stvm {
 namespace {
 
 constexpr tools::OptionRow kOptions[] = {
-    {"--interval", "MS", "time between two samples (default 500)"},
-    {"--count", "N", "samples to take (default: until interrupted)"},
+    tools::kIntervalOption,
+    tools::kCountOption,
     STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION,
 };
@@ -30,20 +31,21 @@ std::string sample_text(const vm::Values& values) {
 }
 
 base::Status watch(const tools::Options& options) {
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  const bool json = wants_json(options);
   base::Result<uint64_t> interval = options.number("--interval", 500);
   if (!interval.ok()) return interval.error();
   base::Result<uint64_t> count = options.number("--count", UINT64_MAX);
   if (!count.ok()) return count.error();
   base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
+  base::Result<Names> names = matching(*client, options.arguments());
+  if (!names.ok()) return names.error();
   StopSignal::install();
   for (uint64_t i = 0; i < *count && !StopSignal::received(); ++i) {
     if (i != 0) std::this_thread::sleep_for(std::chrono::milliseconds(*interval));
-    base::Result<vm::Values> values = client->get(options.arguments());
+    base::Result<vm::Values> values = client->get(*names);
     if (!values.ok()) return values.error();
-    std::fputs((*json ? values_json(*values) : sample_text(*values)).c_str(), stdout);
+    std::fputs((json ? values_json(*values) : sample_text(*values)).c_str(), stdout);
     std::fflush(stdout);
   }
   return base::Ok{};

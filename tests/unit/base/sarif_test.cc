@@ -64,7 +64,8 @@ void check_location(const JsonValue& location) {
 }
 
 void check_result(const JsonValue& result, const JsonValue& rules) {
-  only(result, {"ruleId", "ruleIndex", "level", "message", "locations", "relatedLocations"});
+  only(result, {"ruleId", "ruleIndex", "level", "message", "locations", "relatedLocations",
+                "partialFingerprints"});
   const std::string& level = result["level"].text;
   EXPECT_TRUE(level == "error" || level == "warning" || level == "note") << level;
   check_message(result["message"]);
@@ -87,7 +88,7 @@ void check_log(const JsonValue& log) {
   EXPECT_EQ(run["columnKind"].text, "unicodeCodePoints");
   const JsonValue& driver = run["tool"]["driver"];
   only(run["tool"], {"driver"});
-  only(driver, {"name", "rules"});
+  only(driver, {"name", "version", "rules"});
   EXPECT_EQ(driver["name"].text, "stc");
   std::map<std::string, int> seen;
   for (const JsonValue& rule : driver["rules"].items) {

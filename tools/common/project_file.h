@@ -1,0 +1,56 @@
+// stc.toml: where it is found, and what may stand in it (project_keys.def).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/result.h"
+#include "tools/common/toml.h"
+
+namespace tools {
+
+enum class KeyKind : uint8_t { kText, kNumber, kFlag, kTexts };
+
+struct ProjectKey {
+  std::string_view name;  // "slack.free_bytes"
+  KeyKind kind;
+  int64_t low;
+  int64_t high;
+  std::string_view choices;  // "in-place|standby"; "": any
+  std::string_view fallback;
+  std::string_view help;
+};
+std::span<const ProjectKey> project_keys();
+
+inline constexpr std::string_view kProjectFile = "stc.toml";
+inline constexpr std::string_view kDeviceTables = "devices.";
+
+struct ProjectFile {
+  std::string path;
+  std::string text;
+  TomlTable table;
+
+  const TomlValue* find(std::string_view key) const;
+  // Takes the value of `key` over into `out`, when there is one of the kind T.
+  template <class T, class Out>
+  bool take(std::string_view key, Out& out) const {
+    const TomlValue* const value = find(key);
+    const T* const data = value == nullptr ? nullptr : std::get_if<T>(&value->data);
+    if (data != nullptr) out = static_cast<Out>(*data);
+    return data != nullptr;
+  }
+};
+
+// kBadProject with line and column for what is no TOML; errors of read_text(), too.
+base::Result<ProjectFile> read_project_file(const std::string& path);
+// The same for unknown keys and wrong values; tables [devices.NAME] are not looked into.
+base::Result<ProjectFile> read_checked_project_file(const std::string& path);
+
+// The stc.toml that is nearest to `path`: in that folder, or that of the file, or above it; or "".
+std::string nearest_project_file(const std::string& path);
+
+}  // namespace tools

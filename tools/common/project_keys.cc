@@ -1,0 +1,116 @@
+// Apart from reading the file: stvm takes what it knows of it, and leaves it to stc to check the
+// rest.
+#include <algorithm>
+
+#include "base/joined.h"
+#include "base/limits.h"
+#include "base/nearest_name.h"
+#include "tools/common/options.h"
+#include "tools/common/project_file.h"
+
+namespace tools {
+namespace {
+
+#define DIALECT(id, name, what) name "|"
+constexpr char kDialects[] =
+#include "frontend/dialects.def"
+    ;
+#define STC_DIALECTS kDialects
+constexpr ProjectKey kKeys[] = {
+#define PROJECT_KEY(name, kind, low, high, choices, fallback, help) \
+  {name, KeyKind::kind, low, high, choices, fallback, help},
+#include "tools/common/project_keys.def"
+};
+
+// "slack." of "slack.free_bytes"; "" of a key outside of tables.
+std::string_view table_of(std::string_view key) { return key.substr(0, key.find('.') + 1); }
+
+bool is_table(std::string_view prefix) {
+  return std::any_of(std::begin(kKeys), std::end(kKeys),
+                     [&](const ProjectKey& row) { return table_of(row.name) == prefix; });
+}
+
+// What belongs into the same table, or at the top the tables, too.
+std::string known_keys(std::string_view table) {
+  std::string known;
+  for (const ProjectKey& row : kKeys) {
+    if (table_of(row.name) != table) continue;
+    if (!known.empty()) known += ", ";
+    known += row.name.substr(table.size());
+  }
+  if (!table.empty()) {
+    return base::joined({"known in [", table.substr(0, table.size() - 1), "] are ", known});
+  }
+  return base::joined({"known are ", known, " and the tables [slack], [change], [outputs], ",
+                       "[format] and [devices.NAME]"});
+}
+
+std::string unknown_key(std::string_view key) {
+  base::NearestName nearest(key);
+  for (const ProjectKey& row : kKeys) nearest.offer(row.name);
+  const std::string_view table = is_table(table_of(key)) ? table_of(key) : std::string_view();
+  if (!nearest.best().empty()) return base::joined({"unknown key `", key, "`", nearest.question()});
+  return base::joined({"unknown key `", key, "`; ", known_keys(table)});
+}
+
+std::string list_of(const std::vector<std::string_view>& words) {
+  std::string out;
+  for (size_t i = 0; i < words.size(); ++i) {
+    const bool last = i + 1 == words.size();
+    out += base::joined({i == 0 ? "\"" : last ? " or \"" : ", \"", words[i], "\""});
+  }
+  return out;
+}
+
+// What the value of a key must be, when it is not; "": it is.
+std::string fault(const ProjectKey& key, const TomlValue& value) {
+  switch (key.kind) {
+    case KeyKind::kText: {
+      const std::string* text = std::get_if<std::string>(&value.data);
+      if (key.choices.empty()) return text != nullptr && !text->empty() ? "" : "a text";
+      const std::vector<std::string_view> words = words_of(key.choices);
+      if (text == nullptr) return list_of(words);
+      if (std::find(words.begin(), words.end(), *text) != words.end()) return "";
+      base::NearestName nearest(*text);
+      for (std::string_view word : words) nearest.offer(word);
+      return base::joined({list_of(words), ", not \"", *text, "\"", nearest.question()});
+    }
+    case KeyKind::kNumber: {
+      const int64_t* number = std::get_if<int64_t>(&value.data);
+      if (number != nullptr && *number >= key.low && *number <= key.high) return "";
+      return base::joined(
+          {"a whole number between ", std::to_string(key.low), " and ", std::to_string(key.high)});
+    }
+    case KeyKind::kFlag:
+      return std::holds_alternative<bool>(value.data) ? "" : "true or false";
+    case KeyKind::kTexts:
+      return std::holds_alternative<std::vector<std::string>>(value.data) ? "" : "a list of texts";
+  }
+  return {};
+}
+
+base::Status check_key(const std::string& file, const std::string& name, const TomlValue& value) {
+  const auto key = std::find_if(std::begin(kKeys), std::end(kKeys),
+                                [&](const ProjectKey& row) { return row.name == name; });
+  if (key == std::end(kKeys)) return toml_error(file, value.line, value.column, unknown_key(name));
+  const std::string must_be = fault(*key, value);
+  if (must_be.empty()) return base::Ok{};
+  return toml_error(file, value.place.line, value.place.column,
+                    base::joined({"`", name, "` must be ", must_be}));
+}
+
+}  // namespace
+
+std::span<const ProjectKey> project_keys() { return kKeys; }
+
+base::Result<ProjectFile> read_checked_project_file(const std::string& path) {
+  base::Result<ProjectFile> file = read_project_file(path);
+  if (!file.ok()) return file;
+  for (const auto& [name, value] : file->table) {
+    if (name.starts_with(kDeviceTables)) continue;
+    if (base::Status known = check_key(path, name, value); !known.ok()) return known.error();
+  }
+  return file;
+}
+
+}  // namespace tools

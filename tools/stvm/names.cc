@@ -1,0 +1,97 @@
+#include "tools/stvm/names.h"
+
+#include "base/joined.h"
+#include "ir/bytecode/symbols.h"
+#include "ir/bytecode/variable_names.h"
+#include "tools/common/pattern.h"
+
+namespace stvm {
+namespace {
+
+// Where names are looked up: at a controller, in its forces, or in an image.
+struct Place {
+  ControllerClient* client = nullptr;
+  bool forces = false;
+  const ir::Image* image = nullptr;
+};
+
+base::Status add_matching(const Place& place, const std::string& pattern, Names& out) {
+  const size_t before = out.size();
+  if (place.image != nullptr) {
+    ir::for_each_leaf(*place.image, [&](const std::string& path, const ir::Symbol&) {
+      if (tools::matches(pattern, path)) out.push_back(path);
+    });
+  } else if (place.forces) {
+    base::Result<vm::ForceRows> forces = place.client->forces();
+    if (!forces.ok()) return forces.error();
+    for (const vm::ForceRow& row : forces->rows) {
+      if (tools::matches(pattern, row.path)) out.push_back(row.path);
+    }
+  } else {
+    base::Result<vm::Values> values = place.client->list(pattern);
+    if (!values.ok()) return values.error();
+    for (const vm::ValueRow& row : values->rows) out.push_back(row.path);
+  }
+  if (out.size() != before) return base::Ok{};
+  return base::Error{
+      base::Refusal::kNoSuchVariable,
+      base::joined({"no ", place.forces ? "forced " : "", "variable matches `", pattern, "`"})};
+}
+
+base::Status add(const Place& place, const std::string& name, Names& out) {
+  if (is_pattern(name)) return add_matching(place, name, out);
+  if (place.image == nullptr) {
+    out.push_back(name);
+    return base::Ok{};
+  }
+  base::Result<std::string> path = ir::path_of_name(*place.image, name);
+  if (!path.ok()) return path.error();
+  out.push_back(std::move(*path));
+  return base::Ok{};
+}
+
+base::Result<Names> expanded(const Place& place, const Names& names) {
+  Names out;
+  for (const std::string& name : names) {
+    if (base::Status added = add(place, name, out); !added.ok()) return added.error();
+  }
+  return out;
+}
+
+base::Result<Assignments> expanded(const Place& place, const Assignments& rows) {
+  Assignments out;
+  for (const Assignment& row : rows) {
+    Names names;
+    if (base::Status added = add(place, row.name, names); !added.ok()) return added.error();
+    for (std::string& name : names) out.push_back({std::move(name), row.value});
+  }
+  return out;
+}
+
+}  // namespace
+
+bool is_pattern(std::string_view name) {
+  return name.find_first_of("*?") != std::string_view::npos;
+}
+
+base::Result<Names> matching(ControllerClient& client, const Names& names) {
+  return expanded({.client = &client}, names);
+}
+
+base::Result<Names> matching_forces(ControllerClient& client, const Names& names) {
+  return expanded({.client = &client, .forces = true}, names);
+}
+
+base::Result<Names> matching(const ir::Image& image, const Names& names) {
+  return expanded({.image = &image}, names);
+}
+
+base::Result<Assignments> matching(ControllerClient& client, const Assignments& rows) {
+  return expanded({.client = &client}, rows);
+}
+
+base::Result<Assignments> matching(const ir::Image& image, const Assignments& rows) {
+  return expanded({.image = &image}, rows);
+}
+
+}  // namespace stvm

@@ -1,0 +1,16 @@
+// The one question that a command asks before it does something to a controller.
+#pragma once
+
+#include <string>
+
+#include "base/result.h"
+
+namespace stvm {
+
+bool can_ask();  // a person at a terminal
+
+// Ok for y or yes. kUsage without a terminal, which says --yes; else kBusy with what is so instead:
+// `otherwise`, "not switched; the old program runs on".
+base::Status ask(const char* question, const std::string& otherwise);
+
+}  // namespace stvm
