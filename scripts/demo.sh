@@ -66,7 +66,7 @@ step stvm watch $counters 'Machine.Conveyor[1].RunHours' --interval 2000 --count
 step stvm status
 
 say "5. Take it back"
-step stvm undo
+step stvm undo --yes
 # shellcheck disable=SC2086
 step stvm watch $counters --interval 1000 --count 3
 

@@ -161,7 +161,8 @@ TEST(Sarif, ResultRuleAndPlace) {
                      "\"text\":\"unused "
                      "(remove it)\"},\"locations\":[{\"physicalLocation\":{\"artifactLocation\":"
                      "{\"uri\":\"src/a%20b.st\"},\"region\":{\"startLine\":1,\"startColumn\":2,"
-                     "\"endLine\":1,\"endColumn\":4}}}]}"),
+                     "\"endLine\":1,\"endColumn\":4}}}],\"partialFingerprints\":{"
+                     "\"lineOfCode/v1\":\"6ff87c630c92a67d:1\"}}"),
             std::string::npos)
       << out;
 }
