@@ -80,6 +80,7 @@ for tool in stc stvm; do
     awk 'length($0) > 80 { print; bad = 1 } END { exit bad }' help_of_verb || fail "help of $verb"
   done
   awk 'length($0) > 80 { print; bad = 1 } END { exit bad }' help || fail "help of $tool"
+  awk '$0 == "" && last == "" { bad = 1 } { last = $0 } END { exit bad }' help || fail "empty lines"
 done
 
 # R-01 Short options with what they take attached, and several flags in one word.

@@ -16,7 +16,7 @@ constexpr size_t kColumns = 80;
 // `head` in front, and `text` from `column` on, in as many lines as it needs.
 std::string row_text(std::string head, size_t column, std::string_view text) {
   const std::vector<std::string> lines = base::wrapped(text, kColumns - column);
-  if (head.size() + 2 > column) {
+  if (column != 0 && head.size() + 2 > column) {
     head += "\n" + std::string(column, ' ');
   } else {
     head.append(column - head.size(), ' ');

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "tools/common/files.h"
+#include "tools/common/json.h"
 #include "tools/common/pattern.h"
 #include "tools/common/terminal.h"
 #include "tools/stc/commands.h"
@@ -65,6 +66,20 @@ base::Result<std::string> machine_form(const std::string& format, const Project&
                      "unknown format `" + format + "`; known are text, tap, junit, json"};
 }
 
+void print_list(const std::vector<frontend::TestCase>& cases, const tools::Options& options,
+                bool json) {
+  tools::JsonWriter out;
+  out.begin_object().key("tests").begin_array();
+  for (const frontend::TestCase& test : cases) {
+    if (!selected(options, test.name)) continue;
+    if (!json) std::printf("%s:%u: %s\n", test.file.c_str(), test.line, test.name.c_str());
+    out.begin_object().field("name", test.name).field("file", test.file);
+    out.field("line", test.line).end_object();
+  }
+  out.end_array().end_object();
+  if (json) std::fputs(out.finish().c_str(), stdout);
+}
+
 base::Result<int> run_tests(const tools::Options& options) {
   const std::string format = options.text("--format", "text");
   base::Result<Project> project = open_project(options, options.arguments());
@@ -78,10 +93,7 @@ base::Result<int> run_tests(const tools::Options& options) {
          json ? base::DiagnosticFormat::kJson : base::DiagnosticFormat::kText);
   if (!tests.ok()) return tests.error();
   if (options.has("--list")) {
-    for (const frontend::TestCase& test : tests->cases) {
-      if (!selected(options, test.name)) continue;
-      std::printf("%s:%u: %s\n", test.file.c_str(), test.line, test.name.c_str());
-    }
+    print_list(tests->cases, options, format == "json");
     return tools::kOk;
   }
   const bool text = format == "text" || options.has("--output");

@@ -1,0 +1,137 @@
+#!/bin/sh
+# R-04 What each command answers with --format json is what its schema in docs/schemas says, and each
+# command that has that form has a schema.
+. "$(dirname "$0")/lib.sh"
+
+schemas=$source_dir/docs/schemas
+cat >valid.py <<'PY'
+# The part of JSON schema that those files use; a word that is not known here is an error.
+import json, re, sys
+KINDS = {"object": dict, "array": list, "string": str, "boolean": bool, "integer": int,
+         "number": (int, float)}
+
+def check(value, schema, at):
+    for word, want in schema.items():
+        if word in ("$schema", "title", "properties"):
+            continue
+        if word == "type":
+            kind = isinstance(value, KINDS[want]) and (want == "boolean" or value is not True and value is not False)
+            if not kind: return f"{at}: not {want}: {value!r}"
+        elif word == "enum":
+            if value not in want: return f"{at}: {value!r} is none of {want}"
+        elif word == "pattern":
+            if not re.search(want, value): return f"{at}: {value!r} does not match {want}"
+        elif word == "required":
+            lost = set(want) - set(value)
+            if lost: return f"{at}: lacks {lost}"
+        elif word == "items":
+            for i, item in enumerate(value):
+                if wrong := check(item, want, f"{at}[{i}]"): return wrong
+        elif word == "additionalProperties":
+            known = schema["properties"]
+            for key, part in value.items():
+                inner = known.get(key, want)
+                if inner is False: return f"{at}: {key} is not in the schema"
+                if inner is not True and (wrong := check(part, inner, f"{at}.{key}")): return wrong
+        elif word == "anyOf":
+            if all(check(value, other, at) for other in want): return f"{at}: none of the forms"
+        else:
+            return f"unknown word {word}"
+    return None
+
+wrong = check(json.load(open("out")), json.load(open(sys.argv[1])), "")
+if wrong: sys.exit(wrong)
+PY
+seen=""
+# answers SCHEMA CODE COMMAND...
+answers() {
+  schema=$1 code=$2
+  shift 2
+  expect "$code" "$@" --format json
+  python3 valid.py "$schemas/$schema.schema.json" >wrong 2>&1 || fail "$schema: $(cat wrong)"
+  seen="$seen $schema"
+}
+
+mkdir plant
+cat >plant/main.st <<'ST'
+PROGRAM Main VAR n : INT; d : INT; END_VAR n := n + 1; d := n; END_PROGRAM
+TEST 'holds' ASSERT_TRUE(TRUE); END_TEST
+TEST 'fails' ASSERT_EQ(1, 2); END_TEST
+ST
+printf 'embed_sources = true\n' >plant/stc.toml
+sed 's/d := n/d := m/' plant/main.st >bad.st
+printf 'PROGRAM Main VAR z : INT; n : INT; END_VAR n := 1 / z; END_PROGRAM\n' >trap.st
+answers stc-build 0 stc build plant -o plant.img
+answers stc-check 1 stc check bad.st
+answers stc-test 1 stc test plant
+answers stc-test-list 0 stc test plant --list
+answers stc-fmt 1 stc fmt --check plant
+answers stc-source 0 stc source plant.img
+answers stc-source 0 stc source plant.img -o back
+answers refused 7 stc check missing.st
+cp plant/main.st old.st
+mkdir next
+sed 's/n : INT;/n : DINT; more : INT;/; s/d := n/d := DINT_TO_INT(n)/' plant/main.st >next/main.st
+cp plant/stc.toml next
+answers stc-diff 0 stc diff plant next --all --text
+code=0
+stc export plant/main.st -o x.xml >out 2>err || code=$?
+if [ "$code" -eq 0 ]; then
+  answers stc-export 0 stc export plant/main.st -o x.xml
+  answers stc-import 0 stc import x.xml -o imported
+else
+  seen="$seen stc-export stc-import"
+fi
+for tool in stc stvm; do
+  answers $tool-help 0 $tool help
+  answers $tool-version 0 $tool version
+done
+answers stvm-run 0 stvm run plant.img --virtual-time --scans 2 --print Main.n --state --hash
+answers stvm-run 1 stvm run trap.st --virtual-time --scans 2
+expect 0 stvm run plant.img --virtual-time --scans 2 --record r.rec
+answers stvm-replay 0 stvm replay r.rec --print Main.n
+answers stvm-bench 0 stvm bench plant.img --scans 10
+code=0
+stvm doctor --seconds 1 --format json >out 2>err || code=$?
+answers stvm-doctor $code stvm doctor --seconds 1
+
+serve plc plant.img
+at() { command=$1; shift; stvm "$command" --dir plc "$@"; }
+answers stvm-get 0 at get Main.n
+answers stvm-get-list 0 at get --list
+answers stvm-watch 0 at watch Main.n --count 1
+answers stvm-set 0 at set Main.n=3
+answers stvm-force 0 at force Main.n=3
+answers stvm-get-forces 0 at get --forces
+answers stvm-unforce 0 at unforce --all
+answers stvm-status 0 at status
+answers stvm-status-task 0 at status --task Main
+answers stvm-source 0 at source
+answers stvm-abort 0 at abort
+answers stvm-change 0 at change next --yes --dry-run --all
+answers stvm-change 0 at change next --yes --all
+answers stvm-status 0 at status
+answers stvm-undo 0 at undo --dry-run
+answers stvm-undo 0 at undo
+expect 0 at change next --yes
+answers stvm-accept 0 at accept
+answers stvm-revert 0 at revert --yes --allow-loss
+answers stvm-restart 0 at restart
+answers stvm-journal 0 at journal
+answers refused 7 at get Main.nothing
+answers stvm-stop 0 at stop
+
+# Every schema was used, and every command with this form has one.
+for file in "$schemas"/*.schema.json; do
+  name=$(basename "$file" .schema.json)
+  case " $seen " in *" $name "*) ;; *) fail "no answer for $name" ;; esac
+done
+for tool in stc stvm; do
+  expect 0 $tool help --format json
+  for verb in $(python3 -c 'import json
+for c in json.load(open("out"))["commands"]:
+    if any("json" in o["choices"] for o in c["options"]): print(c["name"])'); do
+    case " $tool-$verb " in " stc-package " | " stc-dump " | " stc-draw ") continue ;; esac
+    [ -e "$schemas/$tool-$verb.schema.json" ] || fail "$tool $verb has no schema"
+  done
+done
