@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "base/memory_limit.h"
+#include "base/tool_limits.h"
 #include "online_change/apply/losses.h"
 #include "online_change/apply/pending.h"
 #include "online_change/plan/pause.h"
@@ -34,7 +35,9 @@ const char* state_name(State state) {
   return kNames[static_cast<size_t>(state)];
 }
 
-Change::Change(vm::Controller& controller) : controller_(controller) {}
+Change::Change(vm::Controller& controller) : controller_(controller) {
+  below_.reserve(base::kMostEditsOnTrial);  // what rests needs no memory for that
+}
 Change::~Change() = default;
 
 template <class Step>
@@ -63,12 +66,14 @@ base::Error Change::abandoned(const char* where) const {
 
 base::Status Change::stage(base::ByteSpan package, Strategy strategy,
                            const AtBoundary& at_boundary) {
-  if (state_ != State::kIdle) {
+  if (prepares()) {
     return base::Error{base::Refusal::kChangePending, std::string("another change is ") +
                                                           state_name(state_) +
-                                                          "; accept, undo or cancel it first"};
+                                                          "; switch or cancel it first"};
   }
+  if (base::Status free = room(); !free.ok()) return free;
   collect();
+  if (state_ == State::kTrial) rest();
   base::Status status = guarded([&] { return stage_steps(package, strategy, at_boundary); });
   if (!status.ok()) cancel();
   return status;
@@ -102,6 +107,8 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy,
   pending_ = std::make_unique<Pending>(std::move(*package), before, *image, strategy, same);
   state_ = State::kPlanned;
   if (interrupted()) return abandoned("when its plan was checked");
+  // Its code slots are written now (prime()).
+  if (!below_.empty() && below_.back()->waiting) retired_ = std::move(below_.back()->waiting);
   base::Result<std::unique_ptr<vm::Generation>> next = controller_.prepare(*image);
   if (!next.ok()) return next.error();
   pending_->waiting = std::move(*next);
@@ -226,8 +233,9 @@ base::Status Change::leave(const std::vector<uint32_t>& ids) {
 // Memory can run out when the text of a trap in FB_Init is made: version 2 is published then, and
 // goes without needing any.
 base::Result<SwitchReport> Change::switch_now(bool again) {
+  const size_t before = on_trial();
   base::Result<SwitchReport> report = guarded([&] { return switch_steps(again); });
-  if (!report.ok() && state_ == State::kTrial) take_back();
+  if (!report.ok() && on_trial() > before) take_back();
   return report;
 }
 
@@ -278,17 +286,6 @@ void Change::take_back() {
   base::check(undone, "a switch whose FB_Init trapped cannot be undone");
 }
 
-base::Status Change::accept() {
-  if (state_ != State::kTrial) {
-    return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to accept"};
-  }
-  retired_ = std::move(pending_->waiting);
-  retired_area_ = std::move(pending_->area);
-  retired_pending_ = std::move(pending_);
-  state_ = State::kIdle;
-  return base::Ok{};
-}
-
 base::Result<SwitchReport> Change::undo() {
   return guarded([&] { return undo_steps(); });
 }
@@ -298,6 +295,7 @@ base::Result<SwitchReport> Change::undo_steps(bool whatever_happens) {
     return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"};
   }
   if (!controller_.at_boundary()) return no_boundary();
+  if (!pending_->waiting) return not_primed();
   SwitchReport report = report_begin();
   uint8_t* memory = controller_.memory().data();
   const std::string lost = pending_->charts.lost_on_the_way_back(memory);
@@ -331,6 +329,7 @@ base::Result<SwitchReport> Change::undo_steps(bool whatever_happens) {
   retired_area_ = std::move(pending_->area);
   retired_pending_ = std::move(pending_);
   state_ = State::kIdle;
+  resume();
   return report;
 }
 
@@ -344,6 +343,7 @@ void Change::collect() {
   retired_pending_.reset();
   // Behind a switch, which nothing takes back: without memory for it the program is interpreted.
   base::within_memory([&] { return controller_.make_native(), true; }, [] { return false; });
+  (void)prime().ok();  // undo asks again
   if (state_ != State::kIdle) return;
   controller_.settle_devices();
   retired_.reset();
@@ -356,6 +356,7 @@ void Change::abandon() {
   if (pending_) retired_area_ = std::move(pending_->area);
   if (pending_) retired_pending_ = std::move(pending_);
   state_ = State::kIdle;
+  resume();
 }
 
 }  // namespace online_change

@@ -1,6 +1,9 @@
 // One change on a running controller, as a state machine (docs/ARCHITECTURE.md,
 // "How a change goes"). Everything up to kArmed happens while version 1 runs; the switch is one
 // call at a boundary; any failure before it leaves version 1 as it was.
+//
+// Several edits can be on trial, each made on top of the one before it: a stack, each with its own
+// way back (docs/adr/0034-edits-on-trial.md). What is said of "the trial" is of the newest one.
 #pragma once
 
 #include <cstdint>
@@ -59,9 +62,15 @@ class Change {
   ~Change();
 
   State state() const { return state_; }
-  // Idle -> Prepared, in steps, while version 1 runs. What it must know of live data it copies in
-  // jobs for `at_boundary`, each of some tens of microseconds; without, the caller is at a
-  // boundary.
+  // Is one being prepared, from kStaged to kArmed?
+  bool prepares() const { return state_ != State::kIdle && state_ != State::kTrial; }
+  // Edits on trial, also while another one is prepared on top of them.
+  size_t on_trial() const { return below_.size() + (state_ == State::kTrial ? 1 : 0); }
+  // kTooMany: no other edit may be put on top of those that are on trial.
+  base::Status room() const;
+  // Idle or Trial -> Prepared, in steps, while version 1 runs. What it must know of live data it
+  // copies in jobs for `at_boundary`, each of some tens of microseconds; without, the caller is at
+  // a boundary.
   base::Status stage(base::ByteSpan package, Strategy strategy = Strategy::kInPlace,
                      const AtBoundary& at_boundary = {});
   // Values that would be lost if the switch came now; by kPrepared, at a boundary.
@@ -107,13 +116,27 @@ class Change {
   // `again`: standby, a deadline that comes while what was written is brought up to date leaves it
   // kArmed, for a later boundary.
   base::Result<SwitchReport> switch_now(bool again = false);
-  // Trial -> Idle with version 2 for good.
+  // At the start of a controller, at a boundary: what runs is on trial since another process (D4).
+  // Called for each edit, oldest first, the last one of which has made what runs; `retained` of
+  // `before`, when it was switched. Its way back is the one that a switch with these values, and
+  // otherwise with those of a cold start, would have noted. Behind it: prime().
+  base::Status adopt(base::ByteSpan package, const ir::VerifiedImage& before,
+                     const ir::VerifiedImage& after, base::ByteSpan retained);
+  // Trial -> Idle with version 2 for good, and all that it was made on.
   base::Status accept();
-  // Trial -> Idle with version 1 again; at a boundary. Inverse plan on the current state; values
-  // that the change dropped or narrowed come back as they were, if nobody wrote them since.
+  // The oldest `edits` of those on trial, for good; the others stay on trial, each with its way
+  // back, and so does what is being prepared on top of them. Not at a boundary.
+  base::Status accept_oldest(size_t edits);
+  // Trial -> Idle, or the trial of the edit before, with version 1 again; at a boundary, behind
+  // prime(). Inverse plan on the current state; values that the change dropped or narrowed come
+  // back as they were, if nobody wrote them since.
   base::Result<SwitchReport> undo();
-  // Any state before the switch -> Idle; frees what the change took, so not at a boundary. Nothing
-  // in trial: that takes accept() or undo().
+  // Before undo(), not at a boundary: what the version before needs to run is made again where
+  // another edit has been prepared or undone since. Mostly there is nothing to do. An error changes
+  // nothing: the trial goes on, and another call is another try.
+  base::Status prime();
+  // Any state before the switch -> Idle or Trial, as it was; frees what the change took, so not at
+  // a boundary. Nothing in trial: that takes accept() or undo().
   void cancel();
   // Frees what the last change took. That takes time, so not at a boundary.
   void collect();
@@ -151,6 +174,7 @@ class Change {
   base::Status check_losses(bool allow_loss) const;
   base::Error not_in(const char* wanted) const;
   static base::Error no_boundary();
+  static base::Error not_primed();
   // False: interrupted, and abandoned.
   bool idle_units();
   bool unit();
@@ -159,6 +183,11 @@ class Change {
   base::Status carry_over();
   std::string way_out() const;
   void abandon();
+  base::Status adopt_steps(base::ByteSpan package, const ir::VerifiedImage& before,
+                           const ir::VerifiedImage& after, base::ByteSpan retained);
+  base::Status imagine_switch(Pending& edit, base::ByteSpan retained);
+  void rest();
+  void resume();
   base::Status leave(const std::vector<uint32_t>& ids);
   void count_switch();
   void count_undo();
@@ -168,7 +197,8 @@ class Change {
 
   vm::Controller& controller_;
   State state_ = State::kIdle;
-  std::unique_ptr<Pending> pending_;
+  std::unique_ptr<Pending> pending_;  // in trial: of the newest edit
+  std::vector<std::unique_ptr<Pending>> below_;  // other edits on trial, oldest first
   // A generation that was published or prepared and is no longer used; it lives until the next
   // prepare(), because the controller's tables may still refer to it.
   std::unique_ptr<vm::Generation> retired_;

@@ -18,12 +18,12 @@ Migrator::Migrator(Plan& plan, const ir::Image& from, const ir::Image& to,
                    const vm::Generation& code, vm::Memory scratch)
     : plan_(plan),
       to_(to),
-      code_(code),
+      code_(&code),
       conversions_(from, code.image()),
       scratch_(std::move(scratch)),
       execution_(base::kMaxCallDepth, 0, code.try_depth()),
       calls_(plan.calls.size()) {
-  code_.write_pool(scratch_.data());
+  code_->write_pool(scratch_.data());
   size_t bytes = 0;
   for (size_t i = 0; i < calls_.size(); ++i) {
     const MigrationCall& call = plan_.calls[i];
@@ -50,7 +50,7 @@ Migrator::Input Migrator::input_of(const MigrationInput& input, const ir::Linked
   out.slot = input.slot;
   for (const ir::FrameSlot& slot : pou.slots) {
     if (slot.kind != ir::SlotKind::kParam || slot.offset != input.slot) continue;
-    const ir::Image& image = code_.image();
+    const ir::Image& image = code_->image();
     out.slot_size = image.layouts[slot.region.type].size;
     out.converts =
         classify(from.types, input.type, image.types, slot.region.type) == Conversion::kExact;
@@ -70,7 +70,7 @@ base::Result<std::unique_ptr<Migrator>> Migrator::make(Plan& plan, const ir::Ima
 }
 
 const ir::LinkedPou& Migrator::code_of(const MigrationCall& call) const {
-  return code_.image().pous[code_.image().migrations[call.row].pou];
+  return code_->image().pous[code_->image().migrations[call.row].pou];
 }
 
 size_t Migrator::gather_call(size_t number, const uint8_t* memory) {
@@ -92,6 +92,11 @@ size_t Migrator::gather(size_t first, size_t most_bytes, const uint8_t* memory) 
     bytes += gather_call(first, memory) + kGatherCallBytes;
   }
   return first;
+}
+
+void Migrator::run_by(const vm::Generation& code) {
+  code_ = &code;
+  code_->write_pool(scratch_.data());
 }
 
 void Migrator::note(const uint8_t* memory) {
@@ -126,32 +131,32 @@ base::Error Migrator::failed(const MigrationCall& call, const std::string& why) 
 base::Status Migrator::run_call(size_t number) {
   const MigrationCall& call = plan_.calls[number];
   if (fuel_ > kMigrationsFuel) return failed(call, "no time is left behind those before it");
-  const uint32_t pou = code_.image().migrations[call.row].pou;
+  const uint32_t pou = code_->image().migrations[call.row].pou;
   uint8_t* frame = scratch_.data() + ir::kStackBegin;
-  std::memset(frame, 0, code_.image().pous[pou].frame_size);
+  std::memset(frame, 0, code_->image().pous[pou].frame_size);
   const uint8_t* from = bytes_.data() + calls_[number].first_byte;
   for (const Input& input : calls_[number].inputs) {
     if (input.converts) {
       conversions_.convert(input.conversion, 0, from, {frame + input.slot, input.slot_size});
     } else {
       std::memcpy(frame + input.slot, from, input.size);
-      code_.bools().normalise(input.conversion.new_type, frame + input.slot);
+      code_->bools().normalise(input.conversion.new_type, frame + input.slot);
     }
     from += input.size;
   }
-  execution_.call(code_, scratch_.data(), pou, ir::kStackBegin);
+  execution_.call(*code_, scratch_.data(), pou, ir::kStackBegin);
   const vm::Exit exit = execution_.run(kMigrationFuel);
   fuel_ += execution_.fuel_used() + 1;
   if (exit == vm::Exit::kSuspended || fuel_ > kMigrationsFuel) {
     const vm::TrapText text =
-        vm::describe(code_.image(), execution_.interrupted(ir::TrapKind::kFuel));
+        vm::describe(code_->image(), execution_.interrupted(ir::TrapKind::kFuel));
     return failed(
         call, "line " + std::to_string(text.line) + ": it does not end within " +
                   std::to_string(exit == vm::Exit::kSuspended ? kMigrationFuel : kMigrationsFuel) +
                   " loops and calls");
   }
   if (exit == vm::Exit::kTrap) {
-    const vm::TrapText text = vm::describe(code_.image(), execution_.trap());
+    const vm::TrapText text = vm::describe(code_->image(), execution_.trap());
     return failed(call,
                   "`" + text.pou + "` in line " + std::to_string(text.line) + ": " + text.text);
   }

@@ -40,6 +40,8 @@ class Migrator {
   // Takes the inputs as those of a run without running: on the way back, what nobody has written
   // since needs no migration.
   void note(const uint8_t* memory);
+  // The same version, made anew.
+  void run_by(const vm::Generation& code);
   // Of the longest run so far, for predictions, and of the last one.
   uint64_t fuel_used() const { return most_fuel_; }
   uint64_t last_fuel() const { return fuel_; }
@@ -78,7 +80,7 @@ class Migrator {
 
   Plan& plan_;
   const ir::Image& to_;
-  const vm::Generation& code_;
+  const vm::Generation* code_;
   Conversions conversions_;
   vm::Memory scratch_;
   vm::Execution execution_;

@@ -97,9 +97,10 @@ struct Change::Pending {
   HandleTransfer handles;
   std::unique_ptr<Migrator> migrate;  // null: nothing migrates
   std::unique_ptr<Migrator> migrate_back;
-  // Version 2 until the switch, version 1 in trial.
+  // Version 2 until the switch, version 1 in trial; null: Change::prime() makes it again.
   std::unique_ptr<vm::Generation> waiting;
-  // Standby: its data. In trial that is version 1's, as the switch found it.
+  // Standby: its data. In trial that is version 1's, as the switch found it, until another edit is
+  // prepared.
   std::unique_ptr<Standby> area;
   CatchingUp catching_up;
   // Most of what the switch and undo have to do, without the loops of migrations.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "online_change/package/package.h"
 #include "online_change/store/retained_values.h"
 
 namespace online_change {
@@ -57,6 +58,13 @@ class Booting {
     }
     const ir::VerifiedImage& first = stored ? *stored : *given;
     Boot boot{first, initial_retained(first.image()), {}, std::move(found_.alarms)};
+    const bool same = !given || (stored && given->digest() == stored->digest());
+    if (stored && same && found_.resumes && resume(*stored, boot)) {
+      for (const std::string& alarm : boot.alarms) note(Event::kAlarm, {}, {}, alarm);
+      note(Event::kResumed, stored->digest(), boot.image.digest(), {});
+      note(Event::kStarted, {}, boot.image.digest(), {});
+      return boot;
+    }
     if (stored) {
       begin_with(*stored, boot);
     } else if (!found_.virgin) {
@@ -126,6 +134,72 @@ class Booting {
     if (boot.trial_lost) note(Event::kTrialLost, *boot.trial_lost, image.digest(), {});
     base::Status settled = store_.settle();
     if (!settled.ok()) boot.alarms.push_back(settled.error().text);
+  }
+
+  // The versions that the edits make, one behind the other. False: one of them is not what it
+  // should be.
+  bool follow(const std::vector<StoredEdit>& way, const ir::VerifiedImage& accepted, Boot& boot) {
+    boot.image = accepted;
+    for (const StoredEdit& edit : way) {
+      const base::Result<uint64_t> retained = retained_bytes(boot.image.image());
+      if (!retained.ok() || *retained != edit.retained.size()) return false;
+      base::Result<Package> package = decode(edit.package, boot.image.encoded());
+      if (!package.ok()) return false;
+      base::Result<ir::VerifiedImage> next = ir::verify(std::move(package->image));
+      if (!next.ok() || next->digest() != edit.to) return false;
+      boot.edits.push_back({edit, boot.image});
+      boot.image = *next;
+    }
+    return !way.empty();
+  }
+
+  // What the newest values are of: the newest edit mostly; one below it, where a cut came before it
+  // had saved any; the one above it, where a cut came behind an undo.
+  base::Result<CarriedValues> values_on_trial(const std::vector<StoredEdit>& all,
+                                              const Boot& boot) const {
+    const RetainRecord& newest = *found_.newest;
+    const ir::VerifiedImage& image = boot.image;
+    if (newest.image == image.digest() && fits(image.image(), newest)) {
+      return CarriedValues{newest.values, {}};
+    }
+    for (const ResumedEdit& edit : boot.edits) {
+      const bool of_it = edit.before.digest() == newest.image;
+      if (of_it && fits(edit.before.image(), newest)) {
+        return carry_retained(edit.before, newest.values, image);
+      }
+    }
+    std::string why;
+    const std::optional<ir::VerifiedImage> above = verified(found_.other, why);
+    for (const StoredEdit& edit : all) {
+      const bool of_it = above && above->digest() == newest.image && edit.to == newest.image;
+      if (of_it && edit.from == image.digest() && fits(above->image(), newest)) {
+        return carry_retained_back(*above, newest.values, image, edit.retained);
+      }
+    }
+    return base::Error{base::Refusal::kNothingBoots,
+                       "the retained values do not fit the program they are of"};
+  }
+
+  // D4. What cannot be resumed is lost, which is said.
+  bool resume(const ir::VerifiedImage& accepted, Boot& boot) {
+    const base::Result<std::vector<StoredEdit>> all = store_.edits();
+    const base::Digest& trial = *found_.trial_lost;
+    Boot next{accepted, {}, {}, {}};
+    const bool there =
+        all.ok() && follow(way_between(*all, accepted.digest(), trial), accepted, next);
+    if (!there) {
+      boot.alarms.push_back("the edits on trial cannot be resumed: " +
+                            (all.ok() ? std::string("no stored edits lead to the program on trial")
+                                      : all.error().text));
+      return false;
+    }
+    next.alarms = std::move(boot.alarms);
+    next.retained = initial_retained(next.image.image());
+    if (found_.newest) take(values_on_trial(*all, next), next);
+    base::Status whole = store_.make_whole();
+    if (!whole.ok()) next.alarms.push_back(whole.error().text);
+    boot = std::move(next);
+    return true;
   }
 
   // Durable before it runs. The values of the program before are stored in its own layout first, so

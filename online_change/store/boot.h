@@ -11,6 +11,12 @@
 
 namespace online_change {
 
+// An edit that is on trial still (D4).
+struct ResumedEdit {
+  StoredEdit stored;
+  ir::VerifiedImage before;  // that it was made on
+};
+
 struct Boot {
   ir::VerifiedImage image;
   base::Bytes retained;                    // for Controller::start()
@@ -19,6 +25,8 @@ struct Boot {
   // Not empty: the accepted program is damaged, or nobody knows which it was. `image` is the
   // likeliest; it must not run before somebody says so, and is not stored as what boots.
   std::string fault = {};
+  // Not empty: `image` is the newest of these, oldest first, and on trial.
+  std::vector<ResumedEdit> edits = {};
 };
 
 // `given` replaces what is stored; the retained values follow by path and type. kFileNotFound when

@@ -63,7 +63,16 @@ base::Status Copies::write(size_t number, const Payload& payload) {
   if (last_sequence_ >= kLastSequence) {
     return bury(copy, {base::Refusal::kStorageFailed, copy.name + ": no sequence number is left"});
   }
-  const uint64_t sequence = ++last_sequence_;
+  return write_as(++last_sequence_, copy, payload);
+}
+
+base::Status Copies::write_older(size_t number, const Payload& payload) {
+  const std::optional<size_t> first = newest([](size_t) { return true; });
+  if (!first || *first == number) return write(number, payload);
+  return write_as(copies_[*first].record.sequence - 1, copies_[number], payload);
+}
+
+base::Status Copies::write_as(uint64_t sequence, Copy& copy, const Payload& payload) {
   if (!copy.dead) copy.record = {RecordState::kDamaged, 0, {}};
   base::Status written =
       copy.dead ? replace_record(storage_, copy.name, kind_, sequence, payload, copy.room)

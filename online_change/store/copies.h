@@ -34,6 +34,8 @@ class Copies {
   // Writes over whatever the copy holds, with the next sequence number; a dead copy gets a new
   // file.
   base::Status write(size_t number, const Payload& payload);
+  // The same behind what is newest: that stays the newest one.
+  base::Status write_older(size_t number, const Payload& payload);
   // A dead copy that holds nothing gets a new file that is empty.
   base::Status renew(size_t number);
   // A copy whose file has been removed is dead, and holds nothing. When nobody can tell, that is a
@@ -83,6 +85,7 @@ class Copies {
 
  private:
   base::Status bury(Copy& copy, const base::Error& error);
+  base::Status write_as(uint64_t sequence, Copy& copy, const Payload& payload);
 
   vm::Storage& storage_;
   RecordKind kind_;

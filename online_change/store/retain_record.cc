@@ -13,6 +13,8 @@ base::Bytes encode(const RetainRecord& record) {
   return out.take();
 }
 
+uint64_t retain_record_bytes(uint64_t values) { return encode(RetainRecord{}).size() + values; }
+
 std::optional<RetainRecord> decode_retain(base::ByteSpan payload) {
   base::ByteReader in(payload);
   RetainRecord record;

@@ -17,6 +17,8 @@ struct RetainRecord {
 };
 
 base::Bytes encode(const RetainRecord& record);
+// Encoded, with so many bytes of values.
+uint64_t retain_record_bytes(uint64_t values);
 std::optional<RetainRecord> decode_retain(base::ByteSpan payload);
 
 }  // namespace online_change

@@ -10,8 +10,6 @@ namespace {
 
 constexpr uint64_t kSpareParts = 16;  // of an image, for the edits that come: one more
 
-base::Error failed(std::string text) { return {base::Refusal::kStorageFailed, std::move(text)}; }
-
 std::optional<StoredImage> image_of(base::Bytes payload) {
   if (payload.size() < kDigestBytes) return std::nullopt;
   StoredImage image;
@@ -21,15 +19,24 @@ std::optional<StoredImage> image_of(base::Bytes payload) {
   return image;
 }
 
-uint64_t retain_payload_bytes(uint64_t values) { return encode(RetainRecord{}).size() + values; }
+ControlRecord accepted_in(size_t slot, const base::Digest& image) {
+  ControlRecord out;
+  out.boots = image;
+  out.slot = static_cast<uint8_t>(slot);
+  return out;
+}
 
 }  // namespace
+
+base::Error Store::failed(std::string text) {
+  return {base::Refusal::kStorageFailed, std::move(text)};
+}
 
 Store::Store(vm::Storage& storage, StoreSizes sizes)
     : storage_(storage),
       sizes_(sizes),
       control_copies_(storage, RecordKind::kControl, {"control_0", "control_1"}),
-      slots_(storage, RecordKind::kImage, {"slot_a", "slot_b"}),
+      slots_(storage, RecordKind::kImage, {"slot_a", "slot_b", "slot_c"}),
       retained_(storage, RecordKind::kRetain, {"retain_0", "retain_1", "retain_2"}),
       journal_(storage, kJournalFile, sizes.journal_entries),
       traps_(storage, kTrapsFile, sizes.trap_entries) {
@@ -47,7 +54,7 @@ Store::Store(vm::Storage& storage, StoreSizes sizes)
 // --- recovery ---------------------------------------------------------------------
 
 void Store::recover_control() {
-  control_copies_.recover(encode(ControlRecord{}).size());
+  control_copies_.recover(kMostControlBytes);
   std::optional<ControlRecord> records[2];
   for (size_t i = 0; i < 2; ++i) {
     if (!control_copies_.valid(i)) continue;
@@ -64,11 +71,12 @@ void Store::recover_control() {
   if (recovered_.virgin) recovered_.nothing = "no program was ever stored there";
   if (!newest && !never) recovered_.nothing = "both control records are damaged or unreadable";
   if (has_control_ && control_.trial) recovered_.trial_lost = control_.trial_digest;
+  recovered_.resumes = has_control_ && control_.trial && control_.resumes;
 }
 
 void Store::recover_images() {
   slots_.recover(kDigestBytes + sizes_.image_bytes);
-  for (size_t i = 0; i < 2; ++i) {
+  for (size_t i = 0; i < slots_.count(); ++i) {
     if (!slots_.valid(i)) continue;
     std::optional<StoredImage> image = image_of(slots_.take_payload(i));
     if (!image) {
@@ -77,55 +85,15 @@ void Store::recover_images() {
     }
     in_slot_[i] = image->digest;
     const bool boots = has_control_ && control_.slot == i && control_.boots == image->digest;
-    if (!boots) recovered_.held.push_back(*image);
-    (boots ? recovered_.boots : recovered_.other) = std::move(*image);
+    if (boots) {
+      recovered_.boots = std::move(*image);
+    } else {
+      recovered_.held.push_back(std::move(*image));
+    }
   }
   if (!has_control_ || recovered_.boots) return;
   recovered_.nothing = std::string("the program that boots, ") + base::short_hex(control_.boots) +
                        " in " + slots_[control_.slot].name + ", is damaged or unreadable";
-}
-
-void Store::recover_retained() {
-  retained_.recover(retain_payload_bytes(sizes_.retain_bytes));
-  std::optional<RetainRecord> records[3];
-  for (size_t i = 0; i < 3; ++i) {
-    if (!retained_.valid(i)) continue;
-    records[i] = decode_retain(retained_.take_payload(i));
-    if (!records[i]) {
-      retained_.reject(i);
-      continue;
-    }
-    in_copy_[i] = RetainHead{records[i]->image, records[i]->trial};
-  }
-  const std::optional<size_t> newest = newest_retained();
-  const std::optional<size_t> before = retained_before();
-  if (newest) recovered_.newest = std::move(records[*newest]);
-  if (before) recovered_.before = std::move(records[*before]);
-  if (has_control_ && !newest) {
-    recovered_.alarms.push_back("no record of the retained values can be used");
-  }
-}
-
-bool Store::in_a_slot(const base::Digest& image) const {
-  return in_slot_[0] == image || in_slot_[1] == image;
-}
-
-std::optional<size_t> Store::newest_retained() const {
-  return retained_.newest([&](size_t i) { return in_copy_[i] && in_a_slot(in_copy_[i]->image); });
-}
-
-std::optional<size_t> Store::retained_before() const {
-  const std::optional<size_t> newest = newest_retained();
-  if (!newest || !in_copy_[*newest]->trial || in_copy_[*newest]->image == control_.boots) {
-    return std::nullopt;
-  }
-  return newest_accepted();
-}
-
-std::optional<size_t> Store::newest_accepted() const {
-  return retained_.newest([&](size_t i) {
-    return in_copy_[i] && !in_copy_[i]->trial && in_copy_[i]->image == control_.boots;
-  });
 }
 
 // --- the program that boots -------------------------------------------------------
@@ -165,13 +133,13 @@ base::Status Store::write_slot(size_t slot, const ImageToStore& image) {
 base::Status Store::write_image(size_t slot, const ImageToStore& image, uint64_t retain_bytes) {
   retained_.check();
   for (size_t i = 0; i < retained_.count(); ++i) {
-    base::Status room = retained_.reserve(i, retain_payload_bytes(retain_bytes));
+    base::Status room = retained_.reserve(i, retain_record_bytes(retain_bytes));
     if (!room.ok()) return room;
   }
   const bool whole = slots_.whole(slot);
   if (whole && written_[slot] && in_slot_[slot] == image.digest) return base::Ok{};
-  const bool aside = whole && aside_ != nullptr && aside_->data() == image.bytes.data() &&
-                     aside_->size() == image.bytes.size();
+  const bool aside = whole && aside_ != nullptr && aside_slot_ == slot &&
+                     aside_->data() == image.bytes.data() && aside_->size() == image.bytes.size();
   aside_.reset();
   if (!aside) {
     in_slot_[slot].reset();
@@ -192,14 +160,16 @@ void Store::lay_aside(std::shared_ptr<const base::Bytes> image) {
     std::lock_guard lock(mutex_);
     aside_.reset();
     if (!may_begin_trial().ok()) return;
-    slot = 1 - control_.slot;
+    slot = free_trial_slot();
     in_slot_[slot].reset();
     written_[slot] = false;
   }
   const base::Status written = write_slot(slot, {ir::digest(*image), *image});
   std::lock_guard lock(mutex_);
   show_slots();
-  if (written.ok()) aside_ = std::move(image);
+  if (!written.ok()) return;
+  aside_ = std::move(image);
+  aside_slot_ = slot;
 }
 
 void Store::forget_aside() {
@@ -210,13 +180,25 @@ void Store::forget_aside() {
 
 // Without a program that boots: not the one whose layout the retained values have.
 size_t Store::free_slot() const {
-  if (boots_valid()) return 1 - control_.slot;
-  for (size_t slot : {size_t{0}, size_t{1}}) {
+  if (boots_valid()) return free_trial_slot();
+  for (size_t slot = 0; slot < kImageSlots; ++slot) {
     if (!in_slot_[slot]) return slot;
   }
   const std::optional<size_t> newest = newest_retained();
   if (!newest) return has_control_ ? control_.slot : 0;
   return in_slot_[0] == in_copy_[*newest]->image ? 1 : 0;
+}
+
+// Neither what boots nor what is on trial lies there, nor, as may_begin_trial() says, what a
+// retained record needs. Rather one that is not dead.
+size_t Store::free_trial_slot() const {
+  std::optional<size_t> free;
+  for (size_t slot = 0; slot < kImageSlots; ++slot) {
+    const bool taken = slot == control_.slot || (control_.trial && slot == control_.trial_slot);
+    if (taken) continue;
+    if (!free || (slots_[*free].dead && !slots_[slot].dead)) free = slot;
+  }
+  return *free;
 }
 
 base::Status Store::install(const ImageToStore& image, uint64_t retain_bytes) {
@@ -229,28 +211,36 @@ base::Status Store::install(const ImageToStore& image, uint64_t retain_bytes) {
   const size_t slot = free_slot();
   base::Status stored = write_image(slot, image, retain_bytes);
   if (!stored.ok()) return stored;
-  stored = write_control({image.digest, static_cast<uint8_t>(slot), false, 0, {}});
+  stored = write_control(accepted_in(slot, image.digest));
   if (!stored.ok()) return stored;
   return settle_locked();
 }
 
 base::Status Store::may_begin_trial() const {
   if (!boots_valid()) return failed("no program is stored that the change could be undone to");
-  if (control_.trial) return base::Error{base::Refusal::kChangePending, "a trial is not over"};
-  if (!retained_fits_locked()) {
-    return failed("the retained values are those of another program still");
-  }
-  return base::Ok{};
+  if (retained_fits_locked()) return base::Ok{};
+  return failed("the retained values are those of another program still");
 }
 
-base::Status Store::begin_trial(const ImageToStore& image, uint64_t retain_bytes) {
+// The way back to an edit below: it is in the free slot still, so that nothing is written there.
+bool Store::rests_in_free_slot(const base::Digest& image) const {
+  const size_t slot = free_trial_slot();
+  return boots_valid() && control_.trial && slots_.whole(slot) && written_[slot] &&
+         in_slot_[slot] == image;
+}
+
+base::Status Store::begin_trial(const ImageToStore& image, uint64_t retain_bytes, bool resumes) {
   std::lock_guard slots_lock(slots_mutex_);
   std::lock_guard lock(mutex_);
   check_slots_locked();
-  if (base::Status may = may_begin_trial(); !may.ok()) return may;
-  base::Status stored = write_image(1 - control_.slot, image, retain_bytes);
+  base::Status may = may_begin_trial();
+  if (!may.ok() && !rests_in_free_slot(image.digest)) return may;
+  const size_t slot = free_trial_slot();
+  base::Status stored = write_image(slot, image, retain_bytes);
   if (!stored.ok()) return stored;
   ControlRecord next = control_;
+  next.trial_slot = static_cast<uint8_t>(slot);
+  next.resumes = resumes;
   next.trial = true;
   next.tries_left = 1;
   next.trial_digest = image.digest;
@@ -268,6 +258,7 @@ base::Status Store::end_trial_locked() {
   next.trial = false;
   next.tries_left = 0;
   next.trial_digest = {};
+  next.resumes = false;
   return write_control(next);
 }
 
@@ -278,12 +269,41 @@ base::Status Store::accept() {
     return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to accept"};
   }
   check_slots_locked();
-  const size_t slot = 1 - control_.slot;
+  // Of an edit that was undone: what that has dropped would be gone.
+  if (!retained_fits_locked()) return failed("the retained values are of another program still");
+  const size_t slot = control_.trial_slot;
   if (in_slot_[slot] != control_.trial_digest) {
     return failed("the program on trial is not stored any more: " + slots_[slot].why);
   }
-  return write_control(
-      {control_.trial_digest, static_cast<uint8_t>(1 - control_.slot), false, 0, {}});
+  return write_control(accepted_in(slot, control_.trial_digest));
+}
+
+// The control record is written last: until then a boot finds what was accepted before, with the
+// values that belong to it. The new ones go behind the newest, which are those of the trial.
+base::Status Store::accept_below(const ImageToStore& image, uint64_t cycle,
+                                 base::ByteSpan values) {
+  std::lock_guard slots_lock(slots_mutex_);
+  std::lock_guard lock(mutex_);
+  if (!control_.trial) {
+    return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to accept"};
+  }
+  check_slots_locked();
+  const std::optional<size_t> newest = newest_retained();
+  const bool of_trial = newest && in_copy_[*newest]->image == control_.trial_digest;
+  if (!of_trial) return failed("the retained values are those of another program still");
+  const size_t slot = free_trial_slot();
+  base::Status stored = write_image(slot, image, values.size());
+  if (!stored.ok()) return stored;
+  const std::optional<size_t> before = newest_accepted();
+  const std::optional<size_t> copy = retained_.victim([&](size_t i) { return before == i; });
+  if (!copy) return failed("no copy of the retained values is left: " + retained_.complaint());
+  stored = write_retained(
+      *copy, {image.digest, false, cycle, base::Bytes(values.begin(), values.end())}, true);
+  if (!stored.ok()) return stored;
+  ControlRecord next = control_;
+  next.boots = image.digest;
+  next.slot = static_cast<uint8_t>(slot);
+  return write_control(next);
 }
 
 base::Status Store::settle() {
@@ -301,57 +321,24 @@ base::Status Store::settle_locked() {
   return settled;
 }
 
-// --- retained values --------------------------------------------------------------
+// --- what is stored --------------------------------------------------------------
 
-bool Store::retained_fits_locked() const {
-  const std::optional<size_t> newest = newest_retained();
-  if (!newest) return true;
-  return in_copy_[*newest]->image == control_.boots && !in_copy_[*newest]->trial;
-}
-
-bool Store::keeps_retained() const {
-  std::lock_guard lock(mutex_);
-  return saved_copy_ && retained_.valid(*saved_copy_);
+bool Store::in_a_slot(const base::Digest& image) const {
+  return std::find(std::begin(in_slot_), std::end(in_slot_), image) != std::end(in_slot_);
 }
 
 bool Store::names_locked(const base::Digest& image) const {
   return has_control_ && (control_.boots == image || control_.is_trial(image));
 }
 
+bool Store::tries(const base::Digest& image) const {
+  std::lock_guard lock(mutex_);
+  return control_.is_trial(image);
+}
+
 bool Store::names(const base::Digest& image) const {
   std::lock_guard lock(mutex_);
   return names_locked(image);
-}
-
-bool Store::retained_fits() const {
-  std::lock_guard lock(mutex_);
-  return retained_fits_locked();
-}
-
-base::Status Store::save_retained(const base::Digest& image, uint64_t cycle,
-                                  base::ByteSpan values) {
-  std::lock_guard lock(mutex_);
-  const bool trial = control_.is_trial(image);
-  if (!trial && !(boots_valid() && control_.boots == image)) {
-    return failed("the retained values are of a program that is not stored");
-  }
-  retained_.check();
-  // What a lost trial goes back to stays until the trial is over and newer values are durable.
-  const std::optional<size_t> newest = newest_retained();
-  const bool on_trial = control_.trial || (newest && in_copy_[*newest]->image != control_.boots);
-  const std::optional<size_t> before = newest_accepted();
-  const std::optional<size_t> copy =
-      retained_.victim([&](size_t i) { return on_trial && before == i; });
-  if (!copy) return failed("no copy of the retained values is left: " + retained_.complaint());
-  base::Status room = retained_.reserve(*copy, retain_payload_bytes(values.size()));
-  if (!room.ok()) return room;
-  if (!retained_[*copy].dead) in_copy_[*copy].reset();
-  base::Status written = retained_.write(
-      *copy, encode(RetainRecord{image, trial, cycle, base::Bytes(values.begin(), values.end())}));
-  if (written.ok()) in_copy_[*copy] = RetainHead{image, trial};
-  if (written.ok()) saved_copy_ = copy;
-  show_retained();
-  return written;
 }
 
 // --- journal ----------------------------------------------------------------------

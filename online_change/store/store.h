@@ -3,9 +3,10 @@
 // instant before leaves what was before, or what shall be. Programs are bytes and their digest
 // here; whether they can run is the verifier's question.
 //
-// Two slots hold images; the control record says which one boots and whether the other is on trial.
-// A slot is written over only when neither the control record nor a retained record that a boot
-// would read needs it: so the layout of the retained values can always be read. Three copies of the
+// Three slots hold images; the control record says which one boots and which one, if any, is on
+// trial. The third one takes the next edit, while the one that it is made on is still on trial. A
+// slot is written over only when neither the control record nor a retained record that a boot would
+// read needs it: so the layout of the retained values can always be read. Three copies of the
 // retained values: the newest, the newest from before the trial, and the one written next.
 //
 // Storage may fail and be well again: an operation that has failed changes nothing here, and what
@@ -23,6 +24,7 @@
 
 #include "online_change/store/control_record.h"
 #include "online_change/store/copies.h"
+#include "online_change/store/edits_record.h"
 #include "online_change/store/journal.h"
 #include "online_change/store/retain_record.h"
 
@@ -33,6 +35,7 @@ inline constexpr size_t kDigestBytes = sizeof(base::Digest);
 inline constexpr const char* kJournalFile = "journal";
 inline constexpr const char* kTrapsFile = "traps";
 inline constexpr const char* kBeforeFile = "before";
+inline constexpr const char* kEditsFile = "edits";
 
 struct StoreSizes {
   uint64_t image_bytes = 1u << 20;  // to begin with: a longer image makes its slot longer
@@ -59,10 +62,12 @@ struct ImageToStore {
 // What was found at the start.
 struct Recovered {
   std::optional<StoredImage> boots;
-  std::optional<StoredImage> other;    // in the other slot, if anything
+  // In another slot, if anything: what `newest` is of, else what was on trial, else any.
+  std::optional<StoredImage> other;
   std::optional<RetainRecord> newest;  // retained values; of `boots` or `other`
   std::optional<RetainRecord> before;  // `newest` is of a lost trial: those of `boots` before it
-  std::optional<base::Digest> trial_lost;
+  std::optional<base::Digest> trial_lost;  // unless it resumes
+  bool resumes = false;
   std::vector<StoredImage> held;  // what else the slots hold
   bool virgin = false;              // nothing was ever stored here, as far as anybody can tell
   std::string nothing;              // why there is no `boots`
@@ -80,6 +85,8 @@ class Store {
   void reject_boots();
   // A lost trial is over, and both control records are whole again.
   base::Status settle();
+  // The same, and a trial goes on.
+  base::Status make_whole();
 
   // This program boots from now on, nothing is on trial. `retain_bytes`: of its retained values.
   base::Status install(const ImageToStore& image, uint64_t retain_bytes);
@@ -88,12 +95,22 @@ class Store {
   // (in memory: not of the same digest) need not write it. Where it cannot be, nothing is done.
   void lay_aside(std::shared_ptr<const base::Bytes> image);
   void forget_aside();
-  // The program is stored and on trial: what boots stays. The newest retained values must be those
-  // of the program that boots (kStorageFailed).
-  base::Status begin_trial(const ImageToStore& image, uint64_t retain_bytes);
+  // The program is stored and on trial: what boots stays. What was on trial until now is so no
+  // more: this is an edit that was made on top of it, or one below it. retained_fits() must be true
+  // (kStorageFailed), but for an edit below that is still stored.
+  // `resumes`: it boots, and stays on trial, as long as the edits that lead to it are kept.
+  base::Status begin_trial(const ImageToStore& image, uint64_t retain_bytes,
+                           bool resumes = false);
+  base::Status set_resumes(bool resumes);
+  // The edits on trial, oldest first. A cut leaves the ones that were kept before, or these.
+  base::Status keep_edits(const std::vector<StoredEdit>& edits);
+  base::Result<std::vector<StoredEdit>> edits() const;
   base::Status end_trial();
   // What is on trial boots from now on.
   base::Status accept();
+  // This program, an edit below the one that is on trial, boots from now on; that stays on trial.
+  // `values`: its retained values from before the edits above it, which a lost trial goes back to.
+  base::Status accept_below(const ImageToStore& image, uint64_t cycle, base::ByteSpan values);
   // The program that accept() is about to replace by `next`, in a file of its own: a cut leaves the
   // one that was kept before, or this one (X8). Nothing boots from it.
   base::Status keep_before(const ImageToStore& image, const base::Digest& next);
@@ -103,14 +120,18 @@ class Store {
   // The slot that shall hold this program, and does not any more, gets it again.
   base::Status restore(const ImageToStore& image);
 
-  // `image` boots or is on trial.
+  // `image` boots or is on trial, or was so until another edit was.
   base::Status save_retained(const base::Digest& image, uint64_t cycle, base::ByteSpan values);
-  // Are the newest ones, if there are any, those of the program that boots, not from its trial?
+  // May another trial begin: are the newest ones, if there are any, those of the program that
+  // boots, not from its trial? On trial: is their layout not in the slot that is written next?
   bool retained_fits() const;
   // Is what save_retained() has written last still stored?
   bool keeps_retained() const;
   // Does the control record name it, as what boots or is on trial?
   bool names(const base::Digest& image) const;
+
+  // Does it name this one as what is on trial?
+  bool tries(const base::Digest& image) const;
 
   void note(JournalEntry entry);
   void note_trap(JournalEntry entry);
@@ -134,9 +155,11 @@ class Store {
     bool trial = false;
   };
 
+  static base::Error failed(std::string text);
   void recover_control();
   void recover_images();
   void recover_retained();
+  void choose_other();
   base::Status write_control(const ControlRecord& next);
   base::Status write_slot(size_t slot, const ImageToStore& image);
   base::Status write_image(size_t slot, const ImageToStore& image, uint64_t retain_bytes);
@@ -158,10 +181,14 @@ class Store {
   void show_boots() const;
   // Is there a slot for a trial?
   base::Status may_begin_trial() const;
+  bool rests_in_free_slot(const base::Digest& image) const;
   bool boots_valid() const { return has_control_ && in_slot_[control_.slot] == control_.boots; }
   bool names_locked(const base::Digest& image) const;
   bool in_a_slot(const base::Digest& image) const;
   size_t free_slot() const;
+  size_t free_trial_slot() const;
+  base::Status write_retained(size_t copy, const RetainRecord& record, bool older);
+  bool may_save_retained(const base::Digest& image) const;
   // Of the retained records that can be read, with a layout that is stored.
   std::optional<size_t> newest_retained() const;
   // That one is of a trial that has not been accepted: the newest from before it.
@@ -186,9 +213,10 @@ class Store {
   bool has_control_ = false;
   ControlRecord control_;
   // By slot and by copy; of valid ones.
-  std::optional<base::Digest> in_slot_[2];
-  bool written_[2] = {false, false};          // by this process, so it is what its digest says
-  std::shared_ptr<const base::Bytes> aside_;  // it is in the slot that does not boot
+  std::optional<base::Digest> in_slot_[kImageSlots];
+  bool written_[kImageSlots] = {};            // by this process, so it is what its digest says
+  std::shared_ptr<const base::Bytes> aside_;  // it is in that slot, which was free
+  size_t aside_slot_ = 0;
   std::optional<RetainHead> in_copy_[3];
   std::optional<size_t> saved_copy_;  // save_retained() has written it last
   Recovered recovered_;

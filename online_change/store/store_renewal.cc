@@ -8,7 +8,7 @@ base::Status Store::restore(const ImageToStore& image) {
   std::lock_guard slots_lock(slots_mutex_);
   std::lock_guard lock(mutex_);
   if (!names_locked(image.digest)) return base::Ok{};
-  const size_t slot = control_.boots == image.digest ? control_.slot : 1 - control_.slot;
+  const size_t slot = control_.boots == image.digest ? control_.slot : control_.trial_slot;
   if (in_slot_[slot] == image.digest && !slots_[slot].dead) return base::Ok{};
   base::Status written = write_slot(slot, image);
   if (written.ok()) in_slot_[slot] = image.digest;
@@ -128,7 +128,7 @@ void Store::show_slots() const {
 
 void Store::show_boots() const {
   const bool lost = has_control_ && !boots_valid();
-  const bool trial_lost = control_.trial && in_slot_[1 - control_.slot] != control_.trial_digest;
+  const bool trial_lost = control_.trial && in_slot_[control_.trial_slot] != control_.trial_digest;
   std::string text;
   if (lost) {
     text = "the program that boots next, " + base::short_hex(control_.boots) +

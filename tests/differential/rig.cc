@@ -48,6 +48,7 @@ base::Status Rig::make_switch() {
 }
 
 base::Status Rig::undo() {
+  if (base::Status primed = change_->prime(); !primed.ok()) return primed;
   base::Result<online_change::SwitchReport> report = change_->undo();
   if (!report.ok()) return report.error();
   return base::Ok{};

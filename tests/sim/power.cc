@@ -24,6 +24,11 @@ SimStorage what_is_left(const SimStorage& disk, differential::Random& random) {
   return disk.after_cut(choice, tear);
 }
 
+// After a power loss (D4).
+base::Digest what_boots(const vm::StatusReport& status) {
+  return status.last_edit_boots ? status.running : status.boots_next;
+}
+
 }  // namespace
 
 void World::boot(const std::optional<ir::VerifiedImage>& given) {
@@ -42,6 +47,7 @@ void World::boot(const std::optional<ir::VerifiedImage>& given) {
   stvm::StartReport start{boot->trial_lost, boot->alarms};
   service_ = std::make_unique<stvm::ControllerService>(*controller_, clock_, *store_, *boundary_,
                                                        start, [] { return int64_t{0}; });
+  service_->resume(boot->edits);
   remember_retained();
 }
 
@@ -104,7 +110,7 @@ void World::disk_fault() {
 
 void World::power_cut() {
   const vm::StatusReport before = settled();
-  if (!disk_failed_) may_boot_ = {before.boots_next};
+  if (!disk_failed_) may_boot_ = {what_boots(before)};
   const bool inside = !disk_failed_ && random_.one_in(2);
   say(inside ? "power cut inside an operation" : "power cut");
   if (inside) {
@@ -114,7 +120,7 @@ void World::power_cut() {
     };
     try {
       any_operation();
-      may_boot_ = {settled().boots_next};
+      may_boot_ = {what_boots(settled())};
     } catch (const PowerCut&) {
       say("  there it was");
     }
@@ -129,7 +135,6 @@ void World::come_back() {
   boundary_.reset();
   controller_.reset();
   store_.reset();
-  at_switch_.reset();
   const std::vector<Values> retained = std::move(retained_);
   retained_.clear();
   for (bool again = true; again;) {
@@ -155,7 +160,16 @@ void World::come_back() {
   const base::Digest running = controller_->verified().digest();
   require(std::find(may_boot_.begin(), may_boot_.end(), running) != may_boot_.end(),
           "what boots is what was accepted last");
-  require(settled().boots_next == running, "and boots next");
+  on_trial_.clear();
+  Hand hand = connect();
+  const auto edits = hand.client->edits();
+  require(edits.ok(), "edits are told");
+  for (const stvm::TrialEdit& edit : *edits) on_trial_.push_back({edit.from, std::nullopt});
+  if (on_trial_.empty()) require(settled().boots_next == running, "and boots next");
+  if (!on_trial_.empty()) {
+    require(on_trial_.front().before == settled().boots_next, "the oldest edit is of what boots");
+    require(edits->back().to == running, "and the newest one runs");
+  }
   const bool known =
       retained.empty() || std::any_of(retained.begin(), retained.end(),
                                       [&](const Values& values) { return agree(now, values); });

@@ -73,10 +73,14 @@ void World::switched(const Snapshot& before, const Snapshot& now) {
     say("version behind:\n" + differential::print(versions_.at(now.image().digest())->tree));
     throw;
   }
-  const bool back = at_switch_ && at_switch_->image().digest() == now.image().digest();
-  if (back) check_restored(*at_switch_, before, now);
-  at_switch_.reset();
-  if (!back) at_switch_.emplace(before);
+  const bool back = !on_trial_.empty() && on_trial_.back().before == now.image().digest();
+  if (!back) {
+    on_trial_.push_back({before.image().digest(), before});
+    return;
+  }
+  const std::optional<Snapshot> at_switch = std::move(on_trial_.back().at_switch);
+  on_trial_.pop_back();
+  if (at_switch) check_restored(*at_switch, before, now);
 }
 
 World::Hand World::connect() {
@@ -101,8 +105,10 @@ void World::bad_luck(Hand& hand) {
 vm::StatusReport World::settled() {
   vm::StatusReport now = connect().seen;
   require(now.running == controller_->verified().digest(), "status names what runs");
-  const bool trial = now.change == "trial";
-  require(trial == (now.previous != base::Digest{}), "a trial has a version to go back to");
+  require((now.edits != 0) == (now.previous != base::Digest{}),
+          "a trial has a version to go back to");
+  require(now.edits <= on_trial_.size(), "each edit on trial was switched to");
+  on_trial_.erase(on_trial_.begin(), on_trial_.end() - static_cast<ptrdiff_t>(now.edits));
   for (const vm::TaskStatus& task : now.tasks) {
     require(task.missed == 0, "a release of " + task.name + " was missed");
   }
@@ -200,10 +206,11 @@ void World::change() {
   if (!package) return;
   const uint32_t flags = (random_.one_in(3) ? 0u : vm::kAllowLoss) |
                          (random_.one_in(2) ? vm::kAllowOverrun : 0u) |
-                         (random_.one_in(5) ? vm::kPermanent : 0u);
-  if ((flags & vm::kPermanent) != 0) {
-    may_boot_.push_back(ir::digest(online_change::decode(*package)->image));
-  }
+                         (random_.one_in(5) ? vm::kPermanent : 0u) |
+                         (random_.one_in(3) ? vm::kLastEditBoots : 0u);
+  const bool boots = (flags & (vm::kPermanent | vm::kLastEditBoots)) != 0;
+  may_boot_.push_back(boots ? ir::digest(online_change::decode(*package)->image)
+                            : hand.seen.boots_next);
   bad_luck(hand);
   boundary_->guard("a change that was not switched");
   may_delay_ = (flags & vm::kAllowOverrun) != 0;
@@ -215,10 +222,10 @@ void World::change() {
   const bool lost = hand.way->lost();
   const bool permanent = (flags & vm::kPermanent) != 0;
   if (done.ok() && !permanent && now.running == hand.seen.running && given_back()) {
-    require(now.change == "idle", "what was given back is not on trial");
+    require(now.edits == hand.seen.edits, "what was given back is not on trial");
   } else if (done.ok()) {
     require(now.running != hand.seen.running, "a change that was answered runs");
-    require(now.change == (permanent ? "idle" : "trial"), "and is on trial until accepted");
+    require(now.edits == (permanent ? 0 : hand.seen.edits + 1), "and is on trial until accepted");
     last_package_ = std::move(*package);
   } else if (!lost && !(permanent && disk_failed_)) {
     require(now.running == hand.seen.running, "a change that was refused does not run");
@@ -294,7 +301,8 @@ void World::undo() {
   Hand hand = connect();
   say("undo, state " + hand.seen.change);
   bad_luck(hand);
-  const bool trial = hand.seen.change == "trial";
+  const bool trial = hand.seen.edits != 0;
+  if (trial) may_boot_.push_back(hand.seen.edits == 1 ? hand.seen.boots_next : hand.seen.previous);
   auto report = hand.client->undo();
   const vm::StatusReport now = settled();
   if (report.ok()) {
@@ -312,7 +320,7 @@ void World::accept() {
   Hand hand = connect();
   say("accept, state " + hand.seen.change);
   bad_luck(hand);
-  const bool trial = hand.seen.change == "trial";
+  const bool trial = hand.seen.edits != 0;
   if (trial) may_boot_.push_back(hand.seen.running);
   boundary_->guard("accept");
   base::Result<base::Bytes> done = hand.client->call({.command = vm::Command::kAccept});
@@ -323,7 +331,7 @@ void World::accept() {
   if (!done.ok()) refused(done.error());
   if (done.ok() && !lost) {  // else a bit that was damaged may have made another request of it
     require(trial, "only a trial can be accepted");
-    require(now.boots_next == now.running && now.change == "idle", "what is accepted boots next");
+    require(now.boots_next == now.running && now.edits == 0, "what is accepted boots next");
   } else {
     require((lost && trial && now.boots_next == now.running) || now.boots_next == hand.seen.boots_next,
             "an accept that was refused changes nothing");

@@ -116,8 +116,12 @@ class World {
   std::vector<Values> retained_;
   bool disk_failed_ = false;
   base::Bytes last_package_;
-  // Of the change on trial: the boundary at which it was switched.
-  std::optional<Snapshot> at_switch_;
+  // The edits on trial, oldest first.
+  struct OnTrial {
+    base::Digest before{};             // what it was made on
+    std::optional<Snapshot> at_switch;  // the boundary; null: that was before a power cut
+  };
+  std::vector<OnTrial> on_trial_;
 };
 
 }  // namespace sim

@@ -27,6 +27,9 @@ base::Result<ChangeSettings> change_settings(const std::vector<std::string>& pat
     file->take<bool>("change.restricted", settings.restricted);
     file->take<std::string>("change.health", settings.health);
     file->take<std::string>("change.unless", settings.unless);
+    std::string boots;
+    file->take<std::string>("change.boots", boots);
+    if (!boots.empty()) settings.last_edit = boots == "last-edit";
     file->take<int64_t>("change.data_limit", settings.data_limit);
   }
   return settings;

@@ -14,6 +14,7 @@ struct ChangeSettings {
   bool restricted = false;  // no edits of interfaces (D7)
   std::string health;       // a BOOL that must stay TRUE on trial, or the controller undoes it
   std::string unless;       // a BOOL; while it is TRUE nothing is switched
+  bool last_edit = false;   // what is on trial boots after a power loss (D4)
   uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit
 };
 

@@ -86,14 +86,23 @@ base::Result<base::Bytes> package_back(const tools::Options&, bool restricted,
   return make_package({{file}, {}}, restricted, *running);
 }
 
+// Whoever undoes those takes this one back before.
+void say_below(const vm::StatusReport& status) {
+  const std::string by = status.changed_by.empty() ? "" : ", the newest by " + status.changed_by;
+  std::printf("%llu edit(s) on trial%s: this one is made on top (stvm edits)\n",
+              static_cast<unsigned long long>(status.edits), by.c_str());
+}
+
 using MakePackage = base::Result<base::Bytes> (*)(const tools::Options&, bool, ControllerClient&);
 
 base::Result<Outcome> change(const tools::Options& options, const SwitchOptions& how,
                              ControllerClient& client, MakePackage make) {
   base::Result<vm::StatusReport> status = client.status();
   if (!status.ok()) return status.error();
-  base::Status free = how.dry_run ? base::Status(base::Ok{}) : check_no_trial(*status);
+  const bool waits = how.wait && !how.dry_run;
+  base::Status free = waits ? check_no_trial(*status) : base::Status(base::Ok{});
   if (!free.ok()) return free.error();
+  if (status->edits != 0 && !how.json) say_below(*status);
   base::Result<base::Bytes> package = make(options, how.restricted, client);
   if (!package.ok()) return package.error();
   return bring(how, client, *package);
@@ -114,7 +123,7 @@ base::Status wait_for_others(ControllerClient& client) {
     base::Result<vm::StatusReport> status = client.status();
     if (!status.ok()) return status.error();
     if (status->change == "idle") return base::Ok{};
-    if (status->change == "trial") {
+    if (status->edits != 0) {
       staged = 0;
     } else if (staged >= kStagedLooks) {
       return base::Ok{};

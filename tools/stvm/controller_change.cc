@@ -91,11 +91,11 @@ base::Status ControllerService::arm_in_time(bool allow_loss, bool allow_overrun,
   return base::Ok{};
 }
 
-base::Result<online_change::SwitchReport> ControllerService::switch_in_time(bool allow_overrun,
-                                                                            uint64_t& missed_before,
-                                                                            int64_t& done_ns) {
+base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
+    bool allow_overrun, online_change::Snapshot& before, uint64_t& missed_before,
+    int64_t& done_ns) {
   std::optional<base::Result<online_change::SwitchReport>> report;
-  online_change::Snapshot before = empty_snapshot();
+  before = empty_snapshot();
   online_change::Snapshot after = empty_snapshot();
   const auto nobody_else_saves = keeper_.hold();
   std::optional<Deadline> deadline;
@@ -163,12 +163,12 @@ base::Error ControllerService::not_switched(const base::Error& why) {
   preparing_ = false;
   if (!abort_why_.empty()) return give_up();
   base::Error error = refused(why);
-  if (change_.state() == online_change::State::kIdle) forget_staged();
+  if (!change_.prepares()) forget_staged();
   return error;
 }
 
-base::Status ControllerService::prepare_switch(const vm::Request& request, bool faulted,
-                                               bool allow_overrun) {
+base::Status ControllerService::prepare_switch(const vm::Request& request, Trial& next,
+                                               bool faulted, bool allow_overrun) {
   const std::string health = request.names.empty() ? std::string() : request.names.front();
   base::Status ready = check_health(health, staged_->image());
   if (ready.ok() && !faulted) ready = configure(allow_overrun);
@@ -177,7 +177,7 @@ base::Status ControllerService::prepare_switch(const vm::Request& request, bool 
   base::Status taken = arm_in_time(allow_loss, allow_overrun, ready);
   if (!taken.ok()) return not_switched(taken.error());
   if (!ready.ok()) return not_switched(ready.error());
-  if (base::Status stored = store_trial(); !stored.ok()) {
+  if (base::Status stored = store_trial(next); !stored.ok()) {
     change_.cancel();
     return not_switched(stored.error());
   }
@@ -185,7 +185,7 @@ base::Status ControllerService::prepare_switch(const vm::Request& request, bool 
   if (!allow_overrun) ready = catch_up();
   if (ready.ok()) return ready;
   change_.cancel();
-  complain(store_.end_trial());
+  complain(store_follows());
   return not_switched(ready.error());
 }
 
@@ -201,25 +201,24 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   if (!taken.ok()) return not_switched(taken.error());
   // Nothing runs that could be delayed.
   const bool allow_overrun = faulted || (request.flags & vm::kAllowOverrun) != 0;
-  ir::VerifiedImage running = controller_.verified();
-  base::Status ready = prepare_switch(request, faulted, allow_overrun);
+  Trial trial{describe_staged(), controller_.verified(), staged_package_, staged_flags_,
+              request.flags,     {}};
+  trial.edit.name = redone_.empty() ? "E" + std::to_string(edits_made_ + 1) : redone_;
+  base::Status ready = prepare_switch(request, trial, faulted, allow_overrun);
   if (!ready.ok()) return ready.error();
   const int64_t predicted_ns = change_.predicted_pause_ns();
   uint64_t missed_before = 0;
   int64_t done_ns = 0;
-  auto report = switch_in_time(allow_overrun, missed_before, done_ns);
+  auto report = switch_in_time(allow_overrun, trial.retained, missed_before, done_ns);
   change_.collect();
   if (!report.ok()) {
     change_.cancel();
-    complain(store_.end_trial());
+    complain(store_follows());
     return not_switched(report.error());
   }
   preparing_ = false;
-  previous_ = std::move(running);
   ++edition_;
-  changed_by_ = who_;
-  switched_cycle_ = report->cycle_before;
-  note_switch(online_change::Event::kSwitched, previous_->digest(), *report, predicted_ns);
+  note_edit(std::move(trial), *report, predicted_ns);
   forget_staged();
   forget_rehearsal();
   begin_probation(request);
@@ -233,9 +232,17 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
 // Done first and then recorded: after a power cut in between it boots the same program. Where no
 // cycle leaves time enough it is done all the same: it is what people ask for when something is
 // wrong.
-base::Result<base::Bytes> ControllerService::undo(const vm::Request&) { return undo_now({}); }
+base::Result<base::Bytes> ControllerService::undo(const vm::Request& request) {
+  base::Status newest = check_newest(request);
+  return newest.ok() ? undo_now({}) : newest.error();
+}
 
 base::Result<base::Bytes> ControllerService::undo_now(const std::string& why) {
+  if (change_.prepares() && !trials_.empty()) {  // an edit on top of the one that goes
+    abort_why_ = "because the edit below it was undone";
+    (void)give_up();
+  }
+  if (base::Status primed = change_.prime(); !primed.ok()) return refused(primed.error());
   std::optional<base::Result<online_change::SwitchReport>> report;
   uint64_t missed_before = 0;
   int64_t done_ns = 0;
@@ -257,26 +264,52 @@ base::Result<base::Bytes> ControllerService::undo_now(const std::string& why) {
   }
   if (!report->ok()) return refused(report->error());
   change_.collect();
-  complain(store_.end_trial());
+  undone_.push_back(std::move(trials_.back()));
+  trials_.pop_back();
+  complain(store_follows());
   complain(keeper_.save(after));
-  note_switch(online_change::Event::kUndone, undone, **report, predicted_ns, why);
+  note_units("undone", (*report)->cycle_after);
+  const std::string which = "edit " + undone_.back().edit.name;
+  note_switch(online_change::Event::kUndone, undone, **report, predicted_ns,
+              why.empty() ? which : which + ": " + why);
   not_undone_.clear();
   forget_rehearsal();
-  previous_.reset();
   probation_.reset();
   ++edition_;
   changed_by_ = who_;
   return encode(finish_report(**report, missed_before, done_ns));
 }
 
+// From what is prepared to an edit on trial, under the name that it had before it was undone.
+void ControllerService::note_edit(Trial trial, const online_change::SwitchReport& report,
+                                  int64_t predicted_ns) {
+  if (redone_.empty()) {
+    ++edits_made_;
+    undone_.clear();  // of them none can be brought again
+  } else {
+    undone_.pop_back();
+  }
+  trial.edit.cycle = report.cycle_after;
+  trials_.push_back(std::move(trial));
+  changed_by_ = who_;
+  switched_cycle_ = report.cycle_before;
+  note_units("switched", report.cycle_after);
+  note_switch(online_change::Event::kSwitched, previous()->digest(), report, predicted_ns,
+              "edit " + trials_.back().edit.name);
+  if (last_edit_boots()) complain(keep_edits());  // with the values of the boundary
+}
+
 // Durable first: after a power cut in between, the accepted version boots, as it was asked for.
 base::Status ControllerService::make_permanent() {
-  if (change_.state() != online_change::State::kTrial) return change_.accept();
+  if (trials_.empty()) return change_.accept();
+  const ir::VerifiedImage& before = trials_.front().before;
   base::Status stored = keep_programs();
-  if (stored.ok() && previous_) {
-    complain(store_.keep_before({previous_->digest(), previous_->encoded()},
+  if (stored.ok()) {
+    complain(store_.keep_before({before.digest(), before.encoded()},
                                 controller_.verified().digest()));
+    stored = store_follows();
   }
+  if (stored.ok() && !store_.retained_fits()) stored = save_retained_now();
   if (stored.ok()) stored = store_.accept();
   if (!stored.ok()) {
     return refused(
@@ -287,20 +320,62 @@ base::Status ControllerService::make_permanent() {
   base::Status taken = at_boundary([&] { keeper_.take(after); });
   change_.collect();
   complain(taken.ok() ? keeper_.save(after) : taken);
-  online_change::JournalEntry done = entry(online_change::Event::kAccepted);
-  if (previous_) done.from = previous_->digest();
-  done.to = controller_.verified().digest();
-  store_.note(std::move(done));
+  note_accepted(trials_.size(), controller_.verified().digest());
   not_undone_.clear();
-  previous_.reset();
   probation_.reset();
-  ++edition_;
-  changed_by_ = who_;
   return accepted;
 }
 
-base::Result<base::Bytes> ControllerService::accept(const vm::Request&) {
-  base::Status permanent = make_permanent();
+// The newest edits stay on trial, and what they would go back to is stored with the values that
+// were retained there.
+base::Status ControllerService::make_oldest_permanent(size_t edits) {
+  const ir::VerifiedImage& before = trials_.front().before;
+  const ir::VerifiedImage next = trials_[edits].before;
+  base::Status stored = keep_programs();
+  if (stored.ok()) stored = store_follows();
+  if (stored.ok()) stored = save_retained_now();
+  if (stored.ok()) {
+    complain(store_.keep_before({before.digest(), before.encoded()}, next.digest()));
+    const online_change::Snapshot& values = trials_[edits].retained;
+    stored = store_.accept_below({next.digest(), next.encoded()}, values.cycle, values.values);
+  }
+  if (!stored.ok()) {
+    return refused(
+        {stored.error().refusal, stored.error().text + "; all edits are still on trial"});
+  }
+  base::Status accepted = change_.accept_oldest(edits);
+  note_accepted(edits, next.digest());
+  if (last_edit_boots()) complain(keep_edits());
+  return accepted;
+}
+
+void ControllerService::note_accepted(size_t edits, const base::Digest& next) {
+  online_change::JournalEntry done = entry(online_change::Event::kAccepted);
+  done.from = trials_.front().before.digest();
+  done.to = next;
+  done.text = "edit " + trials_.front().edit.name;
+  if (edits > 1) done.text += " to " + trials_[edits - 1].edit.name;
+  store_.note(std::move(done));
+  trials_.erase(trials_.begin(), trials_.begin() + static_cast<std::ptrdiff_t>(edits));
+  ++edition_;
+  changed_by_ = who_;
+}
+
+base::Result<base::Bytes> ControllerService::accept(const vm::Request& request) {
+  size_t edits = trials_.size();
+  if (!request.names.empty()) {
+    const auto found = std::find_if(trials_.begin(), trials_.end(), [&](const Trial& trial) {
+      return trial.edit.name == request.names.front();
+    });
+    if (found == trials_.end()) {
+      return base::Error{base::Refusal::kNothingToUndo,
+                         "no edit `" + request.names.front() +
+                             "` is on trial; `stvm edits` shows those that are"};
+    }
+    edits = static_cast<size_t>(found - trials_.begin()) + 1;
+  }
+  base::Status permanent =
+      edits == trials_.size() ? make_permanent() : make_oldest_permanent(edits);
   if (!permanent.ok()) return permanent.error();
   return base::Bytes{};
 }

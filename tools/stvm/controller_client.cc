@@ -183,6 +183,36 @@ base::Result<std::vector<online_change::JournalEntry>> ControllerClient::journal
   }
 }
 
+base::Result<std::vector<UnitRow>> ControllerClient::units() {
+  std::vector<UnitRow> all;
+  vm::Request request{.command = vm::Command::kUnits};
+  for (;;) {
+    base::Result<base::Bytes> body = call(request);
+    if (!body.ok()) return body.error();
+    base::Result<UnitPage> page = decode_unit_page(*body);
+    if (!page.ok()) return page.error();
+    std::move(page->rows.begin(), page->rows.end(), std::back_inserter(all));
+    if (page->next == 0) return all;
+    if (page->next <= request.offset || all.size() > kMaxRows) return endless();
+    request.offset = page->next;
+  }
+}
+
+base::Result<std::vector<TrialEdit>> ControllerClient::edits() {
+  std::vector<TrialEdit> all;
+  vm::Request request{.command = vm::Command::kEdits};
+  for (;;) {
+    base::Result<base::Bytes> body = call(request);
+    if (!body.ok()) return body.error();
+    base::Result<EditPage> page = decode_edit_page(*body);
+    if (!page.ok()) return page.error();
+    std::move(page->edits.begin(), page->edits.end(), std::back_inserter(all));
+    if (page->next == 0) return all;
+    if (page->next <= request.offset || all.size() > kMaxRows) return endless();
+    request.offset = page->next;
+  }
+}
+
 base::Status ControllerClient::stage(base::ByteSpan package, uint32_t flags,
                                      const std::string& unless) {
   vm::Request part{.command = vm::Command::kUpload};
@@ -198,7 +228,14 @@ base::Status ControllerClient::stage(base::ByteSpan package, uint32_t flags,
   stage.digest = base::sha256(package);
   stage.flags = flags;
   if (!unless.empty()) stage.names = {unless};
-  base::Result<base::Bytes> staged = call(std::move(stage));
+  return learn_edition(call(std::move(stage)));
+}
+
+base::Status ControllerClient::stage_again(const std::string& edit) {
+  return learn_edition(call({.command = vm::Command::kRedo, .names = {edit}}));
+}
+
+base::Status ControllerClient::learn_edition(const base::Result<base::Bytes>& staged) {
   if (!staged.ok()) return staged.error();
   base::ByteReader answer(*staged);
   edition_ = answer.u64();
@@ -249,8 +286,10 @@ base::Result<online_change::SwitchReport> ControllerClient::make_switch(
   return switch_report(std::move(request));
 }
 
-base::Result<online_change::SwitchReport> ControllerClient::undo() {
-  return switch_report({.command = vm::Command::kUndo});
+base::Result<online_change::SwitchReport> ControllerClient::undo(const std::string& edit) {
+  vm::Request request{.command = vm::Command::kUndo};
+  if (!edit.empty()) request.names = {edit};
+  return switch_report(std::move(request));
 }
 
 }  // namespace stvm

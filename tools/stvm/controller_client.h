@@ -9,6 +9,7 @@
 #include "online_change/store/journal.h"
 #include "tools/common/options.h"
 #include "tools/stvm/fate_message.h"
+#include "tools/stvm/unit_message.h"
 #include "vm/runtime/ports.h"
 #include "vm/runtime/protocol.h"
 
@@ -38,23 +39,30 @@ class ControllerClient {
   // That ran before the last accept.
   base::Result<base::Bytes> image_before();
   base::Result<std::vector<online_change::JournalEntry>> journal();
+  base::Result<std::vector<UnitRow>> units();
+  // On trial, oldest first.
+  base::Result<std::vector<TrialEdit>> edits();
 
   // `unless`: a BOOL; while it is TRUE nothing is switched (C9).
   base::Status stage(base::ByteSpan package, uint32_t flags,
                      const std::string& unless = {});
+  // The edit that was undone last, which has that name.
+  base::Status stage_again(const std::string& edit);
   base::Result<FatePage> fates();
   // One line for each variable.
   base::Result<std::vector<FateLine>> every_fate();
   // `health`: a BOOL that must stay TRUE in the first cycles (X7); "": none.
   base::Result<online_change::SwitchReport> make_switch(uint32_t flags,
                                                          const std::string& health = {});
-  base::Result<online_change::SwitchReport> undo();
+  // Of the newest edit on trial, which has that name; "": whatever it is.
+  base::Result<online_change::SwitchReport> undo(const std::string& edit = {});
 
  private:
   static base::Result<ControllerClient> connect_here(const std::string& directory);
   static base::Result<ControllerClient> connect_there(const std::string& host,
                                                       const std::string& directory);
   base::Result<base::Bytes> image_parts(vm::Command command, const base::Digest* expected);
+  base::Status learn_edition(const base::Result<base::Bytes>& staged);
   base::Result<FatePage> fate_pages(std::vector<std::string> names);
   base::Result<online_change::SwitchReport> switch_report(vm::Request request);
 

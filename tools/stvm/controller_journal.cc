@@ -68,7 +68,7 @@ online_change::Snapshot ControllerService::empty_snapshot() const {
   online_change::Snapshot out;
   uint64_t most = 0;
   for (const ir::Image* image : {&controller_.image(), staged_ ? &staged_->image() : nullptr,
-                                 previous_ ? &previous_->image() : nullptr}) {
+                                 previous() != nullptr ? &previous()->image() : nullptr}) {
     if (image == nullptr) continue;
     const base::Result<uint64_t> bytes = online_change::retained_bytes(*image);
     if (bytes.ok()) most = std::max(most, *bytes);
@@ -101,32 +101,45 @@ void ControllerService::store_beside() {
   });
 }
 
-base::Status ControllerService::store_trial() {
+base::Status ControllerService::store_trial(Trial& next) {
   if (!staged_) return base::Error{base::Refusal::kBusy, "no change is staged"};
   const base::Result<uint64_t> bytes = online_change::retained_bytes(staged_->image());
   if (!bytes.ok()) return bytes.error();
   keeper_.expect_bytes(*bytes);
-  if (!store_.retained_fits()) {
-    base::Status saved = save_retained_now();
-    if (!saved.ok()) return saved;
-  }
   aside_.wait();
   if (base::Status kept = keep_programs(); !kept.ok()) return kept;
   // One that undo could not end, because the disk failed.
-  base::Status ended = store_.end_trial();
-  if (!ended.ok()) return ended;
-  return store_.begin_trial({staged_->digest(), staged_->encoded()}, *bytes);
+  base::Status follows = store_follows();
+  if (follows.ok() && !store_.retained_fits()) follows = save_retained_now();
+  if (!follows.ok()) return follows;
+  const bool resumes = (next.switch_flags & vm::kLastEditBoots) != 0;
+  if (resumes) {  // the values of the switch come behind it; until then these are newer than others
+    next.retained = empty_snapshot();
+    base::Status taken = look_at_boundary([&] { keeper_.take(next.retained); });
+    if (taken.ok()) taken = keep_edits(&next);
+    if (!taken.ok()) return taken;
+  }
+  return store_.begin_trial({staged_->digest(), staged_->encoded()}, *bytes, resumes);
+}
+
+base::Status ControllerService::store_follows() {
+  if (trials_.empty()) return store_.end_trial();
+  const ir::VerifiedImage& running = controller_.verified();
+  if (store_.tries(running.digest())) return base::Ok{};
+  const base::Result<uint64_t> bytes = online_change::retained_bytes(running.image());
+  if (!bytes.ok()) return bytes.error();
+  return store_.begin_trial({running.digest(), running.encoded()}, *bytes, last_edit_boots());
 }
 
 // Where nothing is wrong this does nothing.
 base::Status ControllerService::keep_programs() {
   const ir::VerifiedImage& running = controller_.verified();
   base::Status kept = store_.restore({running.digest(), running.encoded()});
-  if (!kept.ok() || !previous_) return kept;
-  return store_.restore({previous_->digest(), previous_->encoded()});
+  if (!kept.ok() || trials_.empty()) return kept;
+  const ir::VerifiedImage& accepted = trials_.front().before;
+  return store_.restore({accepted.digest(), accepted.encoded()});
 }
 
-// What fails is among the complaints of the store.
 void ControllerService::keep_programs_now_and_then() {
   const int64_t now = clock_.now_ns();
   if (store_.complaints().empty() || !keep_again_.due(now)) return;

@@ -74,11 +74,14 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
   if (base::Status there = check_not_gone(); !there.ok()) return there.error();
   if (base::Status kept = check_not_aborted(); !kept.ok()) return kept.error();
   const online_change::Change& change = looked_at();
-  const bool back = change.state() == online_change::State::kTrial && previous_;
+  const bool back = change.state() == online_change::State::kTrial && previous() != nullptr;
   if (!back && change.next() == nullptr) {
     return base::Error{base::Refusal::kBusy, "no change is staged, and none is on trial"};
   }
-  const ir::VerifiedImage& next_version = back ? *previous_ : *change.next();
+  if (back) {
+    if (base::Status primed = change_.prime(); !primed.ok()) return primed.error();
+  }
+  const ir::VerifiedImage& next_version = back ? *previous() : *change.next();
   const ir::Image& next_image = next_version.image();
   const bool every = !request.names.empty() && request.names.front() == vm::kEveryVariable;
   if (every && back) {

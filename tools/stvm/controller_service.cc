@@ -6,6 +6,7 @@
 
 #include "base/limits.h"
 #include "base/memory_limit.h"
+#include "base/tool_limits.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/stop_signal.h"
 #include "vm/native/program.h"
@@ -31,8 +32,11 @@ ControllerService::ControllerService(vm::Controller& controller, vm::Clock& cloc
       wall_time_(std::move(wall_time)),
       keeper_(controller, store, wall_time_),
       change_(controller),
+      units_(controller, {controller.cycles(), wall_time_(), start_.who, "started"}),
       aside_(store),
       keep_again_(1'000'000'000, 8'000'000'000) {
+  trials_.reserve(base::kMostEditsOnTrial);  // behind a switch nothing may fail
+  undone_.reserve(base::kMostEditsOnTrial);
   boundary_.give_up = [this] { return preparing_ && aborted(); };
 }
 
@@ -134,6 +138,12 @@ base::Result<base::Bytes> ControllerService::dispatch(const vm::Request& request
       return restart(request);
     case vm::Command::kJournal:
       return journal(request);
+    case vm::Command::kUnits:
+      return units(request);
+    case vm::Command::kEdits:
+      return edits(request);
+    case vm::Command::kRedo:
+      return redo(request);
     case vm::Command::kResetTimes:
       return reset_times(request);
   }
@@ -230,7 +240,9 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.change = online_change::state_name(change_.state());
   report.changed_by = changed_by_;
   report.aborted = aborted_;
-  if (previous_) report.previous = previous_->digest();
+  report.edits = trials_.size();
+  report.last_edit_boots = last_edit_boots();
+  if (previous() != nullptr) report.previous = previous()->digest();
   report.boots_next = store_.boots();
   report.trial_lost = start_.trial_lost.value_or(base::Digest{});
   report.alarms = start_.alarms;

@@ -17,6 +17,7 @@
 #include "tools/stvm/fate_message.h"
 #include "tools/stvm/live_report.h"
 #include "tools/stvm/rehearsal.h"
+#include "tools/stvm/unit_table.h"
 #include "vm/runtime/boundary.h"
 #include "vm/runtime/live_copy.h"
 #include "vm/runtime/protocol.h"
@@ -30,6 +31,7 @@ struct StartReport {
   std::optional<base::Digest> trial_lost;
   std::vector<std::string> alarms;
   std::string fault = {};  // of Boot
+  std::string who = {};    // started it
 };
 // What finds too little time before the next cycle is tried again so much later.
 inline constexpr int64_t kBetweenAttemptsNs = 1'000'000;
@@ -48,6 +50,11 @@ class ControllerService : public vm::Service {
                     online_change::RetainKeeper::WallTime wall_time = wall_time_ns);
   // What changes something from now on is noted there; it must outlive this.
   void record(vm::Recorder& recorder) { recorder_ = &recorder; }
+  // The trial of another process goes on (D4); before anything is answered. What cannot is an
+  // alarm, and its edits have no way back.
+  void resume(const std::vector<online_change::ResumedEdit>& edits);
+  // A clean end: at the next start what is on trial goes on, whatever the policy.
+  void keep_trial_over_stop();
   // From now on an image that is staged is written to the store by a thread of its own, beside its
   // verification: the storage must allow that threads use different files at once.
   void store_beside();
@@ -105,6 +112,34 @@ class ControllerService : public vm::Service {
   Answer restart(const vm::Request& request);
   Answer journal(const vm::Request& request);
 
+  // controller_units.cc
+  // An edit on trial, or one that was undone.
+  struct Trial {
+    TrialEdit edit;
+    ir::VerifiedImage before;  // that it was made on
+    base::Bytes package;
+    uint32_t flags = 0;                // as it was staged with
+    uint32_t switch_flags = 0;
+    online_change::Snapshot retained;  // of `before`, at the switch
+  };
+  const ir::VerifiedImage* previous() const {
+    return trials_.empty() ? nullptr : &trials_.back().before;
+  }
+  void note_edit(Trial trial, const online_change::SwitchReport& report, int64_t predicted_ns);
+  // The oldest `edits` boot as version `next`.
+  void note_accepted(size_t edits, const base::Digest& next);
+  // A name must be that of the newest one.
+  base::Status check_newest(const vm::Request& request) const;
+  Answer units(const vm::Request& request);
+  Answer edits(const vm::Request& request);
+  Answer redo(const vm::Request& request);
+  // Behind a switch or an undo of this cycle.
+  void note_units(const char* event, uint64_t cycle);
+  // What is staged, as an edit; before it is forgotten.
+  TrialEdit describe_staged() const;
+  static TrialEdit describe(const ir::VerifiedImage& running, const ir::VerifiedImage& next,
+                            const online_change::Plan& plan);
+
   base::Status check_expected(const vm::Request& request) const;
   // Runs `job` on the control thread at a boundary and waits for its end.
   base::Status at_boundary(const std::function<void()>& job);
@@ -126,6 +161,8 @@ class ControllerService : public vm::Service {
   base::Error others_upload() const;
   // kBadHash, kFault.
   base::Status check_upload(const vm::Request& request, base::ByteSpan package) const;
+  Answer stage_package(base::Bytes package, uint32_t flags, const std::string& unless,
+                       const std::string& redone);
   Answer stage_rehearsal(base::ByteSpan package, online_change::Strategy strategy);
   base::Status stage_unless_aborted(base::ByteSpan package, online_change::Strategy strategy);
   // The change that this connection stages, rehearses or, on trial, would undo.
@@ -133,12 +170,15 @@ class ControllerService : public vm::Service {
   bool rehearses() const { return rehearsal_ && rehearsal_of_ == session_; }
   // Arms at a boundary with time enough for a look at all values.
   base::Status arm_in_time(bool allow_loss, bool allow_overrun, base::Status& armed);
+  // `before`: the retained values of the program that it takes the place of.
   base::Result<online_change::SwitchReport> switch_in_time(bool allow_overrun,
+                                                           online_change::Snapshot& before,
                                                            uint64_t& missed_before,
                                                            int64_t& done_ns);
   bool time_for_switch() const;
   // All that comes before the switch itself. What has failed is noted.
-  base::Status prepare_switch(const vm::Request& request, bool faulted, bool allow_overrun);
+  base::Status prepare_switch(const vm::Request& request, Trial& next, bool faulted,
+                              bool allow_overrun);
   // What the change must have done before the switch, cycle by cycle in idle time (C5).
   base::Status configure(bool allow_overrun);
   // By standby, brings up to date what the program has written meanwhile (C7).
@@ -149,8 +189,10 @@ class ControllerService : public vm::Service {
                                             uint64_t missed_before, int64_t done_ns);
   // Notes the refusal of a switch.
   base::Error not_switched(const base::Error& why);
-  // The running image boots next, and only then the change is final.
+  // The running image boots next, and only then the change is final, with all that it was made on.
   base::Status make_permanent();
+  // The same of the oldest `edits` of those on trial; the others stay so.
+  base::Status make_oldest_permanent(size_t edits);
 
   // controller_abort.cc
   struct Unless {  // a BOOL of the running program; while it is TRUE nothing is switched
@@ -179,7 +221,7 @@ class ControllerService : public vm::Service {
     uint64_t ends = 0;         // cycle
     std::string health;        // a BOOL that must stay TRUE; "": none
     uint32_t health_data = 0;  // where it is in data memory
-    uint64_t edition = 0;      // of the switch
+    std::string edit;          // its name
   };
   static base::Status check_health(const std::string& name, const ir::Image& next);
   base::Status check_not_gone() const;
@@ -200,7 +242,15 @@ class ControllerService : public vm::Service {
   // Notes it, and is the error.
   base::Error refused(const base::Error& error);
   // Stored as being on trial, and durable, before anything of it runs.
-  base::Status store_trial();
+  base::Status store_trial(Trial& next);
+  // What is on trial in the store is what is on trial here, or nothing.
+  base::Status store_follows();
+  // D4: does what is on trial boot? Of the newest edit.
+  bool last_edit_boots() const {
+    return !trials_.empty() && (trials_.back().switch_flags & vm::kLastEditBoots) != 0;
+  }
+  // The edits on trial, with one that is switched next.
+  base::Status keep_edits(const Trial* next = nullptr);
   // The program that runs, and the one that undo would bring back.
   base::Status keep_programs();
   void keep_programs_now_and_then();
@@ -225,6 +275,10 @@ class ControllerService : public vm::Service {
   std::string changed_by_;  // who made the newest edition
   uint64_t session_ = 0;
   online_change::Change change_;
+  UnitTable units_;
+  std::vector<Trial> trials_;     // oldest first
+  std::vector<Trial> undone_;     // of which the last one can be brought again
+  uint64_t edits_made_ = 0;       // since the start: names
   base::Bytes upload_;
   uint64_t upload_of_ = 0;   // session
   std::string upload_by_;
@@ -232,6 +286,9 @@ class ControllerService : public vm::Service {
   uint64_t history_of_ = 0;
   base::Bytes no_memory_;  // the answer that says so
   std::optional<ir::VerifiedImage> staged_;
+  base::Bytes staged_package_;
+  uint32_t staged_flags_ = 0;
+  std::string redone_;  // name of the edit that is staged again; "": a new one
   uint64_t staged_of_ = 0;       // session
   bool preparing_ = false;       // a request is about it just now
   std::string abort_why_;        // by whom or what it ends; "": it goes on
@@ -246,7 +303,6 @@ class ControllerService : public vm::Service {
   std::optional<LiveReport> live_;                    // of the change that is looked_at()
   std::optional<online_change::EveryFate> every_;     // of the same
   std::vector<online_change::JournalEntry> history_;  // that pages of the journal are of
-  std::optional<ir::VerifiedImage> previous_;         // during a trial
   std::string not_undone_;                            // why the automatic undo failed: an alarm
   std::optional<Probation> probation_;                // in its first cycles
   online_change::StoredImage before_;                 // that pages of kBefore are of

@@ -42,16 +42,23 @@ base::Status ControllerService::check_upload(const vm::Request& request,
 // answer, makes sure that nobody switches what he did not stage. A rehearsal never takes its place.
 base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   if (upload_of_ != session_) return others_upload();
-  const base::Bytes package = std::exchange(upload_, {});
+  base::Bytes package = std::exchange(upload_, {});
   if (base::Status good = check_upload(request, package); !good.ok()) return good.error();
-  const bool standby = (request.flags & vm::kByStandby) != 0;
+  const std::string unless = request.names.empty() ? std::string() : request.names.front();
+  return stage_package(std::move(package), request.flags, unless, {});
+}
+
+base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, uint32_t flags,
+                                                           const std::string& unless,
+                                                           const std::string& redone) {
+  const bool standby = (flags & vm::kByStandby) != 0;
   const auto strategy =
       standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace;
-  const bool rehearsal = (request.flags & vm::kRehearsal) != 0;
+  const bool rehearsal = (flags & vm::kRehearsal) != 0;
   const bool own = only_looked_at_ && looked_at_by_ == session_;
   const bool taken = change_.state() != online_change::State::kIdle && !own;
-  const std::string unless = request.names.empty() ? std::string() : request.names.front();
   if (rehearsal && taken) {
+    if (base::Status room = change_.room(); !room.ok()) return room.error();
     base::Status may_begin = check_unless(unless);
     return may_begin.ok() ? stage_rehearsal(package, strategy) : may_begin.error();
   }
@@ -76,6 +83,9 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   }
   aborted_.clear();
   staged_ = *change_.next();
+  staged_package_ = std::move(package);
+  staged_flags_ = flags;
+  redone_ = redone;
   if (!rehearsal) {
     online_change::JournalEntry done = entry(online_change::Event::kStaged);
     done.counts = change_.plan().counts;
@@ -176,6 +186,8 @@ void ControllerService::forget_staged() {
   aside_.wait();
   store_.forget_aside();
   staged_.reset();
+  staged_package_ = base::Bytes();
+  redone_.clear();
   unless_ = {};
   forget_report();
   if (std::exchange(only_looked_at_, false)) gone_.insert(looked_at_by_);

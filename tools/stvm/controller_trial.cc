@@ -36,7 +36,7 @@ void ControllerService::begin_probation(const vm::Request& request) {
   probation_.reset();
   if ((request.flags & (vm::kNoWayBack | vm::kPermanent)) != 0) return;
   Probation next;
-  next.edition = edition_;
+  next.edit = trials_.back().edit.name;
   if (!request.names.empty()) next.health = request.names.front();
   if (!next.health.empty()) {
     base::Result<ir::Symbol> symbol = ir::named_symbol(controller_.image(), next.health);
@@ -66,7 +66,7 @@ std::string ControllerService::look_at_trial() {
 
 void ControllerService::watch_trial() {
   if (!probation_) return;
-  if (change_.state() != online_change::State::kTrial || probation_->edition != edition_) {
+  if (trials_.empty() || trials_.back().edit.name != probation_->edit) {
     probation_.reset();
     return;
   }

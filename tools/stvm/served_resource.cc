@@ -11,10 +11,15 @@ namespace {
 // Commands are answered between cycles too, at once, and what the keeper wants within such a time.
 constexpr int64_t kLookNs = 2'000'000;
 constexpr int64_t kFaultLookNs = 10'000'000;
+constexpr const char* kWho = "serve";  // starts it, for the journal and the table of units
 
 void print_boot(const online_change::Boot& boot) {
   for (const std::string& alarm : boot.alarms) std::fprintf(stderr, "alarm: %s\n", alarm.c_str());
   if (!boot.fault.empty()) std::fprintf(stderr, "fault: %s\n", boot.fault.c_str());
+  if (!boot.edits.empty()) {
+    std::fprintf(stderr, "%zu edit(s) are on trial still; %s runs\n", boot.edits.size(),
+                 base::short_hex(boot.image.digest()).c_str());
+  }
   if (!boot.trial_lost) return;
   std::fprintf(stderr, "the trial of %s was lost; %s runs\n",
                base::short_hex(*boot.trial_lost).c_str(),
@@ -38,7 +43,7 @@ base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
   base::Result<StateFolder> folder = StateFolder::open(directory);
   if (!folder.ok()) return folder.error();
   auto out = std::make_unique<ServedResource>(directory, name, std::move(*folder));
-  auto boot = online_change::boot(out->store_, given, "serve", wall_time_ns());
+  auto boot = online_change::boot(out->store_, given, kWho, wall_time_ns());
   if (!boot.ok() && boot.error().refusal == base::Refusal::kFileNotFound) {
     return base::Error{base::Refusal::kFileNotFound,
                        directory + " holds no program yet; name an image or sources"};
@@ -61,7 +66,8 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
   running_ = std::move(*running);
   service_ = std::make_unique<ControllerService>(
       controller(), clock, store_, mailbox_,
-      StartReport{boot_->trial_lost, boot_->alarms, boot_->fault});
+      StartReport{boot_->trial_lost, boot_->alarms, boot_->fault, kWho});
+  service_->resume(boot_->edits);
   service_->store_beside();
   if (running_->recorder() != nullptr) service_->record(*running_->recorder());
   auto server = vm::SocketServer::open(folder_.path(), *service_);
@@ -123,6 +129,7 @@ base::Status ServedResource::end() {
     base::Status saved = service_->keeper().save(last);
     if (!saved.ok()) refuse(saved.error());
   }
+  service_->keep_trial_over_stop();
   online_change::JournalEntry entry;
   entry.time_ns = wall_time_ns();
   entry.event = online_change::Event::kStopped;

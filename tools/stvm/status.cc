@@ -11,6 +11,7 @@
 #include "tools/stvm/controller_client.h"
 #include "tools/stvm/times_text.h"
 #include "tools/stvm/trap_text.h"
+#include "tools/stvm/units.h"
 
 namespace stvm {
 namespace {
@@ -19,12 +20,13 @@ constexpr tools::OptionRow kOptions[] = {
     STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION,
     {"--activity", nullptr, "what tasks are doing at this instant, and how their buffers stand"},
+    {"--units", nullptr, "the table of units: slot in use, what the other one holds, since when"},
     {"--task", "NAME", "histograms of a task: run times, and delays of its start"},
     {"--reset-times", nullptr, "the controller forgets how long scans took and began late"}};
 constexpr tools::Command kCommand{"status", "", "Shows what a controller runs and how it is.",
                                   kOptions, 0,  0};
 
-bool on_trial(const vm::StatusReport& report) { return report.change == "trial"; }
+bool on_trial(const vm::StatusReport& report) { return report.edits != 0; }
 
 void print_tier(const vm::StatusReport& report) {
   if (report.pous_to_make != 0) {
@@ -68,6 +70,14 @@ void print_versions(const vm::StatusReport& report) {
   const std::string by = report.changed_by.empty() ? "" : ", by " + report.changed_by;
   std::printf("  change      %s%s\n", report.change.c_str(),
               report.change == "idle" ? "" : by.c_str());
+  if (on_trial(report)) {
+    std::printf("  on trial    %llu edit(s) (stvm edits)\n",
+                static_cast<unsigned long long>(report.edits));
+    std::printf("  power loss  %s\n",
+                report.last_edit_boots
+                    ? "they go on, with their ways back ([change] boots = \"last-edit\")"
+                    : "they are lost, and what boots next runs ([change] boots = \"accepted\")");
+  }
   if (!report.aborted.empty()) std::printf("  aborted     %s\n", report.aborted.c_str());
   std::printf("  cycles      %llu of %s\n", static_cast<unsigned long long>(report.cycles),
               tools::duration(report.base_period_ns).c_str());
@@ -190,6 +200,7 @@ void print_json(const vm::StatusReport& report) {
   json.field("running", base::to_hex(report.running)).field("edition", report.edition);
   json.field("change", report.change).field("changed_by", report.changed_by);
   json.field("aborted", report.aborted).field("trial", on_trial(report));
+  json.field("edits", report.edits).field("last_edit_boots", report.last_edit_boots);
   if (on_trial(report)) json.field("undo_brings", base::to_hex(report.previous));
   json.field("boots_next", base::to_hex(report.boots_next)).field("cycles", report.cycles);
   if (report.trial_lost != base::Digest{}) {
@@ -234,6 +245,12 @@ base::Status show(const tools::Options& options) {
     base::Result<vm::TaskTimes> times = client->task_times(options.text("--task"));
     if (!times.ok()) return times.error();
     std::fputs((*json ? times_json(*times) : times_text(*times)).c_str(), stdout);
+    return base::Ok{};
+  }
+  if (options.has("--units")) {
+    base::Result<std::vector<UnitRow>> units = client->units();
+    if (!units.ok()) return units.error();
+    std::fputs((*json ? units_json(*units) : units_text(*units)).c_str(), stdout);
     return base::Ok{};
   }
   base::Result<vm::StatusReport> report = client->status();

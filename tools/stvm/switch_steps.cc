@@ -127,7 +127,7 @@ base::Result<SwitchOptions> switch_options(const tools::Options& options) {
   base::Result<uint32_t> strategy = stage_flags(settings->strategy);
   if (!strategy.ok()) return strategy.error();
   out.stage_flags = *strategy;
-  out.switch_flags = switch_flags(options);
+  out.switch_flags = switch_flags(options) | (settings->last_edit ? vm::kLastEditBoots : 0u);
   out.restricted = settings->restricted;
   out.health = options.text("--health", settings->health);
   out.unless = options.text("--unless", settings->unless);
@@ -141,7 +141,7 @@ base::Result<SwitchOptions> switch_options(const tools::Options& options) {
 }
 
 base::Status check_no_trial(const vm::StatusReport& status) {
-  if (status.change != "trial") return base::Ok{};
+  if (status.edits == 0) return base::Ok{};
   const std::string who = status.changed_by.empty() ? "" : ", by " + status.changed_by + ",";
   return base::Error{base::Refusal::kChangePending,
                      "the last change" + who +
@@ -153,6 +153,10 @@ base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& clie
                             base::ByteSpan package) {
   base::Status staged = client.stage(package, options.stage_flags, options.unless);
   if (!staged.ok()) return staged.error();
+  return bring_staged(options, client);
+}
+
+base::Result<Outcome> bring_staged(const SwitchOptions& options, ControllerClient& client) {
   const Outcome::Time prepared = std::chrono::steady_clock::now();
   base::Result<FatePage> page = client.fates();
   if (!page.ok()) return page.error();

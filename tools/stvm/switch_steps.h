@@ -43,6 +43,8 @@ base::Status check_no_trial(const vm::StatusReport& status);
 // Prints the fates on the way, unless that is JSON's. What is not switched is cancelled.
 base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& client,
                             base::ByteSpan package);
+// The same of what is staged already.
+base::Result<Outcome> bring_staged(const SwitchOptions& options, ControllerClient& client);
 void print(const SwitchOptions& options, const Outcome& outcome);
 
 }  // namespace stvm

@@ -69,7 +69,7 @@ class Page {
   }
 
   void head() {
-    const bool trial = now_.change == "trial";
+    const bool trial = now_.edits != 0;
     std::string first = now_.name + ": " + (now_.faulted ? "FAULT" : "running") +
                         (trial ? ", on trial" : "") + "  " + base::short_hex(now_.running);
     const std::string up = "up " + uptime_text(now_.uptime_ns);
@@ -190,10 +190,10 @@ class Page {
   void changes() {
     std::string text = "change " + now_.change + ", edition " + std::to_string(now_.edition) +
                        ", boots next " + base::short_hex(now_.boots_next);
-    if (now_.change == "trial") {
+    if (now_.edits != 0) {
       text += ", undo brings " + base::short_hex(now_.previous);
     }
-    line(text, now_.change == "trial" ? kYellow : nullptr);
+    line(text, now_.edits != 0 ? kYellow : nullptr);
   }
 
   void alarms() {

@@ -1,8 +1,7 @@
-// stvm undo, accept, stop: one command, one answer.
-#include <chrono>
+// stvm undo, redo, accept: the edits on trial, one by one (D3).
+#include <algorithm>
 #include <cstdio>
 #include <optional>
-#include <thread>
 
 #include "tools/common/exit.h"
 #include "tools/common/json.h"
@@ -10,82 +9,240 @@
 #include "tools/stvm/controller_client.h"
 #include "tools/stvm/fate_view.h"
 #include "tools/stvm/question.h"
-#include "tools/stvm/state_folder.h"
+#include "tools/stvm/switch_steps.h"
 #include "tools/stvm/switch_text.h"
 
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
 constexpr tools::OptionRow kUndoOptions[] = {tools::kYesOption, tools::kDryRunOption,
                                              STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
 constexpr tools::Command kUndoCommand{
-    "undo",       "", "Brings back the program, and the values, from before the last change.",
-    kUndoOptions, 0,  0};
+    "undo", "[EDIT...]",
+    "Takes back the newest edit on trial, or these and all that were made on them.", kUndoOptions,
+    0};
+constexpr tools::OptionRow kRedoOptions[] = {
+    {"--yes", nullptr, "switch without asking"},
+    {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},
+    {"--allow-overrun", nullptr, "switch even if a task may be delayed"},
+    {"--no-auto-undo", nullptr, "do not undo it when a trap stops a task in its first cycles"},
+    STVM_CONTROLLER_OPTIONS,
+    STVM_FORMAT_OPTION};
+constexpr tools::Command kRedoCommand{
+    "redo", "[EDIT...]",
+    "Brings the edit that was undone last again, or these and those below them.", kRedoOptions, 0};
+constexpr tools::OptionRow kAcceptOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
 constexpr tools::Command kAcceptCommand{
-    "accept", "", "Makes the last change final; the new program boots next.", kOptions, 0, 0};
-constexpr tools::Command kStopCommand{"stop", "", "Ends a serving controller.", kOptions, 0, 0};
+    "accept",       "[EDIT]",
+    "Makes all edits on trial final, or those up to this one; they boot next.",
+    kAcceptOptions, 0, 1};
 
-// Connects and learns which version runs.
-base::Result<ControllerClient> meet(const tools::Options& options) {
-  base::Result<ControllerClient> client = ControllerClient::connect(options);
-  if (!client.ok()) return client;
-  base::Result<vm::StatusReport> status = client->status();
-  if (!status.ok()) return status.error();
-  return client;
+using Names = std::vector<std::string>;
+
+// The edits in the order in which they go, up to the last one that is named; the first one when
+// none is.
+base::Result<Names> up_to(const Names& order, const Names& named, const char* what) {
+  size_t count = named.empty() ? 1 : 0;
+  for (const std::string& name : named) {
+    const auto found = std::find(order.begin(), order.end(), name);
+    if (found == order.end()) {
+      return base::Error{base::Refusal::kNothingToUndo,
+                         "no edit `" + name + "` " + what + "; `stvm edits` shows them"};
+    }
+    count = std::max(count, static_cast<size_t>(found - order.begin()) + 1);
+  }
+  return Names(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-base::Status undo_change(const tools::Options& options) {
-  base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
-  base::Result<ControllerClient> client = meet(options);
-  if (!client.ok()) return client.error();
-  base::Result<vm::StatusReport> status = client->status();
+struct Edits {
+  Names on_trial;  // newest first
+  Names undone;    // what comes again first
+};
+
+base::Result<Edits> edits_of(ControllerClient& client) {
+  base::Result<std::vector<TrialEdit>> edits = client.edits();
+  if (!edits.ok()) return edits.error();
+  Edits out;
+  for (const TrialEdit& edit : *edits) {
+    (edit.undone ? out.undone : out.on_trial).push_back(edit.name);
+  }
+  std::reverse(out.on_trial.begin(), out.on_trial.end());
+  return out;
+}
+
+std::string list_text(const Names& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+// Some of those that go were not named: they were made on top of one that is.
+bool more_go(const Names& going, const Names& named) {
+  return going.size() > std::max<size_t>(named.size(), 1);
+}
+
+base::Status ask_about(const Names& going, const Names& named, bool may_ask) {
+  if (!more_go(going, named)) return base::Ok{};
+  std::fprintf(stderr, "these go, newest first: %s\n", list_text(going).c_str());
+  return may_ask ? ask("Undo them now?", "nothing is undone") : base::Status(base::Ok{});
+}
+
+// Which were undone before one was refused stays undone.
+base::Error behind(const Names& done, const base::Error& error) {
+  if (done.empty()) return error;
+  return {error.refusal, error.text + "; " + list_text(done) + " " +
+                             (done.size() == 1 ? "is" : "are") + " undone"};
+}
+
+struct Undone {
+  std::string edit;
+  FatePage page;
+  std::optional<online_change::SwitchReport> report;
+};
+
+struct UndoOptions {
+  bool dry_run = false;
+  bool json = false;
+  bool ask = false;  // behind the report
+};
+
+base::Result<Undone> undo_one(ControllerClient& client, const std::string& name,
+                              const UndoOptions& how) {
+  base::Result<vm::StatusReport> status = client.status();
   if (!status.ok()) return status.error();
-  if (status->change != "trial") {
-    return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"};
-  }
-  base::Result<FatePage> page = client->fates();
+  base::Result<FatePage> page = client.fates();
   if (!page.ok()) return page.error();
-  const bool dry_run = options.has("--dry-run");
-  if (!*json) std::fputs(fates_text(*page).c_str(), stdout);
-  std::optional<online_change::SwitchReport> done;
-  if (!dry_run) {
-    // A script that takes a change back is not held up for want of a person.
-    if (!options.has("--yes") && can_ask()) {
-      std::fflush(stdout);
-      base::Status go = ask("Take it back now?", "not undone; the program on trial runs on");
-      if (!go.ok()) return go;
-    }
-    base::Result<online_change::SwitchReport> report = client->undo();
-    if (!report.ok()) return report.error();
-    done = *report;
-    if (!*json) std::fputs(switch_text("undone", *done).c_str(), stdout);
+  Undone out{name, std::move(*page), std::nullopt};
+  if (!how.json) std::fputs(fates_text(out.page).c_str(), stdout);
+  if (how.dry_run) return out;
+  if (how.ask) {
+    std::fflush(stdout);
+    base::Status go = ask("Take it back now?", "not undone; the program on trial runs on");
+    if (!go.ok()) return go.error();
   }
-  if (!*json) return base::Ok{};
+  base::Result<online_change::SwitchReport> report = client.undo(name);
+  if (!report.ok()) return report.error();
+  out.report = *report;
+  if (!how.json) std::fputs(switch_text((name + " undone").c_str(), *report).c_str(), stdout);
+  return out;
+}
+
+void undone_json(const Undone& undone, tools::JsonWriter& out) {
+  out.field("edit", undone.edit);
+  fates_json(undone.page, out);
+  out.field("undone", undone.report.has_value());
+  if (undone.report) switch_json(*undone.report, out);
+}
+
+// One edit is an object, several are a list of them.
+void print_json(const std::vector<Undone>& all, const Names& going) {
   tools::JsonWriter out;
   out.begin_object();
-  fates_json(*page, out);
-  out.field("undone", done.has_value());
-  if (done) switch_json(*done, out);
-  out.end_object();
+  if (going.size() == 1) {
+    for (const Undone& undone : all) undone_json(undone, out);
+  } else {
+    out.key("edits").begin_array();
+    for (const Undone& undone : all) {
+      out.begin_object();
+      undone_json(undone, out);
+      out.end_object();
+    }
+    out.end_array();
+  }
+  out.key("going").begin_array();
+  for (const std::string& name : going) out.value(name);
+  out.end_array().end_object();
   std::fputs(out.finish().c_str(), stdout);
+}
+
+base::Status undo_edits(const tools::Options& options) {
+  base::Result<bool> json = wants_json(options);
+  if (!json.ok()) return json.error();
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
+  if (!client.ok()) return client.error();
+  base::Result<Edits> edits = edits_of(*client);
+  if (!edits.ok()) return edits.error();
+  if (edits->on_trial.empty()) {
+    return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"};
+  }
+  const Names& named = options.arguments();
+  base::Result<Names> going = up_to(edits->on_trial, named, "is on trial");
+  if (!going.ok()) return going.error();
+  const bool dry_run = options.has("--dry-run");
+  const bool may_ask = !dry_run && !options.has("--yes");
+  base::Status may = ask_about(*going, named, may_ask);
+  if (!may.ok()) return may;
+  // A script that takes a change back is not held up for want of a person.
+  const bool ask_first = may_ask && can_ask() && !more_go(*going, named);
+  std::vector<Undone> all;
+  Names done;
+  base::Status ended = base::Ok{};
+  for (const std::string& name : *going) {
+    base::Result<Undone> undone = undo_one(*client, name, {dry_run, *json, ask_first && done.empty()});
+    if (!undone.ok()) ended = behind(done, undone.error());
+    if (!undone.ok()) break;
+    all.push_back(std::move(*undone));
+    if (dry_run) break;  // what the next one does depends on what this one leaves
+    done.push_back(name);
+  }
+  if (*json && !all.empty()) print_json(all, *going);
+  return ended;
+}
+
+SwitchOptions redo_options(const tools::Options& options, bool json) {
+  SwitchOptions how;
+  how.ask = !options.has("--yes");
+  how.json = json;
+  how.switch_flags = (options.has("--allow-loss") ? vm::kAllowLoss : 0u) |
+                     (options.has("--allow-overrun") ? vm::kAllowOverrun : 0u) |
+                     (options.has("--no-auto-undo") ? vm::kNoWayBack : 0u);
+  return how;
+}
+
+base::Status redo_edits(const tools::Options& options) {
+  base::Result<bool> json = wants_json(options);
+  if (!json.ok()) return json.error();
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
+  if (!client.ok()) return client.error();
+  base::Result<Edits> edits = edits_of(*client);
+  if (!edits.ok()) return edits.error();
+  if (edits->undone.empty()) {
+    return base::Error{base::Refusal::kNothingToUndo,
+                       "no edit was undone that could be brought again"};
+  }
+  base::Result<Names> coming = up_to(edits->undone, options.arguments(), "was undone");
+  if (!coming.ok()) return coming.error();
+  const SwitchOptions how = redo_options(options, *json);
+  for (const std::string& name : *coming) {
+    base::Result<vm::StatusReport> status = client->status();
+    if (!status.ok()) return status.error();
+    base::Status staged = client->stage_again(name);
+    if (!staged.ok()) return staged;
+    if (!*json) std::printf("%s again\n", name.c_str());
+    base::Result<Outcome> outcome = bring_staged(how, *client);
+    if (!outcome.ok()) return outcome.error();
+    print(how, *outcome);
+    if (outcome->refused) return *outcome->refused;
+  }
   return base::Ok{};
 }
 
-base::Status simple(const tools::Options& options, vm::Command command, const char* done) {
+base::Status accept_edits(const tools::Options& options) {
   base::Result<bool> json = wants_json(options);
   if (!json.ok()) return json.error();
-  base::Result<ControllerClient> client = meet(options);
+  base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return client.error();
-  base::Result<base::Bytes> answer = client->call({.command = command});
+  base::Result<vm::StatusReport> status = client->status();
+  if (!status.ok()) return status.error();
+  vm::Request request{.command = vm::Command::kAccept, .names = options.arguments()};
+  base::Result<base::Bytes> answer = client->call(std::move(request));
   if (!answer.ok()) return answer.error();
   if (!*json) {
-    std::printf("%s\n", done);
+    std::puts("accepted");
     return base::Ok{};
   }
   tools::JsonWriter out;
-  out.begin_object().field(done, true).end_object();
+  out.begin_object().field("accepted", true).end_object();
   std::fputs(out.finish().c_str(), stdout);
   return base::Ok{};
 }
@@ -94,32 +251,14 @@ int code_of(const base::Status& status) {
   return status.ok() ? tools::kOk : refuse(status.error());
 }
 
-int undo(const tools::Options& options) { return code_of(undo_change(options)); }
-int accept(const tools::Options& options) {
-  return code_of(simple(options, vm::Command::kAccept, "accepted"));
-}
-// The controller answers, ends its scan and goes; its folder is free when it has gone.
-base::Status wait_until_gone(const std::string& directory) {
-  constexpr auto kPatience = std::chrono::seconds(10);
-  auto give_up = std::chrono::steady_clock::now() + kPatience;
-  for (;;) {
-    base::Result<StateFolder> folder = StateFolder::open(directory);
-    if (folder.ok()) return base::Ok{};
-    if (std::chrono::steady_clock::now() > give_up) return folder.error();
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-}
-
-int stop(const tools::Options& options) {
-  base::Status stopped = simple(options, vm::Command::kStop, "stopped");
-  return code_of(stopped.ok() && !options.has("--host") ? wait_until_gone(state_directory(options))
-                                                        : stopped);
-}
+int undo(const tools::Options& options) { return code_of(undo_edits(options)); }
+int redo(const tools::Options& options) { return code_of(redo_edits(options)); }
+int accept(const tools::Options& options) { return code_of(accept_edits(options)); }
 
 }  // namespace
 
 const Entry kUndo{&kUndoCommand, undo};
+const Entry kRedo{&kRedoCommand, redo};
 const Entry kAccept{&kAcceptCommand, accept};
-const Entry kStop{&kStopCommand, stop};
 
 }  // namespace stvm

@@ -15,6 +15,18 @@ std::string bytes_text(uint64_t units) { return std::to_string(units * sizeof(ir
 
 }  // namespace
 
+SlotLabel::Start SlotLabel::start_of(const base::Digest& digest) {
+  Start out;
+  std::copy_n(digest.begin(), out.size(), out.begin());
+  return out;
+}
+
+base::Digest SlotLabel::digest_of(const Start& start) {
+  base::Digest out{};
+  std::copy(start.begin(), start.end(), out.begin());
+  return out;
+}
+
 base::Status CodeSlots::make_room(Slot& slot, const std::string& name, uint64_t size) {
   if (size <= slot.capacity) return base::Ok{};
   const uint64_t capacity = capacity_for(size);
@@ -35,7 +47,7 @@ base::Status CodeSlots::make_room(Slot& slot, const std::string& name, uint64_t 
 
 base::Result<const ir::Unit*> CodeSlots::place(uint32_t number, const std::string& name,
                                                std::span<const ir::Unit> code,
-                                               const ir::Unit* running) {
+                                               const ir::Unit* running, const SlotLabel& label) {
   if (number >= pairs_.size()) pairs_.resize(size_t{number} + 1);
   Pair& pair = pairs_[number];
   const bool second_runs = running != nullptr && running == pair.slots[1].units.get();
@@ -49,8 +61,19 @@ base::Result<const ir::Unit*> CodeSlots::place(uint32_t number, const std::strin
   if (!room.ok()) return room.error();
   std::copy(code.begin(), code.end(), unused.units.get());
   unused.used = static_cast<uint32_t>(code.size());
+  unused.label = label;
   ++written_;
   return unused.units.get();
+}
+
+CodeSlots::View CodeSlots::view(uint32_t number, const ir::Unit* running) const {
+  if (number >= pairs_.size()) return {};
+  const Pair& pair = pairs_[number];
+  const bool second_runs = running != nullptr && running == pair.slots[1].units.get();
+  const Slot& other = pair.slots[second_runs ? 0 : 1];
+  View out{static_cast<uint8_t>(second_runs ? 1 : 0), std::nullopt};
+  if (other.used != 0) out.other = other.label;
+  return out;
 }
 
 void CodeSlots::keep_first(uint32_t count) {

@@ -172,6 +172,7 @@ base::Status Generation::place_code(const Generation* running, const TierOptions
   const Decoder decoder(image, bools_.stay_clean(), tier);
   const bool alike =
       running != nullptr && decoder.goes_by_units() && decodes_alike(*running, *this);
+  SlotLabel label{{}, SlotLabel::start_of(image_.digest())};
   std::vector<ir::Unit> code;
   for (uint32_t number = 0; number < image.pous.size(); ++number) {
     const ir::LinkedPou& pou = image.pous[number];
@@ -180,7 +181,8 @@ base::Status Generation::place_code(const Generation* running, const TierOptions
     if (!alike || !runs || !same_units(running->image(), image, number)) {
       const auto first = image.code.begin() + pou.first_unit;
       decoder.run(pou, {first, first + pou.unit_count}, code);
-      base::Result<const ir::Unit*> placed = slots_->place(number, pou.name, code, place);
+      label.unit = SlotLabel::start_of(pou.identity);
+      base::Result<const ir::Unit*> placed = slots_->place(number, pou.name, code, place, label);
       if (!placed.ok()) return placed.error();
       place = *placed;
       try_depth_ = std::max(try_depth_, tries_in(image, pou));

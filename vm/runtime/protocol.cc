@@ -181,6 +181,8 @@ void status_fields(A& a, T& report) {
   a(report.running);
   a(report.edition);
   a(report.change);
+  a(report.edits);
+  a(report.last_edit_boots);
   a(report.changed_by);
   a(report.aborted);
   a(report.previous);

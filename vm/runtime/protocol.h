@@ -18,7 +18,7 @@
 namespace vm {
 
 // Another one with each other layout of a message (tests/unit/store/protocol_layout_test.cc).
-inline constexpr uint8_t kProtocolVersion = 10;
+inline constexpr uint8_t kProtocolVersion = 11;
 inline constexpr uint32_t kMaxMessageBytes = 1u << 20;
 inline constexpr uint32_t kMaxNames = 4096;          // in one request
 inline constexpr uint32_t kMaxNameBytes = 65536;     // of a path or a value
@@ -37,6 +37,7 @@ enum SwitchFlags : uint32_t {
   kPermanent = 2,     // accept at once
   kAllowOverrun = 4,  // even if the predicted pause does not fit the tightest task
   kNoWayBack = 8,     // the controller does not undo it by itself (X7)
+  kLastEditBoots = 16,  // after a power loss it runs, on trial, and not what was accepted (D4)
 };
 
 enum StageFlags : uint32_t {
@@ -81,6 +82,8 @@ struct StatusReport {
   base::Digest running{};
   uint64_t edition = 0;     // counts switches, undos and accepts
   std::string change;       // state of the change; "idle"
+  uint64_t edits = 0;       // on trial, also while another one is prepared
+  bool last_edit_boots = false;  // the newest of them, after a power loss too
   std::string changed_by;   // who staged it
   std::string aborted;      // when, and by whom or what, if the last one was, while prepared
   base::Digest previous{};  // during a trial: what undo brings back

@@ -172,15 +172,19 @@ class MachineEngine : public Engine {
     }
     base::Result<online_change::SwitchReport> report = watched(change_->switch_now());
     if (!report.ok()) return report.error();
-    previous_ = program_;
+    previous_.push_back(program_);
     program_ = &next;
     hard_packages_.clear();
     return lines;
   }
   base::Status undo() override {
+    if (base::Status primed = change_->prime(); !primed.ok()) return primed;
     base::Result<online_change::SwitchReport> report = watched(change_->undo());
     if (!report.ok()) return report.error();
-    if (previous_ != nullptr) program_ = previous_;
+    if (!previous_.empty()) {
+      program_ = previous_.back();
+      previous_.pop_back();
+    }
     hard_packages_.clear();
     return base::Ok{};
   }
@@ -269,7 +273,7 @@ class MachineEngine : public Engine {
 
   Tier tier_;
   const Program* program_;
-  const Program* previous_ = nullptr;
+  std::vector<const Program*> previous_;  // of each edit on trial
   vm::VirtualClock clock_;
   NoDevices devices_;
   bool scanned_ = false;

@@ -203,7 +203,8 @@ TEST(Change, case58_wrong_base_same_change_two_tools) {
   EXPECT_EQ(plant.stage(other).error().refusal, Refusal::kChangePending);
   ASSERT_TRUE(change.arm(true).ok());
   ASSERT_TRUE(change.switch_now().ok());
-  EXPECT_EQ(plant.stage(other).error().refusal, Refusal::kChangePending);
+  EXPECT_EQ(plant.stage(other).error().refusal, Refusal::kStaleBase);
+  EXPECT_EQ(change.state(), State::kTrial);
   plant.accept();
   EXPECT_EQ(plant.stage(other).error().refusal, Refusal::kStaleBase);
   EXPECT_EQ(plant.stage(package).error().refusal, Refusal::kNoChange);

@@ -131,6 +131,7 @@ base::Refusal Plant::refused(const std::string& source, bool allow_loss) {
 }
 
 void Plant::undo() {
+  EXPECT_TRUE(change_->prime().ok());
   auto report = change_->undo();
   EXPECT_TRUE(report.ok()) << base::to_string(report.error());
 }

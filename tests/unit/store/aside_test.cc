@@ -84,10 +84,24 @@ TEST_F(Aside, AFileThatIsGoneMeanwhileIsWrittenAgain) {
   EXPECT_EQ(accepted(), next.bytes);
 }
 
-TEST_F(Aside, NothingIsWrittenDuringATrial) {
+// D3: the next edit goes beside what boots and what is on trial.
+TEST_F(Aside, D3_DuringATrialTheThirdSlotIsWritten) {
   ASSERT_TRUE(store_.begin_trial(program(2), 100).ok());
-  EXPECT_EQ(writes_of([&] { store_.lay_aside(shared(program(3).bytes)); }), 0u);
+  const StoredImage next = program(3);
+  const auto bytes = shared(next.bytes);
+  EXPECT_GT(writes_of([&] { store_.lay_aside(bytes); }), 0u);
   EXPECT_EQ(accepted(), program(2).bytes);
+}
+
+// What was laid aside is where it was free then: the slot that is free now holds something else.
+TEST_F(Aside, D3_AnotherSlotIsFreeBehindTheEndOfATrial) {
+  ASSERT_TRUE(store_.begin_trial(program(2), 100).ok());
+  const StoredImage next = program(3);
+  const auto bytes = shared(next.bytes);
+  store_.lay_aside(bytes);
+  ASSERT_TRUE(store_.end_trial().ok());
+  EXPECT_TRUE(store_.begin_trial({next.digest, *bytes}, 100).ok());
+  EXPECT_EQ(accepted(), next.bytes);
 }
 
 TEST_F(Aside, AFailureIsSaidAndTheTrialIsRefused) {

@@ -129,6 +129,7 @@ void History::believe() {
   if (found_.boots) now_.boots = version_of(found_.boots->digest);
   now_.boots_next.reset();
   now_.trial.reset();
+  now_.below.clear();
   if (found_.trial_lost) now_.trial = version_of(*found_.trial_lost);
   now_.trial_sure = true;
   now_.count = now_.count_begun = found_.newest ? count_of(*found_.newest) : 0;
@@ -156,6 +157,7 @@ bool History::settle() {
   now_.trial_sure = !now_.trial.has_value();
   if (!store_->settle().ok()) return false;
   now_.trial.reset();
+  now_.below.clear();
   now_.trial_sure = true;
   return true;
 }
@@ -177,6 +179,7 @@ bool History::begin_trial(uint32_t version) {
   if (version % 2 == 0) store_->lay_aside(aside);  // promises nothing
   // Others of the same name may have been there.
   const bool others = version % 4 == 0;
+  if (now_.trial) now_.below.push_back(*now_.trial);
   now_.trial = version;
   now_.trial_sure = false;
   const online_change::ImageToStore image{next.digest, others ? next.bytes : *aside};
@@ -186,7 +189,19 @@ bool History::begin_trial(uint32_t version) {
   return true;
 }
 
+// To the edit below, which is stored as what is on trial again.
 bool History::undo() {
+  if (!now_.below.empty()) {
+    if (!store_->retained_fits() && !save()) return false;
+    const StoredImage back = program(now_.below.back());
+    now_.trial = now_.below.back();
+    now_.below.pop_back();
+    now_.trial_sure = false;
+    if (!store_->begin_trial(back, values(*now_.trial, 0).size()).ok()) return false;
+    now_.trial_sure = true;
+    now_.boots_next.reset();
+    return true;
+  }
   now_.trial_sure = false;
   if (!store_->end_trial().ok()) return false;
   now_.trial.reset();
@@ -196,6 +211,7 @@ bool History::undo() {
 }
 
 bool History::accept() {
+  if (!store_->retained_fits() && !save()) return false;
   now_.boots_next = now_.trial;
   now_.trial_sure = false;
   if (!store_->accept().ok()) return false;
@@ -203,7 +219,22 @@ bool History::accept() {
   now_.boots_next.reset();
   now_.trial.reset();
   now_.trial_sure = true;
+  now_.below.clear();
   now_.count_accepted = 0;  // of this program there are none that are not from the trial
+  return true;
+}
+
+bool History::accept_oldest() {
+  if (!save()) return false;
+  const uint32_t version = now_.below.front();
+  now_.boots_next = version;
+  const base::Bytes before = values(version, now_.count);
+  now_.count_accepted = std::min(now_.count_accepted, now_.count);
+  if (!store_->accept_below(program(version), now_.count, before).ok()) return false;
+  now_.boots = version;
+  now_.boots_next.reset();
+  now_.below.erase(now_.below.begin());
+  now_.count_accepted = now_.count;
   return true;
 }
 
@@ -239,6 +270,7 @@ void History::fault(uint64_t seed) {
   if (random() % 2 == 0) (void)store_->renew().ok();
   disk_.fails = nullptr;
   if (!done) now_.trial = promised.trial;
+  if (!done) now_.below = promised.below;
   if (!done) now_.boots = promised.boots;
   if (random() % 3 != 0) renew();
 }
@@ -254,7 +286,10 @@ bool History::any_operation(uint64_t seed) {
     case 3:
       return note();
     default:
-      if (on_trial()) return random() % 2 == 0 ? accept() : undo();
+      if (on_trial() && random() % 3 != 0) {
+        if (random() % 2 == 0) return undo();
+        return !now_.below.empty() && random() % 2 == 0 ? accept_oldest() : accept();
+      }
       // Also back to a version that was there before.
       const uint32_t version = running();
       const bool back = random() % 3 == 0 && version > 1;

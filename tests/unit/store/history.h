@@ -22,6 +22,7 @@ struct Promises {
   std::optional<uint32_t> boots;       // version; none: nothing was installed
   std::optional<uint32_t> boots_next;  // an operation is under way that changes it
   std::optional<uint32_t> trial;
+  std::vector<uint32_t> below;  // edits on trial that this one was made on, oldest first
   bool trial_sure = true;       // no operation is under way that changes it
   uint64_t count = 0;           // of the retained values saved last; 0: none
   uint64_t count_begun = 0;     // of those being saved
@@ -51,6 +52,8 @@ class History {
   bool begin_trial(uint32_t version);
   bool undo();
   bool accept();
+  // The oldest edit on trial, which is not the only one.
+  bool accept_oldest();
   bool note();
   // One of these. False: storage failed.
   bool any_operation(uint64_t seed);

@@ -53,6 +53,7 @@ base::Status Plc::boot(const std::optional<ir::VerifiedImage>& given) {
       *controller_, clock_, *store_, *this,
       stvm::StartReport{boot_->trial_lost, boot_->alarms, boot_->fault},
       [] { return int64_t{2}; });
+  service_->resume(boot_->edits);
   service_->asked_by("tester", 1);
   return base::Ok{};
 }
@@ -108,6 +109,11 @@ base::Status Plc::ask(vm::Request request) {
   base::Result<base::Bytes> body = answer_to(std::move(request));
   if (!body.ok()) return body.error();
   return base::Ok{};
+}
+
+void Plc::stop() {
+  EXPECT_TRUE(save().ok());
+  service_->keep_trial_over_stop();
 }
 
 base::Status Plc::change(const std::string& source, uint32_t flags) {

@@ -34,6 +34,8 @@ class Plc : public vm::Boundary {
   base::Status change(const ir::VerifiedImage& next, uint32_t flags = vm::kAllowLoss,
                       const std::string& health = {});
   base::Status undo() { return ask(vm::Command::kUndo); }
+  // What a clean end stores (D4); then boot() is the next start.
+  void stop();
   base::Status accept() { return ask(vm::Command::kAccept); }
   base::Status ask(vm::Command command) { return ask(vm::Request{.command = command}); }
   base::Status ask(vm::Request request);

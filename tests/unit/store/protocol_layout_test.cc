@@ -5,6 +5,7 @@
 #include "tests/unit/store/plc.h"
 #include "tests/unit/store/sim_storage.h"
 #include "tools/stvm/fate_message.h"
+#include "tools/stvm/unit_message.h"
 #include "vm/runtime/protocol.h"
 
 namespace stvm {
@@ -28,6 +29,8 @@ vm::StatusReport status() {
   out.running = digest(1);
   out.edition = 2;
   out.change = "trial";
+  out.edits = 60;
+  out.last_edit_boots = true;
   out.changed_by = "operator";
   out.aborted = "by nobody";
   out.previous = digest(3);
@@ -80,13 +83,47 @@ FatePage fates() {
   return out;
 }
 
+UnitPage units() {
+  UnitRow row;
+  row.name = "Main";
+  row.instances = 1;
+  row.slot = 1;
+  row.unit = digest(2);
+  row.other = OtherSlot::kUndone;
+  row.other_unit = digest(3);
+  row.other_version = digest(4);
+  row.cycle = 5;
+  row.time_ns = 6;
+  row.who = "operator";
+  row.event = "undone";
+  return {7, {row}};
+}
+
+EditPage edits() {
+  TrialEdit edit;
+  edit.name = "E1";
+  edit.undone = true;
+  edit.from = digest(1);
+  edit.to = digest(2);
+  edit.cycle = 3;
+  edit.time_ns = 4;
+  edit.who = "operator";
+  edit.pous = {{{online_change::PouChange::kBody, "Main", 5, "what"}}};
+  edit.pou_count = 6;
+  edit.types = {{{online_change::TypeChange::kRemoved, "Box"}}};
+  edit.type_count = 7;
+  edit.variables = {{fates().lines.front().row}};
+  edit.variable_count = 8;
+  return {9, {edit}};
+}
+
 void add(base::Bytes& all, const base::Bytes& message, size_t from = 0) {
   all.insert(all.end(), message.begin() + static_cast<ptrdiff_t>(from), message.end());
 }
 
 base::Bytes requests() {
   base::Bytes all;
-  for (uint8_t i = 0; i <= static_cast<uint8_t>(vm::Command::kAbort); ++i) {
+  for (uint8_t i = 0; i <= static_cast<uint8_t>(vm::Command::kRedo); ++i) {
     add(all,
         vm::encode(vm::Request{.command = static_cast<vm::Command>(i),
                                .expected = digest(1),
@@ -113,6 +150,8 @@ std::string layout() {
   add(all, vm::encode(vm::ForceRows{{{"path", "type", "value", "reason"}}}));
   add(all, vm::encode(vm::ImagePart{digest(1), 2, {3}}));
   add(all, encode(fates()));
+  add(all, encode(units()));
+  add(all, encode(edits()));
   add(all, encode(online_change::SwitchReport{1, 2, 3, 4, {5, 6, 7, 8, 9}, 10}));
   return base::short_hex(base::sha256(all));
 }
@@ -130,6 +169,7 @@ constexpr Version kVersions[] = {
     {8, "d6cd7073b212"},
     {9, "bd7d362cff72"},
     {10, "3177112f3b76"},
+    {11, "0b5d1d5c3b52"},
 };
 
 TEST(ProtocolLayout, BelongsToTheVersion) {

@@ -342,7 +342,8 @@ TEST(Journal, WhatCouldNotBeWrittenIsThereWhenTheDiskIsWell) {
 
 TEST(Journal, CutsTextsBetweenCharacters) {
   JournalEntry entry;
-  entry.who = std::string(kMaxWho - 1, 'a') + "\xc3\xa4";
+  entry.who.assign(kMaxWho - 1, 'a');
+  entry.who += "\xc3\xa4";
   std::optional<JournalEntry> back = decode_entry(encode(entry));
   ASSERT_TRUE(back);
   EXPECT_EQ(back->who, std::string(kMaxWho - 1, 'a'));
@@ -355,6 +356,7 @@ TEST(Decoders, TakeWhatTheyWroteAndNothingElse) {
   control.trial = true;
   control.tries_left = 1;
   control.trial_digest[5] = 9;
+  control.trial_slot = 0;
   base::Bytes bytes = encode(control);
   std::optional<ControlRecord> back = decode_control(bytes);
   ASSERT_TRUE(back);
@@ -363,7 +365,17 @@ TEST(Decoders, TakeWhatTheyWroteAndNothingElse) {
   bytes.push_back(0);
   EXPECT_FALSE(decode_control(bytes));
   bytes.pop_back();
-  bytes[32] = 2;  // there are two slots
+  bytes[32] = 3;  // there are three slots
+  EXPECT_FALSE(decode_control(bytes));
+  control.trial_slot = 2;  // D3: several edits on trial
+  bytes = encode(control);
+  back = decode_control(bytes);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->trial_slot, 2);
+  control.resumes = true;  // D4
+  EXPECT_EQ(encode(control).size(), kMostControlBytes);
+  EXPECT_TRUE(decode_control(encode(control))->resumes);
+  bytes[32] = 2;  // it cannot hold both
   EXPECT_FALSE(decode_control(bytes));
 
   RetainRecord retain;

@@ -1,0 +1,76 @@
+#include "online_change/store/edits_record.h"
+
+#include <algorithm>
+
+#include "base/tool_limits.h"
+
+namespace online_change {
+namespace {
+
+constexpr size_t kLeastBytes = 2 * sizeof(base::Digest) + 48;  // of an edit
+
+void read_digest(base::ByteReader& in, base::Digest& out) {
+  const base::ByteSpan bytes = in.raw(out.size());
+  std::copy(bytes.begin(), bytes.end(), out.begin());
+}
+
+base::Bytes read_blob(base::ByteReader& in) {
+  const base::ByteSpan bytes = in.blob();
+  return base::Bytes(bytes.begin(), bytes.end());
+}
+
+}  // namespace
+
+base::Bytes encode(const std::vector<StoredEdit>& edits) {
+  base::ByteWriter out;
+  out.u32(static_cast<uint32_t>(edits.size()));
+  for (const StoredEdit& edit : edits) {
+    out.text(edit.name);
+    out.text(edit.who);
+    out.i64(edit.time_ns);
+    out.u64(edit.cycle);
+    out.u32(edit.stage_flags);
+    out.u32(edit.switch_flags);
+    out.raw(edit.from);
+    out.raw(edit.to);
+    out.blob(edit.package);
+    out.u64(edit.retained_cycle);
+    out.blob(edit.retained);
+  }
+  return out.take();
+}
+
+std::optional<std::vector<StoredEdit>> decode_edits(base::ByteSpan payload) {
+  base::ByteReader in(payload);
+  std::vector<StoredEdit> edits(in.count(kLeastBytes));
+  for (StoredEdit& edit : edits) {
+    edit.name = in.text();
+    edit.who = in.text();
+    edit.time_ns = in.i64();
+    edit.cycle = in.u64();
+    edit.stage_flags = in.u32();
+    edit.switch_flags = in.u32();
+    read_digest(in, edit.from);
+    read_digest(in, edit.to);
+    edit.package = read_blob(in);
+    edit.retained_cycle = in.u64();
+    edit.retained = read_blob(in);
+  }
+  if (!in.done()) return std::nullopt;
+  return edits;
+}
+
+std::vector<StoredEdit> way_between(const std::vector<StoredEdit>& edits,
+                                    const base::Digest& boots, const base::Digest& trial) {
+  const auto last = std::find_if(edits.rbegin(), edits.rend(),
+                                 [&](const StoredEdit& edit) { return edit.to == trial; });
+  const auto end = last.base();
+  const auto begin =
+      std::find_if(edits.begin(), end, [&](const StoredEdit& edit) { return edit.from == boots; });
+  for (auto edit = begin; edit != end; ++edit) {
+    if (edit != begin && std::prev(edit)->to != edit->from) return {};
+  }
+  return {begin, end};
+}
+
+}  // namespace online_change

@@ -1,0 +1,247 @@
+// A trial over the end of a process (D4, cases 55 and 77): what boots, with which retained values,
+// and whether each edit can still be taken back.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/unit/store/plc.h"
+#include "tests/unit/store/sim_storage.h"
+
+namespace stvm {
+namespace {
+
+using plc::Plc;
+
+// Each one is made on the one before: `a` narrows, `gone` goes, `c` comes; `n` is not retained.
+std::string version(int number) {
+  const char* const variables[] = {"a : DINT; gone : INT := 3;", "a : INT; gone : INT := 3;",
+                                   "a : INT;", "a : INT; c : INT := 8;"};
+  return std::string("VAR_GLOBAL RETAIN r : DINT; ") + variables[number] +
+         " END_VAR PROGRAM Main VAR n : DINT; END_VAR n := n + " + std::to_string(number + 1) +
+         "; END_PROGRAM";
+}
+
+sim::SimStorage cut(const sim::SimStorage& disk) {
+  return disk.after_cut(sim::SimStorage::Choice(disk.dirty().size(), 0));
+}
+
+struct Rig {
+  explicit Rig(uint32_t policy) : flags(policy | vm::kAllowLoss), plc(disk) {
+    EXPECT_TRUE(plc.boot(version(0)).ok());
+    plc.set("a", "70000");
+    plc.set("gone", "44");
+    plc.set("r", "5");
+    EXPECT_TRUE(plc.save().ok());
+    digests.push_back(plc.status().running);
+  }
+  void change(int number) {
+    const base::Status done = plc.change(version(number), flags);
+    ASSERT_TRUE(done.ok()) << base::to_string(done.error());
+    plc.run(2);
+    digests.push_back(plc.status().running);
+  }
+  void three_edits() {
+    for (int number : {1, 2, 3}) change(number);
+  }
+  uint32_t flags;
+  sim::SimStorage disk;
+  Plc plc;
+  std::vector<base::Digest> digests;
+};
+
+// Back to what was accepted, edit by edit.
+void expect_all_ways_back(Plc& plc, const Rig& rig) {
+  EXPECT_LT(std::stoi(plc.get("Main.n")), 18);  // is not retained, and began anew
+  plc.run(2);
+  EXPECT_EQ(plc.status().edits, 3u);
+  EXPECT_EQ(plc.status().running, rig.digests[3]);
+  EXPECT_EQ(plc.get("a"), "32767");
+  EXPECT_EQ(plc.get("c"), "8");
+  for (int left : {2, 1, 0}) {
+    const base::Status undone = plc.undo();
+    ASSERT_TRUE(undone.ok()) << base::to_string(undone.error());
+    EXPECT_EQ(plc.status().running, rig.digests[static_cast<size_t>(left)]);
+    plc.run(1);
+  }
+  EXPECT_EQ(plc.status().edits, 0u);
+  EXPECT_EQ(plc.get("a"), "70000");  // nobody wrote it since it was narrowed
+  EXPECT_EQ(plc.get("gone"), "44");
+  EXPECT_EQ(plc.get("r"), "5");
+}
+
+TEST(Resume, D4_case77_ACleanStopKeepsTheTrialUnderBothPolicies) {
+  for (const uint32_t policy : {0u, uint32_t{vm::kLastEditBoots}}) {
+    Rig rig(policy);
+    rig.three_edits();
+    rig.plc.stop();
+    sim::SimStorage disk = cut(rig.disk);
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot().ok());
+    EXPECT_TRUE(plc.found().alarms.empty());
+    EXPECT_FALSE(plc.found().trial_lost.has_value());
+    EXPECT_EQ(plc.status().last_edit_boots, policy != 0);
+    expect_all_ways_back(plc, rig);
+  }
+}
+
+TEST(Resume, D4_case55_UnderAcceptedAPowerLossLosesTheTrialAndSaysSo) {
+  Rig rig(0);
+  rig.three_edits();
+  sim::SimStorage disk = cut(rig.disk);
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot().ok());
+  EXPECT_EQ(plc.status().running, rig.digests[0]);
+  EXPECT_EQ(plc.status().trial_lost, rig.digests[3]);
+  EXPECT_EQ(plc.status().edits, 0u);
+  EXPECT_EQ(plc.get("a"), "70000");
+  EXPECT_EQ(plc.get("gone"), "44");
+  EXPECT_EQ(plc.store().history().back().event, online_change::Event::kStarted);
+  EXPECT_EQ(std::prev(plc.store().history().end(), 2)->event, online_change::Event::kTrialLost);
+}
+
+// A clean stop counts once: the policy is that of the edit again as soon as it has started.
+TEST(Resume, D4_BehindACleanStopAPowerLossLosesTheTrial) {
+  Rig rig(0);
+  rig.three_edits();
+  rig.plc.stop();
+  sim::SimStorage stopped = cut(rig.disk);
+  Plc plc(stopped);
+  ASSERT_TRUE(plc.boot().ok());
+  ASSERT_EQ(plc.status().edits, 3u);
+  sim::SimStorage disk = cut(stopped);
+  Plc later(disk);
+  ASSERT_TRUE(later.boot().ok());
+  EXPECT_EQ(later.status().running, rig.digests[0]);
+  EXPECT_EQ(later.status().trial_lost, rig.digests[3]);
+}
+
+TEST(Resume, D4_case55_UnderLastEditThePowerLossKeepsTheTrialAndItsWaysBack) {
+  Rig rig(vm::kLastEditBoots);
+  rig.three_edits();
+  sim::SimStorage disk = cut(rig.disk);
+  for (int again = 0; again < 2; ++again) {  // and once more
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot().ok());
+    EXPECT_TRUE(plc.found().alarms.empty());
+    EXPECT_TRUE(plc.status().last_edit_boots);
+    EXPECT_EQ(plc.status().boots_next, rig.digests[0]);
+    if (again == 1) expect_all_ways_back(plc, rig);
+  }
+}
+
+TEST(Resume, D4_ATrialThatGoesOnIsAcceptedAndGetsMoreEdits) {
+  Rig rig(vm::kLastEditBoots);
+  rig.change(1);
+  rig.change(2);
+  sim::SimStorage disk = cut(rig.disk);
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot().ok());
+  ASSERT_TRUE(plc.change(version(3), rig.flags).ok());
+  EXPECT_EQ(plc.status().edits, 3u);
+  ASSERT_TRUE(plc.ask({.command = vm::Command::kAccept, .names = {"E1"}}).ok());
+  sim::SimStorage later_disk = cut(disk);
+  Plc later(later_disk);
+  ASSERT_TRUE(later.boot().ok());
+  EXPECT_EQ(later.status().edits, 2u);
+  ASSERT_TRUE(later.undo().ok());
+  ASSERT_TRUE(later.undo().ok());
+  EXPECT_EQ(later.status().running, rig.digests[1]);
+  EXPECT_EQ(later.get("gone"), "44");
+  EXPECT_EQ(later.get("a"), "32767");
+  ASSERT_TRUE(later.change(version(2), rig.flags).ok());
+  ASSERT_TRUE(later.accept().ok());
+  sim::SimStorage last_disk = cut(later_disk);
+  Plc last(last_disk);
+  ASSERT_TRUE(last.boot().ok());
+  EXPECT_EQ(last.status().edits, 0u);
+  EXPECT_FALSE(last.found().trial_lost.has_value());
+}
+
+// What cannot be resumed is lost, and that is said.
+TEST(Resume, D4_WithoutTheListOfEditsTheAcceptedProgramBoots) {
+  Rig rig(vm::kLastEditBoots);
+  rig.three_edits();
+  for (const bool gone : {true, false}) {
+    sim::SimStorage left = cut(rig.disk);
+    if (gone) left.remove(online_change::kEditsFile);
+    if (!gone) {
+      ASSERT_TRUE(left.write(online_change::kEditsFile, 700, base::Bytes(40, 0xee)).ok());
+      ASSERT_TRUE(left.sync(online_change::kEditsFile).ok());
+    }
+    sim::SimStorage disk = cut(left);
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot().ok());
+    EXPECT_EQ(plc.status().running, rig.digests[0]);
+    EXPECT_EQ(plc.status().trial_lost, rig.digests[3]);
+    ASSERT_FALSE(plc.found().alarms.empty());
+    EXPECT_NE(plc.found().alarms.front().find("cannot be resumed"), std::string::npos);
+    EXPECT_EQ(plc.get("a"), "70000");
+    EXPECT_TRUE(plc.change(version(1), rig.flags).ok());
+  }
+}
+
+TEST(Resume, D4_AnotherProgramOnTheCommandLineEndsTheTrial) {
+  Rig rig(vm::kLastEditBoots);
+  rig.three_edits();
+  sim::SimStorage disk = cut(rig.disk);
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot(version(2)).ok());
+  EXPECT_EQ(plc.status().edits, 0u);
+  EXPECT_EQ(plc.get("r"), "5");
+}
+
+// X5: a power cut at every call to storage leaves what was before the step or what it makes, with
+// all ways back.
+TEST(Resume, D4_X5_case77_APowerCutAtEveryWriteLeavesTheTrialBeforeOrBehind) {
+  Rig rig(vm::kLastEditBoots);
+  const auto ask = [&](vm::Command command, const char* name) {
+    return rig.plc.ask({.command = command, .names = {name}}).ok();
+  };
+  const std::vector<std::function<bool()>> steps = {
+      [&] { return rig.plc.change(version(1), rig.flags).ok(); },
+      [&] { return rig.plc.change(version(2), rig.flags).ok(); },
+      [&] { return rig.plc.save().ok(); },
+      [&] { return rig.plc.change(version(3), rig.flags).ok(); },
+      [&] { return rig.plc.undo().ok(); },
+      [&] { return rig.plc.change(version(3), rig.flags).ok(); },
+      [&] { return ask(vm::Command::kAccept, "E1"); },
+      [&] { return rig.plc.undo().ok(); },
+      [&] { return rig.plc.undo().ok(); },
+      [&] { return rig.plc.change(version(2), rig.flags).ok(); },
+      [&] { return rig.plc.accept().ok(); },
+  };
+  size_t tried = 0;
+  for (size_t step = 0; step < steps.size(); ++step) {
+    std::vector<sim::SimStorage> left;
+    const vm::StatusReport before = rig.plc.status();
+    rig.disk.before_call = [&] {
+      left.push_back(cut(rig.disk));
+      if (!rig.disk.dirty().empty()) left.push_back(rig.disk.after_kill());
+    };
+    const bool done = steps[step]();
+    rig.disk.before_call = nullptr;
+    ASSERT_TRUE(done) << "step " << step;
+    const vm::StatusReport now = rig.plc.status();
+    for (sim::SimStorage& disk : left) {
+      ++tried;
+      Plc plc(disk);
+      ASSERT_TRUE(plc.boot().ok()) << "step " << step;
+      const vm::StatusReport found = plc.status();
+      ASSERT_TRUE(found.running == before.running || found.running == now.running)
+          << "step " << step << ", " << tried;
+      EXPECT_TRUE(found.edits == before.edits || found.edits == now.edits) << "step " << step;
+      EXPECT_EQ(plc.get("r"), "5") << "step " << step;
+      while (plc.status().edits != 0) ASSERT_TRUE(plc.undo().ok()) << "step " << step;
+      const base::Digest last = plc.status().running;
+      EXPECT_TRUE(last == before.boots_next || last == now.boots_next) << "step " << step;
+      if (last == rig.digests[0]) {
+        EXPECT_EQ(plc.get("a"), "70000") << "step " << step;
+        EXPECT_EQ(plc.get("gone"), "44") << "step " << step;
+      }
+    }
+  }
+  EXPECT_GT(tried, 100u);
+}
+
+}  // namespace
+}  // namespace stvm

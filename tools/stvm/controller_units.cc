@@ -1,0 +1,103 @@
+// The table of units (D8) and the edits on trial (D3), as the serving controller tells of them.
+// Both are known to this thread: nothing here waits for a boundary, or makes a scan wait.
+#include <algorithm>
+#include <utility>
+
+#include "tools/stvm/controller_service.h"
+
+namespace stvm {
+namespace {
+
+constexpr size_t kShownOfAnEdit = 200;  // POUs, types and variables, each
+
+template <class Row, class From>
+std::vector<Row> first_of(std::vector<From> all, uint64_t& count) {
+  count = all.size();
+  std::vector<Row> rows;
+  for (From& row : all) {
+    if (rows.size() == kShownOfAnEdit) break;
+    rows.push_back({std::move(row)});
+  }
+  return rows;
+}
+
+}  // namespace
+
+void ControllerService::note_units(const char* event, uint64_t cycle) {
+  units_.note({cycle, wall_time_(), who_, event});
+}
+
+TrialEdit ControllerService::describe_staged() const {
+  TrialEdit edit = describe(controller_.verified(), *staged_, change_.plan());
+  edit.time_ns = wall_time_();
+  edit.who = who_;
+  return edit;
+}
+
+TrialEdit ControllerService::describe(const ir::VerifiedImage& running,
+                                      const ir::VerifiedImage& next,
+                                      const online_change::Plan& plan) {
+  using online_change::Fate;
+  const online_change::EncodedImage before{running.image(), running.encoded()};
+  const online_change::EncodedImage after{next.image(), next.encoded()};
+  TrialEdit edit;
+  edit.from = running.digest();
+  edit.to = next.digest();
+  edit.pous = first_of<EditedPou>(online_change::pou_edits(before, after), edit.pou_count);
+  edit.types = first_of<EditedType>(online_change::type_edits(before, after), edit.type_count);
+  for (const online_change::FateRow& row : plan.fates) {
+    // Who only moves is as it was.
+    if (row.fate == Fate::kMoved || (row.fate == Fate::kKept && row.old_path.empty())) continue;
+    ++edit.variable_count;
+    if (edit.variables.size() < kShownOfAnEdit) edit.variables.push_back({row});
+  }
+  return edit;
+}
+
+base::Result<base::Bytes> ControllerService::units(const vm::Request& request) {
+  return encode(units_.page(request.offset, staged_ ? &*staged_ : nullptr,
+                            previous()));
+}
+
+base::Result<base::Bytes> ControllerService::edits(const vm::Request& request) {
+  EditPage page;
+  const uint64_t count = trials_.size() + undone_.size();
+  if (request.offset >= count) return encode(page);
+  const uint64_t at = request.offset;
+  const bool undone = at >= trials_.size();
+  page.edits = {undone ? undone_[count - 1 - at].edit : trials_[at].edit};
+  page.edits.front().undone = undone;
+  page.next = at + 1 < count ? at + 1 : 0;
+  return encode(page);
+}
+
+base::Status ControllerService::check_newest(const vm::Request& request) const {
+  if (trials_.empty() || request.names.empty()) return base::Ok{};
+  const std::string& newest = trials_.back().edit.name;
+  if (request.names.front() == newest) return base::Ok{};
+  return base::Error{base::Refusal::kNothingToUndo,
+                     "`" + request.names.front() + "` is not the newest edit on trial, which is " +
+                         newest + "; `stvm edits` shows them"};
+}
+
+// As it was brought: what has changed since in the values that it reads, it meets as any change
+// does.
+base::Result<base::Bytes> ControllerService::redo(const vm::Request& request) {
+  if (undone_.empty()) {
+    return base::Error{base::Refusal::kNothingToUndo, "no edit was undone that could be brought "
+                                                      "again"};
+  }
+  const Trial& next = undone_.back();
+  if (!request.names.empty() && request.names.front() != next.edit.name) {
+    return base::Error{base::Refusal::kNothingToUndo,
+                       "`" + request.names.front() + "` is not the edit that was undone last, "
+                       "which is " + next.edit.name + "; `stvm edits` shows them"};
+  }
+  if (next.edit.from != controller_.verified().digest()) {
+    return base::Error{base::Refusal::kStaleBase,
+                       "the program has been changed since " + next.edit.name + " was undone"};
+  }
+  return stage_package(next.package, next.flags, {}, next.edit.name);
+}
+
+}  // namespace stvm
