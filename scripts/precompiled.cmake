@@ -13,6 +13,9 @@ function(stc_precompiled_headers name)
   file(CONFIGURE OUTPUT ${empty} CONTENT "")
   add_library(${name} OBJECT ${empty})
   target_precompile_headers(${name} PRIVATE ${ARGN})
+  # What ccache takes for their content: made anew, the file differs, though it means the same.
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${name}.dir/cmake_pch.hxx.gch.sum
+       CONTENT "${ARGN} ${CMAKE_CXX_COMPILER_VERSION}")
 endfunction()
 
 function(stc_precompiled target name)

@@ -22,7 +22,7 @@ constexpr tools::Command kUndoCommand{
     "Takes back the newest edit on trial, or these and all that were made on them.", kUndoOptions,
     0};
 constexpr tools::OptionRow kRedoOptions[] = {
-    {"--yes", nullptr, "switch without asking"},
+    tools::kYesOption,
     {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},
     {"--allow-overrun", nullptr, "switch even if a task may be delayed"},
     {"--no-auto-undo", nullptr, "do not undo it when a trap stops a task in its first cycles"},
