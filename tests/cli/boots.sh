@@ -1,6 +1,6 @@
 #!/bin/sh
-# D4, cases 55 and 77: what a controller comes up with when it ended during a trial, by the policy of
-# the project and by how it ended. `status` says it before and behind.
+# D4, cases 55 and 77: what a controller comes up with when it ended during a trial, by the policy
+# of the project and by how it ended. `status` says it before and behind.
 . "$(dirname "$0")/lib.sh"
 
 version() {  # version FOLDER MEMBERS STEP

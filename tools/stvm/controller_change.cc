@@ -203,6 +203,8 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   const bool allow_overrun = faulted || (request.flags & vm::kAllowOverrun) != 0;
   Trial trial{describe_staged(), controller_.verified(), staged_package_, staged_flags_,
               request.flags,     {}};
+  // Whoever brings an edit again has no project that says so.
+  if (!redone_.empty()) trial.switch_flags |= undone_.back().switch_flags & vm::kLastEditBoots;
   trial.edit.name = redone_.empty() ? "E" + std::to_string(edits_made_ + 1) : redone_;
   base::Status ready = prepare_switch(request, trial, faulted, allow_overrun);
   if (!ready.ok()) return ready.error();

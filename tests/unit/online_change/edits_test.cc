@@ -12,34 +12,35 @@ namespace {
 using base::Refusal;
 using plant::Plant;
 
-std::string program(const std::string& variables, const std::string& body = "") {
+std::string station(const std::string& variables, const std::string& body = "") {
   return "FUNCTION_BLOCK Pump VAR turns : DINT; END_VAR turns := turns + 1; END_FUNCTION_BLOCK\n"
          "PROGRAM Main VAR keep : DINT := 4; n : DINT; " +
          variables + " END_VAR n := n + 1; " + body + " END_PROGRAM";
 }
 
 // The first retypes and drops, the second narrows and adds a block, the third uses its place again.
-const std::string kFirst = program("level : INT := 7; gone : STRING[20] := 'here'; wide : DINT;");
-const std::string kSecond = program("level : LREAL; wide : DINT;", "level := level;");
-const std::string kThird = program("level : LREAL; wide : INT; p : Pump;", "p();");
-const std::string kFourth =
-    program("level : LREAL; wide : INT; p : ARRAY[1..2] OF Pump; more : ARRAY[0..3] OF DINT;",
+const std::string kStation1 =
+    station("level : INT := 7; gone : STRING[20] := 'here'; wide : DINT;");
+const std::string kStation2 = station("level : LREAL; wide : DINT;", "level := level;");
+const std::string kStation3 = station("level : LREAL; wide : INT; p : Pump;", "p();");
+const std::string kStation4 =
+    station("level : LREAL; wide : INT; p : ARRAY[1..2] OF Pump; more : ARRAY[0..3] OF DINT;",
             "p[2](); more[3] := more[3] + 1;");
 
-uint32_t address(Plant& plant, const std::string& path) {
+uint32_t station_address(Plant& plant, const std::string& path) {
   base::Result<ir::Symbol> symbol = ir::find_symbol(plant.controller().image(), path);
   return symbol.ok() ? symbol->data : 0;
 }
 
 struct ThreeEdits {
-  ThreeEdits() : plant(kFirst) {
+  ThreeEdits() : plant(kStation1) {
     plant.run(2);
     plant.set("Main.level", "300");
     plant.set("Main.gone", "'a text'");
     plant.set("Main.wide", "70000");
     plant.set("Main.keep", "42");
-    keep = address(plant, "Main.keep");
-    for (const std::string& next : {kSecond, kThird, kFourth}) {
+    keep = station_address(plant, "Main.keep");
+    for (const std::string& next : {kStation2, kStation3, kStation4}) {
       plant.change(next, true);
       plant.run(2);
     }
@@ -56,14 +57,14 @@ TEST(Edits, D3_case77_ThreeEditsThereAndBack) {
   EXPECT_EQ(plant.get("Main.wide"), "32767");
   EXPECT_EQ(plant.get("Main.p[2].turns"), "2");
   EXPECT_EQ(plant.get("Main.n"), "8");
-  EXPECT_EQ(address(plant, "Main.keep"), edits.keep);
+  EXPECT_EQ(station_address(plant, "Main.keep"), edits.keep);
 
   plant.undo();
   plant.run(1);
   EXPECT_EQ(plant.driver().on_trial(), 2u);
   EXPECT_EQ(plant.get("Main.p.turns"), "3");  // two scans of the third version, one behind undo
   EXPECT_EQ(plant.get("Main.wide"), "32767");
-  EXPECT_EQ(address(plant, "Main.keep"), edits.keep);
+  EXPECT_EQ(station_address(plant, "Main.keep"), edits.keep);
 
   plant.undo();
   plant.run(1);
@@ -80,7 +81,7 @@ TEST(Edits, D3_case77_ThreeEditsThereAndBack) {
   EXPECT_EQ(plant.get("Main.gone"), "'a text'");  // dropped three edits ago
   EXPECT_EQ(plant.get("Main.wide"), "70000");
   EXPECT_EQ(plant.get("Main.keep"), "42");
-  EXPECT_EQ(address(plant, "Main.keep"), edits.keep);
+  EXPECT_EQ(station_address(plant, "Main.keep"), edits.keep);
   EXPECT_EQ(plant.get("Main.n"), "11");
   ASSERT_TRUE(plant.driver().prime().ok());
   EXPECT_EQ(plant.driver().undo().error().refusal, Refusal::kNothingToUndo);
@@ -98,12 +99,12 @@ TEST(Edits, D3_TheWayBackIsMadeReadyAgainBeforeUndo) {
 }
 
 TEST(Edits, D3_AnEditThatIsNotMadeLeavesTheTrialAndItsWayBack) {
-  Plant plant(kFirst);
+  Plant plant(kStation1);
   plant.run(2);
   plant.set("Main.gone", "'a text'");
-  plant.change(kSecond, true);
+  plant.change(kStation2, true);
   plant.run(1);
-  const base::Bytes package = plant.package(kThird);
+  const base::Bytes package = plant.package(kStation3);
   int stops = 0;
   for (bool switched = false; !switched; ++stops) {
     int left = stops;
@@ -130,12 +131,12 @@ TEST(Edits, D3_AnEditThatIsNotMadeLeavesTheTrialAndItsWayBack) {
 }
 
 TEST(Edits, D3_FbInitThatTrapsTakesBackTheNewestEditOnly) {
-  Plant plant(program(""));
-  plant.change(program("x : INT := 3;"));
+  Plant plant(station(""));
+  plant.change(station("x : INT := 3;"));
   const std::string traps =
       "FUNCTION_BLOCK Bad VAR z : INT; END_VAR METHOD FB_Init : BOOL VAR_INPUT "
       "bInitRetains, bInCopyCode : BOOL; END_VAR z := 1 / z; END_METHOD END_FUNCTION_BLOCK\n";
-  ASSERT_TRUE(plant.stage(plant.package(traps + program("x : INT := 3; bad : Bad;"))).ok());
+  ASSERT_TRUE(plant.stage(plant.package(traps + station("x : INT := 3; bad : Bad;"))).ok());
   ASSERT_TRUE(plant.driver().arm(false).ok());
   EXPECT_EQ(plant.driver().switch_now().error().refusal, Refusal::kInitFailed);
   EXPECT_EQ(plant.driver().on_trial(), 1u);
@@ -162,15 +163,15 @@ TEST(Edits, D3_AcceptEndsThemAll) {
   edits.plant.accept();
   EXPECT_EQ(edits.plant.driver().on_trial(), 0u);
   EXPECT_EQ(edits.plant.driver().undo().error().refusal, Refusal::kNothingToUndo);
-  edits.plant.change(program("wide : INT;"), true);
+  edits.plant.change(station("wide : INT;"), true);
   edits.plant.undo();
   EXPECT_EQ(edits.plant.get("Main.p[2].turns"), "2");
 }
 
 TEST(Edits, D3_WhatIsPreparedOnTopStaysWhenThoseBelowAreAccepted) {
-  Plant plant(kFirst);
-  plant.change(kSecond, true);
-  ASSERT_TRUE(plant.stage(plant.package(kThird)).ok());
+  Plant plant(kStation1);
+  plant.change(kStation2, true);
+  ASSERT_TRUE(plant.stage(plant.package(kStation3)).ok());
   ASSERT_TRUE(plant.driver().accept().ok());
   EXPECT_EQ(plant.driver().state(), State::kPrepared);
   ASSERT_TRUE(plant.driver().arm(true).ok());
@@ -183,7 +184,7 @@ TEST(Edits, D3_WhatIsPreparedOnTopStaysWhenThoseBelowAreAccepted) {
 
 TEST(Edits, D3_kMostEditsOnTrial_AreNotExceeded) {
   const auto version = [](uint32_t n) {
-    return program("x : INT := " + std::to_string(n) + ";", "x := " + std::to_string(n) + ";");
+    return station("x : INT := " + std::to_string(n) + ";", "x := " + std::to_string(n) + ";");
   };
   Plant plant(version(0));
   for (uint32_t n = 1; n <= base::kMostEditsOnTrial; ++n) plant.change(version(n));

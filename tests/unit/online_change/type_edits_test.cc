@@ -10,7 +10,7 @@ namespace {
 
 using plant::Plant;
 
-std::string edits_between(const std::string& before, const std::string& after) {
+std::string type_edits_between(const std::string& before, const std::string& after) {
   const std::string main = "PROGRAM Main VAR n : INT; END_VAR n := n + 1; END_PROGRAM\n";
   Plant plant(before + main);
   auto package = decode(plant.package(after + main));
@@ -25,36 +25,38 @@ std::string edits_between(const std::string& before, const std::string& after) {
   return out;
 }
 
-std::string uses(const std::string& types) {
+std::string with_box(const std::string& types) {
   return types + "VAR_GLOBAL box : Box; END_VAR\n";
 }
-std::string box(const std::string& members) {
+std::string box_type(const std::string& members) {
   return "TYPE Box : STRUCT " + members + " END_STRUCT END_TYPE\n";
 }
 
 TEST(TypeEdits, D3_AMemberThatIsAddedRetypedOrMoved) {
-  const std::string before = uses(box("a : INT; b : DINT;"));
-  EXPECT_EQ(edits_between(before, before), "");
-  EXPECT_EQ(edits_between(before, uses(box("a : INT; b : DINT; c : BOOL;"))), "Box edited;");
-  EXPECT_EQ(edits_between(before, uses(box("a : INT; b : LINT;"))), "Box edited;");
-  EXPECT_EQ(edits_between(before, uses(box("b : DINT; a : INT;"))), "Box edited;");
+  const std::string before = with_box(box_type("a : INT; b : DINT;"));
+  EXPECT_EQ(type_edits_between(before, before), "");
+  EXPECT_EQ(type_edits_between(before, with_box(box_type("a : INT; b : DINT; c : BOOL;"))),
+            "Box edited;");
+  EXPECT_EQ(type_edits_between(before, with_box(box_type("a : INT; b : LINT;"))), "Box edited;");
+  EXPECT_EQ(type_edits_between(before, with_box(box_type("b : DINT; a : INT;"))), "Box edited;");
 }
 
 TEST(TypeEdits, D3_WhatHoldsAnEditedTypeIsNotEditedItself) {
   const auto both = [](const std::string& inner) {
-    return uses("TYPE Inner : STRUCT " + inner + " END_STRUCT END_TYPE\n" + box("i : Inner;"));
+    return with_box("TYPE Inner : STRUCT " + inner + " END_STRUCT END_TYPE\n" +
+                    box_type("i : Inner;"));
   };
-  EXPECT_EQ(edits_between(both("x : INT;"), both("x : INT; y : INT;")), "Inner edited;");
+  EXPECT_EQ(type_edits_between(both("x : INT;"), both("x : INT; y : INT;")), "Inner edited;");
 }
 
 TEST(TypeEdits, D3_EnumerationsAndTypesThatComeAndGo) {
   const auto with = [](const std::string& literals) {
     return "TYPE Colour : (" + literals + "); END_TYPE\nVAR_GLOBAL c : Colour; END_VAR\n";
   };
-  EXPECT_EQ(edits_between(with("red, green"), with("red, blue, green")), "Colour edited;");
-  EXPECT_EQ(edits_between("VAR_GLOBAL box : INT; END_VAR\n", uses(box("a : INT;"))),
+  EXPECT_EQ(type_edits_between(with("red, green"), with("red, blue, green")), "Colour edited;");
+  EXPECT_EQ(type_edits_between("VAR_GLOBAL box : INT; END_VAR\n", with_box(box_type("a : INT;"))),
             "Box added;");
-  EXPECT_EQ(edits_between(uses(box("a : INT;")), "VAR_GLOBAL box : INT; END_VAR\n"),
+  EXPECT_EQ(type_edits_between(with_box(box_type("a : INT;")), "VAR_GLOBAL box : INT; END_VAR\n"),
             "Box removed;");
 }
 

@@ -14,7 +14,7 @@ using base::Refusal;
 using plc::Plc;
 
 // Each one is made on the one before: `a` narrows, `gone` goes, `c` comes.
-std::string version(int number, const std::string& more = {}) {
+std::string edited_source(int number, const std::string& more = {}) {
   const char* const variables[] = {"a : DINT; gone : INT := 3;", "a : INT; gone : INT := 3;",
                                    "a : INT;", "a : INT; c : INT := 8;"};
   return std::string("VAR_GLOBAL RETAIN r : DINT; ") + variables[number] +
@@ -22,9 +22,9 @@ std::string version(int number, const std::string& more = {}) {
          std::to_string(number + 1) + "; " + more + " END_PROGRAM";
 }
 
-struct Rig {
-  Rig() : plc(disk) {
-    EXPECT_TRUE(plc.boot(version(0)).ok());
+struct EditedPlc {
+  EditedPlc() : plc(disk) {
+    EXPECT_TRUE(plc.boot(edited_source(0)).ok());
     plc.run(2);
     plc.set("a", "70000");
     plc.set("gone", "44");
@@ -33,7 +33,7 @@ struct Rig {
     digests.push_back(plc.status().running);
   }
   void change(int number, const std::string& more = {}) {
-    const base::Status done = plc.change(version(number, more));
+    const base::Status done = plc.change(edited_source(number, more));
     ASSERT_TRUE(done.ok()) << base::to_string(done.error());
     plc.run(2);
     digests.push_back(plc.status().running);
@@ -83,7 +83,7 @@ struct Rig {
 };
 
 TEST(Edits, D3_case77_UndoByName) {
-  Rig rig;
+  EditedPlc rig;
   rig.three_edits();
   EXPECT_EQ(rig.edits(), "E1 E2 E3");
   EXPECT_EQ(rig.plc.status().edits, 3u);
@@ -105,7 +105,7 @@ TEST(Edits, D3_case77_UndoByName) {
 }
 
 TEST(Edits, D3_case77_RedoBringsThemAgainInTheirOrder) {
-  Rig rig;
+  EditedPlc rig;
   rig.three_edits();
   ASSERT_TRUE(rig.plc.undo().ok());
   ASSERT_TRUE(rig.plc.undo().ok());
@@ -124,7 +124,7 @@ TEST(Edits, D3_case77_RedoBringsThemAgainInTheirOrder) {
 }
 
 TEST(Edits, D3_BehindAnotherChangeNothingComesAgain) {
-  Rig rig;
+  EditedPlc rig;
   rig.three_edits();
   ASSERT_TRUE(rig.plc.undo().ok());
   rig.change(3, "n := n + 100;");
@@ -134,7 +134,7 @@ TEST(Edits, D3_BehindAnotherChangeNothingComesAgain) {
 
 // D3, X5: what boots, and with which values, is what was accepted, whatever rests on trial on top.
 TEST(Edits, D3_AcceptUpToAName) {
-  Rig rig;
+  EditedPlc rig;
   rig.three_edits();
   EXPECT_EQ(rig.boots(), "a 70000, gone 44, r 5");
   rig.plc.set("r", "6");
@@ -159,9 +159,9 @@ TEST(Edits, D3_AcceptUpToAName) {
 }
 
 TEST(Edits, D3_X7_ATrapTakesBackTheNewestEditOnly) {
-  Rig rig;
+  EditedPlc rig;
   rig.change(1);
-  ASSERT_TRUE(rig.plc.change(version(2, "z := 1 / z;")).ok());
+  ASSERT_TRUE(rig.plc.change(edited_source(2, "z := 1 / z;")).ok());
   rig.plc.run(3);
   EXPECT_TRUE(rig.plc.controller().faulted());
   rig.plc.service().keep_up();
@@ -177,9 +177,9 @@ TEST(Edits, D3_X7_ATrapTakesBackTheNewestEditOnly) {
 
 // An edit that is staged meanwhile has no base any more, and its bringer is told.
 TEST(Edits, D3_X7_WhatIsPreparedOnTopOfATrapIsGivenUp) {
-  Rig rig;
-  ASSERT_TRUE(rig.plc.change(version(1, "IF n > 40 THEN z := 1 / z; END_IF")).ok());
-  ASSERT_TRUE(rig.plc.stage(plc::build(version(2), &rig.plc.controller().image())).ok());
+  EditedPlc rig;
+  ASSERT_TRUE(rig.plc.change(edited_source(1, "IF n > 40 THEN z := 1 / z; END_IF")).ok());
+  ASSERT_TRUE(rig.plc.stage(plc::build(edited_source(2), &rig.plc.controller().image())).ok());
   EXPECT_EQ(rig.plc.status().change, "prepared");
   EXPECT_EQ(rig.plc.status().edits, 1u);
   rig.plc.run(50);
@@ -196,7 +196,7 @@ TEST(Edits, D3_X7_WhatIsPreparedOnTopOfATrapIsGivenUp) {
 TEST(Edits, D3_case56_AnEditThatCannotBeStoredLeavesTheOthers) {
   for (const char* name : {"open", "write", "sync"}) {
     for (int number = 1, reached = 1; reached != 0; ++number) {
-      Rig rig;
+      EditedPlc rig;
       rig.change(1);
       rig.change(2);
       int calls = 0;
@@ -206,7 +206,7 @@ TEST(Edits, D3_case56_AnEditThatCannotBeStoredLeavesTheOthers) {
         reached = 1;
         return sim::Failure::kError;
       };
-      const base::Status changed = rig.plc.change(version(3));
+      const base::Status changed = rig.plc.change(edited_source(3));
       rig.disk.fails = nullptr;
       EXPECT_EQ(rig.plc.status().edits, changed.ok() ? 3u : 2u) << name << number;
       EXPECT_EQ(rig.plc.status().boots_next, rig.digests[0]);
@@ -221,16 +221,16 @@ TEST(Edits, D3_case56_AnEditThatCannotBeStoredLeavesTheOthers) {
 }
 
 TEST(Edits, D3_PermanentAcceptsThoseBelowToo) {
-  Rig rig;
+  EditedPlc rig;
   rig.change(1);
-  ASSERT_TRUE(rig.plc.change(version(2), vm::kAllowLoss | vm::kPermanent).ok());
+  ASSERT_TRUE(rig.plc.change(edited_source(2), vm::kAllowLoss | vm::kPermanent).ok());
   EXPECT_EQ(rig.edits(), "");
   EXPECT_EQ(rig.plc.status().boots_next, rig.plc.status().running);
   EXPECT_EQ(rig.plc.store().before()->digest, rig.digests[0]);
 }
 
 TEST(Edits, D3_TheJournalNamesThem) {
-  Rig rig;
+  EditedPlc rig;
   rig.three_edits();
   ASSERT_TRUE(rig.plc.undo().ok());
   ASSERT_TRUE(rig.accept("E2").ok());

@@ -13,7 +13,7 @@ namespace {
 using plc::Plc;
 
 // Each one is made on the one before: `a` narrows, `gone` goes, `c` comes; `n` is not retained.
-std::string version(int number) {
+std::string outage_source(int number) {
   const char* const variables[] = {"a : DINT; gone : INT := 3;", "a : INT; gone : INT := 3;",
                                    "a : INT;", "a : INT; c : INT := 8;"};
   return std::string("VAR_GLOBAL RETAIN r : DINT; ") + variables[number] +
@@ -21,13 +21,13 @@ std::string version(int number) {
          "; END_PROGRAM";
 }
 
-sim::SimStorage cut(const sim::SimStorage& disk) {
+sim::SimStorage behind_cut(const sim::SimStorage& disk) {
   return disk.after_cut(sim::SimStorage::Choice(disk.dirty().size(), 0));
 }
 
-struct Rig {
-  explicit Rig(uint32_t policy) : flags(policy | vm::kAllowLoss), plc(disk) {
-    EXPECT_TRUE(plc.boot(version(0)).ok());
+struct Outage {
+  explicit Outage(uint32_t policy) : flags(policy | vm::kAllowLoss), plc(disk) {
+    EXPECT_TRUE(plc.boot(outage_source(0)).ok());
     plc.set("a", "70000");
     plc.set("gone", "44");
     plc.set("r", "5");
@@ -35,7 +35,7 @@ struct Rig {
     digests.push_back(plc.status().running);
   }
   void change(int number) {
-    const base::Status done = plc.change(version(number), flags);
+    const base::Status done = plc.change(outage_source(number), flags);
     ASSERT_TRUE(done.ok()) << base::to_string(done.error());
     plc.run(2);
     digests.push_back(plc.status().running);
@@ -50,7 +50,7 @@ struct Rig {
 };
 
 // Back to what was accepted, edit by edit.
-void expect_all_ways_back(Plc& plc, const Rig& rig) {
+void expect_all_ways_back(Plc& plc, const Outage& rig) {
   EXPECT_LT(std::stoi(plc.get("Main.n")), 18);  // is not retained, and began anew
   plc.run(2);
   EXPECT_EQ(plc.status().edits, 3u);
@@ -71,10 +71,10 @@ void expect_all_ways_back(Plc& plc, const Rig& rig) {
 
 TEST(Resume, D4_case77_ACleanStopKeepsTheTrialUnderBothPolicies) {
   for (const uint32_t policy : {0u, uint32_t{vm::kLastEditBoots}}) {
-    Rig rig(policy);
+    Outage rig(policy);
     rig.three_edits();
     rig.plc.stop();
-    sim::SimStorage disk = cut(rig.disk);
+    sim::SimStorage disk = behind_cut(rig.disk);
     Plc plc(disk);
     ASSERT_TRUE(plc.boot().ok());
     EXPECT_TRUE(plc.found().alarms.empty());
@@ -85,9 +85,9 @@ TEST(Resume, D4_case77_ACleanStopKeepsTheTrialUnderBothPolicies) {
 }
 
 TEST(Resume, D4_case55_UnderAcceptedAPowerLossLosesTheTrialAndSaysSo) {
-  Rig rig(0);
+  Outage rig(0);
   rig.three_edits();
-  sim::SimStorage disk = cut(rig.disk);
+  sim::SimStorage disk = behind_cut(rig.disk);
   Plc plc(disk);
   ASSERT_TRUE(plc.boot().ok());
   EXPECT_EQ(plc.status().running, rig.digests[0]);
@@ -101,14 +101,14 @@ TEST(Resume, D4_case55_UnderAcceptedAPowerLossLosesTheTrialAndSaysSo) {
 
 // A clean stop counts once: the policy is that of the edit again as soon as it has started.
 TEST(Resume, D4_BehindACleanStopAPowerLossLosesTheTrial) {
-  Rig rig(0);
+  Outage rig(0);
   rig.three_edits();
   rig.plc.stop();
-  sim::SimStorage stopped = cut(rig.disk);
+  sim::SimStorage stopped = behind_cut(rig.disk);
   Plc plc(stopped);
   ASSERT_TRUE(plc.boot().ok());
   ASSERT_EQ(plc.status().edits, 3u);
-  sim::SimStorage disk = cut(stopped);
+  sim::SimStorage disk = behind_cut(stopped);
   Plc later(disk);
   ASSERT_TRUE(later.boot().ok());
   EXPECT_EQ(later.status().running, rig.digests[0]);
@@ -116,9 +116,9 @@ TEST(Resume, D4_BehindACleanStopAPowerLossLosesTheTrial) {
 }
 
 TEST(Resume, D4_case55_UnderLastEditThePowerLossKeepsTheTrialAndItsWaysBack) {
-  Rig rig(vm::kLastEditBoots);
+  Outage rig(vm::kLastEditBoots);
   rig.three_edits();
-  sim::SimStorage disk = cut(rig.disk);
+  sim::SimStorage disk = behind_cut(rig.disk);
   for (int again = 0; again < 2; ++again) {  // and once more
     Plc plc(disk);
     ASSERT_TRUE(plc.boot().ok());
@@ -130,16 +130,16 @@ TEST(Resume, D4_case55_UnderLastEditThePowerLossKeepsTheTrialAndItsWaysBack) {
 }
 
 TEST(Resume, D4_ATrialThatGoesOnIsAcceptedAndGetsMoreEdits) {
-  Rig rig(vm::kLastEditBoots);
+  Outage rig(vm::kLastEditBoots);
   rig.change(1);
   rig.change(2);
-  sim::SimStorage disk = cut(rig.disk);
+  sim::SimStorage disk = behind_cut(rig.disk);
   Plc plc(disk);
   ASSERT_TRUE(plc.boot().ok());
-  ASSERT_TRUE(plc.change(version(3), rig.flags).ok());
+  ASSERT_TRUE(plc.change(outage_source(3), rig.flags).ok());
   EXPECT_EQ(plc.status().edits, 3u);
   ASSERT_TRUE(plc.ask({.command = vm::Command::kAccept, .names = {"E1"}}).ok());
-  sim::SimStorage later_disk = cut(disk);
+  sim::SimStorage later_disk = behind_cut(disk);
   Plc later(later_disk);
   ASSERT_TRUE(later.boot().ok());
   EXPECT_EQ(later.status().edits, 2u);
@@ -148,27 +148,42 @@ TEST(Resume, D4_ATrialThatGoesOnIsAcceptedAndGetsMoreEdits) {
   EXPECT_EQ(later.status().running, rig.digests[1]);
   EXPECT_EQ(later.get("gone"), "44");
   EXPECT_EQ(later.get("a"), "32767");
-  ASSERT_TRUE(later.change(version(2), rig.flags).ok());
+  ASSERT_TRUE(later.change(outage_source(2), rig.flags).ok());
   ASSERT_TRUE(later.accept().ok());
-  sim::SimStorage last_disk = cut(later_disk);
+  sim::SimStorage last_disk = behind_cut(later_disk);
   Plc last(last_disk);
   ASSERT_TRUE(last.boot().ok());
   EXPECT_EQ(last.status().edits, 0u);
   EXPECT_FALSE(last.found().trial_lost.has_value());
 }
 
+TEST(Resume, D4_AnEditThatComesAgainKeepsItsPolicy) {
+  Outage rig(vm::kLastEditBoots);
+  rig.three_edits();
+  ASSERT_TRUE(rig.plc.undo().ok());
+  ASSERT_TRUE(rig.plc.ask(vm::Command::kRedo).ok());
+  vm::Request go{.command = vm::Command::kSwitch};
+  go.flags = vm::kAllowLoss | vm::kAllowOverrun;
+  ASSERT_TRUE(rig.plc.ask(std::move(go)).ok());
+  EXPECT_TRUE(rig.plc.status().last_edit_boots);
+  sim::SimStorage disk = behind_cut(rig.disk);
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot().ok());
+  EXPECT_EQ(plc.status().edits, 3u);
+}
+
 // What cannot be resumed is lost, and that is said.
 TEST(Resume, D4_WithoutTheListOfEditsTheAcceptedProgramBoots) {
-  Rig rig(vm::kLastEditBoots);
+  Outage rig(vm::kLastEditBoots);
   rig.three_edits();
   for (const bool gone : {true, false}) {
-    sim::SimStorage left = cut(rig.disk);
+    sim::SimStorage left = behind_cut(rig.disk);
     if (gone) left.remove(online_change::kEditsFile);
     if (!gone) {
       ASSERT_TRUE(left.write(online_change::kEditsFile, 700, base::Bytes(40, 0xee)).ok());
       ASSERT_TRUE(left.sync(online_change::kEditsFile).ok());
     }
-    sim::SimStorage disk = cut(left);
+    sim::SimStorage disk = behind_cut(left);
     Plc plc(disk);
     ASSERT_TRUE(plc.boot().ok());
     EXPECT_EQ(plc.status().running, rig.digests[0]);
@@ -176,16 +191,16 @@ TEST(Resume, D4_WithoutTheListOfEditsTheAcceptedProgramBoots) {
     ASSERT_FALSE(plc.found().alarms.empty());
     EXPECT_NE(plc.found().alarms.front().find("cannot be resumed"), std::string::npos);
     EXPECT_EQ(plc.get("a"), "70000");
-    EXPECT_TRUE(plc.change(version(1), rig.flags).ok());
+    EXPECT_TRUE(plc.change(outage_source(1), rig.flags).ok());
   }
 }
 
 TEST(Resume, D4_AnotherProgramOnTheCommandLineEndsTheTrial) {
-  Rig rig(vm::kLastEditBoots);
+  Outage rig(vm::kLastEditBoots);
   rig.three_edits();
-  sim::SimStorage disk = cut(rig.disk);
+  sim::SimStorage disk = behind_cut(rig.disk);
   Plc plc(disk);
-  ASSERT_TRUE(plc.boot(version(2)).ok());
+  ASSERT_TRUE(plc.boot(outage_source(2)).ok());
   EXPECT_EQ(plc.status().edits, 0u);
   EXPECT_EQ(plc.get("r"), "5");
 }
@@ -193,21 +208,21 @@ TEST(Resume, D4_AnotherProgramOnTheCommandLineEndsTheTrial) {
 // X5: a power cut at every call to storage leaves what was before the step or what it makes, with
 // all ways back.
 TEST(Resume, D4_X5_case77_APowerCutAtEveryWriteLeavesTheTrialBeforeOrBehind) {
-  Rig rig(vm::kLastEditBoots);
+  Outage rig(vm::kLastEditBoots);
   const auto ask = [&](vm::Command command, const char* name) {
     return rig.plc.ask({.command = command, .names = {name}}).ok();
   };
   const std::vector<std::function<bool()>> steps = {
-      [&] { return rig.plc.change(version(1), rig.flags).ok(); },
-      [&] { return rig.plc.change(version(2), rig.flags).ok(); },
+      [&] { return rig.plc.change(outage_source(1), rig.flags).ok(); },
+      [&] { return rig.plc.change(outage_source(2), rig.flags).ok(); },
       [&] { return rig.plc.save().ok(); },
-      [&] { return rig.plc.change(version(3), rig.flags).ok(); },
+      [&] { return rig.plc.change(outage_source(3), rig.flags).ok(); },
       [&] { return rig.plc.undo().ok(); },
-      [&] { return rig.plc.change(version(3), rig.flags).ok(); },
+      [&] { return rig.plc.change(outage_source(3), rig.flags).ok(); },
       [&] { return ask(vm::Command::kAccept, "E1"); },
       [&] { return rig.plc.undo().ok(); },
       [&] { return rig.plc.undo().ok(); },
-      [&] { return rig.plc.change(version(2), rig.flags).ok(); },
+      [&] { return rig.plc.change(outage_source(2), rig.flags).ok(); },
       [&] { return rig.plc.accept().ok(); },
   };
   size_t tried = 0;
@@ -215,7 +230,7 @@ TEST(Resume, D4_X5_case77_APowerCutAtEveryWriteLeavesTheTrialBeforeOrBehind) {
     std::vector<sim::SimStorage> left;
     const vm::StatusReport before = rig.plc.status();
     rig.disk.before_call = [&] {
-      left.push_back(cut(rig.disk));
+      left.push_back(behind_cut(rig.disk));
       if (!rig.disk.dirty().empty()) left.push_back(rig.disk.after_kill());
     };
     const bool done = steps[step]();

@@ -10,7 +10,7 @@ namespace {
 
 using plc::Plc;
 
-std::string program(const std::string& step, const std::string& declare = {}) {
+std::string pumps(const std::string& step, const std::string& declare = {}) {
   return "FUNCTION_BLOCK Pump VAR n : DINT; END_VAR n := n + " + step +
          "; END_FUNCTION_BLOCK\n"
          "FUNCTION_BLOCK Valve VAR n : DINT; END_VAR n := n + 1; END_FUNCTION_BLOCK\n"
@@ -47,9 +47,9 @@ base::Digest identity(Plc& plc, const std::string& name) {
   return {};
 }
 
-struct Rig {
-  Rig() : plc(disk) {
-    EXPECT_TRUE(plc.boot(program("1")).ok());
+struct PumpPlc {
+  PumpPlc() : plc(disk) {
+    EXPECT_TRUE(plc.boot(pumps("1")).ok());
     plc.run(5);
   }
   sim::SimStorage disk;
@@ -57,7 +57,7 @@ struct Rig {
 };
 
 TEST(Units, D8_AtTheStartAllIsInSlotA) {
-  Rig rig;
+  PumpPlc rig;
   const UnitRow pump = unit(rig.plc, "Pump");
   EXPECT_EQ(pump.slot, 0);
   EXPECT_EQ(pump.other, OtherSlot::kEmpty);
@@ -67,9 +67,9 @@ TEST(Units, D8_AtTheStartAllIsInSlotA) {
 }
 
 TEST(Units, D8_AChangeOfOneUnitExchangesItsSlotsAndNoOther) {
-  Rig rig;
+  PumpPlc rig;
   const base::Digest before = identity(rig.plc, "Pump");
-  ASSERT_TRUE(rig.plc.change(program("2")).ok());
+  ASSERT_TRUE(rig.plc.change(pumps("2")).ok());
   rig.plc.run(3);
   const UnitRow pump = unit(rig.plc, "Pump");
   EXPECT_EQ(pump.slot, 1);
@@ -86,8 +86,8 @@ TEST(Units, D8_AChangeOfOneUnitExchangesItsSlotsAndNoOther) {
 }
 
 TEST(Units, D8_UndoGoesBackAndWhatWasUndoneLiesInTheOtherSlot) {
-  Rig rig;
-  ASSERT_TRUE(rig.plc.change(program("2")).ok());
+  PumpPlc rig;
+  ASSERT_TRUE(rig.plc.change(pumps("2")).ok());
   const base::Digest undone = identity(rig.plc, "Pump");
   rig.plc.run(3);
   ASSERT_TRUE(rig.plc.undo().ok());
@@ -100,8 +100,8 @@ TEST(Units, D8_UndoGoesBackAndWhatWasUndoneLiesInTheOtherSlot) {
 }
 
 TEST(Units, D8_AcceptExchangesNothing) {
-  Rig rig;
-  ASSERT_TRUE(rig.plc.change(program("2")).ok());
+  PumpPlc rig;
+  ASSERT_TRUE(rig.plc.change(pumps("2")).ok());
   ASSERT_TRUE(rig.plc.accept().ok());
   const UnitRow pump = unit(rig.plc, "Pump");
   EXPECT_EQ(pump.slot, 1);
@@ -110,8 +110,8 @@ TEST(Units, D8_AcceptExchangesNothing) {
 }
 
 TEST(Units, D8_ARestartPlacesAllCodeAnew) {
-  Rig rig;
-  ASSERT_TRUE(rig.plc.change(program("2")).ok());
+  PumpPlc rig;
+  ASSERT_TRUE(rig.plc.change(pumps("2")).ok());
   ASSERT_TRUE(rig.plc.accept().ok());
   const base::Digest accepted = identity(rig.plc, "Pump");
   ASSERT_TRUE(rig.plc.boot().ok());
@@ -123,16 +123,16 @@ TEST(Units, D8_ARestartPlacesAllCodeAnew) {
 }
 
 TEST(Units, D8_WhatIsStagedIsToldAndWhatWasGivenUpToo) {
-  Rig rig;
-  ASSERT_TRUE(rig.plc.stage(plc::build(program("2"), &rig.plc.controller().image())).ok());
+  PumpPlc rig;
+  ASSERT_TRUE(rig.plc.stage(plc::build(pumps("2"), &rig.plc.controller().image())).ok());
   EXPECT_EQ(unit(rig.plc, "Pump").other, OtherSlot::kStaged);
   EXPECT_EQ(unit(rig.plc, "Pump").slot, 0);
   ASSERT_TRUE(rig.plc.ask(vm::Command::kCancel).ok());
   EXPECT_EQ(unit(rig.plc, "Pump").other, OtherSlot::kLeft);
   // What ran before lies there no more, so it is not told as that.
-  ASSERT_TRUE(rig.plc.change(program("2")).ok());
+  ASSERT_TRUE(rig.plc.change(pumps("2")).ok());
   ASSERT_TRUE(rig.plc.accept().ok());
-  ASSERT_TRUE(rig.plc.stage(plc::build(program("3"), &rig.plc.controller().image())).ok());
+  ASSERT_TRUE(rig.plc.stage(plc::build(pumps("3"), &rig.plc.controller().image())).ok());
   ASSERT_TRUE(rig.plc.ask(vm::Command::kCancel).ok());
   EXPECT_EQ(unit(rig.plc, "Pump").other, OtherSlot::kLeft);
 }
@@ -146,7 +146,7 @@ TEST(Units, D8_APageIsBoundedAndNoScanWaitsForIt) {
   }
   sim::SimStorage disk;
   Plc plc(disk);
-  ASSERT_TRUE(plc.boot(many + program("1")).ok());
+  ASSERT_TRUE(plc.boot(many + pumps("1")).ok());
   int boundaries = 0;
   uint64_t next = 0;
   size_t rows = 0;
@@ -189,10 +189,10 @@ TEST(Units, D8_ARowFitsEightyColumns) {
 }
 
 TEST(Edits, D3_AnEditIsListedWithWhatItTouchesUntilItIsUndoneOrAccepted) {
-  Rig rig;
+  PumpPlc rig;
   EXPECT_TRUE(edits_of(rig.plc).empty());
   const std::string with_box =
-      "TYPE Box : STRUCT i : INT; END_STRUCT END_TYPE\n" + program("2", "box : Box;");
+      "TYPE Box : STRUCT i : INT; END_STRUCT END_TYPE\n" + pumps("2", "box : Box;");
   ASSERT_TRUE(rig.plc.change(with_box).ok());
   const std::vector<TrialEdit> edits = edits_of(rig.plc);
   ASSERT_EQ(edits.size(), 1u);
@@ -209,7 +209,7 @@ TEST(Edits, D3_AnEditIsListedWithWhatItTouchesUntilItIsUndoneOrAccepted) {
   ASSERT_TRUE(rig.plc.undo().ok());
   ASSERT_EQ(edits_of(rig.plc).size(), 1u);
   EXPECT_TRUE(edits_of(rig.plc)[0].undone);
-  ASSERT_TRUE(rig.plc.change(program("3")).ok());
+  ASSERT_TRUE(rig.plc.change(pumps("3")).ok());
   ASSERT_EQ(edits_of(rig.plc).size(), 1u);
   EXPECT_EQ(edits_of(rig.plc)[0].name, "E2");  // a name is used once
   ASSERT_TRUE(rig.plc.accept().ok());
