@@ -111,8 +111,16 @@ answers stvm-abort 0 at abort
 answers stvm-change 0 at change next --yes --dry-run --all
 answers stvm-change 0 at change next --yes --all
 answers stvm-status 0 at status
+answers stvm-status-units 0 at status --units
+answers stvm-edits 0 at edits
 answers stvm-undo 0 at undo --dry-run
 answers stvm-undo 0 at undo
+answers stvm-edits 0 at edits
+answers stvm-redo 0 at redo --yes
+sed 's/more : INT/more, less : INT/' next/main.st >third.st
+expect 0 at change third.st --yes
+answers stvm-edits 0 at edits
+answers stvm-undo 0 at undo E1 --yes
 expect 0 at change next --yes
 answers stvm-accept 0 at accept
 answers stvm-revert 0 at revert --yes --allow-loss

@@ -178,7 +178,8 @@ base::Status undo_edits(const tools::Options& options) {
   Names done;
   base::Status ended = base::Ok{};
   for (const std::string& name : *going) {
-    base::Result<Undone> undone = undo_one(*client, name, {dry_run, *json, ask_first && done.empty()});
+    const UndoOptions how{dry_run, *json, ask_first && done.empty()};
+    base::Result<Undone> undone = undo_one(*client, name, how);
     if (!undone.ok()) ended = behind(done, undone.error());
     if (!undone.ok()) break;
     all.push_back(std::move(*undone));
