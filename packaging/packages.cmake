@@ -24,6 +24,22 @@ install(DIRECTORY docs/ DESTINATION ${docs}/stc COMPONENT stc PATTERN adr EXCLUD
 install(DIRECTORY examples DESTINATION ${docs}/stc COMPONENT stc)
 install(FILES docs/RUNNING.md docs/SECURITY.md docs/IO.md DESTINATION ${docs}/stvm COMPONENT stvm)
 
+foreach(tool stc stvm)
+  file(GLOB pages ${CMAKE_SOURCE_DIR}/share/man/man1/${tool}*.1)
+  foreach(page ${pages})
+    get_filename_component(name ${page} NAME)
+    set(packed ${CMAKE_BINARY_DIR}/generated/packages/${tool}/${name}.gz)
+    execute_process(COMMAND gzip -9nc ${page} OUTPUT_FILE ${packed})
+    install(FILES ${packed} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${tool})
+  endforeach()
+  install(FILES share/bash-completion/completions/${tool}
+          DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/bash-completion/completions COMPONENT ${tool})
+  install(FILES share/zsh/site-functions/_${tool}
+          DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/zsh/vendor-completions COMPONENT ${tool})
+  install(FILES share/fish/vendor_completions.d/${tool}.fish
+          DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/fish/vendor_completions.d COMPONENT ${tool})
+endforeach()
+
 # The unit names the program where it is installed, which is known then only.
 install(CODE "
   file(READ \"${CMAKE_SOURCE_DIR}/packaging/systemd/stvm@.service\" unit)
