@@ -1,6 +1,7 @@
 #include "online_change/store/edits_record.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "base/tool_limits.h"
 
@@ -17,6 +18,13 @@ void read_digest(base::ByteReader& in, base::Digest& out) {
 base::Bytes read_blob(base::ByteReader& in) {
   const base::ByteSpan bytes = in.blob();
   return base::Bytes(bytes.begin(), bytes.end());
+}
+
+// E and a number, as a controller makes them: people read it, and it is counted on from there.
+bool is_name(std::string_view name) {
+  constexpr size_t kMostDigits = 18;
+  if (name.size() < 2 || name.size() > 1 + kMostDigits || name[0] != 'E') return false;
+  return name.find_first_not_of("0123456789", 1) == std::string_view::npos;
 }
 
 }  // namespace
@@ -42,9 +50,12 @@ base::Bytes encode(const std::vector<StoredEdit>& edits) {
 
 std::optional<std::vector<StoredEdit>> decode_edits(base::ByteSpan payload) {
   base::ByteReader in(payload);
-  std::vector<StoredEdit> edits(in.count(kLeastBytes));
+  const size_t count = in.count(kLeastBytes);
+  if (count > base::kMostEditsOnTrial) return std::nullopt;
+  std::vector<StoredEdit> edits(count);
   for (StoredEdit& edit : edits) {
     edit.name = in.text();
+    if (!is_name(edit.name)) return std::nullopt;
     edit.who = in.text();
     edit.time_ns = in.i64();
     edit.cycle = in.u64();

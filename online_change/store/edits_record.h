@@ -27,6 +27,7 @@ struct StoredEdit {
 };
 
 base::Bytes encode(const std::vector<StoredEdit>& edits);
+// Nullopt for what no controller has written; the packages and values are not looked at.
 std::optional<std::vector<StoredEdit>> decode_edits(base::ByteSpan payload);
 
 // Those that lead from what boots to what is on trial, one to the next; none: there is no such way.

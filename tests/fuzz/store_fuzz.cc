@@ -12,6 +12,7 @@
 #include "base/crc32c.h"
 #include "base/hash.h"
 #include "base/sha256.h"
+#include "online_change/package/package.h"
 #include "online_change/store/boot.h"
 #include "tests/unit/bytecode/sample_objects.h"
 #include "tests/unit/store/sim_storage.h"
@@ -23,13 +24,15 @@ using namespace online_change;
 constexpr size_t kStep = 5;
 constexpr StoreSizes kSizes{512, 64, 8, 4};
 
-ir::VerifiedImage sample_program() {
-  base::Result<ir::VerifiedImage> image = ir::verify(ir::encode(sample::busy_image()));
+ir::VerifiedImage sample_program(const char* name = "sample") {
+  ir::Image program = sample::busy_image();
+  program.name = name;
+  base::Result<ir::VerifiedImage> image = ir::verify(ir::encode(program));
   base::check(image.ok(), "the sample is sound");
   return *image;
 }
 
-// A trial ended with the power, in the middle of everything.
+// A trial that goes on behind the power loss (D4), in the middle of everything.
 sim::SimStorage good_disk() {
   sim::SimStorage disk;
   Store store(disk, kSizes);
@@ -39,10 +42,22 @@ sim::SimStorage good_disk() {
   for (int i = 0; i < 3; ++i) {
     base::check(store.save_retained(image.digest(), 1, booted->retained).ok(), "saved");
   }
-  StoredImage other{image.digest(), image.encoded()};
-  other.digest[0] ^= 1;
-  base::check(store.begin_trial(other, 8).ok(), "on trial");
-  base::check(store.save_retained(other.digest, 2, base::Bytes(8)).ok(), "saved");
+  const ir::VerifiedImage edited = sample_program("edited");
+  base::Result<Package> package = make_package(image.encoded(), edited.encoded());
+  base::check(package.ok(), "the sample can be changed");
+  const uint64_t retained = booted->retained.size();
+  StoredEdit edit{.name = "E1", .who = "fuzz"};
+  edit.from = image.digest();
+  edit.to = edited.digest();
+  edit.package = encode(*package);
+  edit.retained = booted->retained;
+  base::check(store.keep_edits({edit}).ok(), "kept");
+  const StoredImage trial{edited.digest(), edited.encoded()};
+  base::check(store.begin_trial(trial, retained, true).ok(), "on trial");
+  base::check(store.save_retained(edited.digest(), 2, booted->retained).ok(), "saved");
+  Store later(disk, kSizes);
+  booted = boot(later, std::nullopt, "fuzz", 1);
+  base::check(booted.ok() && booted->edits.size() == 1, "the trial goes on");
   return disk;
 }
 

@@ -51,9 +51,11 @@ void ControllerService::resume(const std::vector<online_change::ResumedEdit>& ed
   }
   if (!adopted.ok()) {
     not_undone_ = "the edits on trial have no way back: " + base::to_string(adopted.error()) +
-                  "; a restart without them runs " + base::short_hex(store_.boots());
+                  "; the next start runs " + base::short_hex(store_.boots());
     trials_.clear();
-    return;
+    // Those below the one that failed have a way back only together with it.
+    if (change_.on_trial() != 0) (void)change_.accept();
+    complain(store_.set_resumes(false));
   }
   change_.collect();
   if (trials_.empty()) return;

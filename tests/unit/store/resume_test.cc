@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/tool_limits.h"
+#include "online_change/store/edits_record.h"
 #include "tests/unit/store/plc.h"
 #include "tests/unit/store/sim_storage.h"
 
@@ -193,6 +195,78 @@ TEST(Resume, D4_WithoutTheListOfEditsTheAcceptedProgramBoots) {
     EXPECT_EQ(plc.get("a"), "70000");
     EXPECT_TRUE(plc.change(outage_source(1), rig.flags).ok());
   }
+}
+
+// What is read from the file of edits is what a controller writes, or nothing.
+TEST(Resume, D4_AListOfEditsIsWhatAControllerWritesOrNothing) {
+  using online_change::StoredEdit;
+  const auto decoded = [](const std::vector<StoredEdit>& edits) {
+    return online_change::decode_edits(online_change::encode(edits));
+  };
+  StoredEdit edit{"E7", "pat", 1, 2, 3, 4, {}, {}, {5, 6}, 7, {8}};
+  edit.from[0] = 9;
+  const auto back = decoded({edit, edit});
+  ASSERT_TRUE(back && back->size() == 2);
+  EXPECT_EQ(back->back().name, "E7");
+  EXPECT_EQ(back->back().from, edit.from);
+  EXPECT_EQ(back->back().package, edit.package);
+  EXPECT_EQ(back->back().retained, edit.retained);
+
+  EXPECT_TRUE(decoded(std::vector<StoredEdit>(base::kMostEditsOnTrial, edit)));
+  EXPECT_FALSE(decoded(std::vector<StoredEdit>(base::kMostEditsOnTrial + 1, edit)));
+  for (const char* name : {"", "E", "7", "E7\x1b[2J", "E-1", "E1234567890123456789", "F1"}) {
+    edit.name = name;
+    EXPECT_FALSE(decoded({edit})) << name;
+  }
+  edit.name = "E7";
+  base::Bytes bytes = online_change::encode({edit, edit});
+  while (!bytes.empty()) {
+    bytes.pop_back();
+    EXPECT_FALSE(online_change::decode_edits(bytes)) << bytes.size();
+  }
+}
+
+// The migration holds with the values of a running program; with those of a start it divides by 0.
+TEST(Resume, D4_WithoutAWayBackNothingIsUndoneAndTheNextStartRunsWhatWasAccepted) {
+  const auto source = [](const std::string& migration, const std::string& member, int step) {
+    return migration + "FUNCTION_BLOCK Tank VAR d : INT; " + member + " END_VAR d := 2; " +
+           "END_FUNCTION_BLOCK PROGRAM Main VAR t : Tank; n : INT; END_VAR t(); n := n + " +
+           std::to_string(step) + "; END_PROGRAM";
+  };
+  const std::string divides =
+      "{migration of := 'Tank'} FUNCTION Divide VAR_INPUT d : INT; END_VAR VAR_OUTPUT q : INT; "
+      "END_VAR q := 8 / d; END_FUNCTION ";
+  sim::SimStorage disk;
+  base::Digest accepted{};
+  {
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot(source("", "", 1)).ok());
+    plc.run(2);
+    accepted = plc.status().running;
+    ASSERT_TRUE(plc.change(source("", "", 2), vm::kLastEditBoots).ok());
+    const base::Status migrated =
+        plc.change(source(divides, "q : INT;", 3), vm::kLastEditBoots | vm::kAllowLoss);
+    ASSERT_TRUE(migrated.ok()) << base::to_string(migrated.error());
+    plc.run(2);
+  }
+  sim::SimStorage cut = behind_cut(disk);
+  sim::SimStorage again = cut;
+  {
+    Plc plc(cut);
+    ASSERT_TRUE(plc.boot().ok());
+    plc.run(2);
+    ASSERT_FALSE(plc.status().alarms.empty());
+    EXPECT_NE(plc.status().alarms.front().find("no way back"), std::string::npos);
+    EXPECT_EQ(plc.status().edits, 0u);
+    const base::Status undone = plc.undo();
+    ASSERT_FALSE(undone.ok());
+    EXPECT_EQ(undone.error().refusal, base::Refusal::kNothingToUndo);
+    plc.run(2);
+    again = behind_cut(cut);
+  }
+  Plc plc(again);
+  ASSERT_TRUE(plc.boot().ok());
+  EXPECT_EQ(plc.status().running, accepted);
 }
 
 TEST(Resume, D4_AnotherProgramOnTheCommandLineEndsTheTrial) {
