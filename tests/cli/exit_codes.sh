@@ -60,6 +60,15 @@ cmp -s x.img good.img || fail "what was printed got into the image"
 "$bin/stc" build good.st -o y.img >&- 2>&- <&- || fail "all three are closed"
 cmp -s y.img good.img || fail "a closed stream got into the image"
 
+# Neither does the connection to a controller get what is printed while it is open.
+printf 'PROGRAM Main VAR a : ARRAY[0..999] OF INT; END_VAR a[0] := 1; END_PROGRAM\n' >many.st
+expect 0 stc build many.st -o many.img
+serve many many.img
+code=0
+closed stvm get --dir many --list || code=$?
+[ "$code" -eq 74 ] || fail "a list into the connection: exit code $code"
+expect 0 stvm stop --dir many
+
 # What is refused, as JSON, SARIF and for GitHub: one document each, the code in it.
 for command in 'check missing.st' 'build missing.st -o x.img' 'build good.st -o no/where.img' \
   'diff missing.st good.st' 'export missing.st -o x.xml'; do

@@ -25,6 +25,17 @@ listed '"src/**/*.st"'
 listed '"src/*.st", "src/lib/dou???.st"'
 listed '"s*"'
 listed '"src", "src/main.st", "./src/lib/../main.st"'
+listed '"**/src/**/lib/*", "src/m*"'
+# Many stars cost no more than few.
+stars=$(printf '*a%.0s' $(seq 40))
+folders=$(printf '**/a/%.0s' $(seq 30))
+deep=plant/src/$(printf 'a/%.0s' $(seq 40))
+mkdir -p "$deep"
+touch "$deep/$(printf 'a%.0s' $(seq 200)).st"
+printf 'sources = ["src/%s%sb.st"]\n' "$folders" "$stars" >plant/stc.toml
+expect 7 timeout 20 "$bin/stc" check plant
+said 'names no source'
+rm -r plant/src/a
 refused() { # refused LINE:COLUMN TEXT: the file is on standard input
   toml
   expect 7 stc check plant

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "tools/common/files.h"
+#include "tools/common/pattern.h"
 #include "tools/stc/importer.h"
 
 namespace stc {
@@ -31,30 +32,20 @@ base::Result<Files> files_below(const std::string& folder,
   return found;
 }
 
-// One name of a path: `*` and `?` know no folders.
-bool name_matches(std::string_view pattern, std::string_view name) {
-  if (pattern.empty()) return name.empty();
-  if (pattern[0] == '*') {
-    return name_matches(pattern.substr(1), name) ||
-           (!name.empty() && name_matches(pattern, name.substr(1)));
-  }
-  const bool first = !name.empty() && (pattern[0] == '?' || pattern[0] == name[0]);
-  return first && name_matches(pattern.substr(1), name.substr(1));
+using Parts = std::vector<std::string>;
+Parts parts_of(const fs::path& path) {
+  Parts out;
+  for (const fs::path& part : path) out.push_back(part.string());
+  return out;
 }
 
-// A whole path, or a folder above it: what a pattern names counts with all that is below.
-using Parts = fs::path::const_iterator;
-bool path_matches(Parts pattern, Parts pattern_end, Parts path, Parts path_end) {
-  if (pattern == pattern_end) return true;
-  if (*pattern == "**") {
-    if (std::next(pattern) == pattern_end) return true;
-    for (Parts at = path; at != path_end; ++at) {
-      if (path_matches(std::next(pattern), pattern_end, at, path_end)) return true;
-    }
-    return false;
-  }
-  return path != path_end && name_matches(pattern->string(), path->string()) &&
-         path_matches(std::next(pattern), pattern_end, std::next(path), path_end);
+// `*` and `?` know no folders, `**` stands for any. What a pattern names counts with all below it.
+bool path_matches(const Parts& pattern, const Parts& path) {
+  return tools::matches_parts(
+      pattern, path, [](const std::string& part) { return part == "**"; },
+      [](const std::string& part, const std::string& name) {
+        return tools::matches_file(part, name);
+      });
 }
 
 bool has_wildcard(const std::string& text) { return text.find_first_of("*?") != std::string::npos; }
@@ -74,11 +65,12 @@ base::Result<Files> matching_files(const fs::path& folder, const std::string& el
   const fs::path fixed = fixed_folder(pattern);
   const std::string top = (folder / fixed).string();
   if (!tools::is_folder(top)) return Files();
-  const fs::path rest = pattern.lexically_relative(fixed.empty() ? "." : fixed);
+  Parts rest = parts_of(pattern.lexically_relative(fixed.empty() ? "." : fixed));
+  rest.push_back("**");
   return files_below(top, [&](const std::string& path) {
     const fs::path below = fs::path(path).lexically_relative(top);
     return (is_source_name(path) || is_importable(path)) &&
-           path_matches(rest.begin(), rest.end(), below.begin(), below.end());
+           path_matches(rest, parts_of(below));
   });
 }
 

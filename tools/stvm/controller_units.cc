@@ -8,14 +8,37 @@
 namespace stvm {
 namespace {
 
-constexpr size_t kShownOfAnEdit = 200;  // POUs, types and variables, each
+// Of the POUs, types and variables of an edit, each: an edit is one message.
+constexpr size_t kShownRows = 200;
+constexpr size_t kShownBytes = vm::kMaxMessageBytes / 8;
+
+size_t text_bytes(const online_change::PouEdit& edit) { return edit.pou.size() + edit.what.size(); }
+size_t text_bytes(const online_change::TypeEdit& edit) { return edit.type.size(); }
+size_t text_bytes(const online_change::FateRow& row) {
+  return row.path.size() + row.old_type.size() + row.new_type.size() + row.reason.size();
+}
+
+// The first rows of one kind, until one does not fit any more.
+class FirstRows {
+ public:
+  template <class Row>
+  bool take(const Row& row) {
+    bytes_ += text_bytes(row);
+    return ++rows_ <= kShownRows && bytes_ <= kShownBytes;
+  }
+
+ private:
+  size_t rows_ = 0;
+  size_t bytes_ = 0;
+};
 
 template <class Row, class From>
 std::vector<Row> first_of(std::vector<From> all, uint64_t& count) {
   count = all.size();
   std::vector<Row> rows;
+  FirstRows first;
   for (From& row : all) {
-    if (rows.size() == kShownOfAnEdit) break;
+    if (!first.take(row)) break;
     rows.push_back({std::move(row)});
   }
   return rows;
@@ -45,11 +68,12 @@ TrialEdit ControllerService::describe(const ir::VerifiedImage& running,
   edit.to = next.digest();
   edit.pous = first_of<EditedPou>(online_change::pou_edits(before, after), edit.pou_count);
   edit.types = first_of<EditedType>(online_change::type_edits(before, after), edit.type_count);
+  FirstRows first;
   for (const online_change::FateRow& row : plan.fates) {
     // Who only moves is as it was.
     if (row.fate == Fate::kMoved || (row.fate == Fate::kKept && row.old_path.empty())) continue;
     ++edit.variable_count;
-    if (edit.variables.size() < kShownOfAnEdit) edit.variables.push_back({row});
+    if (first.take(row)) edit.variables.push_back({row});
   }
   return edit;
 }

@@ -1,6 +1,7 @@
 // The table of units (D8) and the edits on trial (D3), as a serving controller tells of them.
 #include <gtest/gtest.h>
 
+#include "base/limits.h"
 #include "tests/unit/store/plc.h"
 #include "tests/unit/store/sim_storage.h"
 #include "tools/stvm/units.h"
@@ -186,6 +187,24 @@ TEST(Units, D8_ARowFitsEightyColumns) {
   EXPECT_NE(text.find("00000000 before"), std::string::npos) << text;
   EXPECT_NE(text.find("01-01 00:00"), std::string::npos) << text;
   EXPECT_NE(text.find("a_function.."), std::string::npos) << text;
+}
+
+// The longest names that there are: an edit stays one message, and says how many there were.
+TEST(Edits, D3_AnEditWithLongNamesIsOneMessage) {
+  PumpPlc rig;
+  constexpr size_t kVariables = 300;
+  std::string variables;
+  for (size_t i = 0; i < kVariables; ++i) {
+    const std::string number = std::to_string(i);
+    const size_t left = base::kMaxIdentifier - 1 - number.size();
+    variables += "v" + number + std::string(left, 'x') + " : INT; ";
+  }
+  ASSERT_TRUE(rig.plc.change(pumps("2", variables.c_str())).ok());
+  const std::vector<TrialEdit> edits = edits_of(rig.plc);
+  ASSERT_EQ(edits.size(), 1u);
+  EXPECT_EQ(edits[0].variable_count, kVariables);
+  EXPECT_GT(edits[0].variables.size(), 50u);
+  EXPECT_LT(encode(EditPage{0, edits}).size(), vm::kMaxMessageBytes / 4);
 }
 
 TEST(Edits, D3_AnEditIsListedWithWhatItTouchesUntilItIsUndoneOrAccepted) {
