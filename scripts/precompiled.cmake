@@ -1,4 +1,4 @@
-# Parsing headers of the standard library is a third of a build. With STC_PRECOMPILED they are parsed
+# Parsing headers of the standard library is a quarter of a build. With STC_PRECOMPILED they are parsed
 # once for each way of compiling: what is shipped for speed, what is shipped small, and the tests.
 # No header of the project: what changes often would compile everything anew, and measured on 16
 # sources it saves nothing more. `make clang` compiles each source with what it includes itself.
