@@ -44,6 +44,9 @@ refused() { # refused LINE:COLUMN TEXT: the file is on standard input
 refused 1:12 '`src/\*.iecst` names no source' <<'T'
 sources = ["src/*.iecst"]
 T
+refused 1:12 '`src/\*/main.st` names no source' <<'T'
+sources = ["src/*/main.st"]
+T
 refused 2:3 '`srx` is not there; paths begin at the folder of this file' <<'T'
 sources = ["src",
   "srx"]

@@ -64,6 +64,7 @@ class Aborted : public ::testing::Test {
     EXPECT_EQ(now.change, "idle") << where;
     EXPECT_EQ(now.running, running_) << where;
     EXPECT_EQ(now.boots_next, running_) << where;
+    EXPECT_FALSE(plc_.store().tries(next_->digest())) << where << ": it is stored as on trial";
     EXPECT_NE(now.aborted.find(why), std::string::npos) << where << ": " << now.aborted;
     ASSERT_FALSE(journal().empty());
     EXPECT_EQ(journal().back().event, online_change::Event::kCancelled) << where;
