@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "base/digest_reader.h"
 #include "base/large_pages.h"
 #include "base/limits.h"
 #include "ir/bytecode/verify.h"
@@ -141,13 +142,6 @@ Plan read_plan(ByteReader& in) {
   return plan;
 }
 
-base::Digest read_digest(ByteReader& in) {
-  base::Digest digest{};
-  base::ByteSpan raw = in.raw(digest.size());
-  std::copy(raw.begin(), raw.end(), digest.begin());
-  return digest;
-}
-
 base::Error bad_format(const std::string& what) {
   return {base::Refusal::kBadFormat, "change package: " + what};
 }
@@ -161,7 +155,7 @@ base::Result<Parts> split(ByteReader& in) {
   uint64_t total = 0;
   for (size_t i = 0; i < kParts; ++i) {
     total += lengths[i] = in.u32();
-    stored[i] = read_digest(in);
+    stored[i] = base::read_digest(in);
   }
   if (total > base::kMaxImageBytes) {
     return base::Error{base::Refusal::kTooLarge, "change package of " + std::to_string(total) +
@@ -281,7 +275,7 @@ base::Result<Package> decode(base::ByteSpan bytes, base::ByteSpan base_image) {
   const auto& [layout, program, commands] = *parts;
   Package package;
   ByteReader plans(commands);
-  package.base = read_digest(plans);
+  package.base = base::read_digest(plans);
   package.forward = read_plan(plans);
   package.inverse = read_plan(plans);
   if (!plans.done()) return bad_format("has a damaged plan");

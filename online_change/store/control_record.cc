@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/digest_reader.h"
+
 namespace online_change {
 namespace {
 
@@ -27,15 +29,11 @@ base::Bytes encode(const ControlRecord& record) {
 std::optional<ControlRecord> decode_control(base::ByteSpan payload) {
   base::ByteReader in(payload);
   ControlRecord record;
-  auto digest = [&](base::Digest& out) {
-    base::ByteSpan bytes = in.raw(out.size());
-    std::copy(bytes.begin(), bytes.end(), out.begin());
-  };
-  digest(record.boots);
+  record.boots = base::read_digest(in);
   record.slot = in.u8();
   record.trial = in.boolean();
   record.tries_left = in.u8();
-  digest(record.trial_digest);
+  record.trial_digest = base::read_digest(in);
   record.trial_slot = other_of_two(record.slot);
   if (in.left() != 0) record.trial_slot = in.u8();
   if (in.left() != 0) record.resumes = in.boolean();

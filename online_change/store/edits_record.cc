@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <string_view>
 
+#include "base/digest_reader.h"
 #include "base/tool_limits.h"
 
 namespace online_change {
 namespace {
 
 constexpr size_t kLeastBytes = 2 * sizeof(base::Digest) + 48;  // of an edit
-
-void read_digest(base::ByteReader& in, base::Digest& out) {
-  const base::ByteSpan bytes = in.raw(out.size());
-  std::copy(bytes.begin(), bytes.end(), out.begin());
-}
 
 base::Bytes read_blob(base::ByteReader& in) {
   const base::ByteSpan bytes = in.blob();
@@ -61,8 +57,8 @@ std::optional<std::vector<StoredEdit>> decode_edits(base::ByteSpan payload) {
     edit.cycle = in.u64();
     edit.stage_flags = in.u32();
     edit.switch_flags = in.u32();
-    read_digest(in, edit.from);
-    read_digest(in, edit.to);
+    edit.from = base::read_digest(in);
+    edit.to = base::read_digest(in);
     edit.package = read_blob(in);
     edit.retained_cycle = in.u64();
     edit.retained = read_blob(in);

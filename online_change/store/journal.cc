@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "base/crc32c.h"
+#include "base/digest_reader.h"
 #include "online_change/store/record.h"
 
 namespace online_change {
@@ -37,11 +38,6 @@ void get_counts(base::ByteReader& in, FateCounts& counts) {
        {&counts.kept, &counts.moved, &counts.converted, &counts.initialised, &counts.dropped}) {
     *count = in.u64();
   }
-}
-
-void get_digest(base::ByteReader& in, base::Digest& out) {
-  base::ByteSpan bytes = in.raw(out.size());
-  std::copy(bytes.begin(), bytes.end(), out.begin());
 }
 
 }  // namespace
@@ -79,8 +75,8 @@ std::optional<JournalEntry> decode_entry(base::ByteSpan sector) {
   entry.sequence = in.u64();
   entry.time_ns = in.i64();
   entry.event = in.enumerator<Event>(std::size(kEventNames));
-  get_digest(in, entry.from);
-  get_digest(in, entry.to);
+  entry.from = base::read_digest(in);
+  entry.to = base::read_digest(in);
   get_counts(in, entry.counts);
   entry.predicted_ns = in.i64();
   entry.measured_ns = in.i64();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/crc32c.h"
+#include "base/digest_reader.h"
 #include "base/sha256.h"
 
 namespace online_change {
@@ -45,8 +46,7 @@ bool decode(base::ByteSpan sector, Header& out) {
   out.kind = static_cast<RecordKind>(in.u32());
   out.sequence = in.u64();
   out.length = in.u64();
-  base::ByteSpan hash = in.raw(out.hash.size());
-  std::copy(hash.begin(), hash.end(), out.hash.begin());
+  out.hash = base::read_digest(in);
   if (version == kInParts) out.first_length = in.u64();
   return true;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/digest_reader.h"
+
 namespace online_change {
 
 base::Bytes encode(const RetainRecord& record) {
@@ -18,8 +20,7 @@ uint64_t retain_record_bytes(uint64_t values) { return encode(RetainRecord{}).si
 std::optional<RetainRecord> decode_retain(base::ByteSpan payload) {
   base::ByteReader in(payload);
   RetainRecord record;
-  base::ByteSpan image = in.raw(record.image.size());
-  std::copy(image.begin(), image.end(), record.image.begin());
+  record.image = base::read_digest(in);
   record.trial = in.boolean();
   record.cycle = in.u64();
   base::ByteSpan values = in.blob();

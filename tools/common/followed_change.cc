@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/digest_reader.h"
+
 namespace tools {
 namespace {
 
@@ -42,9 +44,8 @@ base::Result<FollowedChange> decode_followed_change(base::ByteSpan bytes) {
   for (int64_t* time : {&change.saved_ns, &change.seen_ns, &change.built_ns, &change.packed_ns}) {
     *time = in.i64();
   }
-  const base::ByteSpan digest = in.raw(change.base.size());
+  change.base = base::read_digest(in);
   if (in.failed()) return not_understood("change");
-  std::copy(digest.begin(), digest.end(), change.base.begin());
   change.package = rest_of(in);
   return change;
 }
