@@ -46,7 +46,9 @@ sim::SimStorage good_disk() {
   base::Result<Package> package = make_package(image.encoded(), edited.encoded());
   base::check(package.ok(), "the sample can be changed");
   const uint64_t retained = booted->retained.size();
-  StoredEdit edit{.name = "E1", .who = "fuzz"};
+  StoredEdit edit;
+  edit.name = "E1";
+  edit.who = "fuzz";
   edit.from = image.digest();
   edit.to = edited.digest();
   edit.package = encode(*package);
