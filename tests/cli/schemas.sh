@@ -48,6 +48,11 @@ answers() {
   schema=$1 code=$2
   shift 2
   expect "$code" "$@" --format json
+  holds "$schema"
+}
+# holds SCHEMA: what the last command answered is what SCHEMA says
+holds() {
+  schema=$1
   python3 valid.py "$schemas/$schema.schema.json" >wrong 2>&1 || fail "$schema: $(cat wrong)"
   seen="$seen $schema"
 }
@@ -91,9 +96,11 @@ answers stvm-run 1 stvm run trap.st --virtual-time --scans 2
 expect 0 stvm run plant.img --virtual-time --scans 2 --record r.rec
 answers stvm-replay 0 stvm replay r.rec --print Main.n
 answers stvm-bench 0 stvm bench plant.img --scans 10
+# Whether this machine is good enough (0 or 1) differs from run to run on one that is loaded.
 code=0
 stvm doctor --seconds 1 --format json >out 2>err || code=$?
-answers stvm-doctor $code stvm doctor --seconds 1
+[ "$code" -le 1 ] || fail "stvm doctor: exit code $code"
+holds stvm-doctor
 
 serve plc plant.img
 at() { command=$1; shift; stvm "$command" --dir plc "$@"; }
