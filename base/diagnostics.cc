@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "base/check.h"
+#include "base/warning_policy.h"
 
 namespace base {
 
@@ -39,8 +40,14 @@ const DiagnosticRow& diagnostic_row(DiagnosticCode code) {
 uint32_t diagnostic_count() { return kRowCount; }
 
 void Diagnostics::add(Diagnostic diagnostic) {
-  uint32_t& count =
-      diagnostic_row(diagnostic.code).severity == Severity::kError ? error_count_ : warning_count_;
+  diagnostic.severity = diagnostic_row(diagnostic.code).severity;
+  if (diagnostic.severity == Severity::kError) ++hard_errors_;
+  if (policy_ != nullptr) {
+    const std::optional<Severity> graded = policy_->grade(diagnostic.code, diagnostic.span);
+    if (!graded) return;
+    diagnostic.severity = *graded;
+  }
+  uint32_t& count = counts_[static_cast<uint8_t>(diagnostic.severity)];
   ++count;
   if (count <= limit_) all_.push_back(std::move(diagnostic));
 }

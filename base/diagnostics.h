@@ -43,27 +43,36 @@ struct Diagnostic {
   std::string text;
   std::string fix;  // may be empty
   std::vector<DiagnosticNote> notes;
+  Severity severity = Severity::kError;  // add() says what it is
 };
 
-// Collects the messages of one compilation. Past `limit` errors further ones are
+class WarningPolicy;
+
+// Collects the messages of one compilation. Past `limit` errors (warnings, notes) further ones are
 // counted but not kept, so hostile input cannot exhaust memory.
 class Diagnostics {
  public:
   explicit Diagnostics(uint32_t limit = 200) : limit_(limit) {}
+  // Warnings are what the policy makes of them; it must outlive the messages' collection.
+  explicit Diagnostics(const WarningPolicy& policy) : policy_(&policy) {}
   void add(Diagnostic diagnostic);
   void add(DiagnosticCode code, SourceSpan span, std::string text, std::string fix = {});
-  bool has_errors() const { return error_count_ != 0; }
-  uint32_t error_count() const { return error_count_; }
-  uint32_t warning_count() const { return warning_count_; }
+  bool has_errors() const { return error_count() != 0; }
+  // Those that no policy has made errors: the program has no meaning.
+  bool has_hard_errors() const { return hard_errors_ != 0; }
+  uint32_t error_count() const { return counts_[0]; }
+  uint32_t warning_count() const { return counts_[1]; }
+  uint32_t note_count() const { return counts_[2]; }
   const std::vector<Diagnostic>& all() const { return all_; }
   // By file and position, each (code, position) once. Call before rendering.
   void sort();
 
  private:
   std::vector<Diagnostic> all_;
-  uint32_t limit_;
-  uint32_t error_count_ = 0;
-  uint32_t warning_count_ = 0;
+  uint32_t limit_ = 200;
+  const WarningPolicy* policy_ = nullptr;
+  uint32_t hard_errors_ = 0;
+  uint32_t counts_[3] = {};  // by Severity
 };
 
 enum class DiagnosticFormat : uint8_t { kText, kJson, kSarif, kGithub };

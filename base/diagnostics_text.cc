@@ -25,12 +25,12 @@ class TextWriter {
   void write(const Diagnostic& diagnostic) {
     const DiagnosticRow& row = diagnostic_row(diagnostic.code);
     place(diagnostic.span);
-    std::string label(severity_name(row.severity));
-    paint(severity_colour(row.severity), label + '[' + std::string(row.code) + ']');
+    std::string label(severity_name(diagnostic.severity));
+    paint(severity_colour(diagnostic.severity), label + '[' + std::string(row.code) + ']');
     out_ += ": ";
     paint(kBold, printable(diagnostic.text));
     out_ += '\n';
-    snippet(diagnostic.span, severity_colour(row.severity));
+    snippet(diagnostic.span, severity_colour(diagnostic.severity));
     for (const DiagnosticNote& note : diagnostic.notes) {
       place(note.span);
       paint(kBlue, "note");
@@ -43,11 +43,12 @@ class TextWriter {
     out_ += ": " + printable(diagnostic.fix) + '\n';
   }
 
-  void summary(uint32_t errors, uint32_t warnings, size_t shown) {
-    if (errors + warnings == 0) return;
+  void summary(uint32_t errors, uint32_t warnings, uint32_t notes, size_t shown) {
+    if (errors + warnings + notes == 0) return;
     out_ += counted(errors, "error");
     if (warnings != 0) out_ += ", " + counted(warnings, "warning");
-    if (shown < static_cast<size_t>(errors) + warnings) {
+    if (notes != 0) out_ += ", " + counted(notes, "note");
+    if (shown < static_cast<size_t>(errors) + warnings + notes) {
       out_ += " (" + std::to_string(shown) + " shown)";
     }
     out_ += '\n';
@@ -129,7 +130,8 @@ class TextWriter {
 std::string render_text(const Diagnostics& diagnostics, const SourceMap& sources, bool colour) {
   TextWriter writer(sources, colour);
   for (const Diagnostic& diagnostic : diagnostics.all()) writer.write(diagnostic);
-  writer.summary(diagnostics.error_count(), diagnostics.warning_count(), diagnostics.all().size());
+  writer.summary(diagnostics.error_count(), diagnostics.warning_count(), diagnostics.note_count(),
+                 diagnostics.all().size());
   return writer.take();
 }
 

@@ -25,7 +25,7 @@ std::string json_place(const Region& region) {
 std::string json_entry(const Diagnostic& diagnostic, const SourceMap& sources) {
   const DiagnosticRow& row = diagnostic_row(diagnostic.code);
   std::string out = "{\"code\":" + json_string(row.code) +
-                    ",\"severity\":" + json_string(severity_name(row.severity)) +
+                    ",\"severity\":" + json_string(severity_name(diagnostic.severity)) +
                     ",\"message\":" + json_string(diagnostic.text);
   if (!diagnostic.fix.empty()) out += ",\"fix\":" + json_string(diagnostic.fix);
   out += ',' + json_place(region_of(sources, diagnostic.span)) + ",\"notes\":[";
@@ -167,7 +167,7 @@ class SarifWriter {
     std::string text = diagnostic.text;
     if (!diagnostic.fix.empty()) text += " (" + diagnostic.fix + ')';
     std::string out =
-        head(row.code, rule_index(diagnostic.code), severity_name(row.severity), text);
+        head(row.code, rule_index(diagnostic.code), severity_name(diagnostic.severity), text);
     const Region region = region_of(sources_, diagnostic.span);
     if (region.line != 0) {
       out += ",\"locations\":[{" + location(region) + "}]";
@@ -240,7 +240,8 @@ std::string render_json(const Diagnostics& diagnostics, const SourceMap& sources
   if (run.refused != nullptr) out += separator + json_entry(*run.refused);
   const uint32_t errors = diagnostics.error_count() + (run.refused != nullptr ? 1 : 0);
   return out + "\n],\"errors\":" + std::to_string(errors) +
-         ",\"warnings\":" + std::to_string(diagnostics.warning_count()) + "}\n";
+         ",\"warnings\":" + std::to_string(diagnostics.warning_count()) +
+         ",\"notes\":" + std::to_string(diagnostics.note_count()) + "}\n";
 }
 
 std::string render_sarif(const Diagnostics& diagnostics, const SourceMap& sources,
@@ -253,7 +254,8 @@ std::string render_github(const Diagnostics& diagnostics, const SourceMap& sourc
   std::string out;
   for (const Diagnostic& diagnostic : diagnostics.all()) {
     const DiagnosticRow& row = diagnostic_row(diagnostic.code);
-    out += github_line(row.code, severity_name(row.severity), region_of(sources, diagnostic.span),
+    out += github_line(row.code, severity_name(diagnostic.severity),
+                       region_of(sources, diagnostic.span),
                        with_help(diagnostic.text, diagnostic.fix));
   }
   if (run.refused == nullptr) return out;

@@ -79,7 +79,8 @@ ir::Program* Resident::compile(const base::SourceMap& sources, const CompileOpti
 }
 
 bool Resident::can_follow() const {
-  if (diagnostics_.all().size() != diagnostics_.warning_count()) return false;  // too many to keep
+  const size_t found = diagnostics_.warning_count() + diagnostics_.note_count();
+  if (diagnostics_.all().size() != found) return false;  // too many to keep
   if (!sema_->program.migrations.empty()) return false;
   const base::SourceMap& sources = parsed_->sources;
   for (uint32_t file = 0; file < parsed_->library_file; ++file) {

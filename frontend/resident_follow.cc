@@ -33,7 +33,8 @@ struct Declarations {
 
 bool is_unused_message(const base::Diagnostic& message) {
   return message.code == DiagnosticCode::kUnusedVariable ||
-         message.code == DiagnosticCode::kNeverWritten;
+         message.code == DiagnosticCode::kNeverWritten ||
+         message.code == DiagnosticCode::kResultNeverAssigned;
 }
 
 }  // namespace

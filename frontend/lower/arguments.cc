@@ -89,6 +89,27 @@ bool Body::bind_positional(const Expr& call, uint32_t count, const PouInfo& call
   return true;
 }
 
+// A call without names gives every input that has no initial value of its own.
+bool Body::check_given(const Expr& call, const PouInfo& callee,
+                       const std::vector<Binding>& bindings) {
+  if (call.list.count == 0 || !tree_.args[call.list.first].name.empty()) return true;
+  std::string missing;
+  for (VarId id : sema_.objects.variables_of(callee)) {
+    const Variable& variable = sema_.resolve(id);
+    if (variable.section != VarSection::kInput) continue;
+    if (variable.decl != nullptr && variable.decl->init.valid()) continue;
+    bool given = false;
+    for (const Binding& binding : bindings) given = given || binding.variable == id;
+    if (!given) missing += (missing.empty() ? "" : ", ") + quoted_name(variable.name);
+  }
+  if (missing.empty()) return true;
+  sema_.error(DiagnosticCode::kWrongArgumentCount, call.span,
+              "this call of " + quoted_name(callee.decl->name) + " leaves out " + missing,
+              "give every input, or name those that are given: `" +
+                  std::string(callee.decl->name.text) + "(name := value)`");
+  return false;
+}
+
 // In-outs have to be connected at every call: their slot keeps no meaning between calls.
 bool Body::check_in_outs(const Expr& call, const PouInfo& callee,
                          const std::vector<Binding>& bindings) {

@@ -70,7 +70,10 @@ void Body::run() {
   sema_.program.pous[info_.id.index] = std::move(out_);
 }
 
-void Body::leave() { go({}, 0); }
+void Body::leave() {
+  leave_loops();
+  go({}, 0);
+}
 
 // Of the POU's own text? The statements may be of a later one.
 bool Body::is_outside(base::SourcePos pos) const {

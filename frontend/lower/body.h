@@ -64,7 +64,9 @@ class Body {
   void assign_aggregate(const Target& target, ExprId value);
   void call_statement(const Stmt& stmt);
   ir::ValueId condition(ExprId expr);
-  void loop_body(Range32 body, ir::BlockId again, ir::BlockId exit);
+  bool loop_body(Range32 body, ir::BlockId again, ir::BlockId exit);
+  void leave_loops();
+  void check_end(ExprId condition, bool goes_on);
 
   // --- __TRY (try.cc)
   struct TryScope {    // of a body that the current statement stands in
@@ -237,6 +239,7 @@ class Body {
   bool bind_positional(const Expr& call, uint32_t count, const PouInfo& callee,
                        std::vector<Binding>& bindings);
   bool check_in_outs(const Expr& call, const PouInfo& callee, const std::vector<Binding>& bindings);
+  bool check_given(const Expr& call, const PouInfo& callee, const std::vector<Binding>& bindings);
   void evaluate_input(Binding& binding, bool keep);
   bool evaluate_in_out(Binding& binding);
   bool evaluate_read_only(Binding& binding);
@@ -258,6 +261,7 @@ class Body {
   void pass_defaults(const PouInfo& callee, const std::vector<Binding>& bindings);
   ir::ValueId emit_call(const Expr& expr, ir::TypeId own);
   ir::ValueId emit_call(const Expr& expr, const Callee& callee, ir::TypeId own);
+  void check_result_use(const Expr& call);
   void call_statement(ExprId id, const Callee& callee);
   ir::Place call_place(ExprId id, const Expr& expr);
   ir::Place call_place(const Expr& expr, const Callee& callee, ir::TypeId type);
@@ -343,6 +347,7 @@ class Body {
     ir::BlockId again;
     ir::BlockId exit;
     size_t tries;  // that are around it
+    bool left;     // by EXIT, RETURN or JMP in its body
   };
   struct LabelList {
     Labels labels;

@@ -245,7 +245,8 @@ Body::Result Body::call_function(const Expr& call, const Callee& callee, bool wa
   if (!method) info_.callees.push_back(callee.pou);
   std::vector<Binding> bindings;
   Result result;
-  bool good = bind_arguments(call, function, bindings) && check_in_outs(call, function, bindings);
+  bool good = bind_arguments(call, function, bindings) && check_in_outs(call, function, bindings) &&
+              check_given(call, function, bindings);
   if (!good) return result;
   Receiver receiver;
   if (method) {
@@ -271,6 +272,15 @@ Body::Result Body::call_function(const Expr& call, const Callee& callee, bool wa
   return result;
 }
 
+// Of a function that only computes.
+void Body::check_result_use(const Expr& call) {
+  for (uint32_t i = 0; i < call.list.count; ++i) {
+    if (tree_.args[call.list.first + i].output) return;  // ENO
+  }
+  sema_.warning(DiagnosticCode::kResultUnused, call.span, "nothing takes what this call gives",
+                "assign it: `x := ...`");
+}
+
 void Body::call_statement(ExprId id, const Callee& callee) {
   const Expr& call = tree_[id];
   switch (callee.kind) {
@@ -294,9 +304,11 @@ void Body::call_statement(ExprId id, const Callee& callee) {
       if (callee.row != nullptr && callee.row->rule == stdlib::FunctionRule::kSplit)
         return split(call, *callee.row);
       [[fallthrough]];
+    case Callee::Kind::kConversion:
+      check_result_use(call);
+      [[fallthrough]];
     case Callee::Kind::kBound:
-    case Callee::Kind::kReference:
-    case Callee::Kind::kConversion: {
+    case Callee::Kind::kReference: {
       const Note& note = sema_.infer(id);
       if (!note.type.valid()) return;
       if (types().is_scalar(note.type)) {

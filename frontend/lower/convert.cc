@@ -62,7 +62,7 @@ ir::ValueId Body::convert(Typed from, ir::TypeId to, base::SourceSpan span) {
       sema_.error(
           DiagnosticCode::kTypeMismatch, span,
           "`" + sema_.type_text(from.type) + "` does not go with `" + sema_.type_text(to) + "`",
-          "convert it explicitly, for example with TO_" + sema_.type_text(to));
+          sema_.conversion_fix(to));
       return zero(to);
     case Fit::kNarrowing:
       if (!sema_.allow_narrowing(from.type, to, span)) return zero(to);

@@ -38,7 +38,9 @@ void Body::jump(const Stmt& stmt) {
   const Name wanted = tree_.name(stmt.name);
   for (size_t i = labels_.size(); i-- > 0;) {
     auto found = labels_[i].labels.find(wanted.text);
-    if (found != labels_[i].labels.end()) return go(found->second, labels_[i].tries);
+    if (found == labels_[i].labels.end()) continue;
+    leave_loops();
+    return go(found->second, labels_[i].tries);
   }
   std::string name = "`" + std::string(wanted.text) + "`";
   for (const Stmt& other : tree_.stmts) {

@@ -94,11 +94,30 @@ void Body::if_statement(const Stmt& stmt) {
   build_.start(done);
 }
 
-void Body::loop_body(Range32 body, ir::BlockId again, ir::BlockId exit) {
-  loops_.push_back({again, exit, tries_.size()});
+// Returns whether anything in it leaves the loop.
+bool Body::loop_body(Range32 body, ir::BlockId again, ir::BlockId exit) {
+  loops_.push_back({again, exit, tries_.size(), false});
   statements(body);
+  const bool left = loops_.back().left;
   loops_.pop_back();
   if (build_.reachable()) build_.jump(again);
+  return left;
+}
+
+void Body::leave_loops() {
+  for (Loop& loop : loops_) loop.left = true;
+}
+
+// `goes_on`: the value of the condition with which there is another round.
+void Body::check_end(ExprId condition, bool goes_on) {
+  const Note& note = sema_.infer(condition);
+  if (!note.constant || !note.type.valid() || !traits_of(types(), note.type).boolean) return;
+  const auto value = sema_.fold(condition, elementary(ir::Kind::kBool));
+  if (!value || (value->integer != 0) != goes_on) return;
+  sema_.warning(DiagnosticCode::kEndlessLoop, tree_[condition].span,
+                std::string("this loop never ends: its condition is always ") +
+                    (goes_on ? "TRUE" : "FALSE") + ", and nothing in it leaves it",
+                "let the condition depend on what the loop changes, or leave it with EXIT");
 }
 
 void Body::while_statement(const Stmt& stmt) {
@@ -109,7 +128,7 @@ void Body::while_statement(const Stmt& stmt) {
   build_.start(head);
   build_.branch(condition(stmt.value), body, exit);
   build_.start(body);
-  loop_body(stmt.body, head, exit);
+  if (!loop_body(stmt.body, head, exit)) check_end(stmt.value, true);
   build_.start(exit);
 }
 
@@ -119,7 +138,7 @@ void Body::repeat_statement(const Stmt& stmt) {
   ir::BlockId exit = build_.new_block();
   build_.jump(body);
   build_.start(body);
-  loop_body(stmt.body, test, exit);
+  if (!loop_body(stmt.body, test, exit)) check_end(stmt.value, false);
   build_.start(test);
   build_.branch(condition(stmt.value), exit, body);
   build_.start(exit);
@@ -133,6 +152,7 @@ void Body::leave_loop(const Stmt& stmt) {
                 exit ? "RETURN leaves the POU" : "");
     return;
   }
+  if (exit) loops_.back().left = true;
   go(exit ? loops_.back().exit : loops_.back().again, loops_.back().tries);
 }
 

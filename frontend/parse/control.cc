@@ -44,8 +44,11 @@ void Parser::parse_if() {
   stmt.kind = StmtKind::kIf;
   size_t mark = branch_stack_.size();
   stmt.span = {{opening.begin}, parse_branch()};
+  bool else_if = false;  // in one line
   while (kind() == TokenKind::kElsif || kind() == TokenKind::kElse) {
     const Token token = take();
+    else_if =
+        else_if || (token.kind == TokenKind::kElse && kind() == TokenKind::kIf && !on_new_line());
     if (stmt.has_else) {
       note_only(Code::kUnexpectedEnd, token.span(),
                 describe(token) + " stands behind the ELSE of the same IF",
@@ -60,6 +63,11 @@ void Parser::parse_if() {
   }
   stmt.arms = move_tail(branch_stack_, mark, tree_.branches);
   add_statement(stmt);
+  if (else_if && kind() != TokenKind::kEndIf) {
+    return report_missing_end(
+        opening, TokenKind::kEndIf,
+        "write `ELSIF`: `ELSE IF` begins another IF with an END_IF of its own");
+  }
   close_statement(opening, TokenKind::kEndIf);
 }
 

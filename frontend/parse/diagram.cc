@@ -1,6 +1,7 @@
 #include "frontend/parse/diagram.h"
 
 #include "frontend/lex/characters.h"
+#include "frontend/network/suspicious.h"
 #include "ir/types/types.h"
 
 namespace frontend {
@@ -32,6 +33,7 @@ std::string without_blanks(const std::string& operand) {
 
 void Parser::Diagram::run(const network::Body& body) {
   check_wires(body);
+  network::report_suspicious(body, p_.diagnostics_);
   for (const network::Network& each : body.networks) network(each);
   if (kept_.vars.empty()) return;
   // The variables of a call are gone behind it; these live in the instance.
@@ -213,13 +215,13 @@ Parser::Diagram::Value Parser::Diagram::linked(const network::Input& input) {
     links.emplace_back(link.element, link.output);
   }
   if (links.size() == 1) {
-    out.expr = output(input.from[0]);
+    out.expr = output(input.from[0], span);
   } else if (!links.empty()) {
     ExprId& join = joins_[links];
     if (!join.valid()) {
-      ExprId value = output(input.from[0]);
+      ExprId value = output(input.from[0], span);
       for (size_t i = 1; i < input.from.size(); ++i) {
-        value = binary(BinaryOp::kOr, value, output(input.from[i]), span);
+        value = binary(BinaryOp::kOr, value, output(input.from[i], span), span);
         if (i % kHighest == 0) value = p_.copy_of(keep(value, span), span);
       }
       join = keep(value, span);
@@ -243,20 +245,21 @@ Parser::Diagram::Value Parser::Diagram::input(const network::Input& input) {
   return out;
 }
 
-ExprId Parser::Diagram::output(network::Link link) {
+// `span`: of the pin that takes it, which messages about its type point to.
+ExprId Parser::Diagram::output(network::Link link, base::SourceSpan span) {
   const Element& from = network_->elements[link.element];
   const network::Output& output = from.outputs[link.output];
   ExprId value;
   if (from.kind == Kind::kSource) {
     value = parse(from.operand);
   } else if (ExprId kept = outputs_[link.element][link.output].kept; kept.valid()) {
-    value = p_.copy_of(kept, from.span);
+    value = p_.copy_of(kept, span);
   } else if (from.kind == Kind::kBlock && !from.operand.empty()) {
-    value = member(parse(from.operand), output.name, from.span);
+    value = member(parse(from.operand), output.name, span);
   } else {
-    value = boolean(false, from.span);  // reported by the reader
+    value = boolean(false, span);  // reported by the reader
   }
-  return output.negated ? p_.negated(value, from.span) : value;
+  return output.negated ? p_.negated(value, span) : value;
 }
 
 // TRUE in the scan in which `value` rises or falls.

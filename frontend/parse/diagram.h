@@ -45,7 +45,7 @@ class Parser::Diagram {
   void jump(const Element& element);
   Value input(const network::Input& input);
   Value linked(const network::Input& input);
-  ExprId output(network::Link link);
+  ExprId output(network::Link link, base::SourceSpan span);
   ExprId edge(ExprId value, network::Modifier modifier, const std::string& of,
               base::SourceSpan span);
   Name memory(const std::string& of, network::Modifier modifier, base::SourceSpan span);

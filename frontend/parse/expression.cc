@@ -139,9 +139,23 @@ ExprId Parser::parse_primary() {
     report_here(Code::kExpectedExpression,
                 "a value belongs here, but " + describe(*current_) + " is a reserved word");
   } else {
-    report_here(Code::kExpectedExpression, "a value belongs here, found " + describe(*current_));
+    report_here(Code::kExpectedExpression, "a value belongs here, found " + describe(*current_),
+                step_fix());
   }
   return error_expression();
+}
+
+// The way out where `x++` or `x--` was written.
+std::string Parser::step_fix() const {
+  if (current_ - first_ < 3) return {};
+  const Token& second = current_[-1];
+  const Token& first = current_[-2];
+  const bool step = first.kind == second.kind && first.begin + 1 == second.begin &&
+                    (first.kind == TokenKind::kPlus || first.kind == TokenKind::kMinus);
+  const Token& variable = current_[-3];
+  if (!step || !is_name(variable.kind)) return {};
+  const std::string name(text(variable));
+  return "write `" + name + " := " + name + (first.kind == TokenKind::kPlus ? " + 1`" : " - 1`");
 }
 
 // `AND(a, b)`: the operators are functions too (IEC 61131-3 6.6.2.5).

@@ -6,6 +6,11 @@ namespace frontend {
 
 // Statements that begin with words which are names elsewhere; false when it is none of them.
 bool Parser::parse_soft_statement() {
+  if (kind() == TokenKind::kJump && is_keyword(next_kind())) {
+    take();
+    reject_label();
+    return true;
+  }
   if (!is_name(kind())) return false;
   if (kind() == TokenKind::kTry) {
     parse_try();
@@ -20,6 +25,14 @@ bool Parser::parse_soft_statement() {
     return false;
   }
   return true;
+}
+
+// A label, or where a jump goes to, is a reserved word.
+void Parser::reject_label() {
+  parse_name("label");
+  take();
+  if (!accept(TokenKind::kColon)) accept(TokenKind::kSemicolon);
+  panic_ = false;
 }
 
 void Parser::parse_label() {

@@ -67,7 +67,8 @@ class Parser {
   void report(Code code, base::SourceSpan span, std::string text, std::string fix = {});
   void note_only(Code code, base::SourceSpan span, std::string text, std::string fix = {});
   void report_here(Code code, std::string text, std::string fix = {});
-  void report_missing_end(const Token& opening, TokenKind end);
+  void report_missing_end(const Token& opening, TokenKind end, std::string fix = {});
+  bool has_open_string(const Token& opening) const;
   void report_problem(const LiteralProblem& problem, const Token& token);
   void report_missing_semicolon(const char* what);
   bool swallowed_by_string() const;
@@ -112,6 +113,7 @@ class Parser {
   ExprId parse_global_name();
   ExprId parse_type_argument();
   bool at_type_argument() const;
+  std::string step_fix() const;
   ExprId parse_operator_call();
   ExprId error_expression();
   ExprId add_expression(const Expr& expr);
@@ -176,6 +178,7 @@ class Parser {
 
   // --- jump.cc
   bool parse_soft_statement();
+  void reject_label();
   void parse_label();
   void parse_jump_to_label();
   void parse_try();

@@ -29,17 +29,29 @@ void Parser::report_here(Code code, std::string text, std::string fix) {
   report(code, current_->span(), std::move(text), std::move(fix));
 }
 
+// A string without its closing quote has swallowed the rest of its line, and the end with it.
+bool Parser::has_open_string(const Token& opening) const {
+  for (const base::Diagnostic& message : diagnostics_.all()) {
+    const base::SourcePos at = message.span.begin;
+    if (message.code != Code::kUnterminatedString) continue;
+    if (at.offset > opening.begin && at.offset < current_->begin) return true;
+  }
+  return false;
+}
+
 // At the opening keyword, whose place is certain; where the end was missed is a note.
-void Parser::report_missing_end(const Token& opening, TokenKind end) {
+void Parser::report_missing_end(const Token& opening, TokenKind end, std::string fix) {
   std::string closing(token_text(end));
+  if (fix.empty()) fix = "write `" + closing + "` behind the last line that belongs to it";
   base::Diagnostic diagnostic{Code::kMissingEnd,
                               opening.span(),
                               describe(opening) + " has no `" + closing + '`',
-                              "write `" + closing + "` behind the last line that belongs to it",
+                              std::move(fix),
                               {}};
   diagnostic.notes.push_back(
       {current_->span(), '`' + closing + "` was expected before " + describe(*current_)});
-  if (!panic_ && !swallowed_by_comment()) diagnostics_.add(std::move(diagnostic));
+  if (panic_ || swallowed_by_comment() || has_open_string(opening)) return;
+  diagnostics_.add(std::move(diagnostic));
 }
 
 void Parser::report_problem(const LiteralProblem& problem, const Token& token) {

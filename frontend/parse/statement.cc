@@ -77,9 +77,9 @@ void Parser::parse_statement() {
     case TokenKind::kRepeat:
       return parse_repeat_loop();
     case TokenKind::kExit:
-      return parse_jump(StmtKind::kExit);
     case TokenKind::kReturn:
-      return parse_jump(StmtKind::kReturn);
+      if (next_kind() == TokenKind::kColon) return reject_label();
+      return parse_jump(kind() == TokenKind::kExit ? StmtKind::kExit : StmtKind::kReturn);
     default:
       break;
   }

@@ -23,6 +23,7 @@ struct Conversion {
   Bcd bcd = Bcd::kNone;  // binary coded decimals on that side
   ir::Kind from = ir::Kind::kBool;
   ir::Kind to = ir::Kind::kBool;
+  ir::TypeId enumeration;  // valid: to it, whose numbers are `to`
 };
 std::optional<Conversion> conversion_of_name(std::string_view name);
 // Elementary kinds and strings: does an explicit conversion exist?

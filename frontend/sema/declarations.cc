@@ -323,6 +323,22 @@ bool Sema::use_library(std::string_view name) {
   return true;
 }
 
+// Of functions and methods; prototypes have nobody who could assign.
+static void report_unassigned_results(Sema& sema) {
+  for (const PouInfo& pou : sema.pous) {
+    if (pou.library || pou.open || pou.made != MadeCode::kNone || !pou.result.valid()) continue;
+    const PouKind kind = pou.decl->kind;
+    if (kind != PouKind::kFunction && kind != PouKind::kMethod) continue;
+    const bool prototype =
+        pou.owner != kNoPou &&
+        (pou.decl->is_abstract || sema.pous[pou.owner].decl->kind == PouKind::kInterface);
+    if (prototype || sema.resolve(pou.result).written) continue;
+    sema.warning(DiagnosticCode::kResultNeverAssigned, pou.decl->name.span,
+                 "`" + std::string(pou.decl->name.text) + "` never assigns its result",
+                 "assign it: `" + std::string(pou.decl->name.text) + " := ...`");
+  }
+}
+
 // After errors much is unused that will not stay so.
 void Sema::report_unused() {
   // Values that stay what their type begins with. Retained ones may come from somewhere.
@@ -332,7 +348,8 @@ void Sema::report_unused() {
            program.types.is_scalar(variable.type) && !program.types.is_reference(variable.type) &&
            !program.types[variable.type].init.valid();
   };
-  if (diagnostics_.has_errors()) return;
+  if (diagnostics_.has_hard_errors()) return;
+  report_unassigned_results(*this);
   for (const Variable& variable : variables_) {
     bool private_section = variable.section == VarSection::kLocal ||
                            variable.section == VarSection::kTemp ||

@@ -65,7 +65,8 @@ std::optional<Constant> Folder::real_binary(const Expr& expr, double a, double b
       break;
     default:
       sema_.error(DiagnosticCode::kBadOperand, expr.span,
-                  std::string(operator_text(expr.binary)) + " is not defined for reals");
+                  std::string(operator_text(expr.binary)) + " is not defined for reals",
+                  "convert what it gives: TO_REAL(WORD#2#1010 AND WORD#2#1100)");
       return std::nullopt;
   }
   value = ir::with_nan_of(value, a, b);

@@ -104,6 +104,11 @@ Callee Sema::named_callee(const Expr& call, const Expr& head) {
     callee.conversion = *conversion;
     return callee;
   }
+  if (auto conversion = conversion_to_enumeration(name)) {
+    callee.kind = Callee::Kind::kConversion;
+    callee.conversion = *conversion;
+    return callee;
+  }
   if (Callee typed = typed_callee(name); typed.row != nullptr) return typed;
   if (auto reference = reference_call_of_name(name); reference != ReferenceCall::kNone) {
     callee.kind = Callee::Kind::kReference;

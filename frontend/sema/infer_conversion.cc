@@ -15,11 +15,35 @@ std::string kind_text(ir::Kind kind) {
 
 }  // namespace
 
+// TO_Mode, INT_TO_Mode: the literal of that number, as an implicit conversion takes it (W0001).
+std::optional<Conversion> Sema::conversion_to_enumeration(std::string_view name) {
+  constexpr std::string_view kTo = "TO_";
+  for (size_t at = 0; at + kTo.size() < name.size(); ++at) {
+    if (!ir::same_name(name.substr(at, kTo.size()), kTo)) continue;
+    Conversion out;
+    out.any_source = at == 0;
+    if (at != 0) {
+      const auto source = name[at - 1] == '_' ? kind_of_name(name.substr(0, at - 1)) : std::nullopt;
+      if (!source) continue;
+      out.from = *source;
+    }
+    const auto found = find_type(name.substr(at + kTo.size()));
+    if (!found || !is_enum(program.types, found->type)) continue;
+    out.enumeration = found->type;
+    out.to = program.types.root_kind(found->type);
+    return out;
+  }
+  return std::nullopt;
+}
+
 Note Sema::infer_conversion(const Expr& expr, const Conversion& conversion) {
   ExprId argument = conversion_argument(expr);
   if (!argument.valid()) {
     error(DiagnosticCode::kWrongArgumentCount, expr.span, "a conversion takes one argument");
     return {};
+  }
+  if (conversion.enumeration.valid()) {
+    allow_extension("a conversion to an enumeration", expr.span, "choose the literal with CASE");
   }
   Note note = infer(argument);
   if (!note.type.valid()) return {};
@@ -42,6 +66,7 @@ Note Sema::infer_conversion(const Expr& expr, const Conversion& conversion) {
   note.type = conversion.to == ir::Kind::kString    ? program.types.string(capacity)
               : conversion.to == ir::Kind::kWstring ? program.types.wstring(capacity)
                                                     : program.types.elementary(conversion.to);
+  if (conversion.enumeration.valid()) note.type = conversion.enumeration;
   bool rounds = source.real && !traits_of(program.types, note.type).real;
   note.can_trap = note.can_trap || rounds || conversion.bcd != Conversion::Bcd::kNone;
   return note;
@@ -72,6 +97,8 @@ bool Sema::check_conversion(const Expr& expr, const Conversion& conversion, ir::
   if (conversion.bcd == Conversion::Bcd::kFrom && !traits.bits && !literal) {
     wanted = "BYTE, WORD, DWORD or LWORD";
   }
+  const bool whole = traits.integer || traits.bits || traits.enumeration;
+  if (conversion.enumeration.valid() && !whole) wanted = "a whole number";
   if (conversion.bcd == Conversion::Bcd::kTo && !traits.integer) wanted = "an integer";
   // A literal text is a CHAR where one is wanted.
   bool character =

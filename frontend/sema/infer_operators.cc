@@ -1,8 +1,8 @@
 // Operators: what their operands have in common, and what comes out.
 #include <algorithm>
 
+#include "frontend/sema/operand_warnings.h"
 #include "frontend/sema/operators.h"
-#include "frontend/sema/sema.h"
 
 namespace frontend {
 namespace {
@@ -140,22 +140,18 @@ Note Sema::infer_binary(const Expr& expr) {
       }
       bool eager = expr.binary == BinaryOp::kAnd || expr.binary == BinaryOp::kOr;
       bool boolean = traits_of(program.types, right.type).boolean;
-      if (eager && boolean && right.can_trap) {
-        warning(DiagnosticCode::kRightOperandTraps, tree[expr.right].span,
-                "the right operand of " + std::string(operator_text(expr.binary)) +
-                    " is evaluated in any case and can trap",
-                expr.instruction                ? "jump over it with JMPCN"
-                : expr.binary == BinaryOp::kAnd ? "use AND_THEN"
-                                                : "use OR_ELSE");
-      }
+      if (eager && boolean && right.can_trap) check_right_operand(*this, expr);
       return infer_bitwise(expr.binary, left, right, expr.span);
     }
     case OperatorClass::kComparison:
-      check_real_equality(expr);
+      check_real_equality(*this, expr);
       return infer_comparison(expr.binary, left, right, expr.span);
     case OperatorClass::kArithmetic: {
       Note note = infer_arithmetic(expr.binary, left, right, expr.span);
       bool divides = expr.binary == BinaryOp::kDiv || expr.binary == BinaryOp::kMod;
+      if (divides && note.type.valid() && right.constant && !left.constant) {
+        check_divisor(*this, expr.right);
+      }
       if (divides && !right.constant && note.type.valid() &&
           !traits_of(program.types, note.type).real) {
         note.can_trap = true;
@@ -164,27 +160,6 @@ Note Sema::infer_binary(const Expr& expr) {
     }
   }
   return {};
-}
-
-// Zero is exact, and comparing with it is how divisors are tested.
-void Sema::check_real_equality(const Expr& expr) {
-  if (expr.binary != BinaryOp::kEq && expr.binary != BinaryOp::kNe) return;
-  bool real = false;
-  bool constant = true;
-  for (ExprId side : {expr.operand, expr.right}) {
-    const Note& note = infer(side);
-    constant = constant && note.constant;
-    real = real || (traits_of(program.types, note.type).real && note.flex == Flex::kNone);
-    if (!note.constant || !note.type.valid()) continue;
-    const Expr& literal = tree[side];
-    if (literal.kind != ExprKind::kLiteral) continue;
-    const Literal& value = tree.literals[literal.number];
-    if (value.integer == 0 && value.real == 0) return;
-  }
-  if (!real || constant) return;
-  warning(DiagnosticCode::kRealEquality, expr.span,
-          "reals are compared with " + std::string(operator_text(expr.binary)),
-          "compare the distance: ABS(a - b) < limit");
 }
 
 Note Sema::infer_bitwise(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span) {

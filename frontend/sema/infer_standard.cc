@@ -8,6 +8,25 @@ namespace frontend {
 
 using stdlib::FunctionRule;
 
+namespace {
+
+// In a diagram: power at an operand of a box for numbers is meant for EN.
+bool takes_power(Sema& sema, const Expr& expr, const stdlib::FunctionRow& row,
+                 const std::vector<ExprId>& args) {
+  const bool numbers = row.rule == FunctionRule::kCompare ||
+                       row.rule == FunctionRule::kArithmetic || row.rule == FunctionRule::kExtreme;
+  if (!numbers || args.size() < 2 || !args[0].valid() || !args[1].valid()) return false;
+  const bool power = sema.tree[args[0]].kind == ExprKind::kResult &&
+                     traits_of(sema.program.types, sema.infer(args[0]).type).boolean;
+  if (!power || !traits_of(sema.program.types, sema.infer(args[1]).type).number()) return false;
+  sema.error(DiagnosticCode::kOperandsDiffer, expr.span,
+             "power, which is `BOOL`, arrives at an operand of " + std::string(row.name),
+             "let it arrive at EN: " + std::string(row.name) + "(EN:=_, ...)");
+  return true;
+}
+
+}  // namespace
+
 BinaryOp standard_operator(stdlib::FunctionId id) {
   switch (id) {
     case stdlib::FunctionId::kAdd:
@@ -57,7 +76,7 @@ Note Sema::infer_standard(const Expr& expr, const Callee& callee) {
     all.can_trap = all.can_trap || note.can_trap;
     all.known = std::min(all.known, note.known);
   }
-  if (!takes_typed(callee, args)) return {};
+  if (!takes_typed(callee, args) || takes_power(*this, expr, row, args)) return {};
   Note note = infer_rule(expr, row, args);
   if (callee.typed.valid() && note.type.valid() && row.rule != FunctionRule::kCompare) {
     note.type = callee.typed;

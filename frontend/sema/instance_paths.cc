@@ -4,6 +4,30 @@
 
 namespace frontend {
 
+namespace {
+
+// %IW0 for an INT; arrays and structures begin at a byte.
+std::string example_address(const ir::DirectAddress& open) {
+  const char area = open.area == ir::DirectArea::kInput    ? 'I'
+                    : open.area == ir::DirectArea::kOutput ? 'Q'
+                                                           : 'M';
+  std::string out = std::string("%") + area;
+  switch (open.bit_size) {
+    case 1:
+      return out + "X0.0";
+    case 16:
+      return out + "W0";
+    case 32:
+      return out + "D0";
+    case 64:
+      return out + "L0";
+    default:
+      return out + "B0";
+  }
+}
+
+}  // namespace
+
 // Where a path leads: `steps` are numbers of members and elements.
 struct InstancePaths::Path {
   std::string text;  // "" while only the resource was named
@@ -291,7 +315,8 @@ void InstancePaths::check_members(ir::TypeId type, const std::string& prefix, ba
     if (variable.valid()) here = sema_.resolve(variable).name.span;
     if (open && !known.contains(ir::fold_name(path))) {
       sema_.error(DiagnosticCode::kOpenAddress, here, "`" + path + "` has no address yet",
-                  "add VAR_CONFIG " + path + " AT %IX0.0 : type; END_VAR");
+                  "add VAR_CONFIG " + path + " AT " + example_address(members[i].address) + " : " +
+                      sema_.type_text(members[i].type) + "; END_VAR");
     }
     if (inside) check_part(members[i].type, path, here, known);
   }

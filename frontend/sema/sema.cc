@@ -91,10 +91,18 @@ void Sema::allow_extension(std::string_view what, base::SourceSpan span, std::st
         std::move(fix));
 }
 
+// A conversion that exists: ranges are checked wherever a value gets into one.
+std::string Sema::conversion_fix(ir::TypeId to) const {
+  const bool enumeration = is_enum(program.types, to);
+  if (enumeration && options.dialect == Dialect::kIec) return "choose the literal with CASE";
+  const ir::TypeId type = enumeration ? to : without_range(program.types, to);
+  return "convert it explicitly, for example with TO_" + type_text(type);
+}
+
 bool Sema::allow_narrowing(ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
   std::string text =
       "`" + type_text(from) + "` does not fit into `" + type_text(to) + "` without loss";
-  std::string fix = "say it explicitly, for example with TO_" + type_text(to);
+  const std::string fix = conversion_fix(to);
   if (options.dialect == Dialect::kIec) {
     error(DiagnosticCode::kTypeMismatch, span, text, fix);
     return false;

@@ -89,8 +89,7 @@ class Sema {
   std::vector<ExprId> standard_arguments(const Expr& call, const stdlib::FunctionRow& row);
   // Is this the implicit EN or ENO of the callee (null: a standard function)?
   bool is_enable(const Arg& arg, const PouInfo* callee) const;
-  // The one argument of a conversion; invalid when there is not just one.
-  ExprId conversion_argument(const Expr& call) const;
+  ExprId conversion_argument(const Expr& call) const;  // invalid when there is not just one
   // Type in which all arguments meet.
   Note infer_common(const std::vector<ExprId>& args) { return unify_arguments(args, 0); }
   // Type of the operands of a binary operator that have to agree.
@@ -131,6 +130,7 @@ class Sema {
   void error(DiagnosticCode code, base::SourceSpan span, std::string text, Fix fix = {});
   void warning(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix = {});
   // Reports an implicit conversion that may lose; false when the dialect forbids it.
+  std::string conversion_fix(ir::TypeId to) const;
   bool allow_narrowing(ir::TypeId from, ir::TypeId to, base::SourceSpan span);
   // Reports what only real sources have where the dialect is the standard's own.
   void allow_extension(std::string_view what, base::SourceSpan span, std::string fix = {});
@@ -316,9 +316,9 @@ class Sema {
   bool takes(std::string_view wanted, const Note& argument) const;
   Note infer_string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
   Note infer_conversion(const Expr& expr, const Conversion& conversion);
+  std::optional<Conversion> conversion_to_enumeration(std::string_view name);
   bool check_conversion(const Expr& expr, const Conversion& conversion, ir::Kind from,
                         const Note& argument);
-  void check_real_equality(const Expr& expr);
   Note infer_arithmetic(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span);
   Note infer_time_arithmetic(BinaryOp op, const Note& left, const Note& right,
                              base::SourceSpan span);

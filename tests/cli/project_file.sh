@@ -72,10 +72,10 @@ cd "$work"
 rm -f plant/src/lib/out plant/src/lib/err
 printf '[change]\nstrategy = "standby"\nrestricted = true\n' >>plant/stc.toml
 serve line whole.img
-sed -i 's/VAR_INPUT n : INT;/VAR_INPUT n : INT; more : INT;/' plant/src/lib/double.st
+sed -i 's/VAR_INPUT n : INT;/VAR_INPUT n : INT; more : INT := 0;/' plant/src/lib/double.st
 expect 7 stvm change --dir line plant/src --yes
 said 'R0307'
-sed -i 's/ more : INT;//; s/n + n/2 * n/' plant/src/lib/double.st
+sed -i 's/ more : INT := 0;//; s/n + n/2 * n/' plant/src/lib/double.st
 expect 0 stvm change --dir line plant/src --yes --permanent
 expect 0 stvm stop --dir line
 

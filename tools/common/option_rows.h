@@ -23,9 +23,16 @@ inline constexpr OptionRow kNameOption{"--name", "NAME",
                                        "name of the program, instead of the folder's or file's"};
 inline constexpr OptionRow kJobsOption{
     "--jobs|-j", "N", "threads at most (default: one per core); the result is the same"};
+inline constexpr OptionRow kWarnOption{"--warn|-W",
+                                       "WHAT",
+                                       "error: warnings are errors; CODE=LEVEL, such as W0003=off: "
+                                       "error, warning, note or off; repeatable",
+                                       "",
+                                       "",
+                                       Times::kMany};
 #define TOOLS_COMPILE_OPTIONS                                                              \
   tools::kDialectOption, tools::kResourceOption, tools::kDefineOption, tools::kNameOption, \
-      tools::kJobsOption
+      tools::kJobsOption, tools::kWarnOption
 // Those of the compile options that were given, as "--name=value".
 std::vector<std::string> given_compile_options(const Options& options);
 

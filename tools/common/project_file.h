@@ -28,6 +28,7 @@ std::span<const ProjectKey> project_keys();
 
 inline constexpr std::string_view kProjectFile = "stc.toml";
 inline constexpr std::string_view kDeviceTables = "devices.";
+inline constexpr std::string_view kWarningTable = "warnings.";
 
 struct ProjectFile {
   std::string path;
@@ -49,6 +50,9 @@ struct ProjectFile {
 base::Result<ProjectFile> read_project_file(const std::string& path);
 // The same for unknown keys and wrong values; tables [devices.NAME] are not looked into.
 base::Result<ProjectFile> read_checked_project_file(const std::string& path);
+
+// Why `code` cannot have a level in [warnings] or behind --warn; "": it can.
+std::string warning_code_fault(std::string_view code);
 
 // The stc.toml that is nearest to `path`: in that folder, or that of the file, or above it; or "".
 std::string nearest_project_file(const std::string& path);

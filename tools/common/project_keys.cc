@@ -5,6 +5,7 @@
 #include "base/joined.h"
 #include "base/limits.h"
 #include "base/nearest_name.h"
+#include "base/warning_policy.h"
 #include "tools/common/options.h"
 #include "tools/common/project_file.h"
 
@@ -39,7 +40,9 @@ std::string known_keys(std::string_view table) {
     known += row.name.substr(table.size());
   }
   if (!table.empty()) {
-    return base::joined({"known in [", table.substr(0, table.size() - 1), "] are ", known});
+    const bool codes = table == kWarningTable;
+    return base::joined({"known in [", table.substr(0, table.size() - 1), "] are ", known,
+                         codes ? " and the codes of warnings" : ""});
   }
   return base::joined({"known are ", known, " and the tables [slack], [change], [outputs], ",
                        "[format] and [devices.NAME]"});
@@ -48,6 +51,10 @@ std::string known_keys(std::string_view table) {
 std::string unknown_key(std::string_view key) {
   base::NearestName nearest(key);
   for (const ProjectKey& row : kKeys) nearest.offer(row.name);
+  if (key.starts_with(kWarningTable)) {
+    const std::string code = base::nearest_warning(key.substr(kWarningTable.size()));
+    if (!code.empty()) nearest.offer(base::joined({kWarningTable, code}));
+  }
   const std::string_view table = is_table(table_of(key)) ? table_of(key) : std::string_view();
   if (!nearest.best().empty()) return base::joined({"unknown key `", key, "`", nearest.question()});
   return base::joined({"unknown key `", key, "`; ", known_keys(table)});
@@ -89,9 +96,26 @@ std::string fault(const ProjectKey& key, const TomlValue& value) {
   return {};
 }
 
+// [warnings] has the codes of warnings for keys, beside those of the table.
+base::Status check_warning(const std::string& file, std::string_view code, const TomlValue& value) {
+  const std::string wrong = warning_code_fault(code);
+  if (!wrong.empty()) return toml_error(file, value.line, value.column, wrong);
+  const ProjectKey row{code, KeyKind::kText, 0, 0, base::kWarningLevels, "", ""};
+  const std::string must_be = fault(row, value);
+  if (must_be.empty()) return base::Ok{};
+  return toml_error(file, value.place.line, value.place.column,
+                    base::joined({"`", code, "` must be ", must_be}));
+}
+
 base::Status check_key(const std::string& file, const std::string& name, const TomlValue& value) {
   const auto key = std::find_if(std::begin(kKeys), std::end(kKeys),
                                 [&](const ProjectKey& row) { return row.name == name; });
+  const std::string_view in_table = name.starts_with(kWarningTable)
+                                        ? std::string_view(name).substr(kWarningTable.size())
+                                        : std::string_view();
+  if (key == std::end(kKeys) && base::diagnostic_code(in_table)) {
+    return check_warning(file, in_table, value);
+  }
   if (key == std::end(kKeys)) return toml_error(file, value.line, value.column, unknown_key(name));
   const std::string must_be = fault(*key, value);
   if (must_be.empty()) return base::Ok{};
@@ -102,6 +126,18 @@ base::Status check_key(const std::string& file, const std::string& name, const T
 }  // namespace
 
 std::span<const ProjectKey> project_keys() { return kKeys; }
+
+std::string warning_code_fault(std::string_view code) {
+  const auto known = base::diagnostic_code(code);
+  if (!known) {
+    const std::string nearest = base::nearest_warning(code);
+    return base::joined({"`", code, "` is no code of a warning",
+                         nearest.empty() ? "" : "; did you mean `", nearest,
+                         nearest.empty() ? "" : "`?"});
+  }
+  if (base::diagnostic_row(*known).severity != base::Severity::kError) return {};
+  return base::joined({"`", code, "` is an error; only warnings and notes have a level"});
+}
 
 base::Result<ProjectFile> read_checked_project_file(const std::string& path) {
   base::Result<ProjectFile> file = read_project_file(path);

@@ -158,7 +158,7 @@ std::string refusal_json(const base::Error& error) {
     json.field("endColumn", std::max(what.end_column, what.column + 1));
   }
   json.key("notes").begin_array().end_array().end_object().end_array();
-  json.field("errors", 1).field("warnings", 0).end_object();
+  json.field("errors", 1).field("warnings", 0).field("notes", 0).end_object();
   return json.finish();
 }
 

@@ -15,11 +15,11 @@
 
 namespace stc {
 
-namespace {
-
 base::Error source_errors(const base::Diagnostics& diagnostics) {
   return {base::Refusal::kSourceErrors, std::to_string(diagnostics.error_count()) + " error(s)"};
 }
+
+namespace {
 
 // Without the POUs in `left_out`, by PouId.
 base::Result<Compiled> to_objects(ir::Program program, const Project& project,
@@ -138,6 +138,7 @@ base::Result<Version> build(const Project& project, const BuildOptions& options,
                     "RESOURCE `" + versions->front().resource + "` is taken, `" + other.resource +
                         "` is left out",
                     "say which one is meant: --resource NAME");
+    if (diagnostics.has_errors()) return source_errors(diagnostics);
   }
   return std::move(versions->front().version);
 }

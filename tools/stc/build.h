@@ -20,6 +20,9 @@ struct Compiled {
   std::vector<ir::Object> objects;  // of its POUs; of several resources, those that it can reach
 };
 
+// kSourceErrors, with their number.
+base::Error source_errors(const base::Diagnostics& diagnostics);
+
 // kSourceErrors when `diagnostics` got errors; they are the message.
 base::Result<Compiled> compile(const Project& project, base::Diagnostics& diagnostics);
 

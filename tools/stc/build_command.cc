@@ -41,7 +41,7 @@ int run(const tools::Options& options) {
   }
   base::Result<Project> project = open_project(options, options.arguments());
   if (!project.ok()) return tools::refuse("stc", project.error());
-  base::Diagnostics diagnostics;
+  base::Diagnostics diagnostics = diagnostics_of(*project);
   auto versions = build_resources(*project, build_options, diagnostics);
   if (!versions.ok()) return finish(*project, diagnostics, *format, versions.error());
   if (versions->size() > 1 && base_image) {

@@ -15,7 +15,7 @@ int run(const tools::Options& options) {
   if (!format.ok()) return tools::refuse("stc", format.error());
   base::Result<Project> project = open_project(options, options.arguments());
   if (!project.ok()) return tools::refuse("stc", project.error());
-  base::Diagnostics diagnostics;
+  base::Diagnostics diagnostics = diagnostics_of(*project);
   // Linking too: recursion and memory limits are findings of a check.
   auto versions = build_resources(*project, {}, diagnostics);
   return finish(*project, diagnostics, *format,

@@ -176,7 +176,7 @@ base::Status draw(const tools::Options& options) {
   base::Result<Project> project = open_project(options, chosen.paths);
   if (!project.ok()) return project.error();
   frontend::Tree tree;
-  base::Diagnostics diagnostics;
+  base::Diagnostics diagnostics = diagnostics_of(*project);
   frontend::parse_all(project->sources, project->compile, tree, diagnostics);
   report(*project, diagnostics, base::DiagnosticFormat::kText);
   if (diagnostics.has_errors()) {

@@ -1,16 +1,16 @@
 // stc dump: what each phase made, as text.
 #include <cstdio>
 
+#include "base/visible_text.h"
 #include "frontend/compile.h"
 #include "frontend/lex/lexer.h"
 #include "frontend/parse/tree.h"
 #include "ir/bytecode/symbols.h"
 #include "ir/bytecode/verify.h"
 #include "ir/program/text.h"
-#include "tools/stc/commands.h"
-#include "base/visible_text.h"
 #include "tools/common/files.h"
 #include "tools/common/source_command.h"
+#include "tools/stc/commands.h"
 #include "tools/stc/image_text.h"
 #include "tools/stc/package_text.h"
 #include "tools/stc/session.h"
@@ -60,7 +60,7 @@ std::string tree_text(const Project& project, base::Diagnostics& diagnostics) {
 base::Result<std::string> dump_sources(const tools::Options& options) {
   base::Result<Project> project = open_project(options, options.arguments());
   if (!project.ok()) return project.error();
-  base::Diagnostics diagnostics;
+  base::Diagnostics diagnostics = diagnostics_of(*project);
   if (options.has("--tokens") || options.has("--tree")) {
     std::string out = options.has("--tokens") ? tokens_text(*project, diagnostics)
                                               : tree_text(*project, diagnostics);
@@ -151,8 +151,7 @@ int run(const tools::Options& options) {
                                  "dump: an image has no tokens, tree, ir or objects any more"});
   }
   bool wants_image = image_given || options.has("--code") || options.has("--native") ||
-                     options.has("--image") || options.has("--symbols") ||
-                     options.has("--sources");
+                     options.has("--image") || options.has("--symbols") || options.has("--sources");
   base::Result<std::string> out = wants_image ? dump_image(options) : dump_sources(options);
   if (!out.ok()) return tools::refuse("stc", out.error());
   std::fputs(out->c_str(), stdout);

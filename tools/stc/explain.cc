@@ -8,6 +8,7 @@
 #include "base/limits.h"
 #include "base/nearest_name.h"
 #include "base/result.h"
+#include "base/warning_policy.h"
 #include "frontend/dialect.h"
 #include "ir/bytecode/code.h"
 #include "ir/bytecode/devices.h"
@@ -206,12 +207,10 @@ std::optional<std::string> page_of(const std::string& what) {
     return what + ": " + base::refusal_title(*refusal) + "\n\n" + base::refusal_help(*refusal) +
            "\n";
   }
-  for (uint32_t i = 0; i < base::diagnostic_count(); ++i) {
-    const auto& row = base::diagnostic_row(static_cast<base::DiagnosticCode>(i));
-    if (what == row.code) {
-      return what + ": " + std::string(row.title) + " (" + severity_name(row.severity) + ")\n\n" +
-             std::string(row.help) + "\n";
-    }
+  if (const auto code = base::diagnostic_code(what)) {
+    const base::DiagnosticRow& row = base::diagnostic_row(*code);
+    return what + ": " + std::string(row.title) + " (" + severity_name(row.severity) + ")\n\n" +
+           std::string(row.help) + "\n";
   }
   for (uint32_t i = 0; i < ir::kTrapCount; ++i) {
     auto kind = static_cast<ir::TrapKind>(i);

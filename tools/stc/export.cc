@@ -58,7 +58,7 @@ base::Status write_document(const tools::Options& options, plcopen::Edition form
   if (!project.ok()) return project.error();
   base::Status free = refuse_to_overwrite(options, *project);
   if (!free.ok()) return free;
-  base::Diagnostics diagnostics;
+  base::Diagnostics diagnostics = diagnostics_of(*project);
   add_findings(diagnostics, project->imported, false);
   frontend::Tree tree;
   std::optional<std::string> text;

@@ -10,6 +10,7 @@
 #include "tools/stc/device_tables.h"
 #include "tools/stc/importer.h"
 #include "tools/stc/memory_budget.h"
+#include "tools/stc/warning_settings.h"
 
 namespace stc {
 namespace {
@@ -37,6 +38,7 @@ void apply_to_sources(const ProjectFile& file, Project& project) {
   }
   file.take<std::vector<std::string>>("defines", project.compile.defines);
   file.take<bool>("strict_strings", project.compile.strict_strings);
+  apply_warning_table(file, project.warnings);
   for (const auto& [key, member] : kSlackKeys) file.take<int64_t>(key, project.slack.*member);
 }
 

@@ -9,6 +9,7 @@
 #include "adapters/xml/imported.h"
 #include "base/result.h"
 #include "base/source.h"
+#include "base/warning_policy.h"
 #include "frontend/compile.h"
 #include "ir/opt/optimise.h"
 #include "linker/layout.h"
@@ -25,6 +26,8 @@ struct Project {
   std::vector<xml::Finding> imported;  // what was found in them; errors too
   xml::Kept kept;                      // of them, for an export
   frontend::CompileOptions compile;
+  base::WarningPolicy warnings;                    // what the sources silence is in it, too
+  std::vector<base::Diagnostic> warning_mistakes;  // in pragmas of them
   ir::PassSet passes = ir::PassSet::all();
   uint32_t jobs = 1;  // threads at most; nothing but the time depends on it
   linker::Slack slack;

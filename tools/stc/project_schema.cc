@@ -1,5 +1,6 @@
 #include "tools/stc/project_schema.h"
 
+#include "base/warning_policy.h"
 #include "ir/bytecode/devices.h"
 #include "tools/common/json.h"
 #include "tools/common/options.h"
@@ -77,6 +78,15 @@ void keys_json(std::string_view table, JsonWriter& json) {
   }
 }
 
+// [warnings] has the codes of warnings and notes for keys.
+void levels_json(JsonWriter& json) {
+  for (uint32_t i = 0; i < base::diagnostic_count(); ++i) {
+    const auto& row = base::diagnostic_row(static_cast<base::DiagnosticCode>(i));
+    if (row.severity == base::Severity::kError) continue;
+    key_json({row.code, KeyKind::kText, 0, 0, base::kWarningLevels, "", row.title}, row.code, json);
+  }
+}
+
 // A setting of a device may be written as a text or as what it is; drivers say which they know.
 void setting_json(const ir::SettingRow& row, JsonWriter& json) {
   json.key(row.key).begin_object().field("description", row.meaning);
@@ -137,6 +147,7 @@ std::string project_schema() {
     json.key(table.substr(0, table.size() - 1));
     begin_table(json);
     keys_json(table, json);
+    if (table == tools::kWarningTable) levels_json(json);
     end_table(json);
   }
   devices_json(json);

@@ -6,8 +6,10 @@
 #include <filesystem>
 
 #include "base/parallel.h"
+#include "frontend/warning_pragmas.h"
 #include "tools/common/terminal.h"
 #include "tools/stc/run_report.h"
+#include "tools/stc/warning_settings.h"
 
 namespace stc {
 namespace {
@@ -79,6 +81,10 @@ base::Result<Project> open_project(const tools::Options& options,
     project->name = options.text("--name");
     project->compile.name = project->name;
   }
+  if (auto warnings = apply_warning_options(options, project->warnings); !warnings.ok()) {
+    return warnings.error();
+  }
+  silence_warnings(*project);
   auto passes = passes_option(options);
   if (!passes.ok()) return passes.error();
   project->passes = *passes;
@@ -88,6 +94,17 @@ base::Result<Project> open_project(const tools::Options& options,
   if (!jobs.ok()) return jobs.error();
   project->jobs = *jobs;
   return project;
+}
+
+void silence_warnings(Project& project) {
+  project.warning_mistakes =
+      frontend::silence_warnings(project.sources, project.compile, project.warnings);
+}
+
+base::Diagnostics diagnostics_of(const Project& project) {
+  base::Diagnostics out(project.warnings);
+  for (const base::Diagnostic& mistake : project.warning_mistakes) out.add(mistake);
+  return out;
 }
 
 base::Result<base::DiagnosticFormat> diagnostic_format(const tools::Options& options) {
@@ -126,7 +143,7 @@ base::Result<Version> open_version(const tools::Options& options,
   if (paths.size() == 1 && is_image(paths[0])) return read_image(paths[0]);
   base::Result<Project> project = open_project(options, paths);
   if (!project.ok()) return project.error();
-  base::Diagnostics diagnostics;
+  base::Diagnostics diagnostics = diagnostics_of(*project);
   base::Result<Version> version = build(*project, build_options, diagnostics);
   // What a command says in its own form, it says when there are no errors.
   base::Result<base::DiagnosticFormat> format = diagnostic_format(options);

@@ -21,6 +21,10 @@ namespace stc {
 // Loads the project named by `paths` with the options above.
 base::Result<Project> open_project(const tools::Options& options,
                                    const std::vector<std::string>& paths);
+// Warnings are what the project makes of them; the project must outlive the answer.
+base::Diagnostics diagnostics_of(const Project& project);
+// Reads anew where the sources silence warnings: after a file was replaced.
+void silence_warnings(Project& project);
 base::Result<base::DiagnosticFormat> diagnostic_format(const tools::Options& options);
 // Text goes to stderr, machine formats to stdout.
 void report(const Project& project, base::Diagnostics& diagnostics, base::DiagnosticFormat format);

@@ -86,7 +86,7 @@ base::Result<int> run_tests(const tools::Options& options) {
   if (!project.ok()) return project.error();
   auto known = machine_form(format, *project, {});
   if (!known.ok()) return known.error();
-  base::Diagnostics diagnostics;
+  base::Diagnostics diagnostics = diagnostics_of(*project);
   base::Result<TestVersion> tests = build_tests(*project, diagnostics);
   const bool json = format == "json" && diagnostics.has_errors() && !options.has("--output");
   report(*project, diagnostics,

@@ -275,7 +275,8 @@ class Watch {
 
   Next build() {
     if (broken_) return Next::kWait;
-    base::Diagnostics diagnostics;
+    silence_warnings(project_);
+    base::Diagnostics diagnostics = diagnostics_of(project_);
     base::Result<Next> next = build_into(diagnostics);
     if (next.ok()) return *next;
     tools::refuse("stc", next.error());
@@ -292,12 +293,13 @@ class Watch {
       if (!several_) {
         report(project_, diagnostics, format_);
         if (!image.ok()) return with_place(image.error(), project_.devices);
+        if (diagnostics.has_errors()) return source_errors(diagnostics);  // warnings that are
         base::Status safe = check_safe_settings(project_.safe, (*image)->output_bytes);
         if (!safe.ok()) return safe.error();
         return target_.take(**image, project_, {built_since(before), saved_, seen_, Clock::now()});
       }
     }
-    base::Diagnostics anew;  // the findings are among them
+    base::Diagnostics anew = diagnostics_of(project_);  // the findings are among them
     const std::shared_ptr<const ir::Image> base = target_.base();
     auto versions = build_resources(project_, {base.get(), move_all_}, anew);
     report(project_, anew, format_);

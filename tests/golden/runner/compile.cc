@@ -5,6 +5,7 @@
 #include "frontend/compile.h"
 #include "frontend/lex/lexer.h"
 #include "frontend/parse/tree.h"
+#include "frontend/warning_pragmas.h"
 #include "ir/lower/lower.h"
 #include "ir/opt/optimise.h"
 #include "ir/program/verify.h"
@@ -61,7 +62,8 @@ std::vector<std::string> messages_of(const base::SourceMap& sources,
     const base::DiagnosticRow& row = base::diagnostic_row(message.code);
     base::SourceLocation at = sources.locate(message.span.begin);
     out.push_back(std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
-                  severity_text(row.severity) + "[" + std::string(row.code) + "]: " + message.text);
+                  severity_text(message.severity) + "[" + std::string(row.code) +
+                  "]: " + message.text);
   }
   return out;
 }
@@ -70,7 +72,10 @@ base::Result<Program> compile(const TestFile& test, size_t version, Outcome& out
   base::SourceMap sources;
   sources.add(test.name, test.versions[version]);
   for (const Source& used : test.used) sources.add(used.name, used.text);
-  base::Diagnostics diagnostics;
+  base::WarningPolicy warnings;
+  const auto mistakes = frontend::silence_warnings(sources, options_of(test), warnings);
+  base::Diagnostics diagnostics(warnings);
+  for (const base::Diagnostic& mistake : mistakes) diagnostics.add(mistake);
   std::optional<ir::Program> program;
   if (test.has_option("--all-resources")) {
     auto all = frontend::compile_resources(sources, options_of(test), diagnostics);

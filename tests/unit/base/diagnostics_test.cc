@@ -143,12 +143,12 @@ TEST(Json, Fields) {
             "\\\"\xC3\xA4\\\"\\n\\u0009\\\\\",\"fix\":\"fix\",\"file\":\"a\\\"b.st\",\"line\":1,"
             "\"column\":1,\"endLine\":1,\"endColumn\":2,\"notes\":[{\"message\":\"note\","
             "\"file\":\"a\\\"b.st\",\"line\":1,\"column\":6,\"endLine\":1,\"endColumn\":9}]}\n"
-            "],\"errors\":1,\"warnings\":0}\n");
+            "],\"errors\":1,\"warnings\":0,\"notes\":0}\n");
 }
 
 TEST(Json, Empty) {
   EXPECT_EQ(render(Diagnostics(), SourceMap(), DiagnosticFormat::kJson, false),
-            "{\"diagnostics\":[\n],\"errors\":0,\"warnings\":0}\n");
+            "{\"diagnostics\":[\n],\"errors\":0,\"warnings\":0,\"notes\":0}\n");
 }
 
 TEST(Sarif, ResultRuleAndPlace) {
