@@ -3,7 +3,7 @@
 set(STC_BATCH 8 CACHE STRING "Sources that are compiled together")
 
 # These have the same names in each source of the folder, or options of their own.
-set(STC_ALONE "/tools/|/vm/exec/(handle|fused)_")
+set(STC_ALONE "/tools/st[a-z]+/main|/small_blocks|/vm/exec/(handle|fused)_")
 
 # stc_batches(RESULT source...): the sources of one folder, or units that include them. What is
 # compiled small (small_sources.cmake) is apart from what is compiled for speed.

@@ -13,15 +13,17 @@
 namespace tools {
 namespace {
 
-constexpr size_t kWidth = base::kMaxEmbeddedPath + 40;  // paths are shown whole
+constexpr size_t kSourceWidth = base::kMaxEmbeddedPath + 40;  // paths are shown whole
 
-constexpr const char* kOptions[] = {"--name=",   "--dialect=", "--resource=",     "--define=",
-                                    "--passes=", "--no-opt",   "--embed-sources"};
+constexpr const char* kEmbeddedOptions[] = {"--name=",        "--dialect=", "--resource=",
+                                            "--define=",      "--passes=",  "--no-opt",
+                                            "--embed-sources"};
 
 bool is_known(const std::string& argument) {
-  return std::any_of(std::begin(kOptions), std::end(kOptions), [&](const std::string& option) {
-    return option.ends_with('=') ? argument.starts_with(option) : argument == option;
-  });
+  return std::any_of(
+      std::begin(kEmbeddedOptions), std::end(kEmbeddedOptions), [&](const std::string& option) {
+        return option.ends_with('=') ? argument.starts_with(option) : argument == option;
+      });
 }
 
 std::string for_shell(const std::string& text) {
@@ -45,7 +47,7 @@ std::string text_of(const ir::EmbeddedSources& sources, const std::string& progr
     const char* const state = states ? source_state_name((*states)[i]) : "";
     table.row({std::to_string(file.size), state, file.path});
   }
-  std::string out = table.text(kWidth) + "\n" + std::to_string(sources.files.size()) +
+  std::string out = table.text(kSourceWidth) + "\n" + std::to_string(sources.files.size()) +
                     " sources of " + program + ", " + std::to_string(bytes) + " bytes (" +
                     std::to_string(sources.packed.size()) + " in the image)";
   out += states ? ", in " + folder + "\n" : "; -o DIR writes them\n";

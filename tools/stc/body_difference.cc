@@ -15,7 +15,7 @@ namespace {
 
 namespace network = frontend::network;
 
-constexpr size_t kContext = 2;  // lines around those that differ
+constexpr size_t kLinesAround = 2;  // lines around those that differ
 
 using Views = std::vector<std::string_view>;
 
@@ -52,7 +52,7 @@ void compare_lines(const UnitBody& before, const UnitBody& after,
   const std::vector<LineChange> changes = changes_between(views[0], views[1]);
   for (size_t first = 0; first < changes.size();) {
     size_t last = first + 1;
-    while (last < changes.size() && changes[last].a - changes[last - 1].a_end <= 2 * kContext) {
+    while (last < changes.size() && changes[last].a - changes[last - 1].a_end <= 2 * kLinesAround) {
       ++last;
     }
     const LineChange all{changes[first].a, changes[last - 1].a_end, changes[first].b,
@@ -63,7 +63,7 @@ void compare_lines(const UnitBody& before, const UnitBody& after,
     if (!same || comments_of(was) != comments_of(is)) {
       PartDifference part{"lines", prefix_of(after) + place_text(after.lines, all.b, all.b_end),
                           same ? Differs::kComments : Differs::kEdited};
-      size_t a = all.a - std::min(kContext, all.a);
+      size_t a = all.a - std::min(kLinesAround, all.a);
       for (; a < all.a; ++a) part.lines.push_back({' ', before.lines[a].text});
       for (size_t n = first; n < last; ++n) {
         for (; a < changes[n].a; ++a) part.lines.push_back({' ', before.lines[a].text});
@@ -72,7 +72,7 @@ void compare_lines(const UnitBody& before, const UnitBody& after,
           part.lines.push_back({'+', after.lines[b].text});
         }
       }
-      const size_t end = std::min(all.a_end + kContext, before.lines.size());
+      const size_t end = std::min(all.a_end + kLinesAround, before.lines.size());
       for (; a < end; ++a) part.lines.push_back({' ', before.lines[a].text});
       out.push_back(std::move(part));
     }

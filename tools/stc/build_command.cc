@@ -7,7 +7,7 @@
 namespace stc {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kBuildOptions[] = {
     STC_SOURCE_OPTIONS,
     STC_CODE_OPTIONS,
     STC_EMBED_OPTION,
@@ -18,10 +18,10 @@ constexpr tools::OptionRow kOptions[] = {
     {"--watch", nullptr, "stay, and build again whenever a source is saved"},
     {"--move-all", nullptr, "with --base: give every instance a new place (a test of changes)"},
 };
-constexpr tools::Command kCommand{"build", "[PATHS...]", "Compiles and links sources to an image.",
-                                  kOptions};
+constexpr tools::Command kBuildCommand{"build", "[PATHS...]",
+                                       "Compiles and links sources to an image.", kBuildOptions};
 
-int run(const tools::Options& options) {
+int run_build(const tools::Options& options) {
   auto format = diagnostic_format(options);
   if (!format.ok()) return tools::refuse("stc", format.error());
   std::shared_ptr<const ir::Image> base_image;
@@ -61,6 +61,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kBuild{&kCommand, run};
+const Entry kBuild{&kBuildCommand, run_build};
 
 }  // namespace stc

@@ -7,10 +7,11 @@
 namespace stc {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {STC_SOURCE_OPTIONS};
-constexpr tools::Command kCommand{"check", "[PATHS...]", "Reports errors and warnings.", kOptions};
+constexpr tools::OptionRow kCheckOptions[] = {STC_SOURCE_OPTIONS};
+constexpr tools::Command kCheckCommand{"check", "[PATHS...]", "Reports errors and warnings.",
+                                       kCheckOptions};
 
-int run(const tools::Options& options) {
+int run_check(const tools::Options& options) {
   auto format = diagnostic_format(options);
   if (!format.ok()) return tools::refuse("stc", format.error());
   base::Result<Project> project = open_project(options, options.arguments());
@@ -24,6 +25,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kCheck{&kCommand, run};
+const Entry kCheck{&kCheckCommand, run_check};
 
 }  // namespace stc

@@ -14,7 +14,7 @@
 namespace stc {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kDiffOptions[] = {
     STC_SOURCE_OPTIONS,
     tools::kRestrictedOption,
     {"--all", nullptr, "show the fate of each variable too, with its addresses"},
@@ -22,9 +22,9 @@ constexpr tools::OptionRow kOptions[] = {
     {"--text", nullptr,
      "say in words what differs in the sources; images need theirs (`embed_sources`)"},
 };
-constexpr tools::Command kCommand{"diff", "[OLD] NEW",
-                                  "Shows the fate of every variable when OLD is changed to NEW.",
-                                  kOptions, 1};
+constexpr tools::Command kDiffCommand{
+    "diff", "[OLD] NEW", "Shows the fate of every variable when OLD is changed to NEW.",
+    kDiffOptions, 1};
 
 // The program of a running controller, fetched by the stvm beside this tool.
 base::Result<Version> running_version(const std::string& place) {
@@ -46,7 +46,7 @@ struct Difference {
   std::vector<UnitDifference> words;   // by --text
 };
 
-base::Result<Difference> difference(const tools::Options& options) {
+base::Result<Difference> compare_projects(const tools::Options& options) {
   std::vector<std::string> next = options.arguments();
   const bool running = options.has("--against");
   if (!running && next.size() != 2) {
@@ -54,8 +54,8 @@ base::Result<Difference> difference(const tools::Options& options) {
                        "diff: OLD and NEW, or --against HOST|DIR and NEW..."};
   }
   std::vector<std::string> old(next.begin(), next.begin() + (running ? 0 : 1));
-  base::Result<Version> before = running ? running_version(options.text("--against"))
-                                         : open_version(options, old, {});
+  base::Result<Version> before =
+      running ? running_version(options.text("--against")) : open_version(options, old, {});
   if (!before.ok()) return before.error();
   if (!running) next.erase(next.begin());
   base::Result<Version> after = open_version(options, next, {&before->image, false});
@@ -86,8 +86,8 @@ base::Result<Difference> difference(const tools::Options& options) {
   return out;
 }
 
-int run(const tools::Options& options) {
-  base::Result<Difference> found = difference(options);
+int run_diff(const tools::Options& options) {
+  base::Result<Difference> found = compare_projects(options);
   if (!found.ok()) return tools::refuse("stc", found.error());
   if (options.text("--format") == "json") {
     tools::JsonWriter json;
@@ -107,6 +107,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kDiff{&kCommand, run};
+const Entry kDiff{&kDiffCommand, run_diff};
 
 }  // namespace stc

@@ -13,16 +13,16 @@
 namespace stc {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kDrawOptions[] = {
     STC_SOURCE_OPTIONS,
     {"--output|-o", "FILE|DIR", "FILE.svg for one picture, or a folder for all (default: stdout)"},
     {"--live", "HOST|DIR", "colour what is powered and active there now, and show values"},
     {"--values", "FILE", "the same with values from a file, NAME=VALUE a line"},
     {"--instance", "PATH", "whose values: Line.Filler (default: the name of the program)"},
 };
-constexpr tools::Command kCommand{"draw", "PATHS... [POU]",
-                                  "Draws ladder, function block diagrams and charts as SVG.",
-                                  kOptions, 1};
+constexpr tools::Command kDrawCommand{"draw", "PATHS... [POU]",
+                                      "Draws ladder, function block diagrams and charts as SVG.",
+                                      kDrawOptions, 1};
 
 // A POU, action or method whose body is a drawing.
 struct Drawn {
@@ -201,13 +201,13 @@ base::Status draw(const tools::Options& options) {
   return draw_all(options, artist, drawn);
 }
 
-int run(const tools::Options& options) {
+int run_draw(const tools::Options& options) {
   base::Status drawn = draw(options);
   return drawn.ok() ? tools::kOk : tools::refuse("stc", drawn.error());
 }
 
 }  // namespace
 
-const Entry kDraw{&kCommand, run};
+const Entry kDraw{&kDrawCommand, run_draw};
 
 }  // namespace stc

@@ -19,7 +19,7 @@
 namespace stc {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kDumpOptions[] = {
     STC_SOURCE_OPTIONS,
     STC_CODE_OPTIONS,
     {"--tokens", nullptr, "tokens of the sources"},
@@ -35,8 +35,8 @@ constexpr tools::OptionRow kOptions[] = {
     {"--symbols", nullptr, "every variable with type and offset"},
     {"--sources", nullptr, "sources that travel with the image; `stc source` writes them"},
 };
-constexpr tools::Command kCommand{"dump", "PATHS...", "Prints what a phase of the compiler made.",
-                                  kOptions, 1};
+constexpr tools::Command kDumpCommand{"dump", "PATHS...",
+                                      "Prints what a phase of the compiler made.", kDumpOptions, 1};
 
 std::string tokens_text(const Project& project, base::Diagnostics& diagnostics) {
   std::string out;
@@ -136,7 +136,7 @@ base::Result<std::string> dump_package(const tools::Options& options) {
   return package_text(*package, before->image, next->image());
 }
 
-int run(const tools::Options& options) {
+int run_dump(const tools::Options& options) {
   if (options.has("--package")) {
     base::Result<std::string> out = dump_package(options);
     if (!out.ok()) return tools::refuse("stc", out.error());
@@ -160,6 +160,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kDump{&kCommand, run};
+const Entry kDump{&kDumpCommand, run_dump};
 
 }  // namespace stc

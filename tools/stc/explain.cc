@@ -27,7 +27,7 @@ namespace {
 // Terminals get 80 columns; files (the generated reference) get every word.
 std::string fitted(const tools::Table& table) { return table.text(::isatty(1) != 0 ? 80 : 400); }
 
-constexpr tools::Command kCommand{
+constexpr tools::Command kExplainCommand{
     "explain",
     "[CODE|TRAP|TABLE]",
     "Explains a code such as E3001 or R0303, a trap, or prints a table.",
@@ -221,7 +221,7 @@ std::optional<std::string> page_of(const std::string& what) {
   return std::nullopt;
 }
 
-int run(const tools::Options& options) {
+int run_explain(const tools::Options& options) {
   if (options.arguments().empty()) {
     std::fputs(overview_page().c_str(), stdout);
     return tools::kOk;
@@ -238,6 +238,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kExplain{&kCommand, run};
+const Entry kExplain{&kExplainCommand, run_explain};
 
 }  // namespace stc

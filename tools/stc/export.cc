@@ -16,15 +16,15 @@
 namespace stc {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kExportOptions[] = {
     STC_SOURCE_OPTIONS,
     {"--output|-o", "FILE", "document to write (needed)"},
     {"--force", nullptr, "overwrite a file that is no XML"},
     {"--as", "FORM", "tc6-2.01 (default), tc6-2.0 or 61131-10", "tc6-2.01|tc6-2.0|61131-10"},
     {"--without-sources", nullptr, "only what XML has elements for, not the text of the sources"},
 };
-constexpr tools::Command kCommand{
-    "export", "PATHS...", "Writes PLCopen XML or IEC 61131-10 of the sources.", kOptions, 1};
+constexpr tools::Command kExportCommand{
+    "export", "PATHS...", "Writes PLCopen XML or IEC 61131-10 of the sources.", kExportOptions, 1};
 
 #ifdef STC_HAS_XML
 
@@ -99,7 +99,7 @@ base::Status export_sources(const tools::Options&) {
 
 #endif
 
-int run(const tools::Options& options) {
+int run_export(const tools::Options& options) {
   if (!options.has("--output")) {
     return tools::refuse("stc", {base::Refusal::kUsage, "export: needs -o FILE"});
   }
@@ -109,6 +109,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kExport{&kCommand, run};
+const Entry kExport{&kExportCommand, run_export};
 
 }  // namespace stc

@@ -17,15 +17,16 @@
 namespace stc {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kFormatOptions[] = {
     {"--check", nullptr,
      "write nothing; list the files that would change, exit 1 when there are any"},
     {"--diff", nullptr, "write nothing; show what would change, exit 1 when there is anything"},
     {"--stdin", nullptr, "read one source from standard input, write it to standard output"},
     {"--format", "FORM", "text (default) or json: how --check reports", "text|json"},
 };
-constexpr tools::Command kCommand{
-    "fmt", "PATHS...", "Lays sources out, in place; [format] of stc.toml says how.", kOptions, 0};
+constexpr tools::Command kFormatCommand{
+    "fmt", "PATHS...", "Lays sources out, in place; [format] of stc.toml says how.", kFormatOptions,
+    0};
 
 class Formatter {
  public:
@@ -174,7 +175,7 @@ base::Status usage(const tools::Options& options) {
   return base::Error{base::Refusal::kUsage, text};
 }
 
-int run(const tools::Options& options) {
+int run_format(const tools::Options& options) {
   base::Status status = usage(options);
   if (!status.ok()) return tools::refuse("stc", status.error());
   Formatter formatter(options);
@@ -191,6 +192,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kFormat{&kCommand, run};
+const Entry kFormat{&kFormatCommand, run_format};
 
 }  // namespace stc

@@ -16,15 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kImportOptions[] = {
     {"--output|-o", "DIR", "folder for the sources (needed)"},
     {"--format", "FORM", "text (default) or json: the report on standard output", "text|json"},
     {"--force", nullptr, "overwrite sources that are there and differ"},
 };
-constexpr tools::Command kCommand{
+constexpr tools::Command kImportCommand{
     "import", "PATHS...",
-    "Makes sources of PLCopen XML, IEC 61131-10 and TwinCAT files, and reports the rest.", kOptions,
-    1};
+    "Makes sources of PLCopen XML, IEC 61131-10 and TwinCAT files, and reports the rest.",
+    kImportOptions, 1};
 
 class Import {
  public:
@@ -161,7 +161,7 @@ std::string Import::json_report() const {
   return out.finish();
 }
 
-int run(const tools::Options& options) {
+int run_import(const tools::Options& options) {
   const std::string form = options.text("--format", "text");
   if (form != "text" && form != "json") {
     return tools::refuse(
@@ -180,6 +180,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kImport{&kCommand, run};
+const Entry kImport{&kImportCommand, run_import};
 
 }  // namespace stc

@@ -7,9 +7,9 @@
 namespace stc {
 namespace {
 
-class Entry {
+class EntryParser {
  public:
-  Entry(std::string_view text, ir::DeviceMapping& mapping) : text_(text), mapping_(mapping) {}
+  EntryParser(std::string_view text, ir::DeviceMapping& mapping) : text_(text), mapping_(mapping) {}
 
   std::optional<MapFault> parse() {
     table() && points() && arrow() && address();
@@ -105,7 +105,7 @@ class Entry {
 }  // namespace
 
 std::optional<MapFault> parse_map_entry(std::string_view text, ir::DeviceMapping& mapping) {
-  return Entry(text, mapping).parse();
+  return EntryParser(text, mapping).parse();
 }
 
 }  // namespace stc

@@ -11,7 +11,7 @@
 namespace stc {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kPackageOptions[] = {
     STC_SOURCE_OPTIONS,
     STC_CODE_OPTIONS,
     STC_EMBED_OPTION,
@@ -21,9 +21,9 @@ constexpr tools::OptionRow kOptions[] = {
     {"--move-all", nullptr, "give every instance a new place (a test of changes)"},
     {"--watch", nullptr, "stay, and make one at each save, for `stvm change --watch`"},
 };
-constexpr tools::Command kCommand{"package", "NEW...",
-                                  "Makes the change package from a running version to a new one.",
-                                  kOptions, 1};
+constexpr tools::Command kPackageCommand{
+    "package", "NEW...", "Makes the change package from a running version to a new one.",
+    kPackageOptions, 1};
 
 base::Status make(const tools::Options& options) {
   if (!options.has("--base") || !options.has("--output")) {
@@ -57,7 +57,7 @@ int follow(const tools::Options& options) {
   return watch(options, options.has("--move-all"), base::DiagnosticFormat::kText, target);
 }
 
-int run(const tools::Options& options) {
+int run_package(const tools::Options& options) {
   if (options.has("--watch")) return follow(options);
   base::Status made = make(options);
   return made.ok() ? tools::kOk : tools::refuse("stc", made.error());
@@ -65,6 +65,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kPackage{&kCommand, run};
+const Entry kPackage{&kPackageCommand, run_package};
 
 }  // namespace stc

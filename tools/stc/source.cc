@@ -8,9 +8,9 @@
 namespace stc {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {TOOLS_SOURCE_OPTIONS, tools::kFormatOption};
-constexpr tools::Command kCommand{
-    "source", "IMAGE", "Brings back the sources that travel with an image.", kOptions, 1, 1};
+constexpr tools::OptionRow kSourceOptions[] = {TOOLS_SOURCE_OPTIONS, tools::kFormatOption};
+constexpr tools::Command kSourceCommand{
+    "source", "IMAGE", "Brings back the sources that travel with an image.", kSourceOptions, 1, 1};
 
 base::Result<std::string> bring(const tools::Options& options) {
   auto format = diagnostic_format(options);
@@ -22,7 +22,7 @@ base::Result<std::string> bring(const tools::Options& options) {
                               *format == base::DiagnosticFormat::kJson);
 }
 
-int run(const tools::Options& options) {
+int run_source(const tools::Options& options) {
   base::Result<std::string> text = bring(options);
   if (!text.ok()) return tools::refuse("stc", text.error());
   std::fputs(text->c_str(), stdout);
@@ -31,6 +31,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kSource{&kCommand, run};
+const Entry kSource{&kSourceCommand, run_source};
 
 }  // namespace stc

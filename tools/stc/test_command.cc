@@ -15,7 +15,7 @@
 namespace stc {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kTestOptions[] = {
     {"--filter|-f", "PATTERN", "only tests whose name matches; * and ? are wildcards"},
     {"--format", "FORM", "text (default), tap, junit or json", "text|tap|junit|json"},
     {"--output|-o", "FILE", "write that form to a file, and text to the terminal"},
@@ -23,8 +23,8 @@ constexpr tools::OptionRow kOptions[] = {
     TOOLS_COMPILE_OPTIONS,
     STC_CODE_OPTIONS,
 };
-constexpr tools::Command kCommand{"test", "[PATHS...]", "Runs the TEST blocks on virtual time.",
-                                  kOptions};
+constexpr tools::Command kTestCommand{"test", "[PATHS...]", "Runs the TEST blocks on virtual time.",
+                                      kTestOptions};
 
 bool selected(const tools::Options& options, const std::string& name) {
   if (!options.has("--filter")) return true;
@@ -115,13 +115,13 @@ base::Result<int> run_tests(const tools::Options& options) {
   return sum.failed + sum.errors == 0 ? tools::kOk : tools::kFindings;
 }
 
-int run(const tools::Options& options) {
+int run_test(const tools::Options& options) {
   base::Result<int> code = run_tests(options);
   return code.ok() ? *code : tools::refuse("stc", code.error());
 }
 
 }  // namespace
 
-const Entry kTest{&kCommand, run};
+const Entry kTest{&kTestCommand, run_test};
 
 }  // namespace stc

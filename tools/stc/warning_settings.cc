@@ -7,7 +7,7 @@
 namespace stc {
 namespace {
 
-base::Error usage(std::initializer_list<std::string_view> parts) {
+base::Error bad_warning(std::initializer_list<std::string_view> parts) {
   return {base::Refusal::kUsage, base::joined(parts)};
 }
 
@@ -35,17 +35,18 @@ base::Status apply_warning_options(const tools::Options& options, base::WarningP
     }
     const size_t equals = text.find('=');
     if (equals == std::string::npos) {
-      return usage({"--warn ", text, ": neither `error` nor CODE=LEVEL, such as W0003=off"});
+      return bad_warning({"--warn ", text, ": neither `error` nor CODE=LEVEL, such as W0003=off"});
     }
     const std::string name = text.substr(0, equals);
     const std::string wrong = tools::warning_code_fault(name);
-    if (!wrong.empty()) return usage({"--warn ", text, ": ", wrong});
+    if (!wrong.empty()) return bad_warning({"--warn ", text, ": ", wrong});
     const auto level = base::warning_level(text.substr(equals + 1));
     if (!level) {
-      return usage({"--warn ", text, ": the level is error, warning, note or off"});
+      return bad_warning({"--warn ", text, ": the level is error, warning, note or off"});
     }
     const base::DiagnosticCode code = *base::diagnostic_code(name);
-    if (!given.insert(code).second) return usage({"--warn ", text, ": ", name, " is given twice"});
+    if (!given.insert(code).second)
+      return bad_warning({"--warn ", text, ": ", name, " is given twice"});
     policy.set(code, *level);
   }
   return base::Ok{};

@@ -14,9 +14,9 @@
 namespace stc {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using PackageClock = std::chrono::steady_clock;
 
-int64_t monotonic_ns(Clock::time_point time) {
+int64_t monotonic_ns(PackageClock::time_point time) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
 }
 
@@ -72,7 +72,7 @@ base::Result<WatchTarget::Next> WatchedPackages::send(const Built& built, base::
                                                       const ir::Image& image,
                                                       ir::WrittenImage made) {
   const tools::FollowedChange change{monotonic_ns(built.saved),  monotonic_ns(built.seen),
-                                     monotonic_ns(built.made),   monotonic_ns(Clock::now()),
+                                     monotonic_ns(built.made),   monotonic_ns(PackageClock::now()),
                                      ir::digest(written_.bytes), std::move(package)};
   if (!tools::send_message(socket_, encode(change)).ok()) return Next::kEnd;
   base::Result<base::Bytes> message = tools::receive_message(socket_);

@@ -10,10 +10,10 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
-constexpr tools::Command kCommand{
-    "abort",  "", "Ends a change that is being prepared, at once; the program runs on.",
-    kOptions, 0,  0};
+constexpr tools::OptionRow kAbortOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
+constexpr tools::Command kAbortCommand{
+    "abort",       "", "Ends a change that is being prepared, at once; the program runs on.",
+    kAbortOptions, 0,  0};
 
 // One question and nothing before it: the controller answers it in the middle of what it does.
 base::Status abort(const tools::Options& options) {
@@ -36,13 +36,13 @@ base::Status abort(const tools::Options& options) {
   return base::Ok{};
 }
 
-int run(const tools::Options& options) {
+int run_abort(const tools::Options& options) {
   base::Status done = abort(options);
   return done.ok() ? tools::kOk : refuse(done.error());
 }
 
 }  // namespace
 
-const Entry kAbort{&kCommand, run};
+const Entry kAbort{&kAbortCommand, run_abort};
 
 }  // namespace stvm

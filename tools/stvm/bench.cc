@@ -16,7 +16,7 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kBenchOptions[] = {
     {"--program", "P", "program instance (default: the first)"},
     {"--scans", "N", "scans that are measured (default 10000); a tenth more run before"},
     {"--batch", "N", "scans between two looks at the clock (default 1); the quotient counts"},
@@ -25,8 +25,8 @@ constexpr tools::OptionRow kOptions[] = {
     TOOLS_COMPILE_OPTIONS,
     STVM_FORMAT_OPTION,
 };
-constexpr tools::Command kCommand{"bench", "IMAGE|SOURCES...",
-                                  "Measures the scan time of one program.", kOptions, 1};
+constexpr tools::Command kBenchCommand{"bench", "IMAGE|SOURCES...",
+                                       "Measures the scan time of one program.", kBenchOptions, 1};
 
 using SteadyClock = std::chrono::steady_clock;
 
@@ -76,7 +76,7 @@ base::Error failure(const vm::Controller& controller, const vm::Execution& execu
   return base::Error{base::Refusal::kFault, trap_text(record)};
 }
 
-struct Settings {
+struct BenchSettings {
   bool json = false;
   uint64_t scans = 0;
   uint64_t batch = 1;
@@ -84,7 +84,7 @@ struct Settings {
   vm::Tier tier = vm::Tier::kAuto;
 };
 
-base::Result<Settings> read_settings(const tools::Options& options) {
+base::Result<BenchSettings> read_bench_settings(const tools::Options& options) {
   const bool json = wants_json(options);
   base::Result<uint64_t> scans = options.number("--scans", 10'000);
   if (!scans.ok()) return scans.error();
@@ -101,10 +101,10 @@ base::Result<Settings> read_settings(const tools::Options& options) {
   }
   base::Result<vm::Tier> tier = tier_of(options);
   if (!tier.ok()) return tier.error();
-  return Settings{json, *scans, *batch, static_cast<int64_t>(*period), *tier};
+  return BenchSettings{json, *scans, *batch, static_cast<int64_t>(*period), *tier};
 }
 
-base::Result<Timing> measure(const Settings& settings, vm::Controller& controller,
+base::Result<Timing> measure(const BenchSettings& settings, vm::Controller& controller,
                              uint32_t program) {
   vm::Execution execution(controller.image().call_depth);
   const uint64_t warm_up = (settings.scans / 10 / settings.batch + 1) * settings.batch;
@@ -129,7 +129,7 @@ base::Result<Timing> measure(const Settings& settings, vm::Controller& controlle
   return summarise(times);
 }
 
-void print(const Settings& settings, const std::string& program, const char* tier,
+void print(const BenchSettings& settings, const std::string& program, const char* tier,
            const Timing& timing) {
   if (!settings.json) {
     std::printf("%s: %.0f ns min, %.0f ns median, %.0f ns p99 of %llu scans (%s)\n",
@@ -154,7 +154,7 @@ void print_interpreted(const ir::Image& image, const vm::native::Program& native
 }
 
 base::Status bench(const tools::Options& options) {
-  base::Result<Settings> settings = read_settings(options);
+  base::Result<BenchSettings> settings = read_bench_settings(options);
   if (!settings.ok()) return settings.error();
   base::Result<ir::VerifiedImage> image = load_program(sources_of(options));
   if (!image.ok()) return image.error();
@@ -175,13 +175,13 @@ base::Status bench(const tools::Options& options) {
   return base::Ok{};
 }
 
-int run(const tools::Options& options) {
+int run_bench(const tools::Options& options) {
   base::Status done = bench(options);
   return done.ok() ? tools::kOk : refuse(done.error());
 }
 
 }  // namespace
 
-const Entry kBench{&kCommand, run};
+const Entry kBench{&kBenchCommand, run_bench};
 
 }  // namespace stvm

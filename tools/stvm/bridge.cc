@@ -15,10 +15,10 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {STVM_DIR_OPTION};
-constexpr tools::Command kCommand{
-    "bridge", "", "Connects its standard streams to the controller (what --host runs there).",
-    kOptions, 0,  0};
+constexpr tools::OptionRow kBridgeOptions[] = {STVM_DIR_OPTION};
+constexpr tools::Command kBridgeCommand{
+    "bridge",       "", "Connects its standard streams to the controller (what --host runs there).",
+    kBridgeOptions, 0,  0};
 
 // False: the other side is gone.
 bool write_all(int fd, const char* bytes, size_t size) {
@@ -98,7 +98,7 @@ base::Status relay(const std::string& directory, vm::Descriptor controller) {
   }
 }
 
-int run(const tools::Options& options) {
+int run_bridge(const tools::Options& options) {
   base::Result<vm::Descriptor> socket = connect(state_directory(options));
   if (!socket.ok()) return refuse(socket.error());
   base::Status relayed = relay(state_directory(options), std::move(*socket));
@@ -107,6 +107,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kBridge{&kCommand, run};
+const Entry kBridge{&kBridgeCommand, run_bridge};
 
 }  // namespace stvm

@@ -34,7 +34,7 @@ namespace {
     "--permanent", nullptr, "accept at once: no undo, the new program boots next"                 \
   }
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kChangeOptions[] = {
     STVM_SWITCH_OPTIONS,
     {"--watch", nullptr, "stay, and bring each save of the sources to the controller"},
     TOOLS_COMPILE_OPTIONS,
@@ -44,8 +44,9 @@ constexpr tools::OptionRow kRevertOptions[] = {STVM_SWITCH_OPTIONS, STVM_FORMAT_
 constexpr tools::Command kRevertCommand{
     "revert",       "", "Changes to the program that ran before the last accepted change.",
     kRevertOptions, 0,  0};
-constexpr tools::Command kCommand{"change", "SOURCES...|IMAGE",
-                                  "Changes the running program without stopping it.", kOptions, 1};
+constexpr tools::Command kChangeCommand{"change", "SOURCES...|IMAGE",
+                                        "Changes the running program without stopping it.",
+                                        kChangeOptions, 1};
 
 // From the program that runs to what the sources say.
 base::Result<base::Bytes> make_package(const Sources& sources, bool restricted,
@@ -156,7 +157,7 @@ int finish(const tools::Options& options, const SwitchOptions& how, ControllerCl
   return outcome->refused ? refuse_reported(*outcome->refused) : tools::kOk;
 }
 
-int run(const tools::Options& options) {
+int run_change(const tools::Options& options) {
   base::Result<SwitchOptions> how = switch_options(options);
   if (!how.ok()) return refuse(how.error());
   base::Status fit = check_compile_options(sources_of(options));
@@ -177,7 +178,7 @@ int revert(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kChange{&kCommand, run};
+const Entry kChange{&kChangeCommand, run_change};
 const Entry kRevert{&kRevertCommand, revert};
 
 }  // namespace stvm

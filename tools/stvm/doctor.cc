@@ -21,13 +21,14 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kDoctorOptions[] = {
     {"--period", "US", "period of the sleeps that are measured, in microseconds (default 1000)"},
     {"--seconds", "N", "how long to measure (default 2)"},
     STVM_FORMAT_OPTION,
 };
-constexpr tools::Command kCommand{
-    "doctor", "", "Tells what this machine allows a controller in real time.", kOptions, 0, 0};
+constexpr tools::Command kDoctorCommand{
+    "doctor",       "", "Tells what this machine allows a controller in real time.",
+    kDoctorOptions, 0,  0};
 
 struct Finding {
   enum class Kind : uint8_t { kGood, kNote, kPoor };
@@ -192,13 +193,13 @@ base::Result<int> examine(const tools::Options& options) {
   return poor ? tools::kFindings : tools::kOk;
 }
 
-int run(const tools::Options& options) {
+int run_doctor(const tools::Options& options) {
   base::Result<int> code = examine(options);
   return code.ok() ? *code : refuse(code.error());
 }
 
 }  // namespace
 
-const Entry kDoctor{&kCommand, run};
+const Entry kDoctor{&kDoctorCommand, run_doctor};
 
 }  // namespace stvm

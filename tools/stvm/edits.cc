@@ -11,10 +11,10 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
-constexpr tools::Command kCommand{
-    "edits",  "", "Shows the edits on trial, newest last, and those that redo brings again.",
-    kOptions, 0,  0};
+constexpr tools::OptionRow kEditsOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
+constexpr tools::Command kEditsCommand{
+    "edits",       "", "Shows the edits on trial, newest last, and those that redo brings again.",
+    kEditsOptions, 0,  0};
 
 constexpr size_t kColumns = 80;
 
@@ -105,7 +105,7 @@ void edit_json(tools::JsonWriter& json, const TrialEdit& edit) {
   json.end_array().end_object();
 }
 
-base::Status show(const tools::Options& options) {
+base::Status show_edits(const tools::Options& options) {
   base::Result<bool> json = wants_json(options);
   if (!json.ok()) return json.error();
   base::Result<ControllerClient> client = ControllerClient::connect(options);
@@ -127,13 +127,13 @@ base::Status show(const tools::Options& options) {
   return base::Ok{};
 }
 
-int run(const tools::Options& options) {
-  base::Status shown = show(options);
+int run_edits(const tools::Options& options) {
+  base::Status shown = show_edits(options);
   return shown.ok() ? tools::kOk : refuse(shown.error());
 }
 
 }  // namespace
 
-const Entry kEdits{&kCommand, run};
+const Entry kEdits{&kEditsCommand, run_edits};
 
 }  // namespace stvm

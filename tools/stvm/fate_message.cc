@@ -32,7 +32,7 @@ void live_fields(A& a, T& live) {
 }
 
 template <class A, class T>
-void edit_fields(A& a, T& edit) {
+void fate_edit_fields(A& a, T& edit) {
   a(edit.pou);
   a(edit.instances);
   a(edit.what);
@@ -106,7 +106,7 @@ namespace online_change {
 
 static void fields(vm::FieldWriter& a, const PouEdit& edit) {
   a(static_cast<uint8_t>(edit.change));
-  stvm::edit_fields(a, edit);
+  stvm::fate_edit_fields(a, edit);
 }
 
 static void fields(vm::FieldReader& a, PouEdit& edit) {
@@ -114,7 +114,7 @@ static void fields(vm::FieldReader& a, PouEdit& edit) {
   a(change);
   if (change > static_cast<uint8_t>(PouChange::kInterface)) return a.fail();
   edit.change = static_cast<PouChange>(change);
-  stvm::edit_fields(a, edit);
+  stvm::fate_edit_fields(a, edit);
 }
 
 static void fields(vm::FieldWriter& a, const SystemEdit& edit) {

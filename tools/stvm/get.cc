@@ -11,14 +11,14 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kGetOptions[] = {
     {"--list", nullptr, "list variables and their types; NAMES are patterns with * and ?", "",
      "--forces"},
     {"--forces", nullptr, "list forced variables, and whether they hold everywhere"},
     STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION,
 };
-constexpr tools::Command kCommand{"get", "NAMES...", "Shows values of variables.", kOptions};
+constexpr tools::Command kGetCommand{"get", "NAMES...", "Shows values of variables.", kGetOptions};
 
 void print_list(const vm::Values& values, bool json) {
   if (!json) {
@@ -49,7 +49,7 @@ base::Status list(const tools::Options& options, ControllerClient& client, bool 
   return base::Ok{};
 }
 
-base::Status show(const tools::Options& options) {
+base::Status show_values(const tools::Options& options) {
   const bool json = wants_json(options);
   bool whole = options.has("--list") || options.has("--forces");
   if (options.arguments().empty() && !whole) {
@@ -78,13 +78,13 @@ base::Status show(const tools::Options& options) {
   return base::Ok{};
 }
 
-int run(const tools::Options& options) {
-  base::Status shown = show(options);
+int run_get(const tools::Options& options) {
+  base::Status shown = show_values(options);
   return shown.ok() ? tools::kOk : refuse(shown.error());
 }
 
 }  // namespace
 
-const Entry kGet{&kCommand, run};
+const Entry kGet{&kGetCommand, run_get};
 
 }  // namespace stvm

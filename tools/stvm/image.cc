@@ -12,10 +12,10 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {{"--output|-o", "FILE", "image to write (required)"},
-                                         STVM_CONTROLLER_OPTIONS};
-constexpr tools::Command kCommand{"image",  "", "Writes the running program to a file.",
-                                  kOptions, 0,  0};
+constexpr tools::OptionRow kImageOptions[] = {{"--output|-o", "FILE", "image to write (required)"},
+                                              STVM_CONTROLLER_OPTIONS};
+constexpr tools::Command kImageCommand{"image",       "", "Writes the running program to a file.",
+                                       kImageOptions, 0,  0};
 
 base::Status fetch(const tools::Options& options) {
   if (!options.has("--output")) {
@@ -31,13 +31,13 @@ base::Status fetch(const tools::Options& options) {
   return tools::write_file(options.text("--output"), *image);
 }
 
-int run(const tools::Options& options) {
+int run_image(const tools::Options& options) {
   base::Status fetched = fetch(options);
   return fetched.ok() ? tools::kOk : refuse(fetched.error());
 }
 
 }  // namespace
 
-const Entry kImage{&kCommand, run};
+const Entry kImage{&kImageCommand, run_image};
 
 }  // namespace stvm

@@ -17,10 +17,10 @@ namespace {
 using online_change::Event;
 using online_change::JournalEntry;
 
-constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
-constexpr tools::Command kCommand{
-    "journal", "", "Shows who changed what and when, power cuts, and traps; oldest first.",
-    kOptions,  0,  0};
+constexpr tools::OptionRow kJournalOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
+constexpr tools::Command kJournalCommand{
+    "journal",       "", "Shows who changed what and when, power cuts, and traps; oldest first.",
+    kJournalOptions, 0,  0};
 
 base::Result<std::vector<JournalEntry>> entries_in(const std::string& directory) {
   vm::FileStorage storage(directory);
@@ -62,7 +62,7 @@ std::string counts_text(const online_change::FateCounts& n) {
 }
 
 // One line, and what there is to say of it below, so that it fits a terminal.
-void print_text(const std::vector<JournalEntry>& entries) {
+void print_journal_text(const std::vector<JournalEntry>& entries) {
   for (const JournalEntry& entry : entries) {
     std::printf("%s  %s%s%s%s\n", time_text(entry.time_ns).c_str(), event_name(entry.event),
                 version_text(entry).c_str(), entry.who.empty() ? "" : "  by ",
@@ -81,7 +81,7 @@ void print_text(const std::vector<JournalEntry>& entries) {
   }
 }
 
-void print_json(const std::vector<JournalEntry>& entries) {
+void print_journal_json(const std::vector<JournalEntry>& entries) {
   tools::JsonWriter json;
   json.begin_array();
   for (const JournalEntry& entry : entries) {
@@ -99,21 +99,21 @@ void print_json(const std::vector<JournalEntry>& entries) {
   std::fputs(json.finish().c_str(), stdout);
 }
 
-base::Status show(const tools::Options& options) {
+base::Status show_journal(const tools::Options& options) {
   const bool json = wants_json(options);
   auto entries = entries_of(options);
   if (!entries.ok()) return entries.error();
-  (json ? print_json : print_text)(*entries);
+  (json ? print_journal_json : print_journal_text)(*entries);
   return base::Ok{};
 }
 
-int run(const tools::Options& options) {
-  base::Status shown = show(options);
+int run_journal(const tools::Options& options) {
+  base::Status shown = show_journal(options);
   return shown.ok() ? tools::kOk : refuse(shown.error());
 }
 
 }  // namespace
 
-const Entry kJournal{&kCommand, run};
+const Entry kJournal{&kJournalCommand, run_journal};
 
 }  // namespace stvm

@@ -13,12 +13,12 @@ namespace stvm {
 namespace {
 
 constexpr size_t kMaxColumns = 1600;
-constexpr double kWidth = 960;
-constexpr double kLeft = 60;
-constexpr double kRight = 16;
+constexpr double kPlotWidth = 960;
+constexpr double kPlotLeft = 60;
+constexpr double kPlotRight = 16;
 constexpr double kLaneHeight = 88;
 constexpr double kPlotHeight = 56;
-constexpr double kTop = 48;
+constexpr double kUpperEdge = 48;
 
 bool is_plottable(const ir::Image& image, ir::TypeId type) {
   if (!image.types.is_scalar(type) || image.types.is_reference(type)) return false;
@@ -114,23 +114,24 @@ std::string Plot::lane_svg(const Lane& lane, size_t number, double top, uint64_t
   const double span = high > low ? high - low : 1;
   const double scans = static_cast<double>(std::max<uint64_t>(end - begin, 1));
   const auto x = [&](uint64_t scan) {
-    return kLeft + static_cast<double>(scan - begin) / scans * (kWidth - kLeft - kRight);
+    return kPlotLeft +
+           static_cast<double>(scan - begin) / scans * (kPlotWidth - kPlotLeft - kPlotRight);
   };
   const auto y = [&](double value) {
     return top + kPlotHeight - (value - low) / span * kPlotHeight;
   };
   const char* color = kColors[number % std::size(kColors)];
-  std::string out = format("<text x=\"%.0f\" y=\"%.0f\" class=\"name\">", kLeft, top - 7) +
+  std::string out = format("<text x=\"%.0f\" y=\"%.0f\" class=\"name\">", kPlotLeft, top - 7) +
                     escaped(lane.name) + (lane.unit.empty() ? "" : " [" + lane.unit + "]") +
                     "</text>\n";
   out += format("<rect x=\"%.0f\" y=\"%.1f\" width=\"%.0f\" height=\"%.0f\" class=\"lane\"/>\n",
-                kLeft, top, kWidth - kLeft - kRight, kPlotHeight);
+                kPlotLeft, top, kPlotWidth - kPlotLeft - kPlotRight, kPlotHeight);
   const std::string texts[] = {lane.boolean ? "TRUE" : number_text(high),
                                lane.boolean ? "FALSE" : number_text(low)};
-  out += format("<text x=\"%.0f\" y=\"%.1f\" class=\"tick\">%s</text>\n", kLeft - 6, top + 9,
+  out += format("<text x=\"%.0f\" y=\"%.1f\" class=\"tick\">%s</text>\n", kPlotLeft - 6, top + 9,
                 texts[0].c_str());
   if (high > low) {
-    out += format("<text x=\"%.0f\" y=\"%.1f\" class=\"tick\">%s</text>\n", kLeft - 6,
+    out += format("<text x=\"%.0f\" y=\"%.1f\" class=\"tick\">%s</text>\n", kPlotLeft - 6,
                   top + kPlotHeight, texts[1].c_str());
   }
   out += "<path d=\"";
@@ -148,33 +149,33 @@ std::string Plot::lane_svg(const Lane& lane, size_t number, double top, uint64_t
 }
 
 std::string Plot::svg(const std::string& title) const {
-  const double height = kTop + static_cast<double>(lanes_.size()) * kLaneHeight + 20;
+  const double height = kUpperEdge + static_cast<double>(lanes_.size()) * kLaneHeight + 20;
   std::string out =
       format(
           "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" "
           "height=\"%.0f\" font-family=\"sans-serif\">\n",
-          kWidth, height, kWidth, height) +
+          kPlotWidth, height, kPlotWidth, height) +
       "<style>.name{font-size:13px;fill:#222}.tick{font-size:11px;fill:#666;text-anchor:end}"
       ".axis{font-size:11px;fill:#666;text-anchor:middle}.lane{fill:#f6f6f6;stroke:#ddd}</style>\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
-  out += format("<text x=\"%.0f\" y=\"20\" font-size=\"15\" fill=\"#222\">", kLeft) +
+  out += format("<text x=\"%.0f\" y=\"20\" font-size=\"15\" fill=\"#222\">", kPlotLeft) +
          escaped(title) + "</text>\n";
   if (lanes_.front().columns.empty()) return out + "</svg>\n";
   const uint64_t begin = lanes_.front().columns.front().scan;
   const uint64_t end = std::max(begin + 1, lanes_.front().columns.back().scan + per_column_);
   for (size_t i = 0; i < lanes_.size(); ++i) {
-    out += lane_svg(lanes_[i], i, kTop + static_cast<double>(i) * kLaneHeight, begin, end);
+    out += lane_svg(lanes_[i], i, kUpperEdge + static_cast<double>(i) * kLaneHeight, begin, end);
   }
   for (int i = 0; i <= 4; ++i) {
     const uint64_t scan = begin + (end - begin) * static_cast<uint64_t>(i) / 4;
-    const double at = kLeft + (kWidth - kLeft - kRight) * i / 4.0;
+    const double at = kPlotLeft + (kPlotWidth - kPlotLeft - kPlotRight) * i / 4.0;
     const std::string time = tools::duration(static_cast<int64_t>(scan - begin) * scan_ns_);
     out += format("<text x=\"%.0f\" y=\"%.0f\" class=\"axis\">%llu (%s)</text>\n",
-                  std::clamp(at, kLeft + 30, kWidth - kRight - 40), height - 18,
+                  std::clamp(at, kPlotLeft + 30, kPlotWidth - kPlotRight - 40), height - 18,
                   static_cast<unsigned long long>(scan), time.c_str());
   }
   out += format("<text x=\"%.0f\" y=\"%.0f\" class=\"axis\">cycle (time)</text>\n",
-                kLeft + (kWidth - kLeft - kRight) / 2, height - 4);
+                kPlotLeft + (kPlotWidth - kPlotLeft - kPlotRight) / 2, height - 4);
   return out + "</svg>\n";
 }
 

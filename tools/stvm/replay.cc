@@ -22,15 +22,13 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
-    tools::kScansOption,
-    tools::kPrintOption,
-    tools::kPlotOption,
-    tools::kTraceOption,
-    STVM_FORMAT_OPTION,
+constexpr tools::OptionRow kReplayOptions[] = {
+    tools::kScansOption, tools::kPrintOption, tools::kPlotOption,
+    tools::kTraceOption, STVM_FORMAT_OPTION,
 };
-constexpr tools::Command kCommand{
-    "replay", "RECORDING", "Runs a recorded run again and compares every cycle.", kOptions, 1, 1};
+constexpr tools::Command kReplayCommand{
+    "replay",       "RECORDING", "Runs a recorded run again and compares every cycle.",
+    kReplayOptions, 1,           1};
 
 // Every job is done at once: between two cycles of a replay there is nobody else.
 class AtOnce : public vm::Boundary {
@@ -215,7 +213,7 @@ base::Status replay(const tools::Options& options) {
   return base::Ok{};
 }
 
-int run(const tools::Options& options) {
+int run_replay(const tools::Options& options) {
   base::Status done = replay(options);
   if (done.ok()) return tools::kOk;
   const int code = refuse(done.error());
@@ -224,6 +222,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kReplay{&kCommand, run};
+const Entry kReplay{&kReplayCommand, run_replay};
 
 }  // namespace stvm

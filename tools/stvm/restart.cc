@@ -10,14 +10,14 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kRestartOptions[] = {
     {"--warm", nullptr, "keeps what is RETAIN (default)", "", "--cold|--hot"},
     {"--cold", nullptr, "keeps nothing: all initial values", "", "--hot"},
     {"--hot", nullptr, "keeps all values: only goes on"},
     STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION};
-constexpr tools::Command kCommand{"restart", "", "Runs all tasks again, behind a fault too.",
-                                  kOptions,  0,  0};
+constexpr tools::Command kRestartCommand{
+    "restart", "", "Runs all tasks again, behind a fault too.", kRestartOptions, 0, 0};
 
 struct Kind {
   const char* option;
@@ -58,13 +58,13 @@ base::Status restart(const tools::Options& options) {
   return base::Ok{};
 }
 
-int run(const tools::Options& options) {
+int run_restart(const tools::Options& options) {
   base::Status done = restart(options);
   return done.ok() ? tools::kOk : refuse(done.error());
 }
 
 }  // namespace
 
-const Entry kRestart{&kCommand, run};
+const Entry kRestart{&kRestartCommand, run_restart};
 
 }  // namespace stvm

@@ -24,7 +24,7 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kRunOptions[] = {
     tools::kScansOption,
     {"--virtual-time", nullptr, "as fast as it can, the same every time"},
     {"--set", "NAME=VALUE", "write a variable before the first scan; repeatable", "", "",
@@ -46,8 +46,8 @@ constexpr tools::OptionRow kOptions[] = {
     TOOLS_COMPILE_OPTIONS,
     STVM_FORMAT_OPTION,
 };
-constexpr tools::Command kCommand{"run", "IMAGES|SOURCES...", "Runs a program scan by scan.",
-                                  kOptions, 1};
+constexpr tools::Command kRunCommand{"run", "IMAGES|SOURCES...", "Runs a program scan by scan.",
+                                     kRunOptions, 1};
 
 struct Settings {
   bool json = false;
@@ -150,8 +150,8 @@ base::Status show_chart(const Settings& settings, const TimingChart& chart,
   return base::Ok{};
 }
 
-void print_json(const Settings& settings, const tools::Options& options,
-                vm::Controller& controller, const TimingChart* chart) {
+void print_json(const Settings& settings, const tools::Options& options, vm::Controller& controller,
+                const TimingChart* chart) {
   tools::JsonWriter json;
   json.begin_object().field("scans", controller.cycles()).field("faulted", controller.faulted());
   json.key("values").begin_object();
@@ -227,7 +227,7 @@ base::Result<int> run_alone(Settings settings,
   return end_run(**running) ? tools::kOk : tools::kFindings;
 }
 
-base::Result<int> run_program(const tools::Options& options) {
+base::Result<int> run_one(const tools::Options& options) {
   base::Result<Settings> settings = read_settings(options);
   if (!settings.ok()) return settings.error();
   if (options.has("--record") && settings->hard_mode != HardMode::kNone) {
@@ -255,13 +255,13 @@ base::Result<int> run_program(const tools::Options& options) {
   return run_alone(*settings, *resources, options);
 }
 
-int run(const tools::Options& options) {
-  base::Result<int> code = run_program(options);
+int run_command(const tools::Options& options) {
+  base::Result<int> code = run_one(options);
   return code.ok() ? *code : refuse(code.error());
 }
 
 }  // namespace
 
-const Entry kRun{&kCommand, run};
+const Entry kRun{&kRunCommand, run_command};
 
 }  // namespace stvm

@@ -133,8 +133,8 @@ void run_in_threads(const Running& running, const RunSettings& settings) {
   for (std::thread& thread : threads) thread.join();
 }
 
-void print_text(const Running& running, const RunSettings& settings,
-                const tools::Options& options) {
+void print_resources_text(const Running& running, const RunSettings& settings,
+                          const tools::Options& options) {
   for (const std::string& name : settings.print) {
     base::Result<Name> found = find_name(running, name);
     std::printf("%s=%s\n", name.c_str(),
@@ -182,8 +182,8 @@ void print_resource(tools::JsonWriter& json, ResourceController& resource,
   json.end_array().end_object();
 }
 
-void print_json(const Running& running, const RunSettings& settings,
-                const tools::Options& options) {
+void print_resources_json(const Running& running, const RunSettings& settings,
+                          const tools::Options& options) {
   tools::JsonWriter json;
   json.begin_object().key("resources").begin_array();
   for (const auto& resource : running) print_resource(json, *resource, settings, options);
@@ -292,7 +292,7 @@ base::Result<int> run_resources(const std::vector<Resource>& resources, RunSetti
     finish_scan(*resource);
     if (base::Status recorded = resource->close(); !recorded.ok()) return recorded.error();
   }
-  (settings.json ? print_json : print_text)(running, settings, options);
+  (settings.json ? print_resources_json : print_resources_text)(running, settings, options);
   bool good = true;
   for (const auto& resource : running) good = end_run(*resource) && good;
   return good ? tools::kOk : tools::kFindings;

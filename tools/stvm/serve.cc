@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kAliveLook{20};
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kServeOptions[] = {
     STVM_DIR_OPTION,
     {"--first", "IMAGE", "the program of a state folder that holds none yet; else it is not read"},
     {"--data-limit", "BYTES",
@@ -38,11 +38,11 @@ constexpr tools::OptionRow kOptions[] = {
     STVM_DEVICE_OPTION,
     TOOLS_COMPILE_OPTIONS,
 };
-constexpr tools::Command kCommand{
+constexpr tools::Command kServeCommand{
     "serve", "[IMAGES|SOURCES...]",
     "Runs a controller that can be watched and changed. Without IMAGE: the one stored last.\n"
     "Of several RESOURCEs each has a control thread, and its state in STATE/NAME.",
-    kOptions};
+    kServeOptions};
 
 using Served = std::vector<std::unique_ptr<ServedResource>>;
 using Resource = vm::GlobalExchange::Resource;
@@ -271,7 +271,7 @@ base::Status serve(const tools::Options& options) {
                              : run_several(*served, *real_time, notify);
 }
 
-int run(const tools::Options& options) {
+int run_serve(const tools::Options& options) {
   base::Status served = serve(options);
   std::clearerr(stdout);  // whoever read what it says may have gone long ago
   return served.ok() ? tools::kOk : refuse(served.error());
@@ -279,6 +279,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kServe{&kCommand, run};
+const Entry kServe{&kServeCommand, run_serve};
 
 }  // namespace stvm

@@ -11,13 +11,14 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
+constexpr tools::OptionRow kSetOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
 constexpr tools::OptionRow kUnforceOptions[] = {
     {"--all", nullptr, "every forced variable"}, STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
 constexpr tools::Command kSetCommand{"set", "NAME=VALUE...",
-                                     "Writes variables once, all at one boundary.", kOptions, 1};
-constexpr tools::Command kForceCommand{
-    "force", "NAME=VALUE...", "Imposes values on variables until they are released.", kOptions, 1};
+                                     "Writes variables once, all at one boundary.", kSetOptions, 1};
+constexpr tools::Command kForceCommand{"force", "NAME=VALUE...",
+                                       "Imposes values on variables until they are released.",
+                                       kSetOptions, 1};
 constexpr tools::Command kUnforceCommand{"unforce", "NAMES...", "Releases forced variables.",
                                          kUnforceOptions};
 

@@ -13,11 +13,11 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {TOOLS_SOURCE_OPTIONS, STVM_CONTROLLER_OPTIONS,
-                                         STVM_FORMAT_OPTION};
-constexpr tools::Command kCommand{
-    "source", "[ADDRESS]", "Brings back the sources that travel with the running program.",
-    kOptions, 0,           1};
+constexpr tools::OptionRow kSourceOptions[] = {TOOLS_SOURCE_OPTIONS, STVM_CONTROLLER_OPTIONS,
+                                               STVM_FORMAT_OPTION};
+constexpr tools::Command kSourceCommand{
+    "source",       "[ADDRESS]", "Brings back the sources that travel with the running program.",
+    kSourceOptions, 0,           1};
 
 base::Result<ControllerClient> connect(const tools::Options& options) {
   if (options.arguments().empty()) return ControllerClient::connect(options);
@@ -40,7 +40,7 @@ base::Result<std::string> bring(const tools::Options& options) {
   return tools::bring_sources(image->encoded(), image->image().name, options, json);
 }
 
-int run(const tools::Options& options) {
+int run_source(const tools::Options& options) {
   base::Result<std::string> text = bring(options);
   if (!text.ok()) return refuse(text.error());
   std::fputs(text->c_str(), stdout);
@@ -49,6 +49,6 @@ int run(const tools::Options& options) {
 
 }  // namespace
 
-const Entry kSource{&kCommand, run};
+const Entry kSource{&kSourceCommand, run_source};
 
 }  // namespace stvm

@@ -16,15 +16,15 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kStatusOptions[] = {
     STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION,
     {"--activity", nullptr, "what tasks are doing at this instant, and how their buffers stand"},
     {"--units", nullptr, "the table of units: slot in use, what the other one holds, since when"},
     {"--task", "NAME", "histograms of a task: run times, and delays of its start"},
     {"--reset-times", nullptr, "the controller forgets how long scans took and began late"}};
-constexpr tools::Command kCommand{"status", "", "Shows what a controller runs and how it is.",
-                                  kOptions, 0,  0};
+constexpr tools::Command kStatusCommand{
+    "status", "", "Shows what a controller runs and how it is.", kStatusOptions, 0, 0};
 
 bool on_trial(const vm::StatusReport& report) { return report.edits != 0; }
 
@@ -160,7 +160,7 @@ std::string state_text(const vm::TaskStatus& task) {
   return task.overruns == 0 ? "ok" : "overran";
 }
 
-void print_text(const vm::StatusReport& report) {
+void print_status_text(const vm::StatusReport& report) {
   print_versions(report);
   print_memory(report.memory);
   tools::Table tasks({"task", "> period", "> prio", "> scans", "> missed", "> average", "> p99",
@@ -194,7 +194,7 @@ void task_json(tools::JsonWriter& json, const vm::TaskStatus& task) {
   json.end_object();
 }
 
-void print_json(const vm::StatusReport& report) {
+void print_status_json(const vm::StatusReport& report) {
   tools::JsonWriter json;
   json.begin_object().field("name", report.name);
   json.field("running", base::to_hex(report.running)).field("edition", report.edition);
@@ -259,17 +259,17 @@ base::Status show(const tools::Options& options) {
     std::fputs(activity_text(report->tasks).c_str(), stdout);
     return base::Ok{};
   }
-  (*json ? print_json : print_text)(*report);
+  (*json ? print_status_json : print_status_text)(*report);
   return base::Ok{};
 }
 
-int run(const tools::Options& options) {
+int run_status(const tools::Options& options) {
   base::Status shown = show(options);
   return shown.ok() ? tools::kOk : refuse(shown.error());
 }
 
 }  // namespace
 
-const Entry kStatus{&kCommand, run};
+const Entry kStatus{&kStatusCommand, run_status};
 
 }  // namespace stvm

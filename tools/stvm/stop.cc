@@ -12,8 +12,8 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
-constexpr tools::Command kStopCommand{"stop", "", "Ends a serving controller.", kOptions, 0, 0};
+constexpr tools::OptionRow kStopOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
+constexpr tools::Command kStopCommand{"stop", "", "Ends a serving controller.", kStopOptions, 0, 0};
 
 base::Status ask_to_stop(const tools::Options& options) {
   base::Result<bool> json = wants_json(options);

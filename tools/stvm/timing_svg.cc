@@ -13,10 +13,10 @@ namespace {
 constexpr double kWidth = 960;
 constexpr double kLeft = 130;
 constexpr double kRight = 24;
-constexpr double kTop = 44;
+constexpr double kUpperMargin = 44;
 constexpr double kTaskHeight = 40;
-constexpr double kBar = 20;       // of a running task, and of configuration
-constexpr double kDotStep = 9;    // between the dots of two tasks
+constexpr double kBar = 20;     // of a running task, and of configuration
+constexpr double kDotStep = 9;  // between the dots of two tasks
 constexpr double kDotRadius = 3;
 
 const char* color_of(size_t lane) { return kColors[lane % std::size(kColors)]; }
@@ -40,10 +40,10 @@ class Picture {
     out += format("<path d=\"M%.0f %.1fH%.0f\" class=\"base\"/>\n", kLeft, y, kWidth - kRight);
   }
   void bar(const TimeSpan& span, double top, double height, const char* color, const char* style) {
-    out += format("<rect x=\"%.2f\" y=\"%.1f\" width=\"%.2f\" height=\"%.1f\" fill=\"%s\" "
-                  "class=\"%s\"/>\n",
-                  x(span.from_ns), top, std::max(x(span.to_ns) - x(span.from_ns), 0.8), height,
-                  color, style);
+    out += format(
+        "<rect x=\"%.2f\" y=\"%.1f\" width=\"%.2f\" height=\"%.1f\" fill=\"%s\" "
+        "class=\"%s\"/>\n",
+        x(span.from_ns), top, std::max(x(span.to_ns) - x(span.from_ns), 0.8), height, color, style);
   }
   void dot(int64_t at_ns, double y, const char* color) {
     out += format("<circle cx=\"%.2f\" cy=\"%.1f\" r=\"%.0f\" fill=\"%s\"/>\n", x(at_ns), y,
@@ -144,15 +144,16 @@ void draw_change(Picture& picture, const std::vector<TimeSpan>& spans,
   picture.base_line(floor);
   for (const TimeSpan& span : spans) picture.bar(span, floor - kBar, kBar, "#e69f00", "scan");
   for (const int64_t at_ns : switches) {
-    picture.line(at_ns, kTop - 6, floor, "switch");
+    picture.line(at_ns, kUpperMargin - 6, floor, "switch");
     picture.text(picture.x(at_ns) + 4, floor - kBar - 6, "note", "switch");
   }
 }
 
 std::string head(double height, const std::string& title) {
-  return format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" "
-                "width=\"%.0f\" height=\"%.0f\" font-family=\"sans-serif\">\n",
-                kWidth, height, kWidth, height) +
+  return format(
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" "
+             "width=\"%.0f\" height=\"%.0f\" font-family=\"sans-serif\">\n",
+             kWidth, height, kWidth, height) +
          kStyle + "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" +
          format("<text x=\"%.0f\" y=\"22\" style=\"font-size:15px\">", kLeft) + escaped(title) +
          "</text>\n";
@@ -162,15 +163,15 @@ std::string head(double height, const std::string& title) {
 
 std::string TimingChart::svg(const std::string& title) const {
   const double dots = dots_height(lanes_.size());
-  const double tasks_top = kTop + dots + 10;
+  const double tasks_top = kUpperMargin + dots + 10;
   const double sent_top = tasks_top + static_cast<double>(lanes_.size()) * kTaskHeight + 10;
   const bool change = !configuration_.empty() || !switches_.empty();
   const double bottom = sent_top + dots + 10 + (change ? kTaskHeight : 0);
   const double height = bottom + 64;
   Picture picture(end_ns_);
   picture.out = head(height, title + (cut_ ? " (the beginning of a longer run)" : ""));
-  for (const int64_t at_ns : cycles_) picture.line(at_ns, kTop, bottom, "cycle");
-  draw_exchange(picture, "inputs received", kTop, received_, lanes_, &TimingLane::inputs);
+  for (const int64_t at_ns : cycles_) picture.line(at_ns, kUpperMargin, bottom, "cycle");
+  draw_exchange(picture, "inputs received", kUpperMargin, received_, lanes_, &TimingLane::inputs);
   for (size_t i = 0; i < lanes_.size(); ++i) {
     draw_task(picture, lanes_[i], color_of(i),
               tasks_top + static_cast<double>(i + 1) * kTaskHeight);

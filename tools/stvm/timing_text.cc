@@ -7,7 +7,7 @@
 namespace stvm {
 namespace {
 
-constexpr size_t kColumns = 64;
+constexpr size_t kChartColumns = 64;
 constexpr size_t kNameWidth = 14;
 
 // What is drawn later lies on top.
@@ -30,11 +30,11 @@ class TextRow {
   }
   size_t column(int64_t at_ns) const {
     const double share = static_cast<double>(at_ns) / static_cast<double>(end_ns_);
-    const auto number = static_cast<size_t>(share * static_cast<double>(kColumns));
-    return std::min(number, kColumns - 1);
+    const auto number = static_cast<size_t>(share * static_cast<double>(kChartColumns));
+    return std::min(number, kChartColumns - 1);
   }
   void words(size_t at, const std::string& words) {
-    if (at + words.size() <= kColumns) cells_.replace(at, words.size(), words);
+    if (at + words.size() <= kChartColumns) cells_.replace(at, words.size(), words);
   }
   std::string text() const {
     std::string out = name_ + cells_;
@@ -45,7 +45,7 @@ class TextRow {
  private:
   std::string name_;
   int64_t end_ns_;
-  std::string cells_ = std::string(kColumns, ' ');
+  std::string cells_ = std::string(kChartColumns, ' ');
 };
 
 }  // namespace

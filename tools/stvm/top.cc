@@ -17,14 +17,14 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kTopOptions[] = {
     tools::kIntervalOption,
     tools::kCountOption,
     STVM_CONTROLLER_OPTIONS,
 };
-constexpr tools::Command kCommand{
-    "top",    "", "Shows tasks, devices, changes and alarms on a page that refreshes.",
-    kOptions, 0,  0};
+constexpr tools::Command kTopCommand{
+    "top",       "", "Shows tasks, devices, changes and alarms on a page that refreshes.",
+    kTopOptions, 0,  0};
 
 size_t from_environment(const char* name, size_t otherwise) {
   const char* text = std::getenv(name);
@@ -121,13 +121,13 @@ base::Status top(const tools::Options& options) {
   return base::Ok{};
 }
 
-int run(const tools::Options& options) {
+int run_top(const tools::Options& options) {
   base::Status shown = top(options);
   return shown.ok() ? tools::kOk : refuse(shown.error());
 }
 
 }  // namespace
 
-const Entry kTop{&kCommand, run};
+const Entry kTop{&kTopCommand, run_top};
 
 }  // namespace stvm

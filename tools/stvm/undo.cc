@@ -33,9 +33,12 @@ constexpr tools::Command kRedoCommand{
     "Brings the edit that was undone last again, or these and those below them.", kRedoOptions, 0};
 constexpr tools::OptionRow kAcceptOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
 constexpr tools::Command kAcceptCommand{
-    "accept",       "[EDIT]",
+    "accept",
+    "[EDIT]",
     "Makes all edits on trial final, or those up to this one; they boot next.",
-    kAcceptOptions, 0, 1};
+    kAcceptOptions,
+    0,
+    1};
 
 using Names = std::vector<std::string>;
 
@@ -248,13 +251,13 @@ base::Status accept_edits(const tools::Options& options) {
   return base::Ok{};
 }
 
-int code_of(const base::Status& status) {
+int exit_code_of(const base::Status& status) {
   return status.ok() ? tools::kOk : refuse(status.error());
 }
 
-int undo(const tools::Options& options) { return code_of(undo_edits(options)); }
-int redo(const tools::Options& options) { return code_of(redo_edits(options)); }
-int accept(const tools::Options& options) { return code_of(accept_edits(options)); }
+int undo(const tools::Options& options) { return exit_code_of(undo_edits(options)); }
+int redo(const tools::Options& options) { return exit_code_of(redo_edits(options)); }
+int accept(const tools::Options& options) { return exit_code_of(accept_edits(options)); }
 
 }  // namespace
 

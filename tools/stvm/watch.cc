@@ -13,14 +13,15 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kOptions[] = {
+constexpr tools::OptionRow kWatchOptions[] = {
     tools::kIntervalOption,
     tools::kCountOption,
     STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION,
 };
-constexpr tools::Command kCommand{
-    "watch", "NAMES...", "Shows values again and again, one line for each sample.", kOptions, 1};
+constexpr tools::Command kWatchCommand{"watch", "NAMES...",
+                                       "Shows values again and again, one line for each sample.",
+                                       kWatchOptions, 1};
 
 std::string sample_text(const vm::Values& values) {
   std::string out = std::to_string(values.cycle);
@@ -51,13 +52,13 @@ base::Status watch(const tools::Options& options) {
   return base::Ok{};
 }
 
-int run(const tools::Options& options) {
+int run_watch(const tools::Options& options) {
   base::Status watched = watch(options);
   return watched.ok() ? tools::kOk : refuse(watched.error());
 }
 
 }  // namespace
 
-const Entry kWatch{&kCommand, run};
+const Entry kWatch{&kWatchCommand, run_watch};
 
 }  // namespace stvm
