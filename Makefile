@@ -20,12 +20,14 @@
 #   make clang    build and test by clang 16, without a warning as by g++
 #   make install PREFIX=DIR   stc, stvm, their documents and the unit of the service
 #   make deb      the Debian packages, in build/release
+#   make archives   static archives for amd64 and arm64 and an OCI image, in build/archives; each runs
+#                   the bottling line in an empty root
 #   make format   clang-format over the whole tree
 
 BUILD := build/release
 JOBS := $(shell nproc)
 
-.PHONY: install deb all build setup demo test test-arm64 test-minimal minimal clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak mutate coverage docs clean
+.PHONY: install deb archives all build setup demo test test-arm64 test-minimal minimal clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak mutate coverage docs clean
 
 all: build
 
@@ -151,6 +153,10 @@ install: build
 
 deb: build
 	@cd $(BUILD) && cpack -G DEB
+
+archives: setup
+	@scripts/setup.sh g++-aarch64-linux-gnu qemu-user-static
+	@scripts/archives.sh build/archives $(JOBS)
 
 clean:
 	@rm -rf build

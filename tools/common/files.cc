@@ -1,6 +1,7 @@
 #include "tools/common/files.h"
 
 #include <fcntl.h>
+#include <sys/auxv.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -151,7 +152,11 @@ bool is_there(const std::string& path) {
 std::string own_folder() {
   std::error_code error;
   std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  return error ? "." : self.parent_path().string();
+  if (error) {  // nothing is mounted there: the path that this program was started by
+    const auto* const started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
+    self = std::filesystem::absolute(started == nullptr ? "." : started, error);
+  }
+  return self.parent_path().string();
 }
 
 }  // namespace tools
