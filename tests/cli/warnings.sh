@@ -119,3 +119,38 @@ ST
 expect 1 stc check open.st
 grep -qF 'VAR_CONFIG Main.o.x AT %IW0 : INT; END_VAR' err || fail "no address of an INT"
 grep -qF 'VAR_CONFIG Main.o.y AT %QX0.0 : BOOL; END_VAR' err || fail "no address of an output"
+
+# The compiler that stays follows the pragmas of what is saved; a warning that is an error gives no
+# image there, either.
+mkdir live
+saved() {
+  printf 'PROGRAM Main\n  VAR n : INT; d : DINT := 5; END_VAR\n%s\nEND_PROGRAM\n' "$1" >live/next
+  mv live/next live/main.st
+}
+# reported TIMES: so often W0001 was said since the last save
+reported() {
+  for _ in $(seq 600); do
+    [ "$(grep -c 'R0505\|^built ' watch.log)" -ge "$builds" ] && break
+    sleep 0.05
+  done
+  builds=$((builds + 1))
+  got=$(grep -c 'error\[W0001\]' watch.log || true)
+  [ "$got" -eq "$1" ] || fail "W0001 was said $got times, not $1: $(cat watch.log)"
+}
+builds=1
+saved '  {warning off W0001} n := d; {warning restore}'
+"$bin/stc" build live --watch -o live.img --warn W0001=error >watch.out 2>watch.log </dev/null &
+echo $! >watch.pid
+reported 0
+saved '  n := 1; n := 2; n := 3; {warning off W0001} n := d; {warning restore}'
+reported 0
+cp live.img before.img
+saved '  {warning off W0001} n := 4; {warning restore} n := d;'
+reported 1
+cmp -s before.img live.img || fail "an image in spite of a warning that is an error"
+saved '  n := d; {warning off W0001} n := d; {warning restore}'
+reported 2
+saved '  {warning off W0001} n := d; n := d; {warning restore}'
+reported 2
+cmp -s before.img live.img && fail "no image after the error"
+exit 0
