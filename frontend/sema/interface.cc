@@ -1,5 +1,6 @@
 // Interfaces: the members of instances, the locals of frames, the global variables.
 #include <algorithm>
+#include <set>
 
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/sema.h"
@@ -88,6 +89,20 @@ ir::Member Sema::member_of(const Variable& variable, ir::Section section) {
   return member;
 }
 
+// A VAR_INST of a method that overrides another one is no variable of the base: its name begins
+// with the block, as `Block#Method#variable`. Values of a running program are found by these names.
+static void qualify_method(Sema& sema, Variable& variable, const PouInfo& block,
+                           std::set<std::string>& names) {
+  if (variable.method.empty()) return;
+  const auto full = [&] {
+    return ir::fold_name(std::string(variable.method) + "#" + std::string(variable.name.text));
+  };
+  if (names.contains(full())) {
+    variable.method = sema.keep_name(std::string(block.name) + "#" + std::string(variable.method));
+  }
+  names.insert(full());
+}
+
 void Sema::resolve_interface(uint32_t number) {
   PouInfo& info = pous[number];
   if (info.open || info.resolved) return;
@@ -97,8 +112,11 @@ void Sema::resolve_interface(uint32_t number) {
   for (VarId id : info.variables) resolve(id);
   std::vector<ir::Member> members;
   if (info.base != kNoPou) members = program.types[pous[info.base].self].members;
+  std::set<std::string> names;
+  for (const ir::Member& member : members) names.insert(ir::fold_name(member.name));
   for (VarId id : info.members) {
-    const Variable& variable = variables_[id.index];
+    Variable& variable = variables_[id.index];
+    qualify_method(*this, variable, info, names);
     members.push_back(member_of(variable, section_of(ir_section(variable))));
   }
   if (for_tests() && info.decl->kind == PouKind::kFunctionBlock) add_mock_members(info, members);

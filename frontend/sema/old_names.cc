@@ -145,7 +145,8 @@ std::string OldNames::old_member(const Variable& variable) const {
   if (!variable.method.empty()) front = std::string(variable.method) + "#";
   if (variable.pou != kNoPou && !front.empty()) {
     const PouInfo& info = sema_.pous[variable.pou];
-    before = variable.method.empty() ? old_list(info) : std::string(info.old_name);
+    const bool of_block = variable.method.empty() || variable.method.find('#') != std::string::npos;
+    before = of_block ? old_list(info) : std::string(info.old_name);
   }
   if (own.empty() && before.empty()) return {};
   // `x#last`, `x#action` are made for x.

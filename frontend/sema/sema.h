@@ -55,6 +55,8 @@ class Sema {
 
   // --- types (types.cc, structures.cc, containment.cc)
   TypeUse resolve(SpecId spec);
+  // hidden_variables.cc
+  std::string_view keep_name(std::string name);
   std::optional<TypeUse> find_type(std::string_view qualified);
   // Of an interface variable?
   bool is_interface(ir::TypeId type) const;
@@ -272,8 +274,6 @@ class Sema {
   Field add_bit(StructBuild& build, const Name& name, ir::ConstId init, std::string rule);
   void close_bits(StructBuild& build);
 
-  // hidden_variables.cc
-  std::string_view keep_name(std::string name);
   std::string static_list_name(const PouInfo& info) const;
   VarId add_static(Variable variable, PouInfo& info);
   void add_instance_variable(Variable variable, PouInfo& method);

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <optional>
+#include <unordered_set>
 
+#include <unordered_set>
 #include "base/limits.h"
 #include "ir/program/shape.h"
+
 #include "ir/program/verify_parts.h"
 
 namespace ir {
@@ -99,7 +102,10 @@ class TypesVerifier {
 
   void check_members(TypeId id, const Type& type) {
     require(type.members.empty() || types_.has_members(id), id, "members of a scalar type");
+    std::unordered_set<std::string> names;  // values of a running program are found by them
     for (const Member& member : type.members) {
+      require(member.name.empty() || names.insert(fold_name(member.name)).second, id,
+              "two members with one name");
       require(types_.contains(member.type), id, "type of a member does not exist");
       require(!types_.overlaps(id) || member.address.area == DirectArea::kNone, id,
               "a member of a union has an I/O address");
