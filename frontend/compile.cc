@@ -5,6 +5,7 @@
 
 #include "base/limits.h"
 #include "frontend/analysis.h"
+#include "frontend/coverage.h"
 #include "frontend/lex/declaration_index.h"
 #include "frontend/lower/body.h"
 #include "frontend/parse/address_map.h"
@@ -126,9 +127,14 @@ std::optional<Analysed> analyse(Purpose purpose, const Parsed& parsed,
                                 const CompileOptions& options, base::Diagnostics& diagnostics) {
   Sema sema(parsed.sources, parsed.tree, parsed.library_file, options, purpose, diagnostics);
   declare_all(sema);
+  Coverage* coverage = options.coverage;
+  if (coverage != nullptr) {
+    coverage->begin(parsed.sources, parsed.tree, parsed.library_file, sema.program);
+  }
   // Grows while bodies use functions in new instances.
   for (uint32_t pou = 0; pou < sema.pous.size(); ++pou) lower_body(sema, pou);
   check_whole(sema);
+  if (coverage != nullptr) coverage->finish(sema.program);
   if (diagnostics.has_errors()) return std::nullopt;
   ResourceUses uses = CommonUses(sema).of_resource();
   return Analysed{{std::move(sema.program), std::move(sema.test_cases)}, std::move(uses)};

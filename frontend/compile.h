@@ -15,6 +15,8 @@
 
 namespace frontend {
 
+class Coverage;  // coverage.h
+
 struct CompileOptions {
   Dialect dialect = Dialect::kCodesys;
   std::string name = "project";  // used when there is no CONFIGURATION
@@ -24,6 +26,8 @@ struct CompileOptions {
   std::vector<std::string> defines;
   bool strict_strings = false;  // LEFT, MID, INSERT, ... out of range trap, instead of being cut
   uint64_t max_source_bytes = base::kMaxSourceBytes;  // tests ask for less
+  Coverage* coverage = nullptr;  // gets the places, and code counts; null: no such code
+  bool tests = false;            // Resident: TEST blocks run, not what the project runs
 };
 
 struct Tree;
@@ -54,7 +58,7 @@ std::optional<Resources> compile_resources(const base::SourceMap& sources,
                                            const CompileOptions& options,
                                            base::Diagnostics& diagnostics);
 
-// TEST blocks (docs/TESTING.md), made into one program each; the
+// TEST blocks (docs/UNIT-TESTS.md), made into one program each; the
 // project's own tasks and programs do not run.
 struct TestCase {
   std::string name;  // as written, without quotes

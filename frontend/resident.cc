@@ -66,7 +66,7 @@ ir::Program* Resident::compile(const base::SourceMap& sources, const CompileOpti
     const bool several = configs.size() == 1 && configs[0].resources.size() > 1;
     if (several && !diagnostics_.has_errors()) return nullptr;
     sema_ = std::make_unique<Sema>(parsed_->sources, parsed_->tree, parsed_->library_file, options_,
-                                   Purpose::kRun, diagnostics_);
+                                   options_.tests ? Purpose::kTest : Purpose::kRun, diagnostics_);
     declare_all(*sema_);
     lower_all_bodies();
     check_whole(*sema_);
@@ -77,6 +77,8 @@ ir::Program* Resident::compile(const base::SourceMap& sources, const CompileOpti
   if (followable_) note_files();
   return &sema_->program;
 }
+
+const std::vector<TestCase>& Resident::test_cases() const { return sema_->test_cases; }
 
 bool Resident::can_follow() const {
   const size_t found = diagnostics_.warning_count() + diagnostics_.note_count();

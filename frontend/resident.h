@@ -38,6 +38,9 @@ class Resident {
   ir::Program* compile(const base::SourceMap& sources, const CompileOptions& options,
                        base::Diagnostics& diagnostics);
 
+  // Of the last program, which was compiled with CompileOptions::tests.
+  const std::vector<TestCase>& test_cases() const;
+
   struct FileLines {
     std::string file;
     std::vector<LineShift> shifts;

@@ -55,6 +55,10 @@ class IncrementalBuild {
   // What the last build() gave runs now: builds from nothing are linked against `base`, which is
   // equal to it, from now on. Edits are followed as before, since they move nothing.
   void continue_from(std::shared_ptr<const ir::Image> base) { next_base_ = std::move(base); }
+  // Of the last good build, with CompileOptions::tests.
+  const std::vector<frontend::TestCase>& test_cases() const {
+    return kept_->frontend.test_cases();
+  }
   const Counts& counts() const { return counts_; }
 
  private:

@@ -39,7 +39,8 @@ void Body::run() {
   connect_inputs();
   detect_edges();
   mock_prologue();
-  if (sema_.for_tests() && decl.kind == PouKind::kProgram) activate_mock_bodies();
+  count_pou();
+  if (info_.test && decl.kind == PouKind::kProgram) activate_mock_bodies();
   if (info_.setup != nullptr) statements(info_.setup->body);
   if (!info_.connections.empty()) exit_ = build_.new_block();
   if (info_.made == MadeCode::kStart) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "frontend/coverage.h"
 #include "frontend/lower/builder.h"
 #include "frontend/lower/target.h"
 #include "frontend/sema/sema.h"
@@ -286,6 +287,8 @@ class Body {
   void test_call(const Expr& call, const TestCallRow& row);
   void assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message);
   void assert_near(const std::vector<ExprId>& args, ExprId message);
+  bool is_message(ExprId message);         // reports, as the next one does
+  bool is_time_ahead(ExprId duration);
   void verify_calls(const std::vector<ExprId>& args, bool exact, ExprId message);
   void fail_unless(ir::ValueId holds, ExprId message, const std::function<ir::Place()>& what);
   ir::Place constant_text(std::string text);
@@ -296,6 +299,15 @@ class Body {
   void mock_prologue();
   void activate_mock_bodies();
   void forward_to_mock(const PouInfo& mock);
+
+  // --- coverage (coverage.cc): no code unless the options ask for it
+  void count_pou();
+  void count(SiteKind kind, base::SourcePos at, const std::string& name = {}, uint32_t side = 0);
+  void count_statement(const Stmt& stmt);
+  void count_power(ir::ValueId power, ExprId target, base::SourcePos at);
+  // Goes on at `yes` or `no`, and counts both.
+  void decide(ir::ValueId condition, ir::BlockId yes, ir::BlockId no, base::SourcePos at,
+              const char* what);
 
   // --- standard functions (standard*.cc)
   ir::ValueId emit_standard(const Expr& expr, const Callee& callee, ir::TypeId own);
@@ -367,6 +379,8 @@ class Body {
   std::vector<VarId> for_variables_;
   std::unordered_map<uint32_t, ir::ValueId> result_values_;  // by number of the kResult
   std::unordered_map<uint32_t, ir::Place> result_places_;
+  Coverage* coverage_ = nullptr;              // where this body is counted; null: it is not
+  const network::Network* rung_ = nullptr;    // the last that was counted
   bool evaluating_ = false;  // inside evaluate(): names stand for their initial values
   static constexpr uint32_t kNoLocal = 0xffffffffu;
   std::array<uint32_t, 3> message_buffers_{kNoLocal, kNoLocal, kNoLocal};

@@ -24,6 +24,7 @@ void ChartBody::run() {
   for (uint32_t t = 0; t < net_.transitions.size(); ++t) transition(t);
   moves();
   starts();
+  count_steps();
   step_uses();
   controls();
   bodies();

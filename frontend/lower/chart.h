@@ -49,6 +49,8 @@ class ChartBody {
   void go_on_if(ir::ValueId condition, bool holds, ir::BlockId otherwise);
   void transition(uint32_t number);
   void fire(uint32_t number);
+  void count_transition(uint32_t number);
+  void count_steps();
   void leave(uint32_t number);
   void each_fired(const std::function<void(uint32_t)>& then);
   void moves();

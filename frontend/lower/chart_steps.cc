@@ -152,6 +152,7 @@ void ChartBody::active_step(uint32_t step) {
       next = build_.new_block();
       go_on_if(body_.condition(decl.condition), true, next);
     }
+    count_transition(t);
     fire(t);
     build_.jump(done);
     if (decl.condition.valid()) build_.start(next);
@@ -194,10 +195,36 @@ void ChartBody::transition(uint32_t number) {
   }
   if (transition.decl->condition.valid())
     go_on_if(body_.condition(transition.decl->condition), true, next);
+  count_transition(number);
   fire(number);
   for (uint32_t step : transition.from) raise(spent_[step]);
   build_.jump(next);
   build_.start(next);
+}
+
+void ChartBody::count_transition(uint32_t number) {
+  if (body_.coverage_ == nullptr) return;
+  const auto names = [&](const std::vector<uint32_t>& steps) {
+    std::string text;
+    for (const uint32_t step : steps) {
+      text += (text.empty() ? "" : ", ") + std::string(net_.steps[step].decl->name.text);
+    }
+    return text;
+  };
+  const sfc::Transition& transition = net_.transitions[number];
+  body_.count(SiteKind::kTransition, transition.decl->span.begin,
+              names(transition.from) + " to " + names(transition.to));
+}
+
+// At the end of a call, when all moves are made.
+void ChartBody::count_steps() {
+  if (body_.coverage_ == nullptr) return;
+  for (uint32_t step = 0; step < net_.steps.size(); ++step) {
+    const Name& name = net_.steps[step].decl->name;
+    when(part(steps_[step], "X"), [&] {
+      body_.count(SiteKind::kStep, name.span.begin, std::string(name.text));
+    });
+  }
 }
 
 void ChartBody::fire(uint32_t number) {

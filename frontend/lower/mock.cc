@@ -23,17 +23,30 @@ std::optional<ir::Place> Body::mock_slot(ExprId target, uint32_t MockSlots::*slo
     const PouInfo* function = sema_.find_pou(sema_.namespaces.find(NameSort::kDeclaration, expr));
     if (function != nullptr && function->decl->kind == PouKind::kFunction) {
       if (function->mock.present) return global_place(function->mock.*slot);
+      const std::string name(expr.name.text);
+      const bool mocks = slot == &MockSlots::active;
       sema_.error(DiagnosticCode::kBadMock, expr.span,
-                  "no test mocks the function `" + std::string(expr.name.text) + "`",
-                  "calls are counted where MOCK_FUNCTION names the function");
+                  mocks ? "`" + name + "` is a function"
+                        : "no test mocks the function `" + name + "`",
+                  mocks ? "write MOCK_FUNCTION " + name + " RETURNS value;"
+                        : "calls are counted where MOCK_FUNCTION names the function");
+      return std::nullopt;
+    }
+    if (function != nullptr) {
+      sema_.error(DiagnosticCode::kBadMock, expr.span,
+                  "`" + std::string(expr.name.text) + "` is a type, not an instance",
+                  "declare an instance in VAR and name that, or name the one inside of another: "
+                  "MOCK uut.sensor;");
       return std::nullopt;
     }
   }
-  const PouInfo* block = sema_.pou_of(sema_.infer(target).type);
+  const ir::TypeId type = sema_.infer(target).type;
+  const PouInfo* block = sema_.pou_of(type);
   if (block == nullptr || !block->mock.present) {
-    if (sema_.infer(target).type.valid()) {
+    if (type.valid()) {
       sema_.error(DiagnosticCode::kBadMock, expr.span,
-                  "this is neither an instance of a function block nor a function");
+                  "`" + sema_.type_text(type) + "` is no function block",
+                  "MOCK takes an instance, MOCK_FUNCTION a function; a variable is just set");
     }
     return std::nullopt;
   }
@@ -46,6 +59,11 @@ std::optional<ir::Place> Body::mock_slot(ExprId target, uint32_t MockSlots::*slo
 }
 
 void Body::mock_statement(const Stmt& stmt) {
+  if (!sema_.for_tests()) {
+    sema_.error(DiagnosticCode::kTestOnly, stmt.span, "mocks are for tests only",
+                "put it into a TEST block and run that with stc test");
+    return;
+  }
   const auto active = mock_slot(stmt.target, &MockSlots::active);
   if (!active) return;
   if (stmt.kind == StmtKind::kMockFunction) {

@@ -24,6 +24,7 @@ void Body::statements(Range32 list) {
 
 void Body::statement(const Stmt& stmt) {
   set_line(stmt.span);
+  count_statement(stmt);
   switch (stmt.kind) {
     case StmtKind::kError:
     case StmtKind::kEmpty:
@@ -75,6 +76,7 @@ void Body::if_statement(const Stmt& stmt) {
   for (uint32_t i = 0; i < stmt.arms.count; ++i) {
     const Branch& branch = tree_.branches[stmt.arms.first + i];
     bool last = i + 1 == stmt.arms.count && stmt.else_body.count == 0;
+    const base::SourcePos at = tree_[branch.condition].span.begin;
     ir::BlockId then = build_.new_block();
     ir::BlockId otherwise = last ? done : build_.new_block();
     const Note& note = sema_.infer(branch.condition);
@@ -82,7 +84,7 @@ void Body::if_statement(const Stmt& stmt) {
       sema_.warning(DiagnosticCode::kConditionConstant, tree_[branch.condition].span,
                     "this condition is always the same");
     }
-    build_.branch(condition(branch.condition), then, otherwise);
+    decide(condition(branch.condition), then, otherwise, at, i == 0 ? "IF" : "ELSIF");
     build_.start(then);
     statements(branch.body);
     if (build_.reachable()) build_.jump(done);
@@ -126,7 +128,7 @@ void Body::while_statement(const Stmt& stmt) {
   ir::BlockId exit = build_.new_block();
   build_.jump(head);
   build_.start(head);
-  build_.branch(condition(stmt.value), body, exit);
+  decide(condition(stmt.value), body, exit, tree_[stmt.value].span.begin, "WHILE");
   build_.start(body);
   if (!loop_body(stmt.body, head, exit)) check_end(stmt.value, true);
   build_.start(exit);
@@ -140,7 +142,7 @@ void Body::repeat_statement(const Stmt& stmt) {
   build_.start(body);
   if (!loop_body(stmt.body, test, exit)) check_end(stmt.value, false);
   build_.start(test);
-  build_.branch(condition(stmt.value), exit, body);
+  decide(condition(stmt.value), exit, body, tree_[stmt.value].span.begin, "UNTIL");
   build_.start(exit);
 }
 

@@ -40,16 +40,21 @@ void Body::test_call(const Expr& call, const TestCallRow& row) {
     const Arg& arg = tree_.args[call.list.first + i];
     if (arg.value.valid() && arg.name.empty()) args.push_back(arg.value);
   }
-  if (args.size() < row.fewest || args.size() > row.most || args.size() != call.list.count) {
+  const bool named = args.size() != call.list.count;
+  if (args.size() < row.fewest || args.size() > row.most || named) {
     sema_.error(DiagnosticCode::kWrongArgumentCount, call.span,
-                std::string(row.name) + " with " + std::to_string(call.list.count) + " arguments",
+                std::string(row.name) + " with " + std::to_string(call.list.count) +
+                    (named ? " arguments, not all of them values without a name" : " arguments"),
                 "it takes, in this order: " + std::string(row.parameters));
     return;
   }
   const ExprId message = args.size() == row.most && row.most > 1 ? args.back() : ExprId();
+  if (message.valid() && !is_message(message)) return;
   switch (row.call) {
     case TestCall::kAdvanceTime:
-      build_.advance_time(value(args[0], elementary(ir::Kind::kLtime)));
+      if (is_time_ahead(args[0])) {
+        build_.advance_time(value(args[0], elementary(ir::Kind::kLtime)));
+      }
       return;
     case TestCall::kAssert:
     case TestCall::kAssertTrue:
@@ -70,6 +75,31 @@ void Body::test_call(const Expr& call, const TestCallRow& row) {
     default:
       return assert_relation(row.call, args, message);
   }
+}
+
+bool Body::is_message(ExprId message) {
+  const Note& note = sema_.infer(message);
+  if (!note.type.valid() || is_string(types(), note.type)) return note.type.valid();
+  sema_.error(DiagnosticCode::kWrongArgument, tree_[message].span,
+              "the message is `" + sema_.type_text(note.type) + "`",
+              "the last argument is the text that a failure shows: 'pump is off'");
+  return false;
+}
+
+bool Body::is_time_ahead(ExprId duration) {
+  const Note& note = sema_.infer(duration);
+  if (!note.type.valid()) return false;
+  const bool time = traits_of(types(), note.type).duration;
+  const bool back =
+      time && note.constant &&
+      static_cast<int64_t>(sema_.fold_bits(duration, elementary(ir::Kind::kLtime)).value_or(0)) < 0;
+  if (time && !back) return true;
+  sema_.error(DiagnosticCode::kWrongArgument, tree_[duration].span,
+              back ? std::string("time does not go back")
+                   : "the duration is `" + sema_.type_text(note.type) + "`",
+              back ? "every test begins anew at time 0; advance by what is missing"
+                   : "write a TIME: ADVANCE_TIME(T#5s)");
+  return false;
 }
 
 void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message) {

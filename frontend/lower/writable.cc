@@ -67,7 +67,7 @@ bool Body::check_writable(ExprId id) {
     case ExprKind::kDirect: {
       const ir::DirectAddress address = tree_.directs[expr.number].address;
       note_output(address, sema_.infer(id).type, expr.span);
-      if (address.area != ir::DirectArea::kInput) return true;
+      if (address.area != ir::DirectArea::kInput || info_.test) return true;
       sema_.error(DiagnosticCode::kAssignToInput, expr.span,
                   "`" + std::string(expr.name.text) + "` is an input of the process image");
       return false;
@@ -81,7 +81,7 @@ bool Body::check_writable(ExprId id) {
       const Variable& variable =
           sema_.resolve(sema_.objects.find_parameter(*block, expr.name.text));
       if (variable.section == VarSection::kInput) return true;
-      if (variable.section != VarSection::kOutput)
+      if (variable.section != VarSection::kOutput || info_.test)
         return check_writable_variable(expr, sema_.objects.find_parameter(*block, expr.name.text));
       sema_.error(DiagnosticCode::kNotAssignable, expr.span,
                   "`" + std::string(expr.name.text) + "` is an output of `" +
@@ -113,7 +113,7 @@ bool Body::is_input_field(const Expr& expr) {
 }
 
 bool Body::check_writable_field(const Expr& expr) {
-  if (!is_input_field(expr)) return true;
+  if (!is_input_field(expr) || info_.test) return true;
   sema_.error(DiagnosticCode::kAssignToInput, expr.span,
               "`" + std::string(expr.name.text) + "` is an input",
               "copy it to a variable of its own");
@@ -148,7 +148,7 @@ bool Body::check_writable_variable(const Expr& expr, VarId id) {
   }
   bool own_input =
       variable->section == VarSection::kInput && sema_.options.dialect == Dialect::kIec;
-  if (is_input(*variable) || own_input) {
+  if ((is_input(*variable) || own_input) && !info_.test) {
     sema_.error(DiagnosticCode::kAssignToInput, expr.span, name() + " is an input",
                 "copy it to a variable of its own");
     return false;

@@ -3,6 +3,22 @@
 #include "frontend/parse/token_sets.h"
 
 namespace frontend {
+namespace {
+
+// Where a word of unit tests begins no declaration: how it is written.
+const char* test_fix(TokenKind kind) {
+  switch (kind) {
+    case TokenKind::kTest:
+      return "a test has its name in quotes: TEST 'pump starts' ... END_TEST";
+    case TokenKind::kMock:
+    case TokenKind::kMockFunction:
+      return "put this statement into a TEST or its SETUP";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
 
 void Parser::parse_file() {
   const base::SourcePos begin = here();
@@ -54,7 +70,8 @@ void Parser::parse_declaration() {
   report_here(is_closing(kind()) ? Code::kUnexpectedEnd : Code::kExpectedDeclaration,
               is_closing(kind())
                   ? describe(*current_) + " stands here, but nothing that it belongs to is open"
-                  : "expected a declaration such as PROGRAM or TYPE, found " + describe(*current_));
+                  : "expected a declaration such as PROGRAM or TYPE, found " + describe(*current_),
+              test_fix(kind()));
   skip_to_next_declaration();
 }
 

@@ -1,9 +1,28 @@
 // Programs that other POUs call or look into: `P();`, `P.x`. There is one instance, of the
 // program's own name.
+#include <algorithm>
+
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
+namespace {
+
+// No device writes the inputs of a test: they are variables as others are.
+void free_inputs(ir::TypeTable& types) {
+  const auto is_input = [](const ir::Member& member) {
+    return member.address.area == ir::DirectArea::kInput;
+  };
+  for (uint32_t i = 0; i < types.size(); ++i) {
+    const std::vector<ir::Member>& members = types[ir::TypeId(i)].members;
+    if (std::none_of(members.begin(), members.end(), is_input)) continue;
+    for (ir::Member& member : types.edit(ir::TypeId(i)).members) {
+      if (is_input(member)) member.address = {};
+    }
+  }
+}
+
+}  // namespace
 
 // The global through which code reaches the program; invalid: there is no such program.
 VarId Sema::program_variable(std::string_view name, bool called) {
@@ -29,6 +48,7 @@ VarId Sema::program_variable(std::string_view name, bool called) {
 
 // After all bodies. What is called does not run by itself, unless a CONFIGURATION says so.
 void Sema::finish_programs() {
+  if (for_tests()) return free_inputs(program.types);  // programs are blocks then
   for (const PouInfo& info : pous) {
     if (!info.global.valid()) continue;
     ir::ProgramInstance* instance = nullptr;

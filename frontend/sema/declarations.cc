@@ -6,6 +6,8 @@
 namespace frontend {
 namespace {
 
+constexpr std::string_view kMadePrefix = "__";  // of programs that no source has
+
 ir::PouKind ir_kind(PouKind kind) {
   switch (kind) {
     case PouKind::kFunction:
@@ -190,6 +192,8 @@ uint32_t Sema::add_pou(const PouDecl& decl, bool library, std::string_view name)
   info.name = name;
   info.library = library;
   info.open = is_open(decl);
+  info.as_block =
+      for_tests() && decl.kind == PouKind::kProgram && !name.starts_with(kMadePrefix);
   if (const std::string rule = renamed_from(tree, decl.attributes); !rule.empty()) {
     info.old_name = keep_name(whole_old_names(name, rule));
   }
@@ -199,6 +203,7 @@ uint32_t Sema::add_pou(const PouDecl& decl, bool library, std::string_view name)
     type.kind = instance_kind(decl.kind);
     type.name = name;
     type.old_name = OldNames(*this).add(std::string(info.old_name));
+    if (info.as_block) type.kind = ir::Kind::kFunctionBlock;
     info.self = program.types.declare(std::move(type));
     pou_by_type_.emplace(info.self, number);
   }
@@ -212,7 +217,7 @@ void Sema::add_code(PouInfo& info, std::string name) {
   info.id = ir::PouId(static_cast<uint32_t>(program.pous.size()));
   ir::Pou& pou = program.pous.emplace_back();
   pou.name = std::move(name);
-  pou.kind = ir_kind(info.decl->kind);
+  pou.kind = info.as_block ? ir::PouKind::kFunctionBlock : ir_kind(info.decl->kind);
   pou.self = info.self;
   pou.recursion_depth = objects.recursion_depth(*info.decl);
 }

@@ -119,7 +119,8 @@ void Sema::resolve_interface(uint32_t number) {
     qualify_method(*this, variable, info, names);
     members.push_back(member_of(variable, section_of(ir_section(variable))));
   }
-  if (for_tests() && info.decl->kind == PouKind::kFunctionBlock) add_mock_members(info, members);
+  const bool block = info.decl->kind == PouKind::kFunctionBlock || info.as_block;
+  if (for_tests() && block) add_mock_members(info, members);
   bool instance = info.self.valid() && info.owner == kNoPou;
   if (instance) program.types.edit(info.self).members = std::move(members);
   if (!info.id.valid()) return;

@@ -39,6 +39,17 @@ std::string address_key(const ir::DirectAddress& address, ir::TypeId type) {
          std::to_string(address.bit_offset) + "." + std::to_string(address.bit_size) + "." +
          std::to_string(type.index);
 }
+bool is_in_test(const Tree& tree, base::SourcePos at) {
+  return std::any_of(tree.tests.begin(), tree.tests.end(), [at](const PouDecl& test) {
+    return !(at < test.span.begin) && at < test.span.end;
+  });
+}
+
+bool overlap(const ir::DirectAddress& a, const ir::DirectAddress& b) {
+  return a.area == b.area && a.bit_offset < b.bit_offset + std::max(b.bit_size, 1u) &&
+         b.bit_offset < a.bit_offset + std::max(a.bit_size, 1u);
+}
+
 // How many of the globals have their key.
 constexpr const char* kKeyCount = "@";
 
@@ -122,6 +133,20 @@ void Sema::check_direct_addresses() {
     if (!located) continue;
     all.push_back(
         {decl->address, variable.type, variable.name.span, std::string(variable.name.text)});
+  }
+  // In tests nothing copies an input into all variables that have its address.
+  for (const Located& direct : direct_uses_) {
+    if (direct.address.area != ir::DirectArea::kInput || !is_in_test(tree, direct.span.begin)) {
+      continue;
+    }
+    for (const Located& other : all) {
+      const bool itself = other.span.begin.offset == direct.span.begin.offset;
+      if (itself || !overlap(other.address, direct.address)) continue;
+      error(DiagnosticCode::kBadAddress, direct.span,
+            "`" + other.name + "` has this input, too, and is not set by its address",
+            "name the variable: `" + other.name + "`, `instance." + other.name + "`");
+      break;
+    }
   }
   std::erase_if(all, [](const Located& one) {
     return one.address.area == ir::DirectArea::kInput || one.address.area == ir::DirectArea::kNone;

@@ -77,6 +77,10 @@ Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
       return sema_.variable_note(id);
     }
     bool open = variable.access == Access::kPublic || variable.access == Access::kInternal;
+    if (sema_.in_test() && variable.section != VarSection::kInOut) {
+      if (variable.storage == Storage::kGlobal) return sema_.variable_note(id);  // VAR_STAT
+      open = variable.section != VarSection::kExternal;
+    }
     if (variable.section == VarSection::kInput || variable.section == VarSection::kOutput || open) {
       sema_.mark_used(id);
       check_access(variable.access, variable.pou, expr.name);
@@ -84,8 +88,17 @@ Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
       return note;
     }
     sema_.error(DiagnosticCode::kUnknownMember, expr.name.span,
-                quoted(expr.name) + " is private to " + quoted(block.decl->name),
-                "only VAR_INPUT and VAR_OUTPUT are visible outside; declare it there");
+                quoted(expr.name) + (sema_.in_test() ? " lies outside of " : " is private to ") +
+                    quoted(block.decl->name),
+                sema_.in_test() ? "name the variable that it stands for"
+                                : "only VAR_INPUT and VAR_OUTPUT are visible outside; declare it "
+                                  "there");
+    return {};
+  }
+  if (sema_.in_test() && block.names.contains(expr.name.text)) {
+    sema_.error(DiagnosticCode::kUnknownMember, expr.name.span,
+                quoted(expr.name) + " lives only while " + quoted(block.decl->name) + " runs",
+                "keep what the test asks for in VAR or VAR_OUTPUT");
     return {};
   }
   if (Found found = find_code(owner, expr.name.text); found.owner != kNoPou) {

@@ -46,6 +46,7 @@ void Sema::add_mock_body(const PouDecl& decl, bool inside_test) {
   PouDecl& made = made_decls_.emplace_back(decl);
   made.kind = PouKind::kFunction;
   mock_bodies_.push_back({&decl, inside_test, add_pou(made, false, name)});
+  pous[mock_bodies_.back().pou].test = true;
 }
 
 void Sema::resolve_mock_bodies() {

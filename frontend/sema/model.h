@@ -211,6 +211,8 @@ struct PouInfo {
   std::string_view name;           // qualified: A.B.Pump; of a method: its own
   const PouDecl* setup = nullptr;  // of a TEST: runs before and behind its body
   const PouDecl* teardown = nullptr;
+  bool as_block = false;  // a PROGRAM in a build for tests, which have instances of it
+  bool test = false;  // a TEST, or a mock's body: it may use what is private
   MockSlots mock;
   bool library = false;
   ir::PouId id;

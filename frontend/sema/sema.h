@@ -46,11 +46,11 @@ class Sema {
   void mark_used(VarId id);
   void mark_written(VarId id);
   bool for_tests() const { return purpose_ == Purpose::kTest; }
+  bool in_test() const { return current_pou_ != kNoPou && pous[current_pou_].test; }
   // Member of the globals that takes the message of a failed assertion.
   uint32_t test_message() const { return test_message_; }
   std::vector<const PouInfo*> mocked_functions() const;
-  // Is the body of a MOCK_FUNCTION active in this test?
-  bool mock_applies(uint32_t pou, const PouDecl& test) const;
+  bool mock_applies(uint32_t pou, const PouDecl& test) const;  // a MOCK_FUNCTION's body
   void check_direct_addresses();  // located.cc; after all bodies
 
   // --- types (types.cc, structures.cc, containment.cc)

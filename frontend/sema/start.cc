@@ -137,6 +137,11 @@ void Objects::add_start() {
       start_globals_.push_back(program_global(instance.name, *program));
     }
   }
+  for (uint32_t i = 0; i < count; ++i) {
+    const PouInfo& program = sema_.pous[i];
+    if (!program.as_block || program.start == kNoPou) continue;
+    start_globals_.push_back(sema_.program_variable(program.name, false));
+  }
   const bool pools = !sema_.pools.all().empty();
   if (sema_.pous.size() == count && start_globals_.empty() && !pools) return;
   change_flag_ = add_hidden_global(kChangeFlag, sema_.program.types.elementary(ir::Kind::kDword),

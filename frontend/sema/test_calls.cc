@@ -6,13 +6,15 @@ namespace frontend {
 namespace {
 
 constexpr TestCallRow kRows[] = {
-#define TEST_CALL(id, name, fewest, most, parameters) \
-  {TestCall::id, name, fewest, most, parameters},
+#define TEST_CALL(id, name, fewest, most, parameters, meaning) \
+  {TestCall::id, name, fewest, most, parameters, meaning},
 #include "frontend/sema/test_calls.def"
 #undef TEST_CALL
 };
 
 }  // namespace
+
+std::span<const TestCallRow> test_calls() { return kRows; }
 
 const TestCallRow* find_test_call(std::string_view name) {
   for (const TestCallRow& row : kRows) {

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace frontend {
 
 enum class TestCall : uint8_t {
-#define TEST_CALL(id, name, fewest, most, parameters) id,
+#define TEST_CALL(id, name, fewest, most, parameters, meaning) id,
 #include "frontend/sema/test_calls.def"
 #undef TEST_CALL
 };
@@ -18,8 +19,10 @@ struct TestCallRow {
   uint32_t fewest;
   uint32_t most;
   std::string_view parameters;
+  std::string_view meaning;
 };
 
+std::span<const TestCallRow> test_calls();
 // Without case; null when there is none.
 const TestCallRow* find_test_call(std::string_view name);
 

@@ -1,5 +1,7 @@
 // TEST blocks become programs, one each, that share nothing: SETUP and TEARDOWN of the same
 // file are part of every one. The project's own configuration gives globals only.
+#include <set>
+
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -13,9 +15,40 @@ std::string_view without_quotes(std::string_view text) {
   return quoted ? text.substr(1, text.size() - 2) : text;
 }
 
+// By its name people choose a test, and reports know it again.
+void check_test_name(Sema& sema, const PouDecl& test) {
+  const base::SourceLocation at = sema.sources.locate(test.span.begin);
+  const std::string_view name = without_quotes(test.name.text);
+  if (name.empty()) {
+    sema.error(DiagnosticCode::kExpectedName, test.name.span, "the test has no name",
+          "say what it shows: TEST 'pump starts'");
+  }
+  for (const TestCase& other : sema.test_cases) {
+    if (other.file != at.file || other.name != name || name.empty()) continue;
+    sema.error(DiagnosticCode::kDuplicateName, test.name.span,
+          "a second test `" + std::string(name) + "`; the first is in line " +
+              std::to_string(other.line),
+          "give it a name of its own: reports and --filter know tests by it");
+  }
+}
+
+void check_idle(Sema& sema) {
+  std::set<uint32_t> files;
+  auto file_of = [&](const PouDecl& decl) { return sema.sources.file_of(decl.span.begin); };
+  for (const PouDecl& decl : sema.tree.tests) {
+    if (decl.kind == PouKind::kTest) files.insert(file_of(decl));
+  }
+  for (const PouDecl& decl : sema.tree.tests) {
+    if (files.contains(file_of(decl))) continue;
+    sema.warning(DiagnosticCode::kUnusedVariable, {decl.span.begin, decl.span.begin},
+                 "this is never used: the file has no TEST", "put it into the file of its tests");
+  }
+}
+
 }  // namespace
 
 void Sema::collect_tests() {
+  check_idle(*this);
   for (const PouDecl& decl : tree.tests) {
     if (decl.kind == PouKind::kTest) collect_test(decl);
   }
@@ -28,6 +61,7 @@ void Sema::collect_tests() {
 }
 
 void Sema::collect_test(const PouDecl& test) {
+  check_test_name(*this, test);
   const uint32_t file = sources.file_of(test.span.begin);
   const PouDecl* setup = nullptr;
   const PouDecl* teardown = nullptr;
@@ -52,6 +86,7 @@ void Sema::collect_test(const PouDecl& test) {
     made.blocks.insert(made.blocks.end(), teardown->blocks.begin(), teardown->blocks.end());
   }
   const uint32_t number = add_pou(made, false, name);
+  pous[number].test = true;
   // Not every test needs all that SETUP makes.
   for (VarId id : pous[number].variables) {
     const uint32_t at = variables_[id.index].name.span.begin.offset;

@@ -125,10 +125,13 @@ void Sema::resolve_initial(Variable& variable) {
 
 void Sema::check_placement(const Variable& variable) {
   const ir::Type& type = program.types[variable.type];
-  if (type.kind == ir::Kind::kProgram) {
+  const PouInfo* block = pou_of(variable.type);
+  const bool in_test = variable.pou != kNoPou && pous[variable.pou].test;
+  if (type.kind == ir::Kind::kProgram || (block != nullptr && block->as_block && !in_test)) {
     error(DiagnosticCode::kTypeMismatch, variable.name.span,
           "`" + type.name + "` is a program; a variable cannot be one",
-          "make it a FUNCTION_BLOCK, or declare the program in a CONFIGURATION");
+          "make it a FUNCTION_BLOCK, declare the program in a CONFIGURATION, or the variable in a "
+          "TEST");
   }
   if (variable.section != VarSection::kInOut)
     objects.check_instance(variable.type, variable.name.span);
@@ -167,6 +170,9 @@ Fix Sema::name_suggestion(std::string_view name, bool callable, bool instruction
   if (callable) {
     nearest.offer_all(pou_names_);
     nearest.offer_all(standard_);
+    if (for_tests()) {
+      for (const TestCallRow& row : test_calls()) nearest.offer(row.name);
+    }
     if (instruction) {
       for (const IlOperator& op : il_operators()) nearest.offer(op.word);
     }

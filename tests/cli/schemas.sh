@@ -69,6 +69,7 @@ printf 'PROGRAM Main VAR z : INT; n : INT; END_VAR n := 1 / z; END_PROGRAM\n' >t
 answers stc-build 0 stc build plant -o plant.img
 answers stc-check 1 stc check bad.st
 answers stc-test 1 stc test plant
+answers stc-test 1 stc test plant --seed 3 --coverage reached
 answers stc-test-list 0 stc test plant --list
 answers stc-fmt 1 stc fmt --check plant
 answers stc-source 0 stc source plant.img

@@ -38,16 +38,6 @@ base::Result<Compiled> to_objects(ir::Program program, const Project& project,
   return Compiled{std::move(program), std::move(*objects)};
 }
 
-// The only task of a test image runs the tests.
-std::vector<ir::Device> without_lost_tasks(std::vector<ir::Device> devices) {
-  for (ir::Device& device : devices) {
-    std::erase_if(device.settings, [](const ir::DeviceSetting& setting) {
-      return setting.key == "on_loss" && setting.value.starts_with("trap ");
-    });
-  }
-  return devices;
-}
-
 // Safe values of outputs that another resource has are left out when `several` are built.
 base::Result<Version> link(const Compiled& compiled, const Project& project,
                            std::vector<ir::Device> devices, bool several,
@@ -76,6 +66,15 @@ std::string resource_of(const ir::Image* base) {
 }
 
 }  // namespace
+
+std::vector<ir::Device> without_lost_tasks(std::vector<ir::Device> devices) {
+  for (ir::Device& device : devices) {
+    std::erase_if(device.settings, [](const ir::DeviceSetting& setting) {
+      return setting.key == "on_loss" && setting.value.starts_with("trap ");
+    });
+  }
+  return devices;
+}
 
 base::Error with_place(base::Error error, const std::vector<ProjectDevice>& devices) {
   for (const ProjectDevice& row : devices) {

@@ -55,6 +55,8 @@ struct TestVersion {
   std::vector<frontend::TestCase> cases;
 };
 base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics& diagnostics);
+// The only task of a test image runs the tests.
+std::vector<ir::Device> without_lost_tasks(std::vector<ir::Device> devices);
 
 // An error of linking, with the place of the device that it is about.
 base::Error with_place(base::Error error, const std::vector<ProjectDevice>& devices);

@@ -20,6 +20,7 @@
 #include "tools/stc/commands.h"
 #include "tools/stc/project_schema.h"
 #include "tools/stc/session.h"
+#include "tools/stc/test_page.h"
 
 namespace stc {
 namespace {
@@ -95,7 +96,8 @@ std::string overview_page() {
          "stc explain TRAP     a run-time trap by name\n"
          "stc explain TABLE    limits, opcodes, functions, refusals, diagnostics, traps, "
          "dialects, devices,\n"
-         "                     passes, exit_codes, stc.toml, stc.toml.schema\n";
+         "                     passes, exit_codes, stc.toml, stc.toml.schema\n"
+         "stc explain test     how unit tests are written\n";
 }
 
 std::string devices_page() {
@@ -187,7 +189,8 @@ constexpr Page kPages[] = {{"limits", limits_page},     {"functions", functions_
                            {"traps", traps_page},       {"diagnostics", diagnostics_page},
                            {"dialects", dialects_page}, {"devices", devices_page},
                            {"passes", passes_page},     {"exit_codes", exit_codes_page},
-                           {"stc.toml", project_page},  {"stc.toml.schema", project_schema}};
+                           {"stc.toml", project_page},  {"stc.toml.schema", project_schema},
+                           {"test", test_page}};
 
 // Which page was meant, perhaps: codes and traps, too.
 std::string nearest_page(const std::string& what) {

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "tools/common/json.h"
+#include "tools/stc/markup.h"
 
 namespace stc {
 namespace {
@@ -50,30 +51,6 @@ std::string trimmed_line(const base::SourceMap& sources, const std::string& file
   return {};
 }
 
-// Characters that XML 1.0 cannot hold become `?`.
-std::string xml(std::string_view text) {
-  std::string out;
-  for (char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? '?' : c;
-    }
-  }
-  return out;
-}
-
 // A description in TAP must not contain what begins a directive.
 std::string tap_name(std::string_view name) {
   std::string out;
@@ -82,6 +59,20 @@ std::string tap_name(std::string_view name) {
     out += c == '\n' ? ' ' : c;
   }
   return out;
+}
+
+void coverage_json(tools::JsonWriter& json, const CoverageReport& report) {
+  const auto reached = [&](const char* name, const Reached& of) {
+    json.key(name).begin_object().field("reached", of.hit).field("all", of.all).end_object();
+  };
+  const auto kind = [&](frontend::SiteKind of) { return report.kinds[static_cast<size_t>(of)]; };
+  json.key("coverage").begin_object().field("percent", report.total.percent());
+  reached("statements", kind(frontend::SiteKind::kStatement));
+  reached("branches", kind(frontend::SiteKind::kBranch));
+  reached("rungs", kind(frontend::SiteKind::kRung));
+  reached("steps", kind(frontend::SiteKind::kStep));
+  reached("transitions", kind(frontend::SiteKind::kTransition));
+  json.end_object();
 }
 
 }  // namespace
@@ -124,8 +115,10 @@ std::string summary_text(const std::vector<TestResult>& results, bool colour) {
   return out + "  (" + time + ")\n";
 }
 
-std::string tap_text(const std::vector<TestResult>& results) {
+std::string tap_text(const TestRun& run) {
+  const std::vector<TestResult>& results = run.results;
   std::string out = "TAP version 13\n1.." + std::to_string(results.size()) + "\n";
+  if (run.seed) out += "# seed " + std::to_string(*run.seed) + "\n";
   for (size_t i = 0; i < results.size(); ++i) {
     const TestResult& result = results[i];
     const bool passed = result.verdict == Verdict::kPassed;
@@ -142,34 +135,45 @@ std::string tap_text(const std::vector<TestResult>& results) {
   return out;
 }
 
-std::string junit_text(const std::string& suite, const std::vector<TestResult>& results) {
+std::string junit_text(const std::string& suite, const TestRun& run) {
+  const std::vector<TestResult>& results = run.results;
   const TestTally sum = tally(results);
   const std::string counts =
       " tests=\"" + std::to_string(results.size()) + "\" failures=\"" + std::to_string(sum.failed) +
       "\" errors=\"" + std::to_string(sum.errors) + "\" time=\"" + seconds_text(sum.seconds) + "\"";
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + counts +
-                    ">\n  <testsuite name=\"" + xml(suite) + "\"" + counts + ">\n";
+                    ">\n  <testsuite name=\"" + markup_text(suite) + "\"" + counts + ">\n";
+  if (run.seed) {
+    out += "    <properties>\n      <property name=\"seed\" value=\"" +
+           std::to_string(*run.seed) + "\"/>\n    </properties>\n";
+  }
   for (const TestResult& result : results) {
-    out += "    <testcase name=\"" + xml(result.test.name) + "\" classname=\"" +
-           xml(result.test.file) + "\" file=\"" + xml(result.test.file) + "\" line=\"" +
-           std::to_string(result.test.line) + "\" time=\"" + seconds_text(result.seconds) + "\"";
+    const std::string file = markup_text(result.test.file);
+    out += "    <testcase name=\"" + markup_text(result.test.name) + "\" classname=\"" + file +
+           "\" file=\"" + file + "\" line=\"" + std::to_string(result.test.line) +
+           "\" time=\"" + seconds_text(result.seconds) + "\"";
     if (result.verdict == Verdict::kPassed) {
       out += "/>\n";
       continue;
     }
     const char* element = result.verdict == Verdict::kFailed ? "failure" : "error";
-    out += std::string(">\n      <") + element + " type=\"" + xml(result.trap) + "\" message=\"" +
-           xml(result.text) + "\">" + xml(place(result.file, result.line) + ": " + result.text) +
-           "</" + element + ">\n    </testcase>\n";
+    out += std::string(">\n      <") + element + " type=\"" + markup_text(result.trap) +
+           "\" message=\"" + markup_text(result.text) + "\">" +
+           markup_text(place(result.file, result.line) + ": " + result.text) + "</" + element +
+           ">\n    </testcase>\n";
   }
   return out + "  </testsuite>\n</testsuites>\n";
 }
 
-std::string json_text(const std::vector<TestResult>& results) {
+std::string json_text(const TestRun& run) {
+  const std::vector<TestResult>& results = run.results;
   const TestTally sum = tally(results);
   tools::JsonWriter json;
   json.begin_object().field("passed", sum.passed).field("failed", sum.failed);
-  json.field("errors", sum.errors).key("tests").begin_array();
+  json.field("errors", sum.errors);
+  if (run.seed) json.field("seed", *run.seed);
+  if (run.coverage != nullptr) coverage_json(json, *run.coverage);
+  json.key("tests").begin_array();
   for (const TestResult& result : results) {
     json.begin_object().field("name", result.test.name).field("file", result.test.file);
     json.field("line", result.test.line).field("passed", result.verdict == Verdict::kPassed);

@@ -2,13 +2,21 @@
 // (TAP version 13, JUnit XML as Jenkins and GitLab read it, JSON).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/source.h"
+#include "tools/stc/coverage_report.h"
 #include "tools/stc/test_run.h"
 
 namespace stc {
+
+struct TestRun {
+  std::vector<TestResult> results;  // in the order in which they ran
+  std::optional<uint64_t> seed;     // of that order, where it was drawn
+  const CoverageReport* coverage = nullptr;
+};
 
 struct TestTally {
   uint32_t passed = 0;
@@ -21,8 +29,8 @@ TestTally tally(const std::vector<TestResult>& results);
 // One test, as its lines appear while the run goes on. `sources` give the line that failed.
 std::string test_text(const TestResult& result, const base::SourceMap& sources, bool colour);
 std::string summary_text(const std::vector<TestResult>& results, bool colour);
-std::string tap_text(const std::vector<TestResult>& results);
-std::string junit_text(const std::string& suite, const std::vector<TestResult>& results);
-std::string json_text(const std::vector<TestResult>& results);
+std::string tap_text(const TestRun& run);
+std::string junit_text(const std::string& suite, const TestRun& run);
+std::string json_text(const TestRun& run);
 
 }  // namespace stc

@@ -1,7 +1,9 @@
 #include "tools/stc/test_run.h"
 
 #include <chrono>
+#include <cstring>
 
+#include "frontend/coverage.h"
 #include "ir/bytecode/symbols.h"
 #include "vm/exec/execution.h"
 #include "vm/exec/memory.h"
@@ -9,9 +11,6 @@
 
 namespace stc {
 namespace {
-
-// Calls and loop rounds of one test; a test that needs more hangs.
-constexpr uint64_t kFuel = 100'000'000;
 
 // The program that constructs instances (frontend/sema/start.cc), where there is one.
 constexpr const char* kStart = "__START";
@@ -31,10 +30,24 @@ std::string assertion_message(const ir::Image& image, const vm::Memory& memory) 
   return std::string(text, ::strnlen(text, image.types[symbol->type].capacity));
 }
 
+void add_hits(const ir::Image& image, const vm::Memory& memory, std::vector<uint64_t>& hits) {
+  base::Result<ir::Symbol> counters = ir::find_symbol(image, frontend::kCoverageCounters);
+  if (!counters.ok()) return;
+  hits.resize(image.types[counters->type].dims[0].count());
+  const uint8_t* at = memory.data() + counters->data;
+  for (uint64_t& each : hits) {
+    uint32_t count = 0;
+    std::memcpy(&count, at, sizeof count);
+    each += count;
+    at += sizeof count;
+  }
+}
+
 }  // namespace
 
 base::Result<TestResult> run_test(const ir::VerifiedImage& verified,
-                                  const frontend::TestCase& test) {
+                                  const frontend::TestCase& test, uint64_t fuel,
+                                  std::vector<uint64_t>* hits) {
   base::Result<vm::Memory> memory = vm::Memory::reserve();
   if (!memory.ok()) return memory.error();
   const ir::Image& image = verified.image();
@@ -47,13 +60,14 @@ base::Result<TestResult> run_test(const ir::VerifiedImage& verified,
   for (const uint32_t id : {instance_of(image, kStart), instance_of(image, test.instance)}) {
     if (id == 0 || exit != vm::Exit::kDone) continue;
     execution.start(*generation, memory->data(), id, ir::kStackBegin, 0);
-    exit = execution.run(kFuel);
+    exit = execution.run(fuel);
   }
   const auto end = std::chrono::steady_clock::now();
 
   TestResult result;
   result.test = test;
   result.seconds = std::chrono::duration<double>(end - begin).count();
+  if (hits != nullptr) add_hits(image, *memory, *hits);
   if (exit == vm::Exit::kDone) return result;
   const vm::Trap trap =
       exit == vm::Exit::kTrap ? execution.trap() : execution.interrupted(ir::TrapKind::kFuel);
@@ -64,6 +78,9 @@ base::Result<TestResult> run_test(const ir::VerifiedImage& verified,
   result.line = text.line;
   result.trap = ir::trap_name(trap.kind);
   result.text = assertion ? assertion_message(image, *memory) : text.text;
+  if (exit == vm::Exit::kSuspended) {
+    result.text += " (" + std::to_string(fuel) + " calls and loop rounds, --timeout)";
+  }
   return result;
 }
 

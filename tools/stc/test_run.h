@@ -28,7 +28,12 @@ struct TestResult {
   double seconds = 0;  // of the real clock
 };
 
-// `image` holds the test's program instance. Errors: no memory.
-base::Result<TestResult> run_test(const ir::VerifiedImage& image, const frontend::TestCase& test);
+// Calls and rounds of loops of one test; one that takes more hangs, most likely.
+inline constexpr uint64_t kTestFuel = 100'000'000;
+
+// `image` holds the test's program instance. What code has counted for coverage is added to `hits`;
+// null: nothing is counted. Errors: no memory.
+base::Result<TestResult> run_test(const ir::VerifiedImage& image, const frontend::TestCase& test,
+                                  uint64_t fuel, std::vector<uint64_t>* hits);
 
 }  // namespace stc

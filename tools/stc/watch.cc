@@ -1,5 +1,7 @@
 #include "tools/stc/watch.h"
 
+#include <poll.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -244,6 +246,7 @@ class Watch {
     broken_ = !project.ok();
     if (broken_) return base::Status(project.error());
     project_ = std::move(*project);
+    project_.compile.tests = target_.is_for_tests();
     add_files_of(project_, found);
     stamps_ = std::move(found);
     watch_folders();
@@ -268,7 +271,8 @@ class Watch {
       tools::refuse("stc", devices.error());
       return;
     }
-    settings.link.devices = std::move(*devices);
+    settings.link.devices =
+        target_.is_for_tests() ? without_lost_tasks(std::move(*devices)) : std::move(*devices);
     several_ = false;
     build_ = std::make_unique<workspace::IncrementalBuild>(std::move(settings));
   }
@@ -296,10 +300,19 @@ class Watch {
         if (diagnostics.has_errors()) return source_errors(diagnostics);  // warnings that are
         base::Status safe = check_safe_settings(project_.safe, (*image)->output_bytes);
         if (!safe.ok()) return safe.error();
-        return target_.take(**image, project_, {built_since(before), saved_, seen_, Clock::now()});
+        const auto* tests = target_.is_for_tests() ? &build_->test_cases() : nullptr;
+        return target_.take(**image, project_,
+                            {built_since(before), saved_, seen_, Clock::now(), tests});
       }
     }
     base::Diagnostics anew = diagnostics_of(project_);  // the findings are among them
+    if (target_.is_for_tests()) {
+      auto tests = build_tests(project_, anew);
+      report(project_, anew, format_);
+      if (!tests.ok()) return tests.error();
+      return target_.take(tests->version.image, project_,
+                          {"everything", saved_, seen_, Clock::now(), &tests->cases});
+    }
     const std::shared_ptr<const ir::Image> base = target_.base();
     auto versions = build_resources(project_, {base.get(), move_all_}, anew);
     report(project_, anew, format_);
@@ -339,6 +352,12 @@ class Watch {
 void Built::print() const {
   const double ms = std::chrono::duration<double, std::milli>(Clock::now() - seen).count();
   std::fprintf(stderr, "built %s in %.0f ms\n", what.c_str(), ms);
+}
+
+WatchTarget::Rest WatchTarget::rest(std::chrono::nanoseconds time, int descriptor) {
+  pollfd event = {descriptor, POLLIN, 0};
+  const auto ms = std::chrono::ceil<std::chrono::milliseconds>(time);
+  return ::poll(&event, 1, static_cast<int>(ms.count())) > 0 ? Rest::kEvent : Rest::kOver;
 }
 
 int watch(const tools::Options& options, bool move_all, base::DiagnosticFormat format,

@@ -20,6 +20,7 @@ struct Built {
   Time saved;        // the last of the files
   Time seen;
   Time made;  // the image
+  const std::vector<frontend::TestCase>* tests = nullptr;  // where the target is for them
 
   // "built 1 POU in 9 ms" on stderr.
   void print() const;
@@ -52,7 +53,9 @@ class WatchTarget {
     kEnd,    // nobody wants images any more
   };
   // `descriptor`: -1 for none.
-  virtual Rest rest(std::chrono::nanoseconds time, int descriptor) = 0;
+  virtual Rest rest(std::chrono::nanoseconds time, int descriptor);
+  // Are the TEST blocks built, instead of what the project runs?
+  virtual bool is_for_tests() const { return false; }
 };
 
 // Of the project that the arguments name. Until it is ended by a signal or by the target; an exit

@@ -1,7 +1,5 @@
 #include "tools/stc/watch_image.h"
 
-#include <poll.h>
-
 #include "tools/stc/embed.h"
 #include "tools/stc/image_output.h"
 #include "tools/stc/safe_settings.h"
@@ -22,12 +20,6 @@ base::Result<WatchTarget::Next> WatchedImage::take(std::vector<ResourceVersion>&
   if (!written.ok()) return written.error();
   if (with_line_) built.print();
   return Next::kWait;
-}
-
-WatchTarget::Rest WatchedImage::rest(std::chrono::nanoseconds time, int descriptor) {
-  pollfd event = {descriptor, POLLIN, 0};
-  const auto ms = std::chrono::ceil<std::chrono::milliseconds>(time);
-  return ::poll(&event, 1, static_cast<int>(ms.count())) > 0 ? Rest::kEvent : Rest::kOver;
 }
 
 base::Status WatchedImage::write(const ir::Image& image, const Project& project) {

@@ -20,7 +20,6 @@ class WatchedImage : public WatchTarget {
                           const Built& built) override;
   base::Result<Next> take(std::vector<ResourceVersion>& versions, const Project& project,
                           const Built& built) override;
-  Rest rest(std::chrono::nanoseconds time, int descriptor) override;
 
  private:
   base::Status write(const ir::Image& image, const Project& project);

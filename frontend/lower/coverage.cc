@@ -1,0 +1,79 @@
+// Counting, where a build for coverage asks for it (frontend/coverage.h).
+#include "frontend/coverage.h"
+
+#include "frontend/lower/body.h"
+
+namespace frontend {
+namespace {
+
+// The rung or network that a place is in; its number counts from 1. Null: none.
+const network::Network* network_at(const network::Body& body, base::SourcePos at,
+                                   uint32_t& number) {
+  for (const network::Network& network : body.networks) {
+    ++number;
+    if (!(at < network.span.begin) && at < network.span.end) return &network;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+void Body::count_pou() {
+  const PouDecl& decl = *info_.decl;
+  const bool written = info_.made == MadeCode::kNone && !info_.test && !info_.library;
+  Coverage* coverage = sema_.options.coverage;
+  if (coverage == nullptr || !written || !coverage->counts(decl.span.begin)) return;
+  coverage_ = coverage;
+  count(SiteKind::kPou, decl.span.begin, out_.name);
+}
+
+void Body::count(SiteKind kind, base::SourcePos at, const std::string& name, uint32_t side) {
+  if (coverage_ == nullptr) return;
+  const ir::Place counter = coverage_->counter(kind, at, side, name);
+  const ir::ValueId before = build_.load(counter, ir::Scalar::kU32);
+  build_.store(counter, ir::Scalar::kU32,
+               build_.binary(ir::Op::kAdd, ir::Scalar::kU32, before,
+                             build_.constant(ir::Scalar::kU32, 1)));
+}
+
+void Body::count_statement(const Stmt& stmt) {
+  const bool runs = stmt.kind != StmtKind::kEmpty && stmt.kind != StmtKind::kError &&
+                    stmt.kind != StmtKind::kLabel;
+  if (coverage_ == nullptr || !runs) return;
+  if (info_.decl->diagram != kNoDiagram) {
+    uint32_t number = 0;
+    const network::Network* network =
+        network_at(tree_.diagrams[info_.decl->diagram], stmt.span.begin, number);
+    if (network == nullptr || network == rung_) return;
+    rung_ = network;
+    return count(SiteKind::kRung, network->span.begin, std::to_string(number));
+  }
+  count(SiteKind::kStatement, stmt.span.begin);
+}
+
+// In two blocks of their own, whatever else leads to `yes` and `no`.
+void Body::decide(ir::ValueId condition, ir::BlockId yes, ir::BlockId no, base::SourcePos at,
+                  const char* what) {
+  if (coverage_ == nullptr) return build_.branch(condition, yes, no);
+  const ir::BlockId sides[] = {build_.new_block(), build_.new_block()};
+  build_.branch(condition, sides[0], sides[1]);
+  build_.start(sides[0]);
+  count(SiteKind::kBranch, at, std::string(what) + ": TRUE", 0);
+  build_.jump(yes);
+  build_.start(sides[1]);
+  count(SiteKind::kBranch, at, std::string(what) + ": FALSE", 1);
+  build_.jump(no);
+}
+
+// A coil, or a BOOL that a network writes: with power and without.
+void Body::count_power(ir::ValueId power, ExprId target, base::SourcePos at) {
+  if (coverage_ == nullptr || info_.decl->diagram == kNoDiagram) return;
+  const Expr& expr = tree_[target];
+  const bool made = expr.name.text.find('#') != std::string_view::npos;  // what an edge remembers
+  if (made || expr.kind == ExprKind::kResult) return;
+  const ir::BlockId done = build_.new_block();
+  decide(power, done, done, at, "power");
+  build_.start(done);
+}
+
+}  // namespace frontend
