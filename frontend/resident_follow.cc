@@ -63,6 +63,11 @@ void Resident::note_files() {
 std::optional<Resident::Edit> Resident::read_edit(uint32_t number, std::string_view text) {
   base::SourceMap& sources = parsed_->sources;
   Tree& tree = parsed_->tree;
+  // Lines of tests are told from the first compilation.
+  const bool has_test = std::any_of(tree.tests.begin(), tree.tests.end(), [&](const PouDecl& test) {
+    return sources.file_of(test.span.begin) == number;
+  });
+  if (options_.tests && has_test) return std::nullopt;
   File& file = files_[number];
   if (!file.has_places) file.places = code_places(tree.pous, sources, number);
   file.has_places = true;

@@ -77,9 +77,11 @@ bool blank_before(const Text& text, const Line& line, uint32_t i) {
     case TokenKind::kLeftBracket:
       return false;
     case TokenKind::kDot:
-    case TokenKind::kRange:
+    case TokenKind::kRange: {  // `1 .. 3` is `1..3`, but `.5` would become part of a number
+      const bool number = is_number(text.kind(i)) && before == TokenKind::kDot;
       return text.kind(i) == TokenKind::kDot || text.kind(i) == TokenKind::kRange ||
-             is_keyword(text.kind(i)) || (is_number(text.kind(i)) && !adjacent(text, i));
+             is_keyword(text.kind(i)) || (number && !adjacent(text, i));
+    }
     case TokenKind::kTypePrefix:  // `INT#5`, `INT#-5`
       if (ends_operand(text.kind(i)) || text.kind(i) == TokenKind::kMinus ||
           text.kind(i) == TokenKind::kPlus) {

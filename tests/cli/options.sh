@@ -129,10 +129,15 @@ for tool in stc stvm; do
   python3 - >cases <<'PY'
 import json
 for command in json.load(open("out"))["commands"]:
+    values = {option["name"]: (option["choices"] or ["7"])[0]
+              for option in command["options"] if "value" in option}
+    if "--passes" in values:
+        values["--passes"] = "fold"
     for option in command["options"]:
-        value = (option["choices"] or ["7"])[0] if "value" in option else None
-        print(command["name"], option["name"], value or "-", option["repeatable"],
-              ",".join(option["excludes"]) or "-")
+        others = [f"{other}={values[other]}" if other in values else other
+                  for other in option["excludes"]]
+        print(command["name"], option["name"], values.get(option["name"], "-"),
+              option["repeatable"], ",".join(others) or "-")
 PY
   while read -r verb option value repeatable excludes; do
     if [ "$value" = - ]; then
@@ -153,7 +158,6 @@ PY
     for other in $(echo "$excludes" | tr , ' '); do
       set -- "$option" "$other"
       [ "$value" = - ] || set -- "$option=$value" "$other"
-      [ "$other" != --passes ] || set -- "$option" "$other=fold"
       expect 2 $tool "$verb" "$@"
       said "R0504: $verb: .* contradict each other; leave one out"
     done

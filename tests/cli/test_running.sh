@@ -85,6 +85,11 @@ wait_for 'E2001' cat watch.err
 sed 's/n + x/n + 1/' plant/pump.st | save plant/pump.st
 wait_for '2 passed, 0 failed' cat watch.out
 grep -a PASS watch.out | head -1 | grep -q counts || fail 'what failed is not the first'
+# Statements of tests, and lines that move in front of them.
+(printf '\n\n' && sed 's/p.n, 1/p.n, 3/' plant/pump_test.st) | save plant/pump_test.st
+wait_for 'counts  .plant/pump_test.st:4.' cat watch.out
+wait_for 'pump_test.st:4: expected 3, got 1' cat watch.out
+sed 's/p.n, 3/p.n, 1/' plant/pump_test.st | save plant/pump_test.st
 # New tests are found, too.
 printf "TEST 'third' ASSERT_TRUE(FALSE); END_TEST\n" | save plant/third_test.st
 wait_for '2 passed, 1 failed' cat watch.out

@@ -7,7 +7,7 @@
 namespace stc {
 namespace {
 
-std::string number(uint64_t value) { return std::to_string(value); }
+std::string decimal(uint64_t value) { return std::to_string(value); }
 
 // "0.5000": of nothing, 1.
 std::string rate(const Reached& reached) {
@@ -37,14 +37,14 @@ std::string cobertura_line(const CoveredFile& file, size_t& next, uint32_t line,
     const Decision& decision = file.decisions[next];
     const Reached own{decision.sides_hit(), static_cast<uint32_t>(decision.sides.size())};
     sides.add(own);
-    conditions += "              <condition number=\"" + number(number_of) +
-                  "\" type=\"jump\" coverage=\"" + number(100 * own.hit / own.all) + "%\"/>\n";
+    conditions += "              <condition number=\"" + decimal(number_of) +
+                  "\" type=\"jump\" coverage=\"" + decimal(100 * own.hit / own.all) + "%\"/>\n";
   }
-  std::string out = "            <line number=\"" + number(line) + "\" hits=\"" + number(hits) +
+  std::string out = "            <line number=\"" + decimal(line) + "\" hits=\"" + decimal(hits) +
                     "\" branch=\"" + (sides.all == 0 ? "false" : "true") + "\"";
   if (sides.all == 0) return out + "/>\n";
-  return out + " condition-coverage=\"" + number(100 * sides.hit / sides.all) + "% (" +
-         number(sides.hit) + "/" + number(sides.all) + ")\">\n            <conditions>\n" +
+  return out + " condition-coverage=\"" + decimal(100 * sides.hit / sides.all) + "% (" +
+         decimal(sides.hit) + "/" + decimal(sides.all) + ")\">\n            <conditions>\n" +
          conditions + "            </conditions>\n            </line>\n";
 }
 
@@ -55,25 +55,25 @@ std::string lcov_text(const CoverageReport& report) {
   for (const CoveredFile& file : report.files) {
     out += "TN:\nSF:" + file.name + "\n";
     uint32_t called = 0;
-    for (const Counted& pou : file.pous) out += "FN:" + number(pou.line) + "," + pou.name + "\n";
+    for (const Counted& pou : file.pous) out += "FN:" + decimal(pou.line) + "," + pou.name + "\n";
     for (const Counted& pou : file.pous) {
-      out += "FNDA:" + number(pou.hits) + "," + pou.name + "\n";
+      out += "FNDA:" + decimal(pou.hits) + "," + pou.name + "\n";
       called += pou.hits != 0;
     }
-    out += "FNF:" + number(file.pous.size()) + "\nFNH:" + number(called) + "\n";
+    out += "FNF:" + decimal(file.pous.size()) + "\nFNH:" + decimal(called) + "\n";
     for (uint32_t i = 0; i < file.decisions.size(); ++i) {
       const Decision& decision = file.decisions[i];
       for (uint32_t side = 0; side < decision.sides.size(); ++side) {
-        out += "BRDA:" + number(decision.line) + "," + number(i) + "," + number(side) + ",";
-        out += decision.is_evaluated() ? number(decision.sides[side].hits) : "-";
+        out += "BRDA:" + decimal(decision.line) + "," + decimal(i) + "," + decimal(side) + ",";
+        out += decision.is_evaluated() ? decimal(decision.sides[side].hits) : "-";
         out += "\n";
       }
     }
-    out += "BRF:" + number(file.sides.all) + "\nBRH:" + number(file.sides.hit) + "\n";
+    out += "BRF:" + decimal(file.sides.all) + "\nBRH:" + decimal(file.sides.hit) + "\n";
     for (const auto& [line, hits] : file.lines) {
-      out += "DA:" + number(line) + "," + number(hits) + "\n";
+      out += "DA:" + decimal(line) + "," + decimal(hits) + "\n";
     }
-    out += "LF:" + number(file.covered_lines.all) + "\nLH:" + number(file.covered_lines.hit) +
+    out += "LF:" + decimal(file.covered_lines.all) + "\nLH:" + decimal(file.covered_lines.hit) +
            "\nend_of_record\n";
   }
   return out;
@@ -85,8 +85,8 @@ std::string cobertura_text(const CoverageReport& report) {
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE coverage SYSTEM "
       "\"http://cobertura.sourceforge.net/xml/coverage-04.dtd\">\n<coverage line-rate=\"" +
       rate(report.covered_lines) + "\" branch-rate=\"" + rate(sides) + "\" lines-covered=\"" +
-      number(report.covered_lines.hit) + "\" lines-valid=\"" + number(report.covered_lines.all) +
-      "\" branches-covered=\"" + number(sides.hit) + "\" branches-valid=\"" + number(sides.all) +
+      decimal(report.covered_lines.hit) + "\" lines-valid=\"" + decimal(report.covered_lines.all) +
+      "\" branches-covered=\"" + decimal(sides.hit) + "\" branches-valid=\"" + decimal(sides.all) +
       "\" complexity=\"0\" version=\"1\" timestamp=\"0\">\n"
       "  <sources>\n    <source>.</source>\n  </sources>\n  <packages>\n";
   for (const CoveredFile& file : report.files) {

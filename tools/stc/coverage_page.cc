@@ -9,7 +9,7 @@ namespace {
 
 using frontend::SiteKind;
 
-constexpr const char* kStyle = R"(
+constexpr const char* kPageStyle = R"(
 :root { color-scheme: light dark; --page: #fff; --ink: #1b1f24; --soft: #59636e; --rule: #d1d9e0;
   --hit: #dafbe1; --part: #fff3c4; --miss: #ffe1de; --bad: #c4302b; --box: #f6f8fa }
 @media (prefers-color-scheme: dark) { :root { --page: #0d1117; --ink: #e6edf3; --soft: #9198a1;
@@ -41,7 +41,7 @@ summary { background: var(--box); border-radius: 6px; cursor: pointer; padding: 
   margin-left: .8rem; padding: 0 .3rem; user-select: none }
 )";
 
-std::string cell(const Reached& reached) {
+std::string share_cell(const Reached& reached) {
   if (reached.all == 0) return "<td class=\"soft\">&#8211;</td>";
   return "<td>" + std::to_string(reached.hit) + " / " + std::to_string(reached.all) + "</td>";
 }
@@ -51,7 +51,7 @@ std::string sums_row(const std::string& name, const Kinds& kinds, const Reached&
   std::string out = "<tr><td>" + name + "</td>";
   for (const SiteKind kind : {SiteKind::kStatement, SiteKind::kBranch, SiteKind::kRung,
                               SiteKind::kStep, SiteKind::kTransition}) {
-    out += cell(kinds[static_cast<size_t>(kind)]);
+    out += share_cell(kinds[static_cast<size_t>(kind)]);
   }
   const std::string percent = percent_text(total);
   return out + "<td>" + percent + " % <meter min=\"0\" max=\"100\" low=\"50\" high=\"80\" "
@@ -74,7 +74,7 @@ Missing missing_of(const CoveredFile& file) {
   return missing;
 }
 
-std::string source_row(const CoveredFile& file, const Missing& missing, uint32_t line,
+std::string covered_row(const CoveredFile& file, const Missing& missing, uint32_t line,
                        std::string_view text) {
   const auto found = file.lines.find(line);
   const auto [first, last] = missing.equal_range(line);
@@ -92,7 +92,7 @@ std::string source_row(const CoveredFile& file, const Missing& missing, uint32_t
          "</td><td>" + markup_text(text) + chips + "</td></tr>\n";
 }
 
-std::string source_table(const CoveredFile& file) {
+std::string covered_text(const CoveredFile& file) {
   const Missing missing = missing_of(file);
   std::string out = "<div class=\"scroll\"><table class=\"code\">\n";
   std::string_view rest = file.text;
@@ -100,7 +100,7 @@ std::string source_table(const CoveredFile& file) {
     const size_t end = std::min(rest.find('\n'), rest.size());
     std::string_view text = rest.substr(0, end);
     if (text.ends_with('\r')) text.remove_suffix(1);
-    out += source_row(file, missing, line, text);
+    out += covered_row(file, missing, line, text);
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return out + "</table></div>\n";
@@ -112,7 +112,7 @@ std::string coverage_page(const CoverageReport& report, const std::string& proje
   const std::string title = "Coverage of " + markup_text(project);
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
                     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-                    "<title>" + title + "</title>\n<style>" + kStyle +
+                    "<title>" + title + "</title>\n<style>" + kPageStyle +
                     "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n<p class=\"soft\">" +
                     percent_text(report.total) + " % of " + std::to_string(report.total.all) +
                     " places reached, " + std::to_string(report.total.missing()) +
@@ -133,7 +133,7 @@ std::string coverage_page(const CoverageReport& report, const std::string& proje
     out += "<details id=\"f" + std::to_string(i) + "\"" + (file.total.missing() ? " open" : "") +
            "><summary>" + markup_text(file.name) + " <span class=\"soft\">" +
            percent_text(file.total) + " %, " + std::to_string(file.total.missing()) +
-           " missing</span></summary>\n" + source_table(file) + "</details>\n";
+           " missing</span></summary>\n" + covered_text(file) + "</details>\n";
   }
   return out + "</body>\n</html>\n";
 }

@@ -12,7 +12,7 @@ namespace {
 using frontend::Site;
 using frontend::SiteKind;
 
-constexpr size_t index_of(SiteKind kind) { return static_cast<size_t>(kind); }
+constexpr size_t kind_index(SiteKind kind) { return static_cast<size_t>(kind); }
 
 const char* element_word(SiteKind kind) {
   switch (kind) {
@@ -27,7 +27,7 @@ const char* element_word(SiteKind kind) {
 
 void add_site(CoveredFile& file, std::map<uint32_t, size_t>& decisions, const Site& site,
               uint64_t hits) {
-  file.kinds[index_of(site.kind)].add(hits != 0);
+  file.kinds[kind_index(site.kind)].add(hits != 0);
   if (site.kind == SiteKind::kPou) {
     file.pous.push_back({site.line, site.name, hits});
     return;
@@ -46,7 +46,7 @@ void add_site(CoveredFile& file, std::map<uint32_t, size_t>& decisions, const Si
 }
 
 // A line that only decides (ELSIF) ran as often as it decided.
-void finish(CoveredFile& file) {
+void finish_file(CoveredFile& file) {
   const auto by_line = [](const auto& a, const auto& b) { return a.line < b.line; };
   std::stable_sort(file.decisions.begin(), file.decisions.end(), by_line);
   std::stable_sort(file.pous.begin(), file.pous.end(), by_line);
@@ -58,10 +58,10 @@ void finish(CoveredFile& file) {
     line = std::max(line, decided);
   }
   for (const auto& [line, hits] : file.lines) file.covered_lines.add(hits != 0);
-  file.sides = file.kinds[index_of(SiteKind::kBranch)];
+  file.sides = file.kinds[kind_index(SiteKind::kBranch)];
 }
 
-std::string of(const Reached& reached) {
+std::string share_text(const Reached& reached) {
   if (reached.all == 0) return "-";
   return std::to_string(reached.hit) + "/" + std::to_string(reached.all);
 }
@@ -92,7 +92,7 @@ CoverageReport coverage_report(const std::vector<Site>& sites, std::span<const u
   CoverageReport report;
   for (auto& [name, file] : files) {
     file.name = name;
-    finish(file);
+    finish_file(file);
     for (size_t kind = 0; kind < file.kinds.size(); ++kind) {
       report.kinds[kind].add(file.kinds[kind]);
     }
@@ -122,10 +122,13 @@ std::string coverage_text(const CoverageReport& report) {
   tools::Table table({"file", "> statements", "> branches", "> rungs", "> steps", "> transitions",
                       "> reached"});
   const auto row = [&](const std::string& name, const auto& kinds, const Reached& total) {
-    table.row({name, of(kinds[index_of(SiteKind::kStatement)]),
-               of(kinds[index_of(SiteKind::kBranch)]), of(kinds[index_of(SiteKind::kRung)]),
-               of(kinds[index_of(SiteKind::kStep)]), of(kinds[index_of(SiteKind::kTransition)]),
-               percent_text(total) + " %"});
+    std::vector<std::string> cells{name};
+    for (const SiteKind kind : {SiteKind::kStatement, SiteKind::kBranch, SiteKind::kRung,
+                                SiteKind::kStep, SiteKind::kTransition}) {
+      cells.push_back(share_text(kinds[kind_index(kind)]));
+    }
+    cells.push_back(percent_text(total) + " %");
+    table.row(std::move(cells));
   };
   for (const CoveredFile* file : by_missing(report)) row(file->name, file->kinds, file->total);
   if (report.files.size() > 1) row("all files", report.kinds, report.total);

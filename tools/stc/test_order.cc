@@ -8,7 +8,7 @@
 namespace stc {
 namespace {
 
-bool selected(const tools::Options& options, const std::string& name) {
+bool is_wanted(const tools::Options& options, const std::string& name) {
   if (!options.has("--filter")) return true;
   const std::string pattern = options.text("--filter");
   const bool wild = pattern.find_first_of("*?") != std::string::npos;
@@ -32,7 +32,7 @@ base::Result<TestOrder> order_tests(const std::vector<frontend::TestCase>& cases
                                     const std::set<std::string>& first) {
   TestOrder order;
   for (const frontend::TestCase& test : cases) {
-    if (selected(options, test.name)) order.cases.push_back(test);
+    if (is_wanted(options, test.name)) order.cases.push_back(test);
   }
   if (options.has("--seed")) {
     base::Result<uint64_t> seed = options.number("--seed", 0);

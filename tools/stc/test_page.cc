@@ -5,7 +5,7 @@
 namespace stc {
 namespace {
 
-constexpr const char* kBegin =
+constexpr const char* kTestPage =
     R"(Unit tests are written in ST, and `stc test` runs them. docs/UNIT-TESTS.md has
 examples.
 
@@ -43,7 +43,7 @@ Calls of tests
 }  // namespace
 
 std::string test_page() {
-  std::string page = kBegin;
+  std::string page = kTestPage;
   for (const frontend::TestCallRow& row : frontend::test_calls()) {
     std::string parameters(row.parameters);
     const size_t last = parameters.rfind(", message");
