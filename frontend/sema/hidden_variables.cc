@@ -34,13 +34,36 @@ VarId Sema::add_static(Variable variable, PouInfo& info) {
   return id;
 }
 
+// "#REAL#INT": what tells a function from others of its name, as it is written.
+static std::string parameters_text(const Sema& sema, const PouDecl& decl) {
+  std::string out;
+  for (const VarBlock& block : decl.blocks) {
+    if (!is_parameter(block.section)) continue;
+    for (const VarDecl& parameter : block.vars) {
+      const base::SourceSpan span = sema.tree[parameter.spec].span;
+      const uint32_t file = sema.sources.file_of(span.begin);
+      std::string type(
+          sema.sources.text(file).substr(span.begin.offset - sema.sources.begin(file).offset,
+                                         span.end.offset - span.begin.offset));
+      std::erase_if(type, [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; });
+      for (size_t i = 0; i < parameter.names.size(); ++i) out += "#" + type;
+    }
+  }
+  return out;
+}
+
 // Without the characters that paths are made of: instances of open functions have them.
 std::string Sema::static_list_name(const PouInfo& info) const {
   if (info.self.valid()) {  // of a method: `Block#method`
     const std::string& block = program.types[info.self].name;
-    return info.owner == kNoPou ? block : block + "#" + std::string(info.decl->name.text);
+    if (info.owner == kNoPou) return block;
+    const bool setter = info.decl->kind == PouKind::kSetter;
+    return block + "#" + std::string(info.decl->name.text) + (setter ? "#Set" : "");
   }
   std::string name = info.open ? std::string(info.name) : program.pous[info.id.index].name;
+  const auto first = pou_names_.find(info.name);
+  if (first != pou_names_.end() && first->second != info.number)
+    name += parameters_text(*this, *info.decl);
   for (char& c : std::span(name).subspan(info.name.size())) {
     if (c == '.' || c == '[' || c == ']') c = '_';
   }
