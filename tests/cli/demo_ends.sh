@@ -4,18 +4,11 @@
 
 mkdir tmp
 for signal in TERM HUP PIPE; do
-  TMPDIR=$work/tmp setsid env --default-signal=PIPE sh "$source_dir/scripts/demo.sh" "$bin" >out 2>err &
+  TMPDIR=$work/tmp setsid env --default-signal=PIPE sh "$source_dir/scripts/demo.sh" "$bin" >demo.out 2>&1 &
   echo $! >demo.pid
-  for _ in $(seq 1200); do
-    grep -q 'stvm watch' out && break
-    sleep 0.1
-  done
-  said 'stvm watch'
+  wait_for 'stvm watch' cat demo.out
   kill -s $signal -- -"$(cat demo.pid)"  # as Ctrl+C: what it started, too
-  for _ in $(seq 600); do
-    [ -z "$(ls tmp)" ] && break
-    sleep 0.1
-  done
-  [ -z "$(ls tmp)" ] || fail "behind $signal the demo left: $(ls tmp/*)"
+  left() { ls tmp | wc -l; }
+  wait_for '^0$' left  # no folder, so no controller
 done
 rm demo.pid

@@ -37,16 +37,29 @@ json() {
 d = json.load(open("out"))
 sys.exit(not eval("(" + sys.argv[1] + ")"))' "$1" || fail "not so: $1"
 }
-# wait_for REGEX COMMAND...: runs it, output in ./out, until it prints that.
+# wait_for REGEX COMMAND...: runs it, output in ./out, until it prints that. So often that a loaded
+# machine does not matter: a test that fails takes its time.
 wait_for() {
   wanted=$1
   shift
-  for _ in $(seq 600); do
+  for _ in $(seq 4000); do
     "$@" >out 2>&1 || true
     grep -qE -- "$wanted" out && return
     sleep 0.05
   done
   fail "never: $wanted from $*"
+}
+# wait_saved DIR: the retained values of now, which change all the time, are on the disk: the second
+# of two saves has begun behind this call.
+wait_saved() {
+  for save in 1 2; do
+    was=$(cat "$1"/retain_* | cksum)
+    for _ in $(seq 4000); do
+      [ "$(cat "$1"/retain_* | cksum)" = "$was" ] || continue 2
+      sleep 0.05
+    done
+    fail "nothing is saved in $1"
+  done
 }
 silent_on() { [ ! -s "$1" ] || fail "nothing expected on $1"; }
 
@@ -59,8 +72,9 @@ serve() {
   shift
   "$bin/stvm" serve --dir "$dir" "$@" >"$dir.log" 2>&1 &
   echo $! >"$work/$(basename "$dir").pid"
-  for _ in $(seq 100); do
+  for _ in $(seq 4000); do
     "$bin/stvm" status --dir "$dir" >/dev/null 2>&1 && return 0
+    kill -0 $! 2>/dev/null || break
     sleep 0.05
   done
   cat "$dir.log"

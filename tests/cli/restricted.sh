@@ -37,7 +37,7 @@ expect 0 stvm change gain.st --dir plc --yes --restricted
 said 'outputs may jump'
 expect 0 stvm undo --dir plc
 # Case 40: the statement that writes `valve` goes: it holds its value, and the report says that nothing writes it.
-sleep 0.2
+wait_for 'TRUE' stvm get --dir plc Main.valve
 expect 0 stvm change unwritten.st --dir plc --yes
 said 'W0013.*valve|valve.*W0013'
 expect 0 stvm get --dir plc Main.valve

@@ -15,7 +15,8 @@ END_RESOURCE END_CONFIGURATION
 ST
 printf 'name = "plant"\n[outputs]\nsafe = ["%%QX0.0 = TRUE"]\n' >plant/stc.toml
 serve state plant
-sleep 0.3
+wait_for '^Bad .*stopped' stvm status --dir state
+wait_for '^Quick +2 ms +1 +[1-9][0-9]' stvm status --dir state
 expect 0 stvm status --dir state
 said '^task +period +prio +scans +missed +average +p99 +longest +delay +state'
 said '^Quick +2 ms +1 '
@@ -75,17 +76,17 @@ if command -v python3 >/dev/null; then
 import socket, sys
 s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
 s.bind(sys.argv[1])
-s.settimeout(20)
+s.settimeout(600)
 while True:
     text = s.recv(4096).decode()
     print(text, flush=True)
     if "STOPPING" in text: break
 PY
   listener=$!
-  for try in 1 2 3 4 5 6 7 8 9 10; do [ -e notify ] && break; sleep 0.2; done
+  wait_for 'notify' ls
   NOTIFY_SOCKET="$work/notify" WATCHDOG_USEC=200000 "$bin/stvm" serve --dir state2 plant/plant.st >served 2>&1 &
   served=$!
-  for try in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15; do grep -q WATCHDOG=1 heard && break; sleep 0.2; done
+  wait_for 'WATCHDOG=1' cat heard
   kill -TERM $served
   wait $served || fail "serve did not end cleanly"
   wait $listener

@@ -14,9 +14,7 @@ class FakeDriver : public vm::IoDriver {
 
   base::Status exchange(const vm::Exchange& exchange) override {
     ++device_.exchanges;
-    if (int ms = device_.hang_ms; ms != 0) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(ms));
-    }
+    device_.hangs.wait(true);
     if (device_.broken) return vm::exchange_failed("the device is broken");
     std::lock_guard lock(device_.mutex);
     if (!exchange.outputs.empty()) {
@@ -91,7 +89,7 @@ std::unique_ptr<vm::IoDriver> fake_driver(FakeDevice& device) {
 }
 
 bool eventually(const std::function<bool()>& holds) {
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < 600'000; ++i) {
     if (holds()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

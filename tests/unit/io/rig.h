@@ -33,7 +33,7 @@ struct FakeDevice {
   base::Bytes memory = base::Bytes(64);  // the device's bytes: outputs are written, inputs read
   std::vector<base::Bytes> written;      // every exchange that wrote
   std::atomic<bool> broken{false};       // answers with an error
-  std::atomic<int> hang_ms{0};           // sleeps that long in each exchange
+  std::atomic<bool> hangs{false};        // an exchange does not end
   std::atomic<int> exchanges{0};
   std::atomic<int> alive{0};  // drivers that exist
 
@@ -49,7 +49,7 @@ struct FakeDevice {
 // Inputs are bytes 32 and up of its memory, outputs those from 0 on.
 std::unique_ptr<vm::IoDriver> fake_driver(FakeDevice& device);
 
-// Waits up to 5 s.
+// However loaded the machine is: waits up to ten minutes.
 bool eventually(const std::function<bool()>& holds);
 
 }  // namespace io_test

