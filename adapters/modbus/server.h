@@ -1,5 +1,7 @@
 // The server's side. An exchange shows the program's values, serves whoever asks for one period,
-// and takes what was written; communication is lost when nobody has asked for timeout_ms. One
+// and takes what was written; where it has inputs, communication is lost when nobody has asked for
+// timeout_ms. What a request says wrong is answered with an exception, by TCP never with the end of
+// the connection. One
 // thread serves all: a client that sends half a frame, nonsense or nothing, or does not read its
 // answers, delays the others by some milliseconds and loses its connection.
 #pragma once

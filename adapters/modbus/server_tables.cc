@@ -1,5 +1,6 @@
 #include "adapters/modbus/server_tables.h"
 
+#include "adapters/modbus/request_check.h"
 #include "adapters/modbus/values.h"
 
 namespace modbus {
@@ -8,6 +9,7 @@ namespace {
 using ir::PointTable;
 
 constexpr int kRtuHeader = 1;
+constexpr int kRtuChecksum = 2;
 
 uint32_t word(const uint8_t* at) { return static_cast<uint32_t>(at[0] << 8 | at[1]); }
 
@@ -99,7 +101,6 @@ ServerTables::Written ServerTables::written_by(const uint8_t* pdu, int length) {
   }
 }
 
-// Numbers that no request may have, and functions that are not served, are libmodbus' to answer.
 bool ServerTables::permits(const uint8_t* pdu, int length) {
   if (length < 5) return true;
   const Written written = written_by(pdu, length);
@@ -154,10 +155,16 @@ void ServerTables::pass_on(const Written& written, const Asking& asking) const {
 bool ServerTables::answer(modbus_t* context, const uint8_t* request, int length,
                           const Asking& asking) {
   const int header = modbus_get_header_length(context);
-  if (length <= header) return false;
+  const int size = length - header - (header == kRtuHeader ? kRtuChecksum : 0);
+  if (size <= 0) return false;
   const uint8_t* const pdu = request + header;
-  const Written written = written_by(pdu, length - header);
-  if (!permits(pdu, length - header)) {
+  const int fault = request_fault({pdu, static_cast<size_t>(size)});
+  if (fault != 0) {
+    const bool to_all = header == kRtuHeader && request[0] == MODBUS_BROADCAST_ADDRESS;
+    return to_all || modbus_reply_exception(context, request, static_cast<unsigned>(fault)) >= 0;
+  }
+  const Written written = written_by(pdu, size);
+  if (!permits(pdu, size)) {
     const bool write = written.count != 0 && asking.events != nullptr;
     if (write) asking.events->refused(asking.who, text_of(written));
     return modbus_reply_exception(context, request, MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS) >= 0;

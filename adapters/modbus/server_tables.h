@@ -1,8 +1,8 @@
 // What a Modbus server shows and takes: libmodbus' tables, and which points of them are mapped.
 // Points with `->` are written by others and read by the program, points with `<-` the other way
 // round; points with `<->` are the program's and can be written by others: such a write goes to the
-// control thread. Whatever else a request touches is answered with exception 02, and 06 when more
-// is written than a cycle takes.
+// control thread. Whatever else a request touches is answered with exception 02, what is wrong by
+// its form with 01 or 03 (request_check.h), and 06 when more is written than a cycle takes.
 #pragma once
 
 #include <modbus.h>

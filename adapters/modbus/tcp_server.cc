@@ -9,6 +9,7 @@
 
 #include <cerrno>
 
+#include "adapters/modbus/request_check.h"
 #include "adapters/modbus/server.h"
 #include "adapters/modbus/serving.h"
 #include "vm/runtime/descriptor.h"
@@ -17,7 +18,12 @@ namespace modbus {
 namespace {
 
 constexpr int64_t kHalfFrameNs = 1'000'000'000;
+// When the system has no descriptor for a connection; poll() would return at once, as somebody
+// still waits.
+constexpr int64_t kAfterFailureNs = 100'000'000;
 constexpr size_t kHeader = 6;  // up to and with the length of the rest
+
+vm::Descriptor spare() { return vm::Descriptor(::open("/dev/null", O_RDONLY | O_CLOEXEC)); }
 
 // "10.0.0.7:40312", "[fe80::1]:40312"
 std::string name_of(const sockaddr_storage& peer, socklen_t size) {
@@ -79,8 +85,10 @@ class TcpServer : public Serving {
 
   base::Status serve(int64_t until_ns) override {
     for (Client& client : clients_) client.looked_at = false;
+    if (!reserve_.valid()) reserve_ = spare();
     for (int64_t left = until_ns - steady_ns(); left > 0; left = until_ns - steady_ns()) {
-      std::vector<pollfd> polled{{listener_.get(), POLLIN, 0}};
+      const bool listens = steady_ns() >= listen_again_ns_;
+      std::vector<pollfd> polled{{listens ? listener_.get() : -1, POLLIN, 0}};
       for (const Client& client : clients_) {
         polled.push_back({client.looked_at ? -1 : client.socket.get(), POLLIN, 0});
       }
@@ -97,13 +105,27 @@ class TcpServer : public Serving {
     return base::Ok{};
   }
 
-  // When there are too many, whoever has been silent longest makes room.
+  vm::Descriptor accept_from(sockaddr_storage& peer, socklen_t& size) const {
+    size = sizeof peer;
+    return vm::Descriptor(::accept4(listener_.get(), reinterpret_cast<sockaddr*>(&peer), &size,
+                                    SOCK_CLOEXEC));
+  }
+
+  // When there are too many, whoever has been silent longest makes room. Where the process has no
+  // descriptors left, one was kept for the first who comes.
   void accept() {
     sockaddr_storage peer{};
-    socklen_t size = sizeof peer;
-    vm::Descriptor socket(::accept4(listener_.get(), reinterpret_cast<sockaddr*>(&peer), &size,
-                                    SOCK_CLOEXEC));
-    if (!socket.valid()) return;
+    socklen_t size = 0;
+    vm::Descriptor socket = accept_from(peer, size);
+    if (!socket.valid() && (errno == EMFILE || errno == ENFILE) && reserve_.valid()) {
+      { const vm::Descriptor given_up = std::move(reserve_); }
+      socket = accept_from(peer, size);
+    }
+    if (!socket.valid()) {
+      const bool gone = errno == EAGAIN || errno == ECONNABORTED || errno == EINTR;
+      if (!gone) listen_again_ns_ = steady_ns() + kAfterFailureNs;
+      return;
+    }
     const timeval patience{0, 100'000};
     const int on = 1;
     ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
@@ -132,6 +154,28 @@ class TcpServer : public Serving {
     return got < length ? 0 : length;
   }
 
+  // The same header as the request, but for the length.
+  static bool send_answer(const Client& client, base::ByteSpan header, base::ByteSpan pdu) {
+    base::Bytes out(header.begin(), header.end());
+    out[kHeader - 1] = static_cast<uint8_t>(1 + pdu.size());  // the unit, too
+    out[kHeader - 2] = 0;
+    out.insert(out.end(), pdu.begin(), pdu.end());
+    const ssize_t sent = ::send(client.socket.get(), out.data(), out.size(), MSG_NOSIGNAL);
+    return sent == static_cast<ssize_t>(out.size());
+  }
+
+  bool answer_frame(Client& client, size_t length) {
+    uint8_t request[MODBUS_TCP_MAX_ADU_LENGTH];
+    const ssize_t got = ::recv(client.socket.get(), request, length, MSG_DONTWAIT);
+    if (got != static_cast<ssize_t>(length)) return false;
+    const base::ByteSpan pdu(request + kHeader + 1, length - kHeader - 1);
+    if (asks_who(pdu)) {
+      return send_answer(client, {request, kHeader + 1}, who_it_is(pdu));
+    }
+    modbus_set_socket(context(), client.socket.get());
+    return answer(request, static_cast<int>(length), client.name);
+  }
+
   void look_at(Client& client) {
     const int length = waiting_frame(client);
     if (length == 0) {
@@ -142,15 +186,14 @@ class TcpServer : public Serving {
     }
     client.half_ns = 0;
     client.active_ns = steady_ns();
-    uint8_t request[MODBUS_TCP_MAX_ADU_LENGTH];
-    modbus_set_socket(context(), client.socket.get());
-    client.gone = length < 0 || modbus_receive(context(), request) != length ||
-                  !answer(request, length, client.name);
+    client.gone = length < 0 || !answer_frame(client, static_cast<size_t>(length));
   }
 
   const std::string address_;
   const size_t most_;
   vm::Descriptor listener_;
+  vm::Descriptor reserve_ = spare();
+  int64_t listen_again_ns_ = 0;
   std::vector<Client> clients_;
 };
 

@@ -1,12 +1,24 @@
 // Modbus servers against libmodbus' own clients, several at once, and what is no client at all.
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
 
 #include "tests/unit/modbus/lines.h"
+
+namespace {
+std::atomic<uint64_t> accept_calls{0};
+}
+// In place of the C library's, for all of this program: counted.
+extern "C" int accept4(int socket, sockaddr* peer, socklen_t* size, int flags) {
+  ++accept_calls;
+  return static_cast<int>(::syscall(SYS_accept4, socket, peer, size, flags));
+}
 
 namespace modbus_test {
 namespace {
@@ -154,10 +166,6 @@ TEST(Server, HalfFramesAndGarbageHurtOnlyWhoeverSendsThem) {
       {0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff},
       {0, 1, 0, 0, 0, 0, 1, 4, 0, 0, 0, 1},             // no length
       {0, 1, 0, 0, 0xff, 0, 1, 4, 0, 0, 0, 1},          // too long
-      {0, 1, 0, 0, 0, 2, 1, 16},                        // shorter than its function needs
-      {0, 1, 0, 0, 0, 8, 1, 16, 0, 0, 0, 123, 246, 1},  // fewer registers than it says
-      {0, 1, 0, 0, 0, 20, 1, 4, 0, 0, 0, 1, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9},
-      {0, 1, 0, 0, 0, 2, 1, 0x63},  // no such function
   };
   for (const base::Bytes& frame : frames) {
     vm::Descriptor bad = connect_raw(port);
@@ -170,6 +178,75 @@ TEST(Server, HalfFramesAndGarbageHurtOnlyWhoeverSendsThem) {
   vm::Descriptor gone = connect_raw(port);
   gone = vm::Descriptor();
   EXPECT_EQ(input_register(good.get(), 0), 0x1234);
+}
+
+// The answer to a request, without its header.
+base::Bytes answer_to(const vm::Descriptor& socket, base::Bytes pdu) {
+  base::Bytes frame{7, 9, 0, 0, 0, static_cast<uint8_t>(pdu.size() + 1), 1};
+  frame.insert(frame.end(), pdu.begin(), pdu.end());
+  send_raw(socket, frame);
+  uint8_t got[260];
+  const ssize_t size = ::recv(socket.get(), got, sizeof got, 0);
+  if (size < 8) return {};
+  EXPECT_EQ(got[0], 7);
+  EXPECT_EQ(got[1], 9);
+  EXPECT_EQ(got[4] * 256 + got[5], size - 6);
+  EXPECT_EQ(got[6], 1);
+  return base::Bytes(got + 7, got + size);
+}
+
+// V-01: functions that are not served are exception 01, counts, values and lengths that a function
+// cannot have are 03; the connection stays.
+TEST(Server, V01_WhatARequestSaysWrongIsAnExceptionAndTheConnectionStays) {
+  const int port = free_port();
+  Running server(port);
+  ASSERT_TRUE(client(server, port)) << "it listens";
+  const vm::Descriptor socket = connect_raw(port);
+  struct {
+    base::Bytes pdu;
+    uint8_t exception;
+  } const wrong[] = {
+      {{0x63}, 1},                                // no such function
+      {{8, 0, 0, 0, 0}, 1},                       // diagnostics: of serial lines
+      {{7}, 1},                                   //
+      {{43, 13, 0, 0}, 1},                        // another encapsulated interface
+      {{4, 0, 0, 0, 0}, 3},                       // nothing
+      {{4, 0, 0, 0, 126}, 3},                     // more registers than an answer holds
+      {{1, 0, 100, 0x07, 0xd1}, 3},               // 2001 coils
+      {{4, 0, 0}, 3},                             // shorter than its function needs
+      {{4, 0, 0, 0, 1, 9, 9, 9}, 3},              // longer
+      {{5, 0, 100, 1, 0}, 3},                     // neither on nor off
+      {{16}, 3},                                  //
+      {{16, 0, 0, 0, 123, 246, 1}, 3},            // fewer registers than it says
+      {{16, 0, 0, 0, 1, 4, 1, 2, 3, 4}, 3},       // more bytes than registers
+      {{15, 0, 100, 0, 9, 1, 1}, 3},              // nine coils in one byte
+      {{22, 0, 0, 0, 0}, 3},                      //
+      {{23, 0, 0, 0, 126, 0, 0, 0, 1, 2, 0, 0}, 3},
+      {{4, 0, 200, 0, 1}, 2},                     // a good request for what is not mapped
+  };
+  for (const auto& row : wrong) {
+    const base::Bytes expected{static_cast<uint8_t>(row.pdu[0] | 0x80), row.exception};
+    EXPECT_EQ(answer_to(socket, row.pdu), expected) << int{row.pdu[0]};
+  }
+  EXPECT_EQ(answer_to(socket, {4, 0, 0, 0, 1}), (base::Bytes{4, 2, 0x12, 0x34}));
+}
+
+// V-01: 43/14 says who it is.
+TEST(Server, V01_IdentificationHasOurName) {
+  const int port = free_port();
+  Running server(port);
+  ASSERT_TRUE(client(server, port)) << "it listens";
+  const vm::Descriptor socket = connect_raw(port);
+  const base::Bytes all = answer_to(socket, {43, 14, 1, 0});
+  ASSERT_GT(all.size(), 16u);
+  EXPECT_EQ(base::Bytes(all.begin(), all.begin() + 7), (base::Bytes{43, 14, 1, 0x81, 0, 0, 3}));
+  const std::string text(all.begin(), all.end());
+  EXPECT_NE(text.find(std::string("\x00\x03stc\x01\x04stvm\x02", 12)), std::string::npos) << text;
+  EXPECT_EQ(answer_to(socket, {43, 14, 4, 1}),
+            (base::Bytes{43, 14, 4, 0x81, 0, 0, 1, 1, 4, 's', 't', 'v', 'm'}));
+  EXPECT_EQ(answer_to(socket, {43, 14, 4, 9}), (base::Bytes{0xab, 2}));
+  EXPECT_EQ(answer_to(socket, {43, 14, 5, 0}), (base::Bytes{0xab, 3}));
+  EXPECT_EQ(answer_to(socket, {43, 14}), (base::Bytes{0xab, 3}));
 }
 
 // It asks and asks, and reads no answer: its connection goes, the others stay.
@@ -279,6 +356,43 @@ TEST(Server, AServerThatNobodyAsksIsIdle) {
   EXPECT_FALSE(rig.driver->idle());
   taken = vm::Descriptor();
   EXPECT_TRUE(rig.until([&] { return rig.driver->idle(); }));
+}
+
+// Without a descriptor for it, a client is served all the same, and a second one waits without
+// being asked for again and again.
+TEST(Server, DescriptorsThatRunOutAreNoBusyLoop) {
+  const int port = free_port();
+  Rig rig(device("modbus-tcp-server", {{"address", local(port)}, {"period_ms", "5"}},
+                 {out(PointTable::kHolding, 0, 4, 16)}));
+  ASSERT_TRUE(rig.online()) << "idle is no error where others only read";
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit low = before;
+  low.rlim_cur = 64;
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &low), 0);
+  const vm::Descriptor first = connect_raw(port);
+  const vm::Descriptor second = connect_raw(port);
+  std::vector<vm::Descriptor> all;  // whatever is free below the limit
+  for (;;) {
+    vm::Descriptor next(::dup(first.get()));
+    if (!next.valid()) break;
+    all.push_back(std::move(next));
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  const uint64_t accepts = accept_calls;
+  for (int i = 0; i < 60; ++i) (void)rig.exchange().ok();
+  const auto elapsed = std::chrono::steady_clock::now() - begin;
+  const auto tries = static_cast<uint64_t>(elapsed / std::chrono::milliseconds(100));
+  EXPECT_LE(accept_calls - accepts, 4 + tries);
+  EXPECT_GE(accept_calls - accepts, 3u) << "one was served, and the other one is tried";
+  const base::Bytes read = {0, 1, 0, 0, 0, 6, 1, 3, 0, 0, 0, 1};
+  uint8_t answer[16];
+  send_raw(first, read);
+  send_raw(second, read);
+  ASSERT_TRUE(rig.until([&] { return ::recv(first.get(), answer, 16, MSG_DONTWAIT) == 11; }));
+  all.clear();
+  ASSERT_TRUE(rig.until([&] { return ::recv(second.get(), answer, 16, MSG_DONTWAIT) == 11; }));
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
 }
 
 TEST(Server, APortThatIsTakenIsAnErrorUntilItIsFree) {
