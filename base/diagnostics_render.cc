@@ -1,5 +1,7 @@
 #include "base/diagnostics_render.h"
 
+#include "base/visible_text.h"
+
 namespace base {
 
 namespace {
@@ -85,6 +87,8 @@ std::string printable(std::string_view bytes) {
       out += '?';
     } else if (length == 1 && byte >= 0x80) {
       append_latin1(out, byte);
+    } else if (const uint32_t turns = length > 1 ? direction_control(bytes.substr(at)) : 0) {
+      out += code_point_text(turns);
     } else {
       out += bytes.substr(at, length);
     }

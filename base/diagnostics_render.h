@@ -48,7 +48,8 @@ std::string render_github(const Diagnostics& diagnostics, const SourceMap& sourc
 std::string_view severity_name(Severity severity);  // "error", "warning", "note"
 
 // UTF-8 in any case: bytes that are not UTF-8 are read as Latin-1, control
-// characters other than newline become `?`, so no source can steer a terminal.
+// characters other than newline become `?`, so no source can steer a terminal, and those that turn
+// the direction of what follows become \u202e, so none can show other code than it has.
 std::string printable(std::string_view bytes);
 // Quoted and escaped for JSON; the same reading of bytes.
 std::string json_string(std::string_view bytes);

@@ -95,8 +95,8 @@ class TextWriter {
     paint(kBlue, number + " |");
     out_ += ' ' + printable_line(shown) + '\n';
     paint(kBlue, std::string(number.size(), ' ') + " |");
-    out_ += ' ' + indent(at.line_text.substr(from, begin - from));
-    uint32_t carets = character_count(at.line_text.substr(begin, length));
+    out_ += ' ' + indent(printable_line(at.line_text.substr(from, begin - from)));
+    uint32_t carets = character_count(printable_line(at.line_text.substr(begin, length)));
     paint(colour, '^' + std::string(std::max(carets, 1u) - 1, '~'));
     out_ += '\n';
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 
 namespace base {
 namespace {
@@ -26,13 +27,31 @@ size_t printable_bytes(std::string_view text) {
 
 }  // namespace
 
+uint32_t direction_control(std::string_view text) {
+  const auto byte = [&](size_t i) { return i < text.size() ? static_cast<uint8_t>(text[i]) : 0u; };
+  if (byte(0) == 0xd8 && byte(1) == 0x9c) return 0x061c;
+  if (byte(0) != 0xe2 || (byte(1) & 0xfe) != 0x80 || (byte(2) & 0xc0) != 0x80) return 0;
+  const uint32_t code = 0x2000 | (byte(1) & 0x3f) << 6 | (byte(2) & 0x3f);
+  const bool mark = code == 0x200e || code == 0x200f;
+  const bool override = code >= 0x202a && code <= 0x202e;
+  const bool isolate = code >= 0x2066 && code <= 0x2069;
+  return mark || override || isolate ? code : 0;
+}
+
+std::string code_point_text(uint32_t code) {
+  char text[16];
+  std::snprintf(text, sizeof text, "\\u%04x", code);
+  return text;
+}
+
 std::string visible(std::string_view text) {
   static constexpr char kHex[] = "0123456789abcdef";
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
     const size_t size = printable_bytes(text);
-    out += text.substr(0, size);
+    const uint32_t turns = direction_control(text);
+    out += turns != 0 ? code_point_text(turns) : std::string(text.substr(0, size));
     if (size == 0) {
       const auto byte = static_cast<uint8_t>(text[0]);
       out += {'\\', 'x', kHex[byte >> 4], kHex[byte & 15]};

@@ -20,6 +20,23 @@ TEST(VisibleText, ShowsControlCharacters) {
   EXPECT_EQ(visible("\x9b" "31m"), "\\x9b31m") << "CSI as one byte";
 }
 
+// A text that shows its characters in another order than it has them.
+TEST(VisibleText, ShowsWhatTurnsTheDirection) {
+  EXPECT_EQ(visible("a\u202e" "b\u2066" "c"), "a\\u202eb\\u2066c");
+  std::string all;
+  for (const char* one : {"\u061c", "\u200e", "\u200f", "\u202a", "\u202b", "\u202c", "\u202d",
+                          "\u202e", "\u2066", "\u2067", "\u2068", "\u2069"}) {
+    EXPECT_NE(direction_control(one), 0u);
+    EXPECT_EQ(visible(one), code_point_text(direction_control(one)));
+    all += one;
+  }
+  EXPECT_EQ(visible(all).size(), 12 * 6u);
+  for (const char* other : {"\u061b", "\u200d", "\u2010", "\u2029", "\u202f", "\u2065", "\u206a"}) {
+    EXPECT_EQ(visible(other), other);
+  }
+  EXPECT_EQ(visible("\xe2\x80"), "\\xe2\\x80") << "cut off";
+}
+
 TEST(VisibleText, KeepsLines) {
   EXPECT_EQ(visible_lines("a\x1b\n\nb\r\n"), "a\\x1b\n\nb\\x0d\n");
   EXPECT_EQ(visible_lines(""), "");
