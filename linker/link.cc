@@ -31,8 +31,9 @@ class Linker {
         objects_(objects),
         options_(options),
         context_{program, image_, pool_, {}, {}, {}, {}} {
-    if (options.base == nullptr) return;
-    renamed_base_ = ir::under_new_names(*options.base, program);
+    options_.base = base_of(options);
+    if (options_.base == nullptr) return;
+    renamed_base_ = ir::under_new_names(*options_.base, program);
     if (renamed_base_) options_.base = &*renamed_base_;
   }
 

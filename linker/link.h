@@ -8,6 +8,7 @@
 #include "base/limits.h"
 #include "base/result.h"
 #include "ir/bytecode/image.h"
+#include "ir/bytecode/no_program.h"
 #include "ir/bytecode/object.h"
 #include "ir/program/ir.h"
 #include "linker/layout.h"
@@ -25,6 +26,13 @@ struct Options {
   uint32_t max_instances = base::kMaxInstances;
   uint32_t max_code_units = base::kMaxCodeUnits;
 };
+
+// The version that a link goes on from; null: none. To one that is no program the next version is a
+// first one, so that it is the same image however it comes to a controller.
+inline const ir::Image* base_of(const Options& options) {
+  const bool first = options.base == nullptr || ir::is_no_program(*options.base);
+  return first ? nullptr : options.base;
+}
 
 base::Result<ir::Image> link(const ir::Program& program, const std::vector<ir::Object>& objects,
                              const Options& options);

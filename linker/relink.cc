@@ -125,8 +125,8 @@ class Relinker {
     context_.table_numbers.clear();
     state_.image.bounds.clear();
     state_.image.ranges.clear();
-    const TypeNumbers types(program_.types, options_.base);
-    fill_tables(context_, options_.base, types);
+    const TypeNumbers types(program_.types, base_of(options_));
+    fill_tables(context_, base_of(options_), types);
     return std::all_of(context_.table_numbers.begin(), context_.table_numbers.end(),
                        [&](const auto& entry) {
                          const auto found = old.find(entry.first);
@@ -138,7 +138,7 @@ class Relinker {
   void make_pool_again(std::vector<uint32_t>& pous) {
     const InitialValues initial(program_.types, program_.constants, state_.image.layouts);
     ConstantPool pool = make_pool(context_.objects, initial, state_.image.layouts,
-                                  options_.base == nullptr ? nullptr : &options_.base->pool);
+                                  base_of(options_) == nullptr ? nullptr : &options_.base->pool);
     const std::vector<uint32_t> edited = pous;
     for (uint32_t number = 0; number < context_.objects.size(); ++number) {
       const ir::Object* object = context_.objects[number];

@@ -2,6 +2,7 @@
 file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tools/common/*.cc
      ${CMAKE_SOURCE_DIR}/online_change/store/*.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/rename*.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/embedded*.cc ${CMAKE_SOURCE_DIR}/base/unpack.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/no_program.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/variable_names.cc ${CMAKE_SOURCE_DIR}/base/nearest_name.cc
      ${CMAKE_SOURCE_DIR}/base/joined.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/device*.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/disassemble*.cc

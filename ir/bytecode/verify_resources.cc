@@ -39,7 +39,8 @@ class ResourcesVerifier {
  private:
   base::Status check_tasks() const {
     std::vector<bool> taken(image_.instances.size());
-    if (image_.tasks.empty()) return refuse(Refusal::kBadTask, "there is no task");
+    const bool nothing = image_.pous.empty() && image_.instances.size() == 1;  // no_program.h
+    if (image_.tasks.empty() && !nothing) return refuse(Refusal::kBadTask, "there is no task");
     int64_t base_cycle = 0;
     for (const ImageTask& task : image_.tasks) {
       base_cycle = std::gcd(base_cycle, std::max<int64_t>(task.period_ns, 0));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ir/bytecode/no_program.h"
 #include "online_change/package/package.h"
 #include "online_change/store/retained_values.h"
 
@@ -24,18 +25,20 @@ bool fits(const ir::Image& image, const RetainRecord& record) {
   return bytes.ok() && *bytes == record.values.size();
 }
 
+base::Error unfit() {
+  return {base::Refusal::kNothingBoots, "they do not fit the program that they are of"};
+}
+
 // The newest values, in the layout of `image`.
 base::Result<CarriedValues> values_for(const ir::VerifiedImage& image, const Recovered& found) {
-  const base::Error unusable{base::Refusal::kNothingBoots,
-                             "the retained values do not fit the program they are of"};
   const RetainRecord& newest = *found.newest;
   if (newest.image == image.digest()) {
-    if (!fits(image.image(), newest)) return unusable;
+    if (!fits(image.image(), newest)) return unfit();
     return CarriedValues{newest.values, {}};
   }
   std::string why;
   const std::optional<ir::VerifiedImage> other = verified(found.other, why);
-  if (!other || other->digest() != newest.image || !fits(other->image(), newest)) return unusable;
+  if (!other || other->digest() != newest.image || !fits(other->image(), newest)) return unfit();
   const bool known = found.before && fits(image.image(), *found.before);
   if (!newest.trial && !known) return carry_retained(*other, newest.values, image);
   const base::Bytes before = known ? found.before->values : initial_retained(image.image());
@@ -47,11 +50,11 @@ class Booting {
   Booting(Store& store, const std::string& who, int64_t time_ns)
       : store_(store), who_(who), time_ns_(time_ns), found_(store.take_recovered()) {}
 
-  base::Result<Boot> run(const std::optional<ir::VerifiedImage>& given) {
+  base::Result<Boot> run(const std::optional<ir::VerifiedImage>& given, bool create) {
     std::string why = found_.nothing;
     const std::optional<ir::VerifiedImage> stored = verified(found_.boots, why);
     if (!stored) store_.reject_boots();
-    if (!stored && !given) return hold(why);
+    if (!stored && !given) return hold(why, create);
     if (given) {
       base::Result<uint64_t> bytes = retained_bytes(given->image());
       if (!bytes.ok()) return bytes.error();
@@ -67,8 +70,8 @@ class Booting {
     }
     if (stored) {
       begin_with(*stored, boot);
-    } else if (!found_.virgin) {
-      boot.alarms.push_back("cold start: " + why);
+    } else if (!is_new()) {
+      begin_without(why, *given, boot);
     }
     if (given && (!stored || given->digest() != stored->digest())) {
       base::Status installed = install(*given, stored, boot);
@@ -91,16 +94,19 @@ class Booting {
     store_.note(std::move(entry));
   }
 
-  base::Error nothing(const std::string& why) const {
-    if (found_.virgin) return {base::Refusal::kFileNotFound, why};
-    return {base::Refusal::kNothingBoots, why};
+  // Nothing was ever stored, as far as anybody can tell.
+  bool is_new() const {
+    return found_.virgin && !store_.retained_program() && store_.history().empty();
   }
 
   // The accepted program is damaged, or the control records are. The newest retained values say
   // which program ran last, and whether it was on trial.
-  base::Result<Boot> hold(const std::string& why) {
+  base::Result<Boot> hold(const std::string& why, bool create) {
+    if (is_new()) {
+      if (create) return hold_nothing(why);
+      return base::Error{base::Refusal::kFileNotFound, why};
+    }
     const std::optional<RetainRecord>& newest = found_.newest;
-    if (found_.virgin && !newest) return nothing(why);
     const auto likely = [&](const StoredImage& image) {
       return newest && (newest->image == image.digest) != newest->trial;
     };
@@ -112,12 +118,30 @@ class Booting {
       Boot boot{*image, initial_retained(image->image()), {}, std::move(found_.alarms)};
       const bool own = newest && newest->image == image->digest();
       if (own && fits(image->image(), *newest)) boot.retained = newest->values;
+      if (!newest) take(no_values(), boot);
       boot.fault = why + "; program " + base::short_hex(image->digest()) +
                    " is stored, too: `stvm restart` runs it";
       note(Event::kAlarm, {}, image->digest(), boot.fault);
       return boot;
     }
-    return nothing(why);
+    return hold_nothing(why);
+  }
+
+  // Changes nothing of what is stored, but for the journal.
+  base::Result<Boot> hold_nothing(const std::string& why) {
+    Boot boot{ir::no_program(), {}, {}, std::move(found_.alarms)};
+    boot.fault = why + (found_.virgin ? "" : ", and no other program is intact") +
+                 "; `stvm change SOURCES|IMAGE` brings one";
+    if (const std::optional<base::Digest> kept = store_.retained_program()) {
+      boot.fault += "; retained values of " + base::short_hex(*kept) +
+                    " are stored, and come back with that very image";
+    }
+    note(Event::kAlarm, {}, {}, boot.fault);
+    return boot;
+  }
+
+  base::Result<CarriedValues> no_values() const {
+    return base::Error{base::Refusal::kNothingBoots, found_.no_newest};
   }
 
   // What `boot` holds already stays where there are none.
@@ -128,12 +152,39 @@ class Booting {
   }
 
   void begin_with(const ir::VerifiedImage& image, Boot& boot) {
-    if (found_.newest) take(values_for(image, found_), boot);
+    take(found_.newest ? values_for(image, found_) : no_values(), boot);
     boot.trial_lost = found_.trial_lost;
     // Noted first: a cut in between notes it twice, not never.
     if (boot.trial_lost) note(Event::kTrialLost, *boot.trial_lost, image.digest(), {});
     base::Status settled = store_.settle();
     if (!settled.ok()) boot.alarms.push_back(settled.error().text);
+  }
+
+  // What is given comes in place of a program that cannot be read: of the retained values, those
+  // whose layout is known.
+  void begin_without(const std::string& why, const ir::VerifiedImage& given, Boot& boot) {
+    base::Result<CarriedValues> values = values_left_for(given);
+    if (values.ok()) boot.alarms.push_back(why + "; the retained values are taken over");
+    if (!values.ok()) {
+      boot.alarms.push_back("cold start: " + why + "; retained values: " + values.error().text);
+    } else {
+      take(std::move(values), boot);
+    }
+  }
+
+  base::Result<CarriedValues> values_left_for(const ir::VerifiedImage& given) const {
+    const base::Result<uint64_t> bytes = retained_bytes(given.image());
+    std::optional<base::Bytes> own = store_.retained_of(given.digest());
+    if (own && bytes.ok() && own->size() == *bytes) return CarriedValues{std::move(*own), {}};
+    if (!found_.newest) return no_values();
+    for (const StoredImage& stored : found_.held) {
+      if (found_.newest->image != stored.digest) continue;
+      std::string unused;
+      const std::optional<ir::VerifiedImage> image = verified(stored, unused);
+      if (!image || !fits(image->image(), *found_.newest)) break;
+      return carry_retained(*image, found_.newest->values, given);
+    }
+    return unfit();
   }
 
   // The versions that the edits make, one behind the other. False: one of them is not what it
@@ -176,8 +227,7 @@ class Booting {
         return carry_retained_back(*above, newest.values, image, edit.retained);
       }
     }
-    return base::Error{base::Refusal::kNothingBoots,
-                       "the retained values do not fit the program they are of"};
+    return unfit();
   }
 
   // D4. What cannot be resumed is lost, which is said.
@@ -195,7 +245,7 @@ class Booting {
     }
     next.alarms = std::move(boot.alarms);
     next.retained = initial_retained(next.image.image());
-    if (found_.newest) take(values_on_trial(*all, next), next);
+    take(found_.newest ? values_on_trial(*all, next) : no_values(), next);
     base::Status whole = store_.make_whole();
     if (!whole.ok()) next.alarms.push_back(whole.error().text);
     boot = std::move(next);
@@ -232,8 +282,8 @@ class Booting {
 }  // namespace
 
 base::Result<Boot> boot(Store& store, const std::optional<ir::VerifiedImage>& given,
-                        const std::string& who, int64_t time_ns) {
-  return Booting(store, who, time_ns).run(given);
+                        const std::string& who, int64_t time_ns, bool create) {
+  return Booting(store, who, time_ns).run(given, create);
 }
 
 }  // namespace online_change

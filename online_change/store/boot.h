@@ -23,16 +23,17 @@ struct Boot {
   std::optional<base::Digest> trial_lost;  // the program that was on trial
   std::vector<std::string> alarms;         // what is damaged or failed
   // Not empty: the accepted program is damaged, or nobody knows which it was. `image` is the
-  // likeliest; it must not run before somebody says so, and is not stored as what boots.
+  // likeliest, or ir::no_program() where none is intact; it must not run before somebody says so,
+  // and is not stored as what boots.
   std::string fault = {};
   // Not empty: `image` is the newest of these, oldest first, and on trial.
   std::vector<ResumedEdit> edits = {};
 };
 
 // `given` replaces what is stored; the retained values follow by path and type. kFileNotFound when
-// nothing was ever stored, kNothingBoots when no stored program is intact, kStorageFailed when
+// nothing was ever stored, unless `create` says that a program comes later; kStorageFailed when
 // `given` cannot be stored. Notes in the journal what it did, at `time_ns`.
 base::Result<Boot> boot(Store& store, const std::optional<ir::VerifiedImage>& given,
-                        const std::string& who, int64_t time_ns);
+                        const std::string& who, int64_t time_ns, bool create = false);
 
 }  // namespace online_change

@@ -10,6 +10,10 @@ namespace {
 
 constexpr uint64_t kSpareParts = 16;  // of an image, for the edits that come: one more
 
+std::vector<std::string> names_of(std::span<const char* const> names) {
+  return {names.begin(), names.end()};
+}
+
 std::optional<StoredImage> image_of(base::Bytes payload) {
   if (payload.size() < kDigestBytes) return std::nullopt;
   StoredImage image;
@@ -35,9 +39,9 @@ base::Error Store::failed(std::string text) {
 Store::Store(vm::Storage& storage, StoreSizes sizes)
     : storage_(storage),
       sizes_(sizes),
-      control_copies_(storage, RecordKind::kControl, {"control_0", "control_1"}),
-      slots_(storage, RecordKind::kImage, {"slot_a", "slot_b", "slot_c"}),
-      retained_(storage, RecordKind::kRetain, {"retain_0", "retain_1", "retain_2"}),
+      control_copies_(storage, RecordKind::kControl, names_of(kControlFiles)),
+      slots_(storage, RecordKind::kImage, names_of(kSlotFiles)),
+      retained_(storage, RecordKind::kRetain, names_of(kRetainFiles)),
       journal_(storage, kJournalFile, sizes.journal_entries),
       traps_(storage, kTrapsFile, sizes.trap_entries) {
   recover_control();

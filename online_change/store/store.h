@@ -32,6 +32,10 @@ namespace online_change {
 
 inline constexpr size_t kDigestBytes = sizeof(base::Digest);
 
+// Every folder that was ever used has one of these.
+inline constexpr const char* kControlFiles[] = {"control_0", "control_1"};
+inline constexpr const char* kSlotFiles[] = {"slot_a", "slot_b", "slot_c"};
+inline constexpr const char* kRetainFiles[] = {"retain_0", "retain_1", "retain_2"};
 inline constexpr const char* kJournalFile = "journal";
 inline constexpr const char* kTrapsFile = "traps";
 inline constexpr const char* kBeforeFile = "before";
@@ -65,6 +69,7 @@ struct Recovered {
   // In another slot, if anything: what `newest` is of, else what was on trial, else any.
   std::optional<StoredImage> other;
   std::optional<RetainRecord> newest;  // retained values; of `boots` or `other`
+  std::string no_newest;               // why there are none
   std::optional<RetainRecord> before;  // `newest` is of a lost trial: those of `boots` before it
   std::optional<base::Digest> trial_lost;  // unless it resumes
   bool resumes = false;
@@ -125,6 +130,11 @@ class Store {
   // May another trial begin: are the newest ones, if there are any, those of the program that
   // boots, not from its trial? On trial: is their layout not in the slot that is written next?
   bool retained_fits() const;
+  // Retained values of this program, where those are the newest whose layout is known once it is
+  // there: of what was stored with a program that cannot be read any more, and comes back.
+  std::optional<base::Bytes> retained_of(const base::Digest& image) const;
+  // The program that the newest of all retained values are of, stored or not.
+  std::optional<base::Digest> retained_program() const;
   // Is what save_retained() has written last still stored?
   bool keeps_retained() const;
   // Does the control record name it, as what boots or is on trial?

@@ -23,9 +23,11 @@ void Store::recover_retained() {
   if (newest) recovered_.newest = std::move(records[*newest]);
   if (before) recovered_.before = std::move(records[*before]);
   choose_other();
-  if (has_control_ && !newest) {
-    recovered_.alarms.push_back("no record of the retained values can be used");
-  }
+  if (newest) return;
+  const std::optional<base::Digest> kept = retained_program();
+  recovered_.no_newest =
+      kept ? "those of " + base::short_hex(*kept) + " are stored, but that program is not"
+           : "no record of them can be used";
 }
 
 void Store::choose_other() {
@@ -60,6 +62,27 @@ bool Store::retained_fits_locked() const {
   const RetainHead& head = *in_copy_[*newest];
   if (head.image == control_.boots && !head.trial) return true;
   return control_.trial && in_slot_[free_trial_slot()] != head.image;
+}
+
+std::optional<base::Bytes> Store::retained_of(const base::Digest& image) const {
+  std::lock_guard lock(mutex_);
+  const std::optional<size_t> newest = retained_.newest([&](size_t i) {
+    return in_copy_[i] && (in_copy_[i]->image == image || in_a_slot(in_copy_[i]->image));
+  });
+  if (!newest || in_copy_[*newest]->image != image) return std::nullopt;
+  const Record record = read_record(storage_, retained_[*newest].name, RecordKind::kRetain);
+  std::optional<RetainRecord> found;
+  if (record.state == RecordState::kValid) found = decode_retain(record.payload);
+  if (!found || found->image != image) return std::nullopt;
+  return std::move(found->values);
+}
+
+std::optional<base::Digest> Store::retained_program() const {
+  std::lock_guard lock(mutex_);
+  const std::optional<size_t> newest =
+      retained_.newest([&](size_t i) { return in_copy_[i].has_value(); });
+  if (!newest) return std::nullopt;
+  return in_copy_[*newest]->image;
 }
 
 bool Store::keeps_retained() const {

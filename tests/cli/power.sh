@@ -25,7 +25,7 @@ above() { [ "$(number total)" -ge "$1" ] || fail "total is $(number total), not 
 
 serve plc v1.st
 expect 0 stvm set total=100000 Main.scans=1000000 --dir plc
-sleep 2 # a second is what may be lost
+wait_saved plc
 kill_now
 serve plc
 above 100000
@@ -36,7 +36,7 @@ said 'started'
 # During a trial: the accepted program boots, and its values are the trial's.
 expect 0 stvm change v2.st --dir plc --yes --allow-loss
 expect 0 stvm set total=200000 --dir plc
-sleep 2
+wait_saved plc
 kill_now
 expect 0 stvm journal --dir plc
 said 'switched'
@@ -86,12 +86,43 @@ serve plc v3.st
 above 500000
 kill_now
 
-# Any content of any file: it runs, or says why not.
-for file in slot_a slot_b; do
-  dd if=/dev/urandom of=plc/$file bs=512 count=40 seek=1 conv=notrunc 2>/dev/null
-done
-expect 7 stvm serve --dir plc
+# case56: no program is intact. The controller answers, and takes one with its retained values.
+stc build v3.st -o v3.img 2>/dev/null
+damage_slots() {
+  for file in slot_a slot_b slot_c; do
+    dd if=/dev/urandom of=plc/$file bs=512 count=40 seek=1 conv=notrunc 2>/dev/null
+  done
+}
+serve plc v3.img
+expect 0 stvm set total=600000 --dir plc
+expect 0 stvm stop --dir plc
+damage_slots
+serve plc --record none.rec
+grep -q 'nothing is recorded' plc.log || fail "$(cat plc.log)"
+expect 0 stvm status --dir plc
+said 'no program: FAULT'
+said '`stvm change SOURCES.IMAGE` brings a program'
+said 'alarm: .* and no other program is intact'
+expect 0 stvm status --dir plc --format json
+json 'd["faulted"] and d["tasks"] == [] and d["name"] == "no program"'
+expect 7 stvm get total --dir plc
+expect 7 stvm restart --dir plc
 said 'R0410'
+expect 0 stvm journal --dir plc
+said 'no other program is intact'
+expect 0 stvm change v3.img --dir plc --dry-run
+expect 0 stvm change v3.img --dir plc --yes
+said 'accepted: it boots next'
+expect 0 stvm status --dir plc
+said 'v3: running'
+above 600000
+expect 0 stvm journal --dir plc
+said 'installed .* by '
+kill_now
+serve plc
+above 600000
+kill_now
+damage_slots
 serve plc v1.st
 expect 0 stvm status --dir plc
 said 'alarm: cold start'
@@ -111,7 +142,7 @@ said ': running'
 expect 0 stvm stop --dir plc
 
 # Any bytes in any one file: it runs, or it is held with the reason, and answers.
-for file in control_0 control_1 slot_b retain_0 retain_1 retain_2 journal traps lock; do
+for file in control_0 control_1 slot_a slot_b slot_c retain_0 retain_1 retain_2 journal traps lock; do
   for damage in random zeros empty; do
     case $damage in
       random) head -c 3000 /dev/urandom >plc/$file ;;
@@ -128,6 +159,21 @@ serve plc v1.st
 expect 0 stvm stop --dir plc
 expect 7 stvm journal --dir nowhere
 said 'R0501'
+
+# R-09: a folder that was never used is a mistake, unless it is said that a program comes later.
+expect 7 stvm serve --dir nowhere
+said 'R0501.*nowhere does not exist; name an image or sources for it, or --create'
+[ ! -e nowhere ] || fail "it was made all the same"
+mkdir -m 700 empty
+expect 7 stvm serve --dir empty
+said 'empty holds no program yet'
+[ -z "$(ls empty)" ] || fail "files were made: $(ls empty)"
+serve waiting --create
+grep -q 'new state folder: .*/waiting' waiting.log || fail "$(cat waiting.log)"
+expect 0 stvm change v1.st --dir waiting --yes
+expect 0 stvm status --dir waiting
+said 'v1: running'
+expect 0 stvm stop --dir waiting
 
 # A disk without room: refused, and what ran runs on.
 stc build v1.st -o v1.img 2>/dev/null

@@ -195,6 +195,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   }
   if (base::Status kept = check_not_aborted(); !kept.ok()) return kept.error();
   if (!staged_) return base::Error{base::Refusal::kBusy, "no change is staged"};
+  if (has_no_program()) return switch_to_first();
   preparing_ = true;
   bool faulted = false;
   base::Status taken = look_at_boundary([&] { faulted = controller_.faulted(); });

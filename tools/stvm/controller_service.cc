@@ -345,6 +345,7 @@ base::Result<base::Bytes> ControllerService::restart(const vm::Request& request)
     return base::Error{base::Refusal::kProtocol, "a restart is cold, warm or hot"};
   }
   // What never ran has nothing that a hot restart could go on with.
+  if (has_no_program()) return base::Error{base::Refusal::kNothingBoots, start_.fault};
   const bool held = !start_.fault.empty();
   const auto kind = held && request.flags == static_cast<uint32_t>(vm::Restart::kHot)
                         ? vm::Restart::kWarm

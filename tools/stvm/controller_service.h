@@ -216,6 +216,15 @@ class ControllerService : public vm::Service {
   // What was staged over this connection has been given up.
   base::Status check_not_aborted() const;
 
+  // controller_first.cc
+  bool has_no_program() const;
+  // To what is staged. Accepted at once.
+  Answer switch_to_first();
+  // It boots from now on. `retained`: what is stored of it, if anything.
+  base::Status store_first(base::Bytes& retained);
+  // At a boundary behind its switch.
+  void begin_first(base::ByteSpan retained);
+
   // controller_trial.cc
   struct Probation {  // of the version on trial
     uint64_t ends = 0;         // cycle

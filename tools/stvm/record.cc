@@ -1,5 +1,7 @@
 #include "tools/stvm/record.h"
 
+#include <cstdio>
+
 namespace stvm {
 
 base::Result<std::unique_ptr<vm::Recorder>> open_recorder(const tools::Options& options,
@@ -9,6 +11,10 @@ base::Result<std::unique_ptr<vm::Recorder>> open_recorder(const tools::Options& 
                                                           const vm::ControllerOptions& limits,
                                                           vm::Clock& clock, vm::IoPort& io) {
   if (!options.has("--record")) return std::unique_ptr<vm::Recorder>();
+  if (limits.halted) {
+    std::fputs("nothing is recorded: the controller begins in FAULT\n", stderr);
+    return std::unique_ptr<vm::Recorder>();
+  }
   vm::RecordedStart start;
   start.image = image.encoded();
   start.retained.assign(retained.begin(), retained.end());

@@ -25,6 +25,8 @@ constexpr std::chrono::milliseconds kAliveLook{20};
 constexpr tools::OptionRow kServeOptions[] = {
     STVM_DIR_OPTION,
     {"--first", "IMAGE", "the program of a state folder that holds none yet; else it is not read"},
+    {"--create", nullptr,
+     "without IMAGE: make the state folder, and wait for the first program (`stvm change`)"},
     {"--data-limit", "BYTES",
      "of all data areas of a change together (default: no limit, or what the project says)"},
     STVM_TIER_OPTION,
@@ -48,9 +50,10 @@ using Served = std::vector<std::unique_ptr<ServedResource>>;
 using Resource = vm::GlobalExchange::Resource;
 
 base::Status open_one(const std::string& directory, const std::string& name,
-                      const std::optional<ir::VerifiedImage>& given, Served& served) {
+                      const std::optional<ir::VerifiedImage>& given, bool create,
+                      Served& served) {
   const std::string folder = name.empty() ? directory : directory + "/" + name;
-  auto opened = ServedResource::open(folder, name, given);
+  auto opened = ServedResource::open(folder, name, given, create);
   if (!opened.ok()) return opened.error();
   served.push_back(std::move(*opened));
   return base::Ok{};
@@ -80,47 +83,53 @@ base::Status open_given(const std::string& directory, const std::vector<Resource
                         Served& served) {
   base::Status opened = check_stored(directory, given);
   for (size_t i = 0; i < given.size() && opened.ok(); ++i) {
-    opened = open_one(directory, given[i].name, given[i].image, served);
+    opened = open_one(directory, given[i].name, given[i].image, true, served);
   }
   return opened;
 }
 
-// What is given for this start: by name, or with --first where nothing is stored.
-std::vector<std::string> given_programs(const tools::Options& options,
-                                        const std::string& directory) {
-  if (!options.has("--first")) return options.arguments();
-  const bool stored = holds_program(directory) || !stored_resources(directory).empty();
-  if (stored) return {};
-  return {options.text("--first")};
+base::Result<Served> open_programs(const tools::Options& options,
+                                   std::vector<std::string> programs,
+                                   const std::string& directory) {
+  Sources sources = sources_of(options);
+  sources.paths = std::move(programs);
+  auto images = load_programs(sources);
+  if (!images.ok()) return images.error();
+  auto given = name_resources(std::move(*images));
+  if (!given.ok()) return given.error();
+  Served served;
+  base::Status opened = open_given(directory, *given, served);
+  if (!opened.ok()) return opened.error();
+  return served;
 }
 
-// What is given, or what is stored: by a single resource, or by several.
-base::Result<Served> open_all(const tools::Options& options) {
-  if (options.has("--first") && !options.arguments().empty()) {
-    return base::Error{base::Refusal::kUsage,
-                       "--first is for a start without other programs; leave one of them out"};
-  }
-  const std::string directory = state_directory(options);
+// By a single resource, or by several.
+base::Result<Served> open_stored(const std::string& directory, bool create) {
   Served served;
+  const std::vector<std::string> stored = stored_resources(directory);
   base::Status opened = base::Ok{};
-  const std::vector<std::string> programs = given_programs(options, directory);
-  if (!programs.empty()) {
-    Sources sources = sources_of(options);
-    sources.paths = programs;
-    auto images = load_programs(sources);
-    if (!images.ok()) return images.error();
-    auto given = name_resources(std::move(*images));
-    if (!given.ok()) return given.error();
-    opened = open_given(directory, *given, served);
-  } else {
-    const std::vector<std::string> stored = stored_resources(directory);
-    if (stored.empty()) opened = open_one(directory, "", std::nullopt, served);
-    for (size_t i = 0; i < stored.size() && opened.ok(); ++i) {
-      opened = open_one(directory, stored[i], std::nullopt, served);
-    }
+  if (stored.empty()) opened = open_one(directory, "", std::nullopt, create, served);
+  for (size_t i = 0; i < stored.size() && opened.ok(); ++i) {
+    opened = open_one(directory, stored[i], std::nullopt, create, served);
   }
   if (!opened.ok()) return opened.error();
   return served;
+}
+
+// What is given, or what is stored, or where nothing ever was, the first program.
+base::Result<Served> open_all(const tools::Options& options) {
+  const std::string directory = state_directory(options);
+  if (!options.has("--first")) {
+    if (options.arguments().empty()) return open_stored(directory, options.has("--create"));
+    return open_programs(options, options.arguments(), directory);
+  }
+  if (!options.arguments().empty()) {
+    return base::Error{base::Refusal::kUsage,
+                       "--first is for a start without other programs; leave one of them out"};
+  }
+  base::Result<Served> stored = open_stored(directory, false);
+  if (stored.ok() || stored.error().refusal != base::Refusal::kFileNotFound) return stored;
+  return open_programs(options, {options.text("--first")}, directory);
 }
 
 base::Result<vm::ControllerOptions> limits_of(const tools::Options& options) {

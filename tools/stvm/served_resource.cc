@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "tools/common/files.h"
 #include "tools/stvm/commands.h"
 
 namespace stvm {
@@ -12,6 +13,13 @@ namespace {
 constexpr int64_t kLookNs = 2'000'000;
 constexpr int64_t kFaultLookNs = 10'000'000;
 constexpr const char* kWho = "serve";  // starts it, for the journal and the table of units
+
+constexpr const char* kWayOut =
+    "; name an image or sources for it, or --create: its first program then comes by `stvm change`";
+
+base::Error empty(const std::string& directory) {
+  return {base::Refusal::kFileNotFound, directory + " holds no program yet" + kWayOut};
+}
 
 void print_boot(const online_change::Boot& boot) {
   for (const std::string& alarm : boot.alarms) std::fprintf(stderr, "alarm: %s\n", alarm.c_str());
@@ -39,15 +47,19 @@ ServedResource::~ServedResource() = default;
 
 base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
     const std::string& directory, const std::string& name,
-    const std::optional<ir::VerifiedImage>& given) {
-  base::Result<StateFolder> folder = StateFolder::open(directory);
-  if (!folder.ok()) return folder.error();
-  auto out = std::make_unique<ServedResource>(directory, name, std::move(*folder));
-  auto boot = online_change::boot(out->store_, given, kWho, wall_time_ns());
-  if (!boot.ok() && boot.error().refusal == base::Refusal::kFileNotFound) {
-    return base::Error{base::Refusal::kFileNotFound,
-                       directory + " holds no program yet; name an image or sources"};
+    const std::optional<ir::VerifiedImage>& given, bool create) {
+  const bool may_make = given || create;
+  const bool unused = tools::is_folder(directory) && !holds_program(directory);
+  if (unused && !may_make) return empty(directory);
+  base::Result<StateFolder> folder = StateFolder::open(directory, may_make);
+  if (!folder.ok() && folder.error().refusal == base::Refusal::kFileNotFound) {
+    return base::Error{base::Refusal::kFileNotFound, folder.error().text + kWayOut};
   }
+  if (!folder.ok()) return folder.error();
+  if (folder->is_new()) std::fprintf(stderr, "new state folder: %s\n", folder->path().c_str());
+  auto out = std::make_unique<ServedResource>(directory, name, std::move(*folder));
+  auto boot = online_change::boot(out->store_, given, kWho, wall_time_ns(), create);
+  if (!boot.ok() && boot.error().refusal == base::Refusal::kFileNotFound) return empty(directory);
   if (!boot.ok()) {
     return base::Error{boot.error().refusal, directory + ": " + boot.error().text};
   }

@@ -18,10 +18,11 @@ namespace stvm {
 
 class ServedResource {
  public:
-  // Locks the folder and decides what runs: `given`, or what is stored there. Prints what is wrong.
+  // Locks the folder and decides what runs: `given`, or what is stored there; with `create`,
+  // nothing where nothing ever was. Prints what is wrong. kFileNotFound: nothing was ever stored.
   static base::Result<std::unique_ptr<ServedResource>> open(
       const std::string& directory, const std::string& name,
-      const std::optional<ir::VerifiedImage>& given);
+      const std::optional<ir::VerifiedImage>& given, bool create);
   ServedResource(const std::string& directory, const std::string& name, StateFolder folder);
   ~ServedResource();
 

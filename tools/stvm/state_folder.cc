@@ -10,10 +10,16 @@
 #include <cstring>
 #include <filesystem>
 
+#include "online_change/store/store.h"
+
 namespace stvm {
 namespace {
 
 base::Error unwritable(const std::string& path, const char* why) {
+  return {base::Refusal::kFileUnwritable, path + ": " + why};
+}
+
+base::Error unsafe(const std::string& path, const std::string& why) {
   return {base::Refusal::kFileUnwritable, path + ": " + why};
 }
 
@@ -35,14 +41,13 @@ base::Status check_folder(const std::string& path, bool parent) {
   if (::stat(path.c_str(), &info) != 0) return unwritable(path, std::strerror(errno));
   const bool ours = info.st_uid == ::geteuid() || info.st_uid == 0;
   if (!ours) {
-    return unwritable(path, "it belongs to another user, who could exchange what runs; use another "
-                            "directory, or `chown` it");
+    return unsafe(path, "it belongs to another user, who could exchange what runs; use another "
+                        "directory, or `chown` it");
   }
   const bool by_others = (info.st_mode & (S_IWGRP | S_IWOTH)) != 0;
   if (!by_others || (parent && (info.st_mode & S_ISVTX) != 0)) return base::Ok{};
-  const std::string why =
-      "others can write it and could exchange what runs: `chmod go-w " + path + "`";
-  return unwritable(path, why.c_str());
+  return unsafe(path, "others can write it and could exchange what runs: `chmod go-w " + path +
+                          "`");
 }
 
 base::Status check_folders(std::filesystem::path at) {
@@ -56,10 +61,14 @@ base::Status check_folders(std::filesystem::path at) {
 
 }  // namespace
 
-base::Result<StateFolder> StateFolder::open(const std::string& path) {
+base::Result<StateFolder> StateFolder::open(const std::string& path, bool create) {
+  std::error_code error;
+  const bool is_new = !std::filesystem::exists(path, error);
+  if (is_new && !create && !error) {
+    return base::Error{base::Refusal::kFileNotFound, path + " does not exist"};
+  }
   base::Status made = make_folder(path);
   if (!made.ok()) return made.error();
-  std::error_code error;
   const std::string real = std::filesystem::canonical(path, error);
   if (error) return unwritable(path, error.message().c_str());
   base::Status safe = check_folders(real);
@@ -75,14 +84,19 @@ base::Result<StateFolder> StateFolder::open(const std::string& path) {
     if (errno != EWOULDBLOCK) return unwritable(file, std::strerror(errno));
     return base::Error{base::Refusal::kAlreadyRunning, "a controller already runs in " + path};
   }
-  return StateFolder(real, std::move(lock));
+  return StateFolder(real, std::move(lock), is_new);
 }
 
 bool holds_program(const std::string& directory) {
   std::error_code error;
   const std::filesystem::path folder(directory);
-  return std::filesystem::exists(folder / "control_0", error) ||
-         std::filesystem::exists(folder / "control_1", error);
+  const auto holds_any = [&](std::span<const char* const> names) {
+    return std::any_of(names.begin(), names.end(), [&](const char* name) {
+      return std::filesystem::exists(folder / name, error);
+    });
+  };
+  return holds_any(online_change::kControlFiles) || holds_any(online_change::kSlotFiles) ||
+         holds_any(online_change::kRetainFiles);
 }
 
 std::vector<std::string> stored_resources(const std::string& directory) {

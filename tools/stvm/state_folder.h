@@ -11,22 +11,24 @@ namespace stvm {
 
 class StateFolder {
  public:
-  // Makes the directory (owner only) when it is not there, and locks it until the owner goes. One
-  // that others can write is refused: they could exchange what runs. kAlreadyRunning,
-  // kFileUnwritable.
-  static base::Result<StateFolder> open(const std::string& path);
+  // Locks the directory until the owner goes; with `create`, makes it (owner only) when it is not
+  // there. One that others can write is refused: they could exchange what runs. kAlreadyRunning,
+  // kFileUnwritable, kFileNotFound.
+  static base::Result<StateFolder> open(const std::string& path, bool create);
 
   // Without links: those could be made to lead elsewhere after they were looked at.
   const std::string& path() const { return path_; }
+  bool is_new() const { return is_new_; }  // open() has made it
 
  private:
-  StateFolder(std::string path, vm::Descriptor lock)
-      : path_(std::move(path)), lock_(std::move(lock)) {}
+  StateFolder(std::string path, vm::Descriptor lock, bool is_new)
+      : path_(std::move(path)), lock_(std::move(lock)), is_new_(is_new) {}
   std::string path_;
   vm::Descriptor lock_;
+  bool is_new_;
 };
 
-// Is a program stored there?
+// Has a controller ever stored something there, whatever is left of it?
 bool holds_program(const std::string& directory);
 // Names of the resources whose state folders lie below, sorted; none where a single one is.
 std::vector<std::string> stored_resources(const std::string& directory);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "ir/bytecode/no_program.h"
 #include "tools/common/exit.h"
 #include "tools/common/fate_report.h"
 #include "tools/common/json.h"
@@ -52,7 +53,9 @@ void print_tier(const vm::StatusReport& report) {
 void print_versions(const vm::StatusReport& report) {
   const char* state = report.faulted ? "FAULT" : on_trial(report) ? "running, on trial" : "running";
   std::printf("%s: %s\n", report.name.c_str(), state);
-  if (report.faulted) {
+  if (report.running == ir::no_program().digest()) {
+    std::printf("  `stvm change SOURCES|IMAGE` brings a program\n");
+  } else if (report.faulted) {
     std::printf("  `stvm restart` runs it again; %s\n",
                 on_trial(report)
                     ? "`stvm undo` brings back the program before, and its values"

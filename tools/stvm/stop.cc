@@ -37,7 +37,7 @@ base::Status wait_until_gone(const std::string& directory) {
   constexpr auto kPatience = std::chrono::seconds(10);
   auto give_up = std::chrono::steady_clock::now() + kPatience;
   for (;;) {
-    base::Result<StateFolder> folder = StateFolder::open(directory);
+    base::Result<StateFolder> folder = StateFolder::open(directory, false);
     if (folder.ok()) return base::Ok{};
     if (std::chrono::steady_clock::now() > give_up) return folder.error();
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "ir/bytecode/no_program.h"
 #include "tools/common/change_settings.h"
 #include "tools/common/json.h"
 #include "tools/common/table.h"
@@ -56,20 +57,18 @@ base::Status rehearse(const SwitchOptions& options, ControllerClient& client) {
 }
 
 // Variables that the staged version would no longer exchange with other resources.
-base::Result<std::vector<std::string>> exchange_notes(ControllerClient& client) {
-  base::Result<vm::StatusReport> status = client.status();
-  if (!status.ok()) return status.error();
+std::vector<std::string> exchange_notes(vm::StatusReport& status) {
   std::vector<std::string> notes;
-  for (vm::DeviceStatus& row : status->devices) {
+  for (vm::DeviceStatus& row : status.devices) {
     if (row.state == vm::kStagedState) notes.push_back(std::move(row.error));
   }
   return notes;
 }
 
-void print_text(const Outcome& outcome, bool permanent) {
+void print_text(const Outcome& outcome) {
   if (!outcome.report) return;
   std::fputs(switch_text("switched", *outcome.report).c_str(), stdout);
-  std::printf("%s\n", permanent
+  std::printf("%s\n", outcome.permanent
                           ? "accepted: it boots next"
                           : "on trial: `stvm accept` makes it final, `stvm undo` takes it back");
 }
@@ -160,9 +159,11 @@ base::Result<Outcome> bring_staged(const SwitchOptions& options, ControllerClien
   const Outcome::Time prepared = std::chrono::steady_clock::now();
   base::Result<FatePage> page = client.fates();
   if (!page.ok()) return page.error();
-  base::Result<std::vector<std::string>> notes = exchange_notes(client);
-  if (!notes.ok()) return notes.error();
-  Outcome outcome{std::move(*page), {}, std::move(*notes), {}, {}, prepared, {}};
+  base::Result<vm::StatusReport> status = client.status();
+  if (!status.ok()) return status.error();
+  Outcome outcome{std::move(*page), {}, exchange_notes(*status), {}, {}, prepared, {}};
+  const bool first = status->running == ir::no_program().digest();
+  outcome.permanent = first || (options.switch_flags & vm::kPermanent) != 0;
   if (options.all) {
     base::Result<std::vector<FateLine>> every = client.every_fate();
     if (!every.ok()) return every.error();
@@ -198,7 +199,7 @@ void print(const SwitchOptions& options, const Outcome& outcome) {
   if (options.json) {
     print_json(outcome, options.all);
   } else {
-    print_text(outcome, (options.switch_flags & vm::kPermanent) != 0);
+    print_text(outcome);
   }
   std::fflush(stdout);
 }

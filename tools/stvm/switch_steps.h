@@ -36,6 +36,7 @@ struct Outcome {
   std::optional<base::Error> refused;  // after the report was made
   Time staged;                         // the controller has checked and prepared it
   Time shown;                          // its fates
+  bool permanent = false;              // accepted at once, as it was asked for or is the first one
 };
 
 // kChangePending while a change is on trial.

@@ -73,6 +73,7 @@ complete -c stvm -n '__fish_seen_subcommand_from bench' -l quiet -s q -d 'nothin
 complete -c stvm -n '__fish_seen_subcommand_from bench' -l color -x -a 'auto always never' -d 'auto (default), always or never; $NO_COLOR and $CLICOLOR_FORCE say it for all commands'
 complete -c stvm -n '__fish_seen_subcommand_from serve' -l dir -x -a '(__fish_complete_directories)' -d 'state directory of the controller (default: $STVM_DIR, else .stvm)'
 complete -c stvm -n '__fish_seen_subcommand_from serve' -l first -r -F -d 'the program of a state folder that holds none yet; else it is not read'
+complete -c stvm -n '__fish_seen_subcommand_from serve' -l create -d 'without IMAGE: make the state folder, and wait for the first program (`stvm change`)'
 complete -c stvm -n '__fish_seen_subcommand_from serve' -l data-limit -x -d 'of all data areas of a change together (default: no limit, or what the project says)'
 complete -c stvm -n '__fish_seen_subcommand_from serve' -l tier -x -a 'auto native interp' -d 'auto (default), native or interp: the same results, other times'
 complete -c stvm -n '__fish_seen_subcommand_from serve' -l code-limit -x -d 'of all code, two slots for each POU (default: 2 GiB)'

@@ -133,7 +133,8 @@ void expect_sound(sim::SimStorage disk, const std::string& what) {
   const std::string wrong = history.open();
   const online_change::Recovered& found = history.found();
   if (wrong.empty()) return;
-  const bool said = !found.nothing.empty() || !found.alarms.empty() || wrong.starts_with("entry");
+  const bool said = !found.nothing.empty() || !found.alarms.empty() ||
+                    !found.no_newest.empty() || wrong.starts_with("entry");
   EXPECT_TRUE(said) << what << ": " << wrong;
   EXPECT_EQ(wrong.find("mixture"), std::string::npos) << what;
 }

@@ -38,10 +38,10 @@ base::Status Plc::boot(const std::string& source) {
   return boot(std::optional(build(source)));
 }
 
-base::Status Plc::boot(const std::optional<ir::VerifiedImage>& given) {
+base::Status Plc::boot(const std::optional<ir::VerifiedImage>& given, bool create) {
   store_ =
       std::make_unique<online_change::Store>(storage_, online_change::StoreSizes{4096, 64, 64, 8});
-  auto found = online_change::boot(*store_, given, "test", 1);
+  auto found = online_change::boot(*store_, given, "test", 1, create);
   if (!found.ok()) return found.error();
   boot_ = std::move(*found);
   vm::ControllerOptions options;

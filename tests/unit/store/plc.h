@@ -22,7 +22,7 @@ class Plc : public vm::Boundary {
 
   // With a source it is given that program, as on the command line.
   base::Status boot(const std::string& source = {});
-  base::Status boot(const std::optional<ir::VerifiedImage>& given);
+  base::Status boot(const std::optional<ir::VerifiedImage>& given, bool create = false);
 
   void run(int scans);
   std::string get(const std::string& path) const;

@@ -270,22 +270,6 @@ TEST_F(Carried, A17_BothVersionsAreStoredUntilOneIsFinal) {
   EXPECT_EQ(found.other->digest, old_version);
 }
 
-TEST_F(Carried, case56_NothingThatCanRunIsAReasonAndANewProgramAnAlarm) {
-  begin(program("v : INT := 1;"));
-  plc_->set("v", "9");
-  ASSERT_TRUE(plc_->save().ok());
-  cut();
-  for (size_t file = 0; file < disk_.names().size(); ++file) {
-    if (!disk_.names()[file].starts_with("slot")) continue;
-    disk_.content(file)[600] ^= 1;
-    disk_.settle(file);
-  }
-  EXPECT_EQ(plc_->boot().error().refusal, base::Refusal::kNothingBoots);
-  ASSERT_TRUE(plc_->boot(program("v : INT := 1;")).ok());
-  EXPECT_FALSE(plc_->status().alarms.empty());
-  EXPECT_EQ(plc_->get("v"), "1");
-}
-
 TEST_F(Carried, AnEmptyFolderHasNothingToBoot) {
   plc_ = std::make_unique<Plc>(disk_);
   EXPECT_EQ(plc_->boot().error().refusal, base::Refusal::kFileNotFound);
