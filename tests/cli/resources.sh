@@ -151,7 +151,7 @@ said 'the outputs of this program end before'
 serve_both() {
   "$bin/stvm" serve --dir state "$@" >state.log 2>&1 &
   echo $! >"$work/state.pid"
-  for _ in $(seq 100); do
+  for _ in $(seq 4000); do
     "$bin/stvm" status --dir state/Pack >/dev/null 2>&1 && "$bin/stvm" status --dir state/Line >/dev/null 2>&1 && return 0
     sleep 0.05
   done
@@ -159,7 +159,7 @@ serve_both() {
   fail "the resources do not answer"
 }
 await() { # await DIR NAME VALUE
-  for _ in $(seq 100); do
+  for _ in $(seq 4000); do
     "$bin/stvm" get --dir "$1" "$2" 2>/dev/null | grep -q "=$3\$" && return 0
     sleep 0.05
   done
@@ -175,7 +175,7 @@ said 'R0404: state is of several resources; name one: --dir state/Line'
 expect 7 stvm serve --dir state plant
 said 'R0408'
 sed 's/wanted \* 2/wanted * 3/' plant/plant.st >v2.st
-expect 0 stvm change --dir state/Line v2.st --yes
+expect 0 stvm change --dir state/Line v2.st --yes --allow-overrun
 await state/Pack speed 63
 expect 0 stvm undo --dir state/Line
 await state/Pack speed 42
@@ -184,28 +184,28 @@ cp plant/plant.st original.st
 sed -i 's/seen := seen + 1/seen := seen + 2/' plant/plant.st
 expect 7 stvm change --dir state/Line plant --yes
 said 'R0308'
-expect 0 stvm change --dir state/Pack plant --yes
+expect 0 stvm change --dir state/Pack plant --yes --allow-overrun
 expect 0 stvm accept --dir state/Pack
 mv original.st plant/plant.st
 # Another type on one side only: never read, and said.
 sed 's/speed, wanted : INT/wanted : INT/; s/VAR_GLOBAL block : Block;/VAR_GLOBAL block : Block; speed : REAL;/; s/speed := wanted \* 2/speed := 2.5/; s/VAR_EXTERNAL block : Block;/VAR_EXTERNAL block : Block; speed : REAL;/' plant/plant.st >v3.st
-expect 0 stvm change --dir state/Line v3.st --dry-run --format json
+expect 0 stvm change --dir state/Line v3.st --dry-run --format json --allow-overrun
 said '"exchange": *\["`speed` is REAL here and INT in RESOURCE `Pack`'
-expect 0 stvm change --dir state/Line v3.st --allow-loss --yes --permanent
+expect 0 stvm change --dir state/Line v3.st --allow-loss --yes --permanent --allow-overrun
 said '^exchange: `speed` is REAL here and INT in RESOURCE `Pack`, which reads it: not exchanged until both are the same'
 expect 0 stvm status --dir state/Pack
 said '`speed` is INT here and REAL in RESOURCE `Line`: not exchanged until both are the same'
 expect 0 stvm get --dir state/Pack speed p.torn
 said 'speed=42'
 said 'p.torn=0'
-expect 0 stvm change --dir state/Pack v3.st --allow-loss --yes --permanent
+expect 0 stvm change --dir state/Pack v3.st --allow-loss --yes --permanent --allow-overrun
 await state/Pack speed 2.5
 expect 7 stvm change --dir state/Pack moved.st --allow-loss --yes
 said 'R0314'
 sed 's/CONFIGURATION Plant$/CONFIGURATION Works/' v3.st >v4.st
-expect 0 stvm change --dir state/Line v4.st --yes --permanent
+expect 0 stvm change --dir state/Line v4.st --yes --permanent --allow-overrun
 expect 0 stvm stop --dir state/Line
-for _ in $(seq 100); do kill -0 "$(cat state.pid)" 2>/dev/null || break; sleep 0.05; done
+for _ in $(seq 4000); do kill -0 "$(cat state.pid)" 2>/dev/null || break; sleep 0.05; done
 kill -0 "$(cat state.pid)" 2>/dev/null && fail "one that is stopped ends all"
 serve_both
 await state/Pack speed 2.5
