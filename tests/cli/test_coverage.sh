@@ -198,6 +198,14 @@ expect 2 stc test src some_test.st --coverage one --coverage-format pdf
 expect 7 stc test src some_test.st --coverage file/x
 said 'R0503: file.x: no folder can be made'
 
+# Of a long path the end is shown.
+mkdir -p a_folder_with_a_name/another_folder
+cp src/logic.st a_folder_with_a_name/another_folder/station.st
+expect 0 stc test a_folder_with_a_name/another_folder/station.st src/starter.st some_test.st \
+  --coverage one
+said '^\.\.er_folder/station.st +4/7 +6/9'
+awk 'length($0) > 80 {exit 1}' out || fail 'wider than a terminal'
+
 # A file with a TEST is not counted, and it is said when that leaves nothing.
 cat src/logic.st some_test.st src/starter.st >both.st
 expect 0 stc test both.st --coverage one

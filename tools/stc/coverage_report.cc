@@ -61,6 +61,12 @@ void finish_file(CoveredFile& file) {
   file.sides = file.kinds[kind_index(SiteKind::kBranch)];
 }
 
+// The end of a long path says more than its beginning.
+std::string end_of_path(const std::string& path) {
+  constexpr size_t kWidth = 22;  // what the other columns leave of 80
+  return path.size() <= kWidth ? path : ".." + path.substr(path.size() - (kWidth - 2));
+}
+
 std::string share_text(const Reached& reached) {
   if (reached.all == 0) return "-";
   return std::to_string(reached.hit) + "/" + std::to_string(reached.all);
@@ -130,7 +136,9 @@ std::string coverage_text(const CoverageReport& report) {
     cells.push_back(percent_text(total) + " %");
     table.row(std::move(cells));
   };
-  for (const CoveredFile* file : by_missing(report)) row(file->name, file->kinds, file->total);
+  for (const CoveredFile* file : by_missing(report)) {
+    row(end_of_path(file->name), file->kinds, file->total);
+  }
   if (report.files.size() > 1) row("all files", report.kinds, report.total);
   return table.text();
 }
