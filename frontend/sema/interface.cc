@@ -98,7 +98,9 @@ static void qualify_method(Sema& sema, Variable& variable, const PouInfo& block,
     return ir::fold_name(std::string(variable.method) + "#" + std::string(variable.name.text));
   };
   if (names.contains(full())) {
-    variable.method = sema.keep_name(std::string(block.name) + "#" + std::string(variable.method));
+    std::string name(block.name);
+    std::replace(name.begin(), name.end(), '.', '_');  // of a namespace: no path goes through it
+    variable.method = sema.keep_name(name + "#" + std::string(variable.method));
   }
   names.insert(full());
 }

@@ -147,6 +147,7 @@ std::string OldNames::old_member(const Variable& variable) const {
     const PouInfo& info = sema_.pous[variable.pou];
     const bool of_block = variable.method.empty() || variable.method.find('#') != std::string::npos;
     before = of_block ? old_list(info) : std::string(info.old_name);
+    if (!variable.method.empty()) std::replace(before.begin(), before.end(), '.', '_');
   }
   if (own.empty() && before.empty()) return {};
   // `x#last`, `x#action` are made for x.
