@@ -167,7 +167,9 @@ TEST_F(NoProgram, case56_OneThatCannotBeStoredIsRefused) {
 // A mistake in the name of a folder must not become a controller.
 TEST_F(NoProgram, R09_ANewFolderWaitsForItsFirstProgramOnlyWhereThatIsAskedFor) {
   cut();
-  EXPECT_EQ(plc_->boot().error().refusal, base::Refusal::kFileNotFound);
+  const base::Status mistaken = plc_->boot();
+  ASSERT_FALSE(mistaken.ok());
+  EXPECT_EQ(mistaken.error().refusal, base::Refusal::kFileNotFound);
   ASSERT_TRUE(plc_->boot(std::nullopt, true).ok());
   EXPECT_TRUE(holds_nothing());
   EXPECT_TRUE(says("no program was ever stored there; `stvm change")) << alarms();
