@@ -75,6 +75,14 @@ VAR a, b : Main; o : Other; END_VAR
   ASSERT_EQ(o.r, 1);
   MOCK_VERIFY_CALL_COUNT(o, 2);
 END_TEST
+TEST 'a mock inside of an array'
+VAR d : Derived; END_VAR
+  MOCK d.own[2];
+  d();
+  ASSERT_EQ(d.own[2].o, 0);
+  MOCK_VERIFY_CALL_COUNT(d.own[2], 1);
+  MOCK_VERIFY_CALL_COUNT(d.own[1], 0);
+END_TEST
 TEST 'fresh values, and a nested mock'
 VAR a : Main; END_VAR
   ASSERT_EQ(a.c.total, 0);
@@ -89,7 +97,7 @@ VAR a : Main; END_VAR
 END_TEST
 ST
 expect 0 stc test plant.st plant_test.st
-said '4 passed, 0 failed'
+said '5 passed, 0 failed'
 # The program itself is what it was.
 expect 0 stc build plant.st plant_test.st -o with.img
 expect 0 stc build plant.st -o without.img
