@@ -6,12 +6,13 @@
 namespace frontend {
 namespace {
 
-// The rung or network that a place is in; its number counts from 1. Null: none.
+// The rung or network that a place is in, from `last` on, as code comes in their order. Null: none.
 const network::Network* network_at(const network::Body& body, base::SourcePos at,
-                                   uint32_t& number) {
-  for (const network::Network& network : body.networks) {
-    ++number;
-    if (!(at < network.span.begin) && at < network.span.end) return &network;
+                                   const network::Network* last) {
+  const network::Network* const end = body.networks.data() + body.networks.size();
+  const network::Network* network = last == nullptr ? body.networks.data() : last;
+  for (; network != end; ++network) {
+    if (!(at < network->span.begin) && at < network->span.end) return network;
   }
   return nullptr;
 }
@@ -31,9 +32,9 @@ void Body::count(SiteKind kind, base::SourcePos at, const std::string& name, uin
   if (coverage_ == nullptr) return;
   const ir::Place counter = coverage_->counter(kind, at, side, name);
   const ir::ValueId before = build_.load(counter, ir::Scalar::kU32);
-  build_.store(counter, ir::Scalar::kU32,
-               build_.binary(ir::Op::kAdd, ir::Scalar::kU32, before,
-                             build_.constant(ir::Scalar::kU32, 1)));
+  build_.store(
+      counter, ir::Scalar::kU32,
+      build_.binary(ir::Op::kAdd, ir::Scalar::kU32, before, build_.constant(ir::Scalar::kU32, 1)));
 }
 
 void Body::count_statement(const Stmt& stmt) {
@@ -41,11 +42,11 @@ void Body::count_statement(const Stmt& stmt) {
                     stmt.kind != StmtKind::kLabel;
   if (coverage_ == nullptr || !runs) return;
   if (info_.decl->diagram != kNoDiagram) {
-    uint32_t number = 0;
-    const network::Network* network =
-        network_at(tree_.diagrams[info_.decl->diagram], stmt.span.begin, number);
+    const network::Body& body = tree_.diagrams[info_.decl->diagram];
+    const network::Network* network = network_at(body, stmt.span.begin, rung_);
     if (network == nullptr || network == rung_) return;
     rung_ = network;
+    const auto number = network - body.networks.data() + 1;
     return count(SiteKind::kRung, network->span.begin, std::to_string(number));
   }
   count(SiteKind::kStatement, stmt.span.begin);

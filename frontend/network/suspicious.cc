@@ -25,12 +25,20 @@ constexpr PoweredBox kPoweredBoxes[] = {
     {"CTU", {"CU", ""}}, {"CTD", {"CD", ""}}, {"R_TRIG", {"CLK", ""}}, {"F_TRIG", {"CLK", ""}},
 };
 
-// TON and TON_LTIME, but not TONE.
+// CTU_DINT, TON_LTIME: standard blocks of another type; TON_Special is somebody's own.
+bool names_type(std::string_view suffix) {
+  for (uint32_t kind = 0; kind < ir::kElementaryCount; ++kind) {
+    if (ir::same_name(suffix, ir::elementary_name(static_cast<ir::Kind>(kind)))) return true;
+  }
+  return false;
+}
+
 const PoweredBox* powered_box(std::string_view type) {
   for (const PoweredBox& box : kPoweredBoxes) {
     const size_t size = box.prefix.size();
     if (type.size() < size || !ir::same_name(type.substr(0, size), box.prefix)) continue;
-    if (type.size() == size || type[size] == '_') return &box;
+    if (type.size() == size || (type[size] == '_' && names_type(type.substr(size + 1))))
+      return &box;
   }
   return nullptr;
 }

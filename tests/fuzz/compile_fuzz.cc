@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "frontend/compile.h"
+#include "frontend/warning_pragmas.h"
 #include "ir/bytecode/verify.h"
 #include "ir/lower/lower.h"
 #include "ir/opt/optimise.h"
@@ -53,7 +54,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   for (auto dialect : {frontend::Dialect::kCodesys, frontend::Dialect::kIec}) {
     frontend::CompileOptions options;
     options.dialect = dialect;
-    base::Diagnostics diagnostics;
+    base::WarningPolicy warnings;
+    warnings.set_warnings_are_errors();
+    const auto mistakes = frontend::silence_warnings(sources, options, warnings);
+    base::Diagnostics diagnostics(warnings);
+    for (const base::Diagnostic& mistake : mistakes) {
+      base::check(!mistake.text.empty(), "a mistake in a pragma has a text");
+    }
     auto program = frontend::compile(sources, options, diagnostics);
     base::check(program.has_value() != diagnostics.has_errors(),
                 "a program, or an error that says why there is none");

@@ -94,6 +94,17 @@ TEST(Text, CaretsCountCharactersAndKeepTabs) {
             "1 error\n");
 }
 
+// The caret stands where the reader sees its place: the escape is wider than what it stands for.
+TEST(Text, WhatTurnsTheDirectionIsAnEscape) {
+  Fixture f("a\u202e b\n");
+  f.diagnostics.add(DiagnosticCode::kUnknownName, f.span(5, 6), "b");
+  EXPECT_EQ(f.render(DiagnosticFormat::kText),
+            "pump.st:1:4: error[E2001]: b\n"
+            "    1 | a\\u202e b\n"
+            "      |         ^\n"
+            "1 error\n");
+}
+
 TEST(Text, SourceBytesCannotSteerTheTerminal) {
   Fixture f("a \033[2J \x9B \xE4 b\n");
   f.diagnostics.add(DiagnosticCode::kBadCharacter, f.span(2, 3), "`\033` is no character");
