@@ -169,41 +169,4 @@ uint32_t Allocator::ensure(Val v, uint32_t locked) {
   return reg;
 }
 
-// --- moves at once -----------------------------------------------------------------
-
-namespace {
-
-bool same_place(const Place& a, const Place& b) {
-  return a.kind == b.kind && a.number == b.number &&
-         (a.kind != Place::kRegister || a.floating == b.floating);
-}
-
-}  // namespace
-
-std::vector<Move> in_sequence(std::vector<Move> moves, Place aside) {
-  std::erase_if(moves, [](const Move& m) { return same_place(m.to, m.from); });
-  std::vector<Move> out;
-  while (!moves.empty()) {
-    bool found = false;
-    for (size_t i = 0; i < moves.size(); ++i) {
-      const bool read = std::any_of(moves.begin(), moves.end(), [&](const Move& other) {
-        return &other != &moves[i] && same_place(other.from, moves[i].to);
-      });
-      if (read) continue;
-      out.push_back(moves[i]);
-      moves.erase(moves.begin() + static_cast<ptrdiff_t>(i));
-      found = true;
-      break;
-    }
-    if (found) continue;
-    // A circle: the first one's source waits elsewhere.
-    const Place from = moves[0].from;
-    out.push_back({aside, from, 8});
-    for (Move& m : moves) {
-      if (same_place(m.from, from)) m.from = aside;
-    }
-  }
-  return out;
-}
-
 }  // namespace vm::native

@@ -123,7 +123,7 @@ void Builder::call_body(Node made) {
   made.exit = exit_here(true);
   if (f_.exits.back().slots.size() > kMostDirty) {
     f_.exits.pop_back();
-    for (const uint32_t v : facts_.live_behind(unit_)) store_slot(v);
+    facts_.each_live_behind(unit_, [&](uint32_t v) { store_slot(v); });
     made.exit = exit_here(true);
   }
   f_.exits.back().fuel = true;
@@ -156,7 +156,7 @@ void Builder::call(CallKind kind, uint32_t pou, Node made) {
   f_.calls.push_back({kind, pou, uint32_t{u_.a} * 8, unit_, facts_.callee(unit_),
                       facts_.next(unit_), facts_.body_at(unit_) != nullptr});
   if (f_.calls.back().inlined) return call_body(made);
-  for (const uint32_t v : facts_.live_behind(unit_)) store_slot(v);
+  facts_.each_live_behind(unit_, [&](uint32_t v) { store_slot(v); });
   if (kind == CallKind::kSlow) {
     made.in[0] = made.in[1] = kNone;
     for (const Access& access : accesses_of(u_)) {

@@ -297,7 +297,7 @@ uint32_t Builder::exit_here(bool everything) {
     exit.slots.push_back({variable.offset, variable.width, now_.value[v], variable.base});
   };
   if (everything) {
-    for (const uint32_t v : facts_.live_behind(unit_)) add(v);
+    facts_.each_live_behind(unit_, add);
   }
   for (const Access& access : accesses_of(u_)) {
     const uint32_t v = access.reads ? facts_.variable(access) : kNone;

@@ -10,6 +10,9 @@ using ir::Opcode;
 
 constexpr size_t kMostLivenessWords = size_t{8} << 20;
 
+// May the execution go on in another POU or in the interpreter?
+bool leaves(Opcode op) { return is_call(op) || ir::opcode_row(op).traps; }
+
 bool is_far(Opcode op) { return op >= Opcode::LDFAR_B && op <= Opcode::STFAR_F64; }
 bool is_far_store(Opcode op) { return op >= Opcode::STFAR_B && op <= Opcode::STFAR_F64; }
 bool names_id(Opcode op) {
@@ -278,7 +281,9 @@ void Facts::find_loop_effects() {
 
 bool Facts::find_liveness(std::string& why) {
   words_ = (variables_.size() + 63) / 64;
-  if (words_ * blocks_.size() > kMostLivenessWords) {
+  size_t rows = blocks_.size();
+  for (uint32_t i = 0; i < code_.size(); i = next(i)) rows += leaves(code_[i].opcode()) ? 1 : 0;
+  if (words_ * rows > kMostLivenessWords) {
     why = "it has too many variables and branches";
     return false;
   }
@@ -311,15 +316,10 @@ bool Facts::find_liveness(std::string& why) {
     for (auto at = order.rbegin(); at != order.rend(); ++at) {
       const Opcode op = code_[*at].opcode();
       if (op == Opcode::RET) live = results;
-      if (record && (is_call(op) || ir::opcode_row(op).traps)) {
-        Listed& behind = live_behind_[*at];
-        behind = {static_cast<uint32_t>(live_slots_.size()), 0};
-        for (size_t w = 0; w < words_; ++w) {
-          for (uint64_t left = live[w] & slots[w]; left != 0; left &= left - 1) {
-            live_slots_.push_back(static_cast<uint32_t>(w * 64) + std::countr_zero(left));
-            ++behind.count;
-          }
-        }
+      if (record && leaves(op)) {
+        const auto row = static_cast<uint32_t>(live_row_.all().size());
+        live_row_[*at] = row;
+        for (size_t w = 0; w < words_; ++w) live_behind_.push_back(live[w] & slots[w]);
       }
       for (const auto& [v, reads, writes] : named(*at)) {
         if (writes && !reads) live[v / 64] &= ~(uint64_t{1} << (v % 64));
@@ -349,12 +349,6 @@ bool Facts::find_liveness(std::string& why) {
 bool Facts::killed_in(uint32_t loop, uint32_t variable) const {
   const std::vector<uint32_t>& killed = loop_killed_[loop];
   return std::binary_search(killed.begin(), killed.end(), variable);
-}
-
-std::span<const uint32_t> Facts::live_behind(uint32_t unit) const {
-  const Listed* const found = live_behind_.find(unit);
-  if (found == nullptr) return {};
-  return std::span(live_slots_).subspan(found->first, found->count);
 }
 
 bool Facts::live_out(Block block, uint32_t variable) const {

@@ -2,6 +2,7 @@
 // it names, and what a store through an address may change. Nothing here depends on order.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -181,8 +182,17 @@ class Facts {
     return live_in_[size_t{block} * words_ + variable / 64] >> (variable % 64) & 1;
   }
   bool live_out(Block block, uint32_t variable) const;
-  // Slots that are live behind the unit, which calls or may leave.
-  std::span<const uint32_t> live_behind(uint32_t unit) const;
+  // Visits the slots that are live behind the unit, which calls or may leave.
+  template <class Visit>
+  void each_live_behind(uint32_t unit, Visit visit) const {
+    const uint32_t* const row = live_row_.find(unit);
+    if (row == nullptr) return;
+    for (size_t w = 0; w < words_; ++w) {
+      for (uint64_t left = live_behind_[*row * words_ + w]; left != 0; left &= left - 1) {
+        visit(static_cast<uint32_t>(w * 64) + static_cast<uint32_t>(std::countr_zero(left)));
+      }
+    }
+  }
   // Slots that the caller reads.
   const std::vector<uint32_t>& results() const { return results_; }
   // The POU that the unit calls; kNone: it depends.
@@ -246,12 +256,8 @@ class Facts {
   std::vector<uint32_t> results_;
   size_t words_ = 0;
   std::vector<uint64_t> live_in_;
-  struct Listed {
-    uint32_t first = 0;
-    uint32_t count = 0;
-  };
-  std::vector<uint32_t> live_slots_;
-  ByKey<Listed> live_behind_;  // by unit, in `live_slots_`
+  std::vector<uint64_t> live_behind_;  // rows of `words_`: a bit for each variable
+  ByKey<uint32_t> live_row_;           // by unit
 };
 
 bool is_switch(ir::Opcode op);
