@@ -3,6 +3,7 @@
 #include "base/diagnostics_render.h"
 #include "base/limits.h"
 #include "frontend/lex/characters.h"
+#include "frontend/lex/directions.h"
 #include "frontend/lex/keywords.h"
 #include "frontend/lex/literals.h"
 #include "ir/types/types.h"
@@ -29,7 +30,10 @@ bool is_one_of(std::string_view name, std::initializer_list<std::string_view> na
 
 TokenList lex(const base::SourceMap& sources, uint32_t file, base::Diagnostics& diagnostics,
               const LexOptions& options) {
-  return Scanner(sources.text(file), sources.begin(file).offset, diagnostics, options).run();
+  TokenList list =
+      Scanner(sources.text(file), sources.begin(file).offset, diagnostics, options).run();
+  if (!list.latin1) warn_of_directions(sources.text(file), sources.begin(file).offset, diagnostics);
+  return list;
 }
 
 TokenList lex(std::string_view text, base::SourcePos begin, base::Diagnostics& diagnostics) {

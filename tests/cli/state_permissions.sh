@@ -20,7 +20,7 @@ expect 0 stvm stop --dir new
 
 refused() {  # refused DIR: says what to type, and after that it is served
   expect 7 stvm serve --dir "$1" p.img
-  said "R0503: .*others can write it and could exchange what runs: .chmod go-w "
+  said "R0508: .*others can write it and could exchange what runs: .chmod go-w "
   eval "$(grep -o 'chmod go-w [^`]*' err)"
   serve "$1" p.img
   expect 0 stvm stop --dir "$1"
@@ -47,12 +47,12 @@ if [ "$(id -u)" = 0 ]; then
   mkdir foreign
   chown 65534 foreign
   expect 7 stvm serve --dir foreign p.img
-  said 'R0503: .*foreign: it belongs to another user'
+  said 'R0508: .*foreign: it belongs to another user'
   # Whoever owns a parent can put another folder in its place, too.
   mkdir -m 755 host host/state
   chown 65534 host
   expect 7 stvm serve --dir host/state p.img
-  said 'R0503: .*host: it belongs to another user'
+  said 'R0508: .*host: it belongs to another user'
 fi
 
 # A link that leads elsewhere later leads nobody there.

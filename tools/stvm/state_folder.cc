@@ -20,7 +20,7 @@ base::Error unwritable(const std::string& path, const char* why) {
 }
 
 base::Error unsafe(const std::string& path, const std::string& why) {
-  return {base::Refusal::kFileUnwritable, path + ": " + why};
+  return {base::Refusal::kUnsafeFolder, path + ": " + why};
 }
 
 base::Status make_folder(const std::string& path) {

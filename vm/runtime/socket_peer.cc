@@ -29,7 +29,7 @@ base::Result<std::string> trusted_peer(int socket) {
     return base::Error{base::Refusal::kNotPermitted, std::strerror(errno)};
   }
   if (is_trusted(peer.uid, ::geteuid())) return user_name(peer.uid);
-  return base::Error{base::Refusal::kNotPermitted,
+  return base::Error{base::Refusal::kForeignPeer,
                      "user " + user_name(peer.uid) + " is at the socket, neither root nor " +
                          user_name(::geteuid())};
 }

@@ -278,7 +278,7 @@ TEST_F(SocketTest, AnotherUserIsSentAway) {
   const base::Bytes message(answer + 4, answer + size);
   auto told = decode_answer(message);
   ASSERT_FALSE(told.ok());
-  EXPECT_EQ(told.error().refusal, base::Refusal::kNotPermitted);
+  EXPECT_EQ(told.error().refusal, base::Refusal::kForeignPeer);
   EXPECT_TRUE(is_served(directory_));
 }
 
