@@ -42,7 +42,7 @@ class Linker {
         &Linker::lay_out_types,  &Linker::number_pous,     &Linker::place_instances,
         &Linker::fill_pool,      &Linker::link_code,       &Linker::link_tasks,
         &Linker::link_overrides, &Linker::link_migrations, &Linker::link_charts,
-        &Linker::measure_stack,
+        &Linker::link_contents,  &Linker::measure_stack,
     };
     copy_declarations();
     for (const auto step : steps) {
@@ -290,6 +290,16 @@ class Linker {
       }
       image_.migrations.push_back({row.type, pou->second, row.inverse, row.values});
     }
+    return base::Ok{};
+  }
+
+  base::Status link_contents() {
+    const auto of = [](const ir::Object* object) {
+      return object == nullptr ? ir::PouContent{} : ir::PouContent{object->content};
+    };
+    for (const ir::Object* object : context_.objects) image_.contents.push_back(of(object));
+    const auto is_known = [](const ir::PouContent& content) { return content != ir::PouContent{}; };
+    if (std::ranges::none_of(image_.contents, is_known)) image_.contents.clear();
     return base::Ok{};
   }
 

@@ -56,6 +56,7 @@ class Relinker {
       codes.push_back(std::move(*linked));
     }
     put_in(pous, codes);
+    for (const uint32_t pou : pous) put_content(pou, context_.objects[pou]->content);
     if (state_.image.code.size() > options_.max_code_units) return false;
     return same_stack || measure_stack();
   }
@@ -149,6 +150,11 @@ class Relinker {
     std::sort(pous.begin(), pous.end());
     state_.pool = std::move(pool);
     state_.image.pool = state_.pool.bytes();
+  }
+
+  void put_content(uint32_t number, const base::Digest& content) {
+    std::vector<ir::PouContent>& contents = state_.image.contents;
+    if (!contents.empty()) contents[number].identity = content;
   }
 
   void put_in(const std::vector<uint32_t>& numbers, std::vector<LinkedCode>& codes) {

@@ -1,6 +1,6 @@
 #!/bin/sh
 # make demo: a bottling line runs in real time; its program is changed while bottles move, the change is
-# taken back, and the power goes twice. A minute. usage: demo.sh BIN
+# taken back, and the power goes twice. Half a minute. usage: demo.sh BIN
 set -eu
 bin=$(cd "$1" && pwd)
 cd "$(dirname "$0")/.."
@@ -47,9 +47,9 @@ for _ in $(seq 100); do
 done
 step stvm status
 
-say "2. Bottles come in and are filled (real time, 10 ms scans; 30 s)"
+say "2. Bottles come in and are filled (real time, 10 ms scans; 10 s)"
 step stvm watch BottlesInfed BottlesFilled BottlesCapped TankLevel Machine.Blink.ET \
-  --interval 5000 --count 7
+  --interval 2000 --count 6
 
 say "3. Version 2: a reject station, soft start in 13 drives, a wider counter, another recipe"
 before=$(missed)
@@ -62,7 +62,7 @@ echo "after:  BottlesFilled $(count BottlesFilled), Machine.Scans $(count Machin
 
 say "4. Version 2 runs, on trial"
 # shellcheck disable=SC2086
-step stvm watch $counters 'Machine.Conveyor[1].RunHours' --interval 2000 --count 4
+step stvm watch $counters 'Machine.Conveyor[1].RunHours' --interval 1000 --count 4
 step stvm status
 
 say "5. Take it back"

@@ -29,11 +29,7 @@ void Body::run() {
   line_begin_ = decl.span.begin.offset;
   line_end_ = line_begin_;
   line_ = head.line;
-  uint32_t base = sema_.sources.begin(line_file_).offset;
-  std::string_view text =
-      sema_.sources.text(line_file_)
-          .substr(decl.span.begin.offset - base, decl.span.end.offset - decl.span.begin.offset);
-  out_.source_hash = base::sha256(base::as_bytes(text));
+  if (info_.made == MadeCode::kNone) out_.content = decl.content;
   build_.set_line(head.line);
   initialise_locals();
   connect_inputs();

@@ -80,6 +80,10 @@ class Parser {
   void skip_past(TokenKind end);   // a construct that is not supported
   void skip_block(TokenKind end);  // the same, but not out of the POU
 
+  // --- content.cc
+  base::Digest content_of(const Token* first, const PouDecl& pou) const;
+  void add_pragma(std::string& out, base::SourceSpan span) const;
+
   // --- attributes.cc
   Range32 take_attributes();
   void add_attribute(base::SourceSpan span);

@@ -74,6 +74,7 @@ bool Parser::at_soft_declaration() const {
 }
 
 PouDecl Parser::parse_pou(PouKind pou_kind, Range32 attributes) {
+  const Token* const first = current_;
   const Token opening = take();
   const PouForm& form = form_of(pou_kind);
   PouDecl pou;
@@ -91,6 +92,7 @@ PouDecl Parser::parse_pou(PouKind pou_kind, Range32 attributes) {
   --open_[static_cast<uint8_t>(form.end)];
   close_pou(opening, pou, form.end);
   pou.span = span_from({opening.begin});
+  pou.content = content_of(first, pou);
   return pou;
 }
 

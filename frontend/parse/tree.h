@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/hash.h"
 #include "base/inline_vector.h"
 #include "base/slim_vector.h"
 #include "frontend/network/network.h"
@@ -187,6 +188,8 @@ struct PouDecl {
   std::vector<Range32> usings;     // as in Scope
   Range32 attributes;
   ScopeId scope;  // of members too
+  base::Digest
+      content{};  // without members: what no layout, comment or case of words changes (E-02)
 };
 
 struct TaskDecl {

@@ -32,13 +32,18 @@ base::Error bad_format(std::string text) {
 }
 
 uint32_t version_of(const Image& image, bool has_sources) {
+  if (!image.contents.empty()) {
+    return has_sources ? kImageVersionOfContentsAndSources : kImageVersionOfContents;
+  }
   if (has_sources) return kImageVersionOfSources;
   if (!image.charts.empty()) return kImageVersionOfCharts;
   return image.schedule == Schedule::kSendFirst ? kFirstImageVersion : kImageVersionOfSchedules;
 }
 
 uint32_t sections_of(uint32_t version) {
-  return version < kImageVersionOfSources ? kImageSectionCount : kImageSectionCount + 1;
+  const bool has_sources =
+      version == kImageVersionOfSources || version == kImageVersionOfContentsAndSources;
+  return has_sources ? kImageSectionCount + 1 : kImageSectionCount;
 }
 
 // Of a header that is there.

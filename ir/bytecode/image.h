@@ -67,6 +67,13 @@ struct LinkedPou {
   base::SharedVector<LineEntry> lines;
 };
 
+// What the sources say of a POU, whatever the compiler made of it (E-02, E-03); 0: they say
+// nothing.
+struct PouContent {
+  base::Digest identity{};
+  friend bool operator==(const PouContent&, const PouContent&) = default;
+};
+
 struct LinkedBound {
   int64_t low = 0;
   uint64_t count = 0;
@@ -207,6 +214,7 @@ struct Image {
   uint32_t input_bytes = 0;  // process image sizes
   uint32_t output_bytes = 0;
   std::vector<Device> devices;
+  std::vector<PouContent> contents;  // by POU; none in images before version 11
   Schedule schedule = Schedule::kSendFirst;
 
   // Live program instances in declaration order.

@@ -10,6 +10,8 @@ inline constexpr uint32_t kFirstImageVersion = 7;
 inline constexpr uint32_t kImageVersionOfSchedules = 8;
 inline constexpr uint32_t kImageVersionOfCharts = 9;
 inline constexpr uint32_t kImageVersionOfSources = 10;
-inline constexpr uint32_t kLastImageVersion = kImageVersionOfSources;
+inline constexpr uint32_t kImageVersionOfContents = 11;
+inline constexpr uint32_t kImageVersionOfContentsAndSources = 12;
+inline constexpr uint32_t kLastImageVersion = kImageVersionOfContentsAndSources;
 
 }  // namespace ir

@@ -96,6 +96,7 @@ struct Object {
   TypeId self;
   uint32_t recursion_depth = 0;  // as ir::Pou's
   std::string file;
+  base::Digest content{};   // as ir::Pou's; no part of the canonical bytes
   std::vector<Slot> slots;  // kParam first, in declaration order
   std::vector<ObjectPlace> places;
   std::vector<ObjectConstant> constants;

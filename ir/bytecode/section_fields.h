@@ -238,7 +238,9 @@ void section(Archive& a, I& image, uint32_t number, const Beside& beside) {
         });
       });
     default:
-      return a.list(image.devices, 25, [&](auto& device) { device_fields(a, device); });
+      a.list(image.devices, 25, [&](auto& device) { device_fields(a, device); });
+      return a.last_list(image.contents, sizeof(PouContent),
+                         [&](auto& content) { a(content.identity); });
   }
 }
 

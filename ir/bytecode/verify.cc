@@ -117,6 +117,7 @@ base::Result<std::shared_ptr<const Proof>> prove(std::shared_ptr<const base::Byt
   if (base::Status s = verify_overrides(image); !s) return s.error();
   if (base::Status s = verify_migrations(image); !s) return s.error();
   if (base::Status s = verify_charts(image); !s) return s.error();
+  if (base::Status s = verify_contents(image); !s) return s.error();
   if (base::Status s = verify_initial_data(image); !s) return s.error();
   if (!likeness.instances()) {
     if (base::Status s = verify_instances(context); !s) return s.error();

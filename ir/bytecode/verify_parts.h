@@ -56,6 +56,8 @@ base::Status verify_migrations(const Image& image);
 
 // --- verify_charts.cc: nets of charts, behind all POUs and types -----------------
 base::Status verify_charts(const Image& image);
+// --- verify_tables.cc: identities of what sources say, for all POUs or for none --------
+base::Status verify_contents(const Image& image);
 
 // --- verify_instances.cc: areas and the instance tree (V13) ---------------------
 base::Status verify_instances(const Context& context);

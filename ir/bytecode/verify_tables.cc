@@ -215,4 +215,11 @@ base::Status verify_tables(Context& context, const Likeness& likeness) {
   return TablesVerifier(context, likeness).run();
 }
 
+base::Status verify_contents(const Image& image) {
+  if (image.contents.empty() || image.contents.size() == image.pous.size()) return base::Ok{};
+  return base::Error{base::Refusal::kBadFormat,
+                     "identities of " + std::to_string(image.contents.size()) + " POUs of " +
+                         std::to_string(image.pous.size())};
+}
+
 }  // namespace ir::verification

@@ -33,6 +33,7 @@ base::Result<Object> lower(const Program& program, PouId id) {
   object.self = pou.self;
   object.recursion_depth = pou.recursion_depth;
   object.file = pou.file;
+  object.content = pou.content;
   base::Result<codegen::Machine> selected = codegen::Selector(program, pou, object).run();
   if (!selected.ok()) return selected.error();
   codegen::Machine& machine = selected.value();

@@ -246,7 +246,7 @@ struct Pou {
   std::vector<Place> places;
   std::vector<Block> blocks;   // blocks[0] is the entry and has no parameters
   std::vector<ChartMove> chart;  // of a body that is a chart, for later versions: no code uses it
-  base::Digest source_hash{};  // of the POU's own source text
+  base::Digest content{};  // of the POU's own text, whatever its layout (E-02); 0: it has none
 };
 
 struct Task {

@@ -44,8 +44,8 @@ class PouPrinter {
     if (!pou_.file.empty() || pou_.line != 0) {
       text_ += " file " + string_text(pou_.file) + " line " + std::to_string(pou_.line);
     }
-    if (pou_.source_hash != base::Digest{}) {
-      text_ += " hash " + base::to_hex(pou_.source_hash);
+    if (pou_.content != base::Digest{}) {
+      text_ += " hash " + base::to_hex(pou_.content);
     }
     text_ += "\n";
   }

@@ -1,6 +1,7 @@
 #include "online_change/plan/pou_edits.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <unordered_map>
 
@@ -139,6 +140,17 @@ bool same_pou(const ir::LinkedPou& a, const ir::LinkedPou& b) {
                      same_parameter));
 }
 
+// Do the sources say the same of it? Not known of images that were made before that was stored.
+bool same_content(const ir::Image& old_image, const ir::LinkedPou& old_pou,
+                  const ir::Image& new_image, const ir::LinkedPou& new_pou) {
+  if (old_image.contents.empty() || new_image.contents.empty()) return false;
+  const auto content_of = [](const ir::Image& image, const ir::LinkedPou& pou) {
+    return image.contents[static_cast<size_t>(&pou - image.pous.data())];
+  };
+  const ir::PouContent before = content_of(old_image, old_pou);
+  return before != ir::PouContent{} && before == content_of(new_image, new_pou);
+}
+
 // Live instances of each POU.
 std::vector<uint64_t> instance_counts(const ir::Image& image) {
   std::vector<uint64_t> counts(image.pous.size());
@@ -161,6 +173,8 @@ const char* pou_change_name(PouChange change) {
       return "body";
     case PouChange::kInterface:
       return "interface";
+    case PouChange::kFollows:
+      return "follows";
   }
   base::check(false, "a change that pou_change_name() knows");
   return "";
@@ -175,6 +189,7 @@ std::vector<PouEdit> edits_but(const ir::Image& old_image, const ir::Image& new_
   const Pous after = by_name(new_image, same);
   const std::vector<uint64_t> counts = instance_counts(old_image);
   std::vector<PouEdit> edits;
+  std::vector<PouEdit> following;
   for (const auto& [name, pou] : after) {
     const auto found = before.find(name);
     if (found == before.end()) {
@@ -190,11 +205,15 @@ std::vector<PouEdit> edits_but(const ir::Image& old_image, const ir::Image& new_
     if (ir::is_body(pou->kind)) {
       edit.instances = counts[static_cast<size_t>(&old_pou - old_image.pous.data())];
     }
-    edits.push_back(std::move(edit));
+    const bool follows =
+        edit.change == PouChange::kBody && same_content(old_image, old_pou, new_image, *pou);
+    if (follows) edit.change = PouChange::kFollows;
+    (follows ? following : edits).push_back(std::move(edit));
   }
   for (const auto& [name, pou] : before) {
     if (!after.contains(name)) edits.push_back({PouChange::kRemoved, pou->name, 0, {}});
   }
+  std::ranges::move(following, std::back_inserter(edits));
   return edits;
 }
 

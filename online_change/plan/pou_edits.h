@@ -1,6 +1,7 @@
-// What a change does to code: the POUs whose object is another one (E1), and whether what their
-// callers see of them stays. Beside the fates of variables in the report: where an instance goes on
-// with its values under other code, its outputs may jump (change case 41).
+// What a change does to code: the POUs whose object is another one (E1), whether somebody has
+// edited them (E-02, case 76), and whether what their callers see of them stays. It stands beside
+// the fates of variables in the report: where an instance goes on with its values under other code,
+// its outputs may jump (change case 41).
 #pragma once
 
 #include <cstdint>
@@ -18,6 +19,7 @@ enum class PouChange : uint8_t {
   kRemoved,
   kBody,       // callers see the same
   kInterface,  // inputs, outputs, in-outs or result differ
+  kFollows,    // nobody edited it: code that it takes in, a type or a constant is another one
 };
 const char* pou_change_name(PouChange change);
 
@@ -28,7 +30,7 @@ struct PouEdit {
   std::string what;        // kInterface: "input `speed` INT -> DINT"
 };
 
-// By name, the removed ones last. Linear in the POUs of both versions.
+// By name, then the removed ones, then those that follow. Linear in the POUs of both versions.
 std::vector<PouEdit> pou_edits(const ir::Image& old_image, const ir::Image& new_image);
 // The same, sooner where types are as they were.
 std::vector<PouEdit> pou_edits(const EncodedImage& old_version, const EncodedImage& new_version);

@@ -14,9 +14,11 @@ namespace {
 
 using online_change::Fate;
 using online_change::FateRow;
+using online_change::PouChange;
 using online_change::PouEdit;
 
 constexpr size_t kWidth = 80;
+constexpr size_t kNamedFollowers = 8;
 
 struct CountColumn {
   const char* name;
@@ -82,6 +84,16 @@ std::string address_text(const FateLine& line) {
   return std::to_string(line.old_address) + " -> " + std::to_string(line.new_address);
 }
 
+// In the same line where it fits; else below.
+std::string with_remark(std::string text, const std::string& remark) {
+  if (text.size() + 2 + remark.size() <= kWidth) return text + "  " + remark + "\n";
+  text += "\n";
+  for (const std::string& line : base::wrapped(remark, kWidth - 21)) {
+    text += std::string(21, ' ') + line + "\n";
+  }
+  return text;
+}
+
 // "code               Motor  (body; 3 instances keep their values: outputs may jump)"
 std::string edit_text(const PouEdit& edit) {
   std::string text = "code";
@@ -94,13 +106,24 @@ std::string edit_text(const PouEdit& edit) {
             (edit.instances == 1 ? " instance keeps its" : " instances keep their") +
             " values: outputs may jump";
   }
-  rest += ")";
-  if (text.size() + 2 + rest.size() <= kWidth) return text + "  " + rest + "\n";
-  text += "\n";
-  for (const std::string& line : base::wrapped(rest, kWidth - 21)) {
-    text += std::string(21, ' ') + line + "\n";
+  return with_remark(std::move(text), rest + ")");
+}
+
+// "code               2 others  (compiled anew, their text is the same: Main, Fill)": code that
+// they take in, a type or a constant is another one.
+std::string following_text(const PouEdits& edits) {
+  size_t count = 0;
+  std::string names;
+  for (const PouEdit& edit : edits) {
+    if (edit.change != PouChange::kFollows) continue;
+    if (count++ < kNamedFollowers) names += (names.empty() ? "" : ", ") + edit.pou;
   }
-  return text;
+  if (count == 0) return {};
+  if (count > kNamedFollowers) names += ", ...";
+  std::string text = "code";
+  text.resize(19, ' ');
+  text += std::to_string(count) + (count == 1 ? " other" : " others");
+  return with_remark(std::move(text), "(compiled anew, their text is the same: " + names + ")");
 }
 
 }  // namespace
@@ -130,7 +153,10 @@ std::string fate_report(const online_change::Plan& plan, const LiveValues& live,
   for (const FateRow& row : plan.fates) {
     if (row.fate != Fate::kKept || !row.reason.empty()) out += row_text(row, live);
   }
-  for (const PouEdit& edit : edits) out += edit_text(edit);
+  for (const PouEdit& edit : edits) {
+    if (edit.change != PouChange::kFollows) out += edit_text(edit);
+  }
+  out += following_text(edits);
   for (const online_change::SystemEdit& edit : system) {
     out += edit.kind + std::string(19 - std::min<size_t>(edit.kind.size(), 18), ' ') + edit.name +
            "  (" + edit.what + ")\n";

@@ -112,7 +112,7 @@ static void fields(vm::FieldWriter& a, const PouEdit& edit) {
 static void fields(vm::FieldReader& a, PouEdit& edit) {
   uint8_t change = 0;
   a(change);
-  if (change > static_cast<uint8_t>(PouChange::kInterface)) return a.fail();
+  if (change > static_cast<uint8_t>(PouChange::kFollows)) return a.fail();
   edit.change = static_cast<PouChange>(change);
   stvm::fate_edit_fields(a, edit);
 }

@@ -42,7 +42,7 @@ void unit_fields(A& a, T& row) {
 
 template <class A, class T>
 void pou_fields(A& a, T& edit) {
-  choice(a, edit.change, online_change::PouChange::kInterface);
+  choice(a, edit.change, online_change::PouChange::kFollows);
   a(edit.pou);
   a(edit.instances);
   a(edit.what);

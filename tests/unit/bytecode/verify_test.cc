@@ -256,6 +256,16 @@ TEST(Verify, V16_Retain) {
   expect_refused(Refusal::kBadRetain, "beyond its area", [](Image& i) { i.retain[0].size = 65; });
 }
 
+TEST(Verify, ContentsAreOfAllPousOrOfNone) {
+  const auto refuse = [](const char* what, int difference) {
+    expect_refused(Refusal::kBadFormat, what, [&](Image& i) {
+      i.contents.assign(i.pous.size() + static_cast<size_t>(difference), ir::PouContent{});
+    });
+  };
+  refuse("one is missing", -1);
+  refuse("one is too many", 1);
+}
+
 // What is exchanged with other resources is a plain variable, once.
 TEST(Verify, SharedGlobals) {
   const auto refuse = [](const char* what, std::vector<ir::SharedGlobal> rows) {

@@ -128,14 +128,5 @@ TEST(Configuration, TasksAndPrograms) {
   EXPECT_FALSE(program.instances[1].init.valid());
 }
 
-TEST(Identity, HashFollowsThePousOwnText) {
-  const std::string kOther = "FUNCTION F : INT F := 1; END_FUNCTION\n";
-  Compiled a = compile(kOther + "PROGRAM P VAR x : INT; END_VAR x := F(); END_PROGRAM");
-  Compiled b = compile("\n\n" + kOther + "PROGRAM P VAR x : INT; END_VAR x := F() ; END_PROGRAM");
-  ASSERT_TRUE(a.program && b.program);
-  EXPECT_EQ(a.program->pous[0].source_hash, b.program->pous[0].source_hash);
-  EXPECT_NE(a.program->pous[1].source_hash, b.program->pous[1].source_hash);
-}
-
 }  // namespace
 }  // namespace frontend_test

@@ -48,6 +48,18 @@ TEST(PouEdits, case53_a_comment_edits_no_pou) {
   EXPECT_EQ(text(edits_between(pid("2.0", ""), "(* a\n comment *)\n\n" + pid("2.0", ""))), "");
 }
 
+// What inlines another POU: cli/follows.sh.
+TEST(PouEdits, E02_who_uses_another_constant_follows) {
+  const auto program = [](const char* limit, const char* step) {
+    return std::string("VAR_GLOBAL CONSTANT limit : INT := ") + limit +
+           "; END_VAR\nFUNCTION Aside : INT Aside := limit; END_FUNCTION\n"
+           "PROGRAM Main VAR n : INT; END_VAR n := " + step + " + Aside(); END_PROGRAM";
+  };
+  EXPECT_EQ(text(edits_between(program("7", "1"), program("8", "1"))), "Aside follows 0");
+  EXPECT_EQ(text(edits_between(program("7", "1"), program("8", "2"))),
+            "Main body 1; Aside follows 0");
+}
+
 TEST(PouEdits, AddedAndRemoved) {
   const std::string f = "FUNCTION F : INT F := 1; END_FUNCTION\n";
   const std::string main = "PROGRAM Main VAR n : INT; END_VAR n := n + 1; END_PROGRAM";
