@@ -64,7 +64,8 @@ class Booting {
     const bool same = !given || (stored && given->digest() == stored->digest());
     if (stored && same && found_.resumes && resume(*stored, boot)) {
       for (const std::string& alarm : boot.alarms) note(Event::kAlarm, {}, {}, alarm);
-      note(Event::kResumed, stored->digest(), boot.image.digest(), {});
+      note(Event::kResumed, stored->digest(), boot.image.digest(),
+           std::to_string(boot.edits.size()) + " edit(s) are on trial still");
       note(Event::kStarted, {}, boot.image.digest(), {});
       return boot;
     }
@@ -119,6 +120,7 @@ class Booting {
       const bool own = newest && newest->image == image->digest();
       if (own && fits(image->image(), *newest)) boot.retained = newest->values;
       if (!newest) take(no_values(), boot);
+      for (const std::string& alarm : boot.alarms) note(Event::kAlarm, {}, {}, alarm);
       boot.fault = why + "; program " + base::short_hex(image->digest()) +
                    " is stored, too: `stvm restart` runs it";
       note(Event::kAlarm, {}, image->digest(), boot.fault);
@@ -136,6 +138,7 @@ class Booting {
       boot.fault += "; retained values of " + base::short_hex(*kept) +
                     " are stored, and come back with that very image";
     }
+    for (const std::string& alarm : boot.alarms) note(Event::kAlarm, {}, {}, alarm);
     note(Event::kAlarm, {}, {}, boot.fault);
     return boot;
   }

@@ -13,8 +13,8 @@ namespace {
 constexpr uint32_t kJournalMagic = 0x314e524a;  // "JRN1"
 constexpr size_t kChecksumAt = kSectorBytes - 4;
 
-constexpr const char* kEventNames[] = {
-#define EVENT(id, name, meaning) name,
+constexpr EventRow kRows[] = {
+#define EVENT(id, name, level, kept, limit, meaning) {name, Level::level, Kept::kept, Limit::limit},
 #include "online_change/store/events.def"
 #undef EVENT
 };
@@ -42,7 +42,7 @@ void get_counts(base::ByteReader& in, FateCounts& counts) {
 
 }  // namespace
 
-const char* event_name(Event event) { return kEventNames[static_cast<size_t>(event)]; }
+const EventRow& event_row(Event event) { return kRows[static_cast<size_t>(event)]; }
 
 base::Bytes encode(const JournalEntry& entry) {
   base::ByteWriter out;
@@ -58,6 +58,7 @@ base::Bytes encode(const JournalEntry& entry) {
   out.u64(entry.cycle);
   out.text(cut(entry.who, kMaxWho));
   out.text(cut(entry.text, kMaxText));
+  out.text(cut(entry.source, kMaxSource));
   base::Bytes sector = out.take();
   sector.resize(kSectorBytes);
   const uint32_t checksum = base::crc32c(base::ByteSpan(sector).first(kChecksumAt));
@@ -74,7 +75,7 @@ std::optional<JournalEntry> decode_entry(base::ByteSpan sector) {
   JournalEntry entry;
   entry.sequence = in.u64();
   entry.time_ns = in.i64();
-  entry.event = in.enumerator<Event>(std::size(kEventNames));
+  entry.event = in.enumerator<Event>(kEventKinds);
   entry.from = base::read_digest(in);
   entry.to = base::read_digest(in);
   get_counts(in, entry.counts);
@@ -83,8 +84,9 @@ std::optional<JournalEntry> decode_entry(base::ByteSpan sector) {
   entry.cycle = in.u64();
   entry.who = in.text();
   entry.text = in.text();
+  entry.source = in.text();  // zeros behind what older releases have written: ""
   if (in.failed() || entry.sequence > kLastSequence || entry.who.size() > kMaxWho ||
-      entry.text.size() > kMaxText) {
+      entry.text.size() > kMaxText || entry.source.size() > kMaxSource) {
     return std::nullopt;
   }
   return entry;

@@ -1,6 +1,7 @@
-// What happened to a controller, durably: a ring of entries, each in a sector of its own with a
-// checksum and a sequence number, so a cut costs the entry that was being written and no other. Who
-// changed what, when, from which version to which, with which fates and which pause.
+// What happens to a controller (Event), and the part of it that is durable: rings of entries, each
+// in a sector of its own with a checksum and a sequence number, so a cut costs the entry that was
+// being written and no other. Who changed what, when, from which version to which, with which fates
+// and which pause.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +17,33 @@
 namespace online_change {
 
 enum class Event : uint8_t {
-#define EVENT(id, name, meaning) id,
+#define EVENT(id, name, level, kept, limit, meaning) id,
 #include "online_change/store/events.def"
 #undef EVENT
 };
-const char* event_name(Event event);
+inline constexpr size_t kEventKinds = 0
+#define EVENT(id, name, level, kept, limit, meaning) +1
+#include "online_change/store/events.def"
+#undef EVENT
+    ;
+
+// Numbers of syslog and of journald's prefix.
+enum class Level : uint8_t { kError = 3, kWarning = 4, kNotice = 5, kInfo = 6 };
+// What outlives the controller: nothing; the ring of what decides which program runs, for years;
+// that of what can come so often that it would push the former out.
+enum class Kept : uint8_t { kMemory, kJournal, kOften };
+// How many of one kind, of one task, device or command, are told in a row. By a plant: few, since
+// it never tires. By people: more.
+enum class Limit : uint8_t { kNone, kPlant, kPeople };
+
+struct EventRow {
+  const char* name;
+  Level level;
+  Kept kept;
+  Limit limit;
+};
+const EventRow& event_row(Event event);
+inline const char* event_name(Event event) { return event_row(event).name; }
 
 struct JournalEntry {
   uint64_t sequence = 0;  // given by the ring
@@ -33,11 +56,13 @@ struct JournalEntry {
   int64_t predicted_ns = 0;  // pause
   int64_t measured_ns = 0;
   uint64_t cycle = 0;
-  std::string text;  // the reason, or the trap; cut at kMaxText bytes
+  std::string text;         // the reason, or the trap; cut at kMaxText bytes
+  std::string source = {};  // "task Fast", "device press"; "": the controller; cut at kMaxSource
 };
 
 inline constexpr size_t kMaxWho = 32;
 inline constexpr size_t kMaxText = 240;
+inline constexpr size_t kMaxSource = 64;
 
 // One sector.
 base::Bytes encode(const JournalEntry& entry);

@@ -64,13 +64,6 @@ void RetainKeeper::serve(int64_t free_ns) {
   if (state != kWanted && state != kUrgent) return;
   if (state == kWanted && free_ns < copy_ns()) return;
   take(snapshot_);
-  const uint64_t count = controller_.trap_count();
-  if (count != traps_seen_) {
-    const vm::Traps& all = controller_.traps();
-    const uint64_t added = std::min<uint64_t>(count - traps_seen_, all.size());
-    traps_.assign(all.end() - static_cast<std::ptrdiff_t>(added), all.end());
-    traps_seen_ = count;
-  }
   state_.store(kTaken, std::memory_order_release);
 }
 
@@ -111,7 +104,6 @@ void RetainKeeper::note(Event event, const std::string& text) {
   entry.event = event;
   entry.text = text;
   store_.note(std::move(entry));
-  if (say_) say_(std::string(event_name(event)) + ": " + text);
 }
 
 bool RetainKeeper::wait(int64_t ns) {
@@ -150,14 +142,11 @@ int64_t RetainKeeper::step(int64_t now_ns) {
 }
 
 void RetainKeeper::keep(int64_t now_ns) {
-  {
-    std::lock_guard lock(saving_);
-    const bool same = snapshot_.image == saved_.image && snapshot_.values == saved_.values;
-    const bool known = same && store_.keeps_retained();
-    const bool wanted = !known && store_.names(snapshot_.image) && save_again_.due(now_ns);
-    if (wanted && !save_held(snapshot_).ok()) save_again_.failed(now_ns);
-  }
-  note_traps();
+  std::lock_guard lock(saving_);
+  const bool same = snapshot_.image == saved_.image && snapshot_.values == saved_.values;
+  const bool known = same && store_.keeps_retained();
+  const bool wanted = !known && store_.names(snapshot_.image) && save_again_.due(now_ns);
+  if (wanted && !save_held(snapshot_).ok()) save_again_.failed(now_ns);
 }
 
 // What is said once is not said again as long as something is wrong.
@@ -172,21 +161,6 @@ void RetainKeeper::renew(int64_t now_ns) {
   if (said_.empty() || !store_.complaints().empty()) return;
   note(Event::kCleared, "storage is well again");
   said_.clear();
-}
-
-void RetainKeeper::note_traps() {
-  for (const auto& trap : traps_) {
-    JournalEntry entry;
-    entry.time_ns = wall_time_();
-    entry.event = Event::kTrap;
-    entry.to = snapshot_.image;
-    entry.cycle = trap->cycle;
-    const vm::TrapText& text = trap->text;
-    entry.text = "task " + trap->task + ": " + text.file + ":" + std::to_string(text.line) + " (" +
-                 text.pou + "): " + text.text;
-    store_.note_trap(std::move(entry));
-  }
-  traps_.clear();
 }
 
 }  // namespace online_change

@@ -1,8 +1,7 @@
 // Keeps the retained values durable while a program runs. The control thread copies them at a
 // boundary when it is asked to; a thread of the keeper asks, and waits for the disk. What did not
-// change is not written again. It also brings traps to the journal, has what failed in the store
-// renewed, and says when something is not stored and when it is again: in the journal, and to who
-// wants to hear it.
+// change is not written again. It also has what failed in the store renewed, and notes when
+// something is not stored and when it is again.
 #pragma once
 
 #include <atomic>
@@ -31,7 +30,6 @@ struct Snapshot {
 class RetainKeeper {
  public:
   using WallTime = std::function<int64_t()>;  // ns since 1970
-  using Say = std::function<void(const std::string& line)>;
   struct Unsaved {
     int64_t since_ns = 0;  // wall time
     std::string why;
@@ -40,8 +38,6 @@ class RetainKeeper {
   // Without start() there is no thread: only save() writes, or step().
   RetainKeeper(vm::Controller& controller, Store& store, WallTime wall_time);
   ~RetainKeeper();
-  // Of the keeper's thread; before start().
-  void tell(Say say) { say_ = std::move(say); }
   void start();
   // What the thread does at `now_ns`, of any clock that never goes back; returns after which time
   // it does the next.
@@ -70,7 +66,6 @@ class RetainKeeper {
   bool wait(int64_t ns);  // false: ending
   void keep(int64_t now_ns);
   void renew(int64_t now_ns);
-  void note_traps();
   void note(Event event, const std::string& text);
   void saved_or_not(const base::Status& saved);
 
@@ -83,8 +78,6 @@ class RetainKeeper {
   // Belong to the control thread in kWanted and kUrgent, to the keeper's otherwise.
   std::atomic<uint32_t> state_{kIdle};
   Snapshot snapshot_;
-  vm::Traps traps_;
-  uint64_t traps_seen_ = 0;
 
   std::mutex saving_;  // guards saved_
   Snapshot saved_;
@@ -95,7 +88,6 @@ class RetainKeeper {
   BackOff save_again_;
   BackOff renew_again_;
   std::vector<std::string> said_;  // complaints of the store
-  Say say_;
 
   mutable std::mutex unsaved_mutex_;
   std::optional<Unsaved> unsaved_;

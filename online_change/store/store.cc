@@ -348,14 +348,15 @@ bool Store::names(const base::Digest& image) const {
 // --- journal ----------------------------------------------------------------------
 
 void Store::note(JournalEntry entry) {
-  std::lock_guard lock(journal_mutex_);
-  (void)journal_.add(std::move(entry)).ok();  // complaints() has the error
-  show_journals();
+  if (!tell_ || tell_(entry)) keep(std::move(entry));
 }
 
-void Store::note_trap(JournalEntry entry) {
+void Store::keep(JournalEntry entry) {
+  const Kept kept = event_row(entry.event).kept;
+  if (kept == Kept::kMemory) return;
   std::lock_guard lock(journal_mutex_);
-  (void)traps_.add(std::move(entry)).ok();
+  Journal& ring = kept == Kept::kOften ? traps_ : journal_;
+  (void)ring.add(std::move(entry)).ok();  // complaints() has the error
   show_journals();
 }
 

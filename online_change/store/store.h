@@ -16,6 +16,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -37,7 +38,7 @@ inline constexpr const char* kControlFiles[] = {"control_0", "control_1"};
 inline constexpr const char* kSlotFiles[] = {"slot_a", "slot_b", "slot_c"};
 inline constexpr const char* kRetainFiles[] = {"retain_0", "retain_1", "retain_2"};
 inline constexpr const char* kJournalFile = "journal";
-inline constexpr const char* kTrapsFile = "traps";
+inline constexpr const char* kTrapsFile = "traps";  // Kept::kOften
 inline constexpr const char* kBeforeFile = "before";
 inline constexpr const char* kEditsFile = "edits";
 
@@ -45,7 +46,7 @@ struct StoreSizes {
   uint64_t image_bytes = 1u << 20;  // to begin with: a longer image makes its slot longer
   uint64_t retain_bytes = 4096;     // likewise
   uint32_t journal_entries = 1024;
-  uint32_t trap_entries = 32;
+  uint32_t trap_entries = 256;
 };
 
 struct StoredImage {
@@ -143,8 +144,14 @@ class Store {
   // Does it name this one as what is on trial?
   bool tries(const base::Digest& image) const;
 
+  // Told of each event before it is kept, by the thread that notes it; false: there were too many
+  // of its kind, and it is not kept. To be set before there are threads.
+  using Tell = std::function<bool(const JournalEntry& entry)>;
+  void tell(Tell tell) { tell_ = std::move(tell); }
+  // Something has happened: it is told, and kept where its row says.
   void note(JournalEntry entry);
-  void note_trap(JournalEntry entry);
+  // The same of what has been told.
+  void keep(JournalEntry entry);
   // Of both rings, by time.
   std::vector<JournalEntry> history() const;
 
@@ -215,6 +222,7 @@ class Store {
   mutable std::mutex journal_mutex_;
   vm::Storage& storage_;
   StoreSizes sizes_;
+  Tell tell_;
   Copies control_copies_;
   Copies slots_;
   Copies retained_;

@@ -134,6 +134,7 @@ answers stvm-accept 0 at accept
 answers stvm-revert 0 at revert --yes --allow-loss
 answers stvm-restart 0 at restart
 answers stvm-journal 0 at journal
+answers stvm-events 0 at events
 answers refused 7 at get Main.nothing
 answers stvm-stop 0 at stop
 

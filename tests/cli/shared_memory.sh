@@ -24,7 +24,7 @@ client_ends
 wait_for '=FALSE' stvm get "$program.connected" --dir plc  # it has ended
 wait_for '=0$' stvm get "$program.level" --dir plc
 expect 0 stvm status --dir plc
-said 'last error of tank: shared memory .*nobody writes the inputs'
+said 'last error of tank, [0-9]+ s ago: shared memory .*nobody writes the inputs'
 client_begins
 wait_for '=TRUE' stvm get "$program.connected" --dir plc
 client_ends
@@ -38,7 +38,7 @@ echo $vandal >vandal.pid
 serve plc --device tank.name=$name
 for _ in $(seq 4000); do
   stvm get "$program.level" --dir plc >/dev/null || fail 'the controller has ended'
-  grep -q "^device tank: shared memory $name: was made smaller" plc.log && break
+  grep -q " device lost: device tank: shared memory $name: was made smaller" plc.log && break
   sleep 0.05
 done
 rm destroying
@@ -48,14 +48,14 @@ client_begins
 wait_for '=TRUE' stvm get "$program.connected" --dir plc
 client_ends
 expect 0 stvm stop --dir plc
-grep -q "^device tank: shared memory $name: was made smaller" plc.log || fail 'not said as it happened'
+grep -q " device lost: device tank: shared memory $name: was made smaller" plc.log || fail 'not said as it happened'
 
 # Memory that others could write is not taken.
 rm -f /dev/shm$name
 (umask 0 && : >/dev/shm$name)
 serve open_plc "$source_dir/examples/shared_memory/plc" --device tank.name=$name
-wait_for '^device tank' cat open_plc.log
-grep -q "^device tank: shared memory $name: others can write it (mode 0666); remove /dev/shm$name, or permit that by .access.$" \
+wait_for 'device lost: device tank' cat open_plc.log
+grep -q " device lost: device tank: shared memory $name: others can write it (mode 0666); remove /dev/shm$name, or permit that by .access.$" \
   open_plc.log || fail 'memory that everybody can write was taken'
 expect 0 stvm stop --dir open_plc
 

@@ -68,11 +68,11 @@ for signal in HUP PIPE TSTP TTIN TTOU; do
 done
 before=$(scans)
 for _ in $(seq 600); do
-  [ "$(scans)" != "$before" ] && grep -q '^SIGHUP: there is no log file to open anew' plc.log && break
+  [ "$(scans)" != "$before" ] && grep -q ' hangup: SIGHUP: there is no log file to open anew' plc.log && break
   sleep 0.05
 done
 [ "$(scans)" != "$before" ] || fail 'the controller does not run on'
-grep -q '^SIGHUP: there is no log file to open anew; the controller runs on' plc.log || fail 'SIGHUP is not said'
+grep -q ' hangup: SIGHUP: there is no log file to open anew; the controller runs on' plc.log || fail 'SIGHUP is not said'
 coil TRUE
 
 # In order: exit code 0, and the coil is at its safe value.

@@ -30,6 +30,7 @@ extern const Entry kAbort;
 extern const Entry kStop;
 extern const Entry kRestart;
 extern const Entry kJournal;
+extern const Entry kEvents;
 extern const Entry kImage;
 extern const Entry kSource;
 extern const Entry kBridge;

@@ -16,6 +16,7 @@ namespace {
 
 // Rows of all pages together; what a controller may send is bounded.
 constexpr size_t kMaxRows = 20'000'000;
+constexpr size_t kMaxEvents = 65'536;  // a journal has 1,280 of them, a controller 2,048
 
 base::Error endless() {
   return {base::Refusal::kProtocol, "message not understood: pages without end"};
@@ -163,23 +164,43 @@ base::Result<base::Bytes> ControllerClient::image_parts(vm::Command command,
 }
 
 // Whatever is no whole entry ends it: nothing else comes from a journal.
+base::Result<bool> ControllerClient::journal_page(const vm::Request& request,
+                                                  std::vector<online_change::JournalEntry>& all) {
+  base::Result<base::Bytes> body = call(request);
+  if (!body.ok()) return body.error();
+  const size_t bytes = online_change::kSectorBytes;
+  if (body->size() % bytes != 0 || all.size() > kMaxEvents) return endless();
+  for (size_t at = 0; at < body->size(); at += bytes) {
+    auto entry = online_change::decode_entry(base::ByteSpan(*body).subspan(at, bytes));
+    if (!entry) return base::Error{base::Refusal::kProtocol, "message not understood: journal"};
+    for (std::string* text : {&entry->who, &entry->text, &entry->source}) {
+      *text = base::visible(*text);
+    }
+    all.push_back(std::move(*entry));
+  }
+  return !body->empty();
+}
+
 base::Result<std::vector<online_change::JournalEntry>> ControllerClient::journal() {
   std::vector<online_change::JournalEntry> all;
   vm::Request request{.command = vm::Command::kJournal};
   for (;;) {
     request.offset = all.size();
-    base::Result<base::Bytes> body = call(request);
-    if (!body.ok()) return body.error();
-    if (body->empty()) return all;
-    const size_t bytes = online_change::kSectorBytes;
-    if (body->size() % bytes != 0 || all.size() > kMaxRows) return endless();
-    for (size_t at = 0; at < body->size(); at += bytes) {
-      auto entry = online_change::decode_entry(base::ByteSpan(*body).subspan(at, bytes));
-      if (!entry) return base::Error{base::Refusal::kProtocol, "message not understood: journal"};
-      entry->who = base::visible(entry->who);
-      entry->text = base::visible(entry->text);
-      all.push_back(std::move(*entry));
-    }
+    base::Result<bool> more = journal_page(request, all);
+    if (!more.ok()) return more.error();
+    if (!*more) return all;
+  }
+}
+
+base::Result<std::vector<online_change::JournalEntry>> ControllerClient::events(uint64_t first) {
+  std::vector<online_change::JournalEntry> all;
+  vm::Request request{.command = vm::Command::kEvents, .offset = first};
+  for (;;) {
+    base::Result<bool> more = journal_page(request, all);
+    if (!more.ok()) return more.error();
+    if (!*more) return all;
+    if (all.back().sequence < request.offset) return endless();
+    request.offset = all.back().sequence + 1;
   }
 }
 

@@ -39,6 +39,8 @@ class ControllerClient {
   // That ran before the last accept.
   base::Result<base::Bytes> image_before();
   base::Result<std::vector<online_change::JournalEntry>> journal();
+  // From number `first` on, as far as the controller has them; their `sequence` is that number.
+  base::Result<std::vector<online_change::JournalEntry>> events(uint64_t first);
   base::Result<std::vector<UnitRow>> units();
   // On trial, oldest first.
   base::Result<std::vector<TrialEdit>> edits();
@@ -62,6 +64,9 @@ class ControllerClient {
   static base::Result<ControllerClient> connect_there(const std::string& host,
                                                       const std::string& directory);
   base::Result<base::Bytes> image_parts(vm::Command command, const base::Digest* expected);
+  // Entries of a page, added to `all`. False: there were none.
+  base::Result<bool> journal_page(const vm::Request& request,
+                                  std::vector<online_change::JournalEntry>& all);
   base::Status learn_edition(const base::Result<base::Bytes>& staged);
   base::Result<FatePage> fate_pages(std::vector<std::string> names);
   base::Result<online_change::SwitchReport> switch_report(vm::Request request);

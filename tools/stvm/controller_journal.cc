@@ -41,6 +41,15 @@ JournalEntry ControllerService::entry(Event event) const {
   return entry;
 }
 
+void ControllerService::note_done(Event event, const std::string& who, std::string text) {
+  JournalEntry done;
+  done.time_ns = wall_time_();
+  done.event = event;
+  done.who = who;
+  done.text = std::move(text);
+  store_.note(std::move(done));
+}
+
 base::Error ControllerService::refused(const base::Error& error) {
   if (only_looked_at_) return error;
   JournalEntry refusal = entry(Event::kRefused);
@@ -160,6 +169,11 @@ base::Result<base::Bytes> ControllerService::journal(const vm::Request& request)
   }
   if (page.empty()) history_ = std::vector<JournalEntry>();
   return page;
+}
+
+// From number `offset` on; none behind the last.
+base::Result<base::Bytes> ControllerService::events(const vm::Request& request) const {
+  return events_ == nullptr ? base::Bytes() : events_->page(request.offset, vm::kChunkBytes);
 }
 
 // The program runs as it was asked to, only the disk does not follow: status shows that.

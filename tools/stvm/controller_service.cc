@@ -138,6 +138,8 @@ base::Result<base::Bytes> ControllerService::dispatch(const vm::Request& request
       return restart(request);
     case vm::Command::kJournal:
       return journal(request);
+    case vm::Command::kEvents:
+      return events(request);
     case vm::Command::kUnits:
       return units(request);
     case vm::Command::kEdits:
@@ -285,7 +287,8 @@ base::Result<base::Bytes> ControllerService::reset_times(const vm::Request&) {
 // Nothing of it is to be seen, so a recording need not have it; and what fails is tried again.
 void ControllerService::keep_up() {
   if (StopSignal::take_hangup()) {
-    std::fputs("SIGHUP: there is no log file to open anew; the controller runs on\n", stderr);
+    note_done(online_change::Event::kHangup, {},
+              "SIGHUP: there is no log file to open anew; the controller runs on");
   }
   const auto renew = [&] {
     if (auto change = controller_.renew_forces()) {
@@ -335,7 +338,9 @@ base::Result<base::Bytes> ControllerService::image_part(const base::Digest& dige
 }
 
 base::Result<base::Bytes> ControllerService::stop(const vm::Request&) {
-  stop_wanted_.store(true, std::memory_order_relaxed);
+  if (stop_wanted()) return base::Bytes();
+  stopped_by_ = who_;
+  stop_wanted_.store(true, std::memory_order_release);
   return base::Bytes();
 }
 

@@ -14,6 +14,7 @@
 #include "online_change/store/boot.h"
 #include "online_change/store/retain_keeper.h"
 #include "tools/stvm/aside_writer.h"
+#include "tools/stvm/event_log.h"
 #include "tools/stvm/fate_message.h"
 #include "tools/stvm/live_report.h"
 #include "tools/stvm/rehearsal.h"
@@ -50,6 +51,8 @@ class ControllerService : public vm::Service {
                     online_change::RetainKeeper::WallTime wall_time = wall_time_ns);
   // What changes something from now on is noted there; it must outlive this.
   void record(vm::Recorder& recorder) { recorder_ = &recorder; }
+  // Whose events are shown to those who ask; it must outlive this.
+  void show_events(const EventLog& log) { events_ = &log; }
   // The trial of another process goes on (D4); before anything is answered. What cannot is an
   // alarm, and its edits have no way back.
   void resume(const std::vector<online_change::ResumedEdit>& edits);
@@ -75,7 +78,9 @@ class ControllerService : public vm::Service {
   int keep_up_ms() const override {
     return probation_ || watches_unless() ? kProbationLookMs : 1000;
   }
-  bool stop_wanted() const { return stop_wanted_.load(std::memory_order_relaxed); }
+  bool stop_wanted() const { return stop_wanted_.load(std::memory_order_acquire); }
+  // Who wanted it; behind stop_wanted().
+  const std::string& stopped_by() const { return stopped_by_; }
   online_change::RetainKeeper& keeper() { return keeper_; }
 
  private:
@@ -111,6 +116,7 @@ class ControllerService : public vm::Service {
   Answer stop(const vm::Request& request);
   Answer restart(const vm::Request& request);
   Answer journal(const vm::Request& request);
+  Answer events(const vm::Request& request) const;
 
   // controller_units.cc
   // An edit on trial, or one that was undone.
@@ -248,6 +254,8 @@ class ControllerService : public vm::Service {
 
   // controller_journal.cc
   online_change::JournalEntry entry(online_change::Event event) const;
+  // Of a command that is no change.
+  void note_done(online_change::Event event, const std::string& who, std::string text);
   // Notes it, and is the error.
   base::Error refused(const base::Error& error);
   // Stored as being on trial, and durable, before anything of it runs.
@@ -277,6 +285,7 @@ class ControllerService : public vm::Service {
   online_change::Store& store_;
   vm::Boundary& boundary_;
   vm::Recorder* recorder_ = nullptr;
+  const EventLog* events_ = nullptr;
   StartReport start_;
   online_change::RetainKeeper::WallTime wall_time_;
   online_change::RetainKeeper keeper_;
@@ -319,6 +328,7 @@ class ControllerService : public vm::Service {
   uint64_t switched_cycle_ = 0;                       // cycles before the last switch
   uint64_t edition_ = 0;
   std::atomic<bool> stop_wanted_{false};
+  std::string stopped_by_;
   AsideWriter aside_;  // by store_beside()
   online_change::BackOff keep_again_;
 };

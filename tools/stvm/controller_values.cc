@@ -7,6 +7,8 @@
 namespace stvm {
 namespace {
 
+constexpr size_t kRoomForCount = 24;  // ", and 4096 more"
+
 base::Error too_much(const std::string& name) {
   return {base::Refusal::kTooMany, "one request reads " + std::to_string(vm::kMaxReadBytes) +
                                        " bytes of variables; with `" + name +
@@ -37,6 +39,24 @@ base::Result<NamedValues> named_values(const ir::Image& image, const vm::Request
     values.push_back({std::move((*paths)[i]), request.values[i]});
   }
   return values;
+}
+
+// As many as an event has room for, and how many more.
+template <class Text>
+std::string list_text(size_t count, Text text_of) {
+  std::string out;
+  for (size_t i = 0; i < count; ++i) {
+    const std::string next = (i == 0 ? "" : ", ") + text_of(i);
+    if (i != 0 && out.size() + next.size() + kRoomForCount > online_change::kMaxText) {
+      return out + ", and " + std::to_string(count - i) + " more";
+    }
+    out += next;
+  }
+  return out;
+}
+
+std::string assignments_text(const NamedValues& values) {
+  return list_text(values.size(), [&](size_t i) { return values[i].path + "=" + values[i].value; });
 }
 
 vm::ValueRow value_row(const ir::Image& image, const std::string& path, const ir::Symbol& symbol) {
@@ -120,6 +140,7 @@ base::Result<base::Bytes> ControllerService::set(const vm::Request& request) {
   }
   if (!taken.ok()) return taken.error();
   if (written == vm::Copied::kOtherProgram) return other_version();
+  note_done(online_change::Event::kSet, who_, assignments_text(*values));
   return base::Bytes();
 }
 
@@ -131,6 +152,7 @@ base::Result<base::Bytes> ControllerService::force(const vm::Request& request) {
   if (!change.ok()) return change.error();
   base::Status taken = at_boundary([&] { controller_.use(**change); });
   if (!taken.ok()) return taken.error();
+  note_done(online_change::Event::kForced, who_, assignments_text(*values));
   std::vector<std::string> paths;
   for (vm::NamedValue& row : *values) paths.push_back(std::move(row.path));
   return force_rows(paths);
@@ -146,6 +168,9 @@ base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request)
   if (!change.ok()) return change.error();
   base::Status taken = at_boundary([&] { controller_.use(**change); });
   if (!taken.ok()) return taken.error();
+  if (names->empty()) return base::Bytes();  // nothing was forced
+  note_done(online_change::Event::kUnforced, who_,
+            list_text(names->size(), [&](size_t i) { return (*names)[i]; }));
   return base::Bytes();
 }
 

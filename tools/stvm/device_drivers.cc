@@ -1,7 +1,11 @@
 #include "tools/stvm/device_drivers.h"
 
 #include <cstdio>
+#include <mutex>
 
+#include "tools/stvm/event_log.h"
+#include "tools/stvm/event_text.h"
+#include "vm/io/exchange_port.h"
 #include "vm/io/shared_memory_driver.h"
 #include "vm/io/simulated_driver.h"
 #ifdef STC_HAS_MODBUS
@@ -35,12 +39,26 @@ base::Result<std::unique_ptr<vm::IoDriver>> make_driver(const ir::Device& device
 }
 
 // One call for each line, so that those of two threads do not mix.
-static void log_device(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
+void log_device(vm::DeviceEvent event, const std::string& device, const std::string& text) {
+  static std::mutex mutex;
+  static EventLimits limits;
+  const std::lock_guard lock(mutex);
+  const int64_t now_ns = vm::ExchangePort::now_ns();
+  for (const EventLimits::LeftOut& row : limits.take_left_out(now_ns)) {
+    const std::string more = more_text(row.count, row.span_ns);
+    std::fprintf(stderr, "%s: %s\n", row.source.c_str(), more.c_str());
+  }
+  const std::string source = "device " + device;
+  if (!limits.pass(EventLog::event_of(event), source, now_ns)) return;
+  std::fprintf(stderr, "%s: %s\n", source.c_str(), text.c_str());
+}
 
 base::Result<vm::DeviceIo::Options> device_options(const tools::Options& options,
                                                    vm::Clock* virtual_clock) {
-  vm::DeviceIo::Options out{make_driver, {}, virtual_clock, log_device,
-                              options.has("--seccomp")};
+  vm::DeviceIo::Options out{.make_driver = make_driver,
+                            .virtual_clock = virtual_clock,
+                            .log = log_device,
+                            .confined = options.has("--seccomp")};
   for (const std::string& text : options.all("--device")) {
     base::Result<vm::DeviceOverride> row = vm::parse_device_override(text);
     if (!row.ok()) return row.error();

@@ -14,6 +14,8 @@ base::Result<std::unique_ptr<vm::IoDriver>> make_driver(const ir::Device& device
     "--device", "NAME.KEY=VALUE", "another setting of a device here; repeatable", "", "", \
         tools::Times::kMany                                                               \
   }
+// Writes a line for it on standard error, now and then only where there are too many.
+void log_device(vm::DeviceEvent event, const std::string& device, const std::string& text);
 // From that option; `virtual_clock` null: real time.
 base::Result<vm::DeviceIo::Options> device_options(const tools::Options& options,
                                                    vm::Clock* virtual_clock);

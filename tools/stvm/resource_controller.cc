@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/limits.h"
-#include "tools/stvm/device_drivers.h"
 #include "tools/stvm/record.h"
 
 namespace stvm {
@@ -24,6 +23,8 @@ base::Result<vm::DeviceIo::Options> own_devices(const ResourceController::Settin
                                                 vm::Clock& clock) {
   auto devices = device_options(settings.options, settings.virtual_time ? &clock : nullptr);
   if (!devices.ok()) return devices;
+  devices->log = settings.log;
+  devices->events = settings.limits.events;
   std::erase_if(devices->overrides, [&](const vm::DeviceOverride& row) {
     if (has_device(settings.all[settings.number].image.image(), row.device)) return false;
     return std::any_of(settings.all.begin(), settings.all.end(), [&](const Resource& resource) {

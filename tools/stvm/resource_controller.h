@@ -8,6 +8,7 @@
 #include "base/result.h"
 #include "tools/common/options.h"
 #include "tools/stvm/compiler.h"
+#include "tools/stvm/device_drivers.h"
 #include "vm/io/device_io.h"
 #include "vm/io/global_exchange.h"
 #include "vm/runtime/recorder.h"
@@ -32,7 +33,8 @@ class ResourceController {
     bool virtual_time = false;
     vm::GlobalExchange* exchange = nullptr;
     const std::vector<vm::GlobalExchange::Resource>& all;
-    size_t number = 0;  // of this one among `all`
+    size_t number = 0;               // of this one among `all`
+    vm::DeviceLog log = log_device;  // with `limits.events` for those that hang
   };
   // `clock` and what the settings refer to must outlive it. With several resources each records to
   // FILE.NAME.

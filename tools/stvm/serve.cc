@@ -1,14 +1,18 @@
 // stvm serve: a controller with state directory and control channel.
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <thread>
 
 #include "tools/common/change_settings.h"
 #include "tools/common/exit.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/device_drivers.h"
+#include "tools/stvm/log_output.h"
 #include "tools/stvm/served_resource.h"
 #include "tools/stvm/service_notify.h"
 #include "tools/stvm/state_folder.h"
@@ -47,13 +51,14 @@ constexpr tools::Command kServeCommand{
     kServeOptions};
 
 using Served = std::vector<std::unique_ptr<ServedResource>>;
+using Output = std::shared_ptr<LogOutput>;
 using Resource = vm::GlobalExchange::Resource;
 
 base::Status open_one(const std::string& directory, const std::string& name,
-                      const std::optional<ir::VerifiedImage>& given, bool create,
-                      Served& served) {
+                      const std::optional<ir::VerifiedImage>& given, bool create, Served& served,
+                      const Output& output) {
   const std::string folder = name.empty() ? directory : directory + "/" + name;
-  auto opened = ServedResource::open(folder, name, given, create);
+  auto opened = ServedResource::open(folder, name, given, create, output);
   if (!opened.ok()) return opened.error();
   served.push_back(std::move(*opened));
   return base::Ok{};
@@ -80,17 +85,16 @@ base::Status check_stored(const std::string& directory, const std::vector<Resour
 }
 
 base::Status open_given(const std::string& directory, const std::vector<Resource>& given,
-                        Served& served) {
+                        Served& served, const Output& output) {
   base::Status opened = check_stored(directory, given);
   for (size_t i = 0; i < given.size() && opened.ok(); ++i) {
-    opened = open_one(directory, given[i].name, given[i].image, true, served);
+    opened = open_one(directory, given[i].name, given[i].image, true, served, output);
   }
   return opened;
 }
 
-base::Result<Served> open_programs(const tools::Options& options,
-                                   std::vector<std::string> programs,
-                                   const std::string& directory) {
+base::Result<Served> open_programs(const tools::Options& options, std::vector<std::string> programs,
+                                   const std::string& directory, const Output& output) {
   Sources sources = sources_of(options);
   sources.paths = std::move(programs);
   auto images = load_programs(sources);
@@ -98,38 +102,40 @@ base::Result<Served> open_programs(const tools::Options& options,
   auto given = name_resources(std::move(*images));
   if (!given.ok()) return given.error();
   Served served;
-  base::Status opened = open_given(directory, *given, served);
+  base::Status opened = open_given(directory, *given, served, output);
   if (!opened.ok()) return opened.error();
   return served;
 }
 
 // By a single resource, or by several.
-base::Result<Served> open_stored(const std::string& directory, bool create) {
+base::Result<Served> open_stored(const std::string& directory, bool create, const Output& output) {
   Served served;
   const std::vector<std::string> stored = stored_resources(directory);
   base::Status opened = base::Ok{};
-  if (stored.empty()) opened = open_one(directory, "", std::nullopt, create, served);
+  if (stored.empty()) opened = open_one(directory, "", std::nullopt, create, served, output);
   for (size_t i = 0; i < stored.size() && opened.ok(); ++i) {
-    opened = open_one(directory, stored[i], std::nullopt, create, served);
+    opened = open_one(directory, stored[i], std::nullopt, create, served, output);
   }
   if (!opened.ok()) return opened.error();
   return served;
 }
 
 // What is given, or what is stored, or where nothing ever was, the first program.
-base::Result<Served> open_all(const tools::Options& options) {
+base::Result<Served> open_all(const tools::Options& options, const Output& output) {
   const std::string directory = state_directory(options);
   if (!options.has("--first")) {
-    if (options.arguments().empty()) return open_stored(directory, options.has("--create"));
-    return open_programs(options, options.arguments(), directory);
+    if (options.arguments().empty()) {
+      return open_stored(directory, options.has("--create"), output);
+    }
+    return open_programs(options, options.arguments(), directory, output);
   }
   if (!options.arguments().empty()) {
     return base::Error{base::Refusal::kUsage,
                        "--first is for a start without other programs; leave one of them out"};
   }
-  base::Result<Served> stored = open_stored(directory, false);
+  base::Result<Served> stored = open_stored(directory, false, output);
   if (stored.ok() || stored.error().refusal != base::Refusal::kFileNotFound) return stored;
-  return open_programs(options, {options.text("--first")}, directory);
+  return open_programs(options, {options.text("--first")}, directory, output);
 }
 
 base::Result<vm::ControllerOptions> limits_of(const tools::Options& options) {
@@ -249,13 +255,16 @@ base::Status serve(const tools::Options& options) {
   vm::RealClock real_clock;
   vm::VirtualClock virtual_clock;
   std::unique_ptr<vm::GlobalExchange> exchange;
-  base::Result<Served> served = open_all(options);
+  const auto output = std::make_shared<LogOutput>(
+      STDERR_FILENO, LogOutput::is_journal(STDERR_FILENO, std::getenv("JOURNAL_STREAM")));
+  base::Result<Served> served = open_all(options, output);
   if (!served.ok()) return served.error();
   // Behind the compiler, which is a program of its own, and before all threads.
   if (real_time->confined) {
     base::Status confined = vm::confine_thread(vm::ThreadKind::kAny);
     if (!confined.ok()) return confined;
   }
+  output->start();
   const bool virtual_time = options.has("--virtual-time");
   if (virtual_time && served->size() > 1) {
     return base::Error{base::Refusal::kUsage,

@@ -1,13 +1,14 @@
 #include "tools/stvm/served_resource.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "tools/common/files.h"
 #include "tools/stvm/commands.h"
 
 namespace stvm {
 namespace {
+
+using online_change::Event;
 
 // Commands are answered between cycles too, at once, and what the keeper wants within such a time.
 constexpr int64_t kLookNs = 2'000'000;
@@ -21,33 +22,32 @@ base::Error empty(const std::string& directory) {
   return {base::Refusal::kFileNotFound, directory + " holds no program yet" + kWayOut};
 }
 
-void print_boot(const online_change::Boot& boot) {
-  for (const std::string& alarm : boot.alarms) std::fprintf(stderr, "alarm: %s\n", alarm.c_str());
-  if (!boot.fault.empty()) std::fprintf(stderr, "fault: %s\n", boot.fault.c_str());
-  if (!boot.edits.empty()) {
-    std::fprintf(stderr, "%zu edit(s) are on trial still; %s runs\n", boot.edits.size(),
-                 base::short_hex(boot.image.digest()).c_str());
-  }
-  if (!boot.trial_lost) return;
-  std::fprintf(stderr, "the trial of %s was lost; %s runs\n",
-               base::short_hex(*boot.trial_lost).c_str(),
-               base::short_hex(boot.image.digest()).c_str());
-}
-
 }  // namespace
 
 ServedResource::ServedResource(const std::string& directory, const std::string& name,
-                               StateFolder folder)
+                               StateFolder folder, const std::shared_ptr<LogOutput>& output)
     : directory_(directory),
       name_(name),
       folder_(std::move(folder)),
       storage_(folder_.path()),
-      store_(storage_) {}
-ServedResource::~ServedResource() = default;
+      store_(storage_),
+      events_(std::make_shared<EventLog>(store_, name, output)) {}
+
+ServedResource::~ServedResource() { events_->close(); }
+
+void ServedResource::note(online_change::Event event, std::string text) {
+  online_change::JournalEntry entry;
+  entry.time_ns = wall_time_ns();
+  entry.event = event;
+  entry.who = kWho;
+  entry.text = std::move(text);
+  store_.note(std::move(entry));
+}
 
 base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
     const std::string& directory, const std::string& name,
-    const std::optional<ir::VerifiedImage>& given, bool create) {
+    const std::optional<ir::VerifiedImage>& given, bool create,
+    const std::shared_ptr<LogOutput>& output) {
   const bool may_make = given || create;
   const bool unused = tools::is_folder(directory) && !holds_program(directory);
   if (unused && !may_make) return empty(directory);
@@ -56,15 +56,15 @@ base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
     return base::Error{base::Refusal::kFileNotFound, folder.error().text + kWayOut};
   }
   if (!folder.ok()) return folder.error();
-  if (folder->is_new()) std::fprintf(stderr, "new state folder: %s\n", folder->path().c_str());
-  auto out = std::make_unique<ServedResource>(directory, name, std::move(*folder));
+  const bool is_new = folder->is_new();
+  auto out = std::make_unique<ServedResource>(directory, name, std::move(*folder), output);
+  if (is_new) out->note(Event::kNewFolder, "new state folder: " + out->folder_.path());
   auto boot = online_change::boot(out->store_, given, kWho, wall_time_ns(), create);
   if (!boot.ok() && boot.error().refusal == base::Refusal::kFileNotFound) return empty(directory);
   if (!boot.ok()) {
     return base::Error{boot.error().refusal, directory + ": " + boot.error().text};
   }
   out->boot_ = std::move(*boot);
-  print_boot(*out->boot_);
   return out;
 }
 
@@ -73,6 +73,11 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
   virtual_time_ = settings.virtual_time;
   ResourceController::Settings own = settings;
   own.limits.halted = !boot_->fault.empty();
+  own.limits.events = &events_->ring();
+  own.log = [weak = std::weak_ptr<EventLog>(events_)](
+                vm::DeviceEvent event, const std::string& device, const std::string& text) {
+    if (const auto log = weak.lock()) log->take_device(event, device, text);
+  };
   auto running = ResourceController::start(own, clock, boot_->retained);
   if (!running.ok()) return running.error();
   running_ = std::move(*running);
@@ -81,14 +86,14 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
       StartReport{boot_->trial_lost, boot_->alarms, boot_->fault, kWho});
   service_->resume(boot_->edits);
   service_->store_beside();
+  service_->show_events(*events_);
+  events_->watch(running_->recorder());
   if (running_->recorder() != nullptr) service_->record(*running_->recorder());
   auto server = vm::SocketServer::open(folder_.path(), *service_);
   if (!server.ok()) return server.error();
   server_ = std::move(*server);
-  service_->keeper().tell([](const std::string& line) {
-    std::fprintf(stderr, "%s\n", line.c_str());
-  });
   service_->keeper().start();
+  events_->start();
   return base::Ok{};
 }
 
@@ -124,12 +129,11 @@ void ServedResource::run(const std::function<bool()>& stop, const std::function<
       idle(stop, alive);
     }
   }
-  if (controller().at_boundary()) {
-    base::Status left = controller().leave_all(kExitLimitNs);
-    if (!left.ok()) refuse(left.error());
-  }
+  base::Status left = base::Ok{};
+  if (controller().at_boundary()) left = controller().leave_all(kExitLimitNs);
   controller().make_outputs_safe();
   mailbox_.close();
+  if (!left.ok()) note(Event::kAlarm, base::to_string(left.error()));
 }
 
 // A clean end costs nothing of the retained values. In the middle of a scan there is no boundary:
@@ -139,15 +143,17 @@ base::Status ServedResource::end() {
     online_change::Snapshot last;
     service_->keeper().take(last);
     base::Status saved = service_->keeper().save(last);
-    if (!saved.ok()) refuse(saved.error());
+    if (!saved.ok()) note(Event::kAlarm, "not saved at the end: " + base::to_string(saved.error()));
   }
   service_->keep_trial_over_stop();
   online_change::JournalEntry entry;
   entry.time_ns = wall_time_ns();
-  entry.event = online_change::Event::kStopped;
-  entry.who = "serve";
+  entry.event = Event::kStopped;
+  entry.who = service_->stop_wanted() ? service_->stopped_by() : kWho;
   entry.from = controller().verified().digest();
+  events_->look();
   store_.note(std::move(entry));
+  events_->close();
   return running_->close();
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tools/stvm/controller_service.h"
+#include "tools/stvm/event_log.h"
 #include "tools/stvm/resource_controller.h"
 #include "tools/stvm/state_folder.h"
 #include "vm/runtime/file_storage.h"
@@ -19,11 +20,13 @@ namespace stvm {
 class ServedResource {
  public:
   // Locks the folder and decides what runs: `given`, or what is stored there; with `create`,
-  // nothing where nothing ever was. Prints what is wrong. kFileNotFound: nothing was ever stored.
+  // nothing where nothing ever was. Notes what is wrong. kFileNotFound: nothing was ever stored.
   static base::Result<std::unique_ptr<ServedResource>> open(
       const std::string& directory, const std::string& name,
-      const std::optional<ir::VerifiedImage>& given, bool create);
-  ServedResource(const std::string& directory, const std::string& name, StateFolder folder);
+      const std::optional<ir::VerifiedImage>& given, bool create,
+      const std::shared_ptr<LogOutput>& output);
+  ServedResource(const std::string& directory, const std::string& name, StateFolder folder,
+                 const std::shared_ptr<LogOutput>& output);
   ~ServedResource();
 
   const ir::VerifiedImage& program() const { return boot_->image; }
@@ -45,6 +48,7 @@ class ServedResource {
   vm::Controller& controller() { return running_->controller(); }
 
  private:
+  void note(online_change::Event event, std::string text);
   void idle(const std::function<bool()>& stop, const std::function<void()>& alive);
 
   std::string directory_;
@@ -52,6 +56,7 @@ class ServedResource {
   StateFolder folder_;
   vm::FileStorage storage_;
   online_change::Store store_;
+  std::shared_ptr<EventLog> events_;  // threads of devices that hang may outlive this
   std::optional<online_change::Boot> boot_;
   vm::Clock* clock_ = nullptr;
   bool virtual_time_ = false;

@@ -10,6 +10,7 @@
 #include "tools/stvm/activity_text.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
+#include "tools/stvm/event_text.h"
 #include "tools/stvm/times_text.h"
 #include "tools/stvm/trap_text.h"
 #include "tools/stvm/units.h"
@@ -135,7 +136,9 @@ void print_devices(const std::vector<vm::DeviceStatus>& devices) {
   std::printf("\n%s", table.text().c_str());
   for (const vm::DeviceStatus& device : devices) {
     if (device.error.empty()) continue;
-    std::printf("last error of %s: %s\n", device.name.c_str(), device.error.c_str());
+    const std::string age =
+        device.error_age_ns < 0 ? "" : ", " + age_text(device.error_age_ns) + " ago";
+    std::printf("last error of %s%s: %s\n", device.name.c_str(), age.c_str(), device.error.c_str());
   }
   for (const vm::DeviceStatus& device : devices) {
     if (device.writes == 0) continue;
@@ -148,7 +151,8 @@ void device_json(tools::JsonWriter& json, const vm::DeviceStatus& device) {
   json.begin_object().field("name", device.name).field("driver", device.driver);
   json.field("state", device.state).field("exchanges", device.exchanges);
   json.field("errors", device.errors).field("age_ns", device.age_ns);
-  json.field("error", device.error).field("writes", device.writes);
+  json.field("error", device.error).field("error_age_ns", device.error_age_ns);
+  json.field("writes", device.writes);
   json.field("last_writer", device.last_writer).end_object();
 }
 

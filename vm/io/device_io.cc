@@ -4,7 +4,9 @@
 
 #include "base/check.h"
 #include "ir/bytecode/device_tasks.h"
+#include "ir/types/time_units.h"
 #include "vm/io/bit_copy.h"
+#include "vm/runtime/event_ring.h"
 #include "vm/runtime/process_image.h"
 #include "vm/runtime/safe_outputs.h"
 
@@ -55,6 +57,8 @@ struct DeviceIo::Binding {
   std::optional<uint32_t> task = {};  // of the version; nothing: none is trapped by a loss
   bool online = false;                // at the last receive()
   bool lost = false;                  // between it and the one before
+  bool hangs = false;                 // it was lost so, and that was told
+  int64_t hangs_since_ns = 0;
   ExchangePort* port = nullptr;
   std::shared_ptr<ExchangeSet> set;
 };
@@ -215,6 +219,8 @@ void DeviceIo::use(const base::Digest& version) {
     const Binding* before =
         running_ != nullptr && binding.port != nullptr ? running_->of(*binding.port) : nullptr;
     binding.online = before != nullptr && before->online;
+    binding.hangs = before != nullptr && before->hangs;
+    binding.hangs_since_ns = binding.hangs ? before->hangs_since_ns : 0;
     binding.lost = false;
   }
   running_ = next->get();
@@ -268,6 +274,7 @@ void DeviceIo::receive(std::span<uint8_t> inputs) {
     bool fresh = binding.port->fresh(now);
     binding.lost = binding.online && !fresh;
     binding.online = fresh;
+    if (options_.events != nullptr) tell_hang(binding, now);
     if (fresh && set.inputs.take()) set.received = true;
     fresh = fresh && (set.received || set.points.inputs.empty());  // of this version's points
     if (has_quality(binding)) set_bit(inputs, binding.device.quality.bit_offset, fresh);
@@ -283,6 +290,23 @@ void DeviceIo::receive(std::span<uint8_t> inputs) {
     }
   }
   std::copy(inputs.begin(), inputs.end(), running_->received.begin());
+}
+
+// An exchange that fails is told by its own thread, with the reason. One that does not end can only
+// be seen here.
+void DeviceIo::tell_hang(Binding& binding, int64_t now) {
+  const bool begins = binding.lost && !binding.port->failed();
+  if (!begins && !(binding.hangs && binding.online)) return;
+  binding.hangs = begins;
+  if (begins) binding.hangs_since_ns = binding.port->received_ns();
+  const auto kind = begins ? ScanEventKind::kDeviceLost : ScanEventKind::kDeviceBack;
+  ScanEvent* const event = options_.events->begin(kind);
+  if (event == nullptr) return;
+  event->source.add("device ").add(binding.device.name);
+  event->text.add(begins ? "its exchange does not end; its newest inputs are " : "online after ");
+  event->text.add((now - binding.hangs_since_ns) / ir::kNsPerMillisecond);
+  event->text.add(begins ? " ms old" : " ms");
+  options_.events->end();
 }
 
 void DeviceIo::lost_tasks(std::span<uint8_t> tasks) {

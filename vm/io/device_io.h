@@ -17,6 +17,8 @@
 
 namespace vm {
 
+class EventRing;  // vm/runtime/event_ring.h
+
 // A setting that is another one on this controller: `--device press.address=10.0.0.7:502`.
 struct DeviceOverride {
   std::string device;
@@ -34,7 +36,8 @@ class DeviceIo : public IoPort {
     // Set: virtual time. Simulated devices exchange in send(), on this clock; others are off.
     Clock* virtual_clock = nullptr;
     DeviceLog log = {};
-    bool confined = false;  // threads of devices: vm/runtime/thread_filter.h
+    EventRing* events = nullptr;  // gets devices whose exchange does not end; outlives this
+    bool confined = false;        // threads of devices: vm/runtime/thread_filter.h
   };
   explicit DeviceIo(Options options);
   ~DeviceIo() override;
@@ -59,6 +62,7 @@ class DeviceIo : public IoPort {
   base::Result<std::unique_ptr<Tables>> build(const ir::VerifiedImage& version);
   int64_t now_ns() const;
   bool take_writes();
+  void tell_hang(Binding& binding, int64_t now_ns);
   static bool has_quality(const Binding& binding);
   void keep_running_only();
 

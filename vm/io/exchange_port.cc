@@ -12,6 +12,7 @@ namespace vm {
 namespace {
 
 constexpr int64_t kNever = INT64_MIN;
+constexpr int64_t kNsInMs = ir::kNsPerMillisecond;
 constexpr int64_t kLongestRetryNs = 2000 * ir::kNsPerMillisecond;
 constexpr int64_t kCloseSlackNs = 1000 * ir::kNsPerMillisecond;
 constexpr size_t kMostWrites = 4096;  // from one boundary to the next
@@ -48,11 +49,12 @@ struct ExchangePort::Core final : OutsideEvents {
   base::Status leave_last(ExchangeSet* next, int64_t now);
   base::Status exchange(ExchangeSet& set, bool used, int64_t now);
   void note(const base::Status& status, int64_t now);
+  void note_online(int64_t now);
   void note_error(const std::string& text);
+  std::string with_age(const std::string& text) const;
   void written(const std::string& who, const std::string& what) override;
   void refused(const std::string& who, const std::string& what) override;
-  // False: it is left out, since there have been too many.
-  bool say(EventLimit& limit, const std::string& text) const;
+  void tell(DeviceEvent event, const std::string& text) const;
   int64_t pause_ns() const;
 
   const ir::Device device;
@@ -75,6 +77,7 @@ struct ExchangePort::Core final : OutsideEvents {
   std::condition_variable wake;
   std::vector<std::shared_ptr<ExchangeSet>> sets;
   std::string error;
+  int64_t error_ns = kNever;  // when it came
   std::string last_writer;
   bool stopping = false;
   bool ended = false;
@@ -83,9 +86,8 @@ struct ExchangePort::Core final : OutsideEvents {
   std::unique_ptr<IoDriver> driver;
   std::shared_ptr<ExchangeSet> last_used;
   uint32_t failures = 0;  // in turn
-  std::string said;       // the error that was said last; "": it is online since
-  EventLimit states;
-  EventLimit changes;
+  std::string told;       // the error that was told last; "": it is online since
+  int64_t told_ns = 0;    // since when it is lost
 };
 
 int64_t ExchangePort::now_ns() {
@@ -170,10 +172,15 @@ void ExchangePort::Core::note(const base::Status& status, int64_t now) {
     received_ns.store(own_thread ? ExchangePort::now_ns() : now, std::memory_order_release);
     failed.store(false, std::memory_order_release);
     failures = 0;
-    if (!said.empty() && say(states, "online")) said.clear();
-    return;
+    return note_online(ExchangePort::now_ns());
   }
   note_error(status.error().text);
+}
+
+void ExchangePort::Core::note_online(int64_t now) {
+  if (told.empty()) return;
+  told.clear();
+  tell(DeviceEvent::kBack, "online after " + std::to_string((now - told_ns) / kNsInMs) + " ms");
 }
 
 // A server that nobody has asked yet is none that fails.
@@ -184,30 +191,39 @@ void ExchangePort::Core::note_error(const std::string& text) {
     errors.fetch_add(1, std::memory_order_relaxed);
     failures = std::min<uint32_t>(failures + 1, 30);
   }
-  if ((was_good || !idle) && text != said && say(states, text)) said = text;
+  const int64_t now = ExchangePort::now_ns();
+  if ((was_good || !idle) && text != told) {
+    if (told.empty()) told_ns = now;
+    told = text;
+    tell(DeviceEvent::kLost, with_age(text));
+  }
   std::lock_guard lock(mutex);
   error = text;
+  error_ns = now;
+}
+
+// What is used of it until it is back, or its policy for losses says something else.
+std::string ExchangePort::Core::with_age(const std::string& text) const {
+  const int64_t received = received_ns.load(std::memory_order_relaxed);
+  if (received == kNever || !own_thread) return text;
+  const int64_t age_ns = ExchangePort::now_ns() - received;
+  return text + "; its newest inputs are " + std::to_string(age_ns / kNsInMs) + " ms old";
 }
 
 void ExchangePort::Core::written(const std::string& who, const std::string& what) {
   writes.fetch_add(1, std::memory_order_relaxed);
-  say(changes, who + " wrote " + what);
+  tell(DeviceEvent::kWritten, who + " wrote " + what);
   std::lock_guard lock(mutex);
   last_writer = who;
 }
 
 void ExchangePort::Core::refused(const std::string& who, const std::string& what) {
-  say(changes, who + " was not permitted to write " + what);
+  tell(DeviceEvent::kRefused, who + " was not permitted to write " + what);
 }
 
 // In virtual time the control thread exchanges, and has nothing to do with who listens.
-bool ExchangePort::Core::say(EventLimit& limit, const std::string& text) const {
-  if (!log || !own_thread) return true;
-  const std::optional<uint64_t> omitted = limit.pass(ExchangePort::now_ns());
-  if (!omitted) return false;
-  const std::string more = std::to_string(*omitted) + " more such lines were left out";
-  log("device " + device.name + ": " + text + (*omitted == 0 ? "" : "; " + more));
-  return true;
+void ExchangePort::Core::tell(DeviceEvent event, const std::string& text) const {
+  if (log && own_thread) log(event, device.name, text);
 }
 
 // Longer and longer while nobody answers.
@@ -294,6 +310,7 @@ DeviceStatus ExchangePort::status() const {
   out.state = good ? "online" : out.errors == 0 && received == kNever ? "waiting" : "lost";
   std::lock_guard lock(core_->mutex);
   out.error = core_->error;
+  if (threaded && core_->error_ns != kNever) out.error_age_ns = now_ns() - core_->error_ns;
   out.writes = core_->writes.load(std::memory_order_relaxed);
   out.last_writer = core_->last_writer;
   return out;
@@ -310,6 +327,8 @@ bool ExchangePort::fresh(int64_t now) const {
   const int64_t received = received_ns();
   return received != kNever && now - received <= core_->period_ns + core_->timeout_ns;
 }
+
+bool ExchangePort::failed() const { return core_->failed.load(std::memory_order_acquire); }
 
 void ExchangePort::exchange_now(int64_t now) { core_->round(now); }
 

@@ -67,6 +67,8 @@ class ExchangePort {
   int64_t received_ns() const;
   // Are they valid and new enough?
   bool fresh(int64_t now_ns) const;
+  // Has the last exchange failed? One that does not end has not.
+  bool failed() const;
   void exchange_now(int64_t now_ns);
   // Of a port with a thread: the time since some instant, without a system call.
   static int64_t now_ns();

@@ -32,6 +32,8 @@
 
 namespace vm {
 
+class EventRing;  // event_ring.h
+
 // Which variables a restart leaves as they are: none, those that are RETAIN, all.
 enum class Restart : uint8_t { kCold, kWarm, kHot };
 
@@ -47,6 +49,7 @@ struct ControllerOptions {
   bool halted = false;  // begins as behind a fault: nothing runs before restart()
   uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit
   Timeline* timeline = nullptr;  // is told of all cycles; outlives the controller
+  EventRing* events = nullptr;  // gets traps and overruns; outlives the controller
 };
 
 // Times of all scans of a task so far, in ns; p99: 99 % took no longer (histogram.h).

@@ -48,6 +48,7 @@ struct DeviceStatus {
   std::string error;    // the last one
   uint64_t writes = 0;  // of others to %Q and %M
   std::string last_writer = {};
+  int64_t error_age_ns = -1;  // since when `error` is known; -1: not at all, or in virtual time
 };
 
 // Field devices: the process image as the driver sees it. Called by the control

@@ -149,6 +149,7 @@ void device_fields(A& a, T& device) {
   a(device.error);
   a(device.writes);
   a(device.last_writer);
+  a(device.error_age_ns);
 }
 
 template <class A, class T>

@@ -18,7 +18,7 @@
 namespace vm {
 
 // Another one with each other layout of a message (tests/unit/store/protocol_layout_test.cc).
-inline constexpr uint8_t kProtocolVersion = 11;
+inline constexpr uint8_t kProtocolVersion = 12;
 inline constexpr uint32_t kMaxMessageBytes = 1u << 20;
 inline constexpr uint32_t kMaxNames = 4096;          // in one request
 inline constexpr uint32_t kMaxNameBytes = 65536;     // of a path or a value

@@ -19,6 +19,11 @@ constexpr size_t kMaxReads = 1u << 16;            // of the clock in one cycle
 constexpr size_t kMaxChanged = 1u << 16;          // input bytes in one cycle
 constexpr size_t kMaxWaiting = size_t{64} << 20;  // bytes that the disk is behind
 
+constexpr const char* kTooMuch = "one cycle saw too much";
+constexpr const char* kTooSlow = "the disk was too slow";
+constexpr const char* kDiskFailed = "the disk failed";
+constexpr const char* kFull = "the file reached 1 GiB";
+
 }  // namespace
 
 base::Result<std::unique_ptr<Recorder>> Recorder::create(const std::string& path, Clock& clock,
@@ -61,7 +66,7 @@ int64_t Recorder::now_ns() {
   if (reads->size() < kMaxReads) {
     reads->push_back(now);
   } else {
-    overflow_ = true;
+    ended_ = kTooMuch;
   }
   return now;
 }
@@ -75,7 +80,7 @@ void Recorder::receive(std::span<uint8_t> inputs) {
     if (now_.observed.changed.size() < kMaxChanged) {
       now_.observed.changed.push_back({i, inputs[i]});
     } else {
-      overflow_ = true;
+      ended_ = kTooMuch;
     }
   }
 }
@@ -94,7 +99,7 @@ void Recorder::note_changes(const base::Bytes& before, const base::Bytes& after,
     if (changes.size() < kMaxChanged) {
       changes.push_back({i, after[i]});
     } else {
-      overflow_ = true;
+      ended_ = kTooMuch;
     }
   }
 }
@@ -134,7 +139,7 @@ void Recorder::begin() { in_cycle_ = true; }
 void Recorder::end(Controller& controller) {
   in_cycle_ = false;
   now_.state = sum_.of(controller);
-  if (!overflow_) hand_over(encode_record(now_));
+  if (ended_early() == nullptr) hand_over(encode_record(now_));
   ++now_.number;
   now_.observed.clock.clear();
   now_.observed.changed.clear();
@@ -162,7 +167,7 @@ void Recorder::end_job(const Controller& controller) {
 void Recorder::note(base::ByteSpan request) {
   switched_ = false;
   request_.bytes.assign(request.begin(), request.end());
-  const base::Bytes record = overflow_ ? base::Bytes() : encode_record(request_);
+  const base::Bytes record = ended_early() != nullptr ? base::Bytes() : encode_record(request_);
   const std::lock_guard lock(mutex_);
   waiting_.insert(waiting_.end(), record.begin(), record.end());
   holding_ = false;
@@ -179,7 +184,7 @@ void Recorder::hand_over(const base::Bytes& record) {
   local_.insert(local_.end(), record.begin(), record.end());
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (lock.owns_lock() && !holding_) take_local();
-  if (local_.size() > kMaxWaiting) overflow_ = true;
+  if (local_.size() > kMaxWaiting) ended_ = kTooSlow;
 }
 
 void Recorder::take_local() {
@@ -205,7 +210,7 @@ void Recorder::write_to_file() {
         room && !failed_ && std::fwrite(batch.data(), 1, batch.size(), file_) == batch.size();
     size += batch.size();
     batch.clear();
-    if (!written) overflow_ = true;
+    if (!written && ended_early() == nullptr) ended_ = room ? kDiskFailed : kFull;
     lock.lock();
     failed_ = failed_ || !written;
   }
@@ -215,7 +220,7 @@ base::Status Recorder::close() {
   if (file_ == nullptr) return base::Ok{};
   {
     const std::lock_guard lock(mutex_);
-    if (!overflow_) {
+    if (ended_early() == nullptr) {
       const base::Bytes end = encode_end();
       local_.insert(local_.end(), end.begin(), end.end());
     }
@@ -225,11 +230,11 @@ base::Status Recorder::close() {
   }
   writer_.join();
   const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
-  if (closed && !failed_ && !overflow_) return base::Ok{};
-  return base::Error{
-      base::Refusal::kFileUnwritable,
-      "the recording ended before the run: the disk failed or was too slow, the file "
-      "reached 1 GiB, or one cycle saw too much; it can be replayed up to there"};
+  const char* const why = ended_early();
+  if (closed && !failed_ && why == nullptr) return base::Ok{};
+  return base::Error{base::Refusal::kFileUnwritable,
+                     std::string("the recording ended before the run: ") +
+                         (why != nullptr ? why : kDiskFailed) + "; it can be replayed up to there"};
 }
 
 }  // namespace vm

@@ -55,6 +55,9 @@ class Recorder : public Clock, public IoPort {
   void forget_jobs();
   bool switched() const { return switched_; }
 
+  // Why nothing more is recorded, while the run goes on; null: it is. Any thread.
+  const char* ended_early() const { return ended_.load(std::memory_order_relaxed); }
+
   // Everything that was recorded is in the file; kFileUnwritable when it is not.
   base::Status close();
 
@@ -77,7 +80,7 @@ class Recorder : public Clock, public IoPort {
   RecordedRequest request_;  // cycle and clock of the job that counts
   bool in_cycle_ = false;
   bool in_job_ = false;
-  std::atomic<bool> overflow_{false};
+  std::atomic<const char*> ended_{nullptr};  // why it ended before the run
 
   base::Bytes local_;  // of the control thread, not yet handed over
   // A request's first job is done, and note() or forget_jobs() is still to come: what it did is in

@@ -138,9 +138,7 @@ bool Scheduler::lengthens_cycle() {
     if (task.next_release_ns > next_cycle_ns_) continue;
     late = true;
     if (std::exchange(task.due_again, true)) continue;
-    ++task.status.overruns;
-    task.late = true;
-    show(task);
+    note_overrun(task);
   }
   return late;
 }
@@ -271,9 +269,7 @@ bool Scheduler::release(TaskSlot& task, int64_t due_ns) {
     note(Moment::kReleased, task, due_ns);
     return true;
   }
-  ++task.status.overruns;
-  task.late = true;
-  show(task);
+  note_overrun(task);
   const bool comes_later = task.policy.overrun == ir::Overrun::kAtOnce ||
                            task.policy.overrun == ir::Overrun::kStretch;
   note(comes_later && !task.due_again ? Moment::kReleased : Moment::kMissed, task, due_ns);

@@ -95,6 +95,7 @@ class Scheduler {
   void end_program(TaskSlot& task);
   void end_task(TaskSlot& task);
   void note_trap(const TaskSlot& task, const Trap& trap);
+  void note_overrun(TaskSlot& task);
   void trap_in(TaskSlot& task, const Trap& trap);
   void find_written(const TaskSlot& task);
   void hand_down(std::span<const uint8_t> mask);

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "base/check.h"
-#include "base/memory_limit.h"
 #include "vm/runtime/byte_masks.h"
 #include "vm/runtime/scheduler.h"
 
@@ -170,18 +169,6 @@ void Scheduler::start_again(TaskSlot& task) {
       task.next_release_ns = next_cycle_ns_;
     }
   }
-}
-
-// Where memory has run out, the trap has a record without a text that was made before.
-void Scheduler::note_trap(const TaskSlot& task, const Trap& trap) {
-  ++trap_count_;
-  const auto record = [&]() -> std::shared_ptr<const TrapRecord> {
-    return std::make_shared<TrapRecord>(TrapRecord{
-        cycles_, task.status.name, trap, describe(tables_->generation->image(), trap)});
-  };
-  auto made = base::within_memory(record, [this] { return without_text_; });
-  if (traps_.size() == kKeptTraps) traps_.erase(traps_.begin());
-  traps_.push_back(std::move(made));  // there is room: the constructor
 }
 
 void Scheduler::trap_in(TaskSlot& task, const Trap& trap) {

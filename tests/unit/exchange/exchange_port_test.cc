@@ -154,20 +154,6 @@ TEST(ExchangePort, ASetThatIsOnlyPreparedIsReadAndNotWritten) {
   EXPECT_TRUE(eventually([&] { return seen->last == 0; }));
 }
 
-TEST(EventLimit, SomeAtOnceThenOneInEachPeriodAndTheOthersAreCounted) {
-  constexpr int64_t kPeriod = EventLimit::kPeriodNs;
-  EventLimit limit;
-  const int64_t begin = 1000 * kPeriod;
-  for (uint64_t i = 0; i < EventLimit::kAtOnce; ++i) EXPECT_EQ(limit.pass(begin), 0u);
-  for (int i = 0; i < 17; ++i) EXPECT_FALSE(limit.pass(begin + i).has_value());
-  EXPECT_FALSE(limit.pass(begin + kPeriod - 1).has_value());
-  EXPECT_EQ(limit.pass(begin + kPeriod), 18u);
-  EXPECT_FALSE(limit.pass(begin + kPeriod).has_value());
-  EXPECT_EQ(limit.pass(begin + 2 * kPeriod), 1u);
-  for (uint64_t i = 0; i < EventLimit::kAtOnce; ++i) EXPECT_EQ(limit.pass(9000 * kPeriod), 0u);
-  EXPECT_FALSE(limit.pass(9000 * kPeriod).has_value());
-}
-
 // Fails as the test says; each exchange is one write of somebody.
 class Faulty : public IoDriver {
  public:
@@ -191,10 +177,14 @@ TEST(ExchangePort, WhatHappensIsSaidOnceAndIdleIsNoError) {
   std::vector<std::string> lines;
   ir::Device server = device("1");
   server.driver = "modbus-tcp-server";  // which does not wait longer when it fails
-  ExchangePort port(server, std::make_unique<Faulty>(how), true, [&](const std::string& line) {
+  const auto log = [&](DeviceEvent event, const std::string& device, const std::string& text) {
     std::lock_guard lock(mutex);
-    if (line.find("wrote") == std::string::npos) lines.push_back(line);
-  });
+    if (event == DeviceEvent::kWritten) return;
+    const bool back = event == DeviceEvent::kBack;
+    lines.push_back(device + (back ? " back " : " lost ") +
+                    text.substr(0, text.find_first_of(";0123456789")));
+  };
+  ExchangePort port(server, std::make_unique<Faulty>(how), true, log);
   const auto set = port.add(points(0, 1), zeros(1));
   port.use(set.get());
   const auto goes_on = [&] {
@@ -213,8 +203,8 @@ TEST(ExchangePort, WhatHappensIsSaidOnceAndIdleIsNoError) {
   EXPECT_GT(port.status().writes, 20u);
   EXPECT_EQ(port.status().last_writer, "somebody");
   std::lock_guard lock(mutex);
-  EXPECT_EQ(lines, (std::vector<std::string>{"device d: port in use", "device d: online",
-                                             "device d: nobody asks", "device d: online"}));
+  EXPECT_EQ(lines, (std::vector<std::string>{"d lost port in use", "d back online after ",
+                                             "d lost nobody asks", "d back online after "}));
 }
 
 TEST(ExchangePort, WhatIsLeftBecomesSafeOrStays) {

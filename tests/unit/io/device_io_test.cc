@@ -6,6 +6,7 @@
 #include "tests/unit/io/rig.h"
 #include "vm/runtime/clocks.h"
 #include "vm/runtime/controller.h"
+#include "vm/runtime/event_ring.h"
 
 namespace vm {
 namespace {
@@ -243,6 +244,43 @@ TEST(DeviceIo, B8_ADriverThatHangsDelaysNoScan) {
   EXPECT_EQ(*(*controller)->get("Main.j"), "16#06");
   RecordProperty("missed", static_cast<int>((*controller)->missed_releases()));
   release(hangs);
+}
+
+// nobody else sees it, since its thread does not come back to say so.
+TEST(DeviceIo, R10_AnExchangeThatDoesNotEndIsToldAndSoIsItsEnd) {
+  static FakeDevice hangs;  // its thread may outlive the test
+  EventRing ring;
+  DeviceIo io({.make_driver = fakes({{"d", &hangs}}), .events = &ring});
+  auto image = io_test::build(kEcho, {device("d", {to_program(0, 1, 0), to_device(0, 1, 0)},
+                                             {{"period_ms", "1"}, {"timeout_ms", "500"}})});
+  ASSERT_TRUE(image);
+  ASSERT_TRUE(io.prepare(*image).ok());
+  io.use(image->digest());
+  Receiver receiver(io);
+  hangs.set(32, 5);
+  ASSERT_TRUE(eventually([&] { return receiver.input(0) == 5; }));
+  std::vector<ScanEvent> events;
+  const auto told = [&](ScanEventKind kind) {
+    receiver.input(0);
+    for (ScanEvent event; ring.take(event);) events.push_back(event);
+    return !events.empty() && events.back().kind == kind;
+  };
+  hangs.hangs = true;
+  ASSERT_TRUE(eventually([&] { return told(ScanEventKind::kDeviceLost); }));
+  EXPECT_EQ(events.back().source.view(), "device d");
+  EXPECT_TRUE(events.back().text.view().starts_with("its exchange does not end; its newest inputs"))
+      << events.back().text.view();
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(told(ScanEventKind::kDeviceLost)) << "once";
+  const size_t lost = events.size();
+  release(hangs);
+  ASSERT_TRUE(eventually([&] { return told(ScanEventKind::kDeviceBack); }));
+  EXPECT_EQ(events.size(), lost + 1);
+  EXPECT_TRUE(events.back().text.view().starts_with("online after "));
+  // An error is its thread's to tell, which knows the reason.
+  hangs.broken = true;
+  io.receive(receiver.inputs);
+  ASSERT_TRUE(eventually([&] { return io.status()[0].errors > 0; }));
+  EXPECT_FALSE(told(ScanEventKind::kDeviceLost));
 }
 
 // The same on virtual time, where a release is missed only by what the controller itself does.

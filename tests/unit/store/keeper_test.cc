@@ -1,5 +1,5 @@
 // The keeper beside a running program, in virtual time: values at most a second old, nothing
-// written that did not change, traps in the journal; and what it does while the disk fails.
+// written that did not change; and what it does while the disk fails.
 #include "online_change/store/retain_keeper.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,6 @@
 
 namespace plc {
 namespace {
-
-using online_change::Event;
 
 constexpr int64_t kMs = 1'000'000;
 constexpr const char* kCounting =
@@ -29,7 +27,10 @@ class KeeperTest : public ::testing::Test {
                                                    io_, found->retained));
     keeper_ = std::make_unique<online_change::RetainKeeper>(*controller_, *store_,
                                                             [this] { return now_ns_; });
-    keeper_->tell([this](const std::string& line) { said_.push_back(line); });
+    store_->tell([this](const online_change::JournalEntry& entry) {
+      said_.push_back(std::string(event_name(entry.event)) + ": " + entry.text);
+      return true;
+    });
   }
   // A cycle in each millisecond, with next to no time left, as in a busy controller.
   void run_for(int64_t ms) {
@@ -92,16 +93,6 @@ TEST_F(KeeperTest, WhatDoesNotChangeIsWrittenOnce) {
   run_for(10'000);
   EXPECT_EQ(writes, 0u);
   EXPECT_TRUE(store_->retained_fits());
-}
-
-TEST_F(KeeperTest, TrapsAreInTheJournal) {
-  begin("PROGRAM P VAR z : INT; q : INT; END_VAR q := 1 / z; END_PROGRAM");
-  run_for(1000);
-  auto traps = online_change::read_journal(disk_, online_change::kTrapsFile);
-  ASSERT_TRUE(traps.ok());
-  ASSERT_EQ(traps->size(), 1u);
-  EXPECT_EQ(traps->front().event, Event::kTrap);
-  EXPECT_NE(traps->front().text.find("test.st:1 (P)"), std::string::npos) << traps->front().text;
 }
 
 // With the thread that a controller has: it asks, and what it was given is saved when it ends.

@@ -53,7 +53,7 @@ vm::StatusReport status() {
                 {vm::TaskState::kSuspended, true, {ir::InputBuffer::kThree, 1, 2, 0, true, false},
                  {ir::InputBuffer::kSwapped, 1, vm::BufferState::kNone, 0, false, true}}}};
   out.traps = {{43, "Slow", {"Pou", "file.st", 44, "text"}}};
-  out.devices = {{"rack", "modbus", "online", 45, 46, 47, "none", 48, "writer"}};
+  out.devices = {{"rack", "modbus", "online", 45, 46, 47, "none", 48, "writer", 61}};
   return out;
 }
 
@@ -123,7 +123,7 @@ void add(base::Bytes& all, const base::Bytes& message, size_t from = 0) {
 
 base::Bytes requests() {
   base::Bytes all;
-  for (uint8_t i = 0; i <= static_cast<uint8_t>(vm::Command::kRedo); ++i) {
+  for (uint8_t i = 0; i <= static_cast<uint8_t>(vm::Command::kEvents); ++i) {
     add(all,
         vm::encode(vm::Request{.command = static_cast<vm::Command>(i),
                                .expected = digest(1),
@@ -170,6 +170,7 @@ constexpr Version kVersions[] = {
     {9, "bd7d362cff72"},
     {10, "3177112f3b76"},
     {11, "0b5d1d5c3b52"},
+    {12, "7fc100f9f791"},
 };
 
 TEST(ProtocolLayout, BelongsToTheVersion) {

@@ -349,6 +349,20 @@ TEST(Journal, CutsTextsBetweenCharacters) {
   EXPECT_EQ(back->who, std::string(kMaxWho - 1, 'a'));
 }
 
+// A sector has room for the longest texts, and one of an older release has no source.
+TEST(Journal, R10_AnEventHasASource) {
+  JournalEntry entry;
+  entry.who.assign(2 * kMaxWho, 'w');
+  entry.text.assign(2 * kMaxText, 't');
+  entry.source.assign(2 * kMaxSource, 's');
+  std::optional<JournalEntry> back = decode_entry(encode(entry));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->who.size() + back->text.size() + back->source.size(),
+            kMaxWho + kMaxText + kMaxSource);
+  entry.source = "task Fast";
+  EXPECT_EQ(decode_entry(encode(entry))->source, "task Fast");
+}
+
 TEST(Decoders, TakeWhatTheyWroteAndNothingElse) {
   ControlRecord control;
   control.boots[3] = 7;

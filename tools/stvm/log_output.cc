@@ -1,0 +1,141 @@
+#include "tools/stvm/log_output.h"
+
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+
+#include "tools/stvm/controller_service.h"
+#include "tools/stvm/event_text.h"
+
+namespace stvm {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr int kLookMs = 50;
+constexpr std::chrono::milliseconds kLastPatience{1000};
+
+}  // namespace
+
+struct LogOutput::Core {
+  Core(int to, bool journald) : descriptor(to), for_journald(journald) {}
+
+  void run();
+  bool write(const std::string& line);
+  bool gives_up() const { return ending && steady_clock::now() >= end_by; }  // with `mutex`
+  bool must_give_up();
+  std::string lost_line(uint64_t count) const;
+
+  const int descriptor;
+  const bool for_journald;
+
+  std::mutex mutex;  // never held while a line is written
+  std::condition_variable changed;
+  std::deque<std::string> lines;
+  uint64_t lost = 0;
+  bool ending = false;
+  steady_clock::time_point end_by{};
+  bool ended = false;
+};
+
+bool LogOutput::Core::must_give_up() {
+  const std::lock_guard lock(mutex);
+  return gives_up();
+}
+
+// Waits until some of it has room, so that the call itself does not wait, mostly.
+bool LogOutput::Core::write(const std::string& line) {
+  if (descriptor < 0) return false;
+  for (size_t done = 0; done < line.size();) {
+    pollfd wanted{descriptor, POLLOUT, 0};
+    const int ready = ::poll(&wanted, 1, kLookMs);
+    if (ready == 0 && must_give_up()) return false;
+    if (ready == 0) continue;
+    const ssize_t written = ::write(descriptor, line.data() + done, line.size() - done);
+    const bool again = written < 0 && (errno == EINTR || errno == EAGAIN);
+    if (written < 0 && !again) return false;
+    if (written > 0) done += static_cast<size_t>(written);
+    if (again && must_give_up()) return false;
+  }
+  return true;
+}
+
+std::string LogOutput::Core::lost_line(uint64_t count) const {
+  return log_line(online_change::Level::kWarning, wall_time_ns(),
+                  std::to_string(count) +
+                      " lines are missing here: they could not be written; "
+                      "`stvm events` has the newest",
+                  for_journald);
+}
+
+void LogOutput::Core::run() {
+  std::unique_lock lock(mutex);
+  for (;;) {
+    changed.wait(lock, [this] { return ending || !lines.empty(); });
+    if (lines.empty() || gives_up()) break;
+    const std::string line = std::move(lines.front());
+    lines.pop_front();
+    const uint64_t missing = lost;
+    lock.unlock();
+    const bool said = missing == 0 || write(lost_line(missing));
+    const bool written = said && write(line);
+    lock.lock();
+    if (said) lost -= missing;
+    if (!written) ++lost;
+  }
+  ended = true;
+  changed.notify_all();
+}
+
+LogOutput::LogOutput(int descriptor, bool for_journald)
+    : core_(std::make_shared<Core>(descriptor, for_journald)) {}
+
+LogOutput::~LogOutput() {
+  std::unique_lock lock(core_->mutex);
+  core_->ending = true;
+  core_->end_by = steady_clock::now() + kLastPatience;
+  core_->changed.notify_all();
+  if (!thread_.joinable()) {
+    lock.unlock();
+    core_->run();
+    return;
+  }
+  const bool ended =
+      core_->changed.wait_for(lock, 2 * kLastPatience, [this] { return core_->ended; });
+  lock.unlock();
+  ended ? thread_.join() : thread_.detach();
+}
+
+void LogOutput::start() {
+  thread_ = std::thread([core = core_] { core->run(); });
+}
+
+void LogOutput::add(online_change::Level level, int64_t time_ns, const std::string& text) {
+  std::string line = log_line(level, time_ns, text, core_->for_journald);
+  const std::lock_guard lock(core_->mutex);
+  if (core_->lines.size() >= kMostLines) {
+    ++core_->lost;
+    return;
+  }
+  core_->lines.push_back(std::move(line));
+  core_->changed.notify_all();
+}
+
+size_t LogOutput::waiting() const {
+  const std::lock_guard lock(core_->mutex);
+  return core_->lines.size();
+}
+
+bool LogOutput::is_journal(int descriptor, const char* stream) {
+  struct stat info {};
+  if (stream == nullptr || ::fstat(descriptor, &info) != 0) return false;
+  return std::to_string(info.st_dev) + ":" + std::to_string(info.st_ino) == stream;
+}
+
+}  // namespace stvm
