@@ -289,6 +289,7 @@ class Body {
   void assert_near(const std::vector<ExprId>& args, ExprId message);
   bool is_message(ExprId message);         // reports, as the next one does
   bool is_time_ahead(ExprId duration);
+  void advance_time(ExprId duration);
   void verify_calls(const std::vector<ExprId>& args, bool exact, ExprId message);
   void fail_unless(ir::ValueId holds, ExprId message, const std::function<ir::Place()>& what);
   ir::Place constant_text(std::string text);

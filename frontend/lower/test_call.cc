@@ -52,9 +52,7 @@ void Body::test_call(const Expr& call, const TestCallRow& row) {
   if (message.valid() && !is_message(message)) return;
   switch (row.call) {
     case TestCall::kAdvanceTime:
-      if (is_time_ahead(args[0])) {
-        build_.advance_time(value(args[0], elementary(ir::Kind::kLtime)));
-      }
+      if (is_time_ahead(args[0])) advance_time(args[0]);
       return;
     case TestCall::kAssert:
     case TestCall::kAssertTrue:
@@ -100,6 +98,18 @@ bool Body::is_time_ahead(ExprId duration) {
               back ? "every test begins anew at time 0; advance by what is missing"
                    : "write a TIME: ADVANCE_TIME(T#5s)");
   return false;
+}
+
+void Body::advance_time(ExprId duration) {
+  const Typed ns{value(duration, elementary(ir::Kind::kLtime)), elementary(ir::Kind::kLtime)};
+  if (!sema_.infer(duration).constant) {
+    const ir::ValueId zero = build_.constant(ir::Scalar::kI64, 0);
+    const ir::ValueId ahead = build_.compare(ir::Op::kLe, ir::Scalar::kI64, zero, ns.value);
+    fail_unless(ahead, {}, [&] {
+      return joined(constant_text("time does not go back: ADVANCE_TIME got "), text_of(ns));
+    });
+  }
+  build_.advance_time(ns.value);
 }
 
 void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message) {

@@ -37,7 +37,8 @@ class SystemEdits {
     tasks();
     programs();
     safe_outputs();
-    for (SystemEdit& edit : device_edits(old_, new_)) rows_.push_back(std::move(edit));
+    std::ranges::move(device_edits(old_, new_), std::back_inserter(rows_));
+    std::ranges::move(chart_edits(old_, new_), std::back_inserter(rows_));
     return std::move(rows_);
   }
 

@@ -1,6 +1,6 @@
-// What a change does beside values and code: to devices, tasks, programs, addresses, attributes of
-// variables and safe outputs. In the report beside fates and code (X1, change cases 64 to 66). Map
-// entries of devices that go leave their outputs at zero (docs/IO.md).
+// What a change does beside values and code: to devices, tasks, programs, charts, addresses,
+// attributes of variables and safe outputs. In the report beside fates and code (X1, change cases
+// 64 to 66). Map entries of devices that go leave their outputs at zero (docs/IO.md).
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 namespace online_change {
 
 struct SystemEdit {
-  std::string kind;  // "variable", "resource", "task", "program", "output", "device"
+  std::string kind;  // "variable", "resource", "task", "program", "output", "device", "chart"
   std::string name;
   std::string what;  // "T#10ms -> T#20ms", "new", "removed", "%QX0.0 -> %QX7.7"
 };
@@ -21,5 +21,8 @@ std::vector<SystemEdit> system_edits(const ir::Image& old_image, const ir::Image
 
 // By name, in order of what is said of each.
 std::vector<SystemEdit> device_edits(const ir::Image& old_image, const ir::Image& new_image);
+
+// Of charts that both versions have under one name: "Filling -> Full removed", "(A, B) -> C new".
+std::vector<SystemEdit> chart_edits(const ir::Image& old_image, const ir::Image& new_image);
 
 }  // namespace online_change

@@ -22,12 +22,27 @@ CONFIGURATION C {attribute 'schedule' := 'run_first'} RESOURCE R ON PLC {attribu
 PROGRAM q1 WITH A : Q; PROGRAM p1 WITH A : P; PROGRAM q2 WITH D : Q; PROGRAM q3 WITH B : Q;
 END_RESOURCE END_CONFIGURATION
 ST
+cat >v1/chart.st <<'ST'
+FUNCTION_BLOCK Seq VAR go : BOOL; END_VAR
+INITIAL_STEP Idle: END_STEP  STEP Fill: END_STEP  STEP Stir: END_STEP
+TRANSITION FROM Idle TO Fill := go; END_TRANSITION
+TRANSITION FROM Fill TO Stir := go; END_TRANSITION
+TRANSITION FROM Stir TO Idle := go; END_TRANSITION
+END_FUNCTION_BLOCK
+ST
+sed -e 's/FROM Idle TO Fill/FROM Idle TO (Fill, Stir)/' -e 's/FROM Stir TO/FROM (Fill, Stir) TO/' \
+  -e '/FROM Fill TO Stir/d' v1/chart.st >v2/chart.st
 printf 'name = "plant"\n[outputs]\nsafe = ["%%QX0.0 = TRUE", "%%QX0.1 = HOLD"]\n' >v1/stc.toml
 printf 'name = "plant"\n[outputs]\nsafe = ["%%QX0.0 = TRUE", "%%QX7.7 = TRUE"]\n' >v2/stc.toml
 all_is_said() {
   while read -r row; do
     tr -s ' ' <out | grep -qxF "$row" || fail "not said: $row"
   done <<'ROWS'
+chart Seq (Fill -> Stir removed)
+chart Seq (Idle -> Fill removed)
+chart Seq (Stir -> Idle removed)
+chart Seq ((Fill, Stir) -> Idle new)
+chart Seq (Idle -> (Fill, Stir) new)
 variable r (now RETAIN)
 variable k (no longer CONSTANT)
 variable in1 (%IX0.0 -> %IX3.3)

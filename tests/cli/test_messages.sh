@@ -53,6 +53,19 @@ body '%IW2 := 5;' 'E2014.*`in` has this input, too' 'name the variable: `in`, `i
 wrong "FUNCTION_BLOCK F VAR p : Main; END_VAR p(); END_FUNCTION_BLOCK TEST 'a' ; END_TEST" \
   'E3001.*`Main` is a program; a variable cannot be one' 'or the variable in a TEST'
 
+# A duration that only the test knows may be negative, too.
+cat >back.st <<'ST'
+TEST 'back'
+  VAR d : TIME := T#2s; END_VAR
+  ADVANCE_TIME(d);
+  d := d - T#3s;
+  ADVANCE_TIME(d);
+END_TEST
+ST
+expect 1 stc test back.st
+said 'back.st:5'
+said 'time does not go back: ADVANCE_TIME got (LTIME#|LT#|T#)?-1s'
+
 # Where no tests run, their words are refused.
 echo 'PROGRAM q VAR x : Pump; n : INT; END_VAR MOCK x; x(tank := n); END_PROGRAM' >q.st
 expect 1 stc check pump.st q.st
