@@ -244,6 +244,7 @@ void Resident::undo_edits(Undo& undo) {
   for (const Undo::Statements& was : undo.statements) {
     was.pou->body = was.body;
     was.pou->code = was.code;
+    was.pou->content = was.content;
   }
   for (auto& [number, file] : undo.files) files_[number] = std::move(file);
   set_pieces();

@@ -137,9 +137,10 @@ void Resident::take_edit(Edit& edit, Undo& undo) {
   std::vector<CodePlace>& places = files_[edit.file].places;
   for (const size_t i : edit.bodies.changed) {
     PouDecl& pou = *places[i].pou;
-    undo.statements.push_back({&pou, pou.body, pou.code});
+    undo.statements.push_back({&pou, pou.body, pou.code, pou.content});
     pou.body = edit.now[i].pou->body;
     pou.code = edit.now[i].pou->code;
+    pou.content = edit.now[i].pou->content;
   }
   for (size_t i = 0; i < places.size(); ++i) {
     places[i].begin = edit.now[i].begin;

@@ -127,6 +127,15 @@ TEST(Edits, NoEditCostsNothing) {
   EXPECT_EQ(project.lowered, 0u);
 }
 
+// The image says that the text is another one (E-02), though the code is what it was.
+TEST(Edits, E02_AnotherTextWithTheSameCodeIsInTheImage) {
+  Project project({kBlocks, kMain});
+  project.edit(0, "n + Twice(n) / 3", "(n + (Twice(n) / 3))");
+  EXPECT_EQ(project.whole, 0u);
+  project.edit(0, "(n + (Twice(n) / 3))", "n + Twice(n) / 3");
+  EXPECT_EQ(project.whole, 0u);
+}
+
 TEST(Edits, DeclarationsCostEverything) {
   Project project({kBlocks, kMain});
   project.edit(0, "Step : INT", "Step : DINT");
