@@ -13,6 +13,7 @@
 
 #include "frontend/coverage.h"
 #include "frontend/lower/builder.h"
+#include "frontend/lower/handles.h"
 #include "frontend/lower/target.h"
 #include "frontend/sema/sema.h"
 #include "stdlib/native/natives.h"
@@ -172,6 +173,8 @@ class Body {
   ir::ValueId interface_value(ExprId id, ir::TypeId target);
   ir::ValueId emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own);
   ir::ValueId emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own);
+  MovedPointer moved_pointer(BinaryOp op, ExprId left, ExprId right);
+  MovedPointer pointer_of_sum(ExprId id);
   bool is_distance(ExprId id);
   ir::ValueId convert_reference(Typed from, ir::TypeId to, base::SourceSpan span);
   ir::ValueId constant_reference(ExprId id);
@@ -287,7 +290,7 @@ class Body {
   void test_call(const Expr& call, const TestCallRow& row);
   void assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message);
   void assert_near(const std::vector<ExprId>& args, ExprId message);
-  bool is_message(ExprId message);         // reports, as the next one does
+  bool is_message(ExprId message);  // reports, as the next one does
   bool is_time_ahead(ExprId duration);
   void advance_time(ExprId duration);
   void verify_calls(const std::vector<ExprId>& args, bool exact, ExprId message);
@@ -380,8 +383,8 @@ class Body {
   std::vector<VarId> for_variables_;
   std::unordered_map<uint32_t, ir::ValueId> result_values_;  // by number of the kResult
   std::unordered_map<uint32_t, ir::Place> result_places_;
-  Coverage* coverage_ = nullptr;              // where this body is counted; null: it is not
-  const network::Network* rung_ = nullptr;    // the last that was counted
+  Coverage* coverage_ = nullptr;            // where this body is counted; null: it is not
+  const network::Network* rung_ = nullptr;  // the last that was counted
   bool evaluating_ = false;  // inside evaluate(): names stand for their initial values
   static constexpr uint32_t kNoLocal = 0xffffffffu;
   std::array<uint32_t, 3> message_buffers_{kNoLocal, kNoLocal, kNoLocal};

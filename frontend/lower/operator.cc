@@ -84,6 +84,11 @@ ir::ValueId Body::emit_comparison(BinaryOp op, ExprId left, ExprId right) {
   if (is_string(types(), common.type)) return compare_strings(op, left, right);
   ir::ValueId a = value(left, common.type);
   ir::ValueId b = value(right, common.type);
+  const bool equality = op == BinaryOp::kEq || op == BinaryOp::kNe;
+  const bool known = sema_.infer(left).constant || sema_.infer(right).constant;
+  if (types().is_reference(common.type) && equality && known) {  // with NULL
+    return build_.compare(op == BinaryOp::kEq ? ir::Op::kEq : ir::Op::kNe, ir::Scalar::kU64, a, b);
+  }
   return compare_scalars(op, common.type, a, b);
 }
 
@@ -94,6 +99,10 @@ ir::ValueId Body::compare_scalars(BinaryOp op, ir::TypeId type, ir::ValueId a, i
     a = build_.unary(ir::Op::kWrap, ir::Scalar::kU8, a);
     b = build_.unary(ir::Op::kWrap, ir::Scalar::kU8, b);
     machine = ir::Scalar::kU8;
+  }
+  if (types().is_reference(type)) {
+    a = compared_place(build_, a, ordered);
+    b = compared_place(build_, b, ordered);
   }
   switch (op) {
     case BinaryOp::kEq:

@@ -169,26 +169,56 @@ ir::ValueId Body::emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right
     const ir::ValueId a = value(left, dword);
     return number_op(op, dword, a, value(right, dword));
   }
-  const Typed a = natural(left);
-  const Typed b = natural(right);
-  const Typed& pointer = first ? a : b;
-  const Typed& number = first ? b : a;
-  ir::ValueId bytes = machine_convert(number.value, scalar(number.type), ir::Scalar::kI64);
-  if (op == BinaryOp::kSub) bytes = build_.unary(ir::Op::kNeg, ir::Scalar::kI64, bytes);
-  return build_.move_handle(pointer.value, bytes);
+  const MovedPointer sum = moved_pointer(op, left, right);
+  return build_.move_handle(sum.handle, sum.bytes);
 }
 
-// Pointers to integers and back (ADR 0005): 64 bits hold the handle, 32 bits the flat address.
+// A chain of sums moves its pointer once, by all that is added: ADR(a) + 4 * i - 4 may leave the
+// variable on its way.
+MovedPointer Body::moved_pointer(BinaryOp op, ExprId left, ExprId right) {
+  const bool first = types().is_reference(sema_.infer(left).type);
+  MovedPointer sum;
+  Typed number;
+  if (first) sum = pointer_of_sum(left);
+  number = natural(first ? right : left);
+  if (!first) sum = pointer_of_sum(right);
+  const ir::Scalar i64 = ir::Scalar::kI64;
+  const ir::ValueId bytes = machine_convert(number.value, scalar(number.type), i64);
+  if (sum.bytes.valid()) {
+    sum.bytes =
+        build_.binary(op == BinaryOp::kSub ? ir::Op::kSub : ir::Op::kAdd, i64, sum.bytes, bytes);
+  } else {
+    sum.bytes = op == BinaryOp::kSub ? build_.unary(ir::Op::kNeg, i64, bytes) : bytes;
+  }
+  return sum;
+}
+
+MovedPointer Body::pointer_of_sum(ExprId id) {
+  const Expr& expr = tree_[id];
+  const bool sum = expr.kind == ExprKind::kBinary &&
+                   (expr.binary == BinaryOp::kAdd || expr.binary == BinaryOp::kSub);
+  if (!sum || sema_.infer(id).constant) return {natural(id).value, {}};
+  return moved_pointer(expr.binary, expr.operand, expr.right);
+}
+
+// Pointers to integers and back (ADR 0005): 64 bits hold the handle's place, 32 bits the flat
+// address.
 ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan span) {
   const bool reference_source = types().is_reference(from.type);
   const bool reference_target = types().is_reference(to);
   const bool codesys = sema_.options.dialect != Dialect::kIec;
   if (reference_source && reference_target) {
-    if (sema_.reference_fits(from.type, to)) return from.value;
+    if (sema_.reference_fits(from.type, to)) {
+      return is_instance_view(types(), from.type, to) ? whole_instance(build_, from.value)
+                                                      : from.value;
+    }
   } else if (reference_source) {
     const Traits traits = traits_of(types(), to);
     const uint32_t bytes = traits.integer || traits.bits ? ir::scalar_size(scalar(to)) : 0;
-    if (codesys && bytes == 8) return machine_convert(from.value, ir::Scalar::kU64, scalar(to));
+    if (codesys && bytes == 8) {
+      return machine_convert(compared_place(build_, from.value, false), ir::Scalar::kU64,
+                             scalar(to));
+    }
     if (codesys && bytes == 4) {
       return machine_convert(build_.flat(from.value), ir::Scalar::kU32, scalar(to));
     }

@@ -42,7 +42,8 @@ ir::TypeId Body::own_type(const Note& note, ir::TypeId target) const {
     case Flex::kText:
       return note.type;
     case Flex::kNull:
-      return types().is_reference(target) ? plain : note.type;
+      if (!types().is_reference(target)) return note.type;
+      return is_instance_view(types(), note.type, plain) ? note.type : plain;
   }
   return note.type;
 }

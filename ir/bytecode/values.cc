@@ -59,9 +59,8 @@ class Formatter {
     if (id >= image_.instances.size()) return "ref";
     const Instance& row = image_.instances[id];
     if (!row.live || area_segment(id, row.generation) != segment) return "ref";
-    return reference_text(
-        image_.instance_path(id),
-        path_inside(image_.types, image_.layouts, row.type, handle_offset(handle), target));
+    return reference_text(image_.instance_path(id),
+                          handle_text(image_.types, image_.layouts, row.type, handle, target));
   }
 
   bool inside(TypeId id, uint32_t data) const {

@@ -208,7 +208,7 @@ Outcome EvalMachine::compute(const Frame& frame, const Inst& inst) const {
     case Op::kTaskTime:
       return {static_cast<uint64_t>(now_ns_), {}, {}};
     case Op::kMoveHandle:
-      return {move_handle(operand(0), operand(1)), {}, {}};
+      return {references_->move(operand(0), operand(1)), {}, {}};
     case Op::kSizeOf: {
       const TypeLayout& layout = (*layouts_)[inst.type];
       const bool area = program_.types.is_instance(inst.type);

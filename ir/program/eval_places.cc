@@ -170,7 +170,7 @@ std::optional<uint64_t> EvalMachine::moved(const Frame& frame, const Inst& inst,
   if (!walk(frame, inst, place, 0, at)) {
     return std::nullopt;
   }
-  return move_handle(bits(frame, place.value), at.offset);
+  return references_->move(bits(frame, place.value), at.offset);
 }
 
 // Behind a handle only the part that is used must be there. Where instances are, the whole must.
@@ -185,7 +185,7 @@ Address EvalMachine::locate_target(Frame& frame, const Inst& inst, const Place& 
   const bool string = is_string(program_.types, type) && inst.op != Op::kAddress;
   std::optional<Address> at = references_->resolve(*handle, type, string);
   if (!at) {
-    trap(inst, TrapKind::kReference, "");
+    trap(inst, TrapKind::kReference, references_->why_unresolved(*handle, type, string));
     return {};
   }
   if (whole && !walk(frame, inst, place, 0, *at)) {

@@ -14,6 +14,11 @@ constexpr uint32_t kSlotBytes = 4;
 constexpr uint32_t kExposedDataBegin = 0xf8000000u;  // where frames are (ir/bytecode/image.h)
 constexpr uint32_t kNowhere = 0xf0000000u;
 
+// Is it inside of what it was taken from?
+bool is_inside(uint64_t handle) {
+  return handle_away(handle) == 0 || handle_away(handle) == kWhole;
+}
+
 }  // namespace
 
 void References::add_area(Variable& root, uint32_t id, uint32_t generation, uint32_t data) {
@@ -24,6 +29,7 @@ void References::add_area(Variable& root, uint32_t id, uint32_t generation, uint
   home.used = layouts_[root.type].used;
   home.capacity = std::max(home.used, layouts_[root.type].area_capacity);
   home.slots = SlotFinder(program_.types, layouts_).inside(root.type);
+  home.reaches = area_reaches(program_.types, layouts_, root.type);
   segment_of_[&root] = home.segment;
   areas_[home.segment] = std::move(home);
 }
@@ -50,12 +56,33 @@ std::optional<uint64_t> References::handle_of(const Address& at, uint32_t task) 
   Home home;
   home.root = at.root;
   home.frame = at.frame;
-  home.segment = exposed_segment(task, ++exposures_[task]);
+  home.segment = new_segment(task);
   home.used = home.capacity = layouts_[at.root->type].size;
+  home.reaches = {{0, home.used}};
   home.data = kExposedDataBegin + next_data_;
   next_data_ = (next_data_ + home.used + 7) / 8 * 8 % (1u << 26);
   exposed_.push_back(std::move(home));
   return make_handle(exposed_.back().segment, at.offset);
+}
+
+// Numbers begin again after 2^21, and those of outer calls are still in use then.
+uint32_t References::new_segment(uint32_t task) {
+  uint32_t segment = 0;
+  do {
+    segment = exposed_segment(task, ++exposures_[task]);
+  } while (home_of(make_handle(segment, 0)) != nullptr);
+  return segment;
+}
+
+Reach References::reach_in(const Home& home, uint64_t handle) {
+  return reach_of(home.reaches, home.used, handle);
+}
+
+uint64_t References::move(uint64_t handle, uint64_t bytes) const {
+  const Home* home = home_of(handle);
+  const auto count = static_cast<uint32_t>(bytes);
+  return home == nullptr ? move_offset(handle, count)
+                         : moved_from(reach_in(*home, handle), handle, count);
 }
 
 uint64_t References::handle_of_instance(const Variable& instance) const {
@@ -66,7 +93,7 @@ uint64_t References::handle_of_instance(const Variable& instance) const {
 Variable* References::instance_of(uint64_t handle) const {
   const Home* home = home_of(handle);
   const bool whole = home != nullptr && home->frame == 0 && handle_offset(handle) == 0 &&
-                     program_.types.is_instance(home->root->type);
+                     is_inside(handle) && program_.types.is_instance(home->root->type);
   return whole ? home->root : nullptr;
 }
 
@@ -90,17 +117,21 @@ bool References::touches_slot(const Home& home, uint64_t begin, uint64_t end) {
   return next != home.slots.end() && *next < end;
 }
 
-// Bytes from `offset` to the next slot or the end.
-uint32_t References::room_for_string(const Home& home, uint32_t offset) const {
-  if (offset >= home.used || touches_slot(home, offset, uint64_t{offset} + 1)) {
+// Bytes from `offset` to the next slot or the end of the variable.
+uint32_t References::room_for_string(const Home& home, Reach reach, uint32_t offset) const {
+  if (!reach.holds(offset) || touches_slot(home, offset, uint64_t{offset} + 1)) {
     return 0;
   }
   const auto next = std::lower_bound(home.slots.begin(), home.slots.end(), offset);
-  return (next == home.slots.end() ? home.used : *next) - offset;
+  return (next == home.slots.end() ? reach.end : std::min(reach.end, *next)) - offset;
 }
 
-std::optional<Address> References::resolve_instance(const Home& home, uint32_t offset,
+std::optional<Address> References::resolve_instance(const Home& home, uint64_t handle,
                                                     TypeId type) const {
+  const uint32_t offset = handle_offset(handle);
+  if (!is_inside(handle)) {
+    return std::nullopt;
+  }
   if (program_.types.is_instance(type)) {
     const bool right = offset == 0 && home.frame == 0 && program_.types.is_a(home.root->type, type);
     return right ? std::optional(Address{home.root, 0, home.root, 0, type, 0, false})
@@ -119,23 +150,38 @@ std::optional<Address> References::resolve(uint64_t handle, TypeId type, bool sh
     return std::nullopt;
   }
   if (holds_instance(program_.types, type)) {
-    return resolve_instance(*home, offset, type);
+    return resolve_instance(*home, handle, type);
   }
   const Type& wanted = program_.types[type];
   Address at{nullptr, home->frame, home->root, offset, type, wanted.capacity, false};
+  const Reach reach = reach_in(*home, handle);
   uint64_t size = layouts_[type].size;
   if (short_string) {
     const uint32_t unit = wanted.kind == Kind::kWstring ? 2 : 1;
-    const uint32_t units = room_for_string(*home, offset) / unit;
+    const uint32_t units = room_for_string(*home, reach, offset) / unit;
     at.capacity = std::min(wanted.capacity, units - std::min(units, 1u));
     size = (uint64_t{at.capacity} + 1) * unit;
   }
   const uint64_t end = offset + size;
-  if (end > home->used || touches_slot(*home, offset, end)) {
+  if (!reach.covers(offset, size) || touches_slot(*home, offset, end)) {
     return std::nullopt;
   }
   at.variable = bytes_.find(*home->root, offset, type);
   return at;
+}
+
+std::string References::why_unresolved(uint64_t handle, TypeId type, bool short_string) const {
+  const Home* home = home_of(handle);
+  if (home == nullptr || holds_instance(program_.types, type)) {
+    return "";
+  }
+  const Reach reach = reach_in(*home, handle);
+  const uint32_t unit = program_.types[type].kind == Kind::kWstring ? 2 : 1;
+  const uint32_t size = short_string ? unit : layouts_[type].size;
+  const bool left =
+      reach.size() == 0 ? handle_away(handle) == kLost : !reach.covers(handle_offset(handle), size);
+  const TypeId area = home->frame == 0 ? home->root->type : TypeId();
+  return left ? left_text(program_.types, layouts_, area, handle) : "";
 }
 
 uint32_t References::flat(uint64_t handle) const {
@@ -169,9 +215,8 @@ std::string References::text(uint64_t handle, TypeId target) const {
   if (area == areas_.end()) {
     return "ref";
   }
-  return reference_text(area->second.path,
-                        path_inside(program_.types, layouts_, area->second.root->type,
-                                    handle_offset(handle), target));
+  return reference_text(area->second.path, handle_text(program_.types, layouts_,
+                                                       area->second.root->type, handle, target));
 }
 
 }  // namespace ir

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ir/program/eval_bytes.h"
+#include "ir/types/reach.h"
 
 namespace ir {
 
@@ -21,11 +22,15 @@ class References {
   // nullopt: more locals are exposed than a machine allows (kStack).
   std::optional<uint64_t> handle_of(const Address& at, uint32_t task);
   uint64_t handle_of_instance(const Variable& instance) const;
+  // The handle moved by the low 32 bits of `bytes`, with their sign.
+  uint64_t move(uint64_t handle, uint64_t bytes) const;
   // Null when the handle names no whole instance.
   Variable* instance_of(uint64_t handle) const;
   // Where a `type` behind the handle is; nullopt: it traps. A string may get less than its
   // capacity when `short_string`.
   std::optional<Address> resolve(uint64_t handle, TypeId type, bool short_string) const;
+  // Why resolve() found nothing, as the end of a message; "" when there is no more to say.
+  std::string why_unresolved(uint64_t handle, TypeId type, bool short_string) const;
   uint32_t flat(uint64_t handle) const;
   uint64_t unflat(uint32_t data) const;
   // The locals of that frame are gone.
@@ -45,12 +50,16 @@ class References {
     uint32_t used = 0;
     uint32_t capacity = 0;  // bytes from `data` on that are its own
     std::vector<uint32_t> slots;
+    std::vector<Reach> reaches;  // of its variables; a local is one
     std::string path;
   };
   const Home* home_of(uint64_t handle) const;
-  uint32_t room_for_string(const Home& home, uint32_t offset) const;
+  uint32_t new_segment(uint32_t task);
+  // Of the variable that the handle was taken from; no bytes: it is lost.
+  static Reach reach_in(const Home& home, uint64_t handle);
+  uint32_t room_for_string(const Home& home, Reach reach, uint32_t offset) const;
   static bool touches_slot(const Home& home, uint64_t begin, uint64_t end);
-  std::optional<Address> resolve_instance(const Home& home, uint32_t offset, TypeId type) const;
+  std::optional<Address> resolve_instance(const Home& home, uint64_t handle, TypeId type) const;
 
   const Program& program_;
   const Layouts& layouts_;

@@ -4,6 +4,7 @@
 
 #include "base/limits.h"
 #include "ir/types/natural_layout.h"
+#include "ir/types/reach.h"
 
 namespace ir {
 namespace {
@@ -48,7 +49,44 @@ bool step_down(const TypeTable& types, const Layouts& layouts, Part& part, std::
   return false;
 }
 
+// The variable of an area's type that holds the offset.
+const Member* member_at(const TypeTable& types, const Layouts& layouts, TypeId area,
+                        uint32_t offset, uint32_t& begin) {
+  const Type& type = types[area];
+  const std::vector<uint32_t>& offsets = layouts[area].member_offsets;
+  for (size_t i = 0; i < type.members.size() && i < offsets.size(); ++i) {
+    begin = offsets[i];
+    if (offset - begin < member_size(layouts, type.members[i])) return &type.members[i];
+  }
+  return nullptr;
+}
+
 }  // namespace
+
+std::string handle_text(const TypeTable& types, const Layouts& layouts, TypeId area,
+                        uint64_t handle, TypeId target) {
+  if (handle_away(handle) == 0 || handle_away(handle) == kWhole) {
+    return path_inside(types, layouts, area, handle_offset(handle), target);
+  }
+  uint32_t begin = 0;
+  const bool lost = handle_away(handle) == kLost;
+  const Member* const member =
+      lost ? nullptr : member_at(types, layouts, area, anchor_of(handle), begin);
+  if (member == nullptr) return ".?";
+  const auto position = static_cast<int32_t>(handle_offset(handle) - begin);
+  return "." + member->name + (position < 0 ? "" : "+") + std::to_string(position);
+}
+
+std::string left_text(const TypeTable& types, const Layouts& layouts, TypeId area,
+                      uint64_t handle) {
+  uint32_t begin = 0;
+  const int32_t away = handle_away(handle);
+  const bool known = area.valid() && away != kLost && away != kWhole;
+  const Member* const member =
+      known ? member_at(types, layouts, area, anchor_of(handle), begin) : nullptr;
+  return ": the pointer has left " +
+         (member == nullptr ? "its variable" : "`" + member->name + "`");
+}
 
 std::string index_text(const Type& array, uint64_t flat) {
   std::string text;

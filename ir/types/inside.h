@@ -18,6 +18,16 @@ std::string index_text(const Type& array, uint64_t flat);
 std::string path_inside(const TypeTable& types, const Layouts& layouts, TypeId root,
                         uint32_t offset, TypeId target);
 
+// The place that a handle names in its area, of type `area`: as path_inside() for one that is
+// inside of its variable; otherwise the variable and the distance from its beginning, ".a+40" or
+// ".a-4".
+std::string handle_text(const TypeTable& types, const Layouts& layouts, TypeId area,
+                        uint64_t handle, TypeId target);
+
+// Why a handle that has left its variable traps, as the end of a message. `area`: invalid for
+// locals, which have no names.
+std::string left_text(const TypeTable& types, const Layouts& layouts, TypeId area, uint64_t handle);
+
 // The name of a reference's target: the path of its area ("" for the globals) and where inside.
 // "ref" where there is no variable to name.
 std::string reference_text(const std::string& area, std::string inside);

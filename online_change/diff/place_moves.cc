@@ -15,7 +15,6 @@ namespace {
 
 using ir::TypeId;
 
-
 std::unordered_map<std::string, uint32_t> members_by_name(const ir::Type& type) {
   std::unordered_map<std::string, uint32_t> out;
   for (uint32_t i = 0; i < type.members.size(); ++i) {
@@ -78,13 +77,15 @@ class PlaceMoves::Maker {
   void add_moved(Pair& pair, TypeId from, TypeId to) {
     const std::vector<MovedPart> moves =
         back_ ? moved_parts(new_, to, old_, from) : moved_parts(old_, from, new_, to);
+    const std::vector<ir::Reach> reaches =
+        moves.empty() ? std::vector<ir::Reach>() : ir::area_reaches(new_.types, new_.layouts, to);
     for (const MovedPart& move : moves) {
       // What stays at its place is still what references mean, there and on the way back.
       if (!move.leaves) continue;
       const PartPlace& source = back_ ? move.to : move.from;
       const PartPlace& target = back_ ? move.from : move.to;
       pair.moved.push_back({source.at, old_.layouts[source.type].size, target.at,
-                            value(source.type, target.type, 1)});
+                            value(source.type, target.type, 1), ir::reach_at(reaches, target.at)});
       pair.same = false;
     }
   }
@@ -131,7 +132,7 @@ class PlaceMoves::Maker {
       pair.kept = pair.old_name == pair.new_name ||
                   classify(old_.types, from, new_.types, to) == Conversion::kSame;
     }
-    pair.same = pair.kept;
+    pair.same = pair.kept && pair.old_size == pair.new_size;
   }
 
   void array(Pair& pair, const ir::Type& from, const ir::Type& to, uint32_t depth) {
@@ -154,11 +155,12 @@ class PlaceMoves::Maker {
     for (uint32_t i = 0; i < old_type.members.size(); ++i) {
       const ir::Member& member = old_type.members[i];
       if (member.section == ir::Section::kInOut) continue;  // no handle names a slot
-      Part part{old_.layouts[from].member_offsets[i], old_.layouts[member.type].size, 0, kNone};
+      Part part{old_.layouts[from].member_offsets[i], old_.layouts[member.type].size, 0, kNone, {}};
       const auto twin = names.find(ir::fold_name(member.name));
       if (twin != names.end() && new_type.members[twin->second].section != ir::Section::kInOut) {
         part.to = new_.layouts[to].member_offsets[twin->second];
         part.pair = value(member.type, new_type.members[twin->second].type, depth + 1);
+        part.reach = {part.to, part.to + out_.pairs_[part.pair].new_size};
       }
       pair.same =
           pair.same && part.pair != kNone && part.to == part.begin && out_.pairs_[part.pair].same;
@@ -221,6 +223,37 @@ const PlaceMoves::Part* PlaceMoves::part_at(const Pair& structure, uint32_t offs
   return offset - part.begin < part.size ? &part : nullptr;
 }
 
+// The old variable that holds the offset, with its place in the new version.
+const PlaceMoves::Part* PlaceMoves::variable_at(const Pair& area, uint32_t offset) const {
+  const Part* const part = part_at(area, offset);
+  if (part == nullptr || part->pair != kNone) return part;
+  const Part* const moved = moved_at(area, offset);
+  const bool whole = moved != nullptr && moved->begin == part->begin && moved->size == part->size;
+  return whole ? moved : part;
+}
+
+// Does a reference to an element find the same bits in both versions?
+bool PlaceMoves::reads_alike(uint32_t pair) const {
+  uint32_t depth = 0;
+  while (pairs_[pair].kind == Kind::kArray && depth++ < base::kMaxTypeDepth) {
+    pair = pairs_[pair].element;
+  }
+  return pairs_[pair].kind != Kind::kLeaf || pairs_[pair].kept;
+}
+
+Followed PlaceMoves::follow_outside(const Area& area, uint64_t handle) const {
+  const uint32_t offset = ir::handle_offset(handle);
+  const uint64_t here = ir::make_handle(area.new_segment, offset);
+  if (ir::handle_away(handle) == ir::kLost) return {ir::with_away(here, ir::kLost), false};
+  const Part* const part = variable_at(pairs_[area.pair], ir::anchor_of(handle));
+  if (part == nullptr) return {0, false};
+  if (part->pair == kNone || !reads_alike(part->pair)) return {0, true};
+  int64_t position = static_cast<int32_t>(offset - part->begin);
+  if (position >= part->size) position += int64_t{pairs_[part->pair].new_size} - part->size;
+  position += int64_t{part->to} - part->reach.begin;
+  return {ir::handle_in(part->reach, area.new_segment, position), false};
+}
+
 Followed PlaceMoves::follow(uint64_t handle, Target target) const {
   const uint32_t segment = ir::handle_segment(handle);
   const uint32_t id = ir::segment_id(segment);
@@ -228,9 +261,16 @@ Followed PlaceMoves::follow(uint64_t handle, Target target) const {
   const Area& area = areas_[id];
   if (area.new_segment == 0) return {0, true};
   uint32_t rest = ir::handle_offset(handle);
-  if (pairs_[area.pair].same || (target.instance && rest == 0)) {
-    return {ir::make_handle(area.new_segment, rest), false};
+  const int32_t away = ir::handle_away(handle);
+  const bool instance = rest == 0 && (away == 0 ? target.instance : away == ir::kWhole);
+  if (pairs_[area.pair].same || instance) {
+    return {ir::with_away(ir::make_handle(area.new_segment, rest), away), false};
   }
+  if (away == ir::kWhole) {
+    const Followed byte = follow(ir::handle_place(handle), target);
+    return {byte.handle == 0 ? 0 : ir::with_away(byte.handle, away), byte.gone};
+  }
+  if (away != 0) return follow_outside(area, handle);
   uint32_t at = 0;  // in the new area
   uint32_t number = area.pair;
   uint32_t depth = 0;

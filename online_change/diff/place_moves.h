@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ir/bytecode/image.h"
+#include "ir/types/reach.h"
 
 namespace online_change {
 
@@ -48,7 +49,8 @@ class PlaceMoves {
   // Does every handle mean the same in both versions?
   bool trivial() const { return trivial_; }
   // What names in the new version what `handle` named in the old one. A handle that named nothing
-  // stays as it is: nothing else gets its segment.
+  // stays as it is: nothing else gets its segment. One that has left its variable follows that, and
+  // keeps the distance from its end, or from its beginning when it lies before that.
   Followed follow(uint64_t handle, Target target) const;
   Target target_in_old(const ir::Image& image, ir::TypeId reference) const;
   Target target_in_new(const ir::Image& image, ir::TypeId reference) const;
@@ -66,6 +68,7 @@ class PlaceMoves {
     uint32_t size = 0;
     uint32_t to = 0;
     uint32_t pair = kNone;  // kNone: gone
+    ir::Reach reach;        // of an area: of the new variable that `to` lies in
   };
   struct Pair {
     Kind kind = Kind::kLeaf;
@@ -95,6 +98,9 @@ class PlaceMoves {
   static bool element_of(const Pair& array, uint64_t number, uint64_t& out);
   const Part* part_at(const Pair& structure, uint32_t offset) const;
   static const Part* moved_at(const Pair& area, uint32_t offset);
+  Followed follow_outside(const Area& area, uint64_t handle) const;
+  const Part* variable_at(const Pair& area, uint32_t offset) const;
+  bool reads_alike(uint32_t pair) const;
 
   std::vector<Pair> pairs_;
   std::vector<Area> areas_;  // by old ID

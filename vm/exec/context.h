@@ -44,6 +44,16 @@ namespace native {
 class Program;
 }
 
+// The variable that a handle was found in last, by the instruction that used it: so loops over a
+// buffer look it up once. It holds until the generation or what is exposed is another one.
+struct KnownReach {
+  uint32_t segment = 0;  // the upper half of the handles that are inside; 0: none
+  uint32_t begin = 0;    // offsets
+  uint32_t size = 0;
+  uint32_t home = 0;  // data offset of offset 0; 0: there are slots inside
+};
+inline constexpr uint32_t kKnownReaches = 16;
+
 // A BOOL in memory. Bytes that came in as another type may be anything; not zero is TRUE.
 enum class Bool : uint8_t {};
 
@@ -85,9 +95,10 @@ struct Context {
   TryRecord* tries_begin = nullptr;
   TryRecord* try_top = nullptr;  // next free record
   TryRecord* tries_end = nullptr;
-  Trap caught;                  // last
-  bool trap_has_place = false;  // `trap` says already where it was
-  bool trapped = false;         // since it began: `trap` or `caught` is not empty
+  Trap caught;                        // last
+  bool trap_has_place = false;        // `trap` says already where it was
+  bool trapped = false;               // since it began: `trap` or `caught` is not empty
+  KnownReach reaches[kKnownReaches];  // by the place of the instruction
 };
 
 #define STC_HANDLER_ARGS                                                \

@@ -1,6 +1,8 @@
 // Traps in words: what, which variable, which values, where in the source.
 #include <algorithm>
 
+#include "ir/types/handle.h"
+#include "ir/types/inside.h"
 #include "ir/types/value_text.h"
 #include "vm/exec/execution.h"
 
@@ -37,12 +39,24 @@ std::string range_text(const ir::Image& image, const Trap& trap, std::string_vie
          std::to_string(r.high);
 }
 
+// Locals that were exposed are gone when this is asked.
+std::string left_text(const ir::Image& image, const Trap& trap) {
+  if (trap.operand[1] == 0) return "";
+  const auto handle = static_cast<uint64_t>(trap.operand[0]);
+  const uint32_t id = ir::segment_id(ir::handle_segment(handle));
+  const bool area = id < image.instances.size() && image.instances[id].live;
+  const ir::TypeId type = area ? image.instances[id].type : ir::TypeId();
+  return ir::left_text(image.types, image.layouts, type, handle);
+}
+
 std::string operand_text(const ir::Image& image, const Trap& trap, std::string_view opcode) {
   switch (trap.kind) {
     case ir::TrapKind::kIndex:
       return index_text(image, trap, opcode);
     case ir::TrapKind::kSubrange:
       return range_text(image, trap, opcode);
+    case ir::TrapKind::kReference:
+      return left_text(image, trap);
     case ir::TrapKind::kConversion:
       return ": " + ir::scalar_text(image.types, image.types.elementary(ir::Kind::kLreal),
                                     static_cast<uint64_t>(trap.operand[0]));

@@ -112,6 +112,7 @@ STC_COLD void Execution::prepare(const Generation& generation, const CodeTable& 
   ctx.caught = {};
   ctx.trap = {};
   ctx.trap_has_place = false;
+  for (KnownReach& known : ctx.reaches) known = {};
   prepared_ = code.number.value;
 }
 
@@ -124,8 +125,8 @@ inline void Execution::begin(const Generation& generation, const CodeTable& code
   ctx.trapped = false;
   ctx.entries = 0;
   ctx.call = ctx.calls_begin;
-  ctx.exposed = nullptr;
-  ctx.exposure_count = 0;
+  if (ctx.exposure_count != 0) [[unlikely]]
+    drop_exposed(ctx, 0);
   ctx.try_top = ctx.tries_begin;
   ctx.exit = Exit::kDone;
   ctx.pou = pou;

@@ -13,19 +13,53 @@ namespace {
   if (handle) store<uint64_t>(result, *handle);
   return handle.has_value();
 }
-[[gnu::noinline]] uint32_t resolve_region(const Context* ctx, uint64_t handle, bool exactly,
-                                          uint32_t x) {
-  return exactly ? resolve_exactly(*ctx, handle, x) : resolve_bytes(*ctx, handle, x);
+[[gnu::noinline]] uint64_t move_slowly(const Context* ctx, uint64_t handle, uint32_t bytes,
+                                       KnownReach* known) {
+  return move_handle(*ctx, handle, bytes, *known);
+}
+[[gnu::noinline]] uint32_t resolve_slowly(const Context* ctx, uint64_t handle, bool exactly,
+                                          uint32_t x, KnownReach* known) {
+  return exactly ? resolve_exactly(*ctx, handle, x) : resolve_bytes(*ctx, handle, x, *known);
 }
 [[gnu::noinline]] uint64_t resolve_text(const Context* ctx, uint64_t handle, uint32_t capacity,
                                         uint32_t unit) {
   return resolve_string(*ctx, handle, capacity, unit);
+}
+// The operands say what did not resolve, and why (describe.cc).
+STC_COLD void raise_reference(Context* ctx, const ir::Unit* pc, uint8_t* frame, uint8_t* self,
+                              uint64_t handle, uint32_t size) {
+  raise(ctx, ir::TrapKind::kReference, pc, frame, self, static_cast<int64_t>(handle),
+        has_left(*ctx, handle, size) ? 1 : 0);
 }
 [[gnu::noinline]] uint32_t flatten(const Context* ctx, uint64_t handle) {
   return flat_of(*ctx, handle);
 }
 [[gnu::noinline]] uint64_t unflatten(const Context* ctx, uint32_t address) {
   return unflat(*ctx, address);
+}
+
+STC_INLINE KnownReach& known_at(Context* ctx, const ir::Unit* pc) {
+  return ctx->reaches[reinterpret_cast<uintptr_t>(pc) / sizeof(ir::Unit) % kKnownReaches];
+}
+// Where `handle` lies in the known variable; its size or more: somewhere else, or outside of it.
+STC_INLINE uint32_t position_in(const KnownReach& known, uint64_t handle) {
+  const bool same = static_cast<uint32_t>(handle >> 32) == known.segment;
+  return same ? ir::handle_offset(handle) - known.begin : UINT32_MAX;
+}
+STC_INLINE uint64_t move_at(Context* ctx, const ir::Unit* pc, uint64_t handle, uint32_t bytes) {
+  KnownReach& known = known_at(ctx, pc);
+  const uint32_t position = position_in(known, handle);
+  if (position < known.size && position + bytes < known.size) [[likely]]
+    return ir::move_offset(handle, bytes);
+  return move_slowly(ctx, handle, bytes, &known);
+}
+STC_INLINE uint32_t resolve_at(Context* ctx, const ir::Unit* pc, uint64_t handle, uint32_t bytes,
+                               uint32_t size) {
+  const KnownReach& known = known_at(ctx, pc);
+  const uint32_t position = position_in(known, handle);
+  const bool inside =
+      position < known.size && uint64_t{position} + bytes + size <= known.size && known.home != 0;
+  return inside ? known.home + ir::handle_offset(handle) + bytes : 0;
 }
 
 }  // namespace
@@ -82,14 +116,23 @@ struct Semantics<ir::Opcode::HANDLE_INST_AT> : Special {
   }
 };
 
-STC_BINARY(HANDLE_ADD, uint64_t, uint64_t, uint64_t, ir::move_handle(b, c))
+template <>
+struct Semantics<ir::Opcode::HANDLE_ADD> : Special {
+  template <ir::Base A, ir::Base B, ir::Base C>
+  STC_INLINE void run(STC_HANDLER_ARGS) {
+    const auto handle = load<uint64_t>(STC_AT(B, pc->b));
+    const auto bytes = static_cast<uint32_t>(load<uint64_t>(STC_AT(C, pc->c)));
+    store<uint64_t>(frame + pc->a, move_at(ctx, pc, handle, bytes));
+    STC_NEXT(1);
+  }
+};
 
 template <>
 struct Semantics<ir::Opcode::HANDLE_STEP> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
     const auto handle = load<uint64_t>(STC_AT(B, pc->b));
-    store<uint64_t>(frame + pc->a, ir::move_handle(handle, pc[1].x()));
+    store<uint64_t>(frame + pc->a, move_at(ctx, pc, handle, pc[1].x()));
     STC_NEXT(2);
   }
 };
@@ -106,7 +149,8 @@ struct HandleIndex : Special {
       return raise(ctx, ir::TrapKind::kIndex, pc, frame, self, static_cast<int64_t>(index), number);
     }
     const auto handle = load<uint64_t>(STC_AT(C, pc->c));
-    store<uint64_t>(frame + pc->a, ir::move_handle(handle, pc[1].y() + steps * bound.stride));
+    const auto bytes = static_cast<uint32_t>(pc[1].y() + steps * bound.stride);
+    store<uint64_t>(frame + pc->a, move_at(ctx, pc, handle, bytes));
     STC_NEXT(2);
   }
 };
@@ -120,10 +164,16 @@ template <>
 struct Semantics<ir::Opcode::RESOLVE> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
-    const uint64_t handle = ir::move_handle(load<uint64_t>(STC_AT(B, pc->b)), pc[1].y());
-    const uint32_t found = resolve_region(ctx, handle, pc->c != 0, pc[1].x());
-    if (found == 0) [[unlikely]]
-      return raise(ctx, ir::TrapKind::kReference, pc, frame, self);
+    uint64_t handle = load<uint64_t>(STC_AT(B, pc->b));
+    const bool exactly = pc->c != 0;
+    uint32_t found = exactly ? 0 : resolve_at(ctx, pc, handle, pc[1].y(), pc[1].x());
+    if (found == 0) [[unlikely]] {
+      KnownReach& known = known_at(ctx, pc);
+      handle = move_slowly(ctx, handle, pc[1].y(), &known);
+      found = resolve_slowly(ctx, handle, exactly, pc[1].x(), &known);
+      if (found == 0) [[unlikely]]
+        return raise_reference(ctx, pc, frame, self, handle, exactly ? 0 : pc[1].x());
+    }
     store<uint32_t>(frame + pc->a, found);
     STC_NEXT(2);
   }
@@ -133,10 +183,10 @@ template <uint32_t unit>
 struct ResolveString : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
-    const uint64_t handle = ir::move_handle(load<uint64_t>(STC_AT(B, pc->b)), pc[1].y());
+    const uint64_t handle = move_at(ctx, pc, load<uint64_t>(STC_AT(B, pc->b)), pc[1].y());
     const uint64_t found = resolve_text(ctx, handle, pc[1].x(), unit);
     if (found == 0) [[unlikely]]
-      return raise(ctx, ir::TrapKind::kReference, pc, frame, self);
+      return raise_reference(ctx, pc, frame, self, handle, unit);
     store<uint64_t>(frame + pc->a, found);
     STC_NEXT(2);
   }

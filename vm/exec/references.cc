@@ -31,6 +31,14 @@ const AreaEntry* area_at(const Context& ctx, uint32_t address) {
   return nullptr;
 }
 
+const Exposure* exposure_of(const Context& ctx, uint32_t segment) {
+  const Exposure* const first = ctx.exposures;
+  const Exposure* const end = first + ctx.exposure_count;
+  const Exposure* const found = std::find_if(
+      first, end, [segment](const Exposure& local) { return local.segment == segment; });
+  return found == end ? nullptr : found;
+}
+
 // Of the variable in the frame of `pou` that covers `offset`; nullptr when none can be exposed.
 const ir::FrameSlot* slot_at(const ir::Image& image, uint32_t pou, uint32_t offset,
                              uint32_t& size) {
@@ -56,6 +64,15 @@ Exposure* find_exposure(Context& ctx, uint32_t depth, uint32_t begin) {
   return behind;
 }
 
+// Numbers begin again after 2^21, and those of outer calls are still in use then.
+uint32_t next_exposed_segment(Context& ctx) {
+  uint32_t segment = 0;
+  do {
+    segment = ir::exposed_segment(ctx.task, ++ctx.exposures_made);
+  } while (exposure_of(ctx, segment) != nullptr);
+  return segment;
+}
+
 std::optional<uint64_t> expose(Context& ctx, uint32_t depth, uint32_t pou, uint32_t frame,
                                uint32_t address) {
   uint32_t size = 0;
@@ -66,13 +83,29 @@ std::optional<uint64_t> expose(Context& ctx, uint32_t depth, uint32_t pou, uint3
   Exposure* const at = find_exposure(ctx, depth, begin);
   if (at == end || at->depth != depth || at->begin != begin) {
     if (ctx.exposure_count == base::kMaxExposures) return std::nullopt;
+    const uint32_t segment = next_exposed_segment(ctx);
     std::move_backward(at, end, end + 1);
-    *at = {ir::exposed_segment(ctx.task, ++ctx.exposures_made), begin, size, depth};
+    *at = {segment, begin, size, depth};
     ++ctx.exposure_count;
     find_deepest_exposed(ctx);
   }
   return ir::make_handle(at->segment, address - begin);
 }
+
+KnownReach known_reach(const Home& home, uint64_t handle) {
+  const bool slots = touches_slot(home, home.reach.begin, home.reach.end);
+  const auto whole = static_cast<uint32_t>(ir::with_away(0, ir::kWhole) >> 32);
+  const uint32_t mark = ir::handle_away(handle) == ir::kWhole ? whole : 0;
+  return {ir::handle_segment(handle) | mark, home.reach.begin, home.reach.size(),
+          slots ? 0 : home.data};
+}
+
+// Is it inside of what it was taken from?
+bool is_inside(uint64_t handle) {
+  return ir::handle_away(handle) == 0 || ir::handle_away(handle) == ir::kWhole;
+}
+// Does the handle name the first byte of an area and nothing else?
+bool is_beginning(uint64_t handle) { return ir::handle_offset(handle) == 0 && is_inside(handle); }
 
 }  // namespace
 
@@ -82,29 +115,48 @@ std::optional<Home> find_home(const Context& ctx, uint64_t handle) {
   const std::vector<AreaEntry>& areas = ctx.generation->areas();
   if (id < areas.size() && areas[id].segment == segment) {
     const AreaEntry& area = areas[id];
-    return Home{area.data, area.used, ctx.generation->area_slots().data() + area.first_slot,
-                area.slot_count, id};
+    const std::span all(ctx.generation->area_reaches().data() + area.first_reach, area.reach_count);
+    return Home{area.data,
+                area.used,
+                ir::reach_of(all, area.used, handle),
+                ctx.generation->area_slots().data() + area.first_slot,
+                area.slot_count,
+                id};
   }
   if ((segment & ir::kExposedBit) == 0) return std::nullopt;
-  for (uint32_t i = 0; i < ctx.exposure_count; ++i) {
-    const Exposure& local = ctx.exposures[i];
-    if (local.segment == segment) return Home{local.begin, local.size, nullptr, 0, 0xffffffffu};
-  }
-  return std::nullopt;
+  const Exposure* const local = exposure_of(ctx, segment);
+  if (local == nullptr) return std::nullopt;
+  const ir::Reach whole[] = {{0, local->size}};
+  const ir::Reach reach = ir::reach_of(whole, local->size, handle);
+  return Home{local->begin, local->size, reach, nullptr, 0, 0xffffffffu};
 }
 
-uint32_t resolve_bytes(const Context& ctx, uint64_t handle, uint32_t size) {
+uint64_t move_handle(const Context& ctx, uint64_t handle, uint32_t bytes, KnownReach& known) {
+  const std::optional<Home> home = find_home(ctx, handle);
+  if (!home) return ir::move_offset(handle, bytes);
+  known = known_reach(*home, handle);
+  return ir::moved_from(home->reach, handle, bytes);
+}
+
+uint32_t resolve_bytes(const Context& ctx, uint64_t handle, uint32_t size, KnownReach& known) {
   const std::optional<Home> home = find_home(ctx, handle);
   const uint32_t offset = ir::handle_offset(handle);
-  const uint64_t end = uint64_t{offset} + size;
-  if (!home || end > home->used || touches_slot(*home, offset, end)) return 0;
+  if (!home || !home->reach.covers(offset, size)) return 0;
+  if (touches_slot(*home, offset, uint64_t{offset} + size)) return 0;
+  known = known_reach(*home, handle);
   return home->data + offset;
+}
+
+bool has_left(const Context& ctx, uint64_t handle, uint32_t size) {
+  const std::optional<Home> home = find_home(ctx, handle);
+  if (!home) return false;
+  if (home->reach.size() == 0) return ir::handle_away(handle) == ir::kLost;
+  return !home->reach.covers(ir::handle_offset(handle), size);
 }
 
 uint32_t find_instance(const Context* ctx, uint64_t handle, uint32_t type) {
   const std::optional<Home> home = find_home(*ctx, handle);
-  const bool right = home && home->id < ctx->generation->areas().size() &&
-                     ir::handle_offset(handle) == 0 &&
+  const bool right = home && home->id < ctx->generation->areas().size() && is_beginning(handle) &&
                      ctx->generation->image().types.is_a(
                          ir::TypeId(ctx->generation->areas()[home->id].type), ir::TypeId(type));
   return right ? home->id : 0;
@@ -113,7 +165,7 @@ uint32_t find_instance(const Context* ctx, uint64_t handle, uint32_t type) {
 VirtualCallee find_target(const Context* ctx, uint64_t handle, uint32_t prototype) {
   const std::optional<Home> home = find_home(*ctx, handle);
   const std::vector<AreaEntry>& areas = ctx->generation->areas();
-  if (!home || home->id >= areas.size() || ir::handle_offset(handle) != 0) return {};
+  if (!home || home->id >= areas.size() || !is_beginning(handle)) return {};
   const uint32_t pou = ctx->generation->target_of(areas[home->id].type, prototype);
   return pou == kNoTarget ? VirtualCallee{} : VirtualCallee{home->id, pou};
 }
@@ -126,7 +178,8 @@ uint32_t resolve_exactly(const Context& ctx, uint64_t handle, uint32_t type) {
   }
   const std::optional<Home> home = find_home(ctx, handle);
   const std::vector<AreaEntry>& areas = ctx.generation->areas();
-  if (!home || home->id >= areas.size()) return 0;  // locals hold no slots
+  const bool local = home && home->id >= areas.size();  // these hold no slots
+  if (!home || local || !is_inside(handle)) return 0;
   const ir::Region area{ir::TypeId(areas[home->id].type), 0};
   const uint32_t offset = ir::handle_offset(handle);
   const bool found =
@@ -137,10 +190,12 @@ uint32_t resolve_exactly(const Context& ctx, uint64_t handle, uint32_t type) {
 uint64_t resolve_string(const Context& ctx, uint64_t handle, uint32_t capacity, uint32_t unit) {
   const std::optional<Home> home = find_home(ctx, handle);
   const uint32_t offset = ir::handle_offset(handle);
-  if (!home || offset >= home->used || touches_slot(*home, offset, uint64_t{offset} + 1)) return 0;
+  if (!home || !home->reach.covers(offset, 1)) return 0;
+  if (touches_slot(*home, offset, uint64_t{offset} + 1)) return 0;
   const uint32_t* const last = home->slots + home->slot_count;
   const uint32_t* const next = std::lower_bound(home->slots, last, offset);
-  const uint32_t units = ((next == last ? home->used : *next) - offset) / unit;
+  const uint32_t end = next == last ? home->reach.end : std::min(home->reach.end, *next);
+  const uint32_t units = (end - offset) / unit;
   if (units == 0) return 0;
   return (home->data + offset) | uint64_t{std::min(capacity, units - 1)} << 32;
 }
@@ -187,6 +242,9 @@ void find_deepest_exposed(Context& ctx) {
 void drop_exposed(Context& ctx, uint32_t depth) {
   while (ctx.exposure_count != 0 && ctx.exposures[ctx.exposure_count - 1].depth >= depth) {
     --ctx.exposure_count;
+  }
+  for (KnownReach& known : ctx.reaches) {
+    if ((known.segment & ir::kExposedBit) != 0) known = {};
   }
   find_deepest_exposed(ctx);
 }

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "ir/types/handle.h"
+#include "ir/types/reach.h"
 #include "vm/exec/context.h"
 
 namespace vm {
@@ -13,6 +13,7 @@ namespace vm {
 struct Home {
   uint32_t data = 0;
   uint32_t used = 0;
+  ir::Reach reach;  // of the variable that the handle was taken from; no bytes: it is lost
   const uint32_t* slots = nullptr;  // offsets that nothing may touch, sorted
   uint32_t slot_count = 0;
   uint32_t id = 0xffffffffu;  // of the instance; none for a local
@@ -20,8 +21,14 @@ struct Home {
 
 // What the handle's segment names; nullopt when it is gone or never was.
 std::optional<Home> find_home(const Context& ctx, uint64_t handle);
-// Data offset of `size` bytes that hold no slot; 0 when they are not there.
-uint32_t resolve_bytes(const Context& ctx, uint64_t handle, uint32_t size);
+// The handle moved by the low 32 bits of `bytes`, with their sign (ir/types/reach.h). Keeps the
+// variable in `known`.
+uint64_t move_handle(const Context& ctx, uint64_t handle, uint32_t bytes, KnownReach& known);
+// Data offset of `size` bytes of its variable that hold no slot; 0 when they are not there. Keeps
+// the variable in `known`.
+uint32_t resolve_bytes(const Context& ctx, uint64_t handle, uint32_t size, KnownReach& known);
+// Are there no `size` bytes because the handle has left its variable?
+bool has_left(const Context& ctx, uint64_t handle, uint32_t size);
 // Data offset of exactly a value of a type with slots, or of the area of an instance; 0: none.
 uint32_t resolve_exactly(const Context& ctx, uint64_t handle, uint32_t type);
 // {offset, capacity} of a string with units of `unit` bytes; 0: not even an empty one is there.

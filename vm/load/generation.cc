@@ -57,29 +57,36 @@ bool same_units(const ir::Image& a, const ir::Image& b, uint32_t number) {
                     b.code.begin() + y.first_unit);
 }
 
-// Slots are listed once per type.
+// Puts `found` behind what is in `all`, and says where: the first and how many.
+template <class T>
+void append(std::vector<T>& all, const std::vector<T>& found, uint32_t& first, uint32_t& count) {
+  first = static_cast<uint32_t>(all.size());
+  count = static_cast<uint32_t>(found.size());
+  all.insert(all.end(), found.begin(), found.end());
+}
+
+// Slots and variables are listed once per type.
 void add_areas(const ir::Image& image, DataTables& out) {
   ir::SlotFinder finder(image.types, image.layouts);
-  std::unordered_map<ir::TypeId, std::pair<uint32_t, uint32_t>> known;
+  std::unordered_map<ir::TypeId, AreaEntry> known;
   out.areas.resize(image.instances.size());
   for (uint32_t id = 0; id < out.areas.size(); ++id) {
     const ir::Instance& row = image.instances[id];
     if (!row.live) continue;
     const ir::TypeLayout& layout = image.layouts[row.type];
-    const auto [slots, added] = known.try_emplace(row.type);
+    const auto [lists, added] = known.try_emplace(row.type);
+    AreaEntry& area = lists->second;
     if (added) {
-      const std::vector<uint32_t> found = finder.inside(row.type);
-      slots->second = {static_cast<uint32_t>(out.area_slots.size()),
-                       static_cast<uint32_t>(found.size())};
-      out.area_slots.insert(out.area_slots.end(), found.begin(), found.end());
+      append(out.area_slots, finder.inside(row.type), area.first_slot, area.slot_count);
+      append(out.area_reaches, ir::area_reaches(image.types, image.layouts, row.type),
+             area.first_reach, area.reach_count);
     }
-    out.areas[id] = {ir::area_segment(id, row.generation),
-                     row.data,
-                     layout.used,
-                     std::max(layout.used, layout.area_capacity),
-                     slots->second.first,
-                     slots->second.second,
-                     row.type.index};
+    area.segment = ir::area_segment(id, row.generation);
+    area.data = row.data;
+    area.used = layout.used;
+    area.capacity = std::max(layout.used, layout.area_capacity);
+    area.type = row.type.index;
+    out.areas[id] = area;
     out.areas_by_data.push_back(id);
   }
   std::sort(out.areas_by_data.begin(), out.areas_by_data.end(),

@@ -12,6 +12,7 @@
 
 #include "ir/bytecode/bools.h"
 #include "ir/bytecode/verify.h"
+#include "ir/types/reach.h"
 #include "vm/exec/tier.h"
 #include "vm/load/code_slots.h"
 
@@ -78,6 +79,8 @@ struct AreaEntry {
   uint32_t first_slot = 0;  // in area_slots(): offsets of ID and in-out slots, sorted
   uint32_t slot_count = 0;
   uint32_t type = 0;
+  uint32_t first_reach = 0;  // in area_reaches(): of its variables, sorted
+  uint32_t reach_count = 0;
 };
 
 // Of Image::bounds and Image::ranges, without their names.
@@ -103,6 +106,7 @@ struct DataTables {
   std::vector<InstanceEntry> instances;
   std::vector<AreaEntry> areas;
   std::vector<uint32_t> area_slots;
+  std::vector<ir::Reach> area_reaches;
   std::vector<uint32_t> areas_by_data;
   std::vector<uint32_t> stamps;
 };
@@ -149,6 +153,7 @@ class Generation {
   const std::vector<InstanceEntry>& instances() const { return data_->instances; }
   const std::vector<AreaEntry>& areas() const { return data_->areas; }
   const std::vector<uint32_t>& area_slots() const { return data_->area_slots; }
+  const std::vector<ir::Reach>& area_reaches() const { return data_->area_reaches; }
   // IDs of all areas by their place in data memory.
   const std::vector<uint32_t>& areas_by_data() const { return data_->areas_by_data; }
   // Data offset of the stamp of an instance (ir/types/stamps.h), and of the globals' change flag

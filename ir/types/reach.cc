@@ -1,0 +1,87 @@
+#include "ir/types/reach.h"
+
+#include <algorithm>
+
+#include "ir/types/natural_layout.h"
+
+namespace ir {
+namespace {
+
+constexpr int32_t kStepsBehind = kWhole - 1;
+constexpr int32_t kStepsBefore = -kLost - 1;
+
+// From outside into the variable: 1, 4, 16 ... 4096.
+constexpr uint32_t distance(int32_t step) { return 1u << (2 * (step - 1)); }
+
+// The first step whose distance is at least `outside`, when all up to it find the variable from
+// wherever they are needed; kLost otherwise. Monotonous in `outside`, so that no way in one
+// direction leads through lost places to others.
+int32_t step_for(uint64_t outside, uint64_t size, int32_t steps) {
+  uint32_t before = 0;
+  for (int32_t step = 1; step <= steps; ++step) {
+    if (distance(step) - before > size) return kLost;
+    if (distance(step) >= outside) return step;
+    before = distance(step);
+  }
+  return kLost;
+}
+
+int32_t away_at(int64_t position, uint32_t size) {
+  if (position >= 0 && position < size) return 0;
+  if (position < 0) {
+    const int32_t step = step_for(static_cast<uint64_t>(-position), size, kStepsBefore);
+    return step == kLost ? kLost : -step;
+  }
+  return step_for(static_cast<uint64_t>(position) - size + 1, size, kStepsBehind);
+}
+
+}  // namespace
+
+std::vector<Reach> area_reaches(const TypeTable& types, const Layouts& layouts, TypeId type) {
+  const std::vector<Member>& members = types[type].members;
+  const TypeLayout& layout = layouts[type];
+  std::vector<Reach> out;
+  for (size_t i = 0; i < members.size() && i < layout.member_offsets.size(); ++i) {
+    const bool slot = members[i].section == Section::kInOut;
+    const uint32_t begin = layout.member_offsets[i];
+    const uint32_t size = slot ? kSlotBytes : layouts[members[i].type].size;
+    if (size != 0) out.push_back({begin, begin + size});
+  }
+  std::sort(out.begin(), out.end(), [](Reach a, Reach b) { return a.begin < b.begin; });
+  return out;
+}
+
+Reach reach_at(std::span<const Reach> sorted, uint32_t offset) {
+  const auto behind = std::partition_point(sorted.begin(), sorted.end(),
+                                           [offset](Reach one) { return one.begin <= offset; });
+  if (behind == sorted.begin() || !(behind - 1)->holds(offset)) return {};
+  return *(behind - 1);
+}
+
+uint32_t anchor_of(uint64_t handle) {
+  const int32_t away = handle_away(handle);
+  const uint32_t offset = handle_offset(handle);
+  if (away == 0 || away == kLost || away == kWhole) return offset;
+  return away > 0 ? offset - distance(away) : offset + distance(-away);
+}
+
+Reach reach_of(std::span<const Reach> sorted, uint32_t area_bytes, uint64_t handle) {
+  const int32_t away = handle_away(handle);
+  if (away == kLost) return {};
+  return away == kWhole ? Reach{0, area_bytes} : reach_at(sorted, anchor_of(handle));
+}
+
+uint64_t handle_in(Reach reach, uint32_t segment, int64_t position) {
+  const uint32_t offset = reach.begin + static_cast<uint32_t>(position);
+  return with_away(make_handle(segment, offset), away_at(position, reach.size()));
+}
+
+uint64_t moved_from(Reach reach, uint64_t handle, uint32_t bytes) {
+  if (bytes == 0 || handle_away(handle) == kWhole) return move_offset(handle, bytes);
+  if (reach.size() == 0) return with_away(move_offset(handle, bytes), kLost);
+  const int32_t outside = static_cast<int32_t>(handle_offset(handle) - anchor_of(handle));
+  const int64_t inside = int64_t{anchor_of(handle)} - reach.begin;
+  return handle_in(reach, handle_segment(handle), inside + outside + static_cast<int32_t>(bytes));
+}
+
+}  // namespace ir
