@@ -14,11 +14,6 @@ constexpr uint32_t kSlotBytes = 4;
 constexpr uint32_t kExposedDataBegin = 0xf8000000u;  // where frames are (ir/bytecode/image.h)
 constexpr uint32_t kNowhere = 0xf0000000u;
 
-// Is it inside of what it was taken from?
-bool is_inside(uint64_t handle) {
-  return handle_away(handle) == 0 || handle_away(handle) == kWhole;
-}
-
 }  // namespace
 
 void References::add_area(Variable& root, uint32_t id, uint32_t generation, uint32_t data) {
@@ -58,7 +53,7 @@ std::optional<uint64_t> References::handle_of(const Address& at, uint32_t task) 
   home.frame = at.frame;
   home.segment = new_segment(task);
   home.used = home.capacity = layouts_[at.root->type].size;
-  home.reaches = {{0, home.used}};
+  home.reaches = {{0, home.used, false}};
   home.data = kExposedDataBegin + next_data_;
   next_data_ = (next_data_ + home.used + 7) / 8 * 8 % (1u << 26);
   exposed_.push_back(std::move(home));

@@ -65,7 +65,7 @@ const Member* member_at(const TypeTable& types, const Layouts& layouts, TypeId a
 
 std::string handle_text(const TypeTable& types, const Layouts& layouts, TypeId area,
                         uint64_t handle, TypeId target) {
-  if (handle_away(handle) == 0 || handle_away(handle) == kWhole) {
+  if (is_inside(handle)) {
     return path_inside(types, layouts, area, handle_offset(handle), target);
   }
   uint32_t begin = 0;

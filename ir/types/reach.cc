@@ -45,30 +45,23 @@ std::vector<Reach> area_reaches(const TypeTable& types, const Layouts& layouts, 
     const bool slot = members[i].section == Section::kInOut;
     const uint32_t begin = layout.member_offsets[i];
     const uint32_t size = slot ? kSlotBytes : layouts[members[i].type].size;
-    if (size != 0) out.push_back({begin, begin + size});
+    if (size != 0) out.push_back({begin, begin + size, false});
   }
   std::sort(out.begin(), out.end(), [](Reach a, Reach b) { return a.begin < b.begin; });
   return out;
 }
 
-Reach reach_at(std::span<const Reach> sorted, uint32_t offset) {
-  const auto behind = std::partition_point(sorted.begin(), sorted.end(),
-                                           [offset](Reach one) { return one.begin <= offset; });
-  if (behind == sorted.begin() || !(behind - 1)->holds(offset)) return {};
-  return *(behind - 1);
-}
-
 uint32_t anchor_of(uint64_t handle) {
   const int32_t away = handle_away(handle);
   const uint32_t offset = handle_offset(handle);
-  if (away == 0 || away == kLost || away == kWhole) return offset;
+  if (is_inside(handle) || away == kLost) return offset;
   return away > 0 ? offset - distance(away) : offset + distance(-away);
 }
 
 Reach reach_of(std::span<const Reach> sorted, uint32_t area_bytes, uint64_t handle) {
   const int32_t away = handle_away(handle);
   if (away == kLost) return {};
-  return away == kWhole ? Reach{0, area_bytes} : reach_at(sorted, anchor_of(handle));
+  return away == kWhole ? Reach{0, area_bytes, true} : reach_at(sorted, anchor_of(handle));
 }
 
 uint64_t handle_in(Reach reach, uint32_t segment, int64_t position) {

@@ -21,6 +21,7 @@ namespace ir {
 struct Reach {
   uint32_t begin = 0;
   uint32_t end = 0;
+  bool has_slots = false;  // set by whoever asks for it
   uint32_t size() const { return end - begin; }
   bool holds(uint32_t offset) const { return offset - begin < size(); }
   // All of [offset, offset + bytes)?
@@ -35,9 +36,22 @@ inline constexpr int32_t kWhole = 7;  // of a whole instance
 // Of the variables of a type that has an area of its own, inherited ones included; sorted.
 // Variables without bytes have none.
 std::vector<Reach> area_reaches(const TypeTable& types, const Layouts& layouts, TypeId type);
-// The one that holds the offset; none: its size is 0.
-Reach reach_at(std::span<const Reach> sorted, uint32_t offset);
+// The one that holds the offset; none: its size is 0. Without branches on the offsets, which may be
+// another variable's each time.
+inline Reach reach_at(std::span<const Reach> sorted, uint32_t offset) {
+  const Reach* found = sorted.data();
+  for (size_t rest = sorted.size(); rest > 1;) {
+    const size_t half = rest / 2;
+    found += found[half].begin <= offset ? half : 0;
+    rest -= half;
+  }
+  return sorted.empty() || !found->holds(offset) ? Reach() : *found;
+}
 
+// Is it inside of what it was taken from?
+constexpr bool is_inside(uint64_t handle) {
+  return handle_away(handle) == 0 || handle_away(handle) == kWhole;
+}
 // The byte in its variable that stands for the handle; of no meaning when the handle is lost.
 uint32_t anchor_of(uint64_t handle);
 // Of the variable that `handle` was taken from, in an area of so many bytes; no bytes: there is

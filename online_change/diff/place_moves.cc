@@ -160,7 +160,7 @@ class PlaceMoves::Maker {
       if (twin != names.end() && new_type.members[twin->second].section != ir::Section::kInOut) {
         part.to = new_.layouts[to].member_offsets[twin->second];
         part.pair = value(member.type, new_type.members[twin->second].type, depth + 1);
-        part.reach = {part.to, part.to + out_.pairs_[part.pair].new_size};
+        part.reach = {part.to, part.to + out_.pairs_[part.pair].new_size, false};
       }
       pair.same =
           pair.same && part.pair != kNone && part.to == part.begin && out_.pairs_[part.pair].same;

@@ -169,7 +169,7 @@ struct Semantics<ir::Opcode::RESOLVE> : Special {
     uint32_t found = exactly ? 0 : resolve_at(ctx, pc, handle, pc[1].y(), pc[1].x());
     if (found == 0) [[unlikely]] {
       KnownReach& known = known_at(ctx, pc);
-      handle = move_slowly(ctx, handle, pc[1].y(), &known);
+      if (pc[1].y() != 0) handle = move_slowly(ctx, handle, pc[1].y(), &known);
       found = resolve_slowly(ctx, handle, exactly, pc[1].x(), &known);
       if (found == 0) [[unlikely]]
         return raise_reference(ctx, pc, frame, self, handle, exactly ? 0 : pc[1].x());

@@ -10,8 +10,9 @@ namespace {
 
 constexpr uint32_t kSlotBytes = 4;
 
-// Does a slot have a byte in [begin, end)?
+// Does a slot have a byte in [begin, end), which lies in the reach?
 bool touches_slot(const Home& home, uint64_t begin, uint64_t end) {
+  if (!home.reach.has_slots) return false;
   const uint32_t* const last = home.slots + home.slot_count;
   const uint32_t* const next = std::partition_point(
       home.slots, last, [begin](uint64_t at) { return at + kSlotBytes <= begin; });
@@ -93,52 +94,76 @@ std::optional<uint64_t> expose(Context& ctx, uint32_t depth, uint32_t pou, uint3
 }
 
 KnownReach known_reach(const Home& home, uint64_t handle) {
-  const bool slots = touches_slot(home, home.reach.begin, home.reach.end);
+  const bool slots = home.reach.has_slots && home.slot_count != 0;
   const auto whole = static_cast<uint32_t>(ir::with_away(0, ir::kWhole) >> 32);
   const uint32_t mark = ir::handle_away(handle) == ir::kWhole ? whole : 0;
   return {ir::handle_segment(handle) | mark, home.reach.begin, home.reach.size(),
           slots ? 0 : home.data};
 }
 
-// Is it inside of what it was taken from?
-bool is_inside(uint64_t handle) {
-  return ir::handle_away(handle) == 0 || ir::handle_away(handle) == ir::kWhole;
+std::span<const ir::Reach> reaches_of(const Context& ctx, const AreaEntry& area) {
+  return {ctx.generation->area_reaches().data() + area.first_reach, area.reach_count};
 }
-// Does the handle name the first byte of an area and nothing else?
-bool is_beginning(uint64_t handle) { return ir::handle_offset(handle) == 0 && is_inside(handle); }
+
+// Null: the segment names no live area.
+const AreaEntry* area_of(const Context& ctx, uint32_t segment) {
+  const uint32_t id = (segment & ir::kSegmentIdMask) - 1;
+  const std::vector<AreaEntry>& areas = ctx.generation->areas();
+  return id < areas.size() && areas[id].segment == segment ? &areas[id] : nullptr;
+}
+
+// Of a handle that is inside of its variable; null: it is not, or names no area.
+const AreaEntry* area_inside(const Context& ctx, uint64_t handle) {
+  return area_of(ctx, static_cast<uint32_t>(handle >> 32));
+}
+
+// The instance whose area the handle names from its first byte on; 0: none.
+uint32_t instance_of(const Context& ctx, uint64_t handle) {
+  const AreaEntry* const area = area_of(ctx, ir::handle_segment(handle));
+  const bool first = ir::handle_offset(handle) == 0 && ir::is_inside(handle);
+  return area != nullptr && first ? ir::segment_id(area->segment) : 0;
+}
 
 }  // namespace
 
 std::optional<Home> find_home(const Context& ctx, uint64_t handle) {
   const uint32_t segment = ir::handle_segment(handle);
-  const uint32_t id = ir::segment_id(segment);
-  const std::vector<AreaEntry>& areas = ctx.generation->areas();
-  if (id < areas.size() && areas[id].segment == segment) {
-    const AreaEntry& area = areas[id];
-    const std::span all(ctx.generation->area_reaches().data() + area.first_reach, area.reach_count);
-    return Home{area.data,
-                area.used,
-                ir::reach_of(all, area.used, handle),
-                ctx.generation->area_slots().data() + area.first_slot,
-                area.slot_count,
-                id};
+  if (const AreaEntry* const area = area_of(ctx, segment)) {
+    return Home{area->data, ir::reach_of(reaches_of(ctx, *area), area->used, handle),
+                ctx.generation->area_slots().data() + area->first_slot, area->slot_count};
   }
   if ((segment & ir::kExposedBit) == 0) return std::nullopt;
   const Exposure* const local = exposure_of(ctx, segment);
   if (local == nullptr) return std::nullopt;
-  const ir::Reach whole[] = {{0, local->size}};
-  const ir::Reach reach = ir::reach_of(whole, local->size, handle);
-  return Home{local->begin, local->size, reach, nullptr, 0, 0xffffffffu};
+  const ir::Reach whole[] = {{0, local->size, false}};
+  return Home{local->begin, ir::reach_of(whole, local->size, handle), nullptr, 0};
 }
 
 uint64_t move_handle(const Context& ctx, uint64_t handle, uint32_t bytes, KnownReach& known) {
+  const uint32_t from = ir::handle_offset(handle);
+  if (const AreaEntry* const area = area_inside(ctx, handle)) {
+    const ir::Reach reach = ir::reach_at(reaches_of(ctx, *area), from);
+    if (reach.holds(from) && reach.holds(from + bytes)) {
+      known = {area->segment, reach.begin, reach.size(), reach.has_slots ? 0 : area->data};
+      return ir::move_offset(handle, bytes);
+    }
+  }
   const std::optional<Home> home = find_home(ctx, handle);
   if (!home) return ir::move_offset(handle, bytes);
   known = known_reach(*home, handle);
   return ir::moved_from(home->reach, handle, bytes);
 }
 
+// Areas come first: most references name one, and each time another one.
 uint32_t resolve_bytes(const Context& ctx, uint64_t handle, uint32_t size, KnownReach& known) {
+  if (const AreaEntry* const area = area_inside(ctx, handle)) {
+    const uint32_t place = ir::handle_offset(handle);
+    const ir::Reach reach = ir::reach_at(reaches_of(ctx, *area), place);
+    if (reach.covers(place, size) && !reach.has_slots) {
+      known = {area->segment, reach.begin, reach.size(), area->data};
+      return area->data + place;
+    }
+  }
   const std::optional<Home> home = find_home(ctx, handle);
   const uint32_t offset = ir::handle_offset(handle);
   if (!home || !home->reach.covers(offset, size)) return 0;
@@ -155,36 +180,33 @@ bool has_left(const Context& ctx, uint64_t handle, uint32_t size) {
 }
 
 uint32_t find_instance(const Context* ctx, uint64_t handle, uint32_t type) {
-  const std::optional<Home> home = find_home(*ctx, handle);
-  const bool right = home && home->id < ctx->generation->areas().size() && is_beginning(handle) &&
-                     ctx->generation->image().types.is_a(
-                         ir::TypeId(ctx->generation->areas()[home->id].type), ir::TypeId(type));
-  return right ? home->id : 0;
+  const uint32_t id = instance_of(*ctx, handle);
+  const bool right =
+      id != 0 && ctx->generation->image().types.is_a(ir::TypeId(ctx->generation->areas()[id].type),
+                                                     ir::TypeId(type));
+  return right ? id : 0;
 }
 
 VirtualCallee find_target(const Context* ctx, uint64_t handle, uint32_t prototype) {
-  const std::optional<Home> home = find_home(*ctx, handle);
-  const std::vector<AreaEntry>& areas = ctx->generation->areas();
-  if (!home || home->id >= areas.size() || !is_beginning(handle)) return {};
-  const uint32_t pou = ctx->generation->target_of(areas[home->id].type, prototype);
-  return pou == kNoTarget ? VirtualCallee{} : VirtualCallee{home->id, pou};
+  const uint32_t id = instance_of(*ctx, handle);
+  if (id == 0) return {};
+  const uint32_t pou = ctx->generation->target_of(ctx->generation->areas()[id].type, prototype);
+  return pou == kNoTarget ? VirtualCallee{} : VirtualCallee{id, pou};
 }
 
+// Locals hold no slots.
 uint32_t resolve_exactly(const Context& ctx, uint64_t handle, uint32_t type) {
   const ir::Image& image = ctx.generation->image();
   if (image.types.is_instance(ir::TypeId(type))) {
     const uint32_t id = find_instance(&ctx, handle, type);
     return id == 0 ? 0 : ctx.generation->areas()[id].data;
   }
-  const std::optional<Home> home = find_home(ctx, handle);
-  const std::vector<AreaEntry>& areas = ctx.generation->areas();
-  const bool local = home && home->id >= areas.size();  // these hold no slots
-  if (!home || local || !is_inside(handle)) return 0;
-  const ir::Region area{ir::TypeId(areas[home->id].type), 0};
+  const AreaEntry* const area = area_of(ctx, ir::handle_segment(handle));
+  if (area == nullptr || !ir::is_inside(handle)) return 0;
   const uint32_t offset = ir::handle_offset(handle);
-  const bool found =
-      ir::has_region_at(image.types, image.layouts, area, offset, {ir::TypeId(type), 0});
-  return found ? home->data + offset : 0;
+  const bool found = ir::has_region_at(image.types, image.layouts, {ir::TypeId(area->type), 0},
+                                       offset, {ir::TypeId(type), 0});
+  return found ? area->data + offset : 0;
 }
 
 uint64_t resolve_string(const Context& ctx, uint64_t handle, uint32_t capacity, uint32_t unit) {
@@ -216,9 +238,12 @@ std::optional<uint64_t> handle_of(Context& ctx, uint32_t frame, uint32_t address
 }
 
 uint32_t flat_of(const Context& ctx, uint64_t handle) {
-  if (ir::handle_segment(handle) == 0) return ir::handle_offset(handle);
-  const std::optional<Home> home = find_home(ctx, handle);
-  return home ? home->data + ir::handle_offset(handle) : 0;
+  const uint32_t segment = ir::handle_segment(handle);
+  const uint32_t offset = ir::handle_offset(handle);
+  if (segment == 0) return offset;
+  if (const AreaEntry* const area = area_of(ctx, segment)) return area->data + offset;
+  const Exposure* const local = exposure_of(ctx, segment);
+  return local == nullptr ? 0 : local->begin + offset;
 }
 
 uint64_t unflat(const Context& ctx, uint32_t address) {

@@ -12,11 +12,9 @@ namespace vm {
 // Bytes that a handle names: an area or an exposed local, from its beginning.
 struct Home {
   uint32_t data = 0;
-  uint32_t used = 0;
   ir::Reach reach;  // of the variable that the handle was taken from; no bytes: it is lost
   const uint32_t* slots = nullptr;  // offsets that nothing may touch, sorted
   uint32_t slot_count = 0;
-  uint32_t id = 0xffffffffu;  // of the instance; none for a local
 };
 
 // What the handle's segment names; nullopt when it is gone or never was.

@@ -65,6 +65,17 @@ void append(std::vector<T>& all, const std::vector<T>& found, uint32_t& first, u
   all.insert(all.end(), found.begin(), found.end());
 }
 
+// Which of the variables hold slots; both lists are sorted.
+std::vector<ir::Reach> reaches_with_slots(std::vector<ir::Reach> reaches,
+                                          const std::vector<uint32_t>& slots) {
+  size_t next = 0;
+  for (ir::Reach& one : reaches) {
+    while (next < slots.size() && slots[next] < one.begin) ++next;
+    one.has_slots = next < slots.size() && slots[next] < one.end;
+  }
+  return reaches;
+}
+
 // Slots and variables are listed once per type.
 void add_areas(const ir::Image& image, DataTables& out) {
   ir::SlotFinder finder(image.types, image.layouts);
@@ -77,8 +88,10 @@ void add_areas(const ir::Image& image, DataTables& out) {
     const auto [lists, added] = known.try_emplace(row.type);
     AreaEntry& area = lists->second;
     if (added) {
-      append(out.area_slots, finder.inside(row.type), area.first_slot, area.slot_count);
-      append(out.area_reaches, ir::area_reaches(image.types, image.layouts, row.type),
+      const std::vector<uint32_t> slots = finder.inside(row.type);
+      append(out.area_slots, slots, area.first_slot, area.slot_count);
+      append(out.area_reaches,
+             reaches_with_slots(ir::area_reaches(image.types, image.layouts, row.type), slots),
              area.first_reach, area.reach_count);
     }
     area.segment = ir::area_segment(id, row.generation);
