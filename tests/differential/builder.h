@@ -179,6 +179,7 @@ class Builder {
   std::optional<Expr> pointer_test(int depth);
   std::optional<Stmt> retarget();
   std::optional<Stmt> step();
+  Stmt excursion(const Walker& walker);
   Variable unseen(Pou& pou, Section kind, TypeRef type);
   std::string address_word(TypeRef pointer) const;
   bool bound_at_start(const Expr& to) const;

@@ -56,6 +56,7 @@ const Row kRows[] = {
     {"NULL", {":= NULL"}},
     {"p[i]", {"p", "[LIMIT("}},
     {"sum of a pointer", {":= p", " + SIZEOF("}},
+    {"pointer led back over its end", {":= p", " - SIZEOF("}},
     {"__ISVALIDREF", {"__ISVALIDREF("}},
     // Statements.
     {"IF", {"IF ", " THEN"}},

@@ -175,10 +175,31 @@ std::optional<Stmt> Builder::retarget() {
   return simple(one.name + " := @0;", {std::move(*to)});
 }
 
+// Over the end of what is walked, or before its beginning, and back; a program that may trap can
+// leave the runner there.
+Stmt Builder::excursion(const Walker& walker) {
+  const std::string element = "SIZEOF(" + walker.element + ")";
+  const bool before = walker.elements >= 4 && one_in(3);
+  const std::string away = before ? " - " + element + ";"
+                                  : " + " + element + " * " + std::to_string(walker.elements) + ";";
+  Stmt out;
+  out.tail = "END_IF;";
+  out.clauses.push_back({"IF TRUE THEN", {}, {}, false});
+  std::vector<Stmt>& both = out.clauses[0].body;
+  both.push_back(simple(walker.runner + " := " + walker.begin + away, {}));
+  if (trap_in(6)) return out;
+  Expr distance = small_integer(elementary(ir::Kind::kDint), 1, walker.elements, 1);
+  both.push_back(
+      simple(walker.runner + " := " + walker.runner + (before ? " + " : " - ") + element + " * @0;",
+             {std::move(distance)}));
+  return out;
+}
+
 // The runner goes to another element, sometimes between two; also by way of a number.
 std::optional<Stmt> Builder::step() {
   if (walkers_.empty()) return std::nullopt;
   const Walker& walker = walkers_[below(count(walkers_))];
+  if (one_in(4)) return excursion(walker);
   TypeRef number = elementary(one_in(2) ? ir::Kind::kUdint : ir::Kind::kDint);
   int64_t last = walker.elements - 1;
   bool whole = one_in(2);
