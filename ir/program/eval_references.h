@@ -29,7 +29,7 @@ class References {
   // Where a `type` behind the handle is; nullopt: it traps. A string may get less than its
   // capacity when `short_string`.
   std::optional<Address> resolve(uint64_t handle, TypeId type, bool short_string) const;
-  // Why resolve() found nothing, as the end of a message; "" when there is no more to say.
+  // Why resolve() found nothing; "" when there is no more to say than the kind of the trap.
   std::string why_unresolved(uint64_t handle, TypeId type, bool short_string) const;
   uint32_t flat(uint64_t handle) const;
   uint64_t unflat(uint32_t data) const;

@@ -84,8 +84,7 @@ std::string left_text(const TypeTable& types, const Layouts& layouts, TypeId are
   const bool known = area.valid() && away != kLost && away != kWhole;
   const Member* const member =
       known ? member_at(types, layouts, area, anchor_of(handle), begin) : nullptr;
-  return ": the pointer has left " +
-         (member == nullptr ? "its variable" : "`" + member->name + "`");
+  return "the pointer has left " + (member == nullptr ? "its variable" : "`" + member->name + "`");
 }
 
 std::string index_text(const Type& array, uint64_t flat) {

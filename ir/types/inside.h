@@ -24,8 +24,7 @@ std::string path_inside(const TypeTable& types, const Layouts& layouts, TypeId r
 std::string handle_text(const TypeTable& types, const Layouts& layouts, TypeId area,
                         uint64_t handle, TypeId target);
 
-// Why a handle that has left its variable traps, as the end of a message. `area`: invalid for
-// locals, which have no names.
+// Why a handle that has left its variable traps. `area`: invalid for locals, which have no names.
 std::string left_text(const TypeTable& types, const Layouts& layouts, TypeId area, uint64_t handle);
 
 // The name of a reference's target: the path of its area ("" for the globals) and where inside.

@@ -39,9 +39,11 @@ std::string range_text(const ir::Image& image, const Trap& trap, std::string_vie
          std::to_string(r.high);
 }
 
-// Locals that were exposed are gone when this is asked.
-std::string left_text(const ir::Image& image, const Trap& trap) {
-  if (trap.operand[1] == 0) return "";
+// What it is. A reference that has left its variable is bound, which the title denies. Locals that
+// were exposed are gone when this is asked.
+std::string title_of(const ir::Image& image, const Trap& trap) {
+  const bool left = trap.kind == ir::TrapKind::kReference && trap.operand[1] != 0;
+  if (!left) return kTitles[static_cast<size_t>(trap.kind)];
   const auto handle = static_cast<uint64_t>(trap.operand[0]);
   const uint32_t id = ir::segment_id(ir::handle_segment(handle));
   const bool area = id < image.instances.size() && image.instances[id].live;
@@ -55,8 +57,6 @@ std::string operand_text(const ir::Image& image, const Trap& trap, std::string_v
       return index_text(image, trap, opcode);
     case ir::TrapKind::kSubrange:
       return range_text(image, trap, opcode);
-    case ir::TrapKind::kReference:
-      return left_text(image, trap);
     case ir::TrapKind::kConversion:
       return ": " + ir::scalar_text(image.types, image.types.elementary(ir::Kind::kLreal),
                                     static_cast<uint64_t>(trap.operand[0]));
@@ -76,7 +76,7 @@ uint32_t line_of(const ir::LinkedPou& pou, uint32_t unit) {
 
 TrapText describe(const ir::Image& image, const Trap& trap) {
   TrapText text;
-  text.text = kTitles[static_cast<size_t>(trap.kind)];
+  text.text = title_of(image, trap);
   if (trap.pou >= image.pous.size()) return text;
   const ir::LinkedPou& pou = image.pous[trap.pou];
   text.pou = pou.name;

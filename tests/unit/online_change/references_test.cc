@@ -86,6 +86,32 @@ TEST(References, case29_case30_case32_follow) {
 }
 
 // The ID of what went is used again; a reference to it stays NULL.
+// Past the end of a variable is past its end behind the change, whether it grows, shrinks or stays;
+// after undo it is where it was, and what was set anew is led back.
+TEST(References, case30_case33_past_the_end_follows_its_variable) {
+  const std::string rest =
+      "t : ARRAY[0..3] OF INT; p, q, r, gone : POINTER TO INT; set : BOOL; END_VAR ";
+  Plant plant("PROGRAM Main VAR a, b : ARRAY[0..3] OF INT; " + rest +
+              "IF NOT set THEN set := TRUE; p := ADR(a) + 8; q := ADR(b) + 8; r := ADR(b) - 4;"
+              "gone := ADR(t) + 8; END_IF END_PROGRAM");
+  plant.run(1);
+  plant.change(
+      "PROGRAM Main VAR x : LREAL; a : ARRAY[0..9] OF INT; b : ARRAY[0..1] OF INT; "
+      "t : ARRAY[0..3] OF DINT; p, q, r, gone : POINTER TO INT; set : BOOL; END_VAR "
+      "IF set THEN set := FALSE; q := ADR(a) + 20; END_IF END_PROGRAM",
+      true);
+  EXPECT_EQ(plant.get("Main.p"), "Main.a+20");
+  EXPECT_EQ(plant.get("Main.q"), "Main.b+4");
+  EXPECT_EQ(plant.get("Main.r"), "Main.b-4");
+  EXPECT_EQ(plant.get("Main.gone"), "NULL");
+  plant.run(1);
+  plant.undo();
+  EXPECT_EQ(plant.get("Main.p"), "Main.a+8");
+  EXPECT_EQ(plant.get("Main.q"), "Main.a+8");
+  EXPECT_EQ(plant.get("Main.r"), "Main.b-4");
+  EXPECT_EQ(plant.get("Main.gone"), "Main.t+8");
+}
+
 TEST(References, case31_id_used_again) {
   const std::string block = "FUNCTION_BLOCK B VAR n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK ";
   const std::string refs = "r : REFERENCE TO B; i : INT; END_VAR ";

@@ -151,10 +151,31 @@ TEST(ReferenceTraps, AStringWhereNothingIsLeft) {
             "reference Main:7");
 }
 
+// Of a trap at the bytes `by` behind the begin of the variable.
+std::string text_of_left(std::string_view place, int by) {
+  Rig rig(main_with("  member local v : INT\n  member local next : INT\n",
+                    "  local temp gone : INT\n  b0:\n    init local.gone @5\n    v0 = handle u64 " +
+                        std::string(place) + " @5\n    v1 = const i64 " + std::to_string(by) +
+                        " @5\n    v2 = move_handle u64 v0, v1 @6\n"
+                        "    v3 = load i16 target(v2 : INT) @7\n    return\n"));
+  EXPECT_EQ(rig.scan(), "reference Main:7");
+  return vm::describe(rig.image(), rig.execution().trap()).text;
+}
+
+TEST(ReferenceTraps, V20_TheTextNamesTheVariableThatWasLeft) {
+  EXPECT_EQ(text_of_left("self.v", 1), "the pointer has left `v`");
+  EXPECT_EQ(text_of_left("self.v", 2), "the pointer has left `v`");
+  EXPECT_EQ(text_of_left("self.next", -2), "the pointer has left `next`");
+  EXPECT_EQ(text_of_left("global.gInt", 2), "the pointer has left `gInt`");
+  EXPECT_EQ(text_of_left("self.v", 1000), "the pointer has left its variable");
+  EXPECT_EQ(text_of_left("local.gone", 2), "the pointer has left its variable");
+}
+
 // Any 64-bit number may be used as a handle; whatever it is, it finds a variable or traps.
 TEST(ReferenceTraps, AnyNumberIsSafe) {
-  for (uint64_t high : {1ull, 2ull, 3ull, 0x00ffffffull, 0x01000001ull, 0x7f000001ull,
-                        0x80000000ull, 0x80000001ull, 0xffffffffull}) {
+  for (uint64_t high :
+       {1ull, 2ull, 3ull, 0x00ffffffull, 0x01000001ull, 0x7f000001ull, 0x80000000ull, 0x80000001ull,
+        0xffffffffull, 0x08200001ull, 0x10000001ull, 0x70000001ull, 0x90000001ull, 0xf0000002ull}) {
     for (uint64_t low : {0ull, 1ull, 64ull, 0x7fffffffull, 0xffffffffull}) {
       trap_of("  member local fb : Fb\n",
               "  b0:\n    v0 = const u64 " + std::to_string(high << 32 | low) +
