@@ -1,27 +1,28 @@
 #include "ir/types/reach.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "ir/types/natural_layout.h"
 
 namespace ir {
 namespace {
 
-constexpr int32_t kStepsBehind = kWhole - 1;
-constexpr int32_t kStepsBefore = -kLost - 1;
+// From outside into the variable. One past the end is usual, and so is one element before the
+// beginning, with the sizes of elementary types first of all.
+constexpr uint32_t kBehind[] = {1, 4, 16, 64, 256, 1024};
+constexpr uint32_t kBefore[] = {1, 2, 4, 8, 32, 128, 512};
+static_assert(std::size(kBehind) == kWhole - 1 && std::size(kBefore) == -kLost - 1);
 
-// From outside into the variable: 1, 4, 16 ... 4096.
-constexpr uint32_t distance(int32_t step) { return 1u << (2 * (step - 1)); }
-
-// The first step whose distance is at least `outside`, when all up to it find the variable from
-// wherever they are needed; kLost otherwise. Monotonous in `outside`, so that no way in one
-// direction leads through lost places to others.
-int32_t step_for(uint64_t outside, uint64_t size, int32_t steps) {
+// The number from 1 on of the first distance that is at least `outside`, when all up to it find the
+// variable from wherever they are needed; kLost otherwise. Monotonous in `outside`, so that no way
+// in one direction leads through lost places to others.
+int32_t step_for(uint64_t outside, uint64_t size, std::span<const uint32_t> distances) {
   uint32_t before = 0;
-  for (int32_t step = 1; step <= steps; ++step) {
-    if (distance(step) - before > size) return kLost;
-    if (distance(step) >= outside) return step;
-    before = distance(step);
+  for (size_t i = 0; i < distances.size(); ++i) {
+    if (distances[i] - before > size) return kLost;
+    if (distances[i] >= outside) return static_cast<int32_t>(i) + 1;
+    before = distances[i];
   }
   return kLost;
 }
@@ -29,10 +30,10 @@ int32_t step_for(uint64_t outside, uint64_t size, int32_t steps) {
 int32_t away_at(int64_t position, uint32_t size) {
   if (position >= 0 && position < size) return 0;
   if (position < 0) {
-    const int32_t step = step_for(static_cast<uint64_t>(-position), size, kStepsBefore);
+    const int32_t step = step_for(static_cast<uint64_t>(-position), size, kBefore);
     return step == kLost ? kLost : -step;
   }
-  return step_for(static_cast<uint64_t>(position) - size + 1, size, kStepsBehind);
+  return step_for(static_cast<uint64_t>(position) - size + 1, size, kBehind);
 }
 
 }  // namespace
@@ -55,7 +56,7 @@ uint32_t anchor_of(uint64_t handle) {
   const int32_t away = handle_away(handle);
   const uint32_t offset = handle_offset(handle);
   if (is_inside(handle) || away == kLost) return offset;
-  return away > 0 ? offset - distance(away) : offset + distance(-away);
+  return away > 0 ? offset - kBehind[away - 1] : offset + kBefore[-away - 1];
 }
 
 Reach reach_of(std::span<const Reach> sorted, uint32_t area_bytes, uint64_t handle) {

@@ -2,10 +2,10 @@
 // (docs/adr/0005-references-are-handles.md). The variable is not in the handle. It is the one that
 // holds the byte `offset - distance`, where the distance is 0 inside of the variable, and outside
 // of it one of six or seven to each side, which the handle's `away` numbers: so one past the end is
-// the end of its own variable, and not the first byte of the next one. The distances grow by fours,
-// so one of them leads back from everywhere near the variable, as long as that is large enough for
-// the next step. What goes further is lost: no arithmetic brings it back. A pointer to an instance
-// that is taken as one to something else may go wherever the instance has bytes.
+// the end of its own variable, and not the first byte of the next one. The distances grow by fours
+// at most, so one of them leads back from everywhere near the variable, as long as that is large
+// enough for the next step. What goes further is lost: no arithmetic brings it back. A pointer to
+// an instance that is taken as one to something else may go wherever the instance has bytes.
 #pragma once
 
 #include <cstdint>
