@@ -162,7 +162,7 @@ std::string text_of_left(std::string_view place, int by) {
   return vm::describe(rig.image(), rig.execution().trap()).text;
 }
 
-TEST(ReferenceTraps, V20_TheTextNamesTheVariableThatWasLeft) {
+TEST(ReferenceTraps, I3_TheTextNamesTheVariableThatWasLeft) {
   EXPECT_EQ(text_of_left("self.v", 1), "the pointer has left `v`");
   EXPECT_EQ(text_of_left("self.v", 2), "the pointer has left `v`");
   EXPECT_EQ(text_of_left("self.next", -2), "the pointer has left `next`");

@@ -25,7 +25,7 @@ uint64_t moved(Reach reach, uint64_t handle, int32_t bytes) {
   return moved_from(found_by(reach, handle), handle, static_cast<uint32_t>(bytes));
 }
 
-TEST(Reach, V20_past_the_end_is_the_end_of_its_own_variable) {
+TEST(Reach, I3_past_the_end_is_the_end_of_its_own_variable) {
   for (const uint32_t size : {1u, 2u, 7u, 1000u}) {
     const Reach reach{100, 100 + size, false};
     const uint64_t end = moved(reach, begin_of(reach), static_cast<int32_t>(size));
@@ -37,7 +37,7 @@ TEST(Reach, V20_past_the_end_is_the_end_of_its_own_variable) {
   }
 }
 
-TEST(Reach, V20_one_element_before_the_beginning_comes_back) {
+TEST(Reach, I3_one_element_before_the_beginning_comes_back) {
   for (const int32_t element : {1, 2, 4, 8, 32, 128, 512}) {
     const Reach reach{5000, 5000 + static_cast<uint32_t>(element), false};
     const uint64_t before = moved(reach, begin_of(reach), -element);
@@ -48,7 +48,7 @@ TEST(Reach, V20_one_element_before_the_beginning_comes_back) {
 
 // Whatever steps in one direction lead to a place: the handle is the same as by one step. And each
 // that is not lost finds its variable.
-TEST(Reach, V20_steps_in_one_direction_are_one_step) {
+TEST(Reach, I3_steps_in_one_direction_are_one_step) {
   std::mt19937 random(7);
   for (int round = 0; round < 200'000; ++round) {
     const uint32_t size = 1 + static_cast<uint32_t>(random() >> (random() % 32)) % 40'000;
@@ -71,7 +71,7 @@ TEST(Reach, V20_steps_in_one_direction_are_one_step) {
   }
 }
 
-TEST(Reach, V20_what_went_too_far_never_comes_back) {
+TEST(Reach, I3_what_went_too_far_never_comes_back) {
   const Reach reach{100, 104, false};
   uint64_t handle = moved(reach, begin_of(reach), 1000);
   EXPECT_EQ(handle_away(handle), kLost);
@@ -81,13 +81,13 @@ TEST(Reach, V20_what_went_too_far_never_comes_back) {
   EXPECT_EQ(handle_away(handle), kLost);
 }
 
-TEST(Reach, V20_nothing_moves_by_no_bytes) {
+TEST(Reach, I3_nothing_moves_by_no_bytes) {
   for (const uint64_t handle : {uint64_t{0}, ~uint64_t{0}, make_handle(5, 7), with_away(9, -3)}) {
     EXPECT_EQ(moved_from({}, handle, 0), handle);
   }
 }
 
-TEST(Reach, V20_the_variable_is_the_one_that_holds_the_byte) {
+TEST(Reach, I3_the_variable_is_the_one_that_holds_the_byte) {
   std::vector<Reach> all;
   for (uint32_t count = 0; count < 40; ++count) {
     for (uint32_t offset = 0; offset < 200; ++offset) {
