@@ -191,6 +191,9 @@ JOURNAL_STREAM=$(stat -c %d:%i journald.log) \
 runs_and_ends 'the journal'
 grep -qE '^<5>started [0-9a-f]+ by serve$' journald.log || fail "$(cat journald.log)"
 grep -qvE '^<[3-6]>' journald.log && fail "without a level: $(cat journald.log)"
+JOURNAL_STREAM=$(stat -c %d:%i journald.log) \
+  "$bin/stvm" serve --dir empty/folder 2>>journald.log && fail 'served without a folder'
+tail -n 2 journald.log | grep -qE '^<3>stvm: R05' || fail "$(cat journald.log)"
 : >other.log
 JOURNAL_STREAM=$(stat -c %d:%i journald.log) \
   "$bin/stvm" serve --dir plc --device tank.name=$name >/dev/null 2>>other.log & start

@@ -170,6 +170,10 @@ base::Result<vm::RealTimeOptions> real_time_options(const tools::Options& option
   return out;
 }
 
+bool is_journal() {
+  return LogOutput::is_journal(STDERR_FILENO, std::getenv("JOURNAL_STREAM"));
+}
+
 void print_ready(ServedResource& resource) {
   const vm::Controller& controller = resource.controller();
   std::printf("ready: %s %s in %s\n", controller.image().name.c_str(),
@@ -255,8 +259,7 @@ base::Status serve(const tools::Options& options) {
   vm::RealClock real_clock;
   vm::VirtualClock virtual_clock;
   std::unique_ptr<vm::GlobalExchange> exchange;
-  const auto output = std::make_shared<LogOutput>(
-      STDERR_FILENO, LogOutput::is_journal(STDERR_FILENO, std::getenv("JOURNAL_STREAM")));
+  const auto output = std::make_shared<LogOutput>(STDERR_FILENO, is_journal());
   base::Result<Served> served = open_all(options, output);
   if (!served.ok()) return served.error();
   // Behind the compiler, which is a program of its own, and before all threads.
@@ -292,7 +295,9 @@ base::Status serve(const tools::Options& options) {
 int run_serve(const tools::Options& options) {
   base::Status served = serve(options);
   std::clearerr(stdout);  // whoever read what it says may have gone long ago
-  return served.ok() ? tools::kOk : refuse(served.error());
+  if (served.ok()) return tools::kOk;
+  if (is_journal()) std::fputs("<3>", stderr);  // the level, as that of events
+  return refuse(served.error());
 }
 
 }  // namespace

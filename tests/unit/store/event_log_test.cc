@@ -8,6 +8,7 @@
 
 #include "online_change/store/record.h"
 #include "tests/unit/store/sim_storage.h"
+#include "tools/stvm/controller_client.h"
 #include "tools/stvm/event_filter.h"
 #include "tools/stvm/event_text.h"
 
@@ -261,6 +262,38 @@ TEST(LogOutput, R10_KnowsTheJournalByDeviceAndInode) {
   EXPECT_FALSE(LogOutput::is_journal(ends[1], nullptr));
   EXPECT_FALSE(LogOutput::is_journal(-1, own.c_str()));
   for (const int end : ends) ::close(end);
+}
+
+// --- who asks ------------------------------------------------------------------------
+
+// A controller that never comes to an end of its events, or goes back to those of before.
+class Endless : public vm::Transport {
+ public:
+  explicit Endless(uint64_t step) : step_(step) {}
+  base::Result<base::Bytes> exchange(base::ByteSpan) override {
+    base::Bytes page;
+    for (int i = 0; i < 1000; ++i) {
+      JournalEntry entry = event(Event::kSet);
+      entry.sequence = number_ += step_;
+      const base::Bytes sector = online_change::encode(entry);
+      page.insert(page.end(), sector.begin(), sector.end());
+    }
+    if (step_ == 0) number_ = 0;
+    return vm::encode_answer(page);
+  }
+
+ private:
+  uint64_t step_;
+  uint64_t number_ = 7;
+};
+
+TEST(EventClient, R10_EventsWithoutEndAreNotUnderstood) {
+  for (const uint64_t step : {1, 0}) {
+    ControllerClient client(std::make_unique<Endless>(step));
+    const auto events = client.events(0);
+    ASSERT_FALSE(events.ok());
+    EXPECT_EQ(events.error().refusal, base::Refusal::kProtocol);
+  }
 }
 
 // --- texts ---------------------------------------------------------------------------
