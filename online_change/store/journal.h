@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -90,16 +89,17 @@ class Journal {
   // Where something has failed: a new file with all entries. One that could not be read is left
   // alone, since it holds entries that are nowhere else.
   base::Status renew();
-  std::vector<JournalEntry> entries() const { return {ring_.begin(), ring_.end()}; }
+  const std::vector<JournalEntry>& entries() const { return ring_; }
   const std::string& complaint() const { return complaint_; }
 
  private:
   base::Status fail(const base::Error& error);
+  void forget_oldest();
 
   vm::Storage& storage_;
   std::string name_;
   uint32_t entries_;
-  std::deque<JournalEntry> ring_;
+  std::vector<JournalEntry> ring_;  // oldest first
   uint64_t next_ = 1;
   bool unread_ = false;
   std::string complaint_;  // not empty: dead

@@ -42,21 +42,22 @@ base::Result<NamedValues> named_values(const ir::Image& image, const vm::Request
 }
 
 // As many as an event has room for, and how many more.
-template <class Text>
-std::string list_text(size_t count, Text text_of) {
+std::string list_text(const std::vector<std::string>& rows) {
   std::string out;
-  for (size_t i = 0; i < count; ++i) {
-    const std::string next = (i == 0 ? "" : ", ") + text_of(i);
-    if (i != 0 && out.size() + next.size() + kRoomForCount > online_change::kMaxText) {
-      return out + ", and " + std::to_string(count - i) + " more";
+  for (size_t i = 0; i < rows.size(); ++i) {
+    if (i != 0 && out.size() + rows[i].size() + kRoomForCount > online_change::kMaxText) {
+      return out + ", and " + std::to_string(rows.size() - i) + " more";
     }
-    out += next;
+    if (i != 0) out += ", ";
+    out += rows[i];
   }
   return out;
 }
 
 std::string assignments_text(const NamedValues& values) {
-  return list_text(values.size(), [&](size_t i) { return values[i].path + "=" + values[i].value; });
+  std::vector<std::string> rows;
+  for (const vm::NamedValue& value : values) rows.push_back(value.path + "=" + value.value);
+  return list_text(rows);
 }
 
 vm::ValueRow value_row(const ir::Image& image, const std::string& path, const ir::Symbol& symbol) {
@@ -169,8 +170,7 @@ base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request)
   base::Status taken = at_boundary([&] { controller_.use(**change); });
   if (!taken.ok()) return taken.error();
   if (names->empty()) return base::Bytes();  // nothing was forced
-  note_done(online_change::Event::kUnforced, who_,
-            list_text(names->size(), [&](size_t i) { return (*names)[i]; }));
+  note_done(online_change::Event::kUnforced, who_, list_text(*names));
   return base::Bytes();
 }
 

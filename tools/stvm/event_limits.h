@@ -36,11 +36,9 @@ class EventLimits {
 
  private:
   struct Period {
-    online_change::Event event{};
-    std::string source;
+    LeftOut left_out;
     int64_t begin_ns = 0;
     uint64_t left = 0;  // that pass
-    uint64_t left_out = 0;
   };
   Period& period(online_change::Event event, const std::string& source, int64_t now_ns);
 

@@ -37,11 +37,28 @@ std::string versions_text(const JournalEntry& entry) {
   return out;
 }
 
-std::string counts_text(const online_change::FateCounts& n) {
-  if (n.total() == 0) return {};
-  return std::to_string(n.kept) + " kept, " + std::to_string(n.moved) + " moved, " +
-         std::to_string(n.converted) + " converted, " + std::to_string(n.initialised) +
-         " initialised, " + std::to_string(n.dropped) + " dropped";
+namespace {
+
+struct FateCount {
+  const char* name;
+  uint64_t online_change::FateCounts::*count;
+};
+constexpr FateCount kFates[] = {{"kept", &online_change::FateCounts::kept},
+                                {"moved", &online_change::FateCounts::moved},
+                                {"converted", &online_change::FateCounts::converted},
+                                {"initialised", &online_change::FateCounts::initialised},
+                                {"dropped", &online_change::FateCounts::dropped}};
+
+}  // namespace
+
+std::string counts_text(const online_change::FateCounts& counts) {
+  std::string out;
+  if (counts.total() == 0) return out;
+  for (const FateCount& fate : kFates) {
+    if (!out.empty()) out += ", ";
+    out += std::to_string(counts.*fate.count) + " " + fate.name;
+  }
+  return out;
 }
 
 std::string pause_text(const JournalEntry& entry) {
@@ -99,9 +116,8 @@ static void event_json(tools::JsonWriter& json, const JournalEntry& entry) {
   json.field("durable", row.kept != online_change::Kept::kMemory);
   json.field("source", entry.source).field("who", entry.who);
   json.field("from", base::to_hex(entry.from)).field("to", base::to_hex(entry.to));
-  json.key("fates").begin_object().field("kept", entry.counts.kept);
-  json.field("moved", entry.counts.moved).field("converted", entry.counts.converted);
-  json.field("initialised", entry.counts.initialised).field("dropped", entry.counts.dropped);
+  json.key("fates").begin_object();
+  for (const FateCount& fate : kFates) json.field(fate.name, entry.counts.*fate.count);
   json.end_object().field("predicted_pause_ns", entry.predicted_ns);
   json.field("pause_ns", entry.measured_ns).field("cycle", entry.cycle);
   json.field("text", entry.text).end_object();

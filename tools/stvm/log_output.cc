@@ -7,8 +7,9 @@
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 #include "tools/stvm/controller_service.h"
 #include "tools/stvm/event_text.h"
@@ -37,7 +38,8 @@ struct LogOutput::Core {
 
   std::mutex mutex;  // never held while a line is written
   std::condition_variable changed;
-  std::deque<std::string> lines;
+  std::vector<std::string> lines;  // that wait
+  size_t in_hand = 0;              // that the thread has taken, and not written yet
   uint64_t lost = 0;
   bool ending = false;
   steady_clock::time_point end_by{};
@@ -75,19 +77,25 @@ std::string LogOutput::Core::lost_line(uint64_t count) const {
 }
 
 void LogOutput::Core::run() {
+  std::vector<std::string> batch;
   std::unique_lock lock(mutex);
   for (;;) {
     changed.wait(lock, [this] { return ending || !lines.empty(); });
     if (lines.empty() || gives_up()) break;
-    const std::string line = std::move(lines.front());
-    lines.pop_front();
-    const uint64_t missing = lost;
-    lock.unlock();
-    const bool said = missing == 0 || write(lost_line(missing));
-    const bool written = said && write(line);
-    lock.lock();
-    if (said) lost -= missing;
-    if (!written) ++lost;
+    std::swap(batch, lines);
+    in_hand = batch.size();
+    for (const std::string& line : batch) {
+      if (gives_up()) break;
+      const uint64_t missing = lost;
+      lock.unlock();
+      const bool said = missing == 0 || write(lost_line(missing));
+      const bool written = said && write(line);
+      lock.lock();
+      if (said) lost -= missing;
+      if (!written) ++lost;
+      --in_hand;
+    }
+    batch.clear();
   }
   ended = true;
   changed.notify_all();
@@ -119,7 +127,7 @@ void LogOutput::start() {
 void LogOutput::add(online_change::Level level, int64_t time_ns, const std::string& text) {
   std::string line = log_line(level, time_ns, text, core_->for_journald);
   const std::lock_guard lock(core_->mutex);
-  if (core_->lines.size() >= kMostLines) {
+  if (core_->lines.size() + core_->in_hand >= kMostLines) {
     ++core_->lost;
     return;
   }
@@ -129,7 +137,7 @@ void LogOutput::add(online_change::Level level, int64_t time_ns, const std::stri
 
 size_t LogOutput::waiting() const {
   const std::lock_guard lock(core_->mutex);
-  return core_->lines.size();
+  return core_->lines.size() + core_->in_hand;
 }
 
 bool LogOutput::is_journal(int descriptor, const char* stream) {
