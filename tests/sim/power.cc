@@ -165,6 +165,7 @@ void World::come_back() {
   const auto edits = hand.client->edits();
   require(edits.ok(), "edits are told");
   for (const stvm::TrialEdit& edit : *edits) on_trial_.push_back({edit.from, std::nullopt});
+  edits_ = on_trial_.size();
   if (on_trial_.empty()) require(settled().boots_next == running, "and boots next");
   if (!on_trial_.empty()) {
     require(on_trial_.front().before == settled().boots_next, "the oldest edit is of what boots");

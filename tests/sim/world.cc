@@ -73,7 +73,10 @@ void World::switched(const Snapshot& before, const Snapshot& now) {
     say("version behind:\n" + differential::print(versions_.at(now.image().digest())->tree));
     throw;
   }
-  const bool back = !on_trial_.empty() && on_trial_.back().before == now.image().digest();
+  // A change, too, may lead to the version from before.
+  const size_t edits = service_->edits_on_trial();
+  const bool back = edits < std::exchange(edits_, edits) && !on_trial_.empty() &&
+                    on_trial_.back().before == now.image().digest();
   if (!back) {
     on_trial_.push_back({before.image().digest(), before});
     return;
@@ -109,6 +112,7 @@ vm::StatusReport World::settled() {
           "a trial has a version to go back to");
   require(now.edits <= on_trial_.size(), "each edit on trial was switched to");
   on_trial_.erase(on_trial_.begin(), on_trial_.end() - static_cast<ptrdiff_t>(now.edits));
+  edits_ = now.edits;
   for (const vm::TaskStatus& task : now.tasks) {
     require(task.missed == 0, "a release of " + task.name + " was missed");
   }
@@ -204,10 +208,9 @@ void World::change() {
   if (!next) return;
   std::optional<base::Bytes> package = package_for(hand.seen.running, *next);
   if (!package) return;
-  const uint32_t flags = (random_.one_in(3) ? 0u : vm::kAllowLoss) |
-                         (random_.one_in(2) ? vm::kAllowOverrun : 0u) |
-                         (random_.one_in(5) ? vm::kPermanent : 0u) |
-                         (random_.one_in(3) ? vm::kLastEditBoots : 0u);
+  const uint32_t flags =
+      (random_.one_in(3) ? 0u : vm::kAllowLoss) | (random_.one_in(2) ? vm::kAllowOverrun : 0u) |
+      (random_.one_in(5) ? vm::kPermanent : 0u) | (random_.one_in(3) ? vm::kLastEditBoots : 0u);
   const bool boots = (flags & (vm::kPermanent | vm::kLastEditBoots)) != 0;
   may_boot_.push_back(boots ? ir::digest(online_change::decode(*package)->image)
                             : hand.seen.boots_next);
@@ -333,8 +336,9 @@ void World::accept() {
     require(trial, "only a trial can be accepted");
     require(now.boots_next == now.running && now.edits == 0, "what is accepted boots next");
   } else {
-    require((lost && trial && now.boots_next == now.running) || now.boots_next == hand.seen.boots_next,
-            "an accept that was refused changes nothing");
+    require(
+        (lost && trial && now.boots_next == now.running) || now.boots_next == hand.seen.boots_next,
+        "an accept that was refused changes nothing");
   }
 }
 

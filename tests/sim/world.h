@@ -122,6 +122,7 @@ class World {
     std::optional<Snapshot> at_switch;  // the boundary; null: that was before a power cut
   };
   std::vector<OnTrial> on_trial_;
+  size_t edits_ = 0;  // at the last look
 };
 
 }  // namespace sim

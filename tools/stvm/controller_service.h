@@ -82,6 +82,8 @@ class ControllerService : public vm::Service {
   // Who wanted it; behind stop_wanted().
   const std::string& stopped_by() const { return stopped_by_; }
   online_change::RetainKeeper& keeper() { return keeper_; }
+  // How many edits are on trial; for the control thread.
+  size_t edits_on_trial() const { return change_.on_trial(); }
 
  private:
   base::Bytes answer_within_memory(base::ByteSpan request, bool& keep_open);
