@@ -42,7 +42,13 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/online_change/plan/*.cc
      ${CMAKE_SOURCE_DIR}/online_change/package/package.cc
      ${CMAKE_SOURCE_DIR}/vm/load/generation.cc ${CMAKE_SOURCE_DIR}/vm/runtime/controller.cc
-     ${CMAKE_SOURCE_DIR}/vm/runtime/native_maker.cc)
+     ${CMAKE_SOURCE_DIR}/vm/runtime/native_maker.cc ${CMAKE_SOURCE_DIR}/vm/runtime/recorder.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/memory_report.cc ${CMAKE_SOURCE_DIR}/vm/runtime/scheduler.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/scheduler_events.cc ${CMAKE_SOURCE_DIR}/ir/types/*_text.cc
+     ${CMAKE_SOURCE_DIR}/ir/types/*_parse.cc ${CMAKE_SOURCE_DIR}/ir/types/*_name*.cc
+     ${CMAKE_SOURCE_DIR}/ir/types/inside.cc ${CMAKE_SOURCE_DIR}/ir/types/location.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_calls.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/call_needs.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_tables.cc)
 # The back end of the other machine makes no code here.
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
   file(GLOB other_machine ${CMAKE_SOURCE_DIR}/vm/native/arm64/*.cc)
