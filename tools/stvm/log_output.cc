@@ -32,6 +32,7 @@ struct LogOutput::Core {
   bool gives_up() const { return ending && steady_clock::now() >= end_by; }  // with `mutex`
   bool must_give_up();
   std::string lost_line(uint64_t count) const;
+  uint64_t say_missing(uint64_t count);
 
   const int descriptor;
   const bool for_journald;
@@ -40,7 +41,7 @@ struct LogOutput::Core {
   std::condition_variable changed;
   std::vector<std::string> lines;  // that wait
   size_t in_hand = 0;              // that the thread has taken, and not written yet
-  uint64_t lost = 0;
+  uint64_t lost = 0;               // behind those that wait
   bool ending = false;
   steady_clock::time_point end_by{};
   bool ended = false;
@@ -76,7 +77,13 @@ std::string LogOutput::Core::lost_line(uint64_t count) const {
                   for_journald);
 }
 
+// So many lines have not been written where it writes now. How many are still to be said.
+uint64_t LogOutput::Core::say_missing(uint64_t count) {
+  return count == 0 || write(lost_line(count)) ? 0 : count;
+}
+
 void LogOutput::Core::run() {
+  uint64_t unsaid = 0;
   std::vector<std::string> batch;
   std::unique_lock lock(mutex);
   for (;;) {
@@ -84,18 +91,19 @@ void LogOutput::Core::run() {
     if (lines.empty() || gives_up()) break;
     std::swap(batch, lines);
     in_hand = batch.size();
+    const uint64_t behind = std::exchange(lost, 0);
     for (const std::string& line : batch) {
       if (gives_up()) break;
-      const uint64_t missing = lost;
       lock.unlock();
-      const bool said = missing == 0 || write(lost_line(missing));
-      const bool written = said && write(line);
+      unsaid = say_missing(unsaid);
+      if (unsaid != 0 || !write(line)) ++unsaid;
       lock.lock();
-      if (said) lost -= missing;
-      if (!written) ++lost;
       --in_hand;
     }
     batch.clear();
+    lock.unlock();
+    unsaid = say_missing(unsaid + behind);
+    lock.lock();
   }
   ended = true;
   changed.notify_all();
