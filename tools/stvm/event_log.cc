@@ -35,21 +35,25 @@ JournalEntry entry_of(const vm::ScanEvent& event, int64_t time_ns) {
 
 }  // namespace
 
-EventLog::Clocks EventLog::real_clocks() {
-  return {wall_time_ns, [] {
-            return std::chrono::steady_clock::now().time_since_epoch() /
-                   std::chrono::nanoseconds(1);
-          }};
+int64_t EventLog::Clocks::wall_ns() const { return wall_time_ns(); }
+
+int64_t EventLog::Clocks::steady_ns() const {
+  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+const EventLog::Clocks& EventLog::real_clocks() {
+  static const Clocks clocks;
+  return clocks;
 }
 
 Event EventLog::event_of(vm::DeviceEvent event) { return kOfDevices[static_cast<size_t>(event)]; }
 
 EventLog::EventLog(online_change::Store& store, std::string resource,
-                   std::shared_ptr<LogOutput> output, Clocks clocks)
+                   std::shared_ptr<LogOutput> output, const Clocks& clocks)
     : store_(store),
       prefix_(resource.empty() ? std::string() : resource + ": "),
       output_(std::move(output)),
-      clocks_(std::move(clocks)) {
+      clocks_(clocks) {
   for (JournalEntry& entry : store.history()) remember(std::move(entry));
   store.tell([this](const JournalEntry& entry) { return take(entry); });
 }

@@ -105,8 +105,20 @@ std::string more_text(uint64_t count, int64_t span_ns) {
 }
 
 std::string log_line(Level level, int64_t time_ns, const std::string& text, bool for_journald) {
-  if (for_journald) return "<" + std::to_string(static_cast<int>(level)) + ">" + text + "\n";
-  return time_text(time_ns) + " " + level_name(level) + " " + text + "\n";
+  std::string out;
+  if (for_journald) {
+    out += '<';
+    out += static_cast<char>('0' + static_cast<int>(level));
+    out += '>';
+  } else {
+    out += time_text(time_ns);
+    out += ' ';
+    out += level_name(level);
+    out += ' ';
+  }
+  out += text;
+  out += '\n';
+  return out;
 }
 
 static void event_json(tools::JsonWriter& json, const JournalEntry& entry) {

@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
+#include <cstdio>
+#include <cstring>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -151,7 +153,10 @@ size_t LogOutput::waiting() const {
 bool LogOutput::is_journal(int descriptor, const char* stream) {
   struct stat info {};
   if (stream == nullptr || ::fstat(descriptor, &info) != 0) return false;
-  return std::to_string(info.st_dev) + ":" + std::to_string(info.st_ino) == stream;
+  char own[48];
+  std::snprintf(own, sizeof own, "%llu:%llu", static_cast<unsigned long long>(info.st_dev),
+                static_cast<unsigned long long>(info.st_ino));
+  return std::strcmp(own, stream) == 0;
 }
 
 }  // namespace stvm

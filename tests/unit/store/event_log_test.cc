@@ -31,6 +31,13 @@ JournalEntry event(Event what, const std::string& text = {}, const std::string& 
   return entry;
 }
 
+struct StoppedClocks : EventLog::Clocks {
+  int64_t wall_ns() const override { return wall; }
+  int64_t steady_ns() const override { return steady; }
+  int64_t wall = 1'000 * kSecond;
+  int64_t steady = kSecond;
+};
+
 // A log of a store in memory; what is written goes into a pipe.
 class EventLogTest : public ::testing::Test {
  protected:
@@ -47,9 +54,7 @@ class EventLogTest : public ::testing::Test {
     log_.reset();
     output_ = std::make_shared<LogOutput>(pipe_[1], true);
     store_ = std::make_unique<online_change::Store>(disk_);
-    log_ = std::make_unique<EventLog>(
-        *store_, "Line", output_,
-        EventLog::Clocks{[this] { return wall_ns_; }, [this] { return steady_ns_; }});
+    log_ = std::make_unique<EventLog>(*store_, "Line", output_, clocks_);
   }
   // All lines so far.
   std::string written() {
@@ -84,8 +89,7 @@ class EventLogTest : public ::testing::Test {
   }
 
   int pipe_[2] = {-1, -1};
-  int64_t wall_ns_ = 1'000 * kSecond;
-  int64_t steady_ns_ = kSecond;
+  StoppedClocks clocks_;
   sim::SimStorage disk_;
   std::shared_ptr<LogOutput> output_;
   std::unique_ptr<online_change::Store> store_;
@@ -135,7 +139,7 @@ TEST_F(EventLogTest, R10_AFloodIsCountedAndSparesTheDisk) {
   log_->look();
   const uint64_t told = texts().size();
   EXPECT_EQ(told, EventLimits::kOfPlant);
-  steady_ns_ += EventLimits::kPeriodNs;
+  clocks_.steady += EventLimits::kPeriodNs;
   log_->look();
   uint64_t left_out = 0;
   const std::vector<std::string> all = texts();
@@ -154,7 +158,7 @@ TEST_F(EventLogTest, R10_AClockThatStepsChangesNoOrder) {
   trap(1);
   log_->look();
   const int64_t first = from(0, 1).front().time_ns;
-  wall_ns_ -= 500 * kSecond;
+  clocks_.wall -= 500 * kSecond;
   store_->note(event(Event::kSet, "later"));
   trap(2);
   log_->look();
