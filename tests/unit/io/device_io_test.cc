@@ -257,6 +257,7 @@ TEST(DeviceIo, R10_AnExchangeThatDoesNotEndIsToldAndSoIsItsEnd) {
   ASSERT_TRUE(io.prepare(*image).ok());
   io.use(image->digest());
   Receiver receiver(io);
+  receiver.inputs.resize(image->image().input_bytes);
   hangs.set(32, 5);
   ASSERT_TRUE(eventually([&] { return receiver.input(0) == 5; }));
   std::vector<ScanEvent> events;
