@@ -78,7 +78,7 @@ std::optional<DirectAddress> parse_address(std::string_view text) {
 std::string address_text(const DirectAddress& address) {
   std::string out = "%";
   out += address.area == DirectArea::kInput ? 'I' : address.area == DirectArea::kOutput ? 'Q' : 'M';
-  if (address.bit_size == 1) {
+  if (address.bit_size <= 1) {  // 0: an image that nobody compiled
     return out + "X" + std::to_string(address.bit_offset / 8) + "." +
            std::to_string(address.bit_offset % 8);
   }

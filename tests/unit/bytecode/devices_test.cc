@@ -209,5 +209,10 @@ TEST(Devices, AddressesAsText) {
   }
 }
 
+// No rule bounds the size of a member's address, so an image can say anything.
+TEST(Addresses, OfNoSizeHaveATextToo) {
+  EXPECT_EQ(address_text({DirectArea::kOutput, 19, 0}), "%QX2.3");
+}
+
 }  // namespace
 }  // namespace ir
