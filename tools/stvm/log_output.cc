@@ -89,8 +89,8 @@ void LogOutput::Core::run() {
   std::vector<std::string> batch;
   std::unique_lock lock(mutex);
   for (;;) {
-    changed.wait(lock, [this] { return ending || !lines.empty(); });
-    if (lines.empty() || gives_up()) break;
+    changed.wait(lock, [this] { return ending || !lines.empty() || lost != 0; });
+    if ((lines.empty() && lost == 0) || gives_up()) break;
     std::swap(batch, lines);
     in_hand = batch.size();
     const uint64_t behind = std::exchange(lost, 0);
@@ -137,7 +137,8 @@ void LogOutput::start() {
 void LogOutput::add(online_change::Level level, int64_t time_ns, const std::string& text) {
   std::string line = log_line(level, time_ns, text, core_->for_journald);
   const std::lock_guard lock(core_->mutex);
-  if (core_->lines.size() + core_->in_hand >= kMostLines) {
+  // Behind one that is missing all are, until that can be said: they stay in their order.
+  if (core_->lost != 0 || core_->lines.size() + core_->in_hand >= kMostLines) {
     ++core_->lost;
     return;
   }

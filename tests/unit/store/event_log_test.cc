@@ -199,6 +199,21 @@ std::string read_all(int descriptor) {
   return out;
 }
 
+// "line 0", "line 1", ..., or in their place how many are missing.
+void expect_in_order(const std::string& text, uint64_t count) {
+  uint64_t next = 0;
+  for (size_t at = 0, end; (end = text.find('\n', at)) != std::string::npos; at = end + 1) {
+    const std::string line = text.substr(at, end - at);
+    if (line.find(" lines are missing here") != std::string::npos) {
+      next += std::stoull(line.substr(line.find("warning ") + 8));
+    } else if (const size_t number = line.find("line "); number != std::string::npos) {
+      ASSERT_EQ(std::stoull(line.substr(number + 5)), next) << line;
+      ++next;
+    }
+  }
+  EXPECT_EQ(next, count);
+}
+
 // A pipe that nobody reads takes 64 KiB: whoever adds lines goes on, and the end comes.
 TEST(LogOutput, R10_APipeThatNobodyReadsHoldsNobodyUp) {
   int ends[2];
@@ -218,17 +233,31 @@ TEST(LogOutput, R10_APipeThatNobodyReadsHoldsNobodyUp) {
   ::close(ends[0]);
   EXPECT_NE(rest.find("lines are missing here"), std::string::npos);
   EXPECT_NE(rest.find("the last one\n"), std::string::npos);
-  uint64_t next = 0;
-  for (size_t at = 0, end; (end = rest.find('\n', at)) != std::string::npos; at = end + 1) {
-    const std::string line = rest.substr(at, end - at);
-    if (line.find(" lines are missing here") != std::string::npos) {
-      next += std::stoull(line.substr(line.find("warning ") + 8));
-    } else if (const size_t number = line.find("line "); number != std::string::npos) {
-      ASSERT_EQ(std::stoull(line.substr(number + 5)), next) << line;
-      ++next;
-    }
-  }
-  EXPECT_EQ(next, uint64_t{kLines});
+  expect_in_order(rest, kLines);
+}
+
+// While the thread writes what it has taken, others add lines: those come behind what is missing.
+TEST(LogOutput, R10_KeepsTheOrderOfWhatIsMissing) {
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  uint64_t count = 0;
+  auto output = std::make_unique<LogOutput>(ends[1], false);
+  const auto add = [&] { output->add(Level::kInfo, 0, "line " + std::to_string(count++)); };
+  output->start();
+  while (count < 20'000) add();
+  const size_t waiting = output->waiting();
+  std::string rest(16'384, ' ');
+  const ssize_t size = ::read(ends[0], rest.data(), rest.size());
+  ASSERT_GT(size, 0);
+  rest.resize(static_cast<size_t>(size));
+  for (int i = 0; i < 10'000 && output->waiting() == waiting; ++i) ::usleep(1'000);
+  for (int i = 0; i < 10; ++i) add();
+  std::thread reader([&] { rest += read_all(ends[0]); });
+  output.reset();
+  ::close(ends[1]);
+  reader.join();
+  ::close(ends[0]);
+  expect_in_order(rest, count);
 }
 
 TEST(LogOutput, R10_EndsWhenNobodyReads) {
