@@ -97,6 +97,13 @@ CONFIGURATION c RESOURCE r ON cpu
 END_RESOURCE END_CONFIGURATION
 )";
 
+vm::ControllerOptions telling(EventRing& ring) {
+  vm::ControllerOptions options;
+  options.fuel_slice = 100;
+  options.events = &ring;
+  return options;
+}
+
 // At the next boundary.
 void set_limit(Plant& plant, const char* value) {
   while (!plant->at_boundary()) plant.cycles(1);
@@ -105,10 +112,7 @@ void set_limit(Plant& plant, const char* value) {
 
 TEST(ScanEvents, R10_OverrunsTrapsAndTheWatchdogAreTold) {
   EventRing ring;
-  vm::ControllerOptions options;
-  options.fuel_slice = 100;
-  options.events = &ring;
-  Plant plant(kLate, options, 1000);
+  Plant plant(kLate, telling(ring), 1000);
   ASSERT_TRUE(plant.ok());
   plant.cycles(3);
   EXPECT_TRUE(all_of(ring).empty());
@@ -146,10 +150,7 @@ TEST(ScanEvents, R10_OverrunsTrapsAndTheWatchdogAreTold) {
 // Whether there is room or not.
 TEST(ScanEvents, R10_AnOverrunAllocatesNothing) {
   EventRing ring;
-  vm::ControllerOptions options;
-  options.fuel_slice = 100;
-  options.events = &ring;
-  Plant plant(kLate, options, 1000);
+  Plant plant(kLate, telling(ring), 1000);
   ASSERT_TRUE(plant.ok());
   set_limit(plant, "15000");
   plant.cycles(10);
