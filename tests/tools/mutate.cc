@@ -109,7 +109,7 @@ std::string target_of(const std::string& ctest) {
     const std::string name = ctest.substr(5);
     return "test_" + (name.ends_with("_standby") ? name.substr(0, name.size() - 8) : name);
   }
-  if (ctest.starts_with("cli_")) return "stc stvm";  // what its script runs
+  if (ctest.starts_with("cli_")) return "stc stvm shared_memory_client";  // what its script runs
   return ctest.substr(0, ctest.find('_'));           // golden_change: golden
 }
 
