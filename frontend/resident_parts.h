@@ -50,7 +50,7 @@ struct Resident::Undo {
     PouDecl* pou;
     Range32 body;
     base::SourceSpan code;
-    base::Digest content;
+    ir::SourceContent content;
   };
   Sizes sizes;
   bool complete = true;  // false: constants of others were overwritten

@@ -10,6 +10,7 @@
 #include "linker/areas.h"
 #include "linker/call_graph.h"
 #include "linker/data.h"
+#include "linker/held.h"
 #include "linker/instances.h"
 #include "linker/relink.h"
 #include "linker/relocate.h"
@@ -182,7 +183,7 @@ class Linker {
       const ir::Object* object = context_.objects[i];
       codes[i] = object == nullptr ? unused_pou() : relocate(context_, *object);
       if (object == nullptr || !codes[i].ok()) return;
-      codes[i]->pou.identity = ir::identity(*object, program_, names_);
+      codes[i]->pou.identity = known_identity(*object, program_, names_);
     });
     for (base::Result<LinkedCode>& linked : codes) {
       if (!linked.ok()) return linked.error();
@@ -295,11 +296,14 @@ class Linker {
 
   base::Status link_contents() {
     const auto of = [](const ir::Object* object) {
-      return object == nullptr ? ir::PouContent{} : ir::PouContent{object->content};
+      return object == nullptr ? ir::PouContent{} : ir::PouContent{object->content.identity};
     };
     for (const ir::Object* object : context_.objects) image_.contents.push_back(of(object));
     const auto is_known = [](const ir::PouContent& content) { return content != ir::PouContent{}; };
     if (std::ranges::none_of(image_.contents, is_known)) image_.contents.clear();
+    if (!image_.contents.empty()) {
+      image_.held = held_parts(context_.objects, HeldNames(program_));
+    }
     return base::Ok{};
   }
 

@@ -9,6 +9,12 @@ using ir::Base;
 using ir::Field;
 using ir::FieldKind;
 
+base::Digest known_identity(const ir::Object& object, const ir::Program& program,
+                            const ir::PouNames& names) {
+  if (object.known_as != base::Digest{}) return object.known_as;
+  return ir::identity(object, program, names);
+}
+
 Numbers::Numbers(const LinkContext& context, const ir::Object& object, const FrameLayout& frame)
     : context_(context), object_(object), frame_(frame), constants_(context.pool.offsets(object)) {
   callees_.reserve(object.callees.size());

@@ -24,6 +24,10 @@ struct LinkContext {
   std::unordered_map<std::string, uint32_t> table_numbers;  // of bounds and ranges
 };
 
+// The digest of an object, as it is known.
+base::Digest known_identity(const ir::Object& object, const ir::Program& program,
+                            const ir::PouNames& names);
+
 // Of one object: looked up once, however often its code names them.
 class Numbers {
  public:

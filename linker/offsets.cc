@@ -23,6 +23,7 @@ static Region root_region(const ir::ObjectPlace& place, const ir::Object& object
     case ir::PlaceRoot::kSlot:
       return object.slots[place.slot].region;
     case ir::PlaceRoot::kRegion:
+    case ir::PlaceRoot::kFixed:
       return place.region;
   }
   return place.region;
@@ -30,6 +31,7 @@ static Region root_region(const ir::ObjectPlace& place, const ir::Object& object
 
 uint64_t place_offset(const ir::ObjectPlace& place, const ir::Object& object,
                       const ir::Program& program, const ir::Layouts& layouts) {
+  if (place.root == ir::PlaceRoot::kFixed) return place.slot;
   const ir::TypeTable& types = program.types;
   Region at = root_region(place, object, program);
   uint64_t offset = 0;

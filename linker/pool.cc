@@ -13,6 +13,11 @@ constexpr size_t kPoolAlign = 8;
 // Bytes of constants that no code needs any more, besides as many as it needs.
 constexpr size_t kPoolWaste = 4096;
 
+// A value that is laid out already is no scalar.
+bool is_scalar(const ir::ObjectConstant& constant) {
+  return !constant.type.valid() && constant.cls != ir::Class::kA;
+}
+
 // The first word, what is missing as zeros: scalars are padded so.
 uint64_t first_word(const uint8_t* bytes, size_t size) {
   uint64_t word = 0;
@@ -53,7 +58,7 @@ void ConstantPool::add_scalars(const ir::Object& object) {
   offsets.resize(object.constants.size());
   for (size_t i = 0; i < offsets.size(); ++i) {
     const ir::ObjectConstant& constant = object.constants[i];
-    if (!constant.type.valid()) offsets[i] = intern(constant.bytes);
+    if (is_scalar(constant)) offsets[i] = intern(constant.bytes);
   }
 }
 
@@ -62,7 +67,11 @@ void ConstantPool::add_values(const ir::Object& object, const InitialValues& ini
   std::vector<uint32_t>& offsets = of_object_[&object];
   for (size_t i = 0; i < offsets.size(); ++i) {
     const ir::ObjectConstant& constant = object.constants[i];
-    if (!constant.type.valid()) continue;
+    if (is_scalar(constant)) continue;
+    if (!constant.type.valid()) {
+      offsets[i] = intern(constant.bytes);
+      continue;
+    }
     base::Bytes bytes(layouts[constant.type].size, 0);
     initial.write_value(constant.type, constant.value, bytes);
     offsets[i] = intern(bytes);

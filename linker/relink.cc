@@ -1,8 +1,10 @@
 #include "linker/relink.h"
 
 #include <algorithm>
+#include <ranges>
 
 #include "linker/call_graph.h"
+#include "linker/held.h"
 #include "linker/relocate.h"
 #include "linker/tables.h"
 #include "linker/type_numbers.h"
@@ -51,12 +53,12 @@ class Relinker {
     for (const uint32_t pou : pous) {
       base::Result<LinkedCode> linked = relocate(context_, *context_.objects[pou]);
       if (!linked.ok()) return false;
-      linked->pou.identity = ir::identity(*context_.objects[pou], program_, state_.names);
+      linked->pou.identity = known_identity(*context_.objects[pou], program_, state_.names);
       same_stack = same_stack && linked->pou.frame_size == state_.image.pous[pou].frame_size;
       codes.push_back(std::move(*linked));
     }
     put_in(pous, codes);
-    for (const uint32_t pou : pous) put_content(pou, context_.objects[pou]->content);
+    if (!state_.image.contents.empty()) put_contents(pous);
     if (state_.image.code.size() > options_.max_code_units) return false;
     return same_stack || measure_stack();
   }
@@ -152,9 +154,22 @@ class Relinker {
     state_.image.pool = state_.pool.bytes();
   }
 
-  void put_content(uint32_t number, const base::Digest& content) {
-    std::vector<ir::PouContent>& contents = state_.image.contents;
-    if (!contents.empty()) contents[number].identity = content;
+  void put_contents(const std::vector<uint32_t>& pous) {
+    const HeldNames names(program_);
+    std::vector<const ir::Object*> objects(context_.objects.size());
+    for (const uint32_t pou : pous) {
+      objects[pou] = context_.objects[pou];
+      state_.image.contents[pou].identity = objects[pou]->content.identity;
+    }
+    const auto is_edited = [&](const ir::HeldPart& row) { return objects[row.pou] != nullptr; };
+    const std::vector<ir::HeldPart> added = held_parts(objects, names);
+    const bool same = std::ranges::equal(
+        added, state_.image.held.all() | std::views::filter(is_edited));
+    if (same) return;  // the table stays one with that of the version before
+    std::vector<ir::HeldPart>& rows = state_.image.held.own();
+    std::erase_if(rows, is_edited);
+    rows.insert(rows.end(), added.begin(), added.end());
+    std::sort(rows.begin(), rows.end());
   }
 
   void put_in(const std::vector<uint32_t>& numbers, std::vector<LinkedCode>& codes) {

@@ -91,6 +91,26 @@ void attribute_text(std::string& out, std::string_view name, std::string_view va
   add(out, value);
 }
 
+bool is_word_char(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         static_cast<unsigned char>(c) >= 0x80;
+}
+
+std::vector<uint32_t> words_of(std::string_view content) {
+  std::vector<uint32_t> words;
+  for (size_t at = 0; at < content.size();) {
+    size_t end = at;
+    while (end < content.size() && is_word_char(content[end])) ++end;
+    const bool digit = content[at] >= '0' && content[at] <= '9';
+    if (end > at && !digit) words.push_back(ir::word_hash(content.substr(at, end - at)));
+    at = std::max(end, at + 1);
+  }
+  std::sort(words.begin(), words.end());
+  words.erase(std::unique(words.begin(), words.end()), words.end());
+  words.shrink_to_fit();
+  return words;
+}
+
 }  // namespace
 
 void Parser::add_pragma(std::string& out, base::SourceSpan span) const {
@@ -99,7 +119,7 @@ void Parser::add_pragma(std::string& out, base::SourceSpan span) const {
   if (found) attribute_text(out, found->name, found->value);
 }
 
-base::Digest Parser::content_of(const Token* first, const PouDecl& pou) const {
+ir::SourceContent Parser::content_of(const Token* first, const PouDecl& pou) const {
   std::string out;
   for (uint32_t i = 0; i < pou.attributes.count; ++i) {
     const Attribute& attribute = tree_.attributes[pou.attributes.first + i];
@@ -127,7 +147,7 @@ base::Digest Parser::content_of(const Token* first, const PouDecl& pou) const {
     if (drawing && pou.diagram != kNoDiagram) add_diagram(out, tree_.diagrams[pou.diagram]);
     ++token;
   }
-  return base::sha256(base::as_bytes(out));
+  return {base::sha256(base::as_bytes(out)), words_of(out)};
 }
 
 }  // namespace frontend

@@ -81,7 +81,7 @@ class Parser {
   void skip_block(TokenKind end);  // the same, but not out of the POU
 
   // --- content.cc
-  base::Digest content_of(const Token* first, const PouDecl& pou) const;
+  ir::SourceContent content_of(const Token* first, const PouDecl& pou) const;
   void add_pragma(std::string& out, base::SourceSpan span) const;
 
   // --- attributes.cc

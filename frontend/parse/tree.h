@@ -22,6 +22,7 @@
 #include "frontend/network/network.h"
 #include "frontend/parse/chart.h"
 #include "frontend/parse/code_nodes.h"
+#include "ir/program/source_content.h"
 
 namespace frontend {
 
@@ -188,8 +189,7 @@ struct PouDecl {
   std::vector<Range32> usings;     // as in Scope
   Range32 attributes;
   ScopeId scope;  // of members too
-  base::Digest
-      content{};  // without members: what no layout, comment or case of words changes (E-02)
+  ir::SourceContent content;  // without members: what no layout, comment or case changes (E-02)
 };
 
 struct TaskDecl {

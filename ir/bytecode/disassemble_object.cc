@@ -81,6 +81,8 @@ class ObjectDisassembler {
       }
       case PlaceRoot::kRegion:
         return "+" + steps_text(place, place.region);
+      case PlaceRoot::kFixed:
+        return "+" + std::to_string(place.slot);
     }
     return "?";
   }

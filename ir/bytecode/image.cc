@@ -23,8 +23,7 @@ constexpr size_t kDigestAt = 16;
 constexpr size_t kHeaderBytes = kDigestAt + sizeof(base::Digest);
 
 constexpr const char* kSectionNames[] = {"program", "types",  "constants", "layouts", "pous",
-                                         "code",    "tables", "data",      "devices",
-                                         "sources"};
+                                         "code",    "tables", "data",      "devices", "sources"};
 constexpr size_t kBytesForThreads = 1 << 20;  // below, threads cost more than they save
 
 base::Error bad_format(std::string text) {
@@ -32,6 +31,9 @@ base::Error bad_format(std::string text) {
 }
 
 uint32_t version_of(const Image& image, bool has_sources) {
+  if (!image.held.empty()) {
+    return has_sources ? kImageVersionOfHeldAndSources : kImageVersionOfHeld;
+  }
   if (!image.contents.empty()) {
     return has_sources ? kImageVersionOfContentsAndSources : kImageVersionOfContents;
   }
@@ -41,8 +43,9 @@ uint32_t version_of(const Image& image, bool has_sources) {
 }
 
 uint32_t sections_of(uint32_t version) {
-  const bool has_sources =
-      version == kImageVersionOfSources || version == kImageVersionOfContentsAndSources;
+  const bool has_sources = version == kImageVersionOfSources ||
+                           version == kImageVersionOfContentsAndSources ||
+                           version == kImageVersionOfHeldAndSources;
   return has_sources ? kImageSectionCount + 1 : kImageSectionCount;
 }
 
@@ -105,7 +108,7 @@ base::Status check_sum(base::ByteSpan bytes, const KnownImage* known, base::Sha2
 }
 
 // A part of the work of decoding, and what came of it.
-struct Part {
+struct WorkShare {
   uint32_t first = 0;  // section
   uint32_t end = 0;
   base::Status done = base::Ok{};
@@ -139,8 +142,9 @@ Contents contents_of(const KnownImage* known) {
   return contents;
 }
 
-base::Status decode_sections(const Contents& contents, const Part& part, const KnownImage* known,
-                             const Contents& known_contents, DecodedImage& out) {
+base::Status decode_sections(const Contents& contents, const WorkShare& part,
+                             const KnownImage* known, const Contents& known_contents,
+                             DecodedImage& out) {
   for (uint32_t number = part.first; number < part.end; ++number) {
     base::ByteReader content(contents[number]);
     ImageReader archive(content, contents[number]);
@@ -171,8 +175,8 @@ base::Bytes encode(const Image& image) { return encode(image, nullptr).bytes; }
 
 WrittenImage encode(const Image& image, const KnownImage* known, base::ByteSpan sources) {
   WrittenImage made;
-  ImageWriter out(sources.size() + (known == nullptr ? rough_bytes(image)
-                                                     : known->bytes.size() + kBytesForThreads));
+  ImageWriter out(sources.size() +
+                  (known == nullptr ? rough_bytes(image) : known->bytes.size() + kBytesForThreads));
   const Contents known_contents = contents_of(known);
   out.raw(base::as_bytes(kImageMagic));
   out(version_of(image, !sources.empty()));
@@ -220,9 +224,10 @@ base::Result<DecodedImage> decode(base::ByteSpan bytes, const KnownImage* known)
   const uint32_t pous =
       jobs == 2 ? count : std::min(count, static_cast<uint32_t>(ImageSection::kPous));
   // The checksum, two parts of the sections: in the order of their errors.
-  std::array<Part, 3> parts = {Part{}, Part{.end = pous}, Part{.first = pous, .end = count}};
+  std::array<WorkShare, 3> parts = {WorkShare{}, WorkShare{.end = pous},
+                                    WorkShare{.first = pous, .end = count}};
   const auto work = [&](size_t number) {
-    Part& part = parts[number];
+    WorkShare& part = parts[number];
     if (jobs == 1 && !parts[0].done.ok()) return;
     part.done = number == 0 ? check_sum(bytes, known, out.places.trail)
                             : decode_sections(contents, part, known, known_contents, out);
@@ -234,11 +239,11 @@ base::Result<DecodedImage> decode(base::ByteSpan bytes, const KnownImage* known)
     parts[number].no_memory =
         base::within_memory([&] { return work(number), false; }, [] { return true; });
   });
-  if (std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.no_memory; })) {
+  if (std::any_of(parts.begin(), parts.end(), [](const WorkShare& p) { return p.no_memory; })) {
     out = DecodedImage();  // once more, in the caller's memory limit
     for (size_t number = 0; number < parts.size(); ++number) work(number);
   }
-  for (const Part& part : parts) {
+  for (const WorkShare& part : parts) {
     if (!part.done.ok()) return part.done.error();
   }
   if (!whole.ok()) return whole.error();

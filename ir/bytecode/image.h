@@ -74,6 +74,12 @@ struct PouContent {
   friend bool operator==(const PouContent&, const PouContent&) = default;
 };
 
+struct HeldPart {
+  uint32_t pou = 0;  // in Image::pous
+  HeldName what;
+  friend auto operator<=>(const HeldPart&, const HeldPart&) = default;
+};
+
 struct LinkedBound {
   int64_t low = 0;
   uint64_t count = 0;
@@ -215,6 +221,7 @@ struct Image {
   uint32_t output_bytes = 0;
   std::vector<Device> devices;
   std::vector<PouContent> contents;  // by POU; none in images before version 11
+  base::SharedVector<HeldPart> held;  // sorted, none twice; none in images before version 13
   Schedule schedule = Schedule::kSendFirst;
 
   // Live program instances in declaration order.

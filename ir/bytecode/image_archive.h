@@ -54,6 +54,10 @@ class ImageWriter {
   void last_list(const std::vector<T>& v, size_t min_size, Each&& each) {
     if (!v.empty()) list(v, min_size, each);
   }
+  template <class T, class Each>
+  void last_list(const base::SharedVector<T>& v, size_t min_size, Each&& each) {
+    last_list(v.all(), min_size, each);
+  }
   // `min_size`: bytes of the smallest record.
   template <class T, class Each>
   void list(const std::vector<T>& v, size_t, Each&& each) {
@@ -176,6 +180,12 @@ class ImageReader {
     if (in_.left() == 0) return;
     list(v, min_size, each);
     if (v.empty()) in_.fail();  // one image has one stored form
+  }
+  template <class T, class Each>
+  void last_list(base::SharedVector<T>& v, size_t min_size, Each each) {
+    std::vector<T> all;
+    last_list(all, min_size, each);
+    v = std::move(all);
   }
   template <class T, class Each>
   void list(std::vector<T>& v, size_t min_size, Each each) {

@@ -136,6 +136,15 @@ void instance_fields(Archive& a, T& v) {
 }
 
 template <class Archive, class T>
+void policy_fields(Archive& a, T& v) {
+  a.enumerator(v.io, 2);
+  a.enumerator(v.input_buffer, 6);
+  a.enumerator(v.overrun, 5);
+  a.enumerator(v.on_trap, 4);
+  a(v.freewheeling);
+}
+
+template <class Archive, class T>
 void task_fields(Archive& a, T& v) {
   a(v.name);
   a(v.period_ns);
@@ -144,11 +153,7 @@ void task_fields(Archive& a, T& v) {
   a(v.event);
   a.plain_list(v.programs);
   a(v.once);
-  a.enumerator(v.policy.io, 2);
-  a.enumerator(v.policy.input_buffer, 6);
-  a.enumerator(v.policy.overrun, 5);
-  a.enumerator(v.policy.on_trap, 4);
-  a(v.policy.freewheeling);
+  policy_fields(a, v.policy);
 }
 
 template <class Archive, class T>

@@ -12,6 +12,8 @@ inline constexpr uint32_t kImageVersionOfCharts = 9;
 inline constexpr uint32_t kImageVersionOfSources = 10;
 inline constexpr uint32_t kImageVersionOfContents = 11;
 inline constexpr uint32_t kImageVersionOfContentsAndSources = 12;
-inline constexpr uint32_t kLastImageVersion = kImageVersionOfContentsAndSources;
+inline constexpr uint32_t kImageVersionOfHeld = 13;
+inline constexpr uint32_t kImageVersionOfHeldAndSources = 14;
+inline constexpr uint32_t kLastImageVersion = kImageVersionOfHeldAndSources;
 
 }  // namespace ir

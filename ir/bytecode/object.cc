@@ -4,11 +4,11 @@
 #include "ir/bytecode/object.h"
 
 #include "base/name_case.h"
+#include "ir/bytecode/canonical_value.h"
 
 namespace ir {
 namespace {
 
-constexpr uint32_t kMaxDepth = 1000;
 constexpr size_t kTypesKept = 24;
 
 class Canonical {
@@ -98,6 +98,7 @@ class Canonical {
       case PlaceRoot::kSlot:
         return object_.slots[place.slot].region;
       case PlaceRoot::kRegion:
+      case PlaceRoot::kFixed:
         return place.region;
     }
     return place.region;
@@ -129,28 +130,8 @@ class Canonical {
     out_.blob(constant.bytes);
     out_.u8(static_cast<uint8_t>(constant.cls));
     type(constant.type);
-    if (constant.type.valid()) value(constant.type, constant.value, 0);
-  }
-
-  // The elements that the constant names; what it leaves to the type is the type's.
-  void value(TypeId id, ConstId constant, uint32_t depth) {
-    out_.boolean(constant.valid());
-    if (!constant.valid() || depth > kMaxDepth) return;
-    const ConstValue& content = program_.constants[constant];
-    const Type& at = types_[id];
-    out_.u64(content.bits);
-    out_.text(content.text);
-    out_.u32(static_cast<uint32_t>(content.elements.size()));
-    for (const ConstElement& element : content.elements) {
-      const bool member = element.first < at.members.size();
-      if (member) {
-        name(at.members[element.first].name);
-      } else {
-        out_.u32(element.first);
-      }
-      out_.u32(element.count);
-      value(member ? at.members[element.first].type : at.base, element.value, depth + 1);
-    }
+    if (!constant.type.valid()) return;
+    write_canonical(out_, types_, program_.constants, constant.type, constant.value);
   }
 
   void bound(const Bound& bound) {

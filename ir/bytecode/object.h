@@ -45,13 +45,14 @@ struct Slot {
   std::string name;     // of named locals, for the debugger
 };
 
-enum class PlaceRoot : uint8_t { kSelf, kGlobal, kSlot, kRegion };
+// kFixed: `slot` is the offset itself, of an image that does not tell what it leads to.
+enum class PlaceRoot : uint8_t { kSelf, kGlobal, kSlot, kRegion, kFixed };
 
 // A constant byte offset, still symbolic: root and steps. kMember steps count by
 // member number, kIndex steps by constant index (one per dimension). No other steps.
 struct ObjectPlace {
   PlaceRoot root = PlaceRoot::kSelf;
-  uint32_t slot = 0;  // kSlot
+  uint32_t slot = 0;  // kSlot, kFixed
   Region region;      // kRegion: what the addr points to
   Steps steps;
   Region result;  // what is at the place
@@ -60,7 +61,7 @@ struct ObjectPlace {
 
 // An entry of the constant pool: raw scalar bytes, or an initial value of a type.
 struct ObjectConstant {
-  base::InlineVector<uint8_t, 8> bytes;  // scalars: 1, 2, 4 or 8
+  base::InlineVector<uint8_t, 8> bytes;  // scalars: 1, 2, 4 or 8; kA: a value, as it is laid out
   Class cls = Class::kB;
   TypeId type;  // valid: `value` (or the type's default) laid out by the linker
   ConstId value;
@@ -90,14 +91,31 @@ struct LineEntry {
   uint32_t line = 0;
 };
 
+// What is in code as it was when it was compiled, where a name of it says nothing: functions that
+// the optimiser has taken in, and constants and types that are named in the source, whose values
+// may have become numbers (E-04).
+enum class HeldKind : uint8_t { kFunction, kGlobal, kType };
+struct HeldName {
+  HeldKind kind = HeldKind::kFunction;
+  std::string name;
+  friend auto operator<=>(const HeldName&, const HeldName&) = default;
+};
+
 struct Object {
   std::string name;
   PouKind kind = PouKind::kFunction;
   TypeId self;
   uint32_t recursion_depth = 0;  // as ir::Pou's
   std::string file;
-  base::Digest content{};   // as ir::Pou's; no part of the canonical bytes
-  std::vector<Slot> slots;  // kParam first, in declaration order
+  SourceContent content;  // as ir::Pou's; no part of the canonical bytes
+  // Of an object that was made from an image (linker/unlink.h). What it is known as; 0: by its
+  // canonical bytes. And does its code hold sizes and offsets of types as plain numbers? Then it
+  // goes with the layouts that these types have there.
+  base::Digest known_as{};
+  bool fixed = false;
+  std::vector<std::string> taken_in;  // POUs, as ir::Pou's; no part of the canonical bytes
+  std::vector<HeldName> held;         // of an object that was made from an image: all of them
+  std::vector<Slot> slots;            // kParam first, in declaration order
   std::vector<ObjectPlace> places;
   std::vector<ObjectConstant> constants;
   std::vector<Region> regions;

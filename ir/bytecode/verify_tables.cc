@@ -216,10 +216,25 @@ base::Status verify_tables(Context& context, const Likeness& likeness) {
 }
 
 base::Status verify_contents(const Image& image) {
-  if (image.contents.empty() || image.contents.size() == image.pous.size()) return base::Ok{};
-  return base::Error{base::Refusal::kBadFormat,
-                     "identities of " + std::to_string(image.contents.size()) + " POUs of " +
-                         std::to_string(image.pous.size())};
+  const size_t count = image.pous.size();
+  const bool complete = image.contents.size() == count;
+  if (!complete && !(image.contents.empty() && image.held.empty())) {
+    return base::Error{base::Refusal::kBadFormat, "identities of " +
+                                                      std::to_string(image.contents.size()) +
+                                                      " POUs of " + std::to_string(count)};
+  }
+  const HeldPart* before = nullptr;
+  for (const HeldPart& row : image.held) {
+    const bool in_order = before == nullptr || *before < row;
+    if (!in_order || row.pou >= count) {
+      return base::Error{base::Refusal::kBadFormat,
+                         "POU " + std::to_string(row.pou) + " of " + std::to_string(count) +
+                             " holds `" + row.what.name +
+                             "`: there is no such POU, or the rows are not in order"};
+    }
+    before = &row;
+  }
+  return base::Ok{};
 }
 
 }  // namespace ir::verification

@@ -34,6 +34,7 @@ base::Result<Object> lower(const Program& program, PouId id) {
   object.recursion_depth = pou.recursion_depth;
   object.file = pou.file;
   object.content = pou.content;
+  for (const PouId taken : pou.taken_in) object.taken_in.push_back(program.pous[taken.index].name);
   base::Result<codegen::Machine> selected = codegen::Selector(program, pou, object).run();
   if (!selected.ok()) return selected.error();
   codegen::Machine& machine = selected.value();

@@ -178,10 +178,21 @@ class Inliner {
       const uint32_t size = inst.op == Op::kCallFunction ? size_of(inst.pou) : 0;
       if (size == 0 || growth_ + size > kMaxGrowth) continue;
       growth_ += size;
+      note(inst.pou);
       first_local.resize(block.insts.size(), kNone);
       first_local[i] = add_locals(program_.pous[inst.pou.index]);
     }
     return first_local;
+  }
+
+  // Callees come before their callers, so what they have taken in is known.
+  void note(PouId callee) {
+    const auto add = [&](PouId pou) {
+      std::vector<PouId>& taken = pou_.taken_in;
+      if (std::find(taken.begin(), taken.end(), pou) == taken.end()) taken.push_back(pou);
+    };
+    add(callee);
+    for (const PouId pou : program_.pous[callee.index].taken_in) add(pou);
   }
 
   // A dot in the name: no source has one, so these locals can go when they are unused.

@@ -96,6 +96,7 @@
 #include "base/ids.h"
 #include "base/inline_vector.h"
 #include "base/slim_vector.h"
+#include "ir/program/source_content.h"
 #include "ir/program/task_policy.h"
 #include "ir/types/constants.h"
 #include "ir/types/types.h"
@@ -246,7 +247,8 @@ struct Pou {
   std::vector<Place> places;
   std::vector<Block> blocks;   // blocks[0] is the entry and has no parameters
   std::vector<ChartMove> chart;  // of a body that is a chart, for later versions: no code uses it
-  base::Digest content{};  // of the POU's own text, whatever its layout (E-02); 0: it has none
+  SourceContent content;
+  std::vector<PouId> taken_in;  // functions whose code the optimiser has put in here (E-04)
 };
 
 struct Task {

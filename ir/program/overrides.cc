@@ -1,10 +1,10 @@
 // Which method a virtual call runs, from the names of methods and the chains of bases.
-#include <algorithm>
+#include "ir/program/overrides.h"
+
 #include <map>
-#include <set>
+#include <utility>
 
 #include "base/limits.h"
-#include "ir/program/ir.h"
 
 namespace ir {
 namespace {
@@ -18,7 +18,8 @@ std::string method_name(const Program& program, const Pou& pou) {
 
 class Finder {
  public:
-  explicit Finder(const Program& program) : program_(program) {
+  Finder(const Program& program, std::set<PouId> prototypes)
+      : program_(program), prototypes_(std::move(prototypes)) {
     for (uint32_t i = 0; i < program.pous.size(); ++i) {
       const Pou& pou = program.pous[i];
       if (pou.kind == PouKind::kMethod && program.types.contains(pou.self)) {
@@ -80,6 +81,10 @@ class Finder {
 
 }  // namespace
 
-std::vector<Override> find_overrides(const Program& program) { return Finder(program).run(); }
+std::vector<Override> find_overrides(const Program& program, std::set<PouId> prototypes) {
+  return Finder(program, std::move(prototypes)).run();
+}
+
+std::vector<Override> find_overrides(const Program& program) { return find_overrides(program, {}); }
 
 }  // namespace ir

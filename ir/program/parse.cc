@@ -341,7 +341,7 @@ class ProgramParser {
       line.expect("line");
       pou.line = line.index();
     }
-    if (line.take("hash") && !base::digest_from_hex(line.token(), pou.content)) {
+    if (line.take("hash") && !base::digest_from_hex(line.token(), pou.content.identity)) {
       line.fail("the hash has not 64 hexadecimal digits");
     }
     program_.pous.push_back(std::move(pou));

@@ -44,8 +44,8 @@ class PouPrinter {
     if (!pou_.file.empty() || pou_.line != 0) {
       text_ += " file " + string_text(pou_.file) + " line " + std::to_string(pou_.line);
     }
-    if (pou_.content != base::Digest{}) {
-      text_ += " hash " + base::to_hex(pou_.content);
+    if (pou_.content.identity != base::Digest{}) {
+      text_ += " hash " + base::to_hex(pou_.content.identity);
     }
     text_ += "\n";
   }

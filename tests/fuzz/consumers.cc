@@ -8,6 +8,7 @@
 #include "ir/bytecode/embedded_sources.h"
 #include "ir/bytecode/renames.h"
 #include "ir/bytecode/symbols.h"
+#include "linker/merge.h"
 #include "online_change/apply/change.h"
 #include "online_change/plan/system_edits.h"
 #include "online_change/plan/pou_edits.h"
@@ -169,6 +170,14 @@ void compare_images(const ir::VerifiedImage& from, const ir::VerifiedImage& to) 
   const base::Bytes brief = encode_short(*package, from.encoded());
   const base::Result<Package> again = decode(brief, from.encoded());
   base::check(again.ok() && encode(*again) == encode(*package), "the short form is the same");
+}
+
+void merge_images(const ir::VerifiedImage& original, const ir::VerifiedImage& edited,
+                  const ir::VerifiedImage& target) {
+  const auto merged =
+      linker::merge({original.image(), edited.image(), target.image()}, {{}, true});
+  if (!answered(merged)) return;
+  answered(ir::verify(ir::encode(*merged)));
 }
 
 void run_image(const ir::VerifiedImage& image) {

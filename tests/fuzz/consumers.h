@@ -15,6 +15,9 @@ void read_image(const ir::VerifiedImage& image);
 // What a change from one to the other would do: plan, package, reports, edits of POUs and devices,
 // values that a restart carries over.
 void compare_images(const ir::VerifiedImage& from, const ir::VerifiedImage& to);
+// An edit from one to the other, made in a third program (E-09).
+void merge_images(const ir::VerifiedImage& original, const ir::VerifiedImage& edited,
+                  const ir::VerifiedImage& target);
 // Cold start, scans, forces, values by path, restarts, on both tiers, which give the same values.
 void run_image(const ir::VerifiedImage& image);
 // A running controller of `from` changes to `to`, runs, goes back, runs, changes for good.

@@ -91,6 +91,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   fuzz::read_image(*image);
   fuzz::compare_images(good.version, *image);
   fuzz::compare_images(*image, good.version);
+  fuzz::merge_images(good.version, *image, good.version);
+  fuzz::merge_images(*image, good.version, *image);
   switch (data[1] % 4) {
     case 0:
       fuzz::run_image(*image);

@@ -50,6 +50,10 @@ class ImageWalk {
     enumerator(v, limit);
   }
   template <class T, class Each>
+  void last_list(base::SharedVector<T>& v, size_t min_size, Each&& each) {
+    last_list(v.own(), min_size, each);
+  }
+  template <class T, class Each>
   void last_list(std::vector<T>& v, size_t min_size, Each&& each) {
     list(v, min_size, each);
   }

@@ -18,7 +18,7 @@ Contents contents(const std::string& source) {
   EXPECT_TRUE(compiled.program) << source << "\n" << compiled.text;
   Contents out;
   if (!compiled.program) return out;
-  for (const ir::Pou& pou : compiled.program->pous) out[pou.name] = pou.content;
+  for (const ir::Pou& pou : compiled.program->pous) out[pou.name] = pou.content.identity;
   return out;
 }
 

@@ -27,7 +27,7 @@ TEST(IrText, KeepsEveryFieldOfTheSample) {
   const Pou& limit = program.pous[program.find_pou("LIMIT").index];
   EXPECT_EQ(limit.file, "a b.st");
   EXPECT_EQ(limit.line, 7u);
-  EXPECT_EQ(limit.content[31], 1);
+  EXPECT_EQ(limit.content.identity[31], 1);
   EXPECT_EQ(limit.locals[2].kind, LocalKind::kInOut);
   EXPECT_EQ(limit.values[2].scalar, Scalar::kBool);
   EXPECT_EQ(limit.blocks[0].insts[1].line, 9u);

@@ -1,0 +1,132 @@
+#include "linker/merge.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "base/name_case.h"
+#include "ir/program/overrides.h"
+#include "linker/link.h"
+#include "linker/merge_pous.h"
+#include "linker/merge_rows.h"
+#include "linker/translate.h"
+#include "linker/unlink.h"
+
+namespace linker {
+namespace {
+
+using ir::PartEdit;
+using ir::PartKind;
+using ir::PartState;
+
+constexpr base::Digest kNobody{};
+
+std::string part_text(const PartEdit& edit) {
+  const std::string name = std::string(ir::part_kind_name(edit.kind)) + " `" + edit.name + "`";
+  if (edit.state == PartState::kMissing) return name + " is missing";
+  const std::string made_for =
+      edit.original == kNobody ? "added by the edit" : "was " + base::short_hex(edit.original);
+  return name + " is another one here (" + base::short_hex(edit.here) + ", " + made_for + ")";
+}
+
+// Names all parts in the way. With `matching`, a unit may stay what it is, with its variables.
+base::Status check_parts(const std::vector<PartEdit>& parts, bool matching) {
+  std::string text;
+  bool any = false;
+  for (const PartEdit& edit : parts) {
+    any = any || edit.state == PartState::kOk;
+    const bool fits = edit.state == PartState::kOk || edit.state == PartState::kHasIt;
+    const bool unit = edit.kind == PartKind::kUnit || edit.kind == PartKind::kBlock;
+    if (fits || (matching && unit)) continue;
+    text += (text.empty() ? "" : "; ") + part_text(edit);
+  }
+  if (!text.empty()) return base::Error{base::Refusal::kOtherPart, text};
+  if (any) return base::Ok{};
+  return base::Error{base::Refusal::kNoChange, "the program has every part of the edit already" +
+                                                   std::string(matching ? " that fits" : "")};
+}
+
+uint32_t size_of(const ir::Image& image, ir::TypeId id) {
+  const ir::TypeLayout& layout = image.layouts[id];
+  return image.types.is_instance(id) ? layout.used : layout.size;
+}
+
+// A type that both have and that lies otherwise in the second one; with `sizes`, or that is larger
+// or smaller there.
+std::optional<std::string> moved_type(const ir::Image& from, const ir::Image& to, bool sizes) {
+  std::map<std::string, ir::TypeId> known;
+  for (uint32_t i = 0; i < to.types.size(); ++i) {
+    known.emplace(ir::fold_name(to.types.text(ir::TypeId(i))), ir::TypeId(i));
+  }
+  for (uint32_t i = ir::kElementaryCount; i < from.types.size(); ++i) {
+    const ir::TypeId id(i);
+    const ir::Type& type = from.types[id];
+    const auto found = known.find(ir::fold_name(from.types.text(id)));
+    if (type.kind == ir::Kind::kGlobals || found == known.end()) continue;
+    const ir::TypeId there = found->second;
+    const bool other_size = from.layouts[id].size != to.layouts[there].size;
+    if (other_size || (sizes && size_of(from, id) != size_of(to, there))) {
+      return from.types.text(id);
+    }
+    for (size_t m = 0; m < type.members.size(); ++m) {
+      const int32_t number = to.types.find_member(there, type.members[m].name);
+      const uint32_t before = from.layouts[id].member_offsets[m];
+      if (number < 0) continue;
+      if (before != to.layouts[there].member_offsets[static_cast<size_t>(number)]) {
+        return from.types.text(id);
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+base::Error cannot(const std::string& text) { return {base::Refusal::kCannotRelink, text}; }
+
+base::Result<ir::Image> link_merged(const MergeInput& input, const MergedPous& pous,
+                                    const MergedRows& rows, const Slack& slack) {
+  Options options;
+  options.base = &input.target;
+  options.slack = slack;
+  options.devices = rows.devices;
+  options.safe = rows.safe;
+  base::Result<ir::Image> image = link(*rows.merged, pous.objects, options);
+  if (!image.ok()) return image;
+  const std::pair<const FixedPous&, const ir::Image&> fixed[] = {{pous.from_edited, input.edited},
+                                                                 {pous.from_target, input.target}};
+  for (const auto& [names, from] : fixed) {
+    if (names.offsets.empty()) continue;
+    const bool sizes = !names.sizes.empty();
+    if (const std::optional<std::string> type = moved_type(from, *image, sizes)) {
+      return cannot("`" + (sizes ? names.sizes : names.offsets) +
+                    "` goes through references or takes the SIZEOF of something, and `" + *type +
+                    "` would lie otherwise, or be of another size");
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+std::vector<PartEdit> merge_parts(const MergeInput& input) {
+  return ir::part_edits(ir::parts_of(input.original), ir::parts_of(input.edited),
+                        ir::parts_of(input.target));
+}
+
+base::Result<ir::Image> merge(const MergeInput& input, const MergeOptions& options) {
+  const std::vector<PartEdit> parts = merge_parts(input);
+  if (base::Status good = check_parts(parts, options.matching); !good.ok()) return good.error();
+  base::Result<Unlinked> edited = unlink(input.edited);
+  if (!edited.ok()) return edited.error();
+  base::Result<Unlinked> target = unlink(input.target);
+  if (!target.ok()) return target.error();
+  const PartChoice choice(parts);
+  base::Result<MergedRows> rows = merge_rows(input, choice, *edited, *target);
+  if (!rows.ok()) return rows.error();
+  base::Result<MergedPous> pous = merge_pous(input, choice, *edited, *target, *rows);
+  if (!pous.ok()) return pous.error();
+  return link_merged(input, *pous, *rows, options.slack);
+}
+
+}  // namespace linker

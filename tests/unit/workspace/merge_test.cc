@@ -1,0 +1,368 @@
+// An edit that was made in one program, made in another (E-09 to E-13, D3). What comes out is what
+// the compiler makes of sources with both edits, linked on top of the program that was there.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ir/bytecode/symbols.h"
+#include "linker/link.h"
+#include "linker/merge.h"
+#include "tests/unit/workspace/edited_project.h"
+
+namespace {
+
+using ir::PartKind;
+using ir::PartState;
+
+std::optional<ir::Image> compiled(const std::string& text, const ir::Image* base = nullptr) {
+  workspace::Settings settings;
+  settings.link.base = base;
+  const test::Outcome built = test::build_from_nothing(test::one_file(text), settings);
+  if (!built.image) return std::nullopt;
+  return std::move(*ir::decode(*built.image));
+}
+
+ir::Image image_of(const std::string& text, const ir::Image* base = nullptr) {
+  std::optional<ir::Image> image = compiled(text, base);
+  EXPECT_TRUE(image.has_value()) << text;
+  return image ? *std::move(image) : ir::Image();
+}
+
+// Lines are those of the text that a POU came from.
+std::string without_lines(const std::string& code) {
+  std::istringstream in(code);
+  std::string out;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("; line")) out += line + "\n";
+  }
+  return out;
+}
+
+// POUs, parts and initial values, in words.
+std::string description(const ir::Image& image) {
+  std::string out;
+  for (const ir::Part& part : ir::parts_of(image)) {
+    out += std::string(ir::part_kind_name(part.kind)) + " " + part.name + " " +
+           base::short_hex(part.identity) + "\n";
+  }
+  std::vector<std::string> pous;
+  for (const ir::LinkedPou& pou : image.pous) {
+    if (!pou.name.empty()) pous.push_back(without_lines(ir::disassemble(image, pou)));
+  }
+  std::sort(pous.begin(), pous.end());
+  for (const std::string& pou : pous) out += pou;
+  base::Bytes memory(image.data_capacity, 0);
+  ir::read_initial(image, 0, memory);
+  return out + ir::state_text(image, memory);
+}
+
+class Plant {
+ public:
+  // A project whose parts can be written otherwise.
+  std::string a =
+      "FUNCTION_BLOCK A VAR_INPUT x : INT; END_VAR VAR_OUTPUT n : INT; END_VAR n := n + x;";
+  std::string b = "FUNCTION_BLOCK B VAR_OUTPUT m : INT := 5; END_VAR m := m + 1;";
+  std::string c = "FUNCTION_BLOCK C VAR k : DINT; END_VAR k := k + shared;";
+  std::string types = "TYPE S : STRUCT u, v : INT; END_STRUCT; END_TYPE\n";
+  std::string globals = "VAR_GLOBAL shared : DINT := 7; pair : S; END_VAR\n";
+  std::string own;  // POUs of one plant alone
+  std::string main = "a1(x := 2); b1(); c1(); pair.v := a1.n;";
+  std::string variables = "a1 : A; b1 : B; c1 : C;";
+
+  std::string text() const {
+    return types + globals + a + " END_FUNCTION_BLOCK\n" + b + " END_FUNCTION_BLOCK\n" + c +
+           " END_FUNCTION_BLOCK\n" + own + "PROGRAM Main VAR " + variables + " END_VAR " + main +
+           " END_PROGRAM\n";
+  }
+};
+
+const ir::PartEdit* row_of(const std::vector<ir::PartEdit>& rows, const std::string& name) {
+  for (const ir::PartEdit& row : rows) {
+    if (row.kind == PartKind::kUnit && row.name == name) return &row;
+  }
+  return nullptr;
+}
+
+// The worked example: A and B are edited; one controller has both, one has another B.
+TEST(Merge, E11_SaysWhatEachControllerHas) {
+  Plant plant;
+  const ir::Image original = image_of(plant.text());
+  Plant next = plant;
+  next.a += " n := n + 1;";
+  next.b += " m := m + 2;";
+  const ir::Image edited = image_of(next.text());
+  Plant other = plant;
+  other.b += " m := m + 100;";
+  const ir::Image second = image_of(other.text());
+  const std::vector<ir::PartEdit> rows = linker::merge_parts({original, edited, second});
+  ASSERT_NE(row_of(rows, "A"), nullptr);
+  EXPECT_EQ(row_of(rows, "A")->state, PartState::kOk);
+  EXPECT_EQ(row_of(rows, "B")->state, PartState::kDifferent);
+  EXPECT_EQ(row_of(rows, "C"), nullptr);
+  const base::Result<ir::Image> refused = linker::merge({original, edited, second}, {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().refusal, base::Refusal::kOtherPart);
+  EXPECT_NE(refused.error().text.find("unit `B` is another one here"), std::string::npos)
+      << refused.error().text;
+  EXPECT_EQ(row_of(linker::merge_parts({original, edited, edited}), "A")->state, PartState::kHasIt);
+  Plant without = plant;
+  without.b = "FUNCTION_BLOCK D";
+  without.main = "a1(x := 2); c1();";
+  without.variables = "a1 : A; c1 : C;";
+  const ir::Image third = image_of(without.text());
+  EXPECT_EQ(row_of(linker::merge_parts({original, edited, third}), "B")->state,
+            PartState::kMissing);
+}
+
+// What is no part of the edit stays, byte for byte, whatever it is there.
+TEST(Merge, E09_LinksTheEditIntoTheOwnProgramOfAController) {
+  Plant plant;
+  const ir::Image original = image_of(plant.text());
+  Plant next = plant;
+  next.a =
+      "FUNCTION_BLOCK A VAR_INPUT x : INT; END_VAR VAR_OUTPUT n : INT; END_VAR VAR more : LREAL := "
+      "1.5; "
+      "END_VAR "
+      "n := n + x; more := more * 2.0; pair.u := n; new_global := new_global + 1;";
+  next.globals = "VAR_GLOBAL shared : DINT := 7; pair : S; new_global : INT := 3; END_VAR\n";
+  const ir::Image edited = image_of(next.text());
+  // Another C, and things of its own: other addresses, other numbers.
+  Plant own = plant;
+  own.c = "FUNCTION_BLOCK C VAR z : ARRAY[0..9] OF LREAL; k : DINT; END_VAR k := k - shared;";
+  own.globals = "VAR_GLOBAL values : ARRAY[0..99] OF DINT; shared : DINT := 7; pair : S; END_VAR\n";
+  own.own = "FUNCTION Mine : INT Mine := 4; END_FUNCTION\n";
+  own.main += " values[3] := Mine() + b1.m;";
+  const ir::Image target = image_of(own.text());
+  const base::Result<ir::Image> merged = linker::merge({original, edited, target}, {});
+  ASSERT_TRUE(merged.ok()) << merged.error().text;
+  Plant both = own;
+  both.a = next.a;
+  both.globals =
+      "VAR_GLOBAL values : ARRAY[0..99] OF DINT; shared : DINT := 7; pair : S; "
+      "new_global : INT := 3; END_VAR\n";
+  EXPECT_EQ(description(*merged), description(image_of(both.text(), &target)));
+  for (const ir::LinkedPou& pou : target.pous) {
+    if (pou.name == "A") continue;
+    const auto found = std::find_if(merged->pous.begin(), merged->pous.end(),
+                                    [&](const auto& row) { return row.name == pou.name; });
+    ASSERT_NE(found, merged->pous.end()) << pou.name;
+    EXPECT_EQ(found->identity, pou.identity) << pou.name;
+    EXPECT_TRUE(std::equal(target.code.begin() + pou.first_unit,
+                           target.code.begin() + pou.first_unit + pou.unit_count,
+                           merged->code.begin() + found->first_unit))
+        << pou.name;
+  }
+}
+
+base::Result<ir::Image> merged(const Plant& original, const Plant& edited, const Plant& target) {
+  const ir::Image first = image_of(original.text());
+  const ir::Image next = image_of(edited.text());
+  const ir::Image own = image_of(target.text());
+  return linker::merge({first, next, own}, {});
+}
+
+void expect_refused(const base::Result<ir::Image>& result, const std::string& text) {
+  ASSERT_FALSE(result.ok()) << text;
+  EXPECT_EQ(result.error().refusal, base::Refusal::kCannotRelink);
+  EXPECT_NE(result.error().text.find(text), std::string::npos) << result.error().text;
+}
+
+// A unit of the target alone calls what the edit gives another interface.
+TEST(Merge, E09_RefusesWhoUsesAnInterfaceThatTheEditChanges) {
+  Plant plant;
+  plant.own =
+      "FUNCTION Twice : INT VAR_INPUT v : INT; END_VAR VAR r : ARRAY[0..3] OF INT; "
+      "END_VAR r[v] := v; Twice := 2 * r[v]; END_FUNCTION\n";
+  plant.main += " pair.u := Twice(3);";
+  Plant next = plant;
+  next.own =
+      "FUNCTION Twice : INT VAR_INPUT v : INT; w : INT := 1; END_VAR VAR r : ARRAY[0..3] OF "
+      "INT; END_VAR r[v] := v; Twice := 2 * r[v] + w; END_FUNCTION\n";
+  Plant own = plant;
+  own.own += "FUNCTION_BLOCK Mine VAR_OUTPUT o : INT; END_VAR o := Twice(2); END_FUNCTION_BLOCK\n";
+  own.variables += " mine : Mine;";
+  own.main += " mine();";
+  expect_refused(merged(plant, next, own), "`Mine` uses `Twice`, which has another interface");
+}
+
+// What has become a number in code: a constant, and a literal of an enumeration.
+TEST(Merge, E10_RefusesCodeThatHoldsValuesAsTheyWere) {
+  Plant plant;
+  plant.globals =
+      "VAR_GLOBAL shared : DINT := 7; pair : S; END_VAR "
+      "VAR_GLOBAL CONSTANT limit : INT := 10; END_VAR\n";
+  plant.types += "TYPE Mode : (Off, Slow, Fast); END_TYPE\n";
+  Plant next = plant;
+  next.a =
+      "FUNCTION_BLOCK A VAR_INPUT x : INT; END_VAR VAR_OUTPUT n : INT; END_VAR n := n + limit;";
+  Plant own = plant;
+  own.globals =
+      "VAR_GLOBAL shared : DINT := 7; pair : S; END_VAR "
+      "VAR_GLOBAL CONSTANT limit : INT := 99; END_VAR\n";
+  expect_refused(merged(plant, next, own), "the code of `A` was made with another global `limit`");
+  // The other way round: the edit changes the constant, and a unit of its own holds it.
+  Plant constant = plant;
+  constant.globals = own.globals;
+  Plant uses = plant;
+  uses.own = "FUNCTION_BLOCK Mine VAR_OUTPUT o : INT; END_VAR o := limit; END_FUNCTION_BLOCK\n";
+  uses.variables += " mine : Mine;";
+  uses.main += " mine();";
+  expect_refused(merged(plant, constant, uses), "`Mine` was made with another global `limit`");
+  Plant modes = plant;
+  modes.types =
+      "TYPE S : STRUCT u, v : INT; END_STRUCT; END_TYPE\n"
+      "TYPE Mode : (Off, Crawl, Slow, Fast); END_TYPE\n";
+  Plant slow = uses;
+  slow.own =
+      "FUNCTION_BLOCK Mine VAR_OUTPUT o : Mode; END_VAR o := Mode#Slow; END_FUNCTION_BLOCK\n";
+  expect_refused(merged(plant, modes, slow), "`Mine` was made with another type `Mode`");
+  // Who names neither goes with both.
+  Plant other = plant;
+  other.own = "FUNCTION_BLOCK Mine VAR_OUTPUT o : INT; END_VAR o := 3; END_FUNCTION_BLOCK\n";
+  other.variables = uses.variables;
+  other.main = uses.main;
+  const base::Result<ir::Image> fine = merged(plant, constant, other);
+  EXPECT_TRUE(fine.ok()) << fine.error().text;
+}
+
+TEST(Merge, E10_RefusesATypeThatIsAnotherOneThere) {
+  Plant plant;
+  Plant next = plant;
+  next.a =
+      "FUNCTION_BLOCK A VAR_INPUT x : INT; END_VAR VAR_OUTPUT n : INT; END_VAR VAR s : S; "
+      "END_VAR n := n + s.v;";
+  Plant own = plant;
+  own.types = "TYPE S : STRUCT u : LREAL; v : INT; END_STRUCT; END_TYPE\n";
+  expect_refused(merged(plant, next, own), "the type `S`, which is another one there");
+}
+
+// Offsets behind a reference are numbers: they go only where the type lies as it did.
+TEST(Merge, E09_CodeWithReferencesGoesWhereTypesLieAlike) {
+  Plant plant;
+  Plant next = plant;
+  next.b =
+      "FUNCTION_BLOCK B VAR_OUTPUT m : INT := 5; END_VAR VAR p : POINTER TO S; END_VAR "
+      "p := ADR(pair); m := p^.v;";
+  Plant own = plant;
+  own.c = "FUNCTION_BLOCK C VAR z : LREAL; k : DINT; END_VAR k := k + shared;";
+  const base::Result<ir::Image> fine = merged(plant, next, own);
+  ASSERT_TRUE(fine.ok()) << fine.error().text;
+  Plant both = own;
+  both.b = next.b;
+  const ir::Image target = image_of(own.text());
+  EXPECT_EQ(description(*fine), description(image_of(both.text(), &target)));
+}
+
+// E-13: what fits, and nothing else.
+TEST(Merge, E13_TakesTheUnitsThatFit) {
+  Plant plant;
+  Plant next = plant;
+  next.a += " n := n + 1;";
+  next.b += " m := m + 2;";
+  Plant own = plant;
+  own.b += " m := m + 100;";
+  const ir::Image original = image_of(plant.text());
+  const ir::Image edited = image_of(next.text());
+  const ir::Image target = image_of(own.text());
+  const base::Result<ir::Image> result = linker::merge({original, edited, target}, {{}, true});
+  ASSERT_TRUE(result.ok()) << result.error().text;
+  Plant wanted = own;
+  wanted.a = next.a;
+  EXPECT_EQ(description(*result), description(image_of(wanted.text(), &target)));
+  // It does not, when what it needs comes with one that does not fit.
+  Plant needs = next;
+  needs.globals = "VAR_GLOBAL shared : DINT := 7; pair : S; fresh : INT; END_VAR\n";
+  needs.a = "FUNCTION_BLOCK A VAR_INPUT x : INT; END_VAR VAR_OUTPUT n : INT; END_VAR n := fresh;";
+  Plant fresh = own;
+  fresh.globals = "VAR_GLOBAL shared : DINT := 7; pair : S; fresh : LREAL; END_VAR\n";
+  const ir::Image third = image_of(needs.text());
+  const ir::Image fourth = image_of(fresh.text());
+  const base::Result<ir::Image> refused = linker::merge({original, third, fourth}, {{}, true});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().refusal, base::Refusal::kOtherPart);
+}
+
+// --- edits of golden files: one by the controller, one by the engineer ---------------------------
+
+// `from` -> `to`, both without what they have in common at their ends.
+struct Patch {
+  size_t begin = 0;
+  std::string old_text;
+  std::string new_text;
+};
+
+Patch patch_of(const std::string& from, const std::string& to) {
+  size_t begin = 0;
+  while (begin < from.size() && begin < to.size() && from[begin] == to[begin]) ++begin;
+  size_t end = 0;
+  while (end < from.size() - begin && end < to.size() - begin &&
+         from[from.size() - 1 - end] == to[to.size() - 1 - end]) {
+    ++end;
+  }
+  return {begin, from.substr(begin, from.size() - end - begin),
+          to.substr(begin, to.size() - end - begin)};
+}
+
+// Both patches of one text; nullopt where they touch each other.
+std::optional<std::string> both(const std::string& text, Patch a, Patch b) {
+  if (a.begin > b.begin) std::swap(a, b);
+  if (a.begin + a.old_text.size() >= b.begin) return std::nullopt;
+  std::string out = text;
+  out.replace(b.begin, b.old_text.size(), b.new_text);
+  out.replace(a.begin, a.old_text.size(), a.new_text);
+  return out;
+}
+
+// The same edit on both sides is one edit, and the text with both patches has it twice.
+bool has_part_of(const std::vector<ir::PartEdit>& rows) {
+  return std::ranges::any_of(
+      rows, [](const ir::PartEdit& row) { return row.state == PartState::kHasIt; });
+}
+
+TEST(Merge, E09_EqualsTheCompilerOnSourcesWithBothEdits) {
+  uint32_t merged = 0;
+  uint32_t refused = 0;
+  uint32_t number = 0;
+  for (const std::string& path : test::sources_below("tests/golden")) {
+    const std::string text = test::read_file(path);
+    const std::optional<ir::Image> original = compiled(text);
+    if (!original) continue;
+    test::Random random(++number);
+    for (int round = 0; round < 4; ++round) {
+      const std::string next = test::edited(text, random);
+      const std::string own = test::edited(text, random);
+      const std::optional<std::string> wanted =
+          both(text, patch_of(text, next), patch_of(text, own));
+      if (!wanted) continue;
+      const std::optional<ir::Image> edited = compiled(next);
+      const std::optional<ir::Image> target = compiled(own);
+      const std::optional<ir::Image> expected = compiled(*wanted, target ? &*target : nullptr);
+      if (!edited || !target || !expected) continue;
+      if (has_part_of(linker::merge_parts({*original, *edited, *target}))) continue;
+      const base::Result<ir::Image> result = linker::merge({*original, *edited, *target}, {});
+      if (!result.ok()) {
+        const base::Refusal code = result.error().refusal;
+        EXPECT_TRUE(code == base::Refusal::kOtherPart || code == base::Refusal::kCannotRelink)
+            << path << ": " << base::to_string(result.error());
+        ++refused;
+        continue;
+      }
+      EXPECT_EQ(description(*result), description(*expected)) << path << "\n--- engineer\n"
+                                                              << next << "\n--- controller\n"
+                                                              << own;
+      if (::testing::Test::HasFailure()) return;
+      ++merged;
+    }
+  }
+  RecordProperty("merged", static_cast<int>(merged));
+  RecordProperty("refused", static_cast<int>(refused));
+  EXPECT_GT(merged, 100u);  // otherwise little was tested
+  EXPECT_GT(refused, 20u);
+}
+
+}  // namespace
