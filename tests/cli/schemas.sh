@@ -103,6 +103,7 @@ stvm doctor --seconds 1 --format json >out 2>err || code=$?
 [ "$code" -le 1 ] || fail "stvm doctor: exit code $code"
 holds stvm-doctor
 
+answers stc-fleet 0 stc fleet plant.img next -o next.fleet
 serve plc plant.img
 at() { command=$1; shift; stvm "$command" --dir plc "$@"; }
 answers stvm-get 0 at get Main.n
@@ -116,6 +117,8 @@ answers stvm-status 0 at status
 answers stvm-status-task 0 at status --task Main
 answers stvm-source 0 at source
 answers stvm-abort 0 at abort
+answers stvm-fleet 0 at fleet status next.fleet
+answers stvm-fleet 0 at fleet change next.fleet --dry-run
 answers stvm-change 0 at change next --yes --dry-run --all
 answers stvm-change 0 at change next --yes --all
 answers stvm-status 0 at status

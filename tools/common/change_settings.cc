@@ -3,6 +3,7 @@
 #include <set>
 
 #include "ir/bytecode/image.h"
+#include "online_change/package/fleet_file.h"
 #include "tools/common/files.h"
 #include "tools/common/project_file.h"
 
@@ -12,9 +13,11 @@ base::Result<ChangeSettings> change_settings(const std::vector<std::string>& pat
   ChangeSettings settings;
   std::set<std::string> read;
   for (const std::string& path : paths) {
-    // An image is a product that may lie anywhere, also below the project of somebody else.
+    // An image is a product that may lie anywhere, also below the project of somebody else; so is a
+    // fleet file.
     if (base::Result<base::Bytes> first = read_first(path, ir::kImageMagic.size());
-        first.ok() && ir::has_image_magic(*first)) {
+        first.ok() &&
+        (ir::has_image_magic(*first) || online_change::has_fleet_magic(*first))) {
       continue;
     }
     const std::string nearest = nearest_project_file(path);

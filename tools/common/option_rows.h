@@ -44,6 +44,8 @@ inline constexpr OptionRow kDryRunOption{
     "--dry-run", nullptr, "say what would happen, or why it would be refused; nothing is changed"};
 inline constexpr OptionRow kRestrictedOption{
     "--restricted", nullptr, "refuse when the interface of a POU is edited", "", "--unrestricted"};
+inline constexpr OptionRow kMatchingOption{
+    "--matching", nullptr, "of a fleet file: only the units that the program has as they were"};
 inline constexpr OptionRow kStrategyOption{
     "--strategy", "S",
     "in-place (default, or what the project says), or standby: a second data area, made in idle "

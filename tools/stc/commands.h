@@ -11,6 +11,7 @@ extern const Entry kCheck;
 extern const Entry kBuild;
 extern const Entry kTest;
 extern const Entry kPackage;
+extern const Entry kFleet;
 extern const Entry kDiff;
 extern const Entry kFormat;
 extern const Entry kImport;

@@ -11,8 +11,10 @@
 #include "tools/common/files.h"
 #include "tools/common/source_command.h"
 #include "tools/stc/commands.h"
+#include "tools/stc/edit_version.h"
 #include "tools/stc/image_text.h"
 #include "tools/stc/package_text.h"
+#include "tools/stc/parts_text.h"
 #include "tools/stc/session.h"
 #include "vm/native/make_function.h"
 
@@ -33,6 +35,7 @@ constexpr tools::OptionRow kDumpOptions[] = {
     {"--package", "BASE",
      "PATH is a change package that `stc package --base BASE` made: its update records"},
     {"--symbols", nullptr, "every variable with type and offset"},
+    {"--parts", nullptr, "what the image is made of, each part with its identity"},
     {"--sources", nullptr, "sources that travel with the image; `stc source` writes them"},
 };
 constexpr tools::Command kDumpCommand{"dump", "PATHS...",
@@ -102,8 +105,11 @@ std::string sources_line(const base::Bytes& image) {
 }
 
 base::Result<std::string> dump_image(const tools::Options& options) {
-  base::Result<Version> version = open_version(options, options.arguments(), {});
+  const std::vector<std::string>& paths = options.arguments();
+  if (paths.size() == 1 && is_fleet_file(paths[0])) return fleet_file_text(paths[0]);
+  base::Result<Version> version = open_version(options, paths, {});
   if (!version.ok()) return version.error();
+  if (options.has("--parts")) return parts_text(version->image);
   if (options.has("--code")) {
     std::string out;
     for (const ir::LinkedPou& pou : version->image.pous) {

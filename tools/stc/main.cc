@@ -35,7 +35,8 @@ int main(int argc, char** argv) {
   stc::limit_memory();
   const tools::Entry* const entries[] = {
       &stc::kCheck,  &stc::kBuild,  &stc::kTest, &stc::kFormat, &stc::kDiff,   &stc::kPackage,
-      &stc::kImport, &stc::kExport, &stc::kDraw, &stc::kDump,   &stc::kSource, &stc::kExplain};
+      &stc::kFleet,  &stc::kImport, &stc::kExport, &stc::kDraw, &stc::kDump, &stc::kSource,
+      &stc::kExplain};
   const tools::Tool tool{"stc",
                          "Compiles IEC 61131-3 programs to images for stvm.",
                          entries,

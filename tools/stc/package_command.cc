@@ -18,6 +18,7 @@ constexpr tools::OptionRow kPackageOptions[] = {
     {"--base", "IMAGE", "the running version (required)"},
     {"--output|-o", "FILE", "package to write (required without --watch)"},
     tools::kRestrictedOption,
+    tools::kMatchingOption,
     {"--move-all", nullptr, "give every instance a new place (a test of changes)"},
     {"--watch", nullptr, "stay, and make one at each save, for `stvm change --watch`"},
 };
@@ -31,7 +32,8 @@ base::Status make(const tools::Options& options) {
   }
   base::Result<Version> old_version = read_image(options.text("--base"));
   if (!old_version.ok()) return old_version.error();
-  BuildOptions build_options{&old_version->image, options.has("--move-all")};
+  const BuildOptions build_options{&old_version->image, options.has("--move-all"),
+                                   options.has("--matching")};
   base::Result<Version> next = open_version(options, options.arguments(), build_options);
   if (!next.ok()) return next.error();
   if (options.has("--restricted")) {

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "frontend/warning_pragmas.h"
 #include "tools/common/terminal.h"
+#include "tools/stc/edit_version.h"
 #include "tools/stc/run_report.h"
 #include "tools/stc/warning_settings.h"
 
@@ -141,6 +142,7 @@ base::Result<Version> open_version(const tools::Options& options,
                                    const std::vector<std::string>& paths,
                                    const BuildOptions& build_options) {
   if (paths.size() == 1 && is_image(paths[0])) return read_image(paths[0]);
+  if (paths.size() == 1 && is_fleet_file(paths[0])) return edited_version(paths[0], build_options);
   base::Result<Project> project = open_project(options, paths);
   if (!project.ok()) return project.error();
   base::Diagnostics diagnostics = diagnostics_of(*project);

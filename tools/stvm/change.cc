@@ -10,65 +10,35 @@
 #include "tools/stvm/change_follow.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/compiler.h"
+#include "tools/stvm/package_making.h"
+#include "tools/stvm/switch_option_rows.h"
 #include "tools/stvm/switch_steps.h"
 
 namespace stvm {
 namespace {
 
-// What `change` and `revert` have in common.
-#define STVM_SWITCH_OPTIONS                                                                       \
-  STVM_CONTROLLER_OPTIONS, tools::kYesOption, tools::kDryRunOption,                               \
-      {"--all", nullptr, "show the fate of each variable too, with addresses and values"},        \
-      {"--allow-loss", nullptr, "switch even if live values are lost, as the report says"},       \
-      tools::kStrategyOption,                                                                     \
-      {"--allow-overrun", nullptr, "switch even if a task may be delayed"},                       \
-      tools::kRestrictedOption, {"--unrestricted", nullptr, "do not, whatever the project says"}, \
-      {"--health", "NAME",                                                                        \
-       "a BOOL that stays TRUE while all is well: FALSE in the first 1000 cycles undoes the "     \
-       "change"},                                                                                 \
-      {"--unless", "NAME",                                                                        \
-       "a BOOL of the running program: while it is TRUE nothing is switched, and a change that "  \
-       "is being prepared is aborted"},                                                           \
-      {"--wait", nullptr, "wait while others change the controller, or have a change on trial"},  \
-      {"--no-auto-undo", nullptr, "do not undo it either when a trap stops a task in them"}, {    \
-    "--permanent", nullptr, "accept at once: no undo, the new program boots next"                 \
-  }
-
 constexpr tools::OptionRow kChangeOptions[] = {
+    STVM_CONTROLLER_OPTIONS,
     STVM_SWITCH_OPTIONS,
+    tools::kMatchingOption,
     {"--watch", nullptr, "stay, and bring each save of the sources to the controller"},
     TOOLS_COMPILE_OPTIONS,
     STVM_FORMAT_OPTION,
 };
-constexpr tools::OptionRow kRevertOptions[] = {STVM_SWITCH_OPTIONS, STVM_FORMAT_OPTION};
+constexpr tools::OptionRow kRevertOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_SWITCH_OPTIONS,
+                                                   STVM_FORMAT_OPTION};
 constexpr tools::Command kRevertCommand{
     "revert",       "", "Changes to the program that ran before the last accepted change.",
     kRevertOptions, 0,  0};
-constexpr tools::Command kChangeCommand{"change", "SOURCES...|IMAGE",
+constexpr tools::Command kChangeCommand{"change", "SOURCES...|IMAGE|FLEET-FILE",
                                         "Changes the running program without stopping it.",
                                         kChangeOptions, 1};
-
-// From the program that runs to what the sources say.
-base::Result<base::Bytes> make_package(const Sources& sources, bool restricted,
-                                       base::ByteSpan running) {
-  base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
-  if (!folder.ok()) return folder.error();
-  std::string base_file = folder->file("running.img");
-  std::string package_file = folder->file("change.pkg");
-  base::Status written = tools::write_file(base_file, running);
-  if (!written.ok()) return written.error();
-  std::vector<std::string> command = {"package", "--base", base_file, "-o", package_file};
-  if (restricted) command.push_back("--restricted");
-  base::Status made = tools::run_beside("stc", stc_arguments(command, sources));
-  if (!made.ok()) return made.error();
-  return tools::read_bytes(package_file);
-}
 
 base::Result<base::Bytes> package_of(const tools::Options& options, bool restricted,
                                      ControllerClient& client) {
   base::Result<base::Bytes> running = client.image();
   if (!running.ok()) return running.error();
-  return make_package(sources_of(options), restricted, *running);
+  return make_package(sources_of(options), {restricted, options.has("--matching")}, *running);
 }
 
 // The version before is changed to like any other: what it does not have is lost, what it alone
@@ -84,7 +54,7 @@ base::Result<base::Bytes> package_back(const tools::Options&, bool restricted,
   const std::string file = folder->file("before.img");
   base::Status written = tools::write_file(file, *before);
   if (!written.ok()) return written.error();
-  return make_package({{file}, {}}, restricted, *running);
+  return make_package({{file}, {}}, {restricted, false}, *running);
 }
 
 // Whoever undoes those takes this one back before.

@@ -25,6 +25,7 @@ extern const Entry kEdits;
 extern const Entry kUndo;
 extern const Entry kRedo;
 extern const Entry kRevert;
+extern const Entry kFleet;
 extern const Entry kAccept;
 extern const Entry kAbort;
 extern const Entry kStop;

@@ -22,8 +22,8 @@ int main(int argc, char** argv) {
       &stvm::kSet,    &stvm::kForce, &stvm::kUnforce, &stvm::kWatch,   &stvm::kChange,
       &stvm::kEdits,  &stvm::kUndo,  &stvm::kRedo,    &stvm::kRevert,  &stvm::kAccept,
       &stvm::kAbort,  &stvm::kStop,  &stvm::kRestart, &stvm::kJournal, &stvm::kEvents,
-      &stvm::kSource, &stvm::kImage, &stvm::kBridge,  &stvm::kReplay,  &stvm::kTop,
-      &stvm::kDoctor};
+      &stvm::kFleet,  &stvm::kSource, &stvm::kImage,  &stvm::kBridge,  &stvm::kReplay,
+      &stvm::kTop,    &stvm::kDoctor};
   const tools::Tool tool{
       "stvm",
       "Runs images of stc, and changes them while they run.",

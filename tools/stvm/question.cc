@@ -8,22 +8,40 @@
 
 namespace stvm {
 
+namespace {
+
+// What was typed before the question, for another one perhaps, is no answer to it (E8); nor is an
+// end of input that answered the last one.
+std::string answer_to(const char* question, const char* answers) {
+  ::tcflush(STDIN_FILENO, TCIFLUSH);
+  std::clearerr(stdin);
+  std::cin.clear();
+  std::fprintf(stderr, "%s %s ", question, answers);
+  std::string answer;
+  std::getline(std::cin, answer);
+  return answer;
+}
+
+bool is_yes(const std::string& answer) { return answer == "y" || answer == "Y" || answer == "yes"; }
+
+}  // namespace
+
 bool can_ask() { return ::isatty(STDIN_FILENO) != 0; }
 
 base::Status ask(const char* question, const std::string& otherwise) {
   if (!can_ask()) {
     return base::Error{base::Refusal::kUsage, "nobody to ask: not a terminal; give --yes"};
   }
-  // What was typed before the question, for another one perhaps, is no answer to it (E8); nor is
-  // an end of input that answered the last one.
-  ::tcflush(STDIN_FILENO, TCIFLUSH);
-  std::clearerr(stdin);
-  std::cin.clear();
-  std::fprintf(stderr, "%s [y/N] ", question);
-  std::string answer;
-  std::getline(std::cin, answer);
-  if (answer == "y" || answer == "Y" || answer == "yes") return base::Ok{};
+  const std::string answer = answer_to(question, "[y/N]");
+  if (is_yes(answer)) return base::Ok{};
   return base::Error{base::Refusal::kBusy, otherwise};
+}
+
+Answer ask_for_each(const char* question) {
+  const std::string answer = answer_to(question, "[y/N/all/quit]");
+  if (is_yes(answer)) return Answer::kYes;
+  if (answer == "all") return Answer::kAll;
+  return answer == "quit" || answer == "q" ? Answer::kQuit : Answer::kNo;
 }
 
 }  // namespace stvm

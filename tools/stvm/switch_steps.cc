@@ -44,6 +44,7 @@ base::Status may_switch(const SwitchOptions& options, const FatePage& page) {
                        std::to_string(page.loss_count) + " live value(s) would be lost"};
   }
   if (!options.ask || options.dry_run) return base::Ok{};
+  if (options.confirm) return options.confirm();
   return ask("Switch now?", "not switched; the old program runs on");
 }
 
@@ -93,8 +94,9 @@ void print_json(const Outcome& outcome, bool all) {
 }
 
 // Of stc.toml, where the command line says nothing else.
-base::Result<tools::ChangeSettings> settings_of(const tools::Options& options) {
-  base::Result<tools::ChangeSettings> settings = tools::change_settings(options.arguments());
+base::Result<tools::ChangeSettings> settings_of(const tools::Options& options,
+                                                const std::vector<std::string>& paths) {
+  base::Result<tools::ChangeSettings> settings = tools::change_settings(paths);
   if (!settings.ok()) return settings;
   settings->strategy = options.text("--strategy", settings->strategy);
   if (options.has("--restricted")) settings->restricted = true;
@@ -119,9 +121,14 @@ uint32_t switch_flags(const tools::Options& options) {
 }  // namespace
 
 base::Result<SwitchOptions> switch_options(const tools::Options& options) {
+  return switch_options(options, options.arguments());
+}
+
+base::Result<SwitchOptions> switch_options(const tools::Options& options,
+                                           const std::vector<std::string>& paths) {
   SwitchOptions out;
   const bool json = wants_json(options);
-  base::Result<tools::ChangeSettings> settings = settings_of(options);
+  base::Result<tools::ChangeSettings> settings = settings_of(options, paths);
   if (!settings.ok()) return settings.error();
   base::Result<uint32_t> strategy = stage_flags(settings->strategy);
   if (!strategy.ok()) return strategy.error();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,9 +24,14 @@ struct SwitchOptions {
   bool wait = false;  // for the changes of others
   bool ask = true;
   bool json = false;
+  // Asked instead of the question, where somebody asks in another way.
+  std::function<base::Status()> confirm = {};
 };
 // Of the options of `stvm change`.
 base::Result<SwitchOptions> switch_options(const tools::Options& options);
+// Where the project of other paths says what the command line does not.
+base::Result<SwitchOptions> switch_options(const tools::Options& options,
+                                           const std::vector<std::string>& paths);
 
 struct Outcome {
   using Time = std::chrono::steady_clock::time_point;

@@ -1,0 +1,87 @@
+#include "tools/common/fleet_parts.h"
+
+#include "ir/bytecode/verify.h"
+#include "tools/common/table.h"
+
+namespace tools {
+namespace {
+
+constexpr base::Digest kNobody{};
+
+std::string identity_text(const base::Digest& identity) {
+  return identity == kNobody ? "-" : base::short_hex(identity);
+}
+
+base::Result<std::vector<ir::Part>> parts_of_image(const base::Bytes& bytes, const char* which) {
+  base::Result<ir::VerifiedImage> image = ir::verify(bytes);
+  if (image.ok()) return ir::parts_of(image->image());
+  return base::Error{image.error().refusal,
+                     std::string("fleet file, ") + which + ": " + image.error().text};
+}
+
+}  // namespace
+
+base::Result<FleetParts> parts_of(const online_change::FleetFile& file) {
+  auto original = parts_of_image(file.original, "its original version");
+  if (!original.ok()) return original.error();
+  auto edited = parts_of_image(file.edited, "its edited version");
+  if (!edited.ok()) return edited.error();
+  return FleetParts{std::move(*original), std::move(*edited)};
+}
+
+std::string part_change_name(const ir::PartEdit& edit) {
+  if (edit.original == kNobody) return "added";
+  return edit.edited == kNobody ? "removed" : "edited";
+}
+
+std::string_view part_state_name(ir::PartState state) {
+  switch (state) {
+    case ir::PartState::kOk:
+      return "ok";
+    case ir::PartState::kHasIt:
+      return "has it";
+    case ir::PartState::kMissing:
+      return "missing";
+    case ir::PartState::kDifferent:
+      return "different";
+  }
+  return "different";
+}
+
+std::string part_edits_text(const std::vector<ir::PartEdit>& edits, bool here) {
+  std::vector<std::string> titles = {"part", "change", "from", "to"};
+  if (here) titles.insert(titles.end(), {"here", "state"});
+  Table table(titles);
+  for (const ir::PartEdit& edit : edits) {
+    std::vector<std::string> row = {
+        std::string(ir::part_kind_name(edit.kind)) + (edit.name.empty() ? "" : " " + edit.name),
+        part_change_name(edit), identity_text(edit.original), identity_text(edit.edited)};
+    if (here) {
+      row.push_back(identity_text(edit.here));
+      row.emplace_back(part_state_name(edit.state));
+    }
+    table.row(row);
+  }
+  return table.text();
+}
+
+void part_edits_json(const std::vector<ir::PartEdit>& edits, bool here, JsonWriter& json) {
+  json.begin_array();
+  for (const ir::PartEdit& edit : edits) {
+    json.begin_object().field("kind", std::string(ir::part_kind_name(edit.kind)));
+    json.field("name", edit.name).field("change", part_change_name(edit));
+    const auto identity = [&](const char* key, const base::Digest& value) {
+      json.field(key, value == kNobody ? std::string() : base::to_hex(value));
+    };
+    identity("original", edit.original);
+    identity("edited", edit.edited);
+    if (here) {
+      identity("here", edit.here);
+      json.field("state", std::string(part_state_name(edit.state)));
+    }
+    json.end_object();
+  }
+  json.end_array();
+}
+
+}  // namespace tools

@@ -1,0 +1,38 @@
+#include "tools/stc/edit_version.h"
+
+#include "ir/bytecode/verify.h"
+#include "linker/merge.h"
+#include "online_change/package/fleet_file.h"
+#include "tools/common/files.h"
+
+namespace stc {
+
+bool is_fleet_file(const std::string& path) {
+  if (tools::is_folder(path)) return false;
+  base::Result<base::Bytes> first = tools::read_first(path, online_change::kFleetMagic.size());
+  return first.ok() && online_change::has_fleet_magic(*first);
+}
+
+base::Result<Version> edited_version(const std::string& path, const BuildOptions& options) {
+  if (options.base == nullptr) {
+    return base::Error{
+        base::Refusal::kUsage,
+        "`" + path + "` is an edit of a running program: there is none to make it in"};
+  }
+  base::Result<base::Bytes> bytes = tools::read_bytes(path);
+  if (!bytes.ok()) return bytes.error();
+  base::Result<online_change::FleetFile> file = online_change::decode_fleet_file(*bytes);
+  if (!file.ok()) return file.error();
+  base::Result<ir::VerifiedImage> original = ir::verify(file->original);
+  if (!original.ok()) return original.error();
+  base::Result<ir::VerifiedImage> edited = ir::verify(file->edited);
+  if (!edited.ok()) return edited.error();
+  base::Result<ir::Image> merged =
+      linker::merge({original->image(), edited->image(), *options.base}, {{}, options.matching});
+  if (!merged.ok()) return merged.error();
+  Version version{std::move(*merged), {}};
+  version.bytes = ir::encode(version.image);
+  return version;
+}
+
+}  // namespace stc

@@ -1,0 +1,83 @@
+// stc fleet: two versions of a program -> the one file that takes what differs to many controllers.
+#include <cstdio>
+#include <iterator>
+
+#include "tools/common/files.h"
+#include "tools/common/fleet_parts.h"
+#include "tools/stc/commands.h"
+#include "tools/stc/session.h"
+
+namespace stc {
+namespace {
+
+constexpr tools::OptionRow kFleetOptions[] = {
+    STC_SOURCE_OPTIONS,
+    STC_CODE_OPTIONS,
+    {"--output|-o", "FILE", "the file to write (required)"},
+    {"--author", "NAME", "who made the edit"},
+    {"--text", "TEXT", "what the edit is for"},
+};
+constexpr tools::Command kFleetCommand{
+    "fleet",
+    "ORIGINAL NEW",
+    "Makes one file of what differs between two versions, for `stvm change` and `stvm fleet`.",
+    kFleetOptions,
+    2,
+    2};
+
+struct Made {
+  base::Bytes bytes;
+  std::vector<ir::PartEdit> edits;
+};
+
+// Both without the sources that may travel with them.
+base::Result<Made> make_file(const tools::Options& options) {
+  if (!options.has("--output")) {
+    return base::Error{base::Refusal::kUsage, "fleet: --output is required"};
+  }
+  const std::vector<std::string>& paths = options.arguments();
+  base::Result<Version> original = open_version(options, {paths[0]}, {});
+  if (!original.ok()) return original.error();
+  base::Result<Version> edited = open_version(options, {paths[1]}, {&original->image});
+  if (!edited.ok()) return edited.error();
+  Made made;
+  const std::vector<ir::Part> before = ir::parts_of(original->image);
+  made.edits = ir::part_edits(before, ir::parts_of(edited->image), before);
+  if (made.edits.empty()) {
+    return base::Error{base::Refusal::kNoChange,
+                       "nothing is edited between `" + paths[0] + "` and `" + paths[1] + "`"};
+  }
+  made.bytes = online_change::encode({options.text("--author"), options.text("--text"),
+                                      ir::encode(original->image), ir::encode(edited->image)});
+  base::Status written = tools::write_file(options.text("--output"), made.bytes);
+  if (!written.ok()) return written.error();
+  return made;
+}
+
+int run_fleet(const tools::Options& options) {
+  base::Result<base::DiagnosticFormat> format = diagnostic_format(options);
+  if (!format.ok()) return tools::refuse("stc", format.error());
+  base::Result<Made> made = make_file(options);
+  if (!made.ok()) return tools::refuse("stc", made.error());
+  const base::Digest digest = online_change::fleet_digest(made->bytes);
+  if (*format == base::DiagnosticFormat::kJson) {
+    tools::JsonWriter json;
+    json.begin_object().field("file", options.text("--output"));
+    json.field("digest", base::to_hex(digest)).field("bytes", uint64_t{made->bytes.size()});
+    json.key("parts");
+    tools::part_edits_json(made->edits, false, json);
+    json.end_object();
+    std::fputs(json.finish().c_str(), stdout);
+    return tools::kOk;
+  }
+  std::fputs(tools::part_edits_text(made->edits, false).c_str(), stdout);
+  std::printf("%s: %zu part(s), %zu bytes, %s\n", options.text("--output").c_str(),
+              made->edits.size(), made->bytes.size(), base::short_hex(digest).c_str());
+  return tools::kOk;
+}
+
+}  // namespace
+
+const Entry kFleet{&kFleetCommand, run_fleet};
+
+}  // namespace stc

@@ -1,0 +1,115 @@
+#include "tools/stvm/fleet_list.h"
+
+#include <algorithm>
+#include <map>
+
+#include "tools/common/files.h"
+#include "tools/common/toml.h"
+
+namespace stvm {
+namespace {
+
+constexpr std::string_view kTable = "controllers.";
+
+struct Listed {
+  FleetMember member;
+  uint32_t line = 0;
+  uint32_t column = 0;
+};
+
+class FleetList {
+ public:
+  explicit FleetList(const std::string& file) : file_(file) {}
+
+  base::Result<std::vector<FleetMember>> read() {
+    base::Result<base::Bytes> bytes = tools::read_bytes(file_);
+    if (!bytes.ok()) return bytes.error();
+    const base::Result<tools::TomlTable> table = tools::parse_toml(
+        file_, std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()));
+    if (!table.ok()) return table.error();
+    for (const auto& [key, value] : *table) {
+      if (base::Status taken = take(key, value); !taken.ok()) return taken.error();
+    }
+    std::vector<Listed> rows;
+    for (auto& [name, row] : rows_) rows.push_back(std::move(row));
+    std::sort(rows.begin(), rows.end(),
+              [](const Listed& a, const Listed& b) { return a.line < b.line; });
+    std::vector<FleetMember> members;
+    for (Listed& row : rows) {
+      if (row.member.place.empty()) {
+        return mistake(row.line, row.column, "`" + row.member.name + "` has no `dir` or `host`");
+      }
+      members.push_back(std::move(row.member));
+    }
+    return members;
+  }
+
+ private:
+  base::Error mistake(uint32_t line, uint32_t column, const std::string& what) const {
+    return tools::toml_error(file_, line, column, what);
+  }
+
+  base::Status take(const std::string& key, const tools::TomlValue& value) {
+    const size_t dot = key.rfind('.');
+    if (!key.starts_with(kTable) || dot < kTable.size()) {
+      return mistake(value.line, value.column,
+                     "`" + key +
+                         "` is not known here: each controller is a table "
+                         "[controllers.NAME]");
+    }
+    const std::string name = key.substr(kTable.size(), dot - kTable.size());
+    const std::string setting = key.substr(dot + 1);
+    Listed& row = rows_[name];
+    if (row.member.name.empty() || value.line < row.line) {
+      row.line = value.line;
+      row.column = value.column;
+    }
+    row.member.name = name;
+    if (setting == "allow_loss") return take_flag(value, row.member.allow_loss);
+    if (setting == "dir" || setting == "host") return take_place(value, row.member);
+    return mistake(value.line, value.column,
+                   "`" + setting + "` is not known; a controller has dir or host, and allow_loss");
+  }
+
+  base::Status take_flag(const tools::TomlValue& value, bool& flag) const {
+    const bool* const given = std::get_if<bool>(&value.data);
+    if (given == nullptr) {
+      return mistake(value.place.line, value.place.column, "true or false is wanted");
+    }
+    flag = *given;
+    return base::Ok{};
+  }
+
+  base::Status take_place(const tools::TomlValue& value, FleetMember& member) const {
+    const std::string* const given = std::get_if<std::string>(&value.data);
+    if (given == nullptr || given->empty()) {
+      return mistake(value.place.line, value.place.column, "a text is wanted");
+    }
+    if (!member.place.empty()) {
+      return mistake(value.line, value.column, "`" + member.name + "` has a dir and a host");
+    }
+    member.place = *given;
+    return base::Ok{};
+  }
+
+  std::string file_;
+  std::map<std::string, Listed> rows_;
+};
+
+}  // namespace
+
+base::Result<std::vector<FleetMember>> fleet_members(const tools::Options& options) {
+  std::vector<FleetMember> members;
+  for (const char* option : {"--dir", "--host"}) {
+    for (const std::string& place : options.all(option)) members.push_back({place, place, false});
+  }
+  if (options.has("--fleet")) {
+    base::Result<std::vector<FleetMember>> listed = FleetList(options.text("--fleet")).read();
+    if (!listed.ok()) return listed.error();
+    members.insert(members.end(), listed->begin(), listed->end());
+  }
+  if (!members.empty()) return members;
+  return base::Error{base::Refusal::kUsage, "fleet: name controllers by --dir, --host or --fleet"};
+}
+
+}  // namespace stvm

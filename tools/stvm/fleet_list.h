@@ -1,0 +1,26 @@
+// The controllers of a fleet: those that a command line names, and those of a file (E-27).
+//
+//   [controllers.line2]
+//   host = "plc@line2"      # or dir = "/var/lib/stvm"
+//   allow_loss = true       # for this one only
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "tools/common/options.h"
+
+namespace stvm {
+
+struct FleetMember {
+  std::string name;   // as results call it
+  std::string place;  // a state directory or a host
+  bool allow_loss = false;
+};
+
+// --dir, --host, and --fleet FILE in the order of the file. kUsage: there is none. Mistakes of the
+// file with line and column (kBadProject).
+base::Result<std::vector<FleetMember>> fleet_members(const tools::Options& options);
+
+}  // namespace stvm

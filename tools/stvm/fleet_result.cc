@@ -1,0 +1,85 @@
+#include "tools/stvm/fleet_result.h"
+
+#include <algorithm>
+
+#include "tools/common/exit.h"
+#include "tools/common/fleet_parts.h"
+#include "tools/common/json.h"
+#include "tools/common/table.h"
+#include "tools/stvm/switch_text.h"
+
+namespace stvm {
+namespace {
+
+bool is_good(const FleetRow& row) {
+  return row.outcome == FleetOutcome::kDone || row.outcome == FleetOutcome::kPossible ||
+         row.outcome == FleetOutcome::kHadIt;
+}
+
+// Of units alone: "2 of 3", what the controller has as the edit wants it.
+std::string units_text(const FleetRow& row) {
+  size_t all = 0;
+  size_t fit = 0;
+  for (const ir::PartEdit& edit : row.parts) {
+    if (edit.kind != ir::PartKind::kUnit) continue;
+    ++all;
+    fit += edit.state == ir::PartState::kOk || edit.state == ir::PartState::kHasIt;
+  }
+  return std::to_string(fit) + " of " + std::to_string(all);
+}
+
+std::string remark(const FleetRow& row) {
+  if (row.report) {
+    return "pause " + std::to_string(row.report->pause_ns / 1000) + " us, missed " +
+           std::to_string(row.report->missed);
+  }
+  return row.why ? std::string(base::refusal_code(row.why->refusal)) + ": " + row.why->text : "";
+}
+
+}  // namespace
+
+std::string_view outcome_name(FleetOutcome outcome) {
+  constexpr std::string_view kNames[] = {"done",        "possible",  "had it",   "refused",
+                                         "unreachable", "cancelled", "not asked"};
+  return kNames[static_cast<size_t>(outcome)];
+}
+
+std::string fleet_text(const std::vector<FleetRow>& rows) {
+  tools::Table table({"controller", "program", "outcome", "units fit", "remark"});
+  for (const FleetRow& row : rows) {
+    const bool asked =
+        row.outcome != FleetOutcome::kUnreachable && row.outcome != FleetOutcome::kNotAsked;
+    table.row({row.place, row.program, std::string(outcome_name(row.outcome)),
+               asked ? units_text(row) : "-", remark(row)});
+  }
+  return table.text();
+}
+
+std::string fleet_json(const base::Digest& file, const std::vector<FleetRow>& rows) {
+  tools::JsonWriter json;
+  json.begin_object().field("file", base::to_hex(file)).key("controllers").begin_array();
+  for (const FleetRow& row : rows) {
+    json.begin_object().field("controller", row.place).field("program", row.program);
+    json.field("outcome", std::string(outcome_name(row.outcome)));
+    const bool known = row.from != base::Digest{};
+    json.field("from", known ? base::to_hex(row.from) : std::string());
+    json.key("parts");
+    tools::part_edits_json(row.parts, true, json);
+    if (row.report) switch_json(*row.report, json);
+    if (row.why) {
+      json.field("refused", base::refusal_code(row.why->refusal));
+      json.field("message", row.why->text);
+    }
+    json.end_object();
+  }
+  json.end_array().end_object();
+  return json.finish();
+}
+
+int fleet_exit_code(const std::vector<FleetRow>& rows) {
+  const auto good = std::count_if(rows.begin(), rows.end(), is_good);
+  if (good == static_cast<std::ptrdiff_t>(rows.size())) return tools::kOk;
+  return good == 0 ? tools::kRefused : tools::kFindings;
+}
+
+}  // namespace stvm

@@ -1,0 +1,19 @@
+// A change package for a running program, made by the `stc` beside this program.
+#pragma once
+
+#include "base/bytes.h"
+#include "base/result.h"
+#include "tools/stvm/compiler.h"
+
+namespace stvm {
+
+struct PackageOptions {
+  bool restricted = false;  // D7
+  bool matching = false;    // E-13
+};
+
+// From the program that runs to what the sources, the image or the fleet file say.
+base::Result<base::Bytes> make_package(const Sources& sources, const PackageOptions& options,
+                                       base::ByteSpan running);
+
+}  // namespace stvm
