@@ -133,17 +133,20 @@ base::Status ControllerClient::assign(vm::Command command, const std::vector<std
 }
 
 base::Result<base::Bytes> ControllerClient::image() {
-  return image_parts(vm::Command::kImage, &expected_);
+  return image_parts({.command = vm::Command::kImage}, &expected_);
 }
 
 base::Result<base::Bytes> ControllerClient::image_before() {
-  return image_parts(vm::Command::kBefore, nullptr);
+  return image_parts({.command = vm::Command::kBefore}, nullptr);
 }
 
-base::Result<base::Bytes> ControllerClient::image_parts(vm::Command command,
+base::Result<base::Bytes> ControllerClient::image_before(const std::string& edit) {
+  return image_parts({.command = vm::Command::kBefore, .names = {edit}}, nullptr);
+}
+
+base::Result<base::Bytes> ControllerClient::image_parts(vm::Request request,
                                                         const base::Digest* expected) {
   base::Bytes all;
-  vm::Request request{.command = command};
   for (;;) {
     request.offset = all.size();
     base::Result<base::Bytes> body = call(request);

@@ -38,6 +38,8 @@ class ControllerClient {
   base::Result<base::Bytes> image();
   // That ran before the last accept.
   base::Result<base::Bytes> image_before();
+  // That the edit on trial of that name was made on.
+  base::Result<base::Bytes> image_before(const std::string& edit);
   base::Result<std::vector<online_change::JournalEntry>> journal();
   // From number `first` on, as far as the controller has them; their `sequence` is that number.
   base::Result<std::vector<online_change::JournalEntry>> events(uint64_t first);
@@ -63,7 +65,7 @@ class ControllerClient {
   static base::Result<ControllerClient> connect_here(const std::string& directory);
   static base::Result<ControllerClient> connect_there(const std::string& host,
                                                       const std::string& directory);
-  base::Result<base::Bytes> image_parts(vm::Command command, const base::Digest* expected);
+  base::Result<base::Bytes> image_parts(vm::Request request, const base::Digest* expected);
   // Entries of a page, added to `all`. False: there were none.
   base::Result<bool> journal_page(const vm::Request& request,
                                   std::vector<online_change::JournalEntry>& all);

@@ -311,8 +311,19 @@ base::Result<base::Bytes> ControllerService::image(const vm::Request& request) {
   return image_part(running.digest(), running.encoded(), request.offset);
 }
 
+base::Result<base::Bytes> ControllerService::before_edit(const vm::Request& request) {
+  const std::string& name = request.names.front();
+  for (const Trial& trial : trials_) {
+    if (trial.edit.name != name) continue;
+    return image_part(trial.before.digest(), trial.before.encoded(), request.offset);
+  }
+  return base::Error{base::Refusal::kNothingToUndo,
+                     "no edit `" + name + "` is on trial; `stvm edits` shows them"};
+}
+
 // The first page reads it from the disk, and the others of the same connection are of that reading.
 base::Result<base::Bytes> ControllerService::before(const vm::Request& request) {
+  if (!request.names.empty()) return before_edit(request);
   if (request.offset == 0 || before_of_ != session_) {
     base::Result<online_change::StoredImage> stored = store_.before();
     if (!stored.ok()) return stored.error();

@@ -104,6 +104,7 @@ class ControllerService : public vm::Service {
   Answer list(const vm::Request& request);
   Answer image(const vm::Request& request);
   Answer before(const vm::Request& request);
+  Answer before_edit(const vm::Request& request);
   static Answer image_part(const base::Digest& digest, const base::Bytes& encoded,
                            uint64_t offset);
   Answer upload(const vm::Request& request);

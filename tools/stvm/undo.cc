@@ -11,12 +11,19 @@
 #include "tools/stvm/question.h"
 #include "tools/stvm/switch_steps.h"
 #include "tools/stvm/switch_text.h"
+#include "tools/stvm/undo_only.h"
 
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kUndoOptions[] = {tools::kYesOption, tools::kDryRunOption,
-                                             STVM_CONTROLLER_OPTIONS, STVM_FORMAT_OPTION};
+constexpr tools::OptionRow kUndoOptions[] = {
+    {"--only", nullptr, "take back this edit alone: those that were made later stay"},
+    {"--allow-loss", nullptr, "with --only: even if live values are lost, as the report says"},
+    {"--allow-overrun", nullptr, "with --only: even if a task may be delayed"},
+    tools::kYesOption,
+    tools::kDryRunOption,
+    STVM_CONTROLLER_OPTIONS,
+    STVM_FORMAT_OPTION};
 constexpr tools::Command kUndoCommand{
     "undo", "[EDIT...]",
     "Takes back the newest edit on trial, or these and all that were made on them.", kUndoOptions,
@@ -158,6 +165,24 @@ void print_json(const std::vector<Undone>& all, const Names& going) {
   std::fputs(out.finish().c_str(), stdout);
 }
 
+base::Status undo_only(const tools::Options& options, ControllerClient& client,
+                       const Edits& edits) {
+  if (options.arguments().size() != 1) {
+    return base::Error{base::Refusal::kUsage, "undo --only: name one edit"};
+  }
+  SwitchOptions how;
+  how.dry_run = options.has("--dry-run");
+  if (how.dry_run) how.stage_flags |= vm::kRehearsal;
+  how.ask = !options.has("--yes");
+  how.json = wants_json(options);
+  how.switch_flags = (options.has("--allow-loss") ? vm::kAllowLoss : 0u) |
+                     (options.has("--allow-overrun") ? vm::kAllowOverrun : 0u);
+  base::Result<Outcome> outcome = take_out(how, client, options.arguments()[0], edits.on_trial);
+  if (!outcome.ok()) return outcome.error();
+  print(how, *outcome);
+  return outcome->refused ? base::Status(*outcome->refused) : base::Ok{};
+}
+
 base::Status undo_edits(const tools::Options& options) {
   base::Result<bool> json = wants_json(options);
   if (!json.ok()) return json.error();
@@ -168,6 +193,7 @@ base::Status undo_edits(const tools::Options& options) {
   if (edits->on_trial.empty()) {
     return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"};
   }
+  if (options.has("--only")) return undo_only(options, *client, *edits);
   const Names& named = options.arguments();
   base::Result<Names> going = up_to(edits->on_trial, named, "is on trial");
   if (!going.ok()) return going.error();

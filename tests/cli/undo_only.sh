@@ -1,0 +1,85 @@
+#!/bin/sh
+# Case 77, D3: three edits on trial, one after the other; the first one is taken back alone, where the
+# others do not depend on it. Where they do, that is said, and nothing happens.
+. "$(dirname "$0")/lib.sh"
+
+# project FILE A B C GLOBALS: what A, B and C do.
+project() {
+  cat >"$1" <<ST
+VAR_GLOBAL level : INT; ${5:-} END_VAR
+FUNCTION_BLOCK A VAR_OUTPUT n : DINT; END_VAR $2 END_FUNCTION_BLOCK
+FUNCTION_BLOCK B VAR_OUTPUT n : DINT; END_VAR $3 END_FUNCTION_BLOCK
+FUNCTION_BLOCK C VAR_OUTPUT n : DINT; END_VAR $4 END_FUNCTION_BLOCK
+PROGRAM Main VAR a1 : A; b1 : B; c1 : C; END_VAR a1(); b1(); c1(); END_PROGRAM
+ST
+}
+change() { expect 0 stvm change "$1" --dir plc --yes --allow-overrun; }
+
+one='n := n + 1;'
+project v0.st "$one" "$one" "$one"
+project v1.st 'n := n + 1; added := added + 1;' "$one" "$one" 'added : DINT;'
+project v2.st 'n := n + 1; added := added + 1;' 'n := n + 1; seen := seen + 1;' "$one" \
+  'added : DINT; seen : DINT := 100;'
+project v3.st 'n := n + 1; added := added + 1;' 'n := n + 1; seen := seen + 1;' 'n := n + 3;' \
+  'added : DINT; seen : DINT := 100;'
+serve plc v0.st
+for n in 1 2 3; do change v$n.st; done
+expect 0 stvm get --dir plc seen
+before=$(sed -n 's/^seen=//p' out)
+
+# What E1 added goes, with its value: that needs leave.
+expect 7 stvm undo E1 --only --dir plc --yes --allow-overrun
+said 'R0303'
+expect 0 stvm undo E1 --only --dir plc --dry-run --allow-loss --allow-overrun
+said 'A +.body'
+expect 0 stvm edits --dir plc
+said '^E3 '
+! grep -q '^E4 ' out || fail "a dry run is an edit"
+expect 0 stvm undo E1 --only --dir plc --yes --allow-loss --allow-overrun
+said '^code +A +.body'
+! grep -qE '^code +[BC] ' out || fail "another unit is touched"
+expect 0 stvm edits --dir plc
+said '^E4 '
+said '^  POUs +A .body.$'
+expect 7 stvm get --dir plc added
+expect 0 stvm get --dir plc seen
+after=$(sed -n 's/^seen=//p' out)
+[ "$after" -ge "$before" ] || fail "the value of a later edit was lost: $before, $after"
+
+# To bring it again is to undo that.
+expect 0 stvm undo --dir plc --yes
+expect 0 stvm get --dir plc added
+expect 0 stvm edits --dir plc
+said '^E3 '
+
+# Over a stop and start, too.
+expect 0 stvm stop --dir plc
+serve plc
+expect 0 stvm undo E2 --only --dir plc --yes --allow-loss --allow-overrun
+expect 7 stvm get --dir plc seen
+expect 0 stvm get --dir plc added
+expect 0 stvm undo --dir plc --yes
+for n in 3 2 1; do expect 0 stvm undo --dir plc --yes; done
+
+# A later edit has edited the same unit, or uses what the first one added.
+project w2.st 'n := n + 2; added := added + 1;' "$one" "$one" 'added : DINT;'
+project x2.st 'n := n + 1; added := added + 1;' 'n := n + added;' "$one" 'added : DINT;'
+change v1.st
+change w2.st
+expect 0 stvm edits --dir plc
+first=$(sed -n 's/^\(E[0-9]*\) .*/\1/p' out | head -1)
+expect 7 stvm undo "$first" --only --dir plc --yes --allow-loss --allow-overrun
+said "R0320: later edits depend on $first: unit .A. is another one here"
+expect 0 stvm undo --dir plc --yes
+change x2.st
+expect 7 stvm undo "$first" --only --dir plc --yes --allow-loss --allow-overrun
+said "R0321: later edits depend on $first: .B. uses .added., which is not there"
+expect 0 stvm edits --dir plc
+said "^$first "
+
+# The newest one needs no --only, and one must be named.
+newest=$(sed -n 's/^\(E[0-9]*\) .*/\1/p' out | tail -1)
+expect 2 stvm undo "$newest" --only --dir plc --yes
+expect 2 stvm undo --only --dir plc --yes
+expect 7 stvm undo E99 --only --dir plc --yes
+said 'R0305'
