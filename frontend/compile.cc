@@ -14,6 +14,7 @@
 #include "frontend/sema/migrations.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/shared_addresses.h"
 #include "frontend/sfc/declare.h"
 #include "stdlib/sources.h"
 
@@ -113,7 +114,7 @@ void check_whole(Sema& sema) {
   sema.objects.check_recursion();
   sema.program.overrides = ir::find_overrides(sema.program);
   CommonUses(sema).check_output_tasks();
-  sema.check_direct_addresses();
+  SharedAddresses(sema).check();
   sema.report_unused();
 }
 

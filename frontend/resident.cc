@@ -84,6 +84,8 @@ bool Resident::can_follow() const {
   const size_t found = diagnostics_.warning_count() + diagnostics_.note_count();
   if (diagnostics_.all().size() != found) return false;  // too many to keep
   if (!sema_->program.migrations.empty()) return false;
+  // A body that leaves out a bare address may unshare its place.
+  if (sema_->addresses.direct_shares) return false;
   const base::SourceMap& sources = parsed_->sources;
   for (uint32_t file = 0; file < parsed_->library_file; ++file) {
     if (!sources.is_source(file) || has_condition(sources.text(file))) return false;
@@ -96,7 +98,7 @@ Resident::Sizes Resident::sizes() const {
   return {program.types.size(), static_cast<uint32_t>(sema_->variables_.size()),
           static_cast<uint32_t>(sema_->pous.size()),
           static_cast<uint32_t>(program.types[program.globals].members.size()),
-          static_cast<uint32_t>(sema_->direct_uses_.size())};
+          static_cast<uint32_t>(sema_->addresses.direct_uses.size())};
 }
 
 // Lowers a body, where nothing of it is left from before.

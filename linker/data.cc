@@ -6,6 +6,7 @@
 #include "ir/bytecode/device_tasks.h"
 #include "ir/types/location.h"
 #include "ir/types/natural_layout.h"
+#include "ir/types/shared_bytes.h"
 
 namespace linker {
 namespace {
@@ -150,8 +151,19 @@ class DataTables {
   }
 
   void bind(const ir::Member& member, uint32_t at) {
+    if (ir::is_shared(image_.types, member)) return bind_shared(member, at);
     if (member.address.bit_offset != ir::kOpenAddress) {
       bind_address(image_, member.address, at, member.type);
+    }
+  }
+
+  // Bits are parts of the others.
+  void bind_shared(const ir::Member& global, uint32_t at) {
+    const std::vector<ir::Member>& members = image_.types[global.type].members;
+    for (size_t i = 0; i < members.size(); ++i) {
+      if (ir::is_shared_bit(members[i])) continue;
+      bind_address(image_, ir::shared_address(image_.types, global, i),
+                   at + image_.layouts[global.type].member_offsets[i], members[i].type);
     }
   }
 

@@ -128,6 +128,8 @@ class Body {
 
   // --- places (place.cc)
   ir::Place variable_place(VarId id);
+  ir::Place view_place(const AddressView& view);
+  ir::Place view_place(ExprId id);
   ir::Place member_variable_place(const Variable& variable);
   ir::Place place(ExprId expr);
   ir::Place raw_place(ExprId expr);

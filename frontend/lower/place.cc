@@ -3,6 +3,7 @@
 
 #include "frontend/lower/body.h"
 #include "frontend/sema/common_uses.h"
+#include "frontend/sema/shared_addresses.h"
 
 namespace frontend {
 
@@ -25,8 +26,26 @@ ir::Place Body::global_place(uint32_t member) {
   return place;
 }
 
+// Of shared bytes.
+ir::Place Body::view_place(const AddressView& view) {
+  ir::Place place = global_place(view.global);
+  const ir::TypeId shared = place.type;
+  place.steps.push_back(step_to(ir::StepKind::kMember, view.member));
+  place.type = types()[shared].members[view.member].type;
+  return place;
+}
+
+// The BYTE that holds the bit which `id` names.
+ir::Place Body::view_place(ExprId id) {
+  if (VarId variable = sema_.infer(id).variable; variable.valid()) {
+    return view_place(sema_.resolve(variable).view);
+  }
+  return view_place(*direct_view(sema_, tree_[id]));
+}
+
 ir::Place Body::variable_place(VarId id) {
   const Variable& variable = sema_.resolve(id);
+  if (variable.view.global != AddressView::kNone) return view_place(variable.view);
   if (variable.storage == Storage::kGlobal) {
     note_outer_use(id, false, {});
     return global_place(variable.index);
@@ -75,6 +94,7 @@ ir::Place Body::raw_place(ExprId id) {
     case ExprKind::kDeref:
       return dereferenced_place(expr);
     case ExprKind::kDirect:
+      if (const AddressView* view = direct_view(sema_, expr)) return view_place(*view);
       return global_place(sema_.direct_member(expr));
     case ExprKind::kCall:
       return call_place(id, expr);
@@ -175,7 +195,9 @@ std::optional<Target> Body::target(ExprId id) {
   const Note note = sema_.infer(id);
   if (!note.type.valid()) return std::nullopt;
   ExprId whole = id;
-  while (sema_.infer(whole).bit_size != 0) whole = tree_[whole].operand;
+  while (sema_.infer(whole).bit_size != 0 && !sema_.infer(whole).view) {
+    whole = tree_[whole].operand;
+  }
   const bool property =
       sema_.infer(whole).property != kNoPou && !sema_.infer(whole).reference.valid();
   if (!property && !check_writable(id)) return std::nullopt;
@@ -197,6 +219,10 @@ std::optional<Target> Body::target(ExprId id) {
   while (sema_.infer(at).bit_size != 0) {
     const Note part = sema_.infer(at);
     out.bit_offset += part.bit_number * part.bit_size;
+    if (part.view) {
+      out.place = view_place(at);
+      return out;
+    }
     at = tree_[at].operand;
     if (part.bit_member < 0) continue;
     out.place = bit_word_place(at, part);

@@ -53,7 +53,7 @@ ir::Place Body::addressable_place(ExprId id) {
   const bool value = expr.kind == ExprKind::kLiteral || expr.kind == ExprKind::kCall ||
                      expr.kind == ExprKind::kUnary || expr.kind == ExprKind::kBinary ||
                      expr.kind == ExprKind::kQualified || expr.kind == ExprKind::kAssign;
-  if (expr.kind == ExprKind::kName && note.variable.valid() && !note.reference.valid()) {
+  if (!part && expr.kind == ExprKind::kName && note.variable.valid() && !note.reference.valid()) {
     return variable_place(note.variable);
   }
   const bool property = note.property != kNoPou && !note.reference.valid();

@@ -134,6 +134,10 @@ ir::ValueId Body::emit(ExprId id, ir::TypeId own) {
 ir::ValueId Body::emit_bit(ExprId id) {
   const Note part = sema_.infer(id);
   uint32_t offset = part.bit_number * part.bit_size;
+  if (part.view) {
+    ir::Place byte = view_place(id);
+    return part_of(build_.load(byte, scalar(byte.type)), scalar(byte.type), offset, 1);
+  }
   if (part.bit_member >= 0) {
     ir::Place word = bit_word_place(tree_[id].operand, part);
     ir::ValueId bits = build_.load(word, scalar(word.type));

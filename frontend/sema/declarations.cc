@@ -283,6 +283,8 @@ void Sema::number_variables(PouInfo& info) {
       !function && std::any_of(members.begin(), members.end(), [](const PouDecl& member) {
         return member.kind == PouKind::kAction;
       });
+  info.locals.clear();
+  info.members.clear();
   auto place = [&](VarId id, Storage storage, std::vector<VarId>& order) {
     variables_[id.index].storage = storage;
     variables_[id.index].index = static_cast<uint32_t>(order.size());
@@ -299,6 +301,7 @@ void Sema::number_variables(PouInfo& info) {
   for (VarId id : info.variables) {
     VarSection section = variables_[id.index].section;
     if (section == VarSection::kExternal || id == info.result) continue;
+    if (variables_[id.index].storage == Storage::kGlobal) continue;  // it shares bytes
     if (function && is_parameter(section)) continue;
     bool local = function || (section == VarSection::kTemp && !info.shares_temporaries);
     place(id, local ? Storage::kLocal : Storage::kMember, local ? info.locals : info.members);

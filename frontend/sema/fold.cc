@@ -41,7 +41,7 @@ std::optional<Constant> Folder::fold(ExprId id) {
 
 std::optional<Constant> Folder::member(ExprId id, const Expr& expr) {
   const Note& note = sema_.infer(id);
-  if (note.bit_size != 0) return bits_of(id, expr);
+  if (note.bit_size != 0 && !note.view) return bits_of(id, expr);
   bool literal = note.constant && !note.variable.valid();
   return literal ? name(id, expr) : part(id);
 }

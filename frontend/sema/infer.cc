@@ -1,6 +1,7 @@
 // The type of every expression from the inside out, before its context has spoken.
 // Each expression is visited once; the note stays.
 #include "frontend/sema/sema.h"
+#include "frontend/sema/shared_addresses.h"
 
 namespace frontend {
 namespace {
@@ -64,6 +65,14 @@ const Note& Sema::infer_now(ExprId id, Note& note) {
   return note;
 }
 
+// A BOOL at a bit of shared bytes is a part of a BYTE, though it has a name.
+static void mark_bit(Note& note, const AddressView& view) {
+  if (view.bit < 0) return;
+  note.view = true;
+  note.bit_size = 1;
+  note.bit_number = static_cast<uint32_t>(view.bit);
+}
+
 Note Sema::infer_kind(ExprId, const Expr& expr) {
   switch (expr.kind) {
     case ExprKind::kLiteral:
@@ -91,6 +100,7 @@ Note Sema::infer_kind(ExprId, const Expr& expr) {
     case ExprKind::kDirect: {
       Note note;
       note.type = type_of_direct(tree.directs[expr.number].address);
+      if (const AddressView* view = direct_view(*this, expr)) mark_bit(note, *view);
       return note;
     }
     case ExprKind::kDeref:
@@ -202,6 +212,7 @@ Note Sema::variable_note(VarId id) {
       (program.types.is_scalar(variable->type) || is_string(program.types, variable->type));
   bool has_initial = variable->section != VarSection::kInOut;
   note.known = known ? Known::kConstant : has_initial ? Known::kInitially : Known::kNo;
+  mark_bit(note, variable->view);
   return note;
 }
 
@@ -329,6 +340,7 @@ Note Sema::part_note(const Note& whole, uint32_t number, uint8_t size) const {
   note.variable = {};
   note.property = kNoPou;
   note.bit_size = size;
+  note.view = false;
   note.bit_member = -1;
   note.bit_number = number;
   ir::DirectAddress bits;

@@ -1,6 +1,7 @@
 #include "frontend/sema/instance_paths.h"
 
 #include "frontend/sema/sema.h"
+#include "frontend/sema/shared_addresses.h"
 
 namespace frontend {
 
@@ -58,7 +59,19 @@ bool InstancePaths::global(VarId id, Path& path) {
   path.root = variable.index;
   path.type = variable.type;
   path.address = member.address;
+  if (variable.view.global != AddressView::kNone) view(variable.view, path);
   return path.type.valid();
+}
+
+// Of shared bytes: the path has the name of the view alone.
+void InstancePaths::view(const AddressView& view, Path& path) {
+  const ir::Member& shared = sema_.program.types[sema_.program.globals].members[view.global];
+  const ir::Member& member = sema_.program.types[shared.type].members[view.member];
+  path.text = member.name;
+  path.root = view.global;
+  path.steps.push_back(view.member);
+  path.type = member.type;
+  path.address = {};
 }
 
 bool InstancePaths::head(const Expr& expr, Path& path) {
@@ -91,6 +104,9 @@ bool InstancePaths::member(const Expr& expr, Path& path) {
   VarId variable;
   if (const PouInfo* block = sema_.pou_of(path.type)) {
     const VarId found = sema_.objects.find_variable(block->number, expr.name.text);
+    if (found.valid() && sema_.resolve(found).view.global != AddressView::kNone) {
+      return global(found, path);
+    }
     if (found.valid() && sema_.resolve(found).storage == Storage::kMember) {
       variable = found;
       path.fixed = path.fixed || has_known_value(sema_.resolve(found));
@@ -155,6 +171,11 @@ bool InstancePaths::walk(ExprId id, Path& path) {
     case ExprKind::kIndex:
       return walk(expr.operand, path) && element(expr, path);
     case ExprKind::kDirect:
+      if (const AddressView* shared = direct_view(sema_, expr)) {
+        path.global = true;
+        view(*shared, path);
+        return true;
+      }
       path.root = sema_.direct_member(expr);
       path.text = sema_.program.types[sema_.program.globals].members[path.root].name;
       path.global = true;
@@ -193,6 +214,7 @@ void InstancePaths::configure_variable(const VarDecl& decl) {
       return;
     }
     sema_.program.located.push_back({path.text, decl.address});
+    sema_.addresses.configured.push_back({decl.address, path.type, decl.span, path.text, true});
   }
   if (!decl.init.valid()) return;
   if (path.fixed) {

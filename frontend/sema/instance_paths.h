@@ -29,6 +29,7 @@ class InstancePaths {
   void add_access(const VarDecl& decl);
   bool walk(ExprId expr, Path& path);
   bool global(VarId id, Path& path);
+  void view(const AddressView& view, Path& path);
   bool head(const Expr& expr, Path& path);
   bool member(const Expr& expr, Path& path);
   bool element(const Expr& expr, Path& path);

@@ -4,6 +4,7 @@
 
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/shared_addresses.h"
 
 namespace frontend {
 namespace {
@@ -48,6 +49,7 @@ void Sema::resolve_declarations() {
     if (!in_library(decl.name.span)) resolve(decl.spec);
   }
   OldNames(*this).rename_types();
+  SharedAddresses(*this).find();
   resolve_globals();
   // Grows while library blocks are discovered.
   for (uint32_t i = 0; i < pous.size(); ++i) resolve_interface(i);
@@ -79,6 +81,7 @@ ir::Member Sema::member_of(const Variable& variable, ir::Section section) {
   member.constant = has_known_value(variable);
   member.retain = variable.retain;
   member.init = variable.init;
+  member.address = variable.address;
   if (variable.decl != nullptr && variable.decl->has_address && !variable.hidden) {
     member.address = variable.decl->address;
     if (variable.decl->incomplete) {

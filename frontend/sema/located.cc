@@ -1,11 +1,9 @@
 // Variables at addresses (AT %QW4) and addresses in code (%QW4).
 #include <algorithm>
-#include <tuple>
 #include <unordered_set>
 
 #include "frontend/sema/sema.h"
 #include "ir/types/location.h"
-#include "ir/types/natural_layout.h"
 
 namespace frontend {
 namespace {
@@ -33,27 +31,22 @@ bool any_member(const ir::TypeTable& types, ir::TypeId structure, Test test) {
   return false;
 }
 
-// Where `direct_members_` has what lies at an address: no name begins like this.
-std::string address_key(const ir::DirectAddress& address, ir::TypeId type) {
-  return "@" + std::to_string(static_cast<int>(address.area)) + "." +
-         std::to_string(address.bit_offset) + "." + std::to_string(address.bit_size) + "." +
-         std::to_string(type.index);
-}
+// How many of the globals have their key.
+constexpr const char* kKeyCount = "@";
+
+}  // namespace
+
 bool is_in_test(const Tree& tree, base::SourcePos at) {
   return std::any_of(tree.tests.begin(), tree.tests.end(), [at](const PouDecl& test) {
     return !(at < test.span.begin) && at < test.span.end;
   });
 }
 
-bool overlap(const ir::DirectAddress& a, const ir::DirectAddress& b) {
-  return a.area == b.area && a.bit_offset < b.bit_offset + std::max(b.bit_size, 1u) &&
-         b.bit_offset < a.bit_offset + std::max(a.bit_size, 1u);
+std::string address_key(const ir::DirectAddress& address, ir::TypeId type) {
+  return "@" + std::to_string(static_cast<int>(address.area)) + "." +
+         std::to_string(address.bit_offset) + "." + std::to_string(address.bit_size) + "." +
+         std::to_string(type.index);
 }
-
-// How many of the globals have their key.
-constexpr const char* kKeyCount = "@";
-
-}  // namespace
 
 // 0: an address with another size than the type's, whatever that is, is none of its own.
 uint32_t Sema::address_bits(ir::TypeId type) const {
@@ -121,62 +114,6 @@ bool Sema::holds_input(ir::TypeId type) const {
   });
 }
 
-// Each output or marker variable has storage of its own, so overlapping ones cannot mean the same
-// bits. Inputs may overlap: nobody writes them. The same address and type in VAR_GLOBAL and in
-// code is one variable.
-void Sema::check_direct_addresses() {
-  std::vector<Located> all = direct_uses_;
-  for (const Variable& variable : variables_) {
-    const VarDecl* decl = variable.decl;
-    bool located = decl != nullptr && decl->has_address && !decl->incomplete &&
-                   decl->levels.count == 0 && variable.type.valid();
-    if (!located) continue;
-    all.push_back(
-        {decl->address, variable.type, variable.name.span, std::string(variable.name.text)});
-  }
-  // In tests nothing copies an input into all variables that have its address.
-  for (const Located& direct : direct_uses_) {
-    if (direct.address.area != ir::DirectArea::kInput || !is_in_test(tree, direct.span.begin)) {
-      continue;
-    }
-    for (const Located& other : all) {
-      const bool itself = other.span.begin.offset == direct.span.begin.offset;
-      if (itself || !overlap(other.address, direct.address)) continue;
-      error(DiagnosticCode::kBadAddress, direct.span,
-            "`" + other.name + "` has this input, too, and is not set by its address",
-            "name the variable: `" + other.name + "`, `instance." + other.name + "`");
-      break;
-    }
-  }
-  std::erase_if(all, [](const Located& one) {
-    return one.address.area == ir::DirectArea::kInput || one.address.area == ir::DirectArea::kNone;
-  });
-  if (all.empty() || diagnostics_.has_errors()) return;
-  const ir::Layouts natural = ir::natural_layouts(program.types);
-  std::stable_sort(all.begin(), all.end(), [](const Located& a, const Located& b) {
-    return std::tuple(a.address.area, a.address.bit_offset) <
-           std::tuple(b.address.area, b.address.bit_offset);
-  });
-  const Located* last = nullptr;  // the one that reaches furthest, to
-  uint64_t end = 0;
-  for (const Located& one : all) {
-    bool same_area = last != nullptr && last->address.area == one.address.area;
-    if (same_area && one.address.bit_offset < end) {
-      bool marker = one.address.area == ir::DirectArea::kMarker;
-      error(DiagnosticCode::kBadAddress, one.span,
-            "`" + one.name + "` lies on the same " + (marker ? "marker" : "output") + " bits as `" +
-                last->name + "`",
-            "use one of them everywhere (declare it in VAR_GLOBAL), and its parts: " + last->name +
-                ".%X0, .%B1");
-    }
-    uint64_t here =
-        one.address.bit_offset + ir::located_bits(program.types, natural, one.type, one.address);
-    if (same_area && here <= end) continue;
-    last = &one;
-    end = here;
-  }
-}
-
 ir::TypeId Sema::type_of_direct(const ir::DirectAddress& address) const {
   switch (address.bit_size) {
     case 1:
@@ -217,7 +154,7 @@ uint32_t Sema::direct_member(const Expr& expr) {
     member.section = ir::Section::kGlobal;
     member.address = address;
     globals.members.push_back(std::move(member));
-    direct_uses_.push_back({address, type, expr.span, std::string(expr.name.text)});
+    addresses.direct_uses.push_back({address, type, expr.span, std::string(expr.name.text)});
   }
   direct_members_.emplace(std::move(name), index);
   return index;

@@ -84,6 +84,7 @@ Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
     if (variable.section == VarSection::kInput || variable.section == VarSection::kOutput || open) {
       sema_.mark_used(id);
       check_access(variable.access, variable.pou, expr.name);
+      if (variable.storage == Storage::kGlobal) return sema_.variable_note(id);
       note.type = variable.type;
       return note;
     }

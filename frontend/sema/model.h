@@ -30,6 +30,14 @@ constexpr bool has_frame(PouKind kind) {
   return kind == PouKind::kFunction || (kind >= PouKind::kMethod && kind <= PouKind::kSetter);
 }
 
+// Where a view of shared bytes is (shared_addresses.h).
+struct AddressView {
+  static constexpr uint32_t kNone = 0xffffffffu;
+  uint32_t global = kNone;  // member of the globals
+  uint32_t member = 0;      // of its type
+  int32_t bit = -1;         // a BOOL at that bit of the member, which is a BYTE
+};
+
 struct Variable {
   Name name;
   const VarDecl* decl = nullptr;  // null: a function's result, or what a setter is given
@@ -51,6 +59,9 @@ struct Variable {
   VarId external;           // the global that a VAR_EXTERNAL means
   std::string_view list;    // of a global that is visible as `List.name` only
   std::string_view method;  // whose VAR_INST it is
+  AddressView view;         // it shares bytes with others
+  VarId same_as;            // it is that global, under another name
+  ir::DirectAddress address;  // of shared bytes themselves
   VarId edge, last;         // R_EDGE, F_EDGE: what the body sees, and the level before
   ir::TypeId bound;         // of an open parameter: the type that this instance gives it
   ir::TypeId type;          // invalid: could not be resolved (already reported)
@@ -81,6 +92,19 @@ struct Located {
   ir::TypeId type;
   base::SourceSpan span;
   std::string name;
+  bool configured = false;  // by VAR_CONFIG
+};
+
+// located.cc: does a TEST stand there? No name begins as an address_key() does.
+bool is_in_test(const Tree& tree, base::SourcePos at);
+std::string address_key(const ir::DirectAddress& address, ir::TypeId type);
+
+// What is known of addresses beside the variables that have them.
+struct Addresses {
+  std::unordered_map<std::string, AddressView> views;  // of bare ones, by address_key()
+  bool direct_shares = false;                          // a bare one shares its place
+  std::vector<Located> direct_uses;                    // bare ones that are globals
+  std::vector<Located> configured;                     // by VAR_CONFIG
 };
 
 // A write to the output image, found in a body.
@@ -159,6 +183,7 @@ struct Note {
   uint8_t bit_size = 0;      // x.3, x.%B1, x.NUMBER: size and number of the part; else 0
   uint32_t bit_number = 0;
   int32_t bit_member = -1;  // of a BIT member: the member of the structure that holds it
+  bool view = false;        // with bit_size: a BOOL at a bit of shared bytes, by its name
   bool calls = false;       // contains a call of a POU
   bool can_trap = false;
   VarId variable;  // kName: the variable meant

@@ -51,7 +51,6 @@ class Sema {
   uint32_t test_message() const { return test_message_; }
   std::vector<const PouInfo*> mocked_functions() const;
   bool mock_applies(uint32_t pou, const PouDecl& test) const;  // a MOCK_FUNCTION's body
-  void check_direct_addresses();  // located.cc; after all bodies
 
   // --- types (types.cc, structures.cc, containment.cc)
   TypeUse resolve(SpecId spec);
@@ -163,6 +162,7 @@ class Sema {
   StartValues start_values{*this};
   Namespaces namespaces{*this};
   Pools pools{*this};
+  Addresses addresses;
 
  private:
   friend class CommonUses;
@@ -175,6 +175,7 @@ class Sema {
   friend class StartValues;
   friend class Pools;
   friend class Resident;
+  friend class SharedAddresses;
 
   // declarations.cc
   void collect_types();
@@ -392,7 +393,6 @@ class Sema {
   NameMap<const stdlib::FunctionRow*> standard_;
   std::unordered_map<ir::TypeId, uint32_t> pou_by_type_;
   std::unordered_map<std::string, uint32_t> direct_members_;
-  std::vector<Located> direct_uses_;
   std::unordered_map<ir::TypeId, NameMap<Field>> structures_;
   std::deque<std::string> made_names_;
 };

@@ -53,6 +53,11 @@ uint32_t Sema::event_of(ExprId id) {
   const Note note = infer(id);
   if (!note.type.valid()) return ir::kNoEvent;
   bool boolean = program.types.root_kind(note.type) == ir::Kind::kBool;
+  if (note.view) {
+    error(DiagnosticCode::kBadEvent, expr.span, "SINGLE needs a BOOL that shares no bytes",
+          "copy the bit to a global variable of its own");
+    return ir::kNoEvent;
+  }
   if (boolean && expr.kind == ExprKind::kDirect) return direct_member(expr);
   if (boolean && note.variable.valid()) {
     const Variable& variable = resolve(note.variable);

@@ -8,6 +8,7 @@
 #include "ir/bytecode/regions.h"
 #include "ir/types/inside.h"
 #include "ir/types/listed_name.h"
+#include "ir/types/shared_bytes.h"
 
 namespace ir {
 namespace {
@@ -34,6 +35,7 @@ Symbol member_of(const Image& image, const Symbol& owner, size_t number) {
   symbol.retain |= member.retain;
   symbol.input |= member.address.area == DirectArea::kInput;
   symbol.output |= member.address.area == DirectArea::kOutput;
+  symbol.bit_mask = bit_mask_of(image.types, owner.type, member);
   return symbol;
 }
 
@@ -125,7 +127,13 @@ class PathReader {
   }
 
   base::Status step_to(Symbol& symbol, std::string_view text, const std::string& why) {
-    const int32_t number = image_.types.find_member(symbol.type, text);
+    int32_t number = image_.types.find_member(symbol.type, text);
+    if (number < 0 && symbol.type == image_.globals) {
+      if (const auto shared = find_shared(image_.types, image_.globals, text)) {
+        symbol = member_of(image_, symbol, shared->global);
+        number = static_cast<int32_t>(shared->member);
+      }
+    }
     if (number < 0) {
       const std::string bit = byte_of_bit(image_.types[symbol.type], text);
       return fail("`" + std::string(text) + "` " + (bit.empty() ? why : bit));
@@ -233,6 +241,10 @@ class LeafWalk {
     const Type& type = image_.types[symbol.type];
     for (size_t i = 0; i < type.members.size() && !ended_; ++i) {
       if (!is_listed(type.members[i])) continue;
+      if (is_shared(image_.types, type.members[i])) {  // its members have paths of their own
+        part(member_of(image_, symbol, i), depth);
+        continue;
+      }
       if (length != 0) path_ += '.';
       path_ += type.members[i].name;
       part(member_of(image_, symbol, i), depth);
@@ -304,9 +316,11 @@ class LeafWalk {
 
 // VAR_ACCESS: another name for a variable, or for what its members begin with.
 const AccessPath* access_path(const Image& image, std::string_view path) {
-  const std::string_view name = path.substr(0, path.find_first_of(".["));
-  for (const AccessPath& access : image.access) {
-    if (same_name(access.name, name)) return &access;
+  for (const AccessPath& access : image.access) {  // `Main.x`, too: another name for one place
+    const size_t size = access.name.size();
+    const bool ends =
+        size == path.size() || (size < path.size() && (path[size] == '.' || path[size] == '['));
+    if (ends && same_name(access.name, path.substr(0, size))) return &access;
   }
   return nullptr;
 }
@@ -319,6 +333,11 @@ base::Result<Symbol> find_symbol(const Image& image, std::string_view path) {
     return symbol;
   }
   return PathReader(image, path).run();
+}
+
+std::string type_text(const Image& image, const Symbol& symbol) {
+  return symbol.bit_mask != 0 ? std::string(elementary_name(Kind::kBool))
+                              : image.types.text(symbol.type);
 }
 
 std::string path_of(const Image& image, const Symbol& symbol) {

@@ -23,7 +23,16 @@ struct Symbol {
   bool input = false;  // %I
   bool output = false;
   bool retain = false;
+  // Not 0: a BOOL at that bit of the BYTE which is there (ir/types/shared_bytes.h).
+  uint8_t bit_mask = 0;
 };
+
+inline bool same_place(const Symbol& a, const Symbol& b) {
+  return a.data == b.data && a.bit_mask == b.bit_mask;
+}
+
+// "BOOL" of a bit.
+std::string type_text(const Image& image, const Symbol& symbol);
 
 base::Result<Symbol> find_symbol(const Image& image, std::string_view path);
 
@@ -42,6 +51,9 @@ void for_each_leaf(const Image& image,
 std::string format_value(const Image& image, const Symbol& symbol, std::span<const uint8_t> memory);
 // Bytes of a scalar or string from a literal as people type it.
 base::Result<base::Bytes> parse_value(const Image& image, TypeId type, std::string_view text);
+// Of a bit: its byte, in which the other bits are 0.
+base::Result<base::Bytes> parse_value(const Image& image, const Symbol& symbol,
+                                      std::string_view text);
 
 // "path=value\n" for every leaf.
 std::string state_text(const Image& image, std::span<const uint8_t> memory);

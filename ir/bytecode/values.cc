@@ -6,6 +6,7 @@
 #include "ir/bytecode/value_ranges.h"
 #include "ir/types/handle.h"
 #include "ir/types/inside.h"
+#include "ir/types/shared_bytes.h"
 #include "ir/types/value_text.h"
 
 namespace ir {
@@ -48,6 +49,11 @@ class Formatter {
     const uint64_t bits = load_bits(image_.types, id, &memory_[data]);
     if (is_reference(type.kind)) return reference(bits, type.base);
     return scalar_text(image_.types, id, bits);
+  }
+
+  std::string bit(uint32_t data, uint8_t mask) const {
+    if (data >= memory_.size()) return "?";
+    return (memory_[data] & mask) != 0 ? "TRUE" : "FALSE";
   }
 
  private:
@@ -93,8 +99,10 @@ class Formatter {
     for (size_t i = 0; i < type.members.size() && out.size() <= max_bytes_; ++i) {
       if (!is_listed(type.members[i])) continue;
       if (out.size() > 1) out += ", ";
+      const uint32_t at = data + image_.layouts[id].member_offsets[i];
+      const uint8_t mask = bit_mask_of(image_.types, id, type.members[i]);
       out += type.members[i].name + " := " +
-             part(type.members[i].type, data + image_.layouts[id].member_offsets[i], depth + 1);
+             (mask == 0 ? part(type.members[i].type, at, depth + 1) : bit(at, mask));
     }
     return out + ")";
   }
@@ -140,7 +148,17 @@ std::string format_value(const Image& image, const Symbol& symbol,
 
 std::string format_value(const Image& image, const Symbol& symbol, std::span<const uint8_t> memory,
                          size_t max_bytes) {
-  return Formatter(image, memory, max_bytes).text(symbol.type, symbol.data, 0);
+  Formatter formatter(image, memory, max_bytes);
+  if (symbol.bit_mask != 0) return formatter.bit(symbol.data, symbol.bit_mask);
+  return formatter.text(symbol.type, symbol.data, 0);
+}
+
+base::Result<base::Bytes> parse_value(const Image& image, const Symbol& symbol,
+                                      std::string_view text) {
+  if (symbol.bit_mask == 0) return parse_value(image, symbol.type, text);
+  base::Result<base::Bytes> bit = parse_value(image, image.types.elementary(Kind::kBool), text);
+  if (bit.ok() && (*bit)[0] != 0) (*bit)[0] = symbol.bit_mask;
+  return bit;
 }
 
 base::Result<base::Bytes> parse_value(const Image& image, TypeId id, std::string_view text) {

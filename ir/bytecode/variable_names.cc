@@ -5,6 +5,7 @@
 #include "ir/bytecode/leaf_walk.h"
 #include "ir/types/address_text.h"
 #include "ir/types/location.h"
+#include "ir/types/shared_bytes.h"
 
 namespace ir {
 namespace {
@@ -56,6 +57,15 @@ std::string meant(const Image& image, std::string_view path) {
 base::Result<std::string> located(const Image& image, std::string_view name,
                                   const DirectAddress& wanted) {
   std::string around;
+  const std::vector<Member>& globals = image.types[image.globals].members;
+  for (const Member& global : globals) {
+    const bool bit = wanted.bit_size == 1 && global.address.area == wanted.area;
+    if (!bit || !is_shared(image.types, global)) continue;
+    const std::vector<Member>& members = image.types[global.type].members;
+    for (size_t i = 0; i < members.size(); ++i) {
+      if (shared_address(image.types, global, i) == wanted) return members[i].name;
+    }
+  }
   for (const IoBinding& row : image.io) {
     if (row.address.area != wanted.area || wanted.bit_offset < row.address.bit_offset) continue;
     const uint32_t behind = wanted.bit_offset - row.address.bit_offset;

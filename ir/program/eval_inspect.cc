@@ -6,6 +6,7 @@
 #include "ir/program/eval_scalar.h"
 #include "ir/types/inside.h"
 #include "ir/types/listed_name.h"
+#include "ir/types/shared_bytes.h"
 #include "ir/types/value_text.h"
 
 namespace ir {
@@ -59,6 +60,7 @@ Address EvalInspector::part_of(const Address& at, size_t number) const {
     part.offset += static_cast<uint32_t>(number * layouts_[type.base].size);
   } else {
     part.type = type.members[number].type;
+    part.bit_mask = bit_mask_of(program_.types, at.type, type.members[number]);
     part.offset += layouts_[at.type].member_offsets[number];
   }
   const bool parts = at.variable != nullptr && !program_.types.overlaps(at.type);
@@ -79,6 +81,11 @@ std::optional<Address> EvalInspector::find_member(const Address& at, std::string
     return std::nullopt;
   }
   const int32_t member = program_.types.find_member(at.type, name);
+  if (member < 0 && at.type == program_.globals) {
+    if (const auto shared = find_shared(program_.types, program_.globals, name)) {
+      return part_of(part_of(at, shared->global), shared->member);
+    }
+  }
   return member < 0 ? std::nullopt : std::optional(part_of(at, static_cast<size_t>(member)));
 }
 
@@ -202,6 +209,7 @@ std::string EvalInspector::leaf_text(const Address& at) const {
     return wstring_text(text_of(at));
   }
   const uint64_t bits = bits_of(at);
+  if (at.bit_mask != 0) return (bits & at.bit_mask) != 0 ? "TRUE" : "FALSE";
   return is_reference(type.kind) ? references_.text(bits, type.base)
                                  : scalar_text(program_.types, at.type, bits);
 }
@@ -219,7 +227,9 @@ void EvalInspector::append_state(const std::string& path, const Address& at,
   } else if (program_.types.has_members(at.type)) {
     for (size_t i = 0; i < type.members.size(); ++i) {
       if (type.members[i].section == Section::kStamp) continue;
-      append_state(path + (path.empty() ? "" : ".") + type.members[i].name, part_of(at, i), out);
+      const bool shared = at.type == program_.globals && is_shared(program_.types, type.members[i]);
+      const std::string name = shared ? "" : (path.empty() ? "" : ".") + type.members[i].name;
+      append_state(path + name, part_of(at, i), out);
     }
   } else {
     out += path + "=" + leaf_text(at) + "\n";

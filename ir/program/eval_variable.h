@@ -24,6 +24,7 @@ struct Address {
   TypeId type;
   uint32_t capacity = 0;  // of a string: characters that fit there
   bool constant = false;
+  uint8_t bit_mask = 0;  // a BOOL at that bit of the BYTE (shared_bytes.h), as people see it
 };
 
 // Which of the parts counts follows from the type: scalars `bits`, strings and what overlaps

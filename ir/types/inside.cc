@@ -5,6 +5,7 @@
 #include "base/limits.h"
 #include "ir/types/natural_layout.h"
 #include "ir/types/reach.h"
+#include "ir/types/shared_bytes.h"
 
 namespace ir {
 namespace {
@@ -20,8 +21,30 @@ struct Part {
   bool slot = false;
 };
 
+bool covers(const Layouts& layouts, TypeId owner, size_t member, const Member& of, uint32_t at) {
+  const uint32_t begin = layouts[owner].member_offsets[member];
+  return at >= begin && at - begin < member_size(layouts, of);
+}
+
+// Of members that overlap, one of the wanted type comes before others.
+size_t member_inside(const TypeTable& types, const Layouts& layouts, const Part& part,
+                     TypeId target) {
+  const std::vector<Member>& members = types[part.type].members;
+  const size_t count = std::min(members.size(), layouts[part.type].member_offsets.size());
+  size_t first = count;
+  for (size_t i = 0; i < count; ++i) {
+    if (!covers(layouts, part.type, i, members[i], part.rest)) continue;
+    const bool wanted = part.rest == layouts[part.type].member_offsets[i] && target.valid() &&
+                        types.is_a(members[i].type, target);
+    if (wanted || !types.overlaps(part.type)) return i;
+    first = std::min(first, i);
+  }
+  return first;
+}
+
 // The member or element that covers the offset; false in holes and at leaves.
-bool step_down(const TypeTable& types, const Layouts& layouts, Part& part, std::string& path) {
+bool step_down(const TypeTable& types, const Layouts& layouts, Part& part, TypeId target,
+               std::string& path) {
   const Type& type = types[part.type];
   if (part.slot) {
     return false;
@@ -35,18 +58,14 @@ bool step_down(const TypeTable& types, const Layouts& layouts, Part& part, std::
     part = {type.base, part.rest % stride, types.is_instance(type.base)};
     return true;
   }
-  const std::vector<uint32_t>& offsets = layouts[part.type].member_offsets;
-  for (size_t i = 0; i < type.members.size() && i < offsets.size(); ++i) {
-    const Member& member = type.members[i];
-    if (part.rest < offsets[i] || part.rest - offsets[i] >= member_size(layouts, member)) {
-      continue;
-    }
-    path += "." + member.name;
-    const bool slot = member.section == Section::kInOut || types.is_instance(member.type);
-    part = {member.type, part.rest - offsets[i], slot};
-    return true;
-  }
-  return false;
+  const size_t number = member_inside(types, layouts, part, target);
+  if (number >= type.members.size()) return false;
+  const Member& member = type.members[number];
+  const bool shared = type.kind == Kind::kGlobals && is_shared(types, member);
+  if (!shared) path += "." + member.name;
+  const bool slot = member.section == Section::kInOut || types.is_instance(member.type);
+  part = {member.type, part.rest - layouts[part.type].member_offsets[number], slot};
+  return true;
 }
 
 // The variable of an area's type that holds the offset.
@@ -107,7 +126,7 @@ std::string path_inside(const TypeTable& types, const Layouts& layouts, TypeId r
     if (part.rest == 0 && target.valid() && types.is_a(part.type, target)) {
       break;
     }
-    if (!step_down(types, layouts, part, path)) {
+    if (!step_down(types, layouts, part, target, path)) {
       break;
     }
   }

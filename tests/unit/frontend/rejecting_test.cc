@@ -43,7 +43,8 @@ const Wrong kWhole[] = {
     {"E2012", "VAR_GLOBAL a : ARRAY[0..1] OF INT := [3(1)]; END_VAR"},
     {"E2013", "TYPE A : (x, y); END_TYPE VAR_GLOBAL v : A := A#z; END_VAR"},
     {"E2014", "VAR_GLOBAL v AT %QX0.0 : INT; END_VAR"},
-    {"E2014", "VAR_GLOBAL v AT %MW0 : INT; w AT %MB1 : BYTE; END_VAR"},
+    {"E2014",
+     "TYPE Mode : (off, on); END_TYPE VAR_GLOBAL v AT %MW0 : INT; w AT %MW0 : Mode; END_VAR"},
     {"E2015",
      "VAR_GLOBAL g : INT; END_VAR PROGRAM P VAR_EXTERNAL g : BOOL; END_VAR g := TRUE; "
      "END_PROGRAM"},

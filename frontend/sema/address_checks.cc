@@ -1,0 +1,94 @@
+// Addresses that overlap and cannot share bytes, as far as all bodies have to be known for it.
+#include <algorithm>
+#include <tuple>
+
+#include "frontend/sema/sema.h"
+#include "frontend/sema/shared_addresses.h"
+#include "ir/types/address_text.h"
+#include "ir/types/location.h"
+#include "ir/types/natural_layout.h"
+
+namespace frontend {
+namespace {
+
+bool meets(const ir::DirectAddress& a, const ir::DirectAddress& b) {
+  return a.area == b.area && a.bit_offset < b.bit_offset + std::max(b.bit_size, 1u) &&
+         b.bit_offset < a.bit_offset + std::max(a.bit_size, 1u);
+}
+
+bool keeps_value(ir::DirectArea area) {
+  return area == ir::DirectArea::kMarker || area == ir::DirectArea::kOutput;
+}
+
+}  // namespace
+
+// Inputs may overlap: nobody writes them.
+void SharedAddresses::check() const {
+  std::vector<Located> all = sema_.addresses.direct_uses;
+  for (const Variable& variable : sema_.variables_) {
+    const VarDecl* decl = variable.decl;
+    const bool located = decl != nullptr && decl->has_address && !decl->incomplete &&
+                         decl->levels.count == 0 && variable.type.valid();
+    if (!located) continue;
+    all.push_back(
+        {decl->address, variable.type, variable.name.span, std::string(variable.name.text)});
+  }
+  check_inputs_in_tests(all);
+  const std::vector<Located>& configured = sema_.addresses.configured;
+  if (configured.empty() || sema_.diagnostics_.has_errors()) return;
+  all.insert(all.end(), configured.begin(), configured.end());
+  std::erase_if(all, [](const Located& one) { return !keeps_value(one.address.area); });
+  std::stable_sort(all.begin(), all.end(), [](const Located& a, const Located& b) {
+    return std::tuple(a.address.area, a.address.bit_offset) <
+           std::tuple(b.address.area, b.address.bit_offset);
+  });
+  const ir::Layouts natural = ir::natural_layouts(sema_.program.types);
+  struct Furthest {  // of those in front
+    const Located* one = nullptr;
+    uint64_t end = 0;
+  };
+  Furthest placed;  // by VAR_CONFIG
+  Furthest others;
+  for (const Located& one : all) {
+    const auto reaches = [&](const Furthest& last) {
+      return last.one != nullptr && last.one->address.area == one.address.area &&
+             one.address.bit_offset < last.end;
+    };
+    const Located* last = reaches(placed) ? placed.one : nullptr;
+    if (one.configured && last == nullptr && reaches(others)) last = others.one;
+    if (last != nullptr && one.configured) report_configured(one, *last);
+    if (last != nullptr && !one.configured) report_configured(*last, one);
+    Furthest& mine = one.configured ? placed : others;
+    const uint64_t end = one.address.bit_offset + ir::located_bits(sema_.program.types, natural,
+                                                                   one.type, one.address);
+    if (reaches(mine) && end <= mine.end) continue;
+    mine = {&one, end};
+  }
+}
+
+void SharedAddresses::report_configured(const Located& one, const Located& other) const {
+  const uint32_t line = sema_.sources.locate(other.span.begin).line;
+  sema_.error(DiagnosticCode::kBadAddress, one.span,
+              "`" + one.name + "` AT " + ir::address_text(one.address) + " lies on bytes of `" +
+                  other.name + "` AT " + ir::address_text(other.address) + " (line " +
+                  std::to_string(line) + "), but cannot share them: it lies in an instance",
+              "give one of them another address");
+}
+
+// In tests nothing copies an input into all variables that have its address.
+void SharedAddresses::check_inputs_in_tests(const std::vector<Located>& all) const {
+  for (const Located& direct : sema_.addresses.direct_uses) {
+    const bool input = direct.address.area == ir::DirectArea::kInput;
+    if (!input || !is_in_test(sema_.tree, direct.span.begin)) continue;
+    for (const Located& other : all) {
+      const bool itself = other.span.begin.offset == direct.span.begin.offset;
+      if (itself || !meets(other.address, direct.address)) continue;
+      sema_.error(DiagnosticCode::kBadAddress, direct.span,
+                  "`" + other.name + "` has this input, too, and is not set by its address",
+                  "name the variable: `" + other.name + "`, `instance." + other.name + "`");
+      break;
+    }
+  }
+}
+
+}  // namespace frontend
