@@ -115,7 +115,7 @@ std::string image_text(const ir::Image& image, const base::Digest& digest) {
 std::string symbols_text(const ir::Image& image) {
   std::string out;
   ir::for_each_leaf(image, [&](const std::string& path, const ir::Symbol& symbol) {
-    out += path + " : " + image.types.text(symbol.type) + " @ " + number(symbol.data) +
+    out += path + " : " + ir::type_text(image, symbol) + " @ " + number(symbol.data) +
            (symbol.retain ? " RETAIN\n" : "\n");
   });
   return out;

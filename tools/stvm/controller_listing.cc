@@ -28,7 +28,7 @@ base::Result<base::Bytes> ControllerService::list(const vm::Request& request) {
     }
     ++at;
     if (!tools::matches(pattern, path)) return true;
-    values.rows.push_back({path, image.types.text(symbol.type), {}});
+    values.rows.push_back({path, ir::type_text(image, symbol), {}});
     bytes += path.size() + values.rows.back().type.size() + 12;
     return true;
   });

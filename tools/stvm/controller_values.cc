@@ -61,7 +61,7 @@ std::string assignments_text(const NamedValues& values) {
 }
 
 vm::ValueRow value_row(const ir::Image& image, const std::string& path, const ir::Symbol& symbol) {
-  return {path, image.types.text(symbol.type), {}};
+  return {path, ir::type_text(image, symbol), {}};
 }
 
 }  // namespace

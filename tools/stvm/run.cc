@@ -163,7 +163,7 @@ void print_json(const Settings& settings, const tools::Options& options, vm::Con
   if (options.has("--state")) {
     ir::for_each_leaf(controller.image(), [&](const std::string& path, const ir::Symbol& symbol) {
       json.key(path);
-      typed_value(json, controller.image().types.text(symbol.type),
+      typed_value(json, ir::type_text(controller.image(), symbol),
                   ir::format_value(controller.image(), symbol, memory));
     });
   }

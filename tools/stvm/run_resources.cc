@@ -169,7 +169,7 @@ void print_resource(tools::JsonWriter& json, ResourceController& resource,
   if (options.has("--state")) {
     ir::for_each_leaf(controller.image(), [&](const std::string& path, const ir::Symbol& symbol) {
       json.key(path);
-      typed_value(json, controller.image().types.text(symbol.type),
+      typed_value(json, ir::type_text(controller.image(), symbol),
                   ir::format_value(controller.image(), symbol, memory));
     });
   }
@@ -236,7 +236,7 @@ std::string value_of(const vm::Controller& controller, const std::string& name) 
 void typed_value_of(tools::JsonWriter& json, const vm::Controller& controller,
                     const std::string& name) {
   const base::Result<ir::Symbol> symbol = ir::find_symbol(controller.image(), name);
-  typed_value(json, symbol.ok() ? controller.image().types.text(symbol->type) : std::string(),
+  typed_value(json, symbol.ok() ? ir::type_text(controller.image(), *symbol) : std::string(),
               value_of(controller, name));
 }
 

@@ -130,7 +130,7 @@ void go_aside(STC_HANDLER_ARGS) { STC_GO(aside_of(pc).units, frame, self); }
 void restore_forced(STC_HANDLER_ARGS) {
   const StoreAside& aside = aside_of(pc);
   for (const StoreAside::Value& value : aside.values) {
-    std::memcpy(mem + value.data, value.bytes, value.size);
+    put_value(mem + value.data, value.bytes, value.size, value.mask);
   }
   STC_GO(aside.back, frame, self);
 }

@@ -11,11 +11,21 @@
 
 namespace vm {
 
+// `mask` is not 0: only these bits of one byte.
+inline void put_value(uint8_t* to, const uint8_t* bytes, size_t size, uint8_t mask) {
+  if (mask == 0) {
+    std::memcpy(to, bytes, size);
+  } else {
+    *to = static_cast<uint8_t>((*to & ~mask) | (*bytes & mask));
+  }
+}
+
 struct StoreAside {
   struct Value {
     uint32_t data = 0;  // in data memory
     uint32_t size = 0;
     const uint8_t* bytes = nullptr;
+    uint8_t mask = 0;
   };
   ir::Unit units[3];  // the store, decoded, and behind it one that restores
   const ir::Unit* back = nullptr;

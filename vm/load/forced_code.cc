@@ -119,7 +119,7 @@ void ForcedCode::put_aside(const Version& version, std::vector<ir::Unit>& decode
     aside.back = &decoded[unit] + (extended ? 2 : 1);
     for (const uint32_t v : variables) {
       const ForcedVariable& row = variables_[v];
-      aside.values.push_back({row.place.data, row.place.size, row.value.data()});
+      aside.values.push_back({row.place.data, row.place.size, row.value.data(), row.mask});
     }
     decoded[unit] = aside_unit(kAsideHandler, aside);
   }
@@ -134,7 +134,11 @@ std::shared_ptr<const ForcedCode> ForcedCode::make(const ir::VerifiedImage& veri
   std::vector<Variable> places;
   for (const ForcedVariable& variable : variables) places.push_back(variable.place);
   if (places.empty()) return nullptr;
-  const std::vector<Writer> writers = find_writers(image, places);
+  std::vector<Writer> writers = find_writers(image, places);
+  for (Writer& writer : writers) {
+    const bool bit = variables[writer.variable].mask != 0;
+    if (bit && writer.how == How::kOnly) writer.how = How::kPart;
+  }
   if (writers.empty()) return nullptr;
   const auto made = std::make_shared<ForcedCode>(Key());
   made->variables_.assign(variables.begin(), variables.end());

@@ -28,6 +28,7 @@ inline constexpr size_t kMostRestoringPous = 32;
 struct ForcedVariable {
   Variable place;
   base::Bytes value;
+  uint8_t mask = 0;  // ir::Symbol::bit_mask: what writes the byte writes other bits, too
 };
 
 // ir::verify_versions(), or what a test has instead.

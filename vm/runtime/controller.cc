@@ -161,7 +161,7 @@ bool Controller::write(const WriteSet& set) {
   base::check(at_boundary(), "a value is set while a task is inside a scan");
   if (set.generation != generation().number()) return false;
   for (const WriteSet::Value& value : set.values) {
-    std::memcpy(impl_->memory.data() + value.data, value.bytes.data(), value.bytes.size());
+    value.put(impl_->memory.data());
   }
   impl_->scheduler.outputs_set(set.outputs);
   worked(static_cast<int64_t>(set.work_bytes) / kCopyBytesPerNs);
@@ -189,7 +189,7 @@ base::Result<std::unique_ptr<ForceChange>> Controller::prepare_unforce(
   for (const std::string& path : paths) {
     base::Result<ir::Symbol> symbol = ir::find_symbol(image(), path);
     if (!symbol.ok()) return symbol.error();
-    const auto same_place = [&](const Force& f) { return f.symbol.data == symbol->data; };
+    const auto same_place = [&](const Force& f) { return ir::same_place(f.symbol, *symbol); };
     const bool twice = std::none_of(forces().begin(), forces().end(), same_place);
     if (twice) return base::Error{base::Refusal::kNoSuchVariable, "`" + path + "` is not forced"};
     std::erase_if(next, same_place);

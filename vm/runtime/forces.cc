@@ -10,18 +10,21 @@ namespace {
 // Bytes that stand for the same value in the other image; empty when there are none.
 base::Bytes carry_over(const ir::Image& from, const Force& force, const ir::Image& to,
                        const ir::Symbol& symbol) {
-  bool same_type = from.types.text(force.symbol.type) == to.types.text(symbol.type);
+  bool same_type = from.types.text(force.symbol.type) == to.types.text(symbol.type) &&
+                   force.symbol.bit_mask == symbol.bit_mask;
   if (same_type && from.types[force.symbol.type].kind != ir::Kind::kEnum) return force.value;
   ir::Symbol alone = force.symbol;
   alone.data = 0;
   std::string text = ir::format_value(from, alone, force.value);
-  base::Result<base::Bytes> value = ir::parse_value(to, symbol.type, text);
+  base::Result<base::Bytes> value = ir::parse_value(to, symbol, text);
   return value.ok() ? *value : base::Bytes{};
 }
 
 }  // namespace
 
 bool overlap(const Force& a, const Force& b) {
+  const bool bits = a.symbol.bit_mask != 0 && b.symbol.bit_mask != 0;
+  if (bits && (a.symbol.bit_mask & b.symbol.bit_mask) == 0) return false;
   return a.symbol.data < b.symbol.data + b.value.size() &&
          b.symbol.data < a.symbol.data + a.value.size();
 }
@@ -37,7 +40,8 @@ ForcedSet ForcedSet::make(const ir::VerifiedImage& image, const CodeTable& own,
   std::vector<ForcedVariable> variables;
   for (const Force& force : set.forces) {
     const auto size = static_cast<uint32_t>(force.value.size());
-    variables.push_back({{force.symbol.data, size, force.symbol.type}, force.value});
+    variables.push_back(
+        {{force.symbol.data, size, force.symbol.type}, force.value, force.symbol.bit_mask});
   }
   set.code = ForcedCode::make(image, own, variables, tier);
   set.made_of = own.number.value;

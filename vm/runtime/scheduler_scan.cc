@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "vm/exec/store_aside.h"
 #include "vm/runtime/byte_masks.h"
 #include "vm/runtime/scheduler.h"
 
@@ -312,7 +313,8 @@ void Scheduler::copy_outputs(TaskSlot& task) {
 void Scheduler::impose(bool inputs_only) {
   for (const Force& force : tables_->forced.forces) {
     if (inputs_only && !force.symbol.input) continue;
-    std::memcpy(memory_ + force.symbol.data, force.value.data(), force.value.size());
+    put_value(memory_ + force.symbol.data, force.value.data(), force.value.size(),
+              force.symbol.bit_mask);
   }
 }
 
@@ -325,7 +327,7 @@ void Scheduler::impose_on_outputs() {
     if (!any) std::fill(mask.begin(), mask.end(), uint8_t{0});
     any = true;
     const auto size = static_cast<uint32_t>(force.value.size());
-    std::memcpy(memory_ + force.symbol.data, force.value.data(), size);
+    put_value(memory_ + force.symbol.data, force.value.data(), size, force.symbol.bit_mask);
     tables_->process_image.mark_outputs(force.symbol.data, force.symbol.data + size, mask);
   }
   if (!any) return;

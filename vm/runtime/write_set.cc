@@ -1,5 +1,6 @@
 #include "vm/runtime/write_set.h"
 
+#include "vm/exec/store_aside.h"
 #include "vm/runtime/live_copy.h"
 #include "vm/runtime/output_values.h"
 #include "vm/runtime/task_tables.h"
@@ -13,6 +14,10 @@ base::Error read_only(std::string_view path, const char* what) {
 
 }  // namespace
 
+void WriteSet::Value::put(uint8_t* memory) const {
+  put_value(memory + data, bytes.data(), bytes.size(), mask);
+}
+
 base::Result<ir::Symbol> writable(const ir::Image& image, std::string_view path) {
   base::Result<ir::Symbol> symbol = ir::find_symbol(image, path);
   if (symbol.ok() && symbol->constant) return read_only(path, "a constant");
@@ -21,7 +26,7 @@ base::Result<ir::Symbol> writable(const ir::Image& image, std::string_view path)
 
 base::Result<base::Bytes> parsed(const ir::Image& image, const ir::Symbol& symbol,
                                  const NamedValue& row) {
-  base::Result<base::Bytes> bytes = ir::parse_value(image, symbol.type, row.value);
+  base::Result<base::Bytes> bytes = ir::parse_value(image, symbol, row.value);
   base::Status fits = base::Ok{};
   if (bytes.ok()) fits = fits_output(image, symbol, *bytes);
   if (bytes.ok() && fits.ok()) return bytes;
@@ -47,7 +52,7 @@ base::Result<WriteSet> WriteSet::make(const TaskTables& tables,
     if (symbol->output) {
       tables.process_image.mark_outputs(symbol->data, symbol->data + size, outputs);
     }
-    set.values.push_back({symbol->data, std::move(*bytes)});
+    set.values.push_back({symbol->data, std::move(*bytes), symbol->bit_mask});
   }
   for (uint32_t i = 0; i < outputs.size(); ++i) {
     if (outputs[i] != 0) set.outputs.push_back({i, outputs[i]});

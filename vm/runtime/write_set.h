@@ -16,6 +16,8 @@ struct WriteSet {
   struct Value {
     uint32_t data = 0;
     base::Bytes bytes;
+    uint8_t mask = 0;  // ir::Symbol::bit_mask
+    void put(uint8_t* memory) const;
   };
   struct OutputBits {
     uint32_t byte = 0;
