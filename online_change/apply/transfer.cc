@@ -32,6 +32,11 @@ void scatter(const uint8_t* from, const Piece& piece, uint32_t stride, uint8_t* 
   }
 }
 
+// It reads several places, or none.
+bool reads_no_place_of_its_own(StepKind kind) {
+  return kind == StepKind::kMigrate || kind == StepKind::kGather;
+}
+
 bool without_gaps(const UpdateStep& step) {
   if (step.kind == StepKind::kConvert) return false;
   const bool read_so = step.kind == StepKind::kInitialise || step.from_stride == step.size;
@@ -111,7 +116,7 @@ void Transfer::add_bytes(Piece part, uint64_t length) {
 }
 
 uint64_t Transfer::source_extent(const Piece& piece) const {
-  if (piece.kind == StepKind::kInitialise || piece.kind == StepKind::kMigrate) return 0;
+  if (piece.kind == StepKind::kInitialise || reads_no_place_of_its_own(piece.kind)) return 0;
   const bool converts = piece.kind == StepKind::kConvert;
   const uint32_t size = converts ? conversions_.source_size(step_of(piece)) : piece.size;
   return uint64_t{piece.count - 1} * piece.from_stride + size;
@@ -146,6 +151,12 @@ void Transfer::read_values(const Piece& piece, const uint8_t* memory, uint8_t* o
   } else {
     std::memcpy(out, bytes.data() + piece.within, piece.total());
   }
+  if (piece.kind == StepKind::kGather) gather_parts(piece, memory, out);
+}
+
+void Transfer::gather_parts(const Piece& piece, const uint8_t* memory, uint8_t* out) const {
+  online_change::gather(plan_.gathers[step_of(piece).from], memory, piece.within,
+                        {out, piece.total()});
 }
 
 bool Transfer::read_converted(const Piece& piece, const uint8_t* memory, uint8_t* out,
@@ -230,6 +241,10 @@ bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
         break;
       case StepKind::kConvert:
         read_back_converted(piece, memory, forward);
+        break;
+      case StepKind::kGather:
+        std::memcpy(staged_.data() + piece.at, remembered_.data() + piece.at, piece.total());
+        gather_parts(piece, memory, staged_.data() + piece.at);
         break;
       case StepKind::kEnter:
         if (forward.still_as_converted(piece.from, piece.total(), memory)) {

@@ -85,7 +85,7 @@ class Transfer {
   // Is it made anew at the boundary, whatever it was before?
   bool is_late(const Piece& piece) const {
     const StepKind kind = step_of(piece).kind;
-    return kind == StepKind::kMigrate || kind == StepKind::kEnter;
+    return kind == StepKind::kMigrate || kind == StepKind::kEnter || kind == StepKind::kGather;
   }
 
   const Conversions& conversions() const { return conversions_; }
@@ -103,6 +103,7 @@ class Transfer {
   void add_bytes(Piece part, uint64_t length);
   const UpdateStep& step_of(const Piece& piece) const { return plan_.steps[piece.step]; }
   void read_values(const Piece& piece, const uint8_t* memory, uint8_t* out) const;
+  void gather_parts(const Piece& piece, const uint8_t* memory, uint8_t* out) const;
   bool read_converted(const Piece& piece, const uint8_t* memory, uint8_t* out,
                       const OnLoss& on_loss) const;
   bool read_piece(const Piece& piece, const uint8_t* memory, const OnLoss& on_loss);

@@ -19,14 +19,18 @@ using base::ByteWriter;
 constexpr uint32_t kMagic = 0x47504353;  // "SCPG"
 constexpr uint32_t kVersion = 4;
 constexpr uint32_t kShortVersion = 5;  // layout and program are deltas to those of the base
+// As these, with gathers; written only where there are some.
+constexpr uint32_t kGatherVersion = 6;
+constexpr uint32_t kShortGatherVersion = 7;
 constexpr const char* kPartNames[] = {"layout", "program", "commands"};
 constexpr size_t kParts = std::size(kPartNames);
 constexpr size_t kMinRowBytes = 1 + 3 * 4 + 1 + 4 + 8 + 4;
 constexpr size_t kMinStepBytes = 2 + 9 * 4 + 4;
 constexpr uint32_t kFateKinds = 5;
-constexpr uint32_t kStepKinds = 5;
+constexpr uint32_t kStepKinds = 6;
 constexpr size_t kMinCallBytes = 5 * 4;
 constexpr size_t kInputBytes = 3 * 4;
+constexpr size_t kGatheredBytes = 3 * 4 + 2;
 
 void write_row(ByteWriter& out, const FateRow& row) {
   out.u8(static_cast<uint8_t>(row.fate));
@@ -108,7 +112,35 @@ MigrationCall read_call(ByteReader& in) {
   return call;
 }
 
-void write_plan(ByteWriter& out, const Plan& plan) {
+void write_gather(ByteWriter& out, const Gather& gather) {
+  out.u32(static_cast<uint32_t>(gather.size()));
+  for (const GatheredPart& part : gather) {
+    for (uint32_t field : {part.from, part.within, part.size}) out.u32(field);
+    out.u8(part.from_mask);
+    out.u8(part.to_mask);
+  }
+}
+
+Gather read_gather(ByteReader& in) {
+  Gather gather;
+  const uint32_t parts = in.count(kGatheredBytes);
+  for (uint32_t i = 0; i < parts && !in.failed(); ++i) {
+    GatheredPart part;
+    part.from = in.u32();
+    part.within = in.u32();
+    part.size = in.u32();
+    part.from_mask = in.u8();
+    part.to_mask = in.u8();
+    gather.push_back(part);
+  }
+  return gather;
+}
+
+bool has_gathers(const Package& package) {
+  return !package.forward.gathers.empty() || !package.inverse.gathers.empty();
+}
+
+void write_plan(ByteWriter& out, const Plan& plan, bool gathers) {
   out.u32(static_cast<uint32_t>(plan.fates.size()));
   for (const FateRow& row : plan.fates) write_row(out, row);
   const FateCounts& counts = plan.counts;
@@ -120,11 +152,15 @@ void write_plan(ByteWriter& out, const Plan& plan) {
   for (const UpdateStep& step : plan.steps) write_step(out, step);
   out.u32(static_cast<uint32_t>(plan.calls.size()));
   for (const MigrationCall& call : plan.calls) write_call(out, call);
+  if (gathers) {
+    out.u32(static_cast<uint32_t>(plan.gathers.size()));
+    for (const Gather& gather : plan.gathers) write_gather(out, gather);
+  }
   out.u64(plan.boundary_bytes);
   out.i64(plan.predicted_pause_ns);
 }
 
-Plan read_plan(ByteReader& in) {
+Plan read_plan(ByteReader& in, bool gathers) {
   Plan plan;
   uint32_t rows = in.count(kMinRowBytes);
   for (uint32_t i = 0; i < rows && !in.failed(); ++i) plan.fates.push_back(read_row(in));
@@ -137,6 +173,8 @@ Plan read_plan(ByteReader& in) {
   for (uint32_t i = 0; i < steps && !in.failed(); ++i) plan.steps.push_back(read_step(in));
   uint32_t calls = in.count(kMinCallBytes);
   for (uint32_t i = 0; i < calls && !in.failed(); ++i) plan.calls.push_back(read_call(in));
+  const uint32_t count = gathers ? in.count(4) : 0;
+  for (uint32_t i = 0; i < count && !in.failed(); ++i) plan.gathers.push_back(read_gather(in));
   plan.boundary_bytes = in.u64();
   plan.predicted_pause_ns = in.i64();
   return plan;
@@ -177,8 +215,9 @@ base::Result<Parts> split(ByteReader& in) {
 base::Bytes encode_commands(const Package& package) {
   ByteWriter commands;
   commands.raw(package.base);
-  write_plan(commands, package.forward);
-  write_plan(commands, package.inverse);
+  const bool gathers = has_gathers(package);
+  write_plan(commands, package.forward, gathers);
+  write_plan(commands, package.inverse, gathers);
   return commands.take();
 }
 
@@ -221,7 +260,8 @@ base::Bytes encode_short(const Package& plans, base::ByteSpan image, base::ByteS
   const base::Bytes commands = encode_commands(plans);
   const auto [layout, program] = parts_of(image);
   const auto [base_layout, base_program] = parts_of(base_image);
-  return put_together(kShortVersion, {make_delta(base_layout, layout),
+  const uint32_t version = has_gathers(plans) ? kShortGatherVersion : kShortVersion;
+  return put_together(version, {make_delta(base_layout, layout),
                                       make_delta(base_program, program), commands});
 }
 
@@ -251,7 +291,8 @@ base::Result<Package> plans_for(const EncodedImage& from, const EncodedImage& to
 base::Bytes encode(const Package& package) {
   const base::Bytes commands = encode_commands(package);
   const auto [layout, program] = parts_of(package.image);
-  return put_together(kVersion, {layout, program, commands});
+  const uint32_t version = has_gathers(package) ? kGatherVersion : kVersion;
+  return put_together(version, {layout, program, commands});
 }
 
 base::Bytes encode_short(const Package& package, base::ByteSpan base_image) {
@@ -268,7 +309,8 @@ base::Result<Package> decode(base::ByteSpan bytes, base::ByteSpan base_image) {
   ByteReader in(bytes);
   if (in.u32() != kMagic) return bad_format("does not begin like one");
   uint32_t version = in.u32();
-  if (version != kVersion && version != kShortVersion)
+  const bool gathers = version == kGatherVersion || version == kShortGatherVersion;
+  if (version != kVersion && version != kShortVersion && !gathers)
     return bad_format("has version " + std::to_string(version));
   base::Result<Parts> parts = split(in);
   if (!parts.ok()) return parts.error();
@@ -276,10 +318,10 @@ base::Result<Package> decode(base::ByteSpan bytes, base::ByteSpan base_image) {
   Package package;
   ByteReader plans(commands);
   package.base = base::read_digest(plans);
-  package.forward = read_plan(plans);
-  package.inverse = read_plan(plans);
+  package.forward = read_plan(plans, gathers);
+  package.inverse = read_plan(plans, gathers);
   if (!plans.done()) return bad_format("has a damaged plan");
-  if (version == kVersion) {
+  if (version == kVersion || version == kGatherVersion) {
     package.image.assign(layout.begin(), layout.end());
     package.image.insert(package.image.end(), program.begin(), program.end());
     return package;

@@ -61,7 +61,8 @@ void PlanCheck::reach(const Target& first, uint32_t count) {
 bool PlanCheck::check_reached() {
   for (size_t i = 0; i < plan_.steps.size(); ++i) {
     const UpdateStep& step = plan_.steps[i];
-    const bool plain = step.kind == StepKind::kInitialise || step.kind == StepKind::kCopy;
+    const bool plain = step.kind == StepKind::kInitialise || step.kind == StepKind::kCopy ||
+                       step.kind == StepKind::kGather;
     if (plain || reached_[i] == step.count) continue;
     return fail(step.to + reached_[i] * step.to_stride, "is made, but no variable is there");
   }
@@ -101,7 +102,8 @@ bool PlanCheck::check_form(const UpdateStep& step) {
                        step.from < plan_.calls.size() && new_.types.contains(step.new_type);
     return right || fail(step.to, "has a migration step of another form");
   }
-  if (step.kind == StepKind::kInitialise) {
+  if (step.kind == StepKind::kGather && !check_gather(step)) return false;
+  if (step.kind == StepKind::kInitialise || step.kind == StepKind::kGather) {
     if (!step.bytes.empty() && step.bytes.size() != step.total()) {
       return fail(step.to, "is initialised with too few or too many bytes");
     }
@@ -124,6 +126,46 @@ bool PlanCheck::check_targets() {
   return !twice || fail(*twice, "is written twice");
 }
 
+// Bytes of one area each, into the variable.
+bool PlanCheck::check_gather(const UpdateStep& step) {
+  if (step.count != 1 || step.early || step.from >= plan_.gathers.size()) {
+    return fail(step.to, "has a step of another form that gathers bytes");
+  }
+  for (const GatheredPart& part : plan_.gathers[step.from]) {
+    const uint32_t size = std::max(part.size, 1u);
+    const std::optional<uint32_t> id = old_areas_.instance_at(part.from);
+    const bool from = id && uint64_t{part.from} + size <=
+                                uint64_t{old_areas_.begin(*id)} + old_areas_.capacity(*id);
+    if (!from) return fail(step.to, "is read from outside of any area");
+    if (uint64_t{part.within} + size > step.size) return fail(step.to, "is written outside of it");
+  }
+  return true;
+}
+
+// Its bits may be any, or it is a BOOL that one bit makes.
+bool PlanCheck::check_gathered(Node node, const Target& target, uint32_t depth) {
+  if (node.in_out) return fail(node.begin, "is no variable that has bits at an address");
+  if (takes_any_bits(new_.types, node.type)) {
+    const Gather& parts = plan_.gathers[step_of(target).from];
+    // Of a value that no part writes as a whole the initial bytes count.
+    return (is_initialised(node.begin, size_of(node), target) && !parts.empty()) ||
+           fail(node.begin, "is initialised with something else than its initial value");
+  }
+  if (has_parts(node)) {
+    return for_each_part(node, [&](Node part) { return check_node(part, depth + 1); });
+  }
+  if (new_.types[node.type].kind != ir::Kind::kBool) {
+    return fail(node.begin, "is no variable that has bits at an address");
+  }
+  const uint32_t within = node.begin - target.to;
+  for (const GatheredPart& part : plan_.gathers[step_of(target).from]) {
+    if (within - part.within >= std::max(part.size, 1u)) continue;
+    const bool bit = part.size == 0 && part.to_mask == GatheredPart::kBool;
+    if (!bit) return fail(node.begin, "is a BOOL that gets other bytes than 0 and 1");
+  }
+  return check_initial(node, target);
+}
+
 // All values of a step lie in one area, and come from one area.
 bool PlanCheck::check_places(const UpdateStep& step) {
   uint64_t hull = uint64_t{step.to_stride} * (step.count - 1) + step.size;
@@ -137,7 +179,8 @@ bool PlanCheck::check_places(const UpdateStep& step) {
     }
     return true;
   }
-  if (step.kind == StepKind::kMigrate) return true;  // check_calls() has seen what it reads
+  // check_calls() and check_gather() have seen what they read.
+  if (step.kind == StepKind::kMigrate || step.kind == StepKind::kGather) return true;
   uint64_t size = step.kind == StepKind::kConvert ? old_.layouts[step.old_type].size : step.size;
   uint64_t end = step.from + uint64_t{step.from_stride} * (step.count - 1) + size;
   if (end > old_.data_capacity) return fail(step.to, "is read outside of memory");
@@ -258,6 +301,8 @@ bool PlanCheck::check_written(Node node, const Target& target, uint32_t depth) {
       return check_entered(node, target);
     case StepKind::kMigrate:
       return check_migrated(node, target);
+    case StepKind::kGather:
+      return check_gathered(node, target, depth);
     case StepKind::kCopy:
       return check_carried(node, source_of(target) + (node.begin - target.to), depth);
   }

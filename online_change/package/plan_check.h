@@ -44,6 +44,8 @@ class PlanCheck {
   bool check_entered(Node node, const Target& target);
   bool check_migrated(Node node, const Target& target);
   bool check_written(Node node, const Target& target, uint32_t depth);
+  bool check_gather(const UpdateStep& step);
+  bool check_gathered(Node node, const Target& target, uint32_t depth);
   bool check_initial(Node node, const Target& target);
   bool is_initialised(uint32_t begin, uint32_t size, const Target& target) const;
   // The old bytes of a union in front, initial ones behind them.

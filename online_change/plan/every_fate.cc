@@ -38,6 +38,11 @@ EveryFate::EveryFate(const Plan& plan, const ir::Image& old_image, const ir::Ima
       if (step.kind == StepKind::kEnter) value.from = step.from;  // the stride is another place
       by_target_.push_back(value);
       if (has_source(step)) by_source_.push_back(value);
+      if (step.kind != StepKind::kGather) continue;
+      for (const GatheredPart& part : plan.gathers[step.from]) {
+        by_source_.push_back(
+            {part.from, step.to + part.within, std::max(part.size, 1u), number, i});
+      }
     }
   }
   std::sort(by_target_.begin(), by_target_.end(),
@@ -67,6 +72,15 @@ const EveryFate::Written* EveryFate::reads(uint32_t address) const {
   const uint32_t size =
       step.kind == StepKind::kConvert ? old_.layouts[step.old_type].size : value.size;
   return address - value.from < size ? &value : nullptr;
+}
+
+// What a gathered byte was, or a bit in it.
+std::optional<uint32_t> EveryFate::gathered_from(const Written& value, uint32_t address) const {
+  const uint32_t within = address - value.to;
+  for (const GatheredPart& part : plan_.gathers[plan_.steps[value.step].from]) {
+    if (within - part.within < std::max(part.size, 1u)) return part.from + (within - part.within);
+  }
+  return std::nullopt;
 }
 
 std::string EveryFate::reason_of(uint32_t row) const {
@@ -102,11 +116,16 @@ VariableFate EveryFate::of_new(const std::string& path, const ir::Symbol& symbol
   out.step = &plan_.steps[value->step];
   out.index = value->index;
   out.fate = out.step->fate != kNoFate ? plan_.fates[out.step->fate].fate
-             : has_source(*out.step)   ? Fate::kMoved
+             : has_source(*out.step) || out.step->kind == StepKind::kGather ? Fate::kMoved
                                        : Fate::kInitialised;
   out.reason = reason_of(out.step->fate);
   if (has_source(*out.step)) {
     name_old(out, value->from + (symbol.data - value->to));
+  } else if (out.step->kind == StepKind::kGather) {
+    out.gather = &plan_.gathers[out.step->from];
+    const base::Result<ir::Symbol> same = ir::find_symbol(old_, path);
+    const std::optional<uint32_t> from = gathered_from(*value, symbol.data);
+    if (from && same.ok() && same->data == *from) name_old(out, *from);
   } else if (is_leaf(old_, path)) {
     const base::Result<ir::Symbol> before = ir::find_symbol(old_, path);
     out.old_address = before->data;

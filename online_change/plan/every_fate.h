@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct VariableFate {
   bool loses = false;  // it had a value, and that has no place in the new version
   std::string reason;
   const UpdateStep* step = nullptr;  // that writes it; null: nothing does
+  const Gather* gather = nullptr;   // of a kGather step
   uint32_t index = 0;                // of its value in the step
 };
 
@@ -47,10 +49,12 @@ class EveryFate {
     uint32_t index = 0;
   };
   static bool has_source(const UpdateStep& step) {
-    return step.kind != StepKind::kInitialise && step.kind != StepKind::kMigrate;
+    return step.kind != StepKind::kInitialise && step.kind != StepKind::kMigrate &&
+           step.kind != StepKind::kGather;
   }
   const Written* writes(uint32_t address) const;
   const Written* reads(uint32_t address) const;
+  std::optional<uint32_t> gathered_from(const Written& value, uint32_t address) const;
   VariableFate of_new(const std::string& path, const ir::Symbol& symbol) const;
   bool goes_on(const std::string& path, uint32_t address) const;
   void name_old(VariableFate& out, uint32_t address) const;

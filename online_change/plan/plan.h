@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "ir/bytecode/image.h"
+#include "online_change/diff/address_bits.h"
 #include "online_change/diff/fates.h"
 
 namespace online_change {
@@ -23,6 +24,8 @@ enum class StepKind : uint8_t {
   kEnter,       // a step of a chart: as kCopy, or from `from_stride` where the step there is active
   kMigrate,     // what a migration gives: `from` is the number of its call, `from_stride` the place
                 // in the function's frame; `bytes` are made on the controller
+  kGather,      // bytes and bits that stay at their %M or %Q address: `from` is the number of its
+                // row in Plan::gathers, `bytes` is what no row gives
 };
 
 struct UpdateStep {
@@ -62,6 +65,7 @@ struct Plan {
   FateCounts counts;
   std::vector<UpdateStep> steps;  // no two boundary steps overlap in `to`
   std::vector<MigrationCall> calls;
+  std::vector<Gather> gathers;
   uint64_t boundary_bytes = 0;  // bytes that the switch writes
   // Cost model of the pause: fixed + per step + per byte.
   int64_t predicted_pause_ns = 0;

@@ -5,6 +5,7 @@
 #include "ir/bytecode/renames.h"
 #include "ir/types/stamps.h"
 #include "online_change/plan/area_steps.h"
+#include "online_change/plan/by_address.h"
 #include "online_change/plan/pause.h"
 
 namespace online_change {
@@ -58,6 +59,7 @@ base::Result<Plan> Planner::run() {
     if (match_.new_of_old[id] == kNoInstance) drop_instance(id);
   }
   plan_.fates = fates_.take();
+  ByAddress(old_, new_, plan_).run();
   for (const UpdateStep& step : plan_.steps) {
     if (!step.early) plan_.boundary_bytes += step.total();
   }

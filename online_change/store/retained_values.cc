@@ -9,6 +9,7 @@
 #include "ir/bytecode/renames.h"
 #include "ir/types/handle.h"
 #include "online_change/apply/live_value.h"
+#include "online_change/diff/address_bits.h"
 #include "online_change/diff/instance_match.h"
 #include "online_change/diff/migrations.h"
 #include "online_change/diff/place_moves.h"
@@ -35,7 +36,8 @@ class Carrier {
         conversions_(from, to),
         back_(to, from),
         out_(std::move(out)),
-        carried_(out_.size(), false) {}
+        carried_(out_.size(), false),
+        given_(values_.size(), false) {}
 
   // From a trial; `as_changed` is what the change made of the values `before`.
   void go_back_to(base::ByteSpan before, base::ByteSpan as_changed) {
@@ -69,6 +71,7 @@ class Carrier {
       }
       migrated.end_instance();
     }
+    keep_addresses();
     follow_references();
     CarriedValues carried;
     carried.alarm = migrated.run(values_, as_changed_, out_);
@@ -98,6 +101,7 @@ class Carrier {
         const size_t put = target + (at - from) - (begin - to);
         std::memcpy(out_.data() + put, values_.data() + source, n);
         std::fill_n(carried_.begin() + static_cast<std::ptrdiff_t>(put), n, true);
+        std::fill_n(given_.begin() + static_cast<std::ptrdiff_t>(source), n, true);
       });
     });
   }
@@ -110,6 +114,7 @@ class Carrier {
         to_map_.find(uint64_t{step.to} + uint64_t{index} * step.to_stride, step.size);
     if (!source || !target) return;
     const base::ByteSpan value = values_.subspan(*source, old_size);
+    std::fill_n(given_.begin() + static_cast<std::ptrdiff_t>(*source), old_size, true);
     if (back_way_ && is_as_converted(step, index, before_.subspan(*target, step.size), value)) {
       return;
     }
@@ -129,6 +134,28 @@ class Carrier {
     base::Bytes converted(value.size());
     (void)back_.convert(there, index, before.data(), converted);
     return std::equal(value.begin(), value.end(), converted.begin());
+  }
+
+  // Case 75: what no name has kept at %M and %Q stays at its address.
+  void keep_addresses() {
+    const std::vector<AddressedVariable> variables = addressed_variables(to_);
+    if (variables.empty()) return;
+    const AddressBits before(addressed_variables(from_));
+    for (const AddressedVariable& variable : variables) {
+      if (!variable.any_bits) continue;
+      std::vector<size_t> made;
+      for (GatheredPart part : before.parts_of(variable)) {
+        const uint32_t size = std::max(part.size, 1u);
+        const auto source = from_map_.find(part.from, size);
+        const auto target = to_map_.find(uint64_t{variable.data} + part.within, size);
+        if (!source || !target || given_[*source] || carried_[*target]) continue;
+        part.from = static_cast<uint32_t>(*source);
+        part.within = 0;
+        gather({part}, values_.data(), 0, std::span(out_).subspan(*target, size));
+        for (uint32_t i = 0; i < size; ++i) made.push_back(*target + i);
+      }
+      for (const size_t at : made) carried_[at] = true;
+    }
   }
 
   void follow_references() {
@@ -159,6 +186,7 @@ class Carrier {
   base::ByteSpan as_changed_;
   base::Bytes out_;
   std::vector<bool> carried_;  // by byte of out_
+  std::vector<bool> given_;    // by byte of values_: a variable has it by its name
 };
 
 }  // namespace

@@ -25,6 +25,8 @@ const char* kind_text(StepKind kind) {
       return "enter step";
     case StepKind::kMigrate:
       return "migrate";
+    case StepKind::kGather:
+      return "gather";
   }
   return "";
 }

@@ -69,6 +69,10 @@ std::string LiveReport::result_of(const online_change::VariableFate& variable,
     const uint8_t* source = copy_.memory().data() + variable.old_address;
     const online_change::Conversions rules(image(), next);
     rules.convert(*variable.step, variable.index, source, value);
+  } else if (variable.gather != nullptr) {
+    online_change::InitialData(next).read(variable.new_address, value);
+    online_change::gather(*variable.gather, copy_.memory().data(),
+                          variable.new_address - variable.step->to, value);
   } else {
     return {};
   }
