@@ -311,6 +311,7 @@ class Builder {
 
   // --- declarations (pous.cc)
   void globals();
+  void shared_globals();
   void function(uint32_t index);
   void block(uint32_t index);
   void block_body(Pou& pou);

@@ -71,7 +71,8 @@ void Builder::configure(Pou& pou) {
   point.address = std::string("%M") + kSizes[which] + "*";
   section(pou, Section::kLocal).variables.push_back(point);
   see(point, true);
-  std::string number = std::to_string(next_point_++);
+  static constexpr uint32_t kInEight[] = {8, 8, 4, 2};  // none overlaps another one
+  std::string number = std::to_string(next_point_++ * kInEight[which]);
   if (which == 0) number += "." + std::to_string(below(8));
   program_.configured.push_back("Cpu." + path + point.name + " AT %M" + kSizes[which] + number +
                                 " : " + name_of(point.type) +

@@ -49,6 +49,7 @@ const Row kRows[] = {
     {"R_EDGE", {"R_EDGE"}},
     {"F_EDGE", {"F_EDGE"}},
     {"AT %Q", {" AT %QX"}},
+    {"variables that share bytes", {" AT %M", "4"}},
     // References.
     {"ADR", {"ADR("}},
     {"REF", {"REF("}},

@@ -235,6 +235,31 @@ void Builder::globals() {
   }
 }
 
+// At overlapping addresses, far behind those that VAR_CONFIG gives: they share bytes.
+void Builder::shared_globals() {
+  struct Row {
+    ir::Kind kind;
+    char letter;
+    uint32_t size;
+  };
+  static constexpr Row kRows[] = {
+      {ir::Kind::kByte, 'B', 1},  {ir::Kind::kSint, 'B', 1}, {ir::Kind::kWord, 'W', 2},
+      {ir::Kind::kInt, 'W', 2},   {ir::Kind::kUint, 'W', 2}, {ir::Kind::kDword, 'D', 4},
+      {ir::Kind::kDint, 'D', 4},  {ir::Kind::kReal, 'D', 4}, {ir::Kind::kLword, 'L', 8},
+      {ir::Kind::kLreal, 'L', 8}, {ir::Kind::kTime, 'L', 8}};
+  constexpr uint32_t kFirst = 4096;
+  VarBlock block{one_in(3) ? Section::kGlobalRetain : Section::kGlobal, {}};
+  for (uint32_t n = 2 + below(4); n > 0; --n) {
+    const Row& row = kRows[below(std::size(kRows))];
+    Variable one{fresh("g"), elementary(row.kind), std::nullopt, {}, {}};
+    one.address = std::string("%M") + row.letter +
+                  std::to_string(kFirst / row.size + below(16 / row.size));
+    global_variables_.push_back(one);
+    block.variables.push_back(std::move(one));
+  }
+  program_.globals.push_back(std::move(block));
+}
+
 void Builder::program(uint32_t index, uint32_t count) {
   forget();
   kind_ = PouKind::kProgram;
@@ -330,6 +355,7 @@ Program Builder::run() {
   read_library();
   declare_types();
   globals();
+  if (one_in(3)) shared_globals();
   if (one_in(2)) declare_generics();
   uint32_t functions = 1 + below(3);
   for (uint32_t i = 0; i < functions; ++i) function(i);
