@@ -249,6 +249,13 @@ void Sema::retain_program(const PouInfo& info) {
     variable.retain = lasts && !variable.non_retain;
     members[variable.index].retain = variable.retain;
   }
+  std::vector<ir::Member>& globals = program.types.edit(program.globals).members;
+  for (const auto& [name, id] : info.names) {  // those that share their place
+    const Variable& variable = variables_[id.index];
+    const bool shared =
+        variable.storage == Storage::kGlobal && variable.section == VarSection::kLocal;
+    if (shared && !variable.non_retain) globals[variable.index].retain = true;
+  }
 }
 
 // A program whose instances are connected differently, or not all RETAIN, has code and a type for

@@ -240,6 +240,19 @@ void Sema::collect_interface(uint32_t number) {
   number_variables(info);
 }
 
+// Of a program instance with code of its own: what shares its place is that of all instances.
+VarId Sema::shared_by_original(const PouInfo& info, const Variable& variable) const {
+  if (info.meaning == nullptr || !variable.decl->has_address) return {};
+  for (const PouInfo& original : pous) {
+    if (original.decl != info.decl || original.meaning != nullptr) continue;
+    const auto found = original.names.find(variable.name.text);
+    const bool shared = found != original.names.end() &&
+                        variables_[found->second.index].storage == Storage::kGlobal;
+    return shared ? VarId(found->second) : VarId();
+  }
+  return {};
+}
+
 void Sema::collect_variables(uint32_t pou, const VarBlock& block) {
   PouInfo& info = pous[pou];
   if (block.section == VarSection::kAccess) return;
@@ -262,6 +275,10 @@ void Sema::collect_variables(uint32_t pou, const VarBlock& block) {
       }
       if (block.section == VarSection::kInstance) {
         add_instance_variable(variable, info);
+        continue;
+      }
+      if (const VarId shared = shared_by_original(info, variable); shared.valid()) {
+        info.names.emplace(name.text, shared);
         continue;
       }
       VarId id = add_variable(variable, info.names);

@@ -54,8 +54,7 @@ class Sema {
 
   // --- types (types.cc, structures.cc, containment.cc)
   TypeUse resolve(SpecId spec);
-  // hidden_variables.cc
-  std::string_view keep_name(std::string name);
+  std::string_view keep_name(std::string name);  // hidden_variables.cc
   std::optional<TypeUse> find_type(std::string_view qualified);
   // Of an interface variable?
   bool is_interface(ir::TypeId type) const;
@@ -191,6 +190,7 @@ class Sema {
   void collect_globals(const std::vector<VarBlock>& blocks, std::string_view list);
   std::string_view list_of(const VarBlock& block) const;
   void collect_variables(uint32_t pou, const VarBlock& block);
+  VarId shared_by_original(const PouInfo& info, const Variable& variable) const;
   void collect_pous();
   uint32_t add_pou(const PouDecl& decl, bool library, std::string_view name);
   void add_code(PouInfo& info, std::string name);

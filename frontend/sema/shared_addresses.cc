@@ -263,12 +263,15 @@ ir::ConstId SharedAddresses::initial_of(const Group& group, const Place& place) 
   if (!place.variable.valid()) return {};
   const ir::ConstId own = sema_.variables_[place.variable.index].init;
   if (place.bits != 1 || !own.valid()) return own;
+  const uint32_t begin = place.located.address.bit_offset / 8 * 8;
   uint64_t byte = 0;
-  for (const Place& other : group) {
-    const uint32_t bit = other.located.address.bit_offset;
-    const bool here = other.bits == 1 && other.variable.valid() &&
-                      bit / 8 == place.located.address.bit_offset / 8;
-    const ir::ConstId init = here ? sema_.variables_[other.variable.index].init : ir::ConstId();
+  auto other = std::partition_point(group.begin(), group.end(), [&](const Place& one) {
+    return one.located.address.bit_offset < begin;
+  });
+  for (; other != group.end() && other->located.address.bit_offset < begin + 8; ++other) {
+    const uint32_t bit = other->located.address.bit_offset;
+    const bool here = other->bits == 1 && other->variable.valid();
+    const ir::ConstId init = here ? sema_.variables_[other->variable.index].init : ir::ConstId();
     if (init.valid() && sema_.program.constants[init].bits != 0) byte |= 1u << bit % 8;
   }
   return byte == 0 ? ir::ConstId() : sema_.program.constants.scalar(byte);

@@ -53,6 +53,42 @@ struct LinearSearch {
     }
     return -1;
   }
+  // At most so many of those that cover `offset`, in order of declaration.
+  std::vector<uint32_t> covering(TypeId id, uint32_t offset, uint32_t most) const {
+    std::vector<uint32_t> out;
+    const Type& type = types[id];
+    const TypeLayout& layout = layouts[id];
+    for (uint32_t i = 0; i < type.members.size() && i < layout.member_offsets.size(); ++i) {
+      const uint32_t begin = layout.member_offsets[i];
+      const bool here = offset >= begin && offset - begin < embedded_size(layouts, type.members[i]);
+      if (here && out.size() < most) out.push_back(i);
+    }
+    return out;
+  }
+};
+
+// The tree over `ends` finds members that reach behind an offset: node i has the furthest end of
+// nodes 2 i and 2 i + 1; the leaves are as many as half of it.
+class Reaching {
+ public:
+  Reaching(std::span<const uint32_t> ends, uint32_t offset, size_t begun, uint32_t most)
+      : ends_(ends), offset_(offset), begun_(begun), most_(most) {
+    if (!ends.empty()) look(1, 0, ends.size() / 2);
+  }
+  std::vector<uint32_t> found;  // places in the order by offset
+
+ private:
+  void look(size_t node, size_t first, size_t count) {
+    if (first >= begun_ || ends_[node] <= offset_ || found.size() >= most_) return;
+    if (count == 1) return found.push_back(static_cast<uint32_t>(first));
+    look(2 * node, first, count / 2);
+    look(2 * node + 1, first + count / 2, count / 2);
+  }
+
+  std::span<const uint32_t> ends_;
+  uint32_t offset_;
+  size_t begun_;
+  uint32_t most_;
 };
 
 struct IndexedSearch {
@@ -60,6 +96,7 @@ struct IndexedSearch {
   const Layouts& layouts;
   const std::vector<uint32_t>& first_member;
   const std::vector<uint32_t>& order;
+  const std::unordered_map<TypeId, std::vector<uint32_t>>& ends;
   int64_t operator()(TypeId id, uint32_t offset) const {
     const std::span sorted(order.begin() + first_member[id.index],
                            order.begin() + first_member[id.index + 1]);
@@ -71,6 +108,20 @@ struct IndexedSearch {
     const uint32_t number = *(behind - 1);
     const uint32_t size = embedded_size(layouts, types[id].members[number]);
     return offset - offsets[number] < size ? static_cast<int64_t>(number) : -1;
+  }
+  std::vector<uint32_t> covering(TypeId id, uint32_t offset, uint32_t most) const {
+    const std::span sorted(order.begin() + first_member[id.index],
+                           order.begin() + first_member[id.index + 1]);
+    const std::vector<uint32_t>& offsets = layouts[id].member_offsets;
+    const auto begun = std::partition_point(sorted.begin(), sorted.end(), [&](uint32_t number) {
+      return offsets[number] <= offset;
+    });
+    const auto tree = ends.find(id);
+    if (tree == ends.end()) return {};
+    Reaching members(tree->second, offset, static_cast<size_t>(begun - sorted.begin()), most);
+    for (uint32_t& place : members.found) place = sorted[place];
+    std::sort(members.found.begin(), members.found.end());
+    return std::move(members.found);
   }
 };
 
@@ -124,13 +175,10 @@ bool go_down(const TypeTable& types, const Layouts& layouts, const Search& searc
       if (!descend(types, layouts, search, spot)) return false;
       continue;
     }
-    const std::vector<Member>& members = types[spot.region.type].members;
-    const std::vector<uint32_t>& offsets = layouts[spot.region.type].member_offsets;
-    for (size_t i = 0; i < members.size() && i < offsets.size() && budget > 0; ++i, --budget) {
-      if (spot.offset < offsets[i]) continue;
-      if (spot.offset - offsets[i] >= embedded_size(layouts, members[i])) continue;
+    for (const uint32_t member : search.covering(spot.region.type, spot.offset, budget)) {
+      if (budget-- <= 1) return false;
       Spot part = spot;
-      enter_member(types, layouts, i, part);
+      enter_member(types, layouts, member, part);
       if (go_down(types, layouts, search, part, budget, found)) return true;
     }
     return false;
@@ -258,7 +306,7 @@ void RegionMap::add_members(TypeId type) {
   if (!std::is_sorted(order_.begin() + first, order_.end(), before)) {
     std::sort(order_.begin() + first, order_.end(), before);
   }
-  if (types_.overlaps(type)) return;
+  if (types_.overlaps(type)) return add_ends(type);
   for (auto number = order_.begin() + first; number != order_.end(); ++number) {
     const Member& member = members[*number];
     if (member.section == Section::kInOut || !types_.is_scalar(member.type)) continue;
@@ -268,6 +316,21 @@ void RegionMap::add_members(TypeId type) {
          class_of(types_.scalar(member.type)),
          {member.constant, area == DirectArea::kInput, area == DirectArea::kOutput}});
   }
+}
+
+void RegionMap::add_ends(TypeId type) {
+  const std::vector<Member>& members = types_[type].members;
+  const std::span sorted = std::span(order_).subspan(first_member_[type.index]);
+  size_t leaves = 1;
+  while (leaves < sorted.size()) leaves *= 2;
+  std::vector<uint32_t> ends(2 * leaves);
+  for (size_t i = 0; i < sorted.size(); ++i) {
+    const uint64_t end = uint64_t{layouts_[type].member_offsets[sorted[i]]} +
+                         embedded_size(layouts_, members[sorted[i]]);
+    ends[leaves + i] = static_cast<uint32_t>(std::min<uint64_t>(end, UINT32_MAX));
+  }
+  for (size_t i = leaves - 1; i > 0; --i) ends[i] = std::max(ends[2 * i], ends[2 * i + 1]);
+  ends_.emplace(type, std::move(ends));
 }
 
 const ScalarPlace* RegionMap::scalar_at(Region region, uint32_t offset) const {
@@ -281,12 +344,12 @@ const ScalarPlace* RegionMap::scalar_at(Region region, uint32_t offset) const {
 
 std::optional<Leaf> RegionMap::leaf_at(Region region, uint32_t offset,
                                        const LeafTest& accept) const {
-  return find_leaf(types_, layouts_, IndexedSearch{types_, layouts_, first_member_, order_}, region,
+  return find_leaf(types_, layouts_, IndexedSearch{types_, layouts_, first_member_, order_, ends_}, region,
                    offset, accept);
 }
 
 std::optional<PlaceFlags> RegionMap::find(Region region, uint32_t offset, Region wanted) const {
-  return find_place(types_, layouts_, IndexedSearch{types_, layouts_, first_member_, order_},
+  return find_place(types_, layouts_, IndexedSearch{types_, layouts_, first_member_, order_, ends_},
                     region, offset, wanted);
 }
 

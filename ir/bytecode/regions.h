@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "ir/bytecode/code.h"
@@ -94,10 +95,13 @@ class RegionMap {
   const TypeTable& types_;
   const Layouts& layouts_;
   void add_members(TypeId type);
+  void add_ends(TypeId type);
   std::vector<uint32_t> first_member_;  // by type, in `order_`
   std::vector<uint32_t> order_;         // of each type: members by offset
   std::vector<uint32_t> first_scalar_;  // by type, in `scalars_`
   std::vector<ScalarPlace> scalars_;    // of each type, by offset
+  // Of types whose members overlap: a tree over the ends of their members by offset.
+  std::unordered_map<TypeId, std::vector<uint32_t>> ends_;
 };
 
 }  // namespace ir

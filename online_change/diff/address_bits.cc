@@ -174,6 +174,31 @@ std::vector<AddressedVariable> addressed_variables(const ir::Image& image) {
   return out;
 }
 
+void TakenBits::add(Range range) {
+  auto next = ranges_.upper_bound(range.begin);
+  if (next != ranges_.begin() && std::prev(next)->second >= range.begin) {
+    range.begin = (--next)->first;
+  }
+  while (next != ranges_.end() && next->first <= range.end) {
+    range.end = std::max(range.end, next->second);
+    next = ranges_.erase(next);
+  }
+  ranges_.emplace(range.begin, range.end);
+}
+
+void TakenBits::add(const Gather& parts) {
+  for (const GatheredPart& part : parts) {
+    const bool bit = part.size == 0 && part.from_mask != GatheredPart::kBool;
+    if (bit && (bits_[part.from] |= part.from_mask) != 0xff) continue;
+    add({part.from, uint64_t{part.from} + std::max(part.size, 1u)});
+  }
+}
+
+bool TakenBits::all(uint64_t begin, uint64_t end) const {
+  const auto behind = ranges_.upper_bound(begin);
+  return behind != ranges_.begin() && std::prev(behind)->second >= end;
+}
+
 AddressBits::AddressBits(const std::vector<AddressedVariable>& variables) {
   std::vector<AddressRun> all;
   for (const AddressedVariable& variable : variables) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,6 +49,23 @@ struct AddressedVariable {
 bool takes_any_bits(const ir::TypeTable& types, ir::TypeId type);
 
 std::vector<AddressedVariable> addressed_variables(const ir::Image& image);
+
+// What of the old version goes on by its address.
+class TakenBits {
+ public:
+  void add(const Gather& parts);
+  // Behind the last add().
+  bool all(uint64_t begin, uint64_t end) const;  // bytes of data memory
+
+ private:
+  struct Range {
+    uint64_t begin = 0;
+    uint64_t end = 0;
+  };
+  std::map<uint64_t, uint64_t> ranges_;  // disjoint, neither overlapping nor touching
+  std::map<uint32_t, uint8_t> bits_;     // by byte
+  void add(Range range);
+};
 
 // What the old version has at an address.
 class AddressBits {

@@ -103,11 +103,7 @@ bool ByAddress::make(const AddressedVariable& variable, const AddressBits& befor
   made.to = variable.data;
   made.size = variable.size;
   made.fate = row_for(variable, step, whole);
-  for (const GatheredPart& part : parts) {
-    const bool bit = part.size == 0 && part.from_mask != GatheredPart::kBool;
-    if (bit && (taken_bits_[part.from] |= part.from_mask) != 0xff) continue;
-    taken_.push_back({part.from, uint64_t{part.from} + std::max(part.size, 1u)});
-  }
+  taken_.add(parts);
   plan_.gathers.push_back(std::move(parts));
   split(number, variable, std::move(made));
   return true;
@@ -162,20 +158,8 @@ void ByAddress::split(size_t number, const AddressedVariable& variable, UpdateSt
 
 // All bytes of these go on: no value is dropped.
 void ByAddress::keep_dropped(const std::vector<AddressedVariable>& before) {
-  std::sort(taken_.begin(), taken_.end(), by_begin<Range, Range>);
-  std::vector<Range> joined;
-  for (const Range& range : taken_) {
-    if (!joined.empty() && range.begin <= joined.back().end) {
-      joined.back().end = std::max(joined.back().end, range.end);
-    } else {
-      joined.push_back(range);
-    }
-  }
   const auto is_taken = [&](const AddressRun& run) {
-    const uint64_t end = run.data + std::max<uint64_t>(run.bits / 8, 1);
-    const auto behind = std::partition_point(
-        joined.begin(), joined.end(), [&](const Range& range) { return range.begin <= run.data; });
-    return behind != joined.begin() && (behind - 1)->end >= end;
+    return taken_.all(run.data, run.data + std::max<uint64_t>(run.bits / 8, 1));
   };
   std::unordered_map<std::string, const AddressedVariable*> by_path;
   for (const AddressedVariable& variable : before) by_path.emplace(variable.path, &variable);

@@ -3,7 +3,6 @@
 // steps that initialise them, and out of the rows that drop them.
 #pragma once
 
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,8 +39,7 @@ class ByAddress {
   std::vector<Range> written_;                       // by steps
   std::vector<Range> read_;                          // by steps
   std::vector<std::pair<uint32_t, size_t>> initial_;  // steps of one value, by place
-  std::vector<Range> taken_;                         // of the old version, by parts
-  std::map<uint32_t, uint8_t> taken_bits_;           // by byte of data memory
+  TakenBits taken_;
   std::vector<uint32_t> emptied_;                    // rows
   std::vector<UpdateStep> more_;
 };

@@ -45,6 +45,7 @@ EveryFate::EveryFate(const Plan& plan, const ir::Image& old_image, const ir::Ima
       }
     }
   }
+  for (const Gather& parts : plan.gathers) taken_.add(parts);
   std::sort(by_target_.begin(), by_target_.end(),
             [](const Written& a, const Written& b) { return a.to < b.to; });
   std::sort(by_source_.begin(), by_source_.end(),
@@ -137,9 +138,13 @@ VariableFate EveryFate::of_new(const std::string& path, const ir::Symbol& symbol
 
 // Does the value of an old variable that the new version does not know by its name live on under
 // another one? Other members of a union have their bytes too, and are not it.
-bool EveryFate::goes_on(const std::string& path, uint32_t address) const {
+bool EveryFate::goes_on(const std::string& path, const ir::Symbol& symbol) const {
+  const uint32_t address = symbol.data;
   uint32_t to = address;
   if (const Written* value = reads(address)) {
+    if (plan_.steps[value->step].kind == StepKind::kGather) {
+      return taken_.all(address, uint64_t{address} + old_.layouts[symbol.type].size);
+    }
     to = value->to + (address - value->from);
   } else if (writes(address) != nullptr) {
     return false;
@@ -184,7 +189,7 @@ uint64_t EveryFate::visit_from(uint64_t first, const Visit& visit) const {
                              return false;
                            }
                            ++next;
-                           if (is_leaf(new_, path) || goes_on(path, symbol.data)) return true;
+                           if (is_leaf(new_, path) || goes_on(path, symbol)) return true;
                            VariableFate gone;
                            gone.fate = Fate::kDropped;
                            gone.path = path;

@@ -56,7 +56,7 @@ class EveryFate {
   const Written* reads(uint32_t address) const;
   std::optional<uint32_t> gathered_from(const Written& value, uint32_t address) const;
   VariableFate of_new(const std::string& path, const ir::Symbol& symbol) const;
-  bool goes_on(const std::string& path, uint32_t address) const;
+  bool goes_on(const std::string& path, const ir::Symbol& symbol) const;
   void name_old(VariableFate& out, uint32_t address) const;
   std::string reason_of(uint32_t row) const;
 
@@ -68,6 +68,7 @@ class EveryFate {
   std::vector<Written> by_target_;
   std::vector<Written> by_source_;
   uint64_t new_count_ = 0;
+  TakenBits taken_;
 };
 
 }  // namespace online_change

@@ -5,9 +5,10 @@ import dataclasses
 from dataclasses import dataclass
 
 from conversions import convert
-from kinds import Array, Block, Enumeration, Reference, Scalar, Structure
+from kinds import (INTEGERS, Array, Block, Enumeration, Reference, Scalar, Structure,
+                   integer_range)
 from rows import rows
-from version import indices, rules
+from version import bits_at, indices, rules
 
 
 @dataclass
@@ -29,11 +30,13 @@ class Oracle:
         self.fates = []
         self.place = {}       # old path -> the new path with the same bits, for references
         self.replaced = []    # old path, new path: instances that got another type
+        self.gathered = []    # new path, bit, old path, bit: what stays at its address
         self.block_rules = rules(list(old.blocks.values()), list(new.blocks.values()))
         self.type_rules = rules(list(old.types.values()), list(new.types.values()))
         self._globals()
         self._statics()
         self._programs()
+        self._addresses()
         self._references()
         self.rows = rows(old, new, before, self.pairs)
 
@@ -209,6 +212,39 @@ class Oracle:
         return [leaf for at, leaf in leaves.items()
                 if at == path or at.startswith((path + '.', path + '['))]
 
+    # --- addresses ---
+
+    def _addresses(self):
+        """Case 75: what comes to %M or %Q has the bits that were there, if their variable goes; that
+        is no loss when all of its bits go on."""
+        gone = {}    # of one bit: the path and the value of it
+        for fate in self.fates:
+            leaf = self.old_leaves.get(fate.path)
+            if fate.fates == ('dropped',) and leaf and keeps_bits(leaf):
+                first, count = bits_at(leaf.address)
+                for i in range(count):
+                    gone[leaf.address[1], first + i] = leaf.path, i
+        taken = {}   # by path: how many bits of it go on
+        for fate in self.fates:
+            leaf = self.new_leaves.get(fate.path)
+            if fate.fates != ('initialised',) or fate.old_path or not leaf or not keeps_bits(leaf):
+                continue
+            first, count = bits_at(leaf.address)
+            bits = [gone.get((leaf.address[1], first + i)) for i in range(count)]
+            if not any(bits):
+                continue
+            value = 0
+            for i, bit in enumerate(bits):
+                source = self.before[bit[0]] >> bit[1] if bit else leaf.initial >> i
+                value |= (source & 1) << i
+                if bit:
+                    taken[bit[0]] = taken.get(bit[0], 0) + 1
+                    self.gathered.append((leaf.path, i, *bit))
+            fate.fates, fate.value = ('moved',), signed(leaf, value)
+        self.fates = [fate for fate in self.fates if fate.fates != ('dropped',) or
+                      taken.get(fate.path, 0) == 0 or
+                      taken[fate.path] < bits_at(self.old_leaves[fate.path].address)[1]]
+
     # --- references ---
 
     def _reference(self, old_kind, old_path, new_kind, new_path, value):
@@ -235,6 +271,11 @@ class Oracle:
         """X4: the old variables behind undo, as {path: value}; what the oracle does not say is left
         out. written: what new variables were given behind the switch, by path."""
         out = dict(self.before)
+        for path, bit, old_path, old_bit in self.gathered:
+            if path in written:
+                rest = out[old_path] & ~(1 << old_bit)
+                value = rest | (written[path] >> bit & 1) << old_bit
+                out[old_path] = signed(self.old_leaves[old_path], value)
         for fate in self.fates:
             if fate.path not in written or fate.path not in self.new_leaves or not fate.old_path:
                 continue
@@ -258,6 +299,18 @@ LOST = object()
 
 def without_rules(items):
     return [dataclasses.replace(one, renamed_from='') for one in items]
+
+
+def signed(leaf, bits):
+    """The value of these bits in a variable at an address."""
+    count = bits_at(leaf.address)[1]
+    bits &= (1 << count) - 1
+    negative = leaf.type.name in INTEGERS and integer_range(leaf.type.name)[0] < 0
+    return bits - (bits >> (count - 1) << count) if negative else bits
+
+
+def keeps_bits(leaf):
+    return leaf.address[:2] in ('%M', '%Q') and not leaf.constant
 
 
 def is_leaf(kind):

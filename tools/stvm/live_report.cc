@@ -60,6 +60,9 @@ std::string LiveReport::result_of(const online_change::VariableFate& variable,
   if (variable.step == nullptr || variable.step->kind == StepKind::kCopy) return now;
   ir::Symbol alone;
   alone.type = variable.new_type;
+  if (const auto there = ir::find_symbol(next, variable.path); there.ok()) {
+    alone.bit_mask = there->bit_mask;
+  }
   base::Bytes value(next.layouts[variable.new_type].size);
   if (variable.step->kind == StepKind::kInitialise) {
     const base::Result<ir::Symbol> there = ir::find_symbol(next, variable.path);
@@ -86,6 +89,10 @@ tools::FateLine LiveReport::line(const online_change::VariableFate& variable,
     ir::Symbol before;
     before.data = variable.old_address;
     before.type = variable.old_type;
+    const std::string& path = variable.old_path.empty() ? variable.path : variable.old_path;
+    if (const auto there = ir::find_symbol(image(), path); there.ok()) {
+      before.bit_mask = there->bit_mask;
+    }
     out.live.now = online_change::shortened(ir::format_value(image(), before, copy_.memory()));
   }
   out.live.after = result_of(variable, out.live.now, next);

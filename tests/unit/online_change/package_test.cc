@@ -248,6 +248,62 @@ TEST(Package, V17_early_step_on_bytes_in_use) {
   expect_refused(*pair, "is initialised early, but the running version uses these bytes");
 }
 
+// Case 75: bytes and bits that stay at their address.
+TEST(Package, V17_gathered_bytes) {
+  auto pair = make_pair();
+  Plan& plan = pair->package.forward;
+  UpdateStep& step = first_step(pair->package, StepKind::kInitialise);
+  const uint32_t from = ir::find_symbol(pair->a.image, "Main.x")->data;
+  step.kind = StepKind::kGather;
+  step.from = 0;
+  step.early = false;
+  plan.gathers = {{{from, 0, 2}, {from, 2, 0, 1, 8}}};
+  ASSERT_TRUE(check(*pair).ok()) << check(*pair).error().text;
+  plan.gathers[0][0].within = step.size - 1;
+  expect_refused(*pair, "is written outside of it");
+  plan.gathers[0][0] = {1u << 19, 0, 2};
+  expect_refused(*pair, "is read from outside of any area");
+  plan.gathers[0][0] = {0xfffffff0u, 0, 0xffu};
+  EXPECT_FALSE(check(*pair).ok());
+  plan.gathers[0][0] = {from, 0, 2};
+  step.from = 1;
+  expect_refused(*pair, "has a step of another form that gathers bytes");
+  step.from = 0;
+  step.early = true;
+  expect_refused(*pair, "has a step of another form that gathers bytes");
+  step.early = false;
+  step.bytes.assign(step.total(), 0x55);
+  expect_refused(*pair, "is initialised with something else than its initial value");
+}
+
+TEST(Package, V17_gathered_bytes_are_in_no_slot) {
+  auto pair = make_pair();
+  UpdateStep& step = first_step(pair->package, StepKind::kCopy);  // an instance's variables or slot
+  step.kind = StepKind::kGather;
+  step.from = 0;
+  pair->package.forward.gathers = {{{ir::find_symbol(pair->a.image, "Main.x")->data, 0, 1}}};
+  EXPECT_FALSE(check(*pair).ok());
+}
+
+TEST(Package, C4_gathered_bytes_survive_and_every_truncation_is_refused) {
+  auto pair = make_pair();
+  pair->package.inverse.gathers = {{{40, 2, 3}, {41, 7, 0, 4, 0}}, {}};
+  const base::Bytes bytes = encode(pair->package);
+  const base::Result<Package> read = decode(bytes, {});
+  ASSERT_TRUE(read.ok());
+  ASSERT_EQ(read->inverse.gathers.size(), 2u);
+  ASSERT_EQ(read->inverse.gathers[0].size(), 2u);
+  const GatheredPart& bit = read->inverse.gathers[0][1];
+  EXPECT_EQ(bit.from, 41u);
+  EXPECT_EQ(bit.within, 7u);
+  EXPECT_EQ(bit.size, 0u);
+  EXPECT_EQ(bit.from_mask, 4u);
+  EXPECT_EQ(bit.to_mask, GatheredPart::kBool);
+  for (size_t size = 0; size < bytes.size(); ++size) {
+    EXPECT_FALSE(decode(base::ByteSpan(bytes).first(size), {}).ok()) << size;
+  }
+}
+
 void mutate(UpdateStep& step, std::mt19937& random) {
   uint32_t* const kFields[] = {
       &step.from,        &step.to,        &step.size,           &step.count,
