@@ -4,7 +4,7 @@ import values
 from generate import ADDRESSED
 from kinds import Array, Block, Enumeration, Named, Scalar, Structure, Subrange, Text, Variable
 from type_edits import TypeEdits
-from version import WRITER, Instance, Task
+from version import BYTES, WRITER, Instance, Task, bits_at
 
 
 class Editor(TypeEdits):
@@ -249,6 +249,24 @@ class Editor(TypeEdits):
             one.address = self.generator.address(one.type.name, self.taken())
             one.initial = None
 
+    def remap(self):
+        """Case 75: a marker goes, and others come to its bytes."""
+        markers = [one for one in self.version.globals if one.address.startswith('%M')]
+        if not markers:
+            return
+        gone = self.random.choice(markers)
+        self.version.globals.remove(gone)
+        first, count = bits_at(gone.address)
+        size = self.random.choice([size for size in (1, 2, 4, 8) if size <= max(count // 8, 1)])
+        for byte in range(first // 8, first // 8 + max(count // 8, 1), size):
+            name = self.random.choice([name for name, letter in ADDRESSED.items()
+                                       if BYTES[letter] == size])
+            one = Variable(self.generator.name('g'), Scalar(name))
+            bit = f'.{self.random.randrange(8)}' if name == 'BOOL' else ''
+            one.address = f'%M{ADDRESSED[name]}{byte // size}{bit}'
+            if self.random.random() < 0.8:
+                self.version.globals.append(one)
+
     def output(self):
         """Nobody writes it any more, or it goes."""
         outputs = [one for one in self.version.globals if one.address.startswith('%Q')]
@@ -310,5 +328,5 @@ class Editor(TypeEdits):
 E = Editor
 EDITS = [E.add, E.add, E.remove, E.reorder, E.retype, E.retype, E.retype, E.resize, E.resize,
          E.new_initial, E.rename, E.rename, E.cross, E.retain, E.constant, E.section, E.literals,
-         E.literals, E.rename_type, E.rename_block, E.extends, E.union, E.address, E.output, E.task,
-         E.instance, E.safe]
+         E.literals, E.rename_type, E.rename_block, E.extends, E.union, E.address, E.remap, E.output,
+         E.task, E.instance, E.safe]
