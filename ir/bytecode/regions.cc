@@ -344,13 +344,13 @@ const ScalarPlace* RegionMap::scalar_at(Region region, uint32_t offset) const {
 
 std::optional<Leaf> RegionMap::leaf_at(Region region, uint32_t offset,
                                        const LeafTest& accept) const {
-  return find_leaf(types_, layouts_, IndexedSearch{types_, layouts_, first_member_, order_, ends_}, region,
-                   offset, accept);
+  const IndexedSearch search{types_, layouts_, first_member_, order_, ends_};
+  return find_leaf(types_, layouts_, search, region, offset, accept);
 }
 
 std::optional<PlaceFlags> RegionMap::find(Region region, uint32_t offset, Region wanted) const {
-  return find_place(types_, layouts_, IndexedSearch{types_, layouts_, first_member_, order_, ends_},
-                    region, offset, wanted);
+  const IndexedSearch search{types_, layouts_, first_member_, order_, ends_};
+  return find_place(types_, layouts_, search, region, offset, wanted);
 }
 
 bool RegionMap::same(Region have, Region wanted) const {

@@ -257,7 +257,7 @@ TEST(Package, V17_gathered_bytes) {
   step.kind = StepKind::kGather;
   step.from = 0;
   step.early = false;
-  plan.gathers = {{{from, 0, 2}, {from, 2, 0, 1, 8}}};
+  plan.gathers = {{{from, 0, 2}, {from, 1, 0, 1, 8}}};
   ASSERT_TRUE(check(*pair).ok()) << check(*pair).error().text;
   plan.gathers[0][0].within = step.size - 1;
   expect_refused(*pair, "is written outside of it");
