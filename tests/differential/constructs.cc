@@ -49,7 +49,7 @@ const Row kRows[] = {
     {"R_EDGE", {"R_EDGE"}},
     {"F_EDGE", {"F_EDGE"}},
     {"AT %Q", {" AT %QX"}},
-    {"variables that share bytes", {" AT %M", "4"}},
+    {"variables that share bytes", {"  g", " AT %M"}},
     // References.
     {"ADR", {"ADR("}},
     {"REF", {"REF("}},
