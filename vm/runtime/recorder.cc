@@ -17,6 +17,8 @@ namespace {
 
 constexpr size_t kMaxReads = 1u << 16;            // of the clock in one cycle
 constexpr size_t kMaxChanged = 1u << 16;          // input bytes in one cycle
+constexpr size_t kMaxReceptions = 1u << 12;       // in one cycle
+constexpr size_t kMaxLost = 1u << 12;             // tasks in one cycle, each as often as it was
 constexpr size_t kMaxWaiting = size_t{64} << 20;  // bytes that the disk is behind
 
 constexpr const char* kTooMuch = "one cycle saw too much";
@@ -50,7 +52,8 @@ Recorder::Recorder(std::FILE* file, Clock& clock, IoPort& io)
     : clock_(clock), io_(io), file_(file), writer_([this] { write_to_file(); }) {
   now_.observed.clock.reserve(kMaxReads);
   now_.observed.changed.reserve(kMaxChanged);
-  now_.observed.lost.reserve(base::kMaxTasks);
+  now_.observed.lost.reserve(kMaxLost);
+  now_.observed.receptions.reserve(kMaxReceptions);
   job_clock_.reserve(kMaxReads);
   request_.clock.reserve(kMaxReads);
 }
@@ -83,12 +86,30 @@ void Recorder::receive(std::span<uint8_t> inputs) {
       ended_ = kTooMuch;
     }
   }
+  end_reception();
 }
 
 void Recorder::lost_tasks(std::span<uint8_t> tasks) {
   io_.lost_tasks(tasks);
   for (uint32_t i = 0; i < tasks.size(); ++i) {
-    if (tasks[i] != 0) now_.observed.lost.push_back({i, tasks[i]});
+    if (tasks[i] == 0) continue;
+    if (now_.observed.lost.size() < kMaxLost) {
+      now_.observed.lost.push_back({i, tasks[i]});
+    } else {
+      ended_ = kTooMuch;
+    }
+  }
+  if (now_.observed.receptions.empty()) return;
+  now_.observed.receptions.back().lost = static_cast<uint32_t>(now_.observed.lost.size());
+}
+
+void Recorder::end_reception() {
+  Observed& seen = now_.observed;
+  if (seen.receptions.size() < kMaxReceptions) {
+    seen.receptions.push_back(
+        {static_cast<uint32_t>(seen.changed.size()), static_cast<uint32_t>(seen.lost.size())});
+  } else {
+    ended_ = kTooMuch;
   }
 }
 
@@ -142,6 +163,7 @@ void Recorder::end(Controller& controller) {
   if (ended_early() == nullptr) hand_over(encode_record(now_));
   ++now_.number;
   now_.observed.clock.clear();
+  now_.observed.receptions.clear();
   now_.observed.changed.clear();
   now_.observed.outputs.clear();
   now_.observed.markers.clear();

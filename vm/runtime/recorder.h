@@ -62,6 +62,7 @@ class Recorder : public Clock, public IoPort {
   base::Status close();
 
  private:
+  void end_reception();
   void hand_over(const base::Bytes& record);
   void take_local();
   void write_to_file();

@@ -1,6 +1,7 @@
 #include "vm/runtime/recording.h"
 
 #include <algorithm>
+#include <span>
 
 #include "base/crc32c.h"
 
@@ -8,7 +9,9 @@ namespace vm {
 namespace {
 
 constexpr char kMagic[] = {'S', 'T', 'C', 'R', 'E', 'C', '0', '3'};
-enum class Tag : uint8_t { kStart = 1, kCycle = 2, kRequest = 3, kEnd = 4 };
+// A cycle of several receptions has a tag of its own: a program that does not know it replays up to
+// there, as where a file is cut off.
+enum class Tag : uint8_t { kStart = 1, kCycle = 2, kRequest = 3, kEnd = 4, kLongCycle = 5 };
 constexpr size_t kFrameBytes = 9;                  // tag, length, checksum
 constexpr uint64_t kMaxClock = uint64_t{1} << 62;  // ns: 146 years
 constexpr uint32_t kMaxImageBytes = uint32_t{1} << 24;
@@ -50,7 +53,7 @@ void read_clock(base::ByteReader& in, std::vector<int64_t>& reads) {
   }
 }
 
-void write_changes(base::ByteWriter& out, const ByteChanges& changes) {
+void write_changes(base::ByteWriter& out, std::span<const ByteChange> changes) {
   varint(out, changes.size());
   uint32_t before = 0;
   for (const auto& [offset, value] : changes) {
@@ -90,15 +93,44 @@ void read_start(base::ByteReader& in, RecordedStart& start) {
   start.on_trap = in.enumerator<ir::OnTrap>(4);
 }
 
-RecordedCycle read_cycle(base::ByteReader& in) {
+// Each `changed` and `lost` of its own.
+void write_receptions(base::ByteWriter& out, const Observed& observed) {
+  const std::span<const ByteChange> changed = observed.changed;
+  const std::span<const ByteChange> lost = observed.lost;
+  varint(out, observed.receptions.size());
+  RecordedReception begin;
+  for (const RecordedReception& end : observed.receptions) {
+    write_changes(out, changed.subspan(begin.changed, end.changed - begin.changed));
+    write_changes(out, lost.subspan(begin.lost, end.lost - begin.lost));
+    begin = end;
+  }
+}
+
+void read_receptions(base::ByteReader& in, Observed& observed) {
+  const uint64_t count = varint(in);
+  if (count < 2) return in.fail();  // one cycle has one stored form
+  for (uint64_t i = 0; i < count && !in.failed(); ++i) {
+    read_changes(in, observed.changed);
+    read_changes(in, observed.lost);
+    observed.receptions.push_back({static_cast<uint32_t>(observed.changed.size()),
+                                   static_cast<uint32_t>(observed.lost.size())});
+  }
+}
+
+RecordedCycle read_cycle(base::ByteReader& in, bool is_long) {
   RecordedCycle cycle;
+  Observed& observed = cycle.observed;
   cycle.number = varint(in);
-  read_clock(in, cycle.observed.clock);
-  read_changes(in, cycle.observed.changed);
-  read_changes(in, cycle.observed.outputs);
-  read_changes(in, cycle.observed.markers);
-  read_changes(in, cycle.observed.globals);
-  read_changes(in, cycle.observed.lost);
+  read_clock(in, observed.clock);
+  is_long ? read_receptions(in, observed) : read_changes(in, observed.changed);
+  read_changes(in, observed.outputs);
+  read_changes(in, observed.markers);
+  read_changes(in, observed.globals);
+  if (!is_long) {
+    read_changes(in, observed.lost);
+    observed.receptions = {{static_cast<uint32_t>(observed.changed.size()),
+                            static_cast<uint32_t>(observed.lost.size())}};
+  }
   cycle.state = in.u32();
   return cycle;
 }
@@ -127,8 +159,9 @@ bool read_record(base::ByteSpan& rest, Recording& recording) {
   if (tag == static_cast<uint8_t>(Tag::kStart)) {
     if (!recording.start.image.empty()) return false;  // the first record, and only that
     read_start(in, recording.start);
-  } else if (tag == static_cast<uint8_t>(Tag::kCycle)) {
-    RecordedCycle cycle = read_cycle(in);
+  } else if (const bool is_long = tag == static_cast<uint8_t>(Tag::kLongCycle);
+             is_long || tag == static_cast<uint8_t>(Tag::kCycle)) {
+    RecordedCycle cycle = read_cycle(in, is_long);
     if (in.done()) recording.cycles.push_back(std::move(cycle));
   } else if (tag == static_cast<uint8_t>(Tag::kRequest)) {
     RecordedRequest request = read_request(in);
@@ -159,15 +192,17 @@ base::Bytes encode_record(const RecordedStart& start) {
 
 base::Bytes encode_record(const RecordedCycle& cycle) {
   base::ByteWriter payload;
+  const Observed& observed = cycle.observed;
+  const bool is_long = observed.receptions.size() > 1;
   varint(payload, cycle.number);
-  write_clock(payload, cycle.observed.clock);
-  write_changes(payload, cycle.observed.changed);
-  write_changes(payload, cycle.observed.outputs);
-  write_changes(payload, cycle.observed.markers);
-  write_changes(payload, cycle.observed.globals);
-  write_changes(payload, cycle.observed.lost);
+  write_clock(payload, observed.clock);
+  is_long ? write_receptions(payload, observed) : write_changes(payload, observed.changed);
+  write_changes(payload, observed.outputs);
+  write_changes(payload, observed.markers);
+  write_changes(payload, observed.globals);
+  if (!is_long) write_changes(payload, observed.lost);
   payload.u32(cycle.state);
-  return framed(Tag::kCycle, payload);
+  return framed(is_long ? Tag::kLongCycle : Tag::kCycle, payload);
 }
 
 base::Bytes encode_record(const RecordedRequest& request) {

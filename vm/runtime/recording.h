@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.h"
@@ -28,16 +29,25 @@ struct RecordedStart {
   ir::OnTrap on_trap = ir::OnTrap::kStopAll;
 };
 
-using ByteChanges = std::vector<std::pair<uint32_t, uint8_t>>;  // offsets in order, new bytes
+using ByteChange = std::pair<uint32_t, uint8_t>;  // offset, new byte
+using ByteChanges = std::vector<ByteChange>;     // offsets in order
 
+// Where the rows of one reception end, in Observed::changed and Observed::lost.
+struct RecordedReception {
+  uint32_t changed = 0;
+  uint32_t lost = 0;
+};
 // What the controller saw of the clock and of its devices.
 struct Observed {
   std::vector<int64_t> clock;  // results of Clock::now_ns(), in order
-  ByteChanges changed;         // input bytes that differ from before
-  ByteChanges outputs;         // %Q and %M that others wrote at the boundary
+  ByteChanges changed;  // input bytes that differ from before, one reception behind the other
+  ByteChanges outputs;  // %Q and %M that others wrote at the boundary
   ByteChanges markers;
   ByteChanges globals;  // that other resources write, in the order of SharedGlobals::gather_read
-  ByteChanges lost;     // tasks whose device was lost (IoPort::lost_tasks)
+  ByteChanges lost;     // tasks whose device was lost (IoPort::lost_tasks); as `changed`
+  // Calls of IoPort::receive(), in order. A cycle has one at most, and one more for each scan of a
+  // task that exchanges by itself (B12).
+  std::vector<RecordedReception> receptions = {};
 };
 // Number 0 is the start; then one for each call of Controller::cycle().
 struct RecordedCycle {

@@ -17,8 +17,21 @@ int64_t Replay::now_ns() {
 }
 
 void Replay::receive(std::span<uint8_t> inputs) {
+  take_reception();
   if (inputs_.size() < inputs.size()) inputs_.resize(inputs.size());
   std::copy_n(inputs_.begin(), inputs.size(), inputs.begin());
+}
+
+// The next one that was recorded.
+void Replay::take_reception() {
+  if (received_ == receptions_.size()) return;
+  const RecordedReception begin = received_ == 0 ? RecordedReception{} : receptions_[received_ - 1];
+  const RecordedReception& end = receptions_[received_++];
+  for (uint32_t i = begin.changed; i < end.changed; ++i) {
+    const auto& [offset, value] = changed_[i];
+    if (offset >= inputs_.size()) inputs_.resize(size_t{offset} + 1);
+    inputs_[offset] = value;
+  }
 }
 
 namespace {
@@ -33,10 +46,12 @@ void change(base::Bytes& bytes, ByteChanges& changes) {
 }  // namespace
 
 void Replay::lost_tasks(std::span<uint8_t> tasks) {
-  for (const auto& [task, byte] : lost_) {
+  if (received_ == 0) return;
+  const uint32_t begin = received_ == 1 ? 0 : receptions_[received_ - 2].lost;
+  for (uint32_t i = begin; i < receptions_[received_ - 1].lost; ++i) {
+    const auto& [task, byte] = lost_[i];
     if (task < tasks.size()) tasks[task] = byte;
   }
-  lost_.clear();
 }
 
 void Replay::take_globals(const SharedGlobals& globals, uint8_t* memory) {
@@ -68,10 +83,9 @@ void Replay::see(const Observed& observed) {
   markers_ = observed.markers;
   globals_ = observed.globals;
   lost_ = observed.lost;
-  for (const auto& [offset, value] : observed.changed) {
-    if (offset >= inputs_.size()) inputs_.resize(size_t{offset} + 1);
-    inputs_[offset] = value;
-  }
+  changed_ = observed.changed;
+  receptions_ = observed.receptions;
+  received_ = 0;
 }
 
 void Replay::see(const std::vector<int64_t>& clock) {

@@ -26,6 +26,8 @@ class Replay : public Clock, public IoPort {
   bool exact() const { return !asked_too_often_ && at_ == clock_.size(); }
 
  private:
+  void take_reception();
+
   std::vector<int64_t> clock_;
   size_t at_ = 0;
   int64_t last_ns_ = 0;
@@ -33,7 +35,10 @@ class Replay : public Clock, public IoPort {
   base::Bytes inputs_;
   ByteChanges outputs_, markers_;  // to be written at the next boundary
   ByteChanges globals_;            // when the next cycle begins
-  ByteChanges lost_;               // behind the next receive()
+  std::vector<RecordedReception> receptions_;
+  size_t received_ = 0;  // of these
+  ByteChanges changed_;  // Observed: of all receptions
+  ByteChanges lost_;
 };
 
 }  // namespace vm
