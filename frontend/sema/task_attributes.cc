@@ -69,6 +69,7 @@ void apply_task_attributes(Sema& sema, const TaskDecl& decl, ir::Task& task) {
                std::string(conflict->way_out));
     task.policy.io = ir::TaskIo::kNewest;
     task.policy.overrun = ir::Overrun::kSkip;
+    task.policy.exchange = ir::TaskExchange::kOfCycle;
   }
   if (!task.policy.freewheeling) return;
   if (decl.interval.valid() || decl.single.valid()) {

@@ -30,7 +30,18 @@ base::Error bad_format(std::string text) {
   return {base::Refusal::kBadFormat, "image: " + std::move(text)};
 }
 
+bool has_task_exchange(const Image& image) {
+  for (const ImageTask& task : image.tasks) {
+    if (task.policy.output_buffer != IoBuffer::kCopied) return true;
+    if (task.policy.exchange != TaskExchange::kOfCycle) return true;
+  }
+  return false;
+}
+
 uint32_t version_of(const Image& image, bool has_sources) {
+  if (has_task_exchange(image)) {
+    return has_sources ? kImageVersionOfTaskExchangeAndSources : kImageVersionOfTaskExchange;
+  }
   if (!image.held.empty()) {
     return has_sources ? kImageVersionOfHeldAndSources : kImageVersionOfHeld;
   }
@@ -45,7 +56,8 @@ uint32_t version_of(const Image& image, bool has_sources) {
 uint32_t sections_of(uint32_t version) {
   const bool has_sources = version == kImageVersionOfSources ||
                            version == kImageVersionOfContentsAndSources ||
-                           version == kImageVersionOfHeldAndSources;
+                           version == kImageVersionOfHeldAndSources ||
+                           version == kImageVersionOfTaskExchangeAndSources;
   return has_sources ? kImageSectionCount + 1 : kImageSectionCount;
 }
 

@@ -43,6 +43,12 @@ class ImageWriter {
   void enumerator(const E& v, uint32_t) {
     number(static_cast<uint8_t>(v));
   }
+  // Two in one byte, the second in its upper half: where that is the first enumerator, the byte is
+  // what it was before the format had it.
+  template <class L, class U>
+  void enumerators(const L& lower, uint32_t, const U& upper, uint32_t) {
+    number(static_cast<uint8_t>(static_cast<uint8_t>(lower) | static_cast<uint8_t>(upper) << 4));
+  }
   // At the end of a section: the first enumerator takes no byte, so a section that has it is what
   // it was before the format had this field.
   template <class E>
@@ -168,6 +174,13 @@ class ImageReader {
   template <class E>
   void enumerator(E& v, uint32_t limit) {
     v = in_.enumerator<E>(limit);
+  }
+  template <class L, class U>
+  void enumerators(L& lower, uint32_t lower_limit, U& upper, uint32_t upper_limit) {
+    const uint8_t both = in_.u8();
+    if ((both & 15u) >= lower_limit || both >> 4 >= upper_limit) return in_.fail();
+    lower = static_cast<L>(both & 15u);
+    upper = static_cast<U>(both >> 4);
   }
   template <class E>
   void last_enumerator(E& v, uint32_t limit) {

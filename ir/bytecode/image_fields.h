@@ -137,8 +137,8 @@ void instance_fields(Archive& a, T& v) {
 
 template <class Archive, class T>
 void policy_fields(Archive& a, T& v) {
-  a.enumerator(v.io, 2);
-  a.enumerator(v.input_buffer, 6);
+  a.enumerators(v.io, 2, v.exchange, kTaskExchangeCount);
+  a.enumerators(v.input_buffer, kIoBufferCount, v.output_buffer, kIoBufferCount);
   a.enumerator(v.overrun, 5);
   a.enumerator(v.on_trap, 4);
   a(v.freewheeling);

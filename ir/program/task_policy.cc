@@ -18,18 +18,34 @@ constexpr TaskChoice kChoices[] = {
            "inputs as at the start of the scan; outputs are sent when it is done"),
     CHOICE("io", io, TaskIo::kSynchronous, "synchronous",
            "inputs of the first cycle of the period; outputs are sent in the first of the next"),
-    CHOICE("input_buffer", input_buffer, InputBuffer::kCopied, "copied",
+    CHOICE("input_buffer", input_buffer, IoBuffer::kCopied, "copied",
            "two buffers: what is received is copied to the other one when a scan starts"),
-    CHOICE("input_buffer", input_buffer, InputBuffer::kLocked, "locked",
+    CHOICE("input_buffer", input_buffer, IoBuffer::kLocked, "locked",
            "one buffer, which takes nothing new while a scan lasts"),
-    CHOICE("input_buffer", input_buffer, InputBuffer::kSwapped, "swapped",
+    CHOICE("input_buffer", input_buffer, IoBuffer::kSwapped, "swapped",
            "two buffers that change places when a scan starts"),
-    CHOICE("input_buffer", input_buffer, InputBuffer::kSwappedWithFlag, "swapped_with_flag",
+    CHOICE("input_buffer", input_buffer, IoBuffer::kSwappedWithFlag, "swapped_with_flag",
            "the same; a flag says whether there is anything new to change places for"),
-    CHOICE("input_buffer", input_buffer, InputBuffer::kThree, "three",
+    CHOICE("input_buffer", input_buffer, IoBuffer::kThree, "three",
            "three buffers: one is received into, one waits, one is read"),
-    CHOICE("input_buffer", input_buffer, InputBuffer::kFirstUnseen, "first_unseen",
+    CHOICE("input_buffer", input_buffer, IoBuffer::kFirstUnseen, "first_unseen",
            "two buffers; inputs that no scan has seen stay until one has, whatever comes later"),
+    CHOICE("output_buffer", output_buffer, IoBuffer::kCopied, "copied",
+           "what a scan has written is copied to what is sent next when it ends"),
+    CHOICE("output_buffer", output_buffer, IoBuffer::kLocked, "locked",
+           "one buffer; what it has goes to what is sent next before a scan locks it"),
+    CHOICE("output_buffer", output_buffer, IoBuffer::kSwapped, "swapped",
+           "two buffers that change places when a scan ends"),
+    CHOICE("output_buffer", output_buffer, IoBuffer::kSwappedWithFlag, "swapped_with_flag",
+           "two; they change places when outputs are sent, if a flag says that a scan has ended"),
+    CHOICE("output_buffer", output_buffer, IoBuffer::kThree, "three",
+           "three buffers: one is written, one waits, one is sent"),
+    CHOICE("output_buffer", output_buffer, IoBuffer::kFirstUnseen, "first_unseen",
+           "two buffers; changed outputs that were not sent stay until they are, then the newest"),
+    CHOICE("exchange", exchange, TaskExchange::kOfCycle, "cycle",
+           "inputs are received and outputs sent with the control cycle alone"),
+    CHOICE("exchange", exchange, TaskExchange::kOwn, "own",
+           "also for this task: received when its scan starts, sent when it ends"),
     CHOICE("overrun", overrun, Overrun::kSkip, "skip",
            "it is left out and counted; the next one is on time"),
     CHOICE("overrun", overrun, Overrun::kStretch, "stretch",
@@ -54,6 +70,12 @@ constexpr TaskChoice kChoices[] = {
 constexpr PolicyConflict kNotSynchronous = {
     "no period that its inputs and outputs could be synchronous with",
     "give it an INTERVAL alone, or leave the attribute `io` out"};
+constexpr PolicyConflict kOwnIsNotSynchronous = {
+    "an exchange of its own with each scan, so its inputs and outputs cannot be synchronous",
+    "leave one of the attributes `io` and `exchange` out"};
+constexpr PolicyConflict kNothingStaysUnseen = {
+    "an exchange of its own with each scan, so `first_unseen` has nothing to keep",
+    "leave the attribute `exchange` out, or give it another buffer"};
 constexpr PolicyConflict kNothingToLengthenFor = {
     "no period at whose end the control cycle could be lengthened",
     "give it an INTERVAL alone, or another `overrun`"};
@@ -69,6 +91,12 @@ constexpr PolicyConflict kOldInputs = {
 const PolicyConflict* policy_conflict(const TaskPolicy& policy, bool periodic) {
   const bool synchronous = policy.io == TaskIo::kSynchronous;
   if (synchronous && !periodic) return &kNotSynchronous;
+  if (policy.exchange == TaskExchange::kOwn) {
+    if (synchronous) return &kOwnIsNotSynchronous;
+    const bool keeps_first = policy.input_buffer == IoBuffer::kFirstUnseen ||
+                             policy.output_buffer == IoBuffer::kFirstUnseen;
+    if (keeps_first) return &kNothingStaysUnseen;
+  }
   if (policy.overrun == Overrun::kLengthen && !periodic) return &kNothingToLengthenFor;
   if (policy.overrun != Overrun::kAtOnce) return nullptr;
   if (policy.freewheeling) return &kNeverLate;

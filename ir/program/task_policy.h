@@ -1,5 +1,5 @@
 // How the controller treats a task beyond its period and priority: attributes in front of TASK
-// (B4, B6, B7; docs/TASKS.md). The first value of each holds without one.
+// (B4 to B7, B12; docs/TASKS.md). The first value of each holds without one.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,11 @@ namespace ir {
 
 // Which inputs a scan works with, and when its outputs are sent (B6).
 enum class TaskIo : uint8_t { kNewest, kSynchronous };
-// How the inputs of a task are kept apart from what is received meanwhile (B4). All kinds but
-// kFirstUnseen show the newest that had arrived when the scan starts. Images store the numbers, so
-// more are appended only.
-enum class InputBuffer : uint8_t {
+// How the inputs of a task are kept apart from what is received meanwhile (B4), and what it has
+// written from what is sent (B5). All kinds but kFirstUnseen show the newest: inputs that had
+// arrived when the scan starts, outputs of the last scan that has ended. Images store the numbers,
+// so more are appended only.
+enum class IoBuffer : uint8_t {
   kCopied,
   kLocked,
   kSwapped,
@@ -22,6 +23,11 @@ enum class InputBuffer : uint8_t {
   kThree,
   kFirstUnseen,
 };
+inline constexpr uint32_t kIoBufferCount = 6;
+// Further exchanges inside a control cycle (B12). With kOwn the task receives when its scan starts,
+// into its own buffer, and what it has written is sent when its scan has ended.
+enum class TaskExchange : uint8_t { kOfCycle, kOwn };
+inline constexpr uint32_t kTaskExchangeCount = 2;
 // What a release does that finds the scan of the last one still running (B7). Append only.
 enum class Overrun : uint8_t { kSkip, kStretch, kFault, kAtOnce, kLengthen };
 // What a trap in a scan of the task does; unstated: what the controller's options say.
@@ -31,7 +37,9 @@ inline constexpr std::string_view kFreewheeling = "freewheeling";
 
 struct TaskPolicy {
   TaskIo io = TaskIo::kNewest;
-  InputBuffer input_buffer = InputBuffer::kCopied;
+  TaskExchange exchange = TaskExchange::kOfCycle;
+  IoBuffer input_buffer = IoBuffer::kCopied;
+  IoBuffer output_buffer = IoBuffer::kCopied;
   Overrun overrun = Overrun::kSkip;
   OnTrap on_trap = OnTrap::kUnstated;
   bool freewheeling = false;  // released again in the first cycle behind its scan; it has no period

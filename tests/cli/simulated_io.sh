@@ -93,6 +93,46 @@ said 'the program has no such device'
 expect 2 stvm run p.img --virtual-time --scans 1 --device press.period_ms=0
 said 'must be a whole number from 1 to 3600000'
 
+# B12: a task that exchanges by itself has what has come when its scan starts, and its outputs are
+# there when it ends; the other one has the inputs of the cycle. A recording has these receptions.
+mkdir twice
+cat >twice/main.st <<'ST'
+PROGRAM Copy VAR a AT %IB0 : BYTE; q AT %QB0 : BYTE; END_VAR q := a; END_PROGRAM
+PROGRAM Copy2 VAR a AT %IB0 : BYTE; q AT %QB1 : BYTE; END_VAR q := a; END_PROGRAM
+PROGRAM Wait VAR n : DINT; END_VAR n := n + 1; END_PROGRAM
+CONFIGURATION C RESOURCE R ON PLC
+  TASK First (INTERVAL := T#10ms, PRIORITY := 1);
+  {attribute 'exchange' := 'own'} TASK Own (INTERVAL := T#10ms, PRIORITY := 2);
+  TASK Last (INTERVAL := T#10ms, PRIORITY := 3);
+  PROGRAM w WITH First : Wait; PROGRAM c WITH Own : Copy; PROGRAM d WITH Last : Copy2;
+END_RESOURCE END_CONFIGURATION
+ST
+cat >twice/stc.toml <<'T'
+[devices.d]
+driver = "simulated"
+inputs = "twice.csv"
+outputs = "out.csv"
+map = ["byte 0 -> %IB0", "byte 0..1 <- %QB0"]
+T
+printf 'time_ms,%%IB0\n0,1\n2,5\n12,7\n' >twice.csv
+expect 0 stvm run twice --virtual-time --scans 3 --duration First=3ms --duration Own=2ms
+cat >wanted.csv <<'T'
+time_ms,%QB0,%QB1
+0,0,0
+5,5,0
+10,5,1
+15,7,1
+20,7,5
+25,7,7
+25,0,0
+T
+cmp -s out.csv wanted.csv || fail "$(cat out.csv)"
+expect 0 stvm run twice --virtual-time --scans 5 --record twice.rec --print c.q,d.q
+cp out values
+expect 0 stvm replay twice.rec --print c.q,d.q
+said 'the state is identical'
+grep -qF "$(head -1 values)" out || fail "the replay has other values than $(cat values)"
+
 # A file of inputs that is wrong is refused with line and column.
 bad() {
   cat >in.csv

@@ -18,7 +18,7 @@ VAR_GLOBAL RETAIN r : INT; END_VAR
 VAR_GLOBAL k : INT := 3; END_VAR
 PROGRAM P out1 := in1; out2 := TRUE; plain := plain + k; END_PROGRAM
 PROGRAM Q r := r + 1; END_PROGRAM
-CONFIGURATION C {attribute 'schedule' := 'run_first'} RESOURCE R ON PLC {attribute 'watchdog' := 'T#5ms'} {attribute 'overrun' := 'stretch'} TASK A(INTERVAL := T#5ms, PRIORITY := 3); TASK B(INTERVAL := T#20ms, PRIORITY := 2); TASK D(INTERVAL := T#80ms, PRIORITY := 5);
+CONFIGURATION C {attribute 'schedule' := 'run_first'} RESOURCE R ON PLC {attribute 'watchdog' := 'T#5ms'} {attribute 'overrun' := 'stretch'} {attribute 'output_buffer' := 'three'} {attribute 'exchange' := 'own'} TASK A(INTERVAL := T#5ms, PRIORITY := 3); TASK B(INTERVAL := T#20ms, PRIORITY := 2); TASK D(INTERVAL := T#80ms, PRIORITY := 5);
 PROGRAM q1 WITH A : Q; PROGRAM p1 WITH A : P; PROGRAM q2 WITH D : Q; PROGRAM q3 WITH B : Q;
 END_RESOURCE END_CONFIGURATION
 ST
@@ -55,7 +55,7 @@ resource C (schedule send_first -> run_first)
 task A (interval T#10ms -> T#5ms)
 task A (priority 1 -> 3)
 task A (watchdog T#100ms -> T#5ms)
-task A (policy none -> overrun stretch)
+task A (policy none -> output_buffer three exchange own overrun stretch)
 task D (new, T#80ms, priority 5)
 task G (removed)
 program q2 (task B -> D)

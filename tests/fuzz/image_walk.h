@@ -45,6 +45,11 @@ class ImageWalk {
   void enumerator(E& v, uint32_t limit) {
     visitor_.enumerator(place_of(v), v, limit);
   }
+  template <class L, class U>
+  void enumerators(L& lower, uint32_t lower_limit, U& upper, uint32_t upper_limit) {
+    enumerator(lower, lower_limit);
+    enumerator(upper, upper_limit);
+  }
   template <class E>
   void last_enumerator(E& v, uint32_t limit) {
     enumerator(v, limit);

@@ -5,7 +5,7 @@
 namespace stvm {
 namespace {
 
-std::string_view kind_text(ir::InputBuffer kind) {
+std::string_view kind_text(ir::IoBuffer kind) {
   ir::TaskPolicy policy;
   policy.input_buffer = kind;
   for (const ir::TaskChoice& choice : ir::task_choices()) {

@@ -265,6 +265,7 @@ void DeviceIo::receive(std::span<uint8_t> inputs) {
   }
   if (running_->bindings.empty()) return;
   const int64_t now = now_ns();
+  if (options_.virtual_clock != nullptr && now != exchanged_ns_) exchange_now(now);
   for (Binding& binding : running_->bindings) {
     if (binding.port == nullptr) {
       if (has_quality(binding)) set_bit(inputs, binding.device.quality.bit_offset, false);
@@ -327,8 +328,15 @@ void DeviceIo::send(std::span<const uint8_t> outputs) {
                 range.bits());
     }
     set.outputs.publish();
-    if (options_.virtual_clock != nullptr) binding.port->exchange_now(now_ns());
   }
+  if (options_.virtual_clock != nullptr) exchange_now(now_ns());
+}
+
+void DeviceIo::exchange_now(int64_t now) {
+  for (const Binding& binding : running_->bindings) {
+    if (binding.port != nullptr) binding.port->exchange_now(now);
+  }
+  exchanged_ns_ = now;
 }
 
 // What others wrote becomes the variables' values, as if a task had written it between two cycles.

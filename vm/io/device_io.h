@@ -33,7 +33,8 @@ class DeviceIo : public IoPort {
   struct Options {
     DriverFactory make_driver;
     std::vector<DeviceOverride> overrides = {};
-    // Set: virtual time. Simulated devices exchange in send(), on this clock; others are off.
+    // Set: virtual time. Simulated devices exchange in send(), and in receive() where none was at
+    // that instant, on this clock; others are off.
     Clock* virtual_clock = nullptr;
     DeviceLog log = {};
     EventRing* events = nullptr;  // gets devices whose exchange does not end; outlives this
@@ -61,6 +62,7 @@ class DeviceIo : public IoPort {
   base::Result<ExchangePort*> port_for(const ir::Device& device);
   base::Result<std::unique_ptr<Tables>> build(const ir::VerifiedImage& version);
   int64_t now_ns() const;
+  void exchange_now(int64_t now_ns);
   bool take_writes();
   void tell_hang(Binding& binding, int64_t now_ns);
   static bool has_quality(const Binding& binding);
@@ -72,6 +74,7 @@ class DeviceIo : public IoPort {
   std::vector<std::unique_ptr<Tables>> tables_;
   Tables* running_ = nullptr;
   bool switched_ = false;  // unmapped inputs are to be cleared once
+  int64_t exchanged_ns_ = INT64_MIN;  // in virtual time
 };
 
 }  // namespace vm

@@ -14,7 +14,7 @@ namespace vm {
 class InputSync {
  public:
   InputSync() = default;
-  InputSync(ir::InputBuffer strategy, size_t bytes);
+  InputSync(ir::IoBuffer strategy, size_t bytes);
 
   // Offers what was received then; `received` has the bytes of the constructor.
   void write(std::span<const uint8_t> received, int64_t at_ns = 0);
@@ -30,13 +30,13 @@ class InputSync {
   BufferState state() const;
   // Does a scan see what was received last when nobody writes until just before it begins? Then
   // there is no need to write in every cycle.
-  bool reads_last_written() const { return strategy_ == ir::InputBuffer::kCopied; }
+  bool reads_last_written() const { return strategy_ == ir::IoBuffer::kCopied; }
   // Must what was received last be written before begin(), so that it is seen? The one buffer of
   // kLocked took nothing while the scan before lasted.
   bool wants_last() const { return reads_last_written() || behind_; }
 
  private:
-  ir::InputBuffer strategy_ = ir::InputBuffer::kCopied;
+  ir::IoBuffer strategy_ = ir::IoBuffer::kCopied;
   base::Bytes buffers_[3];
   int64_t at_ns_[3] = {};
   uint8_t write_ = 0;

@@ -51,8 +51,8 @@ struct DeviceStatus {
   int64_t error_age_ns = -1;  // since when `error` is known; -1: not at all, or in virtual time
 };
 
-// Field devices: the process image as the driver sees it. Called by the control
-// thread between scans; must not block.
+// Field devices: the process image as the driver sees it. Called by the control thread outside of
+// all scans, or before and behind one while others are suspended (B12); must not block.
 class IoPort {
  public:
   virtual ~IoPort() = default;

@@ -90,7 +90,7 @@ void Scheduler::restart() {
     task.status.stopped = task.released = task.event_level = false;
     task.due_again = task.overran = task.io_lost = task.late = task.held = false;
     task.inputs.restart();
-    std::fill(task.waiting_mask.begin(), task.waiting_mask.end(), uint8_t{0});
+    task.outputs.restart();
     const int64_t period = task.status.period_ns;
     if (period != 0) task.next_release_ns = next(task.next_release_ns, period, next_cycle_ns_);
   }
@@ -188,22 +188,24 @@ void Scheduler::begin_cycle() {
 }
 
 void Scheduler::send() {
+  take_sendable_outputs();
   end_holds(cycle_start_ns_);
   impose_on_outputs();
-  io_.send(tables_->outputs);
+  transmit();
   note_sent();
 }
 
 void Scheduler::receive() {
-  io_.receive(tables_->inputs);
+  base::Bytes& newest = tables_->newest_inputs;
+  io_.receive(newest.empty() ? tables_->inputs : newest);
+  std::copy(newest.begin(), newest.end(), tables_->inputs.begin());
   received_ns_ = looked_ns_;
   note(Moment::kReceived, received_ns_);
   look_at_losses();
   offer_inputs();
 }
 
-// B2, when tasks run first. At most one receive() in each call of run_cycle(): a recording has room
-// for no more.
+// B2, when tasks run first. At most one receive() in each call of run_cycle().
 void Scheduler::exchange() {
   send();
   if (receive_pending_) receive();
@@ -320,7 +322,7 @@ void Scheduler::release_due_task(TaskSlot& task) {
 void Scheduler::offer_inputs() {
   for (TaskSlot& task : tables_->tasks) {
     const bool each_cycle = !task.synchronous() && !task.inputs.reads_last_written();
-    if (!each_cycle) continue;
+    if (!each_cycle || task.exchanges()) continue;
     task.inputs.write(tables_->inputs, received_ns_);
     show(task);
   }
@@ -340,18 +342,5 @@ void Scheduler::take_packed() {
   }
 }
 
-// B6: results of a period are sent in the first cycle of the next one.
-void Scheduler::take_waiting_outputs() {
-  for (TaskSlot& task : tables_->tasks) {
-    if (task.next_release_ns > cycle_start_ns_) continue;
-    if (std::exchange(task.held, false)) task.unsent = true;
-    for (size_t i = 0; i < task.waiting_mask.size(); ++i) {
-      const uint8_t mask = std::exchange(task.waiting_mask[i], uint8_t{0});
-      tables_->waiting_mask[i] &= static_cast<uint8_t>(~mask);
-      tables_->outputs[i] =
-          static_cast<uint8_t>((tables_->outputs[i] & ~mask) | (task.waiting[i] & mask));
-    }
-  }
-}
 
 }  // namespace vm

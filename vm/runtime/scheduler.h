@@ -31,7 +31,8 @@ class Scheduler {
   void make_outputs_safe(bool for_good);
   // Variables that are sent as these were written from outside.
   void outputs_set(std::span<const WriteSet::OutputBits> outputs);
-  void send_outputs() { io_.send(tables_->outputs); }
+  // What is complete.
+  void send_outputs();
   // Behind a fault: only outputs that are held for a time are looked after. Where a task starts
   // again at once and nothing else is inside a scan, it returns at this boundary in the middle of
   // the cycle, and the next call goes on: a task that is always late would leave no other one.
@@ -71,6 +72,12 @@ class Scheduler {
   void pack_stale_outputs();
   void take_packed();
   void take_waiting_outputs();
+  void take_sendable_outputs();
+  void transmit();
+  void take_outputs(TaskSlot& task);
+  // B12: of one task.
+  void receive_for(TaskSlot& task);
+  void send_of(TaskSlot& task);
   void offer_inputs();
   void release_due_tasks();
   void release_due_task(TaskSlot& task);
@@ -119,7 +126,7 @@ class Scheduler {
   void copy_inputs(const TaskSlot& task);
   void copy_outputs(TaskSlot& task);
   void impose(bool inputs_only);
-  void impose_on_outputs();
+  bool impose_on_outputs();
   uint64_t fuel_left(const TaskSlot& task) const;
 
   ControllerOptions options_;

@@ -45,10 +45,13 @@ void Scheduler::begin_task(TaskSlot& task) {
   task.fuel_used = 0;
   task.program = 0;
   task.late = task.lasting = false;
-  if (!task.synchronous() && task.inputs.wants_last()) {
+  if (task.exchanges()) {
+    receive_for(task);
+  } else if (!task.synchronous() && task.inputs.wants_last()) {
     task.inputs.write(tables_->inputs, received_ns_);
   }
   task.inputs.begin();
+  if (task.outputs.takes_before_scan() && !task.synchronous()) take_outputs(task);
   note_begun(task);
   active_.push_back(&task);
   copy_inputs(task);
@@ -138,8 +141,9 @@ void Scheduler::end_task(TaskSlot& task) {
     }
     copy_outputs(task);
   }
-  (task.synchronous() ? task.held : task.unsent) = !tables_->outputs.empty();
+  (task.outputs.used() ? task.held : task.unsent) = !tables_->outputs.empty();
   note(Moment::kEnded, task, looked_ns_);
+  if (task.exchanges()) send_of(task);
   ++task.status.scans;
   task.status.last_ns = task.run_ns;
   task.times->run.add(task.run_ns);
@@ -213,13 +217,13 @@ void Scheduler::make_outputs_safe(bool for_good) {
   std::fill(all.begin(), all.end(), uint8_t{0xff});
   tables_->safe.apply(all, looked_ns_, tables_->outputs);
   if (for_good) tables_->safe.expire(INT64_MAX, tables_->outputs, all);
-  io_.send(tables_->outputs);
+  transmit();
   note(Moment::kSent, looked_ns_);
 }
 
 void Scheduler::refresh_safe_outputs() {
   const int64_t now = clock_.now_ns();
-  if (end_holds(now)) io_.send(tables_->outputs);
+  if (end_holds(now)) transmit();
 }
 
 bool Scheduler::end_holds(int64_t now_ns) {
@@ -280,11 +284,11 @@ void Scheduler::stop_outputs(TaskSlot& task) {
   for (size_t i = 0; i < mask.size(); ++i) {
     tables_->waiting_mask[i] &= static_cast<uint8_t>(~mask[i]);
   }
-  std::fill(task.waiting_mask.begin(), task.waiting_mask.end(), uint8_t{0});
+  task.outputs.restart();
   tables_->safe.apply(mask, looked_ns_, tables_->outputs);
   impose_on_outputs();
   outputs_to_variables(mask);
-  io_.send(tables_->outputs);
+  transmit();
   task.held = false;
   note_sent();
 }
@@ -299,9 +303,8 @@ void Scheduler::copy_outputs(TaskSlot& task) {
   const base::Bytes& now = tables_->scratch;
   const base::Bytes& written = tables_->written;
   merge(task.own_outputs, written, written);
-  if (task.synchronous()) {
-    merge(task.waiting, now, written);
-    merge(task.waiting_mask, written, written);
+  if (task.outputs.used()) {
+    task.outputs.write(now, written);
     merge(tables_->waiting_mask, written, written);
   } else {
     merge(tables_->outputs, now, written);
@@ -318,8 +321,8 @@ void Scheduler::impose(bool inputs_only) {
   }
 }
 
-// Forced outputs do not wait for anything.
-void Scheduler::impose_on_outputs() {
+// Forced outputs do not wait for anything. False: none is forced.
+bool Scheduler::impose_on_outputs() {
   bool any = false;
   base::Bytes& mask = tables_->forced_outputs;
   for (const Force& force : tables_->forced.forces) {
@@ -330,22 +333,21 @@ void Scheduler::impose_on_outputs() {
     put_value(memory_ + force.symbol.data, force.value.data(), size, force.symbol.bit_mask);
     tables_->process_image.mark_outputs(force.symbol.data, force.symbol.data + size, mask);
   }
-  if (!any) return;
+  if (!any) return false;
   base::Bytes& now = tables_->scratch;
   tables_->process_image.variables_to_outputs(memory_, now);
   for (size_t i = 0; i < now.size(); ++i) {
     tables_->outputs[i] =
         static_cast<uint8_t>((tables_->outputs[i] & ~mask[i]) | (now[i] & mask[i]));
   }
+  return true;
 }
 
 void Scheduler::outputs_set(std::span<const WriteSet::OutputBits> outputs) {
-  const auto take_out = [&](base::Bytes& mask) {
-    if (mask.empty()) return;
-    for (const auto& row : outputs) mask[row.byte] &= static_cast<uint8_t>(~row.mask);
-  };
-  for (TaskSlot& task : tables_->tasks) take_out(task.waiting_mask);
-  take_out(tables_->waiting_mask);
+  for (const auto& row : outputs) {
+    for (TaskSlot& task : tables_->tasks) task.outputs.forget(row.byte, row.mask);
+    tables_->waiting_mask[row.byte] &= static_cast<uint8_t>(~row.mask);
+  }
   outputs_stale_ |= !outputs.empty();
 }
 

@@ -21,7 +21,7 @@ E enumerator(uint32_t number, E last) {
 
 BufferState unpacked_buffer(uint32_t bits) {
   BufferState out;
-  out.kind = enumerator(bits & 15, ir::InputBuffer::kFirstUnseen);
+  out.kind = enumerator(bits & 15, ir::IoBuffer::kFirstUnseen);
   out.writer = bits >> 4 & 3;
   out.waiting = bits >> 6 & 3;
   out.reader = bits >> 8 & 3;

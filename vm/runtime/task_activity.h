@@ -22,7 +22,7 @@ const char* state_text(TaskState state);
 // the scan and the reader what sends. Buffers are numbered from 0.
 struct BufferState {
   static constexpr uint8_t kNone = 3;
-  ir::InputBuffer kind = ir::InputBuffer::kCopied;
+  ir::IoBuffer kind = ir::IoBuffer::kCopied;
   uint8_t writer = 0;
   uint8_t waiting = kNone;  // between the two; kNone: there is no such buffer
   uint8_t reader = 1;

@@ -27,11 +27,12 @@ TaskSlot make_slot(const Generation& generation, uint32_t number, int64_t first_
   slot.policy = task.policy;
   slot.status.freewheeling = task.policy.freewheeling;
   slot.inputs = InputSync(task.policy.input_buffer, image.input_bytes);
-  slot.outputs_at_start.resize(image.output_bytes);
-  slot.own_outputs.resize(image.output_bytes);
-  if (slot.synchronous()) {
-    slot.waiting.resize(image.output_bytes);
-    slot.waiting_mask.resize(image.output_bytes);
+  for (base::Bytes* bytes : {&slot.outputs_at_start, &slot.own_outputs}) {
+    bytes->resize(image.output_bytes);
+  }
+  const bool buffered = task.policy.output_buffer != ir::IoBuffer::kCopied;
+  if (buffered || slot.synchronous() || slot.exchanges()) {
+    slot.outputs = OutputSync(task.policy.output_buffer, image.output_bytes);
   }
   slot.next_release_ns = first_release_ns;
   slot.once = slot.status.once = task.once;
@@ -70,7 +71,7 @@ void keep_overrun(TaskSlot& slot, const TaskSlot& old) {
 
 BufferState TaskSlot::output_state() const {
   const bool scan = state == TaskState::kRunning || state == TaskState::kSuspended;
-  return {ir::InputBuffer::kCopied, 0, BufferState::kNone, 1, unsent || held, scan};
+  return outputs.state(unsent || held, scan);
 }
 
 TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
@@ -92,16 +93,19 @@ TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
     return tasks[a].status.priority < tasks[b].status.priority;
   });
   inputs.resize(image.input_bytes);
-  outputs.resize(image.output_bytes);
+  for (base::Bytes* bytes :
+       {&outputs, &unused, &waiting_mask, &written, &scratch, &forced_outputs}) {
+    bytes->resize(image.output_bytes);
+  }
   plain_outputs = !process_image.has_reals();
-  for (const TaskSlot& slot : tasks) plain_outputs = plain_outputs && !slot.synchronous();
-  unused.resize(image.output_bytes);
+  for (const TaskSlot& slot : tasks) {
+    plain_outputs = plain_outputs && !slot.outputs.used();
+    if (!slot.exchanges()) continue;
+    newest_inputs.resize(image.input_bytes);
+    sent_outputs.resize(image.output_bytes);
+  }
   process_image.mark_outputs(0, UINT32_MAX, unused);
   for (uint8_t& bits : unused) bits = static_cast<uint8_t>(~bits);
-  waiting_mask.resize(image.output_bytes);
-  written.resize(image.output_bytes);
-  scratch.resize(image.output_bytes);
-  forced_outputs.resize(image.output_bytes);
   if (image.output_bytes != 0) mark_own_outputs(*this);
   set_base_period();
 }
@@ -110,6 +114,10 @@ void TaskTables::adopt(TaskTables& previous, int64_t cycle_start_ns) {
   std::fill(waiting_mask.begin(), waiting_mask.end(), uint8_t{0});
   std::copy_n(previous.inputs.begin(), std::min(inputs.size(), previous.inputs.size()),
               inputs.begin());
+  const base::Bytes& received =
+      previous.newest_inputs.empty() ? previous.inputs : previous.newest_inputs;
+  std::copy_n(received.begin(), std::min(newest_inputs.size(), received.size()),
+              newest_inputs.begin());
   // What has lost its variable becomes safe with the next refresh; the rest is packed then (case
   // 46).
   std::fill(outputs.begin(), outputs.end(), uint8_t{0});
@@ -121,8 +129,10 @@ void TaskTables::adopt(TaskTables& previous, int64_t cycle_start_ns) {
     written[i] = static_cast<uint8_t>(unused[i] & ~(there ? previous.unused[i] : 0));
   }
   safe.apply(written, cycle_start_ns, outputs);
+  std::copy_n(outputs.begin(), sent_outputs.size(), sent_outputs.begin());
   for (TaskSlot& slot : tasks) {
-    std::fill(slot.waiting_mask.begin(), slot.waiting_mask.end(), uint8_t{0});
+    slot.outputs.restart();
+    slot.unsent = slot.held = false;
     slot.released = slot.due_again = slot.overran = slot.io_lost = false;
     slot.next_release_ns = previous.next_cycle_ns(cycle_start_ns);
     for (TaskSlot& old : previous.tasks) {
@@ -150,12 +160,13 @@ void TaskTables::adopt(TaskTables& previous, int64_t cycle_start_ns) {
 }
 
 // At a boundary, where nothing is allocated. Without it, what waits goes out with the first cycle.
-void TaskTables::keep_outputs(TaskSlot& slot, const TaskSlot& old) {
+void TaskTables::keep_outputs(TaskSlot& slot, TaskSlot& old) {
   for (size_t i = 0; i < waiting_mask.size(); ++i) slot.own_outputs[i] |= old.own_outputs[i];
-  if (!slot.synchronous() || !old.synchronous()) return;
-  std::copy(old.waiting.begin(), old.waiting.end(), slot.waiting.begin());
-  std::copy(old.waiting_mask.begin(), old.waiting_mask.end(), slot.waiting_mask.begin());
-  for (size_t i = 0; i < waiting_mask.size(); ++i) waiting_mask[i] |= slot.waiting_mask[i];
+  const bool both = slot.outputs.used() && old.outputs.used();
+  if (!both || slot.synchronous() != old.synchronous()) return;
+  slot.outputs.keep(old.outputs);
+  slot.held = old.held;
+  slot.outputs.mark(waiting_mask);
 }
 
 // What has been received for a scan that is still to come. Tables that rested have old inputs.

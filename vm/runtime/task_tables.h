@@ -10,6 +10,7 @@
 #include "vm/runtime/controller.h"
 #include "vm/runtime/histogram.h"
 #include "vm/runtime/input_sync.h"
+#include "vm/runtime/output_sync.h"
 #include "vm/runtime/process_image.h"
 #include "vm/runtime/recent_longest.h"
 #include "vm/runtime/safe_outputs.h"
@@ -35,8 +36,7 @@ struct TaskSlot {
   InputSync inputs;              // what an activation sees of %I, from start to end (B3)
   base::Bytes outputs_at_start;  // %Q variables when it began, to know what it wrote
   base::Bytes own_outputs;       // mask: what it writes, as far as is known
-  base::Bytes waiting;           // its outputs until its next period begins (B6)
-  base::Bytes waiting_mask;      // which they are; empty without TaskIo::kSynchronous
+  OutputSync outputs;            // what its scans have written, until it is sent (B5, B6)
   int64_t next_release_ns = 0;
   int64_t released_ns = 0;      // when the release was due that it begins with
   bool once = false;            // start code
@@ -49,7 +49,7 @@ struct TaskSlot {
   TaskState state = TaskState::kWaiting;
   bool late = false;    // a release has found it not done
   bool unsent = false;  // complete outputs of it are in TaskTables::outputs, not sent yet
-  bool held = false;    // complete outputs of it are in `waiting`
+  bool held = false;    // complete outputs of it are in its own `outputs`
   bool lasting = false;     // its code is done, and it lasts until run_ns is scan_ns
   int64_t scan_ns = 0;      // Clock::scan_ns
 
@@ -65,6 +65,7 @@ struct TaskSlot {
   uint64_t fuel_used = 0;  // by the programs that are done
 
   bool synchronous() const { return policy.io == ir::TaskIo::kSynchronous; }
+  bool exchanges() const { return policy.exchange == ir::TaskExchange::kOwn; }
   BufferState output_state() const;
 };
 
@@ -97,10 +98,13 @@ struct TaskTables {
   ProcessImage process_image;
   SharedGlobals shared;
   SafeOutputs safe;
-  base::Bytes inputs;        // as received last
-  base::Bytes outputs;       // as sent next: complete results only (B5)
+  base::Bytes inputs;        // as received last in a cycle
+  base::Bytes outputs;       // as sent next in a cycle: complete results only (B5)
+  // Where tasks exchange by themselves (B12), else empty: as received last and as sent last.
+  base::Bytes newest_inputs;
+  base::Bytes sent_outputs;
   base::Bytes unused;        // mask: outputs that no variable stands for
-  base::Bytes waiting_mask;  // of all tasks
+  base::Bytes waiting_mask;  // what is in buffers of the tasks
   base::Bytes written;       // by the task that ends
   base::Bytes lost;          // IoPort::lost_tasks
   base::Bytes scratch;
@@ -113,7 +117,7 @@ struct TaskTables {
 
  private:
   void find_base_period();
-  void keep_outputs(TaskSlot& slot, const TaskSlot& old);
+  void keep_outputs(TaskSlot& slot, TaskSlot& old);
   void keep_inputs(TaskSlot& slot, TaskSlot& old);
 };
 

@@ -8,8 +8,8 @@ namespace vm {
 
 enum class Moment : uint8_t {
   kCycle,      // a control cycle begins
-  kReceived,   // inputs of all devices
-  kSent,       // outputs to all devices
+  kReceived,   // inputs of all devices; for one task alone where it has a name (B12)
+  kSent,       // outputs to all devices; likewise
   kReleased,   // the task is due since then
   kMissed,     // it was due, and no scan of its own will come of it
   kBegun,      // its scan

@@ -100,6 +100,38 @@ TEST(Image, ScheduleIsStoredWhereItIsNotTheFirst) {
   }
 }
 
+// Buffers of outputs and exchanges of tasks stand in bytes that there were before, so all other
+// images are what they were; those that have some say that older controllers cannot run them.
+TEST(Image, B5_B12_TaskExchangeIsStoredWhereThereIsSome) {
+  constexpr size_t kVersionAt = 8;
+  const ir::Image usual = sample::busy_image();
+  const base::Bytes before = ir::encode(usual);
+  const auto set = [&](ir::IoBuffer buffer, ir::TaskExchange exchange) {
+    ir::Image image = usual;
+    image.tasks[0].policy.input_buffer = ir::IoBuffer::kThree;
+    image.tasks[0].policy.output_buffer = buffer;
+    image.tasks[0].policy.exchange = exchange;
+    return image;
+  };
+  EXPECT_EQ(ir::encode(set(ir::IoBuffer::kCopied, ir::TaskExchange::kOfCycle))[kVersionAt], 7);
+  const ir::Image images[] = {set(ir::IoBuffer::kFirstUnseen, ir::TaskExchange::kOfCycle),
+                              set(ir::IoBuffer::kCopied, ir::TaskExchange::kOwn),
+                              set(ir::IoBuffer::kLocked, ir::TaskExchange::kOwn)};
+  for (const ir::Image& image : images) {
+    base::Bytes bytes = ir::encode(image);
+    EXPECT_EQ(bytes[kVersionAt], 13);
+    EXPECT_EQ(bytes.size(), before.size());
+    const auto decoded = ir::decode(bytes);
+    ASSERT_TRUE(decoded.ok()) << decoded.error().text;
+    EXPECT_EQ(decoded->tasks[0].policy, image.tasks[0].policy);
+    EXPECT_EQ(ir::encode(*decoded), bytes);
+    for (const uint8_t version : {7, 8, 11, 14, 15}) {
+      bytes[kVersionAt] = version;
+      EXPECT_EQ(ir::decode(bytes).error().refusal, Refusal::kBadFormat) << int{version};
+    }
+  }
+}
+
 // The header says a length that the limit allows, and one byte more.
 TEST(Image, LargestImage) {
   constexpr size_t kLengthAt = 12;

@@ -227,7 +227,25 @@ TEST(Verify, V15_Tasks) {
     i.tasks[0].policy.io = ir::TaskIo::kSynchronous;
     i.tasks[0].policy.overrun = ir::Overrun::kAtOnce;
   });
+  expect_refused(Refusal::kBadTask, "an exchange of its own with inputs of its period",
+                 [](Image& i) {
+                   i.tasks[0].policy.io = ir::TaskIo::kSynchronous;
+                   i.tasks[0].policy.exchange = ir::TaskExchange::kOwn;
+                 });
+  expect_refused(Refusal::kBadTask, "first inputs of its own exchange", [](Image& i) {
+    i.tasks[0].policy.input_buffer = ir::IoBuffer::kFirstUnseen;
+    i.tasks[0].policy.exchange = ir::TaskExchange::kOwn;
+  });
+  expect_refused(Refusal::kBadTask, "first outputs of its own exchange", [](Image& i) {
+    i.tasks[0].policy.output_buffer = ir::IoBuffer::kFirstUnseen;
+    i.tasks[0].policy.exchange = ir::TaskExchange::kOwn;
+  });
   Image fine = sample::busy_image();
+  fine.tasks[0].policy = {.exchange = ir::TaskExchange::kOwn,
+                          .input_buffer = ir::IoBuffer::kThree,
+                          .output_buffer = ir::IoBuffer::kLocked};
+  EXPECT_TRUE(ir::verify(ir::encode(fine)).ok());
+  fine.tasks[0].policy = {};
   fine.tasks[0].policy.overrun = ir::Overrun::kAtOnce;
   EXPECT_TRUE(ir::verify(ir::encode(fine)).ok());
   fine.tasks[0].policy = {.io = ir::TaskIo::kSynchronous, .overrun = ir::Overrun::kLengthen};

@@ -47,7 +47,7 @@ const #5 = {0 = #4}
 const #6 = 'a$00$E4$00'
 globals Globals
 task Fast period 1000000 watchdog 5000000 priority 0
-task Slow period 3000000 priority 1 input_buffer first_unseen overrun lengthen
+task Slow period 3000000 priority 1 input_buffer first_unseen output_buffer three overrun lengthen
 instance Main : Main task 0 init #5
 pou function Limit file 'a b.st' line 7 hash 0101010101010101010101010101010101010101010101010101010101010101
   local input low : INT

@@ -162,7 +162,7 @@ TEST(Activity, B4_B11_WhichBufferIsWithWhom) {
   ASSERT_TRUE(seen.controller);
   seen.cycles(1);
   const vm::BufferState first = seen.activity(1).inputs;
-  EXPECT_EQ(first.kind, ir::InputBuffer::kThree);
+  EXPECT_EQ(first.kind, ir::IoBuffer::kThree);
   EXPECT_FALSE(first.fresh);
   EXPECT_TRUE(first.locked);
   seen.cycles(1);
@@ -209,7 +209,7 @@ TEST(Activity, B11_StatesThroughAChangeAndARestart) {
   auto old = seen.controller->publish(std::move(*generation));
   EXPECT_FALSE(seen.controller->activity(1, before).has_value());
   EXPECT_FALSE(seen.controller->activity(64, before + 1).has_value());
-  EXPECT_EQ(seen.activity(1).inputs.kind, ir::InputBuffer::kSwapped);
+  EXPECT_EQ(seen.activity(1).inputs.kind, ir::IoBuffer::kSwapped);
   EXPECT_EQ(seen.activity(1).state, TaskState::kWaiting);
   ASSERT_TRUE(seen.controller->restart(vm::Restart::kCold, kMs).ok());
   EXPECT_EQ(seen.activity(0).state, TaskState::kWaiting);
@@ -218,8 +218,8 @@ TEST(Activity, B11_StatesThroughAChangeAndARestart) {
 TEST(Activity, B11_EveryStateGoesThroughItsNumber) {
   vm::TaskActivity activity;
   activity.late = true;
-  activity.inputs = {ir::InputBuffer::kFirstUnseen, 2, 1, 0, true, false};
-  activity.outputs = {ir::InputBuffer::kLocked, 0, vm::BufferState::kNone, 0, false, true};
+  activity.inputs = {ir::IoBuffer::kFirstUnseen, 2, 1, 0, true, false};
+  activity.outputs = {ir::IoBuffer::kLocked, 0, vm::BufferState::kNone, 0, false, true};
   for (uint32_t state = 0; state < vm::kTaskStateCount; ++state) {
     activity.state = static_cast<TaskState>(state);
     EXPECT_EQ(vm::unpacked(vm::packed(activity)), activity) << state;

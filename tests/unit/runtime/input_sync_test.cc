@@ -8,17 +8,17 @@
 
 namespace {
 
-using ir::InputBuffer;
+using ir::IoBuffer;
 
-constexpr InputBuffer kNewest[] = {InputBuffer::kCopied, InputBuffer::kLocked,
-                                   InputBuffer::kSwapped, InputBuffer::kSwappedWithFlag,
-                                   InputBuffer::kThree};
+constexpr IoBuffer kNewest[] = {IoBuffer::kCopied, IoBuffer::kLocked,
+                                   IoBuffer::kSwapped, IoBuffer::kSwappedWithFlag,
+                                   IoBuffer::kThree};
 
 // One byte is received. A task as the scheduler treats it: all that arrives is offered, and what
 // was received last once more where the buffer wants it when a scan starts.
 class Task {
  public:
-  explicit Task(InputBuffer strategy) : sync_(strategy, 1) {}
+  explicit Task(IoBuffer strategy) : sync_(strategy, 1) {}
 
   void arrive(uint8_t value) {
     received_ = {value};
@@ -39,7 +39,7 @@ class Task {
 
 // What each scan sees of one order of events, 'a'rrival, 's'tart and 'e'nd; arrivals are counted.
 // Empty: a scan has seen two things.
-std::string seen(InputBuffer strategy, const std::string& events) {
+std::string seen(IoBuffer strategy, const std::string& events) {
   Task task(strategy);
   uint8_t arrived = 0;
   bool running = false;
@@ -95,7 +95,7 @@ TEST(InputSync, B4_EveryStrategyShowsTheNewestThatHadArrived) {
   std::string events;
   every_order(events, 10, false, [&](const std::string& order) {
     ++orders;
-    for (const InputBuffer strategy : kNewest) {
+    for (const IoBuffer strategy : kNewest) {
       ASSERT_EQ(seen(strategy, order), newest(order)) << order << static_cast<int>(strategy);
     }
   });
@@ -105,22 +105,22 @@ TEST(InputSync, B4_EveryStrategyShowsTheNewestThatHadArrived) {
 TEST(InputSync, B4_FirstUnseenShowsTheFirstSinceTheStartBefore) {
   std::string events;
   every_order(events, 10, false, [&](const std::string& order) {
-    ASSERT_EQ(seen(InputBuffer::kFirstUnseen, order), first_unseen(order)) << order;
+    ASSERT_EQ(seen(IoBuffer::kFirstUnseen, order), first_unseen(order)) << order;
   });
   EXPECT_EQ(first_unseen("asaaeseseas"), "1224");
 }
 
 // Where nothing has come since the last start there is older data in the other buffer.
 TEST(InputSync, B4_NothingNewBringsNothingOlderBack) {
-  for (const InputBuffer strategy : kNewest) {
+  for (const IoBuffer strategy : kNewest) {
     EXPECT_EQ(seen(strategy, "aseaseses"), "1222") << static_cast<int>(strategy);
   }
-  EXPECT_EQ(seen(InputBuffer::kFirstUnseen, "aseaseses"), "1222");
+  EXPECT_EQ(seen(IoBuffer::kFirstUnseen, "aseaseses"), "1222");
 }
 
 // What came before a restart is older than what comes behind it.
 TEST(InputSync, ARestartForgetsWhatNoScanHasSeen) {
-  vm::InputSync sync(InputBuffer::kFirstUnseen, 1);
+  vm::InputSync sync(IoBuffer::kFirstUnseen, 1);
   const std::array<uint8_t, 1> old = {1};
   const std::array<uint8_t, 1> now = {2};
   sync.write(old);

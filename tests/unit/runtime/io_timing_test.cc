@@ -132,6 +132,23 @@ TEST(IoTiming, B3_B4_EveryStrategyKeepsAScanApart) {
   }
 }
 
+// With every kind for outputs: one latency, and what is half done is never sent, however often the
+// scan is suspended. One scan ends between two exchanges, so all kinds send the same.
+TEST(IoTiming, B5_B6_EveryOutputBuffer) {
+  const Seen copied = run("");
+  for (const char* buffer : kEveryBuffer) {
+    SCOPED_TRACE(buffer);
+    const std::string attribute = "{attribute 'output_buffer' := '" + std::string(buffer) + "'} ";
+    const Seen newest = run(attribute);
+    EXPECT_EQ(newest.sent, copied.sent);
+    EXPECT_EQ(newest.torn, "0");
+    const Seen synchronous = run(attribute + "{attribute 'io' := 'synchronous'}");
+    ASSERT_EQ(synchronous.latencies().size(), 1u);
+    EXPECT_EQ(synchronous.latencies().begin()->first, 6);
+    for (const auto& [cycle, value] : synchronous.sent) EXPECT_NE(value, 0xff) << cycle;
+  }
+}
+
 // A scan sees the first inputs that came behind the start of the one before: a pulse of one cycle
 // is not lost because others follow it.
 TEST(IoTiming, B4_FirstUnseenKeepsTheFirst) {

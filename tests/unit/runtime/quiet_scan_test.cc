@@ -49,6 +49,8 @@ PROGRAM Work
   __TRY n := n / zero; __CATCH n := n + 1; __ENDTRY
   outp := LREAL_TO_REAL(a[3]); bits[n MOD 16] := t.Q; go := NOT go;
 END_PROGRAM
+PROGRAM Pulse VAR q AT %QB13 : BYTE; END_VAR q := q + 1; END_PROGRAM
+PROGRAM Pulse2 VAR a AT %IB0 : BYTE; q AT %QB14 : BYTE; END_VAR q := a + 1; END_PROGRAM
 PROGRAM Slow VAR i, n : DINT; q AT %QB12 : BYTE; END_VAR
   FOR i := 1 TO 15000 DO n := n + i; END_FOR q := DINT_TO_BYTE(n);
 END_PROGRAM
@@ -60,11 +62,14 @@ END_PROGRAM
 PROGRAM Traps VAR zero, n : DINT; END_VAR n := n + 1; IF n MOD 7 = 0 THEN n := n / zero; END_IF END_PROGRAM
 CONFIGURATION c RESOURCE r ON cpu
   TASK Fast (INTERVAL := T#10ms, PRIORITY := 1);
-  {attribute 'io' := 'synchronous'} {attribute 'input_buffer' := 'three'} TASK Late (INTERVAL := T#40ms, PRIORITY := 5);
-  {attribute 'input_buffer' := 'swapped_with_flag'} TASK Edge (SINGLE := go, PRIORITY := 3);
+  {attribute 'io' := 'synchronous'} {attribute 'input_buffer' := 'three'} {attribute 'output_buffer' := 'three'}
+  TASK Late (INTERVAL := T#40ms, PRIORITY := 5);
+  {attribute 'input_buffer' := 'swapped_with_flag'} {attribute 'exchange' := 'own'} TASK Edge (SINGLE := go, PRIORITY := 3);
+  {attribute 'output_buffer' := 'first_unseen'} TASK Tick (INTERVAL := T#10ms, PRIORITY := 4);
   {attribute 'overrun' := 'stretch'} {attribute 'on_trap' := 'go_on'} TASK Bad (INTERVAL := T#20ms, PRIORITY := 2);
   {attribute 'freewheeling'} TASK Free (PRIORITY := 9);
   PROGRAM W WITH Fast : Work; PROGRAM S WITH Late : Slow; PROGRAM K WITH Edge : Chart; PROGRAM T WITH Bad : Traps;
+  PROGRAM U WITH Tick : Pulse; PROGRAM V WITH Edge : Pulse2;
 END_RESOURCE END_CONFIGURATION
 )";
 

@@ -75,6 +75,14 @@ std::string racing_first() {
   return source.replace(source.find("T#7ms"), 5, "T#3ms");
 }
 
+// The same, with tasks that exchange by themselves, so that a cycle has several receptions.
+std::string racing_by_themselves() {
+  std::string source = racing_first();
+  const std::string own = "{attribute 'exchange' := 'own'} ";
+  source.insert(source.find("TASK Lazy"), own);
+  return source.insert(source.find("TASK Quick"), own);
+}
+
 class RecordingTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -121,6 +129,7 @@ class RecordingTest : public testing::Test {
   std::string final_;
   uint64_t losses_ = 0;
   uint64_t overruns_ = 0;
+  size_t most_receptions_ = 0;  // in one cycle
 
   void expect_identical_replays(const std::string& source);
 };
@@ -135,6 +144,10 @@ void RecordingTest::expect_identical_replays(const std::string& source) {
     ASSERT_TRUE(recording.ok());
     ASSERT_EQ(recording->cycles.size(), 201u);
     EXPECT_FALSE(recording->cut_off);
+    most_receptions_ = 0;
+    for (const vm::RecordedCycle& cycle : recording->cycles) {
+      most_receptions_ = std::max(most_receptions_, cycle.observed.receptions.size());
+    }
     vm::Replay replay;
     vm::StateSum sum;
     auto image = ir::verify(recording->start.image);
@@ -160,6 +173,11 @@ TEST_F(RecordingTest, ReplayIsBitIdentical) { expect_identical_replays(kRacing);
 TEST_F(RecordingTest, B2_B7_ReplayOfOtherSchedulesIsBitIdentical) {
   expect_identical_replays(racing_first());
   EXPECT_GT(overruns_, 10u) << "no task was late, so this shows nothing of it";
+}
+
+TEST_F(RecordingTest, B12_ReplayOfFurtherReceptionsIsBitIdentical) {
+  expect_identical_replays(racing_by_themselves());
+  EXPECT_GT(most_receptions_, 2u) << "no cycle received more than twice";
 }
 
 TEST_F(RecordingTest, EveryCutIsFoundAndTheRestIsWhole) {
@@ -276,6 +294,43 @@ TEST(Recording, RoundTripOfRecords) {
   ASSERT_EQ(back->requests.size(), 2u);
   EXPECT_EQ(back->requests[0].cycle, 3u);
   EXPECT_EQ(back->requests[1].bytes.size(), 100'000u);
+}
+
+// Each reception of a cycle with what it has brought; one without any is one too.
+TEST(Recording, B12_RoundTripOfSeveralReceptions) {
+  base::Bytes bytes = vm::encode_record(vm::RecordedStart{.image = {1, 2, 3}, .retained = {}});
+  vm::RecordedCycle cycle{1, {}, 5};
+  cycle.observed.changed = {{4, 1}, {9, 2}, {0, 3}};
+  cycle.observed.lost = {{1, 1}, {0, 1}};
+  cycle.observed.receptions = {{2, 0}, {2, 1}, {3, 2}};
+  for (const base::Bytes& more : {vm::encode_record(cycle), vm::encode_end()}) {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  }
+  base::Result<vm::Recording> back = vm::decode_recording(bytes);
+  ASSERT_TRUE(back.ok());
+  ASSERT_EQ(back->cycles.size(), 1u);
+  const vm::Observed& seen = back->cycles[0].observed;
+  EXPECT_EQ(seen.changed, cycle.observed.changed);
+  EXPECT_EQ(seen.lost, cycle.observed.lost);
+  ASSERT_EQ(seen.receptions.size(), 3u);
+  vm::Replay replay;
+  replay.see(seen);
+  base::Bytes inputs(10);
+  base::Bytes tasks(2);
+  const auto receive = [&] {
+    replay.receive(inputs);
+    std::fill(tasks.begin(), tasks.end(), uint8_t{0});
+    replay.lost_tasks(tasks);
+  };
+  receive();
+  EXPECT_EQ(inputs, (base::Bytes{0, 0, 0, 0, 1, 0, 0, 0, 0, 2}));
+  EXPECT_EQ(tasks, (base::Bytes{0, 0}));
+  receive();
+  EXPECT_EQ(inputs, (base::Bytes{0, 0, 0, 0, 1, 0, 0, 0, 0, 2}));
+  EXPECT_EQ(tasks, (base::Bytes{0, 1}));
+  receive();
+  EXPECT_EQ(inputs[0], 3);
+  EXPECT_EQ(tasks, (base::Bytes{1, 0}));
 }
 
 TEST(Recording, UnwritableFileIsOneClearError) {

@@ -50,8 +50,8 @@ vm::StatusReport status() {
   out.pous_to_make = 26;
   out.interpreted = {"Main: why"};
   out.tasks = {{"Fast", 27, 28, 29, 30, 31, 32, summary(33), summary(38), true, false, true, 49,
-                {vm::TaskState::kSuspended, true, {ir::InputBuffer::kThree, 1, 2, 0, true, false},
-                 {ir::InputBuffer::kSwapped, 1, vm::BufferState::kNone, 0, false, true}}}};
+                {vm::TaskState::kSuspended, true, {ir::IoBuffer::kThree, 1, 2, 0, true, false},
+                 {ir::IoBuffer::kSwapped, 1, vm::BufferState::kNone, 0, false, true}}}};
   out.traps = {{43, "Slow", {"Pou", "file.st", 44, "text"}}};
   out.devices = {{"rack", "modbus", "online", 45, 46, 47, "none", 48, "writer", 61}};
   return out;
