@@ -19,9 +19,10 @@ chart() {  # NAME OPTIONS...
 chart preemption "$examples/preemption.st" --scans 8 --duration Every=3ms --duration Second=6ms --duration Fourth=12ms
 chart synchronous "$examples/synchronous.st" --scans 13 --duration Fast=6ms --duration Newest=3ms --duration Constant=6ms
 chart swapped_by_flag "$examples/swapped_by_flag.st" --scans 16 --duration Short=2ms --duration Long=17ms
+chart own_exchange "$examples/own_exchange.st" --scans 4 --duration First=2ms --duration Fine=3ms --duration Coarse=2ms
 change="--scans 8 --duration Fast=30ms --duration Slow=30ms --change 90ms=$examples/change_after.st --configuration 30ms --strategy standby"
 chart change "$examples/change_before.st" $change
-for example in preemption synchronous swapped_by_flag change_before change_after; do
+for example in preemption synchronous swapped_by_flag own_exchange change_before change_after; do
   expect 0 stc fmt --check "$examples/$example.st"
 done
 
@@ -34,6 +35,13 @@ has '"configuration":[{"from_ns":90000000,"to_ns":100000000},{"from_ns":13000000
 has '{"from_ns":100000000,"to_ns":130000000}'
 has '"switches_ns":[180000000]'
 if grep -qE '"missed_ns":\[[0-9]' json; then fail "a release is missed"; fi
+
+# B12: received for Fine when its scan starts and sent when it ends, for it alone.
+expect 0 stvm run "$examples/own_exchange.st" --virtual-time --scans 2 --duration First=2ms --duration Fine=3ms --chart - --format json
+tr -d ' \n' <out >json
+has '"received_ns":[0,10000000],"sent_ns":[0,10000000]'
+has '"inputs_received_ns":[2000000,12000000],"outputs_sent_ns":[5000000,15000000],"own_received_ns":[2000000,12000000],"own_sent_ns":[5000000,15000000]'
+has '"own_received_ns":[],"own_sent_ns":[]'
 
 # Without a stated length nothing takes time; by safe points, as long as its loops.
 cat >loops.st <<'ST'

@@ -53,8 +53,8 @@ void TimingChart::note(Moment moment, std::string_view task, int64_t at_ns) {
     return;
   }
   if (moment == Moment::kCycle) return cycles_.push_back(at_ns);
-  if (moment == Moment::kReceived) return received_.push_back(at_ns);
-  if (moment == Moment::kSent) return sent_.push_back(at_ns);
+  if (moment == Moment::kReceived && task.empty()) return received_.push_back(at_ns);
+  if (moment == Moment::kSent && task.empty()) return sent_.push_back(at_ns);
   const size_t number = lane_of(task);
   TimingLane& lane = lanes_[number];
   switch (moment) {
@@ -81,9 +81,20 @@ void TimingChart::note(Moment moment, std::string_view task, int64_t at_ns) {
       return lane.inputs.push_back(at_ns);
     case Moment::kOutputsOf:
       return lane.outputs.push_back(at_ns);
+    case Moment::kReceived:
+      return lane.own_received.push_back(at_ns);
+    case Moment::kSent:
+      return lane.own_sent.push_back(at_ns);
     default:
       break;
   }
+}
+
+bool TimingChart::has_own() const {
+  for (const TimingLane& lane : lanes_) {
+    if (!lane.own_received.empty() || !lane.own_sent.empty()) return true;
+  }
+  return false;
 }
 
 void TimingChart::configured(int64_t from_ns, int64_t to_ns) {
@@ -129,6 +140,8 @@ void TimingChart::json(tools::JsonWriter& json) const {
     spans_json(json, "suspended", lane.suspended);
     times_json(json, "inputs_received_ns", lane.inputs);
     times_json(json, "outputs_sent_ns", lane.outputs);
+    times_json(json, "own_received_ns", lane.own_received);
+    times_json(json, "own_sent_ns", lane.own_sent);
     json.end_object();
   }
   json.end_array();

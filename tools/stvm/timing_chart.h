@@ -27,6 +27,8 @@ struct TimingLane {
   std::vector<int64_t> trapped;
   std::vector<int64_t> inputs;   // receptions that its scans work with
   std::vector<int64_t> outputs;  // transmissions with what its scans have written
+  std::vector<int64_t> own_received;  // further ones, for it alone (B12)
+  std::vector<int64_t> own_sent;
 };
 
 class TimingChart : public vm::Timeline {
@@ -55,6 +57,8 @@ class TimingChart : public vm::Timeline {
     bool begun = false;  // its scan has no span yet
   };
   size_t lane_of(std::string_view task);
+  // Has any of its tasks exchanged by itself?
+  bool has_own() const;
   void become(size_t lane, Open::State state, int64_t at_ns);
 
   std::vector<TimingLane> lanes_;

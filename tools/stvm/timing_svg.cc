@@ -45,6 +45,11 @@ class Picture {
         "class=\"%s\"/>\n",
         x(span.from_ns), top, std::max(x(span.to_ns) - x(span.from_ns), 0.8), height, color, style);
   }
+  // Of one task alone.
+  void own_line(int64_t at_ns, double top, double bottom, const char* color) {
+    out += format("<path d=\"M%.2f %.1fV%.1f\" stroke=\"%s\" stroke-dasharray=\"2 2\"/>\n",
+                  x(at_ns), top, bottom, color);
+  }
   void dot(int64_t at_ns, double y, const char* color) {
     out += format("<circle cx=\"%.2f\" cy=\"%.1f\" r=\"%.0f\" fill=\"%s\"/>\n", x(at_ns), y,
                   kDotRadius, color);
@@ -85,7 +90,7 @@ void draw_axis(Picture& picture, int64_t end_ns, double top) {
   }
 }
 
-void draw_legend(Picture& picture, double y) {
+void draw_legend(Picture& picture, double y, bool own) {
   constexpr struct {
     const char* shape;  // its left edge is 0, and the line of the text
     const char* style;
@@ -107,6 +112,10 @@ void draw_legend(Picture& picture, double y) {
     picture.text(at + 16, y, "note", sign.words);
     at += sign.width;
   }
+  if (own) {
+    picture.text(kLeft, y - 18, "note",
+                 "dashed: received or sent for the task of that colour alone");
+  }
 }
 
 double dots_height(size_t lanes) { return static_cast<double>(lanes) * kDotStep + 12; }
@@ -114,13 +123,16 @@ double dots_height(size_t lanes) { return static_cast<double>(lanes) * kDotStep 
 // A row of receptions or transmissions. Its dots say by colour and height of which task they are.
 void draw_exchange(Picture& picture, const char* name, double top,
                    const std::vector<int64_t>& times, const std::vector<TimingLane>& lanes,
-                   std::vector<int64_t> TimingLane::*of) {
+                   std::vector<int64_t> TimingLane::*of, std::vector<int64_t> TimingLane::*own) {
   const double height = dots_height(lanes.size());
   picture.name(name, top + height / 2 + 4);
   picture.base_line(top + height);
   for (const int64_t at_ns : times) picture.line(at_ns, top, top + height, "io");
   for (size_t i = 0; i < lanes.size(); ++i) {
     const double y = top + 6 + kDotStep * (static_cast<double>(i) + 0.5);
+    for (const int64_t at_ns : lanes[i].*own) {
+      picture.own_line(at_ns, top, top + height, color_of(i));
+    }
     for (const int64_t at_ns : lanes[i].*of) picture.dot(at_ns, y, color_of(i));
   }
 }
@@ -167,19 +179,21 @@ std::string TimingChart::svg(const std::string& title) const {
   const double sent_top = tasks_top + static_cast<double>(lanes_.size()) * kTaskHeight + 10;
   const bool change = !configuration_.empty() || !switches_.empty();
   const double bottom = sent_top + dots + 10 + (change ? kTaskHeight : 0);
-  const double height = bottom + 64;
+  const double height = bottom + (has_own() ? 82 : 64);
   Picture picture(end_ns_);
   picture.out = head(height, title + (cut_ ? " (the beginning of a longer run)" : ""));
   for (const int64_t at_ns : cycles_) picture.line(at_ns, kUpperMargin, bottom, "cycle");
-  draw_exchange(picture, "inputs received", kUpperMargin, received_, lanes_, &TimingLane::inputs);
+  draw_exchange(picture, "inputs received", kUpperMargin, received_, lanes_, &TimingLane::inputs,
+                &TimingLane::own_received);
   for (size_t i = 0; i < lanes_.size(); ++i) {
     draw_task(picture, lanes_[i], color_of(i),
               tasks_top + static_cast<double>(i + 1) * kTaskHeight);
   }
-  draw_exchange(picture, "outputs sent", sent_top, sent_, lanes_, &TimingLane::outputs);
+  draw_exchange(picture, "outputs sent", sent_top, sent_, lanes_, &TimingLane::outputs,
+                &TimingLane::own_sent);
   if (change) draw_change(picture, configuration_, switches_, bottom);
   draw_axis(picture, end_ns_, bottom);
-  draw_legend(picture, height - 16);
+  draw_legend(picture, height - 16, has_own());
   return picture.out + "</svg>\n";
 }
 

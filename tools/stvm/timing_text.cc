@@ -77,6 +77,7 @@ std::string TimingChart::text() const {
     axis.words(axis.column(at_ns), scale.text(at_ns));
   }
   TextRow received("received", end);
+  for (const TimingLane& lane : lanes_) received.times(lane.own_received, '+');
   received.times(received_, '|');
   std::string out = axis.text() + received.text();
   for (const TimingLane& lane : lanes_) {
@@ -89,6 +90,7 @@ std::string TimingChart::text() const {
     out += row.text();
   }
   TextRow sent("sent", end);
+  for (const TimingLane& lane : lanes_) sent.times(lane.own_sent, '+');
   sent.times(sent_, '|');
   out += sent.text();
   if (!configuration_.empty() || !switches_.empty()) {
@@ -99,6 +101,7 @@ std::string TimingChart::text() const {
   }
   out += "  # running  - suspended  . due, others run  x missed  ! trapped";
   if (!switches_.empty()) out += "  S switch";
+  if (has_own()) out += "\n  + for one task alone";
   return out + (cut_ ? "\n  the beginning of a longer run\n" : "\n");
 }
 
