@@ -119,13 +119,13 @@ TEST(Image, B5_B12_TaskExchangeIsStoredWhereThereIsSome) {
                               set(ir::IoBuffer::kLocked, ir::TaskExchange::kOwn)};
   for (const ir::Image& image : images) {
     base::Bytes bytes = ir::encode(image);
-    EXPECT_EQ(bytes[kVersionAt], 13);
+    EXPECT_EQ(bytes[kVersionAt], 15);
     EXPECT_EQ(bytes.size(), before.size());
     const auto decoded = ir::decode(bytes);
     ASSERT_TRUE(decoded.ok()) << decoded.error().text;
     EXPECT_EQ(decoded->tasks[0].policy, image.tasks[0].policy);
     EXPECT_EQ(ir::encode(*decoded), bytes);
-    for (const uint8_t version : {7, 8, 11, 14, 15}) {
+    for (const uint8_t version : {7, 8, 11, 13, 16, 17}) {
       bytes[kVersionAt] = version;
       EXPECT_EQ(ir::decode(bytes).error().refusal, Refusal::kBadFormat) << int{version};
     }
