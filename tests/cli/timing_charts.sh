@@ -84,7 +84,8 @@ cat >busy.st <<'ST'
 PROGRAM Busy VAR i : DINT; END_VAR FOR i := 1 TO 1000000 DO ; END_FOR END_PROGRAM
 PROGRAM Copy VAR a AT %IB0 : BYTE; q AT %QB0 : BYTE; END_VAR q := a; END_PROGRAM
 CONFIGURATION c RESOURCE r ON cpu
-  {attribute 'input_buffer' := 'three'} TASK Fast (INTERVAL := T#2ms, PRIORITY := 1);
+  {attribute 'input_buffer' := 'three'} {attribute 'output_buffer' := 'swapped'}
+  TASK Fast (INTERVAL := T#2ms, PRIORITY := 1);
   {attribute 'freewheeling'} TASK Idle (PRIORITY := 20);
   PROGRAM c WITH Fast : Copy; PROGRAM b WITH Idle : Busy;
 END_RESOURCE END_CONFIGURATION
@@ -93,6 +94,7 @@ serve busy busy.st
 wait_for '^Idle +running' "$bin/stvm" status --dir busy --activity
 said '^task +state +of +buffers +writer +waits +reader +new +in scan'
 said '^Fast .* inputs +three +[012] +[012] +[012] '
+said '^ +outputs +swapped +(0 +- +1|1 +- +0) '
 awk 'length($0) > 80 { exit 1 }' out || fail "a line of --activity is longer than 80 columns"
 expect 0 stvm status --dir busy --format json
 said '"execution": *"'

@@ -12,13 +12,15 @@ std::string three_tasks(const std::string& of_twice, const std::string& schedule
                         const std::string& body = "") {
   return R"(
 PROGRAM Work VAR i : DINT; END_VAR FOR i := 1 TO 2000 DO ; END_FOR END_PROGRAM
-PROGRAM Copy VAR a AT %IB0 : BYTE; q AT %QB0 : BYTE; i, n, zero : DINT; torn : BOOL; first : BYTE; END_VAR
+PROGRAM Copy
+  VAR a AT %IB0 : BYTE; q AT %QB0 : BYTE; i, n, zero : DINT; torn : BOOL; first : BYTE; END_VAR
   first := a; n := n + 1; q := 255; FOR i := 1 TO 3000 DO ; END_FOR
   torn := torn OR first <> a; q := a; )" +
          body + R"( END_PROGRAM
 PROGRAM Copy2 VAR a AT %IB0 : BYTE; q AT %QB1 : BYTE; END_VAR q := a; END_PROGRAM
 PROGRAM Long VAR a AT %IB0 : BYTE; q AT %QB2 : BYTE; i : DINT; torn : BOOL; first : BYTE; END_VAR
-  first := a; q := 255; FOR i := 1 TO 12000 DO torn := torn OR first <> a; END_FOR q := a; END_PROGRAM
+  first := a; q := 255; FOR i := 1 TO 12000 DO torn := torn OR first <> a; END_FOR q := a;
+END_PROGRAM
 CONFIGURATION c )" +
          schedule + R"( RESOURCE r ON cpu
   TASK High (INTERVAL := T#10ms, PRIORITY := 1);
@@ -47,6 +49,22 @@ TEST(OwnExchange, B12_AReceptionAndATransmissionWithEachScan) {
                            "40 out8.7.1  40 in9  42 in10  45 out10.7.1  ");
   EXPECT_EQ(own.get("T.torn"), "FALSE");
   EXPECT_EQ(own.get("O.torn"), "FALSE");  // it was suspended while Twice received
+}
+
+// What a more urgent task has completed in the same cycle is not sent with it.
+TEST(OwnExchange, B12_OutputsOfOthersWaitForTheCycle) {
+  ExchangePlant own(R"(
+PROGRAM Count VAR q AT %QB1 : BYTE; END_VAR q := q + 1; END_PROGRAM
+PROGRAM Copy VAR a AT %IB0 : BYTE; q AT %QB0 : BYTE; END_VAR q := a; END_PROGRAM
+CONFIGURATION c RESOURCE r ON cpu
+  TASK High (INTERVAL := T#10ms, PRIORITY := 1);
+  {attribute 'exchange' := 'own'} TASK Twice (INTERVAL := T#10ms, PRIORITY := 2);
+  PROGRAM h WITH High : Count; PROGRAM t WITH Twice : Copy;
+END_RESOURCE END_CONFIGURATION
+)");
+  ASSERT_TRUE(own.ok());
+  EXPECT_EQ(own.cycles(2),
+            "0 out0.0  0 in1  0 in2  0 out2.0  10 out2.1  10 in3  10 in4  10 out4.1  ");
 }
 
 TEST(OwnExchange, B4_B5_B12_WithEveryBuffer) {
@@ -132,7 +150,8 @@ TEST(OwnExchange, B12_ChangesOfTheAttribute) {
   ASSERT_TRUE(old);
   std::string text = plant.cycles(1);
   EXPECT_EQ(plant.devices.received, before + 2) << text;
-  EXPECT_NE(text.find(at(at_ms + 2) + "in" + std::to_string(before + 2)), std::string::npos) << text;
+  EXPECT_NE(text.find(at(at_ms + 2) + "in" + std::to_string(before + 2)), std::string::npos)
+      << text;
   EXPECT_NE(text.find(at(at_ms + 5) + "out" + std::to_string(before + 2)), std::string::npos)
       << text;
   while (!plant->at_boundary()) (void)plant.cycles(1);
