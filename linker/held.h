@@ -15,6 +15,7 @@ namespace linker {
 // stand for something else in one POU, so it may hold less than this says, and never more.
 class HeldNames {
  public:
+  HeldNames() = default;
   explicit HeldNames(const ir::Program& program);
   // Sorted, none twice.
   std::vector<ir::HeldName> of(const ir::Object& object) const;

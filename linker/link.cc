@@ -59,6 +59,7 @@ class Linker {
                      std::move(context_.parameter_offsets),
                      std::move(context_.table_numbers),
                      std::move(names_),
+                     std::move(held_),
                      type_numbers_->are_own() && !renamed_base_};
   }
 
@@ -302,7 +303,8 @@ class Linker {
     const auto is_known = [](const ir::PouContent& content) { return content != ir::PouContent{}; };
     if (std::ranges::none_of(image_.contents, is_known)) image_.contents.clear();
     if (!image_.contents.empty()) {
-      image_.held = held_parts(context_.objects, HeldNames(program_));
+      held_ = HeldNames(program_);
+      image_.held = held_parts(context_.objects, held_);
     }
     return base::Ok{};
   }
@@ -366,6 +368,7 @@ class Linker {
   ConstantPool pool_;
   LinkContext context_;
   ir::PouNames names_;
+  HeldNames held_;
   std::unordered_map<uint32_t, uint32_t> pou_of_type_;
   std::vector<InstanceNode> nodes_;
 };

@@ -155,14 +155,13 @@ class Relinker {
   }
 
   void put_contents(const std::vector<uint32_t>& pous) {
-    const HeldNames names(program_);
     std::vector<const ir::Object*> objects(context_.objects.size());
     for (const uint32_t pou : pous) {
       objects[pou] = context_.objects[pou];
       state_.image.contents[pou].identity = objects[pou]->content.identity;
     }
     const auto is_edited = [&](const ir::HeldPart& row) { return objects[row.pou] != nullptr; };
-    const std::vector<ir::HeldPart> added = held_parts(objects, names);
+    const std::vector<ir::HeldPart> added = held_parts(objects, state_.held);
     const bool same = std::ranges::equal(
         added, state_.image.held.all() | std::views::filter(is_edited));
     if (same) return;  // the table stays one with that of the version before

@@ -12,6 +12,7 @@
 #include "base/result.h"
 #include "ir/bytecode/image.h"
 #include "ir/bytecode/object.h"
+#include "linker/held.h"
 #include "linker/link.h"
 #include "linker/pool.h"
 
@@ -26,6 +27,7 @@ struct LinkState {
   std::vector<std::vector<uint64_t>> parameter_offsets;
   std::unordered_map<std::string, uint32_t> table_numbers;
   ir::PouNames names;
+  HeldNames held;
   bool own_types = true;  // the image's type numbers are those of the program
 };
 

@@ -2,7 +2,11 @@
 file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tools/common/*.cc
      ${CMAKE_SOURCE_DIR}/online_change/store/*.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/rename*.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/embedded*.cc ${CMAKE_SOURCE_DIR}/base/unpack.cc
-     ${CMAKE_SOURCE_DIR}/ir/bytecode/no_program.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/no_program.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/identities.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/part_edits.cc ${CMAKE_SOURCE_DIR}/base/pack.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/canonical_value.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/located_paths.cc
+     ${CMAKE_SOURCE_DIR}/online_change/package/fleet_file.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/variable_names.cc ${CMAKE_SOURCE_DIR}/base/nearest_name.cc
      ${CMAKE_SOURCE_DIR}/base/joined.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/device*.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/disassemble*.cc

@@ -132,6 +132,34 @@ TEST(Image, B5_B12_TaskExchangeIsStoredWhereThereIsSome) {
   }
 }
 
+// What code holds of others is stored where there is some, behind the contents of POUs (E-04).
+TEST(Image, E04_HeldPartsAreStoredWhereThereAreSome) {
+  constexpr size_t kVersionAt = 8;
+  ir::Image image = sample::busy_image();
+  image.contents.assign(image.pous.size(), ir::PouContent{});
+  image.contents[0].identity[3] = 1;
+  EXPECT_EQ(ir::encode(image)[kVersionAt], 11);
+  image.held.push_back({0, {ir::HeldKind::kFunction, "Add"}});
+  image.held.push_back({0, {ir::HeldKind::kGlobal, "limit"}});
+  image.held.push_back({1, {ir::HeldKind::kType, "Mode"}});
+  const base::Bytes bytes = ir::encode(image);
+  EXPECT_EQ(bytes[kVersionAt], 13);
+  const auto decoded = ir::decode(bytes);
+  ASSERT_TRUE(decoded.ok()) << decoded.error().text;
+  EXPECT_EQ(decoded->held.all(), image.held.all());
+  EXPECT_EQ(ir::encode(*decoded), bytes);
+  EXPECT_TRUE(ir::verify(bytes).ok());
+  // Rows in another order, twice, of a POU that is not there, or without contents.
+  for (int wrong = 0; wrong < 4; ++wrong) {
+    ir::Image bad = image;
+    if (wrong == 0) std::swap(bad.held.own()[0], bad.held.own()[1]);
+    if (wrong == 1) bad.held.push_back(bad.held.back());
+    if (wrong == 2) bad.held.own().back().pou = static_cast<uint32_t>(bad.pous.size());
+    if (wrong == 3) bad.contents.clear();
+    EXPECT_FALSE(ir::verify(ir::encode(bad)).ok()) << wrong;
+  }
+}
+
 // The header says a length that the limit allows, and one byte more.
 TEST(Image, LargestImage) {
   constexpr size_t kLengthAt = 12;
