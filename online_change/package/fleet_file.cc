@@ -11,7 +11,7 @@
 namespace online_change {
 namespace {
 
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kFleetVersion = 1;
 constexpr uint32_t kMostText = 65536;
 
 base::Error bad(const std::string& text) {
@@ -95,7 +95,7 @@ bool has_fleet_magic(base::ByteSpan bytes) {
 base::Bytes encode(const FleetFile& file) {
   base::ByteWriter out;
   out.raw(base::as_bytes(kFleetMagic));
-  out.u32(kVersion);
+  out.u32(kFleetVersion);
   const size_t length = out.size();
   out.u32(0);
   write_part(out, texts_of(file));
@@ -110,9 +110,9 @@ base::Result<FleetFile> decode_fleet_file(base::ByteSpan bytes) {
   const uint32_t version = in.u32();
   const uint32_t length = in.u32();
   if (in.failed()) return bad("only " + std::to_string(bytes.size()) + " bytes");
-  if (version != kVersion) {
+  if (version != kFleetVersion) {
     return bad("version " + std::to_string(version) + ", this program reads " +
-               std::to_string(kVersion));
+               std::to_string(kFleetVersion));
   }
   if (length != bytes.size()) {
     return bad("header says " + std::to_string(length) + " bytes, there are " +
