@@ -54,8 +54,10 @@ uint32_t size_of(const ir::Image& image, ir::TypeId id) {
 }
 
 // A type that both have and that lies otherwise in the second one; with `sizes`, or that is larger
-// or smaller there.
-std::optional<std::string> moved_type(const ir::Image& from, const ir::Image& to, bool sizes) {
+// or smaller there. Those that `ignored` says are left out.
+template <class Ignored>
+std::optional<std::string> moved_type(const ir::Image& from, const ir::Image& to, bool sizes,
+                                      const Ignored& ignored) {
   std::map<std::string, ir::TypeId> known;
   for (uint32_t i = 0; i < to.types.size(); ++i) {
     known.emplace(ir::fold_name(to.types.text(ir::TypeId(i))), ir::TypeId(i));
@@ -64,7 +66,7 @@ std::optional<std::string> moved_type(const ir::Image& from, const ir::Image& to
     const ir::TypeId id(i);
     const ir::Type& type = from.types[id];
     const auto found = known.find(ir::fold_name(from.types.text(id)));
-    if (type.kind == ir::Kind::kGlobals || found == known.end()) continue;
+    if (type.kind == ir::Kind::kGlobals || found == known.end() || ignored(id)) continue;
     const ir::TypeId there = found->second;
     const bool other_size = from.layouts[id].size != to.layouts[there].size;
     if (other_size || (sizes && size_of(from, id) != size_of(to, there))) {
@@ -82,7 +84,46 @@ std::optional<std::string> moved_type(const ir::Image& from, const ir::Image& to
   return std::nullopt;
 }
 
+// Types of the edited version that are others in the merged program. Its code names none of them,
+// or it would have been refused.
+class OtherTypes {
+ public:
+  OtherTypes(const ir::Image& from, const ir::Image& to)
+      : types_(*from.types), from_(ir::parts_of(from)), to_(ir::parts_of(to)) {}
+
+  bool operator()(ir::TypeId id) const {
+    for (uint32_t depth = 0; types_[id].name.empty() && types_[id].base.valid(); ++depth) {
+      if (depth > kMostNested) return false;
+      id = types_[id].base;
+    }
+    for (const PartKind kind : {PartKind::kType, PartKind::kBlock}) {
+      const ir::Part* const before = ir::find_part(from_, kind, types_[id].name);
+      const ir::Part* const now = ir::find_part(to_, kind, types_[id].name);
+      if (before != nullptr && now != nullptr && before->identity != now->identity) return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr uint32_t kMostNested = 1000;
+  const ir::TypeTable& types_;
+  std::vector<ir::Part> from_;
+  std::vector<ir::Part> to_;
+};
+
 base::Error cannot(const std::string& text) { return {base::Refusal::kCannotRelink, text}; }
+
+template <class Ignored>
+base::Status check_fixed(const FixedPous& pous, const ir::Image& from, const ir::Image& to,
+                         const Ignored& ignored) {
+  if (pous.offsets.empty()) return base::Ok{};
+  const bool sizes = !pous.sizes.empty();
+  const std::optional<std::string> type = moved_type(from, to, sizes, ignored);
+  if (!type) return base::Ok{};
+  return cannot("`" + (sizes ? pous.sizes : pous.offsets) +
+                "` goes through references or takes the SIZEOF of something, and `" + *type +
+                "` would lie otherwise, or be of another size");
+}
 
 base::Result<ir::Image> link_merged(const MergeInput& input, const MergedPous& pous,
                                     const MergedRows& rows, const Slack& slack) {
@@ -93,16 +134,13 @@ base::Result<ir::Image> link_merged(const MergeInput& input, const MergedPous& p
   options.safe = rows.safe;
   base::Result<ir::Image> image = link(*rows.merged, pous.objects, options);
   if (!image.ok()) return image;
-  const std::pair<const FixedPous&, const ir::Image&> fixed[] = {{pous.from_edited, input.edited},
-                                                                 {pous.from_target, input.target}};
-  for (const auto& [names, from] : fixed) {
-    if (names.offsets.empty()) continue;
-    const bool sizes = !names.sizes.empty();
-    if (const std::optional<std::string> type = moved_type(from, *image, sizes)) {
-      return cannot("`" + (sizes ? names.sizes : names.offsets) +
-                    "` goes through references or takes the SIZEOF of something, and `" + *type +
-                    "` would lie otherwise, or be of another size");
-    }
+  const OtherTypes others(input.edited, *image);
+  const auto none = [](ir::TypeId) { return false; };
+  if (base::Status lies = check_fixed(pous.from_edited, input.edited, *image, others); !lies.ok()) {
+    return lies.error();
+  }
+  if (base::Status lies = check_fixed(pous.from_target, input.target, *image, none); !lies.ok()) {
+    return lies.error();
   }
   return image;
 }

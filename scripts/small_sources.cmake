@@ -7,6 +7,8 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/ir/bytecode/canonical_value.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/located_paths.cc
      ${CMAKE_SOURCE_DIR}/online_change/package/fleet_file.cc
+     ${CMAKE_SOURCE_DIR}/vm/native/*.cc ${CMAKE_SOURCE_DIR}/vm/native/x64/*.cc
+     ${CMAKE_SOURCE_DIR}/online_change/diff/*.cc ${CMAKE_SOURCE_DIR}/online_change/package/*.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/variable_names.cc ${CMAKE_SOURCE_DIR}/base/nearest_name.cc
      ${CMAKE_SOURCE_DIR}/base/joined.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/device*.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/disassemble*.cc
@@ -53,6 +55,10 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/ir/types/inside.cc ${CMAKE_SOURCE_DIR}/ir/types/location.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_calls.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/call_needs.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_tables.cc)
+# Where a native version spends its time while it is made.
+foreach(name facts allocate allocator_state uses forward simplify numbers)
+  list(REMOVE_ITEM STC_SMALL ${CMAKE_SOURCE_DIR}/vm/native/${name}.cc)
+endforeach()
 # The back end of the other machine makes no code here.
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
   file(GLOB other_machine ${CMAKE_SOURCE_DIR}/vm/native/arm64/*.cc)

@@ -198,8 +198,8 @@ allow_loss = true
 TOML
 expect 0 stvm undo --dir six --yes
 expect 0 stvm set --dir six kept=9
-expect 1 stvm fleet change loses.fleet --fleet fleet.toml --yes --allow-overrun
-said '^north +original +refused '
+expect 0 stvm fleet change loses.fleet --fleet fleet.toml --yes --allow-overrun
+said '^north +original +had it +1 of 1 *$'
 said '^east +keeps +done +1 of 1 '
 mistake() {
   printf "$1" >bad.toml

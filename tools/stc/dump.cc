@@ -106,7 +106,6 @@ std::string sources_line(const base::Bytes& image) {
 
 base::Result<std::string> dump_image(const tools::Options& options) {
   const std::vector<std::string>& paths = options.arguments();
-  if (paths.size() == 1 && is_fleet_file(paths[0])) return fleet_file_text(paths[0]);
   base::Result<Version> version = open_version(options, paths, {});
   if (!version.ok()) return version.error();
   if (options.has("--parts")) return parts_text(version->image);
@@ -149,6 +148,12 @@ int run_dump(const tools::Options& options) {
     std::fputs(out->c_str(), stdout);
     return tools::kOk;
   }
+  if (options.arguments().size() == 1 && is_fleet_file(options.arguments()[0])) {
+    base::Result<std::string> out = fleet_file_text(options.arguments()[0]);
+    if (!out.ok()) return tools::refuse("stc", out.error());
+    std::fputs(out->c_str(), stdout);
+    return tools::kOk;
+  }
   bool image_given = options.arguments().size() == 1 && is_image(options.arguments()[0]);
   bool wants_source_phase = options.has("--tokens") || options.has("--tree") ||
                             options.has("--ir") || options.has("--object");
@@ -157,7 +162,8 @@ int run_dump(const tools::Options& options) {
                                  "dump: an image has no tokens, tree, ir or objects any more"});
   }
   bool wants_image = image_given || options.has("--code") || options.has("--native") ||
-                     options.has("--image") || options.has("--symbols") || options.has("--sources");
+                     options.has("--image") || options.has("--symbols") ||
+                     options.has("--sources") || options.has("--parts");
   base::Result<std::string> out = wants_image ? dump_image(options) : dump_sources(options);
   if (!out.ok()) return tools::refuse("stc", out.error());
   std::fputs(out->c_str(), stdout);

@@ -43,6 +43,8 @@ base::Result<Outcome> take_out(const SwitchOptions& how, ControllerClient& clien
     return base::Error{base::Refusal::kUsage,
                        "`" + edit + "` is the newest edit: undo it without --only"};
   }
+  base::Result<vm::StatusReport> status = client.status();
+  if (!status.ok()) return status.error();
   base::Result<base::Bytes> package = package_of(client, edit, *(found - 1));
   if (!package.ok()) {
     const base::Error& why = package.error();
@@ -52,8 +54,6 @@ base::Result<Outcome> take_out(const SwitchOptions& how, ControllerClient& clien
     return base::Error{why.refusal, "later edits depend on " + edit + ": " + why.text +
                                         "; without --only they go, too"};
   }
-  base::Result<vm::StatusReport> status = client.status();
-  if (!status.ok()) return status.error();
   return bring(how, client, *package);
 }
 

@@ -347,6 +347,7 @@ TEST(Merge, E09_EqualsTheCompilerOnSourcesWithBothEdits) {
       const base::Result<ir::Image> result = linker::merge({*original, *edited, *target}, {});
       if (!result.ok()) {
         const base::Refusal code = result.error().refusal;
+        if (code == base::Refusal::kNoChange) continue;  // the engineer edited a comment
         EXPECT_TRUE(code == base::Refusal::kOtherPart || code == base::Refusal::kCannotRelink)
             << path << ": " << base::to_string(result.error());
         ++refused;

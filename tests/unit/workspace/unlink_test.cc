@@ -2,6 +2,9 @@
 // it was, byte for byte. All golden files, alone and as a second version of themselves.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "ir/bytecode/image_sections.h"
 #include "linker/link.h"
 #include "linker/unlink.h"
 #include "tests/unit/workspace/edited_project.h"
@@ -27,7 +30,14 @@ std::string difference(const ir::Image& a, const ir::Image& b) {
     const std::string other = ir::disassemble(b, y);
     if (one != other) return one + "is now\n" + other;
   }
-  return "not the code";
+  const base::Bytes x = ir::encode(a);
+  const base::Bytes y = ir::encode(b);
+  for (uint32_t i = 0; i < ir::kImageSectionCount; ++i) {
+    const auto section = static_cast<ir::ImageSection>(i);
+    const bool same = std::ranges::equal(ir::section_of(x, section), ir::section_of(y, section));
+    if (!same && section != ir::ImageSection::kConstants) return "section " + std::to_string(i);
+  }
+  return "something else";
 }
 
 base::Result<ir::Image> again(const ir::Image& image) {
