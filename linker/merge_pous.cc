@@ -48,6 +48,7 @@ class PouMerger {
     if (!problems_.empty()) return base::Error{base::Refusal::kCannotRelink, problems_};
     add_overrides();
     add_migrations();
+    if (!problems_.empty()) return base::Error{base::Refusal::kCannotRelink, problems_};
     return std::move(out_);
   }
 
@@ -181,7 +182,10 @@ class PouMerger {
       const Unlinked& from = edited ? edited_ : target_;
       const size_t number = (edited ? in_edited : in_target).at(ir::fold_name(name_of(pous_[i])));
       // Objects and POUs of what was taken apart have one order.
-      merged.pous.push_back(pou_of(from.program.pous[number], edited));
+      Translator& translator = edited ? *rows_.from_edited : *rows_.from_target;
+      translator.forget_problem();
+      merged.pous.push_back(pou_of(from.program.pous[number], translator));
+      if (!translator.problem().empty()) refuse(uses(merged.pous.back().name, translator));
       added.push_back({edited, &from.objects[number]});
     }
     const Parameters there{merged, ir::pou_names(merged)};
@@ -192,9 +196,7 @@ class PouMerger {
       translator.forget_problem();
       out_.objects.push_back(
           translator.object(*row.object, row.edited ? of_edited : of_target, there));
-      if (!translator.problem().empty()) {
-        refuse("`" + row.object->name + "` uses " + translator.problem());
-      }
+      if (!translator.problem().empty()) refuse(uses(row.object->name, translator));
       if (row.object->fixed) note(*row.object, row.edited ? out_.from_edited : out_.from_target);
     }
   }
@@ -208,8 +210,11 @@ class PouMerger {
     }
   }
 
-  ir::Pou pou_of(const ir::Pou& from, bool edited) {
-    Translator& translator = edited ? *rows_.from_edited : *rows_.from_target;
+  static std::string uses(const std::string& pou, const Translator& translator) {
+    return "`" + pou + "` uses " + translator.problem();
+  }
+
+  static ir::Pou pou_of(const ir::Pou& from, Translator& translator) {
     ir::Pou pou = from;
     pou.self = translator.type(from.self);
     for (ir::Local& local : pou.locals) local.type = translator.type(local.type);
@@ -253,8 +258,11 @@ class PouMerger {
       for (const ir::Migration& row : from->program.migrations) {
         const auto pou = merged_pou(from->program, row.function, names);
         if (!pou || !known.emplace(pou->index, row.inverse).second) continue;
+        translator.forget_problem();
         rows_.merged->migrations.push_back(
             {*pou, translator.type(row.type), row.inverse, row.values});
+        if (!translator.problem().empty())
+          refuse(uses(rows_.merged->pous[pou->index].name, translator));
       }
     }
   }

@@ -54,7 +54,8 @@ TypeId Translator::declared(TypeId id) {
     return types_[id.index] = to_.types.elementary(Kind::kByte);
   }
   types_[id.index] = found->second;
-  if (checks_.other_type(type)) fail("the type `" + type.name + "`, which is another one there");
+  const bool other_kind = to_.types[found->second].kind != type.kind;
+  if (other_kind || checks_.other_type(type)) fail("the type `" + type.name + "`, which is another one there");
   ask_for_parts(type);
   return found->second;
 }

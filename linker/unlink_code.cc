@@ -43,7 +43,10 @@ class CodeUnlinker {
       object_.held.push_back(row->what);
     }
     object_.merges = pou_.merges.all();
-    object_.lines = pou_.lines.all();
+    // Lines are for people; nobody has checked that their code is there.
+    for (const ir::LineEntry& line : pou_.lines) {
+      if (line.unit <= pou_.unit_count) object_.lines.push_back(line);
+    }
     for (const ir::FrameSlot& slot : pou_.slots) {
       ir::Slot own;
       own.kind = slot.kind;

@@ -206,9 +206,9 @@ mistake() {
   expect 7 stvm fleet status x.fleet --fleet bad.toml
   said "$2"
 }
-mistake 'name = "x"\n' 'bad.toml:1:1: .name. is not known here'
-mistake '[controllers.a]\ndir = 3\n' 'bad.toml:2:7: a text is wanted'
-mistake '[controllers.a]\nallow_loss = "yes"\ndir = "x"\n' 'bad.toml:2:14: true or false'
+mistake 'name = "x"\n' 'bad.toml:1:1: .*name. is not known here'
+mistake '[controllers.a]\ndir = 3\n' 'bad.toml:2:7: .*a text is wanted'
+mistake '[controllers.a]\nallow_loss = "yes"\ndir = "x"\n' 'bad.toml:2:14: .*true or false'
 mistake '[controllers.a]\ndir = "x"\nhost = "y"\n' 'has a dir and a host'
 mistake '[controllers.a]\nallow_loss = true\n' 'has no .dir. or .host.'
 mistake '[controllers.a]\ngroup = "x"\n' '.group. is not known'

@@ -3,12 +3,36 @@
 #include <algorithm>
 #include <cstring>
 
+#include "linker/link.h"
+#include "linker/unlink.h"
+
 namespace differential {
+namespace {
+
+// E-09: taken apart and linked again on top of itself, an image is what it was. What it does not
+// tell is how initial values of one instance were written, so its constants may be more.
+base::Status comes_back(const ir::VerifiedImage& verified) {
+  const ir::Image& image = verified.image();
+  base::Result<linker::Unlinked> parts = linker::unlink(image);
+  if (!parts.ok()) return parts.error();
+  linker::Options options;
+  options.base = &image;
+  options.devices = parts->devices;
+  options.safe = parts->safe;
+  base::Result<ir::Image> again = linker::link(parts->program, parts->objects, options);
+  if (!again.ok()) return again.error();
+  again->constants = image.constants;
+  if (ir::encode(*again) == verified.encoded()) return base::Ok{};
+  return base::Error{base::Refusal::kInternal, "the image is another one when it is linked again"};
+}
+
+}  // namespace
 
 base::Result<std::unique_ptr<Rig>> Rig::start(const golden::Program& program,
                                               online_change::Strategy strategy) {
   base::Result<ir::VerifiedImage> image = golden::link(program, nullptr, false);
   if (!image.ok()) return image.error();
+  if (base::Status same = comes_back(*image); !same.ok()) return same.error();
   auto rig = std::make_unique<Rig>();
   rig->strategy_ = strategy;
   vm::ControllerOptions options;
@@ -34,6 +58,7 @@ std::string Rig::scan() {
 base::Status Rig::arm(const golden::Program& next) {
   base::Result<ir::VerifiedImage> image = golden::link(next, &controller_->image(), false);
   if (!image.ok()) return image.error();
+  if (base::Status same = comes_back(*image); !same.ok()) return same;
   auto package = online_change::make_package(controller_->verified().encoded(), image->encoded());
   if (!package.ok()) return package.error();
   base::Status staged = change_->stage(online_change::encode(*package), strategy_);
