@@ -55,7 +55,8 @@ TypeId Translator::declared(TypeId id) {
   }
   types_[id.index] = found->second;
   const bool other_kind = to_.types[found->second].kind != type.kind;
-  if (other_kind || checks_.other_type(type)) fail("the type `" + type.name + "`, which is another one there");
+  if (other_kind || checks_.other_type(type))
+    fail("the type `" + type.name + "`, which is another one there");
   ask_for_parts(type);
   return found->second;
 }
@@ -129,7 +130,7 @@ std::optional<uint32_t> Translator::member(TypeId id, uint32_t number) {
 }
 
 ConstId Translator::constant(TypeId id, ConstId value) {
-  if (!value.valid()) return value;
+  if (!value.valid() || !from_.types.contains(id)) return ConstId();
   const uint64_t key = uint64_t{id.index} << 32 | value.index;
   if (const auto known = constants_.find(key); known != constants_.end()) return known->second;
   ir::ConstValue content = from_.constants[value];

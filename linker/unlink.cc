@@ -39,12 +39,19 @@ class Unlinker {
  private:
   static bool is_used(const ir::LinkedPou& pou) { return !pou.name.empty(); }
 
-  // What refers to POUs by number is led by their names from here on.
+  // What refers to POUs and types by number is led by their names from here on.
   base::Status check_names() const {
     std::unordered_set<std::string> names;
     for (const ir::LinkedPou& pou : image_.pous) {
       if (!is_used(pou) || names.insert(ir::fold_name(pou.name)).second) continue;
       return unnamed("two POUs are called `" + pou.name + "`");
+    }
+    std::unordered_set<std::string> types;
+    for (uint32_t i = ir::kElementaryCount; i < image_.types.size(); ++i) {
+      const ir::Type& type = image_.types[ir::TypeId(i)];
+      if (type.name.empty() || type.kind == ir::Kind::kGlobals) continue;
+      if (types.insert(ir::fold_name(type.name)).second) continue;
+      return unnamed("two types are called `" + type.name + "`");
     }
     bool named = true;
     const auto check = [&](uint32_t pou) { named = named && is_used(image_.pous[pou]); };

@@ -15,7 +15,8 @@ void write_name(base::ByteWriter& out, const std::string& text) {
 void write_value(base::ByteWriter& out, const TypeTable& types, const ConstTable& constants,
                  TypeId type, ConstId value, uint32_t depth) {
   out.boolean(value.valid());
-  if (!value.valid() || depth > kMaxDepth) return;
+  // Nothing is left of an element that its type does not have.
+  if (!value.valid() || depth > kMaxDepth || !types.contains(type)) return;
   const ConstValue& content = constants[value];
   const Type& at = types[type];
   out.u64(content.bits);
