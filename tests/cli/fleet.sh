@@ -1,5 +1,5 @@
 #!/bin/sh
-# E-07 to E-15, E-27 to E-31: one edit for many controllers, each of which may have a program of its
+# E-07 to E-15, E-27 to E-31, E8: one edit for many controllers, each of which may have a program of its
 # own. The worked example of system E.
 . "$(dirname "$0")/lib.sh"
 
@@ -126,6 +126,11 @@ expect 7 stvm fleet status flipped.fleet --dir one
 said 'checksum of its versions is wrong'
 expect 7 stvm fleet change cut.fleet --dir one --yes
 expect 2 stvm fleet forget x.fleet --dir one
+
+# E-33: the journal names the file.
+digest=$(sha256sum x.fleet | cut -c1-12)
+expect 0 stvm journal --dir three
+said "edit E[0-9]+, fleet file $digest"
 
 # E-05: what a controller has follows undo, redo, a power loss and a start.
 state() {  # state WANTED: of unit A of the third controller

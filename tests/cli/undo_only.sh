@@ -46,6 +46,9 @@ expect 0 stvm get --dir plc seen
 after=$(sed -n 's/^seen=//p' out)
 [ "$after" -ge "$before" ] || fail "the value of a later edit was lost: $before, $after"
 
+expect 0 stvm journal --dir plc
+said 'edit E4, E1 alone is taken back'
+
 # To bring it again is to undo that.
 expect 0 stvm undo --dir plc --yes
 expect 0 stvm get --dir plc added

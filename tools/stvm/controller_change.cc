@@ -298,7 +298,7 @@ void ControllerService::note_edit(Trial trial, const online_change::SwitchReport
   switched_cycle_ = report.cycle_before;
   note_units("switched", report.cycle_after);
   note_switch(online_change::Event::kSwitched, previous()->digest(), report, predicted_ns,
-              "edit " + trials_.back().edit.name);
+              "edit " + trials_.back().edit.name + (note_.empty() ? "" : ", " + note_));
   if (last_edit_boots()) complain(keep_edits());  // with the values of the boundary
 }
 

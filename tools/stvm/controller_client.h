@@ -47,9 +47,9 @@ class ControllerClient {
   // On trial, oldest first.
   base::Result<std::vector<TrialEdit>> edits();
 
-  // `unless`: a BOOL; while it is TRUE nothing is switched (C9).
-  base::Status stage(base::ByteSpan package, uint32_t flags,
-                     const std::string& unless = {});
+  // `unless`: a BOOL; while it is TRUE nothing is switched (C9). `note`: for the journal.
+  base::Status stage(base::ByteSpan package, uint32_t flags, const std::string& unless = {},
+                     const std::string& note = {});
   // The edit that was undone last, which has that name.
   base::Status stage_again(const std::string& edit);
   base::Result<FatePage> fates();

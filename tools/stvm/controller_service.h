@@ -316,6 +316,7 @@ class ControllerService : public vm::Service {
   std::string aborted_;          // the same of the last one that ended so, with its time
   uint64_t aborted_of_ = 0;      // session
   Unless unless_;                // of what is staged
+  std::string note_;             // what the journal says of it, by whoever brought it (E-33)
   bool only_looked_at_ = false;  // what is staged, by vm::kRehearsal: nothing of it is kept
   uint64_t looked_at_by_ = 0;    // session of that
   std::set<uint64_t> gone_;      // sessions whose dry run has been replaced

@@ -47,7 +47,9 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   base::Bytes package = std::exchange(upload_, {});
   if (base::Status good = check_upload(request, package); !good.ok()) return good.error();
   const std::string unless = request.names.empty() ? std::string() : request.names.front();
-  return stage_package(std::move(package), request.flags, unless, {});
+  base::Result<base::Bytes> staged = stage_package(std::move(package), request.flags, unless, {});
+  if (staged.ok() && request.names.size() > 1) note_ = request.names[1];
+  return staged;
 }
 
 base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, uint32_t flags,
@@ -191,6 +193,7 @@ void ControllerService::forget_staged() {
   staged_package_ = base::Bytes();
   redone_.clear();
   unless_ = {};
+  note_.clear();
   forget_report();
   if (std::exchange(only_looked_at_, false)) gone_.insert(looked_at_by_);
 }

@@ -80,6 +80,7 @@ struct Dialogue {
 class FleetRun {
  public:
   FleetRun(const FleetEdit& edit, SwitchOptions how) : edit_(edit), how_(std::move(how)) {
+    how_.note = "fleet file " + base::short_hex(edit.digest);
     how_.confirm = [this] { return dialogue_.ask_once(); };
   }
 

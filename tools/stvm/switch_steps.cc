@@ -157,7 +157,7 @@ base::Status check_no_trial(const vm::StatusReport& status) {
 
 base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& client,
                             base::ByteSpan package) {
-  base::Status staged = client.stage(package, options.stage_flags, options.unless);
+  base::Status staged = client.stage(package, options.stage_flags, options.unless, options.note);
   if (!staged.ok()) return staged.error();
   return bring_staged(options, client);
 }

@@ -19,6 +19,7 @@ struct SwitchOptions {
   bool restricted = false;    // for who makes the package
   std::string health;         // a BOOL that must stay TRUE, or the controller undoes the change
   std::string unless;         // a BOOL; while it is TRUE nothing is switched
+  std::string note;           // what the journal says of it (E-33)
   bool dry_run = false;
   bool all = false;  // a line for each variable
   bool wait = false;  // for the changes of others

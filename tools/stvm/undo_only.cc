@@ -54,7 +54,9 @@ base::Result<Outcome> take_out(const SwitchOptions& how, ControllerClient& clien
     return base::Error{why.refusal, "later edits depend on " + edit + ": " + why.text +
                                         "; without --only they go, too"};
   }
-  return bring(how, client, *package);
+  SwitchOptions noted = how;
+  noted.note = edit + " alone is taken back";
+  return bring(noted, client, *package);
 }
 
 }  // namespace stvm
