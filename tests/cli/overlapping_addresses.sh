@@ -20,7 +20,7 @@ period_ms = 5
 timeout_ms = 500
 map = ["holding 0 <-> %MW4", "coil 0..7 <-> %MX8.0", "coil 100..107 <- %QX8.0"]
 T
-[ -e "$bin/stvm" ] && strings -a "$bin/stvm" | grep -q libmodbus || sed -i d line/stc.toml
+"$bin/stvm" --version | grep -q '^adapters.*modbus' || sed -i d line/stc.toml
 value() { stvm get "$1" --dir plc; }
 
 serve plc line
