@@ -103,6 +103,9 @@ said 'R0320.*unit `B` is another one here'
 expect 0 stvm change x.fleet --dir two --matching --yes --allow-overrun
 expect 0 stvm undo --dir two
 
+expect 2 stvm change new.st --dir two --matching --yes
+said 'R0504.*--matching is for a fleet file'
+
 # E-15: what is lost there is said there; the others go on.
 project keeps.st 1 1 1 'kept : INT := 3;'
 project loses.st 2 1 1

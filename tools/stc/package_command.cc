@@ -5,6 +5,7 @@
 #include "online_change/plan/pou_edits.h"
 #include "tools/common/files.h"
 #include "tools/stc/commands.h"
+#include "tools/stc/edit_version.h"
 #include "tools/stc/session.h"
 #include "tools/stc/watch_packages.h"
 
@@ -30,11 +31,16 @@ base::Status make(const tools::Options& options) {
   if (!options.has("--base") || !options.has("--output")) {
     return base::Error{base::Refusal::kUsage, "package: --base and --output are required"};
   }
+  const std::vector<std::string>& paths = options.arguments();
+  if (options.has("--matching") && (paths.size() != 1 || !is_fleet_file(paths[0]))) {
+    return base::Error{base::Refusal::kUsage,
+                       "--matching is for a fleet file (stc fleet): leave it out"};
+  }
   base::Result<Version> old_version = read_image(options.text("--base"));
   if (!old_version.ok()) return old_version.error();
   const BuildOptions build_options{&old_version->image, options.has("--move-all"),
                                    options.has("--matching")};
-  base::Result<Version> next = open_version(options, options.arguments(), build_options);
+  base::Result<Version> next = open_version(options, paths, build_options);
   if (!next.ok()) return next.error();
   if (options.has("--restricted")) {
     base::Status kept =
