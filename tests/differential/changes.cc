@@ -10,6 +10,7 @@
 
 #include "ir/program/evaluate.h"
 #include "ir/types/handle.h"
+#include "ir/types/shared_bytes.h"
 #include "ir/types/value_text.h"
 #include "online_change/plan/every_fate.h"
 #include "tests/differential/compiled.h"
@@ -275,6 +276,11 @@ class Examination {
     }
   }
 
+  bool shares_bytes(const std::string& path) const {
+    const ir::Image& image = rig_->image();
+    return ir::find_shared(image.types, image.globals, path).has_value();
+  }
+
   // A row of the plan may stand for several alike, and names one of them: the variable's own name
   // decides. Names are unique in a random program.
   bool said_moved(const std::string& path) const {
@@ -282,6 +288,8 @@ class Examination {
       if (row.fate == online_change::Fate::kKept) continue;
       // An area takes all its variables along, in every instance of its type.
       if (row.reason.starts_with("area")) return true;
+      // Shared bytes stand in one row, by their address.
+      if (row.path.starts_with("%") && shares_bytes(path)) return true;
       std::string name = row.path.substr(row.path.rfind('.') + 1);
       if (names(path, name.substr(0, name.find('[')))) return true;
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "ir/types/shared_bytes.h"
 #include "linker/link.h"
 #include "linker/unlink.h"
 
@@ -90,6 +91,9 @@ Leaves Rig::leaves() const {
   });
   std::map<std::string, bool> overlapping;
   for (auto& [path, leaf] : out) {
+    // The name of a variable that shares bytes by its address is no part of a union's.
+    const std::string first = path.substr(0, path.find('['));
+    leaf.shared = ir::find_shared(now.types, now.globals, first).has_value();
     for (size_t end = path.find_last_of(".["); end != std::string::npos && end > 0 && !leaf.shared;
          end = path.find_last_of(".[", end - 1)) {
       auto [known, fresh] = overlapping.try_emplace(path.substr(0, end), false);

@@ -227,7 +227,8 @@ uint32_t Facts::find_variable(const Access& access) const { return numbers_.find
 
 void Facts::find_overlaps() {
   overlaps_.resize(variables_.size());
-  std::vector<uint32_t> order(variables_.size());
+  std::vector<uint32_t>& order = by_place_;
+  order.resize(variables_.size());
   for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
     if (variables_[a].base != variables_[b].base) return variables_[a].base < variables_[b].base;

@@ -251,6 +251,7 @@ class Facts {
   std::vector<uint8_t> named_count_;
   NumberTable numbers_;  // of variables
   std::vector<std::vector<uint32_t>> overlaps_;
+  std::vector<uint32_t> by_place_;  // variables by base, then offset
   ByKey<Reach> reach_;              // by offset of a frame slot with an address
   ByKey<Reach> targets_, sources_;  // by unit: what it writes, what COPY reads
   std::vector<uint32_t> results_;

@@ -133,6 +133,19 @@ void Facts::find_targets() {
   }
 }
 
+namespace {
+
+constexpr uint64_t kWidest = 8;  // bytes of a variable
+
+bool is_reached(const Reach& reach, const Variable& variable) {
+  return std::any_of(reach.parts.begin(), reach.parts.end(), [&](const Reach::Part& part) {
+    return base_of(part.base) == variable.base && variable.offset < part.end &&
+           part.begin < uint64_t{variable.offset} + variable.width;
+  });
+}
+
+}  // namespace
+
 void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
   if (const Body* const body = body_at(i)) return used_by_body(i, body->effects.writes, out);
   if (const Reach* const target = targets_.find(i)) touched(*target, out);
@@ -179,20 +192,38 @@ bool Facts::may_overlap(uint32_t i) const {
   return false;
 }
 
-// Variables where an address may point to.
+// Variables where an address may point to, in their order.
 void Facts::touched(const Reach& reach, std::vector<uint32_t>& out) const {
-  for (uint32_t v = 0; v < variables_.size(); ++v) {
-    const Variable& variable = variables_[v];
-    if (variable.slot || variable.constant) continue;
-    bool may = reach.everything || (reach.own_instance && variable.base == MemBase::kSelf);
-    if (!may) {
-      for (const Reach::Part& part : reach.parts) {
-        may |= base_of(part.base) == variable.base && variable.offset < part.end &&
-               part.begin < uint64_t{variable.offset} + variable.width;
-      }
+  const auto is_in_memory = [this](uint32_t v) {
+    return !variables_[v].slot && !variables_[v].constant;
+  };
+  if (reach.everything || reach.own_instance) {
+    for (uint32_t v = 0; v < variables_.size(); ++v) {
+      const bool may = reach.everything || variables_[v].base == MemBase::kSelf ||
+                       is_reached(reach, variables_[v]);
+      if (may && is_in_memory(v)) out.push_back(v);
     }
-    if (may) out.push_back(v);
+    return;
   }
+  const auto first = static_cast<ptrdiff_t>(out.size());
+  for (const Reach::Part& part : reach.parts) {
+    const MemBase base = base_of(part.base);
+    // None is wider than the widest scalar.
+    const uint64_t begin = part.begin < kWidest ? 0 : part.begin - kWidest + 1;
+    auto v = std::lower_bound(by_place_.begin(), by_place_.end(), std::pair(base, begin),
+                              [this](uint32_t a, const std::pair<MemBase, uint64_t>& place) {
+                                const Variable& variable = variables_[a];
+                                if (variable.base != place.first)
+                                  return variable.base < place.first;
+                                return uint64_t{variable.offset} < place.second;
+                              });
+    for (; v != by_place_.end() && variables_[*v].base == base; ++v) {
+      if (variables_[*v].offset >= part.end) break;
+      if (is_reached(reach, variables_[*v]) && is_in_memory(*v)) out.push_back(*v);
+    }
+  }
+  std::sort(out.begin() + first, out.end());
+  out.erase(std::unique(out.begin() + first, out.end()), out.end());
 }
 
 bool Facts::writes_memory(uint32_t i) const {
