@@ -1,13 +1,11 @@
 #include "linker/merge.h"
 
-#include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "base/name_case.h"
-#include "ir/program/overrides.h"
+#include "ir/types/member_finder.h"
 #include "linker/link.h"
 #include "linker/merge_pous.h"
 #include "linker/merge_rows.h"
@@ -72,13 +70,11 @@ std::optional<std::string> moved_type(const ir::Image& from, const ir::Image& to
     if (other_size || (sizes && size_of(from, id) != size_of(to, there))) {
       return from.types.text(id);
     }
+    ir::MemberFinder members(to.types, there);
     for (size_t m = 0; m < type.members.size(); ++m) {
-      const int32_t number = to.types.find_member(there, type.members[m].name);
+      const std::optional<size_t> number = members.find(type.members[m].name);
       const uint32_t before = from.layouts[id].member_offsets[m];
-      if (number < 0) continue;
-      if (before != to.layouts[there].member_offsets[static_cast<size_t>(number)]) {
-        return from.types.text(id);
-      }
+      if (number && before != to.layouts[there].member_offsets[*number]) return from.types.text(id);
     }
   }
   return std::nullopt;

@@ -4,6 +4,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "ir/bytecode/identities.h"
 #include "ir/bytecode/located_paths.h"
 #include "linker/initial_differences.h"
 #include "linker/place_finder.h"
@@ -120,21 +121,10 @@ class Unlinker {
       task.watchdog_ns = linked.watchdog_ns;
       task.priority = linked.priority;
       task.once = linked.once;
-      task.event = event_of(linked);
+      task.event = ir::event_global(image_, linked);
       task.policy = linked.policy;
       program_.tasks.push_back(std::move(task));
     }
-  }
-
-  uint32_t event_of(const ir::ImageTask& task) const {
-    if (task.event == 0) return ir::kNoEvent;
-    const uint32_t at = task.event - image_.instances.all()[0].data;
-    const std::vector<uint32_t>& offsets = image_.layouts[image_.globals].member_offsets;
-    for (uint32_t i = 0; i < offsets.size(); ++i) {
-      const ir::Member& member = image_.types[image_.globals].members[i];
-      if (offsets[i] == at && image_.types.is_scalar(member.type)) return i;
-    }
-    return ir::kNoEvent;
   }
 
   void instances() {

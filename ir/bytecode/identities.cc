@@ -141,20 +141,11 @@ class Parts {
       policy_fields(fields, task.policy);
       base::ByteWriter out;
       out.blob(fields.take());
-      out.text(fold_name(event_of(task)));
+      const uint32_t event = event_global(image_, task);
+      const std::vector<Member>& globals = types_[image_.globals].members;
+      out.text(event == kNoEvent ? "" : fold_name(globals[event].name));
       add(PartKind::kTask, task.name, out);
     }
-  }
-
-  std::string event_of(const ImageTask& task) const {
-    if (task.event == 0) return "";
-    const uint32_t at = task.event - image_.instances.all()[0].data;
-    const std::vector<uint32_t>& offsets = image_.layouts[image_.globals].member_offsets;
-    for (size_t i = 0; i < offsets.size(); ++i) {
-      const Member& member = types_[image_.globals].members[i];
-      if (offsets[i] == at && types_.is_scalar(member.type)) return member.name;
-    }
-    return "";
   }
 
   // With the tasks that it runs in, as a whole or by its blocks.
@@ -206,6 +197,17 @@ std::string_view part_kind_name(PartKind kind) {
       "unit",   "type",       "variables of", "global",        "task",    "program",
       "access", "address of", "device",       "safe value of", "schedule"};
   return kNames[static_cast<size_t>(kind)];
+}
+
+uint32_t event_global(const Image& image, const ImageTask& task) {
+  if (task.event == 0) return kNoEvent;
+  const uint32_t at = task.event - image.instances.all()[0].data;
+  const std::vector<uint32_t>& offsets = image.layouts[image.globals].member_offsets;
+  for (uint32_t i = 0; i < offsets.size(); ++i) {
+    const Member& member = image.types[image.globals].members[i];
+    if (offsets[i] == at && image.types.is_scalar(member.type)) return i;
+  }
+  return kNoEvent;
 }
 
 std::string safe_name(const SafeOutput& row) {

@@ -41,6 +41,8 @@ std::vector<Part> parts_of(const Image& image);
 // Null: there is none.
 const Part* find_part(const std::vector<Part>& parts, PartKind kind, std::string_view name);
 
+// Number of the global whose rising edges release the task; kNoEvent: none do.
+uint32_t event_global(const Image& image, const ImageTask& task);
 // "%QX4.0": where it begins.
 std::string safe_name(const SafeOutput& row);
 // The name of the unit that a POU belongs to: its own, or that of its block. Empty: the POU is no

@@ -6,6 +6,8 @@
 
 namespace stvm {
 
+static constexpr size_t kMostNote = 160;  // bytes; the journal keeps some more
+
 // One at a time: whoever begins one ends that of another connection, which is told so.
 base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) {
   if (request.offset == 0) {
@@ -48,7 +50,10 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   if (base::Status good = check_upload(request, package); !good.ok()) return good.error();
   const std::string unless = request.names.empty() ? std::string() : request.names.front();
   base::Result<base::Bytes> staged = stage_package(std::move(package), request.flags, unless, {});
-  if (staged.ok() && request.names.size() > 1) note_ = request.names[1];
+  const bool rehearsal = (request.flags & vm::kRehearsal) != 0;
+  if (staged.ok() && !rehearsal && request.names.size() > 1) {
+    note_ = request.names[1].substr(0, kMostNote);
+  }
   return staged;
 }
 

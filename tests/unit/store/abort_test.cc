@@ -34,7 +34,7 @@ class Aborted : public ::testing::Test {
     running_ = plc_.status().running;
     hash_ = ir::state_hash(plc_.controller().image(), plc_.controller().memory().view());
   }
-  base::Status stage(uint32_t flags, const char* unless = nullptr) {
+  base::Status stage(uint32_t flags, const char* unless = nullptr, const std::string& note = {}) {
     auto package =
         online_change::make_package(plc_.controller().verified().encoded(), next_->encoded());
     EXPECT_TRUE(package.ok());
@@ -44,6 +44,7 @@ class Aborted : public ::testing::Test {
     stage.digest = base::sha256(upload.data);
     stage.flags = flags;
     if (unless != nullptr) stage.names = {unless};
+    if (!note.empty()) stage.names = {"", note};
     base::Status done = ask_as(1, std::move(upload));
     return done.ok() ? ask_as(1, std::move(stage)) : done;
   }
@@ -87,6 +88,21 @@ class Aborted : public ::testing::Test {
   base::Digest running_{};
   base::Digest hash_{};
 };
+
+// What the journal says of a change by whoever brought it: of this one, and not for ever.
+TEST_F(Aborted, E33_ANoteIsOfOneChangeAndBounded) {
+  ASSERT_TRUE(stage(0, nullptr, "fleet file 0123 " + std::string(60000, 'x')).ok());
+  ASSERT_TRUE(stage(vm::kRehearsal, nullptr, "a dry run").ok());
+  ASSERT_TRUE(stage(0, nullptr, "fleet file 0123 " + std::string(60000, 'x')).ok());
+  ASSERT_TRUE(make_switch(vm::kAllowLoss | vm::kAllowOverrun).ok());
+  const std::string text = journal().back().text;
+  EXPECT_NE(text.find("edit E1, fleet file 0123 xxx"), std::string::npos) << text;
+  EXPECT_LT(text.size(), 200u);
+  ASSERT_TRUE(ask_as(1, {.command = Command::kUndo}).ok());
+  ASSERT_TRUE(stage(0).ok());
+  ASSERT_TRUE(make_switch(vm::kAllowLoss | vm::kAllowOverrun).ok());
+  EXPECT_EQ(journal().back().text.find("fleet"), std::string::npos) << journal().back().text;
+}
 
 enum class By : uint8_t { kCommand, kConnection };
 
