@@ -10,6 +10,7 @@
 #include "base/tool_limits.h"
 #include "online_change/apply/losses.h"
 #include "online_change/apply/pending.h"
+#include "online_change/apply/values_back.h"
 #include "online_change/plan/pause.h"
 
 namespace online_change {
@@ -65,7 +66,7 @@ base::Error Change::abandoned(const char* where) const {
 }
 
 base::Status Change::stage(base::ByteSpan package, Strategy strategy,
-                           const AtBoundary& at_boundary) {
+                           const AtBoundary& at_boundary, std::optional<size_t> taken_out) {
   if (prepares()) {
     return base::Error{base::Refusal::kChangePending, std::string("another change is ") +
                                                           state_name(state_) +
@@ -74,13 +75,14 @@ base::Status Change::stage(base::ByteSpan package, Strategy strategy,
   if (base::Status free = room(); !free.ok()) return free;
   collect();
   if (state_ == State::kTrial) rest();
-  base::Status status = guarded([&] { return stage_steps(package, strategy, at_boundary); });
+  base::Status status =
+      guarded([&] { return stage_steps(package, strategy, at_boundary, taken_out); });
   if (!status.ok()) cancel();
   return status;
 }
 
 base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy,
-                                 const AtBoundary& at_boundary) {
+                                 const AtBoundary& at_boundary, std::optional<size_t> taken_out) {
   const ir::VerifiedImage& before = controller_.verified();
   base::Result<Package> package = decode(bytes, before.encoded());
   if (!package.ok()) return package.error();
@@ -103,6 +105,10 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy,
   if (!same || !leaves_all(*package)) {
     base::Status sound = check_package(*package, before.image(), image->image());
     if (!sound.ok()) return sound;
+  }
+  if (taken_out && *taken_out < below_.size()) {
+    const Pending& edit = *below_[*taken_out];
+    put_values_back(package->forward, image->image(), edit.backward, edit.old_image.image());
   }
   pending_ = std::make_unique<Pending>(std::move(*package), before, *image, strategy, same);
   state_ = State::kPlanned;

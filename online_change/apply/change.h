@@ -53,7 +53,8 @@ using AtBoundary = std::function<base::Status(const std::function<void()>& job)>
 struct Loss;
 class Standby;
 
-// kPauseTooLong when a task has less free time: its period without the longest of its last scans.
+// kPauseTooLong when a task has less free time than the pause with_reserve(): its period without
+// the longest of its last scans.
 base::Status fits_free_time(int64_t pause_ns, const std::vector<vm::TaskStatus>& tasks);
 
 class Change {
@@ -70,9 +71,11 @@ class Change {
   base::Status room() const;
   // Idle or Trial -> Prepared, in steps, while version 1 runs. What it must know of live data it
   // copies in jobs for `at_boundary`, each of some tens of microseconds; without, the caller is at
-  // a boundary.
+  // a boundary. `taken_out`: the number of an edit on trial, from the oldest, whose work this one
+  // takes back (D3): variables that it had taken away come back with their values (X4).
   base::Status stage(base::ByteSpan package, Strategy strategy = Strategy::kInPlace,
-                     const AtBoundary& at_boundary = {});
+                     const AtBoundary& at_boundary = {},
+                     std::optional<size_t> taken_out = std::nullopt);
   // Values that would be lost if the switch came now; by kPrepared, at a boundary.
   std::vector<LiveLoss> live_losses() const;
   // The same of a copy of data memory, at any time: what a report shows, kMostLosses of them.
@@ -91,7 +94,7 @@ class Change {
   // In trial: what undo() would do.
   const Plan& undo_plan() const;
   Strategy strategy() const;
-  // Of the switch; in trial, of undo.
+  // Of the switch; in trial, of undo. On this machine, if set_pace() has been told of it.
   int64_t predicted_pause_ns() const;
   // By kPrepared, at a boundary: work that must be done before the switch, as far as idle time goes
   // (C5). In place: new variables in bytes that version 1 does not use get their initial values
@@ -103,7 +106,8 @@ class Change {
   // True: what is left fits the free time of the tightest task, or more passes would not make it
   // less. In place: true.
   base::Result<bool> catch_up();
-  // kPauseTooLong when the predicted pause is longer than the free time of the tightest task.
+  // kPauseTooLong when the predicted pause, with_reserve(), is longer than the free time of the
+  // tightest task.
   base::Status admit(bool allow_overrun) const;
   // By kPrepared, at a boundary: what arm() would refuse with these values, but for time. Changes
   // nothing (case 78).
@@ -146,6 +150,8 @@ class Change {
   void set_interruption(std::function<bool()> interrupted) {
     interrupted_ = std::move(interrupted);
   }
+  // What measured_pace() (pace.h) says of this machine; 1 until then.
+  void set_pace(double pace) { pace_ = pace; }
   // Told of the image that stage() has received, before it is verified: whoever takes it may store
   // it meanwhile, and shares its bytes. Nothing is known of them yet.
   using Received = std::function<void(std::shared_ptr<const base::Bytes> image)>;
@@ -159,7 +165,7 @@ class Change {
   template <class Step>
   auto guarded(Step step) -> decltype(step());
   base::Status stage_steps(base::ByteSpan package, Strategy strategy,
-                           const AtBoundary& at_boundary);
+                           const AtBoundary& at_boundary, std::optional<size_t> taken_out);
   base::Status arm_steps(bool allow_loss, bool allow_overrun);
   base::Result<SwitchReport> switch_steps(bool again);
   base::Result<SwitchReport> undo_steps(bool whatever_happens = false);
@@ -182,6 +188,7 @@ class Change {
   bool carry_in_place(const std::function<bool(const Loss&)>& on_loss);
   base::Status carry_over();
   std::string way_out() const;
+  int64_t paced(int64_t model_ns) const;
   void abandon();
   base::Status adopt_steps(base::ByteSpan package, const ir::VerifiedImage& before,
                            const ir::VerifiedImage& after, base::ByteSpan retained);
@@ -205,6 +212,7 @@ class Change {
   std::unique_ptr<Standby> retired_area_;
   std::unique_ptr<Pending> retired_pending_;  // freed by collect(), not at a boundary
   std::function<bool()> interrupted_;
+  double pace_ = 1;
   Received received_;
 };
 

@@ -52,7 +52,11 @@ int64_t Change::predicted_pause_ns() const {
   if (known) work = pending_->of_switch(pending_->area->found());
   const Migrator* migrate = back ? pending_->migrate_back.get() : pending_->migrate.get();
   if (migrate != nullptr) work.loops = migrate->fuel_used();
-  return pause_ns(work);
+  return paced(pause_ns(work));
+}
+
+int64_t Change::paced(int64_t model_ns) const {
+  return static_cast<int64_t>(pace_ * static_cast<double>(model_ns));
 }
 
 // Virtual time passes for what has been done. In place that is all there was to do; by standby,
@@ -176,7 +180,7 @@ std::string Change::way_out() const {
             std::to_string(area.compared_bytes()) + " bytes of data are found ";
   }
   return text + "to have been written since they were copied; in place (--strategy in-place) the " +
-         "switch is expected to take " + std::to_string(pause_ns(in_place)) + " ns";
+         "switch is expected to take " + std::to_string(paced(pause_ns(in_place))) + " ns";
 }
 
 base::Status Change::admit(bool allow_overrun) const {
@@ -190,12 +194,13 @@ base::Status fits_free_time(int64_t pause_ns, const std::vector<vm::TaskStatus>&
   for (const vm::TaskStatus& task : tasks) {
     if (task.stopped || task.period_ns == 0) continue;  // events leave as much time as there is
     const int64_t free_ns = std::max<int64_t>(task.period_ns - task.recent_ns, 0);
-    if (pause_ns <= free_ns) continue;
+    if (with_reserve(pause_ns) <= free_ns) continue;
     return base::Error{base::Refusal::kPauseTooLong,
                        "the switch is expected to take " + std::to_string(pause_ns) +
-                           " ns; task `" + task.name + "` leaves " + std::to_string(free_ns) +
-                           " of " + std::to_string(task.period_ns) + " ns, by the longest of its " +
-                           "last scans; split the change, or allow it with --allow-overrun"};
+                           " ns, and half as much is kept in reserve; task `" + task.name +
+                           "` leaves " + std::to_string(free_ns) + " of " +
+                           std::to_string(task.period_ns) + " ns, by the longest of its last " +
+                           "scans; split the change, or allow it with --allow-overrun"};
   }
   return base::Ok{};
 }

@@ -32,11 +32,6 @@ void scatter(const uint8_t* from, const Piece& piece, uint32_t stride, uint8_t* 
   }
 }
 
-// It reads several places, or none.
-bool reads_no_place_of_its_own(StepKind kind) {
-  return kind == StepKind::kMigrate || kind == StepKind::kGather;
-}
-
 bool without_gaps(const UpdateStep& step) {
   if (step.kind == StepKind::kConvert) return false;
   const bool read_so = step.kind == StepKind::kInitialise || step.from_stride == step.size;
@@ -116,7 +111,7 @@ void Transfer::add_bytes(Piece part, uint64_t length) {
 }
 
 uint64_t Transfer::source_extent(const Piece& piece) const {
-  if (piece.kind == StepKind::kInitialise || reads_no_place_of_its_own(piece.kind)) return 0;
+  if (!reads_one_place(piece.kind)) return 0;
   const bool converts = piece.kind == StepKind::kConvert;
   const uint32_t size = converts ? conversions_.source_size(step_of(piece)) : piece.size;
   return uint64_t{piece.count - 1} * piece.from_stride + size;
@@ -215,7 +210,7 @@ bool Transfer::move(const Piece& piece, const uint8_t* source, uint8_t* target,
 void Transfer::count(const Piece& piece, BoundaryWork& work) const {
   const uint32_t size = step_of(piece).size;
   const bool slow = piece.kind == StepKind::kConvert && piece.fast == nullptr;
-  if (piece.within == 0) ++work.steps;
+  if (piece.within == 0) work.step(reads_one_place(piece.kind) ? piece.from : 0, piece.to);
   if (size == 0 || piece.within % size == 0) {
     (slow ? work.slow_values : work.values) += piece.count;
   }

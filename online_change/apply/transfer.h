@@ -75,6 +75,8 @@ class Transfer {
   void restore(uint8_t* memory) const { restore_first(memory, pieces_.size()); }
 
   const std::vector<Piece>& pieces() const { return pieces_; }
+  // Of the way back, behind remember(): a piece that this plan will initialise or convert.
+  const uint8_t* remembered(const Piece& piece) const { return remembered_.data() + piece.at; }
   // Reads a piece and writes it. False: ended by `on_loss`, not written.
   bool move(const Piece& piece, const uint8_t* source, uint8_t* target, const OnLoss& on_loss);
   // What that takes.

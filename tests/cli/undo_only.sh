@@ -55,6 +55,28 @@ expect 0 stvm get --dir plc added
 expect 0 stvm edits --dir plc
 said '^E3 '
 
+# X4: what the edit had taken away comes back with its value, as by undo, and again by redo.
+cat >start.st <<'ST'
+FUNCTION_BLOCK A VAR n : DINT; keep : DINT := 3; name : STRING[10] := 'new'; END_VAR n := n + 1; END_FUNCTION_BLOCK
+FUNCTION_BLOCK B VAR n : DINT; END_VAR n := n + 1; END_FUNCTION_BLOCK
+PROGRAM Main VAR a1 : A; b1 : B; END_VAR a1(); b1(); END_PROGRAM
+ST
+sed "s/ keep : DINT := 3; name : STRING\[10\] := 'new';//" start.st >without.st
+sed '/^FUNCTION_BLOCK B/s/n + 1/n + 2/' without.st >later.st
+serve second start.st
+expect 0 stvm set Main.a1.keep=4711 "Main.a1.name='old'" --dir second
+expect 0 stvm change without.st --dir second --yes --allow-loss --allow-overrun
+expect 0 stvm change later.st --dir second --yes --allow-overrun
+expect 0 stvm undo E1 --only --dir second --yes --allow-overrun
+expect 0 stvm get Main.a1.keep Main.a1.name --dir second
+said '^Main.a1.keep=4711$'
+said "^Main.a1.name='old'$"
+expect 0 stvm undo --dir second --yes --allow-loss
+expect 7 stvm get Main.a1.keep --dir second
+expect 0 stvm redo --dir second --yes --allow-overrun
+expect 0 stvm get Main.a1.keep --dir second
+said '^Main.a1.keep=4711$'
+
 # Over a stop and start, too.
 expect 0 stvm stop --dir plc
 serve plc

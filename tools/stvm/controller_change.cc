@@ -2,8 +2,9 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "online_change/apply/deadline.h"
+#include "online_change/plan/pause.h"
 #include "tools/stvm/controller_service.h"
-#include "tools/stvm/deadline.h"
 
 namespace stvm {
 
@@ -23,7 +24,8 @@ constexpr int kMostTries = 8;
 // Undo too takes its time from the next cycle.
 bool ControllerService::time_for_switch() const {
   int64_t left = controller_.next_cycle_ns() - clock_.now_ns();
-  return left > change_.predicted_pause_ns() + 2 * keeper_.copy_ns();  // before and behind
+  const int64_t needs = online_change::with_reserve(change_.predicted_pause_ns());
+  return left > needs + 2 * keeper_.copy_ns();  // before and behind
 }
 
 // A pass begins in another cycle than the one before it, however long that takes; what counts are
@@ -98,7 +100,7 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
   before = empty_snapshot();
   online_change::Snapshot after = empty_snapshot();
   const auto nobody_else_saves = keeper_.hold();
-  std::optional<Deadline> deadline;
+  std::optional<online_change::Deadline> deadline;
   int tries = 0;
   auto job = [&] {
     if (unless_holds()) return;
@@ -206,6 +208,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
               request.flags,     {}};
   // Whoever brings an edit again has no project that says so.
   if (!redone_.empty()) trial.switch_flags |= undone_.back().switch_flags & vm::kLastEditBoots;
+  trial.taken_out = taken_out_;
   trial.edit.name = redone_.empty() ? "E" + std::to_string(edits_made_ + 1) : redone_;
   base::Status ready = prepare_switch(request, trial, faulted, allow_overrun);
   if (!ready.ok()) return ready.error();

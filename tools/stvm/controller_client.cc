@@ -238,7 +238,8 @@ base::Result<std::vector<TrialEdit>> ControllerClient::edits() {
 }
 
 base::Status ControllerClient::stage(base::ByteSpan package, uint32_t flags,
-                                     const std::string& unless, const std::string& note) {
+                                     const std::string& unless, const std::string& note,
+                                     const std::string& taken_out) {
   vm::Request part{.command = vm::Command::kUpload};
   do {
     size_t size = std::min<size_t>(vm::kChunkBytes, package.size() - part.offset);
@@ -251,8 +252,8 @@ base::Status ControllerClient::stage(base::ByteSpan package, uint32_t flags,
   vm::Request stage{.command = vm::Command::kStage};
   stage.digest = base::sha256(package);
   stage.flags = flags;
-  if (!unless.empty() || !note.empty()) stage.names = {unless};
-  if (!note.empty()) stage.names.push_back(note);
+  stage.names = {unless, note, taken_out};
+  while (!stage.names.empty() && stage.names.back().empty()) stage.names.pop_back();
   return learn_edition(call(std::move(stage)));
 }
 

@@ -48,8 +48,9 @@ class ControllerClient {
   base::Result<std::vector<TrialEdit>> edits();
 
   // `unless`: a BOOL; while it is TRUE nothing is switched (C9). `note`: for the journal.
+  // `taken_out`: the edit on trial whose work the change takes back.
   base::Status stage(base::ByteSpan package, uint32_t flags, const std::string& unless = {},
-                     const std::string& note = {});
+                     const std::string& note = {}, const std::string& taken_out = {});
   // The edit that was undone last, which has that name.
   base::Status stage_again(const std::string& edit);
   base::Result<FatePage> fates();

@@ -130,6 +130,7 @@ class ControllerService : public vm::Service {
     uint32_t flags = 0;                // as it was staged with
     uint32_t switch_flags = 0;
     online_change::Snapshot retained;  // of `before`, at the switch
+    std::string taken_out = {};        // the edit whose work it takes back; "": none
   };
   const ir::VerifiedImage* previous() const {
     return trials_.empty() ? nullptr : &trials_.back().before;
@@ -139,6 +140,8 @@ class ControllerService : public vm::Service {
   void note_accepted(size_t edits, const base::Digest& next);
   // A name must be that of the newest one.
   base::Status check_newest(const vm::Request& request) const;
+  // From the oldest; none of that name.
+  std::optional<size_t> number_of_trial(const std::string& edit) const;
   Answer units(const vm::Request& request);
   Answer edits(const vm::Request& request);
   Answer redo(const vm::Request& request);
@@ -171,7 +174,7 @@ class ControllerService : public vm::Service {
   // kBadHash, kFault.
   base::Status check_upload(const vm::Request& request, base::ByteSpan package) const;
   Answer stage_package(base::Bytes package, uint32_t flags, const std::string& unless,
-                       const std::string& redone);
+                       const std::string& redone, const std::string& taken_out);
   Answer stage_rehearsal(base::ByteSpan package, online_change::Strategy strategy);
   base::Status stage_unless_aborted(base::ByteSpan package, online_change::Strategy strategy);
   // The change that this connection stages, rehearses or, on trial, would undo.
@@ -310,6 +313,7 @@ class ControllerService : public vm::Service {
   base::Bytes staged_package_;
   uint32_t staged_flags_ = 0;
   std::string redone_;  // name of the edit that is staged again; "": a new one
+  std::string taken_out_;  // the edit on trial whose work it takes back; "": none
   uint64_t staged_of_ = 0;       // session
   bool preparing_ = false;       // a request is about it just now
   std::string abort_why_;        // by whom or what it ends; "": it goes on

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "base/limits.h"
+#include "online_change/apply/pace.h"
 #include "tools/stvm/controller_service.h"
 
 namespace stvm {
@@ -49,7 +50,8 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   base::Bytes package = std::exchange(upload_, {});
   if (base::Status good = check_upload(request, package); !good.ok()) return good.error();
   const std::string unless = request.names.empty() ? std::string() : request.names.front();
-  base::Result<base::Bytes> staged = stage_package(std::move(package), request.flags, unless, {});
+  base::Result<base::Bytes> staged = stage_package(std::move(package), request.flags, unless, {},
+                                                  request.names.size() > 2 ? request.names[2] : "");
   const bool rehearsal = (request.flags & vm::kRehearsal) != 0;
   if (staged.ok() && !rehearsal && request.names.size() > 1) {
     note_ = request.names[1].substr(0, kMostNote);
@@ -59,7 +61,8 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
 
 base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, uint32_t flags,
                                                            const std::string& unless,
-                                                           const std::string& redone) {
+                                                           const std::string& redone,
+                                                           const std::string& taken_out) {
   const bool standby = (flags & vm::kByStandby) != 0;
   const auto strategy =
       standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace;
@@ -81,6 +84,7 @@ base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, 
   if (!condition.ok()) return refused(condition.error());
   unless_ = {unless, *condition, false};
   preparing_ = true;
+  taken_out_ = taken_out;
   base::Status staged = stage_unless_aborted(package, strategy);
   preparing_ = false;
   if (!staged.ok()) {
@@ -98,7 +102,7 @@ base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, 
   if (!rehearsal) {
     online_change::JournalEntry done = entry(online_change::Event::kStaged);
     done.counts = change_.plan().counts;
-    done.predicted_ns = change_.plan().predicted_pause_ns;
+    done.predicted_ns = change_.predicted_pause_ns();
     store_.note(std::move(done));
     changed_by_ = who_;
     ++edition_;
@@ -114,12 +118,14 @@ base::Status ControllerService::stage_unless_aborted(base::ByteSpan package,
   const auto job_at_boundary = [this](const std::function<void()>& job) {
     return aborted() ? base::Status(abort_error()) : at_boundary(job);
   };
+  change_.set_pace(online_change::measured_pace(clock_));
   change_.set_interruption([this] {
     if (unless_.data == 0) return aborted();
     base::Status looked = look_at_boundary([&] { unless_holds(); });
     return aborted() || !looked.ok();
   });
-  base::Status staged = change_.stage(package, strategy, job_at_boundary);
+  base::Status staged =
+      change_.stage(package, strategy, job_at_boundary, number_of_trial(taken_out_));
   change_.set_interruption(nullptr);
   return staged;
 }
@@ -136,6 +142,7 @@ base::Result<base::Bytes> ControllerService::stage_rehearsal(base::ByteSpan pack
                                  [this](auto ranges) { return copy_of(std::move(ranges)); });
   if (!staged.ok()) return staged.error();
   rehearsal_ = std::move(*staged);
+  rehearsal_->change().set_pace(online_change::measured_pace(clock_));
   rehearsal_of_ = session_;
   base::ByteWriter answer;
   answer.u64(edition_);
@@ -197,6 +204,7 @@ void ControllerService::forget_staged() {
   staged_.reset();
   staged_package_ = base::Bytes();
   redone_.clear();
+  taken_out_.clear();
   unless_ = {};
   note_.clear();
   forget_report();

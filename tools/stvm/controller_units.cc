@@ -121,7 +121,14 @@ base::Result<base::Bytes> ControllerService::redo(const vm::Request& request) {
     return base::Error{base::Refusal::kStaleBase,
                        "the program has been changed since " + next.edit.name + " was undone"};
   }
-  return stage_package(next.package, next.flags, {}, next.edit.name);
+  return stage_package(next.package, next.flags, {}, next.edit.name, next.taken_out);
+}
+
+std::optional<size_t> ControllerService::number_of_trial(const std::string& edit) const {
+  for (size_t i = 0; i < trials_.size(); ++i) {
+    if (trials_[i].edit.name == edit) return i;
+  }
+  return std::nullopt;
 }
 
 }  // namespace stvm

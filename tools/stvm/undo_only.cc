@@ -56,6 +56,7 @@ base::Result<Outcome> take_out(const SwitchOptions& how, ControllerClient& clien
   }
   SwitchOptions noted = how;
   noted.note = edit + " alone is taken back";
+  noted.taken_out = edit;
   return bring(noted, client, *package);
 }
 

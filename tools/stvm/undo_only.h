@@ -10,8 +10,8 @@
 namespace stvm {
 
 // `on_trial`: newest first. A change on top of all of them, which is an edit of its own: undo of it
-// brings the edit again. Variables that the edit had taken away begin anew. kOtherPart,
-// kCannotRelink where later edits depend on it.
+// brings the edit again. Variables that the edit had taken away have their values again (X4).
+// kOtherPart, kCannotRelink where later edits depend on it.
 base::Result<Outcome> take_out(const SwitchOptions& how, ControllerClient& client,
                                const std::string& edit, const std::vector<std::string>& on_trial);
 

@@ -120,7 +120,7 @@ TEST(CatchingUp, C7_case80_two_megabytes_rewritten_in_every_scan_of_a_5_ms_task)
 std::string walks(const char* x) {
   return std::string("PROGRAM Main VAR data : ARRAY[0..2097151] OF DINT; x : ") + x +
          "; i : DINT; END_VAR i := (i + 1024) MOD 2097152; data[i] := x; x := x + 1; END_PROGRAM" +
-         tasks("3ms");
+         tasks("700us");
 }
 
 TEST(CatchingUp, C7_passes_leave_less_and_less) {
@@ -130,7 +130,7 @@ TEST(CatchingUp, C7_passes_leave_less_and_less) {
   plant.run(3);
   Change& change = plant.driver();
   ASSERT_TRUE(plant.stage(plant.package(walks("DINT"))).ok());
-  EXPECT_EQ(change.admit(false).error().refusal, Refusal::kPauseTooLong) << "8 MB in 3 ms";
+  EXPECT_EQ(change.admit(false).error().refusal, Refusal::kPauseTooLong) << "8 MB in 0.7 ms";
   const uint64_t begin = plant.controller().cycles();
   configure(plant);
   const uint64_t copied = plant.controller().cycles() - begin;
@@ -153,13 +153,13 @@ TEST(CatchingUp, C7_passes_leave_less_and_less) {
 
 TEST(CatchingUp, C7_case80_what_never_fits_is_refused_with_the_figures) {
   Settings settings = roomy();
-  settings.ns_per_safe_point = 400;
-  Plant plant(rewrites("1ms", "INT"), settings);
+  settings.ns_per_safe_point = 40;
+  Plant plant(rewrites("200us", "INT"), settings);
   plant.use(Strategy::kStandby);
   plant.run(3);
   const base::Digest before = plant.controller().verified().digest();
   Change& change = plant.driver();
-  ASSERT_TRUE(plant.stage(plant.package(rewrites("1ms", "DINT"))).ok());
+  ASSERT_TRUE(plant.stage(plant.package(rewrites("200us", "DINT"))).ok());
   configure(plant);
   catch_up(plant);
   const base::Status armed = change.arm(false);

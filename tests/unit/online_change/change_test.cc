@@ -281,11 +281,11 @@ TEST(Change, case45_too_long_a_pause_is_refused_before) {
   const std::string tasks =
       " CONFIGURATION Plant RESOURCE Cpu ON Pc TASK Fast (INTERVAL := T#1ms, PRIORITY := 0); "
       "PROGRAM Main WITH Fast : Main; END_RESOURCE END_CONFIGURATION";
-  std::string big = tasks + " PROGRAM Main VAR a : ARRAY[0..199999] OF INT; END_VAR END_PROGRAM";
+  std::string big = tasks + " PROGRAM Main VAR a : ARRAY[0..1999999] OF INT; END_VAR END_PROGRAM";
   std::string converted =
-      tasks + " PROGRAM Main VAR a : ARRAY[0..199999] OF LREAL; END_VAR END_PROGRAM";
+      tasks + " PROGRAM Main VAR a : ARRAY[0..1999999] OF LREAL; END_VAR END_PROGRAM";
   linker::Slack slack;
-  slack.free_bytes = 16u << 20;
+  slack.free_bytes = 32u << 20;
   Plant plant(big, slack);
   plant.run(1);
   base::Digest before = plant.hash();

@@ -49,6 +49,28 @@ struct ThreeEdits {
   uint32_t keep = 0;
 };
 
+// The first edit is taken out from below the others: what it dropped has its value again, and a
+// variable of another type under that name begins anew.
+TEST(Edits, X4_case77_WhatAnEditTookAwayComesBackFromBelowOthers) {
+  const std::string more = "level : LREAL; wide : INT; p : ARRAY[1..2] OF Pump; "
+                           "more : ARRAY[0..3] OF DINT; gone : STRING[";
+  for (const bool same_type : {true, false}) {
+    ThreeEdits edits;
+    Plant& plant = edits.plant;
+    const std::string back =
+        station(more + (same_type ? "20" : "30") + "] := 'here';", "p[2](); n := n;");
+    ASSERT_TRUE(plant.stage(plant.package(back), 0).ok());
+    ASSERT_TRUE(plant.driver().arm(true).ok());
+    ASSERT_TRUE(plant.driver().switch_now().ok());
+    EXPECT_EQ(plant.get("Main.gone"), same_type ? "'a text'" : "'here'");
+    EXPECT_EQ(plant.get("Main.p[2].turns"), "2");
+    plant.undo();
+    EXPECT_EQ(plant.get("Main.wide"), "32767");
+    for (int i = 0; i < 3; ++i) plant.undo();
+    EXPECT_EQ(plant.get("Main.gone"), "'a text'");
+  }
+}
+
 TEST(Edits, D3_case77_ThreeEditsThereAndBack) {
   ThreeEdits edits;
   Plant& plant = edits.plant;

@@ -9,7 +9,7 @@ namespace plc {
 namespace {
 
 std::string source(const char* type) {
-  return std::string("CONFIGURATION c TASK Fast (INTERVAL := T#1ms); PROGRAM P WITH Fast : ") +
+  return std::string("CONFIGURATION c TASK Fast (INTERVAL := T#200us); PROGRAM P WITH Fast : ") +
          "Main; END_CONFIGURATION PROGRAM Main VAR a : ARRAY[1..800000] OF " + type +
          "; n : DINT; END_VAR n := n + 1; END_PROGRAM";
 }

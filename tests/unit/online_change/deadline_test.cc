@@ -1,12 +1,12 @@
 // A switch of 10,000 values asks for its deadline 40,000 times: looks at the clock must not be what
 // it takes (case 69). Counted, in virtual time.
-#include "tools/stvm/deadline.h"
+#include "online_change/apply/deadline.h"
 
 #include <gtest/gtest.h>
 
 #include "vm/runtime/clocks.h"
 
-namespace stvm {
+namespace online_change {
 namespace {
 
 class CountedClock : public vm::VirtualClock {
@@ -58,4 +58,4 @@ TEST(Deadline, IsSeenWithinTheStepsThatAreSkipped) {
 }
 
 }  // namespace
-}  // namespace stvm
+}  // namespace online_change

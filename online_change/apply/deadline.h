@@ -7,7 +7,7 @@
 
 #include "vm/runtime/ports.h"
 
-namespace stvm {
+namespace online_change {
 
 class Deadline {
  public:
@@ -37,4 +37,4 @@ class Deadline {
   bool over_ = false;
 };
 
-}  // namespace stvm
+}  // namespace online_change
