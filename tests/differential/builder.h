@@ -305,6 +305,7 @@ class Builder {
   Stmt leave(const char* word);
 
   // --- configuration (configuration.cc)
+  void exchange(Task& task);
   void tasks(uint32_t count);
   void connect(Task& task, const Interface& face);
   void configure(Pou& pou);

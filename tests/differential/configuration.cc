@@ -28,6 +28,19 @@ void Builder::connect(Task& task, const Interface& face) {
   }
 }
 
+// How its inputs and outputs are buffered and exchanged (B4, B5, B12): what a scan sees is the same.
+void Builder::exchange(Task& task) {
+  static constexpr const char* kBuffers[] = {"copied",            "locked", "swapped",
+                                             "swapped_with_flag", "three",  "first_unseen"};
+  const bool own = one_in(6);
+  for (const char* which : {"input_buffer", "output_buffer"}) {
+    if (!one_in(4)) continue;
+    const char* const kind = kBuffers[below(own ? 5 : 6)];  // with that, none would be unseen
+    task.attributes.push_back(std::string("'") + which + "' := '" + kind + "'");
+  }
+  if (own) task.attributes.push_back("'exchange' := 'own'");
+}
+
 void Builder::tasks(uint32_t count) {
   if (!configured_) return;
   for (uint32_t i = 0; i < count; ++i) {
@@ -35,6 +48,7 @@ void Builder::tasks(uint32_t count) {
     Task task{"Task" + std::to_string(i), i == 0 ? 10 : kPeriods[below(4)], below(3),
               "Main" + std::to_string(i)};
     if (i > 0 && one_in(3)) task.event = "event";
+    exchange(task);
     connect(task, programs_[i]);
     program_.tasks.push_back(std::move(task));
   }

@@ -173,6 +173,7 @@ class Printer {
     line("CONFIGURATION Plant");
     line("  RESOURCE Cpu ON PLC");
     for (const Task& task : program_.tasks) {
+      for (const std::string& one : task.attributes) line("    {attribute " + one + "}");
       std::string when = task.event.empty()
                              ? "INTERVAL := T#" + std::to_string(task.period_ms) + "ms"
                              : "SINGLE := " + task.event;

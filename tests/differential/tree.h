@@ -134,6 +134,7 @@ struct Task {
   std::string program;                        // its type; the instance is called Run<type>
   std::string event = {};                     // SINGLE
   std::vector<std::string> connections = {};  // "v1 := g2", "v3 => g4", "v5 WITH Task1"
+  std::vector<std::string> attributes = {};   // "'exchange' := 'own'"
 };
 
 struct Program {
