@@ -28,7 +28,9 @@ std::string json_entry(const Diagnostic& diagnostic, const SourceMap& sources) {
                     ",\"severity\":" + json_string(severity_name(diagnostic.severity)) +
                     ",\"message\":" + json_string(diagnostic.text);
   if (!diagnostic.fix.empty()) out += ",\"fix\":" + json_string(diagnostic.fix);
-  out += ',' + json_place(region_of(sources, diagnostic.span)) + ",\"notes\":[";
+  const Region region = region_of(sources, diagnostic.span);
+  if (region.line != 0) out += ',' + json_place(region);
+  out += ",\"notes\":[";
   for (size_t i = 0; i < diagnostic.notes.size(); ++i) {
     const DiagnosticNote& note = diagnostic.notes[i];
     out += (i == 0 ? "{" : ",{") + std::string("\"message\":") + json_string(note.text) + ',' +

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <unordered_map>
+
+#include "online_change/plan/type_content.h"
 
 namespace online_change {
 namespace {
@@ -13,41 +14,6 @@ struct Parameter {
   std::string name;
   std::string type;     // as people read it
   std::string content;  // of its structures and enumerations too
-};
-
-// Two types with the same text can differ inside: a structure by its members.
-class TypeContent {
- public:
-  explicit TypeContent(const ir::TypeTable& types) : types_(types) {}
-  std::string of(ir::TypeId id) {
-    std::string out = types_.text(id);
-    append(id, out);
-    seen_.clear();
-    return out;
-  }
-
- private:
-  void append(ir::TypeId id, std::string& out) {
-    const ir::Type& type = types_[id];
-    if (ir::is_reference(type.kind) || types_.is_instance(id)) return;
-    if (type.kind == ir::Kind::kArray) return append(type.base, out);
-    if (std::find(seen_.begin(), seen_.end(), id) != seen_.end()) return;
-    seen_.push_back(id);
-    for (const ir::EnumLiteral& literal : type.literals) {
-      out += "," + ir::fold_name(literal.name) + "=" + std::to_string(literal.value);
-    }
-    if (!ir::is_structure(type.kind)) return;
-    out += "{";
-    for (const ir::Member& member : type.members) {
-      out += ir::fold_name(member.name) + ":" + types_.text(member.type);
-      append(member.type, out);
-      out += ";";
-    }
-    out += "}";
-  }
-
-  const ir::TypeTable& types_;
-  std::vector<ir::TypeId> seen_;
 };
 
 const char* kind_of(ir::Section section) {
