@@ -1,6 +1,7 @@
 // The stored form: 8 bytes magic, u32 version, u32 length of the whole, then the parts, each {u32
-// length, SHA-256 of the content, content}: what people say of it (two texts), and the two images
-// one after the other, packed as one, since most of the second was in the first.
+// length, SHA-256 of the content, content}: what people say of it (two texts, and since version 2
+// whether its table is free), and the two images one after the other, packed as one, since most of
+// the second was in the first.
 #include "online_change/package/fleet_file.h"
 
 #include <algorithm>
@@ -11,7 +12,8 @@
 namespace online_change {
 namespace {
 
-constexpr uint32_t kFleetVersion = 1;
+constexpr uint32_t kFirstFleetVersion = 1;
+constexpr uint32_t kFleetVersion = 2;
 constexpr uint32_t kMostText = 65536;
 
 base::Error bad(const std::string& text) {
@@ -39,6 +41,7 @@ base::Bytes texts_of(const FleetFile& file) {
   base::ByteWriter out;
   out.text(file.author);
   out.text(file.text);
+  out.boolean(file.free_table);
   return out.take();
 }
 
@@ -52,13 +55,14 @@ base::Bytes images_of(const FleetFile& file) {
   return out.take();
 }
 
-base::Status read_texts(base::ByteSpan content, FleetFile& file) {
+base::Status read_texts(base::ByteSpan content, uint32_t version, FleetFile& file) {
   base::ByteReader in(content);
   for (std::string* const text : {&file.author, &file.text}) {
     const base::ByteSpan bytes = in.blob();
     if (bytes.size() > kMostText) return bad("a text of more than 65,536 bytes");
     text->assign(bytes.begin(), bytes.end());
   }
+  if (version > kFirstFleetVersion) file.free_table = in.boolean();
   if (in.failed() || in.left() != 0) return bad("its texts are damaged");
   return base::Ok{};
 }
@@ -110,9 +114,9 @@ base::Result<FleetFile> decode_fleet_file(base::ByteSpan bytes) {
   const uint32_t version = in.u32();
   const uint32_t length = in.u32();
   if (in.failed()) return bad("only " + std::to_string(bytes.size()) + " bytes");
-  if (version != kFleetVersion) {
+  if (version < kFirstFleetVersion || version > kFleetVersion) {
     return bad("version " + std::to_string(version) + ", this program reads " +
-               std::to_string(kFleetVersion));
+               std::to_string(kFirstFleetVersion) + " to " + std::to_string(kFleetVersion));
   }
   if (length != bytes.size()) {
     return bad("header says " + std::to_string(length) + " bytes, there are " +
@@ -124,7 +128,7 @@ base::Result<FleetFile> decode_fleet_file(base::ByteSpan bytes) {
   base::Result<base::ByteSpan> images = read_part(in, "versions");
   if (!images.ok()) return images.error();
   if (in.left() != 0) return bad("there is more after its end");
-  if (base::Status good = read_texts(*texts, file); !good.ok()) return good.error();
+  if (base::Status good = read_texts(*texts, version, file); !good.ok()) return good.error();
   if (base::Status good = read_images(*images, file); !good.ok()) return good.error();
   return file;
 }

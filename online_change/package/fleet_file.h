@@ -14,9 +14,10 @@
 namespace online_change {
 
 struct FleetFile {
-  std::string author;    // who made it; may be empty
-  std::string text;      // what it is for; may be empty
-  base::Bytes original;  // encoded images, without sources
+  std::string author;       // who made it; may be empty
+  std::string text;         // what it is for; may be empty
+  bool free_table = false;  // lifts the rule of additions only (E-17; table_edits.h)
+  base::Bytes original;     // encoded images, without sources
   base::Bytes edited;
 };
 

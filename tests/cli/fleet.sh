@@ -109,7 +109,9 @@ said 'R0504.*--matching is for a fleet file'
 # E-15: what is lost there is said there; the others go on.
 project keeps.st 1 1 1 'kept : INT := 3;'
 project loses.st 2 1 1
-expect 0 stc fleet keeps.st loses.st -o loses.fleet
+expect 7 stc fleet keeps.st loses.st -o loses.fleet
+said 'R0322.*`kept`: removed'
+expect 0 stc fleet keeps.st loses.st -o loses.fleet --table free
 serve six keeps.st
 expect 0 stvm set --dir six kept=9
 expect 7 stvm fleet change loses.fleet --dir six --yes --allow-overrun

@@ -103,7 +103,11 @@ stvm doctor --seconds 1 --format json >out 2>err || code=$?
 [ "$code" -le 1 ] || fail "stvm doctor: exit code $code"
 holds stvm-doctor
 
-answers stc-fleet 0 stc fleet plant.img next -o next.fleet
+answers refused 7 stc fleet plant.img next -o next.fleet
+answers stc-fleet 0 stc fleet plant.img next -o next.fleet --table free
+answers stc-check 1 stc check next --online-base plant.img
+answers stc-build 1 stc build next -o next.img --online-base plant.img
+answers stc-explain 0 stc explain online-edits
 serve plc plant.img
 at() { command=$1; shift; stvm "$command" --dir plc "$@"; }
 answers stvm-get 0 at get Main.n
@@ -119,6 +123,12 @@ answers stvm-source 0 at source
 answers stvm-abort 0 at abort
 answers stvm-fleet 0 at fleet status next.fleet
 answers stvm-fleet 0 at fleet change next.fleet --dry-run
+printf 'VAR_GLOBAL g : INT; END_VAR PROGRAM Main END_PROGRAM\n' >one.st
+printf 'VAR_GLOBAL g : INT; h : INT; END_VAR PROGRAM Main END_PROGRAM\n' >two.st
+printf 'VAR_GLOBAL g : DINT; END_VAR PROGRAM Main END_PROGRAM\n' >other.st
+expect 0 stc fleet one.st two.st -o two.fleet
+serve other other.st
+answers stvm-fleet 7 stvm fleet status two.fleet --dir other
 answers stvm-change 0 at change next --yes --dry-run --all
 answers stvm-change 0 at change next --yes --all
 answers stvm-status 0 at status

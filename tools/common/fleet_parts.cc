@@ -12,9 +12,9 @@ std::string identity_text(const base::Digest& identity) {
   return identity == kNobody ? "-" : base::short_hex(identity);
 }
 
-base::Result<std::vector<ir::Part>> parts_of_image(const base::Bytes& bytes, const char* which) {
+base::Result<ir::VerifiedImage> verified(const base::Bytes& bytes, const char* which) {
   base::Result<ir::VerifiedImage> image = ir::verify(bytes);
-  if (image.ok()) return ir::parts_of(image->image());
+  if (image.ok()) return image;
   return base::Error{image.error().refusal,
                      std::string("fleet file, ") + which + ": " + image.error().text};
 }
@@ -22,11 +22,21 @@ base::Result<std::vector<ir::Part>> parts_of_image(const base::Bytes& bytes, con
 }  // namespace
 
 base::Result<FleetParts> parts_of(const online_change::FleetFile& file) {
-  auto original = parts_of_image(file.original, "its original version");
+  auto original = verified(file.original, "its original version");
   if (!original.ok()) return original.error();
-  auto edited = parts_of_image(file.edited, "its edited version");
+  auto edited = verified(file.edited, "its edited version");
   if (!edited.ok()) return edited.error();
-  return FleetParts{std::move(*original), std::move(*edited)};
+  FleetParts parts{ir::parts_of(original->image()), ir::parts_of(edited->image()), {}, {}};
+  parts.edited_image.emplace(std::move(*edited));
+  parts.free_table = file.free_table;
+  return parts;
+}
+
+std::vector<online_change::TableEdit> own_table_edits(const FleetParts& parts,
+                                                      const ir::Image& own) {
+  if (parts.free_table) return {};
+  return online_change::table_edits(own, parts.edited_image->image(),
+                                    online_change::TableSide::kOwn);
 }
 
 std::string part_change_name(const ir::PartEdit& edit) {
@@ -63,6 +73,23 @@ std::string part_edits_text(const std::vector<ir::PartEdit>& edits, bool here) {
     table.row(row);
   }
   return table.text();
+}
+
+std::string own_table_text(const std::vector<online_change::TableEdit>& edits) {
+  if (edits.empty()) return {};
+  Table table({"table", "here -> in the edit"});
+  for (const online_change::TableEdit& edit : edits) table.row({edit.path(), edit.what});
+  return table.text();
+}
+
+void own_table_json(const std::vector<online_change::TableEdit>& edits, JsonWriter& json) {
+  json.begin_array();
+  for (const online_change::TableEdit& edit : edits) {
+    json.begin_object().field("variable", edit.path());
+    json.field("change", online_change::table_change_name(edit.change));
+    json.field("what", edit.what).end_object();
+  }
+  json.end_array();
 }
 
 void part_edits_json(const std::vector<ir::PartEdit>& edits, bool here, JsonWriter& json) {

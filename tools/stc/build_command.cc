@@ -1,6 +1,7 @@
 // stc build: sources -> image file.
 #include "tools/stc/commands.h"
 #include "tools/stc/image_output.h"
+#include "tools/stc/online_base.h"
 #include "tools/stc/session.h"
 #include "tools/stc/watch_image.h"
 
@@ -16,10 +17,22 @@ constexpr tools::OptionRow kBuildOptions[] = {
      "FILE.RESOURCE.img each, or RESOURCE.img in the folder FILE"},
     {"--base", "IMAGE", "running version: what lives on keeps its place"},
     {"--watch", nullptr, "stay, and build again whenever a source is saved"},
+    STC_ONLINE_OPTIONS,
     {"--move-all", nullptr, "with --base: give every instance a new place (a test of changes)"},
 };
 constexpr tools::Command kBuildCommand{"build", "[PATHS...]",
                                        "Compiles and links sources to an image.", kBuildOptions};
+
+// What may be done online is checked of an image that is linked against the running one; the image
+// that is written is linked as the options say.
+base::Status check_online(const OnlineBase& online, const Project& project,
+                          base::Diagnostics& diagnostics) {
+  base::Diagnostics said;  // of the sources: they are in `diagnostics` already
+  auto versions = build_resources(project, {&online.original()}, said);
+  if (!versions.ok()) return versions.error();
+  online.check(project, online.matching(*versions).version, diagnostics);
+  return diagnostics.has_errors() ? base::Status(source_errors(diagnostics)) : base::Ok{};
+}
 
 int run_build(const tools::Options& options) {
   auto format = diagnostic_format(options);
@@ -30,13 +43,15 @@ int run_build(const tools::Options& options) {
     if (!read.ok()) return tools::refuse("stc", read.error());
     base_image = std::make_shared<const ir::Image>(std::move(read->image));
   }
+  base::Result<std::optional<OnlineBase>> online = OnlineBase::of(options);
+  if (!online.ok()) return tools::refuse("stc", online.error());
   const bool with_line = *format == base::DiagnosticFormat::kText && !options.has("--quiet");
   BuildOptions build_options{base_image.get(), options.has("--move-all")};
   if (options.has("--watch")) {
     if (options.arguments().empty()) {
       return tools::refuse("stc", {base::Refusal::kUsage, "build: --watch needs PATHS..."});
     }
-    WatchedImage target(options.text("--output"), with_line, base_image);
+    WatchedImage target(options.text("--output"), with_line, base_image, std::move(*online));
     return watch(options, build_options.move_all, *format, target);
   }
   base::Result<Project> project = open_project(options, options.arguments());
@@ -49,6 +64,10 @@ int run_build(const tools::Options& options) {
                               "--base is one program, but there are several RESOURCEs; say which "
                               "one is meant: --resource NAME"};
     return finish(*project, diagnostics, *format, several);
+  }
+  if (*online) {
+    base::Status taken = check_online(**online, *project, diagnostics);
+    if (!taken.ok()) return finish(*project, diagnostics, *format, taken);
   }
   // People read what was found before the line about the image.
   const bool text = *format == base::DiagnosticFormat::kText;

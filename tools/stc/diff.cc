@@ -1,12 +1,11 @@
 // stc diff: the fate report between two versions, without a controller (X1).
 #include <cstdio>
-#include <filesystem>
 
 #include "tools/common/all_system_edits.h"
-#include "tools/common/child.h"
 #include "tools/common/fate_report.h"
 #include "tools/common/source_edits.h"
 #include "tools/stc/commands.h"
+#include "tools/stc/original.h"
 #include "tools/stc/session.h"
 #include "tools/stc/source_units.h"
 #include "tools/stc/unit_report.h"
@@ -25,18 +24,6 @@ constexpr tools::OptionRow kDiffOptions[] = {
 constexpr tools::Command kDiffCommand{
     "diff", "[OLD] NEW", "Shows the fate of every variable when OLD is changed to NEW.",
     kDiffOptions, 1};
-
-// The program of a running controller, fetched by the stvm beside this tool.
-base::Result<Version> running_version(const std::string& place) {
-  base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
-  if (!folder.ok()) return folder.error();
-  const std::string file = folder->file("running.img");
-  std::error_code ignored;
-  const char* option = std::filesystem::is_directory(place, ignored) ? "--dir" : "--host";
-  base::Status fetched = tools::run_beside("stvm", {"image", option, place, "-o", file});
-  if (!fetched.ok()) return fetched.error();
-  return read_image(file);
-}
 
 struct Difference {
   online_change::Plan plan;

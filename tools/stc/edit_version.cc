@@ -3,6 +3,7 @@
 #include "ir/bytecode/verify.h"
 #include "linker/merge.h"
 #include "online_change/package/fleet_file.h"
+#include "online_change/plan/table_edits.h"
 #include "tools/common/files.h"
 
 namespace stc {
@@ -27,6 +28,12 @@ base::Result<Version> edited_version(const std::string& path, const BuildOptions
   if (!original.ok()) return original.error();
   base::Result<ir::VerifiedImage> edited = ir::verify(file->edited);
   if (!edited.ok()) return edited.error();
+  if (!file->free_table) {
+    base::Status kept = online_change::check_table(
+        online_change::table_edits(*options.base, edited->image(), online_change::TableSide::kOwn),
+        "the controller's own table");
+    if (!kept.ok()) return kept.error();
+  }
   base::Result<ir::Image> merged =
       linker::merge({original->image(), edited->image(), *options.base}, {{}, options.matching});
   if (!merged.ok()) return merged.error();

@@ -18,6 +18,8 @@
 #include "tools/common/project_file.h"
 #include "tools/common/table.h"
 #include "tools/stc/commands.h"
+#include "tools/stc/online_base.h"
+#include "tools/stc/online_edits.h"
 #include "tools/stc/project_schema.h"
 #include "tools/stc/session.h"
 #include "tools/stc/test_page.h"
@@ -26,13 +28,18 @@ namespace stc {
 namespace {
 
 // Terminals get 80 columns; files (the generated reference) get every word.
-std::string fitted(const tools::Table& table) { return table.text(::isatty(1) != 0 ? 80 : 400); }
+uint32_t page_width() { return ::isatty(1) != 0 ? 80 : 400; }
+std::string fitted(const tools::Table& table) { return table.text(page_width()); }
 
+constexpr tools::OptionRow kExplainOptions[] = {
+    kTargetOption,
+    {"--format", "FORM", "of online-edits: text (default) or json", "text|json"},
+};
 constexpr tools::Command kExplainCommand{
     "explain",
     "[CODE|TRAP|TABLE]",
     "Explains a code such as E3001 or R0303, a trap, or prints a table.",
-    {},
+    kExplainOptions,
     0,
     1};
 
@@ -97,7 +104,9 @@ std::string overview_page() {
          "stc explain TABLE    limits, opcodes, functions, refusals, diagnostics, traps, "
          "dialects, devices,\n"
          "                     passes, exit_codes, stc.toml, stc.toml.schema\n"
-         "stc explain test     how unit tests are written\n";
+         "stc explain test     how unit tests are written\n"
+         "stc explain online-edits [--target HOST|VERSION]\n"
+         "                     what can be edited while a program runs\n";
 }
 
 std::string devices_page() {
@@ -192,10 +201,13 @@ constexpr Page kPages[] = {{"limits", limits_page},     {"functions", functions_
                            {"stc.toml", project_page},  {"stc.toml.schema", project_schema},
                            {"test", test_page}};
 
+constexpr const char* kOnlineEdits = "online-edits";
+
 // Which page was meant, perhaps: codes and traps, too.
 std::string nearest_page(const std::string& what) {
   base::NearestName nearest(what);
   for (const Page& page : kPages) nearest.offer(page.name);
+  nearest.offer(kOnlineEdits);
   for (uint32_t i = 0; i < ir::kTrapCount; ++i) {
     nearest.offer(ir::trap_name(static_cast<ir::TrapKind>(i)));
   }
@@ -224,7 +236,23 @@ std::optional<std::string> page_of(const std::string& what) {
   return std::nullopt;
 }
 
+// The page that has options.
+int explain_online_edits(const tools::Options& options) {
+  const std::vector<std::string> targets = target_versions(options);
+  const bool json = options.text("--format") == "json";
+  std::fputs((json ? online_edits_json(targets) : online_edits_page(targets, page_width())).c_str(),
+             stdout);
+  return tools::kOk;
+}
+
 int run_explain(const tools::Options& options) {
+  if (!options.arguments().empty() && options.arguments()[0] == kOnlineEdits) {
+    return explain_online_edits(options);
+  }
+  if (options.has("--target") || options.has("--format")) {
+    return tools::refuse(
+        "stc", {base::Refusal::kUsage, "explain: --target and --format are for online-edits"});
+  }
   if (options.arguments().empty()) {
     std::fputs(overview_page().c_str(), stdout);
     return tools::kOk;

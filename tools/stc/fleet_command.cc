@@ -5,6 +5,9 @@
 #include "tools/common/files.h"
 #include "tools/common/fleet_parts.h"
 #include "tools/stc/commands.h"
+#include "tools/stc/declared_places.h"
+#include "tools/stc/online_base.h"
+#include "tools/stc/original.h"
 #include "tools/stc/session.h"
 
 namespace stc {
@@ -16,6 +19,7 @@ constexpr tools::OptionRow kFleetOptions[] = {
     {"--output|-o", "FILE", "the file to write (required)"},
     {"--author", "NAME", "who made the edit"},
     {"--text", "TEXT", "what the edit is for"},
+    kTableOption,
 };
 constexpr tools::Command kFleetCommand{
     "fleet",
@@ -30,13 +34,26 @@ struct Made {
   std::vector<ir::PartEdit> edits;
 };
 
+// E-16: additions only. With the places in the sources, where NEW has some.
+base::Status check_restricted_table(const tools::Options& options, const Version& original,
+                                    const Version& edited) {
+  const std::vector<online_change::TableEdit> edits =
+      online_change::table_edits(original.image, edited.image, online_change::TableSide::kBefore);
+  if (edits.empty()) return base::Ok{};
+  const std::string& path = options.arguments()[1];
+  base::Result<Project> project =
+      is_image(path) ? base::Result<Project>(Project()) : open_project(options, {path});
+  if (!project.ok()) return project.error();
+  return base::Error{base::Refusal::kTableEdit, placed_table_edits(edits, edited.image, *project)};
+}
+
 // Both without the sources that may travel with them.
 base::Result<Made> make_file(const tools::Options& options) {
   if (!options.has("--output")) {
     return base::Error{base::Refusal::kUsage, "fleet: --output is required"};
   }
   const std::vector<std::string>& paths = options.arguments();
-  base::Result<Version> original = open_version(options, {paths[0]}, {});
+  base::Result<Version> original = open_original(options, paths[0]);
   if (!original.ok()) return original.error();
   base::Result<Version> edited = open_version(options, {paths[1]}, {&original->image});
   if (!edited.ok()) return edited.error();
@@ -47,7 +64,12 @@ base::Result<Made> make_file(const tools::Options& options) {
     return base::Error{base::Refusal::kNoChange,
                        "nothing is edited between `" + paths[0] + "` and `" + paths[1] + "`"};
   }
-  made.bytes = online_change::encode({options.text("--author"), options.text("--text"),
+  const bool free_table = options.text("--table") == "free";
+  if (base::Status kept = check_restricted_table(options, *original, *edited);
+      !free_table && !kept.ok()) {
+    return kept.error();
+  }
+  made.bytes = online_change::encode({options.text("--author"), options.text("--text"), free_table,
                                       ir::encode(original->image), ir::encode(edited->image)});
   base::Status written = tools::write_file(options.text("--output"), made.bytes);
   if (!written.ok()) return written.error();

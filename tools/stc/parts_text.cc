@@ -40,6 +40,7 @@ base::Result<std::string> fleet_file_text(const std::string& path) {
   std::string out = "fleet file " + base::short_hex(online_change::fleet_digest(*bytes));
   if (!file->author.empty()) out += ", by " + file->author;
   if (!file->text.empty()) out += ": " + file->text;
+  if (file->free_table) out += " (the table is free)";
   const auto edits = ir::part_edits(parts->original, parts->edited, parts->original);
   return base::visible_lines(out) + "\n" + tools::part_edits_text(edits, false);
 }

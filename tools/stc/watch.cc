@@ -295,6 +295,7 @@ class Watch {
       auto image = build_->build(project_.sources, saved_files_, diagnostics);
       several_ = !image.ok() && image.error().refusal == base::Refusal::kUsage;
       if (!several_) {
+        if (image.ok()) target_.check(**image, project_, diagnostics);
         report(project_, diagnostics, format_);
         if (!image.ok()) return with_place(image.error(), project_.devices);
         if (diagnostics.has_errors()) return source_errors(diagnostics);  // warnings that are
@@ -315,8 +316,14 @@ class Watch {
     }
     const std::shared_ptr<const ir::Image> base = target_.base();
     auto versions = build_resources(project_, {base.get(), move_all_}, anew);
+    if (versions.ok()) {
+      for (const ResourceVersion& row : *versions) {
+        target_.check(row.version.image, project_, anew);
+      }
+    }
     report(project_, anew, format_);
     if (!versions.ok()) return versions.error();
+    if (anew.has_errors()) return source_errors(anew);
     return target_.take(*versions, project_, {"everything", saved_, seen_, Clock::now()});
   }
 

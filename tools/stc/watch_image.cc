@@ -6,6 +6,11 @@
 
 namespace stc {
 
+void WatchedImage::check(const ir::Image& image, const Project& project,
+                         base::Diagnostics& diagnostics) {
+  if (online_) online_->check(project, image, diagnostics);
+}
+
 base::Result<WatchTarget::Next> WatchedImage::take(const ir::Image& image, const Project& project,
                                                    const Built& built) {
   base::Status written = write(image, project);

@@ -5,17 +5,25 @@
 #include <optional>
 
 #include "tools/stc/file_stamp.h"
+#include "tools/stc/online_base.h"
 #include "tools/stc/watch.h"
 
 namespace stc {
 
 class WatchedImage : public WatchTarget {
  public:
-  // `output`: as for image_path(). With a line for each build if wanted.
-  WatchedImage(std::string output, bool with_line, std::shared_ptr<const ir::Image> base)
-      : output_(std::move(output)), with_line_(with_line), base_(std::move(base)) {}
+  // `output`: as for image_path(). With a line for each build if wanted. `online`: what the image
+  // has to be an edit of.
+  WatchedImage(std::string output, bool with_line, std::shared_ptr<const ir::Image> base,
+               std::optional<OnlineBase> online)
+      : output_(std::move(output)),
+        with_line_(with_line),
+        base_(std::move(base)),
+        online_(std::move(online)) {}
 
   std::shared_ptr<const ir::Image> base() const override { return base_; }
+  void check(const ir::Image& image, const Project& project,
+             base::Diagnostics& diagnostics) override;
   base::Result<Next> take(const ir::Image& image, const Project& project,
                           const Built& built) override;
   base::Result<Next> take(std::vector<ResourceVersion>& versions, const Project& project,
@@ -28,6 +36,7 @@ class WatchedImage : public WatchTarget {
   std::string output_;  // "": by the project's name
   bool with_line_;
   std::shared_ptr<const ir::Image> base_;
+  std::optional<OnlineBase> online_;
   // What was written last, and what the file was then: it is written again when either is another.
   base::Bytes written_;
   FileStamp stamp_;

@@ -175,7 +175,8 @@ class ControllerService : public vm::Service {
   base::Status check_upload(const vm::Request& request, base::ByteSpan package) const;
   Answer stage_package(base::Bytes package, uint32_t flags, const std::string& unless,
                        const std::string& redone, const std::string& taken_out);
-  Answer stage_rehearsal(base::ByteSpan package, online_change::Strategy strategy);
+  Answer stage_rehearsal(base::ByteSpan package, online_change::Strategy strategy,
+                         uint32_t flags);
   base::Status stage_unless_aborted(base::ByteSpan package, online_change::Strategy strategy);
   // The change that this connection stages, rehearses or, on trial, would undo.
   const online_change::Change& looked_at() const;

@@ -3,6 +3,7 @@
 
 #include "base/limits.h"
 #include "online_change/apply/pace.h"
+#include "online_change/plan/online_limits.h"
 #include "tools/stvm/controller_service.h"
 
 namespace stvm {
@@ -42,6 +43,17 @@ base::Status ControllerService::check_upload(const vm::Request& request,
   return base::Error{base::Refusal::kBadHash, "the package arrived damaged"};
 }
 
+// E-16, E-22: what its sender wants refused, and what this version of stvm does not take.
+static base::Status check_edit(const ir::Image& running, const ir::Image& next, uint32_t flags) {
+  if ((flags & vm::kTableAdditions) != 0) {
+    base::Status kept = online_change::check_table(
+        online_change::table_edits(running, next, online_change::TableSide::kBefore),
+        "the table that runs");
+    if (!kept.ok()) return kept;
+  }
+  return online_change::check_limits(online_change::online_limits().back(), running, next);
+}
+
 // Checks and builds beside the running program; touches nothing of it, so it needs no boundary. A
 // change that somebody staged and did not switch gives way, and the new edition, which is the
 // answer, makes sure that nobody switches what he did not stage. A rehearsal never takes its place.
@@ -72,7 +84,7 @@ base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, 
   if (rehearsal && taken) {
     if (base::Status room = change_.room(); !room.ok()) return room.error();
     base::Status may_begin = check_unless(unless);
-    return may_begin.ok() ? stage_rehearsal(package, strategy) : may_begin.error();
+    return may_begin.ok() ? stage_rehearsal(package, strategy, flags) : may_begin.error();
   }
   change_.cancel();
   forget_staged();
@@ -87,6 +99,10 @@ base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, 
   taken_out_ = taken_out;
   base::Status staged = stage_unless_aborted(package, strategy);
   preparing_ = false;
+  if (staged.ok()) {
+    staged = check_edit(controller_.image(), change_.next()->image(), flags);
+    if (!staged.ok()) change_.cancel();
+  }
   if (!staged.ok()) {
     change_.collect();  // devices that it opened
     if (!abort_why_.empty()) return give_up();
@@ -131,7 +147,8 @@ base::Status ControllerService::stage_unless_aborted(base::ByteSpan package,
 }
 
 base::Result<base::Bytes> ControllerService::stage_rehearsal(base::ByteSpan package,
-                                                             online_change::Strategy strategy) {
+                                                             online_change::Strategy strategy,
+                                                             uint32_t flags) {
   if (rehearsal_ && rehearsal_of_ != session_) {
     return base::Error{base::Refusal::kChangePending, "somebody else looks at a change just now"};
   }
@@ -141,6 +158,8 @@ base::Result<base::Bytes> ControllerService::stage_rehearsal(base::ByteSpan pack
   auto staged = Rehearsal::stage(controller_, package, strategy,
                                  [this](auto ranges) { return copy_of(std::move(ranges)); });
   if (!staged.ok()) return staged.error();
+  base::Status taken = check_edit(controller_.image(), (*staged)->next().image(), flags);
+  if (!taken.ok()) return taken.error();
   rehearsal_ = std::move(*staged);
   rehearsal_->change().set_pace(online_change::measured_pace(clock_));
   rehearsal_of_ = session_;

@@ -33,6 +33,8 @@ constexpr tools::Command kFleetCommand{
     2,
     2};
 
+constexpr const char* kOwnTable = "the controller's own table";
+
 struct FleetEdit {
   std::string path;
   base::Digest digest{};
@@ -81,6 +83,7 @@ class FleetRun {
  public:
   FleetRun(const FleetEdit& edit, SwitchOptions how) : edit_(edit), how_(std::move(how)) {
     how_.note = "fleet file " + base::short_hex(edit.digest);
+    if (!edit.parts.free_table) how_.stage_flags |= vm::kTableAdditions;
     how_.confirm = [this] { return dialogue_.ask_once(); };
   }
 
@@ -114,9 +117,11 @@ class FleetRun {
     row.program = image->image().name;
     row.parts =
         ir::part_edits(edit_.parts.original, edit_.parts.edited, ir::parts_of(image->image()));
+    row.table = tools::own_table_edits(edit_.parts, image->image());
     if (!how_.json) {
-      std::printf("%s (%s)\n%s", row.program.c_str(), base::short_hex(row.from).c_str(),
-                  tools::part_edits_text(row.parts, true).c_str());
+      std::printf("%s (%s)\n%s%s", row.program.c_str(), base::short_hex(row.from).c_str(),
+                  tools::part_edits_text(row.parts, true).c_str(),
+                  tools::own_table_text(row.table).c_str());
     }
     bool all = true;
     std::string others;
@@ -127,8 +132,9 @@ class FleetRun {
                 std::string(tools::part_state_name(part.state));
     }
     row.outcome = all ? FleetOutcome::kHadIt : FleetOutcome::kPossible;
-    if (others.empty() || edit_.matching) return base::Ok{};
-    return base::Error{base::Refusal::kOtherPart, others};
+    const bool fit = others.empty() || edit_.matching;
+    if (!fit) return base::Error{base::Refusal::kOtherPart, others};
+    return all ? base::Status(base::Ok{}) : online_change::check_table(row.table, kOwnTable);
   }
 
   void change(const SwitchOptions& how, ControllerClient& client, const base::Bytes& running,

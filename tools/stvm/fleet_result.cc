@@ -65,6 +65,8 @@ std::string fleet_json(const base::Digest& file, const std::vector<FleetRow>& ro
     json.field("from", known ? base::to_hex(row.from) : std::string());
     json.key("parts");
     tools::part_edits_json(row.parts, true, json);
+    json.key("table");
+    tools::own_table_json(row.table, json);
     if (row.report) switch_json(*row.report, json);
     if (row.why) {
       json.field("refused", base::refusal_code(row.why->refusal));

@@ -9,6 +9,7 @@
 #include "base/result.h"
 #include "ir/bytecode/part_edits.h"
 #include "online_change/apply/change.h"
+#include "online_change/plan/table_edits.h"
 
 namespace stvm {
 
@@ -27,9 +28,10 @@ struct FleetRow {
   std::string place;    // as the command line names it
   std::string program;  // that ran
   FleetOutcome outcome = FleetOutcome::kNotAsked;
-  std::optional<base::Error> why;   // of those that are not done
-  std::vector<ir::PartEdit> parts;  // what the edit changes, and what was there
-  base::Digest from{};              // image that ran
+  std::optional<base::Error> why;                    // of those that are not done
+  std::vector<ir::PartEdit> parts;                   // what the edit changes, and what was there
+  std::vector<online_change::TableEdit> table = {};  // of its own, where that is another (E-16)
+  base::Digest from{};                               // image that ran
   std::optional<online_change::SwitchReport> report;
 };
 

@@ -1,6 +1,6 @@
 #include "tools/stvm/remote_client.h"
 
-#include <cstdlib>
+#include "tools/common/ssh.h"
 
 namespace stvm {
 namespace {
@@ -16,16 +16,11 @@ std::string quoted(const std::string& text) {
 
 base::Result<std::unique_ptr<RemoteClient>> RemoteClient::connect(const std::string& host,
                                                                   const std::string& directory) {
-  // ssh would take it for one of its options.
-  if (host.empty() || host[0] == '-') {
-    return base::Error{base::Refusal::kUsage, "--host names a machine, not `" + host + "`"};
-  }
-  const char* preset = std::getenv("STVM_SSH");
-  const std::string ssh = preset != nullptr && *preset != '\0' ? preset : "ssh";
   std::string command = "stvm bridge";
   if (!directory.empty()) command += " --dir " + quoted(directory);
-  base::Result<tools::ConnectedChild> child =
-      tools::ConnectedChild::start({ssh, "-T", host, command});
+  base::Result<std::vector<std::string>> ssh = tools::ssh_command(host, command);
+  if (!ssh.ok()) return ssh.error();
+  base::Result<tools::ConnectedChild> child = tools::ConnectedChild::start(*ssh);
   if (!child.ok()) return child.error();
   auto client = vm::SocketClient::over(vm::Descriptor(child->take_socket()), "on " + host);
   return std::make_unique<RemoteClient>(std::move(*child), std::move(client));

@@ -43,6 +43,7 @@ enum SwitchFlags : uint32_t {
 enum StageFlags : uint32_t {
   kByStandby = 1,  // the change prepares a second data area (docs/adr/0011-two-strategies.md)
   kRehearsal = 2,  // only to be looked at: not journalled or stored; also beside another change
+  kTableAdditions = 4,  // refused when variables that run become others (E-16)
 };
 
 // As the name of a request for fates: one line for each variable instead of groups of them.

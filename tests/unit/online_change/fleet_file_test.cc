@@ -59,6 +59,13 @@ TEST(FleetFiles, E07_AChecksumNamesItsPart) {
   EXPECT_NE(decode_fleet_file(bytes).error().text.find("versions"), std::string::npos);
 }
 
+TEST(FleetFiles, E17_TheFileSaysWhetherItsTableIsFree) {
+  FleetFile file = sample_file();
+  EXPECT_FALSE(decode_fleet_file(encode(file))->free_table);
+  file.free_table = true;
+  EXPECT_TRUE(decode_fleet_file(encode(file))->free_table);
+}
+
 // Few bytes that say they become very many.
 TEST(FleetFiles, BoundedByTheLengthsThatItSays) {
   FleetFile file = sample_file();

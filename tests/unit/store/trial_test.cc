@@ -242,6 +242,24 @@ TEST_F(DryRun, case78_EndsWithItsConnectionAndIsNeverSwitched) {
   EXPECT_EQ(rig_.plc.status().change, "idle");
 }
 
+// Whoever brings a change can ask for additions only; the controller compares what it runs itself.
+TEST_F(DryRun, E16_E22_TheControllerRefusesAnotherTableBeforeItIsStaged) {
+  const std::string retyped = std::string(a_).replace(a_.find("level : INT"), 11, "level : LINT");
+  const uint64_t edition = rig_.plc.status().edition;
+  const base::Status refused = stage(1, retyped, vm::kTableAdditions);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().refusal, base::Refusal::kTableEdit);
+  EXPECT_EQ(refused.error().text, "the table that runs: `Main.level`: type INT -> LINT");
+  EXPECT_EQ(rig_.plc.status().edition, edition) << "nothing is staged";
+  EXPECT_FALSE(make_switch(1).ok());
+  ASSERT_TRUE(stage(1, a_, vm::kTableAdditions).ok());
+  EXPECT_EQ(stage(2, retyped, vm::kRehearsal | vm::kTableAdditions).error().refusal,
+            base::Refusal::kTableEdit);
+  EXPECT_TRUE(stage(2, retyped, vm::kRehearsal).ok());
+  EXPECT_TRUE(make_switch(1).ok());
+  EXPECT_EQ(rig_.plc.get("Main.level"), "77");
+}
+
 // On trial it is of the version that runs then; the trial and its way back stay.
 TEST_F(DryRun, case78_OnTrial) {
   ASSERT_TRUE(stage(1, a_, 0).ok());

@@ -1,0 +1,83 @@
+#include "tools/stc/declared_places.h"
+
+#include "base/name_case.h"
+#include "frontend/compile.h"
+#include "tools/stc/unit_slices.h"
+
+namespace stc {
+namespace {
+
+std::string scope_prefix(const frontend::Tree& tree, frontend::ScopeId scope) {
+  std::string out;
+  for (; scope.valid(); scope = tree[scope].parent) {
+    if (!tree[scope].name.empty()) out = std::string(tree[scope].name.text) + "." + out;
+  }
+  return out;
+}
+
+// As sema names the list of a block (frontend/sema/global_lists.cc).
+std::string list_prefix(const Project& project, const frontend::Tree& tree,
+                        const frontend::VarBlock& block) {
+  const frontend::Attribute* named = tree.find_attribute(block.attributes, "list");
+  if (named != nullptr && !named->value.empty()) return std::string(named->value) + ".";
+  std::string_view file = project.sources.locate(block.span.begin).file;
+  file.remove_prefix(file.find_last_of("/\\") + 1);
+  return std::string(file.substr(0, file.find('.'))) + ".";
+}
+
+}  // namespace
+
+DeclaredPlaces::DeclaredPlaces(const Project& project) {
+  frontend::Tree tree;
+  base::Diagnostics ignored;  // who built it has reported them
+  frontend::parse_all(project.sources, project.compile, tree, ignored);
+  for (const frontend::PouDecl& pou : tree.pous) add_pou(pou, scope_prefix(tree, pou.scope));
+  for (const frontend::VarBlock& block : tree.globals) add_block(project, tree, block);
+  for (const frontend::ConfigDecl& config : tree.configs) add_config(project, tree, config);
+}
+
+base::SourceSpan DeclaredPlaces::find(const Places& places, const std::string& name) {
+  const auto found = places.find(base::fold_name(name));
+  return found == places.end() ? base::SourceSpan() : found->second;
+}
+
+void DeclaredPlaces::add_pou(const frontend::PouDecl& pou, const std::string& prefix) {
+  const std::string name = prefix + std::string(pou.name.text);
+  units_.emplace(base::fold_name(name), pou.name.span);
+  for (const frontend::PouDecl& member : pou.members) add_pou(member, name + ".");
+  if (pou.kind != frontend::PouKind::kProgram) return;
+  for (const frontend::VarBlock& block : pou.blocks) {
+    for (const frontend::VarDecl& variable : block.vars) {
+      for (const frontend::Name& part : variable.names) {
+        variables_.emplace(base::fold_name(name + "." + std::string(part.text)), part.span);
+      }
+    }
+  }
+}
+
+// A global goes by its own name, or by that of its namespace or list in front of it.
+void DeclaredPlaces::add_block(const Project& project, const frontend::Tree& tree,
+                               const frontend::VarBlock& block) {
+  const std::string prefixes[] = {scope_prefix(tree, block.scope),
+                                  list_prefix(project, tree, block)};
+  for (const frontend::VarDecl& variable : block.vars) {
+    for (const frontend::Name& name : variable.names) {
+      for (const std::string& prefix : prefixes) {
+        variables_.emplace(base::fold_name(prefix + std::string(name.text)), name.span);
+      }
+    }
+    if (!variable.path.valid()) continue;
+    const base::SourceSpan path = tree[variable.path].span;
+    variables_.emplace(base::fold_name(Slices(project.sources).plain(path)), path);
+  }
+}
+
+void DeclaredPlaces::add_config(const Project& project, const frontend::Tree& tree,
+                                const frontend::ConfigDecl& config) {
+  for (const frontend::VarBlock& block : config.globals) add_block(project, tree, block);
+  for (const frontend::ResourceDecl& resource : config.resources) {
+    for (const frontend::VarBlock& block : resource.globals) add_block(project, tree, block);
+  }
+}
+
+}  // namespace stc
