@@ -8,7 +8,7 @@ out=${2:-docs/reference}
 share=${3:-$root/share}
 mkdir -p "$out" "$share"
 for table in opcodes diagnostics refusals traps limits functions dialects devices passes exit_codes \
-  stc.toml test; do
+  stc.toml test online-edits; do
   {
     echo "# $table"
     echo

@@ -10,7 +10,10 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/vm/native/*.cc ${CMAKE_SOURCE_DIR}/vm/native/x64/*.cc
      ${CMAKE_SOURCE_DIR}/online_change/diff/*.cc ${CMAKE_SOURCE_DIR}/online_change/package/*.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/variable_names.cc ${CMAKE_SOURCE_DIR}/base/nearest_name.cc
-     ${CMAKE_SOURCE_DIR}/base/joined.cc
+     ${CMAKE_SOURCE_DIR}/base/joined.cc ${CMAKE_SOURCE_DIR}/base/wrapped.cc
+     ${CMAKE_SOURCE_DIR}/base/visible_text.cc ${CMAKE_SOURCE_DIR}/ir/program/task_policy.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_methods.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_next_frame.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/device*.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/disassemble*.cc
      ${CMAKE_SOURCE_DIR}/vm/runtime/socket*.cc ${CMAKE_SOURCE_DIR}/vm/runtime/recording.cc
      ${CMAKE_SOURCE_DIR}/vm/runtime/replay.cc ${CMAKE_SOURCE_DIR}/vm/io/csv*.cc

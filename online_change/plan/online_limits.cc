@@ -1,7 +1,9 @@
 #include "online_change/plan/online_limits.h"
 
 #include <algorithm>
+#include <iterator>
 
+#include "base/joined.h"
 #include "ir/bytecode/image_versions.h"
 #include "ir/bytecode/part_edits.h"
 #include "online_change/plan/system_edits.h"
@@ -119,12 +121,12 @@ std::vector<OnlineEdit> online_edits(const ir::Image& before, const ir::Image& a
     if (edit.change != PouChange::kFollows) out.push_back({kind_of(edit), edit.pou, edit.what});
   }
   for (const TableEdit& edit : table_edits(before, after, TableSide::kBefore)) {
-    out.push_back({kind_of(edit.change), edit.path(), edit.what});
+    out.push_back({kind_of(edit.change), edit.path, edit.what});
   }
   // What the new table has and the old one has not, is what goes on the way back.
   for (const TableEdit& edit : table_edits(after, before, TableSide::kBefore)) {
-    const bool added = edit.change == TableChange::kRemoved && !edit.variable.empty();
-    if (added) out.push_back({EditKind::kVariableAdded, edit.path(), {}});
+    const bool added = edit.change == TableChange::kRemoved && edit.path != edit.program;
+    if (added) out.push_back({EditKind::kVariableAdded, edit.path, {}});
   }
   add_parts(before, after, out);
   for (const SystemEdit& edit : chart_edits(before, after)) {
@@ -135,16 +137,22 @@ std::vector<OnlineEdit> online_edits(const ir::Image& before, const ir::Image& a
 
 base::Status check_limits(const OnlineLimits& limits, const ir::Image& before,
                           const ir::Image& after) {
-  if (limits.refused == 0) return base::Ok{};
   std::string text;
   for (const OnlineEdit& edit : online_edits(before, after)) {
     if (limits.takes(edit.kind)) continue;
-    text += (text.empty() ? "`" : "; `") + edit.name + "`: " + edit_kind_name(edit.kind);
-    if (!edit.what.empty()) text += " (" + edit.what + ")";
+    text += base::joined({text.empty() ? "`" : "; `", edit.name, "`: ", edit_kind_name(edit.kind)});
+    if (!edit.what.empty()) text += base::joined({" (", edit.what, ")"});
   }
   if (text.empty()) return base::Ok{};
   return base::Error{base::Refusal::kNotOnline,
-                     "stvm " + std::string(limits.version) + " takes no such edit: " + text};
+                     base::joined({"stvm ", limits.version, " takes no such edit: ", text})};
+}
+
+base::Status check_own_limits(const ir::Image& before, const ir::Image& after) {
+  // Where they refuse nothing there is no code for that.
+  constexpr const OnlineLimits& kOwn = kLimits[std::size(kLimits) - 1];
+  if constexpr (kOwn.refused == 0) return base::Ok{};
+  return check_limits(kOwn, before, after);
 }
 
 }  // namespace online_change

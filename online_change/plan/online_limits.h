@@ -57,8 +57,10 @@ struct OnlineEdit {
 // All kinds of edits between two verified images. O(n log n).
 std::vector<OnlineEdit> online_edits(const ir::Image& before, const ir::Image& after);
 
-// E-22: kNotOnline names every edit that the limits refuse. Costs nothing where they refuse none.
+// E-22: kNotOnline names every edit that the limits refuse.
 base::Status check_limits(const OnlineLimits& limits, const ir::Image& before,
                           const ir::Image& after);
+// The same by the limits of the version that is built.
+base::Status check_own_limits(const ir::Image& before, const ir::Image& after);
 
 }  // namespace online_change

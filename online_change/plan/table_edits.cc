@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
+#include "base/joined.h"
 #include "base/name_case.h"
 #include "ir/bytecode/canonical_value.h"
 #include "ir/bytecode/located_paths.h"
@@ -15,251 +17,194 @@ namespace online_change {
 namespace {
 
 constexpr size_t kMostNamed = 20;
-constexpr const char* kNoAddress = "no address";
 
-// One variable of a table, as far as it counts.
-struct TableRow {
-  std::string name;
-  std::string type;
-  std::string content;
-  std::string value;  // as people read it; "": too long for a line
-  base::Bytes canonical;
-  bool retain = false;
-  bool constant = false;
-  std::string address;
+// What is compared of a variable, in this order; each is a text.
+enum Field : uint8_t { kTypeText, kContent, kValue, kHidden, kRetained, kFixed, kPlace, kFields };
+struct FieldRow {
+  TableChange change;
+  const char* label;
+  bool shown;  // before and after, behind the label
+};
+constexpr FieldRow kFieldRows[kFields] = {
+    {TableChange::kType, "type", true},
+    {TableChange::kType, "its type is another one inside", false},
+    {TableChange::kInitial, "initial value", true},
+    {TableChange::kInitial, "another initial value", false},
+    {TableChange::kRetain, "RETAIN", true},
+    {TableChange::kConstant, "CONSTANT", true},
+    {TableChange::kAddress, "address", true},
 };
 
-// Tables of one image.
+struct TableRow {
+  std::string path;
+  std::string program;
+  std::string fields[kFields];  // "": none
+
+  // No variable of the table, but an address that VAR_CONFIG gives to any variable.
+  bool is_address() const { return fields[kTypeText].empty(); }
+  std::string key() const { return base::fold_name(path) + (is_address() ? "@" : ""); }
+};
+
+// All variables of an image that are in its table.
 class TableRows {
  public:
-  explicit TableRows(const ir::Image& image)
-      : image_(image), types_(*image.types), content_(types_) {}
-
-  std::vector<TableRow> globals() {
-    std::vector<TableRow> rows;
-    for (const ir::Member& member : types_[image_.globals].members) {
-      if (ir::is_shared(types_, member)) {
-        add_shared(member, rows);
-      } else {
-        add(member, rows);
-      }
+  TableRows(const ir::Image& image, TableSide side) : image_(image), content_(image.types) {
+    for (const ir::Member& member : image.types[image.globals].members) {
+      ir::is_shared(image.types, member) ? add_shared(member) : void(add(member, ""));
     }
-    return rows;
+    if (side == TableSide::kBefore) {
+      for (const uint32_t id : image.program_ids()) add_program(image.instances[id]);
+    }
+    for (const ir::LocatedPath& row : ir::located_paths(image)) {
+      std::string program = row.path.substr(0, row.path.find('.'));
+      new_row(row.path, std::move(program)).fields[kPlace] = ir::address_text(row.address);
+    }
   }
 
-  std::vector<TableRow> of_program(ir::TypeId type) {
-    std::vector<TableRow> rows;
-    for (const ir::Member& member : types_[type].members) add(member, rows);
-    return rows;
-  }
+  std::vector<TableRow> rows;
 
  private:
-  // Charts and tests make variables that no source declares.
-  bool is_declared(const ir::Member& member) const {
-    return ir::is_listed(member) && member.name.find('#') == std::string::npos &&
-           !types_.text(member.type).starts_with("__SFC_");
+  TableRow& new_row(std::string path, std::string program) {
+    rows.push_back({std::move(path), std::move(program), {}});
+    return rows.back();
   }
 
-  void add(const ir::Member& member, std::vector<TableRow>& rows) {
-    if (!is_declared(member)) return;
-    TableRow row;
-    row.name = member.name;
-    row.type = types_.text(member.type);
-    row.content = content_.of(member.type);
-    row.value = value_of(member);
-    base::ByteWriter out;
-    ir::write_canonical(out, types_, image_.constants, member.type, member.init);
-    row.canonical = out.take();
-    row.retain = member.retain;
-    row.constant = member.constant;
-    row.address = address_of(member.address);
-    rows.push_back(std::move(row));
+  void add_program(const ir::Instance& program) {
+    new_row(program.name, program.name).fields[kTypeText] = image_.types.text(program.type);
+    for (const ir::Member& member : image_.types[program.type].members) add(member, program.name);
+  }
+
+  // Charts and tests make variables that no source declares. False: it is one of those.
+  bool add(const ir::Member& member, const std::string& program) {
+    const ir::TypeTable& types = image_.types;
+    const std::string type = types.text(member.type);
+    if (!ir::is_listed(member) || member.name.find('#') != std::string::npos ||
+        type.starts_with("__SFC_")) {
+      return false;
+    }
+    TableRow& row = new_row(
+        base::joined({program, std::string_view(".", program.empty() ? 0 : 1), member.name}),
+        program);
+    row.fields[kTypeText] = type;
+    row.fields[kContent] = content_.of(member.type);
+    if (!add_value(member, row.fields[kValue])) {
+      base::ByteWriter out;
+      ir::write_canonical(out, types, image_.constants, member.type, member.init);
+      row.fields[kHidden].assign(out.bytes().begin(), out.bytes().end());
+    }
+    row.fields[kRetained] = member.retain ? "yes" : "no";
+    row.fields[kFixed] = member.constant ? "yes" : "no";
+    const bool placed = member.address.area != ir::DirectArea::kNone &&
+                        member.address.bit_offset != ir::kOpenAddress;
+    if (placed) row.fields[kPlace] = ir::address_text(member.address);
+    return true;
   }
 
   // Variables at overlapping addresses are members of one that is hidden.
-  void add_shared(const ir::Member& hidden, std::vector<TableRow>& rows) {
-    const std::vector<ir::Member>& members = types_[hidden.type].members;
+  void add_shared(const ir::Member& hidden) {
+    const std::vector<ir::Member>& members = image_.types[hidden.type].members;
     for (size_t i = 0; i < members.size(); ++i) {
-      const size_t known = rows.size();
-      add(members[i], rows);
-      if (rows.size() == known) continue;
-      rows.back().address = address_of(ir::shared_address(types_, hidden, i));
-      if (ir::is_shared_bit(members[i])) rows.back().type = rows.back().content = "BOOL";
+      if (!add(members[i], "")) continue;
+      std::string* const fields = rows.back().fields;
+      fields[kPlace] = ir::address_text(ir::shared_address(image_.types, hidden, i));
+      if (!ir::is_shared_bit(members[i])) continue;
+      fields[kTypeText] = fields[kContent] = "BOOL";
+      fields[kValue] = fields[kValue] == "16#00" ? "FALSE" : "TRUE";
     }
   }
 
-  static std::string address_of(const ir::DirectAddress& address) {
-    if (address.area == ir::DirectArea::kNone) return {};
-    return address.bit_offset == ir::kOpenAddress ? std::string("open") : ir::address_text(address);
-  }
-
-  // What is not said of an elementary type is zero.
-  std::string value_of(const ir::Member& member) const {
-    const ir::Kind kind = types_[member.type].kind;
+  // As a literal, where it has one; what is not said of an elementary type is zero.
+  bool add_value(const ir::Member& member, std::string& text) const {
     const bool said = member.init.valid();
-    if (types_.is_scalar(member.type)) {
-      if (!said && !ir::is_elementary(kind)) return {};
-      return ir::scalar_text(types_, member.type, said ? image_.constants[member.init].bits : 0);
-    }
-    if (kind != ir::Kind::kString) return {};
-    return ir::string_text(said ? image_.constants[member.init].text : std::string());
+    const bool zero = !said && !ir::is_elementary(image_.types[member.type].kind);
+    if (zero || !image_.types.is_scalar(member.type)) return false;
+    const uint64_t bits = said ? image_.constants[member.init].bits : 0;
+    text = ir::scalar_text(image_.types, member.type, bits);
+    return true;
   }
 
   const ir::Image& image_;
-  const ir::TypeTable& types_;
   TypeContent content_;
 };
 
-using RowNumbers = std::map<std::string, size_t>;  // by folded name
-
-RowNumbers numbers_of(const std::vector<TableRow>& rows) {
-  RowNumbers numbers;
-  for (size_t i = 0; i < rows.size(); ++i) numbers.emplace(base::fold_name(rows[i].name), i);
-  return numbers;
-}
-
-// Of numbers in some order: which stay when as few as possible go, so that the rest ascends.
-std::vector<bool> ascending(const std::vector<size_t>& numbers) {
-  std::vector<size_t> ends;  // positions; of each length the chain that ends lowest
-  std::vector<size_t> before(numbers.size(), numbers.size());
-  for (size_t i = 0; i < numbers.size(); ++i) {
-    const auto place =
-        std::lower_bound(ends.begin(), ends.end(), numbers[i],
-                         [&](size_t end, size_t number) { return numbers[end] < number; });
-    if (place != ends.begin()) before[i] = *std::prev(place);
-    place == ends.end() ? ends.push_back(i) : void(*place = i);
-  }
-  std::vector<bool> stays(numbers.size());
-  for (size_t at = ends.empty() ? numbers.size() : ends.back(); at != numbers.size();) {
-    stays[at] = true;
-    at = before[at];
-  }
-  return stays;
-}
-
-std::string changed(const std::string& before, const std::string& after, const char* none) {
-  return (before.empty() ? none : before) + " -> " + (after.empty() ? none : after);
-}
-
-// One table against another.
 class TableComparer {
  public:
-  TableComparer(std::string program, const std::vector<TableRow>& before,
-                const std::vector<TableRow>& after, TableSide side, std::vector<TableEdit>& out)
-      : program_(std::move(program)), before_(before), after_(after), side_(side), out_(out) {}
+  explicit TableComparer(const std::vector<TableRow>& after) : after_(after) {
+    for (uint32_t i = 0; i < after.size(); ++i) numbers_.emplace(after[i].key(), i);
+  }
 
-  void run() {
-    const RowNumbers numbers = numbers_of(after_);
-    std::vector<size_t> common;
-    for (const TableRow& row : before_) {
-      const auto found = numbers.find(base::fold_name(row.name));
-      if (found != numbers.end()) common.push_back(found->second);
-    }
-    const std::vector<bool> stays = ascending(common);
-    size_t next = 0;
-    std::string last;
-    for (const TableRow& row : before_) {
-      const auto found = numbers.find(base::fold_name(row.name));
-      if (found == numbers.end()) {
-        if (side_ == TableSide::kBefore) add(TableChange::kRemoved, row.name, "removed", last);
+  std::vector<TableEdit> run(const std::vector<TableRow>& before, TableSide side) {
+    for (size_t i = 0; i < before.size(); ++i) {
+      const TableRow& row = before[i];
+      if (i == 0 || row.program != before[i - 1].program) begin_table();
+      const TableRow* const now = find(row.key());
+      if (now == nullptr) {
+        if (side == TableSide::kBefore) add_gone(row);
         continue;
       }
-      const TableRow& now = after_[found->second];
-      if (!stays[next++]) {
-        add(TableChange::kOrder, row.name,
-            last.empty() ? "it was the first" : "it stood behind `" + last + "`", last);
-      }
-      compare(row, now, last);
-      last = now.name;
+      if (!row.is_address()) compare_place(row, *now);
+      compare(row, *now);
+      if (row.path != row.program) last_ = now->path;
     }
+    return std::move(edits_);
   }
 
  private:
-  void add(TableChange change, const std::string& name, std::string what, const std::string& last) {
-    out_.push_back({change, program_, name, std::move(what), last});
+  const TableRow* find(const std::string& key) const {
+    const auto found = numbers_.find(key);
+    return found == numbers_.end() ? nullptr : &after_[found->second];
   }
 
-  void compare(const TableRow& before, const TableRow& after, const std::string& last) {
-    if (before.type != after.type) {
-      add(TableChange::kType, after.name, "type " + before.type + " -> " + after.type, last);
-    } else if (before.content != after.content) {
-      add(TableChange::kType, after.name, "type " + after.type + " has another content", last);
-    } else if (before.canonical != after.canonical &&
-               (before.value.empty() || before.value != after.value)) {
-      const bool known = !before.value.empty() && !after.value.empty();
-      add(TableChange::kInitial, after.name,
-          known ? "initial value " + before.value + " -> " + after.value : "another initial value",
-          last);
-    }
-    flag(TableChange::kRetain, "RETAIN", after.name, before.retain, after.retain, last);
-    flag(TableChange::kConstant, "CONSTANT", after.name, before.constant, after.constant, last);
-    if (before.address != after.address) {
-      add(TableChange::kAddress, after.name,
-          "address " + changed(before.address, after.address, "none"), last);
+  void begin_table() {
+    last_.clear();
+    behind_ = nullptr;
+  }
+
+  // What stood in front of it stands in front of it now.
+  void compare_place(const TableRow& row, const TableRow& now) {
+    if (behind_ != nullptr && &now < behind_) {
+      add(TableChange::kOrder, row, base::joined({"it stood behind `", behind_->path, "`"}));
+    } else {
+      behind_ = &now;
     }
   }
 
-  void flag(TableChange change, const char* word, const std::string& name, bool was, bool is,
-            const std::string& last) {
-    if (was != is) add(change, name, (is ? "now " : "no longer ") + std::string(word), last);
+  // A program takes its variables along.
+  void add_gone(const TableRow& row) {
+    const bool whole = row.path == row.program;
+    if (!row.program.empty() && !whole && find(base::fold_name(row.program)) == nullptr) return;
+    if (row.is_address()) {
+      add(TableChange::kAddress, row, base::joined({"address ", row.fields[kPlace], " -> none"}));
+    } else {
+      add(TableChange::kRemoved, row, whole ? "removed, with its variables" : "removed");
+    }
   }
 
-  std::string program_;
-  const std::vector<TableRow>& before_;
+  void add(TableChange change, const TableRow& row, std::string what) {
+    edits_.push_back({change, row.path, row.program, std::move(what), last_});
+  }
+
+  void compare(const TableRow& before, const TableRow& after) {
+    for (uint32_t i = 0; i < kFields; ++i) {
+      const std::string& was = before.fields[i];
+      const std::string& is = after.fields[i];
+      if (was == is) continue;
+      const FieldRow& field = kFieldRows[i];
+      add(field.change, before,
+          field.shown ? base::joined({field.label, " ", was.empty() ? "none" : was, " -> ",
+                                      is.empty() ? "none" : is})
+                      : field.label);
+      // Who has another type has another content and value, too.
+      if (i < kHidden) i = kHidden;
+    }
+  }
+
   const std::vector<TableRow>& after_;
-  TableSide side_;
-  std::vector<TableEdit>& out_;
+  std::map<std::string, uint32_t> numbers_;  // by folded path
+  const TableRow* behind_ = nullptr;         // the last one of those so far that is in both
+  std::string last_;
+  std::vector<TableEdit> edits_;
 };
-
-// By folded name.
-std::map<std::string, const ir::Instance*> programs_of(const ir::Image& image) {
-  std::map<std::string, const ir::Instance*> out;
-  for (const uint32_t id : image.program_ids()) {
-    out.emplace(base::fold_name(image.instances[id].name), &image.instances[id]);
-  }
-  return out;
-}
-
-void compare_programs(const ir::Image& before, const ir::Image& after,
-                      std::vector<TableEdit>& out) {
-  const auto now = programs_of(after);
-  TableRows was(before);
-  TableRows is(after);
-  for (const uint32_t id : before.program_ids()) {
-    const ir::Instance& row = before.instances[id];
-    const auto found = now.find(base::fold_name(row.name));
-    if (found == now.end()) {
-      out.push_back({TableChange::kRemoved, row.name, "", "removed, with its variables"});
-      continue;
-    }
-    const std::string type = before.types->text(row.type);
-    const std::string other = after.types->text(found->second->type);
-    if (!base::same_name(type, other)) {
-      out.push_back({TableChange::kType, row.name, "", "type " + type + " -> " + other});
-    }
-    TableComparer(row.name, was.of_program(row.type), is.of_program(found->second->type),
-                  TableSide::kBefore, out)
-        .run();
-  }
-}
-
-void compare_addresses(const ir::Image& before, const ir::Image& after, TableSide side,
-                       std::vector<TableEdit>& out) {
-  std::map<std::string, std::string> now;
-  for (const ir::LocatedPath& row : ir::located_paths(after)) {
-    now.emplace(base::fold_name(row.path), ir::address_text(row.address));
-  }
-  for (const ir::LocatedPath& row : ir::located_paths(before)) {
-    const auto found = now.find(base::fold_name(row.path));
-    const bool gone = found == now.end();
-    if (gone && side == TableSide::kOwn) continue;
-    const std::string was = ir::address_text(row.address);
-    const std::string is = gone ? kNoAddress : found->second;
-    if (was != is) {
-      out.push_back({TableChange::kAddress, "", row.path, "address " + was + " -> " + is});
-    }
-  }
-}
 
 }  // namespace
 
@@ -269,38 +214,29 @@ const char* table_change_name(TableChange change) {
   return kNames[static_cast<size_t>(change)];
 }
 
-std::string TableEdit::path() const {
-  if (program.empty() || variable.empty()) return program + variable;
-  return program + "." + variable;
-}
-
 std::vector<TableEdit> table_edits(const ir::Image& before, const ir::Image& after,
                                    TableSide side) {
-  std::vector<TableEdit> out;
-  const std::vector<TableRow> was = TableRows(before).globals();
-  const std::vector<TableRow> is = TableRows(after).globals();
-  TableComparer("", was, is, side, out).run();
-  if (side == TableSide::kBefore) compare_programs(before, after, out);
-  compare_addresses(before, after, side, out);
-  return out;
+  const TableRows was(before, side);
+  const TableRows is(after, side);
+  return TableComparer(is.rows).run(was.rows, side);
 }
 
-std::string table_edits_text(const std::vector<TableEdit>& edits, const PlaceOfEdit& place) {
+std::string table_edits_text(const std::vector<TableEdit>& edits) {
   std::string text;
   for (size_t i = 0; i < std::min(edits.size(), kMostNamed); ++i) {
     if (i != 0) text += "; ";
-    if (place) text += place(edits[i]);
-    text += "`" + edits[i].path() + "`: " + edits[i].what;
+    text += base::joined({"`", edits[i].path, "`: ", edits[i].what});
   }
   if (edits.size() > kMostNamed) {
-    text += "; and " + std::to_string(edits.size() - kMostNamed) + " more";
+    text += base::joined({"; and ", std::to_string(edits.size() - kMostNamed), " more"});
   }
   return text;
 }
 
-base::Status check_table(const std::vector<TableEdit>& edits, const std::string& what) {
+base::Status check_table(const std::vector<TableEdit>& edits, std::string_view what) {
   if (edits.empty()) return base::Ok{};
-  return base::Error{base::Refusal::kTableEdit, what + ": " + table_edits_text(edits)};
+  return base::Error{base::Refusal::kTableEdit,
+                     base::joined({what, ": ", table_edits_text(edits)})};
 }
 
 }  // namespace online_change

@@ -7,8 +7,8 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -18,7 +18,7 @@ namespace online_change {
 
 enum class TableChange : uint8_t {
   kRemoved,   // a variable, or a program with all of its own
-  kOrder,     // others that were before it are behind it now
+  kOrder,     // one that stood in front of it stands behind it now
   kType,      // or what is inside of it: a structure's members, an array's bounds
   kInitial,   //
   kRetain,    //
@@ -31,12 +31,11 @@ const char* table_change_name(TableChange change);
 
 struct TableEdit {
   TableChange change = TableChange::kType;
-  std::string program;   // the instance; "" of a global
-  std::string variable;  // "" where the program is meant as a whole
-  std::string what;      // "type INT -> DINT", "removed"
-  // Where it stood: the variable in front of it there that is in both versions; "": none is.
-  std::string after = {};
-  std::string path() const;  // "Main.speed"
+  std::string path;     // "Main.speed", "level"; "Main" where the program is meant as a whole
+  std::string program;  // the instance; "" of a global
+  std::string what;     // "type INT -> DINT", "removed"
+  // Where it stood: the path of the variable in front of it there that is in both; "": none is.
+  std::string after;
 };
 
 enum class TableSide : uint8_t {
@@ -51,10 +50,8 @@ std::vector<TableEdit> table_edits(const ir::Image& before, const ir::Image& aft
 
 // kTableEdit: the text names the first difference and all others, up to a bound. `what` says whose
 // table it is.
-base::Status check_table(const std::vector<TableEdit>& edits, const std::string& what);
-// "`Main.speed`: type INT -> DINT; `kept`: removed; and 3 more"; `place` says what stands in front
-// of each ("a.st:3:5: ").
-using PlaceOfEdit = std::function<std::string(const TableEdit& edit)>;
-std::string table_edits_text(const std::vector<TableEdit>& edits, const PlaceOfEdit& place = {});
+base::Status check_table(const std::vector<TableEdit>& edits, std::string_view what);
+// "`Main.speed`: type INT -> DINT; `kept`: removed; and 3 more".
+std::string table_edits_text(const std::vector<TableEdit>& edits);
 
 }  // namespace online_change

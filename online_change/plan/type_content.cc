@@ -4,14 +4,6 @@
 
 namespace online_change {
 
-namespace {
-
-void append_range(int64_t low, int64_t high, std::string& out) {
-  out += "," + std::to_string(low) + ".." + std::to_string(high);
-}
-
-}  // namespace
-
 std::string TypeContent::of(ir::TypeId id) {
   std::string out = types_.text(id);
   append(id, out);
@@ -22,12 +14,7 @@ std::string TypeContent::of(ir::TypeId id) {
 void TypeContent::append(ir::TypeId id, std::string& out) {
   const ir::Type& type = types_[id];
   if (ir::is_reference(type.kind) || types_.is_instance(id)) return;
-  if (type.kind == ir::Kind::kArray) {
-    for (const ir::Dimension& dimension : type.dims)
-      append_range(dimension.low, dimension.high, out);
-    return append(type.base, out);
-  }
-  if (type.kind == ir::Kind::kSubrange) append_range(type.low, type.high, out);
+  if (type.kind == ir::Kind::kArray) return append(type.base, out);
   if (std::find(seen_.begin(), seen_.end(), id) != seen_.end()) return;
   seen_.push_back(id);
   for (const ir::EnumLiteral& literal : type.literals) {

@@ -60,10 +60,10 @@ bad '/kept : INT/d' 'bad.st:3:3: error.E9001.: `kept`: removed'
 said 'help: keep what was there and put new variables beside it, or lift the rule: --table free'
 bad '/first : INT/d; /kept : INT/d' 'error.E9001.: `first`: removed; `kept`: removed'
 bad 's/last : REAL/last : LREAL/' 'bad.st:6:3: error.E9003.: `last`: type REAL -> LREAL'
-bad 's/a, b : INT/a, b, c : INT/' 'bad.st:5:3: error.E9003.: `recipe`: type Recipe has another content'
+bad 's/a, b : INT/a, b, c : INT/' 'bad.st:5:3: error.E9003.: `recipe`: its type is another one inside'
 bad 's/kept : INT := 3/kept : INT := 4/' 'bad.st:4:3: error.E9003.: `kept`: initial value 3 -> 4'
-bad 's/^VAR_GLOBAL/VAR_GLOBAL RETAIN/' 'bad.st:4:3: error.E9003.: `kept`: now RETAIN'
-bad 's/  first : INT;/  last : REAL;/; t; s/  last : REAL;/  first : INT;/' 'bad.st:[36]:3: error.E9002.: `(first|last)`: it '
+bad 's/^VAR_GLOBAL/VAR_GLOBAL RETAIN/' 'bad.st:4:3: error.E9003.: `kept`: RETAIN no -> yes'
+bad 's/  first : INT;/  last : REAL;/; t; s/  last : REAL;/  first : INT;/' 'bad.st:4:3: error.E9002.: `kept`: it stood behind `first`'
 bad 's/speed/quick/g' 'bad.st:11:5: error.E9001.: `Main.speed`: removed'
 bad 's/speed : INT/speed : DINT/' 'bad.st:11:16: error.E9003.: `Main.speed`: type INT -> DINT'
 bad 's/last : REAL/last AT %MD8 : REAL/' 'E9003.: `last`: address none -> %MD8'
@@ -97,6 +97,42 @@ expect 2 stc check good.st --target "$version"
 said 'R0504.*--target.*--online-base'
 expect 7 stc check good.st --online-base missing.img
 said 'R0501'
+
+# Of lists, namespaces, CONFIGURATION, RESOURCE and VAR_CONFIG, where they are declared; of several resources the one that runs.
+cat >places.st <<'ST'
+{attribute 'list' := 'Lot'}
+VAR_GLOBAL lot : INT; END_VAR
+NAMESPACE Deep.Er
+VAR_GLOBAL spaced : INT; END_VAR
+END_NAMESPACE
+PROGRAM Main VAR x AT %I* : BOOL; n : INT; END_VAR IF x THEN n := n + 1; END_IF END_PROGRAM
+CONFIGURATION c
+VAR_GLOBAL common : INT; END_VAR
+RESOURCE one ON cpu
+VAR_GLOBAL own : INT; END_VAR
+TASK t (INTERVAL := T#10ms, PRIORITY := 1);
+PROGRAM p WITH t : Main;
+VAR_CONFIG p.x AT %IX0.0 : BOOL; END_VAR
+END_RESOURCE
+RESOURCE two ON cpu
+TASK t (INTERVAL := T#10ms, PRIORITY := 1);
+PROGRAM q WITH t : Main;
+VAR_CONFIG q.x AT %IX0.1 : BOOL; END_VAR
+END_RESOURCE
+END_CONFIGURATION
+ST
+expect 0 stc build places.st -o places.img
+sed 's/\(lot\|spaced\|common\|own\) : INT/\1 : DINT/; s/%IX0.0/%IX0.3/' places.st >placed.st
+expect 1 stc check placed.st --online-base places.one.img
+said 'placed.st:2:12: error.E9003.: `lot`: '
+said 'placed.st:4:12: error.E9003.: `Deep.Er.spaced`: '
+said 'placed.st:8:12: error.E9003.: `common`: '
+said 'placed.st:10:12: error.E9003.: `own`: '
+said 'placed.st:13:12: error.E9003.: `p.x`: address %IX0.0 -> %IX0.3'
+sed 's/%IX0.0/%IX0.3/' places.st >placed.st
+expect 0 stc check placed.st --online-base places.two.img
+expect 1 stc build placed.st --online-base places.one.img
+expect 0 stc build placed.st --online-base places.two.img
 
 # stc build refuses as well, and writes nothing; with --watch each save is looked at.
 expect 1 stc build bad.st -o bad.img --online-base old.st

@@ -75,17 +75,10 @@ std::string part_edits_text(const std::vector<ir::PartEdit>& edits, bool here) {
   return table.text();
 }
 
-std::string own_table_text(const std::vector<online_change::TableEdit>& edits) {
-  if (edits.empty()) return {};
-  Table table({"table", "here -> in the edit"});
-  for (const online_change::TableEdit& edit : edits) table.row({edit.path(), edit.what});
-  return table.text();
-}
-
 void own_table_json(const std::vector<online_change::TableEdit>& edits, JsonWriter& json) {
   json.begin_array();
   for (const online_change::TableEdit& edit : edits) {
-    json.begin_object().field("variable", edit.path());
+    json.begin_object().field("variable", edit.path);
     json.field("change", online_change::table_change_name(edit.change));
     json.field("what", edit.what).end_object();
   }

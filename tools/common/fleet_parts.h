@@ -33,8 +33,6 @@ std::string_view part_state_name(ir::PartState state);
 
 // A table: what the edit changes; with `here`, what the target has of each.
 std::string part_edits_text(const std::vector<ir::PartEdit>& edits, bool here);
-// A table: what the controller has, and what the edit wants; "" of none.
-std::string own_table_text(const std::vector<online_change::TableEdit>& edits);
 // Arrays.
 void own_table_json(const std::vector<online_change::TableEdit>& edits, JsonWriter& json);
 void part_edits_json(const std::vector<ir::PartEdit>& edits, bool here, JsonWriter& json);

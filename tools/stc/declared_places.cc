@@ -67,8 +67,12 @@ void DeclaredPlaces::add_block(const Project& project, const frontend::Tree& tre
       }
     }
     if (!variable.path.valid()) continue;
-    const base::SourceSpan path = tree[variable.path].span;
-    variables_.emplace(base::fold_name(Slices(project.sources).plain(path)), path);
+    // Sources can name the resource in front of the program, images do not.
+    const base::SourceSpan span = tree[variable.path].span;
+    std::string path = base::fold_name(Slices(project.sources).plain(span));
+    variables_.emplace(path, span);
+    path.erase(0, path.find('.') + 1);
+    variables_.emplace(path, span);
   }
 }
 

@@ -31,7 +31,7 @@ base::Result<Version> edited_version(const std::string& path, const BuildOptions
   if (!file->free_table) {
     base::Status kept = online_change::check_table(
         online_change::table_edits(*options.base, edited->image(), online_change::TableSide::kOwn),
-        "the controller's own table");
+        "its own table");
     if (!kept.ok()) return kept.error();
   }
   base::Result<ir::Image> merged =

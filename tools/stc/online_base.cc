@@ -71,18 +71,19 @@ std::string type_of_program(const ir::Image& image, const std::string& instance)
 // What is deleted is shown where it stood: behind its neighbour, or at its program.
 base::SourceSpan place_of(const TableEdit& edit, const ir::Image& edited,
                           const DeclaredPlaces& places) {
-  const std::string type = edit.program.empty() ? "" : type_of_program(edited, edit.program);
-  const std::string prefix = type.empty() ? "" : type + ".";
-  const bool gone = edit.change == TableChange::kRemoved;
-  const std::string& name = gone ? edit.after : edit.variable;
-  const base::SourceSpan found = name.empty() ? base::SourceSpan() : places.variable(prefix + name);
-  return found.begin.valid() || type.empty() ? found : places.unit(type);
+  const std::string& path = edit.change == TableChange::kRemoved ? edit.after : edit.path;
+  const base::SourceSpan as_named = places.variable(path);
+  if (edit.program.empty() || as_named.begin.valid()) return as_named;
+  const std::string type = type_of_program(edited, edit.program);
+  const size_t within = std::min(path.size(), edit.program.size());
+  const base::SourceSpan found = places.variable(type + path.substr(within));
+  return found.begin.valid() ? found : places.unit(type);
 }
 
 void add_table(const ir::Image& original, const ir::Image& edited, Findings& findings) {
   for (const TableEdit& edit :
        online_change::table_edits(original, edited, online_change::TableSide::kBefore)) {
-    findings.add(code_of(edit.change), place_of(edit, edited, findings.places()), edit.path(),
+    findings.add(code_of(edit.change), place_of(edit, edited, findings.places()), edit.path,
                  edit.what, kFreeTable);
   }
 }
@@ -149,12 +150,14 @@ void add_plan(const ir::Image& original, const ir::Image& edited, Findings& find
 std::string placed_table_edits(const std::vector<TableEdit>& edits, const ir::Image& edited,
                                const Project& project) {
   const DeclaredPlaces places(project);
-  return online_change::table_edits_text(edits, [&](const TableEdit& edit) {
+  std::vector<TableEdit> placed = edits;
+  for (TableEdit& edit : placed) {
     const base::SourceLocation at = project.sources.locate(place_of(edit, edited, places).begin);
-    if (at.line == 0) return std::string();
-    return std::string(at.file) + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) +
-           ": ";
-  });
+    if (at.line == 0) continue;
+    edit.what += " (" + std::string(at.file) + ":" + std::to_string(at.line) + ":" +
+                 std::to_string(at.column) + ")";
+  }
+  return online_change::table_edits_text(placed);
 }
 
 base::Result<std::optional<OnlineBase>> OnlineBase::of(const tools::Options& options) {
@@ -199,8 +202,11 @@ void OnlineBase::check(const Project& project, const Version& edited,
 }
 
 const ResourceVersion& OnlineBase::matching(const std::vector<ResourceVersion>& versions) const {
+  // "plant.Line": the project may have another name by now.
+  const std::string& name = original().name;
+  const std::string resource = name.substr(name.rfind('.') + 1);
   const auto found = std::find_if(versions.begin(), versions.end(), [&](const auto& row) {
-    return ir::same_name(row.version.image.name, original().name);
+    return ir::same_name(row.resource, resource);
   });
   return found == versions.end() ? versions.front() : *found;
 }

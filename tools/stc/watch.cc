@@ -316,11 +316,7 @@ class Watch {
     }
     const std::shared_ptr<const ir::Image> base = target_.base();
     auto versions = build_resources(project_, {base.get(), move_all_}, anew);
-    if (versions.ok()) {
-      for (const ResourceVersion& row : *versions) {
-        target_.check(row.version.image, project_, anew);
-      }
-    }
+    if (versions.ok()) target_.check(*versions, project_, anew);
     report(project_, anew, format_);
     if (!versions.ok()) return versions.error();
     if (anew.has_errors()) return source_errors(anew);

@@ -43,6 +43,7 @@ class WatchTarget {
   virtual std::shared_ptr<const ir::Image> base() const = 0;
   // What there is to say of an image beside what the compiler found; errors keep it from take().
   virtual void check(const ir::Image&, const Project&, base::Diagnostics&) {}
+  virtual void check(const std::vector<ResourceVersion>&, const Project&, base::Diagnostics&) {}
   // One resource that was built incrementally.
   virtual base::Result<Next> take(const ir::Image& image, const Project& project,
                                   const Built& built) = 0;

@@ -11,6 +11,11 @@ void WatchedImage::check(const ir::Image& image, const Project& project,
   if (online_) online_->check(project, image, diagnostics);
 }
 
+void WatchedImage::check(const std::vector<ResourceVersion>& versions, const Project& project,
+                         base::Diagnostics& diagnostics) {
+  if (online_) check(online_->matching(versions).version.image, project, diagnostics);
+}
+
 base::Result<WatchTarget::Next> WatchedImage::take(const ir::Image& image, const Project& project,
                                                    const Built& built) {
   base::Status written = write(image, project);

@@ -24,6 +24,8 @@ class WatchedImage : public WatchTarget {
   std::shared_ptr<const ir::Image> base() const override { return base_; }
   void check(const ir::Image& image, const Project& project,
              base::Diagnostics& diagnostics) override;
+  void check(const std::vector<ResourceVersion>& versions, const Project& project,
+             base::Diagnostics& diagnostics) override;
   base::Result<Next> take(const ir::Image& image, const Project& project,
                           const Built& built) override;
   base::Result<Next> take(std::vector<ResourceVersion>& versions, const Project& project,

@@ -51,7 +51,7 @@ static base::Status check_edit(const ir::Image& running, const ir::Image& next, 
         "the table that runs");
     if (!kept.ok()) return kept;
   }
-  return online_change::check_limits(online_change::online_limits().back(), running, next);
+  return online_change::check_own_limits(running, next);
 }
 
 // Checks and builds beside the running program; touches nothing of it, so it needs no boundary. A

@@ -33,8 +33,6 @@ constexpr tools::Command kFleetCommand{
     2,
     2};
 
-constexpr const char* kOwnTable = "the controller's own table";
-
 struct FleetEdit {
   std::string path;
   base::Digest digest{};
@@ -119,9 +117,8 @@ class FleetRun {
         ir::part_edits(edit_.parts.original, edit_.parts.edited, ir::parts_of(image->image()));
     row.table = tools::own_table_edits(edit_.parts, image->image());
     if (!how_.json) {
-      std::printf("%s (%s)\n%s%s", row.program.c_str(), base::short_hex(row.from).c_str(),
-                  tools::part_edits_text(row.parts, true).c_str(),
-                  tools::own_table_text(row.table).c_str());
+      std::printf("%s (%s)\n%s", row.program.c_str(), base::short_hex(row.from).c_str(),
+                  tools::part_edits_text(row.parts, true).c_str());
     }
     bool all = true;
     std::string others;
@@ -132,9 +129,11 @@ class FleetRun {
                 std::string(tools::part_state_name(part.state));
     }
     row.outcome = all ? FleetOutcome::kHadIt : FleetOutcome::kPossible;
+    base::Status kept = online_change::check_table(row.table, "its own table");
     const bool fit = others.empty() || edit_.matching;
-    if (!fit) return base::Error{base::Refusal::kOtherPart, others};
-    return all ? base::Status(base::Ok{}) : online_change::check_table(row.table, kOwnTable);
+    if (fit) return all ? base::Status(base::Ok{}) : kept;
+    if (!kept.ok()) others += "; " + kept.error().text;
+    return base::Error{base::Refusal::kOtherPart, others};
   }
 
   void change(const SwitchOptions& how, ControllerClient& client, const base::Bytes& running,
