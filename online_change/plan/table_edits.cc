@@ -16,7 +16,7 @@
 namespace online_change {
 namespace {
 
-constexpr size_t kMostNamed = 20;
+constexpr size_t kMostNamed = 200;
 
 // What is compared of a variable, in this order; each is a text.
 enum Field : uint8_t { kTypeText, kContent, kValue, kHidden, kRetained, kFixed, kPlace, kFields };

@@ -81,6 +81,12 @@ said 'units.st:[0-9]+:10: note.W0080.: `Fresh`: the running program does not hav
 said 'note.W0081.: `Gone`: it is deleted'
 expect 1 stc check units.st --online-base old.img --restricted
 said 'units.st:8:16: error.E9004.: `Motor`: input `more` in the place of output'
+mkdir strict
+cp units.st strict
+printf '[change]\nrestricted = true\n' >strict/stc.toml
+expect 1 stc check strict --online-base old.img
+said 'error.E9004.: `Motor`'
+(cd strict && expect 1 stc check --online-base ../old.img)
 expect 1 stc check units.st --online-base old.img --warn W0080=error --warn W0081=error
 said 'error.W0080'
 said 'error.W0081'

@@ -171,7 +171,9 @@ base::Result<std::optional<OnlineBase>> OnlineBase::of(const tools::Options& opt
   }
   base::Result<Version> original = open_original(options, options.text("--online-base"));
   if (!original.ok()) return original.error();
-  base::Result<tools::ChangeSettings> settings = tools::change_settings(options.arguments());
+  const std::vector<std::string>& paths = options.arguments();
+  base::Result<tools::ChangeSettings> settings =
+      tools::change_settings(paths.empty() ? std::vector<std::string>{"."} : paths);
   if (!settings.ok()) return settings.error();
   OnlineBase out;
   out.original_ = std::move(*original);
