@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "base/limits.h"
+#include "base/memory_limit.h"
 #include "online_change/apply/pace.h"
 #include "online_change/plan/online_limits.h"
 #include "tools/stvm/controller_service.h"
@@ -44,7 +45,8 @@ base::Status ControllerService::check_upload(const vm::Request& request,
 }
 
 // E-16, E-22: what its sender wants refused, and what this version of stvm does not take.
-static base::Status check_edit(const ir::Image& running, const ir::Image& next, uint32_t flags) {
+static base::Status check_edit_steps(const ir::Image& running, const ir::Image& next,
+                                     uint32_t flags) {
   if ((flags & vm::kTableAdditions) != 0) {
     base::Status kept = online_change::check_table(
         online_change::table_edits(running, next, online_change::TableSide::kBefore),
@@ -52,6 +54,13 @@ static base::Status check_edit(const ir::Image& running, const ir::Image& next, 
     if (!kept.ok()) return kept;
   }
   return online_change::check_own_limits(running, next);
+}
+
+static base::Status check_edit(const ir::Image& running, const ir::Image& next, uint32_t flags) {
+  return base::within_memory([&] { return check_edit_steps(running, next, flags); },
+                             [] {
+                               return base::Status(base::Error{base::Refusal::kNoMemory, {}});
+                             });
 }
 
 // Checks and builds beside the running program; touches nothing of it, so it needs no boundary. A

@@ -1,6 +1,7 @@
 // The file by which an edit goes to many controllers (E-07).
 #include <gtest/gtest.h>
 
+#include "base/sha256.h"
 #include "online_change/package/fleet_file.h"
 
 namespace online_change {
@@ -64,6 +65,29 @@ TEST(FleetFiles, E17_TheFileSaysWhetherItsTableIsFree) {
   EXPECT_FALSE(decode_fleet_file(encode(file))->free_table);
   file.free_table = true;
   EXPECT_TRUE(decode_fleet_file(encode(file))->free_table);
+}
+
+// The first version did not say it: the last byte of the texts is missing.
+TEST(FleetFiles, E17_AFileOfTheFirstVersionIsRestricted) {
+  const base::Bytes now = encode(sample_file());
+  base::ByteReader in(now);
+  const base::ByteSpan magic = in.raw(kFleetMagic.size());
+  (void)in.u64();
+  const uint32_t size = in.u32();
+  (void)in.raw(sizeof(base::Digest));
+  const base::ByteSpan texts = in.raw(size).first(size - 1);
+  base::ByteWriter first;
+  first.raw(magic);
+  first.u32(1);
+  first.u32(static_cast<uint32_t>(now.size() - 1));
+  first.u32(size - 1);
+  first.raw(base::sha256(texts));
+  first.raw(texts);
+  first.raw(in.raw(in.left()));
+  const base::Result<FleetFile> file = decode_fleet_file(first.bytes());
+  ASSERT_TRUE(file.ok()) << file.error().text;
+  EXPECT_EQ(file->text, "twice as fast");
+  EXPECT_FALSE(file->free_table);
 }
 
 // Few bytes that say they become very many.

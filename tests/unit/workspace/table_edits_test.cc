@@ -173,7 +173,7 @@ TEST(TableEdits, E16_TheTextNamesTheFirstAndCountsWhatIsTooMuch) {
 constexpr uint32_t bit(EditKind kind) { return 1u << static_cast<uint32_t>(kind); }
 constexpr OnlineLimits kRows[] = {
     {"1.0", 7, 9, bit(EditKind::kUnitAdded) | bit(EditKind::kVariableRemoved)},
-    {"1.1", 7, 12, bit(EditKind::kUnitAdded)},
+    {"1.1", 7, 12, bit(EditKind::kUnitAdded) | bit(EditKind::kTask)},
     {"2.0", 8, 16, bit(EditKind::kSchedule)}};
 
 TEST(OnlineLimits, E20_AnUnknownVersionHasTheStrictestOfAllRows) {
@@ -182,7 +182,7 @@ TEST(OnlineLimits, E20_AnUnknownVersionHasTheStrictestOfAllRows) {
     const online_change::ChosenLimits chosen = online_change::chosen_limits(kRows, targets);
     EXPECT_EQ(chosen.limits.first_format, 8u);
     EXPECT_EQ(chosen.limits.last_format, 9u);
-    EXPECT_EQ(chosen.limits.refused, kRows[0].refused | kRows[2].refused);
+    EXPECT_EQ(chosen.limits.refused, kRows[0].refused | kRows[1].refused | kRows[2].refused);
     EXPECT_TRUE(chosen.text.starts_with("the strictest of all versions")) << chosen.text;
   }
   EXPECT_EQ(online_change::chosen_limits(kRows, {"3.7"}).text,
