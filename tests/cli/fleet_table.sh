@@ -88,3 +88,29 @@ expect 0 stvm fleet change retyped.fleet --dir again --yes --allow-overrun
 said 'converted'
 expect 0 stvm get --dir again level
 said '^level=12$'
+
+# E-22: a file that says additions only, and is not: the controller compares what it runs with what it is given. The tool
+# cannot see it, since programs are compared as parts.
+project speaks.st "$table" 1
+sed 's/seen : INT/seen : DINT/' speaks.st >lies.st
+expect 7 stc fleet speaks.st lies.st -o lies.fleet
+said 'R0322.*`Main.seen`: type INT -> DINT'
+expect 0 stc fleet speaks.st lies.st -o lies.fleet --table free
+python3 - <<'PY'
+import hashlib, struct
+data = bytearray(open("lies.fleet", "rb").read())
+size = struct.unpack_from("<I", data, 16)[0]
+data[52 + size - 1] = 0
+data[20:52] = hashlib.sha256(data[52:52 + size]).digest()
+open("lies.fleet", "wb").write(data)
+PY
+serve wary speaks.st
+expect 0 stvm fleet status lies.fleet --dir wary
+expect 7 stvm fleet change lies.fleet --dir wary --yes --allow-overrun
+said 'R0322: the table that runs: `Main.seen`: type INT -> DINT'
+expect 7 stvm change lies.fleet --dir wary --yes --allow-overrun
+said 'R0322: the table that runs: `Main.seen`: type INT -> DINT'
+expect 7 stvm fleet change lies.fleet --dir wary --dry-run --allow-overrun
+said 'R0322'
+expect 0 stvm edits --dir wary
+said 'no edit is on trial'

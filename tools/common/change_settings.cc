@@ -14,10 +14,15 @@ base::Result<ChangeSettings> change_settings(const std::vector<std::string>& pat
   std::set<std::string> read;
   for (const std::string& path : paths) {
     // An image is a product that may lie anywhere, also below the project of somebody else; so is a
-    // fleet file.
-    if (base::Result<base::Bytes> first = read_first(path, ir::kImageMagic.size());
-        first.ok() &&
-        (ir::has_image_magic(*first) || online_change::has_fleet_magic(*first))) {
+    // fleet file, which says its own.
+    base::Result<base::Bytes> first = read_first(path, ir::kImageMagic.size());
+    if (first.ok() && ir::has_image_magic(*first)) continue;
+    if (first.ok() && online_change::has_fleet_magic(*first)) {
+      base::Result<base::Bytes> bytes = read_bytes(path);
+      if (!bytes.ok()) return bytes.error();
+      base::Result<online_change::FleetFile> file = online_change::decode_fleet_file(*bytes);
+      if (!file.ok()) return file.error();
+      settings.table_additions = !file->free_table;
       continue;
     }
     const std::string nearest = nearest_project_file(path);

@@ -10,12 +10,13 @@
 namespace tools {
 
 struct ChangeSettings {
-  std::string strategy;     // "in-place", "standby", or "": not said
-  bool restricted = false;  // no edits of interfaces (D7)
-  std::string health;       // a BOOL that must stay TRUE on trial, or the controller undoes it
-  std::string unless;       // a BOOL; while it is TRUE nothing is switched
-  bool last_edit = false;   // what is on trial boots after a power loss (D4)
-  uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit
+  std::string strategy;          // "in-place", "standby", or "": not said
+  bool restricted = false;       // no edits of interfaces (D7)
+  std::string health;            // a BOOL that must stay TRUE on trial, or the controller undoes it
+  std::string unless;            // a BOOL; while it is TRUE nothing is switched
+  bool last_edit = false;        // what is on trial boots after a power loss (D4)
+  uint64_t data_limit = 0;       // bytes of all data areas of a change together; 0: no limit
+  bool table_additions = false;  // of a fleet file whose table is restricted (E-16)
 };
 
 // From the stc.toml that is nearest to each path but images; the defaults without one. Whether they

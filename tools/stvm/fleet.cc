@@ -81,7 +81,6 @@ class FleetRun {
  public:
   FleetRun(const FleetEdit& edit, SwitchOptions how) : edit_(edit), how_(std::move(how)) {
     how_.note = "fleet file " + base::short_hex(edit.digest);
-    if (!edit.parts.free_table) how_.stage_flags |= vm::kTableAdditions;
     how_.confirm = [this] { return dialogue_.ask_once(); };
   }
 

@@ -132,7 +132,7 @@ base::Result<SwitchOptions> switch_options(const tools::Options& options,
   if (!settings.ok()) return settings.error();
   base::Result<uint32_t> strategy = stage_flags(settings->strategy);
   if (!strategy.ok()) return strategy.error();
-  out.stage_flags = *strategy;
+  out.stage_flags = *strategy | (settings->table_additions ? vm::kTableAdditions : 0u);
   out.switch_flags = switch_flags(options) | (settings->last_edit ? vm::kLastEditBoots : 0u);
   out.restricted = settings->restricted;
   out.health = options.text("--health", settings->health);
