@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -172,6 +173,10 @@ ConnectedChild::~ConnectedChild() {
 int ConnectedChild::wait() {
   const int pid = std::exchange(pid_, -1);
   return pid > 0 ? wait_for(pid) : -1;
+}
+
+void ConnectedChild::end() {
+  if (pid_ > 0) ::kill(pid_, SIGTERM);
 }
 
 int ConnectedChild::take_socket() { return std::exchange(socket_, -1); }

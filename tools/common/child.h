@@ -25,6 +25,8 @@ class ConnectedChild {
   ~ConnectedChild();  // waits for its end
   // Its exit code, once it has ended; -1 when it was killed.
   int wait();
+  // Asks it to end, as a terminal does; it need not wait for what it is waiting for.
+  void end();
   // Our end of the socket, once; the caller owns it.
   int take_socket();
 

@@ -196,7 +196,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
     return base::Error{base::Refusal::kBusy, "what is staged is a dry run; stage the change anew"};
   }
   if (base::Status kept = check_not_aborted(); !kept.ok()) return kept.error();
-  if (!staged_) return base::Error{base::Refusal::kBusy, "no change is staged"};
+  if (base::Status same = check_staged(request); !same.ok()) return same.error();
   if (has_no_program()) return switch_to_first();
   preparing_ = true;
   bool faulted = false;

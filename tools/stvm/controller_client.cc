@@ -9,7 +9,6 @@
 #include "tools/stvm/commands.h"
 #include "tools/stvm/remote_client.h"
 #include "tools/stvm/state_folder.h"
-#include "vm/runtime/socket_client.h"
 
 namespace stvm {
 namespace {
@@ -25,23 +24,28 @@ base::Error endless() {
 }  // namespace
 
 base::Result<ControllerClient> ControllerClient::connect(const tools::Options& options) {
-  if (options.has("--host")) return connect_there(options.text("--host"), options.text("--dir"));
-  return connect_here(state_directory(options));
+  constexpr uint32_t kPatience = vm::SocketClient::kPatienceSeconds;
+  if (!options.has("--host")) return connect_here(state_directory(options), kPatience);
+  return connect_there(options.text("--host"), options.text("--dir"), kPatience);
 }
 
-base::Result<ControllerClient> ControllerClient::connect_to(const std::string& place) {
-  return tools::is_folder(place) ? connect_here(place) : connect_there(place, {});
+base::Result<ControllerClient> ControllerClient::connect_to(const std::string& place,
+                                                            uint32_t patience_s) {
+  return tools::is_folder(place) ? connect_here(place, patience_s)
+                                 : connect_there(place, {}, patience_s);
 }
 
 base::Result<ControllerClient> ControllerClient::connect_there(const std::string& host,
-                                                               const std::string& directory) {
-  auto transport = RemoteClient::connect(host, directory);
+                                                               const std::string& directory,
+                                                               uint32_t patience_s) {
+  auto transport = RemoteClient::connect(host, directory, patience_s);
   if (!transport.ok()) return transport.error();
   return ControllerClient(std::move(*transport));
 }
 
-base::Result<ControllerClient> ControllerClient::connect_here(const std::string& directory) {
-  auto transport = vm::SocketClient::connect(directory);
+base::Result<ControllerClient> ControllerClient::connect_here(const std::string& directory,
+                                                              uint32_t patience_s) {
+  auto transport = vm::SocketClient::connect(directory, patience_s);
   const std::vector<std::string> resources =
       transport.ok() ? std::vector<std::string>() : stored_resources(directory);
   if (!resources.empty()) {
@@ -61,10 +65,14 @@ base::Result<base::Bytes> ControllerClient::call(vm::Request request) {
   return vm::decode_answer(*answer);
 }
 
-base::Result<vm::StatusReport> ControllerClient::status() {
+base::Result<vm::StatusReport> ControllerClient::look() {
   base::Result<base::Bytes> body = call({.command = vm::Command::kStatus});
   if (!body.ok()) return body.error();
-  base::Result<vm::StatusReport> report = vm::decode_status(*body);
+  return vm::decode_status(*body);
+}
+
+base::Result<vm::StatusReport> ControllerClient::status() {
+  base::Result<vm::StatusReport> report = look();
   if (report.ok()) {
     expected_ = report->running;
     edition_ = report->edition;
@@ -254,10 +262,12 @@ base::Status ControllerClient::stage(base::ByteSpan package, uint32_t flags,
   stage.flags = flags;
   stage.names = {unless, note, taken_out};
   while (!stage.names.empty() && stage.names.back().empty()) stage.names.pop_back();
+  staged_ = stage.digest;
   return learn_edition(call(std::move(stage)));
 }
 
 base::Status ControllerClient::stage_again(const std::string& edit) {
+  staged_.reset();
   return learn_edition(call({.command = vm::Command::kRedo, .names = {edit}}));
 }
 
@@ -308,7 +318,8 @@ base::Result<online_change::SwitchReport> ControllerClient::make_switch(
     uint32_t flags, const std::string& health) {
   vm::Request request{.command = vm::Command::kSwitch};
   request.flags = flags;
-  if (!health.empty()) request.names = {health};
+  if (!health.empty() || staged_) request.names = {health};
+  if (staged_) request.names.push_back(base::to_hex(*staged_));
   return switch_report(std::move(request));
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "tools/stvm/unit_message.h"
 #include "vm/runtime/ports.h"
 #include "vm/runtime/protocol.h"
+#include "vm/runtime/socket_client.h"
 
 namespace stvm {
 
@@ -19,14 +21,18 @@ class ControllerClient {
  public:
   // The one that --dir or --host names.
   static base::Result<ControllerClient> connect(const tools::Options& options);
-  // A state directory, or a host.
-  static base::Result<ControllerClient> connect_to(const std::string& place);
+  // A state directory, or a host. Waits for each answer so long.
+  static base::Result<ControllerClient> connect_to(
+      const std::string& place, uint32_t patience_s = vm::SocketClient::kPatienceSeconds);
   explicit ControllerClient(std::unique_ptr<vm::Transport> transport)
       : transport_(std::move(transport)) {}
 
   // Requests that change state name the version that the last status() or image() saw.
   base::Result<base::Bytes> call(vm::Request request);
   base::Result<vm::StatusReport> status();
+  // The same, and requests go on to name the version that was seen before: what others do meanwhile
+  // refuses them.
+  base::Result<vm::StatusReport> look();
   base::Result<vm::TaskTimes> task_times(const std::string& task);
   base::Result<vm::Values> get(std::vector<std::string> names);
   base::Result<vm::Values> list(const std::string& pattern);
@@ -56,16 +62,19 @@ class ControllerClient {
   base::Result<FatePage> fates();
   // One line for each variable.
   base::Result<std::vector<FateLine>> every_fate();
-  // `health`: a BOOL that must stay TRUE in the first cycles (X7); "": none.
+  // Of what was staged here, or of nothing (E-14). `health`: a BOOL that must stay TRUE in the
+  // first cycles (X7); "": none.
   base::Result<online_change::SwitchReport> make_switch(uint32_t flags,
                                                          const std::string& health = {});
   // Of the newest edit on trial, which has that name; "": whatever it is.
   base::Result<online_change::SwitchReport> undo(const std::string& edit = {});
 
  private:
-  static base::Result<ControllerClient> connect_here(const std::string& directory);
+  static base::Result<ControllerClient> connect_here(const std::string& directory,
+                                                     uint32_t patience_s);
   static base::Result<ControllerClient> connect_there(const std::string& host,
-                                                      const std::string& directory);
+                                                      const std::string& directory,
+                                                      uint32_t patience_s);
   base::Result<base::Bytes> image_parts(vm::Request request, const base::Digest* expected);
   // Entries of a page, added to `all`. False: there were none.
   base::Result<bool> journal_page(const vm::Request& request,
@@ -77,6 +86,7 @@ class ControllerClient {
   std::unique_ptr<vm::Transport> transport_;
   base::Digest expected_{};
   uint64_t edition_ = 0;
+  std::optional<base::Digest> staged_;  // package of stage()
 };
 
 }  // namespace stvm

@@ -190,6 +190,8 @@ class ControllerService : public vm::Service {
                                                            int64_t& done_ns);
   bool time_for_switch() const;
   // All that comes before the switch itself. What has failed is noted.
+  // E-14: what is staged is what the asker has checked.
+  base::Status check_staged(const vm::Request& request) const;
   base::Status prepare_switch(const vm::Request& request, Trial& next, bool faulted,
                               bool allow_overrun);
   // What the change must have done before the switch, cycle by cycle in idle time (C5).
@@ -313,6 +315,7 @@ class ControllerService : public vm::Service {
   std::optional<ir::VerifiedImage> staged_;
   base::Bytes staged_package_;
   uint32_t staged_flags_ = 0;
+  base::Digest staged_digest_{};  // of the package that was sent; zeros: brought again by redo
   std::string redone_;  // name of the edit that is staged again; "": a new one
   std::string taken_out_;  // the edit on trial whose work it takes back; "": none
   uint64_t staged_of_ = 0;       // session

@@ -73,8 +73,10 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   const std::string unless = request.names.empty() ? std::string() : request.names.front();
   base::Result<base::Bytes> staged = stage_package(std::move(package), request.flags, unless, {},
                                                   request.names.size() > 2 ? request.names[2] : "");
+  if (!staged.ok()) return staged;
+  staged_digest_ = request.digest;
   const bool rehearsal = (request.flags & vm::kRehearsal) != 0;
-  if (staged.ok() && !rehearsal && request.names.size() > 1) {
+  if (!rehearsal && request.names.size() > 1) {
     note_ = request.names[1].substr(0, kMostNote);
   }
   return staged;
@@ -195,6 +197,17 @@ void ControllerService::forget_rehearsal() {
   rehearsal_.reset();
 }
 
+// The edition says so too, but it counts from 0 again when the controller is started anew.
+base::Status ControllerService::check_staged(const vm::Request& request) const {
+  if (!staged_) return base::Error{base::Refusal::kBusy, "no change is staged"};
+  if (request.names.size() < 2 || request.names[1] == base::to_hex(staged_digest_)) {
+    return base::Ok{};
+  }
+  return base::Error{base::Refusal::kStaleBase,
+                     "another change is staged than the one that was checked" +
+                         (changed_by_.empty() ? "" : ", by " + changed_by_)};
+}
+
 // What the switch looks at before it begins. At the boundary only active steps and the time of
 // tasks are looked at; the values are those of the report, which is of a copy.
 base::Result<base::Bytes> ControllerService::rehearse(const vm::Request& request) {
@@ -231,6 +244,7 @@ void ControllerService::forget_staged() {
   store_.forget_aside();
   staged_.reset();
   staged_package_ = base::Bytes();
+  staged_digest_ = {};
   redone_.clear();
   taken_out_.clear();
   unless_ = {};

@@ -14,13 +14,13 @@ namespace stvm {
 class RemoteClient : public vm::Transport {
  public:
   // `directory` on that machine; "": its default.
-  static base::Result<std::unique_ptr<RemoteClient>> connect(const std::string& host,
-                                                             const std::string& directory);
+  static base::Result<std::unique_ptr<RemoteClient>> connect(
+      const std::string& host, const std::string& directory,
+      uint32_t patience_s = vm::SocketClient::kPatienceSeconds);
   RemoteClient(tools::ConnectedChild child, std::unique_ptr<vm::SocketClient> client)
       : child_(std::move(child)), client_(std::move(client)) {}
-  base::Result<base::Bytes> exchange(base::ByteSpan request) override {
-    return client_->exchange(request);
-  }
+  // An ssh that does not answer is ended: it may still wait for a machine that is not there.
+  base::Result<base::Bytes> exchange(base::ByteSpan request) override;
 
  private:
   tools::ConnectedChild child_;  // ends when client_, which is gone before, closes its socket

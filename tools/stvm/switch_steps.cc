@@ -167,7 +167,7 @@ base::Result<Outcome> bring_staged(const SwitchOptions& options, ControllerClien
   const Outcome::Time prepared = std::chrono::steady_clock::now();
   base::Result<FatePage> page = client.fates();
   if (!page.ok()) return page.error();
-  base::Result<vm::StatusReport> status = client.status();
+  base::Result<vm::StatusReport> status = client.look();
   if (!status.ok()) return status.error();
   Outcome outcome{std::move(*page), {}, exchange_notes(*status), {}, {}, prepared, {}};
   const bool first = status->running == ir::no_program().digest();

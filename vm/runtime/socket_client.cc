@@ -16,10 +16,8 @@
 namespace vm {
 namespace {
 
-constexpr time_t kPatienceSeconds = 60;
-
-void be_patient(const Descriptor& socket) {
-  timeval patience{kPatienceSeconds, 0};
+void be_patient(const Descriptor& socket, uint32_t seconds) {
+  timeval patience{static_cast<time_t>(seconds), 0};
   ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
 }
@@ -41,10 +39,16 @@ base::Error SocketClient::lost(const char* what) const {
   return {base::Refusal::kNotRunning, "the controller " + place_ + " " + what};
 }
 
-base::Result<std::unique_ptr<SocketClient>> SocketClient::connect(const std::string& directory) {
+SocketClient::SocketClient(std::string place, Descriptor socket, uint32_t patience_s)
+    : place_(std::move(place)), socket_(std::move(socket)), patience_s_(patience_s) {
+  be_patient(socket_, patience_s_);
+}
+
+base::Result<std::unique_ptr<SocketClient>> SocketClient::connect(const std::string& directory,
+                                                                  uint32_t patience_s) {
   base::Result<Descriptor> socket = open(directory, For::kThisMachine);
   if (!socket.ok()) return socket.error();
-  auto client = over(std::move(*socket), "in " + directory);
+  auto client = over(std::move(*socket), "in " + directory, patience_s);
   client->directory_ = directory;
   return client;
 }
@@ -73,9 +77,10 @@ base::Result<Descriptor> SocketClient::open(const std::string& directory, For wh
   return socket;
 }
 
-std::unique_ptr<SocketClient> SocketClient::over(Descriptor socket, std::string place) {
-  be_patient(socket);
-  return std::unique_ptr<SocketClient>(new SocketClient(std::move(place), std::move(socket)));
+std::unique_ptr<SocketClient> SocketClient::over(Descriptor socket, std::string place,
+                                                 uint32_t patience_s) {
+  using Client = std::unique_ptr<SocketClient>;
+  return Client(new SocketClient(std::move(place), std::move(socket), patience_s));
 }
 
 // There are no bytes to come before a request is sent, only an end.
@@ -89,7 +94,7 @@ base::Result<base::Bytes> SocketClient::exchange(base::ByteSpan request) {
     base::Result<Descriptor> again = open(directory_, For::kThisMachine);
     if (!again.ok()) return again.error();
     socket_ = std::move(*again);
-    be_patient(socket_);
+    be_patient(socket_, patience_s_);
   }
   base::Bytes out = frame(request);
   for (size_t sent = 0; sent < out.size();) {
@@ -107,7 +112,10 @@ base::Result<base::Bytes> SocketClient::exchange(base::ByteSpan request) {
     }
     ssize_t n = ::recv(socket_.get(), buffer, std::min(sizeof buffer, reader.room()), 0);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0 && errno == EAGAIN) return lost("does not answer");
+    if (n < 0 && errno == EAGAIN) {
+      socket_ = Descriptor();
+      return lost("does not answer");
+    }
     if (n <= 0) return lost("closed the connection");
     reader.add({buffer, static_cast<size_t>(n)});
   }

@@ -11,28 +11,32 @@ namespace vm {
 
 class SocketClient : public Transport {
  public:
+  static constexpr uint32_t kPatienceSeconds = 60;  // for an answer, where nobody says otherwise
   // kNotRunning when nobody listens in `directory`.
-  static base::Result<std::unique_ptr<SocketClient>> connect(const std::string& directory);
+  static base::Result<std::unique_ptr<SocketClient>> connect(
+      const std::string& directory, uint32_t patience_s = kPatienceSeconds);
   // The connection alone, on behalf of this machine or of another one. kNotRunning also where
   // another user has made the socket (socket_peer.h).
   enum class For : uint8_t { kThisMachine, kAnother };
   static base::Result<Descriptor> open(const std::string& directory, For whom);
   // Over a socket that is connected already; `place` for messages: "on plc7".
-  static std::unique_ptr<SocketClient> over(Descriptor socket, std::string place);
+  static std::unique_ptr<SocketClient> over(Descriptor socket, std::string place,
+                                            uint32_t patience_s = kPatienceSeconds);
   // One framed message each way; kNotRunning when the other side goes away or says nothing for
-  // 60 s. One that went away while nothing was asked, as it does with idle clients, is looked for
-  // again.
+  // longer than the patience, and then the connection is given up: what comes late would be taken
+  // for another answer. One that went away while nothing was asked, as it does with idle clients,
+  // is looked for again.
   base::Result<base::Bytes> exchange(base::ByteSpan request) override;
 
  private:
-  SocketClient(std::string place, Descriptor socket)
-      : place_(std::move(place)), socket_(std::move(socket)) {}
+  SocketClient(std::string place, Descriptor socket, uint32_t patience_s);
   base::Error lost(const char* what) const;
   bool closed_meanwhile() const;
 
   std::string directory_;  // "": it cannot be connected again
   std::string place_;
   Descriptor socket_;
+  uint32_t patience_s_;
 };
 
 }  // namespace vm
