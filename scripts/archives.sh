@@ -96,7 +96,7 @@ for architecture in "$@"; do
   DESTDIR=$tree cmake --install "build/$preset" --prefix /usr/local >/dev/null
   strip=strip
   [ "$architecture" = "$(dpkg --print-architecture)" ] || strip=aarch64-linux-gnu-strip
-  "$strip" "$tree/usr/local/bin/stc" "$tree/usr/local/bin/stvm"
+  "$strip" "$tree/usr/local/bin/"*
   cp LICENSE "$tree/usr/local/share/doc/stc/"
   (cd "$tree/usr/local" && pack "$out/stc-$version-linux-$architecture.tar.gz" bin lib share)
   oci_image "$architecture" "$tree/usr/local/bin/stvm"

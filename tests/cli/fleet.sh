@@ -54,8 +54,10 @@ said 'no edit is on trial'
 
 # E-11, E-12: what each has of every edited unit.
 expect 1 stvm fleet status x.fleet "$@"
-said '^unit B +edited .* different$'
-said '^unit B +edited .* missing$'
+said '^part +one .1 +two +four +five$'
+said '^unit A +ok +ok +has it +ok$'
+said '^unit B +ok +different[*] +has it +missing[*]$'
+said '^one .1: one, three$'
 said '^one +original +possible +2 of 2 *$'
 said '^two +other_b +refused +1 of 2 +R0320: B is different$'
 said '^four +new +had it +2 of 2 *$'
@@ -131,6 +133,9 @@ expect 7 stvm fleet status flipped.fleet --dir one
 said 'checksum of its versions is wrong'
 expect 7 stvm fleet change cut.fleet --dir one --yes
 expect 2 stvm fleet forget x.fleet --dir one
+said 'none of its verbs'
+expect 2 stvm fleet status x.fleet x.fleet --dir one
+expect 2 stvm fleet change --dir one
 
 # E-33: the journal names the file.
 digest=$(sha256sum x.fleet | cut -c1-12)
@@ -141,7 +146,7 @@ said "edit E[0-9]+, fleet file $digest"
 state() {  # state WANTED: of unit A of the third controller
   code=0
   stvm fleet status x.fleet --dir three >out 2>err || code=$?
-  said "^unit A +edited .* $1$"
+  said "^unit A +$1$"
 }
 state 'has it'
 expect 0 stvm undo --dir three
@@ -222,4 +227,7 @@ mistake '[controllers.a]\ndir = 3\n' 'bad.toml:2:7: .*a text is wanted'
 mistake '[controllers.a]\nallow_loss = "yes"\ndir = "x"\n' 'bad.toml:2:14: .*true or false'
 mistake '[controllers.a]\ndir = "x"\nhost = "y"\n' 'has a dir and a host'
 mistake '[controllers.a]\nallow_loss = true\n' 'has no .dir. or .host.'
+expect 2 stvm fleet status x.fleet --dir one --dir one
+said 'two controllers are called .one.'
+mistake '[controllers.a]\nname = 3\ndir = "x"\n' 'bad.toml:2:8: .*a text is wanted'
 mistake '[controllers.a]\ngroup = "x"\n' '.group. is not known'

@@ -121,7 +121,9 @@ answers stvm-status 0 at status
 answers stvm-status-task 0 at status --task Main
 answers stvm-source 0 at source
 answers stvm-abort 0 at abort
-answers stvm-fleet 0 at fleet status next.fleet
+answers stvm-fleet-status 0 at fleet status
+answers stvm-fleet-status 0 at fleet status next.fleet
+answers stvm-fleet-diff 1 at fleet diff next.fleet
 answers stvm-fleet 0 at fleet change next.fleet --dry-run
 printf 'VAR_GLOBAL g : INT; END_VAR PROGRAM Main END_PROGRAM\n' >one.st
 printf 'VAR_GLOBAL g : INT; h : INT; END_VAR PROGRAM Main END_PROGRAM\n' >two.st
@@ -145,6 +147,9 @@ answers stvm-undo 0 at undo E1 --yes
 expect 0 at change next --yes
 answers stvm-accept 0 at accept
 answers stvm-revert 0 at revert --yes --allow-loss
+answers stvm-fleet 0 at fleet change next.fleet --yes --allow-overrun
+answers stvm-fleet 0 at fleet undo next.fleet --yes
+answers stvm-fleet 0 at fleet accept next.fleet --yes
 answers stvm-restart 0 at restart
 answers stvm-journal 0 at journal
 answers stvm-events 0 at events

@@ -32,6 +32,7 @@ online_change/apply: ir/types ir/program/ir.h ir/bytecode online_change vm
 online_change/store: ir/types ir/program/ir.h ir/bytecode online_change/diff online_change/plan online_change/package online_change/apply vm
 tools/common: ir online_change/diff online_change/plan online_change/package vm/load
 tools/stc: ir frontend linker workspace online_change/diff online_change/plan online_change/package stdlib vm/exec vm/load vm/native tools/common adapters/xml adapters/plcopen adapters/twincat
+tools/stvm_fleet: tools/common tools/stvm
 tools/stvm: ir/types ir/program/ir.h ir/bytecode vm online_change tools/common adapters
 '
 

@@ -1,6 +1,7 @@
 #include "tools/common/fleet_parts.h"
 
 #include "ir/bytecode/verify.h"
+#include "tools/common/files.h"
 #include "tools/common/table.h"
 
 namespace tools {
@@ -37,6 +38,16 @@ std::vector<online_change::TableEdit> own_table_edits(const FleetParts& parts,
   if (parts.free_table) return {};
   return online_change::table_edits(own, parts.edited_image->image(),
                                     online_change::TableSide::kOwn);
+}
+
+base::Result<OpenedFleetFile> open_fleet_file(const std::string& path) {
+  base::Result<base::Bytes> bytes = read_bytes(path);
+  if (!bytes.ok()) return bytes.error();
+  base::Result<online_change::FleetFile> file = online_change::decode_fleet_file(*bytes);
+  if (!file.ok()) return file.error();
+  base::Result<FleetParts> parts = parts_of(*file);
+  if (!parts.ok()) return parts.error();
+  return OpenedFleetFile{std::move(*file), online_change::fleet_digest(*bytes), std::move(*parts)};
 }
 
 std::string part_change_name(const ir::PartEdit& edit) {

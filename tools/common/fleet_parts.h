@@ -21,6 +21,13 @@ struct FleetParts {
   bool free_table = false;                        // E-17
 };
 base::Result<FleetParts> parts_of(const online_change::FleetFile& file);
+// A fleet file with what it changes.
+struct OpenedFleetFile {
+  online_change::FleetFile file;
+  base::Digest digest{};
+  FleetParts parts;
+};
+base::Result<OpenedFleetFile> open_fleet_file(const std::string& path);
 
 // A controller's own table against that of the edit (E-16); none where the table is free.
 std::vector<online_change::TableEdit> own_table_edits(const FleetParts& parts,

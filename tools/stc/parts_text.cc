@@ -5,7 +5,6 @@
 
 #include "base/visible_text.h"
 #include "ir/bytecode/identities.h"
-#include "tools/common/files.h"
 #include "tools/common/fleet_parts.h"
 #include "tools/common/table.h"
 
@@ -31,17 +30,14 @@ std::string parts_text(const ir::Image& image) {
 }
 
 base::Result<std::string> fleet_file_text(const std::string& path) {
-  base::Result<base::Bytes> bytes = tools::read_bytes(path);
-  if (!bytes.ok()) return bytes.error();
-  base::Result<online_change::FleetFile> file = online_change::decode_fleet_file(*bytes);
-  if (!file.ok()) return file.error();
-  base::Result<tools::FleetParts> parts = tools::parts_of(*file);
-  if (!parts.ok()) return parts.error();
-  std::string out = "fleet file " + base::short_hex(online_change::fleet_digest(*bytes));
-  if (!file->author.empty()) out += ", by " + file->author;
-  if (!file->text.empty()) out += ": " + file->text;
-  if (file->free_table) out += " (the table is free)";
-  const auto edits = ir::part_edits(parts->original, parts->edited, parts->original);
+  base::Result<tools::OpenedFleetFile> opened = tools::open_fleet_file(path);
+  if (!opened.ok()) return opened.error();
+  const auto& [file, digest, parts] = *opened;
+  std::string out = "fleet file " + base::short_hex(digest);
+  if (!file.author.empty()) out += ", by " + file.author;
+  if (!file.text.empty()) out += ": " + file.text;
+  if (file.free_table) out += " (the table is free)";
+  const auto edits = ir::part_edits(parts.original, parts.edited, parts.original);
   return base::visible_lines(out) + "\n" + tools::part_edits_text(edits, false);
 }
 

@@ -1,8 +1,6 @@
 // stvm change: a new program for a running controller. Fetch what runs, let stc make the package,
 // show every variable's fate, ask, switch.
-#include <chrono>
 #include <cstdio>
-#include <thread>
 
 #include "tools/common/child.h"
 #include "tools/common/exit.h"
@@ -13,6 +11,7 @@
 #include "tools/stvm/package_making.h"
 #include "tools/stvm/switch_option_rows.h"
 #include "tools/stvm/switch_steps.h"
+#include "tools/stvm/waiting.h"
 
 namespace stvm {
 namespace {
@@ -79,38 +78,12 @@ base::Result<Outcome> change(const tools::Options& options, const SwitchOptions&
   return bring(how, client, *package);
 }
 
-// Others were faster, or are not done: what has to be made anew of what runs then.
-bool others_change(const base::Error& error) {
-  return error.refusal == base::Refusal::kStaleBase ||
-         error.refusal == base::Refusal::kChangePending;
-}
-
-// Until nothing is on trial. What is only staged is waited for no longer than a person would think
-// about a report.
-base::Status wait_for_others(ControllerClient& client) {
-  constexpr auto kLook = std::chrono::milliseconds(100);
-  constexpr int kStagedLooks = 50;
-  for (int staged = 0;; ++staged) {
-    base::Result<vm::StatusReport> status = client.status();
-    if (!status.ok()) return status.error();
-    if (status->change == "idle") return base::Ok{};
-    if (status->edits != 0) {
-      staged = 0;
-    } else if (staged >= kStagedLooks) {
-      return base::Ok{};
-    }
-    std::this_thread::sleep_for(kLook);
-  }
-}
-
 base::Result<Outcome> change_behind_others(const tools::Options& options, const SwitchOptions& how,
                                            ControllerClient& client, MakePackage make) {
   for (bool said = false;;) {
     if (base::Status waited = wait_for_others(client); !waited.ok()) return waited.error();
     base::Result<Outcome> outcome = change(options, how, client, make);
-    const base::Error* error = nullptr;
-    if (!outcome.ok()) error = &outcome.error();
-    if (outcome.ok() && outcome->refused) error = &*outcome->refused;
+    const base::Error* const error = why_not(outcome);
     if (error == nullptr || !others_change(*error)) return outcome;
     if (!said) std::fprintf(stderr, "waiting: %s\n", error->text.c_str());
     said = true;

@@ -1,200 +1,219 @@
-// stvm fleet change: one edit for many controllers, one after the other (E-27 to E-31). Each is
-// checked before anything is sent; what it refuses, or does not answer, stops none of the others.
+// stvm fleet: one edit and many controllers (E-27 to E-32). A run is a verb, who is visited, and a
+// table of what came out.
 #include <cstdio>
+#include <memory>
 
 #include "tools/common/exit.h"
-#include "tools/common/files.h"
-#include "tools/common/fleet_parts.h"
-#include "tools/stvm/commands.h"
-#include "tools/stvm/fleet_list.h"
-#include "tools/stvm/fleet_result.h"
+#include "tools/stvm/fleet_command.h"
+#include "tools/stvm/fleet_left.h"
+#include "tools/stvm/fleet_matrix.h"
+#include "tools/stvm/fleet_visit.h"
+#include "tools/stvm/fleet_walk.h"
 #include "tools/stvm/package_making.h"
 #include "tools/stvm/question.h"
-#include "tools/stvm/switch_option_rows.h"
-#include "tools/stvm/switch_steps.h"
 
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kFleetOptions[] = {
-    {"--dir", "DIR", "state directory of a controller; repeatable", "", "", tools::Times::kMany},
-    {"--host", "HOST", "[user@]host of a controller, by ssh; repeatable", "", "",
-     tools::Times::kMany},
-    {"--fleet", "FILE", "the controllers of this file (docs/FLEET.md)"},
-    STVM_SWITCH_OPTIONS,
-    tools::kMatchingOption,
-    STVM_FORMAT_OPTION,
-};
-constexpr tools::Command kFleetCommand{
-    "fleet",
-    "change|status FILE",
-    "Makes the edit of a fleet file (stc fleet) on many controllers, or says what they have of it.",
-    kFleetOptions,
-    2,
-    2};
-
-struct FleetEdit {
-  std::string path;
-  base::Digest digest{};
-  tools::FleetParts parts;
-  bool changes = false;  // else only the check
-  bool matching = false;
+struct FleetRun {
+  std::string verb;
+  FleetEdit edit;  // without a path: there is none
+  SwitchOptions how;
+  bool json = false;
+  bool all = false;
+  FleetWalk walk;
+  FleetAccess access;
+  std::vector<FleetMember> members;
 };
 
-base::Result<FleetEdit> read_edit(const tools::Options& options) {
-  const std::string& verb = options.arguments()[0];
-  FleetEdit edit;
-  edit.path = options.arguments()[1];
-  edit.changes = verb == "change";
-  edit.matching = options.has("--matching");
-  if (!edit.changes && verb != "status") {
-    return base::Error{base::Refusal::kUsage,
-                       "fleet: `" + verb + "` is neither `change` nor `status`"};
-  }
-  base::Result<base::Bytes> bytes = tools::read_bytes(edit.path);
-  if (!bytes.ok()) return bytes.error();
-  edit.digest = online_change::fleet_digest(*bytes);
-  base::Result<online_change::FleetFile> file = online_change::decode_fleet_file(*bytes);
-  if (!file.ok()) return file.error();
-  base::Result<tools::FleetParts> parts = tools::parts_of(*file);
-  if (!parts.ok()) return parts.error();
-  edit.parts = std::move(*parts);
-  return edit;
+base::Error fleet_usage(std::string text) { return {base::Refusal::kUsage, "fleet: " + text}; }
+
+bool changes(const std::string& verb) {
+  return verb == "change" || verb == "undo" || verb == "accept";
 }
 
-// What the person at the terminal said last: for this one, for all that follow, or no more.
-struct Dialogue {
-  bool all = false;
-  bool quit = false;
+base::Result<uint32_t> fleet_number(const tools::Options& options, const char* name, uint32_t most,
+                                    uint32_t otherwise) {
+  base::Result<uint64_t> given = options.number(name, otherwise);
+  if (!given.ok()) return given.error();
+  if (*given >= 1 && *given <= most) return static_cast<uint32_t>(*given);
+  return fleet_usage(std::string(name) + " is between 1 and " + std::to_string(most));
+}
 
-  base::Status ask_once() {
-    if (all) return base::Ok{};
-    const Answer answer = ask_for_each("Start it there?");
-    all = answer == Answer::kAll;
-    quit = answer == Answer::kQuit;
-    if (answer == Answer::kYes || all) return base::Ok{};
-    return base::Error{base::Refusal::kBusy, "not switched; the old program runs on"};
+// Who is visited: whom the command line names, or whom an earlier run has left.
+base::Status find_members(const tools::Options& options, FleetRun& run) {
+  const bool named = options.has("--dir") || options.has("--host") || options.has("--fleet");
+  if (run.verb != "continue") {
+    base::Result<std::vector<FleetMember>> members = fleet_members(options);
+    if (!members.ok()) return members.error();
+    run.members = std::move(*members);
+    return base::Ok{};
   }
-};
+  if (named)
+    return fleet_usage(
+        "continue takes those that an earlier run has left; leave out --dir, "
+        "--host and --fleet");
+  base::Result<std::string> verb = FleetLeft(run.edit.path, run.edit.digest).read(run.members);
+  if (!verb.ok()) return verb.error();
+  run.verb = *verb;
+  return changes(run.verb) ? base::Status(base::Ok{})
+                           : fleet_usage("`" + run.verb + "` cannot be continued");
+}
 
-class FleetRun {
- public:
-  FleetRun(const FleetEdit& edit, SwitchOptions how) : edit_(edit), how_(std::move(how)) {
-    how_.note = "fleet file " + base::short_hex(edit.digest);
-    how_.confirm = [this] { return dialogue_.ask_once(); };
+base::Status check_walk(const FleetRun& run) {
+  const bool several = run.walk.jobs > 1;
+  if (several && run.walk.one_by_one)
+    return fleet_usage("--jobs and --one-by-one contradict each other");
+  if (!changes(run.verb)) return base::Ok{};
+  if (several && run.how.ask && !run.how.dry_run) {
+    return fleet_usage("--jobs asks nobody about each controller; give --yes");
   }
-
-  FleetRow visit(const FleetMember& member) {
-    FleetRow row;
-    row.place = member.name;
-    if (dialogue_.quit) return row;
-    if (!how_.json) std::printf("== %s\n", member.name.c_str());
-    base::Result<ControllerClient> client = ControllerClient::connect_to(member.place);
-    if (!client.ok()) return ended(row, FleetOutcome::kUnreachable, client.error());
-    base::Result<vm::StatusReport> status = client->status();
-    if (!status.ok()) return ended(row, FleetOutcome::kUnreachable, status.error());
-    base::Result<base::Bytes> running = client->image();
-    if (!running.ok()) return ended(row, FleetOutcome::kUnreachable, running.error());
-    if (base::Status checked = check(*running, row); !checked.ok()) {
-      return ended(row, FleetOutcome::kRefused, checked.error());
-    }
-    if (row.outcome == FleetOutcome::kHadIt || !edit_.changes) return row;
-    SwitchOptions how = how_;
-    if (member.allow_loss) how.switch_flags |= vm::kAllowLoss;
-    change(how, *client, *running, row);
-    return row;
-  }
-
- private:
-  // E-11: every part of the edit, before a byte is sent.
-  base::Status check(const base::Bytes& running, FleetRow& row) {
-    base::Result<ir::VerifiedImage> image = ir::verify(running);
-    if (!image.ok()) return image.error();
-    row.from = image->digest();
-    row.program = image->image().name;
-    row.parts =
-        ir::part_edits(edit_.parts.original, edit_.parts.edited, ir::parts_of(image->image()));
-    row.table = tools::own_table_edits(edit_.parts, image->image());
-    if (!how_.json) {
-      std::printf("%s (%s)\n%s", row.program.c_str(), base::short_hex(row.from).c_str(),
-                  tools::part_edits_text(row.parts, true).c_str());
-    }
-    bool all = true;
-    std::string others;
-    for (const ir::PartEdit& part : row.parts) {
-      all = all && part.state == ir::PartState::kHasIt;
-      if (part.state == ir::PartState::kOk || part.state == ir::PartState::kHasIt) continue;
-      others += (others.empty() ? "" : ", ") + part.name + " is " +
-                std::string(tools::part_state_name(part.state));
-    }
-    row.outcome = all ? FleetOutcome::kHadIt : FleetOutcome::kPossible;
-    base::Status kept = online_change::check_table(row.table, "its own table");
-    const bool fit = others.empty() || edit_.matching;
-    if (fit) return all ? base::Status(base::Ok{}) : kept;
-    if (!kept.ok()) others += "; " + kept.error().text;
-    return base::Error{base::Refusal::kOtherPart, others};
-  }
-
-  void change(const SwitchOptions& how, ControllerClient& client, const base::Bytes& running,
-              FleetRow& row) {
-    base::Result<base::Bytes> package =
-        make_package({{edit_.path}, {}}, {how.restricted, edit_.matching}, running);
-    if (!package.ok()) {
-      const bool has = package.error().refusal == base::Refusal::kNoChange;
-      ended(row, has ? FleetOutcome::kHadIt : FleetOutcome::kRefused, package.error());
-      if (has) row.why.reset();
-      return;
-    }
-    base::Result<Outcome> outcome = bring(how, client, *package);
-    if (!outcome.ok() || outcome->refused) {
-      const base::Error& why = outcome.ok() ? *outcome->refused : outcome.error();
-      const bool said_no = why.refusal == base::Refusal::kBusy && outcome.ok() && how.ask;
-      ended(row, said_no ? FleetOutcome::kCancelled : FleetOutcome::kRefused, why);
-      return;
-    }
-    row.outcome = how.dry_run ? FleetOutcome::kPossible : FleetOutcome::kDone;
-    row.report = outcome->report;
-    if (!how.json) print(how, *outcome);
-  }
-
-  FleetRow ended(FleetRow& row, FleetOutcome outcome, const base::Error& why) {
-    row.outcome = outcome;
-    row.why = why;
-    if (!how_.json) {
-      std::printf("cannot be changed: %s: %s\n", base::refusal_code(why.refusal), why.text.c_str());
-    }
-    return row;
-  }
-
-  const FleetEdit& edit_;
-  SwitchOptions how_;
-  Dialogue dialogue_;
-};
-
-int run_fleet(const tools::Options& options) {
-  base::Result<FleetEdit> edit = read_edit(options);
-  if (!edit.ok()) return refuse(edit.error());
-  base::Result<SwitchOptions> how = switch_options(options, {edit->path});
-  if (!how.ok()) return refuse(how.error());
-  const base::Result<std::vector<FleetMember>> members = fleet_members(options);
-  if (!members.ok()) return refuse(members.error());
   // E-28: nobody to ask is said before anything is sent to anybody.
-  if (edit->changes && how->ask && !how->dry_run && !can_ask()) {
-    return refuse({base::Refusal::kUsage, "nobody to ask: not a terminal; give --yes"});
+  if (run.how.ask && !run.how.dry_run && !can_ask()) {
+    return base::Error{base::Refusal::kUsage, "nobody to ask: not a terminal; give --yes"};
   }
-  FleetRun run(*edit, *how);
-  std::vector<FleetRow> rows;
-  for (const FleetMember& member : *members) rows.push_back(run.visit(member));
-  if (how->json) {
-    std::fputs(fleet_json(edit->digest, rows).c_str(), stdout);
+  return base::Ok{};
+}
+
+base::Status read_options(const tools::Options& options, FleetRun& run) {
+  base::Result<uint32_t> jobs = fleet_number(options, "--jobs", 256, 1);
+  if (!jobs.ok()) return jobs.error();
+  base::Result<uint32_t> patience =
+      fleet_number(options, "--timeout", 86'400, vm::SocketClient::kPatienceSeconds);
+  if (!patience.ok()) return patience.error();
+  base::Result<SwitchOptions> how = switch_options(options, {run.edit.path});
+  if (!how.ok()) return how.error();
+  run.how = std::move(*how);
+  run.json = run.how.json;
+  run.all = run.how.all;
+  run.how.json = run.json || *jobs > 1;  // what several say at once nobody could read
+  run.walk.jobs = *jobs;
+  run.walk.one_by_one = options.has("--one-by-one");
+  run.access.connect = [seconds = *patience](const FleetMember& member) {
+    return ControllerClient::connect_to(member.place, seconds);
+  };
+  const PackageOptions made{run.how.restricted, run.edit.matching};
+  run.access.package = [path = run.edit.path, made](const base::Bytes& running) {
+    return make_package({{path}, {}}, made, running);
+  };
+  return base::Ok{};
+}
+
+base::Result<FleetRun> read_run(const tools::Options& options) {
+  FleetRun run;
+  run.verb = options.arguments()[0];
+  const size_t more = options.arguments().size() - 1;
+  const bool known =
+      changes(run.verb) || run.verb == "status" || run.verb == "continue" || run.verb == "diff";
+  if (!known)
+    return fleet_usage("`" + run.verb +
+                       "` is none of its verbs: change, status, diff, undo, "
+                       "accept, continue");
+  if (run.verb == "diff") {
+    if (base::Status read = read_options(options, run); !read.ok()) return read.error();
+    return run;
+  }
+  if (more > 1) return fleet_usage(run.verb + " takes one fleet file");
+  if (more == 0 && run.verb != "status") return fleet_usage(run.verb + " needs a fleet file");
+  if (more == 1) {
+    base::Result<FleetEdit> edit = read_fleet_edit(options.arguments()[1]);
+    if (!edit.ok()) return edit.error();
+    run.edit = std::move(*edit);
+    run.edit.matching = options.has("--matching");
+  }
+  if (base::Status read = read_options(options, run); !read.ok()) return read.error();
+  if (base::Status found = find_members(options, run); !found.ok()) return found.error();
+  if (base::Status fits = check_walk(run); !fits.ok()) return fits.error();
+  return run;
+}
+
+bool answers(const FleetAccess& access, const FleetMember& member) {
+  base::Result<ControllerClient> client = access.connect(member);
+  return client.ok() && client->status().ok();
+}
+
+std::unique_ptr<FleetVisit> visit_of(const FleetRun& run) {
+  if (run.verb == "change") {
+    return std::make_unique<FleetChange>(run.edit, run.how, run.access);
+  }
+  if (run.verb == "undo") return std::make_unique<FleetUndo>(run.edit, run.how, run.access);
+  return std::make_unique<FleetAccept>(run.edit, run.how, run.access);
+}
+
+void say_left(const FleetLeft& left, const FleetRun& run) {
+  if (!left.complaint().empty()) {
+    std::fprintf(stderr, "stvm: who is left cannot be noted: %s\n", left.complaint().c_str());
+  } else if (!left.members().empty() && !run.json) {
+    std::printf("%zu left: `stvm fleet continue %s` goes on with them\n", left.members().size(),
+                run.edit.path.c_str());
+  }
+}
+
+int go_through(FleetRun& run) {
+  FleetLeft left(run.edit.path, run.edit.digest);
+  const bool notes = !run.how.dry_run;
+  if (notes) left.begin(run.verb, run.members);
+  const std::unique_ptr<FleetVisit> verb = visit_of(run);
+  run.walk.visit = [&](const FleetMember& member) { return verb->visit(member); };
+  run.walk.answers = [&](const FleetMember& member) { return answers(run.access, member); };
+  run.walk.told = [&](const FleetMember& member, const FleetRow& row) {
+    if (notes) left.visited(member, is_good(row.outcome));
+    if (run.walk.jobs == 1 || run.json) return;
+    std::printf("%s: %s\n", row.place.c_str(), std::string(outcome_name(row.outcome)).c_str());
+    std::fflush(stdout);
+  };
+  const std::vector<FleetRow> rows = walk(run.members, run.walk);
+  if (run.json) {
+    std::fputs(fleet_json(run.edit.digest, rows).c_str(), stdout);
   } else {
-    std::printf("\n%s", fleet_text(rows).c_str());
+    const bool said = run.walk.jobs == 1;  // by each visit
+    std::printf("\n%s", (fleet_text(rows) + (said ? "" : reasons_text(rows))).c_str());
   }
+  if (notes) say_left(left, run);
   return fleet_exit_code(rows);
+}
+
+std::string edit_text(const FleetEdit& edit) {
+  return tools::part_edits_text(
+      ir::part_edits(edit.parts.original, edit.parts.edited, edit.parts.original), false);
+}
+
+// Without a fleet file 1 also says that they differ.
+int show_status(FleetRun& run) {
+  const FleetEdit* const edit = run.edit.path.empty() ? nullptr : &run.edit;
+  run.walk.visit = [&](const FleetMember& member) {
+    return look_at(edit, run.access, FleetTalk(true), member);
+  };
+  run.walk.one_by_one = false;
+  run.walk.told = [](const FleetMember&, const FleetRow&) {};
+  const std::vector<FleetRow> rows = walk(run.members, run.walk);
+  const bool of_edit = edit != nullptr;
+  const FleetMatrix matrix = fleet_matrix(rows, of_edit);
+  if (run.json) {
+    tools::JsonWriter json;
+    json.begin_object().field("file", of_edit ? base::to_hex(run.edit.digest) : std::string());
+    json.key("controllers");
+    fleet_rows_json(rows, json);
+    json.key("parts");
+    matrix_json(matrix, json);
+    json.end_object();
+    std::fputs(json.finish().c_str(), stdout);
+  } else {
+    if (of_edit) std::fputs(edit_text(run.edit).c_str(), stdout);
+    std::printf("%s%s\n%s", of_edit ? "\n" : "", matrix_text(matrix, of_edit, run.all).c_str(),
+                (fleet_text(rows) + reasons_text(rows)).c_str());
+  }
+  const int code = fleet_exit_code(rows);
+  return code == tools::kOk && !of_edit && matrix.differs ? tools::kFindings : code;
 }
 
 }  // namespace
 
-const Entry kFleet{&kFleetCommand, run_fleet};
+int run_fleet(const tools::Options& options) {
+  base::Result<FleetRun> run = read_run(options);
+  if (!run.ok()) return refuse(run.error());
+  if (run->verb == "diff") return compare_fleet(options, run->access);
+  return run->verb == "status" ? show_status(*run) : go_through(*run);
+}
 
 }  // namespace stvm

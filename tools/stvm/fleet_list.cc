@@ -64,11 +64,13 @@ class FleetList {
       row.line = value.line;
       row.column = value.column;
     }
-    row.member.name = name;
+    if (row.member.name.empty()) row.member.name = name;
+    if (setting == "name") return take_text(value, row.member.name);
     if (setting == "allow_loss") return take_flag(value, row.member.allow_loss);
     if (setting == "dir" || setting == "host") return take_place(value, row.member);
-    return mistake(value.line, value.column,
-                   "`" + setting + "` is not known; a controller has dir or host, and allow_loss");
+    return mistake(
+        value.line, value.column,
+        "`" + setting + "` is not known; a controller has dir or host, name and allow_loss");
   }
 
   base::Status take_flag(const tools::TomlValue& value, bool& flag) const {
@@ -80,16 +82,20 @@ class FleetList {
     return base::Ok{};
   }
 
-  base::Status take_place(const tools::TomlValue& value, FleetMember& member) const {
+  base::Status take_text(const tools::TomlValue& value, std::string& text) const {
     const std::string* const given = std::get_if<std::string>(&value.data);
     if (given == nullptr || given->empty()) {
       return mistake(value.place.line, value.place.column, "a text is wanted");
     }
+    text = *given;
+    return base::Ok{};
+  }
+
+  base::Status take_place(const tools::TomlValue& value, FleetMember& member) const {
     if (!member.place.empty()) {
       return mistake(value.line, value.column, "`" + member.name + "` has a dir and a host");
     }
-    member.place = *given;
-    return base::Ok{};
+    return take_text(value, member.place);
   }
 
   std::string file_;
@@ -98,15 +104,26 @@ class FleetList {
 
 }  // namespace
 
+base::Result<std::vector<FleetMember>> read_fleet_list(const std::string& file) {
+  return FleetList(file).read();
+}
+
 base::Result<std::vector<FleetMember>> fleet_members(const tools::Options& options) {
   std::vector<FleetMember> members;
   for (const char* option : {"--dir", "--host"}) {
     for (const std::string& place : options.all(option)) members.push_back({place, place, false});
   }
   if (options.has("--fleet")) {
-    base::Result<std::vector<FleetMember>> listed = FleetList(options.text("--fleet")).read();
+    base::Result<std::vector<FleetMember>> listed = read_fleet_list(options.text("--fleet"));
     if (!listed.ok()) return listed.error();
     members.insert(members.end(), listed->begin(), listed->end());
+  }
+  for (size_t i = 1; i < members.size(); ++i) {
+    for (size_t before = 0; before < i; ++before) {
+      if (members[before].name != members[i].name) continue;
+      return base::Error{base::Refusal::kUsage,
+                         "fleet: two controllers are called `" + members[i].name + "`"};
+    }
   }
   if (!members.empty()) return members;
   return base::Error{base::Refusal::kUsage, "fleet: name controllers by --dir, --host or --fleet"};

@@ -2,6 +2,7 @@
 //
 //   [controllers.line2]
 //   host = "plc@line2"      # or dir = "/var/lib/stvm"
+//   name = "Line 2"         # as results call it; else what stands behind `controllers.`
 //   allow_loss = true       # for this one only
 #pragma once
 
@@ -19,8 +20,10 @@ struct FleetMember {
   bool allow_loss = false;
 };
 
-// --dir, --host, and --fleet FILE in the order of the file. kUsage: there is none. Mistakes of the
-// file with line and column (kBadProject).
+// Of a file. Mistakes with line and column (kBadProject).
+base::Result<std::vector<FleetMember>> read_fleet_list(const std::string& file);
+// --dir, --host, and --fleet FILE in the order of the file. kUsage: there is none, or two have one
+// name.
 base::Result<std::vector<FleetMember>> fleet_members(const tools::Options& options);
 
 }  // namespace stvm

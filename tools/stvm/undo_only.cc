@@ -32,6 +32,8 @@ base::Result<base::Bytes> package_of(ControllerClient& client, const std::string
 
 }  // namespace
 
+std::string take_out_note(const std::string& edit) { return edit + " alone is taken back"; }
+
 base::Result<Outcome> take_out(const SwitchOptions& how, ControllerClient& client,
                                const std::string& edit, const std::vector<std::string>& on_trial) {
   const auto found = std::find(on_trial.begin(), on_trial.end(), edit);
@@ -55,7 +57,7 @@ base::Result<Outcome> take_out(const SwitchOptions& how, ControllerClient& clien
                                         "; without --only they go, too"};
   }
   SwitchOptions noted = how;
-  noted.note = edit + " alone is taken back";
+  noted.note = take_out_note(edit);
   noted.taken_out = edit;
   return bring(noted, client, *package);
 }

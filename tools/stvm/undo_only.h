@@ -15,4 +15,7 @@ namespace stvm {
 base::Result<Outcome> take_out(const SwitchOptions& how, ControllerClient& client,
                                const std::string& edit, const std::vector<std::string>& on_trial);
 
+// What the journal says of that change.
+std::string take_out_note(const std::string& edit);
+
 }  // namespace stvm

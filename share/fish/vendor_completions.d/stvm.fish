@@ -22,7 +22,8 @@ complete -c stvm -n __fish_use_subcommand -f -a journal -d 'Shows the events tha
 and when, power cuts, and traps; oldest first. `stvm events` shows all of one that runs.'
 complete -c stvm -n __fish_use_subcommand -f -a events -d 'Shows what happens to a running controller: starts, changes, traps, overruns, devices, forces
 and writes; oldest first. Those of before it started come from its journal.'
-complete -c stvm -n __fish_use_subcommand -f -a fleet -d 'Makes the edit of a fleet file (stc fleet) on many controllers, or says what they have of it.'
+complete -c stvm -n __fish_use_subcommand -f -a fleet -d 'Makes the edit of a fleet file (stc fleet) on many controllers, takes it back or accepts it,
+goes on with those left, or says who has what of it, and what differs between them.'
 complete -c stvm -n __fish_use_subcommand -f -a source -d 'Brings back the sources that travel with the running program.'
 complete -c stvm -n __fish_use_subcommand -f -a image -d 'Writes the running program to a file.'
 complete -c stvm -n __fish_use_subcommand -f -a bridge -d 'Connects its standard streams to the controller (what --host runs there).'
@@ -242,6 +243,9 @@ complete -c stvm -n '__fish_seen_subcommand_from events' -l color -x -a 'auto al
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l dir -x -a '(__fish_complete_directories)' -d 'state directory of a controller; repeatable'
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l host -x -d '[user@]host of a controller, by ssh; repeatable'
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l fleet -r -F -d 'the controllers of this file (docs/FLEET.md)'
+complete -c stvm -n '__fish_seen_subcommand_from fleet' -l jobs -s j -x -d 'so many controllers at once (default 1)'
+complete -c stvm -n '__fish_seen_subcommand_from fleet' -l timeout -x -d 'a controller that does not answer for so long is left (default 60)'
+complete -c stvm -n '__fish_seen_subcommand_from fleet' -l one-by-one -d 'wait until a controller answers, do it, and wait for the next one'
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l yes -s y -d 'go on without asking'
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l dry-run -d 'say what would happen, or why it would be refused; nothing is changed'
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l all -d 'show the fate of each variable too, with addresses and values'

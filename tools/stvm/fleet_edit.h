@@ -1,0 +1,23 @@
+// The edit of a fleet file, as `stvm fleet` goes about with it, and by what it is known in the
+// journal of a controller (E-33).
+#pragma once
+
+#include <string>
+
+#include "tools/common/fleet_parts.h"
+
+namespace stvm {
+
+struct FleetEdit {
+  std::string path;
+  base::Digest digest{};
+  tools::FleetParts parts;
+  bool matching = false;  // only the units that fit
+};
+
+// Both versions are verified.
+base::Result<FleetEdit> read_fleet_edit(const std::string& path);
+// "fleet file 9c4c6cbc5a09"
+std::string fleet_note(const base::Digest& digest);
+
+}  // namespace stvm

@@ -1,0 +1,136 @@
+// stvm fleet undo, accept: what became of an edit on trial, on each controller that has it (E-32).
+#include <algorithm>
+
+#include "base/joined.h"
+#include "tools/stvm/fate_view.h"
+#include "tools/stvm/fleet_edits.h"
+#include "tools/stvm/fleet_visit.h"
+#include "tools/stvm/waiting.h"
+
+namespace stvm {
+namespace {
+
+// The newest edit of all, as `stvm undo` does it.
+base::Result<Outcome> undo_newest(const SwitchOptions& how, const FleetTalk& talk,
+                                  ControllerClient& client, const std::string& edit) {
+  base::Result<FatePage> page = client.fates();
+  if (!page.ok()) return page.error();
+  talk.say(fates_text(*page));
+  Outcome outcome;
+  outcome.page = std::move(*page);
+  if (how.dry_run) return outcome;
+  if (how.ask) {
+    if (base::Status go = how.confirm(); !go.ok()) {
+      outcome.refused = go.error();
+      return outcome;
+    }
+  }
+  base::Result<online_change::SwitchReport> report = client.undo(edit);
+  if (!report.ok()) return report.error();
+  outcome.report = *report;
+  return outcome;
+}
+
+// "E2 by ann": those on trial below the newest edit of the file that are not of it.
+std::string others_below(const FleetEdits& edits) {
+  std::string text;
+  bool below = false;
+  for (const TrialEdit& edit : edits.on_trial) {
+    below = below || edit.name == edits.here.front();
+    const bool own = std::find(edits.here.begin(), edits.here.end(), edit.name) != edits.here.end();
+    if (!below || own) continue;
+    text += (text.empty() ? "" : ", ") + edit.name;
+    if (!edit.who.empty()) text += " by " + edit.who;
+  }
+  return text;
+}
+
+// Of a controller that has none of the edits on trial.
+FleetOutcome without(const FleetEdit& edit, const ir::VerifiedImage& image) {
+  FleetRow row;
+  (void)check_parts(edit, image, row).ok();
+  return row.outcome == FleetOutcome::kHadIt ? FleetOutcome::kHadIt : FleetOutcome::kHadItNot;
+}
+
+}  // namespace
+
+FleetUndo::FleetUndo(const FleetEdit& edit, SwitchOptions how, FleetAccess access)
+    : FleetVisit(edit, std::move(how), std::move(access), "Take it back there?",
+                 "not taken back; the program on trial runs on") {}
+
+// Where it was made more than once (--matching), each of them, newest first.
+FleetRow FleetUndo::visit(const FleetMember& member) {
+  FleetRow row = talk_.begin(member);
+  if (talk_.is_over()) return row;
+  std::optional<FleetSeen> seen = see(access_, talk_, member, row);
+  if (!seen) return row;
+  SwitchOptions how = how_;
+  if (member.allow_loss) how.switch_flags |= vm::kAllowLoss;
+  for (;;) {
+    base::Result<FleetEdits> edits = fleet_edits_on(seen->client, edit_.digest);
+    if (!edits.ok()) return talk_.failed(std::move(row), edits.error());
+    if (edits->here.empty()) break;
+    const std::string& edit = edits->here.front();
+    talk_.say(edit + " is this edit\n");
+    const bool newest = edit == edits->on_trial.front().name;
+    base::Result<Outcome> outcome =
+        newest ? undo_newest(how, talk_, seen->client, edit)
+               : access_.take_back(how, seen->client, edit, edits->names());
+    if (why_not(outcome) != nullptr) return not_done(std::move(row), outcome);
+    row.edits += (row.edits.empty() ? "" : ", ") + edit;
+    row.outcome = how.dry_run ? FleetOutcome::kPossible : FleetOutcome::kUndone;
+    row.report = outcome->report;
+    if (how.dry_run) return row;
+    talk_.say("taken back\n");
+    base::Result<vm::StatusReport> next = seen->client.status();
+    if (!next.ok()) return talk_.failed(std::move(row), next.error());
+  }
+  if (row.edits.empty()) row.outcome = FleetOutcome::kHadItNot;
+  if (row.edits.empty()) talk_.say("this edit is not on trial here\n");
+  return row;
+}
+
+FleetAccept::FleetAccept(const FleetEdit& edit, SwitchOptions how, FleetAccess access)
+    : FleetVisit(edit, std::move(how), std::move(access), "Make it final there?",
+                 "not accepted; it stays on trial") {}
+
+// What lies below becomes final too, and that of others only where somebody has said so.
+FleetRow FleetAccept::visit(const FleetMember& member) {
+  FleetRow row = talk_.begin(member);
+  if (talk_.is_over()) return row;
+  std::optional<FleetSeen> seen = see(access_, talk_, member, row);
+  if (!seen) return row;
+  base::Result<FleetEdits> edits = fleet_edits_on(seen->client, edit_.digest);
+  if (!edits.ok()) return talk_.failed(std::move(row), edits.error());
+  if (edits->here.empty()) {
+    row.outcome = without(edit_, seen->image);
+    talk_.say("this edit is not on trial here\n");
+    return row;
+  }
+  for (const std::string& edit : edits->here) row.edits += (row.edits.empty() ? "" : ", ") + edit;
+  const std::string others = others_below(*edits);
+  if (!others.empty()) talk_.say("with it become final: " + others + "\n");
+  if (how_.dry_run) {
+    row.outcome = FleetOutcome::kPossible;
+    return row;
+  }
+  if (!others.empty() && !how_.ask) {
+    return talk_.failed(std::move(row),
+                        {base::Refusal::kChangePending,
+                         base::joined({"below it is on trial, and would become final too: ", others,
+                                       "; accept or undo that there, or go without --yes"})});
+  }
+  if (how_.ask) {
+    base::Status go = how_.confirm();
+    if (!go.ok()) return talk_.ended(std::move(row), FleetOutcome::kCancelled, go.error());
+  }
+  // Of the version that was looked at: whoever has changed it meanwhile is told so (R0301).
+  base::Result<base::Bytes> done =
+      seen->client.call({.command = vm::Command::kAccept, .names = {edits->here.front()}});
+  if (!done.ok()) return talk_.failed(std::move(row), done.error());
+  row.outcome = FleetOutcome::kAccepted;
+  talk_.say("accepted\n");
+  return row;
+}
+
+}  // namespace stvm

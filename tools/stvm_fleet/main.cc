@@ -1,0 +1,12 @@
+// stvm-fleet: what `stvm fleet` hands over to. Its command line is stvm's, and it calls itself so.
+#include "tools/common/refusal_text.h"
+#include "tools/stvm/fleet_command.h"
+
+int main(int argc, char** argv) {
+  const tools::Entry fleet{&stvm::kFleetCommand, stvm::run_fleet};
+  const tools::Entry* const entries[] = {&fleet};
+  const tools::Tool tool{"stvm",  "Goes through a fleet of controllers, for `stvm fleet`.",
+                         entries, {},
+                         {},      {{"json", tools::refusal_json}}};
+  return tools::dispatch(tool, argc, argv);
+}
