@@ -15,15 +15,16 @@ version v2.st 2
 
 serve plc v1.st
 expect 0 stvm status --units --dir plc
-said '^unit +inst +slot +other slot +since .UTC. +cycle +by$'
-said '^Pump +3 +A +- +[0-9][0-9]-[0-9][0-9] [0-9:]{5} +0 +serve$'
+said '^unit +kind +identity +slot +other +since .UTC. +by$'
+said '^Pump +FB +[0-9a-f]{12} +A +- +[0-9][0-9]-[0-9][0-9] [0-9:]{5} +serve$'
 expect 0 stvm edits --dir plc
 said '^no edit is on trial$'
 
 expect 0 stvm change v2.st --dir plc --yes --allow-overrun
 expect 0 stvm status --units --dir plc
-said '^Pump +3 +B +[0-9a-f]{8} before +[0-9][0-9]-'
-said '^Valve +1 +A +- '
+said '^Pump +FB +[0-9a-f]{12}[*] +B +before +[0-9][0-9]-'
+said '^Valve +FB +[0-9a-f]{12} +A +- '
+said '^. edited since the program was accepted'
 awk 'length($0) > 80 { exit 1 }' out || fail "wider than 80 columns"
 expect 0 stvm status --units --dir plc --format json
 said '"unit": *"Pump"'
@@ -41,18 +42,18 @@ said 'edit E1'
 expect 0 stvm undo --dir plc
 said 'E1 undone between'
 expect 0 stvm status --units --dir plc
-said '^Pump +3 +A +[0-9a-f]{8} undone +[0-9][0-9]-'
+said '^Pump +FB +[0-9a-f]{12} +A +undone +[0-9][0-9]-'
 expect 0 stvm edits --dir plc
 said 'no edit is on trial'
 
 expect 0 stvm change v2.st --dir plc --yes --allow-overrun
 expect 0 stvm accept --dir plc
 expect 0 stvm status --units --dir plc
-said '^Pump +3 +B +[0-9a-f]{8} before +[0-9][0-9]-'
+said '^Pump +FB +[0-9a-f]{12} +B +before +[0-9][0-9]-'
 expect 0 stvm stop --dir plc
 serve plc
 expect 0 stvm status --units --dir plc
-said '^Pump +3 +A +- '
+said '^Pump +FB +[0-9a-f]{12} +A +- '
 
 # Case 77: three edits, one on top of the other; each is taken back by its name, and comes again.
 for n in 3 4 5; do version v$n.st $n; done

@@ -230,6 +230,20 @@ base::Result<std::vector<UnitRow>> ControllerClient::units() {
   }
 }
 
+base::Result<std::map<std::string, std::string>> ControllerClient::facts() {
+  std::map<std::string, std::string> out;
+  base::Result<base::Bytes> body = call({.command = vm::Command::kFacts});
+  if (!body.ok()) {
+    const bool unknown = body.error().refusal == base::Refusal::kProtocol;
+    return unknown ? base::Result<std::map<std::string, std::string>>(std::move(out))
+                   : body.error();
+  }
+  base::Result<vm::Values> facts = vm::decode_values(*body);
+  if (!facts.ok()) return facts.error();
+  for (const vm::ValueRow& row : facts->rows) out[row.path] = base::visible(row.value);
+  return out;
+}
+
 base::Result<std::vector<TrialEdit>> ControllerClient::edits() {
   std::vector<TrialEdit> all;
   vm::Request request{.command = vm::Command::kEdits};

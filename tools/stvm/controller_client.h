@@ -2,6 +2,7 @@
 // decoded by the bounded reader.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,6 +51,8 @@ class ControllerClient {
   // From number `first` on, as far as the controller has them; their `sequence` is that number.
   base::Result<std::vector<online_change::JournalEntry>> events(uint64_t first);
   base::Result<std::vector<UnitRow>> units();
+  // What it is and can do, by name; none of one that is too old to say.
+  base::Result<std::map<std::string, std::string>> facts();
   // On trial, oldest first.
   base::Result<std::vector<TrialEdit>> edits();
 

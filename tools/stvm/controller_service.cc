@@ -140,6 +140,8 @@ base::Result<base::Bytes> ControllerService::dispatch(const vm::Request& request
       return journal(request);
     case vm::Command::kEvents:
       return events(request);
+    case vm::Command::kFacts:
+      return facts(request);
     case vm::Command::kUnits:
       return units(request);
     case vm::Command::kEdits:

@@ -49,6 +49,8 @@ class ControllerService : public vm::Service {
   ControllerService(vm::Controller& controller, vm::Clock& clock, online_change::Store& store,
                     vm::Boundary& boundary, StartReport start = {},
                     online_change::RetainKeeper::WallTime wall_time = wall_time_ns);
+  // Of the program that serves.
+  void is_version(std::string version) { version_ = std::move(version); }
   // What changes something from now on is noted there; it must outlive this.
   void record(vm::Recorder& recorder) { recorder_ = &recorder; }
   // Whose events are shown to those who ask; it must outlive this.
@@ -145,6 +147,7 @@ class ControllerService : public vm::Service {
   Answer units(const vm::Request& request);
   Answer edits(const vm::Request& request);
   Answer redo(const vm::Request& request);
+  Answer facts(const vm::Request& request) const;
   // Behind a switch or an undo of this cycle.
   void note_units(const char* event, uint64_t cycle);
   // What is staged, as an edit; before it is forgotten.
@@ -295,6 +298,7 @@ class ControllerService : public vm::Service {
   vm::Boundary& boundary_;
   vm::Recorder* recorder_ = nullptr;
   const EventLog* events_ = nullptr;
+  std::string version_ = "unknown";
   StartReport start_;
   online_change::RetainKeeper::WallTime wall_time_;
   online_change::RetainKeeper keeper_;

@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/limits.h"
+#include "base/tool_limits.h"
+#include "ir/bytecode/image_versions.h"
+#include "tools/common/version.h"
 #include "tools/stvm/controller_service.h"
+#include "vm/native/program.h"
 
 namespace stvm {
 namespace {
@@ -102,6 +107,25 @@ base::Status ControllerService::check_newest(const vm::Request& request) const {
   return base::Error{base::Refusal::kNothingToUndo,
                      "`" + request.names.front() + "` is not the newest edit on trial, which is " +
                          newest + "; `stvm edits` shows them"};
+}
+
+// Rows may come and go from version to version: who asks knows each by its name (E-06).
+base::Result<base::Bytes> ControllerService::facts(const vm::Request&) const {
+  vm::Values facts;
+  const auto add = [&](const char* name, std::string value) {
+    facts.rows.push_back({name, {}, std::move(value)});
+  };
+  add("version", version_);
+  add("first_image_version", std::to_string(ir::kFirstImageVersion));
+  add("last_image_version", std::to_string(ir::kLastImageVersion));
+  add("protocol", std::to_string(vm::kProtocolVersion));
+  add("native_tier", tools::native_tier(vm::native::is_available()).values.front());
+  add("most_edits_on_trial", std::to_string(base::kMostEditsOnTrial));
+  add("most_package_bytes", std::to_string(base::kMaxImageBytes));
+  add("most_pous", std::to_string(base::kMaxPous));
+  add("most_instances", std::to_string(base::kMaxInstances));
+  add("most_retained_bytes", std::to_string(base::kMaxRetainBytes));
+  return vm::encode(facts);
 }
 
 // As it was brought: what has changed since in the values that it reads, it meets as any change

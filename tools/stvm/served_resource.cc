@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tools/common/files.h"
+#include "tools/common/version.h"
 #include "tools/stvm/commands.h"
 
 namespace stvm {
@@ -84,6 +85,7 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
   service_ = std::make_unique<ControllerService>(
       controller(), clock, store_, mailbox_,
       StartReport{boot_->trial_lost, boot_->alarms, boot_->fault, kWho});
+  service_->is_version(tools::kVersion);
   service_->resume(boot_->edits);
   service_->store_beside();
   service_->show_events(*events_);

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "ir/bytecode/no_program.h"
+#include "ir/bytecode/verify.h"
 #include "tools/common/exit.h"
 #include "tools/common/fate_report.h"
 #include "tools/common/json.h"
@@ -22,11 +23,13 @@ constexpr tools::OptionRow kStatusOptions[] = {
     STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION,
     {"--activity", nullptr, "what tasks are doing at this instant, and how their buffers stand"},
-    {"--units", nullptr, "the table of units: slot in use, what the other one holds, since when"},
+    {"--units", nullptr,
+     "the table of units (of those named, or of all): identities, slots, what is edited; and what "
+     "the controller can do"},
     {"--task", "NAME", "histograms of a task: run times, and delays of its start"},
     {"--reset-times", nullptr, "the controller forgets how long scans took and began late"}};
 constexpr tools::Command kStatusCommand{
-    "status", "", "Shows what a controller runs and how it is.", kStatusOptions, 0, 0};
+    "status", "[UNIT...]", "Shows what a controller runs and how it is.", kStatusOptions, 0};
 
 bool on_trial(const vm::StatusReport& report) { return report.edits != 0; }
 
@@ -239,7 +242,53 @@ void print_status_json(const vm::StatusReport& report) {
   std::fputs(json.finish().c_str(), stdout);
 }
 
+// Of the version that ran when it began.
+base::Result<std::vector<UnitView>> look_at_units(const std::vector<std::string>& patterns,
+                                                  ControllerClient& client) {
+  base::Result<std::vector<UnitRow>> rows = client.units();
+  if (!rows.ok()) return rows.error();
+  base::Result<base::Bytes> bytes = client.image();
+  if (!bytes.ok()) return bytes.error();
+  base::Result<ir::VerifiedImage> running = ir::verify(std::move(*bytes));
+  if (!running.ok()) return running.error();
+  base::Result<std::vector<TrialEdit>> edits = client.edits();
+  if (!edits.ok()) return edits.error();
+  std::vector<EditStep> steps;
+  for (TrialEdit& edit : *edits) {
+    if (edit.undone) continue;
+    base::Result<base::Bytes> before = client.image_before(edit.name);
+    if (!before.ok()) return before.error();
+    base::Result<ir::VerifiedImage> image = ir::verify(std::move(*before));
+    if (!image.ok()) return image.error();
+    steps.push_back({std::move(edit), ir::parts_of(image->image())});
+  }
+  return unit_views(*rows, running->image(), steps, patterns);
+}
+
+base::Status show_units(const std::vector<std::string>& patterns, bool json,
+                        ControllerClient& client) {
+  base::Result<vm::StatusReport> status = client.status();
+  if (!status.ok()) return status.error();
+  base::Result<ControllerFacts> facts = client.facts();
+  if (!facts.ok()) return facts.error();
+  base::Result<std::vector<UnitView>> units = look_at_units(patterns, client);
+  if (!units.ok()) return units.error();
+  if (units->empty() && !patterns.empty()) {
+    return base::Error{base::Refusal::kNoSuchVariable,
+                       "no unit is called `" + patterns.front() + "`"};
+  }
+  if (json) {
+    std::fputs(units_json(*units, *facts, *status).c_str(), stdout);
+  } else {
+    std::printf("%s\n%s", units_text(*units).c_str(), facts_text(*facts, *status).c_str());
+  }
+  return base::Ok{};
+}
+
 base::Status show(const tools::Options& options) {
+  if (!options.arguments().empty() && !options.has("--units")) {
+    return base::Error{base::Refusal::kUsage, "status: names of units go with --units"};
+  }
   base::Result<bool> json = wants_json(options);
   if (!json.ok()) return json.error();
   base::Result<ControllerClient> client = ControllerClient::connect(options);
@@ -254,12 +303,7 @@ base::Status show(const tools::Options& options) {
     std::fputs((*json ? times_json(*times) : times_text(*times)).c_str(), stdout);
     return base::Ok{};
   }
-  if (options.has("--units")) {
-    base::Result<std::vector<UnitRow>> units = client->units();
-    if (!units.ok()) return units.error();
-    std::fputs((*json ? units_json(*units) : units_text(*units)).c_str(), stdout);
-    return base::Ok{};
-  }
+  if (options.has("--units")) return show_units(options.arguments(), *json, *client);
   base::Result<vm::StatusReport> report = client->status();
   if (!report.ok()) return report.error();
   if (options.has("--activity") && !*json) {

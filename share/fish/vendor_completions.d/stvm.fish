@@ -101,7 +101,7 @@ complete -c stvm -n '__fish_seen_subcommand_from status' -l dir -x -a '(__fish_c
 complete -c stvm -n '__fish_seen_subcommand_from status' -l host -x -d 'the controller runs there; reached with ssh'
 complete -c stvm -n '__fish_seen_subcommand_from status' -l format -x -a 'text json' -d 'text (default) or json'
 complete -c stvm -n '__fish_seen_subcommand_from status' -l activity -d 'what tasks are doing at this instant, and how their buffers stand'
-complete -c stvm -n '__fish_seen_subcommand_from status' -l units -d 'the table of units: slot in use, what the other one holds, since when'
+complete -c stvm -n '__fish_seen_subcommand_from status' -l units -d 'the table of units (of those named, or of all): identities, slots, what is edited; and what the controller can do'
 complete -c stvm -n '__fish_seen_subcommand_from status' -l task -x -d 'histograms of a task: run times, and delays of its start'
 complete -c stvm -n '__fish_seen_subcommand_from status' -l reset-times -d 'the controller forgets how long scans took and began late'
 complete -c stvm -n '__fish_seen_subcommand_from status' -l quiet -s q -d 'nothing on standard output but what --format asks for; mistakes and the exit code stay'

@@ -121,6 +121,8 @@ void add(base::Bytes& all, const base::Bytes& message, size_t from = 0) {
   all.insert(all.end(), message.begin() + static_cast<ptrdiff_t>(from), message.end());
 }
 
+// Up to the last command that every controller of this version knows. One that came since is
+// answered as an unknown one by those that are older, and needs no version of its own.
 base::Bytes requests() {
   base::Bytes all;
   for (uint8_t i = 0; i <= static_cast<uint8_t>(vm::Command::kEvents); ++i) {

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "base/limits.h"
+#include "base/tool_limits.h"
+#include "ir/bytecode/identities.h"
+#include "ir/bytecode/image_versions.h"
 #include "tests/unit/store/plc.h"
 #include "tests/unit/store/sim_storage.h"
 #include "tools/stvm/units.h"
@@ -40,6 +43,23 @@ std::vector<TrialEdit> edits_of(Plc& plc) {
   base::check(body.ok(), "edits are told");
   return decode_edit_page(*body)->edits;
 }
+
+// Of all pages, each of which has one.
+std::vector<TrialEdit> every_edit(Plc& plc) {
+  std::vector<TrialEdit> all;
+  for (uint64_t next = 0;;) {
+    vm::Request request{.command = vm::Command::kEdits};
+    request.offset = next;
+    const base::Result<base::Bytes> body = plc.answer_to(std::move(request));
+    base::check(body.ok(), "edits are told");
+    const EditPage page = *decode_edit_page(*body);
+    all.insert(all.end(), page.edits.begin(), page.edits.end());
+    if (page.next == 0) return all;
+    next = page.next;
+  }
+}
+
+ir::Image build_again(const std::string& source) { return plc::build(source).image(); }
 
 base::Digest identity(Plc& plc, const std::string& name) {
   for (const ir::LinkedPou& pou : plc.controller().image().pous) {
@@ -178,15 +198,82 @@ TEST(Units, D8_ARowFitsEightyColumns) {
   row.other = OtherSlot::kBefore;
   row.cycle = 123'456'789;
   row.who = "somebody.with.a.long.name";
-  const std::string text = units_text({row});
+  const std::string text =
+      units_text({{row, "function block", row.name, {1}, true, "E1", row.who, 0}});
   for (size_t at = 0; at < text.size();) {
     const size_t end = text.find('\n', at);
     EXPECT_LE(end - at, 80u) << text;
     at = end + 1;
   }
-  EXPECT_NE(text.find("00000000 before"), std::string::npos) << text;
+  EXPECT_NE(text.find("FB    010000000000*  A     before"), std::string::npos) << text;
   EXPECT_NE(text.find("01-01 00:00"), std::string::npos) << text;
-  EXPECT_NE(text.find("a_function.."), std::string::npos) << text;
+  EXPECT_NE(text.find("a_function_block_w.."), std::string::npos) << text;
+}
+
+std::string edited_units(const std::vector<UnitView>& units) {
+  std::string out;
+  for (const UnitView& unit : units) {
+    if (unit.edited) out += unit.row.name + " " + unit.edit + " by " + unit.edited_by + " ";
+  }
+  return out;
+}
+
+// Comments are no part of it, an edit that is undone is none, and one that brings back what was
+// accepted is none either.
+TEST(Units, E06_AUnitHasTheIdentityOfItsSourcesAndSaysWhoEditedIt) {
+  sim::SimStorage disk;
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot(pumps("1")).ok());
+  std::vector<std::vector<ir::Part>> before;  // each change
+  const auto change = [&](const std::string& who, const std::string& source) {
+    before.push_back(ir::parts_of(plc.controller().image()));
+    plc.service().asked_by(who, 2);
+    EXPECT_TRUE(plc.change(source).ok());
+    plc.run(1);
+  };
+  const auto look = [&](const std::vector<std::string>& patterns = {}) {
+    std::vector<EditStep> steps;
+    for (const TrialEdit& edit : every_edit(plc)) {
+      if (!edit.undone) steps.push_back({edit, before[steps.size()]});
+    }
+    return unit_views(page_of(plc).rows, plc.controller().image(), steps, patterns);
+  };
+  const std::vector<ir::Part> parts = ir::parts_of(build_again(pumps("1") + " (* more *)"));
+  for (const UnitView& unit : look()) {
+    EXPECT_EQ(unit.content, ir::find_part(parts, ir::PartKind::kUnit, unit.row.name)->identity);
+    EXPECT_EQ(unit.kind, unit.row.name == "Main" ? "program" : "function block");
+  }
+  EXPECT_EQ(edited_units(look()), "");
+  change("ann", pumps("2"));
+  EXPECT_EQ(edited_units(look()), "Pump E1 by ann ");
+  change("bob", pumps("2", "more : INT;"));
+  EXPECT_EQ(edited_units(look()), "Pump E1 by ann Main E2 by bob ");
+  EXPECT_EQ(look({"P*", "valve"}).size(), 2u);
+  change("eve", pumps("1", "more : INT;"));
+  EXPECT_EQ(edited_units(look()), "Main E2 by bob ");
+  ASSERT_TRUE(plc.undo().ok());
+  EXPECT_EQ(edited_units(look()), "Pump E1 by ann Main E2 by bob ");
+  ASSERT_TRUE(plc.accept().ok());
+  EXPECT_EQ(edited_units(look()), "") << "nothing is on trial";
+}
+
+TEST(Units, E06_AControllerSaysWhatItIsAndCanDo) {
+  sim::SimStorage disk;
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot(pumps("1")).ok());
+  base::Result<base::Bytes> body = plc.answer_to({.command = vm::Command::kFacts});
+  ASSERT_TRUE(body.ok());
+  ControllerFacts facts;
+  const base::Result<vm::Values> values = vm::decode_values(*body);
+  ASSERT_TRUE(values.ok());
+  for (const vm::ValueRow& row : values->rows) facts[row.path] = row.value;
+  EXPECT_EQ(facts["version"], "unknown") << "who serves says which";
+  EXPECT_EQ(facts["protocol"], std::to_string(vm::kProtocolVersion));
+  EXPECT_EQ(facts["last_image_version"], std::to_string(ir::kLastImageVersion));
+  EXPECT_EQ(facts["most_edits_on_trial"], std::to_string(base::kMostEditsOnTrial));
+  const std::string text = facts_text(facts, plc.status());
+  EXPECT_NE(text.find("protocol " + facts["protocol"]), std::string::npos) << text;
+  EXPECT_NE(facts_text({}, plc.status()).find("of an older version"), std::string::npos);
 }
 
 // The longest names that there are: an edit stays one message, and says how many there were.
