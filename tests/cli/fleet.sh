@@ -103,7 +103,8 @@ expect 0 stvm undo --dir two
 expect 7 stvm change x.fleet --dir two --yes --allow-overrun
 said 'R0320.*unit `B` is another one here'
 expect 0 stvm change x.fleet --dir two --matching --yes --allow-overrun
-expect 0 stvm undo --dir two
+expect 0 stvm fleet undo x.fleet --dir two --yes
+said '^two +other_b +undone +E[0-9]+ '
 
 expect 2 stvm change new.st --dir two --matching --yes
 said 'R0504.*--matching is for a fleet file'
@@ -190,8 +191,10 @@ while True:
 sys.stdout.write(said.decode().replace("\r", ""))
 sys.exit(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))
 PY
-by() { python3 ask.py "$1" "$bin/stvm" fleet change round.fleet --dir seven --dir eight --dir nine \
-  --allow-overrun; }
+by() {  # by ANSWERS [VERB]
+  python3 ask.py "$1" "$bin/stvm" fleet "${2:-change}" round.fleet --dir seven --dir eight --dir nine \
+    --allow-overrun
+}
 expect 7 by n,quit
 said '^seven +new +cancelled '
 said '^eight +new +cancelled '
@@ -203,6 +206,21 @@ said '^nine +new +done '
 expect 0 by y
 said '^seven +new +done '
 said '^nine +new +had it '
+
+# The same dialogue where it is taken back or accepted; what others have on trial below is said.
+expect 1 by n,y,quit undo
+said '^seven +new +cancelled +- +R0[0-9]+: not taken back'
+said '^eight +new +undone +E[0-9]+ '
+said '^nine +new +cancelled '
+expect 0 stvm change other_b.st --dir eight --yes --allow-overrun --allow-loss
+expect 0 stvm change new.st --dir eight --yes --allow-overrun --allow-loss
+expect 0 stvm fleet change round.fleet --dir eight --yes --allow-overrun
+expect 1 by n,all accept
+said '^with it become final: E[0-9]+ by .*, E[0-9]+ by '
+said '^seven +new +cancelled +E[0-9]+ +R0[0-9]+: not accepted'
+said '^eight +new +accepted '
+expect 0 by y accept
+said '^eight +new +had it '
 
 # E-27: the controllers of a file, with what is allowed for one of them only.
 cat >fleet.toml <<TOML

@@ -128,6 +128,19 @@ cp walk.out out
 said '^three +original +done '
 said 'late +original +done '
 
+# --wait: until somebody else has accepted or undone his edit; what he leaves is checked anew.
+serve waits original.st
+expect 0 stvm change own.st --dir waits --yes --allow-overrun
+stvm fleet change x.fleet --dir waits --wait --yes --allow-overrun >waits.out 2>&1 &
+echo $! >fleet.pid
+expect 0 stvm undo --dir waits --yes
+code=0
+wait "$(cat fleet.pid)" || code=$?
+rm fleet.pid
+cp waits.out out
+[ "$code" -eq 0 ] || fail "exit code $code of a run that waits"
+said '^waits +original +done '
+
 # E-14: between the check and the package somebody else has changed it. The compiler is slow here.
 mkdir slow
 cp "$bin/stvm" "$bin/stvm-fleet" slow

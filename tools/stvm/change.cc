@@ -8,6 +8,7 @@
 #include "tools/stvm/change_follow.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/compiler.h"
+#include "tools/stvm/fleet_edit.h"
 #include "tools/stvm/package_making.h"
 #include "tools/stvm/switch_option_rows.h"
 #include "tools/stvm/switch_steps.h"
@@ -105,6 +106,7 @@ int run_change(const tools::Options& options) {
   if (!how.ok()) return refuse(how.error());
   base::Status fit = check_compile_options(sources_of(options));
   if (!fit.ok()) return refuse(fit.error());
+  how->note = fleet_note_of(options.arguments()[0]);
   base::Result<ControllerClient> client = ControllerClient::connect(options);
   if (!client.ok()) return refuse(client.error());
   if (options.has("--watch")) return follow(sources_of(options), *how, *client);

@@ -1,5 +1,7 @@
 #include "tools/stvm/fleet_edit.h"
 
+#include "tools/common/files.h"
+
 namespace stvm {
 
 base::Result<FleetEdit> read_fleet_edit(const std::string& path) {
@@ -10,6 +12,14 @@ base::Result<FleetEdit> read_fleet_edit(const std::string& path) {
 
 std::string fleet_note(const base::Digest& digest) {
   return "fleet file " + base::short_hex(digest);
+}
+
+std::string fleet_note_of(const std::string& path) {
+  if (!tools::is_file(path)) return {};
+  base::Result<base::Bytes> first = tools::read_first(path, online_change::kFleetMagic.size());
+  if (!first.ok() || !online_change::has_fleet_magic(*first)) return {};
+  base::Result<base::Bytes> bytes = tools::read_bytes(path);
+  return bytes.ok() ? fleet_note(online_change::fleet_digest(*bytes)) : std::string();
 }
 
 }  // namespace stvm

@@ -19,5 +19,7 @@ struct FleetEdit {
 base::Result<FleetEdit> read_fleet_edit(const std::string& path);
 // "fleet file 9c4c6cbc5a09"
 std::string fleet_note(const base::Digest& digest);
+// The same of a file, where `stvm change` is given one; "": it is no fleet file.
+std::string fleet_note_of(const std::string& path);
 
 }  // namespace stvm
