@@ -4,8 +4,9 @@ include(GNUInstallDirs)
 set(CPACK_PACKAGE_CONTACT "The developers of stc <stc@users.noreply.github.com>")
 set(docs ${CMAKE_INSTALL_DATAROOTDIR}/doc)
 
-install(TARGETS stc RUNTIME COMPONENT stc)
-install(TARGETS stvm stvm-fleet RUNTIME COMPONENT stvm)
+# Who goes through a fleet has the compiler, and controllers have neither.
+install(TARGETS stc stvm-fleet RUNTIME COMPONENT stc)
+install(TARGETS stvm RUNTIME COMPONENT stvm)
 install(FILES packaging/debian/copyright DESTINATION ${docs}/stc COMPONENT stc)
 install(FILES packaging/debian/copyright DESTINATION ${docs}/stvm COMPONENT stvm)
 foreach(package stc stvm)

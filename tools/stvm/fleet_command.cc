@@ -50,7 +50,7 @@ int hand_over(const tools::Options& options) {
   argv.push_back(nullptr);
   ::execv(program.c_str(), argv.data());
   return refuse({base::Refusal::kFileNotFound,
-                 program + ": " + std::strerror(errno) + "; it is installed beside stvm"});
+                 program + ": " + std::strerror(errno) + "; it comes with stc"});
 }
 
 }  // namespace
