@@ -2,7 +2,8 @@
 # What is shipped is hardened (docs/SECURITY.md): position-independent, its tables of addresses
 # read-only before main(), no memory that is writable and executable, calls of the C library with
 # the sizes that are known, and stacks whose overflow is a trap. The kernel reads the first four in
-# the ELF file, so this does too.
+# the ELF file, so this does too. Nor do they ask for CET, which would end the native tier: its code
+# has no ENDBR64, and drops return addresses.
 set -eu
 cache="$2/CMakeCache.txt"
 setting() { sed -n "s/^$1:[A-Z]*=//p" "$cache"; }
@@ -18,12 +19,14 @@ for name in stc stvm; do
   segments=$(readelf -lW "$2/bin/$name")
   dynamic=$(readelf -dW "$2/bin/$name")
   symbols=$(readelf --dyn-syms -W "$2/bin/$name")
+  notes=$(readelf -nW "$2/bin/$name")
   must "$name" "not position-independent" 'Type: +DYN' "$header"
   must "$name" "its tables of addresses stay writable" 'GNU_RELRO' "$segments"
   must "$name" "addresses are looked up late" 'FLAGS_1.* NOW' "$dynamic"
   must "$name" "not said whether the stack is executable" 'GNU_STACK' "$segments"
   must_not "$name" "a segment is writable and executable" 'RWE' "$segments"
   must_not "$name" "code is written at the start" 'TEXTREL' "$dynamic"
+  must_not "$name" "marked for CET; compile with -fcf-protection=none" 'IBT|SHSTK' "$notes"
   must_not "$name" "libraries are searched in a path of the build" 'R(UN)?PATH' "$dynamic"
   must "$name" "no stack protector" '__stack_chk_fail' "$symbols"
   must "$name" "no sizes are checked" '__(memcpy|memmove|memset|snprintf|read|recv)_chk' "$symbols"
