@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "base/check.h"
@@ -188,9 +189,11 @@ SwitchReport Change::report_begin() const {
 
 bool Change::carry_in_place(const OnLoss& on_loss) {
   uint8_t* memory = controller_.memory().data();
+  std::optional<KeptData>& kept = pending_->kept;
   return pending_->forward.read(memory, on_loss, interrupted_) &&
          pending_->forward.save(memory, interrupted_) &&
          pending_->backward.remember(memory, interrupted_) &&
+         (!kept || kept->keep(memory, interrupted_)) &&
          pending_->forward.write(memory, interrupted_);
 }
 
@@ -290,6 +293,13 @@ void Change::take_back() {
   const bool undone = undo_steps(true).ok();
   interrupted_ = interrupted;
   base::check(undone, "a switch whose FB_Init trapped cannot be undone");
+  // What start code wrote to other variables goes with it.
+  uint8_t* memory = controller_.memory().data();
+  if (retired_area_) {
+    retired_area_->put_back(memory);
+  } else if (retired_pending_->kept) {
+    retired_pending_->kept->put_back(memory);
+  }
 }
 
 base::Result<SwitchReport> Change::undo() {
@@ -310,7 +320,8 @@ base::Result<SwitchReport> Change::undo_steps(bool whatever_happens) {
   }
   int64_t begin_ns = monotonic_ns();
   Transfer& back = pending_->backward;
-  base::Status left = leave(pending_->leaving.at_undo);
+  base::Status left = base::Ok{};
+  if (!whatever_happens) left = leave(pending_->leaving.at_undo);
   if (left.ok() && pending_->migrate_back) left = pending_->migrate_back->run(memory);
   if (!left.ok() && !whatever_happens) {
     if (!pending_->leaving.at_undo.empty()) controller_.construct();
@@ -347,6 +358,7 @@ void Change::cancel() {
 void Change::collect() {
   retired_area_.reset();
   retired_pending_.reset();
+  if (state_ == State::kTrial) pending_->kept.reset();
   // Behind a switch, which nothing takes back: without memory for it the program is interpreted.
   base::within_memory([&] { return controller_.make_native(), true; }, [] { return false; });
   (void)prime().ok();  // undo asks again

@@ -166,11 +166,18 @@ base::Status Change::refused_by_values(bool allow_loss) const {
   return going_on.ok() ? check_losses(allow_loss) : going_on;
 }
 
-// By standby the other strategy may help: it need not bring up to date what the program rewrites.
+// The other strategy may help: by standby nothing is kept aside for what FB_Init may write; in
+// place nothing is brought up to date that the program rewrites.
 std::string Change::way_out() const {
+  if (pending_->kept) {
+    BoundaryWork keeping;
+    keeping.copied = pending_->switch_work.copied;
+    return "; " + std::to_string(pause_ns(keeping) - kPauseFixedNs) +
+           " ns of it are for keeping all values, as FB_Init runs in the switch; --strategy " +
+           "standby needs no copy of them there";
+  }
   if (!pending_->area) return {};
-  const BoundaryWork in_place =
-      boundary_work(pending_->package.forward, pending_->old(), pending_->new_image.image(), false);
+  const BoundaryWork in_place = pending_->in_place_work();
   const Standby& area = *pending_->area;
   std::string text = "; by standby ";
   if (area.passes() == 0) {

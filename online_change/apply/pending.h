@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,11 +12,13 @@
 #include "online_change/apply/change.h"
 #include "online_change/apply/charts.h"
 #include "online_change/apply/handle_transfer.h"
+#include "online_change/apply/kept_data.h"
 #include "online_change/apply/leaving.h"
 #include "online_change/apply/lost_places.h"
 #include "online_change/apply/migrator.h"
 #include "online_change/apply/standby.h"
 #include "online_change/apply/transfer.h"
+#include "online_change/apply/used_data.h"
 #include "online_change/plan/pause.h"
 #include "vm/load/left_outputs.h"
 
@@ -65,7 +68,10 @@ struct Change::Pending {
       if (area) switch_work.compared = switch_work.copied = area->compared_bytes();
       return;
     }
-    switch_work = boundary_work(package.forward, old(), new_image.image(), !in_place());
+    starts = start_code_runs(package.forward, new_image.image(), leaving);
+    if (starts && in_place()) kept.emplace(old());
+    switch_work = in_place() ? in_place_work()
+                             : boundary_work(package.forward, old(), new_image.image(), true);
     if (area) switch_work.compared = switch_work.copied = area->compared_bytes();
     undo_work = boundary_work(package.inverse, new_image.image(), old(), true);
   }
@@ -74,6 +80,11 @@ struct Change::Pending {
     done.references = switch_work.references;
     done.calls = switch_work.calls;
     return done;
+  }
+  BoundaryWork in_place_work() const {
+    BoundaryWork work = boundary_work(package.forward, old(), new_image.image(), false);
+    if (starts) work.copied = total_bytes(used_extents(old()));
+    return work;
   }
   // Does the step out of this state run FB_Exit?
   bool leaves_at(State state) const {
@@ -103,6 +114,8 @@ struct Change::Pending {
   // prepared.
   std::unique_ptr<Standby> area;
   CatchingUp catching_up;
+  bool starts = false;           // start_code_runs()
+  std::optional<KeptData> kept;  // in place, where it does; until the switch is made
   // Most of what the switch and undo have to do, without the loops of migrations.
   BoundaryWork switch_work;
   BoundaryWork undo_work;

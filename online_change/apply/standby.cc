@@ -1,14 +1,10 @@
 #include "online_change/apply/standby.h"
 
-#include <algorithm>
 #include <cstring>
 
 namespace online_change {
 namespace {
 
-constexpr uint32_t kPageBytes = PagePieces::kPageBytes;
-// Areas that are no further apart are copied as one; what lies between them is nobody's.
-constexpr uint32_t kGap = 64;
 // Between two looks at the deadline.
 constexpr size_t kBlocksPerLook = 16;
 // A unit of a pass: bytes that are compared, a copied one for kCopyWeight; and values, one that is
@@ -18,90 +14,7 @@ constexpr uint64_t kCopyWeight = 4;
 constexpr uint64_t kUnitValues = 512;
 constexpr uint64_t kSlowWeight = 8;
 
-// Areas of live instances, slack included, in order and joined.
-std::vector<ir::Extent> used_extents(const ir::Image& image) {
-  std::vector<ir::Extent> areas;
-  for (uint32_t id = 0; id < image.instances.size(); ++id) {
-    const ir::Instance& row = image.instances[id];
-    const ir::TypeLayout& layout = image.layouts[row.type];
-    const uint32_t size = std::max(layout.used, layout.area_capacity);
-    if ((id == 0 || row.live) && size != 0) areas.push_back({row.data, size});
-  }
-  std::sort(areas.begin(), areas.end(),
-            [](const ir::Extent& a, const ir::Extent& b) { return a.offset < b.offset; });
-  std::vector<ir::Extent> joined;
-  for (const ir::Extent& area : areas) {
-    if (!joined.empty() && area.offset - joined.back().offset <= joined.back().size + kGap) {
-      joined.back().size = area.offset + area.size - joined.back().offset;
-    } else {
-      joined.push_back(area);
-    }
-  }
-  return joined;
-}
-
-uint64_t total(const std::vector<ir::Extent>& extents) {
-  uint64_t bytes = 0;
-  for (const ir::Extent& one : extents) bytes += one.size;
-  return bytes;
-}
-
-base::Status check_limit(uint64_t used, uint64_t limit) {
-  // The area that runs, the second one, the snapshot.
-  if (limit == 0 || 3 * used <= limit) return base::Ok{};
-  return base::Error{base::Refusal::kTooLarge,
-                     "the standby strategy needs the running program's " + std::to_string(used) +
-                         " bytes of data three times while it prepares, " +
-                         std::to_string(3 * used) + " bytes; the controller's limit is " +
-                         std::to_string(limit) + ", which is " + std::to_string(3 * used - limit) +
-                         " less; change in place, or raise the limit"};
-}
-
 }  // namespace
-
-base::Result<std::unique_ptr<Standby>> Standby::make(const vm::Generation& running,
-                                                     const vm::Generation& next, Transfer& transfer,
-                                                     uint64_t limit) {
-  const ir::Image& image = running.image();
-  base::Status fits = check_limit(total(used_extents(image)), limit);
-  if (!fits.ok()) return fits.error();
-  base::Result<vm::Memory> data = vm::Memory::reserve();
-  if (!data.ok()) return data.error();
-  base::Result<vm::Memory> snapshot = vm::Memory::reserve();
-  if (!snapshot.ok()) return snapshot.error();
-  auto made = std::make_unique<Standby>(transfer, std::move(*data), std::move(*snapshot));
-  uint8_t* memory = made->data_.data();
-  running.write_pool(memory);
-  next.write_pool(memory);
-  // So that the first scans find their pages.
-  const uint32_t stack = std::max(image.stack_bytes, next.image().stack_bytes);
-  std::memset(memory + ir::kStackBegin, 0, stack);
-  made->add_blocks(image);
-  return made;
-}
-
-void Standby::add_blocks(const ir::Image& running) {
-  const std::vector<ir::Extent> extents = used_extents(running);
-  for (const ir::Extent& extent : extents) {
-    const uint64_t end = uint64_t{extent.offset} + extent.size;
-    for (uint64_t at = extent.offset; at < end;) {
-      const uint64_t page_end = (at / kPageBytes + 1) * kPageBytes;
-      const auto size = static_cast<uint32_t>(std::min(end, page_end) - at);
-      blocks_.push_back({static_cast<uint32_t>(at), size});
-      at += size;
-    }
-  }
-  compared_bytes_ = total(extents);
-  ahead_.resize(blocks_.size());
-  const size_t pages = blocks_.empty() ? 0 : blocks_.back().offset / kPageBytes + 1;
-  of_page_ = PagePieces(transfer_, pages);
-  const std::vector<Piece>& pieces = transfer_.pieces();
-  again_ = PieceSet(pieces.size());
-  always_ = PieceSet(pieces.size());
-  for (size_t i = 0; i < pieces.size(); ++i) {
-    if (transfer_.is_late(pieces[i])) always_.add(i);
-  }
-}
 
 uint64_t Standby::units_left() const {
   const size_t pieces = transfer_.pieces().size();
@@ -130,6 +43,12 @@ bool Standby::has_changed(size_t block, const uint8_t* active) const {
          std::memcmp(active + at.offset, snapshot_.data() + at.offset, at.size) != 0;
 }
 
+void Standby::put_back(uint8_t* memory) const {
+  for (const ir::Extent& at : blocks_) {
+    std::memcpy(memory + at.offset, data_.data() + at.offset, at.size);
+  }
+}
+
 void Standby::copy_block(size_t block, const uint8_t* active) {
   const ir::Extent& at = blocks_[block];
   std::memcpy(snapshot_.data() + at.offset, active + at.offset, at.size);
@@ -138,7 +57,7 @@ void Standby::copy_block(size_t block, const uint8_t* active) {
 }
 
 void Standby::add_pieces_of(const ir::Extent& block) {
-  for (const uint32_t piece : of_page_.of(block.offset / kPageBytes)) again_.add(piece);
+  for (const uint32_t piece : of_page_.of(block.offset / PagePieces::kPageBytes)) again_.add(piece);
 }
 
 void Standby::move_from_snapshot(size_t piece) {

@@ -120,10 +120,13 @@ base::Status whole_change(Change& driver, base::ByteSpan package, Strategy strat
 TEST(Allocation, case51_WhileFbInitTraps) {
   constexpr const char* kTraps =
       "FUNCTION_BLOCK Box VAR n, z : INT; END_VAR METHOD FB_Init : BOOL VAR_INPUT "
-      "bInitRetains, bInCopyCode : BOOL; END_VAR n := 1 / z; END_METHOD END_FUNCTION_BLOCK\n"
-      "PROGRAM Main VAR c : INT; b : Box; END_VAR c := c + 1; END_PROGRAM";
+      "bInitRetains, bInCopyCode : BOOL; END_VAR all := 7; n := 1 / z; END_METHOD "
+      "END_FUNCTION_BLOCK\n"
+      "VAR_GLOBAL all : INT; END_VAR PROGRAM Main VAR c : INT; b : Box; END_VAR c := c + 1; "
+      "END_PROGRAM";
   for (const Strategy strategy : {Strategy::kInPlace, Strategy::kStandby}) {
-    Plant plant("PROGRAM Main VAR c : INT; END_VAR c := c + 1; END_PROGRAM");
+    Plant plant(
+        "VAR_GLOBAL all : INT; END_VAR PROGRAM Main VAR c : INT; END_VAR c := c + 1; END_PROGRAM");
     plant.run(3);
     const base::Bytes package = plant.package(kTraps);
     Change& driver = plant.driver();

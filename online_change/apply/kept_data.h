@@ -1,0 +1,32 @@
+// All values of the version that runs, as they are when a switch in place begins to write. Start
+// code of the new version may write to any variable; when it traps, all are put back (X1). By
+// standby the other data area is that copy. All memory is taken beforehand.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/bytes.h"
+#include "online_change/apply/leaving.h"
+#include "online_change/apply/transfer.h"
+
+namespace online_change {
+
+class KeptData {
+ public:
+  explicit KeptData(const ir::Image& running);
+  // At the boundary. False: interrupted.
+  bool keep(const uint8_t* memory, const Interrupted& interrupted);
+  void put_back(uint8_t* memory) const;
+
+ private:
+  std::vector<ir::Extent> extents_;
+  base::Bytes bytes_;
+};
+
+// May code that somebody has written run in the switch: FB_Init of an instance that is new,
+// FB_Reinit, a function that gives a new reference its value? Cost: one look at all initial values
+// of the plan.
+bool start_code_runs(const Plan& plan, const ir::Image& new_image, const Leaving& leaving);
+
+}  // namespace online_change
