@@ -27,11 +27,11 @@ step() {
 }
 
 cp "$here/fleet.toml" .
-serve line1 "$here/main.st" "$here/filler.st" "$here/capper.st"
+serve line1 "$here"
 serve line2 "$here/main.st" "$here/filler.st" "$here/line2/capper.st"
 serve line3 "$here/main.st" "$here/line3/filler.st" "$here/capper.st"
 
-stc build "$here/main.st" "$here/filler.st" "$here/capper.st" --name line -o before.img
+stc build "$here" -o before.img
 stc build "$here/main.st" "$here/faster/filler.st" "$here/capper.st" --name line -o after.img
 step stc fleet before.img after.img -o faster.fleet --text 'fills in half the time'
 step stvm fleet status --fleet fleet.toml
