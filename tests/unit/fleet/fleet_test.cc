@@ -85,6 +85,22 @@ class FleetOfThree : public ::testing::Test {
     }
     return out;
   }
+  // The edit, by a client that has not asked for its report yet.
+  stvm::ControllerClient staged_on_two() {
+    base::Result<stvm::ControllerClient> client = fleet_.connect("two", "fleet");
+    EXPECT_TRUE(client->status().ok());
+    base::Result<base::Bytes> image = client->image();
+    base::Result<base::Bytes> package = fleet_.access().package(*image);
+    EXPECT_TRUE(client->stage(*package, 0).ok());
+    return std::move(*client);
+  }
+  // Of what was staged nothing was switched.
+  void expect_refused(stvm::ControllerClient& client) {
+    base::Result<stvm::Outcome> outcome = bring_staged(quietly(), client);
+    ASSERT_TRUE(outcome.ok());
+    ASSERT_TRUE(outcome->refused.has_value());
+    EXPECT_EQ(outcome->refused->refusal, Refusal::kStaleBase);
+  }
   Fleet fleet_;
 };
 
@@ -141,17 +157,10 @@ TEST_F(FleetOfThree, E14_AChangeBetweenStageAndSwitchRefusesThisControllerAlone)
 
 // The request for the report does not take over what another one has staged in the meantime.
 TEST_F(FleetOfThree, E14_WhatOthersStageBeforeTheReportIsNotSwitched) {
-  base::Result<stvm::ControllerClient> client = fleet_.connect("two", "fleet");
-  ASSERT_TRUE(client->status().ok());
-  base::Result<base::Bytes> image = client->image();
-  base::Result<base::Bytes> package = fleet_.access().package(*image);
-  ASSERT_TRUE(client->stage(*package, 0).ok());
+  stvm::ControllerClient client = staged_on_two();
   std::vector<stvm::ControllerClient> hers;
   ASSERT_TRUE(changes(fleet_, "two", project(1, 1, 9), &hers).ok());
-  base::Result<stvm::Outcome> outcome = bring_staged(quietly(), *client);
-  ASSERT_TRUE(outcome.ok());
-  ASSERT_TRUE(outcome->refused.has_value());
-  EXPECT_EQ(outcome->refused->refusal, Refusal::kStaleBase);
+  expect_refused(client);
   EXPECT_EQ(edits(fleet_, "two"), "");
 }
 
@@ -164,27 +173,20 @@ TEST_F(FleetOfThree, E14_WhatOthersStageIsNotSwitchedByRedo) {
   ASSERT_TRUE(client->stage_again("E1").ok());
   std::vector<stvm::ControllerClient> hers;
   ASSERT_TRUE(changes(fleet_, "two", project(1, 1, 9), &hers).ok());
-  base::Result<stvm::Outcome> outcome = bring_staged(quietly(), *client);
-  ASSERT_TRUE(outcome.ok());
-  ASSERT_TRUE(outcome->refused.has_value());
-  EXPECT_EQ(outcome->refused->refusal, Refusal::kStaleBase);
+  expect_refused(*client);
   EXPECT_EQ(edits(fleet_, "two"), "E1- ");
 }
 
 // A controller that was started anew counts its editions from 0 again: what is staged there is
 // told by its package.
 TEST_F(FleetOfThree, E14_TheSwitchNamesThePackageThatWasChecked) {
-  base::Result<stvm::ControllerClient> client = fleet_.connect("two", "fleet");
-  ASSERT_TRUE(client->status().ok());
-  base::Result<base::Bytes> image = client->image();
-  base::Result<base::Bytes> package = fleet_.access().package(*image);
-  ASSERT_TRUE(client->stage(*package, 0).ok());
+  stvm::ControllerClient client = staged_on_two();
   plc::Plc& plc = fleet_.plc("two");
   ASSERT_TRUE(plc.boot().ok());
   std::vector<stvm::ControllerClient> hers;
   ASSERT_TRUE(changes(fleet_, "two", project(1, 1, 9), &hers).ok());
   ASSERT_EQ(plc.status().edition, 1u) << "the same as before";
-  auto report = client->make_switch(vm::kAllowOverrun);
+  auto report = client.make_switch(vm::kAllowOverrun);
   ASSERT_FALSE(report.ok());
   EXPECT_EQ(report.error().refusal, Refusal::kStaleBase);
   EXPECT_NE(report.error().text.find("by eve"), std::string::npos) << report.error().text;
