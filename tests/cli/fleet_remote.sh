@@ -64,8 +64,8 @@ expect 0 stvm journal --host plc@line2
 said 'edit E1, fleet file'
 expect 0 stvm fleet accept x.fleet --host plc@line1 --yes
 said '^plc@line1 +original +accepted +E1 *$'
-expect 0 stvm fleet undo x.fleet --fleet fleet.toml --yes --allow-overrun
-said '^line1 +original +had it not '
+expect 1 stvm fleet undo x.fleet --fleet fleet.toml --yes --allow-overrun
+said '^line1 +original +refused +- +R0305: '
 said '^Line 2 +own +undone +E1 '
 expect 0 stvm edits --dir line2
 said 'no edit is on trial'

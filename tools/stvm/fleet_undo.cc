@@ -85,8 +85,14 @@ FleetRow FleetUndo::visit(const FleetMember& member) {
     base::Result<vm::StatusReport> next = seen->client.status();
     if (!next.ok()) return talk_.failed(std::move(row), next.error());
   }
-  if (row.edits.empty()) row.outcome = FleetOutcome::kHadItNot;
-  if (row.edits.empty()) talk_.say("this edit is not on trial here\n");
+  if (!row.edits.empty()) return row;
+  row.outcome = without(edit_, seen->image);
+  if (row.outcome == FleetOutcome::kHadIt) {
+    return talk_.failed(std::move(row), {base::Refusal::kNothingToUndo,
+                                         "this edit is in the program and not on trial: it was "
+                                         "accepted, or came in another way"});
+  }
+  talk_.say("this edit is not on trial here\n");
   return row;
 }
 

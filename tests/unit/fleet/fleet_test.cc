@@ -215,6 +215,10 @@ TEST_F(FleetOfThree, E32_UndoTakesTheEditBackWhereItIs) {
   EXPECT_EQ(outcomes(undo()), "had it not, undone, refused R0320") << "it had come again";
   ASSERT_TRUE(fleet_.plc("three").undo().ok());
   EXPECT_EQ(outcomes(undo()), "had it not, had it not, undone");
+  ASSERT_EQ(outcomes(change()), "done, done, done");
+  ASSERT_EQ(outcomes(accept()), "accepted, refused R0302, accepted") << "hers is below";
+  fleet_.cut_off("two");
+  EXPECT_EQ(outcomes(undo()), "refused R0305, unreachable R0404, refused R0305") << "it is final";
 }
 
 // What others have on trial below it would become final without their word.
