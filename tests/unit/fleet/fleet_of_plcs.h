@@ -2,6 +2,7 @@
 // by the client of the commands without a socket.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -48,7 +49,7 @@ class Fleet {
   std::optional<ir::VerifiedImage> edited_;
   stvm::FleetEdit edit_;
   std::string gone_;
-  uint64_t sessions_ = 1;
+  std::atomic<uint64_t> sessions_{1};
 };
 
 // How a fleet is changed where nobody is asked and nothing is printed.
