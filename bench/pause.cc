@@ -192,7 +192,7 @@ std::string report(const Options& options, const std::vector<Row>& rows,
   text +=
       "\n`predicted` is what a change is refused by when it, and half as much again, does not fit "
       "the free time of the tightest task: the model\nof online_change/plan/pause.h at the pace "
-      "of this machine, which is measured when a change is staged. `ratio` is what was "
+      "of this machine, which is measured when a change is staged first. `ratio` is what was "
       "measured\nagainst it, or it against what was measured, whichever is more. By standby it is "
       "of what the last pass found.\n\n" +
       std::to_string(instances.shape.instances) +

@@ -5,9 +5,9 @@
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 #include "base/limits.h"
-#include "ir/bytecode/call_needs.h"
 
 namespace linker {
 namespace {
@@ -30,6 +30,8 @@ class CallGraph {
     }
     dynamic_.add_nodes(image, by_type_, nodes_);
   }
+
+  std::vector<ir::CallNode> take_nodes() { return std::move(nodes_); }
 
   base::Result<StackNeeds> run() {
     const ir::CallMeasure measured = ir::measure_calls(nodes_);
@@ -186,6 +188,11 @@ uint32_t native_slots(const ir::Object& object) {
 
 bool same_calls(const ir::Object& a, const ir::Object& b) {
   return calls_of(a) == calls_of(b) && native_slots(a) == native_slots(b);
+}
+
+std::vector<ir::CallNode> call_nodes(const ir::Image& image,
+                                     const std::vector<const ir::Object*>& objects) {
+  return CallGraph(image, objects).take_nodes();
 }
 
 base::Result<StackNeeds> stack_needs(const ir::Image& image,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "ir/bytecode/call_needs.h"
 #include "ir/bytecode/image.h"
 #include "ir/bytecode/object.h"
 
@@ -19,6 +20,11 @@ struct StackNeeds {
 // Do both call the same, with the same room for arguments of natives? Then a graph with one is that
 // with the other, if their frames are as large.
 bool same_calls(const ir::Object& a, const ir::Object& b);
+
+// By POU number, and behind them what calls that are decided at run time lead to
+// (ir::DynamicCalls). `objects` by POU number, null for unused numbers.
+std::vector<ir::CallNode> call_nodes(const ir::Image& image,
+                                     const std::vector<const ir::Object*>& objects);
 
 // `objects` by POU number, null for unused numbers; image.pous have their frame sizes.
 base::Result<StackNeeds> stack_needs(const ir::Image& image,

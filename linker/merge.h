@@ -6,6 +6,7 @@
 // was made on, and what runs now.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ std::vector<ir::PartEdit> merge_parts(const MergeInput& input);
 struct MergeOptions {
   Slack slack;
   bool matching = false;  // leaves out the units that are missing or others there (E-13)
+  // Of the edit only this one of its steps (ir::of_step), where it comes in several (E-25).
+  std::optional<std::string> step = std::nullopt;
 };
 
 // The target with the edit in it, linked on top of the target. kOtherPart where a part is missing

@@ -48,4 +48,16 @@ std::vector<PartEdit> part_edits(const std::vector<Part>& original, const std::v
   return edits;
 }
 
+bool is_of_unit(PartKind kind) { return kind == PartKind::kUnit || kind == PartKind::kBlock; }
+
+std::vector<PartEdit> of_step(const std::vector<PartEdit>& edits, std::string_view step) {
+  std::vector<PartEdit> of;
+  for (const PartEdit& edit : edits) {
+    const bool table = step == kTableStep;
+    const bool in = is_of_unit(edit.kind) ? !table && same_name(edit.name, step) : table;
+    if (in) of.push_back(edit);
+  }
+  return of;
+}
+
 }  // namespace ir

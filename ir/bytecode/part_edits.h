@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ir/bytecode/identities.h"
@@ -30,5 +31,15 @@ struct PartEdit {
 // parts_of(). O(parts).
 std::vector<PartEdit> part_edits(const std::vector<Part>& original, const std::vector<Part>& edited,
                                  const std::vector<Part>& target);
+
+// Edits can come in steps (E-25): the table, which is all that is no unit, or one unit with its
+// variables, by name.
+inline constexpr std::string_view kTableStep = "";
+inline constexpr std::string_view kTableName = "table";  // as people say it
+inline std::string step_text(std::string_view step) {
+  return std::string(step == kTableStep ? kTableName : step);
+}
+bool is_of_unit(PartKind kind);
+std::vector<PartEdit> of_step(const std::vector<PartEdit>& edits, std::string_view step);
 
 }  // namespace ir

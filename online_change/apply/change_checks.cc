@@ -172,7 +172,7 @@ std::string Change::way_out() const {
   if (pending_->kept) {
     BoundaryWork keeping;
     keeping.copied = pending_->switch_work.copied;
-    return "; " + std::to_string(pause_ns(keeping) - kPauseFixedNs) +
+    return "; " + std::to_string(paced(pause_ns(keeping) - kPauseFixedNs)) +
            " ns of it are for keeping all values, as FB_Init runs in the switch; --strategy " +
            "standby needs no copy of them there";
   }

@@ -1,7 +1,7 @@
 // The stored form: 8 bytes magic, u32 version, u32 length of the whole, then the parts, each {u32
-// length, SHA-256 of the content, content}: what people say of it (two texts, and since version 2
-// whether its table is free), and the two images one after the other, packed as one, since most of
-// the second was in the first.
+// length, SHA-256 of the content, content}: what people say of it (two texts, since version 2
+// whether its table is free, since version 3 the steps in which it comes), and the two images one
+// after the other, packed as one, since most of the second was in the first.
 #include "online_change/package/fleet_file.h"
 
 #include <algorithm>
@@ -13,7 +13,8 @@ namespace online_change {
 namespace {
 
 constexpr uint32_t kFirstFleetVersion = 1;
-constexpr uint32_t kFleetVersion = 2;
+constexpr uint32_t kFreeVersion = 2;
+constexpr uint32_t kFleetVersion = 3;
 constexpr uint32_t kMostText = 65536;
 
 base::Error bad(const std::string& text) {
@@ -42,6 +43,9 @@ base::Bytes texts_of(const FleetFile& file) {
   out.text(file.author);
   out.text(file.text);
   out.boolean(file.free_table);
+  out.u32(static_cast<uint32_t>(file.steps.size()));
+  for (const std::string& step : file.steps) out.text(step);
+  out.boolean(file.steps_if_needed);
   return out.take();
 }
 
@@ -62,7 +66,12 @@ base::Status read_texts(base::ByteSpan content, uint32_t version, FleetFile& fil
     if (bytes.size() > kMostText) return bad("a text of more than 65,536 bytes");
     text->assign(bytes.begin(), bytes.end());
   }
-  if (version > kFirstFleetVersion) file.free_table = in.boolean();
+  if (version >= kFreeVersion) file.free_table = in.boolean();
+  for (uint32_t left = version >= kFleetVersion ? in.count(4) : 0; left != 0; --left) {
+    const base::ByteSpan bytes = in.blob();
+    file.steps.emplace_back(bytes.begin(), bytes.end());
+  }
+  if (version >= kFleetVersion) file.steps_if_needed = in.boolean();
   if (in.failed() || in.left() != 0) return bad("its texts are damaged");
   return base::Ok{};
 }

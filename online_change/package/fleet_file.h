@@ -6,6 +6,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/bytes.h"
 #include "base/hash.h"
@@ -17,6 +18,10 @@ struct FleetFile {
   std::string author;       // who made it; may be empty
   std::string text;         // what it is for; may be empty
   bool free_table = false;  // lifts the rule of additions only (E-17; table_edits.h)
+  // The parts of the edit one after the other (E-25; linker/edit_steps.h); empty: all at one
+  // boundary.
+  std::vector<std::string> steps;
+  bool steps_if_needed = false;  // only where there is no room for all at once
   base::Bytes original;     // encoded images, without sources
   base::Bytes edited;
 };

@@ -49,11 +49,11 @@ serve other_value other_value.st
 set -- --dir own --dir other_type --dir other_order --dir other_value
 expect 0 stvm set --dir own mine=78
 expect 1 stvm fleet status extended.fleet "$@"
-said '^cannot be changed: R0322: its own table: `level`: it stood behind `rate`; `spare`: it stood behind `rate`$'
-said '^cannot be changed: R0322: its own table: `spare`: initial value 6 -> 5$'
+said '^other_order: R0322: its own table: `level`: it stood behind `rate`; `spare`: it stood behind `rate`$'
+said '^other_value: R0322: its own table: `spare`: initial value 6 -> 5$'
 said '^own +own +possible +1 of 1 *$'
 said '^other_type +other_type +refused +1 of 1 +R0322: its own table: '
-said '^cannot be changed: R0322: its own table: `spare`: type DINT -> INT$'
+said '^other_type: R0322: its own table: `spare`: type DINT -> INT$'
 expect 1 stvm fleet change extended.fleet "$@" --yes --allow-overrun --format json
 json '[c["outcome"] for c in d["controllers"]] == ["done", "refused", "refused", "refused"]'
 json '[c.get("refused") for c in d["controllers"]] == [None, "R0322", "R0322", "R0322"]'
@@ -100,7 +100,7 @@ python3 - <<'PY'
 import hashlib, struct
 data = bytearray(open("lies.fleet", "rb").read())
 size = struct.unpack_from("<I", data, 16)[0]
-data[52 + size - 1] = 0
+data[52 + size - 6] = 0  # how the units start is behind it
 data[20:52] = hashlib.sha256(data[52:52 + size]).digest()
 open("lies.fleet", "wb").write(data)
 PY

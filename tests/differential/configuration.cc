@@ -28,7 +28,7 @@ void Builder::connect(Task& task, const Interface& face) {
   }
 }
 
-// How its inputs and outputs are buffered and exchanged (B4, B5, B12): what a scan sees is the same.
+// How its inputs and outputs are buffered and exchanged (B4, B5, B12): a scan sees the same.
 void Builder::exchange(Task& task) {
   static constexpr const char* kBuffers[] = {"copied",            "locked", "swapped",
                                              "swapped_with_flag", "three",  "first_unseen"};

@@ -35,6 +35,7 @@ struct BuildOptions {
   const ir::Image* base = nullptr;
   bool move_all = false;
   bool matching = false;  // of a fleet file: only the units that fit (E-13)
+  std::optional<size_t> step = std::nullopt;  // of a fleet file that comes in several (E-25)
 };
 // One resource: the one that the project's options name, else that of the base, else the first.
 base::Result<Version> build(const Project& project, const BuildOptions& options,

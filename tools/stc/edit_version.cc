@@ -34,8 +34,16 @@ base::Result<Version> edited_version(const std::string& path, const BuildOptions
         "its own table");
     if (!kept.ok()) return kept.error();
   }
+  linker::MergeOptions how{{}, options.matching};
+  if (options.step) {
+    if (*options.step >= file->steps.size()) {
+      return base::Error{base::Refusal::kUsage,
+                         "`" + path + "` has " + std::to_string(file->steps.size()) + " steps"};
+    }
+    how.step = file->steps[*options.step];
+  }
   base::Result<ir::Image> merged =
-      linker::merge({original->image(), edited->image(), *options.base}, {{}, options.matching});
+      linker::merge({original->image(), edited->image(), *options.base}, how);
   if (!merged.ok()) return merged.error();
   Version version{std::move(*merged), {}};
   version.bytes = ir::encode(version.image);

@@ -9,6 +9,7 @@
 #include "tools/stc/online_base.h"
 #include "tools/stc/original.h"
 #include "tools/stc/session.h"
+#include "tools/stc/start_steps.h"
 
 namespace stc {
 namespace {
@@ -20,6 +21,17 @@ constexpr tools::OptionRow kFleetOptions[] = {
     {"--author", "NAME", "who made the edit"},
     {"--text", "TEXT", "what the edit is for"},
     kTableOption,
+    {"--start", "S",
+     "together (default), each: one unit after the other, auto: each where all have "
+     "no room",
+     "together|each|auto"},
+    {"--order", "O",
+     "of --start each: table-first (default), table-last, callees-first, "
+     "callers-first, auto, or list",
+     "table-first|table-last|callees-first|callers-first|auto|list"},
+    {"--list", "A,B,C", "the order for --order list; each edited unit once"},
+    {"--allow-mixture", nullptr, "a unit may run with the old version of one that it calls"},
+    {"--show-order", nullptr, "print the order"},
 };
 constexpr tools::Command kFleetCommand{
     "fleet",
@@ -32,6 +44,7 @@ constexpr tools::Command kFleetCommand{
 struct Made {
   base::Bytes bytes;
   std::vector<ir::PartEdit> edits;
+  std::vector<std::string> steps;
 };
 
 // E-16: additions only. With the places in the sources, where NEW has some.
@@ -69,8 +82,18 @@ base::Result<Made> make_file(const tools::Options& options) {
       !free_table && !kept.ok()) {
     return kept.error();
   }
-  made.bytes = online_change::encode({options.text("--author"), options.text("--text"), free_table,
-                                      ir::encode(original->image), ir::encode(edited->image)});
+  online_change::FleetFile file;
+  file.author = options.text("--author");
+  file.text = options.text("--text");
+  file.free_table = free_table;
+  file.steps_if_needed = options.text("--start") == "auto";
+  base::Result<std::vector<std::string>> steps =
+      start_steps(options, {original->image, edited->image});
+  if (!steps.ok()) return steps.error();
+  made.steps = file.steps = std::move(*steps);
+  file.original = ir::encode(original->image);
+  file.edited = ir::encode(edited->image);
+  made.bytes = online_change::encode(file);
   base::Status written = tools::write_file(options.text("--output"), made.bytes);
   if (!written.ok()) return written.error();
   return made;
@@ -88,11 +111,14 @@ int run_fleet(const tools::Options& options) {
     json.field("digest", base::to_hex(digest)).field("bytes", uint64_t{made->bytes.size()});
     json.key("parts");
     tools::part_edits_json(made->edits, false, json);
-    json.end_object();
+    json.key("steps").begin_array();
+    for (const std::string& step : made->steps) json.value(ir::step_text(step));
+    json.end_array().end_object();
     std::fputs(json.finish().c_str(), stdout);
     return tools::kOk;
   }
   std::fputs(tools::part_edits_text(made->edits, false).c_str(), stdout);
+  if (options.has("--show-order")) std::fputs(order_text(made->steps).c_str(), stdout);
   std::printf("%s: %zu part(s), %zu bytes, %s\n", options.text("--output").c_str(),
               made->edits.size(), made->bytes.size(), base::short_hex(digest).c_str());
   return tools::kOk;

@@ -20,6 +20,7 @@ constexpr tools::OptionRow kPackageOptions[] = {
     {"--output|-o", "FILE", "package to write (required without --watch)"},
     tools::kRestrictedOption,
     tools::kMatchingOption,
+    {"--step", "N", "of a fleet file that starts each unit by itself: the N-th of its steps"},
     {"--move-all", nullptr, "give every instance a new place (a test of changes)"},
     {"--watch", nullptr, "stay, and make one at each save, for `stvm change --watch`"},
 };
@@ -32,14 +33,23 @@ base::Status make(const tools::Options& options) {
     return base::Error{base::Refusal::kUsage, "package: --base and --output are required"};
   }
   const std::vector<std::string>& paths = options.arguments();
-  if (options.has("--matching") && (paths.size() != 1 || !is_fleet_file(paths[0]))) {
+  const bool of_fleet = paths.size() == 1 && is_fleet_file(paths[0]);
+  for (const char* const name : {"--matching", "--step"}) {
+    if (of_fleet || !options.has(name)) continue;
     return base::Error{base::Refusal::kUsage,
-                       "--matching is for a fleet file (stc fleet): leave it out"};
+                       std::string(name) + " is for a fleet file (stc fleet): leave it out"};
+  }
+  std::optional<size_t> step;
+  if (options.has("--step")) {
+    base::Result<uint64_t> number = options.number("--step", 0);
+    if (!number.ok()) return number.error();
+    if (*number == 0) return base::Error{base::Refusal::kUsage, "--step counts from 1"};
+    step = *number - 1;
   }
   base::Result<Version> old_version = read_image(options.text("--base"));
   if (!old_version.ok()) return old_version.error();
   const BuildOptions build_options{&old_version->image, options.has("--move-all"),
-                                   options.has("--matching")};
+                                   options.has("--matching"), step};
   base::Result<Version> next = open_version(options, paths, build_options);
   if (!next.ok()) return next.error();
   if (options.has("--restricted")) {

@@ -180,6 +180,7 @@ class ControllerService : public vm::Service {
                        const std::string& redone, const std::string& taken_out);
   Answer stage_rehearsal(base::ByteSpan package, online_change::Strategy strategy,
                          uint32_t flags);
+  double pace();  // of this machine (online_change/apply/pace.h)
   base::Status stage_unless_aborted(base::ByteSpan package, online_change::Strategy strategy);
   // The change that this connection stages, rehearses or, on trial, would undo.
   const online_change::Change& looked_at() const;
@@ -261,6 +262,8 @@ class ControllerService : public vm::Service {
   std::string look_at_trial();
   void watch_trial();
   void give_back(const std::string& why);
+  // Is the newest edit on trial one that more was to follow (E-26)?
+  bool is_incomplete() const;
   void go_on_hot();
   base::Result<base::Bytes> undo_now(const std::string& why);
 
@@ -305,6 +308,7 @@ class ControllerService : public vm::Service {
   std::string who_;
   std::string changed_by_;  // who made the newest edition
   uint64_t session_ = 0;
+  uint64_t more_of_ = 0;  // session that brings an edit in several steps
   online_change::Change change_;
   UnitTable units_;
   std::vector<Trial> trials_;     // oldest first
@@ -321,6 +325,7 @@ class ControllerService : public vm::Service {
   uint32_t staged_flags_ = 0;
   base::Digest staged_digest_{};  // of the package that was sent; zeros: brought again by redo
   std::string redone_;  // name of the edit that is staged again; "": a new one
+  double pace_ = 0;        // 0: not measured yet
   std::string taken_out_;  // the edit on trial whose work it takes back; "": none
   uint64_t staged_of_ = 0;       // session
   bool preparing_ = false;       // a request is about it just now

@@ -139,13 +139,19 @@ base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, 
   return answer.take();
 }
 
+// Once, so that a dry run says the same as the change (case 78).
+double ControllerService::pace() {
+  if (pace_ == 0) pace_ = online_change::measured_pace(clock_);
+  return pace_;
+}
+
 // Verifying and planning take their time; between their steps somebody may end it.
 base::Status ControllerService::stage_unless_aborted(base::ByteSpan package,
                                                      online_change::Strategy strategy) {
   const auto job_at_boundary = [this](const std::function<void()>& job) {
     return aborted() ? base::Status(abort_error()) : at_boundary(job);
   };
-  change_.set_pace(online_change::measured_pace(clock_));
+  change_.set_pace(pace());
   change_.set_interruption([this] {
     if (unless_.data == 0) return aborted();
     base::Status looked = look_at_boundary([&] { unless_holds(); });
@@ -172,7 +178,7 @@ base::Result<base::Bytes> ControllerService::stage_rehearsal(base::ByteSpan pack
   base::Status taken = check_edit(controller_.image(), (*staged)->next().image(), flags);
   if (!taken.ok()) return taken.error();
   rehearsal_ = std::move(*staged);
-  rehearsal_->change().set_pace(online_change::measured_pace(clock_));
+  rehearsal_->change().set_pace(pace());
   rehearsal_of_ = session_;
   base::ByteWriter answer;
   answer.u64(edition_);

@@ -74,17 +74,25 @@ void ControllerService::watch_trial() {
   if (!why.empty()) give_back(why);
 }
 
-// Once: what cannot be undone stays as it is, for people to look at.
+bool ControllerService::is_incomplete() const {
+  return !trials_.empty() && (trials_.back().switch_flags & vm::kMoreToCome) != 0;
+}
+
+// With all that came before it as parts of the same (E-26). Once: what cannot be undone stays as it
+// is, for people to look at.
 void ControllerService::give_back(const std::string& why) {
   who_ = "controller";
   probation_.reset();
-  vm::Request request{.command = vm::Command::kUndo};
-  request.expected = controller_.verified().digest();
-  request.edition = edition_;
-  const Answer undone = undo_now(why);
-  if (recorder_ != nullptr) {
-    undone.ok() ? recorder_->note(vm::encode(request)) : recorder_->forget_jobs();
-  }
+  Answer undone = base::Bytes();
+  do {
+    vm::Request request{.command = vm::Command::kUndo};
+    request.expected = controller_.verified().digest();
+    request.edition = edition_;
+    undone = undo_now(why);
+    if (recorder_ != nullptr) {
+      undone.ok() ? recorder_->note(vm::encode(request)) : recorder_->forget_jobs();
+    }
+  } while (undone.ok() && is_incomplete());
   if (undone.ok()) return;
   not_undone_ = "the version on trial was not undone after " + why + ": " +
                 base::to_string(undone.error()) + "; `stvm undo` tries again";

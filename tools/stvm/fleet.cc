@@ -93,8 +93,10 @@ base::Status read_options(const tools::Options& options, FleetRun& run) {
     return ControllerClient::connect_to(member.place, seconds);
   };
   const PackageOptions made{run.how.restricted, run.edit.matching};
-  run.access.package = [path = run.edit.path, made](const base::Bytes& running) {
-    return make_package({{path}, {}}, made, running);
+  run.access.package = [path = run.edit.path, made](const base::Bytes& running, size_t step) {
+    PackageOptions of_step = made;
+    of_step.step = step;
+    return make_package({{path}, {}}, of_step, running);
   };
   return base::Ok{};
 }

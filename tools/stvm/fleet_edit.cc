@@ -7,7 +7,12 @@ namespace stvm {
 base::Result<FleetEdit> read_fleet_edit(const std::string& path) {
   base::Result<tools::OpenedFleetFile> opened = tools::open_fleet_file(path);
   if (!opened.ok()) return opened.error();
-  return FleetEdit{path, opened->digest, std::move(opened->parts), false};
+  return FleetEdit{path,
+                   opened->digest,
+                   std::move(opened->parts),
+                   false,
+                   std::move(opened->file.steps),
+                   opened->file.steps_if_needed};
 }
 
 std::string fleet_note(const base::Digest& digest) {

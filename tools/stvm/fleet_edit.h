@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "tools/common/fleet_parts.h"
 
@@ -13,6 +14,8 @@ struct FleetEdit {
   base::Digest digest{};
   tools::FleetParts parts;
   bool matching = false;  // only the units that fit
+  std::vector<std::string> steps = {};  // E-25; ir::of_step()
+  bool steps_if_needed = false;
 };
 
 // Both versions are verified.

@@ -36,7 +36,8 @@ std::string remark(const FleetRow& row) {
 std::string_view outcome_name(FleetOutcome outcome) {
   constexpr std::string_view kNames[] = {"done",        "possible",  "had it",    "refused",
                                          "unreachable", "cancelled", "not asked", "reached",
-                                         "undone",      "accepted",  "had it not"};
+                                         "undone",      "accepted",  "had it not",
+                                         "taken back"};
   return kNames[static_cast<size_t>(outcome)];
 }
 
@@ -46,6 +47,7 @@ bool is_good(FleetOutcome outcome) {
     case FleetOutcome::kUnreachable:
     case FleetOutcome::kCancelled:
     case FleetOutcome::kNotAsked:
+    case FleetOutcome::kTakenBack:
       return false;
     default:
       return true;
@@ -81,6 +83,24 @@ std::string reasons_text(const std::vector<FleetRow>& rows) {
   return out;
 }
 
+static void names_json(const char* key, const std::vector<std::string>& names,
+                       tools::JsonWriter& json) {
+  json.key(key).begin_array();
+  for (const std::string& name : names) json.value(name);
+  json.end_array();
+}
+
+static void mixtures_json(const std::vector<Mixture>& mixtures, tools::JsonWriter& json) {
+  json.key("mixtures").begin_array();
+  for (const Mixture& mixture : mixtures) {
+    json.begin_object().field("cycle", mixture.cycle);
+    names_json("new", mixture.new_ones, json);
+    names_json("old", mixture.old_ones, json);
+    json.end_object();
+  }
+  json.end_array();
+}
+
 static void row_json(const FleetRow& row, tools::JsonWriter& json) {
   json.begin_object().field("controller", row.place).field("program", row.program);
   json.field("outcome", std::string(outcome_name(row.outcome)));
@@ -91,6 +111,7 @@ static void row_json(const FleetRow& row, tools::JsonWriter& json) {
   json.key("table");
   tools::own_table_json(row.table, json);
   if (!row.edits.empty()) json.field("edits", row.edits);
+  if (!row.mixtures.empty()) mixtures_json(row.mixtures, json);
   if (row.report) switch_json(*row.report, json);
   if (row.why) {
     json.field("refused", base::refusal_code(row.why->refusal));

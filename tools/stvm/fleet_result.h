@@ -26,10 +26,18 @@ enum class FleetOutcome : uint8_t {
   kUndone,
   kAccepted,
   kHadItNot,  // the edit is not on trial there
+  kTakenBack,  // it failed in the middle of several steps, and went again
 };
 std::string_view outcome_name(FleetOutcome outcome);
 // Nothing is left to do there.
 bool is_good(FleetOutcome outcome);
+
+// What ran while parts of an edit had come and others not.
+struct Mixture {
+  uint64_t cycle = 0;  // the first one
+  std::vector<std::string> new_ones;
+  std::vector<std::string> old_ones;
+};
 
 struct FleetRow {
   std::string place;    // as the command line names it
@@ -40,6 +48,7 @@ struct FleetRow {
   std::vector<online_change::TableEdit> table = {};  // of its own, where that is another (E-16)
   std::vector<ir::Part> has;  // all that was there, where somebody looks
   std::string edits;          // "E2, E1": what was taken back or accepted
+  std::vector<Mixture> mixtures = {};  // E-25
   base::Digest from{};        // image that ran
   std::optional<online_change::SwitchReport> report;
 };

@@ -18,7 +18,8 @@ namespace stvm {
 // one. Several threads call them.
 struct FleetAccess {
   std::function<base::Result<ControllerClient>(const FleetMember&)> connect;
-  std::function<base::Result<base::Bytes>(const base::Bytes& running)> package;
+  // `step`: of an edit that comes in several, from 1; 0: all of it.
+  std::function<base::Result<base::Bytes>(const base::Bytes& running, size_t step)> package;
   // One edit of several on trial.
   std::function<decltype(take_out)> take_back = take_out;
 };
@@ -86,6 +87,11 @@ class FleetChange : public FleetVisit {
 
  private:
   FleetRow change(const SwitchOptions& how, FleetSeen& seen, FleetRow row);
+  // E-25, E-26: each unit by itself; all or none of them.
+  FleetRow change_in_steps(SwitchOptions how, FleetSeen& seen, FleetRow row);
+  base::Result<Outcome> bring_step(const SwitchOptions& how, FleetSeen& seen, size_t step);
+  FleetRow taken_back(FleetSeen& seen, FleetRow row, const base::Error& why) const;
+  FleetRow finished(const SwitchOptions& how, FleetRow row, const Outcome& outcome) const;
 };
 
 // E-32: the edit goes again where it is on trial.

@@ -16,6 +16,7 @@ base::Result<base::Bytes> make_package(const Sources& sources, const PackageOpti
   std::vector<std::string> command = {"package", "--base", base_file, "-o", package_file};
   if (options.restricted) command.push_back("--restricted");
   if (options.matching) command.push_back("--matching");
+  if (options.step != 0) command.push_back("--step=" + std::to_string(options.step));
   base::Status made = tools::run_beside("stc", stc_arguments(command, sources));
   if (!made.ok()) return made.error();
   return tools::read_bytes(package_file);

@@ -10,6 +10,7 @@ namespace stvm {
 struct PackageOptions {
   bool restricted = false;  // D7
   bool matching = false;    // E-13
+  size_t step = 0;          // of a fleet file that comes in several, from 1; 0: all of it (E-25)
 };
 
 // From the program that runs to what the sources, the image or the fleet file say.

@@ -38,6 +38,7 @@ enum SwitchFlags : uint32_t {
   kAllowOverrun = 4,  // even if the predicted pause does not fit the tightest task
   kNoWayBack = 8,     // the controller does not undo it by itself (X7)
   kLastEditBoots = 16,  // after a power loss it runs, on trial, and not what was accepted (D4)
+  kMoreToCome = 32,  // the next edit belongs to it: taken back by the controller, both go (E-26)
 };
 
 enum StageFlags : uint32_t {

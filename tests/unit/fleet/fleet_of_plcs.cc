@@ -30,11 +30,12 @@ class Line : public vm::Transport {
 
 base::Result<base::Bytes> merged_package(const ir::VerifiedImage& original,
                                          const ir::VerifiedImage& edited,
-                                         const base::Bytes& running, bool matching) {
+                                         const base::Bytes& running,
+                                         const linker::MergeOptions& how) {
   base::Result<ir::VerifiedImage> target = ir::verify(running);
   if (!target.ok()) return target.error();
   base::Result<ir::Image> merged =
-      linker::merge({original.image(), edited.image(), target->image()}, {{}, matching});
+      linker::merge({original.image(), edited.image(), target->image()}, how);
   if (!merged.ok()) return merged.error();
   auto made = online_change::make_package(running, ir::encode(*merged));
   if (!made.ok()) return made.error();
@@ -66,9 +67,12 @@ base::Result<stvm::ControllerClient> Fleet::connect(const std::string& name,
 
 stvm::FleetAccess Fleet::access() {
   return {[this](const stvm::FleetMember& member) { return connect(member.name, "fleet"); },
-          [this](const base::Bytes& running) {
+          [this](const base::Bytes& running, size_t step) {
             if (before_package) before_package();
-            return package(running);
+            if (refuses && refuses->first == step) {
+              return base::Result<base::Bytes>(base::Error{refuses->second, "of the test"});
+            }
+            return package(running, step);
           },
           take_out};
 }
@@ -77,12 +81,23 @@ void Fleet::edit(const std::string& original, const std::string& edited) {
   original_ = plc::build(original);
   edited_ = plc::build(edited, &original_->image());
   edit_.digest = edited_->digest();
-  edit_.parts = {ir::parts_of(original_->image()), ir::parts_of(edited_->image())};
+  edit_.parts.original = ir::parts_of(original_->image());
+  edit_.parts.edited = ir::parts_of(edited_->image());
+  edit_.parts.edited_image = *edited_;
+  edit_.parts.free_table = true;
+}
+
+void Fleet::start_each(linker::StepOrder order, bool if_needed) {
+  edit_.steps = *linker::edit_steps({original_->image(), edited_->image()}, order);
+  edit_.steps_if_needed = if_needed;
 }
 
 // What `stc package` does with a fleet file.
-base::Result<base::Bytes> Fleet::package(const base::Bytes& running) const {
-  return merged_package(*original_, *edited_, running, edit_.matching);
+base::Result<base::Bytes> Fleet::package(const base::Bytes& running, size_t step) const {
+  linker::MergeOptions how;
+  how.matching = edit_.matching;
+  if (step != 0) how.step = edit_.steps[step - 1];
+  return merged_package(*original_, *edited_, running, how);
 }
 
 base::Result<stvm::Outcome> Fleet::take_out(const stvm::SwitchOptions& how,
@@ -94,7 +109,7 @@ base::Result<stvm::Outcome> Fleet::take_out(const stvm::SwitchOptions& how,
   base::Result<base::Bytes> after = client.image_before(*(found - 1));
   base::Result<base::Bytes> running = client.image();
   base::Result<base::Bytes> package =
-      merged_package(*ir::verify(*after), *ir::verify(*before), *running, false);
+      merged_package(*ir::verify(*after), *ir::verify(*before), *running, {});
   if (!package.ok()) return package.error();
   stvm::SwitchOptions noted = how;
   noted.note = stvm::take_out_note(edit);

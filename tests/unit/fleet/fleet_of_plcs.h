@@ -5,8 +5,10 @@
 #include <atomic>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "linker/edit_steps.h"
 #include "tests/unit/store/plc.h"
 #include "tests/unit/store/sim_storage.h"
 #include "tools/stvm/fleet_visit.h"
@@ -31,12 +33,16 @@ class Fleet {
 
   // The edit from one source to the other.
   void edit(const std::string& original, const std::string& edited);
+  // Its units start one after the other; or only where there is no room for all of them.
+  void start_each(linker::StepOrder order, bool if_needed = false);
   const stvm::FleetEdit& edit() const { return edit_; }
   // Called before a package is made, with the number of the controller that it is for.
   std::function<void()> before_package;
+  // No package of this step is made, for that reason.
+  std::optional<std::pair<size_t, base::Refusal>> refuses;
 
  private:
-  base::Result<base::Bytes> package(const base::Bytes& running) const;
+  base::Result<base::Bytes> package(const base::Bytes& running, size_t step) const;
   // What stvm::take_out() does with the stc beside it.
   static base::Result<stvm::Outcome> take_out(const stvm::SwitchOptions& how,
                                               stvm::ControllerClient& client,

@@ -90,7 +90,7 @@ class FleetOfThree : public ::testing::Test {
     base::Result<stvm::ControllerClient> client = fleet_.connect("two", "fleet");
     EXPECT_TRUE(client->status().ok());
     base::Result<base::Bytes> image = client->image();
-    base::Result<base::Bytes> package = fleet_.access().package(*image);
+    base::Result<base::Bytes> package = fleet_.access().package(*image, 0);
     EXPECT_TRUE(client->stage(*package, 0).ok());
     return std::move(*client);
   }
@@ -135,7 +135,7 @@ TEST_F(FleetOfThree, E14_AChangeBetweenStageAndSwitchRefusesThisControllerAlone)
       base::Result<stvm::ControllerClient> client = fleet_.connect(member.name, "fleet");
       ASSERT_TRUE(client->status().ok());
       base::Result<base::Bytes> image = client->image();
-      base::Result<base::Bytes> package = fleet_.access().package(*image);
+      base::Result<base::Bytes> package = fleet_.access().package(*image, 0);
       ASSERT_TRUE(package.ok());
       how.confirm = [&]() -> base::Status {
         if (++asked == 2)

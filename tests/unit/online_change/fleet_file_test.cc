@@ -67,27 +67,51 @@ TEST(FleetFiles, E17_TheFileSaysWhetherItsTableIsFree) {
   EXPECT_TRUE(decode_fleet_file(encode(file))->free_table);
 }
 
-// The first version did not say it: the last byte of the texts is missing.
-TEST(FleetFiles, E17_AFileOfTheFirstVersionIsRestricted) {
-  const base::Bytes now = encode(sample_file());
+TEST(FleetFiles, E25_HowTheUnitsStartIsInTheFile) {
+  FleetFile file = sample_file();
+  EXPECT_TRUE(decode_fleet_file(encode(file))->steps.empty());
+  file.steps = {"", "B", "A"};
+  file.steps_if_needed = true;
+  const FleetFile back = *decode_fleet_file(encode(file));
+  EXPECT_EQ(back.steps, file.steps);
+  EXPECT_TRUE(back.steps_if_needed);
+}
+
+// The first version does not say whether its table is free, and the second one not how its units
+// start: these bytes are missing at the end of its texts.
+base::Bytes of_version(const FleetFile& file, uint32_t version) {
+  const uint32_t missing = version == 1 ? 6 : 5;
+  const base::Bytes now = encode(file);
   base::ByteReader in(now);
-  const base::ByteSpan magic = in.raw(kFleetMagic.size());
+  base::ByteWriter out;
+  out.raw(in.raw(kFleetMagic.size()));
   (void)in.u64();
   const uint32_t size = in.u32();
   (void)in.raw(sizeof(base::Digest));
-  const base::ByteSpan texts = in.raw(size).first(size - 1);
-  base::ByteWriter first;
-  first.raw(magic);
-  first.u32(1);
-  first.u32(static_cast<uint32_t>(now.size() - 1));
-  first.u32(size - 1);
-  first.raw(base::sha256(texts));
-  first.raw(texts);
-  first.raw(in.raw(in.left()));
-  const base::Result<FleetFile> file = decode_fleet_file(first.bytes());
+  const base::ByteSpan texts = in.raw(size).first(size - missing);
+  out.u32(version);
+  out.u32(static_cast<uint32_t>(now.size() - missing));
+  out.u32(size - missing);
+  out.raw(base::sha256(texts));
+  out.raw(texts);
+  out.raw(in.raw(in.left()));
+  return out.take();
+}
+
+TEST(FleetFiles, E17_AFileOfTheFirstVersionIsRestricted) {
+  const base::Result<FleetFile> file = decode_fleet_file(of_version(sample_file(), 1));
   ASSERT_TRUE(file.ok()) << file.error().text;
   EXPECT_EQ(file->text, "twice as fast");
   EXPECT_FALSE(file->free_table);
+}
+
+TEST(FleetFiles, E25_InAFileOfTheSecondVersionAllStartTogether) {
+  FleetFile free = sample_file();
+  free.free_table = true;
+  const base::Result<FleetFile> file = decode_fleet_file(of_version(free, 2));
+  ASSERT_TRUE(file.ok()) << file.error().text;
+  EXPECT_TRUE(file->free_table);
+  EXPECT_TRUE(file->steps.empty());
 }
 
 // Few bytes that say they become very many.

@@ -1,9 +1,9 @@
 // What the boundary costs, counted (A16, change cases 24, 35, 52): work in place follows what
 // changes, not the program around it. Measured figures: docs/pause.md.
+#include "online_change/plan/pause.h"
 #include "bench/plain_method.h"
 #include "ir/bytecode/symbols.h"
 #include "online_change/apply/pace.h"
-#include "online_change/plan/pause.h"
 #include "tests/unit/online_change/instructions.h"
 #include "tests/unit/online_change/plant.h"
 
@@ -98,8 +98,8 @@ TEST(Pause, A19_case35_ten_thousand_instances_gain_a_variable) {
 
 TEST(Pause, A19_case35_ten_thousand_instances_take_no_instructions) {
   if (!kOptimised) GTEST_SKIP() << "the number is for optimised code";
-  const auto all = instructions_of(program(10'000, 0, "INT"),
-                                   program(10'000, 0, "INT", "more : INT := 7;"));
+  const auto all =
+      instructions_of(program(10'000, 0, "INT"), program(10'000, 0, "INT", "more : INT := 7;"));
   if (!all) GTEST_SKIP() << "no process may be traced here";
   EXPECT_LT(*all, 10'000u);
 }
@@ -215,8 +215,7 @@ TEST(Pause, case69_the_model_follows_the_instructions) {
     Plant plant(first, roomy());
     begin(plant, second);
     const auto model_ns = static_cast<double>(plant.driver().predicted_pause_ns() - kPauseFixedNs);
-    const auto count =
-        plant::count_instructions([&] { (void)plant.driver().switch_now().ok(); });
+    const auto count = plant::count_instructions([&] { (void)plant.driver().switch_now().ok(); });
     if (!count) GTEST_SKIP() << "no process may be traced here";
     const double each = static_cast<double>(*count) / model_ns;
     EXPECT_GT(each, kInstructionsPerNs / 2) << second;
