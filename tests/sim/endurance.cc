@@ -1,5 +1,6 @@
 // Hours of a plant's time: mostly scans, and a step of somebody every few seconds.
 #include <algorithm>
+#include <set>
 
 #include "tests/sim/heap_use.h"
 #include "tests/sim/world.h"
@@ -38,10 +39,10 @@ void World::forget_versions() {
   const vm::StatusReport now = settled();
   std::sort(may_boot_.begin(), may_boot_.end());
   may_boot_.erase(std::unique(may_boot_.begin(), may_boot_.end()), may_boot_.end());
-  std::erase_if(versions_, [&](const auto& row) {
-    return row.first != now.running && row.first != now.previous && row.first != now.boots_next &&
-           std::find(may_boot_.begin(), may_boot_.end(), row.first) == may_boot_.end();
-  });
+  std::set<base::Digest> kept(may_boot_.begin(), may_boot_.end());
+  kept.insert({now.running, now.previous, now.boots_next});
+  for (const OnTrial& edit : on_trial_) kept.insert(edit.before);  // undo leads there, one by one
+  std::erase_if(versions_, [&](const auto& row) { return !kept.contains(row.first); });
 }
 
 bool World::endure(int hours, const Hourly& hourly) {

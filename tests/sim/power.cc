@@ -105,6 +105,7 @@ void World::disk_fault() {
   if (random_.one_in(2)) return;
   say("  and is renewed");
   require(store_->renew().ok(), "what has failed is renewed when the disk is well");
+  service_->keep_up();
   disk_failed_ = false;
 }
 

@@ -305,7 +305,8 @@ void World::undo() {
   say("undo, state " + hand.seen.change);
   bad_luck(hand);
   const bool trial = hand.seen.edits != 0;
-  if (trial) may_boot_.push_back(hand.seen.edits == 1 ? hand.seen.boots_next : hand.seen.previous);
+  // The edit below may have another policy than the one that goes.
+  if (trial) may_boot_.insert(may_boot_.end(), {hand.seen.boots_next, hand.seen.previous});
   auto report = hand.client->undo();
   const vm::StatusReport now = settled();
   if (report.ok()) {

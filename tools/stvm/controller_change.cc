@@ -187,7 +187,7 @@ base::Status ControllerService::prepare_switch(const vm::Request& request, Trial
   if (!allow_overrun) ready = catch_up();
   if (ready.ok()) return ready;
   change_.cancel();
-  complain(store_follows());
+  let_store_follow();
   return not_switched(ready.error());
 }
 
@@ -219,7 +219,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   change_.collect();
   if (!report.ok()) {
     change_.cancel();
-    complain(store_follows());
+    let_store_follow();
     return not_switched(report.error());
   }
   preparing_ = false;
@@ -273,7 +273,7 @@ base::Result<base::Bytes> ControllerService::undo_now(const std::string& why) {
   change_.collect();
   undone_.push_back(std::move(trials_.back()));
   trials_.pop_back();
-  complain(store_follows());
+  let_store_follow();
   complain(keeper_.save(after));
   note_units("undone", (*report)->cycle_after);
   const std::string which = "edit " + undone_.back().edit.name;

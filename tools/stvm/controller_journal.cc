@@ -140,6 +140,14 @@ base::Status ControllerService::store_follows() {
   return store_.begin_trial({running.digest(), running.encoded()}, *bytes, last_edit_boots());
 }
 
+// What fails here, of a switch or an undo that has been made, is done when the disk is well: else
+// an edit that was undone would boot.
+void ControllerService::let_store_follow() {
+  const base::Status follows = store_follows();
+  store_is_behind_ = !follows.ok();
+  complain(follows);
+}
+
 // Where nothing is wrong this does nothing.
 base::Status ControllerService::keep_programs() {
   const ir::VerifiedImage& running = controller_.verified();
@@ -151,8 +159,11 @@ base::Status ControllerService::keep_programs() {
 
 void ControllerService::keep_programs_now_and_then() {
   const int64_t now = clock_.now_ns();
-  if (store_.complaints().empty() || !keep_again_.due(now)) return;
-  if (!keep_programs().ok()) keep_again_.failed(now);
+  if ((store_.complaints().empty() && !store_is_behind_) || !keep_again_.due(now)) return;
+  base::Status kept = keep_programs();
+  if (kept.ok() && store_is_behind_) kept = store_follows();
+  if (!kept.ok()) return keep_again_.failed(now);
+  store_is_behind_ = false;
 }
 
 // Entries from number `offset` on, as they lie on the disk; none behind the last. The first page

@@ -277,6 +277,7 @@ class ControllerService : public vm::Service {
   base::Status store_trial(Trial& next);
   // What is on trial in the store is what is on trial here, or nothing.
   base::Status store_follows();
+  void let_store_follow();
   // D4: does what is on trial boot? Of the newest edit.
   bool last_edit_boots() const {
     return !trials_.empty() && (trials_.back().switch_flags & vm::kLastEditBoots) != 0;
@@ -352,6 +353,7 @@ class ControllerService : public vm::Service {
   std::string stopped_by_;
   AsideWriter aside_;  // by store_beside()
   online_change::BackOff keep_again_;
+  bool store_is_behind_ = false;  // what was switched or undone is not stored
 };
 
 }  // namespace stvm
