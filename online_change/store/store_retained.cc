@@ -61,7 +61,14 @@ bool Store::retained_fits_locked() const {
   if (!newest) return true;
   const RetainHead& head = *in_copy_[*newest];
   if (head.image == control_.boots && !head.trial) return true;
-  return control_.trial && in_slot_[free_trial_slot()] != head.image;
+  if (!control_.trial) return false;
+  // The next program takes the free slot. One program can lie in two: it was there before.
+  const size_t free = free_trial_slot();
+  if (in_slot_[free] != head.image) return true;
+  for (size_t slot = 0; slot < kImageSlots; ++slot) {
+    if (slot != free && in_slot_[slot] == head.image) return true;
+  }
+  return false;
 }
 
 std::optional<base::Bytes> Store::retained_of(const base::Digest& image) const {

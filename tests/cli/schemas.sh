@@ -130,7 +130,7 @@ printf 'VAR_GLOBAL g : INT; h : INT; END_VAR PROGRAM Main END_PROGRAM\n' >two.st
 printf 'VAR_GLOBAL g : DINT; END_VAR PROGRAM Main END_PROGRAM\n' >other.st
 expect 0 stc fleet one.st two.st -o two.fleet
 serve other other.st
-answers stvm-fleet 7 stvm fleet status two.fleet --dir other
+answers stvm-fleet-status 7 stvm fleet status two.fleet --dir other
 answers stvm-change 0 at change next --yes --dry-run --all
 answers stvm-change 0 at change next --yes --all
 answers stvm-status 0 at status

@@ -283,5 +283,34 @@ TEST_F(Carried, AProgramWithTooMuchToRetainIsRefused) {
   EXPECT_EQ(online_change::retained_bytes(image).error().refusal, base::Refusal::kTooLarge);
 }
 
+// B was there before C, and its slot is free since: on trial again it lies in two slots. What is
+// saved on trial has the layout of B, which no next program takes away.
+TEST(Retained, D4_case56_AProgramThatWasThereBeforeIsAccepted) {
+  const auto steps_by = [](int step) {
+    return "PROGRAM Main VAR RETAIN n : DINT; END_VAR n := n + " + std::to_string(step) +
+           "; END_PROGRAM";
+  };
+  sim::SimStorage disk;
+  plc::Plc plc(disk);
+  ASSERT_TRUE(plc.boot(steps_by(1)).ok());
+  plc.run(2);
+  const ir::VerifiedImage first = build(steps_by(2), &plc.controller().image());
+  const ir::VerifiedImage second = build(steps_by(3), &first.image());
+  const ir::VerifiedImage third = build(steps_by(4), &second.image());
+  const auto bring = [&](const ir::VerifiedImage& next) {
+    ASSERT_TRUE(plc.change(next, vm::kAllowOverrun).ok());
+    plc.run(2);
+    ASSERT_TRUE(plc.save().ok());
+  };
+  bring(first);  // on trial below the second one, which so gets the third slot
+  bring(second);
+  ASSERT_TRUE(plc.accept().ok());
+  bring(third);
+  ASSERT_TRUE(plc.accept().ok());
+  bring(second);
+  EXPECT_TRUE(plc.accept().ok());
+  EXPECT_EQ(plc.status().change, "idle");
+}
+
 }  // namespace
 }  // namespace plc
