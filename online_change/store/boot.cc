@@ -208,7 +208,8 @@ class Booting {
   }
 
   // What the newest values are of: the newest edit mostly; one below it, where a cut came before it
-  // had saved any; the one above it, where a cut came behind an undo.
+  // had saved any; the one above it, where a cut came behind an undo. That one is not in the list
+  // when it was not to boot: what it had dropped begins anew then.
   base::Result<CarriedValues> values_on_trial(const std::vector<StoredEdit>& all,
                                               const Boot& boot) const {
     const RetainRecord& newest = *found_.newest;
@@ -229,6 +230,9 @@ class Booting {
       if (of_it && edit.from == image.digest() && fits(above->image(), newest)) {
         return carry_retained_back(*above, newest.values, image, edit.retained);
       }
+    }
+    if (above && above->digest() == newest.image && fits(above->image(), newest)) {
+      return carry_retained_back(*above, newest.values, image, initial_retained(image.image()));
     }
     return unfit();
   }

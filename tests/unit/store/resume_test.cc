@@ -332,5 +332,31 @@ TEST(Resume, D4_X5_case77_APowerCutAtEveryWriteLeavesTheTrialBeforeOrBehind) {
   EXPECT_GT(tried, 100u);
 }
 
+// The newest edit does not boot, so the list of edits is without it; the one below it does. An undo
+// is cut behind its record, before it has saved any values: those of the edit that went lead back.
+TEST(Resume, D4_X5_case77_ACutInTheUndoOfAnEditThatDoesNotBootLosesNoRetainedValue) {
+  Outage rig(vm::kLastEditBoots);
+  rig.change(1);
+  ASSERT_TRUE(rig.plc.change(outage_source(2), vm::kAllowLoss).ok());
+  rig.plc.set("r", "6");
+  rig.plc.set("a", "11");
+  ASSERT_TRUE(rig.plc.save().ok());
+  std::vector<sim::SimStorage> left;
+  rig.disk.before_call = [&] { left.push_back(behind_cut(rig.disk)); };
+  ASSERT_TRUE(rig.plc.undo().ok());
+  rig.disk.before_call = nullptr;
+  size_t resumed = 0;
+  for (sim::SimStorage& disk : left) {
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot().ok());
+    if (plc.status().running != rig.digests[1]) continue;
+    ++resumed;
+    EXPECT_TRUE(plc.found().alarms.empty());
+    EXPECT_EQ(plc.get("r"), "6");
+    EXPECT_EQ(plc.get("a"), "11");
+  }
+  EXPECT_GT(resumed, 1u);
+}
+
 }  // namespace
 }  // namespace stvm
