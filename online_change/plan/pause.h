@@ -24,7 +24,7 @@ inline constexpr int64_t kPauseBytesPerNs = 32;        // read, save and write t
 
 // Standby: bytes that are looked at, and those of them that have changed and are copied.
 inline constexpr int64_t kPauseComparedBytesPerNs = 48;
-inline constexpr int64_t kPauseCopiedBytesPerNs = 24;
+inline constexpr int64_t kPauseCopiedBytesPerNs = 32;
 
 // So much more than what is expected must be free before a switch begins.
 constexpr int64_t with_reserve(int64_t pause_ns) { return pause_ns + pause_ns / 2; }

@@ -233,10 +233,23 @@ bool Store::rests_in_free_slot(const base::Digest& image) const {
          in_slot_[slot] == image;
 }
 
+// What another process has written there is compared first.
+void Store::look_into_free_slot(const ImageToStore& image) {
+  if (!boots_valid() || !control_.trial) return;
+  const size_t slot = free_trial_slot();
+  if (written_[slot] || in_slot_[slot] != image.digest || !slots_.whole(slot)) return;
+  const Record record = read_record(storage_, slots_[slot].name, RecordKind::kImage);
+  if (record.state != RecordState::kValid) return;
+  const std::optional<StoredImage> stored = image_of(record.payload);
+  written_[slot] = stored && stored->digest == image.digest &&
+                   std::ranges::equal(stored->bytes, image.bytes);
+}
+
 base::Status Store::begin_trial(const ImageToStore& image, uint64_t retain_bytes, bool resumes) {
   std::lock_guard slots_lock(slots_mutex_);
   std::lock_guard lock(mutex_);
   check_slots_locked();
+  look_into_free_slot(image);
   base::Status may = may_begin_trial();
   if (!may.ok() && !rests_in_free_slot(image.digest)) return may;
   const size_t slot = free_trial_slot();

@@ -199,6 +199,7 @@ class Store {
   // Is there a slot for a trial?
   base::Status may_begin_trial() const;
   bool rests_in_free_slot(const base::Digest& image) const;
+  void look_into_free_slot(const ImageToStore& image);
   bool boots_valid() const { return has_control_ && in_slot_[control_.slot] == control_.boots; }
   bool names_locked(const base::Digest& image) const;
   bool in_a_slot(const base::Digest& image) const;

@@ -105,6 +105,10 @@ void World::disk_fault() {
   if (random_.one_in(2)) return;
   say("  and is renewed");
   require(store_->renew().ok(), "what has failed is renewed when the disk is well");
+  // What was switched or undone meanwhile is stored when it is tried next.
+  constexpr int64_t kNextTryNs = 9'000'000'000;  // the longest wait is 8 s
+  const int64_t until_ns = clock_.now_ns() + kNextTryNs;
+  while (clock_.now_ns() <= until_ns) boundary_->cycle();
   service_->keep_up();
   disk_failed_ = false;
 }

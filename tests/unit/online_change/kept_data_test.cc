@@ -113,7 +113,7 @@ TEST(KeptData, X1_C5_OnlyWhereStartCodeRunsThePauseFollowsTheData) {
 // A switch that takes too long so is refused, and the message names the way that needs no copy.
 TEST(KeptData, X1_C5_TheRefusalSaysWhatTheTimeIsFor) {
   const std::string task =
-      "CONFIGURATION C TASK Fast (INTERVAL := T#500us); PROGRAM Main WITH Fast : Main; "
+      "CONFIGURATION C TASK Fast (INTERVAL := T#300us); PROGRAM Main WITH Fast : Main; "
       "END_CONFIGURATION\n";
   Plant plant(task + tank("", "", 5'000'000));
   plant.run(1);

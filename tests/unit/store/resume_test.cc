@@ -358,5 +358,32 @@ TEST(Resume, D4_X5_case77_ACutInTheUndoOfAnEditThatDoesNotBootLosesNoRetainedVal
   EXPECT_GT(resumed, 1u);
 }
 
+// A cut comes before the newest edit has saved any values, so the newest ones are of the edit below,
+// whose program another process has written. Undo leads back to it, and that is durable.
+TEST(Resume, D4_X5_case77_AnUndoBehindACutIsDurable) {
+  Outage rig(vm::kLastEditBoots);
+  rig.change(1);
+  ASSERT_TRUE(rig.plc.save().ok());
+  std::vector<sim::SimStorage> left;
+  rig.disk.before_call = [&] { left.push_back(behind_cut(rig.disk)); };
+  rig.change(2);
+  rig.disk.before_call = nullptr;
+  size_t undone = 0;
+  for (sim::SimStorage& disk : left) {
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot().ok());
+    if (plc.status().running != rig.digests[2]) continue;
+    ++undone;
+    ASSERT_TRUE(plc.undo().ok());
+    EXPECT_EQ(plc.get("r"), "5");
+    sim::SimStorage cut = behind_cut(disk);
+    Plc again(cut);
+    ASSERT_TRUE(again.boot().ok());
+    EXPECT_EQ(again.status().running, rig.digests[1]);
+    EXPECT_EQ(again.get("r"), "5");
+  }
+  EXPECT_GT(undone, 0u);
+}
+
 }  // namespace
 }  // namespace stvm
