@@ -8,6 +8,7 @@
 
 #include "base/limits.h"
 #include "base/pack.h"
+#include "base/tool_limits.h"
 
 namespace online_change {
 namespace {
@@ -67,7 +68,12 @@ base::Status read_texts(base::ByteSpan content, uint32_t version, FleetFile& fil
     text->assign(bytes.begin(), bytes.end());
   }
   if (version >= kFreeVersion) file.free_table = in.boolean();
-  for (uint32_t left = version >= kFleetVersion ? in.count(4) : 0; left != 0; --left) {
+  const uint32_t steps = version >= kFleetVersion ? in.count(4) : 0;
+  if (steps > base::kMostEditsOnTrial) {
+    return bad(std::to_string(steps) + " steps; the limit is " +
+               std::to_string(base::kMostEditsOnTrial) + " (kMostEditsOnTrial)");
+  }
+  for (uint32_t left = steps; left != 0; --left) {
     const base::ByteSpan bytes = in.blob();
     file.steps.emplace_back(bytes.begin(), bytes.end());
   }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/sha256.h"
+#include "base/tool_limits.h"
 #include "online_change/package/fleet_file.h"
 
 namespace online_change {
@@ -75,6 +76,10 @@ TEST(FleetFiles, E25_HowTheUnitsStartIsInTheFile) {
   const FleetFile back = *decode_fleet_file(encode(file));
   EXPECT_EQ(back.steps, file.steps);
   EXPECT_TRUE(back.steps_if_needed);
+  file.steps.assign(base::kMostEditsOnTrial, "A");
+  EXPECT_TRUE(decode_fleet_file(encode(file)).ok());
+  file.steps.emplace_back("B");
+  EXPECT_EQ(decode_fleet_file(encode(file)).error().refusal, base::Refusal::kBadFormat);
 }
 
 // The first version does not say whether its table is free, and the second one not how its units
