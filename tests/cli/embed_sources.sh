@@ -161,7 +161,7 @@ expect 0 stvm stop --dir plc
 rm plc.pid
 
 # Each build of a watch has those of its time.
-stc build first --watch -o watched.img >watch.log 2>&1 &
+"$bin/stc" build first --watch -o watched.img >watch.log 2>&1 &
 echo $! >watch.pid
 wait_for '^3 sources' sh -c "'$bin/stc' source watched.img | sed -n 's/^\(3 sources\).*/\1/p'"
 cmp plant.img watched.img || fail "a watch builds another image"

@@ -131,7 +131,7 @@ said 'late +original +done '
 # --wait: until somebody else has accepted or undone his edit; what he leaves is checked anew.
 serve waits original.st
 expect 0 stvm change own.st --dir waits --yes --allow-overrun
-stvm fleet change x.fleet --dir waits --wait --yes --allow-overrun >waits.out 2>&1 &
+"$bin/stvm" fleet change x.fleet --dir waits --wait --yes --allow-overrun >waits.out 2>&1 &
 echo $! >fleet.pid
 expect 0 stvm undo --dir waits --yes
 code=0

@@ -149,7 +149,7 @@ stc build -q good.st -o plain.img
 cmp good.img plain.img || fail "the check has made another image"
 mkdir saved
 cp good.st saved/a.st
-stc build saved -o saved.img --watch --online-base old.img >>watched 2>&1 &
+"$bin/stc" build saved -o saved.img --watch --online-base old.img >>watched 2>&1 &
 echo $! >watch.pid
 wait_for 'built' cat watched
 said 'W0083'

@@ -78,7 +78,7 @@ end() {  # until it has given its folder back
 wait "$(cat "$directory.pid")" || true
 serve "$directory"
 mkfifo requests
-stvm bridge --dir "$directory" <requests >answers 2>bridge.err &
+"$bin/stvm" bridge --dir "$directory" <requests >answers 2>bridge.err &
 bridge=$!
 echo "$bridge" >bridge.pid
 exec 3>requests
