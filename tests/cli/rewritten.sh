@@ -15,8 +15,8 @@ ST
 }
 program v1.st INT DINT 5ms
 program v2.st DINT DINT 5ms
-program fast1.st INT DINT 200us
-program fast2.st DINT DINT 200us
+program fast1.st INT DINT 120us
+program fast2.st DINT DINT 120us
 
 for tier in native interp; do
   serve $tier --tier $tier --virtual-time v1.st
@@ -32,10 +32,10 @@ for tier in native interp; do
   expect 0 stvm stop --dir $tier
 done
 
-# 2 MB cannot be copied in 0.2 ms; in place nothing of it need be.
+# 2 MB cannot be copied in 0.12 ms; in place nothing of it need be.
 serve fast --virtual-time fast1.st
 expect 7 stvm change fast2.st --strategy standby --yes --dir fast
-said 'R0304.*task `t` leaves 200000 of 200000 ns'
+said 'R0304.*task `t` leaves 120000 of 120000 ns'
 said 'by standby 21[0-9]{5} of its [0-9]+ bytes of data are found to have been written'
 said 'in place .--strategy in-place. the switch is expected to take'
 expect 0 stvm change fast2.st --yes --dir fast
