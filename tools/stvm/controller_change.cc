@@ -223,7 +223,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
     return not_switched(report.error());
   }
   preparing_ = false;
-  if ((request.flags & vm::kMoreToCome) != 0) more_of_ = session_;
+  begin_or_end_chain(trial);
   ++edition_;
   note_edit(std::move(trial), *report, predicted_ns);
   forget_staged();

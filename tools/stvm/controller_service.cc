@@ -55,7 +55,7 @@ void ControllerService::ended(uint64_t session) {
     abort_why_ = "because the connection of " + who_ + " has ended";
     (void)give_up();
   }
-  if (session == more_of_ && is_incomplete()) {
+  if (more_of_ != 0 && session == more_of_ && is_incomplete()) {
     give_back("because the connection of " + changed_by_ + " ended before the rest of it came");
   }
   gone_.erase(session);

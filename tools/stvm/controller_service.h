@@ -133,6 +133,7 @@ class ControllerService : public vm::Service {
     uint32_t switch_flags = 0;
     online_change::Snapshot retained;  // of `before`, at the switch
     std::string taken_out = {};        // the edit whose work it takes back; "": none
+    uint64_t chain = 0;                // steps of one edit have the same (E-26); 0: it is none
   };
   const ir::VerifiedImage* previous() const {
     return trials_.empty() ? nullptr : &trials_.back().before;
@@ -264,6 +265,8 @@ class ControllerService : public vm::Service {
   void give_back(const std::string& why);
   // Is the newest edit on trial one that more was to follow (E-26)?
   bool is_incomplete() const;
+  // What is switched is, or is not, one of several steps.
+  void begin_or_end_chain(Trial& trial);
   void go_on_hot();
   base::Result<base::Bytes> undo_now(const std::string& why);
 
@@ -309,7 +312,8 @@ class ControllerService : public vm::Service {
   std::string who_;
   std::string changed_by_;  // who made the newest edition
   uint64_t session_ = 0;
-  uint64_t more_of_ = 0;  // session that brings an edit in several steps
+  uint64_t more_of_ = 0;  // session that brings an edit in several steps; 0: none does
+  uint64_t chains_ = 0;   // such edits until now
   online_change::Change change_;
   UnitTable units_;
   std::vector<Trial> trials_;     // oldest first

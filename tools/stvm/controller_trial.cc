@@ -78,11 +78,20 @@ bool ControllerService::is_incomplete() const {
   return !trials_.empty() && (trials_.back().switch_flags & vm::kMoreToCome) != 0;
 }
 
+void ControllerService::begin_or_end_chain(Trial& trial) {
+  const bool goes_on = more_of_ != 0 && more_of_ == session_ && is_incomplete();
+  const bool more = (trial.switch_flags & vm::kMoreToCome) != 0;
+  if (goes_on) trial.chain = trials_.back().chain;
+  if (more && !goes_on) trial.chain = ++chains_;
+  if (more || goes_on) more_of_ = more ? session_ : 0;
+}
+
 // With all that came before it as parts of the same (E-26). Once: what cannot be undone stays as it
 // is, for people to look at.
 void ControllerService::give_back(const std::string& why) {
   who_ = "controller";
   probation_.reset();
+  const uint64_t chain = trials_.back().chain;
   Answer undone = base::Bytes();
   do {
     vm::Request request{.command = vm::Command::kUndo};
@@ -92,7 +101,7 @@ void ControllerService::give_back(const std::string& why) {
     if (recorder_ != nullptr) {
       undone.ok() ? recorder_->note(vm::encode(request)) : recorder_->forget_jobs();
     }
-  } while (undone.ok() && is_incomplete());
+  } while (undone.ok() && chain != 0 && !trials_.empty() && trials_.back().chain == chain);
   if (undone.ok()) return;
   not_undone_ = "the version on trial was not undone after " + why + ": " +
                 base::to_string(undone.error()) + "; `stvm undo` tries again";

@@ -1,7 +1,9 @@
 // E-23 to E-26: an edit whose units start one after the other, on whole controllers in one process.
 #include <gtest/gtest.h>
 
+#include "ir/bytecode/verify.h"
 #include "linker/edit_steps.h"
+#include "online_change/package/package.h"
 #include "tests/unit/fleet/fleet_of_plcs.h"
 
 namespace fleet_test {
@@ -169,6 +171,29 @@ TEST_F(Steps, E26_AConnectionThatEndsInTheMiddleTakesAllBack) {
   client = base::Error{base::Refusal::kNotRunning, "cut"};
   EXPECT_EQ(plc().status().running, before);
   EXPECT_EQ(edits(), 0);
+}
+
+// An edit of somebody else on top of one that has not come wholly: its trap is its own affair.
+TEST_F(Steps, E26_X7_ATrapOfAnotherEditLeavesWhatHasCome) {
+  start(chain(1), chain(10), StepOrder::kCalleesFirst);
+  base::Result<stvm::ControllerClient> ann = fleet_.connect("one", "ann");
+  ASSERT_TRUE(ann->status().ok());
+  ASSERT_TRUE(ann->stage(*fleet_.access().package(*ann->image(), 1), 0).ok());
+  ASSERT_TRUE(ann->make_switch(vm::kAllowOverrun | vm::kMoreToCome).ok());
+  const base::Digest incomplete = plc().status().running;
+  std::string traps = chain(1);
+  traps.replace(traps.find("c1();"), 5, "c1(); n := n / (n - n);");
+  base::Result<stvm::ControllerClient> eve = fleet_.connect("one", "eve");
+  ASSERT_TRUE(eve->status().ok());
+  const ir::VerifiedImage now = *ir::verify(*eve->image());
+  const ir::VerifiedImage next = plc::build(traps, &now.image());
+  const auto package = online_change::make_package(now.encoded(), next.encoded());
+  ASSERT_TRUE(eve->stage(online_change::encode(*package), 0).ok());
+  ASSERT_TRUE(eve->make_switch(vm::kAllowOverrun).ok());
+  plc().run(2);
+  plc().service().keep_up();
+  EXPECT_EQ(plc().status().running, incomplete);
+  EXPECT_EQ(edits(), 1);
 }
 
 // A trap of the last unit in its first cycles takes back what came before it, too.
