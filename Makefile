@@ -66,7 +66,7 @@ asan ubsan: setup
 
 empty :=
 one_of = ($(subst $(empty) ,|,$(1)))
-MEMORY := exec native runtime io resources exchange online_change references store workspace
+MEMORY := exec native runtime io resources exchange online_change references store fleet workspace
 asan-memory: setup
 	@cmake --preset asan >/dev/null
 	@cmake --build build/asan -j $(JOBS) --target $(MEMORY:%=test_%) golden fuzz_targets

@@ -22,6 +22,7 @@
 #include <iterator>
 #include <map>
 
+#include "base/wrapped.h"
 #include "bench/measure.h"
 #include "bench/pause_case.h"
 #include "bench/plain_method.h"
@@ -157,8 +158,8 @@ std::string row_text(const Row& row) {
   for (int way = 0; way < kWays; ++way) text += cell(row.us[way]) + " | ";
   for (int way = 0; way < kWays; ++way) text += cell(row.instructions[way], "%.0f") + " | ";
   for (int way = 0; way < 2; ++way) {
-    text += cell(static_cast<double>(row.predicted_ns[way]) / 1000) + " | " + ratio(row, way) +
-            " | ";
+    text +=
+        cell(static_cast<double>(row.predicted_ns[way]) / 1000) + " | " + ratio(row, way) + " | ";
   }
   return text + std::to_string(row.steps) + " | " + std::to_string(row.bytes) + " |\n";
 }
@@ -168,40 +169,50 @@ constexpr const char* kColumns =
     "predicted us, in place | ratio | predicted us, standby | ratio | steps | bytes |\n";
 constexpr const char* kLine = "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 
+std::string paragraph(const std::string& text) {
+  std::string lines;
+  for (const std::string& line : base::wrapped(text, 99)) lines += line + "\n";
+  return lines + "\n";
+}
+
 std::string report(const Options& options, const std::vector<Row>& rows,
                    const std::vector<Row>& others, const Row& instances) {
-  std::string text =
-      "# The pause of an online change\n\n"
-      "Written by `make bench-pause`. Measured on: " +
-      options.machine + ". Median of " + std::to_string(options.repeats) +
-      " switches, one pinned core, caches as the staging of the\nchange left them.\n\n"
+  std::string text = "# The pause of an online change\n\n";
+  text += paragraph("Written by `make bench-pause`. Measured on: " + options.machine +
+                    ". Median of " + std::to_string(options.repeats) +
+                    " switches, one pinned core, caches as the staging of the change left them.");
+  text += paragraph(
       "The program has N variables of type INT, each with a name; k of them, evenly spread, become "
-      "DINT. The pause is the time from the boundary\nuntil version 2 runs. *In place* and "
-      "*standby* "
-      "are the two strategies of `stvm change`; *plain* saves all values, switches and "
-      "restores\nall "
-      "of them by tables made beforehand, and exists in this measurement only (A18). Instructions "
-      "of the switch are counted by callgrind. Times are those of the wall clock: on a\nshared "
-      "machine, "
-      "rows of many milliseconds hold time of other programs.\n\n![pause](pause.svg)\n\n"
-      "| N | k |" +
-      std::string(kColumns) + "|---" + kLine;
+      "DINT. The pause is the time from the boundary until version 2 runs. *In place* and "
+      "*standby* are the two strategies of `stvm change`; *plain* saves all values, switches and "
+      "restores all of them by tables made beforehand, and exists in this measurement only (A18). "
+      "Instructions of the switch are counted by callgrind. Times are those of the wall clock: on "
+      "a shared machine, rows of many milliseconds hold time of other programs.");
+  text += "![pause](pause.svg)\n\n| N | k |" + std::string(kColumns) + "|---" + kLine;
   for (const Row& row : rows) text += row_text(row);
   text += "\nOther changes:\n\n| what |" + std::string(kColumns) + kLine;
   for (const Row& row : others) text += row_text(row);
-  text +=
-      "\n`predicted` is what a change is refused by when it, and half as much again, does not fit "
-      "the free time of the tightest task: the model\nof online_change/plan/pause.h at the pace "
-      "of this machine, which is measured when a change is staged first. `ratio` is what was "
-      "measured\nagainst it, or it against what was measured, whichever is more. By standby it is "
-      "of what the last pass found.\n\n" +
+  text += "\n" + paragraph(
+                     "`predicted` is what a change is refused by when it, and half as much again, "
+                     "does not fit "
+                     "the free time of the tightest task: the model of online_change/plan/pause.h "
+                     "at the pace of "
+                     "this machine, which is measured when a change is staged first. `ratio` is "
+                     "what was measured "
+                     "against it, or it against what was measured, whichever is more. By standby "
+                     "it is of what "
+                     "the last pass found. Below 20 us the first touch of cold caches counts most, "
+                     "and no ratio "
+                     "is promised: there the two are less than 12 us apart.");
+  std::string end = paragraph(
       std::to_string(instances.shape.instances) +
       " instances of a function block gain a variable inside their slack: " +
       cell(instances.us[kInPlace]) + " us in place, " + cell(instances.us[kStandby]) +
       " us by standby, " + cell(instances.us[kPlain]) +
-      " us by the plain method. In place their\ninitial values are written before the boundary "
-      "(A19).\n";
-  return text;
+      " us by the plain method. In place their initial values are written before the boundary "
+      "(A19).");
+  end.pop_back();
+  return text + end;
 }
 
 std::vector<Curve> curves_of(const std::vector<Row>& rows) {

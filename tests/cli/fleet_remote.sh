@@ -1,6 +1,6 @@
 #!/bin/sh
-# E-27, E-30: a fleet on other machines, over `ssh HOST stvm bridge`, with a stand-in for ssh. One host is
-# not there, and one says nothing.
+# E-27, E-30: a fleet on other machines, over `ssh HOST stvm bridge`, with a stand-in for ssh. One
+# host is not there, and one says nothing.
 . "$(dirname "$0")/lib.sh"
 
 cat >ssh <<SH

@@ -1,6 +1,6 @@
 #!/bin/sh
-# E-23 to E-26 at the command line: the order of the units of a fleet file, what is refused of it, and
-# an edit that comes step by step on controllers.
+# E-23 to E-26 at the command line: the order of the units of a fleet file, what is refused of it,
+# and an edit that comes step by step on controllers.
 . "$(dirname "$0")/lib.sh"
 
 # project FILE STEP GLOBALS: Main calls A, A calls B.

@@ -1,6 +1,6 @@
 #!/bin/sh
-# E-16 to E-18, E-22: the table of a fleet. Restricted, it takes additions only: the original against the new one, and each
-# controller's own against the new one, before a byte is sent.
+# E-16 to E-18, E-22: the table of a fleet. Restricted, it takes additions only: the original
+# against the new one, and each controller's own against the new one, before a byte is sent.
 . "$(dirname "$0")/lib.sh"
 
 # project FILE GLOBALS STEP: what A adds in each scan.
@@ -36,8 +36,8 @@ refused several.st '`level`: type INT -> DINT .*; `spare`: removed .*; `rate`: i
 stc build -q retyped.st -o retyped.img
 refused retyped.img '`level`: type INT -> DINT'
 
-# E-18: what a controller alone has stays, with its values. The table of another is not that of the edit: one `spare` is a
-# DINT, one stands elsewhere, one has another initial value.
+# E-18: what a controller alone has stays, with its values. The table of another is not that of
+# the edit: one `spare` is a DINT, one stands elsewhere, one has another initial value.
 project own.st "mine : DINT := 77; $table" 1
 project other_type.st 'level : INT; spare : DINT := 5; rate : REAL;' 1
 project other_order.st 'rate : REAL; level : INT; spare : INT := 5;' 1
@@ -89,8 +89,8 @@ said 'converted'
 expect 0 stvm get --dir again level
 said '^level=12$'
 
-# E-22: a file that says additions only, and is not: the controller compares what it runs with what it is given. The tool
-# cannot see it, since programs are compared as parts.
+# E-22: a file that says additions only, and is not: the controller compares what it runs with
+# what it is given. The tool cannot see it, since programs are compared as parts.
 project speaks.st "$table" 1
 sed 's/seen : INT/seen : DINT/' speaks.st >lies.st
 expect 7 stc fleet speaks.st lies.st -o lies.fleet

@@ -1,6 +1,6 @@
 #!/bin/sh
-# E-27, E-30, E-32: who has what, what differs, an edit taken back or accepted on many controllers, and
-# runs that go on where they ended. E-14: somebody is faster than the tool.
+# E-27, E-30, E-32: who has what, what differs, an edit taken back or accepted on many
+# controllers, and runs that go on where they ended. E-14: somebody is faster than the tool.
 . "$(dirname "$0")/lib.sh"
 
 # project FILE A B C MORE

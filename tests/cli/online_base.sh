@@ -1,5 +1,6 @@
 #!/bin/sh
-# E-16, E-17, E-19 to E-21: what may not be edited online is said while somebody edits, with place, code and way out.
+# E-16, E-17, E-19 to E-21: what may not be edited online is said while somebody edits, with
+# place, code and way out.
 . "$(dirname "$0")/lib.sh"
 
 cat >old.st <<'ST'
@@ -104,7 +105,8 @@ said 'R0504.*--target.*--online-base'
 expect 7 stc check good.st --online-base missing.img
 said 'R0501'
 
-# Of lists, namespaces, CONFIGURATION, RESOURCE and VAR_CONFIG, where they are declared; of several resources the one that runs.
+# Of lists, namespaces, CONFIGURATION, RESOURCE and VAR_CONFIG, where they are declared; of
+# several resources the one that runs.
 cat >places.st <<'ST'
 {attribute 'list' := 'Lot'}
 VAR_GLOBAL lot : INT; END_VAR
