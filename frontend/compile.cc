@@ -6,6 +6,7 @@
 #include "base/limits.h"
 #include "frontend/analysis.h"
 #include "frontend/coverage.h"
+#include "frontend/finished_bodies.h"
 #include "frontend/lex/declaration_index.h"
 #include "frontend/lower/body.h"
 #include "frontend/parse/address_map.h"
@@ -24,7 +25,6 @@ namespace {
 
 // For as many nodes as usual sources have of the largest kinds: growing copies all of them.
 void make_room(const base::SourceMap& sources, Tree& tree) {
-  constexpr size_t kBytesPerExpression = 12;
   constexpr size_t kBytesPerStatement = 48;
   constexpr size_t kBytesPerLiteral = 54;
   constexpr size_t kBytesPerSpec = 96;
@@ -32,7 +32,6 @@ void make_room(const base::SourceMap& sources, Tree& tree) {
   for (uint32_t file = 0; file < sources.file_count(); ++file) {
     if (sources.is_source(file)) bytes += sources.text(file).size();
   }
-  tree.exprs.reserve(tree.exprs.size() + bytes / kBytesPerExpression);
   tree.stmts.reserve(tree.stmts.size() + bytes / kBytesPerStatement);
   tree.literals.reserve(tree.literals.size() + bytes / kBytesPerLiteral);
   tree.specs.reserve(tree.specs.size() + bytes / kBytesPerSpec);
@@ -124,7 +123,8 @@ struct Analysed {
   TestProgram made;
   ResourceUses uses;
 };
-std::optional<Analysed> analyse(Purpose purpose, const Parsed& parsed,
+// `once`: nobody needs the bodies of the tree afterwards.
+std::optional<Analysed> analyse(Purpose purpose, Parsed& parsed, bool once,
                                 const CompileOptions& options, base::Diagnostics& diagnostics) {
   Sema sema(parsed.sources, parsed.tree, parsed.library_file, options, purpose, diagnostics);
   declare_all(sema);
@@ -133,7 +133,12 @@ std::optional<Analysed> analyse(Purpose purpose, const Parsed& parsed,
     coverage->begin(parsed.sources, parsed.tree, parsed.library_file, sema.program);
   }
   // Grows while bodies use functions in new instances.
-  for (uint32_t pou = 0; pou < sema.pous.size(); ++pou) lower_body(sema, pou);
+  std::optional<FinishedBodies> finished;
+  if (once && coverage == nullptr) finished.emplace(sema, parsed.tree);
+  for (uint32_t pou = 0; pou < sema.pous.size(); ++pou) {
+    lower_body(sema, pou);
+    if (finished) finished->finish(pou);
+  }
   check_whole(sema);
   if (coverage != nullptr) coverage->finish(sema.program);
   if (diagnostics.has_errors()) return std::nullopt;
@@ -146,7 +151,8 @@ std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& so
                                       base::Diagnostics& diagnostics) {
   const std::unique_ptr<Parsed> parsed = parse_project(sources, options, diagnostics);
   if (parsed == nullptr) return std::nullopt;
-  std::optional<Analysed> analysed = analyse(purpose, *parsed, options, diagnostics);
+  const bool once = purpose == Purpose::kRun;
+  std::optional<Analysed> analysed = analyse(purpose, *parsed, once, options, diagnostics);
   if (!analysed) return std::nullopt;
   return std::move(analysed->made);
 }
@@ -184,7 +190,7 @@ std::optional<Resources> compile_resources(const base::SourceMap& sources,
   Resources out;
   const bool several = resources_of(parsed->tree).size() > 1;
   if (!several || (!wanted.empty() && !named(wanted))) {
-    std::optional<Analysed> only = analyse(Purpose::kRun, *parsed, of_one, diagnostics);
+    std::optional<Analysed> only = analyse(Purpose::kRun, *parsed, true, of_one, diagnostics);
     if (!only) return std::nullopt;
     out.programs.push_back({"", {}, std::move(only->made.program), {}});
     return out;
@@ -192,7 +198,7 @@ std::optional<Resources> compile_resources(const base::SourceMap& sources,
   std::vector<ResourceUses> uses;
   for (const ResourceDecl& resource : resources_of(parsed->tree)) {
     of_one.resource = resource.name.text;
-    std::optional<Analysed> one = analyse(Purpose::kRun, *parsed, of_one, diagnostics);
+    std::optional<Analysed> one = analyse(Purpose::kRun, *parsed, false, of_one, diagnostics);
     if (!one) return std::nullopt;
     out.names.push_back(of_one.resource);
     uses.push_back(std::move(one->uses));

@@ -85,7 +85,7 @@ std::optional<Resident::Edit> Resident::read_edit(uint32_t number, std::string_v
   parse(sources, edit.text, tree, messages, lexing);
   known.swap(tree);
   edit.pous = std::move(known.pous);
-  sema_->notes_.resize(tree.exprs.size());
+  sema_->notes.grow(tree.exprs.end());
   sema_->specs_.resize(tree.specs.size());
   found_errors_ = messages.has_errors();
   if (!messages.all().empty() || tree.levels.size() != levels) return std::nullopt;

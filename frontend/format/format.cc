@@ -90,7 +90,7 @@ base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,
   auto formatted = format_tokens(sources, file, options, diagnostics);
   auto of_list = [](const auto& node) { return node.instruction; };
   bool rows_count = std::any_of(tree.stmts.begin(), tree.stmts.end(), of_list) ||
-                    std::any_of(tree.exprs.begin(), tree.exprs.end(), of_list);
+                    tree.exprs.any_of(of_list);
   if (!formatted.ok() || !rows_count) return formatted;
   // The ends of rows are part of an instruction list, and no token shows them.
   base::SourceMap result;

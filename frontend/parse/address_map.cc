@@ -141,11 +141,11 @@ void map_variables(AddressMap& map, PouDecl& pou) {
 
 void map_addresses(Tree& tree, base::Diagnostics& diagnostics) {
   AddressMap map(tree, diagnostics);
-  for (const Expr& expr : tree.exprs) {
-    if (expr.kind != ExprKind::kDirect) continue;
+  tree.exprs.each([&](const Expr& expr) {
+    if (expr.kind != ExprKind::kDirect) return;
     Direct& direct = tree.directs[expr.number];
     map.map(direct.address, direct.levels, expr.span);
-  }
+  });
   for (Spec& spec : tree.specs) {
     for (VarDecl& field : spec.fields) map.map(field.address, field.levels, field.span);
   }

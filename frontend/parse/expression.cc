@@ -231,19 +231,19 @@ ExprId Parser::error_expression() {
 }
 
 ExprId Parser::add_expression(const Expr& expr) {
-  make_room_for_one(tree_.exprs);
+  Expr added = expr;
   uint32_t below = height_below(expr);
   if (below >= base::kMaxExpressionHeight) {
     report(Code::kTooComplex, expr.span,
            "this expression applies more than " + std::to_string(base::kMaxExpressionHeight) +
                " operators to each other's results",
            "compute parts of it into variables first");
-    tree_.exprs.emplace_back().span = expr.span;
+    added = Expr();
+    added.span = expr.span;
   } else {
-    tree_.exprs.push_back(expr);
-    tree_.exprs.back().height = static_cast<uint16_t>(below + 1);
+    added.height = static_cast<uint16_t>(below + 1);
   }
-  return ExprId(static_cast<uint32_t>(tree_.exprs.size() - 1));
+  return tree_.exprs.add(added);
 }
 
 uint32_t Parser::height_below(const Expr& expr) const {

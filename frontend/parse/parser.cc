@@ -35,7 +35,6 @@ void parse(const base::SourceMap& sources, uint32_t file, Tree& tree,
   base::Diagnostics unheard;
   base::Diagnostics& heard = has_open_comment(diagnostics, before) ? unheard : diagnostics;
   constexpr size_t kMost = 1 << 20;  // a long file may have declarations only
-  make_room(tree.exprs, std::min(tokens.tokens.size() * 5 / 9, kMost));
   make_room(tree.stmts, std::min(tokens.tokens.size() / 10, kMost));
   Parser(sources, file, tokens, tree, heard).parse_file();
 }

@@ -81,6 +81,8 @@ PouDecl Parser::parse_pou(PouKind pou_kind, Range32 attributes) {
   pou.kind = pou_kind;
   pou.attributes = attributes;
   pou.scope = scope_;
+  const ExprStore::As declared(tree_.exprs, ExprStore::Use::kDeclarations);
+  const uint32_t of_bodies = tree_.exprs.of_bodies();
   parse_pou_header(pou);
   if (panic_) {  // the rest of the head line is lost, the body is not
     while (!on_new_line() && !is_statement_boundary(kind())) take();
@@ -92,6 +94,7 @@ PouDecl Parser::parse_pou(PouKind pou_kind, Range32 attributes) {
   --open_[static_cast<uint8_t>(form.end)];
   close_pou(opening, pou, form.end);
   pou.span = span_from({opening.begin});
+  pou.exprs = {of_bodies, tree_.exprs.of_bodies() - of_bodies};
   pou.content = content_of(first, pou);
   return pou;
 }
@@ -217,6 +220,7 @@ void Parser::parse_pou_body(PouDecl& pou) {
   base::SourcePos begin = here();
   const base::SourcePos code_begin = last_end();
   const size_t members = pou.members.size();
+  const ExprStore::As in_body(tree_.exprs, ExprStore::Use::kBodies);
   for (;;) {
     if (parse_inner(pou) || parse_chart_element(pou)) continue;
     bool drawn = pou.diagram != kNoDiagram;

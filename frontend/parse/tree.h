@@ -22,6 +22,7 @@
 #include "frontend/network/network.h"
 #include "frontend/parse/chart.h"
 #include "frontend/parse/code_nodes.h"
+#include "frontend/parse/expr_store.h"
 #include "ir/program/source_content.h"
 
 namespace frontend {
@@ -189,6 +190,7 @@ struct PouDecl {
   std::vector<Range32> usings;     // as in Scope
   Range32 attributes;
   ScopeId scope;  // of members too
+  Range32 exprs;  // numbers among all expressions of bodies (expr_store.h): of its own and members'
   ir::SourceContent content;  // without members: what no layout, comment or case changes (E-02)
 };
 
@@ -246,7 +248,7 @@ struct KeptResult {
 };
 
 struct Tree {
-  std::vector<Expr> exprs;
+  ExprStore exprs;
   std::vector<Stmt> stmts;
   std::vector<Spec> specs;
   std::vector<Literal> literals;

@@ -8,9 +8,9 @@ void Sema::report_not_supported() {
   auto report = [this](const char* what, base::SourceSpan span) {
     error(DiagnosticCode::kNotSupported, span, std::string(what) + " not supported yet");
   };
-  for (const Expr& expr : tree.exprs) {
+  tree.exprs.each([&](const Expr& expr) {
     if (expr.kind == ExprKind::kType) report("types as arguments are", expr.span);
-  }
+  });
 }
 
 }  // namespace frontend

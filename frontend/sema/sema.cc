@@ -12,8 +12,8 @@ Sema::Sema(const base::SourceMap& source_map, const Tree& syntax, uint32_t libra
       purpose_(purpose),
       library_file_(library_file),
       library_end_(source_map.file_count()),
-      specs_(syntax.specs.size()),
-      notes_(syntax.exprs.size()) {
+      specs_(syntax.specs.size()) {
+  notes.grow(syntax.exprs.end());
   program.name = options.name;
   ir::Type globals;
   globals.kind = ir::Kind::kGlobals;

@@ -18,6 +18,7 @@
 #include "frontend/sema/constant.h"
 #include "frontend/sema/follow_ups.h"
 #include "frontend/sema/namespaces.h"
+#include "frontend/sema/note_store.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/pools.h"
 #include "frontend/sema/start_values.h"
@@ -56,8 +57,7 @@ class Sema {
   TypeUse resolve(SpecId spec);
   std::string_view keep_name(std::string name);  // hidden_variables.cc
   std::optional<TypeUse> find_type(std::string_view qualified);
-  // Of an interface variable?
-  bool is_interface(ir::TypeId type) const;
+  bool is_interface(ir::TypeId type) const;  // of an interface variable?
   void check_containment();
 
   // --- variables and members (variables.cc)
@@ -162,6 +162,7 @@ class Sema {
   Namespaces namespaces{*this};
   Pools pools{*this};
   Addresses addresses;
+  NoteStore notes;
 
  private:
   friend class CommonUses;
@@ -374,10 +375,9 @@ class Sema {
   std::deque<Variable> variables_;  // stable addresses, as pous
   SpecInfo& spec_info(SpecId spec);
   Note& note(ExprId expr) {
-    return meaning_ != nullptr ? meaning_->notes[expr.index] : notes_[expr.index];
+    return meaning_ != nullptr ? meaning_->notes[expr.index] : notes[expr.index];
   }
   std::vector<SpecInfo> specs_;
-  std::vector<Note> notes_;
   std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> instances_;
   bool binds_at_start_ = false;  // what is initialised now may hold an unbound handle
   bool declared_ = false;        // all interfaces are resolved; later ones at once

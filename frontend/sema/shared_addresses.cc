@@ -73,17 +73,17 @@ void SharedAddresses::collect_variables() {
 
 void SharedAddresses::collect_direct() {
   std::set<decltype(place_key(Located()))> seen;
-  for (const Expr& expr : sema_.tree.exprs) {
-    if (expr.kind != ExprKind::kDirect) continue;
+  sema_.tree.exprs.each([&](const Expr& expr) {
+    if (expr.kind != ExprKind::kDirect) return;
     const ir::DirectAddress address = sema_.tree.directs[expr.number].address;
-    if (!can_share(address)) continue;
+    if (!can_share(address)) return;
     const ir::TypeId type = sema_.type_of_direct(address);
     const Located located{address, type, expr.span, ir::address_text(address)};
-    if (seen.contains(place_key(located))) continue;
-    if (!sema_.for_tests() && is_in_test(sema_.tree, expr.span.begin)) continue;
+    if (seen.contains(place_key(located))) return;
+    if (!sema_.for_tests() && is_in_test(sema_.tree, expr.span.begin)) return;
     seen.insert(place_key(located));
     places_.push_back({located, VarId(), address.bit_size});
-  }
+  });
 }
 
 void SharedAddresses::find() {

@@ -47,8 +47,13 @@ base::Result<Object> lower(const Program& program, PouId id) {
   return object;
 }
 
-base::Result<std::vector<Object>> lower_all(const Program& program,
-                                            const std::vector<bool>& left_out, uint32_t jobs) {
+namespace {
+
+// `done` hears of each POU whose object is made, on the thread that made it.
+template <class Done>
+base::Result<std::vector<Object>> lower_each(const Program& program,
+                                             const std::vector<bool>& left_out, uint32_t jobs,
+                                             Done done) {
   std::vector<uint32_t> numbers;
   for (uint32_t i = 0; i < program.pous.size(); ++i) {
     if (i >= left_out.size() || !left_out[i]) numbers.push_back(i);
@@ -59,6 +64,7 @@ base::Result<std::vector<Object>> lower_all(const Program& program,
     base::Result<Object> object = lower(program, PouId(numbers[i]));
     if (object.ok()) {
       objects[i] = std::move(*object);
+      done(numbers[i]);
     } else {
       errors[i] = object.error();
     }
@@ -67,6 +73,23 @@ base::Result<std::vector<Object>> lower_all(const Program& program,
     if (error) return std::move(*error);
   }
   return objects;
+}
+
+}  // namespace
+
+base::Result<std::vector<Object>> lower_all(const Program& program,
+                                            const std::vector<bool>& left_out, uint32_t jobs) {
+  return lower_each(program, left_out, jobs, [](uint32_t) {});
+}
+
+base::Result<std::vector<Object>> lower_all_away(Program& program,
+                                                 const std::vector<bool>& left_out, uint32_t jobs) {
+  return lower_each(program, left_out, jobs, [&](uint32_t number) {
+    Pou& pou = program.pous[number];
+    std::vector<Value>().swap(pou.values);
+    std::vector<Place>().swap(pou.places);
+    std::vector<Block>().swap(pou.blocks);
+  });
 }
 
 }  // namespace ir

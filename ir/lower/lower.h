@@ -17,5 +17,9 @@ base::Result<Object> lower(const Program& program, PouId pou);
 // of several errors the first POU's.
 base::Result<std::vector<Object>> lower_all(const Program& program,
                                             const std::vector<bool>& left_out, uint32_t jobs);
+// The same; gives the memory of each body back when its object is made. What remains of the program
+// is what the linker reads.
+base::Result<std::vector<Object>> lower_all_away(Program& program,
+                                                 const std::vector<bool>& left_out, uint32_t jobs);
 
 }  // namespace ir

@@ -39,10 +39,10 @@ void check_diagram(const frontend::network::Body& body) {
 
 void check_tree(const frontend::Tree& tree, size_t size) {
   for (const frontend::network::Body& body : tree.diagrams) check_diagram(body);
-  for (const frontend::Expr& expr : tree.exprs) {
+  tree.exprs.each([&](const frontend::Expr& expr) {
     base::check(expr.span.begin.offset <= size, "an expression begins inside its file");
     base::check(expr.height >= 1 && expr.height <= base::kMaxExpressionHeight, "height is limited");
-  }
+  });
   base::check(tree.types.empty() || !frontend::print(tree).empty(), "a tree has a text");
 }
 

@@ -21,8 +21,10 @@ base::Error source_errors(const base::Diagnostics& diagnostics) {
 
 namespace {
 
+enum class Bodies { kKept, kDropped };  // of the program, when there are objects
+
 // Without the POUs in `left_out`, by PouId.
-base::Result<Compiled> to_objects(ir::Program program, const Project& project,
+base::Result<Compiled> to_objects(ir::Program program, const Project& project, Bodies bodies,
                                   const std::vector<bool>& left_out = {}) {
 #ifdef NDEBUG
   constexpr bool verify_each = false;
@@ -33,7 +35,9 @@ base::Result<Compiled> to_objects(ir::Program program, const Project& project,
 #endif
   base::Status optimised = ir::optimise(program, project.passes, verify_each, project.jobs);
   if (!optimised.ok()) return optimised.error();
-  base::Result<std::vector<ir::Object>> objects = ir::lower_all(program, left_out, project.jobs);
+  base::Result<std::vector<ir::Object>> objects =
+      bodies == Bodies::kKept ? ir::lower_all(program, left_out, project.jobs)
+                              : ir::lower_all_away(program, left_out, project.jobs);
   if (!objects.ok()) return objects.error();
   return Compiled{std::move(program), std::move(*objects)};
 }
@@ -91,7 +95,7 @@ base::Result<Compiled> compile(const Project& project, base::Diagnostics& diagno
   std::optional<ir::Program> program =
       frontend::compile(project.sources, project.compile, diagnostics);
   if (!program) return source_errors(diagnostics);
-  return to_objects(std::move(*program), project);
+  return to_objects(std::move(*program), project, Bodies::kKept);
 }
 
 base::Result<std::vector<ResourceVersion>> build_resources(const Project& project,
@@ -110,7 +114,8 @@ base::Result<std::vector<ResourceVersion>> build_resources(const Project& projec
   std::vector<ResourceVersion> versions;
   uint32_t output_bytes = 0;
   for (frontend::ResourceProgram& made : resources->programs) {
-    base::Result<Compiled> compiled = to_objects(std::move(made.program), project, made.other_code);
+    base::Result<Compiled> compiled =
+        to_objects(std::move(made.program), project, Bodies::kDropped, made.other_code);
     if (!compiled.ok()) return compiled.error();
     auto devices = devices_of(project.devices, made.resource, resources->names);
     if (!devices.ok()) return devices.error();
@@ -148,7 +153,8 @@ base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics&
   std::optional<frontend::TestProgram> tests =
       frontend::compile_tests(project.sources, project.compile, diagnostics);
   if (!tests) return source_errors(diagnostics);
-  base::Result<Compiled> compiled = to_objects(std::move(tests->program), project);
+  base::Result<Compiled> compiled =
+      to_objects(std::move(tests->program), project, Bodies::kDropped);
   if (!compiled.ok()) return compiled.error();
   auto devices = devices_of(project.devices, {}, {});
   if (!devices.ok()) return devices.error();

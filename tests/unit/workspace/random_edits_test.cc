@@ -23,8 +23,8 @@ void expect_same(const std::string& path, uint32_t edit, const std::string& text
                                           << text;
 }
 
-// What a CONFIGURATION says (connections, tasks of blocks, VAR_CONFIG, VAR_ACCESS) is kept from edit
-// to edit beside the bodies. Few files have one, so each of them takes part, with many edits.
+// What a CONFIGURATION says (connections, tasks of blocks, VAR_CONFIG, VAR_ACCESS) is kept from
+// edit to edit beside the bodies. Few files have one, so each of them takes part, with many edits.
 bool has_configuration(const std::string& text) {
   for (const char* word : {"CONFIGURATION", "VAR_CONFIG", "VAR_ACCESS"}) {
     if (text.find(word) != std::string::npos) return true;
@@ -80,6 +80,20 @@ TEST(RandomEdits, PerformanceIncrementalBuildsEqualBuildsFromNothing) {
   EXPECT_GT(with_configuration, 100u);
   RecordProperty("followed", static_cast<int>(followed));
   RecordProperty("whole", static_cast<int>(whole));
+}
+
+// The corpus has many times the expressions that are given back at once; the resident compiler
+// keeps them all (frontend/finished_bodies.h).
+TEST(RandomEdits, PerformanceBodiesThatAreGivenBackAreNotMissed) {
+  base::SourceMap sources;
+  for (const std::string& path : test::sources_below("tests/corpus")) {
+    sources.add(path, test::read_file(path));
+  }
+  const workspace::Settings settings;
+  workspace::IncrementalBuild build(settings);
+  const test::Outcome again = test::build_again(build, sources);
+  ASSERT_TRUE(again.image.has_value()) << again.messages << again.refusal;
+  EXPECT_TRUE(again == test::build_from_nothing(sources, settings));
 }
 
 }  // namespace
