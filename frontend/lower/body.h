@@ -47,7 +47,6 @@ class Body {
     return note.constant || (evaluating_ && note.known != Known::kNo);
   }
   std::optional<Constant> run_alone(uint32_t local, base::SourceSpan span);
-
   // --- statements (statement.cc, for.cc, case.cc, assignment.cc)
   void statements(Range32 list);
   void statement(const Stmt& stmt);
@@ -184,8 +183,9 @@ class Body {
   // --- values (value.cc, operator.cc)
   // The scalar value of `expr` as `target`, converted and checked.
   ir::ValueId value(ExprId expr, ir::TypeId target);
-  // In its own type; literals take their default type.
-  Typed natural(ExprId expr);
+  Typed natural(ExprId expr);  // in its own type; literals take their default type
+  ir::ValueId stored(ExprId sum, ir::TypeId target);  // width.cc: an intermediate result
+  ir::ValueId computed_in(ExprId id, ir::TypeId type);
   ir::ValueId emit(ExprId expr, ir::TypeId own);
   ir::TypeId own_type(const Note& note, ir::TypeId target) const;
   ir::ValueId emit_bit(ExprId id);
@@ -205,6 +205,7 @@ class Body {
 
   // --- conversions (convert.cc)
   ir::ValueId convert(Typed from, ir::TypeId to, base::SourceSpan span);
+  bool fits(ir::TypeId from, ir::TypeId to, base::SourceSpan span);  // or says why not
   ir::ValueId check_range(ir::ValueId value, ir::TypeId from, ir::TypeId to);
   ir::ValueId machine_convert(ir::ValueId value, ir::Scalar from, ir::Scalar to,
                               bool truncate = false);
@@ -214,12 +215,11 @@ class Body {
   ir::ValueId time_to_time(Typed from, ir::TypeId to);
   ir::ValueId floor_modulo(ir::ValueId value, int64_t divisor);
   ir::ValueId narrow_character(ir::ValueId wide_character);
-  // Binary coded decimals (convert_bcd.cc).
-  ir::ValueId from_bcd(Typed from, ir::TypeId to);
+  ir::ValueId from_bcd(Typed from, ir::TypeId to);  // convert_bcd.cc
   ir::ValueId to_bcd(Typed from, ir::TypeId to);
   // Traps unless it holds.
   void require(ir::ValueId condition, ir::TrapKind kind = ir::TrapKind::kConversion);
-  // Strings (string_convert.cc).
+  // --- of strings (string_convert.cc)
   ir::Place to_string(const Expr& call, const Conversion& conversion, ir::TypeId type);
   ir::Place string_to_string(ExprId source, ir::TypeId type);
   void write_text(const ir::Place& text, Typed source);

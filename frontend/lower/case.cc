@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "frontend/lower/body.h"
+#include "frontend/sema/width.h"
 
 namespace frontend {
 
@@ -50,6 +51,7 @@ void Body::case_statement(const Stmt& stmt) {
                 "the selector is `" + sema_.type_text(type) + "`");
   }
   if (!type.valid() || !usable) type = elementary(ir::Kind::kDint);
+  if (usable) type = computed_type(sema_, sema_.infer(stmt.value));
   ir::ValueId selector = value(stmt.value, usable ? type : ir::TypeId());
   if (!usable) selector = zero(type);
   std::vector<ir::BlockId> arms;

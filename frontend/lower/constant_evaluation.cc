@@ -1,6 +1,7 @@
 // Constant calls: `N : INT := MAX(A, 3)` is lowered to a function of its own, which the
 // evaluator runs. So there is one definition of what each standard function does.
 #include "frontend/lower/body.h"
+#include "frontend/sema/width.h"
 #include "ir/program/evaluate.h"
 
 namespace frontend {
@@ -17,7 +18,9 @@ std::optional<Constant> Body::evaluate(Sema& sema, ExprId id, ir::TypeId context
   base::SourceSpan span = sema.tree[id].span;
   body.line_end_ = span.begin.offset;
   Note note = sema.infer(id);
-  ir::TypeId type = without_range(sema.program.types, body.own_type(note, context));
+  const bool wide = note.width == Width::kWide;
+  ir::TypeId type = without_range(sema.program.types,
+                                  wide ? computed_type(sema, note) : body.own_type(note, context));
   if (sema.program.types.is_scalar(type)) {
     ir::ValueId value = body.emit(id, type);
     ir::Place result = body.temporary_place(type);

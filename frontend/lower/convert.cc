@@ -2,6 +2,7 @@
 // docs/LANGUAGE.md: reals round half to even and trap when out of range,
 // integers keep their low bits, times count in the unit of their type.
 #include "frontend/lower/body.h"
+#include "frontend/sema/width.h"
 #include "ir/types/time_units.h"
 
 namespace frontend {
@@ -57,22 +58,25 @@ ir::ValueId Body::convert(Typed from, ir::TypeId to, base::SourceSpan span) {
   if (types().is_reference(from.type) || types().is_reference(to)) {
     return convert_reference(from, to, span);
   }
-  switch (implicit_fit(types(), from.type, to, sema_.options.dialect)) {
+  if (!fits(from.type, to, span)) return zero(to);
+  ir::ValueId out = machine_convert(from.value, scalar(from.type), scalar(to));
+  return check_range(out, from.type, to);
+}
+
+bool Body::fits(ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
+  switch (implicit_fit(types(), from, to, sema_.options.dialect)) {
     case Fit::kNone:
-      sema_.error(
-          DiagnosticCode::kTypeMismatch, span,
-          "`" + sema_.type_text(from.type) + "` does not go with `" + sema_.type_text(to) + "`",
-          sema_.conversion_fix(to));
-      return zero(to);
+      sema_.error(DiagnosticCode::kTypeMismatch, span,
+                  "`" + sema_.type_text(from) + "` does not go with `" + sema_.type_text(to) + "`",
+                  sema_.conversion_fix(to));
+      return false;
     case Fit::kNarrowing:
-      if (!sema_.allow_narrowing(from.type, to, span)) return zero(to);
-      break;
+      return sema_.allow_narrowing(from, to, span);
     case Fit::kSame:
     case Fit::kLossless:
       break;
   }
-  ir::ValueId out = machine_convert(from.value, scalar(from.type), scalar(to));
-  return check_range(out, from.type, to);
+  return true;
 }
 
 ir::ValueId Body::check_range(ir::ValueId value, ir::TypeId from, ir::TypeId to) {
@@ -177,7 +181,9 @@ ir::ValueId Body::emit_conversion(const Expr& expr, const Conversion& conversion
   const Note& note = sema_.infer(argument);
   bool named = !conversion.any_source && ir::is_elementary(conversion.from);
   if (is_string(types(), note.type) && !named) return from_string(argument, to);
-  ir::TypeId from = without_range(types(), named ? elementary(conversion.from) : note.type);
+  // TO_DINT(a * b) converts what was computed, INT_TO_DINT takes an INT.
+  const ir::TypeId given = computed_type(sema_, note);
+  ir::TypeId from = without_range(types(), named ? elementary(conversion.from) : given);
   ir::ValueId source = value(argument, from);
   set_line(expr.span);
   if (conversion.bcd == Conversion::Bcd::kFrom) return from_bcd({source, from}, to);

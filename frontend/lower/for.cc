@@ -11,6 +11,7 @@ struct Body::ForLoop {
   ir::Scalar machine = ir::Scalar::kI16;
   Limits limits;
   ir::ValueId to;
+  ir::Scalar bound = ir::Scalar::kI16;  // what `to` is compared in: the variable's, or DINT
   std::optional<Wide> constant_to;
   std::optional<Wide> constant_step;
   ir::ValueId step;  // otherwise; signed, as wide as the variable
@@ -85,9 +86,12 @@ bool Body::for_head(const Stmt& stmt, ForLoop& loop) {
   const ir::Type& declared = types()[to->type];
   if (declared.kind == ir::Kind::kSubrange) loop.limits = {declared.low, declared.high};
   ir::ValueId from = value(stmt.from, to->type);
-  loop.to = value(stmt.to, loop.type);
+  const bool wide = ir::scalar_size(loop.machine) < 4 && sema_.infer(stmt.to).width == Width::kWide;
+  const ir::TypeId bound = wide ? elementary(ir::Kind::kDint) : loop.type;
+  loop.to = value(stmt.to, bound);
+  loop.bound = scalar(bound);
   if (sema_.infer(stmt.to).type.valid() && sema_.infer(stmt.to).constant) {
-    if (auto known = sema_.fold(stmt.to, loop.type)) loop.constant_to = known->integer;
+    if (auto known = sema_.fold(stmt.to, bound)) loop.constant_to = known->integer;
   }
   for_step(stmt, loop);
   set_line(stmt.span);
@@ -119,9 +123,10 @@ void Body::for_step(const Stmt& stmt, ForLoop& loop) {
 }
 
 void Body::for_test(const ForLoop& loop, ir::BlockId body, ir::BlockId exit) {
-  ir::ValueId now = build_.load(loop.variable, loop.machine);
-  auto not_above = [&] { return build_.compare(ir::Op::kLe, loop.machine, now, loop.to); };
-  auto not_below = [&] { return build_.compare(ir::Op::kLe, loop.machine, loop.to, now); };
+  const ir::ValueId variable = build_.load(loop.variable, loop.machine);
+  const ir::ValueId now = machine_convert(variable, loop.machine, loop.bound);
+  auto not_above = [&] { return build_.compare(ir::Op::kLe, loop.bound, now, loop.to); };
+  auto not_below = [&] { return build_.compare(ir::Op::kLe, loop.bound, loop.to, now); };
   if (loop.constant_step) {
     build_.branch(*loop.constant_step > 0 ? not_above() : not_below(), body, exit);
     return;

@@ -4,6 +4,7 @@
 #include "frontend/lower/body.h"
 #include "frontend/sema/common_uses.h"
 #include "frontend/sema/shared_addresses.h"
+#include "frontend/sema/width.h"
 
 namespace frontend {
 
@@ -150,7 +151,13 @@ ir::Place Body::index_place(const Expr& expr) {
     if (sema_.infer(index).constant) {
       at.constant_index = sema_.fold_integer(index).value_or(0);
     } else {
-      at.value = natural(index).value;
+      const auto& dim = types()[array].dims[i];
+      const Expr& sum = tree_[index];
+      const Note note = sema_.infer(index);
+      const bool own =
+          note.width == Width::kWide && sum.kind == ExprKind::kBinary &&
+          wraps_outside(sema_, note, sum, sema_.infer(sum.operand), {dim.low, dim.high});
+      at.value = own ? computed_in(index, note.type) : natural(index).value;
     }
     place.steps.push_back(at);
   }

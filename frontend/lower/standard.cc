@@ -1,5 +1,8 @@
 // Standard functions with scalar results.
+#include <algorithm>
+
 #include "frontend/lower/body.h"
+#include "frontend/sema/width.h"
 
 namespace frontend {
 namespace {
@@ -120,7 +123,15 @@ ir::ValueId Body::real_function(const std::vector<ExprId>& args, const stdlib::F
 
 // ADD(a, b, c) is a + b + c.
 ir::ValueId Body::fold_operator(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId own) {
-  if (args.size() == 2 && op != BinaryOp::kAnd && op != BinaryOp::kOr && op != BinaryOp::kXor) {
+  // As DINT, though no argument is one: computed_in() has asked for it.
+  const bool wide = scalar(own) == ir::Scalar::kI32 && sema_.options.dialect != Dialect::kIec &&
+                    std::all_of(args.begin(), args.end(), [&](ExprId arg) {
+                      const Note& note = sema_.infer(arg);
+                      return is_small(sema_, note) || note.flex == Flex::kInteger;
+                    });
+  const auto operand = [&](ExprId arg) { return wide ? computed_in(arg, own) : value(arg, own); };
+  if (args.size() == 2 && !wide && op != BinaryOp::kAnd && op != BinaryOp::kOr &&
+      op != BinaryOp::kXor) {
     return emit_arithmetic(op, args[0], args[1], own);
   }
   Traits traits = traits_of(types(), own);
@@ -129,9 +140,9 @@ ir::ValueId Body::fold_operator(const std::vector<ExprId>& args, BinaryOp op, ir
     for (size_t i = 1; i < args.size(); ++i) sum = time_arithmetic(op, sum, natural(args[i]));
     return sum.value;
   }
-  ir::ValueId result = value(args[0], own);
+  ir::ValueId result = operand(args[0]);
   for (size_t i = 1; i < args.size(); ++i) {
-    result = number_op(op, own, result, value(args[i], own));
+    result = number_op(op, own, result, operand(args[i]));
   }
   return result;
 }
@@ -195,13 +206,17 @@ ir::ValueId Body::multiplex(const std::vector<ExprId>& args, ir::TypeId own) {
 ir::ValueId Body::compare_chain(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId common) {
   if (!common.valid()) return zero(elementary(ir::Kind::kBool));
   bool text = is_string(types(), common);
+  Note meeting;
+  meeting.type = common;
+  const bool wide = is_small(sema_, meeting) && has_wide(sema_, args);
+  if (wide) common = elementary(ir::Kind::kDint);
   ir::ValueList values;
   std::vector<ir::Place> places;
   for (ExprId arg : args) {
     if (text) {
       places.push_back(place(arg));
     } else {
-      values.push_back(value(arg, common));
+      values.push_back(wide ? computed_in(arg, common) : value(arg, common));
     }
   }
   ir::ValueId all;

@@ -4,6 +4,7 @@
 
 #include "frontend/lower/body.h"
 #include "frontend/sema/operators.h"
+#include "frontend/sema/width.h"
 
 namespace frontend {
 namespace {
@@ -79,7 +80,8 @@ ir::Place Body::to_string(const Expr& call, const Conversion& conversion, ir::Ty
   const Note& note = sema_.infer(argument);
   bool named = !conversion.any_source && ir::is_elementary(conversion.from);
   if (is_string(types(), note.type) && !named) return string_to_string(argument, type);
-  ir::TypeId from = without_range(types(), named ? elementary(conversion.from) : note.type);
+  ir::TypeId from =
+      without_range(types(), named ? elementary(conversion.from) : computed_type(sema_, note));
   Typed source{value(argument, from), from};
   ir::Place out = temporary_place(type);
   if (wide(type) && is_character_kind(types().root_kind(from))) {

@@ -1,5 +1,6 @@
 // Scalar values of expressions, in the type that their place asks for.
 #include "frontend/lower/body.h"
+#include "frontend/sema/operand_warnings.h"
 
 namespace frontend {
 
@@ -22,6 +23,12 @@ void warn_of_half_times(Sema& sema, ir::TypeId from, ir::TypeId to, base::Source
                "`" + sema.type_text(source) + "` is 64 bits of nanoseconds; a `" +
                    sema.type_text(target) + "` behind its address is a part of them",
                "convert the value, for example with TO_" + sema.type_text(target));
+}
+
+bool is_wider(const ir::TypeTable& types, ir::TypeId target, ir::TypeId own) {
+  const Traits traits = traits_of(types, target);
+  if (!traits.number() && !traits.bits) return false;
+  return traits.real || ir::scalar_size(types.scalar(target)) > ir::scalar_size(types.scalar(own));
 }
 
 }  // namespace
@@ -81,6 +88,9 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
     return zero(target);
   }
   warn_of_half_times(sema_, note.type, target, expr.span);
+  if (note.width == Width::kWide && !types().is_reference(target)) return stored(id, target);
+  if (note.width == Width::kWraps && is_wider(types(), target, own))
+    check_wrapped(sema_, id, "widened");
   if (types().is_reference(own) && !types().is_reference(target) && is_distance(id)) {
     ir::TypeId number = elementary(ir::Kind::kDword);
     return convert({convert_reference({emit(id, own), own}, number, expr.span), number}, target,
@@ -94,6 +104,10 @@ Typed Body::natural(ExprId id) {
   ir::TypeId type = without_range(types(), note.type);
   if (!type.valid() || !types().is_scalar(type)) {
     return {zero({}), elementary(ir::Kind::kDint)};
+  }
+  if (note.width == Width::kWide) {
+    const ir::TypeId dint = elementary(ir::Kind::kDint);
+    return {computed_in(id, dint), dint};
   }
   return {value(id, type), type};
 }

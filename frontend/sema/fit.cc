@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "frontend/sema/sema.h"
+#include "frontend/sema/width.h"
 
 namespace frontend {
 namespace {
@@ -132,6 +133,7 @@ std::optional<std::string> Sema::fit_text(const Constant& value, ir::TypeId targ
 std::optional<uint64_t> Sema::fold_bits(ExprId expr, ir::TypeId target, Known least) {
   auto value = fold(expr, target, least);
   if (!value) return std::nullopt;
+  if (const auto cut = cut_to(*this, *value, infer(expr), target)) return cut;
   return fit(*value, target, tree[expr].span);
 }
 

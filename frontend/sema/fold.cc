@@ -4,6 +4,7 @@
 
 #include "frontend/sema/folder.h"
 #include "frontend/sema/operators.h"
+#include "frontend/sema/width.h"
 
 namespace frontend {
 std::optional<Constant> Folder::fold(ExprId id) {
@@ -201,7 +202,7 @@ std::optional<Constant> Folder::unary(ExprId id, const Expr& expr) {
   if (!operand) return std::nullopt;
   Constant result = *operand;
   const Note& note = sema_.infer(id);
-  if (note.flex == Flex::kNone) result.type = note.type;
+  if (note.flex == Flex::kNone) result.type = computed_type(sema_, note);
   if (expr.unary == UnaryOp::kPlus) return result;
   result.pattern = false;
   if (expr.unary == UnaryOp::kNegate) {
@@ -233,7 +234,7 @@ std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
   if (operator_class(expr.binary) == OperatorClass::kComparison) {
     context_ = sema_.unify(sema_.infer(expr.operand), sema_.infer(expr.right), expr.span).type;
   } else if (note.flex == Flex::kNone) {
-    context_ = note.type;
+    context_ = computed_type(sema_, note);
   }
   auto a = fold(expr.operand);
   auto b = fold(expr.right);
@@ -244,7 +245,7 @@ std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
     } else {
       Constant result;
       result.flex = note.flex;
-      result.type = note.type;
+      result.type = computed_type(sema_, note);
       bool real = note.flex == Flex::kNone ? traits_of(sema_.program.types, note.type).real
                                            : note.flex == Flex::kReal || context_is_real();
       bool scaled = a->form == Constant::Form::kReal || b->form == Constant::Form::kReal;

@@ -2,6 +2,7 @@
 // Each expression is visited once; the note stays.
 #include "frontend/sema/sema.h"
 #include "frontend/sema/shared_addresses.h"
+#include "frontend/sema/width.h"
 
 namespace frontend {
 namespace {
@@ -336,6 +337,7 @@ Note Sema::part_note(const Note& whole, uint32_t number, uint8_t size) const {
   Note note = whole;
   note.progress = Progress::kNew;
   note.flex = Flex::kNone;
+  note.width = Width::kOwn;
   note.constant = false;
   note.variable = {};
   note.property = kNoPou;
@@ -364,6 +366,7 @@ Note Sema::infer_unary(const Expr& expr) {
   } else {
     good = traits.number() || traits.duration || (traits.bits && options.dialect != Dialect::kIec);
   }
+  if (good && expr.unary == UnaryOp::kNegate) note.width = width_of(*this, note, true);
   if (good) return note;
   error(DiagnosticCode::kBadOperand, expr.span,
         std::string(expr.unary == UnaryOp::kNot ? "NOT" : "a sign") + " is not defined for `" +

@@ -63,6 +63,7 @@ Note Sema::infer_conversion(const Expr& expr, const Conversion& conversion) {
   note.known = std::min(note.known, Known::kByCall);
   mark_enabled(expr, note);
   note.flex = Flex::kNone;
+  note.width = Width::kOwn;
   note.type = conversion.to == ir::Kind::kString    ? program.types.string(capacity)
               : conversion.to == ir::Kind::kWstring ? program.types.wstring(capacity)
                                                     : program.types.elementary(conversion.to);

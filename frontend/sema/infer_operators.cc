@@ -3,6 +3,7 @@
 
 #include "frontend/sema/operand_warnings.h"
 #include "frontend/sema/operators.h"
+#include "frontend/sema/width.h"
 
 namespace frontend {
 namespace {
@@ -145,13 +146,18 @@ Note Sema::infer_binary(const Expr& expr) {
     }
     case OperatorClass::kComparison:
       check_real_equality(*this, expr);
+      check_wrapped(*this, expr.operand, "compared");
+      check_wrapped(*this, expr.right, "compared");
       return infer_comparison(expr.binary, left, right, expr.span);
     case OperatorClass::kArithmetic: {
       Note note = infer_arithmetic(expr.binary, left, right, expr.span);
+      note = widened_by(*this, widened_by(*this, note, expr.operand), expr.right);
       bool divides = expr.binary == BinaryOp::kDiv || expr.binary == BinaryOp::kMod;
       if (divides && note.type.valid() && right.constant && !left.constant) {
         check_divisor(*this, expr.right);
       }
+      if (divides) note = quotient_width(*this, note, expr, left, right);
+      if (divides) check_wrapped(*this, expr.operand, "divided");
       if (divides && !right.constant && note.type.valid() &&
           !traits_of(program.types, note.type).real) {
         note.can_trap = true;
@@ -173,7 +179,11 @@ Note Sema::infer_bitwise(BinaryOp op, const Note& left, const Note& right, base:
   if (!note.type.valid()) return {};
   Traits traits = traits_of(program.types, note.type);
   bool integers = traits.integer && (options.dialect != Dialect::kIec || note.flex != Flex::kNone);
-  if (traits.boolean || (!lazy && (traits.bits || integers))) return note;
+  if (traits.boolean || (!lazy && (traits.bits || integers))) {
+    const bool wide = left.width == Width::kWide || right.width == Width::kWide;
+    if (wide && is_small(*this, note)) note.width = Width::kWide;
+    return note;
+  }
   error(DiagnosticCode::kBadOperand, span,
         std::string(operator_text(op)) + " is not defined for `" + type_text(note.type) + "`",
         lazy ? "both operands have to be BOOL" : "use BOOL or bit strings");
@@ -223,9 +233,10 @@ Note Sema::infer_arithmetic(BinaryOp op, const Note& left, const Note& right,
     if (!note.type.valid()) return {};
     Traits traits = traits_of(program.types, note.type);
     bool number = traits.number() || (traits.bits && options.dialect != Dialect::kIec);
-    if (number && !(op == BinaryOp::kMod && traits.real)) return note;
-    if (traits.enumeration && options.dialect != Dialect::kIec) {
-      note.type = program.types[without_range(program.types, note.type)].base;
+    const bool of_enumeration = traits.enumeration && options.dialect != Dialect::kIec;
+    if (of_enumeration) note.type = program.types[without_range(program.types, note.type)].base;
+    if (of_enumeration || (number && !(op == BinaryOp::kMod && traits.real))) {
+      note.width = width_of(*this, note, op != BinaryOp::kDiv && op != BinaryOp::kMod);
       return note;
     }
   }

@@ -2,7 +2,9 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "frontend/sema/operand_warnings.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/width.h"
 
 namespace frontend {
 
@@ -82,6 +84,7 @@ Note Sema::infer_standard(const Expr& expr, const Callee& callee) {
     note.type = callee.typed;
     note.flex = Flex::kNone;
   }
+  note.width = standard_width(*this, row, args, note, callee.typed.valid());
   note.known = all.known;
   note.bit_size = 0;
   note.calls = all.calls;
@@ -90,6 +93,7 @@ Note Sema::infer_standard(const Expr& expr, const Callee& callee) {
   note.variable = {};
   note.progress = Progress::kNew;
   mark_enabled(expr, note);
+  if (note.known == Known::kNo && all.known != Known::kNo) note.width = Width::kOwn;  // EN, ENO
   return note;
 }
 
@@ -184,6 +188,7 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
       Traits count = traits_of(program.types, argument(1).type);
       note.type = without_range(program.types, note.type);
       if (!traits.bits && !traits.integer) return refuse(note);
+      if (row.id == stdlib::FunctionId::kShr) check_wrapped(*this, args[0], "shifted right");
       return count.integer || count.bits ? note : refuse(argument(1));
     }
     case FunctionRule::kSelect:

@@ -174,9 +174,18 @@ enum class Known : uint8_t {
   kConstant,
 };
 
+// Of an integer or bit string below 32 bits: what an operator does with it (docs/LANGUAGE.md,
+// "Width of intermediate results").
+enum class Width : uint8_t {
+  kOwn,    // it has the width of its type
+  kWide,   // codesys, twincat: an operator made it, as a DINT; it counts as its `type`
+  kWraps,  // iec: it is what `+`, `-` or `*` has cut to its type
+};
+
 struct Note {
   ir::TypeId type;  // invalid: erroneous, already reported
   Flex flex = Flex::kNone;
+  Width width = Width::kOwn;
   Progress progress = Progress::kNew;
   bool constant = false;
   Known known = Known::kNo;  // kConstant where `constant` is set

@@ -104,4 +104,13 @@ void check_real_equality(Sema& sema, const Expr& expr) {
                "compare the distance: ABS(a - b) < limit");
 }
 
+void check_wrapped(Sema& sema, ExprId operand, std::string_view used) {
+  const Note& note = sema.infer(operand);
+  if (note.width != Width::kWraps || note.constant) return;
+  sema.warning(DiagnosticCode::kCutBeforeUse, sema.tree[operand].span,
+               "the result is cut to `" + sema.type_text(note.type) + "` before it is " +
+                   std::string(used),
+               "convert an operand, so that the operator has the width that is needed: TO_DINT(a)");
+}
+
 }  // namespace frontend

@@ -1,4 +1,4 @@
-// What operators may do, but is hardly meant: W0002, W0006, W0016.
+// What operators may do, but is hardly meant: W0002, W0006, W0016, W0084.
 #pragma once
 
 #include "frontend/sema/sema.h"
@@ -9,5 +9,7 @@ namespace frontend {
 void check_right_operand(Sema& sema, const Expr& expr);
 void check_divisor(Sema& sema, ExprId divisor);  // is known
 void check_real_equality(Sema& sema, const Expr& expr);
+// Dialect iec: an operand that was cut to its type before it is `used`: "compared", "widened".
+void check_wrapped(Sema& sema, ExprId operand, std::string_view used);
 
 }  // namespace frontend

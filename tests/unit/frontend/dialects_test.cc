@@ -24,7 +24,8 @@ std::set<std::string> codes_for(const DialectRule& rule, Dialect dialect) {
     const base::DiagnosticRow& row = base::diagnostic_row(message.code);
     bool matters = row.severity == base::Severity::kError ||
                    message.code == base::DiagnosticCode::kImplicitNarrowing ||
-                   message.code == base::DiagnosticCode::kSignChanged;
+                   message.code == base::DiagnosticCode::kSignChanged ||
+                   message.code == base::DiagnosticCode::kCutBeforeUse;
     if (matters) out.insert(std::string(row.code));
   }
   return out;

@@ -18,12 +18,13 @@ TEST(Literals, TakeTheTypeOfTheirContext) {
   EXPECT_EQ(run.number("P.i"), INT64_MIN);
 }
 
+// Where it is stored (run/width_codesys).
 TEST(Arithmetic, WrapsInTheDeclaredWidth) {
   Controlled run("a : INT := 32767; b : USINT; c : LINT; d : INT := -7;",
                  "c := a + 1; a := a + 1; b := b - 1; d := d / 2;");
   run.scan();
   EXPECT_EQ(run.number("P.a"), -32768);
-  EXPECT_EQ(run.number("P.c"), -32768);
+  EXPECT_EQ(run.number("P.c"), 32768);
   EXPECT_EQ(run.number("P.b"), 255);
   EXPECT_EQ(run.number("P.d"), -3);
 }

@@ -1,0 +1,41 @@
+// Width of intermediate results (docs/LANGUAGE.md). Dialects codesys and twincat compute integers
+// and bit strings below 32 bits as DINT and cut them where they are stored, passed or converted;
+// iec computes them in their own type.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+
+// An integer or a bit string below 32 bits?
+bool is_small(const Sema& sema, const Note& note);
+// Of the result of an operator whose type is the note's. `can_grow`: it may leave that type.
+Width width_of(const Sema& sema, const Note& note, bool can_grow);
+// The type that code computes the expression in.
+ir::TypeId computed_type(const Sema& sema, const Note& note);
+// A quotient that fits the type of its operands is computed in it: every rest, and what is not the
+// most negative number divided by -1.
+Note quotient_width(const Sema& sema, Note note, const Expr& expr, const Note& left,
+                    const Note& right);
+// Of what a standard function gives whose result is `note`. Those that CODESYS calls operators
+// (ADD, MAX, SEL, ABS, ...) compute as operators do; arguments of the others are passed.
+Width standard_width(Sema& sema, const stdlib::FunctionRow& row, const std::vector<ExprId>& args,
+                     const Note& note, bool typed);
+// Was one of them made by an operator that computes it as DINT?
+bool has_wide(Sema& sema, const std::vector<ExprId>& operands);
+// A literal that does not fit the type of the other operand gives the operation its own type: DINT,
+// or a longer one.
+Note widened_by(const Sema& sema, Note note, ExprId operand);
+// Is an index that wraps in its own type outside of these bounds then? `i + 1`, `i - 1`: then there
+// is no need for a wide one, which traps in the same cases.
+bool wraps_outside(const Sema& sema, const Note& note, const Expr& index, const Note& left,
+                   Limits bounds);
+// The low bits that `target` has room for, where `value` is an intermediate result that is stored
+// there; nothing where the usual rules apply.
+std::optional<uint64_t> cut_to(const Sema& sema, const Constant& value, const Note& note,
+                               ir::TypeId target);
+
+}  // namespace frontend
