@@ -25,6 +25,7 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/online_change/apply/losses.cc ${CMAKE_SOURCE_DIR}/online_change/apply/chart*.cc
      ${CMAKE_SOURCE_DIR}/online_change/apply/migrator.cc
      ${CMAKE_SOURCE_DIR}/online_change/apply/leaving.cc
+     ${CMAKE_SOURCE_DIR}/online_change/apply/plan_edit.cc
      ${CMAKE_SOURCE_DIR}/online_change/apply/values_back.cc
      ${CMAKE_SOURCE_DIR}/online_change/apply/pace.cc
      ${CMAKE_SOURCE_DIR}/online_change/apply/kept_data.cc

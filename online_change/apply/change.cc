@@ -11,7 +11,6 @@
 #include "base/tool_limits.h"
 #include "online_change/apply/losses.h"
 #include "online_change/apply/pending.h"
-#include "online_change/apply/values_back.h"
 #include "online_change/plan/pause.h"
 
 namespace online_change {
@@ -45,8 +44,7 @@ Change::~Change() = default;
 template <class Step>
 auto Change::guarded(Step step) -> decltype(step()) {
   return base::within_memory(step, [this]() -> decltype(step()) {
-    // What FB_Exit has left already is made again; where nothing has, this does nothing.
-    if (pending_ && pending_->leaves_at(state_)) controller_.construct();
+    if (pending_) put_back_kept();  // what FB_Exit has written already
     abandon();
     return base::Error{base::Refusal::kNoMemory, {}};
   });
@@ -61,13 +59,18 @@ base::Error Change::no_boundary() {
   return {base::Refusal::kBusy, "a task is inside a scan; the switch waits for a boundary"};
 }
 
+// Its start code would run as the new version's, and when that traps, what it writes would stay.
+base::Error Change::starts_anew() {
+  return {base::Refusal::kBusy, "the program is started anew; the switch waits for its next cycle"};
+}
+
 base::Error Change::abandoned(const char* where) const {
   return {base::Refusal::kDeadline,
           std::string("the change was abandoned ") + where + "; the old program runs on"};
 }
 
 base::Status Change::stage(base::ByteSpan package, Strategy strategy,
-                           const AtBoundary& at_boundary, std::optional<size_t> taken_out) {
+                           const AtBoundary& at_boundary, TakenOut taken_out) {
   if (prepares()) {
     return base::Error{base::Refusal::kChangePending, std::string("another change is ") +
                                                           state_name(state_) +
@@ -83,7 +86,7 @@ base::Status Change::stage(base::ByteSpan package, Strategy strategy,
 }
 
 base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy,
-                                 const AtBoundary& at_boundary, std::optional<size_t> taken_out) {
+                                 const AtBoundary& at_boundary, TakenOut taken_out) {
   const ir::VerifiedImage& before = controller_.verified();
   base::Result<Package> package = decode(bytes, before.encoded());
   if (!package.ok()) return package.error();
@@ -107,10 +110,7 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy,
     base::Status sound = check_package(*package, before.image(), image->image());
     if (!sound.ok()) return sound;
   }
-  if (taken_out && *taken_out < below_.size()) {
-    const Pending& edit = *below_[*taken_out];
-    put_values_back(package->forward, image->image(), edit.backward, edit.old_image.image());
-  }
+  if (taken_out.change != nullptr) give_back(package->forward, image->image(), taken_out);
   pending_ = std::make_unique<Pending>(std::move(*package), before, *image, strategy, same);
   state_ = State::kPlanned;
   if (interrupted()) return abandoned("when its plan was checked");
@@ -193,7 +193,7 @@ bool Change::carry_in_place(const OnLoss& on_loss) {
   return pending_->forward.read(memory, on_loss, interrupted_) &&
          pending_->forward.save(memory, interrupted_) &&
          pending_->backward.remember(memory, interrupted_) &&
-         (!kept || kept->keep(memory, interrupted_)) &&
+         (!kept || kept->holds() || kept->keep(memory, interrupted_)) &&
          pending_->forward.write(memory, interrupted_);
 }
 
@@ -231,12 +231,21 @@ base::Status Change::carry_over() {
   return base::Ok{};
 }
 
-// FB_Exit runs while the old program still does: what it writes is carried over. Behind it the old
-// program goes on only after FB_Init has made the same instances again.
+// FB_Exit runs while the old program still does: what it writes is carried over. When the old
+// program goes on, all is put back that it wrote, and nothing has left (put_back_kept()).
 base::Status Change::leave(const std::vector<uint32_t>& ids) {
   if (ids.empty()) return base::Ok{};
-  if (interrupted()) return abandoned("at the boundary");
+  std::optional<KeptData>& kept = pending_->kept_at(state_);
+  base::check(kept.has_value(), "FB_Exit runs, and nothing was taken to keep values in");
+  if (!kept->keep(controller_.memory().data(), interrupted_)) return abandoned("at the boundary");
   return controller_.leave(ids, controller_.base_period_ns());
+}
+
+void Change::put_back_kept() {
+  std::optional<KeptData>& kept = pending_->kept_at(state_);
+  if (!kept || !kept->holds()) return;
+  kept->put_back(controller_.memory().data());
+  controller_.values_put_back();
 }
 
 // Memory can run out when the text of a trap in FB_Init is made: version 2 is published then, and
@@ -251,6 +260,7 @@ base::Result<SwitchReport> Change::switch_now(bool again) {
 base::Result<SwitchReport> Change::switch_steps(bool again) {
   if (state_ != State::kArmed) return not_in("armed");
   if (!controller_.at_boundary()) return no_boundary();
+  if (controller_.starts_anew() && !controller_.faulted()) return starts_anew();
   SwitchReport report = report_begin();
   int64_t begin_ns = monotonic_ns();
   const bool leaves = !pending_->leaving.at_switch.empty();
@@ -261,7 +271,7 @@ base::Result<SwitchReport> Change::switch_steps(bool again) {
     if (carried.ok()) carried = migrate();
     if (carried.ok()) pending_->charts.note(controller_.memory().data());
     if (carried.ok()) carried = carry_over();
-    if (!carried.ok() && leaves) controller_.construct();
+    if (!carried.ok() && leaves) put_back_kept();
     count_switch();
   }
   if (!carried.ok()) {
@@ -293,12 +303,12 @@ void Change::take_back() {
   const bool undone = undo_steps(true).ok();
   interrupted_ = interrupted;
   base::check(undone, "a switch whose FB_Init trapped cannot be undone");
-  // What start code wrote to other variables goes with it.
+  // What FB_Exit and start code wrote to other variables goes with it.
   uint8_t* memory = controller_.memory().data();
-  if (retired_area_) {
-    retired_area_->put_back(memory);
-  } else if (retired_pending_->kept) {
+  if (retired_pending_->kept) {
     retired_pending_->kept->put_back(memory);
+  } else if (retired_area_) {
+    retired_area_->put_back(memory);
   }
 }
 
@@ -311,7 +321,8 @@ base::Result<SwitchReport> Change::undo_steps(bool whatever_happens) {
     return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"};
   }
   if (!controller_.at_boundary()) return no_boundary();
-  if (!pending_->waiting) return not_primed();
+  const bool leaves = !pending_->leaving.at_undo.empty() && !whatever_happens;
+  if (!pending_->waiting || (leaves && !pending_->kept_back)) return not_primed();
   SwitchReport report = report_begin();
   uint8_t* memory = controller_.memory().data();
   const std::string lost = pending_->charts.lost_on_the_way_back(memory);
@@ -321,10 +332,10 @@ base::Result<SwitchReport> Change::undo_steps(bool whatever_happens) {
   int64_t begin_ns = monotonic_ns();
   Transfer& back = pending_->backward;
   base::Status left = base::Ok{};
-  if (!whatever_happens) left = leave(pending_->leaving.at_undo);
+  if (leaves) left = leave(pending_->leaving.at_undo);
   if (left.ok() && pending_->migrate_back) left = pending_->migrate_back->run(memory);
   if (!left.ok() && !whatever_happens) {
-    if (!pending_->leaving.at_undo.empty()) controller_.construct();
+    put_back_kept();
     return left.error();
   }
   const bool led_back = pending_->handles.back(memory, interrupted_);
@@ -335,7 +346,7 @@ base::Result<SwitchReport> Change::undo_steps(bool whatever_happens) {
               back.save(memory, interrupted_) && back.write(memory, interrupted_);
   if (!done) {
     if (led_back) pending_->handles.restore(memory);
-    if (!pending_->leaving.at_undo.empty()) controller_.construct();
+    put_back_kept();
     return base::Error{base::Refusal::kDeadline, "the undo was abandoned; the trial goes on"};
   }
   pending_->charts.settle(memory);

@@ -57,6 +57,13 @@ class Standby;
 // the longest of its last scans.
 base::Status fits_free_time(int64_t pause_ns, const std::vector<vm::TaskStatus>& tasks);
 
+class Change;
+// An edit on trial that is taken out from below others; `change` null: none.
+struct TakenOut {
+  const Change* change = nullptr;  // whose edits they are; that of a rehearsal is another one
+  size_t edit = 0;                 // its number, from the oldest
+};
+
 class Change {
  public:
   explicit Change(vm::Controller& controller);
@@ -71,11 +78,10 @@ class Change {
   base::Status room() const;
   // Idle or Trial -> Prepared, in steps, while version 1 runs. What it must know of live data it
   // copies in jobs for `at_boundary`, each of some tens of microseconds; without, the caller is at
-  // a boundary. `taken_out`: the number of an edit on trial, from the oldest, whose work this one
-  // takes back (D3): variables that it had taken away come back with their values (X4).
+  // a boundary. `taken_out`: the edit on trial whose work this one takes back (D3): variables that
+  // it had taken away or converted come back with their values (X4).
   base::Status stage(base::ByteSpan package, Strategy strategy = Strategy::kInPlace,
-                     const AtBoundary& at_boundary = {},
-                     std::optional<size_t> taken_out = std::nullopt);
+                     const AtBoundary& at_boundary = {}, TakenOut taken_out = {});
   // Values that would be lost if the switch came now; by kPrepared, at a boundary.
   std::vector<LiveLoss> live_losses() const;
   // The same of a copy of data memory, at any time: what a report shows, kMostLosses of them.
@@ -117,6 +123,7 @@ class Change {
   base::Status arm(bool allow_loss, bool allow_overrun = false);
   // At a boundary: Armed -> Trial. Re-checks losses; on failure -> Idle, version 1 untouched. When
   // FB_Init of what is new traps (kInitFailed), the switch is undone before any task has run.
+  // kBusy, and still kArmed, while start code of version 1 has yet to run, behind a restart.
   // `again`: standby, a deadline that comes while what was written is brought up to date leaves it
   // kArmed, for a later boundary.
   base::Result<SwitchReport> switch_now(bool again = false);
@@ -165,12 +172,14 @@ class Change {
   template <class Step>
   auto guarded(Step step) -> decltype(step());
   base::Status stage_steps(base::ByteSpan package, Strategy strategy,
-                           const AtBoundary& at_boundary, std::optional<size_t> taken_out);
+                           const AtBoundary& at_boundary, TakenOut taken_out);
+  void give_back(Plan& forward, const ir::Image& next, TakenOut taken_out) const;
   base::Status arm_steps(bool allow_loss, bool allow_overrun);
   base::Result<SwitchReport> switch_steps(bool again);
   base::Result<SwitchReport> undo_steps(bool whatever_happens = false);
   base::Status enter();
   void take_back();
+  void put_back_kept();
   base::Status try_migrations(const AtBoundary& at_boundary);
   base::Status migrate();
   base::Status check_charts() const;
@@ -180,6 +189,7 @@ class Change {
   base::Status check_losses(bool allow_loss) const;
   base::Error not_in(const char* wanted) const;
   static base::Error no_boundary();
+  static base::Error starts_anew();
   static base::Error not_primed();
   // False: interrupted, and abandoned.
   bool idle_units();

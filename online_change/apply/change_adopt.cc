@@ -27,7 +27,7 @@ base::Status Change::adopt_steps(base::ByteSpan bytes, const ir::VerifiedImage& 
   }
   auto edit =
       std::make_unique<Pending>(std::move(*package), before, after, Strategy::kInPlace, same);
-  edit->undo_work = boundary_work(edit->package.inverse, after.image(), edit->old(), true);
+  edit->count_undo_work();
   if (base::Status imagined = imagine_switch(*edit, retained); !imagined.ok()) return imagined;
   if (state_ == State::kTrial) rest();
   pending_ = std::move(edit);

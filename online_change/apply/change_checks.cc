@@ -170,11 +170,13 @@ base::Status Change::refused_by_values(bool allow_loss) const {
 // place nothing is brought up to date that the program rewrites.
 std::string Change::way_out() const {
   if (pending_->kept) {
+    const bool leaves = !pending_->leaving.at_switch.empty();
     BoundaryWork keeping;
-    keeping.copied = pending_->switch_work.copied;
+    keeping.copied = pending_->kept_bytes();
     return "; " + std::to_string(paced(pause_ns(keeping) - kPauseFixedNs)) +
-           " ns of it are for keeping all values, as FB_Init runs in the switch; --strategy " +
-           "standby needs no copy of them there";
+           " ns of it are for keeping all values, as " + (leaves ? "FB_Exit" : "FB_Init") +
+           " runs in the switch" +
+           (leaves ? "" : "; --strategy standby needs no copy of them there");
   }
   if (!pending_->area) return {};
   const BoundaryWork in_place = pending_->in_place_work();

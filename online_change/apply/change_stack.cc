@@ -8,6 +8,7 @@
 #include "base/memory_limit.h"
 #include "base/tool_limits.h"
 #include "online_change/apply/pending.h"
+#include "online_change/apply/values_back.h"
 
 namespace online_change {
 
@@ -41,8 +42,12 @@ base::Status Change::accept_oldest(size_t edits) {
 }
 
 base::Status Change::prime() {
-  if (state_ != State::kTrial || pending_->waiting) return base::Ok{};
+  if (state_ != State::kTrial) return base::Ok{};
+  const bool leaves = !pending_->leaving.at_undo.empty();
+  if (pending_->waiting && (!leaves || pending_->kept_back)) return base::Ok{};
   const auto again = [&]() -> base::Status {
+    if (leaves && !pending_->kept_back) pending_->kept_back.emplace(pending_->new_image.image());
+    if (pending_->waiting) return base::Ok{};
     base::Result<std::unique_ptr<vm::Generation>> before = controller_.prepare(pending_->old_image);
     if (!before.ok()) return before.error();
     pending_->waiting = std::move(*before);
@@ -63,8 +68,22 @@ void Change::rest() {
                 "nothing interrupts what is remembered");
     pending_->area.reset();
   }
+  pending_->kept_back.reset();
   below_.push_back(std::move(pending_));
   state_ = State::kIdle;
+}
+
+// Of an edit that rests: another one was made on it.
+void Change::give_back(Plan& forward, const ir::Image& next, TakenOut taken_out) const {
+  const auto& resting = taken_out.change->below_;
+  if (taken_out.edit >= resting.size()) return;
+  const Pending& edit = *resting[taken_out.edit];
+  TakenEdit taken{edit.forward, edit.backward, edit.old_image.image(), edit.new_image.image(), {}};
+  for (size_t i = taken_out.edit + 1; i < resting.size(); ++i) {
+    taken.later.push_back(&resting[i]->new_image.image());
+  }
+  taken.later.push_back(&controller_.image());
+  put_values_back(forward, next, taken);
 }
 
 // What rested is the newest one again.

@@ -41,6 +41,7 @@ KeptData::KeptData(const ir::Image& running) : extents_(used_extents(running)) {
 
 bool KeptData::keep(const uint8_t* memory, const Interrupted& interrupted) {
   uint8_t* to = bytes_.data();
+  holds_ = false;
   for (const ir::Extent& extent : extents_) {
     for (uint32_t done = 0; done < extent.size; done += kKeptPiece) {
       if (interrupted && interrupted()) return false;
@@ -49,10 +50,11 @@ bool KeptData::keep(const uint8_t* memory, const Interrupted& interrupted) {
       to += size;
     }
   }
-  return true;
+  return holds_ = true;
 }
 
-void KeptData::put_back(uint8_t* memory) const {
+void KeptData::put_back(uint8_t* memory) {
+  holds_ = false;
   const uint8_t* from = bytes_.data();
   for (const ir::Extent& extent : extents_) {
     std::memcpy(memory + extent.offset, from, extent.size);

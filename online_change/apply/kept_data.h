@@ -1,6 +1,7 @@
-// All values of the version that runs, as they are when a switch in place begins to write. Start
-// code of the new version may write to any variable; when it traps, all are put back (X1). By
-// standby the other data area is that copy. All memory is taken beforehand.
+// All values of the version that runs, as they are when a switch or an undo begins to run code that
+// somebody has written: FB_Exit of what goes, start code of what is new. Both may write to any
+// variable; when it traps, all are put back (X1). For start code by standby the other data area is
+// that copy. All memory is taken beforehand.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +18,14 @@ class KeptData {
   explicit KeptData(const ir::Image& running);
   // At the boundary. False: interrupted.
   bool keep(const uint8_t* memory, const Interrupted& interrupted);
-  void put_back(uint8_t* memory) const;
+  bool holds() const { return holds_; }  // behind keep()
+  void put_back(uint8_t* memory);
+  uint64_t size() const { return bytes_.size(); }
 
  private:
   std::vector<ir::Extent> extents_;
   base::Bytes bytes_;
+  bool holds_ = false;
 };
 
 // May code that somebody has written run in the switch: FB_Init of an instance that is new,

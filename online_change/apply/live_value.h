@@ -20,6 +20,7 @@ class Conversions {
 
   // For a step of that conversion; null: value by value.
   FastConverter fast(const UpdateStep& step) const {
+    if (!step.bytes.empty()) return nullptr;
     return fast_converter(from_.types, step.old_type, to_.types, step.new_type);
   }
   uint32_t source_size(const UpdateStep& step) const { return from_.layouts[step.old_type].size; }
@@ -39,5 +40,9 @@ class Conversions {
   InitialData to_initial_;
   std::map<std::pair<ir::TypeId, ir::TypeId>, bool> left_;  // by old and new type
 };
+
+// In a kConvert step of a change that takes out an edit (values_back.h): value number `index`,
+// while it is what was `made` of it, becomes the bytes at `value`, of the step's size, no loss.
+void know(UpdateStep& step, uint32_t index, std::span<const uint8_t> made, const uint8_t* value);
 
 }  // namespace online_change

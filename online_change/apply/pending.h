@@ -69,27 +69,36 @@ struct Change::Pending {
       return;
     }
     starts = start_code_runs(package.forward, new_image.image(), leaving);
-    if (starts && in_place()) kept.emplace(old());
+    if ((starts && in_place()) || !leaving.at_switch.empty()) kept.emplace(old());
     switch_work = in_place() ? in_place_work()
                              : boundary_work(package.forward, old(), new_image.image(), true);
-    if (area) switch_work.compared = switch_work.copied = area->compared_bytes();
-    undo_work = boundary_work(package.inverse, new_image.image(), old(), true);
+    if (area) {
+      switch_work.compared = area->compared_bytes();
+      switch_work.copied = area->compared_bytes() + kept_bytes();
+    }
+    count_undo_work();
   }
+  void count_undo_work() {
+    undo_work = boundary_work(package.inverse, new_image.image(), old(), true);
+    if (!leaving.at_undo.empty()) undo_work.copied = total_bytes(used_extents(new_image.image()));
+  }
+  uint64_t kept_bytes() const { return kept ? kept->size() : 0; }
   // Standby: `done` or found in the area, with what is done outside of it.
   BoundaryWork of_switch(BoundaryWork done) const {
     done.references = switch_work.references;
     done.calls = switch_work.calls;
+    done.copied += kept_bytes();
     return done;
   }
   BoundaryWork in_place_work() const {
     BoundaryWork work = boundary_work(package.forward, old(), new_image.image(), false);
-    if (starts) work.copied = total_bytes(used_extents(old()));
+    const bool keeps = starts || !leaving.at_switch.empty();
+    if (keeps) work.copied = total_bytes(used_extents(old()));
     return work;
   }
-  // Does the step out of this state run FB_Exit?
-  bool leaves_at(State state) const {
-    return (state == State::kArmed && !leaving.at_switch.empty()) ||
-           (state == State::kTrial && !leaving.at_undo.empty());
+  // What the step out of this state keeps of the values before it.
+  std::optional<KeptData>& kept_at(State state) {
+    return state == State::kTrial ? kept_back : kept;
   }
   bool in_place() const { return strategy == Strategy::kInPlace; }
   // Version 1 under the names of version 2.
@@ -115,7 +124,9 @@ struct Change::Pending {
   std::unique_ptr<Standby> area;
   CatchingUp catching_up;
   bool starts = false;           // start_code_runs()
-  std::optional<KeptData> kept;  // in place, where it does; until the switch is made
+  // In place where it does, and where FB_Exit runs in the switch; until that is made.
+  std::optional<KeptData> kept;
+  std::optional<KeptData> kept_back;  // where FB_Exit runs in the undo; taken by prime()
   // Most of what the switch and undo have to do, without the loops of migrations.
   BoundaryWork switch_work;
   BoundaryWork undo_work;

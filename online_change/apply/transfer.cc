@@ -319,11 +319,15 @@ size_t Transfer::first_converted(uint32_t offset, size_t& hint) const {
   return hint = static_cast<size_t>(found - converted_.begin());
 }
 
+const uint8_t* Transfer::converted(uint32_t offset, uint32_t size) const {
+  const size_t at = first_converted(offset, converted_hint_);
+  if (at == converted_.size() || converted_[at].to != offset) return nullptr;
+  return converted_[at].size == size ? staged_.data() + converted_[at].at : nullptr;
+}
+
 bool Transfer::still_as_converted(uint32_t offset, uint32_t size, const uint8_t* memory) const {
-  size_t at = first_converted(offset, converted_hint_);
-  if (at == converted_.size() || converted_[at].to != offset) return false;
-  const Converted& value = converted_[at];
-  return value.size == size && std::memcmp(memory + offset, staged_.data() + value.at, size) == 0;
+  const uint8_t* const made = converted(offset, size);
+  return made != nullptr && std::memcmp(memory + offset, made, size) == 0;
 }
 
 }  // namespace online_change

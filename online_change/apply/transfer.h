@@ -77,6 +77,11 @@ class Transfer {
   const std::vector<Piece>& pieces() const { return pieces_; }
   // Of the way back, behind remember(): a piece that this plan will initialise or convert.
   const uint8_t* remembered(const Piece& piece) const { return remembered_.data() + piece.at; }
+  // Of the way there: what it has made of the value for `offset`, converted; null: none is.
+  const uint8_t* converted(uint32_t offset, uint32_t size) const;
+  uint32_t source_size(const Piece& piece) const {  // kConvert: of one value
+    return conversions_.source_size(step_of(piece));
+  }
   // Reads a piece and writes it. False: ended by `on_loss`, not written.
   bool move(const Piece& piece, const uint8_t* source, uint8_t* target, const OnLoss& on_loss);
   // What that takes.

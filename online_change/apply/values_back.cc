@@ -2,92 +2,130 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
+#include <optional>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "ir/bytecode/symbols.h"
+#include "online_change/apply/plan_edit.h"
+#include "online_change/diff/areas.h"
 
 namespace online_change {
 namespace {
 
-// Places in data memory and the bytes that belong there, sorted.
-template <class Bytes>
-class Places {
+// What the way back of an edit does to the values of the version before, by their place there.
+class WayBack {
  public:
-  void add(uint32_t begin, uint32_t size, Bytes* bytes) {
-    places_.push_back({begin, begin + size, bytes});
-  }
-  void sort() {
+  explicit WayBack(const TakenEdit& edit) : edit_(edit) {
+    const std::vector<Piece>& pieces = edit.way_back.pieces();
+    for (uint32_t number = 0; number < pieces.size(); ++number) {
+      const Piece& piece = pieces[number];
+      if (piece.kind == StepKind::kInitialise) add_anew(number);
+      if (piece.kind != StepKind::kConvert) continue;
+      for (uint32_t i = 0; i < piece.count; ++i) {
+        const uint32_t to = piece.to + i * piece.to_stride;
+        places_.push_back({to, to + piece.size, number, i});
+      }
+    }
     std::sort(places_.begin(), places_.end(),
               [](const Place& a, const Place& b) { return a.begin < b.begin; });
   }
-  // Null: not in one of them.
-  Bytes* at(uint32_t begin, uint32_t size) const {
+
+  struct Value {
+    const uint8_t* before = nullptr;
+    bool converted = false;
+    uint32_t from = 0;              // converted: in the version that the edit made
+    const uint8_t* made = nullptr;  // what it was there; null: the same as before
+    uint32_t made_size = 0;
+  };
+  std::optional<Value> at(uint32_t begin, uint32_t size) const {
     auto found = std::upper_bound(places_.begin(), places_.end(), begin,
                                   [](uint32_t at, const Place& one) { return at < one.begin; });
-    if (found == places_.begin()) return nullptr;
-    const Place& one = *--found;
-    return uint64_t{begin} + size <= one.end ? one.bytes + (begin - one.begin) : nullptr;
+    if (found == places_.begin()) return std::nullopt;
+    const Place& place = *--found;
+    if (uint64_t{begin} + size > place.end) return std::nullopt;
+    const Piece& piece = edit_.way_back.pieces()[place.piece];
+    Value out;
+    out.before =
+        edit_.way_back.remembered(piece) + size_t{place.index} * piece.size + (begin - place.begin);
+    if (piece.kind == StepKind::kInitialise) return out;
+    out.converted = true;
+    out.from = piece.from + place.index * piece.from_stride;
+    out.made_size = edit_.way_back.source_size(piece);
+    out.made = edit_.forward.converted(out.from, out.made_size);
+    return out;
   }
 
  private:
   struct Place {
     uint32_t begin = 0;
     uint32_t end = 0;
-    Bytes* bytes = nullptr;
+    uint32_t piece = 0;
+    uint32_t index = 0;
   };
+  // A value may begin in one part of a step and end in the next.
+  void add_anew(uint32_t number) {
+    const Piece& piece = edit_.way_back.pieces()[number];
+    if (!places_.empty() && places_.back().end == piece.to) {
+      const Piece& first = edit_.way_back.pieces()[places_.back().piece];
+      const bool goes_on =
+          first.kind == StepKind::kInitialise && first.at + (piece.to - first.to) == piece.at;
+      if (goes_on) {
+        places_.back().end += piece.total();
+        return;
+      }
+    }
+    places_.push_back({piece.to, piece.to + piece.total(), number, 0});
+  }
+
+  const TakenEdit& edit_;
   std::vector<Place> places_;
 };
 
-// What the edit took away, its way back makes anew.
-Places<const uint8_t> taken_away(const Transfer& way_back) {
-  Places<const uint8_t> places;
-  for (const Piece& piece : way_back.pieces()) {
-    if (piece.kind != StepKind::kInitialise) continue;
-    places.add(piece.to, piece.total(), way_back.remembered(piece));
+// What has come of what the edit made at `offset`, in the version that runs; nullopt: a later edit
+// knows no such variable, or another one.
+std::optional<ir::Symbol> still_there(const TakenEdit& edit, const Areas& made, uint32_t offset) {
+  const std::optional<Node> leaf = made.leaf_at(offset);
+  if (!leaf || leaf->begin != offset) return std::nullopt;
+  const std::string path = made.path_at(offset);
+  std::optional<ir::Symbol> now;
+  for (const ir::Image* const image : edit.later) {
+    const base::Result<ir::Symbol> found = ir::find_symbol(*image, path);
+    const bool same = found.ok() && found->bit_mask == 0 &&
+                      ir::same_value_type(edit.after.types, edit.after.layouts, leaf->type,
+                                          image->types, image->layouts, found->type);
+    if (!same) return std::nullopt;
+    now = *found;
   }
-  places.sort();
-  return places;
-}
-
-Places<uint8_t> made_anew(Plan& plan) {
-  Places<uint8_t> places;
-  for (UpdateStep& step : plan.steps) {
-    if (step.kind != StepKind::kInitialise) continue;
-    step.bytes.resize(step.total());
-    for (uint32_t i = 0; i < step.count; ++i) {
-      uint8_t* const bytes = step.bytes.data() + size_t{i} * step.size;
-      places.add(step.to + i * step.to_stride, step.size, bytes);
-    }
-  }
-  places.sort();
-  return places;
+  return now;
 }
 
 }  // namespace
 
-uint64_t put_values_back(Plan& plan, const ir::Image& next, const Transfer& way_back,
-                         const ir::Image& before) {
-  const Places<const uint8_t> from = taken_away(way_back);
-  const Places<uint8_t> to = made_anew(plan);
-  uint64_t count = 0;
-  ir::for_each_leaf(before, [&](const std::string& path, const ir::Symbol& there) {
-    const uint32_t size = before.layouts[there.type].size;
-    const uint8_t* const value = from.at(there.data, size);
-    if (value == nullptr || there.bit_mask != 0) return;
-    if (ir::is_reference(before.types[there.type].kind)) return;
+uint64_t put_values_back(Plan& plan, const ir::Image& next, const TakenEdit& edit) {
+  const WayBack way_back(edit);
+  const Areas made(edit.after);
+  PlanEdit changed(plan, *edit.later.back(), next);
+  ir::for_each_leaf(edit.before, [&](const std::string& path, const ir::Symbol& there) {
+    const uint32_t size = edit.before.layouts[there.type].size;
+    const std::optional<WayBack::Value> value = way_back.at(there.data, size);
+    if (!value || there.bit_mask != 0) return;
+    if (ir::is_reference(edit.before.types[there.type].kind)) return;
     const base::Result<ir::Symbol> here = ir::find_symbol(next, path);
     if (!here.ok() || here->bit_mask != 0) return;
-    if (!ir::same_value_type(before.types, before.layouts, there.type, next.types, next.layouts,
-                             here->type)) {
+    if (!ir::same_value_type(edit.before.types, edit.before.layouts, there.type, next.types,
+                             next.layouts, here->type)) {
       return;
     }
-    uint8_t* const out = to.at(here->data, size);
-    if (out == nullptr) return;
-    std::memcpy(out, value, size);
-    ++count;
+    if (!value->converted) {
+      changed.initialise(here->data, {value->before, size});
+    } else if (value->made != nullptr) {
+      const std::optional<ir::Symbol> now = still_there(edit, made, value->from);
+      if (now) changed.convert(*now, path, *here, {value->made, value->made_size}, value->before);
+    }
   });
-  return count;
+  return changed.finish();
 }
 
 }  // namespace online_change

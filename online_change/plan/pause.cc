@@ -29,8 +29,9 @@ void BoundaryWork::step(uint32_t from, uint32_t to) {
 
 bool converts_slowly(const UpdateStep& step, const ir::Image& old_image,
                      const ir::Image& new_image) {
-  return step.kind == StepKind::kConvert &&
-         fast_converter(old_image.types, step.old_type, new_image.types, step.new_type) == nullptr;
+  if (step.kind != StepKind::kConvert) return false;
+  return !step.bytes.empty() || fast_converter(old_image.types, step.old_type, new_image.types,
+                                               step.new_type) == nullptr;
 }
 
 uint64_t bools_to_normalise(const ir::Bools& before, const ir::Bools& after) {

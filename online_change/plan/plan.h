@@ -41,7 +41,9 @@ struct UpdateStep {
   uint32_t fate = kNoFate;  // row of Plan::fates
   bool early =
       false;  // kInitialise into bytes that version 1 does not own: done while it runs (A19)
-  base::Bytes bytes;  // kInitialise, of all values; empty: zeros
+  // kInitialise, of all values; empty: zeros. kConvert, on the controller: what an edit that is
+  // taken out has made of which values, and these (apply/live_value.h); in packages empty.
+  base::Bytes bytes;
   uint64_t total() const { return uint64_t{size} * count; }
 };
 

@@ -108,3 +108,44 @@ expect 2 stvm undo "$newest" --only --dir plc --yes
 expect 2 stvm undo --only --dir plc --yes
 expect 7 stvm undo E99 --only --dir plc --yes
 said 'R0305'
+
+# X4: what the edit had converted comes back too, unless it was written since: that is converted
+# from what it is now, with its loss. A dry run says the same (case 78).
+cat >wide.st <<'ST'
+PROGRAM Main VAR a, b : INT; part, cut : INT; n : DINT; END_VAR n := n + 1; END_PROGRAM
+FUNCTION_BLOCK Other VAR n : DINT; END_VAR n := n + 1; END_FUNCTION_BLOCK
+PROGRAM Second VAR o : Other; END_VAR o(); END_PROGRAM
+ST
+sed 's/a, b : INT; part, cut : INT;/a, b : DINT; part : SINT; cut : INT(0..100);/' wide.st >edit.st
+sed '/^FUNCTION_BLOCK/s/n + 1/n + 2/' edit.st >behind.st
+serve third wide.st
+expect 0 stvm set Main.a=7 Main.b=8 Main.part=300 Main.cut=400 --dir third
+expect 0 stvm change edit.st --dir third --yes --allow-loss --allow-overrun
+expect 0 stvm change behind.st --dir third --yes --allow-overrun
+expect 0 stvm set Main.b=100000 --dir third
+expect 0 stvm get Main.part Main.cut --dir third
+said '^Main.part=127$'
+said '^Main.cut=100$'
+expect 7 stvm undo E1 --only --dir third --dry-run --allow-overrun --format json
+said '"loss_count": ?1'
+expect 7 stvm undo E1 --only --dir third --dry-run --allow-overrun
+mv out dry
+grep -E '^Main.b +100000 +32767 +saturates' dry >/dev/null || fail "no loss: $(cat dry)"
+comes() { grep -E "$1" dry >/dev/null || fail "not what comes back: $(cat dry)"; }
+comes '^ +127 -> 300 \(retyped, as before the edit'
+comes '^ +100 -> 400 \(as before the edit'
+expect 7 stvm undo E1 --only --dir third --yes --allow-overrun
+said 'R0303'
+grep -E '^(converted|Main|  )' dry >dry.rows
+grep -E '^(converted|Main|  )' out | diff dry.rows - || fail "a dry run says something else"
+expect 0 stvm undo E1 --only --dir third --yes --allow-overrun --allow-loss
+expect 0 stvm get Main.a Main.b Main.part Main.cut --dir third
+said '^Main.a=7$'
+said '^Main.b=32767$'
+said '^Main.part=300$'
+said '^Main.cut=400$'
+expect 0 stvm undo --dir third --yes
+expect 0 stvm get Main.b Main.part Main.cut --dir third
+said '^Main.b=100000$'
+said '^Main.part=127$'
+said '^Main.cut=100$'

@@ -105,6 +105,7 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
   auto job = [&] {
     if (unless_holds()) return;
     if (!allow_overrun && !time_for_switch()) return;
+    if (controller_.start_pending() && !controller_.faulted()) return;
     keeper_.take(before);
     if (!allow_overrun) {
       deadline.emplace(clock_, controller_.next_cycle_ns());

@@ -1,5 +1,6 @@
 // The fate report of a change that is staged, rehearsed or on trial (its way back), page by page.
 #include <algorithm>
+#include <vector>
 
 #include "online_change/diff/initial_data.h"
 #include "tools/common/old_names.h"
@@ -11,6 +12,8 @@ namespace {
 
 using online_change::Fate;
 using online_change::FateRow;
+using online_change::StepKind;
+using online_change::UpdateStep;
 
 constexpr uint64_t kLinesPerPage = 1000;
 constexpr size_t kShownLosses = 500;
@@ -48,6 +51,20 @@ uint64_t line_bytes(const FateLine& line) {
   return line.row.path.size() + line.row.old_type.size() + line.row.new_type.size() +
          line.row.reason.size() + line.live.now.size() + line.live.after.size() +
          line.live.loss.size() + 64;
+}
+
+// Of rows from `first` to before `end`: their step, where it has bytes of its own; else null. What
+// is made anew, and what an edit had converted that is taken out.
+std::vector<const UpdateStep*> with_bytes(const online_change::Plan& plan, uint64_t first,
+                                          uint64_t end) {
+  std::vector<const UpdateStep*> steps(end - std::min(first, end));
+  for (const UpdateStep& step : plan.steps) {
+    if (step.fate == online_change::kNoFate || step.fate < first || step.fate >= end) continue;
+    const bool alone = step.count == 1 && !step.bytes.empty();
+    const bool known = step.kind == StepKind::kInitialise || step.kind == StepKind::kConvert;
+    if (alone && known) steps[step.fate - first] = &step;
+  }
+  return steps;
 }
 
 }  // namespace
@@ -131,8 +148,9 @@ base::Result<base::Bytes> ControllerService::group_page(uint64_t first,
   uint64_t bytes = 0;
   uint64_t row = first;
   const uint64_t end = std::min<uint64_t>(plan.fates.size(), first + kLinesPerPage);
+  const std::vector<const UpdateStep*> known = with_bytes(plan, first, end);
   for (; row < end && bytes <= vm::kChunkBytes; ++row) {
-    page.lines.push_back(live_line(plan.fates[row], next.image(), back));
+    page.lines.push_back(live_line(plan.fates[row], known[row - first], next.image(), back));
     bytes += line_bytes(page.lines.back());
   }
   page.next = row < plan.fates.size() ? row : 0;
@@ -147,7 +165,8 @@ base::Result<base::Bytes> ControllerService::group_page(uint64_t first,
 }
 
 // With the resulting value, and its loss when there is one.
-FateLine ControllerService::live_line(const FateRow& row, const ir::Image& next, bool back) const {
+FateLine ControllerService::live_line(const FateRow& row, const online_change::UpdateStep* known,
+                                      const ir::Image& next, bool back) const {
   FateLine line{row, {}};
   if (row.count == 1 && !row.old_type.empty()) line.live.now = live_->value(row);
   if (row.fate == Fate::kMoved || row.fate == Fate::kKept) {
@@ -156,6 +175,8 @@ FateLine ControllerService::live_line(const FateRow& row, const ir::Image& next,
     line.row.reason = "as it was before the change";
   } else if (back && row.fate == Fate::kConverted) {
     line.row.reason = "as it was before the change, unless written since";
+  } else if (known != nullptr && row.count == 1) {
+    line.live.after = live_->result_of(row, *known, next);
   } else if (row.fate == Fate::kInitialised && row.count == 1) {
     line.live.after = initial_text(next, row.path);
   } else if (row.fate == Fate::kConverted && !line.live.now.empty()) {

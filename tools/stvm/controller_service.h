@@ -144,7 +144,7 @@ class ControllerService : public vm::Service {
   // A name must be that of the newest one.
   base::Status check_newest(const vm::Request& request) const;
   // From the oldest; none of that name.
-  std::optional<size_t> number_of_trial(const std::string& edit) const;
+  online_change::TakenOut trial_taken_out(const std::string& edit) const;
   Answer units(const vm::Request& request);
   Answer edits(const vm::Request& request);
   Answer redo(const vm::Request& request);
@@ -171,7 +171,8 @@ class ControllerService : public vm::Service {
   Answer group_page(uint64_t first, const online_change::Plan& plan,
                     const ir::VerifiedImage& next, bool back, FatePage page) const;
   // In the version that the report is about; `back`: by undo.
-  FateLine live_line(const online_change::FateRow& row, const ir::Image& next, bool back) const;
+  FateLine live_line(const online_change::FateRow& row, const online_change::UpdateStep* known,
+                     const ir::Image& next, bool back) const;
   void forget_staged();
   void forget_report();
   base::Error others_upload() const;
@@ -180,7 +181,7 @@ class ControllerService : public vm::Service {
   Answer stage_package(base::Bytes package, uint32_t flags, const std::string& unless,
                        const std::string& redone, const std::string& taken_out);
   Answer stage_rehearsal(base::ByteSpan package, online_change::Strategy strategy,
-                         uint32_t flags);
+                         uint32_t flags, const std::string& taken_out);
   double pace();  // of this machine (online_change/apply/pace.h)
   base::Status stage_unless_aborted(base::ByteSpan package, online_change::Strategy strategy);
   // The change that this connection stages, rehearses or, on trial, would undo.

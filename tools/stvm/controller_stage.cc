@@ -95,7 +95,8 @@ base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, 
   if (rehearsal && taken) {
     if (base::Status room = change_.room(); !room.ok()) return room.error();
     base::Status may_begin = check_unless(unless);
-    return may_begin.ok() ? stage_rehearsal(package, strategy, flags) : may_begin.error();
+    return may_begin.ok() ? stage_rehearsal(package, strategy, flags, taken_out)
+                          : may_begin.error();
   }
   change_.cancel();
   forget_staged();
@@ -158,21 +159,22 @@ base::Status ControllerService::stage_unless_aborted(base::ByteSpan package,
     return aborted() || !looked.ok();
   });
   base::Status staged =
-      change_.stage(package, strategy, job_at_boundary, number_of_trial(taken_out_));
+      change_.stage(package, strategy, job_at_boundary, trial_taken_out(taken_out_));
   change_.set_interruption(nullptr);
   return staged;
 }
 
 base::Result<base::Bytes> ControllerService::stage_rehearsal(base::ByteSpan package,
                                                              online_change::Strategy strategy,
-                                                             uint32_t flags) {
+                                                             uint32_t flags,
+                                                             const std::string& taken_out) {
   if (rehearsal_ && rehearsal_of_ != session_) {
     return base::Error{base::Refusal::kChangePending, "somebody else looks at a change just now"};
   }
   gone_.erase(session_);
   forget_report();
   rehearsal_.reset();
-  auto staged = Rehearsal::stage(controller_, package, strategy,
+  auto staged = Rehearsal::stage(controller_, package, strategy, trial_taken_out(taken_out),
                                  [this](auto ranges) { return copy_of(std::move(ranges)); });
   if (!staged.ok()) return staged.error();
   base::Status taken = check_edit(controller_.image(), (*staged)->next().image(), flags);

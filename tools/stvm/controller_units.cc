@@ -148,11 +148,11 @@ base::Result<base::Bytes> ControllerService::redo(const vm::Request& request) {
   return stage_package(next.package, next.flags, {}, next.edit.name, next.taken_out);
 }
 
-std::optional<size_t> ControllerService::number_of_trial(const std::string& edit) const {
+online_change::TakenOut ControllerService::trial_taken_out(const std::string& edit) const {
   for (size_t i = 0; i < trials_.size(); ++i) {
-    if (trials_[i].edit.name == edit) return i;
+    if (trials_[i].edit.name == edit) return {&change_, i};
   }
-  return std::nullopt;
+  return {};
 }
 
 }  // namespace stvm

@@ -1,5 +1,7 @@
 #include "tools/stvm/live_report.h"
 
+#include <cstring>
+
 #include "ir/bytecode/renames.h"
 #include "online_change/apply/live_value.h"
 #include "online_change/apply/losses.h"
@@ -17,6 +19,19 @@ std::string why_lost(const online_change::VariableFate& variable, const ir::Imag
   const bool same = there->constant && before.ok() &&
                     online_change::is_constant_already(old_image, *before, memory, next, *there);
   return same ? "" : online_change::why_lost(&*there);
+}
+
+// An edit that is taken out has its values in the plan (apply/values_back.h).
+void initial_value(const online_change::VariableFate& variable, const ir::Image& next,
+                   base::Bytes& value) {
+  const online_change::UpdateStep& step = *variable.step;
+  const uint32_t to = step.to + variable.index * step.to_stride;
+  const size_t at = size_t{variable.index} * step.size + (variable.new_address - to);
+  if (at + value.size() <= step.bytes.size()) {
+    std::memcpy(value.data(), step.bytes.data() + at, value.size());
+  } else {
+    online_change::InitialData(next).read(variable.new_address, value);
+  }
 }
 
 }  // namespace
@@ -67,7 +82,7 @@ std::string LiveReport::result_of(const online_change::VariableFate& variable,
   if (variable.step->kind == StepKind::kInitialise) {
     const base::Result<ir::Symbol> there = ir::find_symbol(next, variable.path);
     if (there.ok() && there->input) return {};  // the plant says it
-    online_change::InitialData(next).read(variable.new_address, value);
+    initial_value(variable, next, value);
   } else if (variable.step->kind == StepKind::kConvert) {
     const uint8_t* source = copy_.memory().data() + variable.old_address;
     const online_change::Conversions rules(image(), next);
@@ -80,6 +95,26 @@ std::string LiveReport::result_of(const online_change::VariableFate& variable,
     return {};
   }
   return online_change::shortened(ir::format_value(next, alone, value));
+}
+
+std::string LiveReport::result_of(const online_change::FateRow& row,
+                                  const online_change::UpdateStep& step,
+                                  const ir::Image& next) const {
+  const base::Result<ir::Symbol> there = ir::find_symbol(next, row.path);
+  if (!there.ok() || there->data != step.to || next.layouts[there->type].size != step.size) {
+    return {};
+  }
+  const ir::Kind kind = next.types[there->type].kind;
+  const bool leaf = next.types.is_scalar(there->type) || kind == ir::Kind::kString ||
+                    kind == ir::Kind::kWstring;
+  if (!leaf) return {};
+  online_change::VariableFate variable;
+  variable.path = row.path;
+  variable.old_address = step.from;
+  variable.new_address = step.to;
+  variable.new_type = there->type;
+  variable.step = &step;
+  return result_of(variable, {}, next);
 }
 
 tools::FateLine LiveReport::line(const online_change::VariableFate& variable,

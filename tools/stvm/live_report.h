@@ -28,6 +28,9 @@ class LiveReport {
 
   // Of the variable that the row is about, in the program that runs; "" when there is none.
   std::string value(const online_change::FateRow& row) const;
+  // What it becomes by that step, which is for this row alone; "" for what is no single value.
+  std::string result_of(const online_change::FateRow& row, const online_change::UpdateStep& step,
+                        const ir::Image& next) const;
   // The first of them, and how many there are.
   const std::vector<online_change::LiveLoss>& losses() const { return losses_; }
   uint64_t loss_count() const { return loss_count_; }

@@ -10,12 +10,13 @@ namespace stvm {
 base::Result<std::unique_ptr<Rehearsal>> Rehearsal::stage(const vm::Controller& running,
                                                           base::ByteSpan package,
                                                           online_change::Strategy strategy,
+                                                          online_change::TakenOut taken_out,
                                                           const LiveReport::CopyRanges& copy_of) {
   auto rehearsal = std::make_unique<Rehearsal>();
   base::Status started = rehearsal->start(running, copy_of);
   if (!started.ok()) return started.error();
   rehearsal->change_ = std::make_unique<online_change::Change>(*rehearsal->controller_);
-  base::Status staged = rehearsal->change_->stage(package, strategy);
+  base::Status staged = rehearsal->change_->stage(package, strategy, {}, taken_out);
   if (!staged.ok()) return staged.error();
   return rehearsal;
 }

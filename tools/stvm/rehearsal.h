@@ -21,6 +21,7 @@ class Rehearsal {
   static base::Result<std::unique_ptr<Rehearsal>> stage(const vm::Controller& running,
                                                         base::ByteSpan package,
                                                         online_change::Strategy strategy,
+                                                        online_change::TakenOut taken_out,
                                                         const LiveReport::CopyRanges& copy_of);
 
   vm::Controller& controller() { return *controller_; }

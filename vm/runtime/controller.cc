@@ -44,7 +44,6 @@ struct Controller::Impl {
 
 Controller::Controller() = default;
 Controller::~Controller() = default;
-
 base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedImage& image,
                                                             ControllerOptions options, Clock& clock,
                                                             IoPort& io, base::ByteSpan retained) {
@@ -86,7 +85,9 @@ uint64_t Controller::cycles() const { return impl_->scheduler.cycles(); }
 void Controller::reset_times() { impl_->scheduler.tables().forget_times(); }
 bool Controller::at_boundary() const { return impl_->scheduler.at_boundary(); }
 bool Controller::faulted() const { return impl_->scheduler.faulted(); }
-
+bool Controller::start_pending() const { return impl_->scheduler.start_pending(); }
+bool Controller::starts_anew() const { return impl_->scheduler.starts_anew(); }
+void Controller::values_put_back() { impl_->scheduler.outputs_put_back(); }
 int64_t Controller::next_release_ns() const { return impl_->scheduler.tables().next_release_ns(); }
 int64_t Controller::next_cycle_ns() const { return impl_->scheduler.next_cycle_ns(); }
 int64_t Controller::base_period_ns() const { return impl_->scheduler.tables().base_period_ns; }
@@ -300,7 +301,7 @@ std::vector<DeviceStatus> Controller::devices() const { return impl_->io_port.st
 
 void Controller::construct() {
   impl_->set_change_flag(true);
-  impl_->scheduler.start_in_next_cycle();
+  impl_->scheduler.start_in_next_cycle(false);
 }
 
 base::Status Controller::enter() {
@@ -334,7 +335,7 @@ base::Status Controller::restart(Restart kind, int64_t exit_limit_ns) {
     impl_->set_change_flag(false);
   }
   impl_->scheduler.restart();
-  if (kind != Restart::kHot) impl_->scheduler.start_in_next_cycle();
+  if (kind != Restart::kHot) impl_->scheduler.start_in_next_cycle(true);
   return left;
 }
 

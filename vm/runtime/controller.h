@@ -122,6 +122,9 @@ class Controller {
   uint64_t cycles() const;
   bool at_boundary() const;
   bool faulted() const;
+  // Start code has yet to run, with the next cycle: behind construct(), or a restart.
+  bool start_pending() const;
+  bool starts_anew() const;  // behind a restart
   // Next instant at which a task is released.
   int64_t next_release_ns() const;
   // Start of the next control cycle, with or without a release: idle time ends here. An instant
@@ -208,6 +211,8 @@ class Controller {
   // At a boundary: FB_Exit of these instances, those around others first. When one traps or takes
   // longer than `limit_ns`, the rest is left out and the old program can run on behind construct().
   base::Status leave(const std::vector<uint32_t>& ids, int64_t limit_ns);
+  // Behind it, when all values are as before: outputs are, too.
+  void values_put_back();
   // The same of all there are, and their outputs are sent: nothing runs behind it.
   base::Status leave_all(int64_t limit_ns);
 

@@ -18,7 +18,12 @@ class Scheduler {
   // At cold start, before the first cycle: the tasks that run once (ir::Task), to their end.
   void run_start_tasks();
   // Behind a switch: the next cycle begins with them.
-  void start_in_next_cycle() { start_pending_ = true; }
+  void start_in_next_cycle(bool anew) {
+    start_anew_ = anew || starts_anew();
+    start_pending_ = true;
+  }
+  bool start_pending() const { return start_pending_; }
+  bool starts_anew() const { return start_pending_ && start_anew_; }  // behind a restart
   // At a boundary: them, for instances that leave. A trap, or more than `limit_ns`, ends them, and
   // nothing else: false.
   bool run_exits(int64_t limit_ns);
@@ -31,6 +36,7 @@ class Scheduler {
   void make_outputs_safe(bool for_good);
   // Variables that are sent as these were written from outside.
   void outputs_set(std::span<const WriteSet::OutputBits> outputs);
+  void outputs_put_back() { outputs_stale_ = true; }  // all of them
   // What is complete.
   void send_outputs();
   // Behind a fault: only outputs that are held for a time are looked after. Where a task starts
@@ -150,6 +156,7 @@ class Scheduler {
   bool received_ahead_ = false;   // by the cycle before, for what is due in the next one
   bool receive_now_ = false;      // a version that came in a pause has no inputs yet
   bool start_pending_ = false;
+  bool start_anew_ = false;
   bool again_ = false;       // the task that has just ended starts at once again
   bool paused_ = false;      // at a boundary in the middle of a cycle
   bool lengthened_ = false;  // this cycle, for a task that was late

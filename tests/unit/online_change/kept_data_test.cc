@@ -127,5 +127,151 @@ TEST(KeptData, X1_C5_TheRefusalSaysWhatTheTimeIsFor) {
       << armed.error().text;
 }
 
+// --- FB_Exit: whatever it wrote before one traps is as it was, there and back --------------------
+
+// `exits` leave with a switch to the program without them, and with the undo of one that brings
+// them; the last one traps as long as `zero` is 0.
+std::string leaving_tank(const std::string& blocks, const std::string& more = "") {
+  return "FUNCTION_BLOCK Leaves VAR n : INT; END_VAR\n"
+         "METHOD FB_Exit : BOOL VAR_INPUT bInCopyCode : BOOL; END_VAR level[2] := 55; exits := "
+         "exits + 1; n := 9; lamp := TRUE; link := NULL; END_METHOD END_FUNCTION_BLOCK\n"
+         "FUNCTION_BLOCK Stays VAR n : INT; inits : INT; END_VAR\n"
+         "METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; END_VAR inits := "
+         "inits + 1; END_METHOD\n"
+         "METHOD FB_Exit : BOOL VAR_INPUT bInCopyCode : BOOL; END_VAR n := 100 / zero; END_METHOD "
+         "END_FUNCTION_BLOCK\n"
+         "VAR_GLOBAL zero, exits, shared : INT; link : REF_TO INT := REF(shared); lamp AT %QX0.1 : "
+         "BOOL; level : ARRAY[1..10] OF INT; " +
+         more +
+         " END_VAR\n"
+         "PROGRAM Main VAR x : INT; " +
+         blocks + " END_VAR x := x + 1; level[3] := x; END_PROGRAM";
+}
+const std::string kLeaving = "a : Leaves; b : Stays;";
+
+TEST_P(KeptDataBy, X1_case34_WhatFbExitWroteBeforeOneTrapsInASwitchIsAsItWas) {
+  Plant plant(leaving_tank(kLeaving), no_slack());
+  plant.use(GetParam());
+  plant.run(4);
+  const base::Digest before = plant.hash();
+  for (int turn = 0; turn < 2; ++turn) {
+    EXPECT_EQ(switched(plant, leaving_tank("")), Refusal::kExitFailed);
+    EXPECT_EQ(plant.hash(), before);
+  }
+  plant.controller().cycle();  // the traps are on record
+  EXPECT_EQ(plant.get("exits"), "0");
+  EXPECT_EQ(plant.get("Main.b.inits"), "1") << "nothing has left, so nothing is made anew";
+  EXPECT_EQ(plant.devices().sent.back()[0], 0) << "lamp was never sent";
+  plant.set("zero", "1");
+  plant.change(leaving_tank(""), true);
+  EXPECT_EQ(plant.get("exits"), "1");
+  EXPECT_EQ(plant.get("level[2]"), "55");
+}
+
+TEST_P(KeptDataBy, X1_case34_WhatFbExitWroteBeforeOneTrapsInAnUndoIsAsItWas) {
+  Plant plant(leaving_tank(""), no_slack());
+  plant.use(GetParam());
+  plant.run(2);
+  plant.change(leaving_tank(kLeaving, "wide : LREAL;"));
+  plant.run(3);
+  const base::Digest before = plant.hash();
+  for (int turn = 0; turn < 2; ++turn) {
+    ASSERT_TRUE(plant.driver().prime().ok());
+    EXPECT_EQ(plant.driver().undo().error().refusal, Refusal::kExitFailed);
+    EXPECT_EQ(plant.driver().on_trial(), 1u);
+    EXPECT_EQ(plant.hash(), before);
+  }
+  plant.controller().cycle();
+  EXPECT_EQ(plant.get("Main.b.inits"), "1");
+  EXPECT_EQ(plant.get("Main.x"), "6");
+  EXPECT_EQ(plant.devices().sent.back()[0], 0);
+  plant.set("zero", "1");
+  plant.undo();
+  EXPECT_EQ(plant.get("exits"), "1");
+  EXPECT_EQ(plant.driver().on_trial(), 0u);
+}
+
+// What ends a switch or an undo behind FB_Exit.
+TEST_P(KeptDataBy, X1_C1_WhatFbExitWroteIsAsItWasWhereverItEnds) {
+  for (const bool back : {false, true}) {
+    int points = 0;
+    for (int fail_at = 0;; ++fail_at, ++points) {
+      Plant plant(leaving_tank(back ? "" : kLeaving), no_slack());
+      plant.use(GetParam());
+      plant.run(2);
+      plant.set("zero", "1");
+      Change& change = plant.driver();
+      if (back) {
+        plant.change(leaving_tank(kLeaving));
+        plant.run(1);
+        ASSERT_TRUE(change.prime().ok());
+      } else {
+        ASSERT_TRUE(plant.stage(plant.package(leaving_tank(""))).ok());
+        ASSERT_TRUE(change.arm(true).ok());
+      }
+      const base::Digest before = plant.hash();
+      int passed = 0;
+      change.set_interruption([&] { return passed++ == fail_at; });
+      const auto report = back ? change.undo() : change.switch_now();
+      if (report.ok()) break;
+      EXPECT_EQ(report.error().refusal, Refusal::kDeadline);
+      EXPECT_EQ(plant.hash(), before) << fail_at;
+    }
+    EXPECT_GE(points, 3) << back;
+  }
+}
+
+// The copies that this needs are expected to take their time, by both strategies.
+TEST_P(KeptDataBy, X1_C5_KeepingAllValuesForFbExitIsInThePrediction) {
+  constexpr int kMany = 500'000;
+  constexpr int64_t kCopied = 2 * kMany / kPauseCopiedBytesPerNs;
+  int64_t there[2] = {};
+  int64_t back[2] = {};
+  for (const bool large : {false, true}) {
+    const std::string more =
+        large ? "much : ARRAY[1.." + std::to_string(kMany) + "] OF INT;" : std::string();
+    Plant plant(leaving_tank(kLeaving, more));
+    plant.use(GetParam());
+    plant.run(1);
+    ASSERT_TRUE(plant.stage(plant.package(leaving_tank("", more))).ok());
+    there[large] = plant.driver().predicted_pause_ns();
+    plant.driver().cancel();
+    ASSERT_TRUE(plant.stage(plant.package(leaving_tank(kLeaving + "c : Leaves;", more))).ok());
+    ASSERT_TRUE(plant.driver().arm(true, true).ok());
+    ASSERT_TRUE(plant.driver().switch_now().ok());
+    back[large] = plant.driver().predicted_pause_ns();
+  }
+  EXPECT_GE(there[1] - there[0], kCopied);
+  EXPECT_GE(back[1] - back[0], kCopied);
+}
+
+// Behind a restart all FB_Init are due. Those of version 1 run before version 2 takes its place.
+TEST_P(KeptDataBy, X1_case34_ASwitchWaitsForTheStartCodeOfARestart) {
+  const auto before = [](const std::string& more) {
+    return tank(more, "w : Writes; t : Traps;");
+  };
+  Plant plant(tank("", ""), no_slack());
+  plant.use(GetParam());
+  plant.set("zero", "1");
+  plant.change(before(""));
+  plant.accept();
+  plant.run(2);
+  ASSERT_TRUE(plant.stage(plant.package(before("more : INT;"))).ok());
+  ASSERT_TRUE(plant.driver().arm(false).ok());
+  (void)plant.controller().restart(vm::Restart::kCold, 0).ok();
+  const base::Digest reset = plant.hash();
+  const auto early = plant.driver().switch_now();
+  ASSERT_FALSE(early.ok());
+  EXPECT_EQ(early.error().refusal, Refusal::kBusy);
+  EXPECT_EQ(plant.driver().state(), State::kArmed);
+  EXPECT_EQ(plant.hash(), reset) << "no FB_Init has written anything";
+  plant.set("zero", "1");
+  plant.controller().cycle();
+  EXPECT_EQ(plant.controller().trap_count(), 0u);
+  ASSERT_TRUE(plant.driver().switch_now().ok());
+  EXPECT_EQ(plant.get("level[3]"), "77");
+  EXPECT_EQ(plant.get("Main.x"), "1");
+}
+
 }  // namespace
 }  // namespace online_change

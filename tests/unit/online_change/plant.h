@@ -56,7 +56,9 @@ class Plant {
   // Compiles and links against the running version; the encoded package.
   base::Bytes package(const std::string& source, bool move_all = false);
   base::Status stage(base::ByteSpan package, std::optional<size_t> taken_out = std::nullopt) {
-    return change_->stage(package, strategy_, {}, taken_out);
+    const online_change::TakenOut taken =
+        taken_out ? online_change::TakenOut{change_.get(), *taken_out} : online_change::TakenOut{};
+    return change_->stage(package, strategy_, {}, taken);
   }
   // Stages, arms and switches. Fails the test when anything is refused.
   online_change::SwitchReport change(const std::string& source, bool allow_loss = false,
