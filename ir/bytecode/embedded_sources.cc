@@ -12,7 +12,7 @@ namespace {
 constexpr size_t kMaxBuild = 1024;  // arguments of a build
 
 base::Error bad(std::string text) {
-  return {base::Refusal::kBadFormat, "image: " + std::move(text)};
+  return {base::Refusal::kBadSources, "image: " + std::move(text)};
 }
 
 bool is_printable(std::string_view text) {

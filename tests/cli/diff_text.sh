@@ -343,6 +343,6 @@ grep -q '^source src' out && fail "a file is told beside its units"
 sed -i '/embed_sources/d' v2/stc.toml
 expect 0 stc build v2 -o plain.img
 expect 7 stc diff v1.img plain.img --text
-said 'no sources travel with Plant'
+said 'R0509: no sources travel with Plant'
 expect 0 stc diff v1.img plain.img
 said '^source +7 files  \(travel with the program no longer\)$'

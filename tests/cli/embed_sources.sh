@@ -50,7 +50,7 @@ echo '(* mine *)' >>back/src/main.st
 cp back/src/main.st mine.st
 rm back/lib/pump.st
 expect 7 stc source plant.img -o back
-said 'R0503.*back/src/main.st.*--overwrite'
+said 'R0510.*back/src/main.st.*--overwrite'
 cmp mine.st back/src/main.st || fail "it was overwritten"
 [ ! -e back/lib/pump.st ] || fail "half of them were written"
 expect 0 stc source plant.img -o back --overwrite
@@ -71,7 +71,7 @@ sed -i '/embed_sources/d; /^name/d' back/stc.toml
 mv back other
 expect 0 stc build other -o none.img
 expect 7 stc source none.img
-said 'no sources travel with other'
+said 'R0509: no sources travel with other'
 sed -i 's/^  IF on/{IF defined(SIM)} runs := runs + 10; {END_IF}\n  IF on/' other/lib/pump.st
 expect 0 stc build other --embed-sources --define 'SIM' --no-opt --name 'my plant' -o other.img
 expect 0 stc source other.img -o back
@@ -88,10 +88,10 @@ cmp files.img again.img || fail "of a list of files"
 mkdir outside && cp main.st outside/away.st
 printf 'embed_sources = true\nsources = ["src/main.st", "../pump.st"]\n' >other/stc.toml
 expect 7 stc build other -o bad.img
-said 'R0506.*pump.st.*outside of the folder'
+said 'R0511.*pump.st.*outside of the folder'
 rm -rf linked && mkdir linked && cp pump.st linked && ln -s "$work/outside/away.st" linked/away.st
 expect 7 stc build linked --embed-sources -o bad.img
-said 'R0506.*away.st.*link'
+said 'R0511.*away.st.*link'
 expect 0 stc build linked -o good.img
 mkdir large && cp main.st pump.st large
 head -c 67108864 /dev/zero | tr '\0' ' ' >large/blanks.st
@@ -154,7 +154,7 @@ sed -i '/embed_sources/d' plant/stc.toml
 expect 0 stvm change plant --dir plc --yes --allow-loss --permanent
 said '^source +3 files  \(travel with the program no longer\)'
 expect 7 stvm source --dir plc
-said 'no sources travel'
+said 'R0509: no sources travel'
 expect 0 stvm change first --dir plc --yes --allow-loss --permanent
 said '^source +3 files  \(travel with the program from now on\)'
 expect 0 stvm stop --dir plc

@@ -77,7 +77,7 @@ std::string json_of(const ir::EmbeddedSources& sources, const std::string& progr
 }  // namespace
 
 base::Error no_sources(const std::string& program) {
-  return {base::Refusal::kFileNotFound,
+  return {base::Refusal::kNoSources,
           "no sources travel with " + program + ": it was built without `embed_sources`"};
 }
 

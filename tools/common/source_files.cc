@@ -125,7 +125,7 @@ base::Error differ(const Folder& folder, const std::vector<std::string>& paths) 
     text += (i == 0 ? ": " : ", ") + base::visible(folder.in_folder(paths[i]));
   }
   if (paths.size() > kShown) text += " and " + std::to_string(paths.size() - kShown) + " more";
-  return {base::Refusal::kFileUnwritable,
+  return {base::Refusal::kSourceDiffers,
           text + "; name another folder, or replace them by --overwrite"};
 }
 

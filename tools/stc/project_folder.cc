@@ -9,7 +9,7 @@ namespace {
 namespace fs = std::filesystem;
 
 base::Error cannot_travel(const std::string& file, const std::string& why) {
-  return {base::Refusal::kBadProject, file + ": cannot travel with the image: " + why};
+  return {base::Refusal::kCannotTravel, file + ": cannot travel with the image: " + why};
 }
 
 fs::path whole(const std::string& path) {

@@ -81,11 +81,11 @@ TEST(EmbeddedSources, X9_OneStoredForm) {
   // A section of no sources, and one with bytes behind them.
   const base::Bytes none(12, 0);
   EXPECT_EQ(ir::decode(ir::encode(sample::busy_image(), nullptr, none).bytes).error().refusal,
-            Refusal::kBadFormat);
+            Refusal::kBadSources);
   base::Bytes longer = ir::encode_sources(two_files());
   longer.push_back(0);
   EXPECT_EQ(ir::decode(ir::encode(sample::busy_image(), nullptr, longer).bytes).error().refusal,
-            Refusal::kBadFormat);
+            Refusal::kBadSources);
   base::Bytes old = usual;  // of a version that has the section, without it
   old[kVersionAt] = 10;
   EXPECT_EQ(ir::decode(old).error().refusal, Refusal::kBadFormat);
@@ -125,7 +125,7 @@ TEST(EmbeddedSources, X9_HostileImagesAreRefused) {
     edit(sources);
     const auto verified = ir::verify(with_sources(sources));
     ASSERT_FALSE(verified.ok()) << what;
-    EXPECT_EQ(verified.error().refusal, Refusal::kBadFormat) << verified.error().text;
+    EXPECT_EQ(verified.error().refusal, Refusal::kBadSources) << verified.error().text;
     EXPECT_FALSE(verified.error().text.empty());
   };
   refused("out of the folder", [](auto& s) { s.files[0].path = "../a.st"; });
@@ -150,7 +150,7 @@ TEST(EmbeddedSources, X9_ATextThatIsAnotherIsTold) {
   ir::EmbeddedSources sources = two_files();
   sources.files[0].digest[0] ^= 1;
   EXPECT_TRUE(ir::check_sources(sources).ok());
-  EXPECT_EQ(ir::unpack_sources(sources).error().refusal, Refusal::kBadFormat);
+  EXPECT_EQ(ir::unpack_sources(sources).error().refusal, Refusal::kBadSources);
 }
 
 // Any bytes in the place of the section: refused, or of paths and sizes that tools can rely on.
@@ -173,7 +173,7 @@ TEST(EmbeddedSources, X9_MutantsAreRefusedOrBounded) {
     }
     const auto sources = ir::decode_sources(bytes);
     if (!sources.ok()) {
-      ASSERT_EQ(sources.error().refusal, Refusal::kBadFormat);
+      ASSERT_EQ(sources.error().refusal, Refusal::kBadSources);
       continue;
     }
     ++accepted;
