@@ -16,6 +16,42 @@ bool meets(const ir::DirectAddress& a, const ir::DirectAddress& b) {
          b.bit_offset < a.bit_offset + std::max(a.bit_size, 1u);
 }
 
+// How many instances of each type there are, two standing for more. What is in an instance of a
+// derived block is in the derived type too, and counts for it.
+class InstanceCounts {
+ public:
+  InstanceCounts(const ir::TypeTable& types, size_t kinds) : types_(types), counts_(kinds) {}
+
+  void add(ir::TypeId type, uint64_t count) {
+    std::vector<std::pair<ir::TypeId, uint64_t>> open{{type, count}};
+    while (!open.empty()) {
+      auto [at, more] = open.back();
+      open.pop_back();
+      const ir::Type& part = types_[at];
+      if (part.kind == ir::Kind::kArray) {
+        for (const ir::Dimension& dim : part.dims) more = std::min(more * dim.count(), kMany);
+        open.emplace_back(part.base, more);
+        continue;
+      }
+      if (!types_.has_members(at) || types_.is_reference(at)) continue;
+      uint64_t& known = counts_[at.index];
+      more = std::min(more, kMany - known);
+      if (more == 0) continue;
+      known += more;
+      for (const ir::Member& member : part.members) {
+        if (member.section != ir::Section::kInOut) open.emplace_back(member.type, more);
+      }
+    }
+  }
+  uint64_t of(ir::TypeId type) const { return counts_[type.index]; }
+
+  static constexpr uint64_t kMany = 2;
+
+ private:
+  const ir::TypeTable& types_;
+  std::vector<uint64_t> counts_;  // by type
+};
+
 bool keeps_value(ir::DirectArea area) {
   return area == ir::DirectArea::kMarker || area == ir::DirectArea::kOutput;
 }
@@ -34,6 +70,7 @@ void SharedAddresses::check() const {
         {decl->address, variable.type, variable.name.span, std::string(variable.name.text)});
   }
   check_inputs_in_tests(all);
+  check_instances();
   const std::vector<Located>& configured = sema_.addresses.configured;
   if (configured.empty() || sema_.diagnostics_.has_errors()) return;
   all.insert(all.end(), configured.begin(), configured.end());
@@ -63,6 +100,44 @@ void SharedAddresses::check() const {
                                                                    one.type, one.address);
     if (reaches(mine) && end <= mine.end) continue;
     mine = {&one, end};
+  }
+}
+
+// A fixed %M or %Q of a block is one place for all of its instances, but each has a variable.
+void SharedAddresses::check_instances() const {
+  if (sema_.diagnostics_.has_errors() || sema_.for_tests()) return;  // a TEST has one of its own
+  const auto places = [&](const PouInfo& pou, VarId id) {
+    const Variable& variable = sema_.variables_[id.index];
+    const VarDecl* decl = variable.decl;
+    return pou.decl != nullptr && pou.decl->kind == PouKind::kFunctionBlock && decl != nullptr &&
+           decl->has_address && !decl->incomplete && variable.storage == Storage::kMember &&
+           keeps_value(decl->address.area);
+  };
+  std::vector<std::pair<const PouInfo*, VarId>> fixed;
+  for (const PouInfo& pou : sema_.pous) {
+    for (const VarId id : pou.members) {
+      if (places(pou, id)) fixed.emplace_back(&pou, id);
+    }
+  }
+  if (fixed.empty()) return;
+  InstanceCounts counts(sema_.program.types, sema_.program.types.size());
+  for (const ir::ProgramInstance& program : sema_.program.instances) counts.add(program.type, 1);
+  counts.add(sema_.program.globals, 1);
+  for (const auto& [pou, id] : fixed) {
+    uint64_t instances = 0;
+    for (const PouInfo& other : sema_.pous) {
+      const bool is_one = other.self.valid() && other.owner == kNoPou &&
+                          sema_.objects.extends(other.number, pou->number);
+      if (is_one) instances += counts.of(other.self);
+    }
+    if (instances < InstanceCounts::kMany) continue;
+    const Variable& variable = sema_.variables_[id.index];
+    sema_.error(DiagnosticCode::kBadAddress, variable.name.span,
+                "`" + std::string(pou->name) + "." + std::string(variable.name.text) + "` AT " +
+                    ir::address_text(variable.decl->address) +
+                    " is one place for several instances, but each has a variable of its own",
+                "write AT %M* or %Q* and give each instance its address in VAR_CONFIG, or declare "
+                "it in VAR_GLOBAL");
   }
 }
 

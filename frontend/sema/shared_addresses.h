@@ -35,6 +35,7 @@ class SharedAddresses {
   };
   using Group = std::vector<Place>;
 
+  void check_instances() const;
   void check_inputs_in_tests(const std::vector<Located>& all) const;
   void report_configured(const Located& one, const Located& other) const;
   void collect_variables();

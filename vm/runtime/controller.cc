@@ -13,7 +13,6 @@
 #include "vm/runtime/task_tables.h"
 
 namespace vm {
-
 struct Controller::Impl {
   Impl(const ControllerOptions& options, Clock& clock, IoPort& io, Memory reserved)
       : memory(std::move(reserved)),
@@ -178,7 +177,8 @@ base::Result<std::unique_ptr<ForceChange>> Controller::prepare_force(
     base::Result<base::Bytes> bytes = parsed(image(), *symbol, row);
     if (!bytes.ok()) return bytes.error();
     Force force{row.path, *symbol, std::move(*bytes)};
-    std::erase_if(next, [&](const Force& other) { return overlap(force, other); });
+    const ProcessImage& bits = impl_->scheduler.tables().process_image;
+    std::erase_if(next, [&](const Force& other) { return overlap(force, other, bits); });
     next.push_back(std::move(force));
   }
   return impl_->prepare_forces(std::move(next));

@@ -20,9 +20,22 @@ base::Bytes carry_over(const ir::Image& from, const Force& force, const ir::Imag
   return value.ok() ? *value : base::Bytes{};
 }
 
+bool share_inputs(const Force& a, const Force& b, const ProcessImage& process_image) {
+  if (!a.symbol.input || !b.symbol.input) return false;
+  const size_t bytes = process_image.input_bytes();
+  base::Bytes inputs(bytes), of_a(bytes), of_b(bytes);
+  process_image.mark_inputs(a.symbol.data, a.value, inputs, of_a);
+  process_image.mark_inputs(b.symbol.data, b.value, inputs, of_b);
+  for (size_t i = 0; i < bytes; ++i) {
+    if ((of_a[i] & of_b[i]) != 0) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
-bool overlap(const Force& a, const Force& b) {
+bool overlap(const Force& a, const Force& b, const ProcessImage& process_image) {
+  if (share_inputs(a, b, process_image)) return true;
   const bool bits = a.symbol.bit_mask != 0 && b.symbol.bit_mask != 0;
   if (bits && (a.symbol.bit_mask & b.symbol.bit_mask) == 0) return false;
   return a.symbol.data < b.symbol.data + b.value.size() &&
@@ -43,6 +56,16 @@ ForcedSet ForcedSet::make(const ir::VerifiedImage& image, const CodeTable& own,
     variables.push_back(
         {{force.symbol.data, size, force.symbol.type}, force.value, force.symbol.bit_mask});
   }
+  const auto is_input = [](const Force& force) { return force.symbol.input; };
+  if (std::any_of(set.forces.begin(), set.forces.end(), is_input)) {
+    const ProcessImage process_image(image.image());
+    set.inputs.resize(process_image.input_bytes());
+    set.input_mask.resize(process_image.input_bytes());
+    for (const Force& force : set.forces) {
+      if (!force.symbol.input) continue;
+      process_image.mark_inputs(force.symbol.data, force.value, set.inputs, set.input_mask);
+    }
+  }
   set.code = ForcedCode::make(image, own, variables, tier);
   set.made_of = own.number.value;
   for (size_t i = 0; i < set.forces.size(); ++i) {
@@ -57,6 +80,7 @@ ForcedSet ForcedSet::adopt(const ir::VerifiedImage& image, const CodeTable& own,
   if (rows.empty()) return {};
   const ir::Image& to = image.image();
   const RenamedPaths paths(from, to);
+  const ProcessImage process_image(to);
   std::vector<Force> forces;
   std::vector<std::string> ended;
   for (const Force& row : rows) {
@@ -66,7 +90,7 @@ ForcedSet ForcedSet::adopt(const ir::VerifiedImage& image, const CodeTable& own,
     base::Bytes value;
     if (symbol.ok() && !symbol->constant) value = carry_over(from, force, to, *symbol);
     force = {force.path, symbol.ok() ? *symbol : ir::Symbol(), std::move(value)};
-    const auto meets = [&](const Force& other) { return overlap(force, other); };
+    const auto meets = [&](const Force& other) { return overlap(force, other, process_image); };
     if (force.value.empty() || std::any_of(forces.begin(), forces.end(), meets)) {
       ended.push_back(row.path);
     } else {

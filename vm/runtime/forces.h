@@ -8,6 +8,7 @@
 #include "base/bytes.h"
 #include "ir/bytecode/symbols.h"
 #include "vm/load/forced_code.h"
+#include "vm/runtime/process_image.h"
 
 namespace vm {
 
@@ -18,8 +19,9 @@ struct Force {
   // Why it holds at the boundaries of cycles only (ForcedCode); "": it holds everywhere.
   std::string reason = {};
 };
-// Have they bytes in common? Of members of a union only one can be held.
-bool overlap(const Force& a, const Force& b);
+// Have they bytes in common, or bits of %I? Of members of a union and of inputs at overlapping
+// addresses only one can be held.
+bool overlap(const Force& a, const Force& b, const ProcessImage& process_image);
 // "everywhere", or "at the boundaries of cycles: " and the reason.
 std::string hold_text(const std::string& reason);
 struct NamedValue {
@@ -31,6 +33,10 @@ struct NamedValue {
 struct ForcedSet {
   std::vector<Force> forces;
   std::vector<std::string> ended;          // paths of those that were not adopted
+  // What forced inputs are as %I, and which bits of %I these are: variables at overlapping
+  // addresses see each other's forces. Empty: no input is forced.
+  base::Bytes inputs;
+  base::Bytes input_mask;
   std::shared_ptr<const ForcedCode> code;  // null: that of the generation
   uint64_t made_of = 0;                    // CodeTable::number of the generation's code
   // Finds out how `forces` hold on variables of the image, and makes the code.

@@ -150,6 +150,28 @@ void ProcessImage::mark_outputs(uint32_t begin, uint32_t end, std::span<uint8_t>
   }
 }
 
+void ProcessImage::mark_inputs(uint32_t begin, std::span<const uint8_t> value,
+                               std::span<uint8_t> inputs, std::span<uint8_t> mask) const {
+  const auto end = static_cast<uint32_t>(begin + value.size());
+  for (const Point& point : inputs_) {
+    const uint32_t size = std::max(point.size, 1u);
+    if (point.data >= end || point.data + size <= begin) continue;
+    if (point.size == 0) {
+      const bool on = value[point.data - begin] != 0;
+      const uint8_t bits = point.mask == kWholeByte ? 1 : point.mask;
+      mask[point.byte] |= point.mask;
+      inputs[point.byte] = static_cast<uint8_t>((inputs[point.byte] & ~point.mask) |
+                                                (on ? bits : 0));
+      continue;
+    }
+    const uint32_t first = std::max(begin, point.data);
+    const uint32_t last = std::min(end, point.data + size);
+    const uint32_t byte = point.byte + (first - point.data);
+    std::fill_n(mask.begin() + byte, last - first, uint8_t{0xff});
+    std::copy_n(value.begin() + (first - begin), last - first, inputs.begin() + byte);
+  }
+}
+
 void ProcessImage::widen(std::span<uint8_t> mask) const {
   for (const Point& value : values_) {
     const auto begin = mask.begin() + value.byte;

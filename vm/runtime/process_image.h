@@ -31,6 +31,10 @@ class ProcessImage {
 
   // Sets the bits that the variables at [begin, end) of data memory are sent as.
   void mark_outputs(uint32_t begin, uint32_t end, std::span<uint8_t> mask) const;
+  // The bits that come in as the variable at [begin, begin + value.size()): set in `mask`, and in
+  // `inputs` as they are when it has that value. Both have input_bytes().
+  void mark_inputs(uint32_t begin, std::span<const uint8_t> value, std::span<uint8_t> inputs,
+                   std::span<uint8_t> mask) const;
   // Whole values instead of some bits of them.
   void widen(std::span<uint8_t> mask) const;
   bool has_reals() const { return !reals_.empty(); }

@@ -235,7 +235,10 @@ bool Scheduler::event_level(const TaskSlot& task) const {
   for (const Force& force : tables_->forced.forces) {
     if (force.symbol.data == task.event) return force.value[0] != 0;
   }
-  if (task.event_mask != 0) return (tables_->inputs[task.event_byte] & task.event_mask) != 0;
+  if (task.event_mask != 0) {
+    const uint8_t received = tables_->inputs[task.event_byte];
+    return (tables_->input(task.event_byte, received) & task.event_mask) != 0;
+  }
   return memory_[task.event] != 0;
 }
 

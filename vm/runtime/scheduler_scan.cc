@@ -294,7 +294,13 @@ void Scheduler::stop_outputs(TaskSlot& task) {
 }
 
 void Scheduler::copy_inputs(const TaskSlot& task) {
-  tables_->process_image.inputs_to_variables(task.inputs.inputs(), memory_);
+  const std::span<const uint8_t> inputs = task.inputs.inputs();
+  if (tables_->forced.input_mask.empty()) {
+    return tables_->process_image.inputs_to_variables(inputs, memory_);
+  }
+  base::Bytes& seen = tables_->seen_inputs;
+  for (size_t i = 0; i < seen.size(); ++i) seen[i] = tables_->input(i, inputs[i]);
+  tables_->process_image.inputs_to_variables(seen, memory_);
   impose(true);
 }
 

@@ -93,6 +93,7 @@ TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
     return tasks[a].status.priority < tasks[b].status.priority;
   });
   inputs.resize(image.input_bytes);
+  seen_inputs.resize(image.input_bytes);
   for (base::Bytes* bytes :
        {&outputs, &unused, &waiting_mask, &written, &scratch, &forced_outputs}) {
     bytes->resize(image.output_bytes);

@@ -114,6 +114,13 @@ struct TaskTables {
   // Of this version and the other one: then what waits is kept, and what is known of its writers.
   bool same_outputs = false;
   ForcedSet forced;
+  base::Bytes seen_inputs;      // with the forced ones in them
+  // An input as the program sees it.
+  uint8_t input(size_t byte, uint8_t received) const {
+    if (byte >= forced.input_mask.size()) return received;
+    const uint8_t mask = forced.input_mask[byte];
+    return static_cast<uint8_t>((received & ~mask) | (forced.inputs[byte] & mask));
+  }
 
  private:
   void find_base_period();
