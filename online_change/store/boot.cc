@@ -190,23 +190,6 @@ class Booting {
     return unfit();
   }
 
-  // The versions that the edits make, one behind the other. False: one of them is not what it
-  // should be.
-  bool follow(const std::vector<StoredEdit>& way, const ir::VerifiedImage& accepted, Boot& boot) {
-    boot.image = accepted;
-    for (const StoredEdit& edit : way) {
-      const base::Result<uint64_t> retained = retained_bytes(boot.image.image());
-      if (!retained.ok() || *retained != edit.retained.size()) return false;
-      base::Result<Package> package = decode(edit.package, boot.image.encoded());
-      if (!package.ok()) return false;
-      base::Result<ir::VerifiedImage> next = ir::verify(std::move(package->image));
-      if (!next.ok() || next->digest() != edit.to) return false;
-      boot.edits.push_back({edit, boot.image});
-      boot.image = *next;
-    }
-    return !way.empty();
-  }
-
   // What the newest values are of: the newest edit mostly; one below it, where a cut came before it
   // had saved any; the one above it, where a cut came behind an undo. That one is not in the list
   // when it was not to boot: what it had dropped begins anew then.
@@ -242,14 +225,17 @@ class Booting {
     const base::Result<std::vector<StoredEdit>> all = store_.edits();
     const base::Digest& trial = *found_.trial_lost;
     Boot next{accepted, {}, {}, {}};
-    const bool there =
-        all.ok() && follow(way_between(*all, accepted.digest(), trial), accepted, next);
-    if (!there) {
+    std::optional<std::vector<ResumedEdit>> edits;
+    if (all.ok()) {
+      edits = follow_edits(way_between(*all, accepted.digest(), trial), accepted, next.image);
+    }
+    if (!edits || edits->empty()) {
       boot.alarms.push_back("the edits on trial cannot be resumed: " +
                             (all.ok() ? std::string("no stored edits lead to the program on trial")
                                       : all.error().text));
       return false;
     }
+    next.edits = std::move(*edits);
     next.alarms = std::move(boot.alarms);
     next.retained = initial_retained(next.image.image());
     take(found_.newest ? values_on_trial(*all, next) : no_values(), next);
@@ -287,6 +273,49 @@ class Booting {
 };
 
 }  // namespace
+
+std::optional<std::vector<ResumedEdit>> follow_edits(const std::vector<StoredEdit>& edits,
+                                                     const ir::VerifiedImage& first,
+                                                     ir::VerifiedImage& last) {
+  std::vector<ResumedEdit> out;
+  ir::VerifiedImage image = first;
+  for (const StoredEdit& edit : edits) {
+    const base::Result<uint64_t> retained = retained_bytes(image.image());
+    if (!retained.ok() || *retained != edit.retained.size()) return std::nullopt;
+    base::Result<Package> package = decode(edit.package, image.encoded());
+    if (!package.ok()) return std::nullopt;
+    base::Result<ir::VerifiedImage> next = ir::verify(std::move(package->image));
+    if (!next.ok() || next->digest() != edit.to) return std::nullopt;
+    out.push_back({edit, image});
+    image = *next;
+  }
+  last = image;
+  return out;
+}
+
+base::Bytes encode_trial(const std::vector<ResumedEdit>& edits) {
+  if (edits.empty()) return {};
+  std::vector<StoredEdit> stored;
+  for (const ResumedEdit& edit : edits) stored.push_back(edit.stored);
+  base::ByteWriter out;
+  out.blob(edits.front().before.encoded());
+  out.blob(encode(stored));
+  return out.take();
+}
+
+std::optional<std::vector<ResumedEdit>> decode_trial(base::ByteSpan bytes,
+                                                     const base::Digest& last) {
+  base::ByteReader in(bytes);
+  const base::ByteSpan image = in.blob();
+  const std::optional<std::vector<StoredEdit>> edits = decode_edits(in.blob());
+  if (!in.done() || !edits) return std::nullopt;
+  base::Result<ir::VerifiedImage> first = ir::verify(base::Bytes(image.begin(), image.end()));
+  if (!first.ok()) return std::nullopt;
+  ir::VerifiedImage made = *first;
+  auto out = follow_edits(*edits, *first, made);
+  if (!out || made.digest() != last) return std::nullopt;
+  return out;
+}
 
 base::Result<Boot> boot(Store& store, const std::optional<ir::VerifiedImage>& given,
                         const std::string& who, int64_t time_ns, bool create) {

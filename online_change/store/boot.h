@@ -30,6 +30,18 @@ struct Boot {
   std::vector<ResumedEdit> edits = {};
 };
 
+// The versions that these edits make, one behind the other, from what the first one was made on;
+// `last` is what the last one has made. Nullopt: one of them is not what it should be.
+std::optional<std::vector<ResumedEdit>> follow_edits(const std::vector<StoredEdit>& edits,
+                                                     const ir::VerifiedImage& first,
+                                                     ir::VerifiedImage& last);
+// As a recording that begins with a trial has them: the image that the first one was made on, and
+// the edits. Empty: there is none.
+base::Bytes encode_trial(const std::vector<ResumedEdit>& edits);
+// Nullopt: damaged. They lead to `last`.
+std::optional<std::vector<ResumedEdit>> decode_trial(base::ByteSpan bytes,
+                                                     const base::Digest& last);
+
 // `given` replaces what is stored; the retained values follow by path and type. kFileNotFound when
 // nothing was ever stored, unless `create` says that a program comes later; kStorageFailed when
 // `given` cannot be stored. Notes in the journal what it did, at `time_ns`.

@@ -33,3 +33,48 @@ for policy in '' "{attribute 'on_trap' := 'stop_task'}"; do
   expect 0 stvm replay run.rec
   said '[1-9][0-9]+ '
 done
+
+# D4, D3: a recording that begins while edits are on trial holds what takes them back: each of them,
+# one from below another, what they had dropped and converted, the names of new ones, redo, accept.
+edit() {  # edit FILE DECLARATIONS STATEMENTS OTHER
+  cat >"$1" <<ST
+FUNCTION_BLOCK Side VAR n : DINT; END_VAR n := n + $4; END_FUNCTION_BLOCK
+PROGRAM Main VAR n : DINT; s : Side; $2 END_VAR n := n + 1; s(); $3 END_PROGRAM
+ST
+}
+edit e0.st 'gone : DINT := 5; part : INT := 7;' 'gone := gone + 1;' 1
+edit e1.st 'part : SINT := 7; more : DINT;' 'more := more + 1;' 1
+edit e2.st 'part : SINT := 7; more : DINT;' 'more := more + 1;' 2
+edit e3.st 'part : SINT := 7; more : DINT; last : DINT;' 'more := more + 1; last := last + 1;' 2
+rm -rf plc
+serve plc e0.st
+expect 0 stvm set Main.part=300 --dir plc
+expect 0 stvm change e1.st --yes --allow-loss --allow-overrun --dir plc
+expect 0 stvm change e2.st --yes --allow-overrun --dir plc
+expect 0 stvm stop --dir plc
+rm plc.pid
+serve plc --record trial.rec
+expect 0 stvm edits --dir plc
+said '^E1 '
+said '^E2 '
+expect 0 stvm undo E1 --only --yes --allow-loss --allow-overrun --dir plc
+expect 0 stvm edits --dir plc
+said '^E3 '
+expect 0 stvm undo --yes --dir plc
+expect 0 stvm redo --yes --allow-loss --allow-overrun --dir plc
+expect 0 stvm undo E2 --yes --dir plc
+expect 0 stvm change e3.st --yes --allow-loss --allow-overrun --dir plc
+expect 0 stvm accept E1 --dir plc
+expect 0 stvm undo --yes --dir plc
+expect 0 stvm get Main.part --dir plc
+cp out part
+expect 0 stvm stop --dir plc
+rm plc.pid
+expect 0 stvm replay trial.rec --print Main.part
+said "^$(cat part)\$"
+said '[1-9][0-9]+ cycles replayed, the state is identical'
+# Another image in its place, or less of it, is said, and nothing is replayed.
+cp trial.rec bad.rec
+printf 'xxxxxxxx' | dd of=bad.rec bs=1 seek=400 conv=notrunc 2>/dev/null
+expect 7 stvm replay bad.rec
+said 'R0416'

@@ -98,3 +98,23 @@ expect 0 stvm undo --dir plc
 force_is_said 'lamp (lamp -> out1)'
 force_is_said 'out2 (comes back: TRUE)'
 force_is_said 'plain (DINT -> INT)'
+
+# case64: addresses that VAR_CONFIG gives, in blocks, arrays of them and other blocks.
+configured() {
+  mkdir -p "$1"
+  cat >"$1/a.st" <<ST
+FUNCTION_BLOCK Drive VAR lamp AT %Q* : BOOL; in AT %I* : INT; n : INT; END_VAR lamp := in > 3; n := n + 1; END_FUNCTION_BLOCK
+FUNCTION_BLOCK Line VAR d : ARRAY[1..2] OF Drive; END_VAR d[1](); d[2](); END_FUNCTION_BLOCK
+PROGRAM P VAR one : Drive; l : Line; END_VAR one(); l(); END_PROGRAM
+VAR_CONFIG
+  P.one.lamp AT %QX1.0 : BOOL; P.one.in AT $2 : INT; P.l.d[1].lamp AT %QX1.1 : BOOL; P.l.d[1].in AT %IW10 : INT;
+  P.l.d[2].lamp AT $3 : BOOL; P.l.d[2].in AT %IW11 : INT;
+END_VAR
+ST
+}
+configured g1 %IW8 %QX1.2
+configured g2 %IW9 %QX5.3
+expect 0 stc diff g1 g2
+said '^variable +P.one.in  \(%IW8 -> %IW9\)$'
+said '^variable +P.l.d\[2\].lamp  \(%QX1.2 -> %QX5.3; nobody writes %QX1.2 any more\)$'
+[ "$(grep -c '^variable' out)" = 2 ] || fail "more is told than moves"

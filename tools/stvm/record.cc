@@ -9,7 +9,8 @@ base::Result<std::unique_ptr<vm::Recorder>> open_recorder(const tools::Options& 
                                                           const ir::VerifiedImage& image,
                                                           base::ByteSpan retained,
                                                           const vm::ControllerOptions& limits,
-                                                          vm::Clock& clock, vm::IoPort& io) {
+                                                          vm::Clock& clock, vm::IoPort& io,
+                                                          base::ByteSpan trial) {
   if (!options.has("--record")) return std::unique_ptr<vm::Recorder>();
   if (limits.halted) {
     std::fputs("nothing is recorded: the controller begins in FAULT\n", stderr);
@@ -23,6 +24,7 @@ base::Result<std::unique_ptr<vm::Recorder>> open_recorder(const tools::Options& 
   start.code_limit = limits.code_limit;
   start.data_limit = limits.data_limit;
   start.on_trap = limits.on_trap;
+  start.trial.assign(trial.begin(), trial.end());
   std::string file = options.text("--record");
   if (!resource.empty()) file += "." + resource;
   return vm::Recorder::create(file, clock, io, start);

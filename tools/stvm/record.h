@@ -9,10 +9,11 @@
 namespace stvm {
 
 // Nothing without the option. To FILE.NAME for a resource of several. `clock` and `io` must outlive
-// it.
+// it. `trial`: RecordedStart::trial.
 base::Result<std::unique_ptr<vm::Recorder>> open_recorder(
     const tools::Options& options, const std::string& resource, const ir::VerifiedImage& image,
-    base::ByteSpan retained, const vm::ControllerOptions& limits, vm::Clock& clock, vm::IoPort& io);
+    base::ByteSpan retained, const vm::ControllerOptions& limits, vm::Clock& clock, vm::IoPort& io,
+    base::ByteSpan trial = {});
 // Controller::start(), recorded when `recorder` is one.
 base::Result<std::unique_ptr<vm::Controller>> start_recorded(const ir::VerifiedImage& image,
                                                              const vm::ControllerOptions& limits,

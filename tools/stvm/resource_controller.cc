@@ -90,7 +90,7 @@ base::Result<std::unique_ptr<ResourceController>> ResourceController::start(
     port = out->port_.get();
   }
   auto recorder = open_recorder(settings.options, resource.name, resource.image, retained,
-                                settings.limits, clock, *port);
+                                settings.limits, clock, *port, settings.trial);
   if (!recorder.ok()) return recorder.error();
   out->recorder_ = std::move(*recorder);
   auto controller =

@@ -35,6 +35,7 @@ class ResourceController {
     const std::vector<vm::GlobalExchange::Resource>& all;
     size_t number = 0;               // of this one among `all`
     vm::DeviceLog log = log_device;  // with `limits.events` for those that hang
+    base::Bytes trial = {};          // RecordedStart::trial
   };
   // `clock` and what the settings refer to must outlive it. With several resources each records to
   // FILE.NAME.

@@ -75,6 +75,7 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
   ResourceController::Settings own = settings;
   own.limits.halted = !boot_->fault.empty();
   own.limits.events = &events_->ring();
+  own.trial = online_change::encode_trial(boot_->edits);
   own.log = [weak = std::weak_ptr<EventLog>(events_)](
                 vm::DeviceEvent event, const std::string& device, const std::string& text) {
     if (const auto log = weak.lock()) log->take_device(event, device, text);

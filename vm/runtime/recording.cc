@@ -91,6 +91,7 @@ void read_start(base::ByteReader& in, RecordedStart& start) {
   start.code_limit = in.u64();
   start.data_limit = in.u64();
   start.on_trap = in.enumerator<ir::OnTrap>(4);
+  if (!in.done()) start.trial = copy(in.blob());
 }
 
 // Each `changed` and `lost` of its own.
@@ -184,6 +185,7 @@ base::Bytes encode_record(const RecordedStart& start) {
   payload.u64(start.code_limit);
   payload.u64(start.data_limit);
   payload.u8(static_cast<uint8_t>(start.on_trap));
+  if (!start.trial.empty()) payload.blob(start.trial);
   base::ByteWriter out;
   out.raw(base::as_bytes({kMagic, sizeof kMagic}));
   out.raw(framed(Tag::kStart, payload));

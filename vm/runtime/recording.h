@@ -27,6 +27,8 @@ struct RecordedStart {
   uint64_t code_limit = 0;
   uint64_t data_limit = 0;
   ir::OnTrap on_trap = ir::OnTrap::kStopAll;
+  // Edits that were on trial when it started, as whoever plays it understands them; mostly none.
+  base::Bytes trial = {};
 };
 
 using ByteChange = std::pair<uint32_t, uint8_t>;  // offset, new byte
