@@ -42,7 +42,7 @@ base::Result<bool> ControllerService::work_in_idle_time(base::Result<bool> (Chan
       if (unless_holds()) return;
       done = (change_.*work)();
       other_cycle = std::exchange(cycle, controller_.cycles()) != cycle;
-      stands = controller_.faulted();
+      stands = controller_.faulted() || stands_;
     });
     if (!taken.ok()) return taken.error();
     if (!done.ok() || *done || stands) return done;
@@ -105,7 +105,7 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
   auto job = [&] {
     if (unless_holds()) return;
     if (!allow_overrun && !time_for_switch()) return;
-    if (controller_.start_pending() && !controller_.faulted()) return;
+    if (controller_.start_pending() && !controller_.faulted() && !stands_) return;
     keeper_.take(before);
     if (!allow_overrun) {
       deadline.emplace(clock_, controller_.next_cycle_ns());

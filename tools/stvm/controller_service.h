@@ -53,6 +53,8 @@ class ControllerService : public vm::Service {
   void is_version(std::string version) { version_ = std::move(version); }
   // What changes something from now on is noted there; it must outlive this.
   void record(vm::Recorder& recorder) { recorder_ = &recorder; }
+  // A replay: no cycle comes while a request is carried out, so idle time is what it was then.
+  void stand_between_cycles() { stands_ = true; }
   // Whose events are shown to those who ask; it must outlive this.
   void show_events(const EventLog& log) { events_ = &log; }
   // The trial of another process goes on (D4); before anything is answered. What cannot is an
@@ -335,6 +337,7 @@ class ControllerService : public vm::Service {
   std::string taken_out_;  // the edit on trial whose work it takes back; "": none
   uint64_t staged_of_ = 0;       // session
   bool preparing_ = false;       // a request is about it just now
+  bool stands_ = false;          // stand_between_cycles()
   std::string abort_why_;        // by whom or what it ends; "": it goes on
   std::string aborted_;          // the same of the last one that ended so, with its time
   uint64_t aborted_of_ = 0;      // session

@@ -67,6 +67,7 @@ class Player {
     base::Result<online_change::Boot> boot = online_change::boot(store_, *image, "replay", 0);
     if (!boot.ok()) return boot.error();
     service_.emplace(*controller_, idle_clock_, store_, boundary_);
+    service_->stand_between_cycles();
     if (!start.trial.empty()) {
       const auto edits = online_change::decode_trial(start.trial, image->digest());
       if (!edits) return unusable("its edits on trial do not lead to its program");

@@ -47,6 +47,11 @@ class Plc : public vm::Boundary {
   std::function<Outcome()> at_boundary;
   // Called behind each job.
   std::function<void()> behind_job;
+  // As in a replay: no cycle comes by itself.
+  void stand() {
+    stands_ = true;
+    service_->stand_between_cycles();
+  }
 
   vm::Controller& controller() { return *controller_; }
   vm::VirtualClock& clock() { return clock_; }
@@ -56,9 +61,12 @@ class Plc : public vm::Boundary {
 
  private:
   Outcome run(const std::function<void()>& job, int64_t timeout_ns) override;
-  void pause(int64_t) override { controller_->cycle(); }
+  void pause(int64_t) override {
+    if (!stands_) controller_->cycle();
+  }
 
   vm::Storage& storage_;
+  bool stands_ = false;
   vm::VirtualClock clock_;
   vm::NullIo io_;
   std::unique_ptr<online_change::Store> store_;
