@@ -131,9 +131,11 @@ class RowMerger {
       type.base = out_.from_edited->type(type.base);
       for (ir::Member& member : type.members) member = out_.from_edited->member_of(member);
       for (TypeId& interface : type.interfaces) interface = out_.from_edited->type(interface);
-      for (ir::EnumLiteral& literal : type.literals) literal.old_name = {};
+      for (ir::EnumLiteral& literal : type.literals) {
+        literal.old_name = out_.from_edited->rule(literal.old_name);
+      }
       type.init = {};
-      type.old_name = {};
+      type.old_name = out_.from_edited->rule(type.old_name);
       merged().types.edit(to) = std::move(type);
       is_taken_[to.index] = true;
     }
@@ -276,7 +278,7 @@ class RowMerger {
           instance.type = translator.type(row.type);
           instance.task = task_number(from, row.task);
           instance.init = taken ? translator.constant(row.type, row.init) : init_of(row);
-          instance.old_name = {};
+          instance.old_name = translator.rule(row.old_name);
           const auto number = static_cast<uint32_t>(merged().instances.size());
           merged().instances.push_back(std::move(instance));
           add_block_tasks(from, translator, row.name, number);

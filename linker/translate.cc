@@ -84,9 +84,9 @@ TypeId Translator::anonymous(TypeId id) {
   copy.base = type(copy.base);
   for (ir::Member& member : copy.members) member = member_of(member);
   for (TypeId& interface : copy.interfaces) interface = type(interface);
-  for (ir::EnumLiteral& literal : copy.literals) literal.old_name = {};
+  for (ir::EnumLiteral& literal : copy.literals) literal.old_name = rule(literal.old_name);
   copy.init = {};
-  copy.old_name = {};
+  copy.old_name = rule(copy.old_name);
   to_.types.edit(there) = std::move(copy);
   unsettled_.push_back(id);
   if (settled_) settle();
@@ -158,11 +158,15 @@ ConstId Translator::constant(TypeId id, ConstId value) {
   return constants_[key] = to_.constants.add(std::move(content));
 }
 
+ir::OldNameId Translator::rule(ir::OldNameId rule) {
+  return rule.valid() ? to_.types.add_old_name(from_.types.old_name(rule)) : rule;
+}
+
 ir::Member Translator::member_of(const ir::Member& member) {
   ir::Member there = member;
   there.type = type(member.type);
   there.init = {};
-  there.old_name = {};
+  there.old_name = rule(member.old_name);
   return there;
 }
 

@@ -42,6 +42,8 @@ class Translator {
   std::optional<uint32_t> member(ir::TypeId id, uint32_t number);
   // An initial value of a `type` of `from`.
   ir::ConstId constant(ir::TypeId type, ir::ConstId value);
+  // A rule of the source, `{renamed from := 'old'}` (X2).
+  ir::OldNameId rule(ir::OldNameId rule);
   // Without its initial value.
   ir::Member member_of(const ir::Member& member);
   // All types of `to` have their members now.

@@ -149,3 +149,26 @@ expect 0 stvm get Main.b Main.part Main.cut --dir third
 said '^Main.b=100000$'
 said '^Main.part=127$'
 said '^Main.cut=100$'
+
+# What it had renamed by a rule goes back to its name, with the value that it has now.
+cat >plain.st <<'ST'
+FUNCTION_BLOCK Tank VAR level : INT := 3; mode : (off, on) := on; END_VAR level := level; END_FUNCTION_BLOCK
+FUNCTION_BLOCK Other VAR n : DINT; END_VAR n := n + 1; END_FUNCTION_BLOCK
+PROGRAM Main VAR t : Tank; o : Other; n : DINT; END_VAR t(); o(); n := n + 1; END_PROGRAM
+ST
+sed "s/level : INT := 3;/{renamed from := 'level'} height : INT := 3;/; s/level := level/height := height/" \
+  plain.st >named.st
+sed '/^FUNCTION_BLOCK Other/s/n + 1/n + 2/' named.st >more.st
+serve fourth plain.st
+expect 0 stvm set Main.t.level=300 --dir fourth
+expect 0 stvm change named.st --dir fourth --yes --allow-overrun
+expect 0 stvm change more.st --dir fourth --yes --allow-overrun
+expect 0 stvm set Main.t.height=301 --dir fourth
+expect 0 stvm undo E1 --only --dir fourth --yes --allow-overrun
+said 'renamed from .height.'
+expect 0 stvm get Main.t.level --dir fourth
+said '^Main.t.level=301$'
+expect 0 stvm set Main.t.level=302 --dir fourth
+expect 0 stvm undo --dir fourth --yes
+expect 0 stvm get Main.t.height --dir fourth
+said '^Main.t.height=302$'

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "ir/bytecode/renames.h"
 #include "ir/bytecode/symbols.h"
 #include "linker/link.h"
 #include "linker/merge.h"
@@ -86,6 +87,31 @@ const ir::PartEdit* row_of(const std::vector<ir::PartEdit>& rows, const std::str
     if (row.kind == PartKind::kUnit && row.name == name) return &row;
   }
   return nullptr;
+}
+
+// What the edit renames by a rule keeps its value in the other program, too: members, globals,
+// types and what is in them.
+TEST(Merge, X2_RulesOfTheEditGoAlong) {
+  Plant plant;
+  const ir::Image original = image_of(plant.text());
+  Plant next = plant;
+  next.c = "FUNCTION_BLOCK C VAR {renamed from := 'k'} sum : DINT; END_VAR sum := sum + shared;";
+  const ir::Image edited = image_of(next.text());
+  Plant other = plant;
+  other.own = "FUNCTION_BLOCK Own VAR n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK\n";
+  const ir::Image target = image_of(other.text());
+  const base::Result<ir::Image> merged = linker::merge({original, edited, target}, {});
+  ASSERT_TRUE(merged.ok()) << base::to_string(merged.error());
+  EXPECT_TRUE(ir::find_symbol(*merged, "Main.c1.sum").ok());
+  const std::optional<ir::Image> renamed = ir::under_new_names(target, *merged);
+  ASSERT_TRUE(renamed.has_value());
+  EXPECT_TRUE(ir::find_symbol(*renamed, "Main.c1.sum").ok());
+  // Edited again, it still has the rule, as its sources do.
+  Plant again = next;
+  again.a += " n := n + 1;";
+  const base::Result<ir::Image> twice = linker::merge({edited, image_of(again.text()), *merged}, {});
+  ASSERT_TRUE(twice.ok()) << base::to_string(twice.error());
+  EXPECT_TRUE(ir::under_new_names(target, *twice).has_value());
 }
 
 // The worked example: A and B are edited; one controller has both, one has another B.
