@@ -7,15 +7,20 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 namespace stc {
 namespace {
 
 constexpr int kLongestBurst = 50;  // looks at what has happened, before somebody is told
+constexpr uint32_t kPauseSeconds = 5;
+constexpr uint32_t kMostPatience = 3600;
 
 // What is written piece by piece is looked at when it is closed.
 constexpr uint32_t kBegun = IN_CREATE | IN_MODIFY;
@@ -36,6 +41,17 @@ bool is_local(const std::string& folder) {
 }
 
 }  // namespace
+
+std::chrono::seconds FileEvents::longest_pause() {
+  static const std::chrono::seconds pause = [] {
+    const char* const text = std::getenv("STC_PATIENCE");
+    const std::string_view digits = text == nullptr ? "" : text;
+    uint32_t seconds = 0;
+    std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
+    return std::chrono::seconds(seconds == 0 ? kPauseSeconds : std::min(seconds, kMostPatience));
+  }();
+  return pause;
+}
 
 void FileEvents::end() {
   if (events_ >= 0) ::close(std::exchange(events_, -1));
@@ -100,7 +116,7 @@ bool FileEvents::read() {
       }
     }
   }
-  std::erase_if(begun_, [&](const auto& file) { return now - file.second >= kLongestPause; });
+  std::erase_if(begun_, [&](const auto& file) { return now - file.second >= longest_pause(); });
   return told;
 }
 

@@ -35,8 +35,9 @@ class FileEvents {
   bool read();
   bool has_more_to_take() const { return !known_ || !files_.empty(); }
 
-  // Nobody pauses longer in the middle of a file: what stays open longer is complete.
-  static constexpr auto kLongestPause = std::chrono::seconds(5);
+  // Nobody pauses longer in the middle of a file: what stays open longer is complete. 5 s, or what
+  // STC_PATIENCE says: where files come over a slow line.
+  static std::chrono::seconds longest_pause();
   // Files that were created or written to and not closed since, and when that was seen last.
   const std::map<std::string, Time>& begun() const { return begun_; }
   // When it was seen last that more had happened than the system could tell.

@@ -3,20 +3,11 @@
 #include <cstdio>
 
 namespace stc {
-namespace {
-
-// Editors save by writing another file and renaming it, or remove the old one first: a file that is
-// away or empty is believed to be so when it has stayed so for as long.
-constexpr auto kBelievedGone = std::chrono::seconds(1);
-
-const std::string kPause = std::to_string(FileEvents::kLongestPause.count()) + " s";
-
-}  // namespace
 
 std::optional<Unfinished::Time> Unfinished::until(const Stamps& before, const Stamps& now,
-                                                  const FileEvents& events, Time time) {
+                                                  const Writers& writers, Time time) {
   const Wait away = for_files_away(before, now, time);
-  const Wait written = for_writers(before, now, events);
+  const Wait written = for_writers(before, now, writers);
   const Wait& last = away.until < written.until ? written : away;
   if (time >= last.until || before == now) {
     held_since_.reset();
@@ -25,7 +16,7 @@ std::optional<Unfinished::Time> Unfinished::until(const Stamps& before, const St
     return last.until;
   }
   if (!held_since_) held_since_ = time;
-  if (!told_ && time - *held_since_ >= FileEvents::kLongestPause) {
+  if (!told_ && time - *held_since_ >= kToldAfter) {
     told_ = true;
     std::fprintf(stderr, "waiting with what was saved: %s\n", last.why.c_str());
   }
@@ -43,29 +34,29 @@ Unfinished::Wait Unfinished::for_files_away(const Stamps& before, const Stamps& 
     const auto known = away_.find(path);
     const Time since = known == away_.end() ? time : known->second;
     away.emplace(path, since);
-    if (since + kBelievedGone > wait.until)
-      wait = {since + kBelievedGone, path + " goes and comes"};
+    if (since + believed_gone() > wait.until)
+      wait = {since + believed_gone(), path + " goes and comes"};
   }
   away_ = std::move(away);
   return wait;
 }
 
 Unfinished::Wait Unfinished::for_writers(const Stamps& before, const Stamps& now,
-                                         const FileEvents& events) {
+                                         const Writers& writers) const {
   Wait wait;
-  for (const auto& [path, written] : events.begun()) {
+  for (const auto& [path, written] : writers.begun) {
     if (!before.contains(path) && !now.contains(path)) continue;
-    const Time until = written + FileEvents::kLongestPause;
+    const Time until = written + longest_pause_;
     if (until > wait.until) {
-      wait = {until, path + " is being written; until it is closed, or for " + kPause +
+      wait = {until, path + " is being written; until it is closed, or for " + pause_text() +
                          " behind its last write"};
     }
   }
   // Whatever differs may be being written.
-  const Time until = events.lost() + FileEvents::kLongestPause;
+  const Time until = writers.lost + longest_pause_;
   if (before != now && until > wait.until) {
-    wait = {until, "more is written in these folders than the system can tell; until " + kPause +
-                       " behind its end"};
+    wait = {until, "more is written in these folders than the system can tell; until " +
+                       pause_text() + " behind its end"};
   }
   return wait;
 }

@@ -181,7 +181,7 @@ class Watch {
   bool take(Stamps now, Clock::time_point begin) {
     events_.read();  // behind the look: what is being written at it is known
     const bool differs = now != stamps_;
-    const auto complete = unfinished_.until(stamps_, now, events_, begin);
+    const auto complete = unfinished_.until(stamps_, now, {events_.begun(), events_.lost()}, begin);
     look_at_ = complete.value_or(Clock::time_point::max());
     left_ = complete && differs;
     if (left_ || !differs) return false;
@@ -338,7 +338,7 @@ class Watch {
   std::shared_ptr<const ir::Image> base_;  // of build_
   std::unique_ptr<workspace::IncrementalBuild> build_;
   Stamps stamps_;
-  Unfinished unfinished_;
+  Unfinished unfinished_{FileEvents::longest_pause()};
   Clock::time_point look_at_ = Clock::time_point::max();  // at the latest
   bool left_ = false;  // something that was saved, until other files are complete
   FileEvents events_;
