@@ -34,7 +34,7 @@ map = ["byte 0 <- %QB1"]
 T
 sed 's/right.csv/no_such_folder\/right.csv/' v2/stc.toml >bad/stc.toml
 wait_value() {
-  for _ in $(seq 100); do
+  for _ in $(seq 4000); do
     stvm get Main.i --dir plc >out 2>&1 || true
     grep -qE "=$1\$" out && return
     sleep 0.05

@@ -42,7 +42,7 @@ told() {
   done
   [ "$(grep -cE -- "$1" out)" -eq "${2:-1}" ] || fail "not ${2:-1} times: $1"
   grep -E -- "$1" out >shown
-  for _ in $(seq 400); do
+  for _ in $(seq 4000); do
     grep -E -- "$1" plc.log >written || true
     cmp -s shown written && return
     sleep 0.05

@@ -20,7 +20,7 @@ serve plc v1.st
 
 # What it says of machine code, when that is made.
 with_machine_code() {
-  for _ in $(seq 200); do
+  for _ in $(seq 4000); do
     stvm status --dir plc >out
     grep -q 'code  *native' out && return 0
     sleep 0.05
@@ -29,7 +29,7 @@ with_machine_code() {
 }
 # The next scan has.
 has_seen() {
-  for _ in $(seq 200); do
+  for _ in $(seq 4000); do
     expect 0 stvm get --dir plc Main.seen Main.opened
     grep -qx "Main.seen=$1" out && return 0
     sleep 0.05

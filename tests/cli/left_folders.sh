@@ -18,7 +18,7 @@ folders() { find tmp -name running.img | grep -vc stvm-notes || true; }
 watch() {
   env ${preload:+"LD_PRELOAD=$preload"} "$bin/stvm" change --watch --yes main.st --dir plc >"$1.log" 2>&1 </dev/null &
   echo $! >"$1.pid"
-  for _ in $(seq 300); do
+  for _ in $(seq 4000); do
     grep -q 'what was saved is what runs' "$1.log" && return 0
     sleep 0.05
   done

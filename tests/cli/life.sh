@@ -21,7 +21,7 @@ serve plant plant.img
 expect 0 stvm status --dir plant
 said '__START +once'
 expect 0 stvm stop --dir plant
-for _ in $(seq 100); do
+for _ in $(seq 4000); do
   grep -q 'R0310' plant.log && break
   sleep 0.05
 done

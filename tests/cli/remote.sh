@@ -87,7 +87,7 @@ request() { printf "\\002\\000\\000\\000\\$(printf %03o "$version")\\000" >&3; }
 asked() {  # until there is more of answers than before
   before=$(stat -c %s answers)
   request
-  for _ in $(seq 600); do
+  for _ in $(seq 4000); do
     [ "$(stat -c %s answers)" -gt "$before" ] && return
     sleep 0.05
   done

@@ -30,7 +30,7 @@ serve plc v1.st --record plc.rec
 expect 0 stvm set --dir plc M.k=5
 expect 0 stvm force --dir plc F.n=7
 expect 0 stvm change v2.st --dir plc --yes --allow-loss
-sleep 0.1
+wait_for 'M.added=([1-9][0-9]|.*(e[+]|inf))' stvm get --dir plc M.added
 expect 0 stvm undo --dir plc
 expect 0 stvm unforce --dir plc F.n
 expect 0 stvm change v2.st --dir plc --yes --allow-loss --strategy standby
@@ -38,13 +38,13 @@ expect 0 stvm accept --dir plc
 expect 0 stvm restart --dir plc --warm
 for try in 1 2 3 4 5 6; do
   expect 0 stvm restart --dir plc --cold
-  sleep 0.1
+  wait_for 'M.n=[1-9]' stvm get --dir plc M.n
 done
 expect 0 stvm set --dir plc M.k=5
 expect 0 stvm get --dir plc M.k
 cp out was
 expect 0 stvm stop --dir plc
-for try in 1 2 3 4 5 6 7 8 9 10; do stvm status --dir plc >/dev/null 2>&1 || break; sleep 0.2; done
+wait "$(cat plc.pid)" || fail "exit code $? of the controller"
 expect 0 stvm replay plc.rec --print M.k,M.added
 said 'the state is identical'
 said 'M.added=[0-9]'

@@ -41,7 +41,7 @@ serve plant peer.img
 
 # coil VALUE: until the peer sees it.
 coil() {
-  for _ in $(seq 600); do
+  for _ in $(seq 4000); do
     [ "$(stvm get Main.coil --dir plant)" = "Main.coil=$1" ] && return
     sleep 0.05
   done
@@ -67,7 +67,7 @@ for signal in HUP PIPE TSTP TTIN TTOU; do
   kill -s "$signal" "$pid"
 done
 before=$(scans)
-for _ in $(seq 600); do
+for _ in $(seq 4000); do
   [ "$(scans)" != "$before" ] && grep -q ' hangup: SIGHUP: there is no log file to open anew' plc.log && break
   sleep 0.05
 done

@@ -129,7 +129,7 @@ saved() {
 }
 # reported TIMES: so often W0001 was said since the last save
 reported() {
-  for _ in $(seq 600); do
+  for _ in $(seq 4000); do
     [ "$(grep -c 'R0505\|^built ' watch.log)" -ge "$builds" ] && break
     sleep 0.05
   done
