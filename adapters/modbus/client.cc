@@ -22,7 +22,8 @@ class Client : public vm::IoDriver {
   Client(const ir::Device& device, Context context)
       : context_(std::move(context)),
         timeout_ns_(ir::number_setting(device, "timeout_ms") * 1'000'000),
-        high_first_(ir::setting(device, "word_order") == "high") {
+        high_first_(ir::setting(device, "word_order") == "high"),
+        serial_(ir::find_driver(device.driver)->id == ir::DriverId::kModbusRtu) {
     modbus_set_slave(context_.get(), static_cast<int>(ir::number_setting(device, "unit")));
     modbus_set_byte_timeout(context_.get(), 0, 0);  // the response timeout holds for all of it
   }
@@ -55,7 +56,10 @@ class Client : public vm::IoDriver {
   base::Status connect() {
     if (connected_) return base::Ok{};
     if (!in_time()) return failed("to connect");
-    if (modbus_connect(context_.get()) != 0) return failed("to connect");
+    if (modbus_connect(context_.get()) != 0) {
+      if (serial_) return vm::exchange_failed("to connect: " + reason_of_port());
+      return failed("to connect");
+    }
     connected_ = true;
     return base::Ok{};
   }
@@ -140,6 +144,7 @@ class Client : public vm::IoDriver {
   Context context_;
   const int64_t timeout_ns_;
   const bool high_first_;
+  const bool serial_;  // or by TCP
   bool connected_ = false;
   int64_t deadline_ns_ = 0;
   std::array<uint8_t, MODBUS_MAX_READ_BITS> bits_{};

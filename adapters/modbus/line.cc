@@ -58,6 +58,19 @@ base::Result<Context> open_rtu(const ir::Device& device) {
 
 std::string reason() { return modbus_strerror(errno); }
 
+std::string reason_of_port() {
+  const int error = errno;
+  const std::string why = modbus_strerror(error);
+  if (error == EACCES) {
+    return why +
+           "; the user of the controller needs the group of that port (SupplementaryGroups "
+           "in the unit, often `dialout`)";
+  }
+  if (error == EPERM) return why + "; the unit does not allow that port (DeviceAllow)";
+  if (error == EBUSY) return why + "; another process has that port";
+  return error == ENOENT ? why + "; is the adapter plugged in (`ls /dev/serial/by-id`)?" : why;
+}
+
 bool is_exception(int error) { return error > MODBUS_ENOBASE && error <= EMBXGTAR; }
 
 void set_response_timeout(modbus_t* context, int64_t ns) {

@@ -29,6 +29,8 @@ base::Result<Context> open_rtu(const ir::Device& device);
 
 // What errno says behind a call that failed.
 std::string reason();
+// The same of a serial port that could not be opened, with the way out.
+std::string reason_of_port();
 // Did the other side answer, and say no?
 bool is_exception(int error);
 

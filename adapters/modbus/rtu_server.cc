@@ -23,7 +23,9 @@ class RtuServer : public Serving {
 
   base::Status listen() override {
     if (open_) return base::Ok{};
-    if (modbus_connect(context()) != 0) return vm::exchange_failed(port_ + ": " + reason());
+    if (modbus_connect(context()) != 0) {
+      return vm::exchange_failed(port_ + ": " + reason_of_port());
+    }
     open_ = true;
     return base::Ok{};
   }

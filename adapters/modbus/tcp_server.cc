@@ -40,8 +40,8 @@ std::string name_of(const sockaddr_storage& peer, socklen_t size) {
 // Why nobody can listen there, and what to do.
 std::string way_out() {
   if (errno == EACCES) {
-    return "; ports below 1024 need CAP_NET_BIND_SERVICE (AmbientCapabilities in the unit), or "
-           "choose a larger one";
+    return "; ports below 1024 need CAP_NET_BIND_SERVICE (the unit says how), or choose a larger "
+           "one";
   }
   if (errno == EADDRINUSE) return "; another process listens there (`ss -ltnp` shows which)";
   return errno == EADDRNOTAVAIL ? "; this machine has no such address" : "";
@@ -107,8 +107,8 @@ class TcpServer : public Serving {
 
   vm::Descriptor accept_from(sockaddr_storage& peer, socklen_t& size) const {
     size = sizeof peer;
-    return vm::Descriptor(::accept4(listener_.get(), reinterpret_cast<sockaddr*>(&peer), &size,
-                                    SOCK_CLOEXEC));
+    return vm::Descriptor(
+        ::accept4(listener_.get(), reinterpret_cast<sockaddr*>(&peer), &size, SOCK_CLOEXEC));
   }
 
   // When there are too many, whoever has been silent longest makes room. Where the process has no
@@ -118,7 +118,9 @@ class TcpServer : public Serving {
     socklen_t size = 0;
     vm::Descriptor socket = accept_from(peer, size);
     if (!socket.valid() && (errno == EMFILE || errno == ENFILE) && reserve_.valid()) {
-      { const vm::Descriptor given_up = std::move(reserve_); }
+      {
+        const vm::Descriptor given_up = std::move(reserve_);
+      }
       socket = accept_from(peer, size);
     }
     if (!socket.valid()) {
