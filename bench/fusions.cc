@@ -436,11 +436,14 @@ int main(int argc, char** argv) {
   if (!others.empty()) show(others, table, stderr);
   std::printf(
       "// Rows of fused handlers, chosen by scripts/choose_fusions.sh; fusion.h says what they\n"
-      "// mean. FUSION(steps...): S<opcode, a, b, c>; f s g c are bases, v0 the result of step "
-      "0.\n");
-  for (const vm::Fusion& row : table) {
-    std::string text;
-    for (uint32_t k = 0; k < row.length; ++k) text += (k == 0 ? "" : ", ") + step_text(row.keys[k]);
+      "// mean. FUSION(part, steps...): which of fused_*.cc; S<opcode, a, b, c>; f s g c are "
+      "bases, "
+      "v0 the\n// result of step 0.\n");
+  constexpr size_t kParts = 4;
+  for (size_t i = 0; i < table.size(); ++i) {
+    const vm::Fusion& row = table[i];
+    std::string text = std::to_string(i % kParts);
+    for (uint32_t k = 0; k < row.length; ++k) text += ", " + step_text(row.keys[k]);
     std::printf("FUSION(%s)\n", text.c_str());
   }
   return 0;

@@ -1,6 +1,6 @@
 # Sources of one folder are compiled several at a time: what they include is parsed once. So names in
 # unnamed namespaces are unique in their folder. 1: each source alone, for work on one of them.
-set(STC_BATCH 8 CACHE STRING "Sources that are compiled together")
+set(STC_BATCH 16 CACHE STRING "Sources that are compiled together")
 
 # These have the same names in each source of the folder, or options of their own.
 set(STC_ALONE "/tools/st[a-z]+/main|/small_blocks|/vm/exec/(handle|fused)_")

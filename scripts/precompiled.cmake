@@ -3,9 +3,10 @@
 # No header of the project: what changes often would compile everything anew, and measured on 16
 # sources it saves nothing more. `make clang` compiles each source with what it includes itself.
 set(STC_COMMON_HEADERS
-  <algorithm> <array> <atomic> <bit> <charconv> <chrono> <cmath> <cstdint> <cstdio> <cstdlib>
-  <cstring> <functional> <limits> <map> <memory> <mutex> <optional> <set> <span> <string>
-  <string_view> <thread> <unordered_map> <utility> <variant> <vector>)
+  <algorithm> <array> <bit> <cstdint> <cstdio> <cstdlib> <cstring> <functional> <limits> <map>
+  <memory> <optional> <set> <span> <string> <string_view> <unordered_map> <utility> <vector>)
+# Reading what was parsed takes time, too: these only where threads are.
+set(STC_THREAD_HEADERS <atomic> <charconv> <chrono> <cmath> <mutex> <thread> <variant>)
 
 # stc_precompiled_headers(NAME header...): what stc_precompiled(TARGET NAME) takes part in.
 function(stc_precompiled_headers name)
@@ -24,21 +25,50 @@ function(stc_precompiled target name)
   endif()
 endfunction()
 
-# stc_compile_small(source...): for size rather than for speed in a release build.
-function(stc_compile_small)
-  if(NOT CMAKE_BUILD_TYPE STREQUAL "Release")
+# stc_compile_with(NAME options HEADERS header... SOURCES source...): these sources with these options,
+# and with these headers parsed with the same options, as NAME.
+function(stc_compile_with name options)
+  cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES" ${ARGN})
+  set_property(SOURCE ${ARG_SOURCES} APPEND PROPERTY COMPILE_OPTIONS ${options})
+  if(NOT STC_PRECOMPILED)
     return()
   endif()
-  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -Os)
-  if(STC_PRECOMPILED)
-    if(NOT TARGET small_headers)
-      stc_precompiled_headers(small_headers ${STC_COMMON_HEADERS})
-      target_compile_options(small_headers PRIVATE -Os)
-    endif()
-    # A target reuses the headers of one other target; these sources are in many.
-    set(header ${CMAKE_BINARY_DIR}/CMakeFiles/small_headers.dir/cmake_pch.hxx)
-    set_property(SOURCE ${ARGN} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
-    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -Winvalid-pch -include ${header})
-    set_property(SOURCE ${ARGN} APPEND PROPERTY OBJECT_DEPENDS ${header}.gch)
+  if(NOT TARGET ${name})
+    stc_precompiled_headers(${name} ${ARG_HEADERS})
+    target_compile_options(${name} PRIVATE ${options})
   endif()
+  # A target reuses the headers of one other target; these sources are in many.
+  set(header ${CMAKE_BINARY_DIR}/CMakeFiles/${name}.dir/cmake_pch.hxx)
+  set_property(SOURCE ${ARG_SOURCES} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
+  set_property(SOURCE ${ARG_SOURCES} APPEND PROPERTY COMPILE_OPTIONS -Winvalid-pch
+                                                                     -include ${header})
+  set_property(SOURCE ${ARG_SOURCES} APPEND PROPERTY OBJECT_DEPENDS ${header}.gch)
+endfunction()
+
+# stc_compile_small(source...): for size rather than for speed in a release build.
+function(stc_compile_small)
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    stc_compile_with(small_headers -Os HEADERS ${STC_COMMON_HEADERS} ${STC_THREAD_HEADERS}
+                     SOURCES ${ARGN})
+  endif()
+endfunction()
+
+# stc_compiler_only(TARGET): what is only in `stc`. Nothing there is caught or cleaned up when memory
+# runs out (tools/stc/memory_budget.h), and half of the optimiser's time is for a hundredth of the
+# speed (docs/TESTING.md, Build time).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release")
+  set(STC_COMPILER_OPTIONS -O1 -finline-small-functions -findirect-inlining -fpartial-inlining
+                           -fno-exceptions)
+endif()
+function(stc_compiler_only target)
+  if(NOT STC_COMPILER_OPTIONS)
+    stc_precompiled(${target} product_headers)
+    return()
+  endif()
+  target_compile_options(${target} PRIVATE ${STC_COMPILER_OPTIONS})
+  if(STC_PRECOMPILED AND NOT TARGET compiler_headers)
+    stc_precompiled_headers(compiler_headers ${STC_COMMON_HEADERS})
+    target_compile_options(compiler_headers PRIVATE ${STC_COMPILER_OPTIONS})
+  endif()
+  stc_precompiled(${target} compiler_headers)
 endfunction()

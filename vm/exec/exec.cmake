@@ -11,7 +11,7 @@ endif()
 # Handlers neither throw nor are they thrown through: what would unwind them is a tenth of stvm.
 if(NOT STC_AS_WRITTEN)
   file(GLOB handlers ${CMAKE_SOURCE_DIR}/vm/exec/handle_*.cc ${CMAKE_SOURCE_DIR}/vm/exec/fused_*.cc)
-  set_property(SOURCE ${handlers} APPEND PROPERTY COMPILE_OPTIONS
-    -fno-exceptions -fno-unwind-tables -fno-asynchronous-unwind-tables)
-  set_property(SOURCE ${handlers} PROPERTY SKIP_PRECOMPILE_HEADERS ON)  # parsed with other options
+  stc_compile_with(handler_headers
+    "-fno-exceptions;-fno-unwind-tables;-fno-asynchronous-unwind-tables"
+    HEADERS ${STC_COMMON_HEADERS} SOURCES ${handlers})
 endif()

@@ -1,5 +1,6 @@
 // Fused handlers and their instantiation. The parts (fused_*.cc) have every fourth row of
-// fusions.def each, so that they compile at the same time: STC_FUSED_PART says which.
+// fusions.def each, so that they compile at the same time: each defines what its own rows are. Rows
+// of other parts are gone before they are parsed.
 #pragma once
 
 #include "vm/exec/semantics_arithmetic.h"
@@ -40,12 +41,6 @@ void fused(STC_HANDLER_ARGS) {
   STC_GO(m.pc, m.frame, m.self);
 }
 
-template <bool here, class... S>
-constexpr Handler fused_if() {
-  if constexpr (here) return &fused<S...>;
-  return nullptr;
-}
-
 namespace {
 
 using operand::c, operand::f, operand::g, operand::s;
@@ -54,10 +49,22 @@ using O = ir::Opcode;
 template <O op, uint8_t A = f, uint8_t B = f, uint8_t C = f>
 using S = Step<op, A, B, C>;
 
-constexpr int kFirstCount = __COUNTER__ + 1;
+#ifndef STC_ROW_0
+#define STC_ROW_0(...)
+#endif
+#ifndef STC_ROW_1
+#define STC_ROW_1(...)
+#endif
+#ifndef STC_ROW_2
+#define STC_ROW_2(...)
+#endif
+#ifndef STC_ROW_3
+#define STC_ROW_3(...)
+#endif
+
 // Keeps the handlers of this part; handlers.cc names them.
 [[gnu::used]] constinit const Handler kPart[] = {
-#define FUSION(...) fused_if<(__COUNTER__ - kFirstCount) % 4 == STC_FUSED_PART, __VA_ARGS__>(),
+#define FUSION(part, ...) STC_ROW_##part(__VA_ARGS__)
 #include "vm/exec/fusions.def"
 #undef FUSION
     nullptr};

@@ -1,2 +1,2 @@
-#define STC_FUSED_PART 3
+#define STC_ROW_3(...) &fused<__VA_ARGS__>,
 #include "vm/exec/fused.h"

@@ -48,7 +48,7 @@ bool comes_before(const Fusion& x, const Fusion& y) {
 
 constexpr std::array<Fusion, kFusionCount> all_fusions() {
   return {{
-#define FUSION(...) fusion_of<__VA_ARGS__>(),
+#define FUSION(part, ...) fusion_of<__VA_ARGS__>(),
 #include "vm/exec/fusions.def"
 #undef FUSION
   }};

@@ -47,7 +47,7 @@ constexpr HandlerTable all_handlers() {
 #include "ir/bytecode/opcodes.def"
 #undef OP
   [[maybe_unused]] uint32_t next = kFirstFused;
-#define FUSION(...) table.of[next++] = &fused<__VA_ARGS__>;
+#define FUSION(part, ...) table.of[next++] = &fused<__VA_ARGS__>;
 #include "vm/exec/fusions.def"
 #undef FUSION
   return table;
