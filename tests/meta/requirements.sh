@@ -29,5 +29,14 @@ for id in $all; do
     status=1
   fi
 done
+# The lines of the command line and of devices have a row with their tests, which name them.
+for id in $(seq -f 'R-%02g' 13) V-01; do
+  row=$(sed -n "s/^| $id | \(.*\) |\$/\1/p" docs/REQUIREMENTS.md)
+  [ -n "$row" ] || { echo "$id has no row in docs/REQUIREMENTS.md"; status=1; }
+  for file in $(echo "$row" | grep -oE 'tests/[a-z0-9_/]+\.[a-z]+'); do
+    grep -qE "$id|$(echo "$id" | tr -d -)_" "$file" || { echo "$file does not name $id"; status=1; }
+    tested=$((tested + 1))
+  done
+done
 echo "$tested requirements named by tests"
 exit $status

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/diagnostics.h"
+#include "base/diagnostics_render.h"
 #include "tests/unit/base/json_value.h"
 
 namespace base {
@@ -132,6 +133,22 @@ TEST(Sarif, EveryKindOfResult) {
   JsonValue log = sarif(diagnostics, sources);
   check_log(log);
   EXPECT_EQ(log["runs"].items[0]["results"].items.size(), 6u);
+}
+
+// Where the pages of codes are is said by who builds (STC_DOCUMENTATION); without it there is no
+// address to name.
+TEST(Sarif, R04_RulesNameTheirPages) {
+  SourceMap sources;
+  const SourcePos place = sources.add("a.st", "x");
+  Diagnostics diagnostics;
+  diagnostics.add(DiagnosticCode::kExpected, {place, {place.offset + 1}}, "text");
+  const auto uri_of = [&](const RunFacts& run) {
+    const JsonValue log = *JsonReader(render_sarif(diagnostics, sources, run)).read();
+    return log["runs"].items[0]["tool"]["driver"]["rules"].items[0]["helpUri"].text;
+  };
+  EXPECT_EQ(uri_of({.documentation = "https://stc.example/codes"}),
+            "https://stc.example/codes/E1001");
+  EXPECT_EQ(uri_of({}), "");
 }
 
 }  // namespace
