@@ -1,6 +1,7 @@
 # `cmake --install`, `make install PREFIX=...` and the Debian packages `stc` and `stvm` (R-12). Two
 # components of the same names: a machine that only runs programs needs no compiler.
 include(GNUInstallDirs)
+string(REPLACE "-" "~" CPACK_PACKAGE_VERSION ${STC_VERSION})  # 0.2.0~dev comes before 0.2.0
 set(CPACK_PACKAGE_CONTACT "The developers of stc <stc@users.noreply.github.com>")
 set(docs ${CMAKE_INSTALL_DATAROOTDIR}/doc)
 
@@ -11,7 +12,7 @@ install(FILES packaging/debian/copyright DESTINATION ${docs}/stc COMPONENT stc)
 install(FILES packaging/debian/copyright DESTINATION ${docs}/stvm COMPONENT stvm)
 foreach(package stc stvm)
   set(changelog ${CMAKE_BINARY_DIR}/generated/packages/${package}/changelog)
-  file(CONFIGURE OUTPUT ${changelog} CONTENT "${package} (${PROJECT_VERSION}) unstable; urgency=medium
+  file(CONFIGURE OUTPUT ${changelog} CONTENT "${package} (${CPACK_PACKAGE_VERSION}) unstable; urgency=medium
 
   * What is new: CHANGELOG.md of the sources.
 

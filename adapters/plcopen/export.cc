@@ -166,7 +166,7 @@ void put_headers(Node project, const std::string& name) {
   Node file = project.append_child("fileHeader");
   file.append_attribute("companyName") = "";
   file.append_attribute("productName") = "stc";
-  file.append_attribute("productVersion") = "0.1.0";
+  file.append_attribute("productVersion") = STC_VERSION;
   file.append_attribute("creationDateTime") = when;
   Node content = project.append_child("contentHeader");
   content.append_attribute("name") = name.c_str();

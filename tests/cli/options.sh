@@ -10,7 +10,7 @@ ST
 expect 0 stc build good.st -o good.img
 
 # R-01 What runs here: version, commit, formats, protocol, adapters, native tier.
-version=$(sed -n 's/^project(stc VERSION \([0-9.]*\) .*/\1/p' "$source_dir/CMakeLists.txt")
+version=$(cat "$source_dir/VERSION")
 commit=$(sed -n 's/.*kCommit\[\] = "\(.*\)";/\1/p' "$bin/../generated/tools/identity.cc")
 for tool in stc stvm; do
   for way in version --version -V; do
